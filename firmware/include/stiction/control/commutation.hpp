@@ -1,0 +1,36 @@
+// Three-phase commutation of a synchronous linear motor (Mendricky 2006, 3.6, 3.9, 3.12): phase k carries
+// i sin(phi + k 2 pi / 3), phi = 2 pi x / pole-pair pitch, so that the force is 3/2 K_F i at every position.
+#pragma once
+
+#include <array>
+
+#include "stiction/number/fixed.hpp"
+
+namespace stiction {
+
+template <class S>
+struct Commutation {
+  using Sine = typename S::Sine;
+  using Current = typename S::Current;
+
+  // sin(phi + k 2 pi / 3), k = 0, 1, 2; the third follows from the sum being zero.
+  static constexpr std::array<Sine, 3> phases(typename S::Angle angle, SaturationCounter& saturations) {
+    const Sine a = S::sine(angle);
+    const Sine b = S::sine(S::third_of_turn_after(angle));
+    return {a, b, narrow<Sine>(-(a + b), saturations)};
+  }
+
+  static constexpr Current phase_current(Current amplitude, Sine phase, SaturationCounter& saturations) {
+    return narrow<Current>(amplitude * phase, saturations);
+  }
+
+  // The amplitude that makes the same force: 2/3 of the sum of i_k sin(phi + k 2 pi / 3).
+  static constexpr Current amplitude(const std::array<Current, 3>& current, const std::array<Sine, 3>& phase,
+                                     SaturationCounter& saturations) {
+    const auto sum = narrow<typename S::CurrentSum>(
+        current[0] * phase[0] + current[1] * phase[1] + current[2] * phase[2], saturations);
+    return narrow<Current>(sum * S::two_thirds(), saturations);
+  }
+};
+
+}  // namespace stiction

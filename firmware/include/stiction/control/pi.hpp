@@ -1,0 +1,49 @@
+// PI controller k (1 + 1 / (T_N s)) with back-calculation anti-windup (Astrom, Hagglund 2006, 3.5). The integrator is
+// updated before use: I += k T/T_N e; y = k e + I. It is kept in units of the output with all bits of the product.
+#pragma once
+
+#include "stiction/number/fixed.hpp"
+
+namespace stiction {
+
+// Types of one controller: error, output, gains, integrator.
+template <class E, class O, class P, class I, class W, class T>
+struct PiTypes {
+  using Error = E;
+  using Output = O;
+  using Proportional = P;
+  using Integral = I;
+  using Integrator = W;
+  using Tracking = T;
+};
+
+template <class Types>
+struct Pi {
+  struct Config {
+    typename Types::Proportional proportional{};  // k
+    typename Types::Integral integral{};          // k T / T_N; 0: proportional only
+    typename Types::Tracking tracking{};          // T / T_t, share of the excess taken back per tick
+  };
+  struct State {
+    typename Types::Integrator integral{};  // I
+  };
+
+  // The output before any limit.
+  static constexpr typename Types::Output step(const Config& config, State& state, typename Types::Error error,
+                                               SaturationCounter& saturations) {
+    state.integral = narrow<typename Types::Integrator>(state.integral + config.integral * error, saturations);
+    // The product has fewer fraction bits than the integrator; the integrator's last ones are far below the output's.
+    using Aligned = decltype(config.proportional * error);
+    return narrow<typename Types::Output>(
+        config.proportional * error + narrow<Aligned>(state.integral, saturations), saturations);
+  }
+
+  // Tells the integrator what became of the output behind all limits: `limited` instead of `wanted`.
+  static constexpr void track(const Config& config, State& state, typename Types::Output wanted,
+                              typename Types::Output limited, SaturationCounter& saturations) {
+    const auto excess = narrow<typename Types::Output>(limited - wanted, saturations);
+    state.integral = narrow<typename Types::Integrator>(state.integral + config.tracking * excess, saturations);
+  }
+};
+
+}  // namespace stiction

@@ -1,0 +1,74 @@
+// Velocity from time-stamped positions, and the set-point speed delayed to match. A difference over the interval
+// (t1, t2) is the mean velocity of the interval, the velocity at its middle: it lags the newest sample by half the
+// interval. Compared with an undelayed set-point this lag would be a velocity error proportional to acceleration
+// (2.7 um at 48 m/min on the cross table).
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "stiction/number/fixed.hpp"
+
+namespace stiction {
+
+enum class VelocityFeedback : std::uint8_t {
+  given,            // the encoder itself gives a velocity at the time of its sample
+  difference,       // of the last two positions
+  mean_difference,  // of two means of two positions (the EMPS controller): (x0 - x2) over the time between them
+};
+
+template <class S>
+struct VelocityEstimator {
+  struct State {
+    typename S::Position x1{}, x2{};    // the samples before the newest
+    std::int64_t t1_ns = 0, t2_ns = 0;  // their times
+  };
+  struct Estimate {
+    typename S::Velocity velocity;
+    std::int64_t time_ns;  // the time at which the carriage had it, in the mean
+  };
+
+  // A start at rest: as if the samples before had been the same.
+  static constexpr State start(typename S::Position x, std::int64_t t_ns, std::int64_t period_ns) {
+    return {x, x, t_ns - period_ns, t_ns - 2 * period_ns};
+  }
+
+  static constexpr Estimate step(State& state, VelocityFeedback kind, typename S::Position x, std::int64_t t_ns,
+                                 typename S::Velocity given, SaturationCounter& saturations) {
+    const bool mean = kind == VelocityFeedback::mean_difference;
+    const auto base = mean ? state.x2 : state.x1;
+    const std::int64_t base_ns = mean ? state.t2_ns : state.t1_ns;
+    const auto motion = narrow<typename S::Step>(x - base, saturations);
+    const auto velocity = narrow<typename S::Velocity>(motion * S::rate(t_ns - base_ns), saturations);
+    state = {x, state.x1, t_ns, state.t1_ns};
+    if (kind == VelocityFeedback::given) return {given, t_ns};
+    return {velocity, base_ns + (t_ns - base_ns) / 2};
+  }
+};
+
+// A delay line of set-point speeds, read at a fractional number of ticks before the newest by linear interpolation.
+template <class S>
+struct SpeedDelay {
+  static constexpr int length = 5;  // the newest and four ticks back: all that TickFraction can ask for
+
+  struct State {
+    std::array<typename S::Velocity, length> past{};  // past[0] is the newest
+  };
+
+  static constexpr void push(State& state, typename S::Velocity v) {
+    for (int i = length - 1; i > 0; --i) state.past[i] = state.past[i - 1];
+    state.past[0] = v;
+  }
+
+  // Delays below 0 and beyond the line's length read its ends.
+  static constexpr typename S::Velocity read(const State& state, typename S::TickFraction delay,
+                                             SaturationCounter& saturations) {
+    const auto [whole, fraction] = S::split(delay, length - 2);
+    const auto newer = state.past[whole];
+    const auto older = state.past[whole + 1];
+    return narrow<typename S::Velocity>(newer + narrow<typename S::Velocity>((older - newer) * fraction, saturations),
+                                        saturations);
+  }
+};
+
+}  // namespace stiction

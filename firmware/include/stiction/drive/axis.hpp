@@ -1,0 +1,241 @@
+// The cascade of one servo axis (Mendricky 2006, 3.2): P position controller on the slow tick; velocity feedforward,
+// velocity estimate, PI velocity controller, notch, current feedforward, PI current controllers on the fast tick; all
+// from samples of the same instant. Written once over a policy of signal types: Axis<FixedSignals> is the firmware.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "stiction/control/commutation.hpp"
+#include "stiction/control/limit.hpp"
+#include "stiction/control/notch.hpp"
+#include "stiction/control/pi.hpp"
+#include "stiction/control/quantizer.hpp"
+#include "stiction/control/velocity_estimator.hpp"
+#include "stiction/drive/axis_signals.hpp"
+#include "stiction/drive/exchange.hpp"
+#include "stiction/drive/faults.hpp"
+#include "stiction/number/fixed.hpp"
+
+namespace stiction {
+
+// What stands behind the velocity controller.
+enum class CurrentLoop : std::uint8_t {
+  three_phase,  // one PI per phase, commutated
+  direct,       // one PI: DC motor
+  none,         // the velocity controller's output is the voltage command of a force source, 1 A standing for 1 V
+};
+
+template <class S>
+using VelocityPi = Pi<PiTypes<typename S::Velocity, typename S::Current, typename S::VelocityGain,
+                              typename S::VelocityIntegralGain, typename S::VelocityIntegral,
+                              typename S::VelocityTracking>>;
+template <class S>
+using CurrentPi = Pi<PiTypes<typename S::Current, typename S::Voltage, typename S::CurrentGain,
+                             typename S::CurrentIntegralGain, typename S::CurrentIntegral,
+                             typename S::CurrentTracking>>;
+
+template <class S>
+struct AxisConfig {
+  std::int64_t period_ns = 0;  // of the fast tick
+  typename S::PeriodInverse inverse_period{};
+  typename Quantizer<S>::Config quantizer{};
+  typename S::PositionGain position_gain{};
+  typename S::VelocityWeight velocity_feedforward{};
+  VelocityFeedback velocity_feedback = VelocityFeedback::difference;
+  typename VelocityPi<S>::Config velocity{};
+  typename Notch<S>::Config notch{};
+  typename S::AccelerationGain current_feedforward{};
+  CurrentLoop current_loop = CurrentLoop::three_phase;
+  typename CurrentPi<S>::Config current{};
+  typename S::PitchInverse inverse_pole_pair_pitch{};
+
+  // Limits hold an output back; faults stop the axis.
+  typename S::Velocity velocity_limit{};
+  typename S::Current current_limit{};
+  typename S::Voltage voltage_limit{};
+  typename S::Distance following_error_fault{};
+  typename S::Current over_current_fault{};
+  typename S::Velocity over_speed_fault{};
+};
+
+template <class S>
+struct AxisState {
+  bool running = false;
+  Fault fault = Fault::none;
+  std::int64_t fault_time_ns = 0;
+  std::uint8_t missed_positions = 0;
+  typename S::Position x{};          // the last valid sample
+  std::int64_t x_time_ns = 0;        // and its time
+  typename S::Distance e_held{};
+  typename VelocityEstimator<S>::State estimator{};
+  typename VelocityEstimator<S>::Estimate velocity{};
+  typename SpeedDelay<S>::State set_speeds{};
+  typename VelocityPi<S>::State velocity_pi{};
+  typename Notch<S>::State notch{};
+  std::array<typename CurrentPi<S>::State, 3> current_pi{};
+  SaturationCounter saturations{};
+};
+
+template <class S>
+class Axis {
+ public:
+  static constexpr int missed_positions_allowed = 2;
+
+  explicit constexpr Axis(const AxisConfig<S>& config) : config_(config) {}
+
+  constexpr const AxisConfig<S>& config() const { return config_; }
+  constexpr const AxisState<S>& state() const { return state_; }
+  constexpr Fault fault() const { return state_.fault; }
+  constexpr std::int64_t fault_time_ns() const { return state_.fault_time_ns; }
+
+  // Starts control at rest at the measured position and clears a fault. Call before the first tick.
+  constexpr void start(const Feedback<S>& feedback) {
+    state_ = {};
+    state_.running = true;
+    state_.x = feedback.position;
+    state_.x_time_ns = feedback.position_time_ns;
+    state_.estimator =
+        VelocityEstimator<S>::start(feedback.position, feedback.position_time_ns, config_.period_ns);
+    state_.velocity = {{}, feedback.position_time_ns};
+  }
+
+  // Latches a fault that was seen outside of the axis, such as a set-point that could not be represented.
+  constexpr void trip(Fault fault, std::int64_t now_ns) {
+    if (state_.fault != Fault::none) return;
+    state_.fault = fault;
+    state_.fault_time_ns = now_ns;
+    state_.running = false;
+  }
+
+  // One fast tick at logical time `now_ns`; `slow` on the ticks of the position controller. Writes every signal of
+  // the cascade to `s`.
+  constexpr Command<S> tick(const SetPoint<S>& set, const Feedback<S>& feedback, std::int64_t now_ns, bool slow,
+                            AxisSignals<S>& s) {
+    auto& saturations = state_.saturations;
+    take_feedback(feedback, now_ns);
+
+    s.x_set = set.position;
+    s.v_set = set.velocity;
+    s.a_set = set.acceleration;
+    s.x = state_.x;
+    s.v = state_.velocity.velocity;
+
+    // Position: the set-point is taken back to the time of the sample.
+    const auto age = S::seconds(now_ns - state_.x_time_ns);
+    const auto x_set_then = narrow<typename S::Position>(
+        set.position - narrow<typename S::Position>(set.velocity * age, saturations), saturations);
+    s.e = narrow<typename S::Distance>(x_set_then - state_.x, saturations);
+    if (slow) state_.e_held = Quantizer<S>::apply(config_.quantizer, s.e, saturations);
+    s.e_held = state_.e_held;
+
+    // Velocity: the set speed is read at the time for which the measured one holds.
+    SpeedDelay<S>::push(state_.set_speeds, set.velocity);
+    s.v_set_delayed = SpeedDelay<S>::read(
+        state_.set_speeds, S::ticks(now_ns - state_.velocity.time_ns, config_.inverse_period), saturations);
+    const auto v_ref =
+        limit(narrow<typename S::Velocity>(
+                  config_.position_gain * s.e_held + config_.velocity_feedforward * s.v_set_delayed, saturations),
+              opposite(config_.velocity_limit), config_.velocity_limit);
+    s.v_ref = v_ref.value;
+    s.v_error = narrow<typename S::Velocity>(s.v_ref - s.v, saturations);
+    s.i_pi = VelocityPi<S>::step(config_.velocity, state_.velocity_pi, s.v_error, saturations);
+    s.i_notch = Notch<S>::step(config_.notch, state_.notch, s.i_pi, saturations);
+    s.i_feedforward = narrow<typename S::Current>(config_.current_feedforward * set.acceleration, saturations);
+    const auto i_wanted = narrow<typename S::Current>(s.i_notch + s.i_feedforward, saturations);
+    const auto i_set = limit(i_wanted, opposite(config_.current_limit), config_.current_limit);
+    s.i_set = i_set.value;
+    VelocityPi<S>::track(config_.velocity, state_.velocity_pi, i_wanted, i_set.value, saturations);
+    s.i_integral = narrow<typename S::Current>(state_.velocity_pi.integral, saturations);
+
+    Command<S> command;
+    s.i_phase = feedback.current;
+    s.limiting = {v_ref.limiting, i_set.limiting, false};
+    switch (config_.current_loop) {
+      case CurrentLoop::three_phase: control_phases(s, command); break;
+      case CurrentLoop::direct: control_direct(s, command); break;
+      case CurrentLoop::none: pass_through(s, command); break;
+    }
+
+    if (!set.valid) trip(Fault::set_point, now_ns);
+    supervise(feedback, s, now_ns);
+    s.fault = state_.fault;
+    if (!state_.running) command = {};
+    command.enable = state_.running;
+    s.u_phase = command.voltage;
+    return command;
+  }
+
+ private:
+  using Current = typename S::Current;
+  using Voltage = typename S::Voltage;
+
+  template <class T>
+  static constexpr T opposite(T x) {
+    SaturationCounter none;
+    return narrow<T>(T{} - x, none);
+  }
+
+  // A sample that is not valid leaves position and velocity as they were; too many in a row are a fault.
+  constexpr void take_feedback(const Feedback<S>& feedback, std::int64_t now_ns) {
+    if (!feedback.position_valid) {
+      if (++state_.missed_positions > missed_positions_allowed) trip(Fault::position_lost, now_ns);
+      return;
+    }
+    state_.missed_positions = 0;
+    if (feedback.position_time_ns <= state_.estimator.t1_ns) return;  // a sample seen before
+    state_.x = feedback.position;
+    state_.x_time_ns = feedback.position_time_ns;
+    state_.velocity =
+        VelocityEstimator<S>::step(state_.estimator, config_.velocity_feedback, feedback.position,
+                                   feedback.position_time_ns, feedback.velocity, state_.saturations);
+  }
+
+  constexpr Voltage control_current(int phase, Current set, Current measured, AxisSignals<S>& s) {
+    auto& saturations = state_.saturations;
+    auto& pi = state_.current_pi[static_cast<std::size_t>(phase)];
+    const auto wanted = CurrentPi<S>::step(config_.current, pi, narrow<Current>(set - measured, saturations), saturations);
+    const auto u = limit(wanted, opposite(config_.voltage_limit), config_.voltage_limit);
+    CurrentPi<S>::track(config_.current, pi, wanted, u.value, saturations);
+    s.limiting.voltage = s.limiting.voltage || u.limiting;
+    return u.value;
+  }
+
+  constexpr void control_phases(AxisSignals<S>& s, Command<S>& command) {
+    auto& saturations = state_.saturations;
+    const auto phase = Commutation<S>::phases(S::angle(state_.x, config_.inverse_pole_pair_pitch), saturations);
+    s.i = Commutation<S>::amplitude(s.i_phase, phase, saturations);
+    for (int k = 0; k < 3; ++k) {
+      const auto set = Commutation<S>::phase_current(s.i_set, phase[static_cast<std::size_t>(k)], saturations);
+      command.voltage[static_cast<std::size_t>(k)] =
+          control_current(k, set, s.i_phase[static_cast<std::size_t>(k)], s);
+    }
+  }
+
+  constexpr void control_direct(AxisSignals<S>& s, Command<S>& command) {
+    s.i = s.i_phase[0];
+    command.voltage[0] = control_current(0, s.i_set, s.i, s);
+  }
+
+  constexpr void pass_through(AxisSignals<S>& s, Command<S>& command) {
+    s.i = s.i_set;
+    const auto u = limit(narrow<Voltage>(s.i_set, state_.saturations), opposite(config_.voltage_limit),
+                         config_.voltage_limit);
+    s.limiting.voltage = u.limiting;
+    command.voltage[0] = u.value;
+  }
+
+  constexpr void supervise(const Feedback<S>& feedback, const AxisSignals<S>& s, std::int64_t now_ns) {
+    if (feedback.fault) trip(Fault::drive_input, now_ns);
+    if (magnitude(s.i) > magnitude(config_.over_current_fault)) trip(Fault::over_current, now_ns);
+    for (const auto i : s.i_phase)
+      if (magnitude(i) > magnitude(config_.over_current_fault)) trip(Fault::over_current, now_ns);
+    if (magnitude(s.v) > magnitude(config_.over_speed_fault)) trip(Fault::over_speed, now_ns);
+    if (magnitude(s.e) > magnitude(config_.following_error_fault)) trip(Fault::following_error, now_ns);
+  }
+
+  AxisConfig<S> config_;
+  AxisState<S> state_;
+};
+
+}  // namespace stiction

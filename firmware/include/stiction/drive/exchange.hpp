@@ -1,0 +1,33 @@
+// What crosses the borders of an axis each tick: set-point in, feedback in, command out.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace stiction {
+
+template <class S>
+struct SetPoint {
+  typename S::Position position{};
+  typename S::Velocity velocity{};
+  typename S::Acceleration acceleration{};
+  bool valid = true;  // false: the source had a value that is not a number or that the formats cannot hold
+};
+
+template <class S>
+struct Feedback {
+  typename S::Position position{};
+  std::int64_t position_time_ns = 0;  // when the encoder sampled it, on the clock of the loop
+  bool position_valid = false;
+  typename S::Velocity velocity{};                 // only of encoders that give one
+  std::array<typename S::Current, 3> current{};    // of the phases; of an equivalent DC motor in the first place
+  bool fault = false;                              // the power stage's or the encoder's own fault input
+};
+
+template <class S>
+struct Command {
+  std::array<typename S::Voltage, 3> voltage{};  // of the phases; of an equivalent DC motor in the first place
+  bool enable = false;                           // false: the power stage must be off
+};
+
+}  // namespace stiction

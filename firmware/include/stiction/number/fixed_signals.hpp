@@ -1,0 +1,93 @@
+// The firmware's signal types: which quantity has which fixed-point format, and the integer operations that depend on
+// it. The control laws are written over such a policy; the same laws in double precision use another one, which lives
+// with the simulation so that no floating point enters these headers.
+#pragma once
+
+#include <cstdint>
+
+#include "stiction/number/fixed.hpp"
+#include "stiction/number/reciprocal.hpp"
+#include "stiction/number/trigonometry.hpp"
+
+namespace stiction {
+
+struct FixedSignals {
+  static constexpr const char* name = "fixed";
+
+  // Signals. Range and resolution in SI units.
+  using Position = Wide<40, std::uint64_t{1} << 61>;  // +-2097 km, 0.9 pm
+  using Distance = Fixed<32>;                         // +-0.5 m, 0.23 nm: position errors
+  using Step = Fixed<40>;                             // +-1.95 mm, 0.9 pm: motion between two samples
+  using Velocity = Fixed<28>;                         // +-8 m/s, 3.7 nm/s
+  using Acceleration = Fixed<22>;                     // +-512 m/s^2, 0.24 um/s^2
+  using Current = Fixed<20>;                          // +-2048 A, 0.95 uA
+  using Voltage = Fixed<18>;                          // +-8192 V, 3.8 uV
+  using Count = Fixed<0>;                             // whole increments
+  using Angle = Turn;
+  using Sine = stiction::Sine;
+  using Rate = stiction::Rate;            // 1/s
+  using TickFraction = Coefficient<28>;   // of a fast period, below 4
+  using Seconds = Coefficient<40>;        // below 0.97 ms
+
+  // Gains.
+  using PositionGain = Coefficient<20>;              // +-1024 1/s
+  using VelocityWeight = Coefficient<24>;            // +-64
+  using IncrementInverse = Coefficient<0>;           // 1/m, increments from 1 nm
+  using Increment = Coefficient<44>;                 // below 61 um
+  using VelocityGain = Coefficient<12>;              // A s/m, +-262144
+  using VelocityIntegralGain = Coefficient<20>;      // A s/m per tick, +-1024
+  using VelocityIntegral = Wide<48, std::uint64_t{1} << 61>;  // +-8192 A
+  using VelocityTracking = Coefficient<28>;          // of the excess per tick, +-4
+  using CurrentGain = Coefficient<16>;               // V/A, +-16384
+  using CurrentIntegralGain = Coefficient<22>;       // V/A per tick, +-256
+  using CurrentIntegral = Wide<42, std::uint64_t{1} << 61>;   // +-524288 V
+  using CurrentTracking = Coefficient<24>;
+  using AccelerationGain = Coefficient<24>;          // A s^2/m, +-64
+  using CurrentSum = Wide<20, std::uint64_t{1} << 33>;        // of three phases
+  using FilterCoefficient = Coefficient<28, 29>;     // +-2
+  using FilterResidue = Wide<48, std::uint64_t{1} << 28>;
+  using PitchInverse = Coefficient<20>;              // 1/m, pitches from 1 mm
+
+  // Time.
+  static constexpr Rate rate(std::int64_t interval_ns) { return rate_of_interval(interval_ns); }
+  // `inverse_period` is 2^45 / period in ns; results beyond the format are clamped.
+  using PeriodInverse = Coefficient<45>;
+  static constexpr TickFraction ticks(std::int64_t duration_ns, PeriodInverse inverse_period) {
+    SaturationCounter none;
+    return narrow<TickFraction>(Fixed<0>::from_raw(clamp_to_word(duration_ns)) * inverse_period, none);
+  }
+  struct Split {
+    int whole;
+    TickFraction fraction;
+  };
+  // Whole ticks, 0 .. highest, and the fraction beyond them; delays outside 0 .. highest + 1 read the ends.
+  static constexpr Split split(TickFraction delay, int highest) {
+    const std::int32_t one = std::int32_t{1} << TickFraction::fraction_bits;
+    const std::int32_t bounded = delay.raw() < 0 ? 0 : delay.raw();
+    int whole = bounded >> TickFraction::fraction_bits;
+    whole = whole > highest ? highest : whole;
+    const std::int32_t rest = bounded - whole * one;
+    return {whole, TickFraction::from_raw(rest > one ? one : rest)};
+  }
+  static constexpr Seconds seconds(std::int64_t duration_ns) {
+    constexpr auto per_ns = Coefficient<50>::from_raw(1125900);  // 1e-9 s
+    SaturationCounter none;
+    return narrow<Seconds>(Fixed<0>::from_raw(clamp_to_word(duration_ns)) * per_ns, none);
+  }
+
+  // Electrical angle of a position; whole turns wrap away in unsigned arithmetic.
+  static constexpr Angle angle(Position position, PitchInverse inverse_pitch) {
+    const auto coarse = static_cast<std::uint64_t>(position.raw() >> 8);  // 32 fraction bits, 0.23 nm
+    return Turn{static_cast<std::uint32_t>((coarse * static_cast<std::uint64_t>(std::int64_t{inverse_pitch.raw()})) >> 20)};
+  }
+  static constexpr Sine sine(Angle angle) { return stiction::sine(angle); }
+  static constexpr Angle third_of_turn_after(Angle angle) { return Turn{angle.raw + 0x55555555u}; }
+  static constexpr Coefficient<28, 28> two_thirds() { return Coefficient<28, 28>::from_raw(178956971); }
+
+ private:
+  static constexpr std::int32_t clamp_to_word(std::int64_t value) {
+    return static_cast<std::int32_t>(value < INT32_MIN ? INT32_MIN : value > INT32_MAX ? INT32_MAX : value);
+  }
+};
+
+}  // namespace stiction

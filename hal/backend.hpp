@@ -1,0 +1,37 @@
+// What a backend must give and when: the border between the control loop and the world.
+//
+// A tick of the fast loop is: wait_for_tick(), read(), control, write(). Times are on one clock, in ns, starting
+// anywhere; a backend of a simulated machine keeps logical time, so that a run is repeatable to the bit.
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "stiction/drive/exchange.hpp"
+
+namespace stiction::hal {
+
+template <class B>
+concept Backend = requires(B backend, std::span<Feedback<typename B::Signals>> feedback,
+                           std::span<const Command<typename B::Signals>> command) {
+  typename B::Signals;
+
+  { backend.axis_count() } -> std::convertible_to<std::size_t>;
+
+  // Blocks until the next tick and returns its time. Ticks follow each other by the fast period; the first one is the
+  // start.
+  { backend.wait_for_tick() } -> std::same_as<std::int64_t>;
+
+  // The state of every axis for this tick: the newest encoder position with the time at which it was sampled (at or
+  // before the tick) and whether it is valid, the phase currents of this tick, and the fault inputs. A position that
+  // is not new keeps its old time stamp. A value that the world gave but the format cannot hold is not valid.
+  { backend.read(feedback) } -> std::same_as<void>;
+
+  // The voltages of this tick and whether the power stage may be on. They may act later by the inverter's delay but
+  // must act in order; a command without enable must turn the power stage off.
+  { backend.write(command) } -> std::same_as<void>;
+};
+
+}  // namespace stiction::hal

@@ -1,0 +1,63 @@
+// The two-rate control loop of all axes over any backend. Allocates at construction only.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "hal/backend.hpp"
+#include "stiction/drive/axis.hpp"
+#include "stiction/drive/ticker.hpp"
+
+namespace stiction::hal {
+
+template <Backend B>
+class ControlLoop {
+ public:
+  using S = typename B::Signals;
+
+  // One configuration per axis of the backend, in its order. The first tick happens here: it starts the axes at rest
+  // where they are.
+  ControlLoop(B& backend, std::span<const AxisConfig<S>> configs, Ticker ticker)
+      : backend_(backend), ticker_(ticker), feedback_(configs.size()), command_(configs.size()), signals_(configs.size()) {
+    axes_.reserve(configs.size());
+    for (const auto& config : configs) axes_.emplace_back(config);
+    now_ns_ = backend_.wait_for_tick();
+    backend_.read(feedback_);
+    for (std::size_t i = 0; i < axes_.size(); ++i) axes_[i].start(feedback_[i]);
+  }
+
+  // Controls this tick with one set-point an axis, then waits for the next. A fault of one axis stops all of them.
+  void tick(std::span<const SetPoint<S>> set_points) {
+    for (std::size_t i = 0; i < axes_.size(); ++i)
+      command_[i] = axes_[i].tick(set_points[i], feedback_[i], now_ns_, ticker_.slow(), signals_[i]);
+    if (faulted())
+      for (auto& command : command_) command = {};
+    backend_.write(command_);
+    ticker_.advance();
+    now_ns_ = backend_.wait_for_tick();
+    backend_.read(feedback_);
+  }
+
+  std::int64_t now_ns() const { return now_ns_; }  // time of the tick that comes next
+  bool slow() const { return ticker_.slow(); }     // whether that one is a slow tick
+  std::span<const Axis<S>> axes() const { return axes_; }
+  std::span<const AxisSignals<S>> signals() const { return signals_; }  // of the tick controlled last
+
+  bool faulted() const {
+    for (const auto& axis : axes_)
+      if (axis.fault() != Fault::none) return true;
+    return false;
+  }
+
+ private:
+  B& backend_;
+  Ticker ticker_;
+  std::int64_t now_ns_ = 0;
+  std::vector<Axis<S>> axes_;
+  std::vector<Feedback<S>> feedback_;
+  std::vector<Command<S>> command_;
+  std::vector<AxisSignals<S>> signals_;
+};
+
+}  // namespace stiction::hal

@@ -1,0 +1,19 @@
+// The commands of `stiction`: each adds itself to the program and runs when it was named.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+namespace stiction::host {
+
+// What every command knows of its call.
+struct Invocation {
+  std::string command_line;  // as typed, quoted for a shell
+  std::string version;
+};
+
+void add_simulate(CLI::App& program, const Invocation& invocation);
+void add_compare(CLI::App& program, const Invocation& invocation);
+void add_machine(CLI::App& program, const Invocation& invocation);
+
+}  // namespace stiction::host

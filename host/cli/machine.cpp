@@ -1,0 +1,53 @@
+// `stiction machine`: the shipped machines, the check of a machine file, the reference of its keys.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "host/cli/commands.hpp"
+#include "host/report/machine_sheet.hpp"
+#include "sim/control/axis_configuration.hpp"
+#include "sim/machine/machine_file.hpp"
+#include "sim/machine/reference_page.hpp"
+#include "stiction/number/fixed_signals.hpp"
+
+namespace stiction::host {
+namespace {
+
+struct MachineCommand {
+  std::string check;
+  bool reference = false;
+};
+
+// Reads and checks a file, down to the drive's number formats, and prints what was understood.
+void check_machine(const std::string& name) {
+  const auto file = sim::find_machine(name);
+  const auto machine = sim::read_machine(file);
+  for (const auto& axis : machine.axes) sim::configure_axis<FixedSignals>(machine.timing, axis);
+  fmt::print("{}: {}\n", file.string(), machine.name);
+  for (const auto& section : machine_sheet(machine)) {
+    fmt::print("\n{}\n", section.title);
+    for (const auto& row : section.rows) {
+      fmt::print("  {:<44} {:<8}", row.label, row.unit);
+      for (const auto& value : row.values) fmt::print(" {:>16}", value);
+      fmt::print("\n");
+    }
+  }
+}
+
+}  // namespace
+
+void add_machine(CLI::App& program, const Invocation&) {
+  auto* command = program.add_subcommand("machine", "shipped machines, check of a machine file, reference of its keys");
+  auto o = std::make_shared<MachineCommand>();
+  command->add_option("--check", o->check, "read a machine file, say what is wrong with it or print what it holds")
+      ->type_name("MACHINE");
+  command->add_flag("--reference", o->reference, "print the reference of all keys (Markdown)");
+  command->callback([o] {
+    if (o->reference) fmt::print("{}", sim::reference_page());
+    if (!o->check.empty()) check_machine(o->check);
+    if (!o->reference && o->check.empty())
+      for (const auto& name : sim::shipped_machines()) fmt::print("{}\n", name);
+  });
+}
+
+}  // namespace stiction::host

@@ -1,0 +1,70 @@
+#include "host/cli/machine_options.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "host/cli/errors.hpp"
+#include "sim/machine/machine_file.hpp"
+#include "sim/machine/units.hpp"
+
+namespace stiction::host {
+
+void MachineOptions::add_to(CLI::App& command, const std::string& machine_help) {
+  command.add_option("--machine", machine, machine_help)->required()->type_name("MACHINE");
+  command.add_option("--set", set, "another value for a key of the machine file; may be repeated; axis.* is every axis")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+}
+
+sim::Machine MachineOptions::load(const std::string& name, const std::string& experiment) const {
+  return sim::read_machine(sim::find_machine(name), {experiment, set});
+}
+
+std::vector<std::string> split_list(const std::string& text) {
+  std::vector<std::string> parts;
+  for (auto part : CLI::detail::split(text, ',')) parts.push_back(CLI::detail::trim(part));
+  return parts;
+}
+
+std::vector<std::string> friction_models(const std::string& text, const sim::Machine& machine) {
+  if (text.empty()) return {machine.axes.front().friction.use};
+  std::vector<std::string> everywhere;
+  sim::for_each_friction_model([&]<class Model>() {
+    const std::string name(Model::name);
+    if (std::all_of(machine.axes.begin(), machine.axes.end(),
+                    [&](const auto& axis) { return axis.friction.models.contains(name); }))
+      everywhere.push_back(name);
+  });
+  if (text == "all") return everywhere;
+  const auto names = split_list(text);
+  for (const auto& name : names)
+    if (std::find(everywhere.begin(), everywhere.end(), name) == everywhere.end())
+      throw UsageError(fmt::format("--friction: found '{}'; expected 'all' or models that every axis of {} has: {}", name,
+                                   machine.id, fmt::join(everywhere, ", ")));
+  return names;
+}
+
+std::vector<double> feeds(const std::string& text) {
+  std::vector<double> result;
+  for (const auto& part : split_list(text)) {
+    try {
+      result.push_back(sim::parse_quantity(part, "m/s"));
+    } catch (const sim::UnitError& error) {
+      throw UsageError(fmt::format("--feed: found '{}' ({}); expected a speed such as \"16 m/min\", or a list \"8 m/min, "
+                                   "16 m/min\"",
+                                   part, error.what()));
+    }
+  }
+  return result;
+}
+
+std::vector<sim::Direction> directions(const std::string& text) {
+  if (text == "ccw") return {sim::Direction::counter_clockwise};
+  if (text == "cw") return {sim::Direction::clockwise};
+  if (text == "both") return {sim::Direction::counter_clockwise, sim::Direction::clockwise};
+  throw UsageError(fmt::format("--direction: found '{}'; expected cw, ccw or both", text));
+}
+
+}  // namespace stiction::host

@@ -1,0 +1,35 @@
+// The options with which every command names a machine and what to run on it.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "sim/experiment/circle_result.hpp"
+#include "sim/machine/machine.hpp"
+
+namespace stiction::host {
+
+struct MachineOptions {
+  std::string machine;           // names or paths, separated by commas where a command takes several
+  std::vector<std::string> set;  // KEY=VALUE
+
+  void add_to(CLI::App& command, const std::string& machine_help);
+  // Throws sim::MachineFileError.
+  sim::Machine load(const std::string& name, const std::string& experiment) const;
+};
+
+// "a,b" or "a, b": the parts without blanks around them.
+std::vector<std::string> split_list(const std::string& text);
+
+// Names of friction models: empty: the one the machine file uses; "all": all that every axis has parameters for; or a
+// list of them. Throws UsageError.
+std::vector<std::string> friction_models(const std::string& text, const sim::Machine& machine);
+
+// Feeds in m/s from "16 m/min" or a list of such quantities. Throws UsageError.
+std::vector<double> feeds(const std::string& text);
+
+// "cw", "ccw" or "both"; "both" begins with counter-clockwise. Throws UsageError.
+std::vector<sim::Direction> directions(const std::string& text);
+
+}  // namespace stiction::host

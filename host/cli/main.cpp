@@ -1,0 +1,66 @@
+// The program `stiction`.
+#include <fmt/format.h>
+
+#include <exception>
+
+#include "host/cli/commands.hpp"
+#include "host/cli/errors.hpp"
+#include "host/simulate/circle.hpp"
+#include "sim/control/axis_configuration.hpp"
+#include "sim/machine/machine_file.hpp"
+
+namespace stiction::host {
+namespace {
+
+// As one would type it into a shell.
+std::string quoted(const std::string& argument) {
+  const bool plain = !argument.empty() && argument.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                                                     "0123456789_-+./:,=") == std::string::npos;
+  if (plain) return argument;
+  std::string text = "'";
+  for (const char c : argument) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+int run(int argc, char** argv) {
+  Invocation invocation{"stiction", STICTION_VERSION};
+  for (int i = 1; i < argc; ++i) invocation.command_line += " " + quoted(argv[i]);
+
+  CLI::App program("controller firmware of a servo axis against its simulated machine", "stiction");
+  program.set_version_flag("--version", STICTION_VERSION);
+  program.require_subcommand(1);
+  program.failure_message(CLI::FailureMessage::help);
+  add_simulate(program, invocation);
+  add_compare(program, invocation);
+  add_machine(program, invocation);
+
+  const auto bad_input = [](const std::exception& error) {
+    fmt::print(stderr, "stiction: {}\n", error.what());
+    return exit_bad_input;
+  };
+  try {
+    program.parse(argc, argv);
+    return exit_done;
+  } catch (const CLI::Success& wanted) {  // --help, --version
+    return program.exit(wanted);
+  } catch (const CLI::ParseError& error) {
+    fmt::print(stderr, "stiction: {}; see stiction --help\n", error.what());
+    return exit_bad_input;
+  } catch (const UsageError& error) {
+    return bad_input(error);
+  } catch (const sim::MachineFileError& error) {
+    return bad_input(error);
+  } catch (const sim::ConfigurationError& error) {
+    return bad_input(error);
+  } catch (const InfeasibleMotion& error) {
+    return bad_input(error);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "stiction: {}\n", error.what());
+    return exit_failed;
+  }
+}
+
+}  // namespace
+}  // namespace stiction::host
+
+int main(int argc, char** argv) { return stiction::host::run(argc, argv); }

@@ -1,0 +1,84 @@
+// `stiction simulate EXPERIMENT`.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "host/cli/circle_command.hpp"
+#include "host/cli/circle_output.hpp"
+#include "host/cli/commands.hpp"
+#include "host/cli/errors.hpp"
+#include "host/cli/machine_options.hpp"
+#include "sim/machine/units.hpp"
+
+namespace stiction::host {
+namespace {
+
+struct CircleOptions {
+  MachineOptions machine;
+  std::string friction;
+  std::string feed = "16 m/min";
+  std::string direction = "ccw";
+  std::string radius = "90 mm";
+  std::string signals = "fixed";
+  CirclePlaces places;
+  bool json = false;
+};
+
+CirclePlan plan_of(const CircleOptions& options) {
+  CirclePlan plan;
+  plan.machine = options.machine.load(options.machine.machine, "circle");
+  plan.signals = options.signals == "double" ? SignalKind::double_precision : SignalKind::fixed_point;
+  plan.friction = friction_models(options.friction, plan.machine);
+  plan.feeds = feeds(options.feed);
+  plan.directions = directions(options.direction);
+  try {
+    plan.radius = sim::parse_quantity(options.radius, "m");
+  } catch (const sim::UnitError& error) {
+    throw UsageError(fmt::format("--radius: found '{}' ({}); expected a length such as \"90 mm\"", options.radius,
+                                 error.what()));
+  }
+  return plan;
+}
+
+void simulate_circle(const CircleOptions& options, const Invocation& invocation) {
+  const auto plan = plan_of(options);
+  const auto result = run_plan(plan, options.places);
+  const auto json = circle_json(result, plan.machine);
+  if (!options.places.out.empty()) write_circle_folder(options.places.out, plan, result, json, invocation);
+  if (options.json) {
+    fmt::print("{}\n", json.dump(2));
+    return;
+  }
+  fmt::print("{}", circle_text(result, plan.machine));
+  if (!options.places.out.empty()) fmt::print("\nreport: {}/report.html\n", options.places.out);
+  if (!options.places.log.empty()) fmt::print("\ntrace: {}\n", options.places.log);
+}
+
+}  // namespace
+
+void add_simulate(CLI::App& program, const Invocation& invocation) {
+  auto* simulate = program.add_subcommand("simulate", "run an experiment: the firmware against the simulated machine");
+  simulate->require_subcommand(1);
+
+  auto* circle = simulate->add_subcommand(
+      "circle", "a circle of two axes with a jerk-limited start; peak errors, currents and ISO 230-4 terms of one lap");
+  auto o = std::make_shared<CircleOptions>();
+  o->machine.add_to(*circle, "shipped machine by name, or a machine file");
+  circle->add_option("--friction", o->friction, "friction model, list of models, or all [the machine file's]")
+      ->type_name("MODEL");
+  circle->add_option("--feed", o->feed, "feed along the path, or a list of feeds")
+      ->type_name("\"NUMBER UNIT\"")
+      ->capture_default_str();
+  circle->add_option("--direction", o->direction, "cw, ccw or both")->type_name("DIR")->capture_default_str();
+  circle->add_option("--radius", o->radius, "radius")->type_name("\"NUMBER UNIT\"")->capture_default_str();
+  circle->add_option("--signals", o->signals, "fixed: the firmware; double: the same laws in double precision")
+      ->check(CLI::IsMember({"fixed", "double"}))
+      ->capture_default_str();
+  circle->add_option("--log", o->places.log, "write every signal of the cascade at the full rate (CSV)")
+      ->type_name("FILE");
+  circle->add_option("--out", o->places.out, "write report.html and result.json into this folder")->type_name("DIR");
+  circle->add_flag("--json", o->json, "print the result as JSON on standard output");
+  circle->callback([o, &invocation] { simulate_circle(*o, invocation); });
+}
+
+}  // namespace stiction::host

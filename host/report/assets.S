@@ -1,0 +1,27 @@
+// The report's page, style and scripts as they lie in host/report/web, embedded in the program. Assembled with the
+// repository's root among the include directories.
+
+#if defined(__APPLE__)
+#error "only ELF targets are supported"
+#endif
+
+.macro asset name, file
+  .global stiction_asset_\name
+  .global stiction_asset_\name\()_end
+stiction_asset_\name:
+  .incbin "\file"
+stiction_asset_\name\()_end:
+.endm
+
+  .section .rodata, "a", %progbits
+asset circle_html, "host/report/web/circle.html"
+asset report_css, "host/report/web/report.css"
+asset page_js, "host/report/web/page.js"
+asset circle_plots_js, "host/report/web/circle_plots.js"
+asset circle_series_js, "host/report/web/circle_series.js"
+asset circle_tables_js, "host/report/web/circle_tables.js"
+asset circle_js, "host/report/web/circle.js"
+asset plotly_js, "host/report/web/node_modules/plotly.js-basic-dist-min/plotly-basic.min.js"
+asset plotly_license, "host/report/web/node_modules/plotly.js-basic-dist-min/LICENSE"
+
+  .section .note.GNU-stack, "", %progbits

@@ -1,0 +1,21 @@
+// The files that assets.S embeds in the program, by the labels it puts around them.
+#include "host/report/assets.hpp"
+
+#define STICTION_ASSET(name)                                                                                       \
+  extern "C" const char stiction_asset_##name[];                                                                   \
+  extern "C" const char stiction_asset_##name##_end[];                                                             \
+  namespace stiction::host::assets {                                                                               \
+  std::string_view name() {                                                                                        \
+    return {stiction_asset_##name, static_cast<std::size_t>(stiction_asset_##name##_end - stiction_asset_##name)}; \
+  }                                                                                                                \
+  }
+
+STICTION_ASSET(circle_html)
+STICTION_ASSET(report_css)
+STICTION_ASSET(page_js)
+STICTION_ASSET(circle_plots_js)
+STICTION_ASSET(circle_series_js)
+STICTION_ASSET(circle_tables_js)
+STICTION_ASSET(circle_js)
+STICTION_ASSET(plotly_js)
+STICTION_ASSET(plotly_license)

@@ -1,0 +1,18 @@
+// The files that assets.S embeds in the program.
+#pragma once
+
+#include <string_view>
+
+namespace stiction::host::assets {
+
+std::string_view circle_html();
+std::string_view report_css();
+std::string_view page_js();
+std::string_view circle_plots_js();
+std::string_view circle_series_js();
+std::string_view circle_tables_js();
+std::string_view circle_js();
+std::string_view plotly_js();
+std::string_view plotly_license();
+
+}  // namespace stiction::host::assets

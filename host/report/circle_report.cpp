@@ -1,0 +1,252 @@
+// The report page of the circular test: see circle_report.hpp. This file turns the result into the data that the page's
+// scripts (web/) draw; units are the page's: mm, µm, m/min, A, degrees, s.
+#include "host/report/circle_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <stdexcept>
+
+#include "host/report/assets.hpp"
+#include "host/report/circle_finding.hpp"
+#include "host/report/circle_table.hpp"
+#include "host/report/decimate.hpp"
+#include "host/report/machine_sheet.hpp"
+#include "host/report/page.hpp"
+
+namespace stiction::host {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+constexpr std::size_t instants_per_lap = 1500;
+constexpr double micro = 1e6;
+constexpr double degree = 180.0 / std::numbers::pi;
+
+// Ten digits: a feed that came from "3.2 m/min" is 3.2 again, and equal feeds of two runs are equal in the page.
+double rounded(double value) { return std::stod(fmt::format("{:.10g}", value)); }
+double m_per_min(double feed) { return rounded(feed * 60.0); }
+
+std::string direction_name(sim::Direction direction) { return direction == sim::Direction::clockwise ? "cw" : "ccw"; }
+
+json optional(const std::optional<double>& value, double scale) { return value ? json(*value * scale) : json(nullptr); }
+
+// Appends unless it is there already.
+void add_once(json& list, const json& value) {
+  if (std::find(list.begin(), list.end(), value) == list.end()) list.push_back(value);
+}
+
+// ---- runs ----
+
+std::string packed(const std::vector<double>& channel, const std::vector<std::size_t>& instants, double scale) {
+  std::vector<float> values;
+  values.reserve(instants.size());
+  for (const std::size_t i : instants) values.push_back(static_cast<float>(channel[i] * scale));
+  return base64_floats(values);
+}
+
+std::string packed_time(const std::vector<std::size_t>& instants, double period) {
+  std::vector<float> values;
+  values.reserve(instants.size());
+  for (const std::size_t i : instants) values.push_back(static_cast<float>(static_cast<double>(i) * period));
+  return base64_floats(values);
+}
+
+json run_json(const sim::CircleRun& run) {
+  const auto& [x, y] = run.axes;
+  const std::array<std::span<const double>, 5> channels{run.radial_deviation, x.error, y.error, x.current, y.current};
+  const auto instants = select_instants(run.angle, channels, instants_per_lap);
+  json out{{"friction", run.friction},
+           {"feed", m_per_min(run.feed)},
+           {"direction", direction_name(run.direction)},
+           {"radius", rounded(run.radius * 1e3)},
+           {"instants", instants.size()},
+           {"time", packed_time(instants, run.sample_period)},
+           {"angle", packed(run.angle, instants, degree)},
+           {"radial", packed(run.radial_deviation, instants, micro)},
+           {"axes", json::array()},
+           {"G", run.errors.circular_error * micro},
+           {"F_max", run.errors.radial_error_max * micro},
+           {"F_min", run.errors.radial_error_min * micro},
+           {"centre", {run.errors.centre[0] * micro, run.errors.centre[1] * micro}}};
+  for (const auto& lap : run.axes)
+    out["axes"].push_back({{"error", packed(lap.error, instants, micro)},
+                           {"current", packed(lap.current, instants, 1.0)},
+                           {"peak_error", lap.peak_error * micro},
+                           {"peak_error_quantised", lap.peak_error_quantised * micro},
+                           {"peak_current", lap.peak_current}});
+  if (run.both_directions) {
+    out["G_b"] = run.both_directions->circular_error * micro;
+    out["D"] = run.both_directions->mean_radial_error * micro;
+  }
+  return out;
+}
+
+// ---- table, means, references, machine ----
+
+json figure_json(const ComparedFigure& figure, double scale) {
+  return {{"simulated", figure.simulated * scale},
+          {"published", optional(figure.published, scale)},
+          {"measured", optional(figure.measured, scale)},
+          {"deviation", optional(figure.deviation(), 100.0)},
+          {"differs", figure.differs}};
+}
+
+json table_json(const std::vector<CircleTableRow>& table) {
+  json rows = json::array();
+  for (const auto& row : table)
+    rows.push_back({{"axis", row.axis},
+                    {"friction", row.friction},
+                    {"feed", m_per_min(row.feed)},
+                    {"direction", direction_name(row.direction)},
+                    {"error", figure_json(row.error, micro)},
+                    {"quantised", figure_json(row.error_quantised, micro)},
+                    {"current", figure_json(row.current, 1.0)}});
+  return rows;
+}
+
+json means_json(const std::vector<CircleTableRow>& table) {
+  json rows = json::array();
+  for (const auto& mean : mean_deviations(table))
+    rows.push_back({{"axis", mean.axis},
+                    {"friction", mean.friction},
+                    {"error", optional(mean.error, 100.0)},
+                    {"quantised", optional(mean.error_quantised, 100.0)},
+                    {"error_published", optional(mean.error_published, 100.0)},
+                    {"current", optional(mean.current, 100.0)},
+                    {"current_published", optional(mean.current_published, 100.0)}});
+  return rows;
+}
+
+json references_json(const sim::Machine& machine) {
+  json rows = json::array();
+  for (const auto& row : machine.circle_references)
+    rows.push_back({{"axis", row.axis},
+                    {"measured", row.measured},
+                    {"friction", row.friction ? json(*row.friction) : json(nullptr)},
+                    {"feed", m_per_min(row.feed)},
+                    {"error", row.error * micro},
+                    {"current", row.current}});
+  return rows;
+}
+
+json machine_json(const sim::Machine& machine) {
+  json axes = json::array();
+  for (const auto& axis : machine.axes) axes.push_back(axis.name);
+  json sections = json::array();
+  for (const auto& section : machine_sheet(machine)) {
+    json rows = json::array();
+    for (const auto& row : section.rows)
+      rows.push_back({{"label", row.label}, {"unit", row.unit}, {"values", row.values}});
+    sections.push_back({{"title", section.title}, {"rows", rows}});
+  }
+  return {{"name", machine.name},
+          {"id", machine.id},
+          {"fast_period_us", rounded(machine.timing.fast_period * micro)},
+          {"slow_period_us", rounded(machine.timing.slow_period * micro)},
+          {"axes", axes},
+          {"sections", sections}};
+}
+
+// ---- conditions ----
+
+std::string joined(const json& list) {
+  std::string text;
+  for (const auto& item : list) text += (text.empty() ? "" : ", ") + item.get<std::string>();
+  return text;
+}
+
+// "estimated" when it holds for all axes, else "X estimated, Y ideal".
+template <class Text>
+std::string by_axis(const sim::Machine& machine, Text text) {
+  json all = json::array(), named = json::array();
+  for (const auto& axis : machine.axes) {
+    add_once(all, text(axis));
+    named.push_back(axis.name + " " + text(axis));
+  }
+  return joined(all.size() > 1 ? named : all);
+}
+
+std::string signals_text(const std::string& signals) {
+  if (signals == "fixed") return "fixed-point firmware";
+  if (signals == "double") return "double precision";
+  return signals;
+}
+
+json conditions_json(const CircleReport& report) {
+  const auto& machine = report.machine;
+  json radii = json::array(), feeds = json::array(), directions = json::array(), rates = json::array();
+  for (const auto& run : report.result.runs) {
+    add_once(radii, fmt::format("{:.6g} mm", run.radius * 1e3));
+    add_once(feeds, fmt::format("{:.4g}", run.feed * 60.0));
+    add_once(directions, run.direction == sim::Direction::clockwise ? "clockwise" : "counter-clockwise");
+    add_once(rates, fmt::format("{:.5g} kHz ({:.5g} µs)", 1e-3 / run.sample_period, run.sample_period * micro));
+  }
+  const auto& first = report.result.runs.front();
+  json list = json::array();
+  const auto add = [&](const char* label, const std::string& value) {
+    list.push_back({{"label", label}, {"value", value}});
+  };
+  add("Plane", first.axes[0].axis + first.axes[1].axis);
+  add("Radius", joined(radii));
+  add("Feeds", joined(feeds) + " m/min");
+  add("Direction", joined(directions));
+  add("Sample rate", joined(rates));
+  add("Signals", signals_text(report.result.signals));
+  add("Velocity feedback", by_axis(machine, [](const auto& a) { return velocity_source_text(a.encoder.velocity); }));
+  add("Motor model", by_axis(machine, [](const auto& a) { return motor_model_text(a.motor.model); }));
+  add("Circle fit", "least squares");
+  add("Filter", "none");
+  return list;
+}
+
+json report_json(const CircleReport& report, const CircleFinding& finding) {
+  const auto& runs = report.result.runs;
+  json models = json::array(), feeds = json::array(), directions = json::array(), packed_runs = json::array();
+  for (const auto& run : runs) {
+    add_once(models, {{"name", run.friction}, {"label", friction_label(run.friction)}});
+    add_once(feeds, m_per_min(run.feed));
+    add_once(directions, direction_name(run.direction));
+    packed_runs.push_back(run_json(run));
+  }
+  std::sort(feeds.begin(), feeds.end());
+  const auto table = circle_table(report.result, report.machine);
+  return {{"schema", "stiction.circle-report/1"},
+          {"conditions", conditions_json(report)},
+          {"models", models},
+          {"feeds", feeds},
+          {"directions", directions},
+          {"axes", {runs.front().axes[0].axis, runs.front().axes[1].axis}},
+          {"selected_feed", m_per_min(finding.feed)},
+          {"runs", packed_runs},
+          {"table", table_json(table)},
+          {"means", means_json(table)},
+          {"references", references_json(report.machine)},
+          {"machine", machine_json(report.machine)}};
+}
+
+}  // namespace
+
+std::string circle_report_html(const CircleReport& report) {
+  const auto finding = circle_finding(report.result, report.machine);
+  std::string scripts;
+  for (const auto script : {assets::page_js(), assets::circle_plots_js(), assets::circle_series_js(),
+                            assets::circle_tables_js(), assets::circle_js()})
+    scripts.append(script).append("\n");
+  return fill_template(assets::circle_html(), {{"title", escape_html(report.title)},
+                                               {"version", escape_html(report.version)},
+                                               {"command", escape_html(report.command)},
+                                               {"headline", escape_html(finding.headline)},
+                                               {"detail", escape_html(finding.detail)},
+                                               {"data", json_for_script(report_json(report, finding))},
+                                               {"style", std::string(assets::report_css())},
+                                               {"plotly", std::string(assets::plotly_js())},
+                                               {"plotly_license", escape_html(assets::plotly_license())},
+                                               {"scripts", scripts}});
+}
+
+}  // namespace stiction::host

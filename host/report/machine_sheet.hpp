@@ -1,0 +1,28 @@
+// A machine's parameters as a report prints them: in engineering units, one column an axis.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/machine/machine.hpp"
+
+namespace stiction::host {
+
+struct SheetRow {
+  std::string label;
+  std::string unit;                 // empty for names and dimensionless numbers
+  std::vector<std::string> values;  // one an axis; empty where the axis does not have it
+};
+
+struct SheetSection {
+  std::string title;
+  std::vector<SheetRow> rows;  // at least one value in each
+};
+
+std::vector<SheetSection> machine_sheet(const sim::Machine& machine);
+
+// "synchronous, three phases" and the like.
+std::string motor_model_text(sim::MotorModel model);
+std::string velocity_source_text(sim::VelocitySource source);
+
+}  // namespace stiction::host

@@ -1,0 +1,116 @@
+// The tables of the circle: peaks at the chosen feed, simulation beside publication and measurement, terms of ISO
+// 230-4, machine.
+'use strict';
+
+function swatch(friction) {
+  return element('span', { class: 'swatch', style: `background:${modelStyles[friction].colour}` });
+}
+
+function modelCell(friction, direction, more = {}) {
+  const suffix = direction === 'cw' && DATA.directions.length > 1 ? ', clockwise' : '';
+  return { text: [swatch(friction), modelLabels[friction] + suffix], head: true, class: 'text', ...more };
+}
+
+function figure(value, digits, more = '') {
+  const none = value === null || value === undefined;
+  return { text: formatNumber(value, digits), class: [more, none ? 'none' : ''].join(' ').trim() || null };
+}
+
+const text = (content, more = {}) => ({ text: content, ...more });
+
+// ---- peaks at the chosen feed ----
+
+function drawFigures(state) {
+  document.getElementById('figures-what').textContent = `at ${state.feed} m/min, ${DIRECTION_TEXT[state.direction]}`;
+  const [x, y] = DATA.axes;
+  const head = [[text('', { class: 'text' }), text(`${x} error, µm`), text(`${y} error, µm`), text(`${x} current, A`, { class: 'gap' }), text(`${y} current, A`),
+                 text('G, µm', { class: 'gap', title: 'circular error' })]];
+  const body = chosenRuns(state).map(run => [
+    modelCell(run.friction, run.direction), figure(run.axes[0].peak_error, 2), figure(run.axes[1].peak_error, 2),
+    figure(run.axes[0].peak_current, 2, 'gap'), figure(run.axes[1].peak_current, 2), figure(run.G, 2, 'gap')]);
+  const measured = DATA.axes.map(axis => reference(axis, state.feed));
+  if (measured.some(Boolean))
+    body.push(classed('measured', [text('◆ measured', { head: true, class: 'text' }), ...measured.map(row => figure(row?.error, 1)),
+                                   ...measured.map((row, i) => figure(row?.current, 1, i ? '' : 'gap')), text('')]));
+  show('figures', table(head, body));
+}
+
+// ---- simulation, publication, measurement ----
+
+function comparisonTable(axis) {
+  const rows = DATA.table.filter(row => row.axis === axis)
+    .sort((a, b) => DATA.models.findIndex(m => m.name === a.friction) - DATA.models.findIndex(m => m.name === b.friction) ||
+                    b.direction.localeCompare(a.direction) * -1 || a.feed - b.feed);
+  const head = [[text('', { span: 2 }), text('Peak error, µm', { span: 5, class: 'group gap' }), text('Peak current, A', { span: 4, class: 'group gap' })],
+                [text('Friction', { class: 'text' }), text('m/min'), ...['simul.', 'quant.', 'publ.', 'meas.', 'dev. %'].map((t, i) => text(t, { class: i ? null : 'gap' })),
+                 ...['simul.', 'publ.', 'meas.', 'dev. %'].map((t, i) => text(t, { class: i ? null : 'gap' }))]];
+  const key = row => row.friction + row.direction;
+  const body = rows.map((row, i) => {
+    const first = !i || key(rows[i - 1]) !== key(row);
+    const cells = first ? [modelCell(row.friction, row.direction, { rows: rows.filter(each => key(each) === key(row)).length, class: 'text wrap' })] : [];
+    cells.push(text(String(row.feed)), figure(row.error.simulated, 2, 'gap'), figure(row.quantised.simulated, 0, row.quantised.differs ? 'differs' : ''),
+               figure(row.error.published, 0), figure(row.error.measured, 1), figure(row.error.deviation, 0),
+               figure(row.current.simulated, 2, row.current.differs ? 'gap differs' : 'gap'), figure(row.current.published, 1),
+               figure(row.current.measured, 1), figure(row.current.deviation, 0));
+    return first ? classed('first', cells) : cells;
+  });
+  return element('div', { class: 'scroll' }, element('h3', {}, `${axis} axis`), table(head, body));
+}
+
+function drawComparison() {
+  show('table', ...DATA.axes.map(comparisonTable));
+  const published = DATA.references.some(row => !row.measured);
+  show('table-caption', 'simul.: unquantised; quant.: as the position controller sees it, in its increments; publ.: published simulation; ' +
+       'dev.: (measured − simulated) / measured, of the unquantised peak. ',
+       ...(published ? [element('mark', {}, 'Marked'), ': differs from the published simulation (quantised error by more than half an increment, current by more than 5 %).'] : []));
+  const columns = DATA.axes.flatMap(axis => [['error', 'this simulation'], ['quantised', 'quantised'], ['error_published', 'published']].map(([key, name]) => ({ axis, key, name, group: 'error' })))
+    .concat(DATA.axes.flatMap(axis => [['current', 'this simulation'], ['current_published', 'published']].map(([key, name]) => ({ axis, key, name, group: 'current' }))));
+  const first = i => !i || columns[i - 1].axis !== columns[i].axis || columns[i - 1].group !== columns[i].group;
+  const head = [[text(''), ...columns.filter((_, i) => first(i)).map(c => text(`${c.axis} ${c.group}`, { span: c.group === 'error' ? 3 : 2, class: 'group gap' }))],
+                [text('Friction', { class: 'text' }), ...columns.map((c, i) => text(c.name, { class: first(i) ? 'gap' : null }))]];
+  const body = DATA.models.map(model => [modelCell(model.name), ...columns.map((c, i) => {
+    const mean = DATA.means.find(row => row.axis === c.axis && row.friction === model.name);
+    return figure(mean?.[c.key], 1, first(i) ? 'gap' : '');
+  })]);
+  show('means', table(head, body));
+}
+
+// ---- ISO 230-4 ----
+
+const ISO_TERMS = [
+  { key: ['G'], letter: 'G', words: ['circular deviation', 'circular deviation', 'circular error'], meaning: 'width of the annulus that holds one lap' },
+  { key: ['F_max', 'F_min'], letter: 'F_max, F_min', words: ['radial deviation', 'radial deviation', 'radial error'], meaning: 'from the programmed radius, largest and smallest' },
+  { key: ['G_b'], letter: 'G(b)', words: ['–', 'bi-directional circular deviation', 'bi-directional circular error'], meaning: 'width of the annulus that holds both directions' },
+  { key: ['D'], letter: 'D', words: ['–', 'mean bi-directional radial deviation', 'mean bi-directional radial error'], meaning: 'mean radius of both directions less the programmed radius' },
+];
+
+function drawIso() {
+  const left = { class: 'text' }, wrap = { class: 'text wrap' };
+  show('iso-words', table([[text('', left), text('1996', left), text('2005', left), text('2022', left), text('Meaning', left)]],
+    ISO_TERMS.map(term => [{ text: symbolText(term.letter), head: true, class: 'text' }, ...term.words.map(word => text(word, wrap)), text(term.meaning, wrap)])));
+  const both = DATA.runs.some(run => run.G_b !== undefined);
+  const terms = ISO_TERMS.flatMap(term => term.key).filter(key => both || !['G_b', 'D'].includes(key));
+  const letter = key => key === 'G_b' ? 'G(b)' : key;
+  const head = [[text('Values, µm', { class: 'text' }), ...terms.map(key => text(symbolText(letter(key)), { span: DATA.feeds.length, class: 'group gap' }))],
+                [text('m/min', { class: 'text' }), ...terms.flatMap(() => DATA.feeds.map((feed, i) => text(String(feed), { class: i ? null : 'gap' })))]];
+  const body = DATA.models.flatMap(model => DATA.directions.map(direction => {
+    const at = feed => DATA.runs.find(run => run.friction === model.name && run.direction === direction && run.feed === feed);
+    return [modelCell(model.name, direction), ...terms.flatMap(key => DATA.feeds.map((feed, i) => figure(at(feed)?.[key], 1, i ? '' : 'gap')))];
+  }));
+  show('iso-values', table(head, body));
+}
+
+// ---- conditions and machine ----
+
+function drawConditions() {
+  show('conditions', ...DATA.conditions.map(item => element('div', {}, element('dt', {}, item.label), element('dd', {}, item.value))));
+}
+
+function drawMachine() {
+  const machine = DATA.machine;
+  document.getElementById('machine-name').textContent =
+    `${machine.name} (${machine.id}); fast loop ${machine.fast_period_us} µs, position loop ${machine.slow_period_us} µs`;
+  show('machine', ...machine.sections.map(section => element('div', {}, element('h3', {}, section.title),
+    table([[text(''), ...machine.axes.map(axis => text(axis)), text('')]],
+          section.rows.map(row => [{ text: symbolText(row.label), head: true }, ...row.values.map(value => text(value || '–')), text(row.unit, { class: 'unit' })])))));
+}

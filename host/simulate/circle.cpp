@@ -1,0 +1,109 @@
+#include "host/simulate/circle.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "hal/control_loop.hpp"
+#include "hal/simulated/simulated_backend.hpp"
+#include "sim/control/axis_configuration.hpp"
+#include "sim/control/double_signals.hpp"
+#include "sim/experiment/circle_measurement.hpp"
+#include "stiction/number/fixed_signals.hpp"
+
+namespace stiction::host {
+namespace {
+
+constexpr double metre_per_minute = 1.0 / 60.0;  // m/s
+
+template <class S>
+[[noreturn]] void throw_fault(const sim::Machine& machine, std::span<const Axis<S>> axes) {
+  std::size_t first = 0;
+  std::int64_t time = INT64_MAX;
+  for (std::size_t i = 0; i < axes.size(); ++i)
+    if (axes[i].fault() != Fault::none && axes[i].fault_time_ns() < time) {
+      first = i;
+      time = axes[i].fault_time_ns();
+    }
+  throw FaultTripped(machine.axes[first].name, axes[first].fault(), static_cast<double>(time) * 1e-9);
+}
+
+}  // namespace
+
+FaultTripped::FaultTripped(std::string axis_name, Fault which, double when)
+    : std::runtime_error(fmt::format("axis {}: fault {} '{}' at {:.4f} ms", axis_name, static_cast<int>(which),
+                                     name_of(which), when * 1e3)),
+      axis(std::move(axis_name)),
+      fault(which),
+      time(when) {}
+
+void check_circle(const sim::Machine& machine, const sim::CircleSettings& settings) {
+  if (machine.axes.size() != 2)
+    throw InfeasibleMotion(fmt::format("circle: found a machine with {} axes; expected 2", machine.axes.size()));
+  for (const auto& axis : machine.axes) {
+    const double acceleration = settings.feed * settings.feed / settings.radius;
+    if (!(settings.feed > 0.0) || settings.feed > axis.max_velocity)
+      throw InfeasibleMotion(fmt::format("feed: found {:g} m/min; expected above 0 and at most {:g} m/min, the "
+                                         "max_velocity of axis {}",
+                                         settings.feed / metre_per_minute, axis.max_velocity / metre_per_minute,
+                                         axis.name));
+    if (acceleration > axis.max_acceleration)
+      throw InfeasibleMotion(fmt::format("feed: found {:g} m/min, v^2/R = {:.4g} m/s^2 at R = {:g} mm; expected at most "
+                                         "{:g} m/s^2, the max_acceleration of axis {}: {:.4g} m/min",
+                                         settings.feed / metre_per_minute, acceleration, settings.radius * 1e3,
+                                         axis.max_acceleration, axis.name,
+                                         std::sqrt(axis.max_acceleration * settings.radius) / metre_per_minute));
+    if (!(settings.radius > 0.0) || 2.0 * settings.radius > axis.travel)
+      throw InfeasibleMotion(fmt::format("radius: found {:g} mm; expected above 0 and at most {:g} mm, half the travel "
+                                         "of axis {}",
+                                         settings.radius * 1e3, axis.travel * 0.5e3, axis.name));
+  }
+}
+
+template <class S>
+sim::CircleRun run_circle(const sim::Machine& machine, const sim::CircleSettings& settings, const TraceSink<S>& trace) {
+  check_circle(machine, settings);
+  const sim::CirclePath path(settings);
+  const auto start = path.at(0.0);
+  const std::array<double, 2> positions{start.axes[0].position, start.axes[1].position};
+  hal::SimulatedBackend<S> backend(machine, positions);
+
+  std::vector<AxisConfig<S>> configs;
+  for (const auto& axis : machine.axes) configs.push_back(sim::configure_axis<S>(machine.timing, axis));
+  const Ticker ticker(sim::fast_period_ns(machine.timing), static_cast<std::uint32_t>(sim::slow_ratio(machine.timing)));
+  hal::ControlLoop loop(backend, std::span<const AxisConfig<S>>(configs), ticker);
+
+  sim::CircleMeasurement measurement(settings, machine.timing.fast_period,
+                                     {machine.axes[0].name, machine.axes[1].name});
+  for (;;) {
+    const std::int64_t now_ns = loop.now_ns();
+    const auto point = path.at(static_cast<double>(now_ns) * 1e-9);
+    if (point.turned >= sim::CirclePath::lap_end) break;
+    const std::array<SetPoint<S>, 2> set{sim::to_set_point<S>(point.axes[0]), sim::to_set_point<S>(point.axes[1])};
+    // The force at the time of the samples, before the tick moves the plant on.
+    std::array<double, 2> force{backend.plant(0).motor_force(), backend.plant(1).motor_force()};
+    loop.tick(set);
+
+    if (trace) trace(now_ns, loop.signals());
+    if (loop.faulted()) throw_fault(machine, loop.axes());
+    std::array<sim::CircleAxisSample, 2> samples;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const auto& s = loop.signals()[k];
+      samples[k] = {sim::to_si(s.x), sim::to_si(s.e), sim::to_si(s.e_held),
+                    force[k] / machine.axes[k].motor.force_constant};
+    }
+    measurement.add(point, samples);
+  }
+  auto run = measurement.finish();
+  run.friction = machine.axes[0].friction.use;
+  return run;
+}
+
+template sim::CircleRun run_circle<FixedSignals>(const sim::Machine&, const sim::CircleSettings&,
+                                                 const TraceSink<FixedSignals>&);
+template sim::CircleRun run_circle<sim::DoubleSignals>(const sim::Machine&, const sim::CircleSettings&,
+                                                       const TraceSink<sim::DoubleSignals>&);
+
+}  // namespace stiction::host

@@ -1,0 +1,118 @@
+#include "host/simulate/circle_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <exception>
+#include <optional>
+#include <thread>
+
+#include "host/log/trace_writer.hpp"
+#include "sim/control/double_signals.hpp"
+#include "sim/experiment/circle_measurement.hpp"
+#include "stiction/number/fixed_signals.hpp"
+
+namespace stiction::host {
+namespace {
+
+sim::CircleRun run_case(const CircleCase& c) {
+  return c.signals == SignalKind::fixed_point ? run_circle<FixedSignals>(c.machine, c.settings)
+                                              : run_circle<sim::DoubleSignals>(c.machine, c.settings);
+}
+
+template <class S>
+sim::CircleRun run_into(const CircleCase& c, TraceWriter& writer) {
+  return run_circle<S>(c.machine, c.settings,
+                       [&](std::int64_t now_ns, std::span<const AxisSignals<S>> s) { writer.write(now_ns, s); });
+}
+
+void join_directions(std::vector<sim::CircleRun>& runs) {
+  for (std::size_t i = 0; i + 1 < runs.size(); i += 2) {
+    const auto both = sim::bidirectional_errors(runs[i], runs[i + 1]);
+    runs[i].both_directions = both;
+    runs[i + 1].both_directions = both;
+  }
+}
+
+}  // namespace
+
+std::vector<CircleCase> cases_of(const CirclePlan& plan) {
+  std::vector<CircleCase> cases;
+  for (const auto& friction : plan.friction)
+    for (const double feed : plan.feeds)
+      for (const auto direction : plan.directions) {
+        CircleCase c{plan.machine, {}, plan.signals};
+        for (auto& axis : c.machine.axes) axis.friction.use = friction;
+        c.settings.feed = feed;
+        c.settings.radius = plan.radius;
+        c.settings.direction = direction;
+        check_circle(c.machine, c.settings);
+        cases.push_back(std::move(c));
+      }
+  return cases;
+}
+
+sim::CircleResult run_circles(const CirclePlan& plan, const std::function<void()>& done) {
+  const auto cases = cases_of(plan);
+  std::vector<std::optional<sim::CircleRun>> runs(cases.size());
+  std::vector<std::exception_ptr> failures(cases.size());
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < cases.size(); i = next++) {
+      try {
+        runs[i] = run_case(cases[i]);
+      } catch (...) {
+        failures[i] = std::current_exception();
+      }
+      if (done) done();
+    }
+  };
+  {
+    std::vector<std::jthread> workers;
+    for (unsigned k = 1; k < std::thread::hardware_concurrency(); ++k) workers.emplace_back(work);
+    work();
+  }
+
+  sim::CircleResult result;
+  result.signals = plan.signals == SignalKind::fixed_point ? FixedSignals::name : sim::DoubleSignals::name;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    if (failures[i]) {
+      try {
+        std::rethrow_exception(failures[i]);
+      } catch (const FaultTripped& fault) {
+        throw CaseFailed(fault, cases[i]);
+      }
+    }
+    result.runs.push_back(std::move(*runs[i]));
+  }
+  if (plan.directions.size() == 2) join_directions(result.runs);
+  return result;
+}
+
+sim::CircleRun run_traced(const CircleCase& c, const std::filesystem::path& file) {
+  const bool fixed = c.signals == SignalKind::fixed_point;
+  const std::vector<std::string> comments{
+      "log: stiction simulate circle",
+      fmt::format("machine: {}", c.machine.name),
+      fmt::format("friction: {}", c.machine.axes.front().friction.use),
+      fmt::format("feed: {:g} m/min", c.settings.feed * 60.0),
+      fmt::format("radius: {:g} mm", c.settings.radius * 1e3),
+      fmt::format("direction: {}", c.settings.direction == sim::Direction::clockwise ? "cw" : "ccw"),
+      fmt::format("signals: {}", fixed ? FixedSignals::name : sim::DoubleSignals::name),
+      "current: amplitude (peak) amperes"};
+  std::vector<std::string> axes;
+  for (const auto& axis : c.machine.axes) axes.push_back(axis.name);
+  TraceWriter writer(file, axes, comments);
+  std::optional<sim::CircleRun> run;
+  std::exception_ptr fault;
+  try {
+    run = fixed ? run_into<FixedSignals>(c, writer) : run_into<sim::DoubleSignals>(c, writer);
+  } catch (const FaultTripped&) {
+    fault = std::current_exception();
+  }
+  writer.close();
+  if (fault) std::rethrow_exception(fault);
+  return *run;
+}
+
+}  // namespace stiction::host

@@ -1,0 +1,105 @@
+// The control laws' signal types in double precision: the same laws as the firmware's without rounding and limits of
+// range. Tests use it to bound what fixed point costs, host tools where speed counts.
+#pragma once
+
+#include <cmath>
+#include <compare>
+#include <concepts>
+#include <cstdint>
+#include <numbers>
+
+#include "stiction/number/fixed.hpp"
+
+namespace stiction::sim {
+
+// A double that takes part in the firmware's laws; nothing is rounded.
+struct Real {
+  double value = 0.0;
+
+  friend constexpr auto operator<=>(const Real&, const Real&) = default;
+  constexpr Real operator-() const { return {-value}; }
+};
+
+constexpr Real operator*(Real a, Real b) { return {a.value * b.value}; }
+constexpr Real operator+(Real a, Real b) { return {a.value + b.value}; }
+constexpr Real operator-(Real a, Real b) { return {a.value - b.value}; }
+
+// A Real that holds a whole number: narrowing to it rounds by the firmware's rule.
+struct WholeReal {
+  double value = 0.0;
+};
+constexpr Real operator*(WholeReal a, Real b) { return {a.value * b.value}; }
+
+template <class Out>
+  requires std::same_as<Out, Real>
+constexpr Out narrow(Real x, SaturationCounter&) {
+  return x;
+}
+template <class Out>
+  requires std::same_as<Out, WholeReal>
+inline Out narrow(Real x, SaturationCounter&) {
+  return {std::round(x.value)};
+}
+constexpr Real magnitude(Real x) { return {x.value < 0.0 ? -x.value : x.value}; }
+
+struct DoubleSignals {
+  static constexpr const char* name = "double";
+
+  using Position = Real;
+  using Distance = Real;
+  using Step = Real;
+  using Velocity = Real;
+  using Acceleration = Real;
+  using Current = Real;
+  using Voltage = Real;
+  using Count = WholeReal;
+  using Angle = Real;  // rad
+  using Sine = Real;
+  using Rate = Real;
+  using TickFraction = Real;
+  using Seconds = Real;
+
+  using PositionGain = Real;
+  using VelocityWeight = Real;
+  using IncrementInverse = Real;
+  using Increment = Real;
+  using VelocityGain = Real;
+  using VelocityIntegralGain = Real;
+  using VelocityIntegral = Real;
+  using VelocityTracking = Real;
+  using CurrentGain = Real;
+  using CurrentIntegralGain = Real;
+  using CurrentIntegral = Real;
+  using CurrentTracking = Real;
+  using AccelerationGain = Real;
+  using CurrentSum = Real;
+  using FilterCoefficient = Real;
+  using FilterResidue = Real;
+  using PitchInverse = Real;
+  using PeriodInverse = Real;
+
+  static constexpr Rate rate(std::int64_t interval_ns) { return {1e9 / static_cast<double>(interval_ns)}; }
+  static constexpr TickFraction ticks(std::int64_t duration_ns, PeriodInverse inverse_period) {
+    return {static_cast<double>(duration_ns) * inverse_period.value};
+  }
+  static constexpr Seconds seconds(std::int64_t duration_ns) { return {static_cast<double>(duration_ns) * 1e-9}; }
+
+  struct Split {
+    int whole;
+    TickFraction fraction;
+  };
+  static constexpr Split split(TickFraction delay, int highest) {
+    const double bounded = delay.value < 0.0 ? 0.0 : delay.value > highest + 1.0 ? highest + 1.0 : delay.value;
+    const int whole = bounded > highest ? highest : static_cast<int>(bounded);
+    return {whole, {bounded - whole}};
+  }
+
+  static constexpr Angle angle(Position position, PitchInverse inverse_pitch) {
+    return {2.0 * std::numbers::pi * position.value * inverse_pitch.value};
+  }
+  static Sine sine(Angle angle) { return {std::sin(angle.value)}; }
+  static constexpr Angle third_of_turn_after(Angle angle) { return {angle.value + 2.0 * std::numbers::pi / 3.0}; }
+  static constexpr Real two_thirds() { return {2.0 / 3.0}; }
+};
+
+}  // namespace stiction::sim

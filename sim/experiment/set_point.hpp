@@ -1,0 +1,25 @@
+// Set-points in SI units and their way over the border to the drive.
+#pragma once
+
+#include "sim/control/conversion.hpp"
+#include "stiction/drive/exchange.hpp"
+
+namespace stiction::sim {
+
+struct AxisSetPoint {
+  double position = 0.0;      // m
+  double velocity = 0.0;      // m/s
+  double acceleration = 0.0;  // m/s^2
+};
+
+// Marks the set-point as not valid when one of its values is not a number or out of range.
+template <class S>
+SetPoint<S> to_set_point(const AxisSetPoint& set) {
+  const auto position = to_signal<typename S::Position>(set.position);
+  const auto velocity = to_signal<typename S::Velocity>(set.velocity);
+  const auto acceleration = to_signal<typename S::Acceleration>(set.acceleration);
+  if (!position || !velocity || !acceleration) return {{}, {}, {}, false};
+  return {*position, *velocity, *acceleration, true};
+}
+
+}  // namespace stiction::sim

@@ -1,0 +1,51 @@
+// Jerk-limited start along a path (Mendricky 2006, 6.3, Tab 6.2): the acceleration rises with the jerk for t_r,
+// stays, and falls again, t_r = a / jerk, t_a = v / a.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace stiction::sim {
+
+class SpeedRamp {
+ public:
+  struct Motion {
+    double distance;      // m
+    double speed;         // m/s
+    double acceleration;  // m/s^2
+  };
+
+  // From rest to `speed`. Where the speed is reached before the full acceleration, the peak is lower.
+  SpeedRamp(double speed, double acceleration, double jerk)
+      : speed_(speed),
+        jerk_(jerk),
+        acceleration_(std::min(acceleration, std::sqrt(speed * jerk))),
+        rise_(acceleration_ / jerk),
+        end_(speed / acceleration_ + rise_) {}
+
+  double duration() const { return end_; }  // s, until the speed is constant
+
+  Motion at(double t) const {
+    if (t <= rise_) return {jerk_ * t * t * t / 6.0, 0.5 * jerk_ * t * t, jerk_ * t};
+    if (t <= end_ - rise_) {
+      const double dt = t - rise_;
+      const Motion risen = at(rise_);
+      return {risen.distance + risen.speed * dt + 0.5 * acceleration_ * dt * dt, risen.speed + acceleration_ * dt,
+              acceleration_};
+    }
+    // The ramp is point-symmetric about its middle, so it covers half of speed * duration.
+    if (t >= end_) return {0.5 * speed_ * end_ + speed_ * (t - end_), speed_, 0.0};
+    const double rest = end_ - t;
+    return {0.5 * speed_ * end_ - speed_ * rest + jerk_ * rest * rest * rest / 6.0,
+            speed_ - 0.5 * jerk_ * rest * rest, jerk_ * rest};
+  }
+
+ private:
+  double speed_;
+  double jerk_;
+  double acceleration_;
+  double rise_;
+  double end_;
+};
+
+}  // namespace stiction::sim

@@ -1,0 +1,134 @@
+// A machine as its file describes it, in SI units: what the simulated plant is built from and what the drive's
+// configuration is computed from. Format: README, "Machine file"; the reader is machine_file.hpp.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/plant/friction/friction.hpp"
+
+namespace stiction::sim {
+
+enum class MotorModel { synchronous, dc, force };
+
+// Where the velocity controller's feedback comes from.
+enum class VelocitySource {
+  ideal,            // continuous derivative of the encoder's position, as the published simulation had it
+  estimated,        // from time-stamped positions, what a drive can do
+  mean_difference,  // difference of two-sample means (the EMPS controller)
+};
+
+struct Timing {
+  double fast_period = 62.5e-6;  // s: current and velocity controllers, feedforwards
+  double slow_period = 1e-3;     // s: position controller
+};
+
+struct Motor {
+  MotorModel model = MotorModel::dc;
+  double phase_resistance = 0.0;      // Ohm
+  double phase_inductance = 0.0;      // H
+  double mutual_inductance = 0.0;     // H
+  double emf_constant = 0.0;          // V s/m, one winding
+  double phase_force_constant = 0.0;  // N/A, one winding
+  double force_constant = 0.0;        // N/A of the whole motor, amplitude amperes; N/V for a force source
+  double pole_pair_pitch = 0.0;       // m
+  int count = 1;                      // motors in parallel on one servo module
+};
+
+struct Inverter {
+  double dead_time = 0.0;      // s
+  double voltage_limit = 0.0;  // V
+  double current_limit = 0.0;  // A per motor
+};
+
+struct EncoderMount {
+  double mass = 0.0;               // kg
+  double natural_frequency = 0.0;  // Hz
+  double damping_ratio = 0.0;
+};
+
+struct Encoder {
+  double increment = 0.0;  // m; 0: continuous
+  double noise = 0.0;      // m rms
+  VelocitySource velocity = VelocitySource::estimated;
+  std::optional<EncoderMount> mount;  // none: rigid
+};
+
+struct PositionController {
+  double gain = 0.0;       // 1/s
+  double increment = 0.0;  // m, of the position error's quantizer; 0: none
+};
+
+struct VelocityController {
+  double gain = 0.0;                    // A s/m; V s/m with a force motor
+  std::optional<double> integral_time;  // s; none: proportional only
+};
+
+struct CurrentController {
+  double gain = 0.0;                    // V/A
+  std::optional<double> integral_time;  // s
+};
+
+struct Notch {
+  double frequency = 0.0;  // Hz
+  double numerator_damping = 0.0;
+  double denominator_damping = 0.0;
+};
+
+struct Feedforward {
+  double velocity = 0.0;  // K_wv, 1 = full
+  double current = 0.0;   // K_wi, 1 = full
+};
+
+// Limits whose violation is a fault (the motion stops), unlike the limits of inverter and axis, which only limit.
+struct Supervision {
+  std::optional<double> following_error;  // m; none: 2 mm
+  std::optional<double> over_current;     // A of the whole axis; none: 1.2 times the current limit
+  std::optional<double> over_speed;       // m/s; none: 1.2 times max_velocity
+};
+
+struct Friction {
+  std::string use;                                   // name of the model that acts
+  std::map<std::string, FrictionParameters> models;  // every subtable of the file, by name
+};
+
+struct Axis {
+  std::string name;
+  double mass = 0.0;              // kg
+  double travel = 0.0;            // m
+  double max_velocity = 0.0;      // m/s
+  double max_acceleration = 0.0;  // m/s^2
+  Motor motor;
+  Inverter inverter;
+  Encoder encoder;
+  PositionController position_controller;
+  VelocityController velocity_controller;
+  std::optional<CurrentController> current_controller;  // none with a force motor
+  std::optional<Notch> notch;
+  Feedforward feedforward;
+  Supervision supervision;
+  Friction friction;
+};
+
+// A row of a published or measured circle that reports stand beside the simulation. SI units.
+struct CircleReference {
+  std::string axis;
+  bool measured = false;                // false: published simulation
+  std::optional<std::string> friction;  // the model of a published simulation
+  double feed = 0.0;                    // m/s
+  double error = 0.0;                   // m, peak quadrant error
+  double current = 0.0;                 // A, peak
+};
+
+struct Machine {
+  std::string name;  // as in the file
+  std::string id;    // file name without extension
+  Timing timing;
+  std::vector<Axis> axes;  // in the order of the file
+  std::vector<CircleReference> circle_references;
+};
+
+}  // namespace stiction::sim

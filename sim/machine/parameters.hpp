@@ -1,0 +1,318 @@
+// The keys of a machine file, each described once: what the reader accepts, what its messages say and what the
+// reference page shows come from these tables. The tables of the friction models stand with the models.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <variant>
+
+#include "sim/machine/machine.hpp"
+#include "sim/parameter.hpp"
+
+namespace stiction::sim {
+
+inline constexpr std::string_view machine_schema = "stiction.machine/1";
+
+// The experiments a file may hold overrides for, [experiment.NAME].
+inline constexpr std::array<std::string_view, 11> experiment_names{
+    "circle",       "constant-velocity",  "impact", "l-shape", "presliding", "friction-lag", "break-away", "stick-slip",
+    "feed-cutting", "frequency-response", "replay"};
+
+// A key whose value is a text; required unless the member is optional.
+template <class Owner>
+struct TextParameter {
+  std::string_view key;
+  std::variant<std::string Owner::*, std::optional<std::string> Owner::*> member;
+  std::string_view text;
+};
+
+// A key whose value is one of several names.
+template <class Value>
+struct Choice {
+  std::string_view name;
+  Value value;
+  std::string_view text;
+};
+template <class Owner, class Value>
+struct ChoiceParameter {
+  std::string_view key;
+  Value Owner::*member;
+  std::span<const Choice<Value>> choices;
+  std::optional<Value> fallback;  // none: the key is required
+  std::string_view text;
+};
+
+// A table within a table; Member may be std::optional.
+enum class Presence { required, optional, by_motor_model };
+template <class Owner, class Member>
+struct Subtable {
+  std::string_view key;
+  Member Owner::*member;
+  Presence presence;
+};
+
+// A key that a later version may read; refused with a reason instead of as a typo.
+struct UnsupportedKey {
+  std::string_view key;
+  std::string_view reason;
+};
+
+// What a table of the file holds; specialised for each struct of machine.hpp.
+template <class Owner>
+struct Table;
+
+template <class Owner>
+struct EmptyTable {
+  static constexpr std::array<TextParameter<Owner>, 0> texts{};
+  static constexpr std::tuple<> choices{};
+  static constexpr std::array<Parameter<Owner>, 0> parameters{};
+  static constexpr std::tuple<> subtables{};
+  static constexpr std::array<UnsupportedKey, 0> unsupported{};
+};
+
+template <>
+struct Table<Timing> : EmptyTable<Timing> {
+  static constexpr std::string_view text = "periods of the control loops";
+  static constexpr std::array<Parameter<Timing>, 2> parameters{{
+      {"fast_period",
+       "s",
+       {1e-6, 0.1},
+       &Timing::fast_period,
+       62.5e-6,
+       "current and velocity controllers, feedforwards"},
+      {"slow_period", "s", {1e-6, 1.0}, &Timing::slow_period, 1e-3, "position controller, a multiple of fast_period"},
+  }};
+};
+
+inline constexpr std::array<Choice<MotorModel>, 3> motor_models{{
+    {"synchronous", MotorModel::synchronous, "three phases"},
+    {"dc", MotorModel::dc, "equivalent with one winding"},
+    {"force", MotorModel::force, "ideal force source driven by voltage"},
+}};
+
+template <>
+struct Table<Motor> : EmptyTable<Motor> {
+  static constexpr std::string_view text = "motor";
+  static constexpr std::tuple choices{
+      ChoiceParameter<Motor, MotorModel>{"model", &Motor::model, motor_models, {}, "motor model"}};
+  static constexpr std::array<Parameter<Motor>, 8> parameters{{
+      {"phase_resistance", "Ohm", positive(), &Motor::phase_resistance, 0.0, "resistance R of one winding"},
+      {"phase_inductance", "H", positive(), &Motor::phase_inductance, 0.0, "inductance L of one winding"},
+      {"mutual_inductance", "H", not_negative(), &Motor::mutual_inductance, 0.0, "mutual inductance M of two windings"},
+      {"emf_constant", "V s/m", positive(), &Motor::emf_constant, 0.0, "induced voltage K_E of one winding"},
+      {"phase_force_constant", "N/A", positive(), &Motor::phase_force_constant, 0.0,
+       "force constant K_F of one winding"},
+      {"force_constant",
+       "N/A",
+       positive(),
+       &Motor::force_constant,
+       {},
+       "force constant of the whole motor, amplitude amperes",
+       "N/V"},
+      {"pole_pair_pitch", "m", positive(), &Motor::pole_pair_pitch, 0.0, "pole-pair pitch tau_p"},
+      {"count", "1", {1.0, 64.0}, &Motor::count, 1.0, "motors in parallel on one servo module"},
+  }};
+};
+
+template <>
+struct Table<Inverter> : EmptyTable<Inverter> {
+  static constexpr std::string_view text = "inverter";
+  static constexpr std::array<Parameter<Inverter>, 3> parameters{{
+      {"dead_time",
+       "s",
+       not_negative(0.1),
+       &Inverter::dead_time,
+       {},
+       "delay from the controller's output to the motor's voltage, a multiple of fast_period/4"},
+      {"voltage_limit", "V", positive(), &Inverter::voltage_limit, {}, "largest voltage"},
+      {"current_limit", "A", positive(), &Inverter::current_limit, std::numeric_limits<double>::infinity(),
+       "largest current per motor"},
+  }};
+};
+
+template <>
+struct Table<EncoderMount> : EmptyTable<EncoderMount> {
+  static constexpr std::string_view text = "elastic mount of the encoder's rider";
+  static constexpr std::array<Parameter<EncoderMount>, 3> parameters{{
+      {"mass", "kg", positive(), &EncoderMount::mass, {}, "mass of the rider"},
+      {"natural_frequency", "Hz", positive(), &EncoderMount::natural_frequency, {}, "natural frequency of the rider"},
+      {"damping_ratio", "1", not_negative(10.0), &EncoderMount::damping_ratio, {}, "damping ratio of the rider"},
+  }};
+};
+
+inline constexpr std::array<Choice<VelocitySource>, 3> velocity_sources{{
+    {"ideal", VelocitySource::ideal, "continuous derivative, as the published simulation had it"},
+    {"estimated", VelocitySource::estimated, "what a drive can do, from time-stamped positions"},
+    {"mean-difference", VelocitySource::mean_difference, "difference of two-sample means"},
+}};
+
+template <>
+struct Table<Encoder> : EmptyTable<Encoder> {
+  static constexpr std::string_view text = "position encoder";
+  static constexpr std::array<Parameter<Encoder>, 2> parameters{{
+      {"increment", "m", not_negative(), &Encoder::increment, {}, "increment after interpolation; 0: continuous"},
+      {"noise", "m", not_negative(), &Encoder::noise, 0.0, "noise of the position, rms"},
+  }};
+  static constexpr std::tuple choices{ChoiceParameter<Encoder, VelocitySource>{
+      "velocity", &Encoder::velocity, velocity_sources, VelocitySource::estimated, "source of the measured velocity"}};
+  static constexpr std::tuple subtables{
+      Subtable<Encoder, std::optional<EncoderMount>>{"mount", &Encoder::mount, Presence::optional}};
+};
+
+template <>
+struct Table<PositionController> : EmptyTable<PositionController> {
+  static constexpr std::string_view text = "proportional position controller";
+  static constexpr std::array<Parameter<PositionController>, 2> parameters{{
+      {"gain", "1/s", positive(), &PositionController::gain, {}, "position gain K_v"},
+      {"increment", "m", not_negative(), &PositionController::increment, 0.0,
+       "increment of the position error's quantizer; 0: none"},
+  }};
+};
+
+template <>
+struct Table<VelocityController> : EmptyTable<VelocityController> {
+  static constexpr std::string_view text = "velocity controller";
+  static constexpr std::array<Parameter<VelocityController>, 2> parameters{{
+      {"gain", "A s/m", positive(), &VelocityController::gain, {}, "velocity gain k_pv", "V s/m"},
+      {"integral_time",
+       "s",
+       positive(),
+       &VelocityController::integral_time,
+       {},
+       "integral time T_Nv; left out: proportional only"},
+  }};
+};
+
+template <>
+struct Table<CurrentController> : EmptyTable<CurrentController> {
+  static constexpr std::string_view text = "current controller; a force motor has none";
+  static constexpr std::array<Parameter<CurrentController>, 2> parameters{{
+      {"gain", "V/A", positive(), &CurrentController::gain, {}, "current gain k_pi"},
+      {"integral_time",
+       "s",
+       positive(),
+       &CurrentController::integral_time,
+       {},
+       "integral time T_Ni; left out: proportional only"},
+  }};
+};
+
+template <>
+struct Table<Notch> : EmptyTable<Notch> {
+  static constexpr std::string_view text = "notch behind the velocity controller; left out: none";
+  static constexpr std::array<Parameter<Notch>, 3> parameters{{
+      {"frequency", "Hz", positive(), &Notch::frequency, {}, "centre frequency, below half the fast loop's rate"},
+      {"numerator_damping", "1", not_negative(10.0), &Notch::numerator_damping, {}, "depth zeta_F1, 0 is deepest"},
+      {"denominator_damping", "1", positive(10.0), &Notch::denominator_damping, {}, "width zeta_F2"},
+  }};
+};
+
+template <>
+struct Table<Feedforward> : EmptyTable<Feedforward> {
+  static constexpr std::string_view text = "feedforward of the set-points";
+  static constexpr std::array<Parameter<Feedforward>, 2> parameters{{
+      {"velocity", "1", not_negative(10.0), &Feedforward::velocity, 0.0, "velocity feedforward K_wv; 1: full"},
+      {"current", "1", not_negative(10.0), &Feedforward::current, 0.0, "current feedforward K_wi; 1: full"},
+  }};
+};
+
+template <>
+struct Table<Supervision> : EmptyTable<Supervision> {
+  static constexpr std::string_view text = "limits whose violation is a fault";
+  static constexpr std::array<Parameter<Supervision>, 3> parameters{{
+      {"following_error", "m", positive(), &Supervision::following_error, {}, "following error; left out: 2 mm"},
+      {"over_current",
+       "A",
+       positive(),
+       &Supervision::over_current,
+       {},
+       "current of the whole axis; left out: 1.2 times the current limit"},
+      {"over_speed", "m/s", positive(), &Supervision::over_speed, {}, "speed; left out: 1.2 times max_velocity"},
+  }};
+};
+
+template <>
+struct Table<Friction> : EmptyTable<Friction> {
+  static constexpr std::string_view text = "friction on the carriage: one table a model";
+  static constexpr std::array<TextParameter<Friction>, 1> texts{
+      {{"use", &Friction::use, "the model that acts unless a command names another"}}};
+};
+
+template <>
+struct Table<Axis> : EmptyTable<Axis> {
+  static constexpr std::string_view text = "one axis";
+  static constexpr std::array<Parameter<Axis>, 4> parameters{{
+      {"mass", "kg", positive(), &Axis::mass, {}, "moving mass"},
+      {"travel", "m", positive(), &Axis::travel, {}, "travel from end to end"},
+      {"max_velocity", "m/s", positive(), &Axis::max_velocity, {}, "largest velocity"},
+      {"max_acceleration", "m/s^2", positive(), &Axis::max_acceleration, {}, "largest acceleration"},
+  }};
+  static constexpr std::tuple subtables{
+      Subtable<Axis, Motor>{"motor", &Axis::motor, Presence::required},
+      Subtable<Axis, Inverter>{"inverter", &Axis::inverter, Presence::required},
+      Subtable<Axis, Encoder>{"encoder", &Axis::encoder, Presence::required},
+      Subtable<Axis, PositionController>{"position_controller", &Axis::position_controller, Presence::required},
+      Subtable<Axis, VelocityController>{"velocity_controller", &Axis::velocity_controller, Presence::required},
+      Subtable<Axis, std::optional<CurrentController>>{"current_controller", &Axis::current_controller,
+                                                       Presence::by_motor_model},
+      Subtable<Axis, std::optional<Notch>>{"notch", &Axis::notch, Presence::optional},
+      Subtable<Axis, Feedforward>{"feedforward", &Axis::feedforward, Presence::optional},
+      Subtable<Axis, Supervision>{"supervision", &Axis::supervision, Presence::optional},
+      Subtable<Axis, Friction>{"friction", &Axis::friction, Presence::required},
+  };
+  static constexpr std::array<UnsupportedKey, 1> unsupported{{{"effect", "effects are not supported by this version"}}};
+};
+
+// Beyond the tables above: what each motor model makes necessary (keys from the axis on) and what it excludes.
+struct MotorRule {
+  MotorModel model;
+  std::span<const std::string_view> needs;
+  std::span<const std::string_view> excludes;
+};
+inline constexpr std::array<std::string_view, 8> needs_of_synchronous{
+    "motor.phase_resistance",     "motor.phase_inductance", "motor.mutual_inductance", "motor.emf_constant",
+    "motor.phase_force_constant", "motor.pole_pair_pitch",  "inverter.current_limit",  "current_controller"};
+inline constexpr std::array<std::string_view, 5> needs_of_dc{"motor.phase_resistance", "motor.phase_inductance",
+                                                             "motor.emf_constant", "inverter.current_limit",
+                                                             "current_controller"};
+inline constexpr std::array<std::string_view, 1> excluded_by_force{"current_controller"};
+inline constexpr std::array<MotorRule, 3> motor_rules{{
+    {MotorModel::synchronous, needs_of_synchronous, {}},
+    {MotorModel::dc, needs_of_dc, {}},
+    {MotorModel::force, {}, excluded_by_force},
+}};
+
+inline constexpr std::array<Choice<bool>, 2> reference_sources{{
+    {"measured", true, "a measurement"},
+    {"published simulation", false, "a simulation by others, with its friction model"},
+}};
+
+template <>
+struct Table<CircleReference> : EmptyTable<CircleReference> {
+  static constexpr std::string_view text = "a published or measured circle beside which reports stand the simulation";
+  static constexpr std::array<TextParameter<CircleReference>, 2> texts{{
+      {"axis", &CircleReference::axis, "name of the axis"},
+      {"friction", &CircleReference::friction, "friction model of a published simulation"},
+  }};
+  static constexpr std::tuple choices{ChoiceParameter<CircleReference, bool>{
+      "source", &CircleReference::measured, reference_sources, {}, "where the row comes from"}};
+  static constexpr std::array<Parameter<CircleReference>, 3> parameters{{
+      {"feed", "m/s", positive(), &CircleReference::feed, {}, "feed along the path"},
+      {"error", "m", not_negative(), &CircleReference::error, {}, "peak quadrant error"},
+      {"current", "A", not_negative(), &CircleReference::current, {}, "peak current"},
+  }};
+};
+
+template <>
+struct Table<Machine> : EmptyTable<Machine> {
+  static constexpr std::string_view text = "the machine";
+  static constexpr std::array<TextParameter<Machine>, 1> texts{{{"name", &Machine::name, "name shown in reports"}}};
+  static constexpr std::tuple subtables{Subtable<Machine, Timing>{"timing", &Machine::timing, Presence::optional}};
+};
+
+}  // namespace stiction::sim

@@ -1,0 +1,65 @@
+// One simulated axis: inverter, motor, carriage with friction, encoder on its mount. Double precision, SI units.
+#pragma once
+
+#include <cstdint>
+#include <random>
+#include <variant>
+
+#include "sim/machine/machine.hpp"
+#include "sim/plant/encoder_mount.hpp"
+#include "sim/plant/friction/friction.hpp"
+#include "sim/plant/inverter.hpp"
+#include "sim/plant/motor.hpp"
+
+namespace stiction::sim {
+
+// Steps of the plant in one fast tick of the drive. At four (15.6 us) the circle's errors are within 0.01 um of
+// converged up to a contact stiffness of 1e8 N/m.
+inline constexpr int plant_steps_per_tick = 4;
+
+class AxisPlant {
+ public:
+  // At rest at `position` (m). `seed`: of the encoder's noise. Throws std::invalid_argument for an unknown model.
+  AxisPlant(const Timing& timing, const Axis& axis, double position, std::uint64_t seed);
+
+  // What the drive commands from now on: voltages (V), or the power stage off.
+  void command(const PhaseValues& voltage, bool enable);
+  // Force from outside on the carriage (N, positive in +x), held until changed.
+  void set_external_force(double force) { external_force_ = force; }
+
+  // Moves on by one fast tick of the drive.
+  void advance_tick();
+
+  double position() const { return position_; }          // m, carriage
+  double velocity() const { return velocity_; }          // m/s, carriage
+  double motor_force() const { return motor_force_; }    // N, at the end of the last step
+  double friction_force() const { return friction_force_; }  // N, mean over the last step, positive opposes +v
+  double encoder_position() const { return position_ + mount_.deflection(); }  // m, before increment and noise
+  double encoder_velocity() const { return velocity_ + mount_.velocity(); }    // m/s
+  const PhaseValues& current() const;                                          // A, of the phases
+
+  // What the encoder reads now: with increment and noise. Draws a new noise value at each call.
+  double read_encoder();
+
+ private:
+  using MotorVariant = std::variant<DcMotor, SynchronousMotor, ForceSource>;
+
+  double step_;
+  double mass_;
+  InverterModel inverter_;
+  MotorVariant motor_;
+  FrictionModel friction_;
+  EncoderMountModel mount_;
+  double encoder_increment_;
+  double encoder_noise_;
+  std::mt19937_64 random_;
+  bool enabled_ = false;
+
+  double position_;
+  double velocity_ = 0.0;
+  double motor_force_ = 0.0;
+  double friction_force_ = 0.0;
+  double external_force_ = 0.0;
+};
+
+}  // namespace stiction::sim

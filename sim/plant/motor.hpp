@@ -1,0 +1,111 @@
+// Motors: windings with resistance, inductance and back EMF under the inverter's voltage (Mendricky 2006, 3.1-3.14).
+// Each winding takes the exact step of its R-L equation for voltage and EMF held over the step.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "sim/machine/machine.hpp"
+
+namespace stiction::sim {
+
+using PhaseValues = std::array<double, 3>;
+
+// Exact step of L di/dt = u - R i.
+class Winding {
+ public:
+  Winding(double resistance, double inductance, double step)
+      : decay_(std::exp(-resistance * step / inductance)), gain_((1.0 - decay_) / resistance) {}
+
+  // Current (A) one step later under the voltage `u` (V) across R and L.
+  double advance(double current, double u) const { return decay_ * current + gain_ * u; }
+
+ private:
+  double decay_;
+  double gain_;
+};
+
+// DC equivalent of the synchronous motor: R, L, K_E of one winding, K_F of the whole motor (3.14). `count` motors in
+// parallel: the current is their sum, R and L are divided.
+class DcMotor {
+ public:
+  DcMotor(const Motor& motor, double step)
+      : winding_(motor.phase_resistance / motor.count, motor.phase_inductance / motor.count, step),
+        emf_constant_(motor.emf_constant),
+        force_constant_(motor.force_constant) {}
+
+  // Moves the current on by one step at velocity v (m/s); returns the mean force (N) over the step.
+  double advance(const PhaseValues& voltage, double, double v) {
+    const double before = current_[0];
+    current_[0] = winding_.advance(before, voltage[0] - emf_constant_ * v);
+    return force_constant_ * 0.5 * (before + current_[0]);
+  }
+  const PhaseValues& current() const { return current_; }
+  void switch_off() { current_ = {}; }
+
+ private:
+  Winding winding_;
+  double emf_constant_;
+  double force_constant_;
+  PhaseValues current_{};
+};
+
+// Three-phase synchronous linear motor (3.7-3.12) with a star point: its currents sum to zero, so that the mutual
+// inductance only lowers the effective one, L - M, and the mean of the phase voltages has no effect.
+class SynchronousMotor {
+ public:
+  SynchronousMotor(const Motor& motor, double step)
+      : winding_(motor.phase_resistance / motor.count,
+                 (motor.phase_inductance - motor.mutual_inductance) / motor.count, step),
+        emf_constant_(motor.emf_constant),
+        force_constant_(motor.phase_force_constant),
+        angle_per_metre_(2.0 * std::numbers::pi / motor.pole_pair_pitch),
+        half_step_(0.5 * step) {}
+
+  // Moves the currents on by one step from position x (m) at velocity v (m/s); returns the mean force (N).
+  double advance(const PhaseValues& voltage, double x, double v) {
+    const double angle = angle_per_metre_ * (x + half_step_ * v);
+    const double s = std::sin(angle);
+    const double c = std::cos(angle);
+    constexpr double half_root_3 = 0.5 * std::numbers::sqrt3;
+    const PhaseValues sine{s, -0.5 * s + half_root_3 * c, -0.5 * s - half_root_3 * c};
+    const double star = (voltage[0] + voltage[1] + voltage[2]) / 3.0;
+    double force = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double before = current_[k];
+      current_[k] = winding_.advance(before, voltage[k] - star - emf_constant_ * v * sine[k]);
+      force += 0.5 * (before + current_[k]) * sine[k];
+    }
+    return force_constant_ * force;
+  }
+  const PhaseValues& current() const { return current_; }
+  void switch_off() { current_ = {}; }
+
+ private:
+  Winding winding_;
+  double emf_constant_;
+  double force_constant_;
+  double angle_per_metre_;
+  double half_step_;
+  PhaseValues current_{};
+};
+
+// Ideal force source driven by a voltage command, N/V.
+class ForceSource {
+ public:
+  ForceSource(const Motor& motor, double) : force_constant_(motor.force_constant) {}
+
+  double advance(const PhaseValues& voltage, double, double) {
+    current_[0] = voltage[0];
+    return force_constant_ * voltage[0];
+  }
+  const PhaseValues& current() const { return current_; }
+  void switch_off() { current_ = {}; }
+
+ private:
+  double force_constant_;
+  PhaseValues current_{};
+};
+
+}  // namespace stiction::sim

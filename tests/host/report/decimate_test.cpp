@@ -1,0 +1,87 @@
+// Decimation keeps what the eye reads: extremes, order, ends.
+#include "host/report/decimate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <stdexcept>
+
+namespace stiction::host {
+namespace {
+
+struct Lap {
+  std::vector<double> angle;
+  std::vector<std::vector<double>> channels;
+  std::vector<std::span<const double>> spans() const { return {channels.begin(), channels.end()}; }
+};
+
+// Noise with one single-sample peak a channel at a random instant.
+Lap noisy_lap(std::size_t samples, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise;
+  std::uniform_int_distribution<std::size_t> instant(0, samples - 1);
+  Lap lap;
+  for (std::size_t i = 0; i < samples; ++i)
+    lap.angle.push_back(0.25 * std::numbers::pi +
+                        2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(samples));
+  for (int channel = 0; channel < 5; ++channel) {
+    lap.channels.emplace_back(samples);
+    for (auto& value : lap.channels.back()) value = 5.0 + noise(random);
+    lap.channels.back()[instant(random)] = 20.0;
+    lap.channels.back()[instant(random)] = -3.0;
+  }
+  return lap;
+}
+
+TEST(SelectInstants, KeepsBothExtremesOfEveryChannelWithinTheLimit) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const auto lap = noisy_lap(20000, seed);
+    const auto kept = select_instants(lap.angle, lap.spans(), 1500);
+    EXPECT_LE(kept.size(), 1500u);
+    EXPECT_GT(kept.size(), 1000u);
+    EXPECT_TRUE(std::is_sorted(kept.begin(), kept.end()));
+    EXPECT_EQ(kept.front(), 0u);
+    EXPECT_EQ(kept.back(), lap.angle.size() - 1);
+    for (const auto& channel : lap.channels) {
+      const auto [low, high] = std::minmax_element(channel.begin(), channel.end());
+      const auto value = [&](std::size_t i) { return channel[i]; };
+      EXPECT_EQ(std::ranges::max(kept, {}, value), high - channel.begin()) << "seed " << seed;
+      EXPECT_EQ(std::ranges::min(kept, {}, value), low - channel.begin()) << "seed " << seed;
+    }
+  }
+}
+
+TEST(SelectInstants, TakesNarrowerBinsNearReversals) {
+  const auto lap = noisy_lap(20000, 1);
+  std::size_t near = 0, all = 0;
+  for (const auto i : select_instants(lap.angle, lap.spans(), 1500)) {
+    near += std::abs(std::remainder(lap.angle[i], 0.5 * std::numbers::pi)) < 10.0 * std::numbers::pi / 180.0;
+    ++all;
+  }
+  // 80 of 360 degrees with five times the density: 400 / (400 + 280) = 59 % of the bins.
+  EXPECT_NEAR(static_cast<double>(near) / static_cast<double>(all), 0.59, 0.03);
+}
+
+TEST(SelectInstants, AcceptsALapThatRunsBackwards) {
+  auto lap = noisy_lap(20000, 1);
+  std::reverse(lap.angle.begin(), lap.angle.end());
+  EXPECT_GT(select_instants(lap.angle, lap.spans(), 1500).size(), 1000u);
+}
+
+TEST(SelectInstants, KeepsAShortLapWhole) {
+  const auto lap = noisy_lap(700, 1);
+  EXPECT_EQ(select_instants(lap.angle, lap.spans(), 1500).size(), 700u);
+}
+
+TEST(SelectInstants, RefusesUnequalLengthsAndATooSmallLimit) {
+  auto lap = noisy_lap(700, 1);
+  EXPECT_THROW(select_instants(lap.angle, lap.spans(), 16), std::invalid_argument);
+  lap.channels[2].pop_back();
+  EXPECT_THROW(select_instants(lap.angle, lap.spans(), 1500), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace stiction::host

@@ -1,0 +1,155 @@
+// Opens a report of the circle in a browser and checks what a reader would see: every chart has its traces, another
+// feed and another magnification draw other data, nothing is loaded from outside, the console is silent.
+// usage: node open_report.mjs FILE.html [--screenshot FILE.png] [--width PIXELS] [--pdf FILE.pdf] [TRACE...]
+//   TRACE: names that must stand in the charts, instead of those that the page's own data name.
+// The browser is $CHROMIUM, else /usr/bin/chromium. Exit 0: all holds; 1: a message says what does not; 2: usage.
+import { existsSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { resolve } from 'node:path';
+import { pathToFileURL } from 'node:url';
+import { parseArgs } from 'node:util';
+
+const { chromium } = createRequire(new URL('../../../host/report/web/package.json', import.meta.url))('playwright-core');
+
+function usage(message) {
+  console.error(`open_report: ${message}\nusage: node open_report.mjs FILE.html [--screenshot FILE.png] [--width PIXELS] [--pdf FILE.pdf] [TRACE...]`);
+  process.exit(2);
+}
+
+function parse() {
+  try {
+    return parseArgs({ allowPositionals: true, options: {
+      screenshot: { type: 'string' }, width: { type: 'string', default: '1400' }, pdf: { type: 'string' } } });
+  } catch (error) {
+    return usage(error.message);
+  }
+}
+
+const { values: options, positionals: [file, ...expectedNames] } = parse();
+if (!file) usage('no file given');
+if (!existsSync(file)) usage(`${file} does not exist`);
+const address = pathToFileURL(resolve(file)).href;
+
+const problems = [];
+function expect(holds, message) {
+  if (!holds) problems.push(message);
+}
+
+// Names of a chart's traces and their points, as the chart library holds them.
+function traces(page, chart) {
+  return page.evaluate(id => (document.getElementById(id).data || []).map(trace => ({ name: trace.name, y: Array.from(trace.y) })), chart);
+}
+
+async function drawn(page, chart) {
+  return JSON.stringify(await traces(page, chart));
+}
+
+function pageData(page) {
+  return page.evaluate(() => JSON.parse(document.getElementById('data').textContent));
+}
+
+async function choose(page, control, value) {
+  await page.locator(`#${control} input[value="${value}"]`).check({ force: true });
+}
+
+function labelsOf(data, runs) {
+  const models = data.models.filter(model => runs.some(run => run.friction === model.name));
+  return models.map(model => model.label);
+}
+
+async function checkTraces(page, data) {
+  const here = data.runs.filter(run => run.feed === data.selected_feed && run.direction === data.directions[0]);
+  const measuredHere = data.references.some(row => row.measured && row.axis === data.axes[0] && Math.abs(row.feed - data.selected_feed) < 1e-4 * row.feed);
+  const measured = data.references.some(row => row.measured && data.axes.includes(row.axis));
+  const labels = expectedNames.length ? expectedNames.filter(name => name !== 'measured') : labelsOf(data, here);
+  const wanted = {
+    polar: labels,
+    quadrant: [...labels, ...(expectedNames.length ? expectedNames.includes('measured') : measuredHere) ? ['measured'] : []],
+    lap: labels,
+    peaks: [...(expectedNames.length ? labels : labelsOf(data, data.runs)), ...(expectedNames.length ? expectedNames.includes('measured') : measured) ? ['measured'] : []],
+  };
+  for (const [chart, names] of Object.entries(wanted)) {
+    const found = await traces(page, chart);
+    for (const name of names)
+      expect(found.some(trace => trace.name.startsWith(name)), `chart '${chart}' has no trace '${name}'; it has: ${found.map(trace => trace.name).join(', ') || 'none'}`);
+    for (const trace of found)
+      expect(trace.y.length > 0 && trace.y.every(Number.isFinite), `trace '${trace.name}' of chart '${chart}' is empty or not finite`);
+  }
+}
+
+// The largest value drawn over the lap is the printed peak.
+async function checkPeaks(page, data) {
+  const found = await traces(page, 'lap');
+  for (const run of data.runs.filter(each => each.feed === data.selected_feed && each.direction === data.directions[0])) {
+    const label = data.models.find(model => model.name === run.friction).label;
+    const peaks = found.filter(trace => trace.name === label).map(trace => Math.max(...trace.y.map(Math.abs)));
+    const printed = [...run.axes.map(axis => axis.peak_error), ...run.axes.map(axis => axis.peak_current)];
+    printed.forEach((peak, i) =>
+      expect(Math.abs(peak - peaks[i]) <= 1e-5 * Math.abs(peak) + 1e-9, `'${label}' is drawn with a peak of ${peaks[i]}, printed with ${peak}`));
+  }
+}
+
+async function checkControls(page, data) {
+  const fresh = { polar: await drawn(page, 'polar'), lap: await drawn(page, 'lap'), quadrant: await drawn(page, 'quadrant') };
+  const otherMagnification = page.locator('#choose-magnification input:not(:checked):not(:disabled)').first();
+  await choose(page, 'choose-magnification', await otherMagnification.getAttribute('value'));
+  expect(await drawn(page, 'polar') !== fresh.polar, 'another magnification draws the same circle');
+  expect(await drawn(page, 'lap') === fresh.lap, 'the magnification changes the lap');
+  await choose(page, 'choose-quadrant', 90);
+  expect(await drawn(page, 'quadrant') !== fresh.quadrant, 'another quadrant draws the same errors');
+  const otherFeed = data.feeds.find(feed => feed !== data.selected_feed);
+  if (otherFeed !== undefined) {
+    await choose(page, 'choose-feed', otherFeed);
+    expect(await drawn(page, 'lap') !== fresh.lap, 'another feed draws the same lap');
+  }
+  if (data.directions.length > 1) {
+    const one = (await traces(page, 'polar')).length;
+    await choose(page, 'choose-direction', 'both');
+    expect((await traces(page, 'polar')).length > one, 'both directions draw no more circles than one');
+    await choose(page, 'choose-direction', data.directions[0]);
+  }
+  const shown = (await traces(page, 'polar')).length;
+  await page.locator('#choose-models input').first().uncheck({ force: true });
+  expect((await traces(page, 'polar')).length < shown, 'a model that is switched off is still drawn');
+  await page.locator('#choose-models input').first().check({ force: true });
+  await choose(page, 'choose-feed', data.selected_feed);
+  await choose(page, 'choose-quadrant', 0);
+  await choose(page, 'choose-magnification', 1000).catch(() => {});  // may be disabled
+}
+
+async function checkText(page, data) {
+  const rows = await page.locator('#table tbody tr').count();
+  expect(rows === data.table.length, `the table has ${rows} rows, the data ${data.table.length}`);
+  expect((await page.locator('.headline').innerText()).length > 10, 'the page has no headline');
+  const wide = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+  expect(wide <= 0, `the page is ${wide} pixels wider than the window`);
+}
+
+async function main() {
+  const browser = await chromium.launch({ executablePath: process.env.CHROMIUM || '/usr/bin/chromium',
+    args: ['--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
+           '--disable-component-update', '--disable-sync'] });
+  try {
+    const page = await browser.newPage({ viewport: { width: Number(options.width), height: 1000 } });
+    page.on('console', message => { if (['error', 'warning'].includes(message.type())) problems.push(`console: ${message.text()}`); });
+    page.on('pageerror', error => problems.push(`script: ${error.message}`));
+    page.on('request', request => {
+      if (request.url() !== address && !/^(data|blob):/.test(request.url())) problems.push(`the page asks for ${request.url()}`);
+    });
+    await page.goto(address, { waitUntil: 'load' });
+    const data = await pageData(page);
+    await checkTraces(page, data);
+    await checkPeaks(page, data);
+    await checkText(page, data);
+    await checkControls(page, data);
+    if (options.screenshot) await page.screenshot({ path: options.screenshot, fullPage: true });
+    if (options.pdf) await page.pdf({ path: options.pdf, preferCSSPageSize: true, printBackground: true });
+  } finally {
+    await browser.close();
+  }
+}
+
+await main().catch(error => problems.push(error.message));
+for (const problem of problems) console.error(`open_report: ${file}: ${problem}`);
+if (!problems.length) console.log(`open_report: ${file}: all holds`);
+process.exit(problems.length ? 1 : 0);
