@@ -19,7 +19,11 @@ class ControlLoop {
   // One configuration per axis of the backend, in its order. The first tick happens here: it starts the axes at rest
   // where they are.
   ControlLoop(B& backend, std::span<const AxisConfig<S>> configs, Ticker ticker)
-      : backend_(backend), ticker_(ticker), feedback_(configs.size()), command_(configs.size()), signals_(configs.size()) {
+      : backend_(backend),
+        ticker_(ticker),
+        feedback_(configs.size()),
+        command_(configs.size()),
+        signals_(configs.size()) {
     axes_.reserve(configs.size());
     for (const auto& config : configs) axes_.emplace_back(config);
     now_ns_ = backend_.wait_for_tick();

@@ -46,7 +46,8 @@ void send_packet(int descriptor, const void* data, std::size_t size) {
   ssize_t sent = 0;
   do sent = ::send(descriptor, data, size, MSG_NOSIGNAL);
   while (sent < 0 && errno == EINTR);
-  if (sent != static_cast<ssize_t>(size)) throw SocketError(std::string("socket: send failed: ") + std::strerror(errno));
+  if (sent != static_cast<ssize_t>(size))
+    throw SocketError(std::string("socket: send failed: ") + std::strerror(errno));
 }
 
 // False at the end of the stream.
@@ -107,12 +108,9 @@ void send_feedback(int descriptor, std::int64_t now_ns, std::span<const Feedback
   packet.now_ns = now_ns;
   for (std::size_t i = 0; i < feedback.size(); ++i) {
     const auto& f = feedback[i];
-    packet.axes[i] = {f.position.raw(),
-                      f.position_time_ns,
-                      f.velocity.raw(),
-                      {f.current[0].raw(), f.current[1].raw(), f.current[2].raw()},
-                      f.position_valid,
-                      f.fault};
+    packet.axes[i] = {f.position.raw(), f.position_time_ns,
+                      f.velocity.raw(), {f.current[0].raw(), f.current[1].raw(), f.current[2].raw()},
+                      f.position_valid, f.fault};
   }
   send_packet(descriptor, &packet, feedback_size(feedback.size()));
 }

@@ -13,7 +13,8 @@ namespace {
 // Runs the failed case again, which repeats it to the bit, and keeps its trace.
 [[noreturn]] void keep_trace_and_fail(const CaseFailed& failure, const CirclePlaces& places) {
   const auto& c = failure.circle_case;
-  const std::string which = fmt::format("{} at {:g} m/min: ", c.machine.axes.front().friction.use, c.settings.feed * 60.0);
+  const std::string which =
+      fmt::format("{} at {:g} m/min: ", c.machine.axes.front().friction.use, c.settings.feed * 60.0);
   const auto record = [&](const std::filesystem::path& file) {
     try {
       run_traced(c, file);
@@ -31,7 +32,8 @@ namespace {
                                                        {"name", name_of(failure.fault)},
                                                        {"time_s", failure.time},
                                                        {"trace", "trace.csv"}}
-                                        .dump(2) + "\n");
+                                        .dump(2) +
+                                    "\n");
     folder.commit();
     kept = std::filesystem::path(places.out) / "trace.csv";
   } else {
@@ -40,7 +42,8 @@ namespace {
     record(file.path());
     file.commit();
   }
-  throw std::runtime_error(fmt::format("{}{}; the run was stopped, its trace is in {}", which, failure.what(), kept.string()));
+  throw std::runtime_error(
+      fmt::format("{}{}; the run was stopped, its trace is in {}", which, failure.what(), kept.string()));
 }
 
 }  // namespace
@@ -49,8 +52,8 @@ sim::CircleResult run_plan(const CirclePlan& plan, const CirclePlaces& places) {
   if (!places.log.empty()) {
     const auto cases = cases_of(plan);
     if (cases.size() != 1)
-      throw UsageError(fmt::format("--log: found {} runs; expected one friction model, one feed and one direction",
-                                   cases.size()));
+      throw UsageError(
+          fmt::format("--log: found {} runs; expected one friction model, one feed and one direction", cases.size()));
   }
   try {
     Progress progress("circles", plan.friction.size() * plan.feeds.size() * plan.directions.size());

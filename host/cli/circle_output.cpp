@@ -10,9 +10,7 @@ namespace {
 constexpr double per_minute = 60.0;  // m/s to m/min
 constexpr double micro = 1e6;        // m to um
 
-const char* name_of(sim::Direction direction) {
-  return direction == sim::Direction::clockwise ? "cw" : "ccw";
-}
+const char* name_of(sim::Direction direction) { return direction == sim::Direction::clockwise ? "cw" : "ccw"; }
 
 nlohmann::ordered_json reference_json(const std::optional<double>& error, const std::optional<double>& current) {
   return {{"error_um", *error * micro}, {"current_A", *current}};
@@ -25,12 +23,10 @@ std::string cell(const std::optional<double>& value, double scale) {
 }  // namespace
 
 nlohmann::ordered_json circle_json(const sim::CircleResult& result, const sim::Machine& machine) {
-  nlohmann::ordered_json json{{"schema", "stiction.circle/1"},
-                              {"machine", machine.id},
-                              {"radius_m", result.runs.front().radius},
-                              {"signals", result.signals},
-                              {"rows", nlohmann::ordered_json::array()},
-                              {"circular_errors", nlohmann::ordered_json::array()}};
+  nlohmann::ordered_json json{
+      {"schema", "stiction.circle/1"},           {"machine", machine.id},
+      {"radius_m", result.runs.front().radius},  {"signals", result.signals},
+      {"rows", nlohmann::ordered_json::array()}, {"circular_errors", nlohmann::ordered_json::array()}};
   for (const auto& row : circle_table(result, machine)) {
     nlohmann::ordered_json r{{"axis", row.axis},
                              {"friction", row.friction},

@@ -29,8 +29,8 @@ struct CompareOptions {
 // How a simulation agrees with the rows of its machine file.
 struct Agreement {
   int published_cells = 0;
-  int equal = 0;            // quantised error equal to the published one
-  int within_increment = 0;  // or one increment beside it
+  int equal = 0;                   // quantised error equal to the published one
+  int within_increment = 0;        // or one increment beside it
   double current_deviation = 0.0;  // mean |ours / published - 1|
 };
 
@@ -58,8 +58,8 @@ CirclePlan plan_of(const CompareOptions& options, const std::string& machine_nam
   plan.signals = options.signals == "double" ? SignalKind::double_precision : SignalKind::fixed_point;
   plan.directions = directions("ccw");
   if (plan.machine.circle_references.empty())
-    throw UsageError(fmt::format("{}: found no [[reference.circle]] row; expected at least one to compare with",
-                                 plan.machine.id));
+    throw UsageError(
+        fmt::format("{}: found no [[reference.circle]] row; expected at least one to compare with", plan.machine.id));
   std::set<double> feed_set;
   std::set<std::string> published;
   for (const auto& row : plan.machine.circle_references) {
@@ -121,7 +121,7 @@ std::string compare_text(const CirclePlan& plan, const sim::CircleResult& result
         "\nagainst the published simulation: {} of {} quantised peak errors equal, {} within one increment;\n"
         "currents {:.2f} % apart in the mean; velocity feedback: {}\n",
         a.equal, a.published_cells, a.within_increment, a.current_deviation * 100.0,
-        velocity_source_text(plan.machine.axes.front().encoder.velocity));
+        velocity_source_name(plan.machine.axes.front().encoder.velocity));
   return text;
 }
 
@@ -145,7 +145,10 @@ void compare(const CompareOptions& options, const Invocation& invocation) {
     all.push_back(std::move(json));
   }
   if (options.json)
-    fmt::print("{}\n", (machines.size() == 1 ? all.front() : nlohmann::ordered_json{{"schema", "stiction.comparison/1"}, {"machines", all}}).dump(2));
+    fmt::print("{}\n",
+               (machines.size() == 1 ? all.front()
+                                     : nlohmann::ordered_json{{"schema", "stiction.comparison/1"}, {"machines", all}})
+                   .dump(2));
   else
     fmt::print("{}", text);
 }

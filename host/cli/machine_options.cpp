@@ -13,7 +13,8 @@ namespace stiction::host {
 
 void MachineOptions::add_to(CLI::App& command, const std::string& machine_help) {
   command.add_option("--machine", machine, machine_help)->required()->type_name("MACHINE");
-  command.add_option("--set", set, "another value for a key of the machine file; may be repeated; axis.* is every axis")
+  command
+      .add_option("--set", set, "another value for a key of the machine file; may be repeated; axis.* is every axis")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
 }
@@ -41,8 +42,8 @@ std::vector<std::string> friction_models(const std::string& text, const sim::Mac
   const auto names = split_list(text);
   for (const auto& name : names)
     if (std::find(everywhere.begin(), everywhere.end(), name) == everywhere.end())
-      throw UsageError(fmt::format("--friction: found '{}'; expected 'all' or models that every axis of {} has: {}", name,
-                                   machine.id, fmt::join(everywhere, ", ")));
+      throw UsageError(fmt::format("--friction: found '{}'; expected 'all' or models that every axis of {} has: {}",
+                                   name, machine.id, fmt::join(everywhere, ", ")));
   return names;
 }
 
@@ -52,9 +53,10 @@ std::vector<double> feeds(const std::string& text) {
     try {
       result.push_back(sim::parse_quantity(part, "m/s"));
     } catch (const sim::UnitError& error) {
-      throw UsageError(fmt::format("--feed: found '{}' ({}); expected a speed such as \"16 m/min\", or a list \"8 m/min, "
-                                   "16 m/min\"",
-                                   part, error.what()));
+      throw UsageError(
+          fmt::format("--feed: found '{}' ({}); expected a speed such as \"16 m/min\", or a list \"8 m/min, "
+                      "16 m/min\"",
+                      part, error.what()));
     }
   }
   return result;

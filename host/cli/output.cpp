@@ -47,8 +47,10 @@ PendingFolder::PendingFolder(fs::path place) : place_(std::move(place)), pending
   if (fs::exists(place_) && !fs::is_directory(place_))
     throw UsageError(place_.string() + ": found a file; expected a folder for the results");
   if (fs::exists(place_) && !fs::is_empty(place_) && !fs::exists(place_ / marker))
-    throw UsageError(place_.string() + ": found a folder with other things in it; expected a new or an empty folder, or "
-                                       "an earlier result (with " + marker + "), which is replaced");
+    throw UsageError(place_.string() +
+                     ": found a folder with other things in it; expected a new or an empty folder, or "
+                     "an earlier result (with " +
+                     marker + "), which is replaced");
   std::error_code error;
   fs::create_directories(pending_, error);
   if (error) throw UsageError(place_.string() + ": cannot be made: " + error.message());

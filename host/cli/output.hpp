@@ -16,7 +16,7 @@ class PendingFile {
   ~PendingFile();
 
   const std::filesystem::path& path() const { return pending_; }  // write here
-  void commit();                                                 // throws std::runtime_error
+  void commit();                                                  // throws std::runtime_error
 
  private:
   std::filesystem::path place_;

@@ -34,8 +34,8 @@ CirclePlan plan_of(const CircleOptions& options) {
   try {
     plan.radius = sim::parse_quantity(options.radius, "m");
   } catch (const sim::UnitError& error) {
-    throw UsageError(fmt::format("--radius: found '{}' ({}); expected a length such as \"90 mm\"", options.radius,
-                                 error.what()));
+    throw UsageError(
+        fmt::format("--radius: found '{}' ({}); expected a length such as \"90 mm\"", options.radius, error.what()));
   }
   return plan;
 }

@@ -147,7 +147,7 @@ json machine_json(const sim::Machine& machine) {
   return {{"name", machine.name},
           {"id", machine.id},
           {"fast_period_us", rounded(machine.timing.fast_period * micro)},
-          {"slow_period_us", rounded(machine.timing.slow_period * micro)},
+          {"slow_period_ms", rounded(machine.timing.slow_period * 1e3)},
           {"axes", axes},
           {"sections", sections}};
 }
@@ -197,8 +197,8 @@ json conditions_json(const CircleReport& report) {
   add("Direction", joined(directions));
   add("Sample rate", joined(rates));
   add("Signals", signals_text(report.result.signals));
-  add("Velocity feedback", by_axis(machine, [](const auto& a) { return velocity_source_text(a.encoder.velocity); }));
-  add("Motor model", by_axis(machine, [](const auto& a) { return motor_model_text(a.motor.model); }));
+  add("Velocity feedback", by_axis(machine, [](const auto& a) { return velocity_source_name(a.encoder.velocity); }));
+  add("Motor model", by_axis(machine, [](const auto& a) { return motor_model_name(a.motor.model); }));
   add("Circle fit", "least squares");
   add("Filter", "none");
   return list;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double quarter = std::numbers::pi / 2.0;
 constexpr double glitch_half_width = 10.0 * std::numbers::pi / 180.0;
-// At 3.2 m/min a glitch of 50 ms is 1.7 degrees wide: with 300 bins a lap it then spans four of five instants each.
+// At 3.2 m/min a glitch of 50 ms is 1.7 degrees wide: with 300 bins a lap it then spans at least four.
 constexpr double glitch_density = 5.0;  // bins a degree near a reversal over those elsewhere
 
 double density(double angle) {
@@ -23,8 +23,10 @@ double density(double angle) {
 // First instant of each bin, and the end: every bin holds the same integral of the density.
 std::vector<std::size_t> bin_edges(std::span<const double> angle, std::size_t bins) {
   std::vector<double> filled(angle.size(), 0.0);
-  for (std::size_t i = 1; i < angle.size(); ++i)
-    filled[i] = filled[i - 1] + std::abs(angle[i] - angle[i - 1]) * density(0.5 * (angle[i] + angle[i - 1]));
+  for (std::size_t i = 1; i < angle.size(); ++i) {
+    const double step = std::remainder(angle[i] - angle[i - 1], 2.0 * std::numbers::pi);
+    filled[i] = filled[i - 1] + std::abs(step) * density(angle[i - 1] + 0.5 * step);
+  }
   std::vector<std::size_t> edges;
   for (std::size_t bin = 0; bin < bins; ++bin) {
     const double begin = filled.back() * static_cast<double>(bin) / static_cast<double>(bins);
@@ -41,22 +43,11 @@ std::size_t farthest_from_mean(std::span<const double> channel, std::size_t begi
   return begin + static_cast<std::size_t>(std::max_element(bin.begin(), bin.end(), nearer) - bin.begin());
 }
 
-}  // namespace
-
-std::vector<std::size_t> select_instants(std::span<const double> angle,
-                                         std::span<const std::span<const double>> channels, std::size_t limit) {
-  for (const auto& channel : channels)
-    if (channel.size() != angle.size()) throw std::invalid_argument("a lap's channels differ in length");
-  if (limit < 3 * channels.size() + 2) throw std::invalid_argument("the limit leaves no instant for a bin");
-
-  std::vector<std::size_t> kept;
-  if (angle.size() <= limit || channels.empty()) {
-    kept.resize(angle.size());
-    std::iota(kept.begin(), kept.end(), std::size_t{0});
-    return kept;
-  }
-  kept = {0, angle.size() - 1};
-  const auto edges = bin_edges(angle, (limit - 2 - 2 * channels.size()) / channels.size());
+// The ends, the extremes of each channel, and one instant a bin and channel; instants that coincide count once.
+std::vector<std::size_t> select_with(std::size_t bins, std::span<const double> angle,
+                                     std::span<const std::span<const double>> channels) {
+  std::vector<std::size_t> kept{0, angle.size() - 1};
+  const auto edges = bin_edges(angle, bins);
   for (const auto& channel : channels) {
     const auto [low, high] = std::minmax_element(channel.begin(), channel.end());
     kept.push_back(static_cast<std::size_t>(low - channel.begin()));
@@ -66,6 +57,35 @@ std::vector<std::size_t> select_instants(std::span<const double> angle,
   }
   std::sort(kept.begin(), kept.end());
   kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
+  return kept;
+}
+
+}  // namespace
+
+std::vector<std::size_t> select_instants(std::span<const double> angle,
+                                         std::span<const std::span<const double>> channels, std::size_t limit) {
+  for (const auto& channel : channels)
+    if (channel.size() != angle.size()) throw std::invalid_argument("a lap's channels differ in length");
+  if (limit < 3 * channels.size() + 2) throw std::invalid_argument("the limit leaves no instant for a bin");
+
+  if (angle.size() <= limit || channels.empty()) {
+    std::vector<std::size_t> all(angle.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    return all;
+  }
+  // Where the channels are smooth, their extremes coincide at the bins' edges: more bins fit than in the worst case.
+  std::size_t fits = (limit - 2 - 2 * channels.size()) / channels.size(), too_many = limit;
+  auto kept = select_with(fits, angle, channels);
+  while (too_many - fits > fits / 20 + 1) {
+    const std::size_t bins = (fits + too_many) / 2;
+    auto more = select_with(bins, angle, channels);
+    if (more.size() > limit) {
+      too_many = bins;
+    } else {
+      fits = bins;
+      kept = std::move(more);
+    }
+  }
   return kept;
 }
 

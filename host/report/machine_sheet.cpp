@@ -5,61 +5,95 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <cstdlib>
 #include <optional>
+#include <span>
 #include <string_view>
+#include <variant>
+
+#include "host/report/engineering_unit.hpp"
+#include "sim/machine/parameters.hpp"
 
 namespace stiction::host {
 namespace {
 
-using sim::Axis;
-
-// Six digits show every figure of a machine file and no digit of a conversion.
-std::string number(double value) { return fmt::format("{:.6g}", value); }
-
-// The unit a report prints for an SI unit of the friction models' parameters, and what one SI unit makes of it.
-struct Engineering {
-  std::string_view unit;
-  double factor;
+// One axis' value of a parameter, before its unit is chosen.
+struct Cell {
+  std::string_view unit;       // SI
+  std::vector<double> values;  // none: not given
+  std::string instead;         // what stands there without a value, or in place of one that has a name
 };
 
-Engineering engineering(std::string_view si) {
-  if (si == "1") return {"", 1.0};
-  if (si == "m") return {"µm", 1e6};
-  if (si == "s") return {"ms", 1e3};
-  if (si == "m/s") return {"mm/s", 1e3};
-  if (si == "N/m") return {"N/µm", 1e-6};
-  return {si, 1.0};
+// A parameter's text is "LABEL", "LABEL; left out: MEANING" or "LABEL; NUMBER: MEANING".
+std::string label_of(std::string_view text) { return std::string(text.substr(0, text.find(';'))); }
+
+std::string meaning_of(std::string_view text, std::optional<double> value) {
+  const auto semicolon = text.find("; "), colon = text.find(": ", semicolon);
+  if (semicolon == std::string_view::npos || colon == std::string_view::npos) return {};
+  const std::string when(text.substr(semicolon + 2, colon - semicolon - 2));
+  char* end = nullptr;
+  const double number = std::strtod(when.c_str(), &end);
+  const bool names_number = end != when.c_str() && *end == '\0';
+  const bool applies = value ? names_number && number == *value : when == "left out";
+  return applies ? std::string(text.substr(colon + 2)) : std::string();
 }
 
-using Value = std::function<std::optional<double>(const Axis&)>;
-using Text = std::function<std::string(const Axis&)>;  // empty: the axis does not have it
+template <class Owner>
+std::vector<double> values_of(const sim::Parameter<Owner>& parameter, const Owner& owner) {
+  const auto values = std::visit(
+      [&]<class M>(M Owner::*member) -> std::vector<double> {
+        const M& given = owner.*member;
+        if constexpr (std::is_same_v<M, std::vector<double>>)
+          return given;
+        else if constexpr (std::is_same_v<M, std::optional<double>>)
+          return given ? std::vector{*given} : std::vector<double>{};
+        else
+          return {static_cast<double>(given)};
+      },
+      parameter.member);
+  // A key that this motor does not need holds a default that the range would refuse.
+  const bool given = std::all_of(values.begin(), values.end(), [&](double v) { return parameter.range.contains(v); });
+  return given ? values : std::vector<double>{};
+}
+
+template <class Owner>
+Cell make_cell(const sim::Parameter<Owner>& parameter, const Owner& owner, bool force_motor) {
+  Cell cell{force_motor && !parameter.unit_of_force_motor.empty() ? parameter.unit_of_force_motor : parameter.unit,
+            values_of(parameter, owner),
+            {}};
+  if (cell.values.size() <= 1)
+    cell.instead = meaning_of(parameter.text, cell.values.empty() ? std::nullopt : std::optional(cell.values[0]));
+  if (cell.values.size() == 1 && std::isinf(cell.values[0])) cell.instead = "none";
+  return cell;
+}
+
+std::string print(const Cell& cell, double factor) {
+  if (!cell.instead.empty()) return cell.instead;
+  std::string list;  // six digits show every figure of a machine file and no digit of a conversion
+  for (const double value : cell.values) list += fmt::format("{}{:.6g}", list.empty() ? "" : ", ", value * factor);
+  return list;
+}
 
 class Sheet {
  public:
-  explicit Sheet(const sim::Machine& machine) : machine_(machine) {}
+  explicit Sheet(const sim::Machine& machine) : axes_(machine.axes) {}
 
-  Sheet& section(std::string title) {
-    sections_.push_back({std::move(title), {}});
-    return *this;
+  std::span<const sim::Axis> axes() const { return axes_; }
+
+  void begin_section(std::string title) { sections_.push_back({std::move(title), {}}); }
+
+  void add(std::string label, std::string unit, std::vector<std::string> values) {
+    if (std::all_of(values.begin(), values.end(), [](const auto& value) { return value.empty(); })) return;
+    sections_.back().rows.push_back({std::move(label), std::move(unit), std::move(values)});
   }
 
-  Sheet& text(std::string label, const Text& value) { return add(std::move(label), "", value); }
-
-  // `scale`: what one SI unit is in `unit`.
-  Sheet& quantity(std::string label, std::string unit, double scale, const Value& value) {
-    return add(std::move(label), std::move(unit), [&](const Axis& axis) {
-      const auto given = value(axis);
-      return given ? number(*given * scale) : std::string();
-    });
-  }
-
-  Sheet& add(std::string label, std::string unit, const Text& value) {
-    SheetRow row{std::move(label), std::move(unit), {}};
-    for (const auto& axis : machine_.axes) row.values.push_back(value(axis));
-    const bool given = std::any_of(row.values.begin(), row.values.end(), [](const auto& v) { return !v.empty(); });
-    if (given) sections_.back().rows.push_back(std::move(row));
-    return *this;
+  // One cell an axis, none where the axis lacks the table. Axes whose motors give the parameter different units come in
+  // different rows.
+  void add(const std::string& label, const std::vector<std::optional<Cell>>& cells) {
+    std::vector<std::string_view> units;
+    for (const auto& cell : cells)
+      if (cell && std::find(units.begin(), units.end(), cell->unit) == units.end()) units.push_back(cell->unit);
+    for (const auto unit : units) add_in_unit(label, unit, cells);
   }
 
   std::vector<SheetSection> take() {
@@ -68,171 +102,119 @@ class Sheet {
   }
 
  private:
-  const sim::Machine& machine_;
+  void add_in_unit(const std::string& label, std::string_view unit, const std::vector<std::optional<Cell>>& cells) {
+    double size = 0.0;
+    bool numbers = false;
+    for (const auto& cell : cells)
+      if (cell && cell->unit == unit && cell->instead.empty())
+        for (const double value : cell->values) {
+          size = std::max(size, std::abs(value));
+          numbers = true;
+        }
+    const auto engineering = engineering_unit(unit, size);
+    std::vector<std::string> values;
+    for (const auto& cell : cells)
+      values.push_back(cell && cell->unit == unit ? print(*cell, engineering.factor) : std::string());
+    add(label, numbers ? engineering.unit : std::string(), std::move(values));
+  }
+
+  std::span<const sim::Axis> axes_;
   std::vector<SheetSection> sections_;
 };
 
-bool is_force(const Axis& axis) { return axis.motor.model == sim::MotorModel::force; }
-
-std::optional<double> unless_force(const Axis& axis, double value) {
-  return is_force(axis) ? std::nullopt : std::optional(value);
+std::string title_of(std::string_view key) {
+  std::string title(key);
+  std::replace(title.begin(), title.end(), '_', ' ');
+  if (!title.empty() && title[0] >= 'a' && title[0] <= 'z') title[0] = static_cast<char>(title[0] - 'a' + 'A');
+  return title;
 }
 
-// A unit that depends on the motor: one row for each kind, of which an axis fills one.
-Sheet& by_motor(Sheet& sheet, const std::string& label, const std::string& current_unit, const std::string& force_unit,
-                const std::function<double(const Axis&)>& value) {
-  sheet.quantity(label, current_unit, 1.0, [&](const Axis& a) { return unless_force(a, value(a)); });
-  return sheet.quantity(label, force_unit, 1.0,
-                        [&](const Axis& a) { return is_force(a) ? std::optional(value(a)) : std::nullopt; });
+template <class Value>
+std::string name_of(std::span<const sim::Choice<Value>> choices, const Value& value) {
+  for (const auto& choice : choices)
+    if (choice.value == value) return std::string(choice.name);
+  return "?";
 }
 
-void add_drive(Sheet& sheet) {
-  sheet.section("Mechanics")
-      .quantity("moving mass", "kg", 1.0, [](const Axis& a) { return a.mass; })
-      .quantity("travel", "mm", 1e3, [](const Axis& a) { return a.travel; })
-      .quantity("largest velocity", "m/min", 60.0, [](const Axis& a) { return a.max_velocity; })
-      .quantity("largest acceleration", "m/s²", 1.0, [](const Axis& a) { return a.max_acceleration; });
-  sheet.section("Motor").text("model", [](const Axis& a) { return motor_model_text(a.motor.model); });
-  by_motor(sheet, "force constant", "N/A", "N/V", [](const Axis& a) { return a.motor.force_constant; });
-  sheet
-      .quantity("force constant, one winding", "N/A", 1.0,
-                [](const Axis& a) { return unless_force(a, a.motor.phase_force_constant); })
-      .quantity("EMF constant, one winding", "V s/m", 1.0,
-                [](const Axis& a) { return unless_force(a, a.motor.emf_constant); })
-      .quantity("phase resistance", "Ω", 1.0, [](const Axis& a) { return unless_force(a, a.motor.phase_resistance); })
-      .quantity("phase inductance", "mH", 1e3, [](const Axis& a) { return unless_force(a, a.motor.phase_inductance); })
-      .quantity("mutual inductance", "mH", 1e3,
-                [](const Axis& a) { return unless_force(a, a.motor.mutual_inductance); })
-      .quantity("pole-pair pitch", "mm", 1e3, [](const Axis& a) { return unless_force(a, a.motor.pole_pair_pitch); })
-      .quantity("motors in parallel", "", 1.0, [](const Axis& a) { return static_cast<double>(a.motor.count); });
-  sheet.section("Inverter")
-      .quantity("dead time", "µs", 1e6, [](const Axis& a) { return a.inverter.dead_time; })
-      .quantity("voltage limit", "V", 1.0, [](const Axis& a) { return a.inverter.voltage_limit; })
-      .quantity("current limit, one motor", "A", 1.0,
-                [](const Axis& a) { return unless_force(a, a.inverter.current_limit); });
-  sheet.section("Encoder")
-      .text("increment",
-            [](const Axis& a) {
-              return a.encoder.increment > 0.0 ? number(a.encoder.increment * 1e9) + " nm" : "continuous";
-            })
-      .quantity("noise, rms", "nm", 1e9, [](const Axis& a) { return a.encoder.noise; })
-      .text("velocity feedback", [](const Axis& a) { return velocity_source_text(a.encoder.velocity); });
-  const auto mount = [](double sim::EncoderMount::*member) {
-    return
-        [member](const Axis& a) { return a.encoder.mount ? std::optional((*a.encoder.mount).*member) : std::nullopt; };
+template <class T>
+const T* pointer_to(const T& value) {
+  return &value;
+}
+template <class T>
+const T* pointer_to(const std::optional<T>& value) {
+  return value ? &*value : nullptr;
+}
+
+template <class Owner>
+void add_parameters(Sheet& sheet, std::span<const sim::Parameter<Owner>> parameters,
+                    const std::vector<const Owner*>& owners) {
+  for (const auto& parameter : parameters) {
+    std::vector<std::optional<Cell>> cells;
+    for (std::size_t i = 0; i < owners.size(); ++i) {
+      const bool force_motor = sheet.axes()[i].motor.model == sim::MotorModel::force;
+      cells.push_back(owners[i] ? std::optional(make_cell(parameter, *owners[i], force_motor)) : std::nullopt);
+    }
+    sheet.add(label_of(parameter.text), cells);
+  }
+}
+
+// One table of the machine file and the tables in it; a null owner: this axis has no such table.
+template <class Owner>
+void add_table(Sheet& sheet, const std::string& title, const std::vector<const Owner*>& owners) {
+  using T = sim::Table<Owner>;
+  sheet.begin_section(title);
+  const auto add_words = [&](std::string_view label, const auto& word) {
+    std::vector<std::string> values;
+    for (const Owner* owner : owners) values.push_back(owner ? word(*owner) : std::string());
+    sheet.add(label_of(label), "", std::move(values));
   };
-  sheet.text("mount", [](const Axis& a) { return a.encoder.mount ? "elastic" : "rigid"; })
-      .quantity("mount: mass", "kg", 1.0, mount(&sim::EncoderMount::mass))
-      .quantity("mount: natural frequency", "Hz", 1.0, mount(&sim::EncoderMount::natural_frequency))
-      .quantity("mount: damping ratio", "", 1.0, mount(&sim::EncoderMount::damping_ratio));
-}
-
-void add_control(Sheet& sheet) {
-  sheet.section("Position controller")
-      .quantity("gain K_v", "1/s", 1.0, [](const Axis& a) { return a.position_controller.gain; })
-      .quantity("gain K_v", "(m/min)/mm", 0.06, [](const Axis& a) { return a.position_controller.gain; })
-      .text("increment of the error", [](const Axis& a) {
-        const double increment = a.position_controller.increment;
-        return increment > 0.0 ? number(increment * 1e6) + " µm" : "none";
-      });
-  sheet.section("Velocity controller");
-  by_motor(sheet, "gain", "A s/m", "V s/m", [](const Axis& a) { return a.velocity_controller.gain; });
-  sheet.text("integral time", [](const Axis& a) {
-    const auto time = a.velocity_controller.integral_time;
-    return time ? number(*time * 1e3) + " ms" : "none";
-  });
-  const auto notch = [](double sim::Notch::*member) {
-    return [member](const Axis& a) { return a.notch ? std::optional((*a.notch).*member) : std::nullopt; };
-  };
-  sheet.section("Notch filter of the current set-point")
-      .text("filter", [](const Axis& a) { return a.notch ? "on" : "none"; })
-      .quantity("frequency", "Hz", 1.0, notch(&sim::Notch::frequency))
-      .quantity("damping, numerator", "", 1.0, notch(&sim::Notch::numerator_damping))
-      .quantity("damping, denominator", "", 1.0, notch(&sim::Notch::denominator_damping));
-  const auto current = [](const Axis& a) { return a.current_controller; };
-  sheet.section("Current controller")
-      .quantity("gain", "V/A", 1.0,
-                [&](const Axis& a) { return current(a) ? std::optional(current(a)->gain) : std::nullopt; })
-      .quantity("integral time", "ms", 1e3,
-                [&](const Axis& a) { return current(a) ? current(a)->integral_time : std::nullopt; });
-  sheet.section("Feedforward")
-      .quantity("velocity K_wv", "%", 100.0, [](const Axis& a) { return a.feedforward.velocity; })
-      .quantity("current K_wi", "%", 100.0, [](const Axis& a) { return a.feedforward.current; });
-  const auto limit = [](const std::optional<double>& given, double scale, const std::string& unit,
-                        const std::string& otherwise) {
-    return given ? number(*given * scale) + " " + unit : otherwise;
-  };
-  sheet.section("Supervision (faults)")
-      .text("following error",
-            [&](const Axis& a) { return limit(a.supervision.following_error, 1e3, "mm", "2 mm (default)"); })
-      .text("over-current, whole axis",
-            [&](const Axis& a) { return limit(a.supervision.over_current, 1.0, "A", "1.2 × limit (default)"); })
-      .text("over-speed",
-            [&](const Axis& a) { return limit(a.supervision.over_speed, 60.0, "m/min", "1.2 × largest (default)"); });
-}
-
-template <class Parameters>
-std::optional<std::string> parameter_text(const sim::Parameter<Parameters>& parameter, const Parameters& values) {
-  const double factor = engineering(parameter.unit).factor;
-  return std::visit(
-      [&]<class M>(M Parameters::*member) -> std::optional<std::string> {
-        if constexpr (std::is_same_v<M, std::vector<double>>) {
-          std::string list;
-          for (const double value : values.*member) list += (list.empty() ? "" : ", ") + number(value * factor);
-          return list;
-        } else if constexpr (std::is_same_v<M, std::optional<double>>) {
-          return values.*member ? std::optional(number(*(values.*member) * factor)) : std::nullopt;
-        } else {
-          return number(static_cast<double>(values.*member) * factor);
-        }
+  std::apply(
+      [&](const auto&... p) {
+        (add_words(p.text, [&](const Owner& owner) { return name_of(p.choices, owner.*p.member); }), ...);
       },
-      parameter.member);
+      T::choices);
+  add_parameters<Owner>(sheet, T::parameters, owners);
+  const auto descend = [&]<class Member>(const sim::Subtable<Owner, Member>& subtable) {
+    using Child = std::remove_cvref_t<decltype(*pointer_to(std::declval<const Member&>()))>;
+    if constexpr (!std::is_same_v<Child, sim::Friction>) {  // its tables are those of the models
+      std::vector<const Child*> children;
+      for (const Owner* owner : owners) children.push_back(owner ? pointer_to(owner->*subtable.member) : nullptr);
+      const bool top = std::is_same_v<Owner, sim::Axis>;
+      add_table<Child>(sheet, top ? title_of(subtable.key) : title + " " + std::string(subtable.key), children);
+    }
+  };
+  std::apply([&](const auto&... subtable) { (descend(subtable), ...); }, T::subtables);
 }
 
 void add_friction(Sheet& sheet) {
-  sheet.section("Friction").text("acting model", [](const Axis& a) { return a.friction.use; });
   sim::for_each_friction_model([&]<class Model>() {
     using Parameters = typename Model::Parameters;
-    sheet.section("Friction: " + std::string(Model::label));
-    for (const auto& parameter : Model::parameters)
-      sheet.add(std::string(parameter.text), std::string(engineering(parameter.unit).unit), [&](const Axis& axis) {
-        const auto given = axis.friction.models.find(std::string(Model::name));
-        if (given == axis.friction.models.end()) return std::string();
-        return parameter_text<Parameters>(parameter, std::get<Parameters>(given->second)).value_or("");
-      });
+    std::vector<const Parameters*> owners;
+    std::vector<std::string> acting;
+    for (const auto& axis : sheet.axes()) {
+      const auto found = axis.friction.models.find(std::string(Model::name));
+      owners.push_back(found == axis.friction.models.end() ? nullptr : std::get_if<Parameters>(&found->second));
+      acting.push_back(axis.friction.use == Model::name ? "yes" : "");
+    }
+    sheet.begin_section("Friction " + std::string(Model::label));
+    sheet.add("acts unless a command names another", "", std::move(acting));
+    add_parameters<Parameters>(sheet, Model::parameters, owners);
   });
 }
 
 }  // namespace
 
-std::string motor_model_text(sim::MotorModel model) {
-  switch (model) {
-    case sim::MotorModel::synchronous:
-      return "synchronous, three phases";
-    case sim::MotorModel::dc:
-      return "DC equivalent";
-    case sim::MotorModel::force:
-      return "ideal force source";
-  }
-  return "?";
-}
+std::string motor_model_name(sim::MotorModel model) { return name_of<sim::MotorModel>(sim::motor_models, model); }
 
-std::string velocity_source_text(sim::VelocitySource source) {
-  switch (source) {
-    case sim::VelocitySource::ideal:
-      return "ideal";
-    case sim::VelocitySource::estimated:
-      return "estimated";
-    case sim::VelocitySource::mean_difference:
-      return "mean difference";
-  }
-  return "?";
+std::string velocity_source_name(sim::VelocitySource source) {
+  return name_of<sim::VelocitySource>(sim::velocity_sources, source);
 }
 
 std::vector<SheetSection> machine_sheet(const sim::Machine& machine) {
   Sheet sheet(machine);
-  add_drive(sheet);
-  add_control(sheet);
+  std::vector<const sim::Axis*> axes;
+  for (const auto& axis : machine.axes) axes.push_back(&axis);
+  add_table<sim::Axis>(sheet, "Axis", axes);
   add_friction(sheet);
   return sheet.take();
 }

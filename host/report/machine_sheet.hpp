@@ -1,4 +1,5 @@
-// A machine's parameters as a report prints them: in engineering units, one column an axis.
+// A machine's parameters as a report prints them: in engineering units, one column an axis. Made from the tables of
+// sim/machine/parameters.hpp and of the friction models, so a new parameter appears here without a line.
 #pragma once
 
 #include <string>
@@ -21,8 +22,8 @@ struct SheetSection {
 
 std::vector<SheetSection> machine_sheet(const sim::Machine& machine);
 
-// "synchronous, three phases" and the like.
-std::string motor_model_text(sim::MotorModel model);
-std::string velocity_source_text(sim::VelocitySource source);
+// As the machine file calls them: "synchronous", "mean-difference".
+std::string motor_model_name(sim::MotorModel model);
+std::string velocity_source_name(sim::VelocitySource source);
 
 }  // namespace stiction::host

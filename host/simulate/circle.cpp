@@ -45,20 +45,21 @@ void check_circle(const sim::Machine& machine, const sim::CircleSettings& settin
   for (const auto& axis : machine.axes) {
     const double acceleration = settings.feed * settings.feed / settings.radius;
     if (!(settings.feed > 0.0) || settings.feed > axis.max_velocity)
-      throw InfeasibleMotion(fmt::format("feed: found {:g} m/min; expected above 0 and at most {:g} m/min, the "
-                                         "max_velocity of axis {}",
-                                         settings.feed / metre_per_minute, axis.max_velocity / metre_per_minute,
-                                         axis.name));
+      throw InfeasibleMotion(
+          fmt::format("feed: found {:g} m/min; expected above 0 and at most {:g} m/min, the "
+                      "max_velocity of axis {}",
+                      settings.feed / metre_per_minute, axis.max_velocity / metre_per_minute, axis.name));
     if (acceleration > axis.max_acceleration)
-      throw InfeasibleMotion(fmt::format("feed: found {:g} m/min, v^2/R = {:.4g} m/s^2 at R = {:g} mm; expected at most "
-                                         "{:g} m/s^2, the max_acceleration of axis {}: {:.4g} m/min",
-                                         settings.feed / metre_per_minute, acceleration, settings.radius * 1e3,
-                                         axis.max_acceleration, axis.name,
-                                         std::sqrt(axis.max_acceleration * settings.radius) / metre_per_minute));
+      throw InfeasibleMotion(
+          fmt::format("feed: found {:g} m/min, v^2/R = {:.4g} m/s^2 at R = {:g} mm; expected at most "
+                      "{:g} m/s^2, the max_acceleration of axis {}: {:.4g} m/min",
+                      settings.feed / metre_per_minute, acceleration, settings.radius * 1e3, axis.max_acceleration,
+                      axis.name, std::sqrt(axis.max_acceleration * settings.radius) / metre_per_minute));
     if (!(settings.radius > 0.0) || 2.0 * settings.radius > axis.travel)
-      throw InfeasibleMotion(fmt::format("radius: found {:g} mm; expected above 0 and at most {:g} mm, half the travel "
-                                         "of axis {}",
-                                         settings.radius * 1e3, axis.travel * 0.5e3, axis.name));
+      throw InfeasibleMotion(
+          fmt::format("radius: found {:g} mm; expected above 0 and at most {:g} mm, half the travel "
+                      "of axis {}",
+                      settings.radius * 1e3, axis.travel * 0.5e3, axis.name));
   }
 }
 

@@ -20,9 +20,10 @@ class Converter {
   template <class T>
   T operator()(double value, const char* key, const char* what) const {
     if (const auto signal = to_signal<T>(value)) return *signal;
-    throw ConfigurationError(fmt::format("axis.{}.{}: found {} = {:g}; expected at most {:g} in magnitude, the range of "
-                                         "the drive's number format",
-                                         axis_, key, what, value, highest<T>()));
+    throw ConfigurationError(
+        fmt::format("axis.{}.{}: found {} = {:g}; expected at most {:g} in magnitude, the range of "
+                    "the drive's number format",
+                    axis_, key, what, value, highest<T>()));
   }
   // A gain that would round to nothing is refused too: it would act as zero.
   template <class T>
@@ -36,9 +37,10 @@ class Converter {
   T operator()(double value, const char* key, const char* what, T) const {
     const T signal = (*this).template operator()<T>(value, key, what);
     if (value != 0.0 && std::abs(to_si(signal) / value - 1.0) > 0.01)
-      throw ConfigurationError(fmt::format("axis.{}.{}: found {} = {:g}; expected a value that the drive's number format "
-                                           "resolves to 1 % (it would become {:g})",
-                                           axis_, key, what, value, to_si(signal)));
+      throw ConfigurationError(
+          fmt::format("axis.{}.{}: found {} = {:g}; expected a value that the drive's number format "
+                      "resolves to 1 % (it would become {:g})",
+                      axis_, key, what, value, to_si(signal)));
     return signal;
   }
 
@@ -60,18 +62,24 @@ Biquad discretise(const sim::Notch& notch, double period) {
 
 VelocityFeedback feedback_of(VelocitySource source) {
   switch (source) {
-    case VelocitySource::ideal: return VelocityFeedback::given;
-    case VelocitySource::estimated: return VelocityFeedback::difference;
-    case VelocitySource::mean_difference: return VelocityFeedback::mean_difference;
+    case VelocitySource::ideal:
+      return VelocityFeedback::given;
+    case VelocitySource::estimated:
+      return VelocityFeedback::difference;
+    case VelocitySource::mean_difference:
+      return VelocityFeedback::mean_difference;
   }
   throw ConfigurationError("encoder.velocity: unknown source");
 }
 
 CurrentLoop loop_of(MotorModel model) {
   switch (model) {
-    case MotorModel::synchronous: return CurrentLoop::three_phase;
-    case MotorModel::dc: return CurrentLoop::direct;
-    case MotorModel::force: return CurrentLoop::none;
+    case MotorModel::synchronous:
+      return CurrentLoop::three_phase;
+    case MotorModel::dc:
+      return CurrentLoop::direct;
+    case MotorModel::force:
+      return CurrentLoop::none;
   }
   throw ConfigurationError("motor.model: unknown model");
 }
@@ -99,20 +107,20 @@ AxisConfig<S> configure_axis(const Timing& timing, const Axis& axis) {
   const double period = timing.fast_period;
   AxisConfig<S> c;
   c.period_ns = fast_period_ns(timing);
-  c.inverse_period = convert.template operator()<typename S::PeriodInverse>(1e-9 / period, "timing.fast_period",
-                                                                            "1 ns / period");
+  c.inverse_period =
+      convert.template operator()<typename S::PeriodInverse>(1e-9 / period, "timing.fast_period", "1 ns / period");
   if (axis.position_controller.increment > 0.0) {
     const double increment = axis.position_controller.increment;
-    c.quantizer = {true,
-                   convert.template gain<typename S::IncrementInverse>(1.0 / increment, "position_controller.increment",
-                                                                       "1 / increment"),
-                   convert.template gain<typename S::Increment>(increment, "position_controller.increment",
-                                                                "increment")};
+    c.quantizer = {
+        true,
+        convert.template gain<typename S::IncrementInverse>(1.0 / increment, "position_controller.increment",
+                                                            "1 / increment"),
+        convert.template gain<typename S::Increment>(increment, "position_controller.increment", "increment")};
   }
-  c.position_gain =
-      convert.template gain<typename S::PositionGain>(axis.position_controller.gain, "position_controller.gain", "gain");
-  c.velocity_feedforward = convert.template gain<typename S::VelocityWeight>(axis.feedforward.velocity,
-                                                                             "feedforward.velocity", "weight");
+  c.position_gain = convert.template gain<typename S::PositionGain>(axis.position_controller.gain,
+                                                                    "position_controller.gain", "gain");
+  c.velocity_feedforward =
+      convert.template gain<typename S::VelocityWeight>(axis.feedforward.velocity, "feedforward.velocity", "weight");
   c.velocity_feedback = feedback_of(axis.encoder.velocity);
   set_pi(c.velocity, convert, axis.velocity_controller.gain, axis.velocity_controller.integral_time, period,
          "velocity_controller.gain", "velocity_controller.integral_time");
@@ -132,8 +140,8 @@ AxisConfig<S> configure_axis(const Timing& timing, const Axis& axis) {
     set_pi(c.current, convert, axis.current_controller->gain, axis.current_controller->integral_time, period,
            "current_controller.gain", "current_controller.integral_time");
   if (axis.motor.model == MotorModel::synchronous)
-    c.inverse_pole_pair_pitch = convert.template gain<typename S::PitchInverse>(
-        1.0 / axis.motor.pole_pair_pitch, "motor.pole_pair_pitch", "1 / pitch");
+    c.inverse_pole_pair_pitch = convert.template gain<typename S::PitchInverse>(1.0 / axis.motor.pole_pair_pitch,
+                                                                                "motor.pole_pair_pitch", "1 / pitch");
 
   const double current_limit =
       force_source ? axis.inverter.voltage_limit : axis.inverter.current_limit * axis.motor.count;
@@ -142,12 +150,13 @@ AxisConfig<S> configure_axis(const Timing& timing, const Axis& axis) {
   c.current_limit = convert.template operator()<typename S::Current>(current_limit, "inverter.current_limit", "limit");
   c.voltage_limit =
       convert.template operator()<typename S::Voltage>(axis.inverter.voltage_limit, "inverter.voltage_limit", "limit");
-  c.following_error_fault = convert.template operator()<typename S::Distance>(
-      watch.following_error.value_or(2e-3), "supervision.following_error", "limit");
+  c.following_error_fault = convert.template operator()<typename S::Distance>(watch.following_error.value_or(2e-3),
+                                                                              "supervision.following_error", "limit");
   c.over_current_fault = convert.template operator()<typename S::Current>(
       watch.over_current.value_or(1.2 * current_limit), "supervision.over_current", "limit");
   c.over_speed_fault = convert.template operator()<typename S::Velocity>(
       watch.over_speed.value_or(1.2 * axis.max_velocity), "supervision.over_speed", "limit");
+  c.limit_cycle_window_ticks = static_cast<std::uint32_t>(std::lround(0.125 / period));
   return c;
 }
 

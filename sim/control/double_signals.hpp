@@ -31,15 +31,11 @@ struct WholeReal {
 constexpr Real operator*(WholeReal a, Real b) { return {a.value * b.value}; }
 
 template <class Out>
-  requires std::same_as<Out, Real>
-constexpr Out narrow(Real x, SaturationCounter&) {
-  return x;
-}
+requires std::same_as<Out, Real>
+constexpr Out narrow(Real x, SaturationCounter&) { return x; }
 template <class Out>
-  requires std::same_as<Out, WholeReal>
-inline Out narrow(Real x, SaturationCounter&) {
-  return {std::round(x.value)};
-}
+requires std::same_as<Out, WholeReal>
+inline Out narrow(Real x, SaturationCounter&) { return {std::round(x.value)}; }
 constexpr Real magnitude(Real x) { return {x.value < 0.0 ? -x.value : x.value}; }
 
 struct DoubleSignals {

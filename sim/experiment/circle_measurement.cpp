@@ -86,8 +86,7 @@ CircularErrors circular_errors(const std::vector<double>& angle, const std::vect
 
 BidirectionalErrors bidirectional_errors(const CircleRun& a, const CircleRun& b) {
   // One centre for both laps: the mean of theirs, as the laps are sampled alike.
-  const Eigen::Vector3d fit =
-      0.5 * (fit_circle(a.angle, a.radial_deviation) + fit_circle(b.angle, b.radial_deviation));
+  const Eigen::Vector3d fit = 0.5 * (fit_circle(a.angle, a.radial_deviation) + fit_circle(b.angle, b.radial_deviation));
   Extremes centred;
   add_centred(centred, a.angle, a.radial_deviation, fit);
   add_centred(centred, b.angle, b.radial_deviation, fit);

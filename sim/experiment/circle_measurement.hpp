@@ -10,10 +10,10 @@ namespace stiction::sim {
 
 // One axis in one tick. SI units.
 struct CircleAxisSample {
-  double position = 0.0;   // m, as the encoder reads it
-  double error = 0.0;      // m, unquantised
+  double position = 0.0;    // m, as the encoder reads it
+  double error = 0.0;       // m, unquantised
   double error_held = 0.0;  // m, as the position controller holds it
-  double current = 0.0;    // A, motor force / force constant
+  double current = 0.0;     // A, motor force / force constant
 };
 
 class CircleMeasurement {

@@ -13,7 +13,7 @@
 namespace stiction::sim {
 
 struct CircleSettings {
-  double feed = 0.0;    // m/s along the path
+  double feed = 0.0;     // m/s along the path
   double radius = 0.09;  // m
   Direction direction = Direction::counter_clockwise;
   double acceleration = 2.0;  // m/s^2 along the path, during the start

@@ -13,20 +13,20 @@ enum class Direction { counter_clockwise, clockwise };
 // One axis over the evaluated lap, one sample a tick of the fast loop. Its arrays have the length of CircleRun::angle.
 struct AxisLap {
   std::string axis;
-  std::vector<double> error;           // m, x_set - x at the encoder, unquantised
-  std::vector<double> current;         // A, motor force / force constant
-  double peak_error = 0.0;             // m, largest |error|
-  double peak_error_quantised = 0.0;   // m, largest |error| as the position controller sees it
-  double peak_current = 0.0;           // A, largest |current|
+  std::vector<double> error;          // m, x_set - x at the encoder, unquantised
+  std::vector<double> current;        // A, motor force / force constant
+  double peak_error = 0.0;            // m, largest |error|
+  double peak_error_quantised = 0.0;  // m, largest |error| as the position controller sees it
+  double peak_current = 0.0;          // A, largest |current|
 };
 
 // Terms of ISO 230-4 (2022 words; the 1996 and 2005 words differ, see the report), from the encoders' signals (its
 // Annex E): what the servo and friction do, not what the tool point does. All in m.
 struct CircularErrors {
-  double circular_error = 0.0;      // G: width of the annulus about the least-squares centre
-  double radial_error_max = 0.0;    // F max: from the programmed radius about the programmed centre
-  double radial_error_min = 0.0;    // F min
-  std::array<double, 2> centre{};   // least-squares centre
+  double circular_error = 0.0;     // G: width of the annulus about the least-squares centre
+  double radial_error_max = 0.0;   // F max: from the programmed radius about the programmed centre
+  double radial_error_min = 0.0;   // F min
+  std::array<double, 2> centre{};  // least-squares centre
 };
 
 // Both directions of one circle together (ISO 230-4).

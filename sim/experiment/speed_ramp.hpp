@@ -36,8 +36,8 @@ class SpeedRamp {
     // The ramp is point-symmetric about its middle, so it covers half of speed * duration.
     if (t >= end_) return {0.5 * speed_ * end_ + speed_ * (t - end_), speed_, 0.0};
     const double rest = end_ - t;
-    return {0.5 * speed_ * end_ - speed_ * rest + jerk_ * rest * rest * rest / 6.0,
-            speed_ - 0.5 * jerk_ * rest * rest, jerk_ * rest};
+    return {0.5 * speed_ * end_ - speed_ * rest + jerk_ * rest * rest * rest / 6.0, speed_ - 0.5 * jerk_ * rest * rest,
+            jerk_ * rest};
   }
 
  private:

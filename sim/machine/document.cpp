@@ -165,8 +165,9 @@ std::string join_key(std::string_view table, std::string_view key) {
 std::string describe_node(const toml::node& node) {
   if (node.is_table()) return "a table";
   if (node.is_array()) return "a list";
-  std::ostringstream out;
   if (const auto* text = node.as_string()) return fmt::format("\"{}\"", text->get());
+  if (const auto* number = node.as_floating_point()) return fmt::format("{:#}", number->get());
+  std::ostringstream out;
   toml::node_view<const toml::node>(node).visit([&](const auto& value) { out << value; });
   return out.str();
 }

@@ -8,9 +8,12 @@ namespace {
 
 std::variant<DcMotor, SynchronousMotor, ForceSource> make_motor(const Motor& motor, double step) {
   switch (motor.model) {
-    case MotorModel::dc: return DcMotor(motor, step);
-    case MotorModel::synchronous: return SynchronousMotor(motor, step);
-    case MotorModel::force: return ForceSource(motor, step);
+    case MotorModel::dc:
+      return DcMotor(motor, step);
+    case MotorModel::synchronous:
+      return SynchronousMotor(motor, step);
+    case MotorModel::force:
+      return ForceSource(motor, step);
   }
   throw std::invalid_argument("motor.model: unknown model");
 }

@@ -30,9 +30,9 @@ class AxisPlant {
   // Moves on by one fast tick of the drive.
   void advance_tick();
 
-  double position() const { return position_; }          // m, carriage
-  double velocity() const { return velocity_; }          // m/s, carriage
-  double motor_force() const { return motor_force_; }    // N, at the end of the last step
+  double position() const { return position_; }              // m, carriage
+  double velocity() const { return velocity_; }              // m/s, carriage
+  double motor_force() const { return motor_force_; }        // N, at the end of the last step
   double friction_force() const { return friction_force_; }  // N, mean over the last step, positive opposes +v
   double encoder_position() const { return position_ + mount_.deflection(); }  // m, before increment and noise
   double encoder_velocity() const { return velocity_ + mount_.velocity(); }    // m/s

@@ -56,8 +56,8 @@ class DcMotor {
 class SynchronousMotor {
  public:
   SynchronousMotor(const Motor& motor, double step)
-      : winding_(motor.phase_resistance / motor.count,
-                 (motor.phase_inductance - motor.mutual_inductance) / motor.count, step),
+      : winding_(motor.phase_resistance / motor.count, (motor.phase_inductance - motor.mutual_inductance) / motor.count,
+                 step),
         emf_constant_(motor.emf_constant),
         force_constant_(motor.phase_force_constant),
         angle_per_metre_(2.0 * std::numbers::pi / motor.pole_pair_pitch),

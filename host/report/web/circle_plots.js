@@ -22,8 +22,16 @@ DATA.models.filter(model => !MODEL_STYLES[model.name])
   .forEach((model, i) => { modelStyles[model.name] = OTHER_STYLES[i % OTHER_STYLES.length]; });
 Object.assign(modelStyles, MODEL_STYLES);
 
+// Angles without a jump from 180 to -180 degrees.
+function unwrapped(angles) {
+  const turned = Array.from(angles);
+  for (let i = 1; i < turned.length; ++i) turned[i] -= 360 * Math.round((turned[i] - turned[i - 1]) / 360);
+  return turned;
+}
+
 for (const run of DATA.runs) {
   for (const name of ['time', 'angle', 'radial']) run[name] = decodeFloats(run[name]);
+  run.angle = unwrapped(run.angle);
   for (const axis of run.axes)
     for (const name of ['error', 'current']) axis[name] = decodeFloats(axis[name]);
 }
@@ -86,11 +94,13 @@ function sectorShape(centre, half, inner, outer) {
   return { type: 'path', path: `M${path.join('L')}Z`, fillcolor: '#eef2f6', line: { width: 0 }, layer: 'below' };
 }
 
+const extreme = (values, pick) => values.reduce((most, value) => pick(most, value));
+
 // Rings a division apart around the circle, as many as the deviations need; what lies in the middle says the scale.
 function polarGrid(state, runs, radius, division) {
   const step = division * state.magnification * 1e-3;  // mm drawn
-  const high = Math.max(2, ...runs.map(run => Math.ceil(run.F_max / division)));
-  const low = Math.min(-2, ...runs.map(run => Math.floor(run.F_min / division)));
+  const high = Math.max(2, ...runs.map(run => Math.ceil(extreme(run.radial, Math.max) / division)));
+  const low = Math.min(-2, ...runs.map(run => Math.floor(extreme(run.radial, Math.min) / division)));
   const shapes = [], annotations = [];
   for (let ring = low; ring <= high; ++ring) {
     if (radius + ring * step <= 0) continue;
@@ -126,7 +136,7 @@ function drawPolar(state) {
   const grid = polarGrid(state, runs, radius, division);
   const bar = scaleBar(state, division, grid.step, radius);
   const sector = sectorShape(state.quadrant, quadrantHalfWidth(state), grid.inner, grid.outer);
-  const limit = grid.outer + 0.17 * radius;
+  const limit = grid.outer + 0.2 * radius;
   const ticks = [-radius, -radius / 2, 0, radius / 2, radius];
   const style = { range: [-limit, limit], showgrid: false, tickvals: ticks, constrain: 'domain' };
   return drawChart('polar', runs.map(run => polarTrace(run, state.magnification)), {
@@ -157,16 +167,17 @@ function around(run, quadrant, half) {
   return points.sort((a, b) => a[0] - b[0]);
 }
 
-// As wide as the glitch needs: where the error is above a sixth of its peak, and a little more.
+// As wide as the glitches need: where an error stands out from its run's median by a sixth of the largest glitch shown,
+// and a little more.
 function quadrantHalfWidth(state) {
   if (state.window !== 'auto') return state.window;
-  let reach = 0;
-  for (const run of chosenRuns(state)) {
+  const outstanding = chosenRuns(state).map(run => {
     const points = around(run, state.quadrant, 45);
-    const threshold = largest(points.map(point => point[1])) / 6;
-    for (const [angle, error] of points)
-      if (Math.abs(error) > threshold) reach = Math.max(reach, Math.abs(angle - state.quadrant));
-  }
+    const median = points.map(point => point[1]).sort((a, b) => a - b)[points.length >> 1];
+    return points.map(([angle, error]) => [Math.abs(angle - state.quadrant), Math.abs(error - median)]);
+  }).flat();
+  const threshold = outstanding.reduce((most, [, height]) => Math.max(most, height), 0) / 6;
+  const reach = outstanding.reduce((most, [angle, height]) => height > threshold ? Math.max(most, angle) : most, 0);
   return [2, 3, 5, 8, 10, 15, 20, 30].find(half => half >= 1.25 * reach) || 45;
 }
 

@@ -37,10 +37,10 @@ function drawLap(state) {
       { domain: [Math.max(0, bottom), bottom + height], anchor: 'x', zeroline: true, zerolinecolor: '#9aa5b1', nticks: 5 });
   });
   layout.xaxis = axisStyle('time in the lap, s', { anchor: 'y' + CHANNELS.length, range: runs.length ? [0, Math.max(...runs.map(run => run.time.at(-1)))] : undefined });
-  // Opposite directions pass the reversals at other instants; the marks are those of the first run shown.
+  // Opposite directions pass the same reversal at other instants, so both together have marks without words.
   for (const { time, angle, axis } of runs.length ? reversals(runs[0]) : []) {
     layout.shapes.push({ type: 'line', x0: time, x1: time, yref: 'paper', y0: 0, y1: 1, layer: 'below', line: { color: '#9aa5b1', width: 1, dash: 'dot' } });
-    layout.annotations.push(label(`${axis} reverses, ${angle}°`, time, 1, { yref: 'paper', yanchor: 'bottom', font: { size: 11.5, color: QUIET } }));
+    if (state.direction !== 'both') layout.annotations.push(label(`${axis} reverses, ${angle}°`, time, 1, { yref: 'paper', yanchor: 'bottom', font: { size: 11.5, color: QUIET } }));
   }
   return drawChart('lap', traces, layout);
 }
@@ -81,7 +81,7 @@ function drawPeaks(state) {
   CHANNELS.forEach((channel, i) => {
     const n = i ? i + 1 : '', column = i % 2, top = i < 2;
     traces.push(...peakTraces(state, channel, { xaxis: 'x' + n, yaxis: 'y' + n }));
-    layout['xaxis' + n] = axisStyle('feed, m/min', { domain: column ? [0.545, 1] : [0, 0.455], anchor: 'y' + n, range, tickvals: feeds });
+    layout['xaxis' + n] = axisStyle('feed, m/min', { domain: column ? [0.545, 1] : [0, 0.455], anchor: 'y' + n, range, ...(feeds.length <= 8 ? { tickvals: feeds } : {}) });
     layout['yaxis' + n] = axisStyle(`${channel.axis} peak ${channel.kind}, ${channel.unit}`,
       { domain: top ? [0.575, 1] : [0, 0.425], anchor: 'x' + n, rangemode: 'tozero' });
     layout.shapes.push({ type: 'line', xref: 'x' + n, yref: `y${n} domain`, x0: state.feed, x1: state.feed, y0: 0, y1: 1, layer: 'below',

@@ -7,8 +7,8 @@ function swatch(friction) {
 }
 
 function modelCell(friction, direction, more = {}) {
-  const suffix = direction === 'cw' && DATA.directions.length > 1 ? ', clockwise' : '';
-  return { text: [swatch(friction), modelLabels[friction] + suffix], head: true, class: 'text', ...more };
+  const clockwise = direction === 'cw' && DATA.directions.length > 1;
+  return { text: [swatch(friction), modelLabels[friction] + (clockwise ? '\u00a0↻' : '')], title: clockwise ? 'clockwise' : null, head: true, class: 'text', ...more };
 }
 
 function figure(value, digits, more = '') {
@@ -63,8 +63,8 @@ function drawComparison() {
   show('table-caption', 'simul.: unquantised; quant.: as the position controller sees it, in its increments; publ.: published simulation; ' +
        'dev.: (measured − simulated) / measured, of the unquantised peak. ',
        ...(published ? [element('mark', {}, 'Marked'), ': differs from the published simulation (quantised error by more than half an increment, current by more than 5 %).'] : []));
-  const columns = DATA.axes.flatMap(axis => [['error', 'this simulation'], ['quantised', 'quantised'], ['error_published', 'published']].map(([key, name]) => ({ axis, key, name, group: 'error' })))
-    .concat(DATA.axes.flatMap(axis => [['current', 'this simulation'], ['current_published', 'published']].map(([key, name]) => ({ axis, key, name, group: 'current' }))));
+  const columns = DATA.axes.flatMap(axis => [['error', 'simul.'], ['quantised', 'quant.'], ['error_published', 'publ.']].map(([key, name]) => ({ axis, key, name, group: 'error' })))
+    .concat(DATA.axes.flatMap(axis => [['current', 'simul.'], ['current_published', 'publ.']].map(([key, name]) => ({ axis, key, name, group: 'current' }))));
   const first = i => !i || columns[i - 1].axis !== columns[i].axis || columns[i - 1].group !== columns[i].group;
   const head = [[text(''), ...columns.filter((_, i) => first(i)).map(c => text(`${c.axis} ${c.group}`, { span: c.group === 'error' ? 3 : 2, class: 'group gap' }))],
                 [text('Friction', { class: 'text' }), ...columns.map((c, i) => text(c.name, { class: first(i) ? 'gap' : null }))]];
@@ -88,16 +88,22 @@ function drawIso() {
   const left = { class: 'text' }, wrap = { class: 'text wrap' };
   show('iso-words', table([[text('', left), text('1996', left), text('2005', left), text('2022', left), text('Meaning', left)]],
     ISO_TERMS.map(term => [{ text: symbolText(term.letter), head: true, class: 'text' }, ...term.words.map(word => text(word, wrap)), text(term.meaning, wrap)])));
-  const both = DATA.runs.some(run => run.G_b !== undefined);
-  const terms = ISO_TERMS.flatMap(term => term.key).filter(key => both || !['G_b', 'D'].includes(key));
+  const one = ['G', 'F_max', 'F_min'], both = ['G_b', 'D'];
+  const tables = [isoValues(one, DATA.directions)];
+  if (DATA.runs.some(run => run.G_b !== undefined)) tables.push(isoValues(both, DATA.directions.slice(0, 1)));
+  show('iso-values', ...tables);
+}
+
+// One row a model and direction, one column a feed under each term.
+function isoValues(terms, directions) {
   const letter = key => key === 'G_b' ? 'G(b)' : key;
   const head = [[text('Values, µm', { class: 'text' }), ...terms.map(key => text(symbolText(letter(key)), { span: DATA.feeds.length, class: 'group gap' }))],
                 [text('m/min', { class: 'text' }), ...terms.flatMap(() => DATA.feeds.map((feed, i) => text(String(feed), { class: i ? null : 'gap' })))]];
-  const body = DATA.models.flatMap(model => DATA.directions.map(direction => {
+  const body = DATA.models.flatMap(model => directions.map(direction => {
     const at = feed => DATA.runs.find(run => run.friction === model.name && run.direction === direction && run.feed === feed);
     return [modelCell(model.name, direction), ...terms.flatMap(key => DATA.feeds.map((feed, i) => figure(at(feed)?.[key], 1, i ? '' : 'gap')))];
   }));
-  show('iso-values', table(head, body));
+  return table(head, body);
 }
 
 // ---- conditions and machine ----
@@ -109,8 +115,14 @@ function drawConditions() {
 function drawMachine() {
   const machine = DATA.machine;
   document.getElementById('machine-name').textContent =
-    `${machine.name} (${machine.id}); fast loop ${machine.fast_period_us} µs, position loop ${machine.slow_period_us} µs`;
-  show('machine', ...machine.sections.map(section => element('div', {}, element('h3', {}, section.title),
-    table([[text(''), ...machine.axes.map(axis => text(axis)), text('')]],
-          section.rows.map(row => [{ text: symbolText(row.label), head: true }, ...row.values.map(value => text(value || '–')), text(row.unit, { class: 'unit' })])))));
+    `${machine.name} (${machine.id}); fast loop ${machine.fast_period_us} µs, position loop ${machine.slow_period_ms} ms`;
+  show('machine', ...machine.sections.map(section =>
+    table([[text(section.title, { class: 'text title' }), ...machine.axes.map(axis => text(axis)), text('', { class: 'unit' })]],
+          section.rows.map(row => [{ text: symbolText(row.label), head: true }, ...machineCells(row.values), text(row.unit, { class: 'unit' })]))));
+}
+
+// Words that hold for every axis stand once, across the axes.
+function machineCells(values) {
+  const words = values.every(value => value === values[0] && /^[^\d−]|[a-z]/.test(value));
+  return words && values.length > 1 ? [text(values[0], { span: values.length })] : values.map(value => text(value || '–'));
 }

@@ -19,12 +19,6 @@ function formatNumber(value, digits) {
   return (Number(text) === 0 ? text.replace('-', '') : text).replace('-', '−');
 }
 
-function largest(values) {
-  let most = 0;
-  for (const value of values) most = Math.max(most, Math.abs(value));
-  return most;
-}
-
 // The smallest of 1, 2, 5, 10, ... that is not below the value.
 function roundUpNice(value) {
   const decade = 10 ** Math.floor(Math.log10(value));
@@ -44,11 +38,14 @@ function element(tag, attributes = {}, ...children) {
   return node;
 }
 
-// "K_v", "zeta_s" as K and zeta with a subscript.
+// "K_v", "zeta_s" as K and zeta with a subscript; "fast_period" stays a name.
+const GREEK = { mu: 'μ', zeta: 'ζ', tau: 'τ' };
 function symbolText(text) {
   const node = element('span');
-  text.replace(/\bmu(?=_)/g, 'μ').replace(/\bzeta(?=_)/g, 'ζ').split(/_([A-Za-z0-9]+)/).forEach((part, i) => {
-    if (part) node.append(i % 2 ? element('sub', {}, part) : part);
+  text.split(/\b((?:mu|zeta|tau|[A-Za-z])_[A-Za-z0-9]+)\b/).forEach((part, i) => {
+    if (i % 2 === 0) return node.append(part);
+    const [symbol, index] = part.split('_');
+    node.append(GREEK[symbol] || symbol, element('sub', {}, index));
   });
   return node;
 }

@@ -187,12 +187,29 @@ TEST(MachineSheet, PrintsEngineeringUnitsAndLeavesOutWhatNoAxisHas) {
         if (each.title == section && row.label == label && row.unit == unit) return row.values.at(0);
     return std::string("absent");
   };
-  EXPECT_EQ(value("Mechanics", "largest velocity", "m/min"), "80");
-  EXPECT_EQ(value("Encoder", "increment", "nm"), "1");
-  EXPECT_EQ(value("Friction: C LuGre", "contact stiffness k_s", "N/µm"), "0.8");
-  EXPECT_EQ(value("Friction: C LuGre", "Stribeck velocity v_s", "mm/s"), "1");
-  EXPECT_EQ(value("Notch filter of the current set-point", "frequency", "Hz"), "absent");
-  EXPECT_EQ(value("Friction: Maxwell-slip elements", "viscous friction mu_v", "N s/m"), "absent");
+  EXPECT_EQ(value("Axis", "largest velocity", "m/min"), "80");
+  EXPECT_EQ(value("Encoder", "increment after interpolation", "nm"), "1");
+  EXPECT_EQ(value("Friction C LuGre", "contact stiffness k_s", "N/µm"), "0.8");
+  EXPECT_EQ(value("Friction C LuGre", "Stribeck velocity v_s", "mm/s"), "1");
+  EXPECT_EQ(value("Notch", "centre frequency, below half the fast loop's rate", "Hz"), "absent");
+  EXPECT_EQ(value("Friction Maxwell-slip elements", "viscous friction mu_v", "N s/m"), "absent");
+  EXPECT_EQ(value("Velocity controller", "integral time T_Nv", "ms"), "5");
+  EXPECT_EQ(value("Supervision", "following error", ""), "2 mm");
+  machine.axes[0].velocity_controller.integral_time.reset();
+  EXPECT_EQ(value("Velocity controller", "integral time T_Nv", "ms"), "proportional only");
+}
+
+TEST(MachineSheet, ShowsWhatAForceMotorHasInItsOwnUnits) {
+  auto machine = synthetic_circle({.feeds_m_per_min = {48.0}}).machine;
+  auto& axis = machine.axes[0];
+  axis.motor = {.model = sim::MotorModel::force, .force_constant = 35.0};
+  axis.current_controller.reset();
+  std::vector<std::string> found;
+  for (const auto& section : machine_sheet(machine))
+    for (const auto& row : section.rows)
+      if (!row.values.at(0).empty() && (section.title == "Motor" || section.title == "Current controller"))
+        found.push_back(row.values[0] + " " + row.unit);
+  EXPECT_EQ(found, (std::vector<std::string>{"force ", "0 mH", "35 N/V", "1 "}));
 }
 
 // ---- packing ----

@@ -54,6 +54,15 @@ TEST(SelectInstants, KeepsBothExtremesOfEveryChannelWithinTheLimit) {
   }
 }
 
+TEST(SelectInstants, SpendsTheLimitOnSmoothChannelsToo) {
+  auto lap = noisy_lap(20000, 1);
+  for (auto& channel : lap.channels)
+    for (std::size_t i = 0; i < channel.size(); ++i) channel[i] = std::sin(lap.angle[i]);
+  const auto kept = select_instants(lap.angle, lap.spans(), 1500);
+  EXPECT_LE(kept.size(), 1500u);
+  EXPECT_GT(kept.size(), 1200u);
+}
+
 TEST(SelectInstants, TakesNarrowerBinsNearReversals) {
   const auto lap = noisy_lap(20000, 1);
   std::size_t near = 0, all = 0;
@@ -65,10 +74,13 @@ TEST(SelectInstants, TakesNarrowerBinsNearReversals) {
   EXPECT_NEAR(static_cast<double>(near) / static_cast<double>(all), 0.59, 0.03);
 }
 
-TEST(SelectInstants, AcceptsALapThatRunsBackwards) {
+TEST(SelectInstants, TakesTheSameInstantsWhetherAnglesAreWrappedOrNotAndWhicheverWayTheyTurn) {
   auto lap = noisy_lap(20000, 1);
-  std::reverse(lap.angle.begin(), lap.angle.end());
-  EXPECT_GT(select_instants(lap.angle, lap.spans(), 1500).size(), 1000u);
+  const auto kept = select_instants(lap.angle, lap.spans(), 1500);
+  for (auto& angle : lap.angle) angle = std::remainder(angle, 2.0 * std::numbers::pi);
+  EXPECT_EQ(select_instants(lap.angle, lap.spans(), 1500).size(), kept.size());
+  for (auto& angle : lap.angle) angle = -angle;
+  EXPECT_EQ(select_instants(lap.angle, lap.spans(), 1500).size(), kept.size());
 }
 
 TEST(SelectInstants, KeepsAShortLapWhole) {

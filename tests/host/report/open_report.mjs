@@ -71,7 +71,7 @@ async function checkTraces(page, data) {
   for (const [chart, names] of Object.entries(wanted)) {
     const found = await traces(page, chart);
     for (const name of names)
-      expect(found.some(trace => trace.name.startsWith(name)), `chart '${chart}' has no trace '${name}'; it has: ${found.map(trace => trace.name).join(', ') || 'none'}`);
+      expect(found.some(trace => trace.name.startsWith(name)), `chart '${chart}' has no trace '${name}'; it has: ${[...new Set(found.map(trace => trace.name))].join(', ') || 'none'}`);
     for (const trace of found)
       expect(trace.y.length > 0 && trace.y.every(Number.isFinite), `trace '${trace.name}' of chart '${chart}' is empty or not finite`);
   }

@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "sim/machine/machine_file.hpp"
 
@@ -57,7 +59,8 @@ class MachineFileOnDisk {
  public:
   explicit MachineFileOnDisk(const std::string& text) {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(testing::TempDir()) / (std::string("stiction_machine_") + test->name());
+    folder_ = std::filesystem::path(testing::TempDir()) /
+              (std::string("stiction_") + test->test_suite_name() + "_" + test->name());
     std::filesystem::create_directories(folder_);
     std::ofstream(path()) << text;
   }

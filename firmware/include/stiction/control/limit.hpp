@@ -7,6 +7,9 @@ template <class Signal>
 struct Limited {
   Signal value;
   bool limiting;
+
+  // Which limit acted: -1 the low one, 1 the high one, 0 none.
+  constexpr int side(Signal middle) const { return !limiting ? 0 : value > middle ? 1 : -1; }
 };
 
 template <class Signal>

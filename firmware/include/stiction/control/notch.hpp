@@ -24,8 +24,8 @@ struct Notch {
 
   static constexpr Signal step(const Config& config, State& state, Signal x, SaturationCounter& saturations) {
     if (!config.enabled) return x;
-    const auto sum = config.b0 * x + config.b1 * state.x1 + config.b2 * state.x2 - config.a1 * state.y1 -
-                     config.a2 * state.y2;
+    const auto sum =
+        config.b0 * x + config.b1 * state.x1 + config.b2 * state.x2 - config.a1 * state.y1 - config.a2 * state.y2;
     const auto exact = sum + state.residue;
     const Signal y = narrow<Signal>(exact, saturations);
     // A saturated output leaves a remainder beyond its type's range; that is dropped without counting it twice.

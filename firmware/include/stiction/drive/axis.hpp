@@ -8,6 +8,7 @@
 
 #include "stiction/control/commutation.hpp"
 #include "stiction/control/limit.hpp"
+#include "stiction/control/limit_cycle.hpp"
 #include "stiction/control/notch.hpp"
 #include "stiction/control/pi.hpp"
 #include "stiction/control/quantizer.hpp"
@@ -27,13 +28,13 @@ enum class CurrentLoop : std::uint8_t {
 };
 
 template <class S>
-using VelocityPi = Pi<PiTypes<typename S::Velocity, typename S::Current, typename S::VelocityGain,
-                              typename S::VelocityIntegralGain, typename S::VelocityIntegral,
-                              typename S::VelocityTracking>>;
+using VelocityPi =
+    Pi<PiTypes<typename S::Velocity, typename S::Current, typename S::VelocityGain, typename S::VelocityIntegralGain,
+               typename S::VelocityIntegral, typename S::VelocityTracking>>;
 template <class S>
-using CurrentPi = Pi<PiTypes<typename S::Current, typename S::Voltage, typename S::CurrentGain,
-                             typename S::CurrentIntegralGain, typename S::CurrentIntegral,
-                             typename S::CurrentTracking>>;
+using CurrentPi =
+    Pi<PiTypes<typename S::Current, typename S::Voltage, typename S::CurrentGain, typename S::CurrentIntegralGain,
+               typename S::CurrentIntegral, typename S::CurrentTracking>>;
 
 template <class S>
 struct AxisConfig {
@@ -57,6 +58,7 @@ struct AxisConfig {
   typename S::Distance following_error_fault{};
   typename S::Current over_current_fault{};
   typename S::Velocity over_speed_fault{};
+  std::uint32_t limit_cycle_window_ticks = 0;
 };
 
 template <class S>
@@ -65,8 +67,8 @@ struct AxisState {
   Fault fault = Fault::none;
   std::int64_t fault_time_ns = 0;
   std::uint8_t missed_positions = 0;
-  typename S::Position x{};          // the last valid sample
-  std::int64_t x_time_ns = 0;        // and its time
+  typename S::Position x{};    // the last valid sample
+  std::int64_t x_time_ns = 0;  // and its time
   typename S::Distance e_held{};
   typename VelocityEstimator<S>::State estimator{};
   typename VelocityEstimator<S>::Estimate velocity{};
@@ -74,6 +76,8 @@ struct AxisState {
   typename VelocityPi<S>::State velocity_pi{};
   typename Notch<S>::State notch{};
   std::array<typename CurrentPi<S>::State, 3> current_pi{};
+  LimitCycle::State current_cycle{};
+  LimitCycle::State voltage_cycle{};  // of the first phase: an unstable current loop oscillates in every phase
   SaturationCounter saturations{};
 };
 
@@ -95,8 +99,7 @@ class Axis {
     state_.running = true;
     state_.x = feedback.position;
     state_.x_time_ns = feedback.position_time_ns;
-    state_.estimator =
-        VelocityEstimator<S>::start(feedback.position, feedback.position_time_ns, config_.period_ns);
+    state_.estimator = VelocityEstimator<S>::start(feedback.position, feedback.position_time_ns, config_.period_ns);
     state_.velocity = {{}, feedback.position_time_ns};
   }
 
@@ -146,16 +149,24 @@ class Axis {
     const auto i_set = limit(i_wanted, opposite(config_.current_limit), config_.current_limit);
     s.i_set = i_set.value;
     VelocityPi<S>::track(config_.velocity, state_.velocity_pi, i_wanted, i_set.value, saturations);
+    watch_cycle(state_.current_cycle, i_set.side({}), now_ns);
     s.i_integral = narrow<typename S::Current>(state_.velocity_pi.integral, saturations);
 
     Command<S> command;
     s.i_phase = feedback.current;
     s.limiting = {v_ref.limiting, i_set.limiting, false};
     switch (config_.current_loop) {
-      case CurrentLoop::three_phase: control_phases(s, command); break;
-      case CurrentLoop::direct: control_direct(s, command); break;
-      case CurrentLoop::none: pass_through(s, command); break;
+      case CurrentLoop::three_phase:
+        control_phases(s, command);
+        break;
+      case CurrentLoop::direct:
+        control_direct(s, command);
+        break;
+      case CurrentLoop::none:
+        pass_through(s, command);
+        break;
     }
+    watch_cycle(state_.voltage_cycle, side_of(command.voltage[0]), now_ns);
 
     if (!set.valid) trip(Fault::set_point, now_ns);
     supervise(feedback, s, now_ns);
@@ -176,6 +187,13 @@ class Axis {
     return narrow<T>(T{} - x, none);
   }
 
+  constexpr void watch_cycle(LimitCycle::State& cycle, int side, std::int64_t now_ns) {
+    if (LimitCycle::step(cycle, side, config_.limit_cycle_window_ticks)) trip(Fault::limit_cycle, now_ns);
+  }
+  constexpr int side_of(Voltage u) const {
+    return u >= config_.voltage_limit ? 1 : u <= opposite(config_.voltage_limit) ? -1 : 0;
+  }
+
   // A sample that is not valid leaves position and velocity as they were; too many in a row are a fault.
   constexpr void take_feedback(const Feedback<S>& feedback, std::int64_t now_ns) {
     if (!feedback.position_valid) {
@@ -186,15 +204,15 @@ class Axis {
     if (feedback.position_time_ns <= state_.estimator.t1_ns) return;  // a sample seen before
     state_.x = feedback.position;
     state_.x_time_ns = feedback.position_time_ns;
-    state_.velocity =
-        VelocityEstimator<S>::step(state_.estimator, config_.velocity_feedback, feedback.position,
-                                   feedback.position_time_ns, feedback.velocity, state_.saturations);
+    state_.velocity = VelocityEstimator<S>::step(state_.estimator, config_.velocity_feedback, feedback.position,
+                                                 feedback.position_time_ns, feedback.velocity, state_.saturations);
   }
 
   constexpr Voltage control_current(int phase, Current set, Current measured, AxisSignals<S>& s) {
     auto& saturations = state_.saturations;
     auto& pi = state_.current_pi[static_cast<std::size_t>(phase)];
-    const auto wanted = CurrentPi<S>::step(config_.current, pi, narrow<Current>(set - measured, saturations), saturations);
+    const auto wanted =
+        CurrentPi<S>::step(config_.current, pi, narrow<Current>(set - measured, saturations), saturations);
     const auto u = limit(wanted, opposite(config_.voltage_limit), config_.voltage_limit);
     CurrentPi<S>::track(config_.current, pi, wanted, u.value, saturations);
     s.limiting.voltage = s.limiting.voltage || u.limiting;
@@ -207,8 +225,7 @@ class Axis {
     s.i = Commutation<S>::amplitude(s.i_phase, phase, saturations);
     for (int k = 0; k < 3; ++k) {
       const auto set = Commutation<S>::phase_current(s.i_set, phase[static_cast<std::size_t>(k)], saturations);
-      command.voltage[static_cast<std::size_t>(k)] =
-          control_current(k, set, s.i_phase[static_cast<std::size_t>(k)], s);
+      command.voltage[static_cast<std::size_t>(k)] = control_current(k, set, s.i_phase[static_cast<std::size_t>(k)], s);
     }
   }
 
@@ -219,8 +236,8 @@ class Axis {
 
   constexpr void pass_through(AxisSignals<S>& s, Command<S>& command) {
     s.i = s.i_set;
-    const auto u = limit(narrow<Voltage>(s.i_set, state_.saturations), opposite(config_.voltage_limit),
-                         config_.voltage_limit);
+    const auto u =
+        limit(narrow<Voltage>(s.i_set, state_.saturations), opposite(config_.voltage_limit), config_.voltage_limit);
     s.limiting.voltage = u.limiting;
     command.voltage[0] = u.value;
   }

@@ -19,9 +19,9 @@ struct Feedback {
   typename S::Position position{};
   std::int64_t position_time_ns = 0;  // when the encoder sampled it, on the clock of the loop
   bool position_valid = false;
-  typename S::Velocity velocity{};                 // only of encoders that give one
-  std::array<typename S::Current, 3> current{};    // of the phases; of an equivalent DC motor in the first place
-  bool fault = false;                              // the power stage's or the encoder's own fault input
+  typename S::Velocity velocity{};               // only of encoders that give one
+  std::array<typename S::Current, 3> current{};  // of the phases; of an equivalent DC motor in the first place
+  bool fault = false;                            // the power stage's or the encoder's own fault input
 };
 
 template <class S>

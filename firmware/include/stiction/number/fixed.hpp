@@ -120,7 +120,8 @@ template <int FractionBits, FixedPoint T>
 constexpr auto align(T x) {
   constexpr int shift = FractionBits - T::fraction_bits;
   static_assert(shift >= 0);
-  return Wide<FractionBits, aligned_bound(T::bound, shift)>::from_bounded_raw(std::int64_t{x.raw()} * (std::int64_t{1} << shift));
+  return Wide<FractionBits, aligned_bound(T::bound, shift)>::from_bounded_raw(std::int64_t{x.raw()} *
+                                                                              (std::int64_t{1} << shift));
 }
 
 }  // namespace detail

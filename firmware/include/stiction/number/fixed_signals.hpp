@@ -25,28 +25,28 @@ struct FixedSignals {
   using Count = Fixed<0>;                             // whole increments
   using Angle = Turn;
   using Sine = stiction::Sine;
-  using Rate = stiction::Rate;            // 1/s
-  using TickFraction = Coefficient<28>;   // of a fast period, below 4
-  using Seconds = Coefficient<40>;        // below 0.97 ms
+  using Rate = stiction::Rate;           // 1/s
+  using TickFraction = Coefficient<28>;  // of a fast period, below 4
+  using Seconds = Coefficient<40>;       // below 0.97 ms
 
   // Gains.
-  using PositionGain = Coefficient<20>;              // +-1024 1/s
-  using VelocityWeight = Coefficient<24>;            // +-64
-  using IncrementInverse = Coefficient<0>;           // 1/m, increments from 1 nm
-  using Increment = Coefficient<44>;                 // below 61 um
-  using VelocityGain = Coefficient<12>;              // A s/m, +-262144
-  using VelocityIntegralGain = Coefficient<20>;      // A s/m per tick, +-1024
+  using PositionGain = Coefficient<20>;                       // +-1024 1/s
+  using VelocityWeight = Coefficient<24>;                     // +-64
+  using IncrementInverse = Coefficient<0>;                    // 1/m, increments from 1 nm
+  using Increment = Coefficient<44>;                          // below 61 um
+  using VelocityGain = Coefficient<12>;                       // A s/m, +-262144
+  using VelocityIntegralGain = Coefficient<20>;               // A s/m per tick, +-1024
   using VelocityIntegral = Wide<48, std::uint64_t{1} << 61>;  // +-8192 A
-  using VelocityTracking = Coefficient<28>;          // of the excess per tick, +-4
-  using CurrentGain = Coefficient<16>;               // V/A, +-16384
-  using CurrentIntegralGain = Coefficient<22>;       // V/A per tick, +-256
+  using VelocityTracking = Coefficient<28>;                   // of the excess per tick, +-4
+  using CurrentGain = Coefficient<16>;                        // V/A, +-16384
+  using CurrentIntegralGain = Coefficient<22>;                // V/A per tick, +-256
   using CurrentIntegral = Wide<42, std::uint64_t{1} << 61>;   // +-524288 V
   using CurrentTracking = Coefficient<24>;
-  using AccelerationGain = Coefficient<24>;          // A s^2/m, +-64
-  using CurrentSum = Wide<20, std::uint64_t{1} << 33>;        // of three phases
-  using FilterCoefficient = Coefficient<28, 29>;     // +-2
+  using AccelerationGain = Coefficient<24>;             // A s^2/m, +-64
+  using CurrentSum = Wide<20, std::uint64_t{1} << 33>;  // of three phases
+  using FilterCoefficient = Coefficient<28, 29>;        // +-2
   using FilterResidue = Wide<48, std::uint64_t{1} << 28>;
-  using PitchInverse = Coefficient<20>;              // 1/m, pitches from 1 mm
+  using PitchInverse = Coefficient<20>;  // 1/m, pitches from 1 mm
 
   // Time.
   static constexpr Rate rate(std::int64_t interval_ns) { return rate_of_interval(interval_ns); }
@@ -78,7 +78,8 @@ struct FixedSignals {
   // Electrical angle of a position; whole turns wrap away in unsigned arithmetic.
   static constexpr Angle angle(Position position, PitchInverse inverse_pitch) {
     const auto coarse = static_cast<std::uint64_t>(position.raw() >> 8);  // 32 fraction bits, 0.23 nm
-    return Turn{static_cast<std::uint32_t>((coarse * static_cast<std::uint64_t>(std::int64_t{inverse_pitch.raw()})) >> 20)};
+    return Turn{
+        static_cast<std::uint32_t>((coarse * static_cast<std::uint64_t>(std::int64_t{inverse_pitch.raw()})) >> 20)};
   }
   static constexpr Sine sine(Angle angle) { return stiction::sine(angle); }
   static constexpr Angle third_of_turn_after(Angle angle) { return Turn{angle.raw + 0x55555555u}; }

@@ -18,8 +18,8 @@ constexpr Rate rate_of_interval(std::int64_t interval_ns) {
                                                   : interval_ns > INT32_MAX ? INT32_MAX
                                                                             : interval_ns);
   const int shift = std::countl_zero(bounded);
-  const std::uint64_t normal = std::uint64_t{bounded} << shift;                       // d * 2^32, d in [1/2, 1)
-  const std::uint64_t seed = UINT32_MAX / static_cast<std::uint32_t>(normal >> 16);   // 1/d * 2^16
+  const std::uint64_t normal = std::uint64_t{bounded} << shift;                      // d * 2^32, d in [1/2, 1)
+  const std::uint64_t seed = UINT32_MAX / static_cast<std::uint32_t>(normal >> 16);  // 1/d * 2^16
   // r (2 - d r): seed and its residual d r carry 16 and 32 fraction bits.
   const std::uint64_t residual = (std::uint64_t{2} << 32) - ((normal * seed) >> 16);  // 2 - d r, * 2^32
   const std::uint64_t inverse = (seed * residual) >> 18;                              // 1/d * 2^30

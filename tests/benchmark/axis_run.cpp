@@ -1,0 +1,52 @@
+#include "tests/benchmark/axis_run.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "hal/control_loop.hpp"
+#include "hal/simulated/simulated_backend.hpp"
+#include "sim/control/axis_configuration.hpp"
+#include "sim/experiment/circle_path.hpp"
+#include "sim/machine/machine_file.hpp"
+#include "stiction/number/fixed_signals.hpp"
+
+namespace stiction::benchmark {
+namespace {
+
+const sim::Machine& machine() {
+  static const sim::Machine one_axis = [] {
+    auto m = sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/mcfv5050ln.toml",
+                               {"circle", {"axis.X.motor.model=dc", "axis.X.friction.use=lugre"}});
+    m.axes.resize(1);
+    return m;
+  }();
+  return one_axis;
+}
+
+template <class S>
+double run(double seconds) {
+  const auto& m = machine();
+  sim::CircleSettings settings;
+  settings.feed = 16.0 / 60.0;
+  const sim::CirclePath path(settings);
+  const std::array<double, 1> start{settings.radius};
+  hal::SimulatedBackend<S> backend(m, start);
+  const std::array<AxisConfig<S>, 1> configs{sim::configure_axis<S>(m.timing, m.axes[0])};
+  hal::ControlLoop loop(
+      backend, std::span<const AxisConfig<S>>(configs),
+      Ticker(sim::fast_period_ns(m.timing), static_cast<std::uint32_t>(sim::slow_ratio(m.timing))));
+  const auto ticks = std::llround(seconds / m.timing.fast_period);
+  for (long long i = 0; i < ticks; ++i) {
+    const auto point = path.at(static_cast<double>(loop.now_ns()) * 1e-9);
+    const std::array<SetPoint<S>, 1> set{sim::to_set_point<S>(point.axes[0])};
+    loop.tick(set);
+  }
+  return backend.plant(0).position();
+}
+
+}  // namespace
+
+double run_axis_fixed(double seconds) { return run<FixedSignals>(seconds); }
+double run_axis_double(double seconds) { return run<sim::DoubleSignals>(seconds); }
+
+}  // namespace stiction::benchmark
