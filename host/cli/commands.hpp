@@ -12,6 +12,9 @@ struct Invocation {
   std::string version;
 };
 
+// Without a known subcommand, `command` throws UsageError with what was found and what it knows.
+void expect_subcommand(CLI::App& command, const std::string& kind);
+
 void add_simulate(CLI::App& program, const Invocation& invocation);
 void add_compare(CLI::App& program, const Invocation& invocation);
 void add_machine(CLI::App& program, const Invocation& invocation);

@@ -4,11 +4,10 @@
 #include <memory>
 
 #include "host/cli/commands.hpp"
+#include "host/cli/machine_options.hpp"
 #include "host/report/machine_sheet.hpp"
-#include "sim/control/axis_configuration.hpp"
 #include "sim/machine/machine_file.hpp"
 #include "sim/machine/reference_page.hpp"
-#include "stiction/number/fixed_signals.hpp"
 
 namespace stiction::host {
 namespace {
@@ -20,10 +19,8 @@ struct MachineCommand {
 
 // Reads and checks a file, down to the drive's number formats, and prints what was understood.
 void check_machine(const std::string& name) {
-  const auto file = sim::find_machine(name);
-  const auto machine = sim::read_machine(file);
-  for (const auto& axis : machine.axes) sim::configure_axis<FixedSignals>(machine.timing, axis);
-  fmt::print("{}: {}\n", file.string(), machine.name);
+  const auto machine = MachineOptions{name, {}}.load(name, "");
+  fmt::print("{}: {}\n", machine.id, machine.name);
   for (const auto& section : machine_sheet(machine)) {
     fmt::print("\n{}\n", section.title);
     for (const auto& row : section.rows) {

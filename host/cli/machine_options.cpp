@@ -6,8 +6,10 @@
 #include <algorithm>
 
 #include "host/cli/errors.hpp"
+#include "sim/control/axis_configuration.hpp"
 #include "sim/machine/machine_file.hpp"
 #include "sim/machine/units.hpp"
+#include "stiction/number/fixed_signals.hpp"
 
 namespace stiction::host {
 
@@ -20,7 +22,15 @@ void MachineOptions::add_to(CLI::App& command, const std::string& machine_help) 
 }
 
 sim::Machine MachineOptions::load(const std::string& name, const std::string& experiment) const {
-  return sim::read_machine(sim::find_machine(name), {experiment, set});
+  const auto file = sim::find_machine(name);
+  auto result = sim::read_machine(file, {experiment, set});
+  // What the drive's number formats cannot hold is bad input too, found before anything runs.
+  try {
+    for (const auto& axis : result.axes) sim::configure_axis<FixedSignals>(result.timing, axis);
+  } catch (const sim::ConfigurationError& error) {
+    throw UsageError(fmt::format("{}: {}", file.string(), error.what()));
+  }
+  return result;
 }
 
 std::vector<std::string> split_list(const std::string& text) {

@@ -15,7 +15,7 @@ struct MachineOptions {
   std::vector<std::string> set;  // KEY=VALUE
 
   void add_to(CLI::App& command, const std::string& machine_help);
-  // Throws sim::MachineFileError.
+  // The machine, checked down to the drive's number formats. Throws sim::MachineFileError, UsageError.
   sim::Machine load(const std::string& name, const std::string& experiment) const;
 };
 

@@ -1,5 +1,6 @@
 // The program `stiction`.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <exception>
 
@@ -29,7 +30,7 @@ int run(int argc, char** argv) {
 
   CLI::App program("controller firmware of a servo axis against its simulated machine", "stiction");
   program.set_version_flag("--version", STICTION_VERSION);
-  program.require_subcommand(1);
+  expect_subcommand(program, "command");
   program.failure_message(CLI::FailureMessage::help);
   add_simulate(program, invocation);
   add_compare(program, invocation);
@@ -62,6 +63,22 @@ int run(int argc, char** argv) {
 }
 
 }  // namespace
+
+void expect_subcommand(CLI::App& command, const std::string& kind) {
+  command.require_subcommand(0, 1);
+  command.prefix_command();  // leaves what it does not know to the callback
+  command.callback([&command, kind] {
+    if (!command.get_subcommands().empty()) return;
+    std::vector<std::string> known;
+    for (const auto* sub : command.get_subcommands([](const CLI::App*) { return true; }))
+      known.push_back(sub->get_name());
+    const auto found = command.remaining();
+    throw UsageError(fmt::format("{}: found {}; expected {}{}; see {} --help", kind,
+                                 found.empty() ? "none" : "'" + found.front() + "'", known.size() > 1 ? "one of " : "",
+                                 fmt::join(known, ", "), command.get_name()));
+  });
+}
+
 }  // namespace stiction::host
 
 int main(int argc, char** argv) { return stiction::host::run(argc, argv); }

@@ -58,7 +58,7 @@ void simulate_circle(const CircleOptions& options, const Invocation& invocation)
 
 void add_simulate(CLI::App& program, const Invocation& invocation) {
   auto* simulate = program.add_subcommand("simulate", "run an experiment: the firmware against the simulated machine");
-  simulate->require_subcommand(1);
+  expect_subcommand(*simulate, "experiment");
 
   auto* circle = simulate->add_subcommand(
       "circle", "a circle of two axes with a jerk-limited start; peak errors, currents and ISO 230-4 terms of one lap");

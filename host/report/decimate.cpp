@@ -11,13 +11,16 @@ namespace stiction::host {
 namespace {
 
 constexpr double quarter = std::numbers::pi / 2.0;
-constexpr double glitch_half_width = 10.0 * std::numbers::pi / 180.0;
-// At 3.2 m/min a glitch of 50 ms is 1.7 degrees wide: with 300 bins a lap it then spans at least four.
-constexpr double glitch_density = 5.0;  // bins a degree near a reversal over those elsewhere
+// A glitch of 50 ms is 1.7 degrees wide at 3.2 m/min and 25 degrees at 48: the bins narrow towards the reversal, to a
+// twentieth at it and half of that 2 degrees away. 300 bins a lap are 0.14 degrees wide there and 3 degrees far from
+// it.
+constexpr double glitch_density = 20.0;
+constexpr double glitch_width = 2.0 * std::numbers::pi / 180.0;
 
+// Bins a degree, up to a factor.
 double density(double angle) {
-  const double from_reversal = std::abs(std::remainder(angle, quarter));
-  return from_reversal < glitch_half_width ? glitch_density : 1.0;
+  const double from_reversal = std::remainder(angle, quarter) / glitch_width;
+  return 1.0 + glitch_density / (1.0 + from_reversal * from_reversal);
 }
 
 // First instant of each bin, and the end: every bin holds the same integral of the density.

@@ -167,17 +167,21 @@ function around(run, quadrant, half) {
   return points.sort((a, b) => a[0] - b[0]);
 }
 
-// As wide as the glitches need: where an error stands out from its run's median by a sixth of the largest glitch shown,
-// and a little more.
+// As wide as the glitches need: where an error stands out from its run's median by a sixth of its own peak, and a little
+// more. A run without a glitch to speak of, below a tenth of the largest, has no say.
 function quadrantHalfWidth(state) {
   if (state.window !== 'auto') return state.window;
   const outstanding = chosenRuns(state).map(run => {
     const points = around(run, state.quadrant, 45);
     const median = points.map(point => point[1]).sort((a, b) => a - b)[points.length >> 1];
-    return points.map(([angle, error]) => [Math.abs(angle - state.quadrant), Math.abs(error - median)]);
-  }).flat();
-  const threshold = outstanding.reduce((most, [, height]) => Math.max(most, height), 0) / 6;
-  const reach = outstanding.reduce((most, [angle, height]) => height > threshold ? Math.max(most, angle) : most, 0);
+    const heights = points.map(([angle, error]) => [Math.abs(angle - state.quadrant), Math.abs(error - median)]);
+    return { heights, peak: extreme(heights.map(point => point[1]), Math.max) };
+  });
+  const highest = outstanding.reduce((most, run) => Math.max(most, run.peak), 0);
+  let reach = 0;
+  for (const { heights, peak } of outstanding.filter(run => run.peak > 0.1 * highest))
+    for (const [angle, height] of heights)
+      if (height > peak / 6) reach = Math.max(reach, angle);
   return [2, 3, 5, 8, 10, 15, 20, 30].find(half => half >= 1.25 * reach) || 45;
 }
 

@@ -117,6 +117,14 @@ async function checkControls(page, data) {
   await choose(page, 'choose-magnification', 1000).catch(() => {});  // may be disabled
 }
 
+// A lap passes each of the four reversals once; X reverses at 0 and 180 degrees, Y at 90 and 270.
+async function checkReversals(page, data) {
+  const marks = await page.evaluate(() => document.getElementById('lap').layout.annotations.map(mark => mark.text));
+  const [x, y] = data.axes;
+  for (const mark of [`${x} reverses, 0°`, `${y} reverses, 90°`, `${x} reverses, 180°`, `${y} reverses, 270°`])
+    expect(marks.filter(each => each === mark).length === 1, `the lap does not mark '${mark}' once; it marks: ${marks.join(', ')}`);
+}
+
 async function checkText(page, data) {
   const rows = await page.locator('#table tbody tr').count();
   expect(rows === data.table.length, `the table has ${rows} rows, the data ${data.table.length}`);
@@ -140,6 +148,7 @@ async function main() {
     const data = await pageData(page);
     await checkTraces(page, data);
     await checkPeaks(page, data);
+    await checkReversals(page, data);
     await checkText(page, data);
     await checkControls(page, data);
     if (options.screenshot) await page.screenshot({ path: options.screenshot, fullPage: true });

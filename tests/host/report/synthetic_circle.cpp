@@ -91,7 +91,8 @@ sim::CircleRun make_run(const std::string& friction, double feed, sim::Direction
   const auto samples = static_cast<std::size_t>(2.0 * std::numbers::pi * run.radius / run.feed / run.sample_period);
   const double step = (direction == sim::Direction::clockwise ? -1.0 : 1.0) * run.feed / run.radius * run.sample_period;
   for (std::size_t i = 0; i < samples; ++i)
-    run.angle.push_back(std::remainder(0.25 * std::numbers::pi + step * static_cast<double>(i), 2.0 * std::numbers::pi));
+    run.angle.push_back(
+        std::remainder(0.25 * std::numbers::pi + step * static_cast<double>(i), 2.0 * std::numbers::pi));
   run.axes = {make_axis("X", 0, friction, run, random), make_axis("Y", 1, friction, run, random)};
   for (std::size_t i = 0; i < samples; ++i)
     run.radial_deviation.push_back(-run.axes[0].error[i] * std::cos(run.angle[i]) -

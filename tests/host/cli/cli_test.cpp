@@ -1,0 +1,202 @@
+// The program as its users call it: exit codes, messages, what is written and what is not.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace stiction::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string content(const fs::path& file) {
+  std::ifstream in(file);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+struct Outcome {
+  int code;
+  std::string out, error;
+};
+
+class Cli : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / fmt::format("stiction-cli-{}", ::getpid());
+    fs::create_directories(folder_ / "work");
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  // Runs `stiction ARGUMENTS` in an empty folder.
+  Outcome stiction(const std::string& arguments) {
+    const auto out = folder_ / "out", error = folder_ / "error";
+    const std::string command = fmt::format("cd '{}' && '{}' {} >'{}' 2>'{}'", work().string(), STICTION_PROGRAM,
+                                            arguments, out.string(), error.string());
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(out), content(error)};
+  }
+  fs::path work() const { return folder_ / "work"; }
+  bool nothing_written() const { return fs::is_empty(work()); }
+
+  // The shipped machine with one piece of text replaced; beside the working folder.
+  std::string machine_with(const std::string& from, const std::string& to) {
+    auto text = content(fs::path(STICTION_SOURCE_DIR) / "sim/machine/shipped/mcfv5050ln.toml");
+    const auto place = text.find(from);
+    EXPECT_NE(place, std::string::npos) << from;
+    text.replace(place, from.size(), to);
+    const auto file = folder_ / "m.toml";
+    std::ofstream(file) << text;
+    return "'" + file.string() + "'";
+  }
+
+  // Bad input: exit 2, the message on standard error only, nothing written.
+  void expect_refused(const std::string& arguments, const std::string& message) {
+    const auto result = stiction(arguments);
+    EXPECT_EQ(result.code, 2) << arguments;
+    EXPECT_NE(result.error.find(message), std::string::npos) << arguments << "\n" << result.error;
+    EXPECT_EQ(result.out, "") << arguments;
+    EXPECT_TRUE(nothing_written()) << arguments;
+  }
+
+ private:
+  fs::path folder_;
+};
+
+TEST_F(Cli, RefusesABadMachineFileWithPlaceFindingAndExpectation) {
+  const std::string run = "simulate circle --out result --machine ";
+  expect_refused(run + machine_with("mass = \"225 kg\"", "mass = \"225 A\""),
+                 "axis.X.mass: found \"225 A\" (dimension A, not kg); expected a value greater than 0 kg");
+  expect_refused(run + machine_with("mass = \"225 kg\"", "mass = \"-225 kg\""),
+                 "axis.X.mass: found \"-225 kg\"; expected a value greater than 0 kg");
+  expect_refused(run + machine_with("mass = \"225 kg\"", "masss = \"225 kg\""), "did you mean \"mass\"?");
+  expect_refused(run + machine_with("mass = \"225 kg\"", ""), "axis.X.mass");
+  expect_refused(run + machine_with("slow_period = \"1 ms\"", "slow_period = \"1.1 ms\""),
+                 "timing.slow_period: found \"1.1 ms\"; expected a multiple of fast_period, 0.0625 ms");
+  expect_refused(run + machine_with("schema = \"stiction.machine/1\"", "schema = \"other/1\""), "m.toml:");
+}
+
+TEST_F(Cli, RefusesAFeedThatAnAxisCannotAccelerate) {
+  expect_refused("simulate circle --machine mcfv5050ln --feed '79 m/min' --radius '50 mm' --out result",
+                 "feed: found 79 m/min, v^2/R = 34.67 m/s^2 at R = 50 mm; expected at most 20 m/s^2");
+  expect_refused("simulate circle --machine mcfv5050ln --feed '100 m/min' --out result",
+                 "feed: found 100 m/min; expected above 0 and at most 80 m/min");
+  expect_refused("simulate circle --machine mcfv5050ln --radius '300 mm' --out result", "radius: found 300 mm");
+}
+
+TEST_F(Cli, RefusesBadUsage) {
+  expect_refused("", "command: found none; expected one of simulate, compare, machine");
+  expect_refused("simulate", "experiment: found none; expected circle");
+  expect_refused("simulate square --machine mcfv5050ln", "experiment: found 'square'; expected circle");
+  expect_refused("simulate circle", "--machine is required");
+  expect_refused("simulate circle --machine nowhere", "found no such machine");
+  expect_refused("simulate circle --machine mcfv5050ln --feed 16", "--feed: found '16' (no unit)");
+  expect_refused("simulate circle --machine mcfv5050ln --friction stribeck", "--friction: found 'stribeck'");
+  expect_refused("simulate circle --machine mcfv5050ln --direction left", "--direction: found 'left'");
+  expect_refused("simulate circle --machine mcfv5050ln --signals float", "float");
+  expect_refused("simulate circle --machine mcfv5050ln --log x.csv --friction all", "--log: found 6 runs");
+  expect_refused("simulate circle --machine mcfv5050ln --set axis.X.mas='1 kg'", "--set axis.X.mas");
+  expect_refused("compare --reference square --machine mcfv5050ln", "--reference: found 'square'; expected circle");
+  expect_refused("compare --machine mcfv5050ln", "--reference is required");
+}
+
+TEST_F(Cli, RefusesAGainThatTheNumberFormatCannotHold) {
+  expect_refused("simulate circle --machine mcfv5050ln --set axis.X.position_controller.gain='2000 1/s'",
+                 "axis.X.position_controller.gain: found gain = 2000; expected at most 1024");
+}
+
+TEST_F(Cli, StopsAnUnstableLoopWithItsFaultAndKeepsTheTrace) {
+  const auto result =
+      stiction("simulate circle --machine mcfv5050ln --set axis.X.velocity_controller.gain='9000 A s/m' --log t.csv");
+  EXPECT_EQ(result.code, 1);
+  EXPECT_NE(result.error.find("axis X: fault 7 'limit cycle' at "), std::string::npos) << result.error;
+  EXPECT_NE(result.error.find("its trace is in t.csv"), std::string::npos) << result.error;
+  const auto trace = content(work() / "t.csv");
+  ASSERT_NE(trace.find("t[s],X.x_set[m],"), std::string::npos);
+  // The last row is that of the fault.
+  const auto last = trace.substr(trace.rfind('\n', trace.size() - 2) + 1);
+  EXPECT_NE(last.find(",7,"), std::string::npos) << last;
+}
+
+TEST_F(Cli, KeepsTheTraceOfAFaultInTheResultFolder) {
+  const auto result =
+      stiction("simulate circle --machine mcfv5050ln --set axis.Y.position_controller.gain='700 1/s' --out r");
+  EXPECT_EQ(result.code, 1);
+  EXPECT_TRUE(fs::exists(work() / "r/trace.csv"));
+  EXPECT_EQ(nlohmann::json::parse(content(work() / "r/result.json"))["axis"], "Y");
+}
+
+TEST_F(Cli, PrintsTheCircleAsJsonAndNothingElse) {
+  const auto result =
+      stiction("simulate circle --machine mcfv5050ln --feed '16 m/min, 24 m/min' --friction lugre,classical --json");
+  EXPECT_EQ(result.code, 0) << result.error;
+  const auto json = nlohmann::json::parse(result.out);
+  EXPECT_EQ(json["schema"], "stiction.circle/1");
+  EXPECT_EQ(json["machine"], "mcfv5050ln");
+  EXPECT_EQ(json["signals"], "fixed");
+  EXPECT_NEAR(json["radius_m"].get<double>(), 0.09, 1e-12);
+  ASSERT_EQ(json["rows"].size(), 8u);  // 2 axes, 2 models, 2 feeds
+  for (const auto& row : json["rows"]) {
+    EXPECT_GT(row["peak_error_um"].get<double>(), 1.0);
+    EXPECT_TRUE(row.contains("measured"));
+    EXPECT_TRUE(row["published_simulation"].contains("current_A"));
+  }
+  EXPECT_TRUE(nothing_written());
+}
+
+TEST_F(Cli, AcceptsBothDirectionsAndReportsThemTogether) {
+  const auto result = stiction("simulate circle --machine mcfv5050ln --direction both --json");
+  const auto json = nlohmann::json::parse(result.out);
+  ASSERT_EQ(json["circular_errors"].size(), 2u);
+  EXPECT_TRUE(json["circular_errors"][0].contains("bidirectional_circular_error_um"));
+}
+
+TEST_F(Cli, ReplacesAnEarlierResultAndRefusesAnotherFolder) {
+  const std::string run = "simulate circle --machine mcfv5050ln --feed '48 m/min' --out ";
+  EXPECT_EQ(stiction(run + "r").code, 0);
+  EXPECT_EQ(stiction(run + "r").code, 0);
+  EXPECT_TRUE(fs::exists(work() / "r/report.html"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(work()), {}), 1);  // nothing half written beside it
+  fs::create_directories(work() / "mine");
+  std::ofstream(work() / "mine/thesis.tex") << "precious";
+  const auto result = stiction(run + "mine");
+  EXPECT_EQ(result.code, 2);
+  EXPECT_EQ(content(work() / "mine/thesis.tex"), "precious");
+}
+
+TEST_F(Cli, WritesALogInTheLogFormat) {
+  EXPECT_EQ(stiction("simulate circle --machine mcfv5050ln --feed '48 m/min' --log run.csv").code, 0);
+  std::ifstream file(work() / "run.csv");
+  std::string line;
+  do std::getline(file, line);
+  while (line.starts_with("#"));
+  for (const char* column : {"t[s]", "X.x_set[m]", "X.v_set[m/s]", "X.a_set[m/s^2]", "X.x[m]", "X.v[m/s]", "X.i[A]",
+                             "X.i_set[A]", "Y.x[m]", "Y.u_C[V]"})
+    EXPECT_NE(("," + line + ",").find(fmt::format(",{},", column)), std::string::npos) << column;
+  const auto columns = std::count(line.begin(), line.end(), ',');
+  int rows = 0;
+  while (std::getline(file, line)) {
+    ASSERT_EQ(std::count(line.begin(), line.end(), ','), columns);
+    ++rows;
+  }
+  EXPECT_GT(rows, 16000);  // over a second at the full 16 kHz
+}
+
+TEST_F(Cli, ShowsTheShippedMachinesAndTheirReference) {
+  EXPECT_EQ(stiction("machine").out, "mcfv5050ln\n");
+  EXPECT_NE(stiction("machine --reference").out.find("pole_pair_pitch"), std::string::npos);
+  const auto sheet = stiction("machine --check mcfv5050ln");
+  EXPECT_EQ(sheet.code, 0);
+  EXPECT_NE(sheet.out.find("MCFV 5050 LN"), std::string::npos);
+  for (const char* help : {"--help", "simulate --help", "simulate circle --help", "compare --help", "--version"})
+    EXPECT_EQ(stiction(help).code, 0) << help;
+}
+
+}  // namespace
+}  // namespace stiction::test
