@@ -11,9 +11,8 @@ namespace stiction::host {
 namespace {
 
 constexpr double quarter = std::numbers::pi / 2.0;
-// A glitch of 50 ms is 1.7 degrees wide at 3.2 m/min and 25 degrees at 48: the bins narrow towards the reversal, to a
-// twentieth at it and half of that 2 degrees away. 300 bins a lap are 0.14 degrees wide there and 3 degrees far from
-// it.
+// A glitch of 50 ms is 1.7 degrees wide at 3.2 m/min and 25 degrees at 48: the bins narrow to a twentieth at the
+// reversal and to a tenth 2 degrees from it. Of 300 bins a lap one is 0.14 degrees wide there, 2.7 degrees far from it.
 constexpr double glitch_density = 20.0;
 constexpr double glitch_width = 2.0 * std::numbers::pi / 180.0;
 

@@ -13,16 +13,29 @@
 
 namespace stiction::sim {
 
-// `value` in the format T, rounded to nearest; nothing when it is NaN or beyond the format's range.
+constexpr double power_of_two(int exponent) {
+  double power = 1.0;
+  for (; exponent > 0; --exponent) power *= 2.0;
+  for (; exponent < 0; ++exponent) power *= 0.5;
+  return power;
+}
+
+// `value` in the format T, rounded to nearest, ties away from zero; nothing when it is NaN or beyond the format's range.
 template <class T>
 std::optional<T> to_signal(double value) {
   if constexpr (std::same_as<T, Real>) {
     return std::isfinite(value) ? std::optional(T{value}) : std::nullopt;
   } else {
-    const double raw = std::round(std::ldexp(value, T::fraction_bits));
-    // 2^63 is the first double beyond the range of a 64-bit word; the bounds themselves may round up to it.
-    if (!(raw >= static_cast<double>(T::lowest_raw) && raw <= static_cast<double>(T::highest_raw))) return std::nullopt;
-    return T::from_bounded_raw(static_cast<std::int64_t>(raw));
+    constexpr double scale = power_of_two(T::fraction_bits);
+    const double scaled = value * scale;
+    // No format reaches beyond 2^61, so the conversions are exact and rounding stays within 64 bits.
+    static_assert(T::bound <= std::uint64_t{1} << 61);
+    if (!(std::abs(scaled) < static_cast<double>(std::uint64_t{1} << 62))) return std::nullopt;  // NaN included
+    const auto whole = static_cast<std::int64_t>(scaled);
+    const double rest = scaled - static_cast<double>(whole);
+    const std::int64_t raw = whole + (rest >= 0.5) - (rest <= -0.5);
+    if (raw < T::lowest_raw || raw > T::highest_raw) return std::nullopt;
+    return T::from_bounded_raw(raw);
   }
 }
 
@@ -32,18 +45,18 @@ constexpr double highest() {
   if constexpr (std::same_as<T, Real>) {
     return std::numeric_limits<double>::infinity();
   } else {
-    double value = static_cast<double>(T::highest_raw);
-    for (int i = 0; i < T::fraction_bits; ++i) value *= 0.5;
-    return value;
+    return static_cast<double>(T::highest_raw) * power_of_two(-T::fraction_bits);
   }
 }
 
 template <class T>
 double to_si(T signal) {
-  if constexpr (std::same_as<T, Real>)
+  if constexpr (std::same_as<T, Real>) {
     return signal.value;
-  else
-    return std::ldexp(static_cast<double>(signal.raw()), -T::fraction_bits);
+  } else {
+    constexpr double scale = power_of_two(-T::fraction_bits);
+    return static_cast<double>(signal.raw()) * scale;
+  }
 }
 
 }  // namespace stiction::sim

@@ -36,13 +36,17 @@ class AxisPlant {
   double friction_force() const { return friction_force_; }  // N, mean over the last step, positive opposes +v
   double encoder_position() const { return position_ + mount_.deflection(); }  // m, before increment and noise
   double encoder_velocity() const { return velocity_ + mount_.velocity(); }    // m/s
-  const PhaseValues& current() const;                                          // A, of the phases
+  const PhaseValues& current() const { return current_; }                      // A, of the phases
 
   // What the encoder reads now: with increment and noise. Draws a new noise value at each call.
   double read_encoder();
 
  private:
   using MotorVariant = std::variant<DcMotor, SynchronousMotor, ForceSource>;
+
+  template <class MotorModel, class Friction>
+  void advance(MotorModel& motor_state, Friction& friction, const PhaseValues& acting, int steps);
+  void switch_off();
 
   double step_;
   double mass_;
@@ -51,6 +55,7 @@ class AxisPlant {
   FrictionModel friction_;
   EncoderMountModel mount_;
   double encoder_increment_;
+  double increments_per_metre_;
   double encoder_noise_;
   std::mt19937_64 random_;
   bool enabled_ = false;
@@ -60,6 +65,7 @@ class AxisPlant {
   double motor_force_ = 0.0;
   double friction_force_ = 0.0;
   double external_force_ = 0.0;
+  PhaseValues current_{};
 };
 
 }  // namespace stiction::sim

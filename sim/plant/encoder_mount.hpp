@@ -26,12 +26,12 @@ class EncoderMountModel {
     a12_ = e * s;
     a21_ = -e * w * w * s;
     a22_ = e * (c - decay * s);
-    static_deflection_ = -1.0 / (w * w);
+    rest_per_change_ = -1.0 / (w * w * step);
   }
 
-  // One step under the carriage's acceleration (m/s^2).
-  void advance(double acceleration) {
-    const double rest = static_deflection_ * acceleration;
+  // One step in which the carriage's velocity changes evenly by `change` (m/s).
+  void advance(double change) {
+    const double rest = rest_per_change_ * change;  // the deflection that the acceleration would hold
     const double d = deflection_ - rest;
     deflection_ = rest + a11_ * d + a12_ * velocity_;
     velocity_ = a21_ * d + a22_ * velocity_;
@@ -42,7 +42,7 @@ class EncoderMountModel {
 
  private:
   double a11_ = 0.0, a12_ = 0.0, a21_ = 0.0, a22_ = 0.0;
-  double static_deflection_ = 0.0;
+  double rest_per_change_ = 0.0;
   double deflection_ = 0.0;
   double velocity_ = 0.0;
 };

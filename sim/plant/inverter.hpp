@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -13,31 +12,42 @@ namespace stiction::sim {
 
 class InverterModel {
  public:
-  // `step`: the plant's step; the dead time is a whole number of them.
-  InverterModel(const Inverter& inverter, double step)
-      : voltage_limit_(inverter.voltage_limit),
-        line_(static_cast<std::size_t>(std::lround(inverter.dead_time / step)) + 1) {}
+  // A tick has `steps_per_tick` steps of the plant of `step` s; the dead time is a whole number of steps.
+  InverterModel(const Inverter& inverter, double step, int steps_per_tick) : voltage_limit_(inverter.voltage_limit) {
+    const auto steps = static_cast<int>(std::lround(inverter.dead_time / step));
+    change_ = steps % steps_per_tick;
+    commands_.resize(static_cast<std::size_t>(steps / steps_per_tick) + 2);
+  }
 
+  // What the drive commands from this tick on.
   void command(const PhaseValues& voltage) {
     for (std::size_t k = 0; k < 3; ++k) command_[k] = std::clamp(voltage[k], -voltage_limit_, voltage_limit_);
   }
 
-  // The voltages (V) that act during the next step.
-  const PhaseValues& advance() {
-    line_[newest_] = command_;
-    newest_ = newest_ + 1 == line_.size() ? 0 : newest_ + 1;
-    return line_[newest_];
+  // The voltages that act during one tick: `before` for the first `change` steps of the plant, then `after`.
+  struct Acting {
+    const PhaseValues& before;
+    const PhaseValues& after;
+    int change;
+  };
+  Acting advance_tick() {
+    commands_[newest_] = command_;
+    newest_ = newest_ + 1 == commands_.size() ? 0 : newest_ + 1;
+    const std::size_t oldest = newest_;
+    const std::size_t second = oldest + 1 == commands_.size() ? 0 : oldest + 1;
+    return {commands_[oldest], commands_[second], change_};
   }
 
   void switch_off() {
     command_ = {};
-    std::fill(line_.begin(), line_.end(), PhaseValues{});
+    std::fill(commands_.begin(), commands_.end(), PhaseValues{});
   }
 
  private:
   double voltage_limit_;
+  int change_;
   PhaseValues command_{};
-  std::vector<PhaseValues> line_;  // ring: the slot after the newest is the oldest
+  std::vector<PhaseValues> commands_;  // ring, one a tick; the slot after the newest is the oldest
   std::size_t newest_ = 0;
 };
 

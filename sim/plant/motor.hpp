@@ -33,13 +33,13 @@ class DcMotor {
   DcMotor(const Motor& motor, double step)
       : winding_(motor.phase_resistance / motor.count, motor.phase_inductance / motor.count, step),
         emf_constant_(motor.emf_constant),
-        force_constant_(motor.force_constant) {}
+        half_force_constant_(0.5 * motor.force_constant) {}
 
   // Moves the current on by one step at velocity v (m/s); returns the mean force (N) over the step.
   double advance(const PhaseValues& voltage, double, double v) {
     const double before = current_[0];
     current_[0] = winding_.advance(before, voltage[0] - emf_constant_ * v);
-    return force_constant_ * 0.5 * (before + current_[0]);
+    return half_force_constant_ * (before + current_[0]);
   }
   const PhaseValues& current() const { return current_; }
   void switch_off() { current_ = {}; }
@@ -47,7 +47,7 @@ class DcMotor {
  private:
   Winding winding_;
   double emf_constant_;
-  double force_constant_;
+  double half_force_constant_;
   PhaseValues current_{};
 };
 
@@ -59,7 +59,7 @@ class SynchronousMotor {
       : winding_(motor.phase_resistance / motor.count, (motor.phase_inductance - motor.mutual_inductance) / motor.count,
                  step),
         emf_constant_(motor.emf_constant),
-        force_constant_(motor.phase_force_constant),
+        half_force_constant_(0.5 * motor.phase_force_constant),
         angle_per_metre_(2.0 * std::numbers::pi / motor.pole_pair_pitch),
         half_step_(0.5 * step) {}
 
@@ -75,9 +75,9 @@ class SynchronousMotor {
     for (std::size_t k = 0; k < 3; ++k) {
       const double before = current_[k];
       current_[k] = winding_.advance(before, voltage[k] - star - emf_constant_ * v * sine[k]);
-      force += 0.5 * (before + current_[k]) * sine[k];
+      force += (before + current_[k]) * sine[k];
     }
-    return force_constant_ * force;
+    return half_force_constant_ * force;
   }
   const PhaseValues& current() const { return current_; }
   void switch_off() { current_ = {}; }
@@ -85,10 +85,15 @@ class SynchronousMotor {
  private:
   Winding winding_;
   double emf_constant_;
-  double force_constant_;
+  double half_force_constant_;
   double angle_per_metre_;
   double half_step_;
   PhaseValues current_{};
+};
+
+// A motor whose power stage is off.
+struct OpenWindings {
+  double advance(const PhaseValues&, double, double) { return 0.0; }
 };
 
 // Ideal force source driven by a voltage command, N/V.

@@ -10,6 +10,7 @@
 
 #include "sim/parameter.hpp"
 #include "sim/plant/friction/body.hpp"
+#include "sim/plant/friction/one_minus_exp.hpp"
 
 namespace stiction::sim {
 
@@ -38,22 +39,22 @@ class LuGre {
       : p_(p),
         step_(body.step),
         gain_(body.step / body.mass),
-        contact_damping_(2.0 * p.damping_ratio * std::sqrt(p.stiffness * body.mass)) {}
+        implicit_(1.0 / (1.0 + gain_ * p.viscous)),
+        sliding_limit_(p.coulomb / p.stiffness),
+        step_per_limit_(body.step / sliding_limit_),
+        damping_per_step_(2.0 * p.damping_ratio * std::sqrt(p.stiffness * body.mass) / body.step) {}
 
   // Velocity (m/s) one step later, under `force` (N), the sum of all forces but friction.
   double advance(double velocity, double force) {
     const double contact = move_contact(velocity);
-    return (velocity + gain_ * (force - contact)) / (1.0 + gain_ * p_.viscous);
+    return (velocity + gain_ * (force - contact)) * implicit_;
   }
 
   // Contact deflection limit g(v), m (4.6).
   double deflection_limit(double velocity) const {
-    double level = p_.coulomb;
-    if (p_.static_ratio != 1.0) {
-      const double ratio = velocity / p_.stribeck_velocity;
-      level += p_.coulomb * (p_.static_ratio - 1.0) * std::exp(-ratio * ratio);
-    }
-    return level / p_.stiffness;
+    if (p_.static_ratio == 1.0) return sliding_limit_;
+    const double ratio = velocity / p_.stribeck_velocity;
+    return sliding_limit_ * (1.0 + (p_.static_ratio - 1.0) * std::exp(-ratio * ratio));
   }
 
   double deflection() const { return z_; }  // z, m
@@ -61,16 +62,20 @@ class LuGre {
   // Lets the contact creep for one step of held velocity (m/s); returns k_s z + b_s z' (N) at its end.
   double move_contact(double velocity) {
     const double g = deflection_limit(velocity);
-    const double previous = z_;
-    z_ -= std::expm1(-std::abs(velocity) * step_ / g) * (std::copysign(g, velocity) - z_);
-    return p_.stiffness * z_ + contact_damping_ * (z_ - previous) / step_;
+    const double share = one_minus_exp(std::abs(velocity) * (p_.static_ratio == 1.0 ? step_per_limit_ : step_ / g));
+    const double change = share * (std::copysign(g, velocity) - z_);
+    z_ += change;
+    return p_.stiffness * z_ + damping_per_step_ * change;
   }
 
  private:
   Parameters p_;
   double step_;
   double gain_;
-  double contact_damping_;
+  double implicit_;
+  double sliding_limit_;  // g far from standstill, m
+  double step_per_limit_;
+  double damping_per_step_;  // b_s / step
   double z_ = 0.0;
 };
 

@@ -133,11 +133,11 @@ TEST(AxisLimiting, AfterASecondAtTheVoltageLimitAReversedErrorLeavesItInTheNextT
   EXPECT_NEAR(sim::to_si(b.command.voltage[0]), 300.0 - 35.0 * 20.0 * 62.5e-6 / 2e-3 - 0.35, 0.02);
 }
 
-TEST(AxisLimiting, AFeedforwardAtTheLimitDoesNotWindTheIntegratorUpAgainstIt) {
+TEST(AxisLimiting, AFeedforwardBeyondTheLimitDrawsTheIntegratorBackByItsExcess) {
   FixedBench b(config_without_faults());
   b.set.acceleration = si<S::Acceleration>(20.0);  // 50 A wanted, 40 A given: 10 A of excess
   for (int i = 0; i < 16000; ++i) b.tick();
-  EXPECT_NEAR(sim::to_si(b.signals.i_integral), -10.0, 1e-3) << "the integrator yields what the limit refuses";
+  EXPECT_NEAR(sim::to_si(b.signals.i_integral), -10.0, 1e-3);
   b.set.acceleration = {};
   b.tick();
   EXPECT_NEAR(sim::to_si(b.signals.i_set), -10.0, 1e-3);

@@ -1,0 +1,168 @@
+// The PI controller against its law in exact arithmetic, its step response against the closed form of
+// k (1 + 1 / (T_N s)), and its anti-windup.
+#include "stiction/control/pi.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sim/control/conversion.hpp"
+#include "stiction/drive/axis.hpp"
+#include "stiction/number/fixed_signals.hpp"
+#include "tests/firmware/number/exact.hpp"
+
+namespace stiction {
+namespace {
+
+using S = FixedSignals;
+using test::Int128;
+using Fixed = VelocityPi<S>;
+using Real = VelocityPi<sim::DoubleSignals>;
+
+constexpr double tick = 62.5e-6;
+
+template <class PiOf, class P, class I, class T>
+typename PiOf::Config config(double gain, double integral_time) {
+  return {sim::to_signal<P>(gain).value(), sim::to_signal<I>(gain * tick / integral_time).value(),
+          sim::to_signal<T>(tick / integral_time).value()};
+}
+Fixed::Config fixed_config(double gain, double time) {
+  return config<Fixed, S::VelocityGain, S::VelocityIntegralGain, S::VelocityTracking>(gain, time);
+}
+Real::Config real_config(double gain, double time) {
+  return config<Real, sim::Real, sim::Real, sim::Real>(gain, time);
+}
+
+// 600 A s/m over 5 ms: k T / T_N = 7.5 A s/m, an exact number of the format.
+RC_GTEST_PROP(Pi, FixedPointIsTheExactSumRoundedOnce, ()) {
+  const auto c = fixed_config(600.0, 5e-3);
+  Fixed::State state;
+  SaturationCounter saturations;
+  Int128 sum = 0;  // of the errors
+  for (int n = 0; n < 50; ++n) {
+    const auto e = S::Velocity::from_raw(static_cast<std::int32_t>(test::drawn_between(-3000000, 3000000)));  // 11 mm/s
+    const auto y = Fixed::step(c, state, e, saturations);
+    sum += e.raw();
+    const Int128 integral = sum * c.integral.raw();  // 48 fraction bits
+    RC_ASSERT(Int128{state.integral.raw()} == integral);
+    // The header's own word: the integrator's last 8 bits, 2^-28 of the output's, are rounded before the output.
+    const Int128 in_output = test::rescaled(integral, 48, 40) + Int128{c.proportional.raw()} * e.raw();
+    RC_ASSERT(std::int64_t{y.raw()} == test::expected_raw<S::Current>(in_output, 40));
+    // Against a single rounding of the exact sum this can differ in a tie at most.
+    const Int128 exact = integral + (Int128{c.proportional.raw()} * e.raw() << 8);
+    const Int128 error = (Int128{y.raw()} << 28) - exact;
+    const Int128 bound = test::power_of_two(27) + test::power_of_two(7);
+    RC_ASSERT(error <= bound && error >= -bound);
+  }
+  RC_ASSERT(saturations.count == 0u);
+}
+
+template <class PiOf, class Velocity, class C>
+void check_step_response(const C& c, double tolerance) {
+  typename PiOf::State state;
+  SaturationCounter saturations;
+  const double e = 0x1p-8;  // m/s
+  for (int n = 1; n <= 1600; ++n) {
+    const double y = sim::to_si(PiOf::step(c, state, sim::to_signal<Velocity>(e).value(), saturations));
+    // The integrator counts the current error: the sum at tick n is that of the continuous law at n T.
+    ASSERT_NEAR(y, 600.0 * e * (1.0 + n * tick / 5e-3), tolerance) << n;
+  }
+}
+
+TEST(Pi, StepResponseIsThatOfTheContinuousLawAtTheEndOfEachTick) {
+  check_step_response<Fixed, S::Velocity>(fixed_config(600.0, 5e-3), 0x1p-20);  // one bit of the current
+  check_step_response<Real, sim::Real>(real_config(600.0, 5e-3), 1e-11);        // 1600 roundings of double at 50 A
+}
+
+TEST(Pi, WithoutAnIntegralGainIsProportional) {
+  Fixed::Config c;
+  c.proportional = sim::to_signal<S::VelocityGain>(250.0).value();
+  Fixed::State state;
+  SaturationCounter saturations;
+  for (int n = 0; n < 100; ++n) {
+    const double e = 0x1p-10 * (n % 7 - 3);
+    const auto wanted = Fixed::step(c, state, sim::to_signal<S::Velocity>(e).value(), saturations);
+    EXPECT_EQ(sim::to_si(wanted), 250.0 * e);
+    Fixed::track(c, state, wanted, {}, saturations);  // fully limited
+    EXPECT_EQ(state.integral.raw(), 0);
+  }
+}
+
+// Runs a limited controller and tells what the limit let pass.
+template <class PiOf, class Velocity>
+double limited_step(const typename PiOf::Config& c, typename PiOf::State& state, double e, double limit) {
+  SaturationCounter saturations;
+  const auto wanted = PiOf::step(c, state, sim::to_signal<Velocity>(e).value(), saturations);
+  using Output = std::remove_const_t<decltype(wanted)>;
+  const auto given = sim::to_signal<Output>(std::clamp(sim::to_si(wanted), -limit, limit)).value();
+  PiOf::track(c, state, wanted, given, saturations);
+  return sim::to_si(given);
+}
+
+TEST(Pi, WhileTheLimitHoldsTheIntegratorTendsToTheLimitWithTheTimeConstantOfTheTracking) {
+  const auto c = real_config(600.0, 5e-3);
+  Real::State state;
+  for (int n = 1; n <= 800; ++n) {
+    limited_step<Real, sim::Real>(c, state, 0.5, 40.0);
+    // I(n) = I* (1 - (1 - T/T_N)^n), I* = limit - K_i e: the recursion's closed form.
+    const double rest = 40.0 - 600.0 * tick / 5e-3 * 0.5;
+    ASSERT_NEAR(sim::to_si(state.integral), rest * (1.0 - std::pow(1.0 - tick / 5e-3, n)), 1e-9) << n;
+  }
+}
+
+TEST(Pi, AfterASecondAtTheLimitTheOutputLeavesItInTheTickInWhichTheErrorReverses) {
+  for (const double reversed : {-1e-6, -1e-3, -0.05}) {
+    const auto c = fixed_config(600.0, 5e-3);
+    Fixed::State state;
+    for (int n = 0; n < 16000; ++n) ASSERT_EQ((limited_step<Fixed, S::Velocity>(c, state, 0.5, 40.0)), 40.0);
+    EXPECT_LT((limited_step<Fixed, S::Velocity>(c, state, reversed, 40.0)), 40.0) << reversed;
+  }
+}
+
+TEST(Pi, TheIntegratorStaysBoundedByItsFormatForAnyErrorAndAnyTime) {
+  const auto c = fixed_config(600.0, 5e-3);
+  for (const double e : {8.0 - 0x1p-28, -8.0, 0.07}) {
+    Fixed::State state;
+    for (int n = 0; n < 100000; ++n) limited_step<Fixed, S::Velocity>(c, state, e, 40.0);
+    EXPECT_LE(std::abs(sim::to_si(state.integral)), 8192.0) << e;
+  }
+}
+
+TEST(Pi, AnErrorThatSaturatesTheOutputsOwnFormatDoesNotWindTheIntegratorUp) {
+  // The Y axis: 1200 A s/m * 2 m/s = 2400 A, beyond the format's 2048 A. What the saturation hides from the tracking
+  // must not stay in the integrator: as for smaller errors it may not rest beyond the limit.
+  const auto c = fixed_config(1200.0, 4.4e-3);
+  Fixed::State state;
+  for (int n = 0; n < 16000; ++n) limited_step<Fixed, S::Velocity>(c, state, 2.0, 80.0);
+  EXPECT_LE(std::abs(sim::to_si(state.integral)), 80.0);
+  EXPECT_LT((limited_step<Fixed, S::Velocity>(c, state, -1e-2, 80.0)), 80.0);
+}
+
+TEST(Pi, WithoutALimitTrackingChangesNothing) {
+  const auto c = fixed_config(600.0, 5e-3);
+  Fixed::State state;
+  SaturationCounter saturations;
+  const auto y = Fixed::step(c, state, sim::to_signal<S::Velocity>(0.01).value(), saturations);
+  const auto before = state.integral;
+  Fixed::track(c, state, y, y, saturations);
+  EXPECT_EQ(state.integral, before);
+}
+
+RC_GTEST_PROP(Pi, FixedPointFollowsDoubleWithinItsRounding, ()) {
+  // Gains that the formats hold exactly, so that only the signals' rounding remains.
+  const auto fixed = fixed_config(600.0, 5e-3);
+  const auto real = real_config(600.0, 5e-3);
+  Fixed::State a;
+  Real::State b;
+  SaturationCounter saturations;
+  for (int n = 0; n < 200; ++n) {
+    const auto e = S::Velocity::from_raw(static_cast<std::int32_t>(test::drawn_between(-2000000, 2000000)));
+    const double y = sim::to_si(Fixed::step(fixed, a, e, saturations));
+    const double z = sim::to_si(Real::step(real, b, {sim::to_si(e)}, saturations));
+    // Half a bit, the tie of the integrator's bits, and double's own rounding of sums up to 15 A.
+    RC_ASSERT(std::abs(y - z) <= 0x1p-21 + 0x1p-41 + 1e-11);
+  }
+}
+
+}  // namespace
+}  // namespace stiction

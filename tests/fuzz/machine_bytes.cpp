@@ -1,0 +1,93 @@
+#include "tests/fuzz/machine_bytes.hpp"
+
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "hal/control_loop.hpp"
+#include "hal/simulated/simulated_backend.hpp"
+#include "sim/control/axis_configuration.hpp"
+#include "sim/control/double_signals.hpp"
+#include "sim/experiment/set_point.hpp"
+#include "stiction/number/fixed_signals.hpp"
+
+namespace stiction::fuzz {
+namespace {
+
+constexpr int ticks = 10;
+
+bool is_finite(const sim::AxisPlant& plant) {
+  return std::isfinite(plant.encoder_position()) && std::isfinite(plant.encoder_velocity()) &&
+         std::isfinite(plant.current()[0]) && std::isfinite(plant.current()[1]) && std::isfinite(plant.current()[2]);
+}
+
+void rest(const sim::Machine& machine) {
+  for (const auto& axis : machine.axes) {
+    sim::AxisPlant plant(machine.timing, axis, 0.0, 1);
+    for (int i = 0; i < ticks; ++i) plant.advance_tick();
+    if (!is_finite(plant))
+      finding(fmt::format("axis {}: at rest and without command the plant became infinite or NaN", axis.name));
+  }
+}
+
+// The set-point stands beside the axes, so that every controller has an error to act on.
+template <class S>
+void control(const sim::Machine& machine) {
+  std::vector<AxisConfig<S>> configs;
+  try {
+    for (const auto& axis : machine.axes) configs.push_back(sim::configure_axis<S>(machine.timing, axis));
+  } catch (const sim::ConfigurationError&) {
+    return;
+  }
+  const std::vector<double> positions(machine.axes.size(), 0.0);
+  hal::SimulatedBackend<S> backend(machine, positions);
+  const Ticker ticker(sim::fast_period_ns(machine.timing), static_cast<std::uint32_t>(sim::slow_ratio(machine.timing)));
+  hal::ControlLoop loop(backend, std::span<const AxisConfig<S>>(configs), ticker);
+  const std::vector<SetPoint<S>> set(machine.axes.size(), sim::to_set_point<S>({1e-5, 0.0, 0.0}));
+  for (int i = 0; i < ticks && !loop.faulted(); ++i) loop.tick(set);
+  bool finite = true;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) finite = finite && is_finite(backend.plant(i));
+  if (finite) return;
+  for (int i = 0; i <= Axis<S>::missed_positions_allowed; ++i) loop.tick(set);
+  if (!loop.faulted()) finding("the drive goes on controlling a plant that is infinite or NaN");
+}
+
+}  // namespace
+
+FileInMemory::FileInMemory()
+    : descriptor_(memfd_create("machine", MFD_CLOEXEC)), path_(fmt::format("/proc/self/fd/{}", descriptor_)) {
+  if (descriptor_ < 0) finding("memfd_create failed");
+}
+FileInMemory::~FileInMemory() { close(descriptor_); }
+
+void FileInMemory::write(std::string_view text) {
+  const auto size = static_cast<ssize_t>(text.size());
+  if (ftruncate(descriptor_, 0) != 0 || pwrite(descriptor_, text.data(), text.size(), 0) != size)
+    finding("the file in memory cannot be written");
+}
+
+void run_briefly(const sim::Machine& machine) {
+  rest(machine);
+  control<FixedSignals>(machine);
+  control<sim::DoubleSignals>(machine);
+}
+
+void read_and_run(const FileInMemory& file, const sim::ReadOptions& options) {
+  sim::Machine machine;
+  try {
+    machine = sim::read_machine(file.path(), options);
+  } catch (const sim::MachineFileError&) {
+    return;
+  }
+  run_briefly(machine);
+}
+
+void finding(const std::string& what) {
+  fmt::print(stderr, "fuzz: {}\n", what);
+  std::abort();
+}
+
+}  // namespace stiction::fuzz

@@ -1,0 +1,12 @@
+// Any bytes as a machine file.
+#include <cstddef>
+#include <cstdint>
+
+#include "tests/fuzz/machine_bytes.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static stiction::fuzz::FileInMemory file;
+  file.write({reinterpret_cast<const char*>(data), size});
+  stiction::fuzz::read_and_run(file, {});
+  return 0;
+}

@@ -1,0 +1,94 @@
+#include "tests/targets/laws.hpp"
+
+// Names without decoration, so that a profiler's options can name them.
+#define STICTION_LAW(name)                                                       \
+  static void name##_of(stiction::targets::LawContext& c);                       \
+  extern "C" [[gnu::noinline]] void name(void* data);                            \
+  void name(void* data) { name##_of(*static_cast<stiction::targets::LawContext*>(data)); } \
+  [[gnu::always_inline]] static inline void name##_of(stiction::targets::LawContext& c)
+
+using S = stiction::FixedSignals;
+
+// What is left of a count is a call and its return.
+STICTION_LAW(law_nothing) { static_cast<void>(c); }
+
+STICTION_LAW(law_axis) { c.command = c.axis.tick(c.set, c.feedback, c.now_ns, c.slow, c.signals); }
+
+STICTION_LAW(law_cascade) {
+  c.cascade_command = c.cascade.tick(c.set, c.feedback, c.now_ns, c.slow, c.cascade_signals);
+}
+
+STICTION_LAW(law_estimate) {
+  c.estimate = stiction::VelocityEstimator<S>::step(c.estimator, c.config.velocity_feedback, c.feedback.position,
+                                                    c.feedback.position_time_ns, c.feedback.velocity, c.saturations);
+}
+
+STICTION_LAW(law_quantizer) {
+  c.quantised = stiction::Quantizer<S>::apply(c.config.quantizer, c.signals.e, c.saturations);
+}
+
+STICTION_LAW(law_delay) {
+  stiction::SpeedDelay<S>::push(c.set_speeds, c.set.velocity);
+  c.set_speed_then = stiction::SpeedDelay<S>::read(
+      c.set_speeds, S::ticks(c.now_ns - c.axis.state().velocity.time_ns, c.config.inverse_period), c.saturations);
+}
+
+STICTION_LAW(law_p_feedforward) {
+  c.v_ref = stiction::narrow<S::Velocity>(
+      c.config.position_gain * c.signals.e_held + c.config.velocity_feedforward * c.signals.v_set_delayed,
+      c.saturations);
+  c.i_feedforward = stiction::narrow<S::Current>(c.config.current_feedforward * c.set.acceleration, c.saturations);
+}
+
+STICTION_LAW(law_velocity_pi) {
+  c.i_pi = stiction::VelocityPi<S>::step(c.config.velocity, c.velocity_pi, c.signals.v_error, c.saturations);
+  stiction::VelocityPi<S>::track(c.config.velocity, c.velocity_pi, c.i_wanted, c.signals.i_set, c.saturations);
+}
+
+STICTION_LAW(law_notch) {
+  c.i_notch = stiction::Notch<S>::step(c.config.notch, c.notch, c.signals.i_pi, c.saturations);
+}
+
+// From following error and set-point to current, without any limit: P, both feedforwards, PI, notch.
+STICTION_LAW(law_p_ff_pi_notch) {
+  const auto v_ref = stiction::narrow<S::Velocity>(
+      c.config.position_gain * c.signals.e_held + c.config.velocity_feedforward * c.signals.v_set_delayed,
+      c.saturations);
+  const auto v_error = stiction::narrow<S::Velocity>(v_ref - c.signals.v, c.saturations);
+  const auto i_pi = stiction::VelocityPi<S>::step(c.config.velocity, c.unlimited_pi, v_error, c.saturations);
+  const auto i_notch = stiction::Notch<S>::step(c.config.notch, c.unlimited_notch, i_pi, c.saturations);
+  const auto i_feedforward =
+      stiction::narrow<S::Current>(c.config.current_feedforward * c.set.acceleration, c.saturations);
+  c.unlimited = stiction::narrow<S::Current>(i_notch + i_feedforward, c.saturations);
+}
+
+STICTION_LAW(law_commutation) {
+  using Commutation = stiction::Commutation<S>;
+  c.phase = Commutation::phases(S::angle(c.signals.x, c.config.inverse_pole_pair_pitch), c.saturations);
+  c.amplitude = Commutation::amplitude(c.signals.i_phase, c.phase, c.saturations);
+  for (std::size_t k = 0; k < 3; ++k)
+    c.set_current[k] = Commutation::phase_current(c.signals.i_set, c.phase[k], c.saturations);
+}
+
+// Of one phase, with the limit of its voltage.
+STICTION_LAW(law_current_pi) {
+  const auto error = stiction::narrow<S::Current>(c.set_current[0] - c.signals.i_phase[0], c.saturations);
+  const auto wanted = stiction::CurrentPi<S>::step(c.config.current, c.current_pi, error, c.saturations);
+  const auto low = stiction::narrow<S::Voltage>(S::Voltage{} - c.config.voltage_limit, c.saturations);
+  c.voltage = stiction::limit(wanted, low, c.config.voltage_limit);
+  stiction::CurrentPi<S>::track(c.config.current, c.current_pi, wanted, c.voltage.value, c.saturations);
+}
+
+namespace stiction::targets {
+
+#define STICTION_ROW(name) \
+  Law { #name, name }
+const std::array<Law, laws.size()> laws{{STICTION_ROW(law_nothing), STICTION_ROW(law_axis), STICTION_ROW(law_cascade),
+                                         STICTION_ROW(law_p_ff_pi_notch), STICTION_ROW(law_estimate),
+                                         STICTION_ROW(law_quantizer), STICTION_ROW(law_delay),
+                                         STICTION_ROW(law_p_feedforward), STICTION_ROW(law_velocity_pi),
+                                         STICTION_ROW(law_notch), STICTION_ROW(law_commutation),
+                                         STICTION_ROW(law_current_pi)}};
+#undef STICTION_ROW
+
+}  // namespace stiction::targets
