@@ -38,7 +38,7 @@ class SimulatedBackend {
   }
 
   void read(std::span<Feedback<S>> feedback) {
-    for (std::size_t i = 0; i < plants_.size(); ++i) feedback[i] = sample(plants_[i]);
+    for (std::size_t i = 0; i < plants_.size(); ++i) sample(plants_[i], feedback[i]);
   }
 
   void write(std::span<const Command<S>> command) {
@@ -52,8 +52,7 @@ class SimulatedBackend {
  private:
   // What cannot be represented (a plant that ran away to infinity or NaN) reaches the control as a position that is
   // not valid or as a fault input, never as a number.
-  Feedback<S> sample(sim::AxisPlant& plant) const {
-    Feedback<S> f;
+  void sample(sim::AxisPlant& plant, Feedback<S>& f) const {
     const auto position = sim::to_signal<typename S::Position>(plant.read_encoder());
     const auto velocity = sim::to_signal<typename S::Velocity>(plant.encoder_velocity());
     f.position_valid = position && velocity;
@@ -62,12 +61,14 @@ class SimulatedBackend {
       f.velocity = *velocity;
     }
     f.position_time_ns = now_ns_;
-    for (std::size_t k = 0; k < 3; ++k) {
+    f.fault = false;
+    for (std::size_t k = 0; k < plant.phases(); ++k) {
       const auto current = sim::to_signal<typename S::Current>(plant.current()[k]);
-      f.fault = f.fault || !current;
-      if (current) f.current[k] = *current;
+      if (current)
+        f.current[k] = *current;
+      else
+        f.fault = true;
     }
-    return f;
   }
 
   std::int64_t period_ns_;

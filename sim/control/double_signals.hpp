@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cmath>
-#include <compare>
 #include <concepts>
 #include <cstdint>
 #include <numbers>
@@ -16,8 +15,13 @@ namespace stiction::sim {
 struct Real {
   double value = 0.0;
 
-  friend constexpr auto operator<=>(const Real&, const Real&) = default;
   constexpr Real operator-() const { return {-value}; }
+  // One by one: the three-way comparison of doubles costs three of these.
+  friend constexpr bool operator==(Real a, Real b) { return a.value == b.value; }
+  friend constexpr bool operator<(Real a, Real b) { return a.value < b.value; }
+  friend constexpr bool operator>(Real a, Real b) { return a.value > b.value; }
+  friend constexpr bool operator<=(Real a, Real b) { return a.value <= b.value; }
+  friend constexpr bool operator>=(Real a, Real b) { return a.value >= b.value; }
 };
 
 constexpr Real operator*(Real a, Real b) { return {a.value * b.value}; }
@@ -36,7 +40,8 @@ constexpr Out narrow(Real x, SaturationCounter&) { return x; }
 template <class Out>
 requires std::same_as<Out, WholeReal>
 inline Out narrow(Real x, SaturationCounter&) { return {std::round(x.value)}; }
-constexpr Real magnitude(Real x) { return {x.value < 0.0 ? -x.value : x.value}; }
+constexpr Real opposite(Real x) { return -x; }
+inline bool exceeds(Real x, Real bound) { return std::abs(x.value) > bound.value; }
 
 struct DoubleSignals {
   static constexpr const char* name = "double";

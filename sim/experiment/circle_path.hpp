@@ -28,6 +28,7 @@ class CirclePath {
 
   explicit CirclePath(const CircleSettings& settings)
       : radius_(settings.radius),
+        curvature_(1.0 / settings.radius),
         sense_(settings.direction == Direction::counter_clockwise ? 1.0 : -1.0),
         ramp_(settings.feed, settings.acceleration, settings.jerk) {}
 
@@ -38,9 +39,9 @@ class CirclePath {
 
   Point at(double t) const {
     const auto motion = ramp_.at(t);
-    const double phi = motion.distance / radius_;
-    const double omega = sense_ * motion.speed / radius_;
-    const double epsilon = sense_ * motion.acceleration / radius_;
+    const double phi = motion.distance * curvature_;
+    const double omega = sense_ * motion.speed * curvature_;
+    const double epsilon = sense_ * motion.acceleration * curvature_;
     const double x = radius_ * std::cos(phi);
     const double y = sense_ * radius_ * std::sin(phi);
     const double v_x = -y * omega;
@@ -50,6 +51,7 @@ class CirclePath {
 
  private:
   double radius_;
+  double curvature_;  // 1/m
   double sense_;
   SpeedRamp ramp_;
 };

@@ -31,7 +31,8 @@ AxisPlant::AxisPlant(const Timing& timing, const Axis& axis, double position, st
       increments_per_metre_(1.0 / axis.encoder.increment),
       encoder_noise_(axis.encoder.noise),
       random_(seed),
-      position_(position) {}
+      position_(position),
+      phases_(axis.motor.model == MotorModel::synchronous ? 3 : 1) {}
 
 void AxisPlant::command(const PhaseValues& voltage, bool enable) {
   enabled_ = enable;

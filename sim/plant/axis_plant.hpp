@@ -36,6 +36,7 @@ class AxisPlant {
   double friction_force() const { return friction_force_; }  // N, mean over the last step, positive opposes +v
   double encoder_position() const { return position_ + mount_.deflection(); }  // m, before increment and noise
   double encoder_velocity() const { return velocity_ + mount_.velocity(); }    // m/s
+  std::size_t phases() const { return phases_; }                               // that carry current: 3, or 1
   const PhaseValues& current() const { return current_; }                      // A, of the phases
 
   // What the encoder reads now: with increment and noise. Draws a new noise value at each call.
@@ -65,6 +66,7 @@ class AxisPlant {
   double motor_force_ = 0.0;
   double friction_force_ = 0.0;
   double external_force_ = 0.0;
+  std::size_t phases_;
   PhaseValues current_{};
 };
 

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <vector>
 
 #include "hal/control_loop.hpp"
 #include "hal/simulated/simulated_backend.hpp"
@@ -19,6 +20,8 @@ namespace {
 
 constexpr int ticks = 10;
 
+const std::vector<std::string>* current_overrides = nullptr;  // of the input that runs, for the message of a finding
+
 bool is_finite(const sim::AxisPlant& plant) {
   return std::isfinite(plant.encoder_position()) && std::isfinite(plant.encoder_velocity()) &&
          std::isfinite(plant.current()[0]) && std::isfinite(plant.current()[1]) && std::isfinite(plant.current()[2]);
@@ -28,7 +31,7 @@ void rest(const sim::Machine& machine) {
   for (const auto& axis : machine.axes) {
     sim::AxisPlant plant(machine.timing, axis, 0.0, 1);
     for (int i = 0; i < ticks; ++i) plant.advance_tick();
-    if (!is_finite(plant))
+    if (!is_finite(plant) || !std::isfinite(plant.read_encoder()))
       finding(fmt::format("axis {}: at rest and without command the plant became infinite or NaN", axis.name));
   }
 }
@@ -63,10 +66,14 @@ FileInMemory::FileInMemory()
 }
 FileInMemory::~FileInMemory() { close(descriptor_); }
 
-void FileInMemory::write(std::string_view text) {
+void FileInMemory::replace_by(std::string_view text) {
   const auto size = static_cast<ssize_t>(text.size());
   if (ftruncate(descriptor_, 0) != 0 || pwrite(descriptor_, text.data(), text.size(), 0) != size)
     finding("the file in memory cannot be written");
+}
+
+std::filesystem::path valid_machine(const std::string& motor) {
+  return std::filesystem::path(STICTION_SOURCE_DIR) / "tests" / "fuzz" / "seeds" / "machine_file" / (motor + ".toml");
 }
 
 void run_briefly(const sim::Machine& machine) {
@@ -75,10 +82,11 @@ void run_briefly(const sim::Machine& machine) {
   control<sim::DoubleSignals>(machine);
 }
 
-void read_and_run(const FileInMemory& file, const sim::ReadOptions& options) {
+void read_and_run(const std::filesystem::path& file, const sim::ReadOptions& options) {
+  current_overrides = &options.set;
   sim::Machine machine;
   try {
-    machine = sim::read_machine(file.path(), options);
+    machine = sim::read_machine(file, options);
   } catch (const sim::MachineFileError&) {
     return;
   }
@@ -86,7 +94,9 @@ void read_and_run(const FileInMemory& file, const sim::ReadOptions& options) {
 }
 
 void finding(const std::string& what) {
-  fmt::print(stderr, "fuzz: {}\n", what);
+  fmt::print(stderr, "finding: {}\n", what);
+  if (current_overrides != nullptr)
+    for (const auto& assignment : *current_overrides) fmt::print(stderr, "  --set '{}'\n", assignment);
   std::abort();
 }
 

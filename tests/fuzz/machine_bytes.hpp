@@ -1,16 +1,15 @@
-// For the fuzzers: a machine from bytes that never touch a disk, and the least that must hold for any machine that the
-// reader accepts.
+// For the fuzzers: the least that must hold for any machine that the reader accepts, and any bytes as a file.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "sim/machine/machine_file.hpp"
 
 namespace stiction::fuzz {
 
-// A file in memory with a path, replaced by each text.
+// A file with a path that never touches a disk.
 class FileInMemory {
  public:
   FileInMemory();
@@ -18,18 +17,21 @@ class FileInMemory {
   FileInMemory(const FileInMemory&) = delete;
   FileInMemory& operator=(const FileInMemory&) = delete;
 
-  void write(std::string_view text);
-  const std::string& path() const { return path_; }
+  void replace_by(std::string_view text);
+  const std::filesystem::path& path() const { return path_; }
 
  private:
   int descriptor_;
-  std::string path_;
+  std::filesystem::path path_;
 };
+
+// Valid machines with one axis that has everything its motor model allows: "synchronous", "dc" or "force".
+std::filesystem::path valid_machine(const std::string& motor);
 
 // Reads the file and, when it is accepted, runs the machine for a moment. A refusal that names its reason
 // (sim::MachineFileError, sim::ConfigurationError) is right for any input; every other exception, and a machine that
 // breaks the promises of run_briefly, ends the program as a finding.
-void read_and_run(const FileInMemory& file, const sim::ReadOptions& options);
+void read_and_run(const std::filesystem::path& file, const sim::ReadOptions& options);
 
 // Ten fast ticks: a plant at rest without command stays finite; in closed loop, in both signal policies, a plant that
 // is no longer finite has stopped its drive with a fault.

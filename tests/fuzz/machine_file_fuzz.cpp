@@ -6,7 +6,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static stiction::fuzz::FileInMemory file;
-  file.write({reinterpret_cast<const char*>(data), size});
-  stiction::fuzz::read_and_run(file, {});
+  file.replace_by({reinterpret_cast<const char*>(data), size});
+  stiction::fuzz::read_and_run(file.path(), {});
   return 0;
 }

@@ -3,10 +3,9 @@
 #include <cstdint>
 
 #include "tests/fuzz/machine_bytes.hpp"
-#include "tests/fuzz/valid_machines.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const stiction::fuzz::FileInMemory file = stiction::fuzz::synchronous_machine();
+  static const auto file = stiction::fuzz::valid_machine("synchronous");
   stiction::sim::ReadOptions options;
   std::string_view rest(reinterpret_cast<const char*>(data), size);
   bool first = true;

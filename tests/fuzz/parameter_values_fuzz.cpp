@@ -8,7 +8,6 @@
 
 #include "sim/machine/description.hpp"
 #include "tests/fuzz/machine_bytes.hpp"
-#include "tests/fuzz/valid_machines.hpp"
 
 namespace stiction::fuzz {
 namespace {
@@ -35,13 +34,14 @@ std::vector<Key> keys_of(bool force_motor) {
 }
 
 struct Base {
-  FileInMemory file;
+  std::filesystem::path file;
   std::vector<Key> keys;
 };
 
 std::string value_of(FuzzedDataProvider& bytes, const Key& key) {
   const bool whole = bytes.ConsumeBool();  // only these fit a count
-  const double mantissa = whole ? bytes.ConsumeIntegralInRange<int>(-1, 100) : bytes.ConsumeFloatingPointInRange(0.5, 2.0);
+  const double mantissa =
+      whole ? bytes.ConsumeIntegralInRange<int>(-1, 100) : bytes.ConsumeFloatingPointInRange(0.5, 2.0);
   const int exponent = whole ? 0 : bytes.ConsumeIntegralInRange<int>(-320, 308);
   const std::string number = whole ? fmt::format("{}", mantissa) : fmt::format("{}e{}", mantissa, exponent);
   const std::string quantity = key.unit == "1" ? number : fmt::format("\"{} {}\"", number, key.unit);
@@ -53,8 +53,9 @@ std::string value_of(FuzzedDataProvider& bytes, const Key& key) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace stiction::fuzz;
-  static const std::array<Base, 3> bases{Base{synchronous_machine(), keys_of(false)},
-                                         Base{dc_machine(), keys_of(false)}, Base{force_machine(), keys_of(true)}};
+  static const std::array<Base, 3> bases{Base{valid_machine("synchronous"), keys_of(false)},
+                                         Base{valid_machine("dc"), keys_of(false)},
+                                         Base{valid_machine("force"), keys_of(true)}};
   FuzzedDataProvider bytes(data, size);
   const Base& base = bases[bytes.ConsumeIntegralInRange<std::size_t>(0, bases.size() - 1)];
   stiction::sim::ReadOptions options;

@@ -3,9 +3,7 @@
 // were (tick, axis). Elsewhere it only runs the laws, for a profiler that knows their names.
 // usage: count RECORDING                 run and, where possible, count
 //        count RECORDING TICK AXIS       say what the axis does in that tick
-//        count RECORDING names           print the names of the laws
 #include <array>
-#include <cstring>
 
 #include "stiction/drive/ticker.hpp"
 #include "tests/targets/decimal.hpp"
@@ -128,13 +126,10 @@ int main(int argc, char** argv) {
   bool done = false;
   if (argc == 2) {
     done = count(argv[1]);
-  } else if (argc == 3 && std::strcmp(argv[2], "names") == 0) {
-    for (const auto& law : laws) print(law.name), print("\n");
-    done = true;
   } else if (argc == 4) {
     done = describe(argv[1], number_of(argv[2]), number_of(argv[3]));
   } else {
-    print("usage: count RECORDING [TICK AXIS | names]\n");
+    print("usage: count RECORDING [TICK AXIS]\n");
     return 2;
   }
   if (!done) print("count: no complete recording of this version\n");

@@ -1,9 +1,9 @@
 #include "tests/targets/laws.hpp"
 
 // Names without decoration, so that a profiler's options can name them.
-#define STICTION_LAW(name)                                                       \
-  static void name##_of(stiction::targets::LawContext& c);                       \
-  extern "C" [[gnu::noinline]] void name(void* data);                            \
+#define STICTION_LAW(name)                                                                 \
+  static void name##_of(stiction::targets::LawContext& c);                                 \
+  extern "C" [[gnu::noinline]] void name(void* data);                                      \
   void name(void* data) { name##_of(*static_cast<stiction::targets::LawContext*>(data)); } \
   [[gnu::always_inline]] static inline void name##_of(stiction::targets::LawContext& c)
 
@@ -74,8 +74,7 @@ STICTION_LAW(law_commutation) {
 STICTION_LAW(law_current_pi) {
   const auto error = stiction::narrow<S::Current>(c.set_current[0] - c.signals.i_phase[0], c.saturations);
   const auto wanted = stiction::CurrentPi<S>::step(c.config.current, c.current_pi, error, c.saturations);
-  const auto low = stiction::narrow<S::Voltage>(S::Voltage{} - c.config.voltage_limit, c.saturations);
-  c.voltage = stiction::limit(wanted, low, c.config.voltage_limit);
+  c.voltage = stiction::limit(wanted, c.config.voltage_limit);
   stiction::CurrentPi<S>::track(c.config.current, c.current_pi, wanted, c.voltage.value, c.saturations);
 }
 
@@ -83,12 +82,11 @@ namespace stiction::targets {
 
 #define STICTION_ROW(name) \
   Law { #name, name }
-const std::array<Law, laws.size()> laws{{STICTION_ROW(law_nothing), STICTION_ROW(law_axis), STICTION_ROW(law_cascade),
-                                         STICTION_ROW(law_p_ff_pi_notch), STICTION_ROW(law_estimate),
-                                         STICTION_ROW(law_quantizer), STICTION_ROW(law_delay),
-                                         STICTION_ROW(law_p_feedforward), STICTION_ROW(law_velocity_pi),
-                                         STICTION_ROW(law_notch), STICTION_ROW(law_commutation),
-                                         STICTION_ROW(law_current_pi)}};
+const std::array<Law, laws.size()> laws{
+    {STICTION_ROW(law_nothing), STICTION_ROW(law_axis), STICTION_ROW(law_cascade), STICTION_ROW(law_p_ff_pi_notch),
+     STICTION_ROW(law_estimate), STICTION_ROW(law_quantizer), STICTION_ROW(law_delay), STICTION_ROW(law_p_feedforward),
+     STICTION_ROW(law_velocity_pi), STICTION_ROW(law_notch), STICTION_ROW(law_commutation),
+     STICTION_ROW(law_current_pi)}};
 #undef STICTION_ROW
 
 }  // namespace stiction::targets

@@ -5,12 +5,13 @@
 
 namespace stiction::sim {
 
-// For a >= 0, relative error below 3e-11. Steps are short, so a is small most of the time: there the series is.
+// For a >= 0, relative error below 6e-8 (at the limit of the series; 2e-10 at a third of it).
+// That is less than what the step itself leaves. Steps are short, so a is small most of the time: there the series is.
 inline double one_minus_exp(double a) {
   if (a > 0.125) [[unlikely]]
     return -std::expm1(-a);
-  constexpr double c2 = -1.0 / 2, c3 = 1.0 / 6, c4 = -1.0 / 24, c5 = 1.0 / 120, c6 = -1.0 / 720, c7 = 1.0 / 5040;
-  return a * (1.0 + a * (c2 + a * (c3 + a * (c4 + a * (c5 + a * (c6 + a * c7))))));
+  constexpr double c2 = -1.0 / 2, c3 = 1.0 / 6, c4 = -1.0 / 24, c5 = 1.0 / 120;
+  return a * (1.0 + a * (c2 + a * (c3 + a * (c4 + a * c5))));
 }
 
 }  // namespace stiction::sim

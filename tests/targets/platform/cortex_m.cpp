@@ -24,8 +24,7 @@ constexpr std::uint32_t counter_mask = 0x00FFFFFF;
 
 }  // namespace
 
-Input::Input(const char* path)
-    : file_(reinterpret_cast<void*>(semihosting::open_to_read(path, std::strlen(path)))) {}
+Input::Input(const char* path) : file_(reinterpret_cast<void*>(semihosting::open_to_read(path, std::strlen(path)))) {}
 
 bool Input::read(void* to, std::size_t bytes) {
   const auto handle = reinterpret_cast<std::intptr_t>(file_);

@@ -1,22 +1,24 @@
 // Symmetric limit of a signal, with the fact that it acted.
 #pragma once
 
+#include "stiction/number/fixed.hpp"
+
 namespace stiction {
 
 template <class Signal>
 struct Limited {
   Signal value;
-  bool limiting;
+  int side;  // the limit that acted: -1 the low one, 1 the high one, 0 none
 
-  // Which limit acted: -1 the low one, 1 the high one, 0 none.
-  constexpr int side(Signal middle) const { return !limiting ? 0 : value > middle ? 1 : -1; }
+  constexpr bool limiting() const { return side != 0; }
 };
 
+// Holds |value| <= bound; the bound is not negative.
 template <class Signal>
-constexpr Limited<Signal> limit(Signal value, Signal low, Signal high) {
-  if (value > high) return {high, true};
-  if (value < low) return {low, true};
-  return {value, false};
+constexpr Limited<Signal> limit(Signal value, Signal bound) {
+  if (value > bound) return {bound, 1};
+  if (const Signal low = opposite(bound); value < low) return {low, -1};
+  return {value, 0};
 }
 
 }  // namespace stiction

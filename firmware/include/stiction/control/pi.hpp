@@ -32,10 +32,7 @@ struct Pi {
   static constexpr typename Types::Output step(const Config& config, State& state, typename Types::Error error,
                                                SaturationCounter& saturations) {
     state.integral = narrow<typename Types::Integrator>(state.integral + config.integral * error, saturations);
-    // The product has fewer fraction bits than the integrator; the integrator's last ones are far below the output's.
-    using Aligned = decltype(config.proportional * error);
-    return narrow<typename Types::Output>(config.proportional * error + narrow<Aligned>(state.integral, saturations),
-                                          saturations);
+    return narrow<typename Types::Output>(config.proportional * error + state.integral, saturations);
   }
 
   // Tells the integrator what became of the output behind all limits: `limited` instead of `wanted`.

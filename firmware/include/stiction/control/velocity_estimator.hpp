@@ -35,13 +35,16 @@ struct VelocityEstimator {
 
   static constexpr Estimate step(State& state, VelocityFeedback kind, typename S::Position x, std::int64_t t_ns,
                                  typename S::Velocity given, SaturationCounter& saturations) {
+    if (kind == VelocityFeedback::given) {
+      state = {x, state.x1, t_ns, state.t1_ns};
+      return {given, t_ns};
+    }
     const bool mean = kind == VelocityFeedback::mean_difference;
     const auto base = mean ? state.x2 : state.x1;
     const std::int64_t base_ns = mean ? state.t2_ns : state.t1_ns;
     const auto motion = narrow<typename S::Step>(x - base, saturations);
     const auto velocity = narrow<typename S::Velocity>(motion * S::rate(t_ns - base_ns), saturations);
     state = {x, state.x1, t_ns, state.t1_ns};
-    if (kind == VelocityFeedback::given) return {given, t_ns};
     return {velocity, base_ns + (t_ns - base_ns) / 2};
   }
 };

@@ -136,25 +136,25 @@ class Axis {
     SpeedDelay<S>::push(state_.set_speeds, set.velocity);
     s.v_set_delayed = SpeedDelay<S>::read(
         state_.set_speeds, S::ticks(now_ns - state_.velocity.time_ns, config_.inverse_period), saturations);
-    const auto v_ref =
-        limit(narrow<typename S::Velocity>(
-                  config_.position_gain * s.e_held + config_.velocity_feedforward * s.v_set_delayed, saturations),
-              opposite(config_.velocity_limit), config_.velocity_limit);
+    const auto v_ref = limit(narrow<typename S::Velocity>(config_.position_gain * s.e_held +
+                                                              config_.velocity_feedforward * s.v_set_delayed,
+                                                          saturations),
+                             config_.velocity_limit);
     s.v_ref = v_ref.value;
     s.v_error = narrow<typename S::Velocity>(s.v_ref - s.v, saturations);
     s.i_pi = VelocityPi<S>::step(config_.velocity, state_.velocity_pi, s.v_error, saturations);
     s.i_notch = Notch<S>::step(config_.notch, state_.notch, s.i_pi, saturations);
     s.i_feedforward = narrow<typename S::Current>(config_.current_feedforward * set.acceleration, saturations);
     const auto i_wanted = narrow<typename S::Current>(s.i_notch + s.i_feedforward, saturations);
-    const auto i_set = limit(i_wanted, opposite(config_.current_limit), config_.current_limit);
+    const auto i_set = limit(i_wanted, config_.current_limit);
     s.i_set = i_set.value;
     VelocityPi<S>::track(config_.velocity, state_.velocity_pi, i_wanted, i_set.value, saturations);
-    watch_cycle(state_.current_cycle, i_set.side({}), now_ns);
+    watch_cycle(state_.current_cycle, i_set.side, now_ns);
     s.i_integral = narrow<typename S::Current>(state_.velocity_pi.integral, saturations);
 
     Command<S> command;
     s.i_phase = feedback.current;
-    s.limiting = {v_ref.limiting, i_set.limiting, false};
+    s.limiting = {v_ref.limiting(), i_set.limiting(), false};
     switch (config_.current_loop) {
       case CurrentLoop::three_phase:
         control_phases(s, command);
@@ -180,12 +180,6 @@ class Axis {
  private:
   using Current = typename S::Current;
   using Voltage = typename S::Voltage;
-
-  template <class T>
-  static constexpr T opposite(T x) {
-    SaturationCounter none;
-    return narrow<T>(T{} - x, none);
-  }
 
   constexpr void watch_cycle(LimitCycle::State& cycle, int side, std::int64_t now_ns) {
     if (LimitCycle::step(cycle, side, config_.limit_cycle_window_ticks)) trip(Fault::limit_cycle, now_ns);
@@ -213,9 +207,9 @@ class Axis {
     auto& pi = state_.current_pi[static_cast<std::size_t>(phase)];
     const auto wanted =
         CurrentPi<S>::step(config_.current, pi, narrow<Current>(set - measured, saturations), saturations);
-    const auto u = limit(wanted, opposite(config_.voltage_limit), config_.voltage_limit);
+    const auto u = limit(wanted, config_.voltage_limit);
     CurrentPi<S>::track(config_.current, pi, wanted, u.value, saturations);
-    s.limiting.voltage = s.limiting.voltage || u.limiting;
+    s.limiting.voltage = s.limiting.voltage || u.limiting();
     return u.value;
   }
 
@@ -236,19 +230,18 @@ class Axis {
 
   constexpr void pass_through(AxisSignals<S>& s, Command<S>& command) {
     s.i = s.i_set;
-    const auto u =
-        limit(narrow<Voltage>(s.i_set, state_.saturations), opposite(config_.voltage_limit), config_.voltage_limit);
-    s.limiting.voltage = u.limiting;
+    const auto u = limit(narrow<Voltage>(s.i_set, state_.saturations), config_.voltage_limit);
+    s.limiting.voltage = u.limiting();
     command.voltage[0] = u.value;
   }
 
   constexpr void supervise(const Feedback<S>& feedback, const AxisSignals<S>& s, std::int64_t now_ns) {
     if (feedback.fault) trip(Fault::drive_input, now_ns);
-    if (magnitude(s.i) > magnitude(config_.over_current_fault)) trip(Fault::over_current, now_ns);
-    for (const auto i : s.i_phase)
-      if (magnitude(i) > magnitude(config_.over_current_fault)) trip(Fault::over_current, now_ns);
-    if (magnitude(s.v) > magnitude(config_.over_speed_fault)) trip(Fault::over_speed, now_ns);
-    if (magnitude(s.e) > magnitude(config_.following_error_fault)) trip(Fault::following_error, now_ns);
+    bool over_current = exceeds(s.i, config_.over_current_fault);
+    for (const auto i : s.i_phase) over_current = over_current || exceeds(i, config_.over_current_fault);
+    if (over_current) trip(Fault::over_current, now_ns);
+    if (exceeds(s.v, config_.over_speed_fault)) trip(Fault::over_speed, now_ns);
+    if (exceeds(s.e, config_.following_error_fault)) trip(Fault::following_error, now_ns);
   }
 
   AxisConfig<S> config_;

@@ -13,7 +13,7 @@ namespace stiction {
 struct SaturationCounter {
   std::uint32_t count = 0;
 
-  constexpr void add(bool saturated) { count += static_cast<std::uint32_t>(saturated && count != UINT32_MAX); }
+  constexpr void add() { count += count != UINT32_MAX; }
 };
 
 // A 64-bit number raw * 2^-FractionBits with |raw| <= Bound, exact results of sums and products.
@@ -168,19 +168,24 @@ constexpr Out narrow(In x, SaturationCounter& saturations) {
     raw *= std::int64_t{1} << -shift;
   }
   if constexpr (bound > static_cast<std::uint64_t>(Out::highest_raw)) {
-    const bool high = raw > Out::highest_raw;
-    const bool low = raw < Out::lowest_raw;
-    raw = high ? Out::highest_raw : low ? Out::lowest_raw : raw;
-    saturations.add(high || low);
+    if (raw > Out::highest_raw || raw < Out::lowest_raw) [[unlikely]] {
+      raw = raw < 0 ? Out::lowest_raw : Out::highest_raw;
+      saturations.add();
+    }
   }
   return Out::from_bounded_raw(raw);
 }
 
-// |x| of a signal or state, exact.
+// -x; the one value without an opposite, the lowest of a word, gives the highest.
+template <int FractionBits>
+constexpr Fixed<FractionBits> opposite(Fixed<FractionBits> x) {
+  return Fixed<FractionBits>::from_raw(x.raw() == INT32_MIN ? INT32_MAX : -x.raw());
+}
+
+// |x| > bound, exact.
 template <FixedPoint T>
-constexpr auto magnitude(T x) {
-  return Wide<T::fraction_bits, T::bound>::from_bounded_raw(x.raw() < 0 ? -std::int64_t{x.raw()}
-                                                                        : std::int64_t{x.raw()});
+constexpr bool exceeds(T x, T bound) {
+  return (x.raw() < 0 ? -std::int64_t{x.raw()} : std::int64_t{x.raw()}) > bound.raw();
 }
 
 }  // namespace stiction

@@ -1,0 +1,28 @@
+// Writes the words of a machine file as a dictionary of libFuzzer to standard output, made from the keys' descriptions.
+#include <fmt/format.h>
+
+#include <set>
+#include <string>
+
+#include "sim/machine/description.hpp"
+#include "sim/machine/parameters.hpp"
+
+int main() {
+  using namespace stiction::sim;
+  std::set<std::string> words{std::string(machine_schema), "axis.", "axis.*.", "experiment.", "[reference.circle]"};
+  for (const auto name : experiment_names) words.emplace(name);
+  for (const auto& choice : motor_models) words.emplace(choice.name);
+  for (const auto& choice : velocity_sources) words.emplace(choice.name);
+  for (const auto& choice : reference_sources) words.emplace(choice.name);
+  for_each_friction_model([&]<class Model>() { words.emplace(Model::name); });
+  for (const auto& table : machine_file_description()) {
+    words.insert(table.name);
+    for (const auto& key : table.keys) {
+      words.insert(key.key);
+      if (!key.unit.empty()) words.insert(key.unit);
+    }
+  }
+  for (const char* unit : {"us", "ms", "mm", "um", "nm", "m/min", "mH", "kN", "degC", "%", "rpm"}) words.emplace(unit);
+  for (const auto& word : words)
+    if (!word.empty()) fmt::print("\"{}\"\n", word);
+}
