@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "tests/firmware/number/exact.hpp"
 
@@ -36,8 +39,8 @@ RC_GTEST_PROP(LuGre, DeflectionNeverExceedsItsLargestLimitAtAnySpeedAndStep, ())
   const double largest = p.coulomb * p.static_ratio / p.stiffness;
   for (int i = 0; i < 100; ++i) {
     model.move_contact(drawn_speed());
-    // The step's share of the way to g is off by 3e-11 at most.
-    RC_ASSERT(std::abs(model.deflection()) <= largest * (1.0 + 3e-11));
+    // Each step goes a share of the way to g, which stays between 0 and 1 however it is approximated.
+    RC_ASSERT(std::abs(model.deflection()) <= largest * (1.0 + 1e-14));
   }
 }
 
@@ -61,9 +64,10 @@ RC_GTEST_PROP(LuGre, IsDissipativeFromSpeedToDeflection, ()) {
     model.move_contact(v);
     const double after = model.deflection();
     const double stored = 0.5 * p.stiffness * (after * after - before * before);
-    // Both are differences of numbers up to the largest energy, k_s g^2, and of k_s g |v| h.
+    // The share of the way to g is within 6e-8; energies are up to k_s g^2, supplies up to k_s g |v| h.
     const double g = p.coulomb * p.static_ratio / p.stiffness;
-    const double rounding = 1e-10 * p.stiffness * g * (g + std::abs(v) * h);
+    const double rounding = 1.2e-7 * p.stiffness * g * std::min(2.0 * g, std::abs(v) * h) +
+                            1e-13 * p.stiffness * g * (g + std::abs(v) * h);
     RC_ASSERT(supplied >= stored - rounding);
   }
 }
@@ -77,8 +81,8 @@ RC_GTEST_PROP(LuGre, AHeldSpeedGivesTheSameDeflectionInOneStepOrInMany, ()) {
   for (int i = 0; i < 16; ++i) many.move_contact(0.1 * v);
   one.move_contact(-v);
   for (int i = 0; i < 16; ++i) many.move_contact(-v);
-  // The exponential's series is within 3e-11, in each of 34 steps.
-  RC_ASSERT(std::abs(one.deflection() - many.deflection()) <= 1e-9 * p.coulomb * p.static_ratio / p.stiffness);
+  // The exponential's series is within 6e-8 of each change; the changes of both sides are at most 2 g each.
+  RC_ASSERT(std::abs(one.deflection() - many.deflection()) <= 4e-7 * p.coulomb * p.static_ratio / p.stiffness);
 }
 
 TEST(LuGre, InSteadySlidingTheContactCarriesTheStribeckCurve) {
@@ -163,11 +167,19 @@ TEST(LuGre, FrictionIsLowerForFallingThanForRisingSpeed) {
   EXPECT_NEAR(widest, 66.7, 0.2);
 }
 
-TEST(OneMinusExp, IsWithinThreeInTenToTheElevenOverItsWholeRange) {
+TEST(OneMinusExp, IsWithinItsStatedErrorOverItsWholeRange) {
+  // The header states 6e-8 at the limit of the series: a^5 / 6! at a = 1/8 is 4.2e-8.
   for (double a = 1e-12; a < 1e3; a *= 1.003)
-    ASSERT_NEAR(one_minus_exp(a) / static_cast<double>(-expm1l(-static_cast<long double>(a))), 1.0, 3e-11) << a;
+    ASSERT_NEAR(one_minus_exp(a) / static_cast<double>(-expm1l(-static_cast<long double>(a))), 1.0, 6e-8) << a;
   EXPECT_EQ(one_minus_exp(0.0), 0.0);
   EXPECT_EQ(one_minus_exp(std::numeric_limits<double>::infinity()), 1.0);
+}
+
+TEST(OneMinusExp, OfManyShortStepsIsThatOfTheirSum) {
+  // 1000 steps of 0.01: the product of their remainders is exp(-10), each within 2e-10 * 0.01.
+  double rest = 1.0;
+  for (int i = 0; i < 1000; ++i) rest *= 1.0 - one_minus_exp(0.01);
+  EXPECT_NEAR(rest / std::exp(-10.0), 1.0, 1000 * 2e-10 * 0.01 + 1e-12);
 }
 
 }  // namespace
