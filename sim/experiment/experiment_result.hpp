@@ -1,0 +1,57 @@
+// What an experiment other than the circle leaves behind: figures with what the source says of them, and charts.
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace stiction::sim {
+
+// What a source says a figure must be.
+struct Expectation {
+  double value = 0.0;      // in the figure's unit
+  double tolerance = 0.0;  // in the figure's unit
+  std::string source;      // document and place
+};
+
+struct Figure {
+  std::string name;  // "peak_deviation_lugre"
+  std::string unit;  // as it is shown, "um"; empty for a plain number
+  std::string text;  // what it is, for readers
+  double value = 0.0;
+  std::optional<Expectation> expected;
+
+  // Empty where nothing is expected.
+  std::optional<bool> holds() const {
+    if (!expected) return std::nullopt;
+    return std::abs(value - expected->value) <= expected->tolerance;
+  }
+};
+
+struct Series {
+  std::string name;  // a friction model's name takes its colour; anything else the next free one
+  std::vector<double> x, y;
+  bool points = false;  // markers instead of a line: measured or published values
+};
+
+struct Chart {
+  std::string title;
+  std::string x_label;  // with unit
+  std::string y_label;  // with unit
+  std::string caption;  // what to look at
+  bool logarithmic_x = false;
+  std::vector<Series> series;
+};
+
+struct ExperimentResult {
+  std::string experiment;  // "impact"
+  std::string title;       // "Impact compliance"
+  std::string signals;     // "fixed", "double"; empty where no control takes part
+  std::string question;    // what the source says the experiment must show
+  std::vector<std::string> findings;  // sentences on what it did show
+  std::vector<Figure> figures;
+  std::vector<Chart> charts;
+};
+
+}  // namespace stiction::sim
