@@ -4,11 +4,7 @@
 
 #include <array>
 #include <cmath>
-#include <vector>
 
-#include "hal/control_loop.hpp"
-#include "hal/simulated/simulated_backend.hpp"
-#include "sim/control/axis_configuration.hpp"
 #include "sim/control/double_signals.hpp"
 #include "sim/experiment/circle_measurement.hpp"
 #include "stiction/number/fixed_signals.hpp"
@@ -18,26 +14,7 @@ namespace {
 
 constexpr double metre_per_minute = 1.0 / 60.0;  // m/s
 
-template <class S>
-[[noreturn]] void throw_fault(const sim::Machine& machine, std::span<const Axis<S>> axes) {
-  std::size_t first = 0;
-  std::int64_t time = INT64_MAX;
-  for (std::size_t i = 0; i < axes.size(); ++i)
-    if (axes[i].fault() != Fault::none && axes[i].fault_time_ns() < time) {
-      first = i;
-      time = axes[i].fault_time_ns();
-    }
-  throw FaultTripped(machine.axes[first].name, axes[first].fault(), static_cast<double>(time) * 1e-9);
-}
-
 }  // namespace
-
-FaultTripped::FaultTripped(std::string axis_name, Fault which, double when)
-    : std::runtime_error(fmt::format("axis {}: fault {} '{}' at {:.4f} ms", axis_name, static_cast<int>(which),
-                                     name_of(which), when * 1e3)),
-      axis(std::move(axis_name)),
-      fault(which),
-      time(when) {}
 
 void check_circle(const sim::Machine& machine, const sim::CircleSettings& settings) {
   if (machine.axes.size() != 2)
@@ -69,37 +46,26 @@ sim::CircleRun run_circle(const sim::Machine& machine, const sim::CircleSettings
   const sim::CirclePath path(settings);
   const auto start = path.at(0.0);
   const std::array<double, 2> positions{start.axes[0].position, start.axes[1].position};
-  hal::SimulatedBackend<S> backend(machine, positions);
-
-  std::vector<AxisConfig<S>> configs;
-  for (const auto& axis : machine.axes) configs.push_back(sim::configure_axis<S>(machine.timing, axis));
-  const Ticker ticker(sim::fast_period_ns(machine.timing), static_cast<std::uint32_t>(sim::slow_ratio(machine.timing)));
-  hal::ControlLoop loop(backend, std::span<const AxisConfig<S>>(configs), ticker);
-
+  ControlRun<S> run(machine, positions);
   sim::CircleMeasurement measurement(settings, machine.timing.fast_period,
                                      {machine.axes[0].name, machine.axes[1].name});
   for (;;) {
-    const std::int64_t now_ns = loop.now_ns();
-    const auto point = path.at(static_cast<double>(now_ns) * 1e-9);
+    const auto point = path.at(run.time());
     if (point.turned >= sim::CirclePath::lap_end) break;
-    const std::array<SetPoint<S>, 2> set{sim::to_set_point<S>(point.axes[0]), sim::to_set_point<S>(point.axes[1])};
     // The force at the time of the samples, before the tick moves the plant on.
-    std::array<double, 2> force{backend.plant(0).motor_force(), backend.plant(1).motor_force()};
-    loop.tick(set);
-
-    if (trace) trace(now_ns, loop.signals());
-    if (loop.faulted()) throw_fault(machine, loop.axes());
+    const std::array<double, 2> force{run.plant(0).motor_force(), run.plant(1).motor_force()};
+    run.tick(point.axes, trace);
     std::array<sim::CircleAxisSample, 2> samples;
     for (std::size_t k = 0; k < 2; ++k) {
-      const auto& s = loop.signals()[k];
+      const auto& s = run.signals(k);
       samples[k] = {sim::to_si(s.x), sim::to_si(s.e), sim::to_si(s.e_held),
                     force[k] / machine.axes[k].motor.force_constant};
     }
     measurement.add(point, samples);
   }
-  auto run = measurement.finish();
-  run.friction = machine.axes[0].friction.use;
-  return run;
+  auto result = measurement.finish();
+  result.friction = machine.axes[0].friction.use;
+  return result;
 }
 
 template sim::CircleRun run_circle<FixedSignals>(const sim::Machine&, const sim::CircleSettings&,

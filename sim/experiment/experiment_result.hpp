@@ -45,10 +45,10 @@ struct Chart {
 };
 
 struct ExperimentResult {
-  std::string experiment;  // "impact"
-  std::string title;       // "Impact compliance"
-  std::string signals;     // "fixed", "double"; empty where no control takes part
-  std::string question;    // what the source says the experiment must show
+  std::string experiment;             // "impact"
+  std::string title;                  // "Impact compliance"
+  std::string signals;                // "fixed", "double"; empty where no control takes part
+  std::string question;               // what the source says the experiment must show
   std::vector<std::string> findings;  // sentences on what it did show
   std::vector<Figure> figures;
   std::vector<Chart> charts;

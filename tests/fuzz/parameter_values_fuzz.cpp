@@ -4,7 +4,6 @@
 #include <fuzzer/FuzzedDataProvider.h>
 
 #include <array>
-#include <cmath>
 
 #include "sim/machine/description.hpp"
 #include "tests/fuzz/machine_bytes.hpp"
@@ -38,12 +37,17 @@ struct Base {
   std::vector<Key> keys;
 };
 
+// Whole numbers, because only they fit a count; magnitudes that a careless engineer might write; and the rest.
+std::string number_of(FuzzedDataProvider& bytes) {
+  const int kind = bytes.ConsumeIntegralInRange<int>(0, 3);
+  if (kind == 0) return fmt::format("{}", bytes.ConsumeIntegralInRange<int>(-1, 100));
+  const int reach = kind == 3 ? 323 : 13;
+  return fmt::format("{}e{}", bytes.ConsumeFloatingPointInRange(0.5, 2.0),
+                     bytes.ConsumeIntegralInRange<int>(-reach, reach));
+}
+
 std::string value_of(FuzzedDataProvider& bytes, const Key& key) {
-  const bool whole = bytes.ConsumeBool();  // only these fit a count
-  const double mantissa =
-      whole ? bytes.ConsumeIntegralInRange<int>(-1, 100) : bytes.ConsumeFloatingPointInRange(0.5, 2.0);
-  const int exponent = whole ? 0 : bytes.ConsumeIntegralInRange<int>(-320, 308);
-  const std::string number = whole ? fmt::format("{}", mantissa) : fmt::format("{}e{}", mantissa, exponent);
+  const std::string number = number_of(bytes);
   const std::string quantity = key.unit == "1" ? number : fmt::format("\"{} {}\"", number, key.unit);
   return key.list ? fmt::format("[{0}, {0}, {0}]", quantity) : quantity;
 }

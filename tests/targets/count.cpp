@@ -58,17 +58,14 @@ void describe(const LawContext& c) {
   print("\n");
 }
 
-// Brings the context to the next tick. The laws start as the axis does.
+// Brings the context to the next tick.
 void prepare(LawContext& c, const Sample& sample, const Ticker& ticker, bool first) {
   c.set = sample.set;
   c.feedback = sample.feedback;
   c.now_ns = ticker.now_ns();
   c.slow = ticker.slow();
   if (!first) return;
-  c.axis.start(c.feedback);
-  c.cascade.start(c.feedback);
-  c.estimator =
-      VelocityEstimator<FixedSignals>::start(c.feedback.position, c.feedback.position_time_ns, c.config.period_ns);
+  for (auto* axis : {&c.axis, &c.cascade, &c.given}) axis->start(c.feedback);
 }
 
 template <class EachTick>
@@ -93,12 +90,13 @@ bool count(const char* path) {
   std::uint32_t ticks = 0;
   const bool complete = for_each_tick(path, [&](LawContext& c, Place place) {
     const std::uint32_t empty = count_instructions(laws[0].step, &c);
+    c.before = c.axis.state();
     for (std::size_t l = 0; l < laws.size(); ++l) {
+      c.state = c.before;
       // A profiler from outside counts a function with its return; so does this.
       tallies[l].add(count_instructions(laws[l].step, &c) - empty + 1, place);
-      // What the velocity controller's tracking is told; the axis does not show it.
       if (laws[l].step == law_axis)
-        c.i_wanted = narrow<FixedSignals::Current>(c.signals.i_notch + c.signals.i_feedforward, c.saturations);
+        c.i_wanted = narrow<FixedSignals::Current>(c.signals.i_notch + c.signals.i_feedforward, c.state.saturations);
     }
     ++ticks;
   });

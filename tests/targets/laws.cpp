@@ -14,68 +14,74 @@ STICTION_LAW(law_nothing) { static_cast<void>(c); }
 
 STICTION_LAW(law_axis) { c.command = c.axis.tick(c.set, c.feedback, c.now_ns, c.slow, c.signals); }
 
-STICTION_LAW(law_cascade) {
-  c.cascade_command = c.cascade.tick(c.set, c.feedback, c.now_ns, c.slow, c.cascade_signals);
-}
+STICTION_LAW(law_cascade) { c.command = c.cascade.tick(c.set, c.feedback, c.now_ns, c.slow, c.other_signals); }
+
+STICTION_LAW(law_cascade_given) { c.command = c.given.tick(c.set, c.feedback, c.now_ns, c.slow, c.other_signals); }
 
 STICTION_LAW(law_estimate) {
-  c.estimate = stiction::VelocityEstimator<S>::step(c.estimator, c.config.velocity_feedback, c.feedback.position,
-                                                    c.feedback.position_time_ns, c.feedback.velocity, c.saturations);
+  c.estimate =
+      stiction::VelocityEstimator<S>::step(c.state.estimator, c.config.velocity_feedback, c.feedback.position,
+                                           c.feedback.position_time_ns, c.feedback.velocity, c.state.saturations);
 }
 
 STICTION_LAW(law_quantizer) {
-  c.quantised = stiction::Quantizer<S>::apply(c.config.quantizer, c.signals.e, c.saturations);
+  c.e_held = stiction::Quantizer<S>::apply(c.config.quantizer, c.signals.e, c.state.saturations);
 }
 
 STICTION_LAW(law_delay) {
-  stiction::SpeedDelay<S>::push(c.set_speeds, c.set.velocity);
-  c.set_speed_then = stiction::SpeedDelay<S>::read(
-      c.set_speeds, S::ticks(c.now_ns - c.axis.state().velocity.time_ns, c.config.inverse_period), c.saturations);
+  stiction::SpeedDelay<S>::push(c.state.set_speeds, c.set.velocity);
+  c.v_set_delayed = stiction::SpeedDelay<S>::read(
+      c.state.set_speeds, S::ticks(c.now_ns - c.state.velocity.time_ns, c.config.inverse_period), c.state.saturations);
 }
 
 STICTION_LAW(law_p_feedforward) {
   c.v_ref = stiction::narrow<S::Velocity>(
       c.config.position_gain * c.signals.e_held + c.config.velocity_feedforward * c.signals.v_set_delayed,
-      c.saturations);
-  c.i_feedforward = stiction::narrow<S::Current>(c.config.current_feedforward * c.set.acceleration, c.saturations);
+      c.state.saturations);
+  c.i_feedforward =
+      stiction::narrow<S::Current>(c.config.current_feedforward * c.set.acceleration, c.state.saturations);
 }
 
 STICTION_LAW(law_velocity_pi) {
-  c.i_pi = stiction::VelocityPi<S>::step(c.config.velocity, c.velocity_pi, c.signals.v_error, c.saturations);
-  stiction::VelocityPi<S>::track(c.config.velocity, c.velocity_pi, c.i_wanted, c.signals.i_set, c.saturations);
+  auto& pi = c.state.velocity_pi;
+  c.i_pi = stiction::VelocityPi<S>::step(c.config.velocity, pi, c.signals.v_error, c.state.saturations);
+  stiction::VelocityPi<S>::track(c.config.velocity, pi, c.i_wanted, c.signals.i_set, c.state.saturations);
 }
 
 STICTION_LAW(law_notch) {
-  c.i_notch = stiction::Notch<S>::step(c.config.notch, c.notch, c.signals.i_pi, c.saturations);
+  c.i_notch = stiction::Notch<S>::step(c.config.notch, c.state.notch, c.signals.i_pi, c.state.saturations);
 }
 
 // From following error and set-point to current, without any limit: P, both feedforwards, PI, notch.
 STICTION_LAW(law_p_ff_pi_notch) {
+  auto& saturations = c.state.saturations;
   const auto v_ref = stiction::narrow<S::Velocity>(
-      c.config.position_gain * c.signals.e_held + c.config.velocity_feedforward * c.signals.v_set_delayed,
-      c.saturations);
-  const auto v_error = stiction::narrow<S::Velocity>(v_ref - c.signals.v, c.saturations);
-  const auto i_pi = stiction::VelocityPi<S>::step(c.config.velocity, c.unlimited_pi, v_error, c.saturations);
-  const auto i_notch = stiction::Notch<S>::step(c.config.notch, c.unlimited_notch, i_pi, c.saturations);
+      c.config.position_gain * c.signals.e_held + c.config.velocity_feedforward * c.signals.v_set_delayed, saturations);
+  const auto v_error = stiction::narrow<S::Velocity>(v_ref - c.signals.v, saturations);
+  const auto i_pi = stiction::VelocityPi<S>::step(c.config.velocity, c.state.velocity_pi, v_error, saturations);
+  const auto i_notch = stiction::Notch<S>::step(c.config.notch, c.state.notch, i_pi, saturations);
   const auto i_feedforward =
-      stiction::narrow<S::Current>(c.config.current_feedforward * c.set.acceleration, c.saturations);
-  c.unlimited = stiction::narrow<S::Current>(i_notch + i_feedforward, c.saturations);
+      stiction::narrow<S::Current>(c.config.current_feedforward * c.set.acceleration, saturations);
+  c.i_unlimited = stiction::narrow<S::Current>(i_notch + i_feedforward, saturations);
 }
 
 STICTION_LAW(law_commutation) {
   using Commutation = stiction::Commutation<S>;
-  c.phase = Commutation::phases(S::angle(c.signals.x, c.config.inverse_pole_pair_pitch), c.saturations);
-  c.amplitude = Commutation::amplitude(c.signals.i_phase, c.phase, c.saturations);
+  auto& saturations = c.state.saturations;
+  c.phase = Commutation::phases(S::angle(c.signals.x, c.config.inverse_pole_pair_pitch), saturations);
+  c.amplitude = Commutation::amplitude(c.signals.i_phase, c.phase, saturations);
   for (std::size_t k = 0; k < 3; ++k)
-    c.set_current[k] = Commutation::phase_current(c.signals.i_set, c.phase[k], c.saturations);
+    c.i_set_phase[k] = Commutation::phase_current(c.signals.i_set, c.phase[k], saturations);
 }
 
 // Of one phase, with the limit of its voltage.
 STICTION_LAW(law_current_pi) {
-  const auto error = stiction::narrow<S::Current>(c.set_current[0] - c.signals.i_phase[0], c.saturations);
-  const auto wanted = stiction::CurrentPi<S>::step(c.config.current, c.current_pi, error, c.saturations);
+  auto& pi = c.state.current_pi[0];
+  auto& saturations = c.state.saturations;
+  const auto error = stiction::narrow<S::Current>(c.i_set_phase[0] - c.signals.i_phase[0], saturations);
+  const auto wanted = stiction::CurrentPi<S>::step(c.config.current, pi, error, saturations);
   c.voltage = stiction::limit(wanted, c.config.voltage_limit);
-  stiction::CurrentPi<S>::track(c.config.current, c.current_pi, wanted, c.voltage.value, c.saturations);
+  stiction::CurrentPi<S>::track(c.config.current, pi, wanted, c.voltage.value, saturations);
 }
 
 namespace stiction::targets {
@@ -83,10 +89,10 @@ namespace stiction::targets {
 #define STICTION_ROW(name) \
   Law { #name, name }
 const std::array<Law, laws.size()> laws{
-    {STICTION_ROW(law_nothing), STICTION_ROW(law_axis), STICTION_ROW(law_cascade), STICTION_ROW(law_p_ff_pi_notch),
-     STICTION_ROW(law_estimate), STICTION_ROW(law_quantizer), STICTION_ROW(law_delay), STICTION_ROW(law_p_feedforward),
-     STICTION_ROW(law_velocity_pi), STICTION_ROW(law_notch), STICTION_ROW(law_commutation),
-     STICTION_ROW(law_current_pi)}};
+    {STICTION_ROW(law_nothing), STICTION_ROW(law_axis), STICTION_ROW(law_cascade), STICTION_ROW(law_cascade_given),
+     STICTION_ROW(law_p_ff_pi_notch), STICTION_ROW(law_estimate), STICTION_ROW(law_quantizer), STICTION_ROW(law_delay),
+     STICTION_ROW(law_p_feedforward), STICTION_ROW(law_velocity_pi), STICTION_ROW(law_notch),
+     STICTION_ROW(law_commutation), STICTION_ROW(law_current_pi)}};
 #undef STICTION_ROW
 
 }  // namespace stiction::targets

@@ -13,10 +13,15 @@ namespace stiction::targets {
 struct LawContext {
   using S = FixedSignals;
 
-  explicit LawContext(const AxisConfig<S>& c) : config(c), axis(c), cascade(without_current_loop(c)) {}
+  explicit LawContext(const AxisConfig<S>& c)
+      : config(c),
+        axis(c),
+        cascade(without_current_loop(c, c.velocity_feedback)),
+        given(without_current_loop(c, VelocityFeedback::given)) {}
 
-  static AxisConfig<S> without_current_loop(AxisConfig<S> c) {
+  static AxisConfig<S> without_current_loop(AxisConfig<S> c, VelocityFeedback feedback) {
     c.current_loop = CurrentLoop::none;
+    c.velocity_feedback = feedback;
     return c;
   }
 
@@ -28,35 +33,31 @@ struct LawContext {
   std::int64_t now_ns = 0;
   bool slow = false;
 
-  // The whole axis, and the same one without current controllers.
+  // The whole axis; the same one without current controllers; and that with a velocity given by the encoder.
   Axis<S> axis;
-  AxisSignals<S> signals;
-  Command<S> command;
   Axis<S> cascade;
-  AxisSignals<S> cascade_signals;
-  Command<S> cascade_command;
+  Axis<S> given;
+  AxisSignals<S> signals;  // of the whole axis
+  AxisSignals<S> other_signals;
+  Command<S> command;
 
-  // What each law remembers. Their inputs are the axis' own signals of this tick.
-  SaturationCounter saturations;
-  VelocityEstimator<S>::State estimator;
+  // What the laws below work on: the axis' own state before this tick, restored for each of them, and the axis' own
+  // signals of this tick. So a law has the very numbers that it has in the axis.
+  AxisState<S> before;
+  AxisState<S> state;
+  S::Current i_wanted;  // ahead of the limit; the axis does not show it
+
   VelocityEstimator<S>::Estimate estimate{};
-  SpeedDelay<S>::State set_speeds;
-  S::Velocity set_speed_then;
-  S::Distance quantised;
+  S::Velocity v_set_delayed;
+  S::Distance e_held;
   S::Velocity v_ref;
   S::Current i_feedforward;
-  VelocityPi<S>::State velocity_pi;
   S::Current i_pi;
-  S::Current i_wanted;
-  Notch<S>::State notch;
   S::Current i_notch;
-  VelocityPi<S>::State unlimited_pi;
-  Notch<S>::State unlimited_notch;
-  S::Current unlimited;
+  S::Current i_unlimited;
   std::array<S::Sine, 3> phase;
-  std::array<S::Current, 3> set_current;
+  std::array<S::Current, 3> i_set_phase;
   S::Current amplitude;
-  CurrentPi<S>::State current_pi;
   Limited<S::Voltage> voltage{};
 };
 
@@ -68,6 +69,6 @@ struct Law {
 extern "C" void law_axis(void* data);
 
 // In the order in which a tick runs them: the whole axis first, as the others take its signals.
-extern const std::array<Law, 12> laws;
+extern const std::array<Law, 13> laws;
 
 }  // namespace stiction::targets

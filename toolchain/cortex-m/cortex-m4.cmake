@@ -9,7 +9,7 @@ set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
 set(cpu "-mcpu=cortex-m4 -mthumb -mfloat-abi=hard -mfpu=fpv4-sp-d16 -mgeneral-regs-only")
 set(CMAKE_ASM_FLAGS_INIT "${cpu}")
 set(CMAKE_CXX_FLAGS_INIT "${cpu} -ffreestanding -ffunction-sections -fdata-sections -fno-exceptions -fno-rtti \
--fno-threadsafe-statics -fno-unwind-tables -fno-asynchronous-unwind-tables")
+-fno-threadsafe-statics -fno-unwind-tables -fno-asynchronous-unwind-tables -Wno-psabi")
 set(linker_script "${CMAKE_CURRENT_LIST_DIR}/mps2_an386.ld")
 set(CMAKE_EXE_LINKER_FLAGS_INIT "-nostartfiles -T${linker_script} -Wl,--gc-sections -Wl,--fatal-warnings")
 

@@ -123,19 +123,21 @@ TEST(Commutation, InDoubleIsExactToItsRounding) {
 
 TEST(Limit, HoldsAtItsEndsAndTellsWhichOneActed) {
   using T = Fixed<4>;
-  const auto at = [](std::int32_t raw) { return limit(T::from_raw(raw), T::from_raw(-50), T::from_raw(70)); };
-  EXPECT_EQ(at(70).value.raw(), 70);
-  EXPECT_FALSE(at(70).limiting) << "at the limit is not behind it";
-  EXPECT_EQ(at(71).value.raw(), 70);
-  EXPECT_TRUE(at(71).limiting);
-  EXPECT_EQ(at(-50).value.raw(), -50);
-  EXPECT_FALSE(at(-50).limiting);
-  EXPECT_EQ(at(-51).value.raw(), -50);
-  EXPECT_TRUE(at(-51).limiting);
-  EXPECT_EQ(at(INT32_MIN).value.raw(), -50);
-  EXPECT_EQ(at(71).side({}), 1);
-  EXPECT_EQ(at(-51).side({}), -1);
-  EXPECT_EQ(at(0).side({}), 0);
+  const auto at = [](std::int32_t raw) { return limit(T::from_raw(raw), T::from_raw(70)); };
+  for (const std::int32_t inside : {70, 69, 0, -69, -70}) {
+    EXPECT_EQ(at(inside).value.raw(), inside);
+    EXPECT_FALSE(at(inside).limiting()) << "at the limit is not behind it";
+    EXPECT_EQ(at(inside).side, 0);
+  }
+  for (const std::int32_t above : {71, 1000, INT32_MAX}) {
+    EXPECT_EQ(at(above).value.raw(), 70);
+    EXPECT_TRUE(at(above).limiting());
+    EXPECT_EQ(at(above).side, 1);
+  }
+  for (const std::int32_t below : {-71, -1000, INT32_MIN}) {
+    EXPECT_EQ(at(below).value.raw(), -70);
+    EXPECT_EQ(at(below).side, -1);
+  }
 }
 
 }  // namespace

@@ -7,8 +7,7 @@
 
 int main(int argc, char** argv) {
   if (argc != 6) {
-    std::fprintf(stderr,
-                 "usage: notch_response FREQUENCY_HZ NUMERATOR_DAMPING DENOMINATOR_DAMPING AMPLITUDE TICKS\n");
+    std::fprintf(stderr, "usage: notch_response FREQUENCY_HZ NUMERATOR_DAMPING DENOMINATOR_DAMPING AMPLITUDE TICKS\n");
     return 2;
   }
   const stiction::sim::Notch notch{std::atof(argv[1]), std::atof(argv[2]), std::atof(argv[3])};

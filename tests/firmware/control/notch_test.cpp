@@ -17,15 +17,15 @@ using Fix = FixedSignals;
 using Dbl = sim::DoubleSignals;
 using test::NotchFilter;
 
-constexpr double rate = 16000.0;    // Hz
-constexpr double bit = 0x1p-20;     // A
+constexpr double rate = 16000.0;  // Hz
+constexpr double bit = 0x1p-20;   // A
 constexpr sim::Notch cross_table{2000.0, 0.05, 0.7};
 constexpr sim::Notch low{50.0, 0.05, 0.7};
 
 // |G| of (3.19), Omega_1 = Omega_2, on the frequency axis that the bilinear transform stretches by its tangent.
 double expected_gain(const sim::Notch& n, double frequency) {
-  const std::complex<double> s(0.0, std::tan(std::numbers::pi * frequency / rate) /
-                                        std::tan(std::numbers::pi * n.frequency / rate));
+  const std::complex<double> s(
+      0.0, std::tan(std::numbers::pi * frequency / rate) / std::tan(std::numbers::pi * n.frequency / rate));
   return std::abs((s * s + 2.0 * n.numerator_damping * s + 1.0) / (s * s + 2.0 * n.denominator_damping * s + 1.0));
 }
 

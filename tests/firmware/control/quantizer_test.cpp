@@ -21,7 +21,8 @@ typename Quantizer<S>::Config config(double increment) {
 template <class S>
 double quantised(double x, double increment) {
   SaturationCounter saturations;
-  const auto y = Quantizer<S>::apply(config<S>(increment), sim::to_signal<typename S::Distance>(x).value(), saturations);
+  const auto y =
+      Quantizer<S>::apply(config<S>(increment), sim::to_signal<typename S::Distance>(x).value(), saturations);
   EXPECT_EQ(saturations.count, 0u);
   return sim::to_si(y);
 }

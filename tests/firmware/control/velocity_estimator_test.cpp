@@ -148,8 +148,7 @@ TEST(VelocityEstimator, KeepsItsPrecisionFarFromTheOriginAndAfterWeeks) {
   constexpr std::int64_t weeks_ns = 30 * 86400 * std::int64_t{1000000000};
   Estimator<FixedSignals> estimator(VelocityFeedback::difference, 1900.0, weeks_ns);
   for (std::int64_t n = 1; n < 50; ++n) {
-    const double found =
-        estimator.step(1900.0 + v * 1e-9 * static_cast<double>(n * tick_ns), weeks_ns + n * tick_ns);
+    const double found = estimator.step(1900.0 + v * 1e-9 * static_cast<double>(n * tick_ns), weeks_ns + n * tick_ns);
     // A double of 1900 m ends at 2.3e-13 m; two of them over a tick are 7.3e-9 m/s.
     if (n == 1) continue;
     ASSERT_NEAR(found, v, tolerance<FixedSignals>(v, tick_ns) + 7.3e-9) << n;
@@ -167,11 +166,10 @@ TEST(VelocityEstimator, AJumpBeyondItsStepSaturatesAndCounts) {
 template <class S>
 double read_ramp(double delay_ticks, int pushes = 20) {
   typename SpeedDelay<S>::State state;
-  for (int i = 0; i < pushes; ++i)
-    SpeedDelay<S>::push(state, sim::to_signal<typename S::Velocity>(0.0625 * i).value());
+  for (int i = 0; i < pushes; ++i) SpeedDelay<S>::push(state, sim::to_signal<typename S::Velocity>(0.0625 * i).value());
   SaturationCounter saturations;
-  const auto delay = S::ticks(std::llround(delay_ticks * tick_ns),
-                              sim::to_signal<typename S::PeriodInverse>(1.0 / tick_ns).value());
+  const auto delay =
+      S::ticks(std::llround(delay_ticks * tick_ns), sim::to_signal<typename S::PeriodInverse>(1.0 / tick_ns).value());
   return (0.0625 * (pushes - 1) - sim::to_si(SpeedDelay<S>::read(state, delay, saturations))) / 0.0625;
 }
 
@@ -199,8 +197,7 @@ TEST(SpeedDelay, InterpolatesAcrossTheWholeRangeWithoutOverflow) {
   SpeedDelay<FixedSignals>::push(state, Fixed<28>::from_raw(INT32_MIN));
   SpeedDelay<FixedSignals>::push(state, Fixed<28>::from_raw(INT32_MAX));
   SaturationCounter saturations;
-  const auto middle =
-      SpeedDelay<FixedSignals>::read(state, FixedSignals::TickFraction::from_raw(1 << 27), saturations);
+  const auto middle = SpeedDelay<FixedSignals>::read(state, FixedSignals::TickFraction::from_raw(1 << 27), saturations);
   EXPECT_NEAR(middle.raw(), 0, 1);
   EXPECT_EQ(saturations.count, 0u);
 }

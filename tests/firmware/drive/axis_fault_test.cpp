@@ -29,12 +29,13 @@ S::Position as_position(S::Distance d) {
   return S::Position::from_raw(std::int64_t{d.raw()} << (S::Position::fraction_bits - S::Distance::fraction_bits));
 }
 
-// The smallest violation that the formats can show, applied to a bench at rest. The limit cycle, whose detection depends
-// on the signal, stands in limit_cycle_test.cpp.
+// The smallest violation that the formats can show, applied to a bench at rest. The limit cycle, whose detection
+// depends on the signal, stands in limit_cycle_test.cpp.
 const std::map<Fault, std::function<void(FixedBench&)>> smallest_violation{
     {Fault::following_error,
      [](FixedBench& b) { b.set.position = as_position(next_above(b.axis.config().following_error_fault)); }},
-    {Fault::over_current, [](FixedBench& b) { b.feedback.current[0] = next_above(b.axis.config().over_current_fault); }},
+    {Fault::over_current,
+     [](FixedBench& b) { b.feedback.current[0] = next_above(b.axis.config().over_current_fault); }},
     {Fault::over_speed, [](FixedBench& b) { b.feedback.velocity = next_above(b.axis.config().over_speed_fault); }},
     {Fault::position_lost, [](FixedBench& b) { b.feedback.position_valid = false; }},
     {Fault::drive_input, [](FixedBench& b) { b.feedback.fault = true; }},

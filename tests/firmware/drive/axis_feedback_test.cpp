@@ -39,8 +39,8 @@ TEST(AxisFeedback, AtConstantSpeedAnAgedSampleMeansNoError) {
       move_sample(b, speed, age_ns);
       b.tick_as_it_is();
       if (i < 4) continue;  // the start from rest
-      // The set-point taken back by v * age is off by 8e-8 of 50 um and three roundings of 2^-40 m: far below half a bit
-      // of the error, 0.12 nm.
+      // The set-point taken back by v * age is off by 8e-8 of 50 um and three roundings of 2^-40 m: far below half a
+      // bit of the error, 0.12 nm.
       ASSERT_EQ(b.signals.e.raw(), 0) << "age " << age_ns << " ns, tick " << i;
       ASSERT_LE(std::abs(b.signals.v_error.raw()), velocity_bits) << "age " << age_ns << " ns, tick " << i;
     }
@@ -99,6 +99,23 @@ TEST(AxisFeedback, OneOrTwoMissingSamplesAtConstantSpeedAreNoError) {
       ASSERT_EQ(b.signals.e.raw(), 0) << "tick " << i;
       ASSERT_LE(std::abs(b.signals.v_error.raw()), velocity_bits + rate_bits) << "tick " << i;
     }
+  }
+}
+
+TEST(AxisFeedback, AMissingSampleAtATickOfAMillisecondIsNoErrorEither) {
+  // Two missing samples are 2 ms old: at 0.5 m/s the set-point must be taken back by 1 mm.
+  auto config = test::bench_config<S>();
+  config.period_ns = 1000000;
+  config.inverse_period = si<S::PeriodInverse>(1e-6);
+  FixedBench b(config);
+  b.ticker = Ticker(1000000, 1);
+  for (int i = 0; i < 50; ++i) {
+    move_set(b, 0.5);
+    b.feedback.position_valid = i < 10 || i % 7 >= 2;
+    if (b.feedback.position_valid) move_sample(b, 0.5, 0);
+    b.tick_as_it_is();
+    if (i < 4) continue;
+    ASSERT_NEAR(sim::to_si(b.signals.e), 0.0, 1e-9) << "tick " << i;
   }
 }
 

@@ -43,13 +43,28 @@ struct Bounds {
 
 std::map<std::string, double> bounds_of(double speed) {
   const Bounds b{speed};
-  return {{"x_set", 0.0},  {"v_set", 0.0},   {"a_set", 0.0},
-          {"x", 0.0},      {"v", b.v},       {"i", 2.0 * bit_i},
-          {"i_set", b.i_set}, {"e", b.e},    {"e_held", b.e},
-          {"v_ref", b.v_ref}, {"v_set_delayed", b.v_set_delayed}, {"v_error", b.v_error},
-          {"i_integral", b.i_integral}, {"i_pi", b.i_pi}, {"i_notch", b.i_pi},
-          {"i_feedforward", 0.5 * bit_i}, {"i_A", 0.0}, {"i_B", 0.0},
-          {"i_C", 0.0},    {"u_A", b.u},     {"u_B", b.u},  {"u_C", b.u}};
+  return {{"x_set", 0.0},
+          {"v_set", 0.0},
+          {"a_set", 0.0},
+          {"x", 0.0},
+          {"v", b.v},
+          {"i", 2.0 * bit_i},
+          {"i_set", b.i_set},
+          {"e", b.e},
+          {"e_held", b.e},
+          {"v_ref", b.v_ref},
+          {"v_set_delayed", b.v_set_delayed},
+          {"v_error", b.v_error},
+          {"i_integral", b.i_integral},
+          {"i_pi", b.i_pi},
+          {"i_notch", b.i_pi},
+          {"i_feedforward", 0.5 * bit_i},
+          {"i_A", 0.0},
+          {"i_B", 0.0},
+          {"i_C", 0.0},
+          {"u_A", b.u},
+          {"u_B", b.u},
+          {"u_C", b.u}};
 }
 
 template <class S>
@@ -75,8 +90,8 @@ struct Inputs {
 
 template <class S>
 void feed(test::Bench<S>& b, const Inputs& in) {
-  b.set = {si<typename S::Position>(in.x_set), si<typename S::Velocity>(in.v_set), si<typename S::Acceleration>(in.a_set),
-           true};
+  b.set = {si<typename S::Position>(in.x_set), si<typename S::Velocity>(in.v_set),
+           si<typename S::Acceleration>(in.a_set), true};
   b.feedback.position = si<typename S::Position>(in.x);
   for (std::size_t k = 0; k < 3; ++k) b.feedback.current[k] = si<typename S::Current>(in.i[k]);
   b.tick(in.age_ns);

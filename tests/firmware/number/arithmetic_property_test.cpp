@@ -94,7 +94,7 @@ RC_GTEST_PROP(FixedArithmetic, NarrowIsTheNearestValueOfTheOutput, ()) {
   check_narrow<S::Position, Wide<68, std::uint64_t{1} << 61>>();
   check_narrow<S::Step, Wide<40, std::uint64_t{1} << 62>>();
   check_narrow<S::FilterResidue, Wide<48, std::uint64_t{1} << 62>>();
-  check_narrow<S::VelocityIntegral, Wide<48, (std::uint64_t{1} << 62) + 1>>();
+  check_narrow<S::VelocityIntegral, Wide<S::VelocityIntegral::fraction_bits, (std::uint64_t{1} << 62) + 1>>();
   check_narrow<Fixed<12>, Fixed<12>>();
   // Towards more fraction bits, where the word does not hold them all.
   check_narrow<Fixed<30>, Fixed<4>>();
@@ -102,10 +102,12 @@ RC_GTEST_PROP(FixedArithmetic, NarrowIsTheNearestValueOfTheOutput, ()) {
   check_narrow<Coefficient<30>, Coefficient<0, 30>>();
 }
 
-RC_GTEST_PROP(FixedArithmetic, MagnitudeIsExact, ()) {
+RC_GTEST_PROP(FixedArithmetic, ExceedsComparesMagnitudes, ()) {
   const auto a = drawn<Fixed<7>>();
-  const Int128 exact = a.raw() < 0 ? -Int128{a.raw()} : Int128{a.raw()};
-  RC_ASSERT(Int128{magnitude(a).raw()} == exact);
+  const auto bound = Fixed<7>::from_raw(static_cast<std::int32_t>(test::drawn_between(0, INT32_MAX)));
+  const Int128 size = a.raw() < 0 ? -Int128{a.raw()} : Int128{a.raw()};
+  RC_ASSERT(exceeds(a, bound) == (size > bound.raw()));
+  RC_ASSERT(Int128{opposite(a).raw()} == std::min(-Int128{a.raw()}, Int128{INT32_MAX}));
 }
 
 RC_GTEST_PROP(FixedArithmetic, FromRawClampsAndNeverWraps, ()) {

@@ -34,13 +34,13 @@ constexpr auto too_large = signal - Fixed<60>{};
 // "narrow: rounding this value may overflow 64 bits": no room for the half that rounding adds.
 constexpr auto too_large = [] {
   SaturationCounter c;
-  return narrow<Fixed<0>>(Wide<1, static_cast<std::uint64_t>(INT64_MAX)>{}, c);
+  return narrow<Fixed<0> >(Wide<1, static_cast<std::uint64_t>(INT64_MAX)>{}, c);
 }();
 #elif STICTION_CASE == 6
 // "narrow: this alignment may overflow 64 bits": 32 bits moved up by 40.
 constexpr auto too_large = [] {
   SaturationCounter c;
-  return narrow<Wide<60, 1000>>(signal, c);
+  return narrow<Wide<60, 1000> >(signal, c);
 }();
 #elif STICTION_CASE == 7
 // "Coefficient: 1 to 30 bits of magnitude"
@@ -52,7 +52,7 @@ constexpr auto too_large = Wide<0, std::uint64_t{1} << 63>{};
 // "narrow: rounding this value may overflow 64 bits": a shift of 63 and more would leave nothing.
 constexpr auto too_large = [] {
   SaturationCounter c;
-  return narrow<Wide<0, 8>>(Wide<63, 8>{}, c);
+  return narrow<Wide<0, 8> >(Wide<63, 8>{}, c);
 }();
 #elif STICTION_CASE == 10
 // "conversion from": a plain number is no signal; raw access is explicit.

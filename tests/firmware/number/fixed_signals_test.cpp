@@ -86,8 +86,8 @@ RC_GTEST_PROP(ElectricalAngle, WrapsWholeTurnsAndIsTruncatedByLessThanTheAngleOf
   const auto position = test::drawn<S::Position>();
   const auto inverse = S::PitchInverse::from_raw(static_cast<std::int32_t>(test::drawn_between(1, 1 << 30)));
   // Eight bits of the position are cut, less than 2^-32 m: inverse pitch * 2^-32 m of a turn, and one bit of the angle.
-  const auto late = static_cast<std::int32_t>(exact_turn(position.raw(), inverse.raw()) -
-                                              S::angle(position, inverse).raw);
+  const auto late =
+      static_cast<std::int32_t>(exact_turn(position.raw(), inverse.raw()) - S::angle(position, inverse).raw);
   RC_ASSERT(late >= 0);
   RC_ASSERT(Int128{late} <= (Int128{inverse.raw()} >> S::PitchInverse::fraction_bits) + 2);
 }

@@ -21,8 +21,8 @@ struct Case {
 };
 
 constexpr std::array<Case, 19> every_half{{
-    {-9, -3, 1}, {-8, -3, 1}, {-7, -3, 1},              // -4.5, -4, -3.5: beyond the range after rounding
-    {-6, -3, 0}, {-5, -3, 0}, {-4, -2, 0}, {-3, -2, 0},  // -2.5 -> -3, -1.5 -> -2
+    {-9, -3, 1}, {-8, -3, 1}, {-7, -3, 1},                          // -4.5, -4, -3.5: beyond the range after rounding
+    {-6, -3, 0}, {-5, -3, 0}, {-4, -2, 0}, {-3, -2, 0},             // -2.5 -> -3, -1.5 -> -2
     {-2, -1, 0}, {-1, -1, 0}, {0, 0, 0},   {1, 1, 0},   {2, 1, 0},  // -0.5 -> -1, 0.5 -> 1
     {3, 2, 0},   {4, 2, 0},   {5, 3, 0},   {6, 3, 0},   {7, 3, 1},  // 3.5 -> 4, saturated to 3
     {8, 3, 1},   {9, 3, 1},
@@ -80,12 +80,12 @@ TEST(Narrow, UsesTheWholeAsymmetricRangeOfASignal) {
   using In = Wide<1, std::uint64_t{1} << 34>;
   constexpr std::int64_t limit = std::int64_t{1} << 31;
   const std::vector<Case> cases{
-      {2 * limit - 3, limit - 1, 0},      // 2^31 - 1.5 -> 2^31 - 1
-      {2 * limit - 2, limit - 1, 0},      // 2^31 - 1, the highest
-      {2 * limit - 1, limit - 1, 1},      // 2^31 - 0.5 rounds to 2^31: one too many
-      {-2 * limit, -limit, 0},            // -2^31, the lowest
-      {-2 * limit + 1, -limit, 0},        // -2^31 + 0.5 rounds away from zero to the lowest
-      {-2 * limit - 1, -limit, 1},        // -2^31 - 0.5 rounds away from zero to -2^31 - 1
+      {2 * limit - 3, limit - 1, 0},  // 2^31 - 1.5 -> 2^31 - 1
+      {2 * limit - 2, limit - 1, 0},  // 2^31 - 1, the highest
+      {2 * limit - 1, limit - 1, 1},  // 2^31 - 0.5 rounds to 2^31: one too many
+      {-2 * limit, -limit, 0},        // -2^31, the lowest
+      {-2 * limit + 1, -limit, 0},    // -2^31 + 0.5 rounds away from zero to the lowest
+      {-2 * limit - 1, -limit, 1},    // -2^31 - 0.5 rounds away from zero to -2^31 - 1
       {In::highest_raw, limit - 1, 1}, {In::lowest_raw, -limit, 1},
   };
   for (const auto& [halves, whole, saturations] : cases) {
@@ -105,9 +105,9 @@ TEST(Narrow, CountsOncePerSaturatedOutputNeverForAnOutputAtItsEnd) {
 
 TEST(Narrow, CounterStaysAtItsOwnHighestValue) {
   SaturationCounter counter{UINT32_MAX - 1};
-  counter.add(false);
+  narrow<Whole>(Halves::from_raw(0), counter);
   EXPECT_EQ(counter.count, UINT32_MAX - 1);
-  for (int i = 0; i < 3; ++i) counter.add(true);
+  for (int i = 0; i < 3; ++i) narrow<Whole>(Halves::from_raw(9), counter);
   EXPECT_EQ(counter.count, UINT32_MAX);
 }
 
@@ -151,11 +151,23 @@ TEST(Coefficient, FromRawClampsToItsBits) {
   EXPECT_EQ(counter.count, 2u);
 }
 
-TEST(Magnitude, OfTheLowestWordIsExact) {
-  EXPECT_EQ(magnitude(Fixed<3>::from_raw(INT32_MIN)).raw(), std::int64_t{1} << 31);
-  EXPECT_EQ(magnitude(Fixed<3>::from_raw(INT32_MAX)).raw(), INT32_MAX);
-  EXPECT_EQ(magnitude(Fixed<3>::from_raw(-1)).raw(), 1);
-  EXPECT_EQ(magnitude(Wide<3, 7>::from_raw(-7)).raw(), 7);
+TEST(Exceeds, ComparesTheExactMagnitudeUpToTheLowestWord) {
+  using T = Fixed<3>;
+  const auto raw = [](std::int32_t x) { return T::from_raw(x); };
+  EXPECT_TRUE(exceeds(raw(INT32_MIN), raw(INT32_MAX))) << "2^31 is one more than the highest word";
+  EXPECT_FALSE(exceeds(raw(INT32_MAX), raw(INT32_MAX)));
+  EXPECT_FALSE(exceeds(raw(-INT32_MAX), raw(INT32_MAX)));
+  EXPECT_TRUE(exceeds(raw(-8), raw(7)));
+  EXPECT_FALSE(exceeds(raw(-7), raw(7)));
+  EXPECT_FALSE(exceeds(raw(0), raw(0)));
+  EXPECT_TRUE(exceeds(raw(1), raw(0)));
+}
+
+TEST(Opposite, OfTheLowestWordIsTheHighest) {
+  EXPECT_EQ(opposite(Fixed<3>::from_raw(INT32_MIN)).raw(), INT32_MAX);
+  EXPECT_EQ(opposite(Fixed<3>::from_raw(INT32_MAX)).raw(), -INT32_MAX);
+  EXPECT_EQ(opposite(Fixed<3>::from_raw(-5)).raw(), 5);
+  EXPECT_EQ(opposite(Fixed<3>::from_raw(0)).raw(), 0);
 }
 
 TEST(Fixed, NumbersOfOneTypeCompareByValue) {

@@ -49,7 +49,8 @@ TEST(RateOfInterval, OfTheTickPeriodsInUseIsExactToTheFormat) {
 }
 
 TEST(RateOfInterval, ClampsShortAndNegativeIntervalsToAMicrosecondAndLongOnesToTwoSeconds) {
-  for (const std::int64_t interval : {std::int64_t{999}, std::int64_t{1}, std::int64_t{0}, std::int64_t{-62500}, INT64_MIN})
+  for (const std::int64_t interval :
+       {std::int64_t{999}, std::int64_t{1}, std::int64_t{0}, std::int64_t{-62500}, INT64_MIN})
     EXPECT_EQ(rate_of_interval(interval).raw(), rate_of_interval(1000).raw()) << interval;
   for (const std::int64_t interval : {std::int64_t{INT32_MAX} + 1, std::int64_t{1} << 40, INT64_MAX})
     EXPECT_EQ(rate_of_interval(interval).raw(), rate_of_interval(INT32_MAX).raw()) << interval;

@@ -28,8 +28,7 @@ TEST(EncoderMount, SwingsIntoAHeldAccelerationByTheClosedFormInAnyStep) {
     for (int n = 1; n <= 200; ++n) {
       mount.advance(a * h);
       const double t = n * h, e = std::exp(-decay * t);
-      const double expected =
-          -a / (w * w) * (1.0 - e * (std::cos(damped * t) + decay / damped * std::sin(damped * t)));
+      const double expected = -a / (w * w) * (1.0 - e * (std::cos(damped * t) + decay / damped * std::sin(damped * t)));
       // Static deflection 0.127 um; some 1e-14 of it per step from rounding.
       ASSERT_NEAR(mount.deflection(), expected, 1e-12 * a / (w * w) * 100) << h << ", " << n;
       ASSERT_NEAR(mount.velocity(), -a / damped * e * std::sin(damped * t), 1e-10 * a / w) << h << ", " << n;

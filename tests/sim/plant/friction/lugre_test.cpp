@@ -24,13 +24,18 @@ double limit_of(const LuGre::Parameters& p, double v) {
 }
 
 double power_of_ten(double low, double high) {
-  return std::pow(10.0, 1e-3 * static_cast<double>(test::drawn_between(std::lround(1e3 * low), std::lround(1e3 * high))));
+  return std::pow(10.0,
+                  1e-3 * static_cast<double>(test::drawn_between(std::lround(1e3 * low), std::lround(1e3 * high))));
 }
 double drawn_speed() { return power_of_ten(-9, 1) * static_cast<double>(2 * test::drawn_between(0, 1) - 1); }
 
 LuGre::Parameters drawn_parameters() {
-  return {power_of_ten(0, 3), 1.0 + 0.5 * static_cast<double>(test::drawn_between(0, 4)), 0.0, power_of_ten(-5, -1),
-          power_of_ten(4, 9), 0.1};
+  return {power_of_ten(0, 3),
+          1.0 + 0.5 * static_cast<double>(test::drawn_between(0, 4)),
+          0.0,
+          power_of_ten(-5, -1),
+          power_of_ten(4, 9),
+          0.1};
 }
 
 RC_GTEST_PROP(LuGre, DeflectionNeverExceedsItsLargestLimitAtAnySpeedAndStep, ()) {
@@ -66,8 +71,8 @@ RC_GTEST_PROP(LuGre, IsDissipativeFromSpeedToDeflection, ()) {
     const double stored = 0.5 * p.stiffness * (after * after - before * before);
     // The share of the way to g is within 6e-8; energies are up to k_s g^2, supplies up to k_s g |v| h.
     const double g = p.coulomb * p.static_ratio / p.stiffness;
-    const double rounding = 1.2e-7 * p.stiffness * g * std::min(2.0 * g, std::abs(v) * h) +
-                            1e-13 * p.stiffness * g * (g + std::abs(v) * h);
+    const double rounding =
+        1.2e-7 * p.stiffness * g * std::min(2.0 * g, std::abs(v) * h) + 1e-13 * p.stiffness * g * (g + std::abs(v) * h);
     RC_ASSERT(supplied >= stored - rounding);
   }
 }

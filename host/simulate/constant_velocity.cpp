@@ -1,0 +1,100 @@
+// Constant velocity (Mendricky 2006, 6.1): the motor current of the X axis at constant speeds against the measured one.
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "host/simulate/control_run.hpp"
+#include "host/simulate/experiments.hpp"
+#include "sim/experiment/speed_ramp.hpp"
+#include "stiction/number/fixed_signals.hpp"
+
+namespace stiction::host {
+namespace {
+
+// Tab 5.1, X.
+struct Measured {
+  double speed_m_per_min, current;
+};
+constexpr std::array<Measured, 10> measured{{{0.02, 0.75},
+                                             {0.1, 0.85},
+                                             {0.5, 1.0},
+                                             {1.0, 1.25},
+                                             {3.2, 1.51},
+                                             {5.0, 1.7},
+                                             {8.0, 1.77},
+                                             {10.0, 2.0},
+                                             {16.0, 2.19},
+                                             {24.0, 2.62}}};
+
+// Mean current (A) over the last 0.1 s of a run at `speed` (m/s); the start has died out by then.
+double steady_current(const sim::Machine& machine, double speed) {
+  constexpr double settling = 0.4, averaging = 0.1;  // s
+  const sim::SpeedRamp ramp(speed, 2.0, 40.0);
+  const std::array<double, 1> origin{0.0};
+  ControlRun<FixedSignals> run(machine, origin);
+  double sum = 0.0;
+  int ticks = 0;
+  const double end = ramp.duration() + settling + averaging;
+  while (run.time() < end) {
+    const auto motion = ramp.at(run.time());
+    if (run.time() > end - averaging) {
+      sum += run.plant(0).motor_force() / machine.axes[0].motor.force_constant;
+      ++ticks;
+    }
+    run.tick(std::array{sim::AxisSetPoint{motion.distance, motion.speed, motion.acceleration}});
+  }
+  return sum / ticks;
+}
+
+}  // namespace
+
+sim::ExperimentResult run_constant_velocity(const ExperimentInput& input) {
+  sim::ExperimentResult result{"constant-velocity",
+                               "Constant velocity",
+                               FixedSignals::name,
+                               "The current of the X axis at constant speed, with the friction parameters of Tab 6.1, "
+                               "against the measured steady states of Tab 5.1 (Mendricky 2006, 6.1).",
+                               {},
+                               {},
+                               {}};
+  sim::Chart chart{"Friction characteristic",
+                   "speed, m/min",
+                   "current, A (amplitude)",
+                   "The measured curve bends at low speed and rises less than linearly: no model here does both.",
+                   true,
+                   {}};
+  sim::Series points{"measured", {}, {}, true};
+  for (const auto& row : measured) {
+    points.x.push_back(row.speed_m_per_min);
+    points.y.push_back(row.current);
+  }
+  for (const auto& name : input.friction) {
+    auto machine = input.machine;
+    machine.axes.resize(1);
+    machine.axes[0].friction.use = name;
+    sim::Series series{name, {}, {}, false};
+    double deviation = 0.0;
+    for (const auto& row : measured) {
+      const double current = steady_current(machine, row.speed_m_per_min / 60.0);
+      series.x.push_back(row.speed_m_per_min);
+      series.y.push_back(current);
+      deviation += std::abs(current / row.current - 1.0) / measured.size();
+      result.figures.push_back({fmt::format("current_{}_at_{:g}_m_per_min", name, row.speed_m_per_min),
+                                "A",
+                                fmt::format("{}, {:g} m/min (measured {:g} A)", name, row.speed_m_per_min, row.current),
+                                current,
+                                {}});
+    }
+    result.figures.push_back(
+        {"mean_deviation_" + name, "%", "mean |simulated / measured - 1|, " + name, deviation * 100.0, {}});
+    result.findings.push_back(
+        fmt::format("{}: {:.0f} % off the measured currents in the mean.", name, deviation * 100.0));
+    chart.series.push_back(std::move(series));
+  }
+  chart.series.push_back(std::move(points));
+  result.charts.push_back(std::move(chart));
+  return result;
+}
+
+}  // namespace stiction::host

@@ -1,0 +1,37 @@
+// The table of experiments other than the circle. A new one is a file beside this one and a row in experiments.cpp: the
+// command line takes name and text from it.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/experiment/experiment_result.hpp"
+#include "sim/machine/machine.hpp"
+
+namespace stiction::host {
+
+struct ExperimentInput {
+  sim::Machine machine;               // with the experiment's overrides
+  std::vector<std::string> friction;  // the models to run, at least one
+};
+
+struct Experiment {
+  const char* name;                 // "impact"
+  const char* text;                 // for --help
+  std::vector<std::string> models;  // the friction models it makes sense for; empty: all
+  sim::ExperimentResult (*run)(const ExperimentInput&);
+};
+
+std::span<const Experiment> experiments();
+
+// The experiments, firmware in fixed point where control takes part. Throw FaultTripped.
+sim::ExperimentResult run_constant_velocity(const ExperimentInput& input);
+sim::ExperimentResult run_impact(const ExperimentInput& input);
+sim::ExperimentResult run_l_shape(const ExperimentInput& input);
+sim::ExperimentResult run_presliding(const ExperimentInput& input);
+sim::ExperimentResult run_friction_lag(const ExperimentInput& input);
+sim::ExperimentResult run_break_away(const ExperimentInput& input);
+sim::ExperimentResult run_stick_slip(const ExperimentInput& input);
+
+}  // namespace stiction::host

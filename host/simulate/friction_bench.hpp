@@ -1,0 +1,39 @@
+// A mass on a surface, without a drive: the bench on which friction models show their properties (Mendricky 2006,
+// 4.4.3).
+#pragma once
+
+#include "sim/machine/machine.hpp"
+#include "sim/plant/friction/friction.hpp"
+
+namespace stiction::host {
+
+class FrictionBench {
+ public:
+  static constexpr double step = 20e-6;  // s
+
+  // The X axis' mass on the friction model that its machine file uses, at rest.
+  explicit FrictionBench(const sim::Axis& axis)
+      : mass_(axis.mass),
+        friction_(sim::make_friction(axis.friction.models.at(axis.friction.use), {axis.mass, step})) {}
+
+  // One step under `force` (N), the sum of all forces but friction.
+  void advance(double force) {
+    const double next = std::visit([&](auto& model) { return model.advance(velocity_, force); }, friction_);
+    friction_force_ = force - mass_ * (next - velocity_) / step;
+    position_ += 0.5 * step * (velocity_ + next);
+    velocity_ = next;
+    time_ += step;
+  }
+
+  double time() const { return time_; }                      // s
+  double position() const { return position_; }              // m
+  double velocity() const { return velocity_; }              // m/s
+  double friction_force() const { return friction_force_; }  // N, mean over the last step
+
+ private:
+  double mass_;
+  sim::FrictionModel friction_;
+  double time_ = 0.0, position_ = 0.0, velocity_ = 0.0, friction_force_ = 0.0;
+};
+
+}  // namespace stiction::host

@@ -1,0 +1,274 @@
+// What a dynamic friction model must show (Mendricky 2006, 4.4.3, Tab 4.3): presliding, frictional lag, break-away
+// force that falls with the rate of the force, stick-slip.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "host/simulate/experiments.hpp"
+#include "host/simulate/friction_bench.hpp"
+
+namespace stiction::host {
+namespace {
+
+sim::Axis axis_with(const ExperimentInput& input, const std::string& friction) {
+  auto axis = input.machine.axes.front();
+  axis.friction.use = friction;
+  return axis;
+}
+
+sim::Expectation within_2_percent(double value, double rounding, const char* source = "plant study, 10: prototype") {
+  return {value, std::max(0.02 * std::abs(value), rounding), source};
+}
+
+// Keeps every `stride`-th point.
+class Thinned {
+ public:
+  Thinned(sim::Series& series, int stride) : series_(series), stride_(stride) {}
+  void add(double x, double y) {
+    if (count_++ % stride_ != 0) return;
+    series_.x.push_back(x);
+    series_.y.push_back(y);
+  }
+
+ private:
+  sim::Series& series_;
+  int stride_;
+  int count_ = 0;
+};
+
+// Force over time from corners (s, N), linear between them.
+double polyline(const std::vector<std::pair<double, double>>& corners, double t) {
+  for (std::size_t i = 1; i < corners.size(); ++i)
+    if (t <= corners[i].first) {
+      const auto& [t0, f0] = corners[i - 1];
+      const auto& [t1, f1] = corners[i];
+      return f0 + (f1 - f0) * (t - t0) / (t1 - t0);
+    }
+  return corners.back().second;
+}
+
+constexpr double ramp_force = 540.0;  // N, 90 % of the static friction of Tab 4.3
+
+struct PreslidingLoop {
+  double at_first_top, at_second_top, after_unloading;  // m
+};
+
+// 0 to +540 N, held, to -540 N, held, to +540 N, held, at `rate` (N/s).
+PreslidingLoop presliding_loop(const sim::Axis& axis, double rate, double hold, sim::Series& series) {
+  const double ramp = ramp_force / rate;
+  const double top = ramp + hold, bottom = top + 2.0 * ramp, up = bottom + hold, end = up + 2.0 * ramp + hold;
+  const std::vector<std::pair<double, double>> corners{
+      {0.0, 0.0},        {ramp, ramp_force},       {top, ramp_force}, {bottom, -ramp_force},
+      {up, -ramp_force}, {end - hold, ramp_force}, {end, ramp_force}};
+  FrictionBench bench(axis);
+  PreslidingLoop loop{};
+  Thinned line(series, std::max(1, static_cast<int>(end / FrictionBench::step / 4000.0)));
+  while (bench.time() < end) {
+    const double force = polyline(corners, bench.time());
+    bench.advance(force);
+    line.add(bench.position() * 1e6, bench.friction_force());
+    if (bench.time() <= top) loop.at_first_top = bench.position();
+    if (bench.time() <= top + ramp) loop.after_unloading = bench.position();
+    if (std::abs(bench.position()) > 0.01) break;  // it slides
+  }
+  loop.at_second_top = bench.position();
+  return loop;
+}
+
+}  // namespace
+
+sim::ExperimentResult run_presliding(const ExperimentInput& input) {
+  sim::ExperimentResult result{
+      "presliding",
+      "Presliding displacement",
+      "",
+      "A force below break-away (ramps to +-540 N, 90 % of the static friction) moves the mass by micrometres, and "
+      "unloading does not bring it back to the origin (Mendricky 2006, 4.4.3.1).",
+      {},
+      {},
+      {}};
+  sim::Chart chart{
+      "Friction over displacement", "displacement, um", "friction force, N", "Ramps of 54 N/s.", false, {}};
+  for (const auto& name : input.friction) {
+    sim::Series slow{name, {}, {}, false};
+    const auto loop = presliding_loop(axis_with(input, name), 54.0, 2.0, slow);
+    chart.series.push_back(std::move(slow));
+    result.figures.push_back(
+        {"displacement_at_540_N_" + name, "um", "displacement at 540 N, " + name, loop.at_first_top * 1e6, {}});
+    result.figures.push_back({"displacement_after_unloading_" + name,
+                              "um",
+                              "displacement left at 0 N, " + name,
+                              loop.after_unloading * 1e6,
+                              {}});
+    result.figures.push_back({"loop_gap_" + name, "um", "between the two visits of +540 N, " + name,
+                              (loop.at_second_top - loop.at_first_top) * 1e6,
+                              sim::Expectation{0.0, 0.02 * std::abs(loop.at_first_top) * 1e6,
+                                               "plant study, 10: the loop closes for slow ramps"}});
+    result.findings.push_back(fmt::format("{}: {:.1f} um at 540 N, {:.1f} um left after unloading.", name,
+                                          loop.at_first_top * 1e6, loop.after_unloading * 1e6));
+    if (name != "lugre") continue;
+    sim::Series fast{name + ", 5400 N/s", {}, {}, false};
+    const auto broken = presliding_loop(axis_with(input, name), 5400.0, 2.0, fast);
+    result.figures.push_back({"breaks_away_at_5400_N_per_s", "", "1: the mass breaks away while 540 N is held",
+                              std::abs(broken.at_second_top) > 1e-3 ? 1.0 : 0.0,
+                              sim::Expectation{1.0, 0.0, "plant study, 10: prototype"}});
+  }
+  result.charts.push_back(std::move(chart));
+  return result;
+}
+
+sim::ExperimentResult run_friction_lag(const ExperimentInput& input) {
+  sim::ExperimentResult result{"friction-lag",
+                               "Frictional lag",
+                               "",
+                               "While sliding at varying speed the friction is lower for falling than for rising "
+                               "speed; the loop widens with the "
+                               "frequency (Mendricky 2006, 4.4.3.2).",
+                               {},
+                               {},
+                               {}};
+  sim::Chart chart{"Friction over speed",           "speed, mm/s", "friction force, N",
+                   "Speed 2.5 + 2.4 sin(wt) mm/s.", false,         {}};
+  const auto axis = axis_with(input, "lugre");
+  const auto& parameters = std::get<sim::LuGre::Parameters>(axis.friction.models.at("lugre"));
+  double slow_width = 0.0;
+  for (const auto& [omega, width] : {std::pair{1.0, 11.1}, {10.0, 66.7}, {25.0, 79.9}, {100.0, 51.9}}) {
+    // A whole number of steps a period, begun at the lowest speed: step i of the rise has the speed of step count - i
+    // of the fall.
+    const double period = 2.0 * std::numbers::pi / omega;
+    const auto count = static_cast<std::size_t>(std::ceil(period / FrictionBench::step));
+    const double step = period / static_cast<double>(count);
+    sim::LuGre friction(parameters, {axis.mass, step});
+    sim::Series series{fmt::format("{:g} rad/s", omega), {}, {}, false};
+    Thinned line(series, std::max(1, static_cast<int>(count / 2000)));
+    std::vector<double> force(count + 1);
+    const int periods = std::max(2, static_cast<int>(std::ceil(1.0 / period))) + 1;  // the last one has settled
+    for (int p = 0; p < periods; ++p)
+      for (std::size_t i = 0; i <= count; ++i) {
+        const double phase = 2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(count);
+        const double v = 2.5e-3 - 2.4e-3 * std::cos(phase);
+        force[i] = friction.move_contact(v) + parameters.viscous * v;
+        if (p + 1 == periods) line.add(v * 1e3, force[i]);
+      }
+    double widest = 0.0;
+    for (std::size_t i = 0; i <= count / 2; ++i) widest = std::max(widest, force[i] - force[count - i]);
+    if (omega == 1.0) slow_width = widest;
+    result.figures.push_back({fmt::format("width_at_{:g}_rad_per_s", omega), "N",
+                              fmt::format("width of the loop at {:g} rad/s", omega), widest,
+                              within_2_percent(width, 0.05)});
+    chart.series.push_back(std::move(series));
+  }
+  result.findings.push_back(
+      fmt::format("The loop is {:.1f} N wide at 1 rad/s and {:.1f} N at 25 rad/s; beyond, the contact no longer "
+                  "follows and it narrows.",
+                  slow_width, result.figures[2].value));
+  result.charts.push_back(std::move(chart));
+  return result;
+}
+
+sim::ExperimentResult run_break_away(const ExperimentInput& input) {
+  sim::ExperimentResult result{
+      "break-away",
+      "Break-away force",
+      "",
+      "The force at which the mass begins to slide falls with the rate of the force, from the static friction towards "
+      "Coulomb friction (Mendricky 2006, 4.4.3.3).",
+      {},
+      {},
+      {}};
+  sim::Chart chart{"Break-away force over the rate of the force", "rate, N/s", "break-away force, N", "", true, {}};
+  sim::Series series{"lugre", {}, {}, false};
+  const auto axis = axis_with(input, "lugre");
+  const auto break_away = [&](double rate) {
+    // The friction force at its greatest: from there on the mass is faster than its contact.
+    FrictionBench bench(axis);
+    double greatest = 0.0;
+    while (bench.position() < 1e-3) {
+      bench.advance(rate * bench.time());
+      greatest = std::max(greatest, bench.friction_force());
+    }
+    return greatest;
+  };
+  for (const double rate : {10.0, 30.0, 100.0, 300.0, 1e3, 2e3, 3e3, 5e3, 1e4, 3e4, 1e5}) {
+    series.x.push_back(rate);
+    series.y.push_back(break_away(rate));
+  }
+  for (const auto& [rate, force] : {std::pair{10.0, 578.6}, {1e3, 551.5}, {3e3, 504.9}, {1e4, 415.3}})
+    result.figures.push_back({fmt::format("break_away_at_{:g}_N_per_s", rate), "N",
+                              fmt::format("break-away force at {:g} N/s", rate), break_away(rate),
+                              within_2_percent(force, 0.05)});
+  result.findings.push_back(fmt::format("From {:.0f} N at 10 N/s to {:.0f} N at 1e4 N/s.", result.figures.front().value,
+                                        result.figures.back().value));
+  chart.series.push_back(std::move(series));
+  result.charts.push_back(std::move(chart));
+  return result;
+}
+
+sim::ExperimentResult run_stick_slip(const ExperimentInput& input) {
+  sim::ExperimentResult result{
+      "stick-slip",
+      "Stick-slip",
+      "",
+      "A mass of 400 kg on a spring of 5000 N/m whose end is pulled at 0.1 m/s sticks until about k_s g(0), slips, and "
+      "repeats (Mendricky 2006, 4.4.3.4).",
+      {},
+      {},
+      {}};
+  constexpr double stiffness = 5000.0, pull = 0.1, duration = 10.0;  // N/m, m/s, s
+  constexpr double slipping = 1e-3;                                  // m/s, the Stribeck velocity
+  sim::Chart position{"Position", "time, s", "position, m", "", false, {}};
+  sim::Chart force{"Friction force", "time, s", "friction force, N", "", false, {}};
+  sim::Series spring_end{"spring end", {0.0, duration}, {0.0, pull * duration}, false};
+  for (const auto& name : input.friction) {
+    FrictionBench bench(axis_with(input, name));
+    sim::Series x{name, {}, {}, false}, f{name, {}, {}, false};
+    Thinned x_line(x, 200), f_line(f, 200);
+    std::vector<double> starts, stops, start_positions, stop_positions;
+    double first_force = 0.0;
+    bool slips = false;
+    while (bench.time() < duration) {
+      const double spring = stiffness * (pull * bench.time() - bench.position());
+      bench.advance(spring);
+      x_line.add(bench.time(), bench.position());
+      f_line.add(bench.time(), bench.friction_force());
+      const bool moving = std::abs(bench.velocity()) > slipping;
+      if (moving && !slips) {
+        starts.push_back(bench.time());
+        start_positions.push_back(bench.position());
+        if (starts.size() == 1) first_force = spring;
+      }
+      if (!moving && slips) {
+        stops.push_back(bench.time());
+        stop_positions.push_back(bench.position());
+      }
+      slips = moving;
+    }
+    position.series.push_back(std::move(x));
+    force.series.push_back(std::move(f));
+    if (starts.size() < 3 || stops.size() < 2) {
+      result.findings.push_back(name + ": no repeated stick-slip.");
+      continue;
+    }
+    const bool known = name == "lugre";
+    const auto add = [&](const char* figure, const char* unit, const char* text, double value, double expected,
+                         double rounding) {
+      result.figures.push_back({std::string(figure) + "_" + name, unit, std::string(text) + ", " + name, value,
+                                known ? std::optional(within_2_percent(expected, rounding)) : std::nullopt});
+    };
+    add("first_slip_time", "s", "first slip", starts[0], 1.171, 0.0005);
+    add("first_slip_force", "N", "spring force at the first slip", first_force, 585.0, 0.5);
+    add("first_stop_time", "s", "first stop", stops[0], 2.561, 0.0005);
+    add("period", "s", "period", starts[2] - starts[1], 1.887, 0.0005);
+    add("jump", "m", "jump", stop_positions[1] - start_positions[1], 0.1886, 0.00005);
+    result.findings.push_back(fmt::format("{}: first slip after {:.3f} s at {:.0f} N, then every {:.3f} s by {:.4f} m.",
+                                          name, starts[0], first_force, starts[2] - starts[1],
+                                          stop_positions[1] - start_positions[1]));
+  }
+  position.series.push_back(std::move(spring_end));
+  result.charts = {std::move(position), std::move(force)};
+  return result;
+}
+
+}  // namespace stiction::host

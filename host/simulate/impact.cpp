@@ -1,0 +1,118 @@
+// Impact compliance of the position loop (Mendricky 2006, 6.2): a step of external force on the X axis at standstill.
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "host/simulate/control_run.hpp"
+#include "host/simulate/experiments.hpp"
+#include "stiction/number/fixed_signals.hpp"
+
+namespace stiction::host {
+namespace {
+
+constexpr double step_time = 0.01;     // s
+constexpr double step_force = 1500.0;  // N, half the continuous force of the motor
+constexpr double duration = 1.0;       // s
+constexpr double back = 1e-6;          // m, deviation that counts as returned
+
+struct Response {
+  sim::Series deviation, force, friction;
+  double peak = 0.0;            // m
+  double last_beyond = 0.0;     // s after the step, the last time the deviation was above `back`
+  double resting_friction = 0;  // N
+};
+
+Response respond(const sim::Machine& machine, const std::string& name) {
+  Response r;
+  r.deviation.name = r.force.name = r.friction.name = name;
+  const std::array<double, 1> origin{0.0};
+  ControlRun<FixedSignals> run(machine, origin);
+  const std::array<sim::AxisSetPoint, 1> standstill{};
+  while (run.time() < duration) {
+    const double t = run.time();
+    auto& plant = run.plant(0);
+    plant.set_external_force(t >= step_time ? step_force : 0.0);
+    const double force = plant.motor_force();
+    const double friction = plant.friction_force();
+    run.tick(standstill);
+    const double deviation = -sim::to_si(run.signals(0).e);
+    r.deviation.x.push_back(t * 1e3);
+    r.deviation.y.push_back(deviation * 1e6);
+    r.force.x.push_back(t * 1e3);
+    r.force.y.push_back(force);
+    r.friction.x.push_back(t * 1e3);
+    r.friction.y.push_back(friction);
+    r.peak = std::max(r.peak, std::abs(deviation));
+    if (std::abs(deviation) > back) r.last_beyond = t - step_time;
+    r.resting_friction = friction;
+  }
+  return r;
+}
+
+}  // namespace
+
+sim::ExperimentResult run_impact(const ExperimentInput& input) {
+  sim::ExperimentResult result{
+      "impact",
+      "Impact compliance",
+      FixedSignals::name,
+      "A step of 1500 N on the X axis in position control: a peak deviation of about 80 um, back in about 70 ms, with "
+      "every friction model; afterwards A and C stay wound up a few newtons under the Coulomb friction, B1 and B2 "
+      "relax "
+      "to zero (Mendricky 2006, 6.2).",
+      {},
+      {},
+      {}};
+  sim::Chart deviation{
+      "Deviation", "time, ms", "deviation at the encoder, um", "External force of 1500 N from 10 ms on.", false, {}};
+  sim::Chart force{"Motor force", "time, ms", "motor force, N", "At rest the motor and the friction share the 1500 N.",
+                   false,         {}};
+  sim::Chart friction{"Friction", "time, ms", "friction force, N", "", false, {}};
+  auto machine = input.machine;
+  machine.axes.resize(1);
+  auto& axis = machine.axes[0];
+  const std::string prototype = "plant study, 10: prototype at 56 400 N s/m";
+  for (const auto& name : input.friction) {
+    axis.friction.use = name;
+    auto r = respond(machine, name);
+    result.figures.push_back({"peak_deviation_" + name, "um", "peak deviation, " + name, r.peak * 1e6,
+                              sim::Expectation{93.0, 1.9, prototype + ", 92 to 94 um"}});
+    const bool sticks = name == "classical" || name == "lugre";
+    const bool relaxes = name == "linear_ramp" || name == "parabolic";
+    std::optional<sim::Expectation> returned, rest;
+    if (sticks) returned = sim::Expectation{71.0, 1.5, prototype};
+    if (relaxes) returned = sim::Expectation{61.0, 1.5, prototype};
+    if (sticks) rest = sim::Expectation{113.0, 2.3, prototype};
+    if (relaxes) rest = sim::Expectation{0.0, 10.0, prototype + ", relaxing: B2 passes 6 N at 0.2 um/s"};
+    result.figures.push_back(
+        {"return_time_" + name, "ms", "back within 1 um after, " + name, r.last_beyond * 1e3, returned});
+    result.figures.push_back(
+        {"resting_friction_" + name, "N", "friction left at rest, " + name, std::abs(r.resting_friction), rest});
+    deviation.series.push_back(std::move(r.deviation));
+    force.series.push_back(std::move(r.force));
+    friction.series.push_back(std::move(r.friction));
+  }
+
+  // The source prints the velocity gain also as 80 000 N s/m (RMS taken for amplitude); about 80 um lies between.
+  axis.friction.use = input.friction.front();
+  const double gain = axis.velocity_controller.gain;
+  for (const auto& [label, newtons, expected] :
+       {std::tuple{"80000", 80000.0, std::optional(sim::Expectation{62.5, 1.3, "plant study, 10: 62 to 63 um"})},
+        std::tuple{"65000", 65000.0, std::optional(sim::Expectation{80.0, 4.0, "Mendricky 2006, 6.2: about 80 um"})}}) {
+    axis.velocity_controller.gain = newtons / axis.motor.force_constant;
+    const auto r = respond(machine, input.friction.front());
+    result.figures.push_back(
+        {fmt::format("peak_deviation_at_{}_N_s_per_m", label), "um",
+         fmt::format("peak deviation with a velocity gain of {} N s/m, {}", label, input.friction.front()),
+         r.peak * 1e6, expected});
+  }
+  result.findings.push_back(fmt::format(
+      "With the file's velocity gain, {:.0f} N s/m, the peak is {:.1f} um. The source's \"about 80 um\" needs about "
+      "65 000 N s/m: which gain its figure was made with is unresolved, so three gains are shown.",
+      gain * axis.motor.force_constant, result.figures.front().value));
+  result.charts = {std::move(deviation), std::move(force), std::move(friction)};
+  return result;
+}
+
+}  // namespace stiction::host

@@ -1,0 +1,125 @@
+// The irregular path (Mendricky 2006, 6.4): straight lines and arcs with standstill of one axis, after which the axis
+// restarts in the direction it stopped from or in the opposite one.
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "host/simulate/control_run.hpp"
+#include "host/simulate/experiments.hpp"
+#include "sim/experiment/line_arc_path.hpp"
+#include "stiction/number/fixed_signals.hpp"
+
+namespace stiction::host {
+namespace {
+
+constexpr double feed = 8.0 / 60.0;  // m/s
+constexpr double mm = 1e-3;
+
+// A-B-D-E-F-G-I-J-A, Y starts in +y, counter-clockwise.
+sim::LineArcPath l_shape() {
+  constexpr double pi = std::numbers::pi;
+  sim::LineArcPath path(pi / 2.0, feed, 2.0);
+  path.line(60 * mm);            // 1  A-B
+  path.arc(20 * mm, pi);         // 2  B-D
+  path.line(100 * mm);           // 3  D-E
+  path.arc(20 * mm, pi / 2.0);   // 4  E-F
+  path.line(80 * mm);            // 5  F-G: Y stands, after -y
+  path.arc(20 * mm, pi);         // 6  G-I: Y restarts in +y
+  path.line(40 * mm);            // 7  I-J: Y stands, after +y
+  path.arc(20 * mm, -pi / 2.0);  // 8  J-A: Y restarts in +y
+  path.line(60 * mm);            // 9  A-B again, so that the last restart dies out inside the path
+  return path;
+}
+
+// What the prototype found (plant study, 10), um and A.
+struct Expected {
+  double same, opposite, current;
+};
+const std::map<std::string, Expected> prototype{{"classical", {13.6, 0.8, 2.29}},
+                                                {"linear_ramp", {6.0, 6.1, 0.0}},
+                                                {"parabolic", {4.3, 4.3, 0.0}},
+                                                {"lugre", {0.7, 9.0, 2.29}}};
+
+std::optional<sim::Expectation> expect(const std::string& name, double Expected::*member, double rounding) {
+  const auto row = prototype.find(name);
+  if (row == prototype.end()) return std::nullopt;
+  const double value = row->second.*member;
+  return sim::Expectation{value, std::max(0.02 * value, rounding), "plant study, 10: prototype"};
+}
+
+}  // namespace
+
+sim::ExperimentResult run_l_shape(const ExperimentInput& input) {
+  sim::ExperimentResult result{
+      "l-shape",
+      "Irregular path with standstill of one axis",
+      FixedSignals::name,
+      "Only the model with presliding (C) keeps the current of the last motion at standstill; a restart in the same "
+      "direction then gives a small error, one in the opposite direction about the quadrant error. A, B1 and B2 do not "
+      "(Mendricky 2006, 6.4).",
+      {},
+      {},
+      {}};
+  const auto path = l_shape();
+  sim::Chart error{"Error of Y", "time, s", "error at the encoder, um", "Y stands from F to G and from I to J.",
+                   false,        {}};
+  sim::Chart current{"Current of Y", "time, s", "motor force / force constant, A", "", false, {}};
+  const double stop = path.end_of(4), opposite = path.end_of(5), stop_again = path.end_of(6), same = path.end_of(7);
+  for (const auto& name : input.friction) {
+    auto machine = input.machine;
+    for (auto& axis : machine.axes) axis.friction.use = name;
+    const auto begin = path.at(0.0);
+    const std::array<double, 2> start{begin[0].position, begin[1].position};
+    ControlRun<FixedSignals> run(machine, start);
+    sim::Series e{name, {}, {}, false}, i{name, {}, {}, false};
+    double same_peak = 0.0, opposite_peak = 0.0, standing = 0.0;
+    int standing_ticks = 0;
+    while (run.time() < path.duration()) {
+      const double t = run.time();
+      const double amperes = run.plant(1).motor_force() / machine.axes[1].motor.force_constant;
+      run.tick(path.at(t));
+      const double deviation = sim::to_si(run.signals(1).e);
+      e.x.push_back(t);
+      e.y.push_back(deviation * 1e6);
+      i.x.push_back(t);
+      i.y.push_back(amperes);
+      // A restart is over after 10 mm of path; the standstill is settled in its second half.
+      if (t >= opposite && t < opposite + 10 * mm / feed) opposite_peak = std::max(opposite_peak, std::abs(deviation));
+      if (t >= same && t < same + 10 * mm / feed) same_peak = std::max(same_peak, std::abs(deviation));
+      if (t > 0.5 * (stop + opposite) && t < opposite) {
+        standing += amperes;
+        ++standing_ticks;
+      }
+    }
+    standing /= standing_ticks;
+    result.figures.push_back({"standing_current_" + name, "A",
+                              "current of Y while it stands from F to G (its sign against the last motion: +), " + name,
+                              std::abs(standing), expect(name, &Expected::current, 0.05)});
+    result.figures.push_back({"same_direction_error_" + name, "um",
+                              "peak error of Y, restart in the same direction, " + name, same_peak * 1e6,
+                              expect(name, &Expected::same, 0.05)});
+    result.figures.push_back({"opposite_direction_error_" + name, "um",
+                              "peak error of Y, restart in the opposite direction, " + name, opposite_peak * 1e6,
+                              expect(name, &Expected::opposite, 0.05)});
+    result.findings.push_back(fmt::format(
+        "{}: {:.2f} A {} at standstill; restart {:.1f} um in the same direction, {:.1f} um in the opposite one.", name,
+        std::abs(standing),
+        std::abs(standing) < 0.02 ? "left"
+        : standing < 0.0          ? "kept in the direction of the last motion"
+                                  : "turned against the last motion",
+        same_peak * 1e6, opposite_peak * 1e6));
+    error.series.push_back(std::move(e));
+    current.series.push_back(std::move(i));
+  }
+  error.caption = fmt::format(
+      "Y stands from {:.2f} s to {:.2f} s and restarts in the opposite direction; it stands again from "
+      "{:.2f} s to {:.2f} s and restarts in the same.",
+      stop, opposite, stop_again, same);
+  result.charts = {std::move(error), std::move(current)};
+  return result;
+}
+
+}  // namespace stiction::host

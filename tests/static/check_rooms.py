@@ -1,0 +1,184 @@
+#!/usr/bin/env python3
+"""Checks that #include lines run only along the arrows between rooms, and prints each that does not.
+
+usage: check_rooms.py [ROOT]      status 1: findings
+
+A room is a folder; a file belongs to the innermost room around it. ROOMS below is the only table of arrows: what is not
+in it is an error, and whoever adds a row gives its reason. Folders must not include each other in a circle.
+"""
+
+import pathlib
+import re
+import sys
+
+FIRMWARE = "firmware/include/stiction"
+
+# Room: {what it may include, beside itself: why}. A target stands for all folders below it, too.
+ROOMS = {
+    f"{FIRMWARE}/number": {},
+    f"{FIRMWARE}/control": {f"{FIRMWARE}/number": "laws are written in fixed-point numbers"},
+    f"{FIRMWARE}/motion": {f"{FIRMWARE}/number": "set-points are interpolated in fixed-point numbers"},
+    f"{FIRMWARE}/drive": {
+        f"{FIRMWARE}/control": "the cascade is made of the laws",
+        f"{FIRMWARE}/motion": "and follows the set-points",
+        f"{FIRMWARE}/number": "in fixed-point numbers",
+    },
+    "firmware/drive": {
+        FIRMWARE: "the drive's programme runs the cascade",
+        "hal": "over the backend that its command line names",
+    },
+    "hal": {FIRMWARE: "the border to the world is written in the cascade's types"},
+    "hal/simulated": {
+        "hal": "it is a backend",
+        FIRMWARE: "in the cascade's types",
+        "sim": "the one place that knows both the border and the simulation",
+    },
+    "sim": {},
+    "sim/plant/friction": {"sim": "a model describes its parameters (sim/parameter.hpp)"},
+    "sim/machine": {
+        "sim": "keys are described by sim/parameter.hpp",
+        "sim/plant/friction": "and those of friction by the models",
+    },
+    "sim/plant": {
+        "sim/machine": "the plant is built from a machine",
+        "sim/plant/friction": "with one of the friction models",
+    },
+    "sim/control": {
+        "sim/machine": "the drive's configuration is computed from a machine",
+        FIRMWARE: "and is the cascade's own",
+    },
+    "sim/experiment": {
+        "sim/control": "set-points cross the border to the drive's formats",
+        "sim/machine": "within the limits of a machine",
+        FIRMWARE: "and end in the cascade's types",
+    },
+    "host/log": {
+        "sim/control": "signals leave in SI units",
+        FIRMWARE: "the cascade lists its own signals",
+    },
+    "host/simulate": {
+        "host/log": "a run can be logged",
+        "hal": "the host's build replaces the hal",
+        "sim": "by the simulation",
+        FIRMWARE: "never the control",
+    },
+    "host/report": {
+        "host/simulate": "results of runs become pages",
+        "sim": "beside the machine they belong to",
+    },
+    "host/cli": {
+        "host/log": "a command reads and writes logs",
+        "host/simulate": "runs experiments",
+        "host/report": "and shows their results",
+        "sim": "for the machine it is given",
+        f"{FIRMWARE}/number": "with the drive's formats or with double ones",
+    },
+    "tests": {"firmware": "tests may see everything", "hal": "", "sim": "", "host": ""},
+}
+
+# Where a path in quotes starts.
+INCLUDE_ROOTS = ("", "firmware/include", "toolchain/cortex-m")
+
+# The standard headers that the firmware may use: freestanding in C++20 and without floating point, exceptions or heap.
+FREESTANDING = {"atomic", "bit", "climits", "compare", "concepts", "cstddef", "cstdint", "initializer_list", "limits",
+                "type_traits", "version"}
+# std::array is freestanding by the letter only from C++26 on (P2976), but it is nothing but an aggregate.
+FREESTANDING |= {"array"}
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*(?:<([^>]+)>|"([^"]+)"|(\S+))')
+SOURCES = {".cpp", ".hpp", ".h", ".c"}
+
+
+def sources(root):
+    for top in sorted({room.split("/")[0] for room in ROOMS}):
+        for file in sorted((root / top).rglob("*")):
+            if file.suffix in SOURCES and "node_modules" not in file.parts:
+                yield file.relative_to(root)
+
+
+def room_of(folder):
+    inside = [room for room in ROOMS if folder == room or folder.startswith(room + "/")]
+    return max(inside, key=len, default=None)
+
+
+def resolve(root, name):
+    for start in INCLUDE_ROOTS:
+        if (root / start / name).is_file():
+            return pathlib.PurePosixPath(start, name)
+    return None
+
+
+def check_file(root, file, arrows):
+    """Yields findings; adds to `arrows` the folders that this file's folder includes, with the place."""
+    folder = file.parent.as_posix()
+    room = room_of(folder)
+    if room is None:
+        yield f"{file}: {folder} is not a room; add it to ROOMS with the reasons for its arrows"
+        return
+    for number, line in enumerate((root / file).read_text(encoding="utf-8").splitlines(), 1):
+        match = INCLUDE.match(line)
+        if not match:
+            continue
+        place = f"{file}:{number}"
+        system, quoted, computed = match.groups()
+        if computed:
+            yield f"{place}: {computed} hides what is included; name the header"
+        elif system:
+            if room.startswith(FIRMWARE) and system not in FREESTANDING:
+                yield f"{place}: <{system}> is not a freestanding header"
+        else:
+            target = resolve(root, quoted)
+            if target is None:
+                yield f'{place}: there is no "{quoted}" (paths start at the repository\'s root or firmware/include)'
+                continue
+            to = target.parent.as_posix()
+            if to != folder:
+                arrows.setdefault(folder, {}).setdefault(to, place)
+            if not allowed(room, to):
+                targets = ", ".join(ROOMS[room]) or "nothing else"
+                yield f"{place}: {room} may not include {to}; it may include {targets}"
+
+
+def allowed(room, to):
+    if to.startswith("toolchain/"):
+        return room == "tests"  # start-up and semihosting of the bare-metal tests
+    return room_of(to) == room or any(to == target or to.startswith(target + "/") for target in ROOMS[room])
+
+
+def circles(arrows):
+    """Yields a finding for each circle of folders."""
+    state = {}
+
+    def visit(folder, path):
+        state[folder] = "open"
+        for to, place in sorted(arrows.get(folder, {}).items()):
+            if state.get(to) == "open":
+                circle = path[path.index(to):] + [to]
+                yield f"{place}: closes a circle: {' -> '.join(circle)}"
+            elif to not in state:
+                yield from visit(to, path + [to])
+        state[folder] = "done"
+
+    for folder in sorted(arrows):
+        if folder not in state:
+            yield from visit(folder, [folder])
+
+
+def check(root):
+    arrows = {}
+    findings = [finding for file in sources(root) for finding in check_file(root, file, arrows)]
+    return findings + list(circles(arrows)), arrows
+
+
+def main():
+    root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).parents[2]).resolve()
+    findings, arrows = check(root)
+    for finding in findings:
+        print(finding)
+    if not arrows:
+        print(f"{root}: no sources found")
+    return 1 if findings or not arrows else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
