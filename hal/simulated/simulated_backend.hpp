@@ -38,14 +38,16 @@ class SimulatedBackend {
   }
 
   void read(std::span<Feedback<S>> feedback) {
-    for (std::size_t i = 0; i < plants_.size(); ++i) sample(plants_[i], feedback[i]);
+    auto f = feedback.begin();
+    for (auto& plant : plants_) sample(plant, *f++);
   }
 
   void write(std::span<const Command<S>> command) {
-    for (std::size_t i = 0; i < plants_.size(); ++i) {
-      sim::PhaseValues voltage;
-      for (std::size_t k = 0; k < 3; ++k) voltage[k] = sim::to_si(command[i].voltage[k]);
-      plants_[i].command(voltage, command[i].enable);
+    auto c = command.begin();
+    for (auto& plant : plants_) {
+      const auto& u = c->voltage;
+      plant.command({sim::to_si(u[0]), sim::to_si(u[1]), sim::to_si(u[2])}, c->enable);
+      ++c;
     }
   }
 
@@ -53,22 +55,12 @@ class SimulatedBackend {
   // What cannot be represented (a plant that ran away to infinity or NaN) reaches the control as a position that is
   // not valid or as a fault input, never as a number.
   void sample(sim::AxisPlant& plant, Feedback<S>& f) const {
-    const auto position = sim::to_signal<typename S::Position>(plant.read_encoder());
-    const auto velocity = sim::to_signal<typename S::Velocity>(plant.encoder_velocity());
-    f.position_valid = position && velocity;
-    if (f.position_valid) {
-      f.position = *position;
-      f.velocity = *velocity;
-    }
+    f.position_valid =
+        sim::convert(plant.read_encoder(), f.position) && sim::convert(plant.encoder_velocity(), f.velocity);
     f.position_time_ns = now_ns_;
     f.fault = false;
-    for (std::size_t k = 0; k < plant.phases(); ++k) {
-      const auto current = sim::to_signal<typename S::Current>(plant.current()[k]);
-      if (current)
-        f.current[k] = *current;
-      else
-        f.fault = true;
-    }
+    for (std::size_t k = 0; k < plant.phases(); ++k)
+      if (!sim::convert(plant.current()[k], f.current[k])) f.fault = true;
   }
 
   std::int64_t period_ns_;

@@ -14,13 +14,19 @@ stiction_asset_\name\()_end:
 .endm
 
   .section .rodata, "a", %progbits
+asset frame_html, "host/report/web/frame.html"
+asset closing_html, "host/report/web/closing.html"
 asset circle_html, "host/report/web/circle.html"
+asset experiment_html, "host/report/web/experiment.html"
 asset report_css, "host/report/web/report.css"
 asset page_js, "host/report/web/page.js"
+asset models_js, "host/report/web/models.js"
+asset machine_js, "host/report/web/machine.js"
 asset circle_plots_js, "host/report/web/circle_plots.js"
 asset circle_series_js, "host/report/web/circle_series.js"
 asset circle_tables_js, "host/report/web/circle_tables.js"
 asset circle_js, "host/report/web/circle.js"
+asset experiment_js, "host/report/web/experiment.js"
 asset plotly_js, "host/report/web/node_modules/plotly.js-basic-dist-min/plotly-basic.min.js"
 asset plotly_license, "host/report/web/node_modules/plotly.js-basic-dist-min/LICENSE"
 

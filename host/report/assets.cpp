@@ -10,12 +10,18 @@
   }                                                                                                                \
   }
 
+STICTION_ASSET(frame_html)
+STICTION_ASSET(closing_html)
 STICTION_ASSET(circle_html)
+STICTION_ASSET(experiment_html)
 STICTION_ASSET(report_css)
 STICTION_ASSET(page_js)
+STICTION_ASSET(models_js)
+STICTION_ASSET(machine_js)
 STICTION_ASSET(circle_plots_js)
 STICTION_ASSET(circle_series_js)
 STICTION_ASSET(circle_tables_js)
 STICTION_ASSET(circle_js)
+STICTION_ASSET(experiment_js)
 STICTION_ASSET(plotly_js)
 STICTION_ASSET(plotly_license)

@@ -17,6 +17,7 @@
 #include "host/report/decimate.hpp"
 #include "host/report/machine_sheet.hpp"
 #include "host/report/page.hpp"
+#include "host/report/page_data.hpp"
 
 namespace stiction::host {
 namespace {
@@ -27,27 +28,13 @@ constexpr std::size_t instants_per_lap = 1500;
 constexpr double micro = 1e6;
 constexpr double degree = 180.0 / std::numbers::pi;
 
-// Ten digits: a feed that came from "3.2 m/min" is 3.2 again, and equal feeds of two runs are equal in the page.
-double rounded(double value) { return std::stod(fmt::format("{:.10g}", value)); }
 double m_per_min(double feed) { return rounded(feed * 60.0); }
 
 std::string direction_name(sim::Direction direction) { return direction == sim::Direction::clockwise ? "cw" : "ccw"; }
 
 json optional(const std::optional<double>& value, double scale) { return value ? json(*value * scale) : json(nullptr); }
 
-// Appends unless it is there already.
-void add_once(json& list, const json& value) {
-  if (std::find(list.begin(), list.end(), value) == list.end()) list.push_back(value);
-}
-
 // ---- runs ----
-
-std::string packed(const std::vector<double>& channel, const std::vector<std::size_t>& instants, double scale) {
-  std::vector<float> values;
-  values.reserve(instants.size());
-  for (const std::size_t i : instants) values.push_back(static_cast<float>(channel[i] * scale));
-  return base64_floats(values);
-}
 
 std::string packed_time(const std::vector<std::size_t>& instants, double period) {
   std::vector<float> values;
@@ -86,7 +73,7 @@ json run_json(const sim::CircleRun& run) {
   return out;
 }
 
-// ---- table, means, references, machine ----
+// ---- table, means, references ----
 
 json figure_json(const ComparedFigure& figure, double scale) {
   return {{"simulated", figure.simulated * scale},
@@ -134,48 +121,7 @@ json references_json(const sim::Machine& machine) {
   return rows;
 }
 
-json machine_json(const sim::Machine& machine) {
-  json axes = json::array();
-  for (const auto& axis : machine.axes) axes.push_back(axis.name);
-  json sections = json::array();
-  for (const auto& section : machine_sheet(machine)) {
-    json rows = json::array();
-    for (const auto& row : section.rows)
-      rows.push_back({{"label", row.label}, {"unit", row.unit}, {"values", row.values}});
-    sections.push_back({{"title", section.title}, {"rows", rows}});
-  }
-  return {{"name", machine.name},
-          {"id", machine.id},
-          {"fast_period_us", rounded(machine.timing.fast_period * micro)},
-          {"slow_period_ms", rounded(machine.timing.slow_period * 1e3)},
-          {"axes", axes},
-          {"sections", sections}};
-}
-
 // ---- conditions ----
-
-std::string joined(const json& list) {
-  std::string text;
-  for (const auto& item : list) text += (text.empty() ? "" : ", ") + item.get<std::string>();
-  return text;
-}
-
-// "estimated" when it holds for all axes, else "X estimated, Y ideal".
-template <class Text>
-std::string by_axis(const sim::Machine& machine, Text text) {
-  json all = json::array(), named = json::array();
-  for (const auto& axis : machine.axes) {
-    add_once(all, text(axis));
-    named.push_back(axis.name + " " + text(axis));
-  }
-  return joined(all.size() > 1 ? named : all);
-}
-
-std::string signals_text(const std::string& signals) {
-  if (signals == "fixed") return "fixed-point firmware";
-  if (signals == "double") return "double precision";
-  return signals;
-}
 
 json conditions_json(const CircleReport& report) {
   const auto& machine = report.machine;
@@ -187,21 +133,19 @@ json conditions_json(const CircleReport& report) {
     add_once(rates, fmt::format("{:.5g} kHz ({:.5g} µs)", 1e-3 / run.sample_period, run.sample_period * micro));
   }
   const auto& first = report.result.runs.front();
-  json list = json::array();
-  const auto add = [&](const char* label, const std::string& value) {
-    list.push_back({{"label", label}, {"value", value}});
-  };
-  add("Plane", first.axes[0].axis + first.axes[1].axis);
-  add("Radius", joined(radii));
-  add("Feeds", joined(feeds) + " m/min");
-  add("Direction", joined(directions));
-  add("Sample rate", joined(rates));
-  add("Signals", signals_text(report.result.signals));
-  add("Velocity feedback", by_axis(machine, [](const auto& a) { return velocity_source_name(a.encoder.velocity); }));
-  add("Motor model", by_axis(machine, [](const auto& a) { return motor_model_name(a.motor.model); }));
-  add("Circle fit", "least squares");
-  add("Filter", "none");
-  return list;
+  Conditions conditions;
+  conditions.add("Plane", first.axes[0].axis + first.axes[1].axis);
+  conditions.add("Radius", joined(radii));
+  conditions.add("Feeds", joined(feeds) + " m/min");
+  conditions.add("Direction", joined(directions));
+  conditions.add("Sample rate", joined(rates));
+  conditions.add("Signals", signals_text(report.result.signals));
+  conditions.add("Velocity feedback",
+                 by_axis(machine, [](const auto& a) { return velocity_source_name(a.encoder.velocity); }));
+  conditions.add("Motor model", by_axis(machine, [](const auto& a) { return motor_model_name(a.motor.model); }));
+  conditions.add("Circle fit", "least squares");
+  conditions.add("Filter", "none");
+  return conditions.json();
 }
 
 json report_json(const CircleReport& report, const CircleFinding& finding) {
@@ -233,20 +177,11 @@ json report_json(const CircleReport& report, const CircleFinding& finding) {
 
 std::string circle_report_html(const CircleReport& report) {
   const auto finding = circle_finding(report.result, report.machine);
-  std::string scripts;
-  for (const auto script : {assets::page_js(), assets::circle_plots_js(), assets::circle_series_js(),
-                            assets::circle_tables_js(), assets::circle_js()})
-    scripts.append(script).append("\n");
-  return fill_template(assets::circle_html(), {{"title", escape_html(report.title)},
-                                               {"version", escape_html(report.version)},
-                                               {"command", escape_html(report.command)},
-                                               {"headline", escape_html(finding.headline)},
-                                               {"detail", escape_html(finding.detail)},
-                                               {"data", json_for_script(report_json(report, finding))},
-                                               {"style", std::string(assets::report_css())},
-                                               {"plotly", std::string(assets::plotly_js())},
-                                               {"plotly_license", escape_html(assets::plotly_license())},
-                                               {"scripts", scripts}});
+  return report_page(
+      {report.title, report.command, report.version}, assets::circle_html(),
+      {{"headline", escape_html(finding.headline)}, {"detail", escape_html(finding.detail)}},
+      report_json(report, finding),
+      {assets::circle_plots_js(), assets::circle_series_js(), assets::circle_tables_js(), assets::circle_js()});
 }
 
 }  // namespace stiction::host

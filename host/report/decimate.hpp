@@ -1,5 +1,5 @@
-// Fewer samples of a lap for drawing, none of them invented: a subset of the recorded instants, the same for all
-// channels, that keeps what the eye reads from the full record.
+// Fewer samples of a record for drawing, none of them invented: a subset of the recorded instants that keeps what the
+// eye reads from the full record.
 #pragma once
 
 #include <cstddef>
@@ -15,5 +15,11 @@ namespace stiction::host {
 // whole. Throws std::invalid_argument when a length differs or `limit` is below three instants a channel plus two.
 std::vector<std::size_t> select_instants(std::span<const double> angle,
                                          std::span<const std::span<const double>> channels, std::size_t limit);
+
+// Rising indices of at most `limit` points of one line, which may run forth and back in x. Kept: the first and last
+// point, and in each of as many bins of equal count as fit the extremes of y, those of x where x turns back, and the
+// first point that is not finite, where a drawn line has its gap. A line within the limit is kept whole. Throws
+// std::invalid_argument when the lengths differ or `limit` is below 7.
+std::vector<std::size_t> select_extremes(std::span<const double> x, std::span<const double> y, std::size_t limit);
 
 }  // namespace stiction::host

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -107,8 +108,13 @@ AxisConfig<S> configure_axis(const Timing& timing, const Axis& axis) {
   const double period = timing.fast_period;
   AxisConfig<S> c;
   c.period_ns = fast_period_ns(timing);
-  c.inverse_period =
-      convert.template operator()<typename S::PeriodInverse>(1e-9 / period, "timing.fast_period", "1 ns / period");
+  const auto inverse_period = to_signal<typename S::PeriodInverse>(1e-9 / period);
+  if (!inverse_period)
+    throw ConfigurationError(
+        fmt::format("timing.fast_period: found {:g} us; expected at least {:.4g} us, the range of the "
+                    "drive's number format",
+                    period * 1e6, 1e-3 / highest<typename S::PeriodInverse>()));
+  c.inverse_period = *inverse_period;
   if (axis.position_controller.increment > 0.0) {
     const double increment = axis.position_controller.increment;
     c.quantizer = {
@@ -129,7 +135,9 @@ AxisConfig<S> configure_axis(const Timing& timing, const Axis& axis) {
     const auto coefficient = [&](double value) {
       return convert.template operator()<typename S::FilterCoefficient>(value, "notch", "filter coefficient");
     };
-    c.notch = {true, coefficient(q.b0), coefficient(q.b1), coefficient(q.b2), coefficient(q.a1), coefficient(q.a2)};
+    c.notch = {true, coefficient(q.b0), coefficient(q.b1), {}, coefficient(q.a1), coefficient(q.a2)};
+    // With b1 = a1 the gain at standstill is exactly 1 when b0 + b2 = 1 + a2 holds after rounding too.
+    c.notch.b2 = coefficient(1.0 + to_si(c.notch.a2) - to_si(c.notch.b0));
   }
   c.current_feedforward = convert.template gain<typename S::AccelerationGain>(
       axis.feedforward.current * axis.mass / axis.motor.force_constant, "feedforward.current", "mass / force constant");
@@ -156,6 +164,17 @@ AxisConfig<S> configure_axis(const Timing& timing, const Axis& axis) {
       watch.over_current.value_or(1.2 * current_limit), "supervision.over_current", "limit");
   c.over_speed_fault = convert.template operator()<typename S::Velocity>(
       watch.over_speed.value_or(1.2 * axis.max_velocity), "supervision.over_speed", "limit");
+  // A speed whose motion between two samples leaves its format would be read too low, unseen.
+  const int ticks_between =
+      (axis.encoder.velocity == VelocitySource::mean_difference ? 2 : 1) + stiction::Axis<S>::missed_positions_allowed;
+  const double fastest = std::max(axis.max_velocity, watch.over_speed.value_or(1.2 * axis.max_velocity));
+  const double representable = highest<typename S::Step>() / (ticks_between * period);
+  if (axis.encoder.velocity != VelocitySource::ideal && fastest > representable)
+    throw ConfigurationError(
+        fmt::format("axis.{}.max_velocity: found {:g} m/s with its over-speed limit; expected at most {:.3g} m/s at "
+                    "this fast_period: "
+                    "the motion over {} ticks, {} of them missed, must stay within the drive's number format",
+                    axis.name, fastest, representable, ticks_between, stiction::Axis<S>::missed_positions_allowed));
   c.limit_cycle_window_ticks = static_cast<std::uint32_t>(std::lround(0.125 / period));
   return c;
 }

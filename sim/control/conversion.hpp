@@ -20,26 +20,37 @@ constexpr double power_of_two(int exponent) {
   return power;
 }
 
-// `value` in the format T, rounded to nearest, ties away from zero; nothing when it is NaN or beyond the format's range.
+// Writes `value` to `signal`, rounded to nearest, ties away from zero. False, and nothing written, when it is NaN or
+// beyond the format's range.
 template <class T>
-std::optional<T> to_signal(double value) {
+bool convert(double value, T& signal) {
   if constexpr (std::same_as<T, Real>) {
-    return std::isfinite(value) ? std::optional(T{value}) : std::nullopt;
+    if (!std::isfinite(value)) return false;
+    signal = {value};
   } else {
     constexpr double scale = power_of_two(T::fraction_bits);
+    constexpr double lowest = static_cast<double>(T::lowest_raw), highest = static_cast<double>(T::highest_raw);
     const double scaled = value * scale;
-    // No format reaches beyond 2^61, so the conversions are exact and rounding stays within 64 bits.
-    static_assert(T::bound <= std::uint64_t{1} << 61);
-    if (!(std::abs(scaled) < static_cast<double>(std::uint64_t{1} << 62))) return std::nullopt;  // NaN included
-    const auto whole = static_cast<std::int64_t>(scaled);
-    const double rest = scaled - static_cast<double>(whole);
-    const std::int64_t raw = whole + (rest >= 0.5) - (rest <= -0.5);
-    if (raw < T::lowest_raw || raw > T::highest_raw) return std::nullopt;
-    return T::from_bounded_raw(raw);
+    if constexpr (T::bound > std::uint64_t{1} << 52) {  // doubles of that size are whole
+      static_assert(T::bound <= std::uint64_t{1} << 61);
+      if (!(std::abs(scaled) <= highest)) return false;
+    } else {
+      if (!(scaled > lowest - 0.5 && scaled < highest + 0.5)) return false;
+    }
+    // Not 0.5 but the double before it: the sum's own rounding does the rest, and 0.5 would lift the double before a
+    // half to the next whole number.
+    signal = T::from_bounded_raw(static_cast<std::int64_t>(scaled + std::copysign(0x1.fffffffffffffp-2, scaled)));
   }
+  return true;
 }
 
-// The largest value that to_signal<T> takes; infinity for a type without a limit.
+template <class T>
+std::optional<T> to_signal(double value) {
+  T signal;
+  return convert(value, signal) ? std::optional(signal) : std::nullopt;
+}
+
+// The largest value that convert<T> takes; infinity for a type without a limit.
 template <class T>
 constexpr double highest() {
   if constexpr (std::same_as<T, Real>) {

@@ -3,12 +3,12 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <numbers>
 
 #include "sim/experiment/circle_result.hpp"
 #include "sim/experiment/set_point.hpp"
 #include "sim/experiment/speed_ramp.hpp"
+#include "sim/sine_cosine.hpp"
 
 namespace stiction::sim {
 
@@ -37,13 +37,15 @@ class CirclePath {
     std::array<AxisSetPoint, 2> axes;
   };
 
-  Point at(double t) const {
+  // Inline, so that a caller who asks for one axis pays for one.
+  [[gnu::always_inline]] Point at(double t) const {
     const auto motion = ramp_.at(t);
     const double phi = motion.distance * curvature_;
     const double omega = sense_ * motion.speed * curvature_;
     const double epsilon = sense_ * motion.acceleration * curvature_;
-    const double x = radius_ * std::cos(phi);
-    const double y = sense_ * radius_ * std::sin(phi);
+    const auto [sine, cosine] = sine_cosine(phi);
+    const double x = radius_ * cosine;
+    const double y = sense_ * radius_ * sine;
     const double v_x = -y * omega;
     const double v_y = x * omega;
     return {phi, {{{x, v_x, -y * epsilon - v_y * omega}, {y, v_y, x * epsilon + v_x * omega}}}};

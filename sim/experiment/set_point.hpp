@@ -15,11 +15,10 @@ struct AxisSetPoint {
 // Marks the set-point as not valid when one of its values is not a number or out of range.
 template <class S>
 SetPoint<S> to_set_point(const AxisSetPoint& set) {
-  const auto position = to_signal<typename S::Position>(set.position);
-  const auto velocity = to_signal<typename S::Velocity>(set.velocity);
-  const auto acceleration = to_signal<typename S::Acceleration>(set.acceleration);
-  if (!position || !velocity || !acceleration) return {{}, {}, {}, false};
-  return {*position, *velocity, *acceleration, true};
+  SetPoint<S> signal;
+  signal.valid = convert(set.position, signal.position) && convert(set.velocity, signal.velocity) &&
+                 convert(set.acceleration, signal.acceleration);
+  return signal;
 }
 
 }  // namespace stiction::sim

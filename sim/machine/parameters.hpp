@@ -81,7 +81,7 @@ struct Table<Timing> : EmptyTable<Timing> {
   static constexpr std::array<Parameter<Timing>, 2> parameters{{
       {"fast_period",
        "s",
-       {1e-6, 0.1},
+       {33e-6, 0.1},
        &Timing::fast_period,
        62.5e-6,
        "current and velocity controllers, feedforwards"},
@@ -141,7 +141,7 @@ struct Table<EncoderMount> : EmptyTable<EncoderMount> {
   static constexpr std::array<Parameter<EncoderMount>, 3> parameters{{
       {"mass", "kg", positive(), &EncoderMount::mass, {}, "mass of the rider"},
       {"natural_frequency", "Hz", positive(), &EncoderMount::natural_frequency, {}, "natural frequency of the rider"},
-      {"damping_ratio", "1", not_negative(10.0), &EncoderMount::damping_ratio, {}, "damping ratio of the rider"},
+      {"damping_ratio", "1", not_negative(0.999), &EncoderMount::damping_ratio, {}, "damping ratio of the rider"},
   }};
 };
 

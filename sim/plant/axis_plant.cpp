@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace stiction::sim {
 namespace {
@@ -21,26 +22,22 @@ std::variant<DcMotor, SynchronousMotor, ForceSource> make_motor(const Motor& mot
 }  // namespace
 
 AxisPlant::AxisPlant(const Timing& timing, const Axis& axis, double position, std::uint64_t seed)
-    : step_(timing.fast_period / plant_steps_per_tick),
-      mass_(axis.mass),
-      inverter_(axis.inverter, step_, plant_steps_per_tick),
-      motor_(make_motor(axis.motor, step_)),
-      friction_(make_friction(axis.friction.models.at(axis.friction.use), {axis.mass, step_})),
-      mount_(axis.encoder.mount, step_),
+    : AxisPlant(timing.fast_period / plant_steps_per_tick, axis, position, seed) {}
+
+AxisPlant::AxisPlant(double step, const Axis& axis, double position, std::uint64_t seed)
+    : half_step_(0.5 * step),
+      mass_per_step_(axis.mass / step),
+      inverter_(axis.inverter, step, plant_steps_per_tick),
+      motor_(make_motor(axis.motor, step)),
+      friction_(make_friction(axis.friction.models.at(axis.friction.use), {axis.mass, step})),
+      tick_(tick_of(motor_, friction_)),
+      mount_(axis.encoder.mount, step),
       encoder_increment_(axis.encoder.increment),
       increments_per_metre_(1.0 / axis.encoder.increment),
       encoder_noise_(axis.encoder.noise),
       random_(seed),
       position_(position),
       phases_(axis.motor.model == MotorModel::synchronous ? 3 : 1) {}
-
-void AxisPlant::command(const PhaseValues& voltage, bool enable) {
-  enabled_ = enable;
-  if (enable)
-    inverter_.command(voltage);
-  else
-    switch_off();
-}
 
 // The freewheeling diodes end the currents within a fraction of a millisecond: here at once.
 void AxisPlant::switch_off() {
@@ -49,59 +46,55 @@ void AxisPlant::switch_off() {
   current_ = {};
 }
 
-void AxisPlant::advance_tick() {
-  const auto acting = inverter_.advance_tick();
-  if (!enabled_) {
-    OpenWindings none;
-    std::visit([&](auto& friction) { advance(none, friction, acting.after, plant_steps_per_tick); }, friction_);
-    return;
-  }
-  std::visit(
-      [&](auto& motor, auto& friction) {
-        if (acting.change > 0) advance(motor, friction, acting.before, acting.change);
-        if (acting.change < plant_steps_per_tick)
-          advance(motor, friction, acting.after, plant_steps_per_tick - acting.change);
-        current_ = motor.current();
-      },
-      motor_, friction_);
+AxisPlant::Tick AxisPlant::tick_of(const MotorVariant& motor_model, const FrictionModel& friction_model) {
+  return std::visit([]<class M, class F>(const M&, const F&) -> Tick { return tick<M, F>; }, motor_model,
+                    friction_model);
 }
 
-// Semi-implicit Euler: the new velocity from the forces, the position from the mean of old and new. What changes is
-// kept in local variables, because the compiler must otherwise store every member at every step.
 template <class MotorModel, class Friction>
-void AxisPlant::advance(MotorModel& motor_state, Friction& friction, const PhaseValues& acting, int steps) {
-  const double half_step = 0.5 * step_, external_force = external_force_;
-  const PhaseValues voltage = acting;
-  MotorModel motor = motor_state;
-  EncoderMountModel mount = mount_;
-  double position = position_, velocity = velocity_, motor_force = 0.0, change = 0.0;
-  for (int i = 0; i < steps; ++i) {
-    motor_force = motor.advance(voltage, position, velocity);
-    const double next = friction.advance(velocity, motor_force + external_force);
-    change = next - velocity;
-    position += half_step * (velocity + next);
-    velocity = next;
-    mount.advance(change);
+void AxisPlant::tick(AxisPlant& plant) {
+  auto& friction = std::get<Friction>(plant.friction_);
+  const auto acting = plant.inverter_.advance_tick();
+  if (plant.enabled_) {
+    auto& motor = std::get<MotorModel>(plant.motor_);
+    plant.advance_tick(motor, friction, acting);
+    plant.current_ = motor.current();
+  } else {
+    OpenWindings none;
+    plant.advance_tick(none, friction, acting);
   }
-  motor_state = motor;
-  mount_ = mount;
-  position_ = position;
-  velocity_ = velocity;
-  motor_force_ = motor_force;
-  friction_force_ = motor_force + external_force - mass_ * change / step_;
 }
 
-double AxisPlant::read_encoder() {
-  double reading = encoder_position();
-  if (encoder_noise_ > 0.0) reading += std::normal_distribution<double>(0.0, encoder_noise_)(random_);
-  if (encoder_increment_ > 0.0) {
-    const double increments = reading * increments_per_metre_;
-    // Beyond 2^62 increments a plant has run away; the reading passes as it is, for the control's border to refuse.
-    if (std::abs(increments) < 0x1p62)
-      reading = encoder_increment_ *
-                static_cast<double>(static_cast<std::int64_t>(increments + std::copysign(0.5, increments)));
+// The voltages are copied: that nothing read in the loop can be a part of the plant is what lets the compiler keep the
+// plant's state in registers. The steps of a tick with one voltage are written out, which saves a tenth.
+template <class MotorModel, class Friction>
+inline void AxisPlant::advance_tick(MotorModel& motor, Friction& friction, const InverterModel::Acting& acting) {
+  const PhaseValues after = acting.after;
+  double change = 0.0;
+  if (acting.change == 0) {
+    [&]<std::size_t... i>(std::index_sequence<i...>) {
+      ((static_cast<void>(i), change = step(motor, friction, after)), ...);
+    }(std::make_index_sequence<plant_steps_per_tick>());
+  } else {
+    const PhaseValues before = acting.before;
+    for (int i = 0; i < plant_steps_per_tick; ++i) change = step(motor, friction, i < acting.change ? before : after);
   }
-  return reading;
+  friction_force_ = motor_force_ + external_force_ - mass_per_step_ * change;
 }
+
+// Semi-implicit Euler: the new velocity from the forces, the position from the mean of old and new. Returns the change
+// of the velocity.
+template <class MotorModel, class Friction>
+inline double AxisPlant::step(MotorModel& motor, Friction& friction, const PhaseValues& voltage) {
+  motor_force_ = motor.advance(voltage, position_, velocity_);
+  const double next = friction.advance(velocity_, motor_force_ + external_force_);
+  const double change = next - velocity_;
+  position_ += half_step_ * (velocity_ + next);
+  velocity_ = next;
+  mount_.advance(change);
+  return change;
+}
+
+double AxisPlant::draw_noise() { return std::normal_distribution<double>(0.0, encoder_noise_)(random_); }
 
 }  // namespace stiction::sim

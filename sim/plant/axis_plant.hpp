@@ -1,6 +1,7 @@
 // One simulated axis: inverter, motor, carriage with friction, encoder on its mount. Double precision, SI units.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <random>
 #include <variant>
@@ -23,12 +24,18 @@ class AxisPlant {
   AxisPlant(const Timing& timing, const Axis& axis, double position, std::uint64_t seed);
 
   // What the drive commands from now on: voltages (V), or the power stage off.
-  void command(const PhaseValues& voltage, bool enable);
+  void command(const PhaseValues& voltage, bool enable) {
+    enabled_ = enable;
+    if (enable)
+      inverter_.command(voltage);
+    else
+      switch_off();
+  }
   // Force from outside on the carriage (N, positive in +x), held until changed.
   void set_external_force(double force) { external_force_ = force; }
 
   // Moves on by one fast tick of the drive.
-  void advance_tick();
+  void advance_tick() { tick_(*this); }
 
   double position() const { return position_; }              // m, carriage
   double velocity() const { return velocity_; }              // m/s, carriage
@@ -40,20 +47,41 @@ class AxisPlant {
   const PhaseValues& current() const { return current_; }                      // A, of the phases
 
   // What the encoder reads now: with increment and noise. Draws a new noise value at each call.
-  double read_encoder();
+  double read_encoder() {
+    double reading = encoder_position();
+    if (encoder_noise_ > 0.0) reading += draw_noise();
+    return encoder_increment_ > 0.0 ? nearest_increment(reading) : reading;
+  }
 
  private:
   using MotorVariant = std::variant<DcMotor, SynchronousMotor, ForceSource>;
+  using Tick = void (*)(AxisPlant&);
 
+  AxisPlant(double step, const Axis& axis, double position, std::uint64_t seed);
+  static Tick tick_of(const MotorVariant& motor, const FrictionModel& friction);
   template <class MotorModel, class Friction>
-  void advance(MotorModel& motor_state, Friction& friction, const PhaseValues& acting, int steps);
+  static void tick(AxisPlant& plant);
+  template <class MotorModel, class Friction>
+  [[gnu::always_inline]] void advance_tick(MotorModel& motor, Friction& friction, const InverterModel::Acting& acting);
+  template <class MotorModel, class Friction>
+  [[gnu::always_inline]] double step(MotorModel& motor, Friction& friction, const PhaseValues& voltage);
   void switch_off();
+  double draw_noise();
 
-  double step_;
-  double mass_;
+  double nearest_increment(double reading) const {
+    const double increments = reading * increments_per_metre_;
+    // Beyond 2^62 increments a plant has run away; the reading passes as it is, for the control's border to refuse.
+    if (!(std::abs(increments) < 0x1p62)) return reading;
+    return encoder_increment_ *
+           static_cast<double>(static_cast<std::int64_t>(increments + std::copysign(0.5, increments)));
+  }
+
+  double half_step_;
+  double mass_per_step_;
   InverterModel inverter_;
   MotorVariant motor_;
   FrictionModel friction_;
+  Tick tick_;  // of this motor with this friction: chosen once, as a visit of both costs 40 instructions a tick
   EncoderMountModel mount_;
   double encoder_increment_;
   double increments_per_metre_;

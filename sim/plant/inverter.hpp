@@ -16,12 +16,14 @@ class InverterModel {
   InverterModel(const Inverter& inverter, double step, int steps_per_tick) : voltage_limit_(inverter.voltage_limit) {
     const auto steps = static_cast<int>(std::lround(inverter.dead_time / step));
     change_ = steps % steps_per_tick;
-    commands_.resize(static_cast<std::size_t>(steps / steps_per_tick) + 2);
+    last_ = static_cast<std::size_t>(steps / steps_per_tick) + 1;
+    commands_.resize(last_ + 1);
   }
 
   // What the drive commands from this tick on.
   void command(const PhaseValues& voltage) {
-    for (std::size_t k = 0; k < 3; ++k) command_[k] = std::clamp(voltage[k], -voltage_limit_, voltage_limit_);
+    const auto limited = [limit = voltage_limit_](double u) { return std::clamp(u, -limit, limit); };
+    command_ = {limited(voltage[0]), limited(voltage[1]), limited(voltage[2])};
   }
 
   // The voltages that act during one tick: `before` for the first `change` steps of the plant, then `after`.
@@ -32,9 +34,9 @@ class InverterModel {
   };
   Acting advance_tick() {
     commands_[newest_] = command_;
-    newest_ = newest_ + 1 == commands_.size() ? 0 : newest_ + 1;
+    newest_ = after(newest_);
     const std::size_t oldest = newest_;
-    const std::size_t second = oldest + 1 == commands_.size() ? 0 : oldest + 1;
+    const std::size_t second = after(oldest);
     return {commands_[oldest], commands_[second], change_};
   }
 
@@ -44,10 +46,13 @@ class InverterModel {
   }
 
  private:
+  std::size_t after(std::size_t slot) const { return slot == last_ ? 0 : slot + 1; }
+
   double voltage_limit_;
   int change_;
   PhaseValues command_{};
   std::vector<PhaseValues> commands_;  // ring, one a tick; the slot after the newest is the oldest
+  std::size_t last_;                   // slot; size() of the vector is a division by the size of its elements
   std::size_t newest_ = 0;
 };
 

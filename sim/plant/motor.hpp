@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "sim/machine/machine.hpp"
+#include "sim/sine_cosine.hpp"
 
 namespace stiction::sim {
 
@@ -20,6 +21,7 @@ class Winding {
 
   // Current (A) one step later under the voltage `u` (V) across R and L.
   double advance(double current, double u) const { return decay_ * current + gain_ * u; }
+  double gain() const { return gain_; }  // A per V in a step
 
  private:
   double decay_;
@@ -32,13 +34,14 @@ class DcMotor {
  public:
   DcMotor(const Motor& motor, double step)
       : winding_(motor.phase_resistance / motor.count, motor.phase_inductance / motor.count, step),
-        emf_constant_(motor.emf_constant),
+        emf_gain_(winding_.gain() * motor.emf_constant),
         half_force_constant_(0.5 * motor.force_constant) {}
 
-  // Moves the current on by one step at velocity v (m/s); returns the mean force (N) over the step.
+  // Moves the current on by one step at velocity v (m/s); returns the mean force (N) over the step. What the voltage
+  // adds is a term of its own, the same in every step that it is held.
   double advance(const PhaseValues& voltage, double, double v) {
     const double before = current_[0];
-    current_[0] = winding_.advance(before, voltage[0] - emf_constant_ * v);
+    current_[0] = winding_.advance(before, voltage[0]) - emf_gain_ * v;
     return half_force_constant_ * (before + current_[0]);
   }
   const PhaseValues& current() const { return current_; }
@@ -46,7 +49,7 @@ class DcMotor {
 
  private:
   Winding winding_;
-  double emf_constant_;
+  double emf_gain_;  // A per m/s in a step
   double half_force_constant_;
   PhaseValues current_{};
 };
@@ -66,8 +69,7 @@ class SynchronousMotor {
   // Moves the currents on by one step from position x (m) at velocity v (m/s); returns the mean force (N).
   double advance(const PhaseValues& voltage, double x, double v) {
     const double angle = angle_per_metre_ * (x + half_step_ * v);
-    const double s = std::sin(angle);
-    const double c = std::cos(angle);
+    const auto [s, c] = sine_cosine(angle);
     constexpr double half_root_3 = 0.5 * std::numbers::sqrt3;
     const PhaseValues sine{s, -0.5 * s + half_root_3 * c, -0.5 * s - half_root_3 * c};
     const double star = (voltage[0] + voltage[1] + voltage[2]) / 3.0;

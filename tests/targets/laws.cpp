@@ -68,7 +68,7 @@ STICTION_LAW(law_p_ff_pi_notch) {
 STICTION_LAW(law_commutation) {
   using Commutation = stiction::Commutation<S>;
   auto& saturations = c.state.saturations;
-  c.phase = Commutation::phases(S::angle(c.signals.x, c.config.inverse_pole_pair_pitch), saturations);
+  c.phase = Commutation::phases(S::angle(c.signals.x, c.config.inverse_pole_pair_pitch));
   c.amplitude = Commutation::amplitude(c.signals.i_phase, c.phase, saturations);
   for (std::size_t k = 0; k < 3; ++k)
     c.i_set_phase[k] = Commutation::phase_current(c.signals.i_set, c.phase[k], saturations);

@@ -33,14 +33,8 @@ function drawMagnifications() {
 }
 
 function drawModelChoice() {
-  show('choose-models', ...DATA.models.map(model => {
-    const input = element('input', { type: 'checkbox', value: model.name, checked: !state.hidden.has(model.name) });
-    input.addEventListener('change', () => {
-      input.checked ? state.hidden.delete(model.name) : state.hidden.add(model.name);
-      change({});
-    });
-    return element('label', {}, input, swatch(model.name), model.label);
-  }));
+  toggles('choose-models', DATA.models.map(model => ({ name: model.name, label: model.label, swatch: swatch(modelStyles[model.name]) })), state.hidden,
+          () => change({}));
 }
 
 function drawKey() {

@@ -1,26 +1,12 @@
 // The charts of the circle: polar plot, quadrant, lap, peaks against feed. Each function draws one from the state.
 'use strict';
 
-// One colour and one symbol a friction model, whatever else is shown; they stay apart for colour-blind eyes.
-const MODEL_STYLES = {
-  coulomb_viscous: { colour: '#8b9098', symbol: 'x' },
-  classical: { colour: '#c2500f', symbol: 'square' },
-  linear_ramp: { colour: '#dd9f00', symbol: 'triangle-up' },
-  parabolic: { colour: '#0f9b78', symbol: 'triangle-down' },
-  lugre: { colour: '#0b5fa5', symbol: 'circle' },
-  maxwell_slip: { colour: '#a3509b', symbol: 'star' },
-};
-const OTHER_STYLES = [{ colour: '#3f4a56', symbol: 'hexagon' }, { colour: '#56a8d8', symbol: 'cross' }];
 const DIRECTION_TEXT = { ccw: 'counter-clockwise', cw: 'clockwise', both: 'both directions' };
 const DIRECTION_SIGN = { ccw: '↺ ', cw: '↻ ', both: '' };
 const DASH = { ccw: 'solid', cw: '5px 3px' };
-const MEASURED = { color: '#000', symbol: 'diamond', size: 10 };
 
 const modelLabels = Object.fromEntries(DATA.models.map(model => [model.name, model.label]));
-const modelStyles = {};
-DATA.models.filter(model => !MODEL_STYLES[model.name])
-  .forEach((model, i) => { modelStyles[model.name] = OTHER_STYLES[i % OTHER_STYLES.length]; });
-Object.assign(modelStyles, MODEL_STYLES);
+const modelStyles = stylesOf(DATA.models.map(model => model.name));
 
 // Angles without a jump from 180 to -180 degrees.
 function unwrapped(angles) {

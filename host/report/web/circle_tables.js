@@ -1,22 +1,16 @@
 // The tables of the circle: peaks at the chosen feed, simulation beside publication and measurement, terms of ISO
-// 230-4, machine.
+// 230-4.
 'use strict';
-
-function swatch(friction) {
-  return element('span', { class: 'swatch', style: `background:${modelStyles[friction].colour}` });
-}
 
 function modelCell(friction, direction, more = {}) {
   const clockwise = direction === 'cw' && DATA.directions.length > 1;
-  return { text: [swatch(friction), modelLabels[friction] + (clockwise ? '\u00a0↻' : '')], title: clockwise ? 'clockwise' : null, head: true, class: 'text', ...more };
+  return { text: [swatch(modelStyles[friction]), modelLabels[friction] + (clockwise ? '\u00a0↻' : '')], title: clockwise ? 'clockwise' : null, head: true, class: 'text', ...more };
 }
 
 function figure(value, digits, more = '') {
   const none = value === null || value === undefined;
   return { text: formatNumber(value, digits), class: [more, none ? 'none' : ''].join(' ').trim() || null };
 }
-
-const text = (content, more = {}) => ({ text: content, ...more });
 
 // ---- peaks at the chosen feed ----
 
@@ -104,25 +98,4 @@ function isoValues(terms, directions) {
     return [modelCell(model.name, direction), ...terms.flatMap(key => DATA.feeds.map((feed, i) => figure(at(feed)?.[key], 1, i ? '' : 'gap')))];
   }));
   return table(head, body);
-}
-
-// ---- conditions and machine ----
-
-function drawConditions() {
-  show('conditions', ...DATA.conditions.map(item => element('div', {}, element('dt', {}, item.label), element('dd', {}, item.value))));
-}
-
-function drawMachine() {
-  const machine = DATA.machine;
-  document.getElementById('machine-name').textContent =
-    `${machine.name} (${machine.id}); fast loop ${machine.fast_period_us} µs, position loop ${machine.slow_period_ms} ms`;
-  show('machine', ...machine.sections.map(section =>
-    table([[text(section.title, { class: 'text title' }), ...machine.axes.map(axis => text(axis)), text('', { class: 'unit' })]],
-          section.rows.map(row => [{ text: symbolText(row.label), head: true }, ...machineCells(row.values), text(row.unit, { class: 'unit' })]))));
-}
-
-// Words that hold for every axis stand once, across the axes.
-function machineCells(values) {
-  const words = values.every(value => value === values[0] && /^[^\d−]|[a-z]/.test(value));
-  return words && values.length > 1 ? [text(values[0], { span: values.length })] : values.map(value => text(value || '–'));
 }

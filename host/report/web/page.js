@@ -66,6 +66,19 @@ function segments(id, options, chosen, choose) {
   if (focused) document.querySelector(`#${id} :checked`)?.focus();
 }
 
+// A row of buttons that show and hide what they name. items: [{ name, label, swatch }]; hidden: the set of names that is
+// changed before `changed` is called.
+function toggles(id, items, hidden, changed) {
+  show(id, ...items.map(({ name, label, swatch }) => {
+    const input = element('input', { type: 'checkbox', value: name, checked: !hidden.has(name) });
+    input.addEventListener('change', () => {
+      input.checked ? hidden.delete(name) : hidden.add(name);
+      changed();
+    });
+    return element('label', {}, input, swatch, label);
+  }));
+}
+
 // rows: arrays of cells, a cell being { text, class, head, span, rows }.
 function table(headRows, bodyRows) {
   const cell = (spec, head) =>
@@ -79,6 +92,8 @@ function table(headRows, bodyRows) {
   return element('table', {}, element('thead', {}, ...headRows.map(specs => row(specs, true))),
                  element('tbody', {}, ...bodyRows.map(specs => row(specs, false))));
 }
+
+const text = (content, more = {}) => ({ text: content, ...more });
 
 // The same row of cells with a class of its own.
 function classed(name, cells) {

@@ -33,7 +33,7 @@ class LinearRamp {
     const double free = velocity + gain_ * force;
     const double slow = free / (1.0 + gain_ * p_.slope);
     if (std::abs(slow) <= break_velocity_) return slow;
-    const double offset = std::copysign(p_.coulomb - break_velocity_ * p_.viscous, free);
+    const double offset = (p_.coulomb - break_velocity_ * p_.viscous) * std::copysign(1.0, free);
     return (free - gain_ * offset) / (1.0 + gain_ * p_.viscous);
   }
 

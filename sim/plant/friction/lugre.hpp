@@ -36,47 +36,55 @@ class LuGre {
   }};
 
   LuGre(const Parameters& p, Body body)
-      : p_(p),
-        step_(body.step),
-        gain_(body.step / body.mass),
-        implicit_(1.0 / (1.0 + gain_ * p.viscous)),
-        sliding_limit_(p.coulomb / p.stiffness),
-        step_per_limit_(body.step / sliding_limit_),
-        damping_per_step_(2.0 * p.damping_ratio * std::sqrt(p.stiffness * body.mass) / body.step) {}
+      : coulomb_(p.coulomb),
+        rise_(p.coulomb * (p.static_ratio - 1.0)),
+        per_stribeck_velocity_(1.0 / p.stribeck_velocity),
+        stribeck_(p.static_ratio > 1.0),
+        stiffness_(p.stiffness),
+        stiffness_step_(p.stiffness * body.step),
+        stiffness_step_per_coulomb_(stiffness_step_ / p.coulomb),
+        damping_(2.0 * p.damping_ratio * std::sqrt(p.stiffness * body.mass) / stiffness_step_),
+        decay_(1.0 / (1.0 + body.step / body.mass * p.viscous)),
+        gain_(decay_ * body.step / body.mass) {}
 
   // Velocity (m/s) one step later, under `force` (N), the sum of all forces but friction.
-  double advance(double velocity, double force) {
-    const double contact = move_contact(velocity);
-    return (velocity + gain_ * (force - contact)) * implicit_;
+  [[gnu::always_inline]] double advance(double velocity, double force) {
+    return decay_ * velocity + gain_ * (force - move_contact(velocity));
   }
 
   // Contact deflection limit g(v), m (4.6).
-  double deflection_limit(double velocity) const {
-    if (p_.static_ratio == 1.0) return sliding_limit_;
-    const double ratio = velocity / p_.stribeck_velocity;
-    return sliding_limit_ * (1.0 + (p_.static_ratio - 1.0) * std::exp(-ratio * ratio));
-  }
+  double deflection_limit(double velocity) const { return level(velocity) / stiffness_; }
 
-  double deflection() const { return z_; }  // z, m
+  double deflection() const { return spring_ / stiffness_; }  // z, m
 
   // Lets the contact creep for one step of held velocity (m/s); returns k_s z + b_s z' (N) at its end.
-  double move_contact(double velocity) {
-    const double g = deflection_limit(velocity);
-    const double share = one_minus_exp(std::abs(velocity) * (p_.static_ratio == 1.0 ? step_per_limit_ : step_ / g));
-    const double change = share * (std::copysign(g, velocity) - z_);
-    z_ += change;
-    return p_.stiffness * z_ + damping_per_step_ * change;
+  [[gnu::always_inline]] double move_contact(double velocity) {
+    double relaxed = stiffness_step_per_coulomb_ * std::abs(velocity);  // |v| step / g(v)
+    if (stribeck_) [[unlikely]]
+      relaxed = stiffness_step_ * std::abs(velocity) / level(velocity);
+    const double change = relaxation(relaxed) * (stiffness_step_ * velocity - relaxed * spring_);
+    spring_ += change;
+    return spring_ + damping_ * change;
   }
 
  private:
-  Parameters p_;
-  double step_;
-  double gain_;
-  double implicit_;
-  double sliding_limit_;  // g far from standstill, m
-  double step_per_limit_;
-  double damping_per_step_;  // b_s / step
-  double z_ = 0.0;
+  // k_s g(v), N.
+  double level(double velocity) const {
+    const double ratio = velocity * per_stribeck_velocity_;
+    return coulomb_ + rise_ * (1.0 - one_minus_exp(ratio * ratio));
+  }
+
+  double coulomb_;                     // F_C
+  double rise_;                        // F_Ts - F_C
+  double per_stribeck_velocity_;       // 1 / v_s
+  bool stribeck_;                      // whether g depends on v
+  double stiffness_;                   // k_s
+  double stiffness_step_;              // k_s times step
+  double stiffness_step_per_coulomb_;  // the share of the limit that 1 m/s creeps in a step
+  double damping_;                     // b_s / (k_s step)
+  double decay_;                       // of the velocity by viscous friction in a step
+  double gain_;                        // m/s per N in a step
+  double spring_ = 0.0;                // k_s z, N
 };
 
 }  // namespace stiction::sim

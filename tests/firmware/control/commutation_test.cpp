@@ -36,7 +36,7 @@ TEST(Commutation, ForceIsThreeHalvesOfTheAmplitudeAtEveryPosition) {
   const auto amplitude = sim::to_signal<S::Current>(40.0).value();
   for (std::uint64_t raw = 0; raw < (std::uint64_t{1} << 32); raw += 4294967) {
     const auto turn = Turn{static_cast<std::uint32_t>(raw)};
-    const auto phase = C::phases(turn, saturations);
+    const auto phase = C::phases(turn);
     std::array<double, 3> current;
     for (std::size_t k = 0; k < 3; ++k) current[k] = sim::to_si(C::phase_current(amplitude, phase[k], saturations));
     // Sines within 6e-9 of 40 A (the third within twice that) and half a bit for each current.
@@ -48,7 +48,7 @@ TEST(Commutation, PhasesAreAThirdOfATurnApartAndSumToZero) {
   SaturationCounter saturations;
   for (std::uint64_t raw = 0; raw < (std::uint64_t{1} << 32); raw += 1234567) {
     const auto turn = Turn{static_cast<std::uint32_t>(raw)};
-    const auto phase = C::phases(turn, saturations);
+    const auto phase = C::phases(turn);
     for (std::size_t k = 0; k < 3; ++k)
       ASSERT_NEAR(sim::to_si(phase[k]), std::sin(angle_of(turn.raw) + static_cast<double>(k) * third), 2 * 6e-9);
     // Exactly, but for an output clamped at 1: by the 12e-9 that the sum of two sines can be off.
@@ -62,7 +62,7 @@ TEST(Commutation, SaturatesNothingAtAnyAngle) {
   for (std::int64_t peak : {std::int64_t{1} << 30, std::int64_t{3} << 30})
     for (std::int64_t d = -200000; d <= 200000; d += 7)
       for (std::uint32_t k = 0; k < 3; ++k)
-        C::phases(Turn{static_cast<std::uint32_t>(peak + d) - k * 0x55555555u}, saturations);
+        C::phases(Turn{static_cast<std::uint32_t>(peak + d) - k * 0x55555555u});
   EXPECT_EQ(saturations.count, 0u);
 }
 
@@ -70,7 +70,7 @@ RC_GTEST_PROP(Commutation, AmplitudeInvertsThePhaseCurrents, ()) {
   SaturationCounter saturations;
   const auto turn = Turn{static_cast<std::uint32_t>(test::drawn_between(0, UINT32_MAX))};
   const auto amplitude = S::Current::from_raw(static_cast<std::int32_t>(test::drawn_between(INT32_MIN, INT32_MAX)));
-  const auto phase = C::phases(turn, saturations);
+  const auto phase = C::phases(turn);
   std::array<S::Current, 3> current;
   for (std::size_t k = 0; k < 3; ++k) current[k] = C::phase_current(amplitude, phase[k], saturations);
   const double back = sim::to_si(C::amplitude(current, phase, saturations));
@@ -91,14 +91,14 @@ RC_GTEST_PROP(Commutation, AmplitudeOfAnyCurrentsIsTwoThirdsOfTheirForce, ()) {
     si[k] = sim::to_si(current[k]);
     largest = std::max(largest, std::abs(si[k]));
   }
-  const double found = sim::to_si(C::amplitude(current, C::phases(turn, saturations), saturations));
+  const double found = sim::to_si(C::amplitude(current, C::phases(turn), saturations));
   RC_ASSERT(std::abs(found - 2.0 / 3.0 * force(si, angle_of(turn.raw))) <= 2 * bit_i + 4 * 6e-9 * largest);
 }
 
 TEST(Commutation, OfTheLargestCurrentsNeitherOverflowsNorLosesItsSign) {
   SaturationCounter saturations;
   const auto turn = Turn{1u << 30};  // phases 1, -1/2, -1/2
-  const auto phase = C::phases(turn, saturations);
+  const auto phase = C::phases(turn);
   const std::array<S::Current, 3> largest{Fixed<20>::from_raw(INT32_MAX), Fixed<20>::from_raw(INT32_MIN),
                                           Fixed<20>::from_raw(INT32_MIN)};
   EXPECT_NEAR(sim::to_si(C::amplitude(largest, phase, saturations)), 2.0 / 3.0 * 2.0 * 2048.0, 700.0)
@@ -109,7 +109,7 @@ TEST(Commutation, OfTheLargestCurrentsNeitherOverflowsNorLosesItsSign) {
 TEST(Commutation, InDoubleIsExactToItsRounding) {
   SaturationCounter saturations;
   for (double angle = -20.0; angle < 20.0; angle += 0.0137) {
-    const auto phase = R::phases({angle}, saturations);
+    const auto phase = R::phases({angle});
     std::array<sim::Real, 3> current;
     std::array<double, 3> si;
     for (std::size_t k = 0; k < 3; ++k) {

@@ -63,16 +63,16 @@ TEST(Split, BeyondItsHighestTickReadsTheEnd) {
 }
 
 TEST(Seconds, AreWithinTheRoundingOfTheNanosecond) {
-  // 1e-9 s is held in 2^-50 s with a relative error of 8e-8; the result rounds to 2^-40 s = 0.9 ps.
-  for (const std::int64_t ns : {0, 1, 500, 31250, 62500, 125000, 900000, -62500}) {
-    const double exact = std::ldexp(1e-9 * static_cast<double>(ns), 40);
+  // 1e-9 s is held in 2^-50 s with a relative error of 8e-8; the result rounds to 2^-36 s = 15 ps.
+  for (const std::int64_t ns : {0, 1, 500, 31250, 62500, 125000, 900000, 15000000, -62500}) {
+    const double exact = std::ldexp(1e-9 * static_cast<double>(ns), 36);
     EXPECT_NEAR(S::seconds(ns).raw(), exact, 0.5 + 1e-7 * std::abs(exact)) << ns << " ns";
   }
 }
 
-TEST(Seconds, SaturateJustBelowAMillisecond) {
-  EXPECT_EQ(S::seconds(976562).raw(), test::nearest(Int128{976562} * 1125900, 1 << 10));
-  EXPECT_EQ(S::seconds(1000000).raw(), 1 << 30);
+TEST(Seconds, SaturateBeyondFifteenMilliseconds) {
+  EXPECT_EQ(S::seconds(15624999).raw(), test::nearest(Int128{15624999} * 1125900, 1 << 14));
+  EXPECT_EQ(S::seconds(16000000).raw(), 1 << 30);
   EXPECT_EQ(S::seconds(INT64_MIN).raw(), -(1 << 30));
 }
 

@@ -95,5 +95,69 @@ TEST(SelectInstants, RefusesUnequalLengthsAndATooSmallLimit) {
   EXPECT_THROW(select_instants(lap.angle, lap.spans(), 1500), std::invalid_argument);
 }
 
+// Noise with a peak up and a peak down in one bin, and one more of each elsewhere.
+struct Line {
+  std::vector<double> x, y;
+};
+
+Line noisy_line(std::size_t samples, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise;
+  std::uniform_int_distribution<std::size_t> instant(0, samples - 2);
+  Line line;
+  for (std::size_t i = 0; i < samples; ++i) {
+    line.x.push_back(static_cast<double>(i));
+    line.y.push_back(noise(random));
+  }
+  const auto peak = instant(random);
+  line.y[peak] = 20.0;
+  line.y[peak + 1] = -30.0;
+  return line;
+}
+
+TEST(SelectExtremes, KeepsEndsAndNeighbouringPeaksWithinTheLimit) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const auto line = noisy_line(80000, seed);
+    const auto kept = select_extremes(line.x, line.y, 3000);
+    EXPECT_LE(kept.size(), 3000u);
+    EXPECT_GT(kept.size(), 2900u);
+    EXPECT_TRUE(std::is_sorted(kept.begin(), kept.end()));
+    EXPECT_EQ(kept.front(), 0u);
+    EXPECT_EQ(kept.back(), line.x.size() - 1);
+    const auto value = [&](std::size_t i) { return line.y[i]; };
+    EXPECT_EQ(std::ranges::max(kept, {}, value), std::ranges::max_element(line.y) - line.y.begin()) << "seed " << seed;
+    EXPECT_EQ(std::ranges::min(kept, {}, value), std::ranges::min_element(line.y) - line.y.begin()) << "seed " << seed;
+  }
+}
+
+TEST(SelectExtremes, KeepsTheReachOfALoopInBothDirections) {
+  Line loop;
+  for (int i = 0; i < 50000; ++i) {
+    const double phase = 2.0 * std::numbers::pi * i / 50000.0;
+    loop.x.push_back(std::sin(phase));
+    loop.y.push_back(std::cos(3.0 * phase));
+  }
+  loop.x[20001] = 5.0;  // where y is neither largest nor smallest of its bin
+  const auto kept = select_extremes(loop.x, loop.y, 3000);
+  EXPECT_LE(kept.size(), 3000u);
+  EXPECT_TRUE(std::ranges::binary_search(kept, 20001u));
+}
+
+TEST(SelectExtremes, KeepsAGap) {
+  auto line = noisy_line(80000, 1);
+  for (std::size_t i = 40000; i < 40400; ++i) line.y[i] = std::nan("");
+  const auto kept = select_extremes(line.x, line.y, 3000);
+  EXPECT_LE(kept.size(), 3000u);
+  EXPECT_TRUE(std::ranges::any_of(kept, [&](std::size_t i) { return std::isnan(line.y[i]); }));
+}
+
+TEST(SelectExtremes, KeepsAShortLineWholeAndRefusesUnequalLengths) {
+  auto line = noisy_line(3000, 1);
+  EXPECT_EQ(select_extremes(line.x, line.y, 3000).size(), 3000u);
+  EXPECT_THROW(select_extremes(line.x, line.y, 6), std::invalid_argument);
+  line.y.pop_back();
+  EXPECT_THROW(select_extremes(line.x, line.y, 3000), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace stiction::host

@@ -2,50 +2,13 @@
 // feed and another magnification draw other data, nothing is loaded from outside, the console is silent.
 // usage: node open_report.mjs FILE.html [--screenshot FILE.png] [--width PIXELS] [--pdf FILE.pdf] [TRACE...]
 //   TRACE: names that must stand in the charts, instead of those that the page's own data name.
-// The browser is $CHROMIUM, else /usr/bin/chromium. Exit 0: all holds; 1: a message says what does not; 2: usage.
-import { existsSync } from 'node:fs';
-import { createRequire } from 'node:module';
-import { resolve } from 'node:path';
-import { pathToFileURL } from 'node:url';
-import { parseArgs } from 'node:util';
+// Browser and exit codes: opened_page.mjs.
+import { expect, openPage, traces } from './opened_page.mjs';
 
-const { chromium } = createRequire(new URL('../../../host/report/web/package.json', import.meta.url))('playwright-core');
-
-function usage(message) {
-  console.error(`open_report: ${message}\nusage: node open_report.mjs FILE.html [--screenshot FILE.png] [--width PIXELS] [--pdf FILE.pdf] [TRACE...]`);
-  process.exit(2);
-}
-
-function parse() {
-  try {
-    return parseArgs({ allowPositionals: true, options: {
-      screenshot: { type: 'string' }, width: { type: 'string', default: '1400' }, pdf: { type: 'string' } } });
-  } catch (error) {
-    return usage(error.message);
-  }
-}
-
-const { values: options, positionals: [file, ...expectedNames] } = parse();
-if (!file) usage('no file given');
-if (!existsSync(file)) usage(`${file} does not exist`);
-const address = pathToFileURL(resolve(file)).href;
-
-const problems = [];
-function expect(holds, message) {
-  if (!holds) problems.push(message);
-}
-
-// Names of a chart's traces and their points, as the chart library holds them.
-function traces(page, chart) {
-  return page.evaluate(id => (document.getElementById(id).data || []).map(trace => ({ name: trace.name, y: Array.from(trace.y) })), chart);
-}
+let expectedNames = [];
 
 async function drawn(page, chart) {
   return JSON.stringify(await traces(page, chart));
-}
-
-function pageData(page) {
-  return page.evaluate(() => JSON.parse(document.getElementById('data').textContent));
 }
 
 async function choose(page, control, value) {
@@ -128,37 +91,13 @@ async function checkReversals(page, data) {
 async function checkText(page, data) {
   const rows = await page.locator('#table tbody tr').count();
   expect(rows === data.table.length, `the table has ${rows} rows, the data ${data.table.length}`);
-  expect((await page.locator('.headline').innerText()).length > 10, 'the page has no headline');
-  const wide = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
-  expect(wide <= 0, `the page is ${wide} pixels wider than the window`);
 }
 
-async function main() {
-  const browser = await chromium.launch({ executablePath: process.env.CHROMIUM || '/usr/bin/chromium',
-    args: ['--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
-           '--disable-component-update', '--disable-sync'] });
-  try {
-    const page = await browser.newPage({ viewport: { width: Number(options.width), height: 1000 } });
-    page.on('console', message => { if (['error', 'warning'].includes(message.type())) problems.push(`console: ${message.text()}`); });
-    page.on('pageerror', error => problems.push(`script: ${error.message}`));
-    page.on('request', request => {
-      if (request.url() !== address && !/^(data|blob):/.test(request.url())) problems.push(`the page asks for ${request.url()}`);
-    });
-    await page.goto(address, { waitUntil: 'load' });
-    const data = await pageData(page);
-    await checkTraces(page, data);
-    await checkPeaks(page, data);
-    await checkReversals(page, data);
-    await checkText(page, data);
-    await checkControls(page, data);
-    if (options.screenshot) await page.screenshot({ path: options.screenshot, fullPage: true });
-    if (options.pdf) await page.pdf({ path: options.pdf, preferCSSPageSize: true, printBackground: true });
-  } finally {
-    await browser.close();
-  }
-}
-
-await main().catch(error => problems.push(error.message));
-for (const problem of problems) console.error(`open_report: ${file}: ${problem}`);
-if (!problems.length) console.log(`open_report: ${file}: all holds`);
-process.exit(problems.length ? 1 : 0);
+await openPage('open_report', '[TRACE...]', async (page, data, names) => {
+  expectedNames = names;
+  await checkTraces(page, data);
+  await checkPeaks(page, data);
+  await checkReversals(page, data);
+  await checkText(page, data);
+  await checkControls(page, data);
+});

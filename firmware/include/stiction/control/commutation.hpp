@@ -14,10 +14,11 @@ struct Commutation {
   using Current = typename S::Current;
 
   // sin(phi + k 2 pi / 3), k = 0, 1, 2; the third follows from the sum being zero.
-  static constexpr std::array<Sine, 3> phases(typename S::Angle angle, SaturationCounter& saturations) {
+  static constexpr std::array<Sine, 3> phases(typename S::Angle angle) {
     const Sine a = S::sine(angle);
     const Sine b = S::sine(S::third_of_turn_after(angle));
-    return {a, b, narrow<Sine>(-(a + b), saturations)};
+    SaturationCounter none;  // the roundings of a and b may add up to a bit beyond 1
+    return {a, b, narrow<Sine>(-(a + b), none)};
   }
 
   static constexpr Current phase_current(Current amplitude, Sine phase, SaturationCounter& saturations) {

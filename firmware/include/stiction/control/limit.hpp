@@ -16,9 +16,9 @@ struct Limited {
 // Holds |value| <= bound; the bound is not negative.
 template <class Signal>
 constexpr Limited<Signal> limit(Signal value, Signal bound) {
-  if (value > bound) return {bound, 1};
-  if (const Signal low = opposite(bound); value < low) return {low, -1};
-  return {value, 0};
+  if (!exceeds(value, bound)) return {value, 0};
+  if (value > Signal{}) return {bound, 1};
+  return {opposite(bound), -1};
 }
 
 }  // namespace stiction

@@ -17,15 +17,15 @@ struct LimitCycle {
   // Changes within a window that make a fault: no machine motion reverses its full force at 48 Hz.
   static constexpr std::uint16_t changes_allowed = 12;
 
-  // `side`: -1, 0 or 1, the limit that holds the output back in this tick. True when the window has too many changes.
+  // `side`: -1, 0 or 1, the limit that holds the output back in this tick. True when it acts and the window has too many changes.
   static constexpr bool step(State& state, int side, std::uint32_t window_ticks) {
-    const bool change = side != 0 && side == -state.side;
-    if (side != 0) state.side = static_cast<std::int8_t>(side);
     if (++state.ticks >= window_ticks) {
       state.ticks = 0;
       state.changes = 0;
     }
-    state.changes = static_cast<std::uint16_t>(state.changes + change);
+    if (side == 0) return false;
+    if (side == -state.side) ++state.changes;
+    state.side = static_cast<std::int8_t>(side);
     return state.changes > changes_allowed;
   }
 };

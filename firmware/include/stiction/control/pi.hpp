@@ -26,18 +26,28 @@ struct Pi {
   };
   struct State {
     typename Types::Integrator integral{};  // I
+    bool beyond_format = false;             // the last sum left the output's format
   };
 
-  // The output before any limit.
+  // The output before any limit. Where the sum leaves the output's own format, track() cannot see by how much, so the
+  // integrator stands still instead of winding up.
   static constexpr typename Types::Output step(const Config& config, State& state, typename Types::Error error,
                                                SaturationCounter& saturations) {
-    state.integral = narrow<typename Types::Integrator>(state.integral + config.integral * error, saturations);
-    return narrow<typename Types::Output>(config.proportional * error + state.integral, saturations);
+    SaturationCounter here;
+    const auto integral = narrow<typename Types::Integrator>(state.integral + config.integral * error, here);
+    const auto output = narrow<typename Types::Output>(config.proportional * error + integral, here);
+    state.beyond_format = here.count != 0;
+    if (state.beyond_format)
+      saturations.add(here);
+    else
+      state.integral = integral;
+    return output;
   }
 
   // Tells the integrator what became of the output behind all limits: `limited` instead of `wanted`.
   static constexpr void track(const Config& config, State& state, typename Types::Output wanted,
                               typename Types::Output limited, SaturationCounter& saturations) {
+    if (state.beyond_format) return;
     const auto excess = narrow<typename Types::Output>(limited - wanted, saturations);
     state.integral = narrow<typename Types::Integrator>(state.integral + config.tracking * excess, saturations);
   }

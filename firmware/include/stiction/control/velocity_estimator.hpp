@@ -45,7 +45,7 @@ struct VelocityEstimator {
     const auto motion = narrow<typename S::Step>(x - base, saturations);
     const auto velocity = narrow<typename S::Velocity>(motion * S::rate(t_ns - base_ns), saturations);
     state = {x, state.x1, t_ns, state.t1_ns};
-    return {velocity, base_ns + (t_ns - base_ns) / 2};
+    return {velocity, base_ns + ((t_ns - base_ns) >> 1)};
   }
 };
 

@@ -136,10 +136,10 @@ class Axis {
     SpeedDelay<S>::push(state_.set_speeds, set.velocity);
     s.v_set_delayed = SpeedDelay<S>::read(
         state_.set_speeds, S::ticks(now_ns - state_.velocity.time_ns, config_.inverse_period), saturations);
-    const auto v_ref = limit(narrow<typename S::Velocity>(config_.position_gain * s.e_held +
-                                                              config_.velocity_feedforward * s.v_set_delayed,
-                                                          saturations),
-                             config_.velocity_limit);
+    const auto v_ref =
+        limit(narrow<typename S::Velocity>(
+                  config_.position_gain * s.e_held + config_.velocity_feedforward * s.v_set_delayed, saturations),
+              config_.velocity_limit);
     s.v_ref = v_ref.value;
     s.v_error = narrow<typename S::Velocity>(s.v_ref - s.v, saturations);
     s.i_pi = VelocityPi<S>::step(config_.velocity, state_.velocity_pi, s.v_error, saturations);
@@ -155,18 +155,19 @@ class Axis {
     Command<S> command;
     s.i_phase = feedback.current;
     s.limiting = {v_ref.limiting(), i_set.limiting(), false};
+    int voltage_side = 0;
     switch (config_.current_loop) {
       case CurrentLoop::three_phase:
-        control_phases(s, command);
+        voltage_side = control_phases(s, command);
         break;
       case CurrentLoop::direct:
-        control_direct(s, command);
+        voltage_side = control_direct(s, command);
         break;
       case CurrentLoop::none:
-        pass_through(s, command);
+        voltage_side = pass_through(s, command);
         break;
     }
-    watch_cycle(state_.voltage_cycle, side_of(command.voltage[0]), now_ns);
+    watch_cycle(state_.voltage_cycle, voltage_side, now_ns);
 
     if (!set.valid) trip(Fault::set_point, now_ns);
     supervise(feedback, s, now_ns);
@@ -184,62 +185,70 @@ class Axis {
   constexpr void watch_cycle(LimitCycle::State& cycle, int side, std::int64_t now_ns) {
     if (LimitCycle::step(cycle, side, config_.limit_cycle_window_ticks)) trip(Fault::limit_cycle, now_ns);
   }
-  constexpr int side_of(Voltage u) const {
-    return u >= config_.voltage_limit ? 1 : u <= opposite(config_.voltage_limit) ? -1 : 0;
-  }
-
   // A sample that is not valid leaves position and velocity as they were; too many in a row are a fault.
   constexpr void take_feedback(const Feedback<S>& feedback, std::int64_t now_ns) {
-    if (!feedback.position_valid) {
+    // A sample that came before is as good as none, and a stamp from the future is no stamp.
+    const bool fresh = feedback.position_valid && feedback.position_time_ns > state_.estimator.t1_ns &&
+                       feedback.position_time_ns <= now_ns + config_.period_ns;
+    if (!fresh) {
       if (++state_.missed_positions > missed_positions_allowed) trip(Fault::position_lost, now_ns);
       return;
     }
     state_.missed_positions = 0;
-    if (feedback.position_time_ns <= state_.estimator.t1_ns) return;  // a sample seen before
     state_.x = feedback.position;
     state_.x_time_ns = feedback.position_time_ns;
     state_.velocity = VelocityEstimator<S>::step(state_.estimator, config_.velocity_feedback, feedback.position,
                                                  feedback.position_time_ns, feedback.velocity, state_.saturations);
   }
 
-  constexpr Voltage control_current(int phase, Current set, Current measured, AxisSignals<S>& s) {
+  constexpr Limited<Voltage> control_current(std::size_t phase, Current set, Current measured, AxisSignals<S>& s) {
     auto& saturations = state_.saturations;
-    auto& pi = state_.current_pi[static_cast<std::size_t>(phase)];
+    auto& pi = state_.current_pi[phase];
     const auto wanted =
         CurrentPi<S>::step(config_.current, pi, narrow<Current>(set - measured, saturations), saturations);
     const auto u = limit(wanted, config_.voltage_limit);
     CurrentPi<S>::track(config_.current, pi, wanted, u.value, saturations);
     s.limiting.voltage = s.limiting.voltage || u.limiting();
-    return u.value;
+    return u;
   }
 
-  constexpr void control_phases(AxisSignals<S>& s, Command<S>& command) {
+  // These give the voltages and return the side of the limit that holds the first one back.
+
+  // The side is that of the amplitude: a healthy limited phase changes side with its sine, twice an electrical turn.
+  constexpr int control_phases(AxisSignals<S>& s, Command<S>& command) {
     auto& saturations = state_.saturations;
-    const auto phase = Commutation<S>::phases(S::angle(state_.x, config_.inverse_pole_pair_pitch), saturations);
+    const auto phase = Commutation<S>::phases(S::angle(state_.x, config_.inverse_pole_pair_pitch));
     s.i = Commutation<S>::amplitude(s.i_phase, phase, saturations);
-    for (int k = 0; k < 3; ++k) {
-      const auto set = Commutation<S>::phase_current(s.i_set, phase[static_cast<std::size_t>(k)], saturations);
-      command.voltage[static_cast<std::size_t>(k)] = control_current(k, set, s.i_phase[static_cast<std::size_t>(k)], s);
+    int side = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto set = Commutation<S>::phase_current(s.i_set, phase[k], saturations);
+      const auto u = control_current(k, set, s.i_phase[k], s);
+      command.voltage[k] = u.value;
+      if (k == 0) side = phase[k] < typename S::Sine{} ? -u.side : u.side;
     }
+    return side;
   }
 
-  constexpr void control_direct(AxisSignals<S>& s, Command<S>& command) {
+  constexpr int control_direct(AxisSignals<S>& s, Command<S>& command) {
     s.i = s.i_phase[0];
-    command.voltage[0] = control_current(0, s.i_set, s.i, s);
+    const auto u = control_current(0, s.i_set, s.i, s);
+    command.voltage[0] = u.value;
+    return u.side;
   }
 
-  constexpr void pass_through(AxisSignals<S>& s, Command<S>& command) {
+  constexpr int pass_through(AxisSignals<S>& s, Command<S>& command) {
     s.i = s.i_set;
     const auto u = limit(narrow<Voltage>(s.i_set, state_.saturations), config_.voltage_limit);
     s.limiting.voltage = u.limiting();
     command.voltage[0] = u.value;
+    return u.side;
   }
 
   constexpr void supervise(const Feedback<S>& feedback, const AxisSignals<S>& s, std::int64_t now_ns) {
     if (feedback.fault) trip(Fault::drive_input, now_ns);
-    bool over_current = exceeds(s.i, config_.over_current_fault);
-    for (const auto i : s.i_phase) over_current = over_current || exceeds(i, config_.over_current_fault);
-    if (over_current) trip(Fault::over_current, now_ns);
+    const auto most = config_.over_current_fault;
+    if (exceeds(s.i, most) || exceeds(s.i_phase[0], most) || exceeds(s.i_phase[1], most) || exceeds(s.i_phase[2], most))
+      trip(Fault::over_current, now_ns);
     if (exceeds(s.v, config_.over_speed_fault)) trip(Fault::over_speed, now_ns);
     if (exceeds(s.e, config_.following_error_fault)) trip(Fault::following_error, now_ns);
   }

@@ -14,6 +14,9 @@ struct SaturationCounter {
   std::uint32_t count = 0;
 
   constexpr void add() { count += count != UINT32_MAX; }
+  constexpr void add(const SaturationCounter& other) {
+    count = count > UINT32_MAX - other.count ? UINT32_MAX : count + other.count;
+  }
 };
 
 // A 64-bit number raw * 2^-FractionBits with |raw| <= Bound, exact results of sums and products.
@@ -116,6 +119,16 @@ constexpr std::uint64_t aligned_bound(std::uint64_t bound, int shift) {
 }
 constexpr std::uint64_t sum_bound(std::uint64_t a, std::uint64_t b) { return a > UINT64_MAX - b ? UINT64_MAX : a + b; }
 
+// Whether `raw` is in the range of Out. That of a whole word is seen by cutting to it, at half the instructions of two
+// comparisons of 64 bits, on Cortex-M4 at a third.
+template <FixedPoint Out>
+constexpr bool within(std::int64_t raw) {
+  if constexpr (Out::highest_raw == INT32_MAX && Out::lowest_raw == INT32_MIN)
+    return raw == static_cast<std::int32_t>(raw);
+  else
+    return raw <= Out::highest_raw && raw >= Out::lowest_raw;
+}
+
 template <int FractionBits, FixedPoint T>
 constexpr auto align(T x) {
   constexpr int shift = FractionBits - T::fraction_bits;
@@ -168,7 +181,7 @@ constexpr Out narrow(In x, SaturationCounter& saturations) {
     raw *= std::int64_t{1} << -shift;
   }
   if constexpr (bound > static_cast<std::uint64_t>(Out::highest_raw)) {
-    if (raw > Out::highest_raw || raw < Out::lowest_raw) [[unlikely]] {
+    if (!detail::within<Out>(raw)) [[unlikely]] {
       raw = raw < 0 ? Out::lowest_raw : Out::highest_raw;
       saturations.add();
     }
@@ -182,10 +195,11 @@ constexpr Fixed<FractionBits> opposite(Fixed<FractionBits> x) {
   return Fixed<FractionBits>::from_raw(x.raw() == INT32_MIN ? INT32_MAX : -x.raw());
 }
 
-// |x| > bound, exact.
-template <FixedPoint T>
-constexpr bool exceeds(T x, T bound) {
-  return (x.raw() < 0 ? -std::int64_t{x.raw()} : std::int64_t{x.raw()}) > bound.raw();
+// |x| > bound, exact; the bound is not negative.
+template <int FractionBits>
+constexpr bool exceeds(Fixed<FractionBits> x, Fixed<FractionBits> bound) {
+  const auto bits = static_cast<std::uint32_t>(x.raw());
+  return (x.raw() < 0 ? 0u - bits : bits) > static_cast<std::uint32_t>(bound.raw());
 }
 
 }  // namespace stiction

@@ -27,7 +27,7 @@ struct FixedSignals {
   using Sine = stiction::Sine;
   using Rate = stiction::Rate;           // 1/s
   using TickFraction = Coefficient<28>;  // of a fast period, below 4
-  using Seconds = Coefficient<40>;       // below 0.97 ms
+  using Seconds = Coefficient<36>;       // below 15.6 ms
 
   // Gains.
   using PositionGain = Coefficient<20>;                       // +-1024 1/s
@@ -87,7 +87,10 @@ struct FixedSignals {
 
  private:
   static constexpr std::int32_t clamp_to_word(std::int64_t value) {
-    return static_cast<std::int32_t>(value < INT32_MIN ? INT32_MIN : value > INT32_MAX ? INT32_MAX : value);
+    const auto word = static_cast<std::int32_t>(value);
+    if (word == value) [[likely]]
+      return word;
+    return value < 0 ? INT32_MIN : INT32_MAX;
   }
 };
 

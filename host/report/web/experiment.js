@@ -1,0 +1,164 @@
+// The page of an experiment: its charts with the series that are switched on, and its figures.
+'use strict';
+
+const hidden = new Set();  // names of series
+const VARIANT_DASHES = ['6px 3px', '2px 3px', '9px 3px 2px 3px'];
+
+// ---- series ----
+
+// A model's own colour for the model and, dashed, for its variants ("lugre, 5400 N/s"); black for what was measured.
+const seriesStyles = (() => {
+  const styles = stylesOf(DATA.series.map(series => series.model || series.name).filter(name => name !== 'measured'));
+  const variants = {};
+  return Object.fromEntries(DATA.series.map(({ name, model }) => {
+    if (name === 'measured') return [name, { colour: MEASURED.color, symbol: MEASURED.symbol }];
+    if (!model || model === name) return [name, styles[name]];
+    const count = variants[model] = (variants[model] || 0) + 1;
+    return [name, { ...styles[model], symbol: styles[model].symbol + '-open', dash: VARIANT_DASHES[(count - 1) % VARIANT_DASHES.length] }];
+  }));
+})();
+const seriesLabels = Object.fromEntries(DATA.series.map(series => [series.name, series.label]));
+
+for (const chart of DATA.charts)
+  for (const series of chart.series)
+    for (const axis of ['x', 'y']) series[axis] = decodeFloats(series[axis]);
+
+function seriesSwatch({ name, points }) {
+  const { colour, symbol } = seriesStyles[name];
+  if (!points) return swatch(seriesStyles[name]);
+  const open = symbol.endsWith('-open');
+  return element('span', { class: name === 'measured' ? 'dot diamond' : 'dot', style: `border-color:${colour};background:${open ? '#fff' : colour}` });
+}
+
+function drawSeriesChoice() {
+  const models = DATA.series.every(series => series.model || series.name === 'measured');
+  document.getElementById('choose-name').textContent = models ? 'Friction model' : 'Shown';
+  toggles('choose-series', DATA.series.map(series => ({ name: series.name, label: series.label, swatch: seriesSwatch(series) })), hidden, drawCharts);
+}
+
+// ---- charts ----
+
+const overTime = chart => /^time\b/.test(chart.x_label);
+const chartId = i => `chart-${i}`;
+const plain = words => words.replaceAll('&', '&amp;').replaceAll('<', '&lt;');  // the chart library reads tags
+
+// "deviation, µm": what is shown, and its unit.
+function quantity(axisLabel) {
+  const comma = axisLabel.lastIndexOf(', ');
+  return comma < 0 ? [axisLabel, ''] : [axisLabel.slice(0, comma), axisLabel.slice(comma + 1)];
+}
+
+function traceOf(chart, series) {
+  const { colour, symbol, dash } = seriesStyles[series.name];
+  const name = seriesLabels[series.name], [abscissa, x_unit] = quantity(chart.x_label), [ordinate, y_unit] = quantity(chart.y_label);
+  const few = series.x.length <= 40;  // each point was computed on its own
+  return { name, x: series.x, y: series.y, mode: series.points ? 'markers' : few ? 'lines+markers' : 'lines', cliponaxis: !series.points,
+           line: { color: colour, width: 1.6, dash }, marker: { symbol, color: colour, size: series.points ? 9 : 5, line: { width: 1.3 } },
+           hovertemplate: `${plain(name)}<br>${plain(ordinate)} %{y:.4~g}${plain(y_unit)}<br>${plain(abscissa)} %{x:.4~g}${plain(x_unit)}<extra></extra>` };
+}
+
+// Charts over time stand one below the other, so that the same instant is at the same place; others two in a row.
+function placeCharts() {
+  let beside = 0;  // charts since the last wide one
+  show('charts', ...DATA.charts.map((chart, i) => {
+    const last = i + 1 === DATA.charts.length || overTime(DATA.charts[i + 1]);
+    const wide = overTime(chart) || (last && beside % 2 === 0);
+    beside = wide ? 0 : beside + 1;
+    const low = DATA.charts.filter(overTime).length > 1 && overTime(chart);
+    return element('div', { class: wide ? 'wide' : null }, element('h2', {}, chart.title),
+                   element('div', { id: chartId(i), class: low ? 'plot low' : 'plot tall' }),
+                   chart.caption ? element('p', { class: 'caption' }, chart.caption) : null);
+  }));
+}
+
+function drawCharts() {
+  DATA.charts.forEach((chart, i) => {
+    const traces = chart.series.filter(series => !hidden.has(series.name)).map(series => traceOf(chart, series));
+    drawChart(chartId(i), traces, {
+      margin: { l: 66, r: 14, t: 10, b: 46 }, uirevision: 'magnified',
+      xaxis: axisStyle(plain(chart.x_label), chart.logarithmic_x ? { type: 'log', dtick: 'D2', minor: { ticks: 'outside' } } : {}),
+      yaxis: axisStyle(plain(chart.y_label), { zeroline: true, zerolinecolor: '#9aa5b1', nticks: 7 }),
+    });
+  });
+}
+
+// A magnified abscissa is magnified in all charts that have it.
+function linkAbscissae() {
+  let following = false;
+  const follow = (from, event) => {
+    const ranges = Object.fromEntries(Object.entries(event).filter(([key]) => /^xaxis\.(range|autorange)/.test(key)));
+    if (following || !Object.keys(ranges).length) return;
+    following = true;
+    const others = DATA.charts.map((chart, i) => i).filter(i => i !== from && DATA.charts[i].x_label === DATA.charts[from].x_label);
+    Promise.all(others.map(i => Plotly.relayout(chartId(i), ranges))).finally(() => { following = false; });
+  };
+  DATA.charts.forEach((_, i) => document.getElementById(chartId(i)).on('plotly_relayout', event => follow(i, event)));
+}
+
+// ---- figures ----
+
+function svg(tag, attributes, ...children) {
+  const node = document.createElementNS('http://www.w3.org/2000/svg', tag);
+  for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
+  node.append(...children);
+  return node;
+}
+
+// Where the value lies: a band of the tolerance around the expected value, a dot for the value; an arrow where it lies
+// beyond the drawing.
+function toleranceMark(row) {
+  if (row.offset === null) return '';
+  const reach = 2.4, width = 96, scale = width / 2 / reach, middle = width / 2;
+  const colour = row.holds ? INK : DIFFERS, x = middle + scale * row.offset, side = Math.sign(row.offset), edge = middle + side * (middle - 1);
+  const value = Math.abs(row.offset) <= reach - 0.2 ? svg('circle', { cx: x, cy: 7, r: 3.5, fill: colour })
+    : svg('path', { d: `M${edge} 7l${-8 * side} -4.5v9z`, fill: colour });
+  return svg('svg', { class: 'tolerance', viewBox: `0 0 ${width} 14`, 'aria-hidden': 'true' },
+             svg('path', { d: `M0 7H${width}`, stroke: GRID }), svg('rect', { x: middle - scale, y: 1.5, width: 2 * scale, height: 11, rx: 2, fill: '#dbe2e9' }),
+             svg('path', { d: `M${middle} 1.5v11`, stroke: QUIET }), value);
+}
+
+const minus = number => number.replace('-', '−');
+const DIFFERS = '#b3400a';
+
+function markCell(row) {
+  if (row.holds === null) return text('—', { class: 'text none', title: 'nothing is expected of this figure' });
+  return row.holds ? text('✓ as expected', { class: 'text' }) : text('✗ differs', { class: 'text differs' });
+}
+
+function figureCells(rows, i, columns) {
+  const row = rows[i], same = other => other && other.text === row.text && other.unit === row.unit;
+  const first = !same(rows[i - 1]);
+  const cells = [];
+  if (first) cells.push({ text: row.text, head: true, class: 'wrap group', rows: rows.filter(same).length });
+  const model = row.friction ? [swatch(MODEL_STYLES[row.friction] || { colour: QUIET }), row.friction_label] : '';
+  if (columns.friction) cells.push(text(model, { class: 'text' }));
+  cells.push(text(minus(row.value), { class: row.holds === false ? 'value differs' : 'value' }), text(row.unit, { class: 'text unit' }));
+  if (columns.expected)
+    cells.push(text(minus(row.expected) || '', { class: 'gap' }), text(row.tolerance && `± ${row.tolerance}`, { class: 'text' }),
+               text(toleranceMark(row), { class: 'text' }), markCell(row), text(row.source, { class: 'text wrap source' }));
+  return first ? classed('first', cells) : cells;
+}
+
+function drawFigures() {
+  const rows = DATA.figures, expected = rows.filter(row => row.holds !== null);
+  const columns = { friction: rows.some(row => row.friction), expected: expected.length > 0 };
+  const head = [text('Figure', { class: 'text' })];
+  if (columns.friction) head.push(text('Friction', { class: 'text' }));
+  head.push(text('Value'), text('Unit', { class: 'text unit' }));
+  if (columns.expected)
+    head.push(text('Expected', { class: 'gap' }), text('', { class: 'text' }), text('', { class: 'text' }), text('', { class: 'text' }), text('Source', { class: 'text' }));
+  show('results', table([head], rows.map((_, i) => figureCells(rows, i, columns))));
+  document.getElementById('results-what').textContent = DATA.verdict;
+  if (columns.expected)
+    show('results-caption', 'Band: expected value and tolerance; dot: the value, an arrow where it lies further off. ',
+         ...(expected.every(row => row.holds) ? [] : [element('mark', {}, 'Marked'), ': outside the tolerance.']));
+}
+
+drawConditions();
+drawSeriesChoice();
+placeCharts();
+drawCharts();
+linkAbscissae();
+drawFigures();
+drawMachine();
+drawForPaper();

@@ -1,0 +1,100 @@
+#!/usr/bin/env python3
+"""Plants violations in a temporary tree and expects check_rooms.py to find each of them, and nothing else."""
+
+import pathlib
+import tempfile
+import unittest
+
+import check_rooms
+
+NUMBER = "firmware/include/stiction/number/fixed.hpp"
+CONTROL = "firmware/include/stiction/control/pi.hpp"
+
+SOUND = {
+    NUMBER: "#include <cstdint>\n",
+    CONTROL: '#include <array>\n\n#include "stiction/number/fixed.hpp"\n',
+    "hal/backend.hpp": '#include <vector>\n#include "stiction/control/pi.hpp"\n',
+    "hal/simulated/simulated_backend.hpp": '#include "hal/backend.hpp"\n#include "sim/plant/axis_plant.hpp"\n',
+    "hal/can/can_backend.hpp": '#include "hal/backend.hpp"\n',
+    "sim/plant/axis_plant.hpp": '#include "sim/machine/machine.hpp"\n',
+    "sim/machine/machine.hpp": "#include <string>\n",
+    "host/report/page.hpp": '#include "sim/machine/machine.hpp"\n',
+    "host/cli/main.cpp": '#include "host/report/page.hpp"\n',
+    "tests/hal/backend_test.cpp": '#include "hal/simulated/simulated_backend.hpp"\n',
+}
+
+
+def findings_in(files):
+    with tempfile.TemporaryDirectory() as folder:
+        root = pathlib.Path(folder)
+        for name, text in files.items():
+            (root / name).parent.mkdir(parents=True, exist_ok=True)
+            (root / name).write_text(text, encoding="utf-8")
+        return check_rooms.check(root)[0]
+
+
+class CheckRooms(unittest.TestCase):
+    def expect_finding(self, file, line, *words):
+        findings = findings_in(SOUND | {file: SOUND.get(file, "") + line + "\n"})
+        self.assertEqual(len(findings), 1, findings)
+        place = f"{file}:{SOUND.get(file, '').count(chr(10)) + 1}"
+        for word in (place, *words):
+            self.assertIn(word, findings[0])
+
+    def test_accepts_arrows_that_run_down(self):
+        self.assertEqual(findings_in(SOUND), [])
+
+    def test_finds_a_hosted_header_in_the_firmware(self):
+        self.expect_finding(NUMBER, "#include <vector>", "<vector>", "freestanding")
+
+    def test_finds_floating_point_mathematics_in_the_firmware(self):
+        self.expect_finding(CONTROL, "  #  include <cmath>", "<cmath>")
+
+    def test_finds_the_firmware_including_the_simulation(self):
+        self.expect_finding(CONTROL, '#include "sim/machine/machine.hpp"', "may not include sim/machine")
+
+    def test_finds_numbers_that_know_the_laws(self):
+        findings = findings_in(SOUND | {NUMBER: '#include "stiction/control/pi.hpp"\n'})
+        self.assertEqual(len(findings), 2, findings)
+        self.assertIn("may not include", findings[0])
+        self.assertIn("circle", findings[1])
+
+    def test_finds_a_real_backend_that_knows_the_simulation(self):
+        self.expect_finding("hal/can/can_backend.hpp", '#include "sim/machine/machine.hpp"', "hal may not include sim")
+
+    def test_finds_a_real_backend_that_knows_the_simulated_one(self):
+        self.expect_finding("hal/can/can_backend.hpp", '#include "hal/simulated/simulated_backend.hpp"',
+                            "hal may not include hal/simulated")
+
+    def test_finds_the_simulation_including_a_tool(self):
+        findings = findings_in(SOUND | {"sim/machine/machine.hpp": '#include "host/report/page.hpp"\n'})
+        self.assertIn("sim/machine may not include host/report", findings[0])
+
+    def test_finds_a_report_that_knows_the_command_line(self):
+        findings = findings_in(SOUND | {"host/report/page.hpp": '#include "host/cli/main.cpp"\n'})
+        self.assertIn("host/report may not include host/cli", findings[0])
+
+    def test_finds_what_includes_a_test(self):
+        self.expect_finding("host/cli/main.cpp", '#include "tests/hal/backend_test.cpp"', "may not include tests/hal")
+
+    def test_finds_folders_that_include_each_other(self):
+        findings = findings_in(SOUND | {"tests/a/a.hpp": '#include "tests/b/b.hpp"\n',
+                                        "tests/b/b.hpp": '#include "tests/c/c.hpp"\n',
+                                        "tests/c/c.hpp": '#include "tests/a/a.hpp"\n'})
+        self.assertEqual(len(findings), 1, findings)
+        self.assertIn("tests/a -> tests/b -> tests/c -> tests/a", findings[0])
+
+    def test_finds_a_folder_that_is_no_room(self):
+        findings = findings_in(SOUND | {"host/guess/guess.hpp": "#include <string>\n"})
+        self.assertEqual(findings, ["host/guess/guess.hpp: host/guess is not a room; add it to ROOMS with the reasons "
+                                    "for its arrows"])
+
+    def test_finds_an_include_that_hides_its_target(self):
+        self.expect_finding("host/cli/main.cpp", "#include HEADER", "HEADER")
+
+    def test_finds_a_path_that_does_not_start_at_the_root(self):
+        self.expect_finding("host/report/page.hpp", '#include "machine.hpp"', 'no "machine.hpp"')
+
+
+if __name__ == "__main__":
+    unittest.main()
