@@ -79,6 +79,8 @@ void add_simulate(CLI::App& program, const Invocation& invocation) {
   circle->add_option("--out", o->places.out, "write report.html and result.json into this folder")->type_name("DIR");
   circle->add_flag("--json", o->json, "print the result as JSON on standard output");
   circle->callback([o, &invocation] { simulate_circle(*o, invocation); });
+
+  add_experiments(*simulate, invocation);
 }
 
 }  // namespace stiction::host

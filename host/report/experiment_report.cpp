@@ -74,17 +74,14 @@ json figures_json(const sim::ExperimentResult& result) {
 
 json conditions_json(const ExperimentReport& report) {
   const auto& machine = report.machine;
-  json axes = json::array(), models = json::array();
-  for (const auto& axis : machine.axes) add_once(axes, axis.name);
+  json models = json::array();
   for (const auto& chart : report.result.charts)
     for (const auto& series : chart.series)
       if (const auto model = split_model(series.name).friction; !model.empty()) add_once(models, friction_label(model));
   Conditions conditions;
-  conditions.add("Machine", machine.name);
-  conditions.add("Axes", joined(axes));
   if (!models.empty()) conditions.add("Friction", joined(models));
   if (report.result.signals.empty()) {
-    conditions.add("Control", "none");
+    conditions.add("Control", "none takes part");
     return conditions.json();
   }
   conditions.add("Signals", signals_text(report.result.signals));

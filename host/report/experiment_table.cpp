@@ -65,7 +65,8 @@ int decimals_of(const Group& group) {
     decimals = std::max(decimals, decimals_of(*figure->expected));
     expected = true;
   }
-  return expected ? decimals : std::min(decimals_for(largest, 4), own_decimals(largest));
+  if (expected) return decimals;
+  return group.unit.empty() ? std::min(decimals_for(largest, 4), own_decimals(largest)) : decimals_for(largest, 4);
 }
 
 std::string print(double value, int decimals) {
@@ -110,7 +111,7 @@ std::string verdict(const sim::ExperimentResult& result) {
                           : row.text.empty()   ? friction_label(row.friction)
                                                : fmt::format("{} ({})", row.text, friction_label(row.friction)));
   }
-  if (expected == 0) return "No source has a figure to hold against these.";
+  if (expected == 0) return "No source says what these figures must be.";
   auto text = fmt::format("{} of {} figures as the source says", expected - differing.size(), expected);
   if (differing.size() == 1 || differing.size() == 2)
     text += fmt::format("; different: {}", fmt::join(differing, ", "));

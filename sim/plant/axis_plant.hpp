@@ -48,9 +48,9 @@ class AxisPlant {
 
   // What the encoder reads now: with increment and noise. Draws a new noise value at each call.
   double read_encoder() {
-    double reading = encoder_position();
-    if (encoder_noise_ > 0.0) reading += draw_noise();
-    return encoder_increment_ > 0.0 ? nearest_increment(reading) : reading;
+    if (encoder_noise_ > 0.0) [[unlikely]]
+      return nearest_increment(encoder_position() + draw_noise());
+    return nearest_increment(encoder_position());
   }
 
  private:
@@ -69,6 +69,7 @@ class AxisPlant {
   double draw_noise();
 
   double nearest_increment(double reading) const {
+    if (encoder_increment_ == 0.0) return reading;
     const double increments = reading * increments_per_metre_;
     // Beyond 2^62 increments a plant has run away; the reading passes as it is, for the control's border to refuse.
     if (!(std::abs(increments) < 0x1p62)) return reading;

@@ -53,16 +53,14 @@ std::string value_of(FuzzedDataProvider& bytes, const Key& key) {
 }
 
 }  // namespace
-}  // namespace stiction::fuzz
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace stiction::fuzz;
   static const std::array<Base, 3> bases{Base{valid_machine("synchronous"), keys_of(false)},
                                          Base{valid_machine("dc"), keys_of(false)},
                                          Base{valid_machine("force"), keys_of(true)}};
   FuzzedDataProvider bytes(data, size);
   const Base& base = bases[bytes.ConsumeIntegralInRange<std::size_t>(0, bases.size() - 1)];
-  stiction::sim::ReadOptions options;
+  sim::ReadOptions options;
   while (bytes.remaining_bytes() > 0 && options.set.size() < 20) {
     const Key& key = base.keys[bytes.ConsumeIntegralInRange<std::size_t>(0, base.keys.size() - 1)];
     options.set.push_back(fmt::format("{}={}", key.name, value_of(bytes, key)));
@@ -70,3 +68,5 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   read_and_run(base.file, options);
   return 0;
 }
+
+}  // namespace stiction::fuzz

@@ -1,6 +1,7 @@
 // Any text as a quantity, in every unit that a machine file has.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -24,9 +25,7 @@ std::set<std::string> units_of_machine_files() {
 }
 
 bool has_control_character(std::string_view text) {
-  for (const char c : text)
-    if (static_cast<unsigned char>(c) < 0x20 && c != '\t') return true;
-  return false;
+  return std::ranges::any_of(text, [](char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\t'; });
 }
 
 // What is accepted is finite, is all that the text says, and means the same when it is written in its own unit again.
@@ -54,11 +53,12 @@ void check(std::string_view text, const std::string& si_unit) {
 }
 
 }  // namespace
-}  // namespace stiction::fuzz
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const auto units = stiction::fuzz::units_of_machine_files();
+  static const auto units = units_of_machine_files();
   const std::string_view text(reinterpret_cast<const char*>(data), size);
-  for (const auto& unit : units) stiction::fuzz::check(text, unit);
+  for (const auto& unit : units) check(text, unit);
   return 0;
 }
+
+}  // namespace stiction::fuzz

@@ -8,14 +8,15 @@
 #include "sim/machine/parameters.hpp"
 
 int main() {
-  using namespace stiction::sim;
-  std::set<std::string> words{std::string(machine_schema), "axis.", "axis.*.", "experiment.", "[reference.circle]"};
-  for (const auto name : experiment_names) words.emplace(name);
-  for (const auto& choice : motor_models) words.emplace(choice.name);
-  for (const auto& choice : velocity_sources) words.emplace(choice.name);
-  for (const auto& choice : reference_sources) words.emplace(choice.name);
-  for_each_friction_model([&]<class Model>() { words.emplace(Model::name); });
-  for (const auto& table : machine_file_description()) {
+  namespace sim = stiction::sim;
+  std::set<std::string> words{std::string(sim::machine_schema), "axis.", "axis.*.", "experiment.",
+                              "[reference.circle]"};
+  for (const auto name : sim::experiment_names) words.emplace(name);
+  for (const auto& choice : sim::motor_models) words.emplace(choice.name);
+  for (const auto& choice : sim::velocity_sources) words.emplace(choice.name);
+  for (const auto& choice : sim::reference_sources) words.emplace(choice.name);
+  sim::for_each_friction_model([&]<class Model>() { words.emplace(Model::name); });
+  for (const auto& table : sim::machine_file_description()) {
     words.insert(table.name);
     for (const auto& key : table.keys) {
       words.insert(key.key);

@@ -48,12 +48,32 @@ function quantity(axisLabel) {
   return comma < 0 ? [axisLabel, ''] : [axisLabel.slice(0, comma), axisLabel.slice(comma + 1)];
 }
 
-function traceOf(chart, series) {
+// A long label stands in two lines beside a low chart.
+function twoLines(axisLabel) {
+  if (axisLabel.length <= 24) return plain(axisLabel);
+  const spaces = [...axisLabel.matchAll(/ /g)].map(match => match.index), middle = axisLabel.length / 2;
+  const at = spaces.reduce((best, each) => Math.abs(each - middle) < Math.abs(best - middle) ? each : best, -1);
+  return at < 0 ? plain(axisLabel) : `${plain(axisLabel.slice(0, at))}<br>${plain(axisLabel.slice(at + 1))}`;
+}
+
+// Of charts over the same time, all from the first instant to the last of any: the next round one, if it is near.
+function timeRange(xLabel) {
+  const ends = DATA.charts.filter(chart => chart.x_label === xLabel).flatMap(chart => chart.series)
+    .filter(series => series.x.length).map(series => [series.x[0], series.x.at(-1)]);
+  if (!ends.length) return undefined;
+  const begin = Math.min(...ends.map(end => end[0])), end = Math.max(...ends.map(each => each[1])), round = Number(end.toPrecision(2));
+  return [begin, Math.abs(round - end) < 1e-3 * (end - begin) ? round : end];
+}
+
+// Curves that coincide stay visible: of charts over time the first ones are drawn broader, under the last ones.
+const lineWidth = (chart, k, count) => overTime(chart) ? 1.5 + 0.6 * Math.min(count - 1 - k, 4) : 1.6;
+
+function traceOf(chart, series, width) {
   const { colour, symbol, dash } = seriesStyles[series.name];
   const name = seriesLabels[series.name], [abscissa, x_unit] = quantity(chart.x_label), [ordinate, y_unit] = quantity(chart.y_label);
   const few = series.x.length <= 40;  // each point was computed on its own
   return { name, x: series.x, y: series.y, mode: series.points ? 'markers' : few ? 'lines+markers' : 'lines', cliponaxis: !series.points,
-           line: { color: colour, width: 1.6, dash }, marker: { symbol, color: colour, size: series.points ? 9 : 5, line: { width: 1.3 } },
+           line: { color: colour, width, dash, simplify: false }, marker: { symbol, color: colour, size: series.points ? 9 : 5, line: { width: 1.3 } },
            hovertemplate: `${plain(name)}<br>${plain(ordinate)} %{y:.4~g}${plain(y_unit)}<br>${plain(abscissa)} %{x:.4~g}${plain(x_unit)}<extra></extra>` };
 }
 
@@ -71,13 +91,18 @@ function placeCharts() {
   }));
 }
 
+function abscissa(chart) {
+  if (chart.logarithmic_x) return { type: 'log', dtick: 'D2', exponentformat: 'power' };
+  return overTime(chart) ? { range: timeRange(chart.x_label) } : {};
+}
+
 function drawCharts() {
   DATA.charts.forEach((chart, i) => {
-    const traces = chart.series.filter(series => !hidden.has(series.name)).map(series => traceOf(chart, series));
-    drawChart(chartId(i), traces, {
-      margin: { l: 66, r: 14, t: 10, b: 46 }, uirevision: 'magnified',
-      xaxis: axisStyle(plain(chart.x_label), chart.logarithmic_x ? { type: 'log', dtick: 'D2', minor: { ticks: 'outside' } } : {}),
-      yaxis: axisStyle(plain(chart.y_label), { zeroline: true, zerolinecolor: '#9aa5b1', nticks: 7 }),
+    const shown = chart.series.filter(series => !hidden.has(series.name));
+    drawChart(chartId(i), shown.map((series, k) => traceOf(chart, series, lineWidth(chart, k, shown.length))), {
+      margin: { l: 76, r: 14, t: 10, b: 46 }, uirevision: 'magnified',
+      xaxis: axisStyle(plain(chart.x_label), abscissa(chart)),
+      yaxis: axisStyle(twoLines(chart.y_label), { zeroline: true, zerolinecolor: '#9aa5b1', nticks: 7 }),
     });
   });
 }
@@ -127,15 +152,19 @@ function markCell(row) {
 
 function figureCells(rows, i, columns) {
   const row = rows[i], same = other => other && other.text === row.text && other.unit === row.unit;
-  const first = !same(rows[i - 1]);
+  const first = !same(rows[i - 1]), sameSource = other => same(other) && other.source === row.source;
   const cells = [];
-  if (first) cells.push({ text: row.text, head: true, class: 'wrap group', rows: rows.filter(same).length });
+  if (first) cells.push({ text: row.text, head: true, class: 'figure', rows: rows.filter(same).length });
   const model = row.friction ? [swatch(MODEL_STYLES[row.friction] || { colour: QUIET }), row.friction_label] : '';
   if (columns.friction) cells.push(text(model, { class: 'text' }));
   cells.push(text(minus(row.value), { class: row.holds === false ? 'value differs' : 'value' }), text(row.unit, { class: 'text unit' }));
   if (columns.expected)
     cells.push(text(minus(row.expected) || '', { class: 'gap' }), text(row.tolerance && `± ${row.tolerance}`, { class: 'text' }),
-               text(toleranceMark(row), { class: 'text' }), markCell(row), text(row.source, { class: 'text wrap source' }));
+               text(toleranceMark(row), { class: 'text' }), markCell(row));
+  if (columns.expected && !sameSource(rows[i - 1])) {  // one source for the rows that share it
+    const after = rows.slice(i).findIndex(other => !sameSource(other));
+    cells.push(text(row.source, { class: 'text wrap source', rows: after < 0 ? rows.length - i : after }));
+  }
   return first ? classed('first', cells) : cells;
 }
 
@@ -147,7 +176,9 @@ function drawFigures() {
   head.push(text('Value'), text('Unit', { class: 'text unit' }));
   if (columns.expected)
     head.push(text('Expected', { class: 'gap' }), text('', { class: 'text' }), text('', { class: 'text' }), text('', { class: 'text' }), text('Source', { class: 'text' }));
-  show('results', table([head], rows.map((_, i) => figureCells(rows, i, columns))));
+  const drawn = table([head], rows.map((_, i) => figureCells(rows, i, columns)));
+  if (!columns.expected) drawn.className = 'bare';
+  show('results', drawn);
   document.getElementById('results-what').textContent = DATA.verdict;
   if (columns.expected)
     show('results-caption', 'Band: expected value and tolerance; dot: the value, an arrow where it lies further off. ',

@@ -118,7 +118,7 @@ function drawChart(id, traces, layout) {
   const base = { font: { family: FONT, size: 12, color: INK }, paper_bgcolor: 'rgba(0,0,0,0)', plot_bgcolor: '#fff',
                  showlegend: false, hovermode: 'closest', dragmode: 'zoom', autosize: true,
                  hoverlabel: { bgcolor: '#fff', bordercolor: '#9aa5b1', font: { family: FONT, size: 12, color: INK } } };
-  return Plotly.react(id, traces, { ...base, ...layout }, { displayModeBar: false, responsive: true, doubleClick: 'reset' });
+  return Plotly.react(id, traces, { ...base, ...layout }, { displayModeBar: false, showTips: false, responsive: true, doubleClick: 'reset' });
 }
 
 function label(text, x, y, more = {}) {

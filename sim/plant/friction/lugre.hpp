@@ -71,7 +71,7 @@ class LuGre {
   // k_s g(v), N.
   double level(double velocity) const {
     const double ratio = velocity * per_stribeck_velocity_;
-    return coulomb_ + rise_ * (1.0 - one_minus_exp(ratio * ratio));
+    return coulomb_ + rise_ * std::exp(-ratio * ratio);
   }
 
   double coulomb_;                     // F_C

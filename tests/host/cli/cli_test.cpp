@@ -92,8 +92,8 @@ TEST_F(Cli, RefusesAFeedThatAnAxisCannotAccelerate) {
 
 TEST_F(Cli, RefusesBadUsage) {
   expect_refused("", "command: found none; expected one of simulate, compare, machine");
-  expect_refused("simulate", "experiment: found none; expected circle");
-  expect_refused("simulate square --machine mcfv5050ln", "experiment: found 'square'; expected circle");
+  expect_refused("simulate", "experiment: found none; expected one of circle, constant-velocity");
+  expect_refused("simulate square --machine mcfv5050ln", "experiment: found 'square'; expected one of circle");
   expect_refused("simulate circle", "--machine is required");
   expect_refused("simulate circle --machine nowhere", "found no such machine");
   expect_refused("simulate circle --machine mcfv5050ln --feed 16", "--feed: found '16' (no unit)");

@@ -136,13 +136,14 @@ TEST(FigureRows, ShowWhatTheToleranceAndTheSourceResolve) {
 
 TEST(FigureRows, ShowFourDigitsWhereNothingIsExpected) {
   sim::ExperimentResult result;
-  const auto printed = [&](double value) {
-    result.figures = {{"f", "N", "force", value, {}}};
+  const auto printed = [&](double value, const char* unit = "N") {
+    result.figures = {{"f", unit, "force", value, {}}};
     return figure_rows(result).front().value;
   };
   EXPECT_EQ(printed(0.0123456), "0.01235");
   EXPECT_EQ(printed(12345.6), "12346");
-  EXPECT_EQ(printed(5.0), "5");
+  EXPECT_EQ(printed(5.0), "5.000");
+  EXPECT_EQ(printed(5.0, ""), "5");
   EXPECT_EQ(printed(1.5e-9), "1.500e-09");
   EXPECT_EQ(printed(0.0), "0");
   EXPECT_EQ(printed(std::nan("")), "nan");
@@ -156,7 +157,7 @@ TEST(Verdict, CountsAndNamesWhatDiffers) {
   for (auto& figure : result.figures) figure.value = std::nan("");
   EXPECT_EQ(verdict(result), "0 of 13 figures as the source says.");
   for (auto& figure : result.figures) figure.expected.reset();
-  EXPECT_EQ(verdict(result), "No source has a figure to hold against these.");
+  EXPECT_EQ(verdict(result), "No source says what these figures must be.");
 }
 
 // ---- text ----

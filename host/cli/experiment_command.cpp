@@ -1,0 +1,85 @@
+// `stiction simulate EXPERIMENT` for the experiments of the table: their options, their results.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "host/cli/commands.hpp"
+#include "host/cli/errors.hpp"
+#include "host/cli/experiment_output.hpp"
+#include "host/cli/machine_options.hpp"
+#include "host/cli/output.hpp"
+#include "host/report/experiment_report.hpp"
+#include "host/simulate/experiments.hpp"
+
+namespace stiction::host {
+namespace {
+
+struct ExperimentOptions {
+  MachineOptions machine;
+  std::string friction;
+  std::string out;
+  bool json = false;
+};
+
+// Without --friction: every model that the experiment makes sense for and that the machine has.
+std::vector<std::string> models_for(const Experiment& experiment, const std::string& text,
+                                    const sim::Machine& machine) {
+  auto names = friction_models(text.empty() ? "all" : text, machine);
+  if (experiment.models.empty()) {
+    // The baseline D cannot stick and is not among the source's models; it runs when it is asked for.
+    if (text.empty()) std::erase(names, std::string(sim::CoulombViscous::name));
+    return names;
+  }
+  const auto known = [&](const std::string& name) {
+    return std::find(experiment.models.begin(), experiment.models.end(), name) != experiment.models.end();
+  };
+  if (!text.empty() && text != "all")
+    for (const auto& name : names)
+      if (!known(name))
+        throw UsageError(fmt::format("--friction: found '{}'; expected a model that {} makes sense for: {}", name,
+                                     experiment.name, fmt::join(experiment.models, ", ")));
+  std::erase_if(names, [&](const std::string& name) { return !known(name); });
+  if (names.empty())
+    throw UsageError(fmt::format("{}: found no friction model that {} makes sense for; expected parameters of: {}",
+                                 machine.id, experiment.name, fmt::join(experiment.models, ", ")));
+  return names;
+}
+
+void run(const Experiment& experiment, const ExperimentOptions& options, const Invocation& invocation) {
+  ExperimentInput input{options.machine.load(options.machine.machine, experiment.name), {}};
+  input.friction = models_for(experiment, options.friction, input.machine);
+  const auto result = experiment.run(input);
+  const auto json = experiment_json(result, input.machine);
+  if (!options.out.empty()) {
+    PendingFolder folder(options.out);
+    folder.write("report.html",
+                 experiment_report_html({invocation.command_line, invocation.version, input.machine, result}));
+    folder.write("result.json", json.dump(2) + "\n");
+    folder.commit();
+  }
+  if (options.json) {
+    fmt::print("{}\n", json.dump(2));
+    return;
+  }
+  fmt::print("{}", experiment_text(result, input.machine));
+  if (!options.out.empty()) fmt::print("\nreport: {}/report.html\n", options.out);
+}
+
+}  // namespace
+
+void add_experiments(CLI::App& simulate, const Invocation& invocation) {
+  for (const auto& experiment : experiments()) {
+    auto* command = simulate.add_subcommand(experiment.name, experiment.text);
+    auto o = std::make_shared<ExperimentOptions>();
+    o->machine.add_to(*command, "shipped machine by name, or a machine file");
+    command->add_option("--friction", o->friction, "friction model, or a list of models [all that it makes sense for]")
+        ->type_name("MODEL");
+    command->add_option("--out", o->out, "write report.html and result.json into this folder")->type_name("DIR");
+    command->add_flag("--json", o->json, "print the result as JSON on standard output");
+    command->callback([o, &experiment, &invocation] { run(experiment, *o, invocation); });
+  }
+}
+
+}  // namespace stiction::host
