@@ -112,7 +112,7 @@ std::string verdict(const sim::ExperimentResult& result) {
                                                : fmt::format("{} ({})", row.text, friction_label(row.friction)));
   }
   if (expected == 0) return "No source says what these figures must be.";
-  auto text = fmt::format("{} of {} figures as the source says", expected - differing.size(), expected);
+  auto text = fmt::format("{} of {} figures as expected", expected - differing.size(), expected);
   if (differing.size() == 1 || differing.size() == 2)
     text += fmt::format("; different: {}", fmt::join(differing, ", "));
   return text + ".";

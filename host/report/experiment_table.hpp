@@ -23,7 +23,7 @@ struct FigureRow {
 // Figures of the same text and unit stand together, in the order of their first.
 std::vector<FigureRow> figure_rows(const sim::ExperimentResult& result);
 
-// "13 of 14 figures as the source says", the one or two that differ behind it; another sentence for a result without
+// "13 of 14 figures as expected", the one or two that differ behind it; another sentence for a result without
 // expectations.
 std::string verdict(const sim::ExperimentResult& result);
 

@@ -70,6 +70,12 @@ class CheckRooms(unittest.TestCase):
         findings = findings_in(SOUND | {"sim/machine/machine.hpp": '#include "host/report/page.hpp"\n'})
         self.assertIn("sim/machine may not include host/report", findings[0])
 
+    def test_tells_a_folder_from_what_lies_below_it(self):
+        shared = {"sim/parameter.hpp": "#include <limits>\n", "sim/control/policy.hpp": ""}
+        self.assertEqual(findings_in(SOUND | shared | {"sim/machine/a.hpp": '#include "sim/parameter.hpp"\n'}), [])
+        findings = findings_in(SOUND | shared | {"sim/machine/a.hpp": '#include "sim/control/policy.hpp"\n'})
+        self.assertIn("sim/machine may not include sim/control", findings[0])
+
     def test_finds_a_report_that_knows_the_command_line(self):
         findings = findings_in(SOUND | {"host/report/page.hpp": '#include "host/cli/main.cpp"\n'})
         self.assertIn("host/report may not include host/cli", findings[0])

@@ -56,13 +56,27 @@ function twoLines(axisLabel) {
   return at < 0 ? plain(axisLabel) : `${plain(axisLabel.slice(0, at))}<br>${plain(axisLabel.slice(at + 1))}`;
 }
 
-// Of charts over the same time, all from the first instant to the last of any: the next round one, if it is near.
-function timeRange(xLabel) {
-  const ends = DATA.charts.filter(chart => chart.x_label === xLabel).flatMap(chart => chart.series)
-    .filter(series => series.x.length).map(series => [series.x[0], series.x.at(-1)]);
-  if (!ends.length) return undefined;
-  const begin = Math.min(...ends.map(end => end[0])), end = Math.max(...ends.map(each => each[1])), round = Number(end.toPrecision(2));
-  return [begin, Math.abs(round - end) < 1e-3 * (end - begin) ? round : end];
+// Smallest and largest finite abscissa of the charts, of those above `above`.
+function extent(charts, above = -Infinity) {
+  let low = Infinity, high = -Infinity;
+  for (const series of charts.flatMap(chart => chart.series))
+    for (const x of series.x)
+      if (Number.isFinite(x) && x > above) [low, high] = [Math.min(low, x), Math.max(high, x)];
+  return [low, high];
+}
+
+// Charts over the same time run from the first instant to the last of any, or to the next round one if it is near;
+// others leave some room beside their curves.
+function abscissaStyle(chart) {
+  if (chart.logarithmic_x) {
+    const [low, high] = extent([chart], 0);
+    return { type: 'log', dtick: high / low > 3000 ? 1 : 'D2', tickformat: '~g', minor: { ticks: 'outside', ticklen: 2, tickcolor: '#9aa5b1' } };
+  }
+  const [low, high] = extent(overTime(chart) ? DATA.charts.filter(each => each.x_label === chart.x_label) : [chart]);
+  if (!(low < high)) return {};
+  if (!overTime(chart)) return { range: [low - 0.03 * (high - low), high + 0.03 * (high - low)] };
+  const round = Number(high.toPrecision(2));
+  return { range: [low, Math.abs(round - high) < 1e-3 * (high - low) ? round : high] };
 }
 
 // Curves that coincide stay visible: of charts over time the first ones are drawn broader, under the last ones.
@@ -71,9 +85,9 @@ const lineWidth = (chart, k, count) => overTime(chart) ? 1.5 + 0.6 * Math.min(co
 function traceOf(chart, series, width) {
   const { colour, symbol, dash } = seriesStyles[series.name];
   const name = seriesLabels[series.name], [abscissa, x_unit] = quantity(chart.x_label), [ordinate, y_unit] = quantity(chart.y_label);
-  const few = series.x.length <= 40;  // each point was computed on its own
+  const few = series.x.length > 2 && series.x.length <= 40;  // each point was computed on its own
   return { name, x: series.x, y: series.y, mode: series.points ? 'markers' : few ? 'lines+markers' : 'lines', cliponaxis: !series.points,
-           line: { color: colour, width, dash, simplify: false }, marker: { symbol, color: colour, size: series.points ? 9 : 5, line: { width: 1.3 } },
+           line: { color: colour, width, dash, simplify: false }, marker: { symbol, color: colour, size: series.points ? 9 : 6, line: { width: 1.3, color: colour } },
            hovertemplate: `${plain(name)}<br>${plain(ordinate)} %{y:.4~g}${plain(y_unit)}<br>${plain(abscissa)} %{x:.4~g}${plain(x_unit)}<extra></extra>` };
 }
 
@@ -87,21 +101,16 @@ function placeCharts() {
     const low = DATA.charts.filter(overTime).length > 1 && overTime(chart);
     return element('div', { class: wide ? 'wide' : null }, element('h2', {}, chart.title),
                    element('div', { id: chartId(i), class: low ? 'plot low' : 'plot tall' }),
-                   chart.caption ? element('p', { class: 'caption' }, chart.caption) : null);
+                   chart.caption ? element('p', { class: 'caption' }, symbolText(chart.caption)) : null);
   }));
-}
-
-function abscissa(chart) {
-  if (chart.logarithmic_x) return { type: 'log', dtick: 'D2', exponentformat: 'power' };
-  return overTime(chart) ? { range: timeRange(chart.x_label) } : {};
 }
 
 function drawCharts() {
   DATA.charts.forEach((chart, i) => {
     const shown = chart.series.filter(series => !hidden.has(series.name));
     drawChart(chartId(i), shown.map((series, k) => traceOf(chart, series, lineWidth(chart, k, shown.length))), {
-      margin: { l: 76, r: 14, t: 10, b: 46 }, uirevision: 'magnified',
-      xaxis: axisStyle(plain(chart.x_label), abscissa(chart)),
+      margin: { l: 76, r: 24, t: 10, b: 46 }, uirevision: 'magnified',
+      xaxis: axisStyle(plain(chart.x_label), abscissaStyle(chart)),
       yaxis: axisStyle(twoLines(chart.y_label), { zeroline: true, zerolinecolor: '#9aa5b1', nticks: 7 }),
     });
   });
@@ -168,9 +177,30 @@ function figureCells(rows, i, columns) {
   return first ? classed('first', cells) : cells;
 }
 
+// Figures of which nothing is expected, one column a model.
+function matrix(rows) {
+  const models = [...new Map(rows.map(row => [row.friction, row.friction_label]))];
+  const key = row => JSON.stringify([row.text, row.unit]);
+  const value = row => text(row ? minus(row.value) : '–', { class: row ? 'value matrix' : 'none matrix' });
+  const body = [...new Set(rows.map(key))].map(each => {
+    const of = rows.filter(row => key(row) === each);
+    return classed('first', [{ text: of[0].text, head: true, class: 'figure' }, text(of[0].unit, { class: 'text unit' }),
+                             ...models.map(([model]) => value(of.find(row => row.friction === model)))]);
+  });
+  const head = [text('Figure', { class: 'text' }), text('Unit', { class: 'text unit' }),
+                ...models.map(([model, name]) => ({ text: [swatch(MODEL_STYLES[model] || { colour: QUIET }), name], class: 'matrix' }))];
+  return table([head], body);
+}
+
 function drawFigures() {
   const rows = DATA.figures, expected = rows.filter(row => row.holds !== null);
+  document.getElementById('results-what').textContent = DATA.verdict;
   const columns = { friction: rows.some(row => row.friction), expected: expected.length > 0 };
+  if (!columns.expected && rows.length && rows.every(row => row.friction)) {
+    const drawn = matrix(rows);
+    drawn.className = 'bare';
+    return show('results', drawn);
+  }
   const head = [text('Figure', { class: 'text' })];
   if (columns.friction) head.push(text('Friction', { class: 'text' }));
   head.push(text('Value'), text('Unit', { class: 'text unit' }));
@@ -179,12 +209,13 @@ function drawFigures() {
   const drawn = table([head], rows.map((_, i) => figureCells(rows, i, columns)));
   if (!columns.expected) drawn.className = 'bare';
   show('results', drawn);
-  document.getElementById('results-what').textContent = DATA.verdict;
   if (columns.expected)
     show('results-caption', 'Band: expected value and tolerance; dot: the value, an arrow where it lies further off. ',
          ...(expected.every(row => row.holds) ? [] : [element('mark', {}, 'Marked'), ': outside the tolerance.']));
 }
 
+// "k_s" of the sentences in the head with its subscript.
+for (const sentence of document.querySelectorAll('.says :is(p, li)')) sentence.replaceChildren(symbolText(sentence.textContent));
 drawConditions();
 drawSeriesChoice();
 placeCharts();

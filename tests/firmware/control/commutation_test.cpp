@@ -45,7 +45,6 @@ TEST(Commutation, ForceIsThreeHalvesOfTheAmplitudeAtEveryPosition) {
 }
 
 TEST(Commutation, PhasesAreAThirdOfATurnApartAndSumToZero) {
-  SaturationCounter saturations;
   for (std::uint64_t raw = 0; raw < (std::uint64_t{1} << 32); raw += 1234567) {
     const auto turn = Turn{static_cast<std::uint32_t>(raw)};
     const auto phase = C::phases(turn);
@@ -61,8 +60,7 @@ TEST(Commutation, SaturatesNothingAtAnyAngle) {
   SaturationCounter saturations;
   for (std::int64_t peak : {std::int64_t{1} << 30, std::int64_t{3} << 30})
     for (std::int64_t d = -200000; d <= 200000; d += 7)
-      for (std::uint32_t k = 0; k < 3; ++k)
-        C::phases(Turn{static_cast<std::uint32_t>(peak + d) - k * 0x55555555u});
+      for (std::uint32_t k = 0; k < 3; ++k) C::phases(Turn{static_cast<std::uint32_t>(peak + d) - k * 0x55555555u});
   EXPECT_EQ(saturations.count, 0u);
 }
 

@@ -71,7 +71,7 @@ TEST(Seconds, AreWithinTheRoundingOfTheNanosecond) {
 }
 
 TEST(Seconds, SaturateBeyondFifteenMilliseconds) {
-  EXPECT_EQ(S::seconds(15624999).raw(), test::nearest(Int128{15624999} * 1125900, 1 << 14));
+  EXPECT_EQ(S::seconds(15624000).raw(), test::nearest(Int128{15624000} * 1125900, 1 << 14));
   EXPECT_EQ(S::seconds(16000000).raw(), 1 << 30);
   EXPECT_EQ(S::seconds(INT64_MIN).raw(), -(1 << 30));
 }

@@ -151,11 +151,11 @@ TEST(FigureRows, ShowFourDigitsWhereNothingIsExpected) {
 
 TEST(Verdict, CountsAndNamesWhatDiffers) {
   auto result = synthetic_experiment().result;
-  EXPECT_EQ(verdict(result), "12 of 13 figures as the source says; different: peak deviation (B2 parabolic).");
+  EXPECT_EQ(verdict(result), "12 of 13 figures as expected; different: peak deviation (B2 parabolic).");
   for (auto& figure : result.figures) figure.value = figure.expected ? figure.expected->value : figure.value;
-  EXPECT_EQ(verdict(result), "13 of 13 figures as the source says.");
+  EXPECT_EQ(verdict(result), "13 of 13 figures as expected.");
   for (auto& figure : result.figures) figure.value = std::nan("");
-  EXPECT_EQ(verdict(result), "0 of 13 figures as the source says.");
+  EXPECT_EQ(verdict(result), "0 of 13 figures as expected.");
   for (auto& figure : result.figures) figure.expected.reset();
   EXPECT_EQ(verdict(result), "No source says what these figures must be.");
 }

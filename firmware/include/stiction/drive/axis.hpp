@@ -201,6 +201,7 @@ class Axis {
                                                  feedback.position_time_ns, feedback.velocity, state_.saturations);
   }
 
+  // Inline by order: a call costs as much as a third of it.
   [[gnu::always_inline]] constexpr Limited<Voltage> control_current(std::size_t phase, Current set, Current measured, AxisSignals<S>& s) {
     auto& saturations = state_.saturations;
     auto& pi = state_.current_pi[phase];
