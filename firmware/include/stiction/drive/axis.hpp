@@ -202,7 +202,8 @@ class Axis {
   }
 
   // Inline by order: a call costs as much as a third of it.
-  [[gnu::always_inline]] constexpr Limited<Voltage> control_current(std::size_t phase, Current set, Current measured, AxisSignals<S>& s) {
+  [[gnu::always_inline]] constexpr Limited<Voltage> control_current(std::size_t phase, Current set, Current measured,
+                                                                    AxisSignals<S>& s) {
     auto& saturations = state_.saturations;
     auto& pi = state_.current_pi[phase];
     const auto wanted =

@@ -119,8 +119,8 @@ constexpr std::uint64_t aligned_bound(std::uint64_t bound, int shift) {
 }
 constexpr std::uint64_t sum_bound(std::uint64_t a, std::uint64_t b) { return a > UINT64_MAX - b ? UINT64_MAX : a + b; }
 
-// Whether `raw` is in the range of Out. That of a whole word is seen by cutting to it, at half the instructions of two
-// comparisons of 64 bits, on Cortex-M4 at a third.
+// Whether `raw` is in the range of Out. That of a whole word is seen by cutting to it, in fewer instructions than by
+// two comparisons of 64 bits.
 template <FixedPoint Out>
 constexpr bool within(std::int64_t raw) {
   if constexpr (Out::highest_raw == INT32_MAX && Out::lowest_raw == INT32_MIN)
