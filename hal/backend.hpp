@@ -26,7 +26,8 @@ concept Backend = requires(B backend, std::span<Feedback<typename B::Signals>> f
 
   // The state of every axis for this tick: the newest encoder position with the time at which it was sampled (at or
   // before the tick) and whether it is valid, the phase currents of this tick, and the fault inputs. A position that
-  // is not new keeps its old time stamp; the axis bears two such ticks in a row, a third is a fault. A value that the world gave but the format cannot hold is not valid.
+  // is not new keeps its old time stamp; the axis bears two such ticks in a row, a third is a fault. A value that the
+  // world gave but the format cannot hold is not valid.
   { backend.read(feedback) } -> std::same_as<void>;
 
   // The voltages of this tick and whether the power stage may be on. They may act later by the inverter's delay but

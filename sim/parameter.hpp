@@ -26,8 +26,8 @@ constexpr Range not_negative(double high = std::numeric_limits<double>::infinity
 template <class Owner>
 struct Parameter {
   // An optional member is left empty when the key is absent; a vector holds a list of quantities.
-  using Member = std::variant<double Owner::*, int Owner::*, std::optional<double> Owner::*,
-                              std::vector<double> Owner::*>;
+  using Member =
+      std::variant<double Owner::*, int Owner::*, std::optional<double> Owner::*, std::vector<double> Owner::*>;
 
   std::string_view key;
   std::string_view unit;  // SI, in the spelling of UDUNITS-2; "1" for dimensionless

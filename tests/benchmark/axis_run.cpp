@@ -32,9 +32,8 @@ double run(double seconds) {
   const std::array<double, 1> start{settings.radius};
   hal::SimulatedBackend<S> backend(m, start);
   const std::array<AxisConfig<S>, 1> configs{sim::configure_axis<S>(m.timing, m.axes[0])};
-  hal::ControlLoop loop(
-      backend, std::span<const AxisConfig<S>>(configs),
-      Ticker(sim::fast_period_ns(m.timing), static_cast<std::uint32_t>(sim::slow_ratio(m.timing))));
+  hal::ControlLoop loop(backend, std::span<const AxisConfig<S>>(configs),
+                        Ticker(sim::fast_period_ns(m.timing), static_cast<std::uint32_t>(sim::slow_ratio(m.timing))));
   const auto ticks = std::llround(seconds / m.timing.fast_period);
   for (long long i = 0; i < ticks; ++i) {
     const auto point = path.at(static_cast<double>(loop.now_ns()) * 1e-9);

@@ -12,6 +12,6 @@ int main(int argc, char** argv) {
   }
   const double seconds = std::atof(argv[2]);
   const bool fixed = std::string_view(argv[1]) == "fixed";
-  std::printf("%.9f\n", fixed ? stiction::benchmark::run_axis_fixed(seconds)
-                              : stiction::benchmark::run_axis_double(seconds));
+  std::printf("%.9f\n",
+              fixed ? stiction::benchmark::run_axis_fixed(seconds) : stiction::benchmark::run_axis_double(seconds));
 }

@@ -64,8 +64,7 @@ TEST(ExperimentText, ShowsValuesBesideExpectationsAndSources) {
   EXPECT_NE(text.find("parabolic      96.2 um         93.0 +- 1.9 [1]      DIFFERS"), std::string::npos) << text;
   EXPECT_NE(text.find("\n[1] plant study, 10: prototype\n[2] plant study, 10: 62 to 63 um\n"), std::string::npos)
       << text;
-  EXPECT_TRUE(text.ends_with("\n12 of 13 figures as expected; different: peak deviation (B2 parabolic).\n"))
-      << text;
+  EXPECT_TRUE(text.ends_with("\n12 of 13 figures as expected; different: peak deviation (B2 parabolic).\n")) << text;
 }
 
 }  // namespace

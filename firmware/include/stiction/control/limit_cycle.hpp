@@ -17,7 +17,8 @@ struct LimitCycle {
   // Changes within a window that make a fault: no machine motion reverses its full force at 48 Hz.
   static constexpr std::uint16_t changes_allowed = 12;
 
-  // `side`: -1, 0 or 1, the limit that holds the output back in this tick. True when it acts and the window has too many changes.
+  // `side`: -1, 0 or 1, the limit that holds the output back in this tick. True when it acts and the window has too
+  // many changes.
   static constexpr bool step(State& state, int side, std::uint32_t window_ticks) {
     if (++state.ticks >= window_ticks) {
       state.ticks = 0;

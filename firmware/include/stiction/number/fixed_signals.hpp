@@ -42,9 +42,9 @@ struct FixedSignals {
   using CurrentIntegralGain = Coefficient<18>;                // V/A per tick
   using CurrentIntegral = Wide<38, std::uint64_t{1} << 61>;   // V
   using CurrentTracking = Coefficient<20>;                    // of the excess per tick
-  using AccelerationGain = Coefficient<24>;             // A s^2/m, +-64
-  using CurrentSum = Wide<20, std::uint64_t{1} << 33>;  // of three phases
-  using FilterCoefficient = Coefficient<28, 29>;        // +-2
+  using AccelerationGain = Coefficient<24>;                   // A s^2/m, +-64
+  using CurrentSum = Wide<20, std::uint64_t{1} << 33>;        // of three phases
+  using FilterCoefficient = Coefficient<28, 29>;              // +-2
   using FilterResidue = Wide<48, std::uint64_t{1} << 28>;
   using PitchInverse = Coefficient<20>;  // 1/m, pitches from 1 mm
 
