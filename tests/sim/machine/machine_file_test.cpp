@@ -11,7 +11,6 @@ namespace stiction::sim {
 namespace {
 
 using test::read_text;
-using test::replaced;
 using test::small_machine;
 
 double lugre_coulomb(const Machine& machine, std::size_t axis = 0) {
