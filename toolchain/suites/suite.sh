@@ -37,6 +37,9 @@ build() {
   fi
 }
 
+export LSAN_OPTIONS=suppressions=$PWD/tests/leak_suppressions.txt:print_suppressions=0
+export UBSAN_OPTIONS=print_stacktrace=1
+
 # Runs a program at the addresses where it was linked, where that is permitted: the sanitizers of clang 14 cannot place
 # their shadow memory under the wider randomisation of newer kernels.
 fixed_addresses=()
