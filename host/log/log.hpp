@@ -1,0 +1,70 @@
+// A measured or simulated log in memory: uniform samples, SI units, one record of channels an axis. Readers fill it,
+// everything that judges data works on it.
+#pragma once
+
+#include <array>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace stiction::host {
+
+// A log that cannot be used. what() is "FILE:LINE: what was found; what was expected" (without the line where the
+// format has none).
+class LogError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// The channels of one axis; each as long as the log's time, or empty when the log does not have it.
+struct AxisLog {
+  std::string axis;                    // "X"; empty in a log without prefixes
+  std::vector<double> x_set;           // m
+  std::vector<double> v_set;           // m/s
+  std::vector<double> a_set;           // m/s^2
+  std::vector<double> x;               // m, measured; always there
+  std::vector<double> v;               // m/s
+  std::vector<double> i;               // A, amplitude
+  std::vector<double> i_set;           // A
+  std::vector<double> force;           // N, of the motor
+  std::vector<double> u;               // V, drive voltage
+  std::vector<double> temperature;     // degC
+  std::vector<double> external_force;  // N, on the carriage, positive in +x
+  std::vector<double> i_inject;        // A, test signal, contained in i
+  std::vector<double> u_inject;        // V, test signal, contained in u
+};
+
+// The one list of an axis' channels: the column's name, the unit of the values, and where they are kept.
+struct LogChannel {
+  const char* name;
+  const char* unit;
+  std::vector<double> AxisLog::*values;
+  const char* text;
+};
+inline constexpr std::array<LogChannel, 13> log_channels{{
+    {"x_set", "m", &AxisLog::x_set, "set position"},
+    {"v_set", "m/s", &AxisLog::v_set, "set velocity"},
+    {"a_set", "m/s^2", &AxisLog::a_set, "set acceleration"},
+    {"x", "m", &AxisLog::x, "measured position"},
+    {"v", "m/s", &AxisLog::v, "measured velocity"},
+    {"i", "A", &AxisLog::i, "motor current, amplitude"},
+    {"i_set", "A", &AxisLog::i_set, "set current"},
+    {"F", "N", &AxisLog::force, "motor force"},
+    {"u", "V", &AxisLog::u, "drive voltage"},
+    {"temperature", "degC", &AxisLog::temperature, "temperature"},
+    {"F_ext", "N", &AxisLog::external_force, "external force"},
+    {"i_inject", "A", &AxisLog::i_inject, "test signal on the current"},
+    {"u_inject", "V", &AxisLog::u_inject, "test signal on the voltage"},
+}};
+
+struct Log {
+  std::string source;                                         // the file's name, for messages
+  std::vector<std::pair<std::string, std::string>> comments;  // "# key: value"
+  std::vector<double> t;                                      // s, uniform
+  double period = 0.0;                                        // s, the mean step of t
+  std::vector<AxisLog> axes;                                  // at least one
+  std::vector<std::string> ignored;                           // headers of columns that have no meaning here
+};
+
+}  // namespace stiction::host
