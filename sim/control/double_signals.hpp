@@ -40,7 +40,18 @@ constexpr Out narrow(Real x, SaturationCounter&) { return x; }
 template <class Out>
 requires std::same_as<Out, WholeReal>
 inline Out narrow(Real x, SaturationCounter&) { return {std::round(x.value)}; }
+template <class Out>
+constexpr Real round_to(Real x) {
+  return x;
+}
+template <class Out>
+constexpr Real cut(Real x) {
+  return x;
+}
 constexpr Real opposite(Real x) { return -x; }
+constexpr Real negative(Real x) { return -x; }
+constexpr Real saturated_sum(Real a, Real b, SaturationCounter&) { return a + b; }
+constexpr Real saturated_difference(Real a, Real b, SaturationCounter&) { return a - b; }
 inline bool exceeds(Real x, Real bound) { return std::abs(x.value) > bound.value; }
 
 struct DoubleSignals {
@@ -57,6 +68,7 @@ struct DoubleSignals {
   using Angle = Real;  // rad
   using Sine = Real;
   using Rate = Real;
+  using Ticks = Real;
   using TickFraction = Real;
   using Seconds = Real;
 
@@ -80,7 +92,7 @@ struct DoubleSignals {
   using PeriodInverse = Real;
 
   static constexpr Rate rate(std::int64_t interval_ns) { return {1e9 / static_cast<double>(interval_ns)}; }
-  static constexpr TickFraction ticks(std::int64_t duration_ns, PeriodInverse inverse_period) {
+  static constexpr Ticks ticks(std::int64_t duration_ns, PeriodInverse inverse_period) {
     return {static_cast<double>(duration_ns) * inverse_period.value};
   }
   static constexpr Seconds seconds(std::int64_t duration_ns) { return {static_cast<double>(duration_ns) * 1e-9}; }
@@ -89,11 +101,14 @@ struct DoubleSignals {
     int whole;
     TickFraction fraction;
   };
-  static constexpr Split split(TickFraction delay, int highest) {
+  static constexpr Split split(Ticks delay, int highest) {
     const double bounded = delay.value < 0.0 ? 0.0 : delay.value > highest + 1.0 ? highest + 1.0 : delay.value;
     const int whole = bounded > highest ? highest : static_cast<int>(bounded);
     return {whole, {bounded - whole}};
   }
+
+  static constexpr TickFraction complement(TickFraction fraction) { return {1.0 - fraction.value}; }
+  static constexpr FilterResidue filter_residue(Real, Real) { return {}; }
 
   static constexpr Angle angle(Position position, PitchInverse inverse_pitch) {
     return {2.0 * std::numbers::pi * position.value * inverse_pitch.value};

@@ -91,8 +91,10 @@ bool count(const char* path) {
   const bool complete = for_each_tick(path, [&](LawContext& c, Place place) {
     const std::uint32_t empty = count_instructions(laws[0].step, &c);
     c.before = c.axis.state();
+    c.part = c.axis;
     for (std::size_t l = 0; l < laws.size(); ++l) {
       c.state = c.before;
+      if (laws[l].step == law_velocity_loop) c.part_signals = c.signals;
       // A profiler from outside counts a function with its return; so does this.
       tallies[l].add(count_instructions(laws[l].step, &c) - empty + 1, place);
       if (laws[l].step == law_axis)

@@ -20,8 +20,9 @@ STICTION_LAW(law_cascade_given) { c.command = c.given.tick(c.set, c.feedback, c.
 
 STICTION_LAW(law_estimate) {
   c.estimate =
-      stiction::VelocityEstimator<S>::step(c.state.estimator, c.config.velocity_feedback, c.feedback.position,
-                                           c.feedback.position_time_ns, c.feedback.velocity, c.state.saturations);
+      stiction::VelocityEstimator<S>::estimate(c.state.estimator, c.config.velocity_feedback, c.feedback.position,
+                                               c.feedback.position_time_ns, c.feedback.velocity, c.state.saturations);
+  stiction::VelocityEstimator<S>::push(c.state.estimator, c.feedback.position, c.feedback.position_time_ns);
 }
 
 STICTION_LAW(law_quantizer) {
@@ -44,8 +45,10 @@ STICTION_LAW(law_p_feedforward) {
 
 STICTION_LAW(law_velocity_pi) {
   auto& pi = c.state.velocity_pi;
-  c.i_pi = stiction::VelocityPi<S>::step(c.config.velocity, pi, c.signals.v_error, c.state.saturations);
-  stiction::VelocityPi<S>::track(c.config.velocity, pi, c.i_wanted, c.signals.i_set, c.state.saturations);
+  const auto wanted = stiction::VelocityPi<S>::step(c.config.velocity, pi, c.signals.v_error, c.state.saturations);
+  c.i_pi = wanted.output;
+  stiction::VelocityPi<S>::track(c.config.velocity, pi, wanted.beyond_format, c.i_wanted, c.signals.i_set,
+                                 c.state.saturations);
 }
 
 STICTION_LAW(law_notch) {
@@ -57,12 +60,18 @@ STICTION_LAW(law_p_ff_pi_notch) {
   auto& saturations = c.state.saturations;
   const auto v_ref = stiction::narrow<S::Velocity>(
       c.config.position_gain * c.signals.e_held + c.config.velocity_feedforward * c.signals.v_set_delayed, saturations);
-  const auto v_error = stiction::narrow<S::Velocity>(v_ref - c.signals.v, saturations);
+  const auto v_error = stiction::saturated_difference(v_ref, c.signals.v, saturations);
   const auto i_pi = stiction::VelocityPi<S>::step(c.config.velocity, c.state.velocity_pi, v_error, saturations);
-  const auto i_notch = stiction::Notch<S>::step(c.config.notch, c.state.notch, i_pi, saturations);
+  const auto i_notch = stiction::Notch<S>::step(c.config.notch, c.state.notch, i_pi.output, saturations);
   const auto i_feedforward =
       stiction::narrow<S::Current>(c.config.current_feedforward * c.set.acceleration, saturations);
-  c.i_unlimited = stiction::narrow<S::Current>(i_notch + i_feedforward, saturations);
+  c.i_unlimited = stiction::saturated_sum(i_notch, i_feedforward, saturations);
+}
+
+// The same with both limits, anti-windup, the watch over limit cycles, and every fault's threshold: the axis' own code.
+STICTION_LAW(law_velocity_loop) {
+  c.part.control_velocity(c.set, c.now_ns, c.part_signals);
+  c.part.supervise(c.feedback, c.part_signals, c.now_ns);
 }
 
 STICTION_LAW(law_commutation) {
@@ -70,18 +79,18 @@ STICTION_LAW(law_commutation) {
   auto& saturations = c.state.saturations;
   c.phase = Commutation::phases(S::angle(c.signals.x, c.config.inverse_pole_pair_pitch));
   c.amplitude = Commutation::amplitude(c.signals.i_phase, c.phase, saturations);
-  for (std::size_t k = 0; k < 3; ++k)
-    c.i_set_phase[k] = Commutation::phase_current(c.signals.i_set, c.phase[k], saturations);
+  c.i_set_phase = Commutation::phase_currents(c.signals.i_set, c.phase, saturations);
 }
 
 // Of one phase, with the limit of its voltage.
 STICTION_LAW(law_current_pi) {
   auto& pi = c.state.current_pi[0];
   auto& saturations = c.state.saturations;
-  const auto error = stiction::narrow<S::Current>(c.i_set_phase[0] - c.signals.i_phase[0], saturations);
+  const auto error = stiction::saturated_difference(c.i_set_phase[0], c.signals.i_phase[0], saturations);
   const auto wanted = stiction::CurrentPi<S>::step(c.config.current, pi, error, saturations);
-  c.voltage = stiction::limit(wanted, c.config.voltage_limit);
-  stiction::CurrentPi<S>::track(c.config.current, pi, wanted, c.voltage.value, saturations);
+  c.voltage = stiction::limit(wanted.output, c.config.voltage_limit);
+  stiction::CurrentPi<S>::track(c.config.current, pi, wanted.beyond_format, wanted.output, c.voltage.value,
+                                saturations);
 }
 
 namespace stiction::targets {
@@ -90,9 +99,10 @@ namespace stiction::targets {
   Law { #name, name }
 const std::array<Law, laws.size()> laws{
     {STICTION_ROW(law_nothing), STICTION_ROW(law_axis), STICTION_ROW(law_cascade), STICTION_ROW(law_cascade_given),
-     STICTION_ROW(law_p_ff_pi_notch), STICTION_ROW(law_estimate), STICTION_ROW(law_quantizer), STICTION_ROW(law_delay),
-     STICTION_ROW(law_p_feedforward), STICTION_ROW(law_velocity_pi), STICTION_ROW(law_notch),
-     STICTION_ROW(law_commutation), STICTION_ROW(law_current_pi)}};
+     STICTION_ROW(law_p_ff_pi_notch), STICTION_ROW(law_velocity_loop), STICTION_ROW(law_estimate),
+     STICTION_ROW(law_quantizer), STICTION_ROW(law_delay), STICTION_ROW(law_p_feedforward),
+     STICTION_ROW(law_velocity_pi), STICTION_ROW(law_notch), STICTION_ROW(law_commutation),
+     STICTION_ROW(law_current_pi)}};
 #undef STICTION_ROW
 
 }  // namespace stiction::targets

@@ -17,7 +17,8 @@ struct LawContext {
       : config(c),
         axis(c),
         cascade(without_current_loop(c, c.velocity_feedback)),
-        given(without_current_loop(c, VelocityFeedback::given)) {}
+        given(without_current_loop(c, VelocityFeedback::given)),
+        part(c) {}
 
   static AxisConfig<S> without_current_loop(AxisConfig<S> c, VelocityFeedback feedback) {
     c.current_loop = CurrentLoop::none;
@@ -39,12 +40,14 @@ struct LawContext {
   Axis<S> given;
   AxisSignals<S> signals;  // of the whole axis
   AxisSignals<S> other_signals;
+  AxisSignals<S> part_signals;  // what a part finds of this tick
   Command<S> command;
 
   // What the laws below work on: the axis' own state before this tick, restored for each of them, and the axis' own
   // signals of this tick. So a law has the very numbers that it has in the axis.
   AxisState<S> before;
   AxisState<S> state;
+  Axis<S> part;         // the axis itself as it was before this tick
   S::Current i_wanted;  // ahead of the limit; the axis does not show it
 
   VelocityEstimator<S>::Estimate estimate{};
@@ -67,8 +70,9 @@ struct Law {
 };
 
 extern "C" void law_axis(void* data);
+extern "C" void law_velocity_loop(void* data);
 
 // In the order in which a tick runs them: the whole axis first, as the others take its signals.
-extern const std::array<Law, 13> laws;
+extern const std::array<Law, 14> laws;
 
 }  // namespace stiction::targets

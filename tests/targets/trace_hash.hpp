@@ -31,7 +31,7 @@ void each_word(const AxisSignals<FixedSignals>& s, const Axis<FixedSignals>& axi
   visit("limiting_current", std::int64_t{s.limiting.current});
   visit("limiting_voltage", std::int64_t{s.limiting.voltage});
   visit("fault", static_cast<std::int64_t>(s.fault));
-  visit("saturations", std::int64_t{axis.state().saturations.count});
+  visit("saturations", static_cast<std::int64_t>(axis.state().saturations.count));
 }
 
 // The hash of every signal of one axis.

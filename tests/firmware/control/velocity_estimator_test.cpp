@@ -24,8 +24,9 @@ class Estimator {
 
   // Velocity in m/s; its time stamp in time_ns.
   double step(double x, std::int64_t t_ns, double given = 0.0) {
-    const auto estimate = VelocityEstimator<S>::step(state_, kind_, position(x), t_ns,
-                                                     sim::to_signal<typename S::Velocity>(given).value(), saturations);
+    const auto estimate = VelocityEstimator<S>::estimate(
+        state_, kind_, position(x), t_ns, sim::to_signal<typename S::Velocity>(given).value(), saturations);
+    VelocityEstimator<S>::push(state_, position(x), t_ns);
     time_ns = estimate.time_ns;
     return sim::to_si(estimate.velocity);
   }

@@ -184,7 +184,7 @@ TEST(AxisFeedback, ATimeStampFarAheadIsRefusedAndTheNextSampleTaken) {
   b.tick(-1000000000);  // a second ahead
   for (int i = 0; i < 100; ++i) b.tick();
   EXPECT_EQ(b.axis.fault(), Fault::none);
-  EXPECT_EQ(b.axis.state().x_time_ns, b.feedback.position_time_ns);
+  EXPECT_EQ(b.axis.state().estimator.t1_ns, b.feedback.position_time_ns);
 }
 
 TEST(AxisFeedback, StartsAtRestAtTheMeasuredPosition) {

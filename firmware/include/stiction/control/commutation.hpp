@@ -21,8 +21,12 @@ struct Commutation {
     return {a, b, narrow<Sine>(-(a + b), none)};
   }
 
-  static constexpr Current phase_current(Current amplitude, Sine phase, SaturationCounter& saturations) {
-    return narrow<Current>(amplitude * phase, saturations);
+  // The set currents of the phases; their sum is zero.
+  static constexpr std::array<Current, 3> phase_currents(Current amplitude, const std::array<Sine, 3>& phase,
+                                                         SaturationCounter& saturations) {
+    const auto a = narrow<Current>(amplitude * phase[0], saturations);
+    const auto b = narrow<Current>(amplitude * phase[1], saturations);
+    return {a, b, saturated_difference(opposite(a), b, saturations)};
   }
 
   // The amplitude that makes the same force: 2/3 of the sum of i_k sin(phi + k 2 pi / 3).

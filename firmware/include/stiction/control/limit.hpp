@@ -18,7 +18,17 @@ template <class Signal>
 constexpr Limited<Signal> limit(Signal value, Signal bound) {
   if (!exceeds(value, bound)) return {value, 0};
   if (value > Signal{}) return {bound, 1};
-  return {opposite(bound), -1};
+  return {negative(bound), -1};
+}
+
+// The same for an exact sum, rounded to the format of the bound first. The limit lies within the format, so that
+// nothing else needs to saturate.
+template <class Signal, class Sum>
+constexpr Limited<Signal> limit_sum(Sum sum, Signal bound) {
+  const auto rounded = round_to<Signal>(sum);
+  if (!exceeds(rounded, bound)) return {cut<Signal>(rounded), 0};
+  if (rounded > decltype(rounded){}) return {bound, 1};
+  return {negative(bound), -1};
 }
 
 }  // namespace stiction

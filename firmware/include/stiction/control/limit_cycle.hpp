@@ -9,24 +9,22 @@ namespace stiction {
 
 struct LimitCycle {
   struct State {
-    std::int8_t side = 0;       // the limit that was touched last, -1 or 1
-    std::uint16_t changes = 0;  // from one limit to the other in this window
+    std::int32_t side = 0;      // the limit that was touched last, -1 or 1
+    std::uint32_t changes = 0;  // from one limit to the other in this window
     std::uint32_t ticks = 0;    // of this window
   };
 
   // Changes within a window that make a fault: no machine motion reverses its full force at 48 Hz.
-  static constexpr std::uint16_t changes_allowed = 12;
+  static constexpr std::uint32_t changes_allowed = 12;
 
-  // `side`: -1, 0 or 1, the limit that holds the output back in this tick. True when it acts and the window has too
-  // many changes.
+  // `side`: -1, 0 or 1, the limit that holds the output back in this tick. True when the window has too many changes.
   static constexpr bool step(State& state, int side, std::uint32_t window_ticks) {
     if (++state.ticks >= window_ticks) {
       state.ticks = 0;
       state.changes = 0;
     }
-    if (side == 0) return false;
-    if (side == -state.side) ++state.changes;
-    state.side = static_cast<std::int8_t>(side);
+    state.changes += side * state.side < 0;
+    state.side = side != 0 ? side : state.side;
     return state.changes > changes_allowed;
   }
 };

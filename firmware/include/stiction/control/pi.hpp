@@ -26,29 +26,33 @@ struct Pi {
   };
   struct State {
     typename Types::Integrator integral{};  // I
-    bool beyond_format = false;             // the last sum left the output's format
+  };
+  struct Wanted {
+    typename Types::Output output;  // before any limit
+    bool beyond_format;             // it left the output's format
   };
 
-  // The output before any limit. Where the sum leaves the output's own format, track() cannot see by how much, so the
-  // integrator stands still instead of winding up.
-  static constexpr typename Types::Output step(const Config& config, State& state, typename Types::Error error,
-                                               SaturationCounter& saturations) {
+  // Where the sum leaves the output's own format, track() cannot see by how much, so the integrator stands still
+  // instead of winding up.
+  static constexpr Wanted step(const Config& config, State& state, typename Types::Error error,
+                               SaturationCounter& saturations) {
     SaturationCounter here;
     const auto integral = narrow<typename Types::Integrator>(state.integral + config.integral * error, here);
     const auto output = narrow<typename Types::Output>(config.proportional * error + integral, here);
-    state.beyond_format = here.count != 0;
-    if (state.beyond_format)
+    const bool beyond_format = here.count != 0;
+    if (beyond_format)
       saturations.add(here);
     else
       state.integral = integral;
-    return output;
+    return {output, beyond_format};
   }
 
-  // Tells the integrator what became of the output behind all limits: `limited` instead of `wanted`.
-  static constexpr void track(const Config& config, State& state, typename Types::Output wanted,
+  // Tells the integrator what became of the controller's output behind all limits: of `total`, the output and what was
+  // added to it, `limited` was left.
+  static constexpr void track(const Config& config, State& state, bool beyond_format, typename Types::Output total,
                               typename Types::Output limited, SaturationCounter& saturations) {
-    if (state.beyond_format) return;
-    const auto excess = narrow<typename Types::Output>(limited - wanted, saturations);
+    if (beyond_format) return;
+    const auto excess = saturated_difference(limited, total, saturations);
     state.integral = narrow<typename Types::Integrator>(state.integral + config.tracking * excess, saturations);
   }
 };

@@ -20,7 +20,7 @@ enum class VelocityFeedback : std::uint8_t {
 template <class S>
 struct VelocityEstimator {
   struct State {
-    typename S::Position x1{}, x2{};    // the samples before the newest
+    typename S::Position x1{}, x2{};    // the last sample and the one before
     std::int64_t t1_ns = 0, t2_ns = 0;  // their times
   };
   struct Estimate {
@@ -33,26 +33,27 @@ struct VelocityEstimator {
     return {x, x, t_ns - period_ns, t_ns - 2 * period_ns};
   }
 
-  static constexpr Estimate step(State& state, VelocityFeedback kind, typename S::Position x, std::int64_t t_ns,
-                                 typename S::Velocity given, SaturationCounter& saturations) {
-    if (kind == VelocityFeedback::given) {
-      state = {x, state.x1, t_ns, state.t1_ns};
-      return {given, t_ns};
-    }
+  // The velocity that a sample newer than the state gives. The sample becomes part of the state by push().
+  static constexpr Estimate estimate(const State& state, VelocityFeedback kind, typename S::Position x,
+                                     std::int64_t t_ns, typename S::Velocity given, SaturationCounter& saturations) {
+    if (kind == VelocityFeedback::given) return {given, t_ns};
     const bool mean = kind == VelocityFeedback::mean_difference;
     const auto base = mean ? state.x2 : state.x1;
     const std::int64_t base_ns = mean ? state.t2_ns : state.t1_ns;
     const auto motion = narrow<typename S::Step>(x - base, saturations);
     const auto velocity = narrow<typename S::Velocity>(motion * S::rate(t_ns - base_ns), saturations);
-    state = {x, state.x1, t_ns, state.t1_ns};
     return {velocity, base_ns + ((t_ns - base_ns) >> 1)};
+  }
+
+  static constexpr void push(State& state, typename S::Position x, std::int64_t t_ns) {
+    state = {x, state.x1, t_ns, state.t1_ns};
   }
 };
 
 // A delay line of set-point speeds, read at a fractional number of ticks before the newest by linear interpolation.
 template <class S>
 struct SpeedDelay {
-  static constexpr int length = 5;  // the newest and four ticks back: all that TickFraction can ask for
+  static constexpr int length = 5;  // the newest and four ticks back: the shortest for a mean difference
 
   struct State {
     std::array<typename S::Velocity, length> past{};  // past[0] is the newest
@@ -64,13 +65,12 @@ struct SpeedDelay {
   }
 
   // Delays below 0 and beyond the line's length read its ends.
-  static constexpr typename S::Velocity read(const State& state, typename S::TickFraction delay,
+  static constexpr typename S::Velocity read(const State& state, typename S::Ticks delay,
                                              SaturationCounter& saturations) {
     const auto [whole, fraction] = S::split(delay, length - 2);
     const auto newer = state.past[whole];
     const auto older = state.past[whole + 1];
-    return narrow<typename S::Velocity>(newer + narrow<typename S::Velocity>((older - newer) * fraction, saturations),
-                                        saturations);
+    return narrow<typename S::Velocity>(newer * S::complement(fraction) + older * fraction, saturations);
   }
 };
 

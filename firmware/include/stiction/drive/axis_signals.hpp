@@ -20,7 +20,7 @@ struct AxisSignals {
   typename S::Velocity v_set_delayed{};
   typename S::Velocity v{};
   typename S::Velocity v_error{};
-  typename S::Current i_integral{};
+  typename S::VelocityIntegral i_integral{};
   typename S::Current i_pi{};
   typename S::Current i_notch{};
   typename S::Current i_feedforward{};

@@ -25,9 +25,10 @@ struct FixedSignals {
   using Count = Fixed<0>;                             // whole increments
   using Angle = Turn;
   using Sine = stiction::Sine;
-  using Rate = stiction::Rate;           // 1/s
-  using TickFraction = Coefficient<28>;  // of a fast period, below 4
-  using Seconds = Coefficient<36>;       // below 15.6 ms
+  using Rate = stiction::Rate;               // 1/s
+  using Ticks = Fixed<28>;                   // of the fast period, below 8
+  using TickFraction = Coefficient<28, 28>;  // 0 .. 1
+  using Seconds = Fixed<36>;                 // below 31 ms
 
   // Gains.
   using PositionGain = Coefficient<20>;                       // +-1024 1/s
@@ -36,43 +37,58 @@ struct FixedSignals {
   using Increment = Coefficient<44>;                          // below 61 um
   using VelocityGain = Coefficient<16>;                       // A s/m, +-16384
   using VelocityIntegralGain = Coefficient<16>;               // A s/m per tick
-  using VelocityIntegral = Wide<44, std::uint64_t{1} << 61>;  // +-131072 A
+  using VelocityIntegral = Wide<44, std::uint64_t{1} << 62>;  // +-262144 A
   using VelocityTracking = Coefficient<24>;                   // of the excess per tick, +-64
   using CurrentGain = Coefficient<18>;                        // V/A, +-4096
   using CurrentIntegralGain = Coefficient<18>;                // V/A per tick
-  using CurrentIntegral = Wide<38, std::uint64_t{1} << 61>;   // V
+  using CurrentIntegral = Wide<38, std::uint64_t{1} << 62>;   // V
   using CurrentTracking = Coefficient<20>;                    // of the excess per tick
   using AccelerationGain = Coefficient<24>;                   // A s^2/m, +-64
-  using CurrentSum = Wide<20, std::uint64_t{1} << 33>;        // of three phases
+  using CurrentSum = Fixed<19>;                               // +-4096 A, of three phases
   using FilterCoefficient = Coefficient<28, 29>;              // +-2
-  using FilterResidue = Wide<48, std::uint64_t{1} << 28>;
-  using PitchInverse = Coefficient<20>;  // 1/m, pitches from 1 mm
+  using FilterResidue = Fixed<48>;                            // of half a bit of current
+  using PitchInverse = Coefficient<20>;                       // 1/m, pitches from 1 mm
 
   // Time.
   static constexpr Rate rate(std::int64_t interval_ns) { return rate_of_interval(interval_ns); }
   // `inverse_period` is 2^45 / period in ns; results beyond the format are clamped.
   using PeriodInverse = Coefficient<45>;
-  static constexpr TickFraction ticks(std::int64_t duration_ns, PeriodInverse inverse_period) {
+  static constexpr Ticks ticks(std::int64_t duration_ns, PeriodInverse inverse_period) {
     SaturationCounter none;
-    return narrow<TickFraction>(Fixed<0>::from_raw(clamp_to_word(duration_ns)) * inverse_period, none);
+    return narrow<Ticks>(Fixed<0>::from_raw(clamp_to_word(duration_ns)) * inverse_period, none);
   }
   struct Split {
     int whole;
     TickFraction fraction;
   };
   // Whole ticks, 0 .. highest, and the fraction beyond them; delays outside 0 .. highest + 1 read the ends.
-  static constexpr Split split(TickFraction delay, int highest) {
+  static constexpr Split split(Ticks delay, int highest) {
     const std::int32_t one = std::int32_t{1} << TickFraction::fraction_bits;
     const std::int32_t bounded = delay.raw() < 0 ? 0 : delay.raw();
     int whole = bounded >> TickFraction::fraction_bits;
     whole = whole > highest ? highest : whole;
     const std::int32_t rest = bounded - whole * one;
-    return {whole, TickFraction::from_raw(rest > one ? one : rest)};
+    return {whole, TickFraction::from_bounded_raw(rest > one ? one : rest)};
   }
   static constexpr Seconds seconds(std::int64_t duration_ns) {
     constexpr auto per_ns = Coefficient<50>::from_raw(1125900);  // 1e-9 s
     SaturationCounter none;
     return narrow<Seconds>(Fixed<0>::from_raw(clamp_to_word(duration_ns)) * per_ns, none);
+  }
+
+  // 1 - fraction.
+  static constexpr TickFraction complement(TickFraction fraction) {
+    return TickFraction::from_bounded_raw((std::int32_t{1} << TickFraction::fraction_bits) - fraction.raw());
+  }
+
+  // What rounding `exact` to `rounded` left. The lower word holds it, as it is below half a bit of the output; where
+  // the output saturated there is no remainder worth keeping, and the word bounds what stands in its place.
+  template <class Exact>
+  static constexpr FilterResidue filter_residue(Exact exact, Current rounded) {
+    static_assert(Exact::fraction_bits == FilterResidue::fraction_bits);
+    constexpr int shift = Exact::fraction_bits - Current::fraction_bits;
+    return FilterResidue::from_raw(static_cast<std::int32_t>(static_cast<std::uint32_t>(exact.raw()) -
+                                                             (static_cast<std::uint32_t>(rounded.raw()) << shift)));
   }
 
   // Electrical angle of a position; whole turns wrap away in unsigned arithmetic.
@@ -83,7 +99,7 @@ struct FixedSignals {
   }
   static constexpr Sine sine(Angle angle) { return stiction::sine(angle); }
   static constexpr Angle third_of_turn_after(Angle angle) { return Turn{angle.raw + 0x55555555u}; }
-  static constexpr Coefficient<28, 28> two_thirds() { return Coefficient<28, 28>::from_raw(178956971); }
+  static constexpr Coefficient<30> two_thirds() { return Coefficient<30>::from_raw(715827883); }
 
  private:
   static constexpr std::int32_t clamp_to_word(std::int64_t value) {

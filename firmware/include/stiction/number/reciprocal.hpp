@@ -17,17 +17,19 @@ constexpr Rate rate_of_interval(std::int64_t interval_ns) {
   const auto bounded = static_cast<std::uint32_t>(interval_ns < 1000        ? 1000
                                                   : interval_ns > INT32_MAX ? INT32_MAX
                                                                             : interval_ns);
-  const int shift = std::countl_zero(bounded);
-  const std::uint64_t normal = std::uint64_t{bounded} << shift;                      // d * 2^32, d in [1/2, 1)
-  const std::uint64_t seed = UINT32_MAX / static_cast<std::uint32_t>(normal >> 16);  // 1/d * 2^16
-  // r (2 - d r): seed and its residual d r carry 16 and 32 fraction bits.
-  const std::uint64_t residual = (std::uint64_t{2} << 32) - ((normal * seed) >> 16);  // 2 - d r, * 2^32
-  const std::uint64_t inverse = (seed * residual) >> 18;                              // 1/d * 2^30
-  // 1 / interval = 1/d * 2^(shift - 32) / ns; 1e9 * 2^10 = 1.024e12 brings it to 1/s with 10 fraction bits.
-  constexpr std::uint64_t scale = 1024000000000u >> 10;
-  const int down = 30 - 10 + 32 - shift;
-  const std::uint64_t product = inverse * scale;  // < 2^31 * 2^30
-  return Rate::from_bounded_raw(static_cast<std::int64_t>((product + (std::uint64_t{1} << (down - 1))) >> down));
+  const int shift = std::countl_zero(bounded);             // 1 .. 22
+  const std::uint32_t normal = bounded << shift;           // d * 2^32, d in [1/2, 1)
+  const std::uint32_t seed = UINT32_MAX / (normal >> 16);  // r = 1/d * 2^16, within 2^-15 of itself
+  // r + r (1 - d r): the residual 1 - d r, below 2^-14, is kept with 44 fraction bits in one word.
+  const auto residual = static_cast<std::int32_t>(
+      static_cast<std::int64_t>((std::uint64_t{1} << 48) - std::uint64_t{normal} * seed) >> 4);
+  const auto correction = static_cast<std::int32_t>(
+      (static_cast<std::int64_t>(residual) * static_cast<std::int32_t>(seed << 13)) >> 32);   // * 2^41
+  const std::uint32_t inverse = (seed << 14) + static_cast<std::uint32_t>(correction >> 11);  // 1/d * 2^30
+  // 1 / interval = 1/d * 2^(shift - 32) / ns; 1e9 * 2^10 brings it to 1/s with 10 fraction bits.
+  const auto rate = static_cast<std::uint32_t>((std::uint64_t{inverse} * 4000000000u) >> 32);  // * 2^(22 - shift)
+  const int down = 22 - shift;
+  return Rate::from_bounded_raw(static_cast<std::int64_t>((rate + ((1u << down) >> 1)) >> down));
 }
 
 }  // namespace stiction

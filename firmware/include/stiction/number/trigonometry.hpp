@@ -15,22 +15,30 @@ struct Turn {
 
 using Sine = Coefficient<30>;
 
-// sin(2 pi turn), within 6e-9: an odd polynomial of degree 9 in the quarter turn, minimax over it (3.4e-9), and the
-// rounding of its five steps.
-constexpr Sine sine(Turn turn) {
-  constexpr std::int64_t quarter = std::int64_t{1} << 30;
-  std::int64_t folded = static_cast<std::int32_t>(turn.raw);  // -half .. half a turn
-  if (folded > quarter) folded = 2 * quarter - folded;
-  if (folded < -quarter) folded = -2 * quarter - folded;
-  const auto u = Coefficient<30>::from_bounded_raw(folded);  // quarter turns, -1 .. 1
+namespace detail {
 
-  SaturationCounter none;  // the polynomial stays within +-1.58, the format within +-2
-  const auto square = narrow<Coefficient<30>>(u * u, none);
-  constexpr std::array<std::int32_t, 4> lower{-5016767, 85564854, -693597876, 1686629674};
-  auto sum = Fixed<30>::from_raw(161942);
-  for (const std::int32_t coefficient : lower)
-    sum = narrow<Fixed<30>>(sum * square + Fixed<30>::from_raw(coefficient), none);
-  return narrow<Sine>(sum * u, none);
+constexpr std::uint32_t upper_word_of_product(std::uint32_t a, std::uint32_t b) {
+  return static_cast<std::uint32_t>((std::uint64_t{a} * b) >> 32);
+}
+
+}  // namespace detail
+
+// sin(2 pi turn), within 5e-9: an odd polynomial of degree 9 in the quarter turn, minimax over it (3.4e-9). Its terms
+// alternate in sign, so that unsigned words hold every partial sum and each step is one upper word of a product; those
+// are cut, not rounded (within the 5e-9), the result is rounded.
+constexpr Sine sine(Turn turn) {
+  constexpr std::uint32_t quarter = std::uint32_t{1} << 30;
+  const bool negative = (turn.raw >> 31) != 0;
+  const std::uint32_t magnitude = negative ? 0u - turn.raw : turn.raw;  // 0 .. half a turn
+  const std::uint32_t folded = magnitude > quarter ? 2 * quarter - magnitude : magnitude;
+  const std::uint32_t u = 2 * folded - (folded >> 30);  // quarter turns * 2^31; 1 is out of the word by one bit
+  const std::uint32_t square = detail::upper_word_of_product(2 * u, 2 * u);  // * 2^32
+
+  constexpr std::array<std::uint32_t, 4> lower{10033534, 171129708, 1387195752, 3373259348};  // * 2^31
+  std::uint32_t sum = 323884;
+  for (const std::uint32_t coefficient : lower) sum = coefficient - detail::upper_word_of_product(sum, square);
+  const auto rounded = static_cast<std::int32_t>((std::uint64_t{sum} * u + (std::uint64_t{1} << 31)) >> 32);
+  return Sine::from_bounded_raw(negative ? -rounded : rounded);
 }
 
 constexpr Sine cosine(Turn turn) { return sine(Turn{turn.raw + 0x40000000u}); }
