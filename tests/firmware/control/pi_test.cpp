@@ -45,7 +45,7 @@ RC_GTEST_PROP(Pi, FixedPointIsTheExactSumRoundedOnce, ()) {
   Int128 sum = 0;  // of the errors
   for (int n = 0; n < 50; ++n) {
     const auto e = S::Velocity::from_raw(static_cast<std::int32_t>(test::drawn_between(-3000000, 3000000)));  // 11 mm/s
-    const auto y = Fixed::step(c, state, e, saturations);
+    const auto y = Fixed::step(c, state, e, saturations).output;
     sum += e.raw();
     const Int128 integral = sum * c.integral.raw();
     RC_ASSERT(Int128{state.integral.raw()} == integral);
@@ -62,7 +62,7 @@ void check_step_response(const C& c, double tolerance) {
   SaturationCounter saturations;
   const double e = 0x1p-8;  // m/s
   for (int n = 1; n <= 1600; ++n) {
-    const double y = sim::to_si(PiOf::step(c, state, sim::to_signal<Velocity>(e).value(), saturations));
+    const double y = sim::to_si(PiOf::step(c, state, sim::to_signal<Velocity>(e).value(), saturations).output);
     // The integrator counts the current error: the sum at tick n is that of the continuous law at n T.
     ASSERT_NEAR(y, 600.0 * e * (1.0 + n * tick / 5e-3), tolerance) << n;
   }
@@ -81,8 +81,8 @@ TEST(Pi, WithoutAnIntegralGainIsProportional) {
   for (int n = 0; n < 100; ++n) {
     const double e = 0x1p-10 * (n % 7 - 3);
     const auto wanted = Fixed::step(c, state, sim::to_signal<S::Velocity>(e).value(), saturations);
-    EXPECT_EQ(sim::to_si(wanted), 250.0 * e);
-    Fixed::track(c, state, wanted, {}, saturations);  // fully limited
+    EXPECT_EQ(sim::to_si(wanted.output), 250.0 * e);
+    Fixed::track(c, state, wanted.beyond_format, wanted.output, {}, saturations);  // fully limited
     EXPECT_EQ(state.integral.raw(), 0);
   }
 }
@@ -92,9 +92,9 @@ template <class PiOf, class Velocity>
 double limited_step(const typename PiOf::Config& c, typename PiOf::State& state, double e, double limit) {
   SaturationCounter saturations;
   const auto wanted = PiOf::step(c, state, sim::to_signal<Velocity>(e).value(), saturations);
-  using Output = std::remove_const_t<decltype(wanted)>;
-  const auto given = sim::to_signal<Output>(std::clamp(sim::to_si(wanted), -limit, limit)).value();
-  PiOf::track(c, state, wanted, given, saturations);
+  using Output = std::remove_const_t<decltype(wanted.output)>;
+  const auto given = sim::to_signal<Output>(std::clamp(sim::to_si(wanted.output), -limit, limit)).value();
+  PiOf::track(c, state, wanted.beyond_format, wanted.output, given, saturations);
   return sim::to_si(given);
 }
 
@@ -134,7 +134,7 @@ TEST(Pi, WithoutALimitTrackingChangesNothing) {
   SaturationCounter saturations;
   const auto y = Fixed::step(c, state, sim::to_signal<S::Velocity>(0.01).value(), saturations);
   const auto before = state.integral;
-  Fixed::track(c, state, y, y, saturations);
+  Fixed::track(c, state, y.beyond_format, y.output, y.output, saturations);
   EXPECT_EQ(state.integral, before);
 }
 
@@ -147,8 +147,8 @@ RC_GTEST_PROP(Pi, FixedPointFollowsDoubleWithinItsRounding, ()) {
   SaturationCounter saturations;
   for (int n = 0; n < 200; ++n) {
     const auto e = S::Velocity::from_raw(static_cast<std::int32_t>(test::drawn_between(-2000000, 2000000)));
-    const double y = sim::to_si(Fixed::step(fixed, a, e, saturations));
-    const double z = sim::to_si(Real::step(real, b, {sim::to_si(e)}, saturations));
+    const double y = sim::to_si(Fixed::step(fixed, a, e, saturations).output);
+    const double z = sim::to_si(Real::step(real, b, {sim::to_si(e)}, saturations).output);
     // Half a bit, and double's own rounding of sums up to 15 A.
     RC_ASSERT(std::abs(y - z) <= 0x1p-21 + 1e-11);
   }

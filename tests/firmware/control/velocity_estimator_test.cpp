@@ -198,7 +198,7 @@ TEST(SpeedDelay, InterpolatesAcrossTheWholeRangeWithoutOverflow) {
   SpeedDelay<FixedSignals>::push(state, Fixed<28>::from_raw(INT32_MIN));
   SpeedDelay<FixedSignals>::push(state, Fixed<28>::from_raw(INT32_MAX));
   SaturationCounter saturations;
-  const auto middle = SpeedDelay<FixedSignals>::read(state, FixedSignals::TickFraction::from_raw(1 << 27), saturations);
+  const auto middle = SpeedDelay<FixedSignals>::read(state, FixedSignals::Ticks::from_raw(1 << 27), saturations);
   EXPECT_NEAR(middle.raw(), 0, 1);
   EXPECT_EQ(saturations.count, 0u);
 }

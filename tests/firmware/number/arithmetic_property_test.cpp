@@ -93,8 +93,7 @@ RC_GTEST_PROP(FixedArithmetic, NarrowIsTheNearestValueOfTheOutput, ()) {
   check_narrow<Coefficient<20, 7>, Fixed<22>>();
   check_narrow<S::Position, Wide<68, std::uint64_t{1} << 61>>();
   check_narrow<S::Step, Wide<40, std::uint64_t{1} << 62>>();
-  check_narrow<S::FilterResidue, Wide<48, std::uint64_t{1} << 62>>();
-  check_narrow<S::VelocityIntegral, Wide<S::VelocityIntegral::fraction_bits, (std::uint64_t{1} << 62) + 1>>();
+  check_narrow<S::VelocityIntegral, Wide<S::VelocityIntegral::fraction_bits, 3 * (std::uint64_t{1} << 61)>>();
   check_narrow<Fixed<12>, Fixed<12>>();
   // Towards more fraction bits, where the word does not hold them all.
   check_narrow<Fixed<30>, Fixed<4>>();
@@ -108,6 +107,15 @@ RC_GTEST_PROP(FixedArithmetic, ExceedsComparesMagnitudes, ()) {
   const Int128 size = a.raw() < 0 ? -Int128{a.raw()} : Int128{a.raw()};
   RC_ASSERT(exceeds(a, bound) == (size > bound.raw()));
   RC_ASSERT(Int128{opposite(a).raw()} == std::min(-Int128{a.raw()}, Int128{INT32_MAX}));
+}
+
+RC_GTEST_PROP(FixedArithmetic, SaturatedSumsAreNarrowedSums, ()) {
+  const auto a = drawn<Fixed<7>>();
+  const auto b = drawn<Fixed<7>>();
+  SaturationCounter short_way, long_way;
+  RC_ASSERT(saturated_sum(a, b, short_way) == narrow<Fixed<7>>(a + b, long_way));
+  RC_ASSERT(saturated_difference(a, b, short_way) == narrow<Fixed<7>>(a - b, long_way));
+  RC_ASSERT(short_way.count == long_way.count);
 }
 
 RC_GTEST_PROP(FixedArithmetic, FromRawClampsAndNeverWraps, ()) {

@@ -19,7 +19,7 @@ template <class T>
 class ConversionOf : public ::testing::Test {};
 using Formats =
     ::testing::Types<F::Position, F::Distance, F::Step, F::Velocity, F::Acceleration, F::Current, F::Voltage,
-                     F::TickFraction, F::Seconds, F::PositionGain, F::VelocityGain, F::IncrementInverse, F::Increment,
+                     F::Ticks, F::TickFraction, F::Seconds, F::PositionGain, F::VelocityGain, F::IncrementInverse, F::Increment,
                      F::FilterCoefficient, F::PitchInverse, F::PeriodInverse, F::Rate>;
 TYPED_TEST_SUITE(ConversionOf, Formats);
 
