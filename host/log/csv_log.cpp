@@ -111,25 +111,6 @@ std::vector<Column> columns_of(const CsvRows& rows, const std::vector<std::strin
   return columns;
 }
 
-// Digits and decimals of a stamp as it was written, "2.500e-03".
-void count_digits(std::string_view text, int& most_significant, int& most_decimals) {
-  int significant = 0, decimals = 0, exponent = 0;
-  bool fraction = false;
-  std::size_t i = 0;
-  for (; i < text.size() && text[i] != 'e' && text[i] != 'E'; ++i) {
-    if (text[i] == '.') fraction = true;
-    if (text[i] < '0' || text[i] > '9') continue;
-    significant += significant > 0 || text[i] != '0';
-    decimals += fraction;
-  }
-  if (i < text.size()) {
-    const auto* begin = text.data() + i + 1 + (i + 1 < text.size() && text[i + 1] == '+');
-    std::from_chars(begin, text.data() + text.size(), exponent);
-  }
-  most_significant = std::max(most_significant, significant);
-  most_decimals = std::max(most_decimals, std::clamp(decimals - exponent, -300, 300));
-}
-
 class Reader {
  public:
   Reader(std::string_view text, std::string name) : name_(std::move(name)) {
@@ -157,8 +138,7 @@ class Reader {
       lines_.push_back(rows.line());
     }
     if (!log_.t.empty()) require_channels(log_, header_place);
-    const StampDigits digits{std::pow(10.0, -decimals_) * time_factor_, significant_};
-    check_sampling(log_, digits, [&](std::size_t k) {
+    check_sampling(log_, digits_, [&](std::size_t k) {
       return fmt::format("{}:{}", name_, k < lines_.size() ? lines_[k] : rows.line());
     });
     return std::move(log_);
@@ -178,8 +158,7 @@ class Reader {
         fail(column.field, names, text,
              fmt::format("a time after that of the sample before ({:.10g} s)", log_.t.back()));
       log_.t.push_back(value);
-      count_digits(text, significant_, decimals_);
-      time_factor_ = column.scale.factor();
+      count_digits(text, digits_, column.scale.factor());
     }
   }
 
@@ -207,8 +186,7 @@ class Reader {
   std::vector<Column> columns_;
   std::vector<std::string_view> fields_;
   std::vector<std::size_t> lines_;  // of the samples
-  int significant_ = 1, decimals_ = -300;
-  double time_factor_ = 1.0;
+  StampDigits digits_{0.0, 0};
 };
 
 std::string one_line(std::string text) {

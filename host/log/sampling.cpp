@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 namespace stiction::host {
@@ -24,6 +25,25 @@ double StampDigits::resolution_at(double t) const {
   const double magnitude = std::abs(t);
   const double rounding = magnitude > 0.0 ? std::pow(10.0, std::floor(std::log10(magnitude)) + 1.0 - significant) : 0.0;
   return std::max(finest, rounding);
+}
+
+void count_digits(std::string_view stamp, StampDigits& digits, double unit) {
+  int significant = 0, decimals = 0, exponent = 0;
+  bool fraction = false;
+  std::size_t i = 0;
+  for (; i < stamp.size() && stamp[i] != 'e' && stamp[i] != 'E'; ++i) {
+    if (stamp[i] == '.' || stamp[i] == ',') fraction = true;
+    if (stamp[i] < '0' || stamp[i] > '9') continue;
+    significant += significant > 0 || stamp[i] != '0';
+    decimals += fraction;
+  }
+  if (i < stamp.size()) {
+    const auto* begin = stamp.data() + i + 1 + (i + 1 < stamp.size() && stamp[i + 1] == '+');
+    std::from_chars(begin, stamp.data() + stamp.size(), exponent);
+  }
+  digits.significant = std::max(digits.significant, significant);
+  const double last = unit * std::pow(10.0, std::clamp(exponent, -300, 300) - decimals);
+  if (digits.finest == 0.0 || last < digits.finest) digits.finest = last;
 }
 
 void check_sampling(Log& log, const StampDigits& digits, const std::function<std::string(std::size_t)>& place) {

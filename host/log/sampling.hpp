@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "host/log/log.hpp"
@@ -16,6 +17,10 @@ struct StampDigits {
   int significant = 17;                  // the most significant digits written anywhere in the column
   double resolution_at(double t) const;  // s
 };
+
+// Takes a stamp as it was written ("2.500e-03", also with a decimal comma) into account; `unit` is that of the text in
+// s. Begin with no digits: {0.0, 0}.
+void count_digits(std::string_view stamp, StampDigits& digits, double unit);
 
 // A step may differ from the others by this part of them beyond what the digits explain. Clocks of drives are far
 // better; 1 % of a sample moves no measured value by more than its noise.
