@@ -44,7 +44,7 @@ Off off_the_circle(const Log& log, double margin) {
 // The error of a cubic spline: 5/384 h^4 w^4 r in position; h^2/12 w^4 r in acceleration.
 TEST(SetPoints, DeriveVelocityAndAccelerationOfASmoothMotion) {
   const auto off = off_the_circle(sampled(2000, circle), 0.01);
-  EXPECT_LT(off.x, 1e-13);
+  EXPECT_LT(off.x, 1e-12);  // a time within a millionth of a step counts as the sample's own
   EXPECT_LT(off.v, 1e-9);
   EXPECT_LT(off.a, 2e-6);
 }
