@@ -37,6 +37,7 @@ int run(int argc, char** argv) {
   add_compare(program, invocation);
   add_machine(program, invocation);
   add_convert(program);
+  add_inspect(program);
 
   const auto bad_input = [](const std::exception& error) {
     fmt::print(stderr, "stiction: {}\n", error.what());

@@ -123,7 +123,11 @@ SetPoints::SetPoints(const Log& log, const AxisLog& axis)
   }
   velocity_is_logged_ = agrees(axis.v_set, v_, 0.02);
   acceleration_is_logged_ = agrees(axis.a_set, a_, 0.2);
-  if (velocity_is_logged_) v_ = axis.v_set;
+  if (velocity_is_logged_) {
+    v_ = axis.v_set;
+    x_ = axis.x_set;  // nothing is derived from it any more
+    smoothing_ = 0.0;
+  }
   if (acceleration_is_logged_) a_ = axis.a_set;
 }
 

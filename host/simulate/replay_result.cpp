@@ -166,7 +166,7 @@ class Result {
                                  "simulated - measured " + what + ", part of the measured" + of + ", " + label,
                                  d.measured_effort > 0.0 ? 100.0 * d.effort / d.measured_effort : 0.0,
                                  {}});
-      sentence += fmt::format(", {} {:.3g} {} rms, {:.3g} % of the measured one", what, d.effort, d.effort_unit,
+      sentence += fmt::format(", {} {:.4f} {} rms, {:.2f} % of the measured one", what, d.effort, d.effort_unit,
                               result_.figures.back().value);
     }
     result_.findings.push_back(sentence + ".");
