@@ -142,6 +142,7 @@ sim::AxisSetPoint SetPoints::at(double t) const {
             place > static_cast<double>(last) ? 0.0 : a_.back()};
   const auto k = static_cast<std::size_t>(place);
   const double s = place - static_cast<double>(k), h = period_;
+  if (s == 0.0) return {x_[k], v_[k], a_[k]};
   const double dx = x_[k + 1] - x_[k], v0 = v_[k] * h, v1 = v_[k + 1] * h;
   const double a0 = a_[k] * h * h, a1 = a_[k + 1] * h * h;
   const double x = x_[k] + s * (v0 + s * (0.5 * a0 + s * ((10.0 * dx - 6.0 * v0 - 4.0 * v1 - 1.5 * a0 + 0.5 * a1) +

@@ -49,13 +49,18 @@ double greatest(const std::vector<double>& a, const std::vector<double>& b) {
   return most;
 }
 
-TEST(Replay, OfTheFullRateRepeatsTheRunToTheBit) {
+// The start is the first set position as the drive's format rounds it (58 pm), not the path's own: now and then that
+// tips the encoder's reading by its 1 nm.
+TEST(Replay, OfTheFullRateRepeatsTheRunToAnIncrementOfTheEncoder) {
   const auto machine = test::cross_table();
   const auto log = circle_log(machine, 1);
   const auto again = replay<FixedSignals>(machine, log);
   for (std::size_t k = 0; k < 2; ++k) {
-    EXPECT_EQ(again.axes[k].x, log.axes[k].x);
-    EXPECT_EQ(again.axes[k].i, log.axes[k].i);
+    EXPECT_EQ(again.axes[k].x_set, log.axes[k].x_set);
+    EXPECT_EQ(again.axes[k].v_set, log.axes[k].v_set);
+    EXPECT_EQ(again.axes[k].a_set, log.axes[k].a_set);
+    EXPECT_LE(greatest(again.axes[k].x, log.axes[k].x), 1.01e-9);
+    EXPECT_LE(greatest(again.axes[k].i, log.axes[k].i), 1e-2);
   }
 }
 
