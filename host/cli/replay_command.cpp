@@ -25,9 +25,16 @@ std::vector<ReplayCase> cases_of(const ReplayOptions& options) {
   const auto names = split_list(options.machine.machine);
   for (const auto& name : names) {
     const auto machine = options.machine.load(name, "replay");
-    for (const auto& friction : friction_models(options.friction, machine)) {
-      auto& c = cases.emplace_back(ReplayCase{friction, machine, {}});
-      if (names.size() > 1) c.label = fmt::format("{}, {}", machine.id, friction);
+    const auto models = friction_models(options.friction, machine);
+    for (const auto& friction : models) {
+      // A label that names a model takes its colour; machines are told apart by theirs.
+      const auto label = names.size() == 1    ? friction
+                         : models.size() == 1 ? machine.id
+                                              : fmt::format("{}, {}", machine.id, friction);
+      for (const auto& other : cases)
+        if (other.label == label)
+          throw UsageError(fmt::format("--machine, --friction: found {} twice; expected different names", label));
+      auto& c = cases.emplace_back(ReplayCase{label, machine, {}});
       for (auto& axis : c.machine.axes) axis.friction.use = friction;
     }
   }
@@ -37,7 +44,7 @@ std::vector<ReplayCase> cases_of(const ReplayOptions& options) {
 void keep(const std::filesystem::path& file, Log simulated, const ReplayOptions& options, const ReplayCase& c) {
   simulated.comments = {{"made by", "stiction simulate replay"},
                         {"machine", c.machine.id},
-                        {"friction", c.label},
+                        {"friction", c.machine.axes.front().friction.use},
                         {"from", options.from}};
   PendingFile pending(file);
   if (file.extension() == ".mat")

@@ -101,6 +101,7 @@ class Result {
     for (const auto& c : cases_) {
       const auto& simulated = c.simulated.axes[axis];
       const auto d = compare_replay(log_, c.simulated, axis, offset);
+      if (&c == &cases_.front()) add_measured(name, d);
       add_figures(c.label, name, d);
       error.series.push_back(line(c.label, scaled(difference(simulated.x_set, simulated.x, 0, -offset), micro)));
       position.series.push_back(line(c.label, scaled(difference(simulated.x, measured.x, 0), micro)));
@@ -136,6 +137,27 @@ class Result {
     return std::string(effort.name) == "motor force" ? "force" : effort.name;
   }
 
+  // What is measured is the same beside every case.
+  void add_measured(const std::string& axis, const ReplayDifference& d) {
+    const std::string key = axis.empty() ? "" : "_" + axis, of = axis.empty() ? "" : " of " + axis;
+    result_.figures.push_back({"following_error_rms_measured" + key,
+                               "um",
+                               "measured following error, rms" + of,
+                               d.measured_following_error * micro,
+                               {}});
+    if (*d.effort_unit == '\0') return;
+    result_.figures.push_back({effort_name(d) + "_rms_measured" + key,
+                               d.effort_unit,
+                               "measured " + effort_name(d) + ", rms" + of,
+                               d.measured_effort,
+                               {}});
+  }
+
+  static std::string effort_name(const ReplayDifference& d) {
+    const std::string unit = d.effort_unit;
+    return unit == "A" ? "current" : unit == "V" ? "voltage" : "force";
+  }
+
   void add_figures(const std::string& label, const std::string& axis, const ReplayDifference& d) {
     std::string key = axis.empty() ? "" : axis + "_";
     for (const char c : label) key += (c == ' ' || c == ',' || c == '/') ? '_' : c;
@@ -145,21 +167,14 @@ class Result {
     };
     add("position_difference_rms", "um", "simulated - measured position, rms", d.position * micro);
     add("following_error_rms", "um", "simulated following error, rms", d.following_error * micro);
-    add("following_error_rms_measured", "um", "measured following error, rms", d.measured_following_error * micro);
     std::string sentence =
         fmt::format("{}{}: position {:.3g} um rms off the measured one", label, of, d.position * micro);
     if (*d.effort_unit != '\0') {
-      const bool volts = std::string(d.effort_unit) == "V", newtons = std::string(d.effort_unit) == "N";
-      const std::string what = newtons ? "force" : volts ? "voltage" : "current";
+      const auto what = effort_name(d);
       result_.figures.push_back({what + "_difference_rms_" + key,
                                  d.effort_unit,
                                  "simulated - measured " + what + ", rms" + of + ", " + label,
                                  d.effort,
-                                 {}});
-      result_.figures.push_back({what + "_rms_measured_" + key,
-                                 d.effort_unit,
-                                 "measured " + what + ", rms" + of + ", " + label,
-                                 d.measured_effort,
                                  {}});
       result_.figures.push_back({what + "_difference_" + key,
                                  "%",

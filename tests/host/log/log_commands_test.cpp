@@ -137,6 +137,7 @@ TEST_F(LogCommands, ReplayRefusesWhatItCannotReplay) {
   expect_refused("simulate replay --from no_set.csv" + machine, "no_set.csv: found no X.x_set[m]");
   expect_refused("simulate replay --from run.csv --axis X --friction all --log out.csv" + machine, "--log: found");
   expect_refused("simulate replay" + machine, "--from");
+  expect_refused("compare run.csv --axis X --machine mcfv5050ln,mcfv5050ln", "found mcfv5050ln twice");
   expect_refused("compare" + machine, "found neither --reference nor LOG");
   expect_refused("compare run.csv --reference circle" + machine, "found --reference and LOG");
 }
