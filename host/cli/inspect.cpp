@@ -100,7 +100,7 @@ std::string axis_text(const Log& log, std::size_t index, const AxisInspection& a
     if (!speeds.empty()) speeds += ", ";
     speeds += fmt::format("{:.4g} ({:.2g} s)", p.speed * 1e3, p.duration);
   }
-  line("steady speeds", speeds.empty() ? "none (none of 0.1 s within 1 %)" : speeds + " mm/s");
+  line("steady speeds", speeds.empty() ? "none (of 0.1 s and 0.1 mm within 1 %)" : speeds + " mm/s");
   if (axis.delay) line("position", fmt::format("{:.3g} ms behind the set position", *axis.delay * 1e3));
   if (axis.fit)
     line("sign",

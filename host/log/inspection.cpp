@@ -14,6 +14,7 @@ using Values = std::vector<double>;
 constexpr double window = 0.01;           // s, of the fitted motion
 constexpr double steady = 0.01;           // part of the speed that a plateau may wander
 constexpr double shortest_plateau = 0.1;  // s
+constexpr double sliding = 1e-4;          // m, that are surely beyond presliding; less is creep under a spring
 constexpr double same_speed = 0.03;       // plateaus nearer than this are one
 constexpr double independent = 0.01;      // s, between samples that count as independent
 constexpr double held_still = 0.005;      // s at the very end of the range that no free signal stays
@@ -50,6 +51,10 @@ std::vector<SpeedPlateau> plateaus_of(const Values& v, double rest, double perio
     }
     double mean = 0.0;
     for (std::size_t k = begin; k < end; ++k) mean += v[k] / static_cast<double>(end - begin);
+    if (std::abs(mean) * duration < sliding) {
+      begin = end;
+      continue;
+    }
     const auto known = std::ranges::find_if(
         plateaus, [&](const auto& p) { return std::abs(p.speed - mean) <= same_speed * std::abs(mean); });
     if (known == plateaus.end())
@@ -158,7 +163,8 @@ AxisInspection inspect_axis(const Log& log, const AxisLog& axis, const KnownAxis
         if (const auto found = saturation_of(channel, axis.*channel.values, log.period))
           out.saturation.push_back(*found);
       }
-  if (out.effort != nullptr) out.fit = fit_effort(axis.*out.effort->values, motion, rest, log.period);
+  if (out.effort != nullptr && out.stroke > sliding)
+    out.fit = fit_effort(axis.*out.effort->values, motion, rest, log.period);
   if (!axis.i.empty() && !axis.force.empty()) out.force_per_current = slope(axis.force, axis.i);
   const bool fitted = out.fit && out.fit->value[0] > 4.0 * out.fit->error[0];
   if (fitted && known.mass) out.force_constant = *known.mass / out.fit->value[0];

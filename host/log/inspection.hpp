@@ -18,7 +18,7 @@ struct KnownAxis {
   std::optional<double> pole_pair_pitch;  // m
 };
 
-// Stretches of constant speed: within 1 % over at least 0.1 s.
+// Stretches of constant speed: within 1 % over at least 0.1 s and 0.1 mm.
 struct SpeedPlateau {
   double speed = 0.0;     // m/s, with its sign
   double duration = 0.0;  // s, all such stretches together
@@ -58,7 +58,7 @@ struct AxisInspection {
   std::vector<SpeedPlateau> plateaus;  // by speed
   std::vector<Saturation> saturation;
   const LogChannel* effort = nullptr;       // i, F or u, the first that is there
-  std::optional<RigidFit> fit;              // none: too few moving samples
+  std::optional<RigidFit> fit;              // none: too few moving samples, or a stroke within presliding
   std::optional<double> force_per_current;  // N/A, where F and i are both there
   std::optional<double> force_constant;     // N per unit of effort, from the accelerations and the known mass
   std::optional<double> delay;              // s, of x behind x_set; none without x_set

@@ -134,9 +134,12 @@ TEST(Inspection, SuspectsALogWithoutSetPoints) {
 
 TEST(Inspection, SeesSlowReversalsAsPresliding) {
   const auto slow = [](double t) {
-    return Point{50e-6 * std::sin(2.0 * t), 100e-6 * std::cos(2.0 * t), -200e-6 * std::sin(2.0 * t)};
+    return Point{40e-6 * std::sin(2.0 * t), 80e-6 * std::cos(2.0 * t), -160e-6 * std::sin(2.0 * t)};
   };
-  EXPECT_TRUE(judgement(inspect(rigid_log(10.0, slow)).axes[0], "presliding stiffness and shape").possible);
+  const auto axis = inspect(rigid_log(10.0, slow)).axes[0];
+  EXPECT_TRUE(judgement(axis, "presliding stiffness and shape").possible);
+  EXPECT_FALSE(judgement(axis, "Stribeck velocity").possible);  // creep under a spring is no speed of sliding
+  EXPECT_FALSE(judgement(axis, "Coulomb friction").possible);
 }
 
 TEST(Inspection, StandsALogOfTwoSamplesAndOneAtRest) {
