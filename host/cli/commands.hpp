@@ -18,7 +18,11 @@ void expect_subcommand(CLI::App& command, const std::string& kind);
 void add_simulate(CLI::App& program, const Invocation& invocation);
 // The experiments of the table, below `stiction simulate`.
 void add_experiments(CLI::App& simulate, const Invocation& invocation);
+// The set-points of a log, below `stiction simulate`.
+void add_replay(CLI::App& simulate, const Invocation& invocation);
 void add_compare(CLI::App& program, const Invocation& invocation);
 void add_machine(CLI::App& program, const Invocation& invocation);
+void add_convert(CLI::App& program);
+void add_inspect(CLI::App& program);
 
 }  // namespace stiction::host

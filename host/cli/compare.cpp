@@ -1,4 +1,4 @@
-// `stiction compare --reference circle`: the machine file's published and measured rows beside the simulation.
+// `stiction compare`: the machine file's published and measured rows, or a measured log, beside the simulation.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +11,7 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/machine_options.hpp"
+#include "host/cli/replay_command.hpp"
 #include "host/report/circle_table.hpp"
 #include "host/report/machine_sheet.hpp"
 
@@ -20,6 +21,8 @@ namespace {
 struct CompareOptions {
   MachineOptions machine;
   std::string reference;
+  std::string log;   // instead of a reference
+  std::string axis;  // of the log
   std::string friction;
   std::string signals = "fixed";
   std::string out;
@@ -126,6 +129,16 @@ std::string compare_text(const CirclePlan& plan, const sim::CircleResult& result
 }
 
 void compare(const CompareOptions& options, const Invocation& invocation) {
+  if (options.reference.empty() == options.log.empty())
+    throw UsageError(fmt::format("compare: found {}; expected one of them: --reference circle, or a measured log",
+                                 options.log.empty() ? "neither --reference nor LOG" : "--reference and LOG"));
+  if (!options.log.empty()) {
+    run_replay(
+        {options.machine, options.log, options.friction, options.axis, options.signals, "", options.out, options.json},
+        invocation);
+    return;
+  }
+  if (!options.axis.empty()) throw UsageError("--axis: found it without LOG; expected none with --reference");
   if (options.reference != "circle")
     throw UsageError(fmt::format("--reference: found '{}'; expected circle", options.reference));
   const auto machines = split_list(options.machine.machine);
@@ -157,11 +170,15 @@ void compare(const CompareOptions& options, const Invocation& invocation) {
 
 void add_compare(CLI::App& program, const Invocation& invocation) {
   auto* command =
-      program.add_subcommand("compare", "the machine file's published and measured rows beside the simulation");
+      program.add_subcommand("compare", "published and measured rows, or a measured log, beside the simulation");
   auto o = std::make_shared<CompareOptions>();
-  command->add_option("--reference", o->reference, "which rows: circle")->required()->type_name("KIND");
+  command->add_option("--reference", o->reference, "the machine file's rows: circle")->type_name("KIND");
+  command->add_option("LOG", o->log, "a measured log, whose set-points are replayed");
+  command->add_option("--axis", o->axis, "the machine's axis, for a log that names none")->type_name("AXIS");
   o->machine.add_to(*command, "shipped machine by name, or a machine file; or a list of them");
-  command->add_option("--friction", o->friction, "model, list of models, or all [those of the published simulations]")
+  command
+      ->add_option("--friction", o->friction,
+                   "model, list of models, or all [those of the published simulations; of the machine file]")
       ->type_name("MODEL");
   command->add_option("--signals", o->signals, "fixed: the firmware; double: the same laws in double precision")
       ->check(CLI::IsMember({"fixed", "double"}))

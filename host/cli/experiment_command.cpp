@@ -10,6 +10,7 @@
 #include "host/cli/experiment_output.hpp"
 #include "host/cli/machine_options.hpp"
 #include "host/cli/output.hpp"
+#include "host/log/csv_log.hpp"
 #include "host/report/experiment_report.hpp"
 #include "host/simulate/experiments.hpp"
 
@@ -19,6 +20,7 @@ namespace {
 struct ExperimentOptions {
   MachineOptions machine;
   std::string friction;
+  std::string log;
   std::string out;
   bool json = false;
 };
@@ -47,10 +49,49 @@ std::vector<std::string> models_for(const Experiment& experiment, const std::str
   return names;
 }
 
+// "run.csv" and "24 m/min" make "run-24_m_per_min.csv".
+std::filesystem::path log_place(const std::filesystem::path& file, std::string run) {
+  if (run.empty()) return file;
+  for (std::size_t at; (at = run.find('/')) != std::string::npos;) run.replace(at, 1, "_per_");
+  std::ranges::replace(run, ' ', '_');
+  return file.parent_path() / (file.stem().string() + "-" + run + file.extension().string());
+}
+
+// The logs of an experiment, moved to their places when all of them are there.
+class ExperimentLogs {
+ public:
+  ExperimentLogs(const Experiment& experiment, const ExperimentOptions& options, ExperimentInput& input) {
+    if (options.log.empty()) return;
+    if (input.friction.size() != 1)
+      throw UsageError(
+          fmt::format("--log: found {} friction models; expected one: name it with --friction", input.friction.size()));
+    input.keep_log = [&experiment, &options, &input, this](const std::string& run, Log log) {
+      log.comments = {{"log", fmt::format("stiction simulate {}", experiment.name)},
+                      {"machine", input.machine.name},
+                      {"friction", input.friction.front()},
+                      {"current", "amplitude (peak) amperes"}};
+      if (!run.empty()) log.comments.emplace_back("run", run);
+      places_.push_back(log_place(options.log, run));
+      files_.push_back(std::make_unique<PendingFile>(places_.back()));
+      write_csv_log(files_.back()->path(), log);
+    };
+  }
+  void commit() {
+    for (auto& file : files_) file->commit();
+  }
+  const std::vector<std::filesystem::path>& places() const { return places_; }
+
+ private:
+  std::vector<std::filesystem::path> places_;
+  std::vector<std::unique_ptr<PendingFile>> files_;
+};
+
 void run(const Experiment& experiment, const ExperimentOptions& options, const Invocation& invocation) {
-  ExperimentInput input{options.machine.load(options.machine.machine, experiment.name), {}};
+  ExperimentInput input{options.machine.load(options.machine.machine, experiment.name), {}, {}};
   input.friction = models_for(experiment, options.friction, input.machine);
+  ExperimentLogs logs(experiment, options, input);
   const auto result = experiment.run(input);
+  logs.commit();
   const auto json = experiment_json(result, input.machine);
   if (!options.out.empty()) {
     PendingFolder folder(options.out);
@@ -64,6 +105,8 @@ void run(const Experiment& experiment, const ExperimentOptions& options, const I
     return;
   }
   fmt::print("{}", experiment_text(result, input.machine));
+  for (const auto& place : logs.places())
+    fmt::print("{}log: {}\n", &place == &logs.places().front() ? "\n" : "", place.string());
   if (!options.out.empty()) fmt::print("\nreport: {}/report.html\n", options.out);
 }
 
@@ -76,6 +119,9 @@ void add_experiments(CLI::App& simulate, const Invocation& invocation) {
     o->machine.add_to(*command, "shipped machine by name, or a machine file");
     command->add_option("--friction", o->friction, "friction model, or a list of models [all that it makes sense for]")
         ->type_name("MODEL");
+    if (experiment.keeps_logs)
+      command->add_option("--log", o->log, "write the run as a log (CSV); one file a run where there are several")
+          ->type_name("FILE");
     command->add_option("--out", o->out, "write report.html and result.json into this folder")->type_name("DIR");
     command->add_flag("--json", o->json, "print the result as JSON on standard output");
     command->callback([o, &experiment, &invocation] { run(experiment, *o, invocation); });

@@ -6,6 +6,7 @@
 
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
+#include "host/log/log.hpp"
 #include "host/simulate/circle.hpp"
 #include "sim/control/axis_configuration.hpp"
 #include "sim/machine/machine_file.hpp"
@@ -35,6 +36,8 @@ int run(int argc, char** argv) {
   add_simulate(program, invocation);
   add_compare(program, invocation);
   add_machine(program, invocation);
+  add_convert(program);
+  add_inspect(program);
 
   const auto bad_input = [](const std::exception& error) {
     fmt::print(stderr, "stiction: {}\n", error.what());
@@ -53,6 +56,8 @@ int run(int argc, char** argv) {
   } catch (const sim::MachineFileError& error) {
     return bad_input(error);
   } catch (const sim::ConfigurationError& error) {
+    return bad_input(error);
+  } catch (const LogError& error) {
     return bad_input(error);
   } catch (const InfeasibleMotion& error) {
     return bad_input(error);

@@ -81,6 +81,7 @@ void add_simulate(CLI::App& program, const Invocation& invocation) {
   circle->callback([o, &invocation] { simulate_circle(*o, invocation); });
 
   add_experiments(*simulate, invocation);
+  add_replay(*simulate, invocation);
 }
 
 }  // namespace stiction::host

@@ -6,6 +6,7 @@
 
 #include "host/simulate/control_run.hpp"
 #include "host/simulate/experiments.hpp"
+#include "host/simulate/log_recorder.hpp"
 #include "sim/experiment/speed_ramp.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
@@ -28,7 +29,7 @@ constexpr std::array<Measured, 10> measured{{{0.02, 0.75},
                                              {24.0, 2.62}}};
 
 // Mean current (A) over the last 0.1 s of a run at `speed` (m/s); the start has died out by then.
-double steady_current(const sim::Machine& machine, double speed) {
+double steady_current(const sim::Machine& machine, double speed, const TraceSink<FixedSignals>& trace) {
   constexpr double settling = 0.4, averaging = 0.1;  // s
   const sim::SpeedRamp ramp(speed, 2.0, 40.0);
   const std::array<double, 1> origin{0.0};
@@ -42,7 +43,7 @@ double steady_current(const sim::Machine& machine, double speed) {
       sum += run.plant(0).motor_force() / machine.axes[0].motor.force_constant;
       ++ticks;
     }
-    run.tick(std::array{sim::AxisSetPoint{motion.distance, motion.speed, motion.acceleration}});
+    run.tick(std::array{sim::AxisSetPoint{motion.distance, motion.speed, motion.acceleration}}, trace);
   }
   return sum / ticks;
 }
@@ -76,7 +77,10 @@ sim::ExperimentResult run_constant_velocity(const ExperimentInput& input) {
     sim::Series series{name, {}, {}, false};
     double deviation = 0.0;
     for (const auto& row : measured) {
-      const double current = steady_current(machine, row.speed_m_per_min / 60.0);
+      LogRecorder recorder(machine);
+      const double current = steady_current(machine, row.speed_m_per_min / 60.0,
+                                            input.keep_log ? recorder.sink() : TraceSink<FixedSignals>{});
+      if (input.keep_log) input.keep_log(fmt::format("{:g} m/min", row.speed_m_per_min), recorder.take());
       series.x.push_back(row.speed_m_per_min);
       series.y.push_back(current);
       deviation += std::abs(current / row.current - 1.0) / measured.size();

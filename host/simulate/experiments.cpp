@@ -4,13 +4,29 @@ namespace stiction::host {
 
 std::span<const Experiment> experiments() {
   static const std::vector<Experiment> table{
-      {"constant-velocity", "motor current at constant speeds: the friction characteristic", {}, run_constant_velocity},
-      {"impact", "a step of external force in position control: deviation and return", {}, run_impact},
-      {"l-shape", "a path with standstill of one axis: what is left there, and the two restarts", {}, run_l_shape},
-      {"presliding", "slow force ramps below break-away: displacement that does not return", {"lugre"}, run_presliding},
-      {"friction-lag", "sliding with varying speed: friction that follows late", {"lugre"}, run_friction_lag},
-      {"break-away", "force ramps of different rates: the force at which sliding begins", {"lugre"}, run_break_away},
-      {"stick-slip", "a mass pulled by a spring at constant speed", {"lugre", "classical"}, run_stick_slip},
+      {"constant-velocity",
+       "motor current at constant speeds: the friction characteristic",
+       {},
+       run_constant_velocity,
+       true},
+      {"impact", "a step of external force in position control: deviation and return", {}, run_impact, true},
+      {"l-shape",
+       "a path with standstill of one axis: what is left there, and the two restarts",
+       {},
+       run_l_shape,
+       true},
+      {"presliding",
+       "slow force ramps below break-away: displacement that does not return",
+       {"lugre"},
+       run_presliding,
+       true},
+      {"friction-lag", "sliding with varying speed: friction that follows late", {"lugre"}, run_friction_lag, false},
+      {"break-away",
+       "force ramps of different rates: the force at which sliding begins",
+       {"lugre"},
+       run_break_away,
+       true},
+      {"stick-slip", "a mass pulled by a spring at constant speed", {"lugre", "classical"}, run_stick_slip, true},
   };
   return table;
 }

@@ -2,10 +2,12 @@
 // command line takes name and text from it.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "host/log/log.hpp"
 #include "sim/experiment/experiment_result.hpp"
 #include "sim/machine/machine.hpp"
 
@@ -14,6 +16,9 @@ namespace stiction::host {
 struct ExperimentInput {
   sim::Machine machine;               // with the experiment's overrides
   std::vector<std::string> friction;  // the models to run, at least one
+  // Takes the log of a run; `run` tells several runs of one model apart ("24 m/min") and is empty where there is one.
+  // Empty: no logs are wanted.
+  std::function<void(const std::string& run, Log)> keep_log = {};
 };
 
 struct Experiment {
@@ -21,6 +26,7 @@ struct Experiment {
   const char* text;                 // for --help
   std::vector<std::string> models;  // the friction models it makes sense for; empty: all
   sim::ExperimentResult (*run)(const ExperimentInput&);
+  bool keeps_logs;  // calls keep_log
 };
 
 std::span<const Experiment> experiments();

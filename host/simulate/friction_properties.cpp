@@ -8,6 +8,7 @@
 
 #include "host/simulate/experiments.hpp"
 #include "host/simulate/friction_bench.hpp"
+#include "host/simulate/log_recorder.hpp"
 
 namespace stiction::host {
 namespace {
@@ -56,7 +57,8 @@ struct PreslidingLoop {
 };
 
 // 0 to +540 N, held, to -540 N, held, to +540 N, held, at `rate` (N/s).
-PreslidingLoop presliding_loop(const sim::Axis& axis, double rate, double hold, sim::Series& series) {
+PreslidingLoop presliding_loop(const sim::Axis& axis, double rate, double hold, sim::Series& series,
+                               BenchRecorder* recorder = nullptr) {
   const double ramp = ramp_force / rate;
   const double top = ramp + hold, bottom = top + 2.0 * ramp, up = bottom + hold, end = up + 2.0 * ramp + hold;
   const std::vector<std::pair<double, double>> corners{
@@ -68,6 +70,7 @@ PreslidingLoop presliding_loop(const sim::Axis& axis, double rate, double hold, 
   while (bench.time() < end) {
     const double force = polyline(corners, bench.time());
     bench.advance(force);
+    if (recorder != nullptr) recorder->add(bench, force);
     line.add(bench.position() * 1e6, bench.friction_force());
     if (bench.time() <= top) loop.at_first_top = bench.position();
     if (bench.time() <= top + ramp) loop.after_unloading = bench.position();
@@ -93,7 +96,9 @@ sim::ExperimentResult run_presliding(const ExperimentInput& input) {
       "Friction over displacement", "displacement, um", "friction force, N", "Ramps of 54 N/s.", false, {}};
   for (const auto& name : input.friction) {
     sim::Series slow{name, {}, {}, false};
-    const auto loop = presliding_loop(axis_with(input, name), 54.0, 2.0, slow);
+    BenchRecorder recorder;
+    const auto loop = presliding_loop(axis_with(input, name), 54.0, 2.0, slow, input.keep_log ? &recorder : nullptr);
+    if (input.keep_log) input.keep_log("", recorder.take());
     chart.series.push_back(std::move(slow));
     result.figures.push_back(
         {"displacement_at_540_N_" + name, "um", "displacement at 540 N, " + name, loop.at_first_top * 1e6, {}});
@@ -181,19 +186,23 @@ sim::ExperimentResult run_break_away(const ExperimentInput& input) {
   sim::Chart chart{"Break-away force over the rate of the force", "rate, N/s", "break-away force, N", "", true, {}};
   sim::Series series{"lugre", {}, {}, false};
   const auto axis = axis_with(input, "lugre");
-  const auto break_away = [&](double rate) {
+  const auto break_away = [&](double rate, BenchRecorder* recorder = nullptr) {
     // The friction force at its greatest: from there on the mass is faster than its contact.
     FrictionBench bench(axis);
     double greatest = 0.0;
     while (bench.position() < 1e-3) {
-      bench.advance(rate * bench.time());
+      const double force = rate * bench.time();
+      bench.advance(force);
+      if (recorder != nullptr) recorder->add(bench, force);
       greatest = std::max(greatest, bench.friction_force());
     }
     return greatest;
   };
   for (const double rate : {10.0, 30.0, 100.0, 300.0, 1e3, 2e3, 3e3, 5e3, 1e4, 3e4, 1e5}) {
+    BenchRecorder recorder(rate < 1e3 ? 50 : 1);
     series.x.push_back(rate);
-    series.y.push_back(break_away(rate));
+    series.y.push_back(break_away(rate, input.keep_log ? &recorder : nullptr));
+    if (input.keep_log) input.keep_log(fmt::format("{:g} N/s", rate), recorder.take());
   }
   for (const auto& [rate, force] : {std::pair{10.0, 578.6}, {1e3, 551.5}, {3e3, 504.9}, {1e4, 415.3}})
     result.figures.push_back({fmt::format("break_away_at_{:g}_N_per_s", rate), "N",
@@ -228,9 +237,11 @@ sim::ExperimentResult run_stick_slip(const ExperimentInput& input) {
     std::vector<double> starts, stops, start_positions, stop_positions;
     double first_force = 0.0;
     bool slips = false;
+    BenchRecorder recorder;
     while (bench.time() < duration) {
       const double spring = stiffness * (pull * bench.time() - bench.position());
       bench.advance(spring);
+      if (input.keep_log) recorder.add(bench, spring);
       x_line.add(bench.time(), bench.position());
       f_line.add(bench.time(), bench.friction_force());
       const bool moving = std::abs(bench.velocity()) > slipping;
@@ -245,6 +256,7 @@ sim::ExperimentResult run_stick_slip(const ExperimentInput& input) {
       }
       slips = moving;
     }
+    if (input.keep_log) input.keep_log("", recorder.take());
     position.series.push_back(std::move(x));
     force.series.push_back(std::move(f));
     if (starts.size() < 3 || stops.size() < 2) {

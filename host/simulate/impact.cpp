@@ -6,6 +6,7 @@
 
 #include "host/simulate/control_run.hpp"
 #include "host/simulate/experiments.hpp"
+#include "host/simulate/log_recorder.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
 namespace stiction::host {
@@ -23,7 +24,7 @@ struct Response {
   double resting_friction = 0;  // N
 };
 
-Response respond(const sim::Machine& machine, const std::string& name) {
+Response respond(const sim::Machine& machine, const std::string& name, const TraceSink<FixedSignals>& trace = {}) {
   Response r;
   r.deviation.name = r.force.name = r.friction.name = name;
   const std::array<double, 1> origin{0.0};
@@ -35,7 +36,7 @@ Response respond(const sim::Machine& machine, const std::string& name) {
     plant.set_external_force(t >= step_time ? step_force : 0.0);
     const double force = plant.motor_force();
     const double friction = plant.friction_force();
-    run.tick(standstill);
+    run.tick(standstill, trace);
     const double deviation = -sim::to_si(run.signals(0).e);
     r.deviation.x.push_back(t * 1e3);
     r.deviation.y.push_back(deviation * 1e6);
@@ -75,7 +76,13 @@ sim::ExperimentResult run_impact(const ExperimentInput& input) {
   const std::string prototype = "plant study, 10: prototype at 56 400 N s/m";
   for (const auto& name : input.friction) {
     axis.friction.use = name;
-    auto r = respond(machine, name);
+    LogRecorder recorder(machine);
+    auto r = respond(machine, name, input.keep_log ? recorder.sink() : TraceSink<FixedSignals>{});
+    if (input.keep_log) {
+      auto log = recorder.take();
+      for (const double t : log.t) log.axes[0].external_force.push_back(t >= step_time ? step_force : 0.0);
+      input.keep_log("", std::move(log));
+    }
     result.figures.push_back({"peak_deviation_" + name, "um", "peak deviation, " + name, r.peak * 1e6,
                               sim::Expectation{93.0, 1.9, prototype + ", 92 to 94 um"}});
     const bool sticks = name == "classical" || name == "lugre";

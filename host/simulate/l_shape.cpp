@@ -9,6 +9,7 @@
 
 #include "host/simulate/control_run.hpp"
 #include "host/simulate/experiments.hpp"
+#include "host/simulate/log_recorder.hpp"
 #include "sim/experiment/line_arc_path.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
@@ -74,13 +75,15 @@ sim::ExperimentResult run_l_shape(const ExperimentInput& input) {
     const auto begin = path.at(0.0);
     const std::array<double, 2> start{begin[0].position, begin[1].position};
     ControlRun<FixedSignals> run(machine, start);
+    LogRecorder recorder(machine);
+    const auto trace = input.keep_log ? recorder.sink() : TraceSink<FixedSignals>{};
     sim::Series e{name, {}, {}, false}, i{name, {}, {}, false};
     double same_peak = 0.0, opposite_peak = 0.0, standing = 0.0;
     int standing_ticks = 0;
     while (run.time() < path.duration()) {
       const double t = run.time();
       const double amperes = run.plant(1).motor_force() / machine.axes[1].motor.force_constant;
-      run.tick(path.at(t));
+      run.tick(path.at(t), trace);
       const double deviation = sim::to_si(run.signals(1).e);
       e.x.push_back(t);
       e.y.push_back(deviation * 1e6);
@@ -94,6 +97,7 @@ sim::ExperimentResult run_l_shape(const ExperimentInput& input) {
         ++standing_ticks;
       }
     }
+    if (input.keep_log) input.keep_log("", recorder.take());
     standing /= standing_ticks;
     result.figures.push_back({"standing_current_" + name, "A",
                               "current of Y while it stands from F to G (its sign against the last motion: +), " + name,

@@ -103,7 +103,7 @@ TEST_F(Cli, RefusesBadUsage) {
   expect_refused("simulate circle --machine mcfv5050ln --log x.csv --friction all", "--log: found 6 runs");
   expect_refused("simulate circle --machine mcfv5050ln --set axis.X.mas='1 kg'", "--set axis.X.mas");
   expect_refused("compare --reference square --machine mcfv5050ln", "--reference: found 'square'; expected circle");
-  expect_refused("compare --machine mcfv5050ln", "--reference is required");
+  expect_refused("compare --machine mcfv5050ln", "found neither --reference nor LOG; expected one of them");
 }
 
 TEST_F(Cli, RefusesAGainThatTheNumberFormatCannotHold) {

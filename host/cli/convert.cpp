@@ -1,0 +1,70 @@
+// `stiction convert IN OUT`: logs from one format into the other, and recordings of drives into logs.
+#include <fmt/format.h>
+
+#include <fstream>
+#include <memory>
+
+#include "host/cli/commands.hpp"
+#include "host/cli/errors.hpp"
+#include "host/cli/output.hpp"
+#include "host/log/csv_log.hpp"
+#include "host/log/mapping.hpp"
+#include "host/log/mat_log.hpp"
+#include "host/log/read_log.hpp"
+#include "host/log/text_file.hpp"
+
+namespace stiction::host {
+namespace {
+
+struct ConvertOptions {
+  std::string in, out, map, mat = "5";
+};
+
+// Recordings of drives need a mapping; what it must say depends on the channels they have.
+void refuse_recording(const std::filesystem::path& file) {
+  const auto bytes = read_text_file(file);
+  if (is_recorder_export(bytes)) throw LogError(mapping_hint(read_recorder_export(bytes, file.string())));
+  if (is_scope_export(bytes)) throw LogError(mapping_hint(read_scope_export(bytes, file.string())));
+}
+
+void convert(const ConvertOptions& options) {
+  const auto kind = std::filesystem::path(options.out).extension();
+  if (kind != ".csv" && kind != ".mat")
+    throw UsageError(fmt::format("OUT: found '{}'; expected a name that ends in .csv or .mat", options.out));
+  if (options.mat != "5" && options.mat != "7.3")
+    throw UsageError(fmt::format("--mat: found '{}'; expected 5 or 7.3", options.mat));
+  if (options.map.empty()) refuse_recording(options.in);
+  Log log;
+  if (options.map.empty()) {
+    log = read_log(options.in);
+  } else {
+    const auto mapping = read_mapping(options.map);
+    log = apply_mapping(mapping, read_recording(options.in, mapping.table));
+  }
+  PendingFile file(options.out);
+  if (kind == ".csv")
+    write_csv_log(file.path(), log);
+  else
+    write_mat_log(file.path(), log, options.mat == "5" ? MatLevel::level_5 : MatLevel::level_7_3);
+  file.commit();
+  fmt::print("{}: {} samples at {:.6g} ms", options.out, log.t.size(), log.period * 1e3);
+  for (std::size_t k = 0; k < log.ignored.size(); ++k)
+    fmt::print("{}{}", k == 0 ? "; not kept: " : ", ", log.ignored[k]);
+  fmt::print("\n");
+}
+
+}  // namespace
+
+void add_convert(CLI::App& program) {
+  auto* command = program.add_subcommand("convert", "logs: CSV to MAT and back; recordings of drives into logs");
+  auto o = std::make_shared<ConvertOptions>();
+  command->add_option("IN", o->in, "a log (CSV, MAT), a TwinCAT Scope export, a recorder's JSON or zip, any table")
+      ->required();
+  command->add_option("OUT", o->out, "the log to write: NAME.csv or NAME.mat")->required();
+  command->add_option("--map", o->map, "what the channels of a recording are (host/log/mapping.hpp has an example)")
+      ->type_name("FILE");
+  command->add_option("--mat", o->mat, "level of a MAT-file: 5 or 7.3 [5]")->type_name("LEVEL");
+  command->callback([o] { convert(*o); });
+}
+
+}  // namespace stiction::host

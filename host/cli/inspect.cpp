@@ -1,0 +1,157 @@
+// `stiction inspect LOG`: what a log holds, what is suspicious in it, what it can determine.
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "host/cli/commands.hpp"
+#include "host/cli/errors.hpp"
+#include "host/cli/machine_options.hpp"
+#include "host/log/channel_name.hpp"
+#include "host/log/inspection.hpp"
+#include "host/log/read_log.hpp"
+#include "host/simulate/replay.hpp"
+
+namespace stiction::host {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+struct InspectOptions {
+  MachineOptions machine;
+  std::string log, axis;
+  bool json = false;
+};
+
+std::vector<KnownAxis> known_axes(const InspectOptions& options, const Log& log) {
+  if (options.machine.machine.empty()) return {};
+  const auto machine = options.machine.load(options.machine.machine, "");
+  std::vector<KnownAxis> known;
+  for (const auto index : match_axes(machine, log, options.axis)) {
+    const auto& axis = machine.axes[index];
+    const bool force_motor = axis.motor.model == sim::MotorModel::force;
+    KnownAxis k{axis.mass,
+                axis.motor.force_constant,
+                force_motor ? axis.inverter.voltage_limit : axis.inverter.current_limit * axis.motor.count,
+                {}};
+    if (axis.motor.pole_pair_pitch > 0.0) k.pole_pair_pitch = axis.motor.pole_pair_pitch;
+    known.push_back(k);
+  }
+  return known;
+}
+
+// How the amperes are counted cannot be seen without a machine: it takes the mass and the motor's constant.
+std::string ampere_text(const AxisInspection& axis, bool machine_known) {
+  if (axis.effort == nullptr || std::string_view(axis.effort->name) != "i") return "";
+  if (!machine_known)
+    return "taken as amplitude, as the format says; whether they are cannot be seen without --machine";
+  if (!axis.force_constant) return "taken as amplitude; too little acceleration to see whether they are";
+  return fmt::format("{:.4g} N/A from the accelerations and the machine's mass", *axis.force_constant);
+}
+
+json axis_json(const Log& log, std::size_t index, const AxisInspection& axis) {
+  json channels = json::array();
+  for (const auto& channel : log_channels)
+    if (!(log.axes[index].*channel.values).empty())
+      channels.push_back({{"name", channel.name}, {"unit", channel.unit}});
+  json out{{"axis", axis.axis},
+           {"channels", channels},
+           {"stroke_m", axis.stroke},
+           {"max_speed_m_per_s", axis.max_speed},
+           {"max_acceleration_m_per_s2", axis.max_acceleration},
+           {"reversals", axis.reversals},
+           {"at_rest", axis.at_rest},
+           {"forward", axis.forward}};
+  out["speeds"] = json::array();
+  for (const auto& p : axis.plateaus) out["speeds"].push_back({{"speed_m_per_s", p.speed}, {"duration_s", p.duration}});
+  out["saturation"] = json::array();
+  for (const auto& s : axis.saturation)
+    out["saturation"].push_back({{"channel", s.channel}, {"level", s.level}, {"part", s.part}});
+  if (axis.delay) out["delay_s"] = *axis.delay;
+  if (axis.force_per_current) out["force_per_current_N_per_A"] = *axis.force_per_current;
+  if (axis.force_constant) out[std::string("force_constant_N_per_") + axis.effort->unit] = *axis.force_constant;
+  out["suspicions"] = axis.suspicions;
+  out["determinable"] = json::array();
+  for (const auto& d : axis.determinable) {
+    json each{{"what", d.what}, {"possible", d.possible}, {"reason", d.reason}};
+    if (!d.possible) each["record_instead"] = d.remedy;
+    out["determinable"].push_back(each);
+  }
+  return out;
+}
+
+std::string axis_text(const Log& log, std::size_t index, const AxisInspection& axis, bool machine_known) {
+  std::string text = axis.axis.empty() ? "\n" : fmt::format("\naxis {}\n", axis.axis);
+  std::string channels;
+  for (const auto& channel : log_channels)
+    if (!(log.axes[index].*channel.values).empty())
+      channels += fmt::format("{}{}[{}]", channels.empty() ? "" : ", ", channel.name, channel.unit);
+  const auto line = [&](const char* name, const std::string& value) {
+    text += fmt::format("  {:<14} {}\n", name, value);
+  };
+  line("channels", channels);
+  line("stroke", fmt::format("{:.5g} mm", axis.stroke * 1e3));
+  line("speed", fmt::format("up to {:.4g} mm/s ({:.4g} m/min), acceleration up to {:.3g} m/s^2", axis.max_speed * 1e3,
+                            axis.max_speed * 60.0, axis.max_acceleration));
+  line("motion", fmt::format("{} reversals; {:.1f} % of the samples at rest; {:.0f} % of the others in +x",
+                             axis.reversals, 100.0 * axis.at_rest, 100.0 * axis.forward));
+  std::string speeds;
+  for (const auto& p : axis.plateaus) {
+    if (!speeds.empty()) speeds += ", ";
+    speeds += fmt::format("{:.4g} ({:.2g} s)", p.speed * 1e3, p.duration);
+  }
+  line("steady speeds", speeds.empty() ? "none (of 0.1 s and 0.1 mm within 1 %)" : speeds + " mm/s");
+  if (axis.delay) line("position", fmt::format("{:.3g} ms behind the set position", *axis.delay * 1e3));
+  if (axis.fit)
+    line("sign",
+         fmt::format("{} {} with the acceleration and {} with the direction of motion", axis.effort->name,
+                     axis.fit->value[0] >= 0.0 ? "rises" : "falls", axis.fit->value[2] >= 0.0 ? "rises" : "falls"));
+  if (const auto amperes = ampere_text(axis, machine_known); !amperes.empty()) line("amperes", amperes);
+  if (axis.force_per_current) line("F over i", fmt::format("{:.4g} N/A", *axis.force_per_current));
+  for (const auto& suspicion : axis.suspicions) line("SUSPICIOUS", suspicion);
+  text += "  what it can determine\n";
+  for (const auto& d : axis.determinable)
+    text += fmt::format("    {:<4} {:<34} {}{}\n", d.possible ? "yes" : "no", d.what, d.reason,
+                        d.possible ? "" : "; record " + d.remedy);
+  return text;
+}
+
+void run(const InspectOptions& options) {
+  const auto log = read_log(options.log);
+  const auto known = known_axes(options, log);
+  const auto inspection = inspect(log, known);
+  if (options.json) {
+    json out{{"schema", "stiction.inspection/1"},
+             {"log", options.log},
+             {"samples", log.t.size()},
+             {"period_s", log.period},
+             {"duration_s", inspection.duration},
+             {"ignored", log.ignored},
+             {"axes", json::array()}};
+    for (std::size_t k = 0; k < log.axes.size(); ++k) out["axes"].push_back(axis_json(log, k, inspection.axes[k]));
+    fmt::print("{}\n", out.dump(2));
+    return;
+  }
+  fmt::print("{}: {} samples at {:.6g} ms ({:.5g} kHz), {:.5g} s\n", options.log, log.t.size(), log.period * 1e3,
+             1e-3 / log.period, inspection.duration);
+  for (const auto& [key, value] : log.comments) fmt::print("  # {}{}{}\n", key, value.empty() ? "" : ": ", value);
+  std::string ignored;
+  for (const auto& header : log.ignored) ignored += (ignored.empty() ? "" : ", ") + header;
+  if (!ignored.empty()) fmt::print("  no meaning here, ignored: {}\n", ignored);
+  for (std::size_t k = 0; k < log.axes.size(); ++k)
+    fmt::print("{}", axis_text(log, k, inspection.axes[k], !known.empty()));
+}
+
+}  // namespace
+
+void add_inspect(CLI::App& program) {
+  auto* command = program.add_subcommand("inspect", "what a log holds, what is suspicious, what it can determine");
+  auto o = std::make_shared<InspectOptions>();
+  command->add_option("LOG", o->log, "a log (CSV, MAT)")->required();
+  command->add_option("--machine", o->machine.machine, "its machine, which lets it say more: a name, or a file");
+  command->add_option("--axis", o->axis, "the machine's axis, for a log that names none")->type_name("AXIS");
+  command->add_flag("--json", o->json, "print the result as JSON on standard output");
+  command->callback([o] { run(*o); });
+}
+
+}  // namespace stiction::host

@@ -1,0 +1,105 @@
+#include "host/cli/replay_command.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "host/cli/errors.hpp"
+#include "host/cli/experiment_output.hpp"
+#include "host/cli/output.hpp"
+#include "host/log/csv_log.hpp"
+#include "host/log/mat_log.hpp"
+#include "host/log/read_log.hpp"
+#include "host/report/experiment_report.hpp"
+#include "host/simulate/replay.hpp"
+#include "host/simulate/replay_result.hpp"
+#include "sim/control/double_signals.hpp"
+#include "stiction/number/fixed_signals.hpp"
+
+namespace stiction::host {
+namespace {
+
+std::vector<ReplayCase> cases_of(const ReplayOptions& options) {
+  std::vector<ReplayCase> cases;
+  const auto names = split_list(options.machine.machine);
+  for (const auto& name : names) {
+    const auto machine = options.machine.load(name, "replay");
+    const auto models = friction_models(options.friction, machine);
+    for (const auto& friction : models) {
+      // A label that names a model takes its colour; machines are told apart by theirs.
+      const auto label = names.size() == 1    ? friction
+                         : models.size() == 1 ? machine.id
+                                              : fmt::format("{}, {}", machine.id, friction);
+      for (const auto& other : cases)
+        if (other.label == label)
+          throw UsageError(fmt::format("--machine, --friction: found {} twice; expected different names", label));
+      auto& c = cases.emplace_back(ReplayCase{label, machine, {}});
+      for (auto& axis : c.machine.axes) axis.friction.use = friction;
+    }
+  }
+  return cases;
+}
+
+void keep(const std::filesystem::path& file, Log simulated, const ReplayOptions& options, const ReplayCase& c) {
+  simulated.comments = {{"made by", "stiction simulate replay"},
+                        {"machine", c.machine.id},
+                        {"friction", c.machine.axes.front().friction.use},
+                        {"from", options.from}};
+  PendingFile pending(file);
+  if (file.extension() == ".mat")
+    write_mat_log(pending.path(), simulated);
+  else
+    write_csv_log(pending.path(), simulated);
+  pending.commit();
+}
+
+}  // namespace
+
+void run_replay(const ReplayOptions& options, const Invocation& invocation) {
+  auto cases = cases_of(options);
+  if (!options.log.empty() && cases.size() != 1)
+    throw UsageError(fmt::format("--log: found {} runs; expected one machine and one friction model", cases.size()));
+  const auto log = read_log(options.from);
+  const bool fixed = options.signals != "double";
+  for (auto& c : cases)
+    c.simulated = fixed ? replay<FixedSignals>(c.machine, log, {options.axis})
+                        : replay<sim::DoubleSignals>(c.machine, log, {options.axis});
+  if (!options.log.empty()) keep(options.log, cases.front().simulated, options, cases.front());
+  const auto result = replay_result(log, cases, fixed ? FixedSignals::name : sim::DoubleSignals::name, options.axis);
+  const auto& machine = cases.front().machine;
+  const auto json = experiment_json(result, machine);
+  if (!options.out.empty()) {
+    PendingFolder folder(options.out);
+    folder.write("report.html", experiment_report_html({invocation.command_line, invocation.version, machine, result}));
+    folder.write("result.json", json.dump(2) + "\n");
+    folder.commit();
+  }
+  if (options.json) {
+    fmt::print("{}\n", json.dump(2));
+    return;
+  }
+  fmt::print("{}", experiment_text(result, machine));
+  if (!options.log.empty()) fmt::print("\nlog: {}\n", options.log);
+  if (!options.out.empty()) fmt::print("\nreport: {}/report.html\n", options.out);
+}
+
+void add_replay(CLI::App& simulate, const Invocation& invocation) {
+  auto* command = simulate.add_subcommand("replay", "the set-points of a log, beside what was measured");
+  auto o = std::make_shared<ReplayOptions>();
+  command->add_option("--from", o->from, "a log with x_set")->required()->type_name("LOG");
+  o->machine.add_to(*command, "shipped machine by name, or a machine file");
+  command->add_option("--friction", o->friction, "friction model, list of models, or all [the machine file's]")
+      ->type_name("MODEL");
+  command->add_option("--axis", o->axis, "the machine's axis, for a log that names none")->type_name("AXIS");
+  command->add_option("--signals", o->signals, "fixed: the firmware; double: the same laws in double precision")
+      ->check(CLI::IsMember({"fixed", "double"}))
+      ->capture_default_str();
+  command->add_option("--log", o->log, "write the simulated channels at the log's times (NAME.csv or NAME.mat)")
+      ->type_name("FILE");
+  command->add_option("--out", o->out, "write report.html and result.json into this folder")->type_name("DIR");
+  command->add_flag("--json", o->json, "print the result as JSON on standard output");
+  command->callback([o, &invocation] { run_replay(*o, invocation); });
+}
+
+}  // namespace stiction::host

@@ -1,0 +1,242 @@
+#include "host/log/determinable.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace stiction::host {
+namespace {
+
+constexpr double separable = 20.0;      // variance inflation up to which two regressors count as told apart
+constexpr double well_known = 0.1;      // standard error over value
+constexpr double one_direction = 0.05;  // part of the moving samples that counts as going that way at all
+constexpr double slow = 5e-3;           // m/s: a Stribeck velocity is of this size or below
+constexpr double presliding = 20e-6;    // m behind a reversal in which friction builds up again
+constexpr double long_enough = 300.0;   // s, for a drift with temperature
+
+double mm_s(double speed) { return speed * 1e3; }
+
+bool both_directions(const AxisInspection& out) {
+  return out.forward > one_direction && out.forward < 1.0 - one_direction;
+}
+
+// A parameter of the rigid fit.
+Determinable rigid(const AxisInspection& out, std::size_t which, const char* what, const char* confused,
+                   const char* remedy) {
+  Determinable d{what, false, "", remedy};
+  if (out.effort == nullptr || !out.fit) {
+    d.reason = "the log hardly moves";
+    return d;
+  }
+  const auto& fit = *out.fit;
+  // A constant force may well be none: it is known where its error is small beside the friction.
+  const double size =
+      which == 3 ? std::max(std::abs(fit.value[3]), std::abs(fit.value[2])) : std::abs(fit.value[which]);
+  const double relative = size > 0.0 ? fit.error[which] / size : 1e9;
+  if (fit.inflation[which] > separable) {
+    d.reason = fmt::format("in this motion it cannot be told from {}", confused);
+  } else if (relative > well_known) {
+    d.reason =
+        fmt::format("its part of the {} is too small for the rest of it ({:.2g} {} rms): standard error {:.0f} %",
+                    out.effort->text, fit.residual, out.effort->unit, std::min(999.0, 100.0 * relative));
+  } else {
+    d.possible = true;
+    d.reason = fmt::format("standard error about {:.2g} %{}", 100.0 * relative, which == 3 ? " of the friction" : "");
+    d.remedy.clear();
+  }
+  return d;
+}
+
+Determinable asymmetry(const AxisInspection& out) {
+  if (both_directions(out))
+    return {"difference between the directions", true,
+            fmt::format("{:.0f} % of the motion goes in +x", 100.0 * out.forward), ""};
+  return {"difference between the directions", false, "the axis moves in one direction only",
+          "the same stretch in both directions"};
+}
+
+// Mean number of samples in which the axis moves by no more than `presliding` behind a reversal.
+double samples_behind_reversals(const AxisLog& axis, const FittedMotion& motion) {
+  std::size_t samples = 0, reversals = 0;
+  double last = 0.0;
+  for (std::size_t k = 0; k < axis.x.size(); ++k) {
+    const double v = motion.v[k];
+    if (v * last < 0.0) {
+      ++reversals;
+      for (std::size_t m = k; m < axis.x.size() && std::abs(axis.x[m] - axis.x[k]) < presliding; ++m) ++samples;
+    }
+    if (v != 0.0) last = v;
+  }
+  return reversals == 0 ? 0.0 : static_cast<double>(samples) / static_cast<double>(reversals);
+}
+
+// The least distance between two different positions: no finer than that the encoder tells.
+double finest_step(const std::vector<double>& x) {
+  double least = 0.0;
+  for (std::size_t k = 1; k < x.size(); ++k)
+    if (const double step = std::abs(x[k] - x[k - 1]); step > 0.0 && (least == 0.0 || step < least)) least = step;
+  return least;
+}
+
+Determinable presliding_shape(const AxisLog& axis, const FittedMotion& motion, const AxisInspection& out) {
+  Determinable d{
+      "presliding stiffness and shape", false, "",
+      "slow reversals: a sine of 10 to 100 um, or a feed of some mm/s that turns, at 1 kHz or faster and with "
+      "an encoder of 0.1 um or finer"};
+  const double samples = samples_behind_reversals(axis, motion);
+  const double step = finest_step(axis.x);
+  if (out.reversals < 2)
+    d.reason = fmt::format("{} reversal{}", out.reversals, out.reversals == 1 ? "" : "s");
+  else if (samples < 10.0)
+    d.reason = fmt::format("{:.1f} samples in the first {:.0f} um behind a reversal", samples, presliding * 1e6);
+  else if (step > 1e-6)
+    d.reason = fmt::format("the position comes in steps of {:.2g} um", step * 1e6);
+  else
+    d = {d.what, true,
+         fmt::format("{} reversals, {:.0f} samples each in the first {:.0f} um", out.reversals, samples,
+                     presliding * 1e6),
+         ""};
+  return d;
+}
+
+Determinable stribeck(const AxisInspection& out) {
+  const auto slow_ones = std::ranges::count_if(out.plateaus, [](const auto& p) { return std::abs(p.speed) <= slow; });
+  if (slow_ones >= 2)
+    return {"Stribeck velocity", true, fmt::format("{} constant speeds up to {:.0f} mm/s", slow_ones, mm_s(slow)), ""};
+  return {"Stribeck velocity", false,
+          fmt::format("{} constant speed{} up to {:.0f} mm/s", slow_ones, slow_ones == 1 ? "" : "s", mm_s(slow)),
+          "constant speeds of 0.1, 0.3, 1 and 3 mm/s in both directions, a second each"};
+}
+
+Determinable sliding_curve(const AxisInspection& out) {
+  double slowest = 0.0, fastest = 0.0;
+  for (const auto& p : out.plateaus) {
+    const double speed = std::abs(p.speed);
+    if (slowest == 0.0 || speed < slowest) slowest = speed;
+    fastest = std::max(fastest, speed);
+  }
+  const auto count = out.plateaus.size();
+  Determinable d{"shape of friction over speed", false, "",
+                 "at least five constant speeds over a range of 10 to 1, in both directions"};
+  if (count >= 8 && fastest > 5.0 * slowest)
+    d = {d.what, true,
+         fmt::format("{} constant speeds from {:.3g} to {:.3g} mm/s", count, mm_s(slowest), mm_s(fastest)), ""};
+  else if (count == 0)
+    d.reason = "no stretch of constant speed";
+  else
+    d.reason = fmt::format("{} constant speed{} from {:.3g} to {:.3g} mm/s", count, count == 1 ? "" : "s",
+                           mm_s(slowest), mm_s(fastest));
+  return d;
+}
+
+Determinable ripple(const KnownAxis& known, const AxisInspection& out) {
+  const double wanted = known.pole_pair_pitch ? 2.0 * *known.pole_pair_pitch : 0.0;
+  const bool steady = !out.plateaus.empty();
+  Determinable d{"force ripple and its pitch", steady && out.stroke > std::max(wanted, 1e-3), "",
+                 "a constant speed, slow enough to be followed, over at least two pole pair pitches"};
+  if (!steady)
+    d.reason = "no stretch of constant speed";
+  else if (known.pole_pair_pitch)
+    d.reason = fmt::format("the stroke of {:.4g} mm holds {:.1f} pole pair pitches", out.stroke * 1e3,
+                           out.stroke / *known.pole_pair_pitch);
+  else
+    d.reason = fmt::format("pitches up to {:.3g} mm, half the stroke", out.stroke * 500.0);
+  if (d.possible) d.remedy.clear();
+  return d;
+}
+
+Determinable frequency_response(const AxisLog& axis) {
+  if (!axis.i_inject.empty() || !axis.u_inject.empty())
+    return {"frequency response, resonance", true, "a test signal is recorded", ""};
+  return {"frequency response, resonance", false, "no test signal is recorded",
+          "i_inject or u_inject: a multisine or stepped sine at a speed that does not cross zero"};
+}
+
+Determinable drift(const Log& log, const AxisLog& axis) {
+  const double duration = log.t.back() - log.t.front();
+  if (duration >= long_enough)
+    return {"drift with temperature", true,
+            fmt::format("{:.0f} s{}", duration, axis.temperature.empty() ? "" : " with the temperature"), ""};
+  return {"drift with temperature", false, fmt::format("{:.3g} s", duration),
+          fmt::format("the same motion again and again over {:.0f} s or more, with the temperature", long_enough)};
+}
+
+}  // namespace
+
+void add_suspicions(const Log&, const AxisLog& axis, const KnownAxis& known, AxisInspection& out) {
+  for (const auto& s : out.saturation)
+    out.suspicions.push_back(
+        fmt::format("{} stands at its greatest value of {:.4g} for {:.2g} % of the samples: it is "
+                    "saturated there; record with less acceleration or speed",
+                    s.channel, s.level, 100.0 * s.part));
+  if (known.effort_limit && out.effort != nullptr && std::string_view(out.effort->name) != "F") {
+    double most = 0.0;
+    for (const double value : axis.*out.effort->values) most = std::max(most, std::abs(value));
+    if (most >= 0.98 * *known.effort_limit)
+      out.suspicions.push_back(
+          fmt::format("{} reaches {:.4g} {}, the machine's limit of {:.4g}: what happens there is "
+                      "the limit's doing",
+                      out.effort->name, most, out.effort->unit, *known.effort_limit));
+  }
+  if (!out.fit) return;
+  const auto& fit = *out.fit;
+  const auto negative = [&](std::size_t k) { return fit.value[k] < -3.0 * fit.error[k]; };
+  const bool mass = fit.inflation[0] < separable, friction = fit.inflation[2] < separable;
+  if (mass && negative(0) && (!friction || negative(2)))
+    out.suspicions.push_back(
+        fmt::format("{} falls when the axis accelerates: its sign, or that of the position, is "
+                    "swapped; turn one of them round (reverse = true in a mapping)",
+                    out.effort->name));
+  else if (mass && negative(0))
+    out.suspicions.push_back(
+        fmt::format("{} falls with the acceleration but opposes friction: it is recorded late, or "
+                    "is not the motor's",
+                    out.effort->name));
+  else if (friction && negative(2))
+    out.suspicions.push_back(
+        fmt::format("{} is smaller in the direction of motion than against it: friction would be "
+                    "negative; the sign may be swapped",
+                    out.effort->name));
+  if (out.delay && *out.delay < -1e-3)
+    out.suspicions.push_back(fmt::format(
+        "the position is {:.3g} ms ahead of its set-point: the channels may be swapped", -*out.delay * 1e3));
+  if (axis.x_set.empty())
+    out.suspicions.push_back("no x_set: the motion cannot be replayed in closed loop; record the set position");
+  if (!known.force_constant || !out.force_constant || std::string_view(out.effort->name) != "i") return;
+  const double ratio = *out.force_constant / *known.force_constant;
+  if (std::abs(ratio / std::numbers::sqrt2 - 1.0) < 0.1)
+    out.suspicions.push_back(
+        fmt::format("the machine's mass and force constant ask for {:.2f} times the recorded "
+                    "current: it looks like rms amperes; convert it to amplitude",
+                    ratio));
+  else if (std::abs(ratio - 1.0) > 0.1)
+    out.suspicions.push_back(
+        fmt::format("the machine's mass and force constant ask for {:.2f} times the recorded "
+                    "current: one of the three is wrong",
+                    ratio));
+}
+
+void add_determinable(const Log& log, const AxisLog& axis, const KnownAxis& known, const FittedMotion& motion,
+                      AxisInspection& out) {
+  out.determinable = {
+      rigid(out, 2, "Coulomb friction", "a constant force, or from viscous friction",
+            "both directions, and at least two speeds"),
+      rigid(out, 1, "viscous friction", "Coulomb friction, because the speed hardly changes",
+            "speeds over a range of 5 to 1, in both directions"),
+      rigid(out, 0, "moving mass", "friction, because acceleration and speed go together",
+            "accelerations that the friction does not hide: half the machine's greatest, both signs at each speed"),
+      rigid(out, 3, "constant force", "Coulomb friction, because the axis moves in one direction",
+            "the same speeds in both directions"),
+      asymmetry(out),
+      sliding_curve(out),
+      stribeck(out),
+      presliding_shape(axis, motion, out),
+      ripple(known, out),
+      frequency_response(axis),
+      drift(log, axis),
+  };
+}
+
+}  // namespace stiction::host

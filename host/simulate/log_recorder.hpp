@@ -1,0 +1,70 @@
+// Runs as logs in memory, in the contract's channels.
+#pragma once
+
+#include <utility>
+
+#include "host/log/log.hpp"
+#include "host/simulate/control_run.hpp"
+#include "host/simulate/friction_bench.hpp"
+#include "stiction/number/fixed_signals.hpp"
+
+namespace stiction::host {
+
+// Every tick of a control run: set-points, position, velocity, currents. It must outlive its sink.
+class LogRecorder {
+ public:
+  explicit LogRecorder(const sim::Machine& machine) {
+    log_.period = machine.timing.fast_period;
+    for (const auto& axis : machine.axes) log_.axes.emplace_back().axis = axis.name;
+  }
+  LogRecorder(const LogRecorder&) = delete;
+  LogRecorder& operator=(const LogRecorder&) = delete;
+
+  TraceSink<FixedSignals> sink() {
+    return [this](std::int64_t now_ns, std::span<const AxisSignals<FixedSignals>> signals) {
+      log_.t.push_back(static_cast<double>(now_ns) * 1e-9);
+      for (std::size_t k = 0; k < signals.size(); ++k) {
+        auto& axis = log_.axes[k];
+        const auto& s = signals[k];
+        axis.x_set.push_back(sim::to_si(s.x_set));
+        axis.v_set.push_back(sim::to_si(s.v_set));
+        axis.a_set.push_back(sim::to_si(s.a_set));
+        axis.x.push_back(sim::to_si(s.x));
+        axis.v.push_back(sim::to_si(s.v));
+        axis.i.push_back(sim::to_si(s.i));
+        axis.i_set.push_back(sim::to_si(s.i_set));
+      }
+    };
+  }
+  Log take() { return std::move(log_); }
+
+ private:
+  Log log_;
+};
+
+// Every `stride`-th step of a mass on a bench: position, velocity, and the force on it as F. No axis has a name.
+class BenchRecorder {
+ public:
+  explicit BenchRecorder(int stride = 50) : stride_(stride) {
+    log_.period = stride * FrictionBench::step;
+    log_.axes.resize(1);
+  }
+
+  // After a step under `force` (N).
+  void add(const FrictionBench& bench, double force) {
+    if (count_++ % stride_ != 0) return;
+    // Counted, because the bench's own time adds up its rounding.
+    log_.t.push_back(static_cast<double>(count_) * FrictionBench::step);
+    log_.axes[0].x.push_back(bench.position());
+    log_.axes[0].v.push_back(bench.velocity());
+    log_.axes[0].force.push_back(force);
+  }
+  Log take() { return std::move(log_); }
+
+ private:
+  int stride_;
+  long count_ = 0;
+  Log log_;
+};
+
+}  // namespace stiction::host

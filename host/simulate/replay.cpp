@@ -1,0 +1,227 @@
+#include "host/simulate/replay.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "host/log/set_points.hpp"
+#include "sim/control/double_signals.hpp"
+#include "stiction/number/fixed_signals.hpp"
+
+namespace stiction::host {
+namespace {
+
+constexpr double default_following_error = 2e-3;  // m, as sim::Supervision says
+
+// An axis' set-points with the way to the log's first one.
+class Motion {
+ public:
+  Motion(const Log& log, const AxisLog& axis) : points_(log, axis), begin_(log.t.front()) {
+    const auto first = points_.at(begin_);
+    v_ = first.velocity;
+    a_ = first.acceleration;
+    x_ = first.position;
+    moving_ = std::abs(v_) > 1e-5;  // m/s; less is what rounding of x_set leaves
+
+    const double back_to_rest = a_ != 0.0 ? v_ / a_ : -1.0;
+    uniform_ = back_to_rest > 0.0 && back_to_rest <= longest_lead_in;
+    length_ = !moving_ ? 0.0 : uniform_ ? back_to_rest : longest_lead_in;
+  }
+
+  double lead_in() const { return length_; }  // s
+
+  // At t s on the log's clock; before the lead-in the axis rests at its beginning.
+  sim::AxisSetPoint at(double t) const {
+    if (t >= begin_) return points_.at(t);
+    if (!moving_) return {x_, 0.0, 0.0};
+    const double s = std::max(0.0, 1.0 - (begin_ - t) / length_);  // 0 to 1 along the lead-in
+    if (uniform_) {
+      const double v = s * v_;
+      return {x_ - 0.5 * (v_ + v) * length_ * (1.0 - s), v, s > 0.0 ? a_ : 0.0};
+    }
+    // v = s^2 (b + c s) with v(1) = v_ and the log's first acceleration.
+    const double b = 3.0 * v_ - a_ * length_, c = a_ * length_ - 2.0 * v_;
+    const auto way = [&](double u) { return u * u * u * (b / 3.0 + 0.25 * c * u); };
+    return {x_ - length_ * (way(1.0) - way(s)), s * s * (b + c * s), s * (2.0 * b + 3.0 * c * s) / length_};
+  }
+
+  const SetPoints& points() const { return points_; }
+
+ private:
+  SetPoints points_;
+  double begin_, v_, a_, x_;
+  bool moving_ = false, uniform_ = false;
+  double length_ = 0.0;
+};
+
+double allowed_following_error(const sim::Axis& axis) {
+  return axis.supervision.following_error.value_or(default_following_error);
+}
+
+void require_within_limits(const Log& log, const AxisLog& axis, const sim::Axis& machine_axis, const Motion& motion) {
+  const auto& v = motion.points().velocity();
+  for (std::size_t k = 0; k < v.size(); ++k)
+    if (std::abs(v[k]) > machine_axis.max_velocity)
+      throw LogError(
+          fmt::format("{}: sample {}: found a set velocity of {:.4g} m/s{}; expected at most {:.4g} m/s, the "
+                      "max_velocity of axis {}",
+                      log.source, k + 1, v[k], axis.v_set.empty() ? " (from x_set)" : "", machine_axis.max_velocity,
+                      machine_axis.name));
+}
+
+// The values of one axis that a replay keeps, at one time.
+struct Sample {
+  double x = 0.0, v = 0.0, i = 0.0, i_set = 0.0, force = 0.0;
+};
+
+Sample between(const Sample& a, const Sample& b, double s) {
+  if (s > 1.0 - 1e-4) return b;  // to the bit, whatever the rounding of the two clocks
+  const auto mix = [s](double p, double q) { return p + s * (q - p); };
+  return {mix(a.x, b.x), mix(a.v, b.v), mix(a.i, b.i), mix(a.i_set, b.i_set), mix(a.force, b.force)};
+}
+
+// Collects the simulated values at the log's times.
+class Sampler {
+ public:
+  Sampler(const Log& log, const std::vector<std::size_t>& axes, const sim::Machine& machine)
+      : times_(log.t), axes_(axes), machine_(machine), before_(log.axes.size()), now_(log.axes.size()) {
+    out_.source = log.source;
+    out_.t = log.t;
+    out_.period = log.period;
+    for (const auto& axis : log.axes) out_.axes.emplace_back().axis = axis.axis;
+  }
+
+  bool done() const { return next_ == times_.size(); }
+
+  // The values of the tick at t s; ticks come in order.
+  void add(double t, std::vector<Sample> values) {
+    before_ = std::exchange(now_, std::move(values));
+    const double earlier = std::exchange(time_, t);
+    // Stamps and ticks are multiples of different steps: a nanosecond is none.
+    for (; !done() && times_[next_] <= t + 1e-9; ++next_) {
+      const double s = std::isfinite(earlier) ? std::clamp((times_[next_] - earlier) / (t - earlier), 0.0, 1.0) : 1.0;
+      for (std::size_t k = 0; k < axes_.size(); ++k) keep(k, between(before_[k], now_[k], s));
+    }
+  }
+
+  Log finish() { return std::move(out_); }
+
+ private:
+  void keep(std::size_t k, const Sample& sample) {
+    auto& axis = out_.axes[k];
+    const bool force_motor = machine_.axes[axes_[k]].motor.model == sim::MotorModel::force;
+    axis.x.push_back(sample.x);
+    axis.v.push_back(sample.v);
+    axis.force.push_back(sample.force);
+    (force_motor ? axis.u : axis.i).push_back(force_motor ? sample.i_set : sample.i);
+    if (!force_motor) axis.i_set.push_back(sample.i_set);
+  }
+
+  const std::vector<double>& times_;
+  const std::vector<std::size_t>& axes_;
+  const sim::Machine& machine_;
+  std::vector<Sample> before_, now_;
+  double time_ = -std::numeric_limits<double>::infinity();
+  std::size_t next_ = 0;
+  Log out_;
+};
+
+// Linear between the log's samples; 0 outside them.
+double at_time(const Log& log, const std::vector<double>& values, double t) {
+  const double place = (t - log.t.front()) / log.period;
+  if (values.empty() || place < 0.0 || place > static_cast<double>(values.size() - 1)) return 0.0;
+  const auto k = std::min(static_cast<std::size_t>(place), values.size() - 2);
+  return values[k] + (values[k + 1] - values[k]) * (place - static_cast<double>(k));
+}
+
+}  // namespace
+
+std::vector<std::size_t> match_axes(const sim::Machine& machine, const Log& log, const std::string& axis) {
+  std::string known;
+  for (const auto& each : machine.axes) known += (known.empty() ? "" : ", ") + each.name;
+  const auto index_of = [&](const std::string& name) {
+    for (std::size_t k = 0; k < machine.axes.size(); ++k)
+      if (machine.axes[k].name == name) return k;
+    throw LogError(fmt::format("{}: found the axis {}; expected one of {}: {}", log.source, name, machine.id, known));
+  };
+  std::vector<std::size_t> indices;
+  for (const auto& each : log.axes) {
+    if (!each.axis.empty())
+      indices.push_back(index_of(each.axis));
+    else if (!axis.empty())
+      indices.push_back(index_of(axis));
+    else if (machine.axes.size() == 1)
+      indices.push_back(0);
+    else
+      throw LogError(
+          fmt::format("{}: found channels without an axis, and {} has several; expected --axis with one of: "
+                      "{}",
+                      log.source, machine.id, known));
+  }
+  return indices;
+}
+
+double encoder_offset(const AxisLog& axis, double allowed) {
+  if (axis.x_set.empty() || axis.x.empty()) return 0.0;
+  double sum = 0.0;
+  for (std::size_t k = 0; k < axis.x.size(); ++k) sum += axis.x[k] - axis.x_set[k];
+  const double mean = sum / static_cast<double>(axis.x.size());
+  return std::abs(mean) > allowed ? mean : 0.0;
+}
+
+template <class S>
+Log replay(const sim::Machine& machine, const Log& log, const ReplaySettings& settings, const TraceSink<S>& trace) {
+  const auto indices = match_axes(machine, log, settings.axis);
+  std::vector<Motion> motions;
+  std::vector<double> start(machine.axes.size(), 0.0);
+  double lead_in = 0.0;
+  for (std::size_t k = 0; k < indices.size(); ++k) {
+    motions.emplace_back(log, log.axes[k]);
+    require_within_limits(log, log.axes[k], machine.axes[indices[k]], motions.back());
+    lead_in = std::max(lead_in, motions.back().lead_in());
+  }
+  // Whole slow periods before the log.
+  const double slow = machine.timing.slow_period;
+  const double zero = log.t.front() - std::ceil(lead_in / slow - 1e-9) * slow;  // on the log's clock
+  for (std::size_t k = 0; k < indices.size(); ++k) start[indices[k]] = motions[k].at(zero).position;
+
+  ControlRun<S> run(machine, start);
+  Sampler sampler(log, indices, machine);
+  std::vector<sim::AxisSetPoint> points(machine.axes.size());
+  while (!sampler.done()) {
+    const double t = zero + run.time();
+    std::vector<Sample> values(indices.size());
+    for (std::size_t k = 0; k < indices.size(); ++k) {
+      points[indices[k]] = motions[k].at(t);
+      auto& plant = run.plant(indices[k]);
+      if (!log.axes[k].external_force.empty()) plant.set_external_force(at_time(log, log.axes[k].external_force, t));
+      values[k].force = plant.motor_force();
+    }
+    run.tick(points, trace);
+    for (std::size_t k = 0; k < indices.size(); ++k) {
+      const auto& s = run.signals(indices[k]);
+      values[k] = {sim::to_si(s.x), sim::to_si(s.v), sim::to_si(s.i), sim::to_si(s.i_set), values[k].force};
+    }
+    sampler.add(t, std::move(values));
+  }
+  auto out = sampler.finish();
+  for (std::size_t k = 0; k < indices.size(); ++k) {
+    auto& axis = out.axes[k];
+    axis.x_set = log.axes[k].x_set;
+    axis.v_set = motions[k].points().velocity();
+    axis.a_set = motions[k].points().acceleration();
+    const double offset = encoder_offset(log.axes[k], allowed_following_error(machine.axes[indices[k]]));
+    for (double& x : axis.x) x += offset;
+  }
+  return out;
+}
+
+template Log replay<FixedSignals>(const sim::Machine&, const Log&, const ReplaySettings&,
+                                  const TraceSink<FixedSignals>&);
+template Log replay<sim::DoubleSignals>(const sim::Machine&, const Log&, const ReplaySettings&,
+                                        const TraceSink<sim::DoubleSignals>&);
+
+}  // namespace stiction::host

@@ -1,0 +1,42 @@
+// The set-points of a log through the control loop over the simulated machine.
+#pragma once
+
+#include <string>
+
+#include "host/log/log.hpp"
+#include "host/simulate/control_run.hpp"
+#include "sim/machine/machine.hpp"
+
+namespace stiction::host {
+
+struct ReplaySettings {
+  std::string axis;  // of the machine, for a log whose channels name none; empty: the machine's only axis
+};
+
+// What the simulated machine does with the set-points of `log`: a log with the same time and axes, whose channels are
+// x_set, v_set, a_set (as they were followed), x, v, i (A, what makes the force; u in V for a force motor), i_set and
+// force (N). `trace` sees every tick, beginning with those before the log.
+//
+// Where the log begins in motion, the machine is brought there: backwards with the log's first acceleration to rest if
+// that takes at most `longest_lead_in`, else by a smooth ramp of that length. It then begins at rest, and no sooner in
+// time than needed; position controller and log start on the same tick. Axes that the log does not have stand still
+// at 0. An external force in the log acts on the carriage; i_inject and u_inject do not act. Where a measured position
+// is off its set-point by more than the following error that the machine allows, the encoder has another zero: its
+// mean distance is added to the simulated position, so that both can be compared (see encoder_offset).
+//
+// Between ticks the simulated values are interpolated linearly. S: FixedSignals or sim::DoubleSignals. Throws LogError
+// when log and machine do not fit (axes, no x_set, beyond the machine's velocity), FaultTripped,
+// sim::ConfigurationError.
+template <class S>
+Log replay(const sim::Machine& machine, const Log& log, const ReplaySettings& settings = {},
+           const TraceSink<S>& trace = {});
+
+inline constexpr double longest_lead_in = 0.5;  // s
+
+// The machine's axis for each of the log's, by index. Throws LogError.
+std::vector<std::size_t> match_axes(const sim::Machine& machine, const Log& log, const std::string& axis);
+
+// Mean of x - x_set where it is beyond `allowed` (m), else 0.
+double encoder_offset(const AxisLog& axis, double allowed);
+
+}  // namespace stiction::host

@@ -1,0 +1,224 @@
+#include "host/simulate/replay_result.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/simulate/replay.hpp"
+
+namespace stiction::host {
+namespace {
+
+constexpr double micro = 1e6;  // m to um
+
+double rms(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value * value;
+  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, values.size())));
+}
+
+std::vector<double> difference(const std::vector<double>& a, const std::vector<double>& b, std::size_t from,
+                               double offset = 0.0) {
+  std::vector<double> out;
+  out.reserve(a.size() - from);
+  for (std::size_t k = from; k < a.size(); ++k) out.push_back(a[k] - b[k] - offset);
+  return out;
+}
+
+// The channel that both have and that tells the motor's effort.
+struct Effort {
+  std::vector<double> AxisLog::*values;
+  const char* name;
+  const char* unit;
+};
+const Effort* effort_of(const AxisLog& measured, const AxisLog& simulated) {
+  static constexpr Effort efforts[] = {
+      {&AxisLog::i, "current", "A"}, {&AxisLog::u, "voltage", "V"}, {&AxisLog::force, "motor force", "N"}};
+  for (const auto& effort : efforts)
+    if (!(measured.*effort.values).empty() && !(simulated.*effort.values).empty()) return &effort;
+  return nullptr;
+}
+
+std::size_t first_compared(const Log& log) {
+  const auto samples = static_cast<std::size_t>(settling / log.period);
+  return samples + 2 < log.t.size() ? samples : 0;
+}
+
+std::vector<double> scaled(std::vector<double> values, double factor) {
+  for (double& value : values) value *= factor;
+  return values;
+}
+
+double offset_of(const Log& measured, const ReplayCase& c, std::size_t axis, const std::string& name) {
+  const auto& machine_axis = c.machine.axes[match_axes(c.machine, measured, name)[axis]];
+  return encoder_offset(measured.axes[axis], machine_axis.supervision.following_error.value_or(2e-3));
+}
+
+class Result {
+ public:
+  Result(const Log& measured, const std::vector<ReplayCase>& cases, std::string axis)
+      : log_(measured), cases_(cases), axis_(std::move(axis)) {}
+
+  sim::ExperimentResult make(const std::string& signals) {
+    result_.experiment = "replay";
+    result_.title = "Replay of a log";
+    result_.signals = signals;
+    result_.question = fmt::format(
+        "The set-points of {} ({} samples at {:.4g} ms) through the simulated machine, beside what was measured.",
+        log_.source, log_.t.size(), log_.period * 1e3);
+    for (std::size_t axis = 0; axis < log_.axes.size(); ++axis) add_axis(axis);
+    return std::move(result_);
+  }
+
+ private:
+  void add_axis(std::size_t axis) {
+    const auto& measured = log_.axes[axis];
+    const auto& name = measured.axis;
+    const std::string of = name.empty() ? "" : " of " + name;
+    const auto* effort = effort_of(measured, cases_.front().simulated.axes[axis]);
+    sim::Chart error{"Following error" + of, "time, s", "set - actual position, um", "", false, {}};
+    sim::Chart position{"Simulated - measured position" + of, "time, s", "difference, um", "", false, {}};
+    sim::Chart current, rest;
+    if (effort != nullptr) {
+      const std::string unit = effort->unit;
+      current = {fmt::format("Motor {}{}", short_name(*effort), of),
+                 "time, s",
+                 fmt::format("{}, {}", effort->name, unit),
+                 "",
+                 false,
+                 {}};
+      rest = {fmt::format("Measured - simulated {}{}", effort->name, of),
+              "set velocity, m/min",
+              fmt::format("difference, {}", unit),
+              "Over the velocity: what friction, motor constant and mass of the machine file leave unexplained.",
+              false,
+              {}};
+    }
+    const double offset = offset_of(log_, cases_.front(), axis, axis_);
+    error.series.push_back(line("measured", scaled(difference(measured.x_set, measured.x, 0, -offset), micro)));
+    if (effort != nullptr) current.series.push_back(line("measured", measured.*effort->values));
+    for (const auto& c : cases_) {
+      const auto& simulated = c.simulated.axes[axis];
+      const auto d = compare_replay(log_, c.simulated, axis, offset);
+      if (&c == &cases_.front()) add_measured(name, d);
+      add_figures(c.label, name, d);
+      error.series.push_back(line(c.label, scaled(difference(simulated.x_set, simulated.x, 0, -offset), micro)));
+      position.series.push_back(line(c.label, scaled(difference(simulated.x, measured.x, 0), micro)));
+      if (effort == nullptr) continue;
+      current.series.push_back(line(c.label, simulated.*effort->values));
+      const auto from = first_compared(log_);
+      sim::Series over_velocity{
+          c.label, {}, difference(measured.*effort->values, simulated.*effort->values, from), true};
+      for (std::size_t k = from; k < log_.t.size(); ++k) over_velocity.x.push_back(simulated.v_set[k] * 60.0);
+      rest.series.push_back(std::move(over_velocity));
+    }
+    if (offset != 0.0)
+      result_.findings.push_back(fmt::format(
+          "The measured position{} stands {:.6g} mm off its set-point in the mean, more than the machine allows: the "
+          "encoder has another zero; it is taken off.",
+          of, offset * 1e3));
+    if (!measured.i_inject.empty() || !measured.u_inject.empty())
+      result_.findings.push_back("The log's injected signal" + of + " is not injected into the simulation.");
+    result_.charts.push_back(std::move(error));
+    result_.charts.push_back(std::move(position));
+    if (effort == nullptr) {
+      result_.findings.push_back(fmt::format(
+          "The measured effort{} has no counterpart in the simulation: record the current, or the voltage of a force "
+          "motor.",
+          of));
+      return;
+    }
+    result_.charts.push_back(std::move(current));
+    result_.charts.push_back(std::move(rest));
+  }
+
+  static std::string short_name(const Effort& effort) {
+    return std::string(effort.name) == "motor force" ? "force" : effort.name;
+  }
+
+  // What is measured is the same beside every case.
+  void add_measured(const std::string& axis, const ReplayDifference& d) {
+    const std::string key = axis.empty() ? "" : "_" + axis, of = axis.empty() ? "" : " of " + axis;
+    result_.figures.push_back({"following_error_rms_measured" + key,
+                               "um",
+                               "measured following error, rms" + of,
+                               d.measured_following_error * micro,
+                               {}});
+    if (*d.effort_unit == '\0') return;
+    result_.figures.push_back({effort_name(d) + "_rms_measured" + key,
+                               d.effort_unit,
+                               "measured " + effort_name(d) + ", rms" + of,
+                               d.measured_effort,
+                               {}});
+  }
+
+  static std::string effort_name(const ReplayDifference& d) {
+    const std::string unit = d.effort_unit;
+    return unit == "A" ? "current" : unit == "V" ? "voltage" : "force";
+  }
+
+  void add_figures(const std::string& label, const std::string& axis, const ReplayDifference& d) {
+    std::string key = axis.empty() ? "" : axis + "_";
+    for (const char c : label) key += (c == ' ' || c == ',' || c == '/') ? '_' : c;
+    const std::string of = axis.empty() ? "" : " of " + axis;
+    const auto add = [&](const char* figure, const char* unit, const std::string& text, double value) {
+      result_.figures.push_back({std::string(figure) + "_" + key, unit, text + of + ", " + label, value, {}});
+    };
+    add("position_difference_rms", "um", "simulated - measured position, rms", d.position * micro);
+    add("following_error_rms", "um", "simulated following error, rms", d.following_error * micro);
+    std::string sentence =
+        fmt::format("{}{}: position {:.3g} um rms off the measured one", label, of, d.position * micro);
+    if (*d.effort_unit != '\0') {
+      const auto what = effort_name(d);
+      result_.figures.push_back({what + "_difference_rms_" + key,
+                                 d.effort_unit,
+                                 "simulated - measured " + what + ", rms" + of + ", " + label,
+                                 d.effort,
+                                 {}});
+      result_.figures.push_back({what + "_difference_" + key,
+                                 "%",
+                                 "simulated - measured " + what + ", part of the measured" + of + ", " + label,
+                                 d.measured_effort > 0.0 ? 100.0 * d.effort / d.measured_effort : 0.0,
+                                 {}});
+      sentence += fmt::format(", {} {:.4f} {} rms, {:.2f} % of the measured one", what, d.effort, d.effort_unit,
+                              result_.figures.back().value);
+    }
+    result_.findings.push_back(sentence + ".");
+  }
+
+  sim::Series line(const std::string& name, std::vector<double> values) const {
+    return {name, log_.t, std::move(values), false};
+  }
+
+  const Log& log_;
+  const std::vector<ReplayCase>& cases_;
+  std::string axis_;
+  sim::ExperimentResult result_;
+};
+
+}  // namespace
+
+ReplayDifference compare_replay(const Log& measured, const Log& simulated, std::size_t axis, double offset) {
+  const auto& m = measured.axes[axis];
+  const auto& s = simulated.axes[axis];
+  const auto from = first_compared(measured);
+  ReplayDifference d;
+  d.position = rms(difference(s.x, m.x, from));
+  d.following_error = rms(difference(s.x_set, s.x, from, -offset));
+  d.measured_following_error = rms(difference(m.x_set, m.x, from, -offset));
+  if (const auto* effort = effort_of(m, s)) {
+    d.effort = rms(difference(s.*effort->values, m.*effort->values, from));
+    d.measured_effort = rms(std::vector<double>((m.*effort->values).begin() + static_cast<std::ptrdiff_t>(from),
+                                                (m.*effort->values).end()));
+    d.effort_unit = effort->unit;
+  }
+  return d;
+}
+
+sim::ExperimentResult replay_result(const Log& measured, const std::vector<ReplayCase>& cases,
+                                    const std::string& signals, const std::string& axis) {
+  return Result(measured, cases, axis).make(signals);
+}
+
+}  // namespace stiction::host

@@ -1,0 +1,37 @@
+// A measured log beside its replay on one or several simulated machines: figures and charts.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "host/log/log.hpp"
+#include "sim/experiment/experiment_result.hpp"
+#include "sim/machine/machine.hpp"
+
+namespace stiction::host {
+
+// One replay of the log.
+struct ReplayCase {
+  std::string label;  // what its curves are called: a friction model, a machine
+  sim::Machine machine;
+  Log simulated;
+};
+
+// How a simulated axis differs from the measured one. Without the log's first `settling` seconds, in which the
+// simulation's start dies out.
+struct ReplayDifference {
+  double position = 0.0;                  // m rms, simulated - measured position
+  double following_error = 0.0;           // m rms, x_set - x simulated
+  double measured_following_error = 0.0;  // m rms; without an encoder's offset
+  double effort = 0.0;                    // A, V or N rms, simulated - measured
+  double measured_effort = 0.0;           // rms of the measured one
+  const char* effort_unit = "";           // "A", "V", "N"; empty: the log has none that the simulation has
+};
+inline constexpr double settling = 0.1;  // s
+ReplayDifference compare_replay(const Log& measured, const Log& simulated, std::size_t axis, double offset);
+
+// The experiment "replay" of all cases, which share the log's time. `cases`: at least one.
+sim::ExperimentResult replay_result(const Log& measured, const std::vector<ReplayCase>& cases,
+                                    const std::string& signals, const std::string& axis);
+
+}  // namespace stiction::host
