@@ -1,5 +1,6 @@
 // `stiction machine`: the shipped machines, the check of a machine file, the reference of its keys.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <memory>
 
@@ -19,10 +20,10 @@ struct MachineCommand {
 
 // Reads and checks a file, down to the drive's number formats, and prints what was understood.
 void check_machine(const std::string& name) {
-  const auto machine = MachineOptions{name, {}}.load(name, "");
+  const auto machine = MachineOptions{name, {}}.load(name, "", MachinePart::any);
   fmt::print("{}: {}\n", machine.id, machine.name);
   for (const auto& section : machine_sheet(machine)) {
-    fmt::print("\n{}\n", section.title);
+    fmt::print("\n{}: {}\n", section.title, fmt::join(section.columns, ", "));
     for (const auto& row : section.rows) {
       fmt::print("  {:<44} {:<8}", row.label, row.unit);
       for (const auto& value : row.values) fmt::print(" {:>16}", value);

@@ -11,6 +11,13 @@ std::span<const Experiment> experiments() {
       {"friction-lag", "sliding with varying speed: friction that follows late", {"lugre"}, run_friction_lag},
       {"break-away", "force ramps of different rates: the force at which sliding begins", {"lugre"}, run_break_away},
       {"stick-slip", "a mass pulled by a spring at constant speed", {"lugre", "classical"}, run_stick_slip},
+      {"feed-cutting",
+       "a feed drive that sticks and slips while cutting: jumps, feed per revolution, critical feed",
+       {},
+       run_feed_cutting,
+       ExperimentMachine::feed_drive,
+       "60 mm/min, 300 mm/min, 600 mm/min, 1500 mm/min, 3000 mm/min",
+       {equations_corrected, equations_printed}},
   };
   return table;
 }

@@ -54,9 +54,8 @@ struct FeedFriction {
     return normal_load * (static_long + (static_short - static_long) * std::exp(-dwell / dwell_time));
   }
   double in_motion(double speed) const {
-    const double drop = stribeck_velocity > 0.0
-                            ? (static_short - sliding) * std::exp(-std::pow(speed / stribeck_velocity, 2.0))
-                            : 0.0;
+    const double drop =
+        stribeck_velocity > 0.0 ? (static_short - sliding) * std::exp(-std::pow(speed / stribeck_velocity, 2.0)) : 0.0;
     return normal_load * (sliding + drop) + viscous * speed;
   }
   // The step of friction after a long standstill, N.
@@ -75,11 +74,11 @@ struct FeedCutting {
 
 // (12), the force C* x8^y given by its value at a speed.
 struct FeedTool {
-  double mass = 0.0;                                 // m_p, kg
-  double stiffness_x = 0.0, stiffness_z = 0.0;       // N/m
+  double mass = 0.0;                            // m_p, kg
+  double stiffness_x = 0.0, stiffness_z = 0.0;  // N/m
   double damping_ratio_x = 0.0, damping_ratio_z = 0.0;
-  double reference_speed = 0.0;                      // m/s
-  double force_x = 0.0, force_z = 0.0;               // N, at the reference speed
+  double reference_speed = 0.0;         // m/s
+  double force_x = 0.0, force_z = 0.0;  // N, at the reference speed
   double exponent_x = 0.0, exponent_z = 0.0;
 };
 

@@ -9,9 +9,9 @@ namespace {
 
 using namespace feed_state;
 
-constexpr double smallest_step = 1e-13;      // s; below, the error estimate is rounding
-constexpr double step_after_event = 1e-6;    // s; the tool's force begins and ends with an infinite slope
-constexpr double smallest_scale = 1e-30;     // of a state that stays zero
+constexpr double smallest_step = 1e-13;    // s; below, the error estimate is rounding
+constexpr double step_after_event = 1e-6;  // s; the tool's force begins and ends with an infinite slope
+constexpr double smallest_scale = 1e-30;   // of a state that stays zero
 constexpr double safety = 0.9, shrinks_most = 0.2, grows_most = 5.0;
 
 // How large each state becomes when the drive carries static friction at the set feed: the floor of its error's scale.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace stiction::sim {
@@ -63,11 +64,12 @@ Jumping jumping_at(const FeedDrive& drive, FeedSource source, FeedEquations equa
                          (drive.carriage.stiffness * feed);
   const double settling = settling_time(drive);
   const std::size_t wanted = cycles_before + cycles_measured + 1;
+  // A drive that takes many times longer is unstable itself.
+  const double deadline = 20.0 * static_cast<double>(wanted) * (winding + settling);
   while (run.jumps().size() < wanted || run.sliding()) {
-    const double begin = run.sliding() ? run.jumps().back().start : run.time() + winding;
-    if (!run.advance_to_standstill(begin + settling)) {
-      if (run.sliding() && run.time() >= run.jumps().back().start + settling) return {};
-    }
+    const bool stopped = run.advance_to_standstill(run.time() + winding + settling);
+    if (!stopped && run.sliding() && run.time() >= run.jumps().back().start + settling) return {};
+    if (run.time() > deadline) return {};
   }
   Jumping result{true, {}};
   const auto& jumps = run.jumps();
@@ -83,7 +85,8 @@ Jumping jumping_at(const FeedDrive& drive, FeedSource source, FeedEquations equa
 }
 
 double critical_feed_by_bisection(const FeedDrive& drive, FeedSource source, double relative) {
-  const auto jumps = [&](double feed) { return jumping_at(drive, source, {}, feed).lasts; };
+  // A step is accurate to 1e-8: beside the bisection's own width that is nothing.
+  const auto jumps = [&](double feed) { return jumping_at(drive, source, {}, feed, {1e-8, 5e-4}).lasts; };
   const double guess = critical_feed_of_ideal_drive(drive);
   double low = guess, high = guess;
   while (!jumps(low)) {
@@ -91,11 +94,11 @@ double critical_feed_by_bisection(const FeedDrive& drive, FeedSource source, dou
     low *= 0.7;
     if (low < 0.01 * guess) return 0.0;
   }
-  if (high == low)
-    while (jumps(high)) {
-      low = high;
-      high *= 1.4;
-    }
+  while (high == low || jumps(high)) {
+    if (high > low) low = high;
+    high = 1.4 * low;
+    if (high > 100.0 * guess) return std::numeric_limits<double>::infinity();
+  }
   while (high - low > relative * low) {
     const double middle = std::sqrt(low * high);
     (jumps(middle) ? low : high) = middle;

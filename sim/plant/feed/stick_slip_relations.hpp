@@ -20,11 +20,11 @@ double critical_feed_of_ideal_drive(const FeedDrive& drive);
 
 // A cycle of steady jumping.
 struct JumpCycle {
-  double travel = 0.0;         // m, of the jump
-  double period = 0.0;         // s, from start to start
-  double slip_time = 0.0;      // s
-  double dwell = 0.0;          // s
-  double break_away_force = 0; // N
+  double travel = 0.0;          // m, of the jump
+  double period = 0.0;          // s, from start to start
+  double slip_time = 0.0;       // s
+  double dwell = 0.0;           // s
+  double break_away_force = 0;  // N
 };
 
 // Whether the drive from standstill keeps jumping at `feed`; if it does, the mean of its cycles after the start has
@@ -36,8 +36,9 @@ struct Jumping {
 Jumping jumping_at(const FeedDrive& drive, FeedSource source, FeedEquations equations, double feed,
                    FeedAccuracy accuracy = {});
 
-// The feed, m/s, above which the simulated drive stops jumping, by bisection to `relative`. Zero when it does not even
-// jump at a hundredth of the ideal drive's critical feed.
+// The feed, m/s, above which the simulated drive with the corrected equations stops jumping, by bisection to
+// `relative`. Zero when it does not even jump at a hundredth of the ideal drive's critical feed, infinite when it still
+// does at a hundred times that.
 double critical_feed_by_bisection(const FeedDrive& drive, FeedSource source, double relative);
 
 }  // namespace stiction::sim
