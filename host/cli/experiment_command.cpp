@@ -68,6 +68,8 @@ ExperimentInput input_of(const Experiment& experiment, const ExperimentOptions& 
                         {}};
   if (axes) input.friction = models_for(experiment, options.friction, input.machine);
   if (experiment.feeds != nullptr) input.feeds = feeds(options.feed);
+  for (const double feed : input.feeds)
+    if (!(feed > 0.0)) throw UsageError(fmt::format("--feed: found '{}'; expected feeds above zero", options.feed));
   input.equations = equations_for(experiment, options.equations);
   return input;
 }

@@ -1,6 +1,5 @@
 // `stiction machine`: the shipped machines, the check of a machine file, the reference of its keys.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <memory>
 
@@ -23,7 +22,7 @@ void check_machine(const std::string& name) {
   const auto machine = MachineOptions{name, {}}.load(name, "", MachinePart::any);
   fmt::print("{}: {}\n", machine.id, machine.name);
   for (const auto& section : machine_sheet(machine)) {
-    fmt::print("\n{}: {}\n", section.title, fmt::join(section.columns, ", "));
+    fmt::print("\n{}\n", section.title);
     for (const auto& row : section.rows) {
       fmt::print("  {:<44} {:<8}", row.label, row.unit);
       for (const auto& value : row.values) fmt::print(" {:>16}", value);

@@ -25,14 +25,18 @@ Variant variant_of(const std::string& name) {
   return {name, {corrected, corrected}};
 }
 
-// Long enough for four cycles of an ideal drive and for eight revolutions.
+// Until the fifth jump begins, if it comes soon, and at least eight revolutions.
 double shown_duration(const sim::FeedDrive& drive, double feed) {
   const double winding = drive.carriage.stiffness * feed;
   const double first =
       (drive.friction.normal_load * drive.friction.static_long + drive.cutting.constant_force) / winding;
   const double cycle =
       2.0 * drive.friction.step() / winding + 2.0 * std::numbers::pi / drive.carriage.natural_frequency();
-  return std::max(first + 4.0 * cycle, 8.0 * drive.cutting.revolution());
+  const double soon = 3.0 * (first + 5.0 * cycle);
+  sim::StickSlipFeed run(drive, sim::FeedSource::pi_drive, {}, feed);
+  while (run.jumps().size() < 5 && run.time() < soon) run.advance_to_standstill(run.time() + 0.1 * cycle);
+  const double shown = run.jumps().size() < 5 ? first + 5.0 * cycle : run.jumps().back().start + 0.1 * cycle;
+  return std::max(shown, 8.0 * drive.cutting.revolution());
 }
 
 struct TimeCharts {

@@ -92,7 +92,8 @@ void add_over_gain(sim::ExperimentResult& result, const sim::FeedDrive& drive) {
   sim::Chart chart{"Critical feed over loop gain",
                    "gain over that of the machine file",
                    "critical feed, mm/min",
-                   "One gain at a time. Formula: a drive that moves at constant speed, whatever the force.",
+                   "One gain at a time. Formula: a drive that moves at constant speed, whatever the force. A curve "
+                   "ends where the loop is unstable: such a drive jumps at any feed.",
                    true,
                    {}};
   struct Loop {
@@ -104,7 +105,7 @@ void add_over_gain(sim::ExperimentResult& result, const sim::FeedDrive& drive) {
                                    {"current loop gain", "current_gain", "current-loop gain",
                                     [](sim::FeedDrive& d) -> double& { return d.current_controller.gain; }}}};
   sim::Series formula = named("formula");
-  constexpr std::array factors{0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
+  constexpr std::array factors{0.125, 0.25, 0.5, 1.0, 1.414, 2.0, 2.828, 4.0};
   for (const double factor : {factors.front(), factors.back()})
     add_point(formula, factor, sim::critical_feed_of_ideal_drive(drive));
   chart.series.push_back(std::move(formula));
@@ -116,7 +117,7 @@ void add_over_gain(sim::ExperimentResult& result, const sim::FeedDrive& drive) {
       gain(each) *= factor;
       const double feed = sim::critical_feed_by_bisection(each, pi_drive, width);
       add_point(series, factor, feed);
-      if (factor != 0.5 && factor != 2.0) continue;
+      if ((factor != 0.5 && factor != 2.0) || !std::isfinite(feed)) continue;
       result.figures.push_back({fmt::format("critical_feed_{}_times_{:g}", key, factor),
                                 "mm/min",
                                 fmt::format("PI drive: critical feed, {} times {:g}", text, factor),

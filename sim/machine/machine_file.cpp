@@ -197,6 +197,10 @@ class MachineReader {
     };
     check("static_short", friction.static_short, "sliding", friction.sliding);
     check("static_long", friction.static_long, "static_short", friction.static_short);
+    if (friction.step() <= 0.0)
+      document_.fail(table.get("static_long")->source(), "feed_drive.friction.static_long",
+                     describe_node(*table.get("static_long")),
+                     fmt::format("a number greater than {}, the value of sliding", friction.sliding));
   }
 
   void check_experiments() const {

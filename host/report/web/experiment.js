@@ -116,7 +116,7 @@ function drawCharts() {
       margin: { l: 76, r: 24, t: 10, b: 46 }, uirevision: 'magnified',
       xaxis: axisStyle(plain(chart.x_label), abscissaStyle(chart)),
       yaxis: axisStyle(twoLines(chart.y_label), { zeroline: true, zerolinecolor: '#9aa5b1', nticks: 7 }),
-    });
+    }, { all: Boolean(chart.x_range) });
   });
 }
 

@@ -106,6 +106,38 @@ TEST_F(Cli, RefusesBadUsage) {
   expect_refused("compare --machine mcfv5050ln", "--reference is required");
 }
 
+TEST_F(Cli, RefusesAMachineWithoutThePartThatAnExperimentNeeds) {
+  expect_refused("simulate impact --machine stick-slip-feed --out result",
+                 "found a feed drive and no axis; expected a machine with a table [axis.NAME]");
+  expect_refused("simulate circle --machine stick-slip-feed --out result", "found a feed drive and no axis");
+  expect_refused("simulate feed-cutting --machine mcfv5050ln --out result",
+                 "found axes and no feed drive; expected a machine with a table [feed_drive]");
+}
+
+TEST_F(Cli, RefusesFeedsAndEquationsThatFeedCuttingDoesNotKnow) {
+  const std::string run = "simulate feed-cutting --machine stick-slip-feed ";
+  expect_refused(run + "--equations wrong",
+                 "--equations: found 'wrong'; expected one or several of: corrected, printed");
+  expect_refused(run + "--feed '0 mm/min'", "--feed: found '0 mm/min'; expected feeds above zero");
+  expect_refused(run + "--feed '60 mm'", "--feed: found '60 mm'");
+  expect_refused(run + "--set feed_drive.carriage.mas='3 kg'", "did you mean \"mass\"?");
+  expect_refused(run + "--friction lugre", "--friction");
+}
+
+TEST_F(Cli, FeedCuttingPrintsItsFiguresByTheContract) {
+  const auto result =
+      stiction("simulate feed-cutting --machine stick-slip-feed --feed '60 mm/min' --equations corrected --json");
+  ASSERT_EQ(result.code, 0) << result.error;
+  const auto json = nlohmann::json::parse(result.out);
+  EXPECT_EQ(json["schema"], "stiction.feed-cutting/1");
+  EXPECT_EQ(json["machine"], "stick-slip-feed");
+  EXPECT_NEAR(json["results"]["jump_corrected_at_60_mm_per_min_um"].get<double>(), 281.0, 3.0);
+  EXPECT_FALSE(json["results"].contains("jumps_printed_at_60_mm_per_min"));
+  // Of what the study found only the critical feed at zeta 0.1 differs: see its finding.
+  for (const auto& [key, holds] : json["holds"].items())
+    EXPECT_EQ(holds.get<bool>(), key != "critical_beta_at_zeta_0.1") << key;
+}
+
 TEST_F(Cli, RefusesAGainThatTheNumberFormatCannotHold) {
   expect_refused("simulate circle --machine mcfv5050ln --set axis.X.position_controller.gain='2000 1/s'",
                  "axis.X.position_controller.gain: found gain = 2000; expected at most 1024");
