@@ -40,8 +40,13 @@ double shown_duration(const sim::FeedDrive& drive, double feed) {
 }
 
 struct TimeCharts {
-  sim::Chart travel{"Travel", "time, s", "travel, mm", "The drive winds up its spring; the carriage follows in jumps.",
-                    false,    {}};
+  sim::Chart travel{"Travel",
+                    "time, s",
+                    "travel, mm",
+                    "The drive winds up its spring; the carriage (corrected, printed: the form of its equations) "
+                    "follows in jumps.",
+                    false,
+                    {}};
   sim::Chart speed{"Sliding speed", "time, s", "speed of the carriage, mm/s", "", false, {}};
   sim::Chart force{"Drive force",
                    "time, s",

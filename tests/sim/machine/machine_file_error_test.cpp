@@ -81,7 +81,7 @@ TEST(MachineFileError, UnknownKeySuggestsTheNearestAndListsTheKnown) {
             "phase_inductance, mutual_inductance, emf_constant, phase_force_constant, force_constant, pole_pair_pitch, "
             "count; did you mean \"model\"?");
   EXPECT_EQ(error_after("name = \"small\"", "name = \"small\"\ncolour = \"red\""),
-            "FILE:3: colour: found an unknown key; expected one of schema, name, timing, axis, experiment, reference");
+            "FILE:3: colour: found an unknown key; expected one of schema, name, timing, feed_drive, axis, experiment, reference");
 }
 
 TEST(MachineFileError, UnknownKeyIsFoundAtEveryLevel) {
@@ -126,7 +126,7 @@ TEST(MachineFileError, OtherSchema) {
 
 TEST(MachineFileError, FileWithoutAxis) {
   EXPECT_EQ(error_of("schema = \"stiction.machine/1\"\nname = \"empty\"\n"),
-            "FILE:1: axis: found no axis; expected at least one table [axis.NAME]");
+            "FILE:1: axis: found no axis; expected at least one table [axis.NAME], or a table [feed_drive]");
   EXPECT_TRUE(error_of("schema = \"stiction.machine/1\"\nname = \"bad\"\n[axis.\"a.b\"]\n")
                   .starts_with("FILE:3: axis: found the name \"a.b\"; expected a name of letters"));
 }
@@ -219,7 +219,7 @@ TEST(MachineFileError, OverridesOfEveryExperimentAreChecked) {
   EXPECT_EQ(error_of(small_machine + "[experiment.impact.axis.C]\nmass = \"3 kg\"\n"),
             "FILE:29: experiment.impact.axis.C: found an unknown key; expected one of B; did you mean \"B\"?");
   EXPECT_EQ(error_of(small_machine + "[experiment.impact.reference]\n"),
-            "FILE:29: experiment.impact.reference: found an unknown key; expected one of name, timing, axis");
+            "FILE:29: experiment.impact.reference: found an unknown key; expected one of name, timing, axis, feed_drive");
   EXPECT_TRUE(error_of(small_machine + "[experiment.imapct.axis.B]\nmass = \"3 kg\"\n")
                   .starts_with("FILE:29: experiment.imapct: found an unknown key; expected one of circle, "));
 }
@@ -257,7 +257,7 @@ TEST(MachineFileError, SetNamesItselfAsThePlace) {
   EXPECT_EQ(error_of_set({"axis.Q.mass=3 kg"}),
             "--set axis.Q.mass: axis.Q: found an unknown key; expected one of X, Y; did you mean \"X\"?");
   EXPECT_EQ(error_of_set({"reference.circle=3"}),
-            "--set reference.circle: reference: found an unknown key; expected one of name, timing, axis");
+            "--set reference.circle: reference: found an unknown key; expected one of name, timing, axis, feed_drive");
 }
 
 TEST(MachineFileError, SetWithoutKeyOrValue) {
