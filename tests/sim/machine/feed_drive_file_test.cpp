@@ -10,15 +10,15 @@
 namespace stiction::sim::test {
 namespace {
 
-std::string shipped_feed_drive() {
-  std::ifstream in(shipped_machine().parent_path() / "stick-slip-feed.toml");
+std::string feed_drive_text() {
+  std::ifstream in(shipped_feed_drive());
   std::ostringstream text;
   text << in.rdbuf();
   return text.str();
 }
 
 TEST(FeedDriveFile, ShippedOneHasAFeedDriveAndNoAxis) {
-  const auto machine = read_text(shipped_feed_drive());
+  const auto machine = read_text(feed_drive_text());
   EXPECT_TRUE(machine.axes.empty());
   ASSERT_TRUE(machine.feed_drive);
   const auto& drive = *machine.feed_drive;
@@ -32,7 +32,7 @@ TEST(FeedDriveFile, ShippedOneHasAFeedDriveAndNoAxis) {
 }
 
 TEST(FeedDriveFile, StandsBesideAxes) {
-  auto text = shipped_feed_drive();
+  auto text = feed_drive_text();
   const auto tables = text.substr(text.find("[feed_drive]"));
   const auto machine = read_text(small_machine + tables);
   EXPECT_EQ(machine.axes.size(), 1U);
@@ -40,18 +40,17 @@ TEST(FeedDriveFile, StandsBesideAxes) {
 }
 
 TEST(FeedDriveFile, TakesOverrides) {
-  const auto set =
-      read_text(shipped_feed_drive(), {.experiment = {}, .set = {"feed_drive.carriage.stiffness=4e7 N/m"}});
+  const auto set = read_text(feed_drive_text(), {.experiment = {}, .set = {"feed_drive.carriage.stiffness=4e7 N/m"}});
   EXPECT_DOUBLE_EQ(set.feed_drive->carriage.stiffness, 4e7);
   const auto overridden =
-      read_text(shipped_feed_drive() + "[experiment.feed-cutting.feed_drive.cutting]\nspindle_speed = \"500 rpm\"\n",
+      read_text(feed_drive_text() + "[experiment.feed-cutting.feed_drive.cutting]\nspindle_speed = \"500 rpm\"\n",
                 {.experiment = "feed-cutting", .set = {}});
   EXPECT_NEAR(overridden.feed_drive->cutting.revolution(), 0.12, 1e-12);
 }
 
 TEST(FeedDriveFile, RefusesWhatCannotBe) {
   const auto error = [](const std::string& from, const std::string& to) {
-    return error_of(replaced(shipped_feed_drive(), from, to));
+    return error_of(replaced(feed_drive_text(), from, to));
   };
   EXPECT_NE(error("mass = \"300 kg\"", "mass = \"300 N\"").find("feed_drive.carriage.mass: found \"300 N\""),
             std::string::npos);
