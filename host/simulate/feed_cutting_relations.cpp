@@ -12,6 +12,7 @@ namespace stiction::host {
 namespace {
 
 constexpr auto ideal = sim::FeedSource::constant_speed;
+constexpr sim::FeedEquations printed_damping{false, true}, printed_stick{true, false};
 constexpr double slow = 0.018;  // beta of the study's relations
 
 // v sqrt(c m) / dF = beta.
@@ -100,6 +101,46 @@ void add_feed_over_turns(sim::ExperimentResult& result, const sim::FeedDrive& dr
                               feeds[i] * 1e3, expected(study[i], 0.00293)});
 }
 
+// The study solved (10) with PI loops and the damping term as printed.
+void add_drive_of_the_study(sim::ExperimentResult& result, const sim::FeedDrive& drive) {
+  const bool known = is_lathe_of_the_study(drive);
+  const auto pi = [&](double mm_per_minute, sim::FeedEquations equations) {
+    return sim::jumping_at(drive, sim::FeedSource::pi_drive, equations, mm_per_minute * mm_per_min);
+  };
+  const auto expected = [&](double value, double tolerance) {
+    return known ? std::optional(sim::Expectation{value, tolerance, feed_study}) : std::nullopt;
+  };
+  const auto at_60 = pi(60.0, printed_damping), at_1500 = pi(1500.0, printed_damping);
+  result.figures.push_back({"jump_at_60_mm_per_min_printed_damping", "um", "PI drive, printed damping, 60 mm/min: jump",
+                            at_60.cycle.travel * 1e6, expected(315.0, 3.15)});
+  result.figures.push_back({"period_at_60_mm_per_min_printed_damping", "s",
+                            "PI drive, printed damping, 60 mm/min: period", at_60.cycle.period,
+                            expected(0.312, 0.00312)});
+  result.figures.push_back({"jump_ratio_at_60_mm_per_min_printed_damping", "",
+                            "PI drive, printed damping, 60 mm/min: jump over 2 dF/c",
+                            at_60.cycle.travel / double_step(drive), expected(1.05, 0.0105)});
+  result.figures.push_back({"jump_ratio_at_1500_mm_per_min_printed_damping", "",
+                            "PI drive, printed damping, 1500 mm/min: jump over 2 dF/c",
+                            at_1500.cycle.travel / double_step(drive), expected(2.5, 0.025)});
+  result.figures.push_back({"jumps_at_3000_mm_per_min_printed_damping", "",
+                            "PI drive, printed damping, 3000 mm/min: 1 if it goes on jumping",
+                            pi(3000.0, printed_damping).lasts ? 1.0 : 0.0, expected(0.0, 0.0)});
+  const auto corrected = pi(60.0, {});
+  result.figures.push_back({"jump_at_60_mm_per_min_corrected",
+                            "um",
+                            "PI drive, corrected equations, 60 mm/min: jump",
+                            corrected.cycle.travel * 1e6,
+                            {}});
+  result.findings.push_back(
+      fmt::format("The printed damping term is a constant force: with it the PI drive jumps {:.1f} um at 60 mm/min and "
+                  "{:.2f} times "
+                  "2 dF/c at 1500 mm/min; with the term on the relative speed it jumps {:.1f} um and {}. The study's "
+                  "315 um and 1.05 "
+                  "to 2.5 are those of the printed term.",
+                  at_60.cycle.travel * 1e6, at_1500.cycle.travel / double_step(drive), corrected.cycle.travel * 1e6,
+                  pi(1500.0, {}).lasts ? "still jumps at 1500 mm/min" : "no longer jumps at 1500 mm/min"));
+}
+
 }  // namespace
 
 bool is_lathe_of_the_study(const sim::FeedDrive& drive) {
@@ -130,8 +171,6 @@ void add_feed_relations(sim::ExperimentResult& result, const sim::FeedDrive& mac
 void add_printed_equations(sim::ExperimentResult& result, const sim::FeedDrive& machine) {
   auto drive = without_dwell(machine);
   drive.friction.stribeck_velocity = drive.friction.viscous = drive.cutting.coefficient = 0.0;
-  constexpr sim::FeedEquations printed_damping{false, true}, printed_stick{true, false};
-
   const double feed = feed_of(slow, drive);
   const double undamped = sim::jumping_at(damped(drive, 0.0), ideal, {}, feed).cycle.travel;
   result.figures.push_back({"jump_with_printed_damping_ratio", "",
@@ -172,44 +211,7 @@ void add_printed_equations(sim::ExperimentResult& result, const sim::FeedDrive& 
             held}})
     result.figures.push_back(
         {name, "N", text, break_away(equations, jump), sim::Expectation{expected, 0.01 * expected, source}});
-
-  // The study solved (10) with PI loops and the damping term as printed.
-  const bool known = is_lathe_of_the_study(machine);
-  const auto pi = [&](double mm_per_minute, sim::FeedEquations equations) {
-    return sim::jumping_at(drive, sim::FeedSource::pi_drive, equations, mm_per_minute * mm_per_min);
-  };
-  const auto expected = [&](double value, double tolerance) {
-    return known ? std::optional(sim::Expectation{value, tolerance, feed_study}) : std::nullopt;
-  };
-  const auto at_60 = pi(60.0, printed_damping), at_1500 = pi(1500.0, printed_damping);
-  result.figures.push_back({"jump_at_60_mm_per_min_printed_damping", "um", "PI drive, printed damping, 60 mm/min: jump",
-                            at_60.cycle.travel * 1e6, expected(315.0, 3.15)});
-  result.figures.push_back({"period_at_60_mm_per_min_printed_damping", "s",
-                            "PI drive, printed damping, 60 mm/min: period", at_60.cycle.period,
-                            expected(0.312, 0.00312)});
-  result.figures.push_back({"jump_ratio_at_60_mm_per_min_printed_damping", "",
-                            "PI drive, printed damping, 60 mm/min: jump over 2 dF/c",
-                            at_60.cycle.travel / double_step(drive), expected(1.05, 0.0105)});
-  result.figures.push_back({"jump_ratio_at_1500_mm_per_min_printed_damping", "",
-                            "PI drive, printed damping, 1500 mm/min: jump over 2 dF/c",
-                            at_1500.cycle.travel / double_step(drive), expected(2.5, 0.025)});
-  result.figures.push_back({"jumps_at_3000_mm_per_min_printed_damping", "",
-                            "PI drive, printed damping, 3000 mm/min: 1 if it goes on jumping",
-                            pi(3000.0, printed_damping).lasts ? 1.0 : 0.0, expected(0.0, 0.0)});
-  const auto corrected = pi(60.0, {});
-  result.figures.push_back({"jump_at_60_mm_per_min_corrected",
-                            "um",
-                            "PI drive, corrected equations, 60 mm/min: jump",
-                            corrected.cycle.travel * 1e6,
-                            {}});
-  result.findings.push_back(
-      fmt::format("The printed damping term is a constant force: with it the PI drive jumps {:.1f} um at 60 mm/min and "
-                  "{:.2f} times "
-                  "2 dF/c at 1500 mm/min; with the term on the relative speed it jumps {:.1f} um and {}. The study's "
-                  "315 um and 1.05 "
-                  "to 2.5 are those of the printed term.",
-                  at_60.cycle.travel * 1e6, at_1500.cycle.travel / double_step(drive), corrected.cycle.travel * 1e6,
-                  pi(1500.0, {}).lasts ? "still jumps at 1500 mm/min" : "no longer jumps at 1500 mm/min"));
+  add_drive_of_the_study(result, drive);
 }
 
 }  // namespace stiction::host
