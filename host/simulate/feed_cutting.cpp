@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "host/simulate/experiments.hpp"
+#include "sim/control/axis_configuration.hpp"
 
 namespace stiction::host {
 namespace {
@@ -235,6 +236,10 @@ sim::ExperimentResult run_feed_cutting(const ExperimentInput& input) {
       {},
       {}};
   const auto& drive = *input.machine.feed_drive;
+  if (!sim::loops_are_stable(drive))
+    throw sim::ConfigurationError(
+        "feed_drive: found gains with which the motor's loops are unstable; expected smaller "
+        "gains or longer integral times");
   add_motion(result, input, drive);
   add_over_feed(result, input, drive);
   add_cutting(result, input, drive);

@@ -93,7 +93,7 @@ void add_over_gain(sim::ExperimentResult& result, const sim::FeedDrive& drive) {
                    "gain over that of the machine file",
                    "critical feed, mm/min",
                    "One gain at a time. Formula: a drive that moves at constant speed, whatever the force. A curve "
-                   "ends where the loop is unstable: such a drive jumps at any feed.",
+                   "ends where the loop is unstable.",
                    true,
                    {}};
   struct Loop {
@@ -115,6 +115,7 @@ void add_over_gain(sim::ExperimentResult& result, const sim::FeedDrive& drive) {
     for (const double factor : factors) {
       auto each = drive;
       gain(each) *= factor;
+      if (!sim::loops_are_stable(each)) continue;
       const double feed = sim::critical_feed_by_bisection(each, pi_drive, width);
       add_point(series, factor, feed);
       if ((factor != 0.5 && factor != 2.0) || !std::isfinite(feed)) continue;

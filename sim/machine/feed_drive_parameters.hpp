@@ -68,7 +68,7 @@ struct Table<FeedCarriage> : EmptyTable<FeedCarriage> {
       {"stiffness", "N/m", positive(), &FeedCarriage::stiffness, {}, "stiffness C_c between motor and carriage"},
       {"damping_ratio",
        "1",
-       positive(0.999),
+       {1e-3, 0.5},
        &FeedCarriage::damping_ratio,
        {},
        "damping ratio zeta of the carriage on that stiffness"},

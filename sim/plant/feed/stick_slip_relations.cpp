@@ -1,6 +1,7 @@
 // Jump and critical feed of a stick-slip feed: see stick_slip_relations.hpp.
 #include "sim/plant/feed/stick_slip_relations.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -56,9 +57,27 @@ double critical_feed_of_ideal_drive(const FeedDrive& drive) {
   return critical_beta(c.damping_ratio) * drive.friction.step() / std::sqrt(c.stiffness * c.mass);
 }
 
+bool loops_are_stable(const FeedDrive& drive) {
+  // (7) without set-point is linear: its columns are the derivatives of the unit states.
+  const FeedSystem system(drive, FeedSource::pi_drive, {}, 0.0);
+  constexpr std::size_t size = feed_state::wind_up + 1;
+  Eigen::MatrixXd matrix(size, size);
+  for (std::size_t j = 0; j < size; ++j) {
+    FeedState unit{};
+    unit[j] = 1.0;
+    const auto column = system.derivative(unit, false);
+    for (std::size_t i = 0; i < size; ++i)
+      matrix(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = column[i];
+  }
+  const auto decays = [](const Eigen::MatrixXd& m) { return m.eigenvalues().real().maxCoeff() < 0.0; };
+  return decays(matrix) && decays(matrix.topLeftCorner(size - 1, size - 1));
+}
+
 Jumping jumping_at(const FeedDrive& drive, FeedSource source, FeedEquations equations, double feed,
                    FeedAccuracy accuracy) {
-  StickSlipFeed run(drive, source, equations, feed, accuracy);
+  auto without_tool = drive;  // nothing acts back from it
+  without_tool.tool.force_x = without_tool.tool.force_z = 0.0;
+  StickSlipFeed run(without_tool, source, equations, feed, accuracy);
   const auto& friction = drive.friction;
   const double winding = 2.0 * (friction.normal_load * friction.static_long + drive.cutting.constant_force) /
                          (drive.carriage.stiffness * feed);

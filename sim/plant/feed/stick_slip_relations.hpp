@@ -18,6 +18,9 @@ double critical_beta(double zeta);
 // The feed, m/s, above which the drive with constant static friction, moved at constant speed, does not jump.
 double critical_feed_of_ideal_drive(const FeedDrive& drive);
 
+// Whether the motor's loops come to rest, with the carriage standing and with the spring free.
+bool loops_are_stable(const FeedDrive& drive);
+
 // A cycle of steady jumping.
 struct JumpCycle {
   double travel = 0.0;          // m, of the jump

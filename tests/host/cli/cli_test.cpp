@@ -124,6 +124,7 @@ TEST_F(Cli, RefusesFeedsAndEquationsThatFeedCuttingDoesNotKnow) {
   expect_refused(run + "--feed '60 mm'", "--feed: found '60 mm'");
   expect_refused(run + "--set feed_drive.carriage.mas='3 kg'", "did you mean \"mass\"?");
   expect_refused(run + "--friction lugre", "--friction");
+  expect_refused(run + "--set feed_drive.speed_controller.gain=90", "the motor's loops are unstable");
 }
 
 TEST_F(Cli, FeedCuttingPrintsItsFiguresByTheContract) {

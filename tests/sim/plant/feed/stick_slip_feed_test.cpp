@@ -246,6 +246,13 @@ TEST(StickSlipFeed, SmallerStepsChangeNothing) {
   }
 }
 
+TEST(StickSlipFeed, LoopsThatNeverComeToRestAreFound) {
+  auto drive = lathe();
+  EXPECT_TRUE(loops_are_stable(drive));
+  drive.speed_controller.gain *= 10.0;  // the current loop's lag leaves no such margin
+  EXPECT_FALSE(loops_are_stable(drive));
+}
+
 TEST(StickSlipFeed, ToolFollowsTheSpeedsPower) {
   // So slow that the tool is in equilibrium: steady sliding above the critical feed.
   const auto drive = lathe();
