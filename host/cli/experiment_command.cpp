@@ -21,6 +21,8 @@ struct ExperimentOptions {
   MachineOptions machine;
   std::string friction;
   std::string log;
+  std::string feed;
+  std::string equations;
   std::string out;
   bool json = false;
 };
@@ -86,9 +88,33 @@ class ExperimentLogs {
   std::vector<std::unique_ptr<PendingFile>> files_;
 };
 
+// Empty: all that the experiment knows.
+std::vector<std::string> equations_for(const Experiment& experiment, const std::string& text) {
+  if (text.empty()) return experiment.equations;
+  const auto& known = experiment.equations;
+  auto names = split_list(text);
+  for (const auto& name : names)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw UsageError(
+          fmt::format("--equations: found '{}'; expected one or several of: {}", name, fmt::join(known, ", ")));
+  return names;
+}
+
+ExperimentInput input_of(const Experiment& experiment, const ExperimentOptions& options) {
+  const bool axes = experiment.machine == ExperimentMachine::axes;
+  ExperimentInput input{options.machine.load(options.machine.machine, experiment.name,
+                                             axes ? MachinePart::axes : MachinePart::feed_drive),
+                        {}};
+  if (axes) input.friction = models_for(experiment, options.friction, input.machine);
+  if (experiment.feeds != nullptr) input.feeds = feeds(options.feed);
+  for (const double feed : input.feeds)
+    if (!(feed > 0.0)) throw UsageError(fmt::format("--feed: found '{}'; expected feeds above zero", options.feed));
+  input.equations = equations_for(experiment, options.equations);
+  return input;
+}
+
 void run(const Experiment& experiment, const ExperimentOptions& options, const Invocation& invocation) {
-  ExperimentInput input{options.machine.load(options.machine.machine, experiment.name), {}, {}};
-  input.friction = models_for(experiment, options.friction, input.machine);
+  auto input = input_of(experiment, options);
   ExperimentLogs logs(experiment, options, input);
   const auto result = experiment.run(input);
   logs.commit();
@@ -117,8 +143,21 @@ void add_experiments(CLI::App& simulate, const Invocation& invocation) {
     auto* command = simulate.add_subcommand(experiment.name, experiment.text);
     auto o = std::make_shared<ExperimentOptions>();
     o->machine.add_to(*command, "shipped machine by name, or a machine file");
-    command->add_option("--friction", o->friction, "friction model, or a list of models [all that it makes sense for]")
-        ->type_name("MODEL");
+    if (experiment.machine == ExperimentMachine::axes)
+      command
+          ->add_option("--friction", o->friction, "friction model, or a list of models [all that it makes sense for]")
+          ->type_name("MODEL");
+    if (experiment.feeds != nullptr) {
+      o->feed = experiment.feeds;
+      command->add_option("--feed", o->feed, "feed, or a list of feeds; the first one is shown over time")
+          ->type_name("\"NUMBER UNIT\"")
+          ->capture_default_str();
+    }
+    if (!experiment.equations.empty())
+      command
+          ->add_option("--equations", o->equations,
+                       fmt::format("form of the equations, or a list: {} [all]", fmt::join(experiment.equations, ", ")))
+          ->type_name("FORM");
     if (experiment.keeps_logs)
       command->add_option("--log", o->log, "write the run as a log (CSV); one file a run where there are several")
           ->type_name("FILE");

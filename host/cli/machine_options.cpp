@@ -21,9 +21,17 @@ void MachineOptions::add_to(CLI::App& command, const std::string& machine_help) 
       ->allow_extra_args(false);
 }
 
-sim::Machine MachineOptions::load(const std::string& name, const std::string& experiment) const {
+sim::Machine MachineOptions::load(const std::string& name, const std::string& experiment, MachinePart needed) const {
   const auto file = sim::find_machine(name);
   auto result = sim::read_machine(file, {experiment, set});
+  if (needed == MachinePart::axes && result.axes.empty())
+    throw UsageError(
+        fmt::format("{}: found a feed drive and no axis; expected a machine with a table [axis.NAME]", file.string()));
+  if (needed == MachinePart::feed_drive && !result.feed_drive)
+    throw UsageError(
+        fmt::format("{}: found axes and no feed drive; expected a machine with a table [feed_drive], such "
+                    "as stick-slip-feed",
+                    file.string()));
   // What the drive's number formats cannot hold is bad input too, found before anything runs.
   try {
     for (const auto& axis : result.axes) sim::configure_axis<FixedSignals>(result.timing, axis);

@@ -10,13 +10,17 @@
 
 namespace stiction::host {
 
+// What a command works on: without it, a machine is bad input.
+enum class MachinePart { axes, feed_drive, any };
+
 struct MachineOptions {
   std::string machine;           // names or paths, separated by commas where a command takes several
   std::vector<std::string> set;  // KEY=VALUE
 
   void add_to(CLI::App& command, const std::string& machine_help);
   // The machine, checked down to the drive's number formats. Throws sim::MachineFileError, UsageError.
-  sim::Machine load(const std::string& name, const std::string& experiment) const;
+  sim::Machine load(const std::string& name, const std::string& experiment,
+                    MachinePart needed = MachinePart::axes) const;
 };
 
 // "a,b" or "a, b": the parts without blanks around them.

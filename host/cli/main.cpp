@@ -25,6 +25,14 @@ std::string quoted(const std::string& argument) {
   return text + "'";
 }
 
+// A command takes over from its parent that unknown arguments are left to it; the last one in the row has no use for
+// them, and a typo must not pass.
+void refuse_unknown_arguments(CLI::App& command) {
+  const auto commands = command.get_subcommands([](CLI::App*) { return true; });
+  if (commands.empty()) command.prefix_command(false);
+  for (auto* each : commands) refuse_unknown_arguments(*each);
+}
+
 int run(int argc, char** argv) {
   Invocation invocation{"stiction", STICTION_VERSION};
   for (int i = 1; i < argc; ++i) invocation.command_line += " " + quoted(argv[i]);
@@ -38,6 +46,8 @@ int run(int argc, char** argv) {
   add_machine(program, invocation);
   add_convert(program);
   add_inspect(program);
+
+  refuse_unknown_arguments(program);
 
   const auto bad_input = [](const std::exception& error) {
     fmt::print(stderr, "stiction: {}\n", error.what());

@@ -43,13 +43,18 @@ json series_json(const sim::ExperimentResult& result) {
 }
 
 json chart_json(const sim::Chart& chart) {
-  json out{{"title", typeset(chart.title)},        {"x_label", typeset(chart.x_label)},
-           {"y_label", typeset(chart.y_label)},    {"caption", typeset(chart.caption)},
-           {"logarithmic_x", chart.logarithmic_x}, {"series", json::array()}};
+  json out{{"title", typeset(chart.title)},
+           {"x_label", typeset(chart.x_label)},
+           {"y_label", typeset(chart.y_label)},
+           {"caption", typeset(chart.caption)},
+           {"logarithmic_x", chart.logarithmic_x},
+           {"x_range", chart.x_range ? json(*chart.x_range) : json(nullptr)},
+           {"series", json::array()}};
   for (const auto& series : chart.series) {
     const auto kept = select_extremes(series.x, series.y, points_per_series);
     out["series"].push_back({{"name", series.name},
                              {"points", series.points},
+                             {"bars", series.bars},
                              {"x", packed(series.x, kept)},
                              {"y", packed(series.y, kept)}});
   }
@@ -81,7 +86,8 @@ json conditions_json(const ExperimentReport& report) {
   Conditions conditions;
   if (!models.empty()) conditions.add("Friction", joined(models));
   if (report.result.signals.empty()) {
-    conditions.add("Control", "none takes part");
+    conditions.add("Control",
+                   machine.axes.empty() ? "the feed drive's own PI loops, in continuous time" : "none takes part");
     return conditions.json();
   }
   conditions.add("Signals", signals_text(report.result.signals));

@@ -76,11 +76,10 @@ std::string print(const Cell& cell, double factor) {
 
 class Sheet {
  public:
-  explicit Sheet(const sim::Machine& machine) : axes_(machine.axes) {}
+  // `columns`: what the values are of, in the order of the cells.
+  explicit Sheet(std::vector<std::string> columns) : columns_(std::move(columns)) {}
 
-  std::span<const sim::Axis> axes() const { return axes_; }
-
-  void begin_section(std::string title) { sections_.push_back({std::move(title), {}}); }
+  void begin_section(std::string title) { sections_.push_back({std::move(title), columns_, {}}); }
 
   void add(std::string label, std::string unit, std::vector<std::string> values) {
     if (std::all_of(values.begin(), values.end(), [](const auto& value) { return value.empty(); })) return;
@@ -118,7 +117,7 @@ class Sheet {
     add(label, numbers ? engineering.unit : std::string(), std::move(values));
   }
 
-  std::span<const sim::Axis> axes_;
+  std::vector<std::string> columns_;
   std::vector<SheetSection> sections_;
 };
 
@@ -145,22 +144,22 @@ const T* pointer_to(const std::optional<T>& value) {
   return value ? &*value : nullptr;
 }
 
+// `force_motor`: of each owner.
 template <class Owner>
 void add_parameters(Sheet& sheet, std::span<const sim::Parameter<Owner>> parameters,
-                    const std::vector<const Owner*>& owners) {
+                    const std::vector<const Owner*>& owners, const std::vector<bool>& force_motor) {
   for (const auto& parameter : parameters) {
     std::vector<std::optional<Cell>> cells;
-    for (std::size_t i = 0; i < owners.size(); ++i) {
-      const bool force_motor = sheet.axes()[i].motor.model == sim::MotorModel::force;
-      cells.push_back(owners[i] ? std::optional(make_cell(parameter, *owners[i], force_motor)) : std::nullopt);
-    }
+    for (std::size_t i = 0; i < owners.size(); ++i)
+      cells.push_back(owners[i] ? std::optional(make_cell(parameter, *owners[i], force_motor[i])) : std::nullopt);
     sheet.add(label_of(parameter.text), cells);
   }
 }
 
 // One table of the machine file and the tables in it; a null owner: this axis has no such table.
 template <class Owner>
-void add_table(Sheet& sheet, const std::string& title, const std::vector<const Owner*>& owners) {
+void add_table(Sheet& sheet, const std::string& title, const std::vector<const Owner*>& owners,
+               const std::vector<bool>& force_motor) {
   using T = sim::Table<Owner>;
   sheet.begin_section(title);
   const auto add_words = [&](std::string_view label, const auto& word) {
@@ -173,32 +172,33 @@ void add_table(Sheet& sheet, const std::string& title, const std::vector<const O
         (add_words(p.text, [&](const Owner& owner) { return name_of(p.choices, owner.*p.member); }), ...);
       },
       T::choices);
-  add_parameters<Owner>(sheet, T::parameters, owners);
+  add_parameters<Owner>(sheet, T::parameters, owners, force_motor);
   const auto descend = [&]<class Member>(const sim::Subtable<Owner, Member>& subtable) {
     using Child = std::remove_cvref_t<decltype(*pointer_to(std::declval<const Member&>()))>;
     if constexpr (!std::is_same_v<Child, sim::Friction>) {  // its tables are those of the models
       std::vector<const Child*> children;
       for (const Owner* owner : owners) children.push_back(owner ? pointer_to(owner->*subtable.member) : nullptr);
-      const bool top = std::is_same_v<Owner, sim::Axis>;
-      add_table<Child>(sheet, top ? title_of(subtable.key) : title + " " + std::string(subtable.key), children);
+      const bool top = std::is_same_v<Owner, sim::Axis> || std::is_same_v<Owner, sim::FeedDrive>;
+      add_table<Child>(sheet, top ? title_of(subtable.key) : title + " " + std::string(subtable.key), children,
+                       force_motor);
     }
   };
   std::apply([&](const auto&... subtable) { (descend(subtable), ...); }, T::subtables);
 }
 
-void add_friction(Sheet& sheet) {
+void add_friction(Sheet& sheet, std::span<const sim::Axis> axes, const std::vector<bool>& force_motor) {
   sim::for_each_friction_model([&]<class Model>() {
     using Parameters = typename Model::Parameters;
     std::vector<const Parameters*> owners;
     std::vector<std::string> acting;
-    for (const auto& axis : sheet.axes()) {
+    for (const auto& axis : axes) {
       const auto found = axis.friction.models.find(std::string(Model::name));
       owners.push_back(found == axis.friction.models.end() ? nullptr : std::get_if<Parameters>(&found->second));
       acting.push_back(axis.friction.use == Model::name ? "yes" : "");
     }
     sheet.begin_section("Friction " + std::string(Model::label));
     sheet.add("acts unless a command names another", "", std::move(acting));
-    add_parameters<Parameters>(sheet, Model::parameters, owners);
+    add_parameters<Parameters>(sheet, Model::parameters, owners, force_motor);
   });
 }
 
@@ -211,12 +211,24 @@ std::string velocity_source_name(sim::VelocitySource source) {
 }
 
 std::vector<SheetSection> machine_sheet(const sim::Machine& machine) {
-  Sheet sheet(machine);
+  std::vector<std::string> names;
   std::vector<const sim::Axis*> axes;
-  for (const auto& axis : machine.axes) axes.push_back(&axis);
-  add_table<sim::Axis>(sheet, "Axis", axes);
-  add_friction(sheet);
-  return sheet.take();
+  std::vector<bool> force_motor;
+  for (const auto& axis : machine.axes) {
+    names.push_back(axis.name);
+    axes.push_back(&axis);
+    force_motor.push_back(axis.motor.model == sim::MotorModel::force);
+  }
+  Sheet sheet(names);
+  add_table<sim::Axis>(sheet, "Axis", axes, force_motor);
+  add_friction(sheet, machine.axes, force_motor);
+  auto sections = sheet.take();
+  if (machine.feed_drive) {
+    Sheet feed({"feed drive"});
+    add_table<sim::FeedDrive>(feed, "Feed drive", {&*machine.feed_drive}, {false});
+    for (auto& section : feed.take()) sections.push_back(std::move(section));
+  }
+  return sections;
 }
 
 }  // namespace stiction::host

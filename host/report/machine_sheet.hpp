@@ -1,5 +1,5 @@
-// A machine's parameters as a report prints them: in engineering units, one column an axis. Made from the tables of
-// sim/machine/parameters.hpp and of the friction models, so a new parameter appears here without a line.
+// A machine's parameters as a report prints them: in engineering units, one column an axis or the feed drive. Made from
+// the tables of sim/machine/parameters.hpp and of the friction models, so a new parameter appears here without a line.
 #pragma once
 
 #include <string>
@@ -12,12 +12,13 @@ namespace stiction::host {
 struct SheetRow {
   std::string label;
   std::string unit;                 // empty for names and dimensionless numbers
-  std::vector<std::string> values;  // one an axis; empty where the axis does not have it
+  std::vector<std::string> values;  // one a column; empty where the axis does not have it
 };
 
 struct SheetSection {
   std::string title;
-  std::vector<SheetRow> rows;  // at least one value in each
+  std::vector<std::string> columns;  // the axes, or the feed drive
+  std::vector<SheetRow> rows;        // at least one value in each
 };
 
 std::vector<SheetSection> machine_sheet(const sim::Machine& machine);

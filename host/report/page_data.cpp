@@ -34,7 +34,7 @@ json machine_json(const sim::Machine& machine) {
     json rows = json::array();
     for (const auto& row : section.rows)
       rows.push_back({{"label", row.label}, {"unit", row.unit}, {"values", row.values}});
-    sections.push_back({{"title", section.title}, {"rows", rows}});
+    sections.push_back({{"title", section.title}, {"columns", section.columns}, {"rows", rows}});
   }
   return {{"name", machine.name},
           {"id", machine.id},

@@ -27,6 +27,14 @@ std::span<const Experiment> experiments() {
        run_break_away,
        true},
       {"stick-slip", "a mass pulled by a spring at constant speed", {"lugre", "classical"}, run_stick_slip, true},
+      {"feed-cutting",
+       "a feed drive that sticks and slips while cutting: jumps, feed per revolution, critical feed",
+       {},
+       run_feed_cutting,
+       false,
+       ExperimentMachine::feed_drive,
+       "60 mm/min, 300 mm/min, 600 mm/min, 1500 mm/min, 3000 mm/min",
+       {equations_corrected, equations_printed}},
   };
   return table;
 }

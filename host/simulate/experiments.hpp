@@ -14,19 +14,31 @@
 namespace stiction::host {
 
 struct ExperimentInput {
-  sim::Machine machine;               // with the experiment's overrides
-  std::vector<std::string> friction;  // the models to run, at least one
+  sim::Machine machine;                  // with the experiment's overrides
+  std::vector<std::string> friction;     // the models to run, at least one; none without axes
+  std::vector<double> feeds{};           // m/s, at least one; none where the experiment has no --feed
+  std::vector<std::string> equations{};  // at least one; none where the experiment has no --equations
   // Takes the log of a run; `run` tells several runs of one model apart ("24 m/min") and is empty where there is one.
   // Empty: no logs are wanted.
   std::function<void(const std::string& run, Log)> keep_log = {};
 };
+
+// What an experiment runs on.
+enum class ExperimentMachine { axes, feed_drive };
+
+// Forms of the feed drive's equations.
+inline constexpr const char* equations_corrected = "corrected";
+inline constexpr const char* equations_printed = "printed";
 
 struct Experiment {
   const char* name;                 // "impact"
   const char* text;                 // for --help
   std::vector<std::string> models;  // the friction models it makes sense for; empty: all
   sim::ExperimentResult (*run)(const ExperimentInput&);
-  bool keeps_logs;  // calls keep_log
+  bool keeps_logs = false;  // calls keep_log
+  ExperimentMachine machine = ExperimentMachine::axes;
+  const char* feeds = nullptr;           // what --feed is unless it is given; null: the experiment has no --feed
+  std::vector<std::string> equations{};  // what --equations chooses from, all unless it is given
 };
 
 std::span<const Experiment> experiments();
@@ -39,5 +51,8 @@ sim::ExperimentResult run_presliding(const ExperimentInput& input);
 sim::ExperimentResult run_friction_lag(const ExperimentInput& input);
 sim::ExperimentResult run_break_away(const ExperimentInput& input);
 sim::ExperimentResult run_stick_slip(const ExperimentInput& input);
+
+// The feed drive's experiment, on a machine that has one; double precision, no firmware takes part.
+sim::ExperimentResult run_feed_cutting(const ExperimentInput& input);
 
 }  // namespace stiction::host

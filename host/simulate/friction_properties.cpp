@@ -116,6 +116,10 @@ sim::ExperimentResult run_presliding(const ExperimentInput& input) {
     if (name != "lugre") continue;
     sim::Series fast{name + ", 5400 N/s", {}, {}, false};
     const auto broken = presliding_loop(axis_with(input, name), 5400.0, 2.0, fast);
+    chart.series.push_back(std::move(fast));
+    chart.caption += " At 5400 N/s the mass breaks away while 540 N is held, and leaves the drawing.";
+    const double shown = 1.5e6 * std::abs(loop.at_first_top);
+    chart.x_range = {-0.5 * shown, shown};
     result.figures.push_back({"breaks_away_at_5400_N_per_s", "", "1: the mass breaks away while 540 N is held",
                               std::abs(broken.at_second_top) > 1e-3 ? 1.0 : 0.0,
                               sim::Expectation{1.0, 0.0, "plant study, 10: prototype"}});

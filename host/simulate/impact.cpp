@@ -122,6 +122,7 @@ sim::ExperimentResult run_impact(const ExperimentInput& input) {
       "65 000 N s/m: which gain its figure was made with is unresolved, so three gains are shown.",
       gain * axis.motor.force_constant, result.figures.front().value));
   result.charts = {std::move(deviation), std::move(force), std::move(friction)};
+  for (auto& chart : result.charts) chart.x_range = {0.0, 150.0};
   return result;
 }
 

@@ -1,6 +1,7 @@
 // What an experiment other than the circle leaves behind: figures with what the source says of them, and charts.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -33,6 +34,7 @@ struct Series {
   std::string name;  // a friction model's name takes its colour; anything else the next free one
   std::vector<double> x, y;
   bool points = false;  // markers instead of a line: measured or published values
+  bool bars = false;    // bars from zero instead of a line: one value a count
 };
 
 struct Chart {
@@ -42,6 +44,7 @@ struct Chart {
   std::string caption;  // what to look at
   bool logarithmic_x = false;
   std::vector<Series> series;
+  std::optional<std::array<double, 2>> x_range{};  // what is shown first, of a longer record; none: all
 };
 
 struct ExperimentResult {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/plant/feed/feed_drive.hpp"
 #include "sim/plant/friction/friction.hpp"
 
 namespace stiction::sim {
@@ -127,7 +128,8 @@ struct Machine {
   std::string name;  // as in the file
   std::string id;    // file name without extension
   Timing timing;
-  std::vector<Axis> axes;  // in the order of the file
+  std::vector<Axis> axes;               // in the order of the file; none only where there is a feed drive
+  std::optional<FeedDrive> feed_drive;  // with screw and sliding carriage; nothing connects it with the axes
   std::vector<CircleReference> circle_references;
 };
 

@@ -44,6 +44,7 @@ class MachineReader {
     machine_ = TableReader(document_, false).read<Machine>(root_, "");
     check_periods();
     read_axes();
+    check_feed_drive();
     check_experiments();
     read_references();
     return std::move(machine_);
@@ -60,9 +61,10 @@ class MachineReader {
 
   void read_axes() {
     const toml::node* axes = root_.get("axis");
+    if (axes == nullptr && machine_.feed_drive) return;
     if (axes == nullptr || !axes->is_table() || axes->as_table()->empty())
       document_.fail(axes == nullptr ? root_.source() : axes->source(), "axis", "no axis",
-                     "at least one table [axis.NAME]");
+                     "at least one table [axis.NAME], or a table [feed_drive]");
     std::vector<std::pair<toml::source_region, Axis>> read;
     for (auto&& [name, node] : *axes->as_table()) {
       check_axis_name(name);
@@ -180,6 +182,25 @@ class MachineReader {
     const toml::node* node = node_at(axis, "notch.frequency");
     document_.fail(node->source(), join_key(path, "notch.frequency"), describe_node(*node),
                    fmt::format("a frequency below half the fast loop's rate, {}", format_quantity(limit, "Hz", "Hz")));
+  }
+
+  // Friction at rest is at least that in motion, and does not fall while the carriage stands.
+  void check_feed_drive() const {
+    if (!machine_.feed_drive) return;
+    const FeedFriction& friction = machine_.feed_drive->friction;
+    const toml::table& table = *node_at(root_, "feed_drive.friction")->as_table();
+    const auto check = [&](const char* key, double value, const char* lower_key, double lower) {
+      if (value >= lower) return;
+      const toml::node* node = table.get(key);
+      document_.fail(node->source(), join_key("feed_drive.friction", key), describe_node(*node),
+                     fmt::format("a number of at least {}, the value of {}", lower, lower_key));
+    };
+    check("static_short", friction.static_short, "sliding", friction.sliding);
+    check("static_long", friction.static_long, "static_short", friction.static_short);
+    if (friction.step() <= 0.0)
+      document_.fail(table.get("static_long")->source(), "feed_drive.friction.static_long",
+                     describe_node(*table.get("static_long")),
+                     fmt::format("a number greater than {}, the value of sliding", friction.sliding));
   }
 
   void check_experiments() const {

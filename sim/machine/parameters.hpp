@@ -6,13 +6,12 @@
 #include <limits>
 #include <optional>
 #include <span>
-#include <string>
 #include <string_view>
 #include <tuple>
-#include <variant>
 
+#include "sim/machine/feed_drive_parameters.hpp"
 #include "sim/machine/machine.hpp"
-#include "sim/parameter.hpp"
+#include "sim/machine/parameter_tables.hpp"
 
 namespace stiction::sim {
 
@@ -22,58 +21,6 @@ inline constexpr std::string_view machine_schema = "stiction.machine/1";
 inline constexpr std::array<std::string_view, 11> experiment_names{
     "circle",       "constant-velocity",  "impact", "l-shape", "presliding", "friction-lag", "break-away", "stick-slip",
     "feed-cutting", "frequency-response", "replay"};
-
-// A key whose value is a text; required unless the member is optional.
-template <class Owner>
-struct TextParameter {
-  std::string_view key;
-  std::variant<std::string Owner::*, std::optional<std::string> Owner::*> member;
-  std::string_view text;
-};
-
-// A key whose value is one of several names.
-template <class Value>
-struct Choice {
-  std::string_view name;
-  Value value;
-  std::string_view text;
-};
-template <class Owner, class Value>
-struct ChoiceParameter {
-  std::string_view key;
-  Value Owner::*member;
-  std::span<const Choice<Value>> choices;
-  std::optional<Value> fallback;  // none: the key is required
-  std::string_view text;
-};
-
-// A table within a table; Member may be std::optional.
-enum class Presence { required, optional, by_motor_model };
-template <class Owner, class Member>
-struct Subtable {
-  std::string_view key;
-  Member Owner::*member;
-  Presence presence;
-};
-
-// A key that a later version may read; refused with a reason instead of as a typo.
-struct UnsupportedKey {
-  std::string_view key;
-  std::string_view reason;
-};
-
-// What a table of the file holds; specialised for each struct of machine.hpp.
-template <class Owner>
-struct Table;
-
-template <class Owner>
-struct EmptyTable {
-  static constexpr std::array<TextParameter<Owner>, 0> texts{};
-  static constexpr std::tuple<> choices{};
-  static constexpr std::array<Parameter<Owner>, 0> parameters{};
-  static constexpr std::tuple<> subtables{};
-  static constexpr std::array<UnsupportedKey, 0> unsupported{};
-};
 
 template <>
 struct Table<Timing> : EmptyTable<Timing> {
@@ -312,7 +259,9 @@ template <>
 struct Table<Machine> : EmptyTable<Machine> {
   static constexpr std::string_view text = "the machine";
   static constexpr std::array<TextParameter<Machine>, 1> texts{{{"name", &Machine::name, "name shown in reports"}}};
-  static constexpr std::tuple subtables{Subtable<Machine, Timing>{"timing", &Machine::timing, Presence::optional}};
+  static constexpr std::tuple subtables{
+      Subtable<Machine, Timing>{"timing", &Machine::timing, Presence::optional},
+      Subtable<Machine, std::optional<FeedDrive>>{"feed_drive", &Machine::feed_drive, Presence::optional}};
 };
 
 }  // namespace stiction::sim

@@ -27,7 +27,8 @@ std::string reference_page() {
       "# Machine file: all keys\n\n"
       "Format `{}`. A quantity is a text \"NUMBER UNIT\"; any unit of the same dimension as the one shown will do. A "
       "plain number stands only for a quantity without unit (–). A key that is not listed here is an error. "
-      "`[experiment.EXPERIMENT.…]` repeats any key of `timing` and `axis` with the value it has in that experiment; "
+      "`[experiment.EXPERIMENT.…]` repeats any key of `timing`, `axis` and `feed_drive` with the value it has in that "
+      "experiment; "
       "experiments: {}.\n",
       machine_schema, fmt::join(experiment_names, ", "));
   for (const TableDescription& table : machine_file_description()) {

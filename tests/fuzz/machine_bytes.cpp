@@ -39,6 +39,7 @@ void rest(const sim::Machine& machine) {
 // The set-point stands beside the axes, so that every controller has an error to act on.
 template <class S>
 void control(const sim::Machine& machine) {
+  if (machine.axes.empty()) return;
   std::vector<AxisConfig<S>> configs;
   try {
     for (const auto& axis : machine.axes) configs.push_back(sim::configure_axis<S>(machine.timing, axis));

@@ -35,9 +35,11 @@ ROOMS = {
     },
     "sim": {},
     "sim/plant/friction": {"sim": "a model describes its parameters (sim/parameter.hpp)"},
+    "sim/plant/feed": {},
     "sim/machine": {
         "sim": "keys are described by sim/parameter.hpp",
         "sim/plant/friction": "and those of friction by the models",
+        "sim/plant/feed": "a machine may be a feed drive",
     },
     "sim/plant": {
         "sim": "the mathematics that its parts share",
@@ -53,6 +55,7 @@ ROOMS = {
         "sim": "the mathematics of paths",
         "sim/control": "set-points cross the border to the drive's formats",
         "sim/machine": "within the limits of a machine",
+        "sim/plant/feed": "the feed of a revolution is measured on the feed drive",
         f"{FIRMWARE}/*": "and end in the cascade's types",
     },
     "host/log": {

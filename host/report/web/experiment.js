@@ -68,6 +68,7 @@ function extent(charts, above = -Infinity) {
 // Charts over the same time run from the first instant to the last of any, or to the next round one if it is near;
 // others leave some room beside their curves.
 function abscissaStyle(chart) {
+  if (chart.x_range) return { range: chart.x_range };
   if (chart.logarithmic_x) {
     const [low, high] = extent([chart], 0);
     return { type: 'log', dtick: high / low > 3000 ? 1 : 'D2', tickformat: '~g', minor: { ticks: 'outside', ticklen: 2, tickcolor: '#9aa5b1' } };
@@ -85,6 +86,9 @@ const lineWidth = (chart, k, count) => overTime(chart) ? 1.5 + 0.6 * Math.min(co
 function traceOf(chart, series, width) {
   const { colour, symbol, dash } = seriesStyles[series.name];
   const name = seriesLabels[series.name], [abscissa, x_unit] = quantity(chart.x_label), [ordinate, y_unit] = quantity(chart.y_label);
+  if (series.bars)
+    return { name, type: 'bar', x: series.x, y: series.y, marker: { color: colour },
+             hovertemplate: `${plain(name)}<br>${plain(ordinate)} %{y:.4~g}${plain(y_unit)}<br>${plain(abscissa)} %{x:.4~g}${plain(x_unit)}<extra></extra>` };
   const few = series.x.length > 2 && series.x.length <= 40;  // each point was computed on its own
   return { name, x: series.x, y: series.y, mode: series.points ? 'markers' : few ? 'lines+markers' : 'lines', cliponaxis: !series.points,
            line: { color: colour, width, dash, simplify: false }, marker: { symbol, color: colour, size: series.points ? 9 : 6, line: { width: 1.3, color: colour } },
@@ -112,7 +116,7 @@ function drawCharts() {
       margin: { l: 76, r: 24, t: 10, b: 46 }, uirevision: 'magnified',
       xaxis: axisStyle(plain(chart.x_label), abscissaStyle(chart)),
       yaxis: axisStyle(twoLines(chart.y_label), { zeroline: true, zerolinecolor: '#9aa5b1', nticks: 7 }),
-    });
+    }, { all: Boolean(chart.x_range) });
   });
 }
 

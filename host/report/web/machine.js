@@ -7,10 +7,10 @@ function drawConditions() {
 
 function drawMachine() {
   const machine = DATA.machine;
-  document.getElementById('machine-name').textContent =
-    `${machine.name} (${machine.id}); fast loop ${machine.fast_period_us} µs, position loop ${machine.slow_period_ms} ms`;
+  const loops = machine.axes.length ? `; fast loop ${machine.fast_period_us} µs, position loop ${machine.slow_period_ms} ms` : '';
+  document.getElementById('machine-name').textContent = `${machine.name} (${machine.id})${loops}`;
   show('machine', ...machine.sections.map(section =>
-    table([[text(section.title, { class: 'text title' }), ...machine.axes.map(axis => text(axis)), text('', { class: 'unit' })]],
+    table([[text(section.title, { class: 'text title' }), ...section.columns.map(column => text(column)), text('', { class: 'unit' })]],
           section.rows.map(row => [{ text: symbolText(row.label), head: true }, ...machineCells(row.values), text(row.unit, { class: 'unit' })]))));
 }
 

@@ -114,11 +114,12 @@ function axisStyle(title, more = {}) {
            automargin: false, ...more };
 }
 
-function drawChart(id, traces, layout) {
+// A double click leads back to the first view; from there, with `all`, to everything.
+function drawChart(id, traces, layout, { all = false } = {}) {
   const base = { font: { family: FONT, size: 12, color: INK }, paper_bgcolor: 'rgba(0,0,0,0)', plot_bgcolor: '#fff',
                  showlegend: false, hovermode: 'closest', dragmode: 'zoom', autosize: true,
                  hoverlabel: { bgcolor: '#fff', bordercolor: '#9aa5b1', font: { family: FONT, size: 12, color: INK } } };
-  return Plotly.react(id, traces, { ...base, ...layout }, { displayModeBar: false, showTips: false, responsive: true, doubleClick: 'reset' });
+  return Plotly.react(id, traces, { ...base, ...layout }, { displayModeBar: false, showTips: false, responsive: true, doubleClick: all ? 'reset+autosize' : 'reset' });
 }
 
 function label(text, x, y, more = {}) {

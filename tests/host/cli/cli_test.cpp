@@ -102,8 +102,43 @@ TEST_F(Cli, RefusesBadUsage) {
   expect_refused("simulate circle --machine mcfv5050ln --signals float", "float");
   expect_refused("simulate circle --machine mcfv5050ln --log x.csv --friction all", "--log: found 6 runs");
   expect_refused("simulate circle --machine mcfv5050ln --set axis.X.mas='1 kg'", "--set axis.X.mas");
+  expect_refused("simulate circle --machine mcfv5050ln --radios '90 mm'", "--radios");
+  expect_refused("simulate impact --machine mcfv5050ln --bogus", "--bogus");
   expect_refused("compare --reference square --machine mcfv5050ln", "--reference: found 'square'; expected circle");
   expect_refused("compare --machine mcfv5050ln", "found neither --reference nor LOG; expected one of them");
+}
+
+TEST_F(Cli, RefusesAMachineWithoutThePartThatAnExperimentNeeds) {
+  expect_refused("simulate impact --machine stick-slip-feed --out result",
+                 "found a feed drive and no axis; expected a machine with a table [axis.NAME]");
+  expect_refused("simulate circle --machine stick-slip-feed --out result", "found a feed drive and no axis");
+  expect_refused("simulate feed-cutting --machine mcfv5050ln --out result",
+                 "found axes and no feed drive; expected a machine with a table [feed_drive]");
+}
+
+TEST_F(Cli, RefusesFeedsAndEquationsThatFeedCuttingDoesNotKnow) {
+  const std::string run = "simulate feed-cutting --machine stick-slip-feed ";
+  expect_refused(run + "--equations wrong",
+                 "--equations: found 'wrong'; expected one or several of: corrected, printed");
+  expect_refused(run + "--feed '0 mm/min'", "--feed: found '0 mm/min'; expected feeds above zero");
+  expect_refused(run + "--feed '60 mm'", "--feed: found '60 mm'");
+  expect_refused(run + "--set feed_drive.carriage.mas='3 kg'", "did you mean \"mass\"?");
+  expect_refused(run + "--friction lugre", "--friction");
+  expect_refused(run + "--set feed_drive.speed_controller.gain=90", "the motor's loops are unstable");
+}
+
+TEST_F(Cli, FeedCuttingPrintsItsFiguresByTheContract) {
+  const auto result =
+      stiction("simulate feed-cutting --machine stick-slip-feed --feed '60 mm/min' --equations corrected --json");
+  ASSERT_EQ(result.code, 0) << result.error;
+  const auto json = nlohmann::json::parse(result.out);
+  EXPECT_EQ(json["schema"], "stiction.feed-cutting/1");
+  EXPECT_EQ(json["machine"], "stick-slip-feed");
+  EXPECT_NEAR(json["results"]["jump_corrected_at_60_mm_per_min_um"].get<double>(), 281.0, 3.0);
+  EXPECT_FALSE(json["results"].contains("jumps_printed_at_60_mm_per_min"));
+  // Of what the study found only the critical feed at zeta 0.1 differs: see its finding.
+  for (const auto& [key, holds] : json["holds"].items())
+    EXPECT_EQ(holds.get<bool>(), key != "critical_beta_at_zeta_0.1") << key;
 }
 
 TEST_F(Cli, RefusesAGainThatTheNumberFormatCannotHold) {
@@ -189,7 +224,8 @@ TEST_F(Cli, WritesALogInTheLogFormat) {
 }
 
 TEST_F(Cli, ShowsTheShippedMachinesAndTheirReference) {
-  EXPECT_EQ(stiction("machine").out, "mcfv5050ln\n");
+  for (const char* name : {"mcfv5050ln\n", "stick-slip-feed\n"})
+    EXPECT_NE(stiction("machine").out.find(name), std::string::npos) << name;
   EXPECT_NE(stiction("machine --reference").out.find("pole_pair_pitch"), std::string::npos);
   const auto sheet = stiction("machine --check mcfv5050ln");
   EXPECT_EQ(sheet.code, 0);

@@ -81,7 +81,8 @@ TEST(MachineFileError, UnknownKeySuggestsTheNearestAndListsTheKnown) {
             "phase_inductance, mutual_inductance, emf_constant, phase_force_constant, force_constant, pole_pair_pitch, "
             "count; did you mean \"model\"?");
   EXPECT_EQ(error_after("name = \"small\"", "name = \"small\"\ncolour = \"red\""),
-            "FILE:3: colour: found an unknown key; expected one of schema, name, timing, axis, experiment, reference");
+            "FILE:3: colour: found an unknown key; expected one of schema, name, timing, feed_drive, axis, experiment, "
+            "reference");
 }
 
 TEST(MachineFileError, UnknownKeyIsFoundAtEveryLevel) {
@@ -126,7 +127,7 @@ TEST(MachineFileError, OtherSchema) {
 
 TEST(MachineFileError, FileWithoutAxis) {
   EXPECT_EQ(error_of("schema = \"stiction.machine/1\"\nname = \"empty\"\n"),
-            "FILE:1: axis: found no axis; expected at least one table [axis.NAME]");
+            "FILE:1: axis: found no axis; expected at least one table [axis.NAME], or a table [feed_drive]");
   EXPECT_TRUE(error_of("schema = \"stiction.machine/1\"\nname = \"bad\"\n[axis.\"a.b\"]\n")
                   .starts_with("FILE:3: axis: found the name \"a.b\"; expected a name of letters"));
 }
@@ -218,8 +219,9 @@ TEST(MachineFileError, OverridesOfEveryExperimentAreChecked) {
             "expected a value greater than 0 N (Coulomb friction F_C)");
   EXPECT_EQ(error_of(small_machine + "[experiment.impact.axis.C]\nmass = \"3 kg\"\n"),
             "FILE:29: experiment.impact.axis.C: found an unknown key; expected one of B; did you mean \"B\"?");
-  EXPECT_EQ(error_of(small_machine + "[experiment.impact.reference]\n"),
-            "FILE:29: experiment.impact.reference: found an unknown key; expected one of name, timing, axis");
+  EXPECT_EQ(
+      error_of(small_machine + "[experiment.impact.reference]\n"),
+      "FILE:29: experiment.impact.reference: found an unknown key; expected one of name, timing, axis, feed_drive");
   EXPECT_TRUE(error_of(small_machine + "[experiment.imapct.axis.B]\nmass = \"3 kg\"\n")
                   .starts_with("FILE:29: experiment.imapct: found an unknown key; expected one of circle, "));
 }
@@ -257,7 +259,7 @@ TEST(MachineFileError, SetNamesItselfAsThePlace) {
   EXPECT_EQ(error_of_set({"axis.Q.mass=3 kg"}),
             "--set axis.Q.mass: axis.Q: found an unknown key; expected one of X, Y; did you mean \"X\"?");
   EXPECT_EQ(error_of_set({"reference.circle=3"}),
-            "--set reference.circle: reference: found an unknown key; expected one of name, timing, axis");
+            "--set reference.circle: reference: found an unknown key; expected one of name, timing, axis, feed_drive");
 }
 
 TEST(MachineFileError, SetWithoutKeyOrValue) {
@@ -290,18 +292,18 @@ TEST(MachineFileError, EveryDescribedQuantityRefusesAForeignUnitAndNamesItsKey) 
     for (const KeyDescription& key : table.keys) {
       if (key.unit.empty()) continue;
       ++quantities;
-      const std::string path = replaced(table.name + ".", table.name.starts_with("axis") ? "axis.NAME" : "timing",
-                                        table.name.starts_with("axis") ? "axis.X" : "timing") +
-                               key.key;
+      const bool axis = table.name.starts_with("axis.NAME");
+      const std::string path = (axis ? replaced(table.name, "axis.NAME", "axis.X") : table.name) + "." + key.key;
+      const auto machine = table.name.starts_with("feed_drive") ? test::shipped_feed_drive() : test::shipped_machine();
       // No parameter is an amount of substance.
-      const std::string message = error_of_set({path + (key.list ? "=['1 mol']" : "=1 mol")});
+      const std::string message = error_of_set({path + (key.list ? "=['1 mol']" : "=1 mol")}, {}, machine);
       const std::string start = "--set " + path + ": " + path + (key.list ? "[0]" : "") + ": found \"1 mol\"";
       EXPECT_TRUE(message.starts_with(start)) << message;
       EXPECT_NE(message.find(key.text), std::string::npos) << message;
       if (key.key != "count") {
         EXPECT_NE(message.find("(dimension mol, not "), std::string::npos) << message;
       }
-      const std::string bare = error_of_set({path + "=1"});
+      const std::string bare = error_of_set({path + "=1"}, {}, machine);
       if (key.unit != "1" && !key.list) {
         EXPECT_NE(bare.find("found 1 (no unit)"), std::string::npos) << bare;
       }

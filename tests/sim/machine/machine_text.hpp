@@ -47,6 +47,8 @@ inline std::filesystem::path shipped_machine() {
   return std::filesystem::path(STICTION_SOURCE_DIR) / "sim" / "machine" / "shipped" / "mcfv5050ln.toml";
 }
 
+inline std::filesystem::path shipped_feed_drive() { return shipped_machine().parent_path() / "stick-slip-feed.toml"; }
+
 // `text` with the one place `from` replaced; the test fails where there is none.
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
@@ -96,10 +98,11 @@ inline std::string error_after(const std::string& from, const std::string& to) {
   return error_of(replaced(small_machine, from, to));
 }
 
-// As error_of, for the shipped machine with values from the command line.
-inline std::string error_of_set(std::vector<std::string> set, const std::string& experiment = {}) {
+// As error_of, for a shipped machine with values from the command line.
+inline std::string error_of_set(std::vector<std::string> set, const std::string& experiment = {},
+                                const std::filesystem::path& machine = shipped_machine()) {
   try {
-    read_machine(shipped_machine(), {.experiment = experiment, .set = std::move(set)});
+    read_machine(machine, {.experiment = experiment, .set = std::move(set)});
     return "accepted";
   } catch (const MachineFileError& error) {
     return error.what();

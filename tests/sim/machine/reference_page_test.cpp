@@ -43,6 +43,15 @@ TEST(ReferencePage, ListsEveryParameterOfEveryStruct) {
   expect_rows<Feedforward>(page, "axis.NAME.feedforward");
   expect_rows<Supervision>(page, "axis.NAME.supervision");
   expect_rows<CircleReference>(page, "[reference.circle]");
+  expect_rows<FeedDrive>(page, "feed_drive");
+  expect_rows<FeedMotor>(page, "feed_drive.motor");
+  expect_rows<FeedConverter>(page, "feed_drive.converter");
+  expect_rows<FeedSpeedController>(page, "feed_drive.speed_controller");
+  expect_rows<FeedCurrentController>(page, "feed_drive.current_controller");
+  expect_rows<FeedCarriage>(page, "feed_drive.carriage");
+  expect_rows<FeedFriction>(page, "feed_drive.friction");
+  expect_rows<FeedCutting>(page, "feed_drive.cutting");
+  expect_rows<FeedTool>(page, "feed_drive.tool");
   for_each_friction_model([&]<class Model>() {
     const std::string table = "axis.NAME.friction." + std::string(Model::name);
     for (const auto& p : Model::parameters)
