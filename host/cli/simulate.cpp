@@ -7,6 +7,7 @@
 #include "host/cli/circle_output.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
+#include "host/cli/frequency_response_command.hpp"
 #include "host/cli/machine_options.hpp"
 #include "sim/machine/units.hpp"
 
@@ -81,6 +82,7 @@ void add_simulate(CLI::App& program, const Invocation& invocation) {
   circle->callback([o, &invocation] { simulate_circle(*o, invocation); });
 
   add_experiments(*simulate, invocation);
+  add_frequency_response(*simulate, invocation);
 }
 
 }  // namespace stiction::host

@@ -1,6 +1,7 @@
 // What an experiment other than the circle leaves behind: figures with what the source says of them, and charts.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -35,13 +36,37 @@ struct Series {
   bool points = false;  // markers instead of a line: measured or published values
 };
 
+// A horizontal line across a chart.
+struct Level {
+  double y;
+  std::string label;
+};
+
+// A vertical distance at one abscissa, such as a margin.
+struct Distance {
+  double x, from, to;
+  std::string label;
+};
+
+// How much of the page a chart takes. Charts over time are wide and low of themselves.
+struct Shape {
+  enum class Height { usual, low, flat };
+  bool wide = false;  // the whole width; else two charts stand side by side
+  Height height = Height::usual;
+};
+
 struct Chart {
-  std::string title;
+  std::string title;    // empty: it belongs to the one above, over the same abscissa
   std::string x_label;  // with unit
   std::string y_label;  // with unit
   std::string caption;  // what to look at
   bool logarithmic_x = false;
   std::vector<Series> series;
+  std::vector<Level> levels{};
+  std::vector<Distance> distances{};
+  std::optional<std::array<double, 2>> y_range{};  // what is shown; none: all of it
+  double y_step = 0.0;                             // from tick to tick; 0: chosen by the page
+  Shape shape{};
 };
 
 struct ExperimentResult {

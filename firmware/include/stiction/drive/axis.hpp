@@ -145,7 +145,7 @@ class Axis {
     s.i_pi = VelocityPi<S>::step(config_.velocity, state_.velocity_pi, s.v_error, saturations);
     s.i_notch = Notch<S>::step(config_.notch, state_.notch, s.i_pi, saturations);
     s.i_feedforward = narrow<typename S::Current>(config_.current_feedforward * set.acceleration, saturations);
-    const auto i_wanted = narrow<typename S::Current>(s.i_notch + s.i_feedforward, saturations);
+    const auto i_wanted = narrow<typename S::Current>(s.i_notch + s.i_feedforward + set.injection, saturations);
     const auto i_set = limit(i_wanted, config_.current_limit);
     s.i_set = i_set.value;
     VelocityPi<S>::track(config_.velocity, state_.velocity_pi, i_wanted, i_set.value, saturations);
