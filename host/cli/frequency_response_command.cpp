@@ -25,7 +25,7 @@ namespace {
 struct Options {
   MachineOptions machine;
   std::string friction, axis, loop, speed = "2 m/min", amplitude, lowest = "2 Hz", signal = "multisine";
-  int periods = 4, passes = 4;
+  int periods = 2, passes = 8;
   std::string from, log, out;
   bool json = false;
 };
@@ -210,7 +210,7 @@ void add_frequency_response(CLI::App& simulate, const Invocation& invocation) {
       ->type_name("\"NUMBER UNIT\"")
       ->capture_default_str();
   simulated_only(command->add_option("--amplitude", o->amplitude,
-                                     "largest magnitude of the test signal [5 % of the current limit]"))
+                                     "largest magnitude of the test signal [10 % of the current limit]"))
       ->type_name("\"NUMBER UNIT\"");
   simulated_only(command->add_option("--lowest", o->lowest, "lowest frequency and distance of a multisine's lines"))
       ->type_name("\"NUMBER UNIT\"")

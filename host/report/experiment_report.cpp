@@ -43,8 +43,8 @@ json series_json(const sim::ExperimentResult& result) {
 }
 
 void add_shape(json& out, const sim::Chart& chart) {
-  out["levels"] = out["distances"] = json::array();
-  for (const auto& level : chart.levels) out["levels"].push_back({{"y", level.y}, {"label", typeset(level.label)}});
+  out["levels"] = chart.levels;
+  out["distances"] = json::array();
   for (const auto& each : chart.distances)
     out["distances"].push_back({{"x", each.x}, {"from", each.from}, {"to", each.to}, {"label", typeset(each.label)}});
   if (chart.y_range) out["y_range"] = *chart.y_range;

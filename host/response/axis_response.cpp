@@ -111,7 +111,7 @@ AxisResponse axis_response(const Log& log, const AxisLog& measured, const sim::T
   const bool has_current = known(Answer::current);
   // Without a current controller the current is what the velocity controller commands.
   const bool current_is_set = !has_current_loop && has_current;
-  result.set_current_computed = !known(Answer::set_current) && !current_is_set;
+  result.set_current_computed = !known(Answer::controller) && !current_is_set;
   if (has_current_loop && has_current) result.current.emplace();
   Controllers controllers(timing, axis);
   for (const auto& point : result.spectra.points) {
@@ -120,18 +120,21 @@ AxisResponse axis_response(const Log& log, const AxisLog& measured, const sim::T
     const bool speed_known = known(Answer::velocity);
     const Complex v = speed_known ? point.gain[index(Answer::velocity)] : controllers.speed() * x;
     const Complex speed_error = -(controllers.position() * x + v);
-    const Complex set = known(Answer::set_current) ? point.gain[index(Answer::set_current)]
-                        : current_is_set           ? point.gain[index(Answer::current)]
-                                                   : 1.0 + controllers.velocity() * speed_error;
+    const Complex output = known(Answer::controller) ? point.gain[index(Answer::controller)]
+                           : current_is_set          ? point.gain[index(Answer::current)] - 1.0
+                                                     : controllers.velocity() * speed_error;
+    const Complex set = 1.0 + output;
     const Complex i = has_current ? point.gain[index(Answer::current)] : set;
-    const Complex open_velocity = (set - 1.0) / speed_error * v / set;
+    const Complex open_velocity = output / speed_error * v / set;
     const double x_coherence = point.coherence[index(Answer::position)];
     const double v_coherence = speed_known ? point.coherence[index(Answer::velocity)] : x_coherence;
-    add(result.velocity, point.frequency, open_velocity, (1.0 - set) / set, v_coherence);
+    const double output_coherence =
+        known(Answer::controller) ? point.coherence[index(Answer::controller)] : v_coherence;
+    add(result.velocity, point.frequency, open_velocity, -output / set, output_coherence);
     const Complex open_position = controllers.position() * x / v * open_velocity / (1.0 + open_velocity);
     add(result.position, point.frequency, open_position, open_position, x_coherence);
     if (result.current)
-      add(*result.current, point.frequency, i / (set - i), (1.0 + i - set) / (set - i),
+      add(*result.current, point.frequency, i / (set - i), (i - output) / (set - i),
           point.coherence[index(Answer::current)]);
     result.plant.add(point.frequency, v / i);
     result.plant_coherence.push_back(v_coherence);

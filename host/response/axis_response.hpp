@@ -1,24 +1,24 @@
-// The open and closed loops of an axis and its plant alone, from the answers of its signals to one test signal r that
-// is added to the output of the velocity controller (contract 2, i_inject). No loop is opened, and one experiment gives
-// all of them: with S, I, V, X the answers of set current, current, velocity and position to r,
+// The open and closed loops of an axis and its plant alone, from the answers of its signals to one test signal that is
+// added to the output of the velocity controller (contract 2, i_inject). No loop is opened, and one experiment gives
+// all of them: with O, I, V, X the answers of controller output, current, speed and position, and S = 1 + O that of the
+// set current,
 //
-//   set current of the controllers  S - 1
-//   current loop        open  I/(S - I)                          closed  I/S
-//   velocity loop       open  L_v = C V/S, C = (1 - S)/(K_v Z X + V)   closed  L_v/(1 + L_v)
-//   position loop       open  K_v Z (X/V) L_v/(1 + L_v)          closed  L_p/(1 + L_p)
-//   plant alone         V/I
+//   current loop    open  I/(S - I)                       closed  I/S
+//   velocity loop   open  L_v = C V/S, C = -O/(K_v Z X + V)   closed  L_v/(1 + L_v)
+//   position loop   open  L_p = K_v Z (X/V) L_v/(1 + L_v)     closed  L_p/(1 + L_p)
+//   plant alone     V/I
 //
-// C is the velocity controller with its notch as it answers to the speed error -(K_v Z X + V). The position controller
+// C is the velocity controller with its notch, as it answers to the speed error -(K_v Z X + V). The position controller
 // has another rate: it samples every n-th tick and holds, Z = (1 + z^-1 + .. + z^-(n-1))/n. What its sampling folds to
-// other frequencies is left out: of a line at 60 Hz it returns at 940 Hz and above, 1e-4 of the loop there. Its
-// quantizer adds noise, which averages out, while the excitation is above one increment; where it is not, the coherence
-// shows it, and an increment of zero turns it off.
+// other frequencies is left out: of a line at 60 Hz it returns at 940 Hz, weakened by 1e-4. Its quantizer adds noise to
+// O, which averages out over passes with other phases and lowers the coherence until then; an increment of zero turns
+// it off.
 //
-// Loops are those of one controller with the inner ones closed and the outer ones open, as they are designed. A
-// controller's gain also scales what the outer loops feed back through it: `broken` is the return ratio of the whole
-// axis, cut behind that controller, and its gain margin is the factor of that gain at which the axis goes unstable.
+// Loops are those of one controller with the inner ones closed and the outer ones open, as they are designed. But a
+// controller's gain scales what the outer loops feed back through it as well: `broken` is the return ratio of the whole
+// axis, cut behind that controller, and its gain margin is the factor of that gain at which the axis goes unstable:
 //
-//   current   (1 + I - S)/(S - I)        velocity   (1 - S)/S        position   the same as open
+//   current   (I - O)/(S - I)        velocity   -O/S        position   the same as open
 #pragma once
 
 #include <optional>

@@ -59,15 +59,20 @@ sim::Series magnitude_series(const char* name, const Curve& curve) {
   return series;
 }
 
-// Without jumps, from -270 .. 90 deg on.
+// Without jumps; between -270 and 90 deg where the magnitude is nearest to 1.
 sim::Series phase_series(const char* name, const Curve& curve) {
   sim::Series series{name, curve.frequency, {}, false};
-  double phase = 0.0;
+  double phase = 0.0, anchor = 0.0, nearest = HUGE_VAL;
   for (std::size_t k = 0; k < curve.value.size(); ++k) {
     phase += k == 0 ? std::arg(curve.value[0]) : std::arg(curve.value[k] / curve.value[k - 1]);
-    if (k == 0 && phase > 0.5 * std::numbers::pi) phase -= 2.0 * std::numbers::pi;
     series.y.push_back(phase * 180.0 / std::numbers::pi);
+    if (const double far = std::abs(std::log(std::abs(curve.value[k]))); far < nearest) {
+      nearest = far;
+      anchor = series.y.back();
+    }
   }
+  const double turns = 360.0 * std::round((anchor + 90.0) / 360.0);
+  for (auto& value : series.y) value -= turns;
   return series;
 }
 
@@ -89,7 +94,7 @@ Bode bode(const std::string& title, const std::string& caption, const std::strin
   b.phase.y_label = "phase, deg";
   b.phase.y_step = 90.0;
   b.phase.y_range = {-360.0, 45.0};
-  b.phase.levels.push_back({-180.0, "-180 deg"});
+  b.phase.levels = {-180.0};
   b.coherence.y_label = "coherence";
   b.coherence.y_range = {0.0, 1.05};
   b.coherence.y_step = 0.5;
@@ -114,7 +119,7 @@ Bode loop_bode(const LoopName& name, const AxisResponse& response, const LoopRes
   b.coherence.series = {{"coherence", loop.open.frequency, loop.coherence, false}};
   b.magnitude.y_range = magnitude_range(b.magnitude);
   b.magnitude.y_step = 20.0;
-  b.magnitude.levels.push_back({0.0, "0 dB"});
+  b.magnitude.levels = {0.0};
   if (loop.gain)
     b.magnitude.distances.push_back({loop.gain->frequency, -decibel(loop.gain->factor), 0.0,
                                      fmt::format("gain margin {:.1f} dB", decibel(loop.gain->factor))});
@@ -170,11 +175,11 @@ void add_figures(std::vector<sim::Figure>& figures, const LoopName& name, const 
 
 std::string margin_sentence(const LoopName& name, const AxisResponse& response, const LoopResponse& loop) {
   auto text = fmt::format("{}, {}: ", name.title, response.axis);
-  text += loop.phase ? fmt::format("crossover at {:.3g} Hz with a phase margin of {:.0f} deg", loop.phase->frequency,
+  text += loop.phase ? fmt::format("crossover at {:.4g} Hz with a phase margin of {:.0f} deg", loop.phase->frequency,
                                    loop.phase->degrees)
                      : std::string("no crossover");
   text += loop.gain
-              ? fmt::format(", gain margin {:.1f} dB at {:.3g} Hz", decibel(loop.gain->factor), loop.gain->frequency)
+              ? fmt::format(", gain margin {:.1f} dB at {:.4g} Hz", decibel(loop.gain->factor), loop.gain->frequency)
               : std::string(", no gain margin within the measured band");
   if (loop.limit)
     text += fmt::format("; with all loops closed the axis bears x{:.3g} of this gain", loop.limit->factor);

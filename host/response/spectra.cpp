@@ -43,13 +43,13 @@ Channels channels_of(const Log& log, const AxisLog& axis, double force_constant)
         "{}: axis {}: found {}; expected a log recorded with a test signal on the controller's output, in a column "
         "i_inject[A] or u_inject[V]",
         log.source, axis.axis, c.test.empty() ? "no i_inject and no u_inject" : "a test signal that is always zero"));
-  auto& [position, velocity, current, set_current] = c.answer;
+  auto& [position, velocity, current, controller] = c.answer;
   position = difference(axis.x, axis.x_set);
   if (!axis.v.empty()) velocity = difference(axis.v, axis.v_set);
   current = axis.i;
   if (current.empty())
     for (const double force : axis.force) current.push_back(force / force_constant);
-  set_current = voltage ? axis.u : axis.i_set;
+  if (const auto& set = voltage ? axis.u : axis.i_set; !set.empty()) controller = difference(set, c.test);
   return c;
 }
 

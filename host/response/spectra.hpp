@@ -25,8 +25,9 @@ class ResponseError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// What answers to a test signal.
-enum class Answer : std::uint8_t { position, velocity, current, set_current };
+// What answers to a test signal. `controller` is the output of the velocity controller: the set current (the voltage of
+// a force motor) without the test signal in it, so that its coherence is that of the answer alone.
+enum class Answer : std::uint8_t { position, velocity, current, controller };
 inline constexpr std::size_t answers = 4;
 
 struct AnswerPoint {

@@ -19,7 +19,7 @@ constexpr double settling = 0.2;                   // s after a start, 17 time c
 constexpr double pause = 0.02;                     // s between two sines
 constexpr double multisine_density = 50.0;         // lines per decade
 constexpr double sine_density = 25.0;
-constexpr double share_of_limit = 0.05;
+constexpr double share_of_limit = 0.1;
 constexpr double share_of_travel = 0.8;  // that passes of many sines take
 
 // A stretch of test signal: so many blocks of whole periods of these lines.

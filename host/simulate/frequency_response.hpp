@@ -20,10 +20,10 @@ struct FrequencyResponsePlan {
   sim::Machine machine;  // its axes are excited, all at the same time
   TestSignal signal = TestSignal::multisine;
   double speed = 2.0 / 60.0;        // m/s
-  std::optional<double> amplitude;  // A (V of a force motor), largest magnitude; none: 5 % of the axis' limit
+  std::optional<double> amplitude;  // A (V of a force motor), largest magnitude; none: 10 % of the axis' limit
   double lowest = 2.0;              // Hz, lowest frequency and distance of the lines of a multisine
-  int periods = 4;                  // measured, after one to settle; of a sine: blocks of whole periods
-  int passes = 4;                   // of a multisine, each with other phases
+  int periods = 2;                  // measured, after one to settle; of a sine: blocks of whole periods
+  int passes = 8;                   // of a multisine, each with other phases
   std::uint64_t seed = 1;           // of the phases
 };
 

@@ -36,12 +36,6 @@ struct Series {
   bool points = false;  // markers instead of a line: measured or published values
 };
 
-// A horizontal line across a chart.
-struct Level {
-  double y;
-  std::string label;
-};
-
 // A vertical distance at one abscissa, such as a margin.
 struct Distance {
   double x, from, to;
@@ -62,7 +56,7 @@ struct Chart {
   std::string caption;  // what to look at
   bool logarithmic_x = false;
   std::vector<Series> series;
-  std::vector<Level> levels{};
+  std::vector<double> levels{};  // horizontal lines across the chart
   std::vector<Distance> distances{};
   std::optional<std::array<double, 2>> y_range{};  // what is shown; none: all of it
   double y_step = 0.0;                             // from tick to tick; 0: chosen by the page

@@ -69,8 +69,8 @@ function extent(charts, above = -Infinity) {
 // others leave some room beside their curves.
 function abscissaStyle(chart) {
   if (chart.logarithmic_x) {
-    const [low, high] = extent([chart], 0);
-    return { type: 'log', dtick: high / low > 3000 ? 1 : 'D2', tickformat: '~g', minor: { ticks: 'outside', ticklen: 2, tickcolor: '#9aa5b1' } };
+    const [low, high] = extent([chart], 0), room = 0.03 * Math.log10(high / low);
+    return { type: 'log', range: [Math.log10(low) - room, Math.log10(high) + room], dtick: high / low > 3000 ? 1 : 'D2', tickformat: '~g', minor: { ticks: 'outside', ticklen: 2, tickcolor: '#9aa5b1' } };
   }
   const [low, high] = extent(overTime(chart) ? DATA.charts.filter(each => each.x_label === chart.x_label) : [chart]);
   if (!(low < high)) return {};
@@ -117,7 +117,7 @@ function marksOf(chart) {
   const place = x => chart.logarithmic_x ? Math.log10(x) : x;
   const line = more => ({ type: 'line', line: { color: QUIET, width: 1, dash: 'dash' }, ...more });
   return {
-    shapes: [...chart.levels.map(level => line({ xref: 'paper', x0: 0, x1: 1, y0: level.y, y1: level.y })),
+    shapes: [...chart.levels.map(level => line({ xref: 'paper', x0: 0, x1: 1, y0: level, y1: level })),
              ...chart.distances.map(each => line({ x0: each.x, x1: each.x, y0: each.from, y1: each.to, line: { color: INK, width: 2 } }))],
     annotations: chart.distances.map(each => label(plain(each.label), place(each.x), (each.from + each.to) / 2,
                                                        { xanchor: 'left', xshift: 5, font: { size: 12, color: INK }, bgcolor: 'rgba(255,255,255,.8)' })),
@@ -125,7 +125,7 @@ function marksOf(chart) {
 }
 
 function ordinateStyle(chart) {
-  const style = { zeroline: !chart.levels.some(level => level.y === 0), zerolinecolor: '#9aa5b1', nticks: 7 };
+  const style = { zeroline: !chart.levels.some(level => level === 0), zerolinecolor: '#9aa5b1', nticks: 7 };
   if (chart.y_range) style.range = chart.y_range;
   if (chart.y_step) style.dtick = chart.y_step;
   return style;
