@@ -40,9 +40,9 @@ Channels channels_of(const Log& log, const AxisLog& axis, double force_constant)
   c.test = voltage ? axis.u_inject : axis.i_inject;
   if (std::all_of(c.test.begin(), c.test.end(), [](double value) { return value == 0.0; }))
     throw ResponseError(fmt::format(
-        "{}: axis {}: found {}; expected a log recorded with a test signal on the controller's output, in a column "
+        "{}: found {}; expected a log recorded with a test signal on the controller's output, in a column "
         "i_inject[A] or u_inject[V]",
-        log.source, axis.axis, c.test.empty() ? "no i_inject and no u_inject" : "a test signal that is always zero"));
+        place_of(log, axis), c.test.empty() ? "no i_inject and no u_inject" : "a test signal that is always zero"));
   auto& [position, velocity, current, controller] = c.answer;
   position = difference(axis.x, axis.x_set);
   if (!axis.v.empty()) velocity = difference(axis.v, axis.v_set);
@@ -225,6 +225,10 @@ double slowest_speed(const Log& log, const AxisLog& axis, const std::vector<Burs
 
 }  // namespace
 
+std::string place_of(const Log& log, const AxisLog& axis) {
+  return axis.axis.empty() ? log.source : log.source + ": axis " + axis.axis;
+}
+
 Spectra measure_spectra(const Log& log, const AxisLog& axis, double force_constant) {
   const auto channels = channels_of(log, axis, force_constant);
   const auto shortest_pause = std::max<std::size_t>(5, static_cast<std::size_t>(std::lround(pause / log.period)));
@@ -248,14 +252,13 @@ Spectra measure_spectra(const Log& log, const AxisLog& axis, double force_consta
   result.points = collector.points();
   if (result.points.size() < 2)
     throw ResponseError(
-        most_periods > 0
-            ? fmt::format("{}: axis {}: found {} periods of the test signal; expected at least {} in a row: in the "
-                          "first the answer settles, the others are compared",
-                          log.source, axis.axis, most_periods, fewest_periods)
-            : fmt::format("{}: axis {}: found a test signal of {:.3g} s that does not repeat itself; expected {} "
-                          "periods of one, or at least {} samples ({:.3g} s)",
-                          log.source, axis.axis, static_cast<double>(longest) * log.period, fewest_periods,
-                          fewest_samples, static_cast<double>(fewest_samples) * log.period));
+        most_periods > 0 ? fmt::format("{}: found {} periods of the test signal; expected at least {} in a row: in the "
+                                       "first the answer settles, the others are compared",
+                                       place_of(log, axis), most_periods, fewest_periods)
+                         : fmt::format("{}: found a test signal of {:.3g} s that does not repeat itself; expected {} "
+                                       "periods of one, or at least {} samples ({:.3g} s)",
+                                       place_of(log, axis), static_cast<double>(longest) * log.period, fewest_periods,
+                                       fewest_samples, static_cast<double>(fewest_samples) * log.period));
   return result;
 }
 

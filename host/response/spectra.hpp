@@ -30,6 +30,9 @@ class ResponseError : public std::runtime_error {
 enum class Answer : std::uint8_t { position, velocity, current, controller };
 inline constexpr std::size_t answers = 4;
 
+// "run.csv: axis X", for messages; "run.csv" where the log has no prefixes.
+std::string place_of(const Log& log, const AxisLog& axis);
+
 struct AnswerPoint {
   double frequency = 0.0;                            // Hz
   std::array<std::complex<double>, answers> gain{};  // m, m/s, A, A per ampere (volt) of the test signal

@@ -139,11 +139,12 @@ class Watch {
     }
     limited_ += limiting.velocity || limiting.current || limiting.voltage;
   }
+  bool limited() const { return limited_ > 0; }
   void check(const sim::Axis& axis, double speed, double amplitude) const {
-    if (limited_ > 0)
+    if (limited())
       throw InfeasibleMotion(fmt::format(
           "amplitude: found {:.4g} {}, with which axis {} is held back at a limit of velocity, current or voltage in "
-          "{} samples; expected an amplitude that stays within them",
+          "{} samples; expected an amplitude that stays within them, and a stable loop",
           amplitude, unit_of(axis), axis.name, limited_));
     if (slowest_ <= 0.0)
       throw InfeasibleMotion(fmt::format(
@@ -157,42 +158,66 @@ class Watch {
   int limited_ = 0;
 };
 
+// The run tick by tick: set-points, the test signals of the axes, and what is kept of them.
+class Recording {
+ public:
+  explicit Recording(const FrequencyResponsePlan& plan)
+      : plan_(plan), schedule_(plan), watches_(plan.machine.axes.size()) {
+    for (const auto& axis : plan.machine.axes) {
+      amplitudes_.push_back(plan.amplitude.value_or(share_of_limit * limit_of(axis)));
+      tests_.push_back(schedule_.test(amplitudes_.back(), plan.seed + 1000 * log_.axes.size()));
+      log_.axes.emplace_back().axis = axis.name;
+    }
+    log_.source = "simulation";
+    log_.period = plan.machine.timing.fast_period;
+    log_.comments = {{"experiment", "frequency-response"}, {"machine", plan.machine.name}};
+  }
+
+  Log take() {
+    try {
+      run();
+    } catch (const FaultTripped&) {
+      // Without a limit in the way, the fault is the machine's own, not the test signal's.
+      if (std::none_of(watches_.begin(), watches_.end(), [](const Watch& watch) { return watch.limited(); })) throw;
+    }
+    for (std::size_t k = 0; k < watches_.size(); ++k)
+      watches_[k].check(plan_.machine.axes[k], plan_.speed, amplitudes_[k]);
+    return std::move(log_);
+  }
+
+ private:
+  void run() {
+    const auto& axes = plan_.machine.axes;
+    std::vector<sim::AxisSetPoint> set(axes.size());
+    const std::vector<double> start(axes.size(), 0.0);
+    ControlRun<FixedSignals> run(plan_.machine, start);
+    for (std::size_t tick = 0; tick < schedule_.ticks(); ++tick) {
+      const double t = run.time();
+      for (std::size_t k = 0; k < axes.size(); ++k) {
+        set[k] = schedule_.at(t);
+        set[k].injection = tests_[k][tick];
+      }
+      run.tick(set, [&](std::int64_t, std::span<const AxisSignals<FixedSignals>> signals) {
+        log_.t.push_back(t);
+        for (std::size_t k = 0; k < axes.size(); ++k) {
+          const double test = tests_[k][tick];
+          record(log_.axes[k], signals[k], test, axes[k].motor.model == sim::MotorModel::force);
+          if (test != 0.0) watches_[k].see(t, set[k].velocity, run.plant(k).velocity(), signals[k].limiting);
+        }
+      });
+    }
+  }
+
+  const FrequencyResponsePlan& plan_;
+  Schedule schedule_;
+  std::vector<double> amplitudes_;
+  std::vector<std::vector<double>> tests_;
+  std::vector<Watch> watches_;
+  Log log_;
+};
+
 }  // namespace
 
-Log run_frequency_response(const FrequencyResponsePlan& plan) {
-  const auto& axes = plan.machine.axes;
-  const Schedule schedule(plan);
-  std::vector<double> amplitudes;
-  std::vector<std::vector<double>> tests;
-  for (std::size_t k = 0; k < axes.size(); ++k) {
-    amplitudes.push_back(plan.amplitude.value_or(share_of_limit * limit_of(axes[k])));
-    tests.push_back(schedule.test(amplitudes[k], plan.seed + 1000 * k));
-  }
-  Log log;
-  log.source = "simulation";
-  log.period = plan.machine.timing.fast_period;
-  log.comments = {{"experiment", "frequency-response"}, {"machine", plan.machine.name}};
-  for (const auto& axis : axes) log.axes.emplace_back().axis = axis.name;
-  std::vector<Watch> watches(axes.size());
-  std::vector<sim::AxisSetPoint> set(axes.size());
-  const std::vector<double> start(axes.size(), 0.0);
-  ControlRun<FixedSignals> run(plan.machine, start);
-  for (std::size_t tick = 0; tick < schedule.ticks(); ++tick) {
-    const double t = run.time();
-    for (std::size_t k = 0; k < axes.size(); ++k) {
-      set[k] = schedule.at(t);
-      set[k].injection = tests[k][tick];
-    }
-    run.tick(set);
-    log.t.push_back(t);
-    for (std::size_t k = 0; k < axes.size(); ++k) {
-      const auto& s = run.signals(k);
-      record(log.axes[k], s, tests[k][tick], axes[k].motor.model == sim::MotorModel::force);
-      if (tests[k][tick] != 0.0) watches[k].see(t, set[k].velocity, run.plant(k).velocity(), s.limiting);
-    }
-  }
-  for (std::size_t k = 0; k < axes.size(); ++k) watches[k].check(axes[k], plan.speed, amplitudes[k]);
-  return log;
-}
+Log run_frequency_response(const FrequencyResponsePlan& plan) { return Recording(plan).take(); }
 
 }  // namespace stiction::host
