@@ -68,7 +68,7 @@ class Controllers {
 };
 
 void check(const Log& log, const AxisLog& measured, const sim::Axis& axis) {
-  if (!measured.i_inject.empty() || !axis.current_controller) return;
+  if (!measured.i_inject.empty() || measured.u_inject.empty() || !axis.current_controller) return;
   throw ResponseError(
       fmt::format("{}: found u_inject and no i_inject; expected i_inject[A], a test signal on the set current, as the "
                   "machine's axis {} has a current controller",

@@ -21,13 +21,16 @@ struct LoopName {
   const LoopResponse* (*of)(const AxisResponse&);
 };
 constexpr std::array<LoopName, 3> loop_names{{
-    {"current", "Current loop", "Open: current to current error. Closed: current to set current.",
+    {"current", "Current loop",
+     "Open: current to current error. Closed: current to set current. Coherence: of the current.",
      [](const AxisResponse& r) { return r.current ? &*r.current : nullptr; }},
-    {"velocity", "Velocity loop", "Open: speed to speed error, position loop open. Closed: speed to wanted speed.",
+    {"velocity", "Velocity loop",
+     "Open: speed to speed error, position loop open. Closed: speed to wanted speed. Coherence: of the controller's "
+     "output.",
      [](const AxisResponse& r) { return &r.velocity; }},
     {"position", "Position loop",
      "Open: position to following error. Closed: position to set position, without "
-     "feedforward.",
+     "feedforward. Coherence: of the position.",
      [](const AxisResponse& r) { return &r.position; }},
 }};
 
@@ -132,7 +135,7 @@ Bode loop_bode(const LoopName& name, const AxisResponse& response, const LoopRes
 Bode plant_bode(const AxisResponse& response, const sim::Axis& axis, bool wide) {
   const char* per = axis.motor.model == sim::MotorModel::force ? "V" : "A";
   auto b = bode("Plant, " + response.axis,
-                fmt::format("Speed as the controller sees it, per {} of the {}.", per,
+                fmt::format("Speed as the controller sees it, per {} of the {}. Coherence: of the speed.", per,
                             axis.motor.model == sim::MotorModel::force                          ? "motor's voltage"
                             : response.spectra.known[static_cast<std::size_t>(Answer::current)] ? "current"
                                                                                                 : "set current"),

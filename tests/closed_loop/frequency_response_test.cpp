@@ -1,6 +1,8 @@
 // Margins measured with a test signal while the axis moves, against the gains at which it goes unstable. Measured on
 // the shipped machine as it is: firmware in fixed point, three-phase motor, LuGre friction, quantizer of 1 um. Found on
-// the linear axis by raising one gain at a time (stability_limit.hpp).
+// the linear axis by raising one gain at a time (stability_limit.hpp). From one set of random phases to another, the
+// quantizer's noise scatters the velocity gain's margin by 1.7 % (standard deviation of eleven), the others' by 0.3 %;
+// friction, which the linear axis has not, adds 1.5 to 2.3 % to the position gain's.
 #include "host/simulate/frequency_response.hpp"
 
 #include <gtest/gtest.h>

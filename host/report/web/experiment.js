@@ -70,7 +70,8 @@ function extent(charts, above = -Infinity) {
 function abscissaStyle(chart) {
   if (chart.logarithmic_x) {
     const [low, high] = extent([chart], 0), room = 0.03 * Math.log10(high / low);
-    return { type: 'log', range: [Math.log10(low) - room, Math.log10(high) + room], dtick: high / low > 3000 ? 1 : 'D2', tickformat: '~g', minor: { ticks: 'outside', ticklen: 2, tickcolor: '#9aa5b1' } };
+    return { type: 'log', range: [Math.log10(low) - room, Math.log10(high) + room], dtick: high / low > 3000 ? 1 : 'D2', tickformat: '~g',
+             minor: { ticks: 'outside', ticklen: 2, tickcolor: '#9aa5b1', showgrid: /^frequency\b/.test(chart.x_label), gridcolor: '#f3f5f7' } };
   }
   const [low, high] = extent(overTime(chart) ? DATA.charts.filter(each => each.x_label === chart.x_label) : [chart]);
   if (!(low < high)) return {};

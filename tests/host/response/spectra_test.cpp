@@ -2,7 +2,6 @@
 // x that the controller feeds back. The plain ratio x/u would be bent by it.
 #include "host/response/spectra.hpp"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -88,24 +87,23 @@ TEST(Spectra, OfAPeriodicTestSignalAreExactWithoutNoise) {
   }
 }
 
-// 40 periods: the noise of a point falls to a sixth of a period's; 15 % of what is left of it at the highest line.
+// Noise of 0.02 on an answer of 0.05 and less a line, 35 blocks: 1.3 % in the mean, the lines' errors unrelated, so
+// that they cancel in the mean of about twenty. The plain ratio of the two signals of the loop would be off by far
+// more.
 TEST(Spectra, NoiseInTheLoopDoesNotBendThem) {
   const auto log = closed_loop(repeated(block_of_multisine(), 40), 0.02);
-  const auto spectra = measure_spectra(log, log.axes[0], 1.0);
   double mean = 0.0;
   std::complex<double> bias = 0.0;
-  std::size_t count = 0;
-  for (const auto& point : spectra.points) {
+  double count = 0.0;
+  for (const auto& point : measure_spectra(log, log.axes[0], 1.0).points) {
     if (point.frequency > 100.0) continue;
     const auto error = point.gain[position] / point.gain[current] / plant(point.frequency) - 1.0;
     mean += std::abs(error);
     bias += error;
-    ++count;
+    count += 1.0;
   }
-  mean /= static_cast<double>(count);
-  fmt::print("mean {} bias {}\n", mean, std::abs(bias)/static_cast<double>(count));
-  EXPECT_LT(mean, 0.15);
-  EXPECT_LT(std::abs(bias) / static_cast<double>(count), 0.05);
+  EXPECT_LT(mean / count, 0.03);
+  EXPECT_LT(std::abs(bias) / count, 0.01);
 }
 
 TEST(Spectra, CoherenceFallsWithTheNoise) {
@@ -161,7 +159,8 @@ TEST(Spectra, ALogWithoutEnoughTestSignalIsRefusedWithWhatToRecord) {
   auto log = closed_loop(repeated(block_of_multisine(), 2), 0.0);
   expect_refused(log, "found 2 periods of the test signal; expected at least 3 in a row");
   auto short_noise = std::vector<double>(300);
-  for (std::size_t k = 0; k < short_noise.size(); ++k) short_noise[k] = std::sin(1e-3 * static_cast<double>(k * k) + 1.0);
+  for (std::size_t k = 0; k < short_noise.size(); ++k)
+    short_noise[k] = std::sin(1e-3 * static_cast<double>(k * k) + 1.0);
   expect_refused(closed_loop(short_noise, 0.0), "found a test signal of 0.3 s that does not repeat itself");
   std::fill(log.axes[0].i_inject.begin(), log.axes[0].i_inject.end(), 0.0);
   expect_refused(log, "found a test signal that is always zero; expected a log recorded with a test signal");
