@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -92,6 +93,14 @@ void find_margins(LoopResponse& loop) {
   loop.bandwidth = bandwidth(coherent(loop.closed, loop.coherence));
 }
 
+std::size_t samples_at_limit(const AxisLog& measured, const sim::Axis& axis) {
+  const bool force = axis.motor.model == sim::MotorModel::force;
+  const double limit = 0.999 * (force ? axis.inverter.voltage_limit : axis.inverter.current_limit * axis.motor.count);
+  const auto& set = force ? measured.u : measured.i_set.empty() ? measured.i : measured.i_set;
+  return static_cast<std::size_t>(
+      std::count_if(set.begin(), set.end(), [limit](double value) { return std::abs(value) >= limit; }));
+}
+
 void add(LoopResponse& loop, double frequency, Complex open, Complex broken, double coherence) {
   loop.open.add(frequency, open);
   loop.closed.add(frequency, open / (1.0 + open));
@@ -105,6 +114,7 @@ AxisResponse axis_response(const Log& log, const AxisLog& measured, const sim::T
   check(log, measured, axis);
   AxisResponse result;
   result.axis = axis.name;
+  result.samples_at_limit = samples_at_limit(measured, axis);
   result.spectra = measure_spectra(log, measured, axis.motor.force_constant);
   const auto known = [&](Answer answer) { return result.spectra.known[index(answer)]; };
   const bool has_current_loop = axis.current_controller.has_value();

@@ -49,6 +49,7 @@ struct AxisResponse {
   Curve plant;  // m/s per A of the current, per V of a force motor; per A of the set current where there is no current
   std::vector<double> plant_coherence;
   bool set_current_computed = false;  // by the machine's controllers, as the log has none
+  std::size_t samples_at_limit = 0;   // in which the limit of current (voltage of a force motor) holds back
   Spectra spectra;
 };
 

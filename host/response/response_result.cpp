@@ -34,22 +34,29 @@ constexpr std::array<LoopName, 3> loop_names{{
      [](const AxisResponse& r) { return &r.position; }},
 }};
 
-// The factors of one gain at which a 150 N step on the shipped machine's axes "no longer decays" (plant study, 10).
+// The factors of one gain at which a 150 N step on the shipped machine's axes "no longer decays" (plant study, 10), and
+// the axes of which this was found.
 struct KnownLimits {
-  double mass, velocity_gain;
+  double mass, velocity_gain, current_gain;
   bool notch;
   double velocity, current, position;  // 0: not studied
 };
-constexpr std::array<KnownLimits, 4> known_limits{{{225.0, 600.0, true, 11.5, 4.47, 5.40},
-                                                   {520.0, 1200.0, true, 13.0, 4.59, 4.05},
-                                                   {225.0, 600.0, false, 15.7, 0.0, 0.0},
-                                                   {520.0, 1200.0, false, 17.9, 0.0, 0.0}}};
+constexpr std::array<KnownLimits, 4> known_limits{{{225.0, 600.0, 35.0, true, 11.5, 4.47, 5.40},
+                                                   {520.0, 1200.0, 17.0, true, 13.0, 4.59, 4.05},
+                                                   {225.0, 600.0, 35.0, false, 15.7, 0.0, 0.0},
+                                                   {520.0, 1200.0, 17.0, false, 17.9, 0.0, 0.0}}};
+
+bool is_of(const KnownLimits& known, const sim::Axis& axis) {
+  const auto same = [](double a, double b) { return std::abs(a - b) <= 1e-4 * b; };
+  return same(axis.mass, known.mass) && same(axis.velocity_controller.gain, known.velocity_gain) &&
+         axis.current_controller && same(axis.current_controller->gain, known.current_gain) &&
+         same(axis.position_controller.gain, 83.3333) && same(axis.inverter.dead_time, 125e-6) &&
+         axis.encoder.velocity == sim::VelocitySource::ideal && axis.notch.has_value() == known.notch;
+}
 
 std::optional<sim::Expectation> expected_limit(const sim::Axis& axis, std::string_view loop) {
   for (const auto& known : known_limits) {
-    if (axis.mass != known.mass || axis.velocity_controller.gain != known.velocity_gain ||
-        axis.notch.has_value() != known.notch)
-      continue;
+    if (!is_of(known, axis)) continue;
     const double value = loop == "current" ? known.current : loop == "velocity" ? known.velocity : known.position;
     if (value > 0.0) return sim::Expectation{value, 0.05 * value, "plant study, 10: prototype, one gain at a time"};
   }
@@ -200,6 +207,9 @@ std::string condition_sentence(const AxisResponse& response) {
     text +=
         ": the speed crosses zero while the test signal acts, so that friction is not nearly linear; record with a "
         "higher speed";
+  if (response.samples_at_limit > 0)
+    text += fmt::format("; {} samples are at the current limit, where the loop is open: record with less test signal",
+                        response.samples_at_limit);
   if (response.set_current_computed)
     text += "; the log has no i_set: it is computed with the controllers of the machine file";
   return text + ".";

@@ -139,9 +139,9 @@ class Watch {
     }
     limited_ += limiting.velocity || limiting.current || limiting.voltage;
   }
-  bool limited() const { return limited_ > 0; }
+  bool saw_test() const { return slowest_ < HUGE_VAL; }
   void check(const sim::Axis& axis, double speed, double amplitude) const {
-    if (limited())
+    if (limited_ > 0)
       throw InfeasibleMotion(fmt::format(
           "amplitude: found {:.4g} {}, with which axis {} is held back at a limit of velocity, current or voltage in "
           "{} samples; expected an amplitude that stays within them, and a stable loop",
@@ -176,16 +176,24 @@ class Recording {
   Log take() {
     try {
       run();
-    } catch (const FaultTripped&) {
-      // Without a limit in the way, the fault is the machine's own, not the test signal's.
-      if (std::none_of(watches_.begin(), watches_.end(), [](const Watch& watch) { return watch.limited(); })) throw;
+    } catch (const FaultTripped& fault) {
+      check();
+      // Before the test signal acts, the fault is the machine's own.
+      if (std::none_of(watches_.begin(), watches_.end(), [](const Watch& watch) { return watch.saw_test(); })) throw;
+      throw InfeasibleMotion(fmt::format(
+          "amplitude: found {:.4g} {}, with which the axis stops: {}; expected an amplitude that the supervision lets "
+          "pass, and a stable loop",
+          amplitudes_.front(), unit_of(plan_.machine.axes.front()), fault.what()));
     }
-    for (std::size_t k = 0; k < watches_.size(); ++k)
-      watches_[k].check(plan_.machine.axes[k], plan_.speed, amplitudes_[k]);
+    check();
     return std::move(log_);
   }
 
  private:
+  void check() const {
+    for (std::size_t k = 0; k < watches_.size(); ++k)
+      watches_[k].check(plan_.machine.axes[k], plan_.speed, amplitudes_[k]);
+  }
   void run() {
     const auto& axes = plan_.machine.axes;
     std::vector<sim::AxisSetPoint> set(axes.size());
