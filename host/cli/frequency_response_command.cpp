@@ -154,7 +154,7 @@ Measurement measured(const Options& options, const sim::Machine& machine) {
         fmt::format("{}: found no axis of --axis '{}' with a test signal; expected i_inject[A] or "
                     "u_inject[V] of it",
                     options.from, options.axis));
-  m.text = {"", fmt::format("Measured: {}.", log.source), false};
+  m.text = {"measured", fmt::format("Measured: {}.", log.source), false};
   return m;
 }
 

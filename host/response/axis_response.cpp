@@ -143,9 +143,11 @@ AxisResponse axis_response(const Log& log, const AxisLog& measured, const sim::T
     add(result.velocity, point.frequency, open_velocity, -output / set, output_coherence);
     const Complex open_position = controllers.position() * x / v * open_velocity / (1.0 + open_velocity);
     add(result.position, point.frequency, open_position, open_position, x_coherence);
-    if (result.current)
+    if (result.current) {
+      const auto error_or_current = known(Answer::current_error) ? Answer::current_error : Answer::current;
       add(*result.current, point.frequency, i / (set - i), (i - output) / (set - i),
-          point.coherence[index(Answer::current)]);
+          point.coherence[index(error_or_current)]);
+    }
     result.plant.add(point.frequency, v / i);
     result.plant_coherence.push_back(v_coherence);
   }

@@ -22,7 +22,7 @@ struct LoopName {
 };
 constexpr std::array<LoopName, 3> loop_names{{
     {"current", "Current loop",
-     "Open: current to current error. Closed: current to set current. Coherence: of the current.",
+     "Open: current to current error. Closed: current to set current. Coherence: of the current error.",
      [](const AxisResponse& r) { return r.current ? &*r.current : nullptr; }},
     {"velocity", "Velocity loop",
      "Open: speed to speed error, position loop open. Closed: speed to wanted speed. Coherence: of the controller's "
@@ -224,8 +224,12 @@ sim::ExperimentResult response_result(const std::vector<AxisResponse>& responses
   result.title = "Frequency response";
   result.signals = text.signals;
   result.question =
-      "The measured margins must agree within 5 % with the gains at which the axis goes unstable, found by raising one "
-      "gain at a time until a step of force no longer decays (plant study, 10).";
+      text.simulated
+          ? "The measured margins must agree within 5 % with the gains at which the axis goes unstable, found by "
+            "raising "
+            "one gain at a time until a step of force no longer decays (plant study, 10)."
+          : "Nothing: the margins of a measured machine are found here. They are read from frequencies at which the "
+            "coherence is at least 0.9.";
   result.findings.push_back(text.condition);
   for (const auto& response : responses) result.findings.push_back(condition_sentence(response));
   const bool wide = responses.size() != 2;

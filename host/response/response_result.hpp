@@ -11,7 +11,7 @@
 namespace stiction::host {
 
 struct ResponseText {
-  std::string signals;    // of the control: "fixed"; empty for a measured log
+  std::string signals;    // of the control: "fixed"; "measured" of a log
   std::string condition;  // one sentence: what was excited, and how
   bool simulated = true;  // the gains at which the simulated axis goes unstable are known
 };

@@ -43,12 +43,13 @@ Channels channels_of(const Log& log, const AxisLog& axis, double force_constant)
         "{}: found {}; expected a log recorded with a test signal on the controller's output, in a column "
         "i_inject[A] or u_inject[V]",
         place_of(log, axis), c.test.empty() ? "no i_inject and no u_inject" : "a test signal that is always zero"));
-  auto& [position, velocity, current, controller] = c.answer;
+  auto& [position, velocity, current, current_error, controller] = c.answer;
   position = difference(axis.x, axis.x_set);
   if (!axis.v.empty()) velocity = difference(axis.v, axis.v_set);
   current = axis.i;
   if (current.empty())
     for (const double force : axis.force) current.push_back(force / force_constant);
+  if (!axis.i_set.empty() && !current.empty()) current_error = difference(axis.i_set, current);
   if (const auto& set = voltage ? axis.u : axis.i_set; !set.empty()) controller = difference(set, c.test);
   return c;
 }

@@ -26,9 +26,10 @@ class ResponseError : public std::runtime_error {
 };
 
 // What answers to a test signal. `controller` is the output of the velocity controller: the set current (the voltage of
-// a force motor) without the test signal in it, so that its coherence is that of the answer alone.
-enum class Answer : std::uint8_t { position, velocity, current, controller };
-inline constexpr std::size_t answers = 4;
+// a force motor) without the test signal in it, so that its coherence is that of the answer alone. `current_error`: set
+// current less current.
+enum class Answer : std::uint8_t { position, velocity, current, current_error, controller };
+inline constexpr std::size_t answers = 5;
 
 // "run.csv: axis X", for messages; "run.csv" where the log has no prefixes.
 std::string place_of(const Log& log, const AxisLog& axis);

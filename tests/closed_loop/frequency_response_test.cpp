@@ -130,7 +130,7 @@ TEST(FrequencyResponse, ALogOfPositionAndCurrentAloneGivesTheSameMargins) {
   }
 }
 
-// At 20 Hz friction's slope and the mass decide: v/i = K_F/(m s + mu_v), the mount is stiff. LuGre at 2 m/min follows
+// At 100 Hz friction's slope and the mass decide: v/i = K_F/(m s + mu_v), the mount is stiff. LuGre at 2 m/min follows
 // the speed with a corner at 47 Hz (k_s v/F_C), which takes its part of the phase: 2 % and 2 deg.
 TEST(FrequencyResponse, ThePlantAloneIsThatOfTheMass) {
   const auto& machine = cross_table();
