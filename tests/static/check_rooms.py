@@ -62,7 +62,6 @@ ROOMS = {
     "host/response": {
         "host/log": "frequency responses are measured from logs",
         "sim/*": "with the controllers of a machine, and become results",
-        f"{FIRMWARE}/*": "in the cascade's own coefficients",
     },
     "host/simulate": {
         "host/log": "a run can be logged",
