@@ -8,7 +8,8 @@
 
 namespace stiction::host {
 
-// A complex function of frequency, point by point; the frequencies (Hz) rise.
+// A complex function of frequency, point by point; the frequencies (Hz) rise. Between points more than an octave apart
+// nothing is read off.
 struct Curve {
   std::vector<double> frequency;
   std::vector<std::complex<double>> value;

@@ -13,12 +13,12 @@
 namespace stiction::host {
 namespace {
 
-constexpr double pause = 5e-3;                // s without test signal between two stretches of it
-constexpr std::size_t fewest_periods = 3;     // one settles, two are compared
-constexpr std::size_t blocks_wanted = 5;      // of which the first settles
-constexpr double least_line = 0.02;           // amplitude of a line against the largest one
-constexpr std::size_t fewest_samples = 2048;  // of a test signal that does not repeat itself
-constexpr double windows_wanted = 6.0;        // without overlap
+constexpr double pause = 5e-3;                 // s without test signal between two stretches of it
+constexpr std::size_t fewest_periods = 3;      // one settles, two are compared
+constexpr std::size_t blocks_wanted = 5;       // of which the first settles
+constexpr double least_line = 0.02;            // amplitude of a line against the largest one
+constexpr std::size_t fewest_samples = 16384;  // of a test signal that does not repeat itself
+constexpr double windows_wanted = 6.0;         // without overlap
 constexpr double bands_per_decade = 50.0;
 
 // The signals of an axis as they answer: what the set-points explain is taken off where the log has them.
