@@ -7,6 +7,7 @@
 #include "host/cli/circle_output.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
+#include "host/cli/frequency_response_command.hpp"
 #include "host/cli/machine_options.hpp"
 #include "sim/machine/units.hpp"
 
@@ -82,6 +83,7 @@ void add_simulate(CLI::App& program, const Invocation& invocation) {
 
   add_experiments(*simulate, invocation);
   add_replay(*simulate, invocation);
+  add_frequency_response(*simulate, invocation);
 }
 
 }  // namespace stiction::host

@@ -42,6 +42,18 @@ json series_json(const sim::ExperimentResult& result) {
   return list;
 }
 
+void add_shape(json& out, const sim::Chart& chart) {
+  out["levels"] = chart.levels;
+  out["distances"] = json::array();
+  for (const auto& each : chart.distances)
+    out["distances"].push_back({{"x", each.x}, {"from", each.from}, {"to", each.to}, {"label", typeset(each.label)}});
+  if (chart.y_range) out["y_range"] = *chart.y_range;
+  if (chart.y_step > 0.0) out["y_step"] = chart.y_step;
+  using Height = sim::Shape::Height;
+  out["wide"] = chart.shape.wide;
+  out["height"] = chart.shape.height == Height::usual ? "" : chart.shape.height == Height::low ? "low" : "flat";
+}
+
 json chart_json(const sim::Chart& chart) {
   json out{{"title", typeset(chart.title)},
            {"x_label", typeset(chart.x_label)},
@@ -50,6 +62,7 @@ json chart_json(const sim::Chart& chart) {
            {"logarithmic_x", chart.logarithmic_x},
            {"x_range", chart.x_range ? json(*chart.x_range) : json(nullptr)},
            {"series", json::array()}};
+  add_shape(out, chart);
   for (const auto& series : chart.series) {
     const auto kept = select_extremes(series.x, series.y, points_per_series);
     out["series"].push_back({{"name", series.name},

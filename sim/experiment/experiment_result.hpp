@@ -37,14 +37,32 @@ struct Series {
   bool bars = false;    // bars from zero instead of a line: one value a count
 };
 
+// A vertical distance at one abscissa, such as a margin.
+struct Distance {
+  double x, from, to;
+  std::string label;
+};
+
+// How much of the page a chart takes. Charts over time are wide and low of themselves.
+struct Shape {
+  enum class Height { usual, low, flat };
+  bool wide = false;  // the whole width; else two charts stand side by side
+  Height height = Height::usual;
+};
+
 struct Chart {
-  std::string title;
+  std::string title;    // empty: it belongs to the one above, over the same abscissa
   std::string x_label;  // with unit
   std::string y_label;  // with unit
   std::string caption;  // what to look at
   bool logarithmic_x = false;
   std::vector<Series> series;
   std::optional<std::array<double, 2>> x_range{};  // what is shown first, of a longer record; none: all
+  std::vector<double> levels{};  // horizontal lines across the chart
+  std::vector<Distance> distances{};
+  std::optional<std::array<double, 2>> y_range{};  // what is shown; none: all of it
+  double y_step = 0.0;                             // from tick to tick; 0: chosen by the page
+  Shape shape{};
 };
 
 struct ExperimentResult {

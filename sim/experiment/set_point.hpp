@@ -10,6 +10,7 @@ struct AxisSetPoint {
   double position = 0.0;      // m
   double velocity = 0.0;      // m/s
   double acceleration = 0.0;  // m/s^2
+  double injection = 0.0;     // A, a test signal added to the set current
 };
 
 // Marks the set-point as not valid when one of its values is not a number or out of range.
@@ -18,6 +19,7 @@ SetPoint<S> to_set_point(const AxisSetPoint& set) {
   SetPoint<S> signal;
   signal.valid = convert(set.position, signal.position) && convert(set.velocity, signal.velocity) &&
                  convert(set.acceleration, signal.acceleration);
+  if (set.injection != 0.0) signal.valid = convert(set.injection, signal.injection) && signal.valid;
   return signal;
 }
 

@@ -8,68 +8,11 @@
 #include <array>
 #include <cmath>
 
-#include "hal/simulated/simulated_backend.hpp"
-#include "tests/support/closed_loop.hpp"
 #include "tests/support/figure.hpp"
-#include "tests/support/shipped_machine.hpp"
+#include "tests/support/stability_limit.hpp"
 
 namespace stiction::test {
 namespace {
-
-sim::Machine linear_axis(std::size_t axis) {
-  auto machine = cross_table({"axis.*.encoder.velocity=ideal"});
-  machine.axes = {machine.axes[axis]};
-  auto& a = machine.axes[0];
-  // The DC equivalent with the inductance that the star point leaves of the winding's: linear at every position.
-  a.motor.model = sim::MotorModel::dc;
-  a.motor.phase_inductance -= a.motor.mutual_inductance;
-  a.encoder.increment = 0.0;
-  a.position_controller.increment = 0.0;
-  a.friction.models["coulomb_viscous"] = sim::CoulombViscous::Parameters{0.0, 0.0};
-  a.friction.use = "coulomb_viscous";
-  a.inverter.voltage_limit = a.inverter.current_limit = 1e12;
-  a.supervision = {1.0, 1e6, 1e3};  // what comes here is running away
-  a.max_velocity = 1e12;
-  return machine;
-}
-
-// What is left of the swing a third of a second later, as a share.
-double remainder_of_swing(const sim::Machine& machine) {
-  const std::array<double, 1> start{0.0};
-  hal::SimulatedBackend<sim::DoubleSignals> backend(machine, start);
-  backend.plant(0).set_external_force(150.0);
-  constexpr int per_second = 16000;
-  constexpr int ticks = per_second * 6 / 10;
-  const auto trace = record(
-      backend, machine, ticks, [](double) { return std::array<sim::AxisSetPoint, 1>{}; }, [](auto&, int) {});
-  if (trace.size() < ticks) return HUGE_VAL;  // stopped by a fault
-  const auto largest = [&](double from, double to) {
-    double result = 0.0;
-    for (auto i = static_cast<std::size_t>(from * per_second); i < static_cast<std::size_t>(to * per_second); ++i)
-      result = std::max(result, std::abs(trace[i].e.value));
-    return result;
-  };
-  const double early = largest(0.1, 0.2);
-  // A well damped loop is down to rounding by then; there, growth means nothing.
-  if (early < 1e-13 * largest(0.0, 0.1)) return 0.0;
-  return largest(0.1 + 1.0 / 3.0, 0.2 + 1.0 / 3.0) / early;
-}
-
-constexpr double decays_well = 0.1;  // by a factor of ten in a third of a second
-constexpr double decays_at_all = 1.0;
-
-// The factor at which `scale(axis, factor)` leaves more than `share` of the swing, to 0.3 %.
-template <class Scale>
-double limit_factor(std::size_t axis, double share, Scale&& scale) {
-  double stable = 1.0, unstable = 40.0;
-  while (unstable / stable > 1.003) {
-    const double factor = std::sqrt(stable * unstable);
-    auto machine = linear_axis(axis);
-    scale(machine.axes[0], factor);
-    (remainder_of_swing(machine) < share ? stable : unstable) = factor;
-  }
-  return std::sqrt(stable * unstable);
-}
 
 void expect_limit(const char* what, std::array<double, 2> expected, auto&& scale) {
   std::array<double, 2> well{}, at_all{};

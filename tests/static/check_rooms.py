@@ -62,6 +62,10 @@ ROOMS = {
         "sim/control": "signals leave in SI units",
         f"{FIRMWARE}/*": "the cascade lists its own signals",
     },
+    "host/response": {
+        "host/log": "frequency responses are measured from logs",
+        "sim/*": "with the controllers of a machine, and become results",
+    },
     "host/simulate": {
         "host/log": "a run can be logged",
         "hal/*": "the host's build replaces the hal",
@@ -75,6 +79,7 @@ ROOMS = {
     "host/cli": {
         "host/log": "a command reads and writes logs",
         "host/simulate": "runs experiments",
+        "host/response": "and what is measured from their logs",
         "host/report": "and shows their results",
         "sim/*": "for the machine it is given",
         f"{FIRMWARE}/number": "with the drive's formats or with double ones",

@@ -98,7 +98,9 @@ bool count(const char* path) {
       // A profiler from outside counts a function with its return; so does this.
       tallies[l].add(count_instructions(laws[l].step, &c) - empty + 1, place);
       if (laws[l].step == law_axis)
-        c.i_wanted = narrow<FixedSignals::Current>(c.signals.i_notch + c.signals.i_feedforward, c.state.saturations);
+        c.i_wanted = saturated_sum(c.signals.i_notch,
+                                   saturated_sum(c.signals.i_feedforward, c.set.injection, c.state.saturations),
+                                   c.state.saturations);
     }
     ++ticks;
   });

@@ -40,6 +40,8 @@ class Motion {
 
   sim::AxisSetPoint at(double t, std::size_t axis) const {
     sim::AxisSetPoint set = path_.at(t).axes[axis];
+    // A test signal in the set current.
+    if (within(t, 0.30, 0.32)) set.injection = within(t, 0.31, 0.32) ? -1.5 : 1.5;
     // Wanted speeds of either sign beyond the limit.
     if (within(t, 0.55, 0.562)) set.velocity += within(t, 0.554, 0.558) ? -3.0 : 3.0;
     // A step that asks for more current and voltage than there is.

@@ -63,9 +63,9 @@ void each_field(AxisConfig<FixedSignals>& config, Field&& field) {
 template <class Field>
 void each_field(Sample& sample, Field&& field) {
   auto& [set, feedback, digest] = sample;
-  auto& [set_position, set_velocity, acceleration, set_valid] = set;
+  auto& [set_position, set_velocity, acceleration, set_valid, injection] = set;
   auto& [position, position_time_ns, position_valid, velocity, current, fault] = feedback;
-  field(set_position), field(set_velocity), field(acceleration), field(set_valid);
+  field(set_position), field(set_velocity), field(acceleration), field(set_valid), field(injection);
   field(position), field(position_time_ns), field(position_valid), field(velocity);
   for (auto& i : current) field(i);
   field(fault), field(digest);

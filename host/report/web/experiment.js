@@ -70,8 +70,9 @@ function extent(charts, above = -Infinity) {
 function abscissaStyle(chart) {
   if (chart.x_range) return { range: chart.x_range };
   if (chart.logarithmic_x) {
-    const [low, high] = extent([chart], 0);
-    return { type: 'log', dtick: high / low > 3000 ? 1 : 'D2', tickformat: '~g', minor: { ticks: 'outside', ticklen: 2, tickcolor: '#9aa5b1' } };
+    const [low, high] = extent([chart], 0), room = 0.03 * Math.log10(high / low);
+    return { type: 'log', range: [Math.log10(low) - room, Math.log10(high) + room], dtick: high / low > 3000 ? 1 : 'D2', tickformat: '~g',
+             minor: { ticks: 'outside', ticklen: 2, tickcolor: '#9aa5b1', showgrid: /^frequency\b/.test(chart.x_label), gridcolor: '#f3f5f7' } };
   }
   const [low, high] = extent(overTime(chart) ? DATA.charts.filter(each => each.x_label === chart.x_label) : [chart]);
   if (!(low < high)) return {};
@@ -100,22 +101,49 @@ function placeCharts() {
   let beside = 0;  // charts since the last wide one
   show('charts', ...DATA.charts.map((chart, i) => {
     const last = i + 1 === DATA.charts.length || overTime(DATA.charts[i + 1]);
-    const wide = overTime(chart) || (last && beside % 2 === 0);
+    const wide = chart.wide || overTime(chart) || (last && beside % 2 === 0);
     beside = wide ? 0 : beside + 1;
     const low = DATA.charts.filter(overTime).length > 1 && overTime(chart);
-    return element('div', { class: wide ? 'wide' : null }, element('h2', {}, chart.title),
-                   element('div', { id: chartId(i), class: low ? 'plot low' : 'plot tall' }),
+    return element('div', { class: [wide ? 'wide' : null, chart.title ? null : 'below'].filter(Boolean).join(' ') || null },
+                   chart.title ? element('h2', {}, chart.title) : null,
+                   element('div', { id: chartId(i), class: `plot ${chart.height || (low ? 'low' : 'tall')}` }),
                    chart.caption ? element('p', { class: 'caption' }, symbolText(chart.caption)) : null);
   }));
+}
+
+// The chart below over the same abscissa, which then stands there; a chart without a title belongs to the one above.
+function hasOneBelow(i) {
+  const below = DATA.charts[i + (DATA.charts[i].wide ? 1 : 2)];
+  return below !== undefined && !below.title && below.x_label === DATA.charts[i].x_label;
+}
+
+// Levels across the chart and distances at one abscissa, as lines and as words.
+function marksOf(chart) {
+  const place = x => chart.logarithmic_x ? Math.log10(x) : x;
+  const line = more => ({ type: 'line', line: { color: QUIET, width: 1, dash: 'dash' }, ...more });
+  return {
+    shapes: [...chart.levels.map(level => line({ xref: 'paper', x0: 0, x1: 1, y0: level, y1: level })),
+             ...chart.distances.map(each => line({ x0: each.x, x1: each.x, y0: each.from, y1: each.to, line: { color: INK, width: 2 } }))],
+    annotations: chart.distances.map(each => label(plain(each.label), place(each.x), (each.from + each.to) / 2,
+                                                       { xanchor: 'left', xshift: 5, font: { size: 12, color: INK }, bgcolor: 'rgba(255,255,255,.8)' })),
+  };
+}
+
+function ordinateStyle(chart) {
+  const style = { zeroline: !chart.levels.some(level => level === 0), zerolinecolor: '#9aa5b1', nticks: 7 };
+  if (chart.y_range) style.range = chart.y_range;
+  if (chart.y_step) style.dtick = chart.y_step;
+  return style;
 }
 
 function drawCharts() {
   DATA.charts.forEach((chart, i) => {
     const shown = chart.series.filter(series => !hidden.has(series.name));
+    const above = hasOneBelow(i);
     drawChart(chartId(i), shown.map((series, k) => traceOf(chart, series, lineWidth(chart, k, shown.length))), {
-      margin: { l: 76, r: 24, t: 10, b: 46 }, uirevision: 'magnified',
-      xaxis: axisStyle(plain(chart.x_label), abscissaStyle(chart)),
-      yaxis: axisStyle(twoLines(chart.y_label), { zeroline: true, zerolinecolor: '#9aa5b1', nticks: 7 }),
+      margin: { l: 76, r: 24, t: 10, b: above ? 12 : 46 }, uirevision: 'magnified', ...marksOf(chart),
+      xaxis: axisStyle(above ? '' : plain(chart.x_label), { ...abscissaStyle(chart), ...(above ? { showticklabels: false } : {}) }),
+      yaxis: axisStyle(twoLines(chart.y_label), ordinateStyle(chart)),
     }, { all: Boolean(chart.x_range) });
   });
 }

@@ -64,6 +64,20 @@ TEST(AxisLimiting, HoldsTheSetCurrentBehindTheFeedforwardAtItsLimit) {
   }
 }
 
+TEST(AxisLimiting, ATestSignalIsPartOfTheSetCurrentAndOfWhatTheLimitHoldsBack) {
+  for (const double sign : {1.0, -1.0}) {
+    FixedBench b(config_without_faults());
+    b.set.injection = si<S::Current>(sign * 12.5);
+    b.tick();
+    EXPECT_EQ(sim::to_si(b.signals.i_set), sign * 12.5);
+    EXPECT_EQ(sim::to_si(b.signals.i_notch), 0.0) << "the controllers have not answered yet";
+    b.set.injection = si<S::Current>(sign * 40.5);
+    b.tick();
+    EXPECT_TRUE(b.signals.limiting.current);
+    EXPECT_EQ(sim::to_si(b.signals.i_set), sign * 40.0);
+  }
+}
+
 TEST(AxisLimiting, HoldsTheVoltageOfEachPhaseAtItsLimit) {
   auto config = config_without_faults();
   config.current_loop = CurrentLoop::three_phase;

@@ -223,6 +223,46 @@ TEST_F(Cli, WritesALogInTheLogFormat) {
   EXPECT_GT(rows, 16000);  // over a second at the full 16 kHz
 }
 
+TEST_F(Cli, RefusesAFrequencyResponseThatCannotBeMeasured) {
+  const std::string run = "simulate frequency-response --machine mcfv5050ln --out result ";
+  expect_refused(run + "--speed '0.05 m/min'", "expected a speed that never crosses zero: at least 0.");
+  expect_refused(run + "--speed '90 m/min'", "--speed: found '90 m/min'; expected at most 80 m/min");
+  expect_refused(run + "--speed '20 m/min'", "expected at most the travel of axis X, 500 mm");
+  expect_refused(run + "--amplitude '60 A'", "amplitude: found 60 A, with which axis X is held back at a limit");
+  expect_refused(run + "--amplitude '3 V'", "--amplitude: found '3 V'");
+  expect_refused(run + "--periods 1", "--periods: found 1; expected at least 2");
+  expect_refused(run + "--axis Z", "--axis: found 'Z'; expected axes of mcfv5050ln: X, Y");
+  expect_refused(run + "--loop force", "--loop: found 'force'; expected all, or some of current, velocity, position");
+  expect_refused(run + "--friction all", "--friction: found");
+  expect_refused(run + "--from nowhere.csv", "nowhere.csv: cannot be read");
+  expect_refused(run + "--from run.csv --speed '1 m/min'", "--from excludes --speed");
+}
+
+TEST_F(Cli, MeasuresAFrequencyResponseFromALogAsFromItsOwnRun) {
+  const auto own =
+      stiction("simulate frequency-response --machine mcfv5050ln --axis X --passes 2 --log run.csv --json");
+  ASSERT_EQ(own.code, 0) << own.error;
+  const auto again = stiction("simulate frequency-response --machine mcfv5050ln --from run.csv --json");
+  ASSERT_EQ(again.code, 0) << again.error;
+  const auto first = nlohmann::json::parse(own.out), second = nlohmann::json::parse(again.out);
+  EXPECT_EQ(first["schema"], "stiction.frequency-response/1");
+  EXPECT_EQ(first["results"], second["results"]);
+  EXPECT_GT(first["results"]["velocity_loop_phase_margin_X_deg"], 45.0);
+  EXPECT_TRUE(first["expected"].contains("velocity_loop_decays_up_to_X"));
+  EXPECT_TRUE(second["expected"].empty()) << "nothing is known of a measured machine";
+}
+
+TEST_F(Cli, RefusesALogWithoutATestSignal) {
+  ASSERT_EQ(stiction("simulate circle --machine mcfv5050ln --feed '48 m/min' --log run.csv").code, 0);
+  const auto result = stiction("simulate frequency-response --machine mcfv5050ln --from run.csv --out result");
+  EXPECT_EQ(result.code, 2);
+  EXPECT_NE(
+      result.error.find("run.csv: axis X: found no i_inject and no u_inject; expected a log recorded with a test"),
+      std::string::npos)
+      << result.error;
+  EXPECT_FALSE(fs::exists(work() / "result"));
+}
+
 TEST_F(Cli, ShowsTheShippedMachinesAndTheirReference) {
   for (const char* name : {"mcfv5050ln\n", "stick-slip-feed\n"})
     EXPECT_NE(stiction("machine").out.find(name), std::string::npos) << name;

@@ -176,7 +176,8 @@ class Axis {
     s.i_pi = pi.output;
     s.i_notch = Notch<S>::step(config_.notch, state_.notch, s.i_pi, saturations);
     s.i_feedforward = narrow<typename S::Current>(config_.current_feedforward * set.acceleration, saturations);
-    const auto i_wanted = saturated_sum(s.i_notch, s.i_feedforward, saturations);
+    const auto i_added = saturated_sum(s.i_feedforward, set.injection, saturations);
+    const auto i_wanted = saturated_sum(s.i_notch, i_added, saturations);
     const auto i_set = limit(i_wanted, config_.current_limit);
     s.i_set = i_set.value;
     s.limiting.current = i_set.limiting();

@@ -12,6 +12,7 @@ struct SetPoint {
   typename S::Velocity velocity{};
   typename S::Acceleration acceleration{};
   bool valid = true;  // false: the source had a value that is not a number or that the formats cannot hold
+  typename S::Current injection{};  // a test signal added to the set current
 };
 
 template <class S>

@@ -1,0 +1,229 @@
+#include "host/cli/frequency_response_command.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+
+#include "host/cli/errors.hpp"
+#include "host/cli/experiment_output.hpp"
+#include "host/cli/machine_options.hpp"
+#include "host/cli/output.hpp"
+#include "host/log/csv_log.hpp"
+#include "host/log/read_log.hpp"
+#include "host/report/experiment_report.hpp"
+#include "host/response/response_result.hpp"
+#include "host/simulate/frequency_response.hpp"
+#include "sim/machine/units.hpp"
+#include "stiction/number/fixed_signals.hpp"
+
+namespace stiction::host {
+namespace {
+
+struct Options {
+  MachineOptions machine;
+  std::string friction, axis, loop, speed = "2 m/min", amplitude, lowest = "2 Hz", signal = "multisine";
+  int periods = 2, passes = 8;
+  std::string from, log, out;
+  bool json = false;
+};
+
+constexpr std::array<const char*, 3> loop_names{"current", "velocity", "position"};
+
+double quantity(const char* option, const std::string& text, const char* unit, const char* example) {
+  try {
+    const double value = sim::parse_quantity(text, unit);
+    if (value > 0.0) return value;
+  } catch (const sim::UnitError& error) {
+    throw UsageError(fmt::format("{}: found '{}' ({}); expected {}", option, text, error.what(), example));
+  }
+  throw UsageError(fmt::format("{}: found '{}'; expected a value above zero, {}", option, text, example));
+}
+
+std::vector<std::string> loops_of(const std::string& text) {
+  if (text.empty() || text == "all") return {};
+  const auto names = split_list(text);
+  for (const auto& name : names)
+    if (std::find(loop_names.begin(), loop_names.end(), name) == loop_names.end())
+      throw UsageError(
+          fmt::format("--loop: found '{}'; expected all, or some of {}", name, fmt::join(loop_names, ", ")));
+  return names;
+}
+
+// Keeps the axes that --axis names, in the machine's order.
+void choose_axes(sim::Machine& machine, const std::string& text) {
+  if (text.empty()) return;
+  const auto names = split_list(text);
+  std::vector<std::string> known;
+  for (const auto& axis : machine.axes) known.push_back(axis.name);
+  for (const auto& name : names)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw UsageError(
+          fmt::format("--axis: found '{}'; expected axes of {}: {}", name, machine.id, fmt::join(known, ", ")));
+  std::erase_if(machine.axes,
+                [&](const auto& axis) { return std::find(names.begin(), names.end(), axis.name) == names.end(); });
+}
+
+FrequencyResponsePlan plan_of(const Options& options, const sim::Machine& machine) {
+  FrequencyResponsePlan plan;
+  plan.machine = machine;
+  const auto friction = friction_models(options.friction, machine);
+  if (friction.size() != 1) throw UsageError(fmt::format("--friction: found {} models; expected one", friction.size()));
+  if (!options.friction.empty())
+    for (auto& axis : plan.machine.axes) axis.friction.use = friction.front();
+  plan.signal = options.signal == "multisine" ? TestSignal::multisine : TestSignal::stepped_sine;
+  plan.speed = quantity("--speed", options.speed, "m/s", "a speed such as \"2 m/min\"");
+  for (const auto& axis : machine.axes)
+    if (plan.speed > axis.max_velocity)
+      throw UsageError(fmt::format("--speed: found '{}'; expected at most {:.3g} m/min, the limit of axis {}",
+                                   options.speed, axis.max_velocity * 60.0, axis.name));
+  if (!options.amplitude.empty()) {
+    const bool force = machine.axes.front().motor.model == sim::MotorModel::force;
+    plan.amplitude =
+        quantity("--amplitude", options.amplitude, force ? "V" : "A",
+                 force ? "a voltage such as \"1 V\", as the motor is a force source" : "a current such as \"3 A\"");
+  }
+  plan.lowest = quantity("--lowest", options.lowest, "Hz", "a frequency such as \"2 Hz\"");
+  if (plan.lowest > 50.0 || plan.lowest < 0.05)
+    throw UsageError(fmt::format("--lowest: found '{}'; expected 0.05 Hz to 50 Hz", options.lowest));
+  if (options.periods < 2)
+    throw UsageError(
+        fmt::format("--periods: found {}; expected at least 2, whose difference gives the coherence", options.periods));
+  if (options.passes < 1) throw UsageError(fmt::format("--passes: found {}; expected at least 1", options.passes));
+  plan.periods = options.periods;
+  plan.passes = options.passes;
+  return plan;
+}
+
+struct Measurement {
+  std::vector<AxisResponse> responses;
+  ResponseText text;
+};
+
+Measurement simulated(const Options& options, const sim::Machine& machine) {
+  const auto plan = plan_of(options, machine);
+  const auto log = run_frequency_response(plan);
+  if (!options.log.empty()) {
+    PendingFile file(options.log);
+    write_csv_log(file.path(), log);
+    file.commit();
+  }
+  Measurement m;
+  for (std::size_t k = 0; k < plan.machine.axes.size(); ++k)
+    m.responses.push_back(axis_response(log, log.axes[k], plan.machine.timing, plan.machine.axes[k]));
+  std::vector<std::string> friction;
+  for (const auto& axis : plan.machine.axes) friction.push_back(axis.name + " " + axis.friction.use);
+  m.text = {FixedSignals::name,
+            fmt::format("Simulated: {} on the set current at {:g} m/min to and fro, friction {}.",
+                        plan.signal == TestSignal::multisine ? "multisine" : "one sine after the other",
+                        plan.speed * 60.0, fmt::join(friction, ", ")),
+            true};
+  return m;
+}
+
+// The machine's axis to which this axis of the log belongs; none: --axis leaves it out.
+const sim::Axis* axis_for(const Log& log, const AxisLog& measured, const sim::Machine& machine, bool chosen) {
+  for (const auto& axis : machine.axes)
+    if (axis.name == measured.axis) return &axis;
+  if (measured.axis.empty() && machine.axes.size() == 1) return &machine.axes.front();
+  if (!measured.axis.empty() && chosen) return nullptr;
+  std::vector<std::string> known;
+  for (const auto& axis : machine.axes) known.push_back(axis.name);
+  throw UsageError(measured.axis.empty()
+                       ? fmt::format("{}: found columns without an axis; expected --axis with one of {}", log.source,
+                                     fmt::join(known, ", "))
+                       : fmt::format("{}: found axis {}; expected axes of {}: {}", log.source, measured.axis,
+                                     machine.id, fmt::join(known, ", ")));
+}
+
+Measurement measured(const Options& options, const sim::Machine& machine) {
+  const auto log = read_log(options.from);
+  Measurement m;
+  bool any_test = false;
+  for (const auto& axis : log.axes) any_test = any_test || !axis.i_inject.empty() || !axis.u_inject.empty();
+  for (const auto& axis : log.axes) {
+    const auto* of_machine = axis_for(log, axis, machine, !options.axis.empty());
+    // An axis without a test signal is no error beside one that has it.
+    if (of_machine == nullptr || (any_test && axis.i_inject.empty() && axis.u_inject.empty())) continue;
+    m.responses.push_back(axis_response(log, axis, machine.timing, *of_machine));
+  }
+  if (m.responses.empty())
+    throw UsageError(
+        fmt::format("{}: found no axis of --axis '{}' with a test signal; expected i_inject[A] or "
+                    "u_inject[V] of it",
+                    options.from, options.axis));
+  m.text = {"measured", fmt::format("Measured: {}.", log.source), false};
+  return m;
+}
+
+void run(const Options& options, const Invocation& invocation) {
+  auto machine = options.machine.load(options.machine.machine, "frequency-response");
+  choose_axes(machine, options.axis);
+  const auto loops = loops_of(options.loop);
+  sim::ExperimentResult result;
+  try {
+    const auto m = options.from.empty() ? simulated(options, machine) : measured(options, machine);
+    result = response_result(m.responses, machine, loops, m.text);
+  } catch (const ResponseError& error) {
+    throw UsageError(error.what());
+  } catch (const LogError& error) {
+    throw UsageError(error.what());
+  }
+  const auto json = experiment_json(result, machine);
+  if (!options.out.empty()) {
+    PendingFolder folder(options.out);
+    folder.write("report.html", experiment_report_html({invocation.command_line, invocation.version, machine, result}));
+    folder.write("result.json", json.dump(2) + "\n");
+    folder.commit();
+  }
+  if (options.json) {
+    fmt::print("{}\n", json.dump(2));
+    return;
+  }
+  fmt::print("{}", experiment_text(result, machine));
+  if (!options.out.empty()) fmt::print("\nreport: {}/report.html\n", options.out);
+  if (!options.log.empty()) fmt::print("\nlog: {}\n", options.log);
+}
+
+}  // namespace
+
+void add_frequency_response(CLI::App& simulate, const Invocation& invocation) {
+  auto* command = simulate.add_subcommand(
+      "frequency-response",
+      "current, velocity and position loop and the plant from a test signal on the set current: Bode plots, margins");
+  auto o = std::make_shared<Options>();
+  o->machine.add_to(*command, "shipped machine by name, or a machine file");
+  command->add_option("--axis", o->axis, "axis, or a list of axes [all]")->type_name("AXIS");
+  command->add_option("--loop", o->loop, "current, velocity, position, or a list of them [all, and the plant]")
+      ->type_name("LOOP");
+  auto* from = command->add_option("--from", o->from, "measure from this log, with i_inject[A] or u_inject[V]")
+                   ->type_name("LOG");
+  const auto simulated_only = [&](CLI::Option* option) { return option->excludes(from); };
+  simulated_only(command->add_option("--friction", o->friction, "friction model [the machine file's]"))
+      ->type_name("MODEL");
+  simulated_only(command->add_option("--signal", o->signal, "multisine: all frequencies at once; stepped-sine"))
+      ->check(CLI::IsMember({"multisine", "stepped-sine"}))
+      ->capture_default_str();
+  simulated_only(command->add_option("--speed", o->speed, "speed at which the axis moves to and fro meanwhile"))
+      ->type_name("\"NUMBER UNIT\"")
+      ->capture_default_str();
+  simulated_only(command->add_option("--amplitude", o->amplitude,
+                                     "largest magnitude of the test signal [10 % of the current limit]"))
+      ->type_name("\"NUMBER UNIT\"");
+  simulated_only(command->add_option("--lowest", o->lowest, "lowest frequency and distance of a multisine's lines"))
+      ->type_name("\"NUMBER UNIT\"")
+      ->capture_default_str();
+  simulated_only(command->add_option("--periods", o->periods, "periods that are measured, after one to settle"))
+      ->capture_default_str();
+  simulated_only(command->add_option("--passes", o->passes, "passes of a multisine, each with other phases"))
+      ->capture_default_str();
+  simulated_only(command->add_option("--log", o->log, "write what a drive would have recorded (CSV)"))
+      ->type_name("FILE");
+  command->add_option("--out", o->out, "write report.html and result.json into this folder")->type_name("DIR");
+  command->add_flag("--json", o->json, "print the result as JSON on standard output");
+  command->callback([o, &invocation] { run(*o, invocation); });
+}
+
+}  // namespace stiction::host

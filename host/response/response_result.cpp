@@ -1,0 +1,260 @@
+#include "host/response/response_result.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace stiction::host {
+namespace {
+
+constexpr double lowest_shown = -60.0;  // dB
+
+double decibel(double magnitude) { return 20.0 * std::log10(magnitude); }
+
+// The three loops of an axis, in the order in which they are shown.
+struct LoopName {
+  const char* name;  // of --loop and of figures
+  const char* title;
+  const char* caption;
+  const LoopResponse* (*of)(const AxisResponse&);
+};
+constexpr std::array<LoopName, 3> loop_names{{
+    {"current", "Current loop",
+     "Open: current to current error. Closed: current to set current. Coherence: of the current error.",
+     [](const AxisResponse& r) { return r.current ? &*r.current : nullptr; }},
+    {"velocity", "Velocity loop",
+     "Open: speed to speed error, position loop open. Closed: speed to wanted speed. Coherence: of the controller's "
+     "output.",
+     [](const AxisResponse& r) { return &r.velocity; }},
+    {"position", "Position loop",
+     "Open: position to following error. Closed: position to set position, without "
+     "feedforward. Coherence: of the position.",
+     [](const AxisResponse& r) { return &r.position; }},
+}};
+
+// The factors of one gain at which a 150 N step on the shipped machine's axes "no longer decays" (plant study, 10), and
+// the axes of which this was found.
+struct KnownLimits {
+  double mass, velocity_gain, current_gain;
+  bool notch;
+  double velocity, current, position;  // 0: not studied
+};
+constexpr std::array<KnownLimits, 4> known_limits{{{225.0, 600.0, 35.0, true, 11.5, 4.47, 5.40},
+                                                   {520.0, 1200.0, 17.0, true, 13.0, 4.59, 4.05},
+                                                   {225.0, 600.0, 35.0, false, 15.7, 0.0, 0.0},
+                                                   {520.0, 1200.0, 17.0, false, 17.9, 0.0, 0.0}}};
+
+bool is_of(const KnownLimits& known, const sim::Axis& axis) {
+  const auto same = [](double a, double b) { return std::abs(a - b) <= 1e-4 * b; };
+  return same(axis.mass, known.mass) && same(axis.velocity_controller.gain, known.velocity_gain) &&
+         axis.current_controller && same(axis.current_controller->gain, known.current_gain) &&
+         same(axis.position_controller.gain, 83.3333) && same(axis.inverter.dead_time, 125e-6) &&
+         axis.encoder.velocity == sim::VelocitySource::ideal && axis.notch.has_value() == known.notch;
+}
+
+std::optional<sim::Expectation> expected_limit(const sim::Axis& axis, std::string_view loop) {
+  for (const auto& known : known_limits) {
+    if (!is_of(known, axis)) continue;
+    const double value = loop == "current" ? known.current : loop == "velocity" ? known.velocity : known.position;
+    if (value > 0.0) return sim::Expectation{value, 0.05 * value, "plant study, 10: prototype, one gain at a time"};
+  }
+  return std::nullopt;
+}
+
+sim::Series magnitude_series(const char* name, const Curve& curve) {
+  sim::Series series{name, curve.frequency, {}, false};
+  for (const auto& z : curve.value) series.y.push_back(decibel(std::abs(z)));
+  return series;
+}
+
+// Without jumps; between -270 and 90 deg where the magnitude is nearest to 1.
+sim::Series phase_series(const char* name, const Curve& curve) {
+  sim::Series series{name, curve.frequency, {}, false};
+  double phase = 0.0, anchor = 0.0, nearest = HUGE_VAL;
+  for (std::size_t k = 0; k < curve.value.size(); ++k) {
+    phase += k == 0 ? std::arg(curve.value[0]) : std::arg(curve.value[k] / curve.value[k - 1]);
+    series.y.push_back(phase * 180.0 / std::numbers::pi);
+    if (const double far = std::abs(std::log(std::abs(curve.value[k]))); far < nearest) {
+      nearest = far;
+      anchor = series.y.back();
+    }
+  }
+  const double turns = 360.0 * std::round((anchor + 90.0) / 360.0);
+  for (auto& value : series.y) value -= turns;
+  return series;
+}
+
+// The three charts of a Bode plot.
+struct Bode {
+  sim::Chart magnitude, phase, coherence;
+};
+
+Bode bode(const std::string& title, const std::string& caption, const std::string& y_label, bool wide) {
+  using Height = sim::Shape::Height;
+  Bode b;
+  for (auto* chart : {&b.magnitude, &b.phase, &b.coherence}) {
+    chart->x_label = "frequency, Hz";
+    chart->logarithmic_x = true;
+    chart->shape = {wide, Height::low};
+  }
+  b.magnitude.title = title;
+  b.magnitude.y_label = y_label;
+  b.phase.y_label = "phase, deg";
+  b.phase.y_step = 90.0;
+  b.phase.y_range = {-360.0, 45.0};
+  b.phase.levels = {-180.0};
+  b.coherence.y_label = "coherence";
+  b.coherence.y_range = {0.0, 1.05};
+  b.coherence.y_step = 0.5;
+  b.coherence.shape.height = Height::flat;
+  b.coherence.caption = caption;
+  return b;
+}
+
+// Down to -60 dB, up to the next 20 dB.
+std::array<double, 2> magnitude_range(const sim::Chart& chart) {
+  double highest = 0.0;
+  for (const auto& series : chart.series)
+    for (const double y : series.y)
+      if (std::isfinite(y)) highest = std::max(highest, y);
+  return {lowest_shown, 20.0 * std::ceil(highest / 20.0 + 0.1)};
+}
+
+Bode loop_bode(const LoopName& name, const AxisResponse& response, const LoopResponse& loop, bool wide) {
+  auto b = bode(fmt::format("{}, {}", name.title, response.axis), name.caption, "magnitude, dB", wide);
+  b.magnitude.series = {magnitude_series("open loop", loop.open), magnitude_series("closed loop", loop.closed)};
+  b.phase.series = {phase_series("open loop", loop.open), phase_series("closed loop", loop.closed)};
+  b.coherence.series = {{"coherence", loop.open.frequency, loop.coherence, false}};
+  b.magnitude.y_range = magnitude_range(b.magnitude);
+  b.magnitude.y_step = 20.0;
+  b.magnitude.levels = {0.0};
+  if (loop.gain)
+    b.magnitude.distances.push_back({loop.gain->frequency, -decibel(loop.gain->factor), 0.0,
+                                     fmt::format("gain margin {:.1f} dB", decibel(loop.gain->factor))});
+  if (loop.phase)
+    b.phase.distances.push_back({loop.phase->frequency, -180.0, -180.0 + loop.phase->degrees,
+                                 fmt::format("phase margin {:.0f} deg", loop.phase->degrees)});
+  return b;
+}
+
+Bode plant_bode(const AxisResponse& response, const sim::Axis& axis, bool wide) {
+  const char* per = axis.motor.model == sim::MotorModel::force ? "V" : "A";
+  auto b = bode("Plant, " + response.axis,
+                fmt::format("Speed as the controller sees it, per {} of the {}. Coherence: of the speed.", per,
+                            axis.motor.model == sim::MotorModel::force                          ? "motor's voltage"
+                            : response.spectra.known[static_cast<std::size_t>(Answer::current)] ? "current"
+                                                                                                : "set current"),
+                fmt::format("magnitude, dB (0 dB = 1 m/s per {})", per), wide);
+  b.magnitude.series = {magnitude_series("plant", response.plant)};
+  b.phase.series = {phase_series("plant", response.plant)};
+  b.phase.levels.clear();
+  b.coherence.series = {{"coherence", response.plant.frequency, response.plant_coherence, false}};
+  return b;
+}
+
+// Charts of the same kind of all axes side by side.
+void add_charts(std::vector<sim::Chart>& charts, std::vector<Bode> bodes) {
+  for (auto part : {&Bode::magnitude, &Bode::phase, &Bode::coherence})
+    for (auto& each : bodes) charts.push_back(std::move(each.*part));
+}
+
+void add_figures(std::vector<sim::Figure>& figures, const LoopName& name, const AxisResponse& response,
+                 const LoopResponse& loop, const sim::Axis& axis, bool simulated) {
+  const auto add = [&](const char* figure, const char* unit, const char* text, double value,
+                       std::optional<sim::Expectation> expected = {}) {
+    figures.push_back({fmt::format("{}_loop_{}_{}", name.name, figure, response.axis), unit,
+                       fmt::format("{}, {}: {}", name.title, response.axis, text), value, std::move(expected)});
+  };
+  if (loop.phase) {
+    add("crossover", "Hz", "crossover frequency", loop.phase->frequency);
+    add("phase_margin", "deg", "phase margin", loop.phase->degrees);
+  }
+  if (loop.gain) {
+    add("phase_crossover", "Hz", "phase crossover frequency", loop.gain->frequency);
+    add("gain_margin", "dB", "gain margin", decibel(loop.gain->factor));
+    add("gain_margin_factor", "", "gain margin as a factor", loop.gain->factor);
+  }
+  if (loop.bandwidth) add("bandwidth", "Hz", "bandwidth of the closed loop, -3 dB", *loop.bandwidth);
+  if (loop.limit) add("unstable_from", "", "factor of its gain from which the axis is unstable", loop.limit->factor);
+  if (loop.decays)
+    add("decays_up_to", "", "factor of its gain up to which a swing falls to a tenth in 1/3 s", loop.decays->factor,
+        simulated ? expected_limit(axis, name.name) : std::nullopt);
+}
+
+std::string margin_sentence(const LoopName& name, const AxisResponse& response, const LoopResponse& loop) {
+  auto text = fmt::format("{}, {}: ", name.title, response.axis);
+  text += loop.phase ? fmt::format("crossover at {:.4g} Hz with a phase margin of {:.0f} deg", loop.phase->frequency,
+                                   loop.phase->degrees)
+                     : std::string("no crossover");
+  text += loop.gain
+              ? fmt::format(", gain margin {:.1f} dB at {:.4g} Hz", decibel(loop.gain->factor), loop.gain->frequency)
+              : std::string(", no gain margin within the measured band");
+  if (loop.limit)
+    text += fmt::format("; with all loops closed the axis bears x{:.3g} of this gain", loop.limit->factor);
+  return text + ".";
+}
+
+std::string condition_sentence(const AxisResponse& response) {
+  const auto& s = response.spectra;
+  std::size_t blocks = SIZE_MAX;
+  for (const auto& point : s.points) blocks = std::min(blocks, point.blocks);
+  auto text = fmt::format("{}: {} frequencies from {:.3g} to {:.4g} Hz, each from at least {} {}; slowest {:.3g} m/min",
+                          response.axis, s.points.size(), s.points.front().frequency, s.points.back().frequency, blocks,
+                          s.periodic ? "blocks of whole periods" : "windows", s.slowest * 60.0);
+  if (s.slowest <= 0.0)
+    text +=
+        ": the speed crosses zero while the test signal acts, so that friction is not nearly linear; record with a "
+        "higher speed";
+  if (response.samples_at_limit > 0)
+    text += fmt::format("; {} samples are at the current limit, where the loop is open: record with less test signal",
+                        response.samples_at_limit);
+  if (response.set_current_computed)
+    text += "; the log has no i_set: it is computed with the controllers of the machine file";
+  return text + ".";
+}
+
+}  // namespace
+
+sim::ExperimentResult response_result(const std::vector<AxisResponse>& responses, const sim::Machine& machine,
+                                      const std::vector<std::string>& loops, const ResponseText& text) {
+  sim::ExperimentResult result;
+  result.experiment = "frequency-response";
+  result.title = "Frequency response";
+  result.signals = text.signals;
+  result.question =
+      text.simulated
+          ? "The measured margins must agree within 5 % with the gains at which the axis goes unstable, found by "
+            "raising "
+            "one gain at a time until a step of force no longer decays (plant study, 10)."
+          : "Nothing: the margins of a measured machine are found here. They are read from frequencies at which the "
+            "coherence is at least 0.9.";
+  result.findings.push_back(text.condition);
+  for (const auto& response : responses) result.findings.push_back(condition_sentence(response));
+  const bool wide = responses.size() != 2;
+  const auto axis_of = [&](const AxisResponse& response) -> const sim::Axis& {
+    return *std::find_if(machine.axes.begin(), machine.axes.end(),
+                         [&](const auto& axis) { return axis.name == response.axis; });
+  };
+  for (const auto& name : loop_names) {
+    if (!loops.empty() && std::find(loops.begin(), loops.end(), name.name) == loops.end()) continue;
+    std::vector<Bode> bodes;
+    for (const auto& response : responses) {
+      const auto* loop = name.of(response);
+      if (loop == nullptr) continue;
+      bodes.push_back(loop_bode(name, response, *loop, wide));
+      add_figures(result.figures, name, response, *loop, axis_of(response), text.simulated);
+      result.findings.push_back(margin_sentence(name, response, *loop));
+    }
+    add_charts(result.charts, std::move(bodes));
+  }
+  if (loops.empty()) {
+    std::vector<Bode> bodes;
+    for (const auto& response : responses) bodes.push_back(plant_bode(response, axis_of(response), wide));
+    add_charts(result.charts, std::move(bodes));
+  }
+  return result;
+}
+
+}  // namespace stiction::host

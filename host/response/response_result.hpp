@@ -1,0 +1,23 @@
+// The frequency responses of axes as an experiment's result: a Bode plot a loop and axis with its margins, and figures.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "host/response/axis_response.hpp"
+#include "sim/experiment/experiment_result.hpp"
+#include "sim/machine/machine.hpp"
+
+namespace stiction::host {
+
+struct ResponseText {
+  std::string signals;    // of the control: "fixed"; "measured" of a log
+  std::string condition;  // one sentence: what was excited, and how
+  bool simulated = true;  // the gains at which the simulated axis goes unstable are known
+};
+
+// `loops`: which of "current", "velocity", "position" are shown; empty: all, and the plant.
+sim::ExperimentResult response_result(const std::vector<AxisResponse>& responses, const sim::Machine& machine,
+                                      const std::vector<std::string>& loops, const ResponseText& text);
+
+}  // namespace stiction::host

@@ -1,0 +1,231 @@
+#include "host/simulate/frequency_response.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/simulate/circle.hpp"
+#include "host/simulate/control_run.hpp"
+#include "sim/experiment/shuttle_path.hpp"
+#include "sim/experiment/test_signal.hpp"
+#include "stiction/number/fixed_signals.hpp"
+
+namespace stiction::host {
+namespace {
+
+constexpr double acceleration = 2.0, jerk = 40.0;  // m/s^2, m/s^3: those of the source's circles
+constexpr double settling = 0.2;                   // s after a start, 17 time constants of the position loop
+constexpr double pause = 0.02;                     // s between two sines
+constexpr double multisine_density = 50.0;         // lines per decade
+constexpr double sine_density = 25.0;
+constexpr double share_of_limit = 0.1;
+constexpr double share_of_travel = 0.8;  // that passes of many sines take
+
+// A stretch of test signal: so many blocks of whole periods of these lines.
+struct Stretch {
+  int block = 0;  // samples
+  std::vector<int> lines;
+};
+
+class Schedule {
+ public:
+  explicit Schedule(const FrequencyResponsePlan& plan)
+      : plan_(plan),
+        period_(plan.machine.timing.fast_period),
+        passes_(passes_of(plan)),
+        path_(plan.speed, acceleration, jerk, cruise()) {
+    for (const auto& axis : plan.machine.axes)
+      if (path_.stroke() > axis.travel)
+        throw InfeasibleMotion(fmt::format(
+            "speed: found {:.4g} m/min, with which a pass of {:.2f} s takes {:.0f} mm; expected at most the travel of "
+            "axis {}, {:.0f} mm: a lower speed, fewer periods or a higher lowest frequency",
+            plan.speed * 60.0, path_.pass_duration(), path_.stroke() * 1e3, axis.name, axis.travel * 1e3));
+  }
+
+  sim::AxisSetPoint at(double t) const { return path_.at(t); }
+  std::size_t ticks() const {
+    return static_cast<std::size_t>(std::ceil(path_.pass_duration() * static_cast<double>(passes_.size()) / period_));
+  }
+
+  // The test signal of one axis, tick by tick.
+  std::vector<double> test(double amplitude, std::uint64_t seed) const {
+    std::vector<double> signal(ticks(), 0.0);
+    for (std::size_t pass = 0; pass < passes_.size(); ++pass) {
+      const double begin = static_cast<double>(pass) * path_.pass_duration() + path_.cruise_begin() + settling;
+      auto tick = static_cast<std::size_t>(std::ceil(begin / period_));
+      for (const auto& stretch : passes_[pass]) {
+        const auto block = sim::multisine(stretch.block, stretch.lines, amplitude, seed++);
+        for (int repeat = 0; repeat <= plan_.periods; ++repeat, tick += block.size())
+          std::copy(block.begin(), block.end(), signal.begin() + static_cast<std::ptrdiff_t>(tick));
+        tick += static_cast<std::size_t>(pause / period_);
+      }
+    }
+    return signal;
+  }
+
+ private:
+  using Pass = std::vector<Stretch>;
+
+  double duration(const Stretch& stretch) const { return stretch.block * (plan_.periods + 1) * period_ + pause; }
+  double duration(const Pass& pass) const {
+    double sum = settling;
+    for (const auto& stretch : pass) sum += duration(stretch);
+    return sum;
+  }
+  double cruise() const {
+    double longest = 0.0;
+    for (const auto& pass : passes_) longest = std::max(longest, duration(pass));
+    return longest;
+  }
+
+  std::vector<Pass> passes_of(const FrequencyResponsePlan& plan) const {
+    const auto& timing = plan.machine.timing;
+    const int slow = sim::slow_ratio(timing);
+    const int block = slow * std::max(1, static_cast<int>(std::lround(1.0 / (plan.lowest * timing.slow_period))));
+    if (plan.signal == TestSignal::multisine)
+      return std::vector<Pass>(static_cast<std::size_t>(plan.passes),
+                               Pass{{block, sim::test_lines(block, slow, multisine_density)}});
+    double longest = HUGE_VAL;
+    for (const auto& axis : plan.machine.axes) longest = std::min(longest, share_of_travel * axis.travel / plan.speed);
+    std::vector<Pass> passes{{}};
+    for (const int line : sim::test_lines(block, slow, sine_density)) {
+      // Higher frequencies have many periods in a fifth of the block.
+      const int parts = line >= 10 && block % 5 == 0 ? 5 : 1;
+      const Stretch stretch{block / parts, {std::max(1, static_cast<int>(std::lround(line / double(parts))))}};
+      if (!passes.back().empty() && duration(passes.back()) + duration(stretch) > longest) passes.emplace_back();
+      passes.back().push_back(stretch);
+    }
+    return passes;
+  }
+
+  const FrequencyResponsePlan& plan_;
+  double period_;
+  std::vector<Pass> passes_;
+  sim::ShuttlePath path_;
+};
+
+double limit_of(const sim::Axis& axis) {
+  return axis.motor.model == sim::MotorModel::force ? axis.inverter.voltage_limit
+                                                    : axis.inverter.current_limit * axis.motor.count;
+}
+
+const char* unit_of(const sim::Axis& axis) { return axis.motor.model == sim::MotorModel::force ? "V" : "A"; }
+
+// Keeps the signals of an axis as a drive's log has them.
+void record(AxisLog& log, const AxisSignals<FixedSignals>& s, double test, bool force_motor) {
+  log.x_set.push_back(sim::to_si(s.x_set));
+  log.v_set.push_back(sim::to_si(s.v_set));
+  log.x.push_back(sim::to_si(s.x));
+  log.v.push_back(sim::to_si(s.v));
+  if (force_motor) {
+    log.u.push_back(sim::to_si(s.i_set));
+    log.u_inject.push_back(test);
+  } else {
+    log.i.push_back(sim::to_si(s.i));
+    log.i_set.push_back(sim::to_si(s.i_set));
+    log.i_inject.push_back(test);
+  }
+}
+
+// What must not happen while the test signal acts.
+class Watch {
+ public:
+  void see(double t, double v_set, double velocity, const Limiting& limiting) {
+    const double along = std::copysign(1.0, v_set) * velocity;
+    if (along < slowest_) {
+      slowest_ = along;
+      time_ = t;
+    }
+    limited_ += limiting.velocity || limiting.current || limiting.voltage;
+  }
+  bool saw_test() const { return slowest_ < HUGE_VAL; }
+  void check(const sim::Axis& axis, double speed, double amplitude) const {
+    if (limited_ > 0)
+      throw InfeasibleMotion(fmt::format(
+          "amplitude: found {:.4g} {}, with which axis {} is held back at a limit of velocity, current or voltage in "
+          "{} samples; expected an amplitude that stays within them, and a stable loop",
+          amplitude, unit_of(axis), axis.name, limited_));
+    if (slowest_ <= 0.0)
+      throw InfeasibleMotion(fmt::format(
+          "speed: found {:.4g} m/min, but with a test signal of {:.4g} {} axis {} falls to {:.3g} m/min at {:.3f} s; "
+          "expected a speed that never crosses zero: at least {:.2g} m/min, or a smaller amplitude",
+          speed * 60.0, amplitude, unit_of(axis), axis.name, slowest_ * 60.0, time_, 1.3 * (speed - slowest_) * 60.0));
+  }
+
+ private:
+  double slowest_ = HUGE_VAL, time_ = 0.0;
+  int limited_ = 0;
+};
+
+// The run tick by tick: set-points, the test signals of the axes, and what is kept of them.
+class Recording {
+ public:
+  explicit Recording(const FrequencyResponsePlan& plan)
+      : plan_(plan), schedule_(plan), watches_(plan.machine.axes.size()) {
+    for (const auto& axis : plan.machine.axes) {
+      amplitudes_.push_back(plan.amplitude.value_or(share_of_limit * limit_of(axis)));
+      tests_.push_back(schedule_.test(amplitudes_.back(), plan.seed + 1000 * log_.axes.size()));
+      log_.axes.emplace_back().axis = axis.name;
+    }
+    log_.source = "simulation";
+    log_.period = plan.machine.timing.fast_period;
+    log_.comments = {{"experiment", "frequency-response"}, {"machine", plan.machine.name}};
+  }
+
+  Log take() {
+    try {
+      run();
+    } catch (const FaultTripped& fault) {
+      check();
+      // Before the test signal acts, the fault is the machine's own.
+      if (std::none_of(watches_.begin(), watches_.end(), [](const Watch& watch) { return watch.saw_test(); })) throw;
+      throw InfeasibleMotion(fmt::format(
+          "amplitude: found {:.4g} {}, with which the axis stops: {}; expected an amplitude that the supervision lets "
+          "pass, and a stable loop",
+          amplitudes_.front(), unit_of(plan_.machine.axes.front()), fault.what()));
+    }
+    check();
+    return std::move(log_);
+  }
+
+ private:
+  void check() const {
+    for (std::size_t k = 0; k < watches_.size(); ++k)
+      watches_[k].check(plan_.machine.axes[k], plan_.speed, amplitudes_[k]);
+  }
+  void run() {
+    const auto& axes = plan_.machine.axes;
+    std::vector<sim::AxisSetPoint> set(axes.size());
+    const std::vector<double> start(axes.size(), 0.0);
+    ControlRun<FixedSignals> run(plan_.machine, start);
+    for (std::size_t tick = 0; tick < schedule_.ticks(); ++tick) {
+      const double t = run.time();
+      for (std::size_t k = 0; k < axes.size(); ++k) {
+        set[k] = schedule_.at(t);
+        set[k].injection = tests_[k][tick];
+      }
+      run.tick(set, [&](std::int64_t, std::span<const AxisSignals<FixedSignals>> signals) {
+        log_.t.push_back(t);
+        for (std::size_t k = 0; k < axes.size(); ++k) {
+          const double test = tests_[k][tick];
+          record(log_.axes[k], signals[k], test, axes[k].motor.model == sim::MotorModel::force);
+          if (test != 0.0) watches_[k].see(t, set[k].velocity, run.plant(k).velocity(), signals[k].limiting);
+        }
+      });
+    }
+  }
+
+  const FrequencyResponsePlan& plan_;
+  Schedule schedule_;
+  std::vector<double> amplitudes_;
+  std::vector<std::vector<double>> tests_;
+  std::vector<Watch> watches_;
+  Log log_;
+};
+
+}  // namespace
+
+Log run_frequency_response(const FrequencyResponsePlan& plan) { return Recording(plan).take(); }
+
+}  // namespace stiction::host
