@@ -46,11 +46,6 @@ void AxisPlant::switch_off() {
   current_ = {};
 }
 
-AxisPlant::Tick AxisPlant::tick_of(const MotorVariant& motor_model, const FrictionModel& friction_model) {
-  return std::visit([]<class M, class F>(const M&, const F&) -> Tick { return tick<M, F>; }, motor_model,
-                    friction_model);
-}
-
 template <class MotorModel, class Friction>
 void AxisPlant::tick(AxisPlant& plant) {
   auto& friction = std::get<Friction>(plant.friction_);
@@ -63,6 +58,12 @@ void AxisPlant::tick(AxisPlant& plant) {
     OpenWindings none;
     plant.advance_tick(none, friction, acting);
   }
+}
+
+// After tick(): clang 14 instantiates it here only if it has seen its definition.
+AxisPlant::Tick AxisPlant::tick_of(const MotorVariant& motor_model, const FrictionModel& friction_model) {
+  return std::visit([]<class M, class F>(const M&, const F&) -> Tick { return tick<M, F>; }, motor_model,
+                    friction_model);
 }
 
 // The voltages are copied: that nothing read in the loop can be a part of the plant is what lets the compiler keep the
