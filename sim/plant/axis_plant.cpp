@@ -60,12 +60,6 @@ void AxisPlant::tick(AxisPlant& plant) {
   }
 }
 
-// After tick(): clang 14 instantiates it here only if it has seen its definition.
-AxisPlant::Tick AxisPlant::tick_of(const MotorVariant& motor_model, const FrictionModel& friction_model) {
-  return std::visit([]<class M, class F>(const M&, const F&) -> Tick { return tick<M, F>; }, motor_model,
-                    friction_model);
-}
-
 // The voltages are copied: that nothing read in the loop can be a part of the plant is what lets the compiler keep the
 // plant's state in registers. The steps of a tick with one voltage are written out, which saves one instruction in
 // twelve.
@@ -99,5 +93,11 @@ inline double AxisPlant::step(MotorModel& motor, Friction& friction, const Phase
 }
 
 double AxisPlant::draw_noise() { return std::normal_distribution<double>(0.0, encoder_noise_)(random_); }
+
+// Behind the templates that it names: clang 14 forgets to instantiate, for a lambda like this, what is defined later.
+AxisPlant::Tick AxisPlant::tick_of(const MotorVariant& motor_model, const FrictionModel& friction_model) {
+  return std::visit([]<class M, class F>(const M&, const F&) -> Tick { return tick<M, F>; }, motor_model,
+                    friction_model);
+}
 
 }  // namespace stiction::sim
