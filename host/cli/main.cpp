@@ -96,4 +96,10 @@ void expect_subcommand(CLI::App& command, const std::string& kind) {
 
 }  // namespace stiction::host
 
-int main(int argc, char** argv) { return stiction::host::run(argc, argv); }
+int main(int argc, char** argv) {
+  try {
+    return stiction::host::run(argc, argv);
+  } catch (...) {
+    return stiction::host::exit_failed;  // standard error cannot be written either
+  }
+}

@@ -48,6 +48,7 @@ class ControlRun {
         set_(machine.axes.size()) {}
   ControlRun(const ControlRun&) = delete;
   ControlRun& operator=(const ControlRun&) = delete;
+  ~ControlRun() = default;
 
   double time() const { return static_cast<double>(loop_.now_ns()) * 1e-9; }  // s, of the tick that comes next
   sim::AxisPlant& plant(std::size_t axis) { return backend_.plant(axis); }    // as the samples of that tick see it

@@ -85,9 +85,17 @@ struct Table<Inverter> : EmptyTable<Inverter> {
 template <>
 struct Table<EncoderMount> : EmptyTable<EncoderMount> {
   static constexpr std::string_view text = "elastic mount of the encoder's rider";
+  // Below 1 Hz the weights of a step lose more than half of their digits, far below they overflow; above 1 MHz the
+  // rider is rigid at any step, and a file leaves it out.
+  static constexpr Range natural_frequencies{1.0, 1e6};
   static constexpr std::array<Parameter<EncoderMount>, 3> parameters{{
       {"mass", "kg", positive(), &EncoderMount::mass, {}, "mass of the rider"},
-      {"natural_frequency", "Hz", positive(), &EncoderMount::natural_frequency, {}, "natural frequency of the rider"},
+      {"natural_frequency",
+       "Hz",
+       natural_frequencies,
+       &EncoderMount::natural_frequency,
+       {},
+       "natural frequency of the rider"},
       {"damping_ratio", "1", not_negative(0.999), &EncoderMount::damping_ratio, {}, "damping ratio of the rider"},
   }};
 };

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <udunits2.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -63,8 +64,14 @@ bool has_stray_number(std::string_view unit) {
   return false;
 }
 
+// UDUNITS-2 reads to the first NUL, so that "A\0s/m" would pass as A.
+bool has_control_character(std::string_view text) {
+  return std::ranges::any_of(text, [](char c) { return (c >= 0 && c < ' ' && c != '\t') || c == '\x7f'; });
+}
+
 Unit parse_unit(std::string_view text) {
   const std::string unit(trimmed(text));
+  if (has_control_character(unit)) throw UnitError("a control character in the unit");
   Unit parsed(has_stray_number(unit) ? nullptr : ut_parse(unit_system(), unit.c_str(), UT_UTF8));
   if (!parsed) throw UnitError(fmt::format("unknown unit \"{}\"", unit));
   return parsed;

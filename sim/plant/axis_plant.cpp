@@ -46,11 +46,6 @@ void AxisPlant::switch_off() {
   current_ = {};
 }
 
-AxisPlant::Tick AxisPlant::tick_of(const MotorVariant& motor_model, const FrictionModel& friction_model) {
-  return std::visit([]<class M, class F>(const M&, const F&) -> Tick { return tick<M, F>; }, motor_model,
-                    friction_model);
-}
-
 template <class MotorModel, class Friction>
 void AxisPlant::tick(AxisPlant& plant) {
   auto& friction = std::get<Friction>(plant.friction_);
@@ -98,5 +93,11 @@ inline double AxisPlant::step(MotorModel& motor, Friction& friction, const Phase
 }
 
 double AxisPlant::draw_noise() { return std::normal_distribution<double>(0.0, encoder_noise_)(random_); }
+
+// Behind the templates that it names: clang 14 forgets to instantiate, for a lambda like this, what is defined later.
+AxisPlant::Tick AxisPlant::tick_of(const MotorVariant& motor_model, const FrictionModel& friction_model) {
+  return std::visit([]<class M, class F>(const M&, const F&) -> Tick { return tick<M, F>; }, motor_model,
+                    friction_model);
+}
 
 }  // namespace stiction::sim

@@ -19,7 +19,8 @@ SOUND = {
     "sim/plant/axis_plant.hpp": '#include "sim/machine/machine.hpp"\n',
     "sim/machine/machine.hpp": "#include <string>\n",
     "host/report/page.hpp": '#include "sim/machine/machine.hpp"\n',
-    "host/cli/main.cpp": '#include "host/report/page.hpp"\n',
+    "host/identify/fit.hpp": '#include "sim/machine/machine.hpp"\n',
+    "host/cli/main.cpp": '#include "host/report/page.hpp"\n#include "host/identify/fit.hpp"\n',
     "tests/hal/backend_test.cpp": '#include "hal/simulated/simulated_backend.hpp"\n',
 }
 
@@ -79,6 +80,11 @@ class CheckRooms(unittest.TestCase):
     def test_finds_a_report_that_knows_the_command_line(self):
         findings = findings_in(SOUND | {"host/report/page.hpp": '#include "host/cli/main.cpp"\n'})
         self.assertIn("host/report may not include host/cli", findings[0])
+
+    def test_lets_a_report_show_what_a_tool_found_but_not_the_tool_know_its_report(self):
+        self.assertEqual(findings_in(SOUND | {"host/report/page.hpp": '#include "host/identify/fit.hpp"\n'}), [])
+        self.expect_finding("host/identify/fit.hpp", '#include "host/report/page.hpp"',
+                            "host/identify may not include host/report")
 
     def test_finds_what_includes_a_test(self):
         self.expect_finding("host/cli/main.cpp", '#include "tests/hal/backend_test.cpp"', "may not include tests/hal")

@@ -22,8 +22,9 @@ constexpr double relaxation_series(double a) {
 // registers.
 inline double one_minus_exp(double a) {
   int doublings = 0;
-  if (a > detail::longest) [[unlikely]]
+  if (a > detail::longest) [[unlikely]] {
     for (a = std::min(a, 64.0); a > detail::longest; a *= 0.5) ++doublings;  // exp(-64) is nothing beside 1
+  }
   double s = a * detail::relaxation_series(a);
   for (; doublings > 0; --doublings) s *= 2.0 - s;
   return s;

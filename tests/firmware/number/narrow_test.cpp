@@ -109,6 +109,15 @@ TEST(Narrow, CountsOnBeyondAWord) {
   EXPECT_EQ(counter.count, std::uint64_t{1} << 32);
 }
 
+TEST(Narrow, CountersAddUpAndNeverStartAgain) {
+  SaturationCounter sum{3};
+  sum.add(SaturationCounter{4});
+  EXPECT_EQ(sum.count, 7u);
+  sum = SaturationCounter{UINT32_MAX};
+  sum.add(SaturationCounter{2});
+  EXPECT_GE(sum.count, UINT32_MAX);
+}
+
 TEST(Narrow, AtTheLargestShiftRoundsEverythingBelowAHalfToZero) {
   using In = Wide<62, (std::uint64_t{1} << 62) - 1>;  // below +-1
   SaturationCounter counter;

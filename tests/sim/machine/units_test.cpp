@@ -111,6 +111,12 @@ TEST(Units, GarbageIsRefused) {
     EXPECT_TRUE(error_of(text, "kg").starts_with("not NUMBER UNIT")) << text << ": " << error_of(text, "kg");
 }
 
+TEST(Units, ControlCharactersAreRefusedNotReadPast) {
+  using namespace std::string_literals;
+  for (const auto& text : {"600 A\0s/m"s, "600 A\0"s, "600 \0A"s, "600 A\n"s, "600 A\rs/m"s, "600 A\x7f"s})
+    EXPECT_EQ(error_of(text, "A"), "a control character in the unit");
+}
+
 TEST(Units, RefusalPrintsNothingOfItsOwn) {
   testing::internal::CaptureStderr();
   error_of("3 kq", "kg");

@@ -7,6 +7,8 @@
 #include <complex>
 #include <numbers>
 
+#include "sim/machine/parameters.hpp"
+
 namespace stiction::sim {
 namespace {
 
@@ -81,6 +83,17 @@ TEST(EncoderMount, UndampedKeepsItsEnergy) {
   ASSERT_GT(start, 0.0);
   for (int n = 0; n < 64000; ++n) mount.advance(0.0);
   EXPECT_NEAR(energy() / start, 1.0, 1e-10) << "a second of free swinging";
+}
+
+TEST(EncoderMount, DeflectsByAFiniteAmountAtBothEndsOfTheAllowedNaturalFrequencies) {
+  using Mount = Table<EncoderMount>;
+  EXPECT_FALSE(Mount::natural_frequencies.contains(1e-323));  // 1 / w^2 is infinite
+  for (const double frequency : {Mount::natural_frequencies.low, Mount::natural_frequencies.high}) {
+    EncoderMountModel mount(EncoderMount{0.5, frequency, 0.05}, 15.625e-6);
+    for (int i = 0; i < 10; ++i) mount.advance(1e-4);
+    EXPECT_TRUE(std::isfinite(mount.deflection()) && std::isfinite(mount.velocity())) << frequency << " Hz";
+    EXPECT_NE(mount.deflection(), 0.0) << frequency << " Hz";
+  }
 }
 
 }  // namespace
