@@ -6,6 +6,7 @@
 
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
+#include "host/cli/identify_reference.hpp"
 #include "host/simulate/circle.hpp"
 #include "sim/control/axis_configuration.hpp"
 #include "sim/machine/machine_file.hpp"
@@ -35,6 +36,7 @@ int run(int argc, char** argv) {
   add_simulate(program, invocation);
   add_compare(program, invocation);
   add_machine(program, invocation);
+  add_identify_reference(program, invocation);
 
   const auto bad_input = [](const std::exception& error) {
     fmt::print(stderr, "stiction: {}\n", error.what());
