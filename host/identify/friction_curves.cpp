@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace stiction::host {
 namespace {
@@ -47,31 +48,6 @@ Eigen::Vector3d linear_part(const std::vector<SteadyPoint>& points, double rise_
   return solution;
 }
 
-// Displacement times initial stiffness, for a Coulomb friction.
-double stretched(const PreslidingPoint& point, double coulomb) {
-  const auto virgin = [&](double force) { return force / (1.0 - force / coulomb); };
-  // Unloaded from sliding to no force, so on the branch of a reversal: it goes on, or turns round.
-  return point.same_direction ? 2.0 * virgin(0.5 * point.force)
-                              : 2.0 * virgin(0.5 * (coulomb + point.force)) - 2.0 * virgin(0.5 * coulomb);
-}
-
-double uncertainty(const PreslidingPoint& point) { return std::hypot(0.4e-6, 0.1 * point.displacement); }
-
-// Compliance for a given Coulomb friction.
-double compliance(const std::vector<PreslidingPoint>& points, double coulomb, double* squares) {
-  double product = 0.0, square = 0.0;
-  for (const auto& point : points) {
-    const double regressor = stretched(point, coulomb) / uncertainty(point);
-    product += regressor * point.displacement / uncertainty(point);
-    square += regressor * regressor;
-  }
-  const double solution = product / square;
-  *squares = 0.0;
-  for (const auto& point : points)
-    *squares += std::pow((solution * stretched(point, coulomb) - point.displacement) / uncertainty(point), 2);
-  return solution;
-}
-
 }  // namespace
 
 double SlidingCurve::at(double velocity) const {
@@ -101,54 +77,53 @@ SlidingCurve fit_sliding_curve(const std::vector<SteadyPoint>& points) {
   return curve;
 }
 
-double PreslidingCurve::displacement(bool same_direction, double force) const {
-  return stretched({same_direction, force, 0.0}, coulomb) / stiffness;
+double PreslidingCurve::force_at(double x) const {
+  double x0 = 0.0, f0 = 0.0;
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    if (x <= displacement[i]) return f0 + (force[i] - f0) * (x - x0) / (displacement[i] - x0);
+    x0 = displacement[i];
+    f0 = force[i];
+  }
+  return f0;
 }
 
-PreslidingCurve fit_presliding_curve(const std::vector<PreslidingPoint>& points) {
-  const auto same =
-      std::count_if(points.begin(), points.end(), [](const PreslidingPoint& point) { return point.same_direction; });
-  const auto opposite = static_cast<std::ptrdiff_t>(points.size()) - same;
-  if (same < 2 || opposite < 2)
-    throw NotDetermined(
-        fmt::format("presliding: found {} points loaded in the direction of the motion before and {} against it; "
-                    "expected at least 2 of each",
-                    same, opposite));
-  // Against the motion before, any force the contact carries is below Coulomb friction; with it, below twice that.
-  double largest = 0.0;
-  for (const auto& point : points) largest = std::max(largest, point.same_direction ? 0.5 * point.force : point.force);
-  double squares = 0.0;
-  const double coulomb = argument_of_minimum(1.001 * largest, 5.0 * largest, [&](double candidate) {
-    double cost = 0.0;
-    compliance(points, candidate, &cost);
-    return cost;
-  });
-  const double solution = compliance(points, coulomb, &squares);
-  return {1.0 / solution, coulomb, std::sqrt(squares / static_cast<double>(points.size()))};
+PreslidingCurve presliding_curve(const std::vector<PreslidingPoint>& points) {
+  auto against = points;
+  std::erase_if(against, [](const PreslidingPoint& point) { return point.same_direction; });
+  std::sort(against.begin(), against.end(), [](const auto& a, const auto& b) { return a.force < b.force; });
+  if (against.size() < 2)
+    throw NotDetermined(fmt::format("presliding: found {} points loaded against the motion before; expected at least 2",
+                                    against.size()));
+  PreslidingCurve curve;
+  double slope = std::numeric_limits<double>::infinity(), x = 0.0, f = 0.0;
+  for (const auto& point : against) {
+    const double next = (point.force - f) / (point.displacement - x);
+    if (!(next > 0.0 && next < slope))
+      throw NotDetermined(
+          fmt::format("presliding: found {:g} um at {:g} N after {:g} um at {:g} N; expected displacements that grow "
+                      "faster than the force",
+                      point.displacement * 1e6, point.force, x * 1e6, f));
+    slope = next;
+    curve.displacement.push_back(x = point.displacement);
+    curve.force.push_back(f = point.force);
+  }
+  return curve;
 }
 
 sim::MaxwellSlip::Parameters friction_elements(const SlidingCurve& sliding, const PreslidingCurve& presliding,
                                                double force, double displacement) {
-  // Shares of the Coulomb friction at the corners of a polygon in the hyperbola, evenly in the logarithm of what is
-  // left up to 95 %, as far as Tab 5.3 reaches; the last element slips where the tangent there reaches the whole.
-  constexpr int count = 10;
-  constexpr double left_at_last_corner = 0.05;
-  const double coulomb = force * sliding.creeping;
-  const double half = displacement * presliding.coulomb / presliding.stiffness;  // m, where half of it acts
-  std::array<double, count + 1> share{}, place{};
-  for (std::size_t i = 1; i < count; ++i) {
-    share[i] = 1.0 - std::pow(left_at_last_corner, static_cast<double>(i) / (count - 1));
-    place[i] = half * share[i] / (1.0 - share[i]);
+  // Element i slips at point i; its stiffness is the fall of the curve's slope there.
+  const double to_force = force * sliding.creeping / presliding.coulomb();
+  const std::size_t count = presliding.force.size();
+  std::vector<double> slope(count + 1, 0.0);  // up to point i; none beyond the last
+  for (std::size_t i = 0; i < count; ++i) {
+    const double x0 = i == 0 ? 0.0 : presliding.displacement[i - 1], f0 = i == 0 ? 0.0 : presliding.force[i - 1];
+    slope[i] = to_force * (presliding.force[i] - f0) / (displacement * (presliding.displacement[i] - x0));
   }
-  share[count] = 1.0;
-  place[count] = half * (2.0 - left_at_last_corner) / left_at_last_corner;
-
   sim::MaxwellSlip::Parameters p;
-  std::array<double, count + 1> slope{};  // of the polygon up to corner i + 1; none beyond the last
-  for (std::size_t i = 0; i < count; ++i) slope[i] = coulomb * (share[i + 1] - share[i]) / (place[i + 1] - place[i]);
   for (std::size_t i = 0; i < count; ++i) {
     p.stiffness.push_back(slope[i] - slope[i + 1]);
-    p.level.push_back(p.stiffness.back() * place[i + 1]);
+    p.level.push_back(p.stiffness.back() * displacement * presliding.displacement[i]);
   }
   p.viscous = force * sliding.viscous;
   p.rise = force * sliding.rise;

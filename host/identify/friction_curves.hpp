@@ -42,18 +42,19 @@ struct PreslidingPoint {
   double displacement;  // m
 };
 
-// First loading x = (F / stiffness) / (1 - F / coulomb); every other branch from it by Masing's rule.
+// First loading of the contact: points of Tab 5.3 B, displacement over force against the motion before, straight
+// between them; the last one is where the contact breaks away.
 struct PreslidingCurve {
-  double stiffness = 0.0;  // N/m, initial
-  double coulomb = 0.0;    // N
-  double deviation = 0.0;  // rms of the points about the curve, in units of their uncertainty
+  std::vector<double> displacement;  // m, rising
+  std::vector<double> force;         // N, rising
 
-  double displacement(bool same_direction, double force) const;  // m, of a carriage that coasted to rest
+  double coulomb() const { return force.back(); }  // N
+  double force_at(double x) const;                 // N, at x (m) of at least 0
 };
 
-// The displacements are weighted with 0.4 um (a dial gauge graduated in micrometres) and 10 % (repeated loadings).
-// Throws NotDetermined without points in both directions.
-PreslidingCurve fit_presliding_curve(const std::vector<PreslidingPoint>& points);
+// Throws NotDetermined for fewer than two points against the motion before, or a contact that stiffens under load (no
+// sum of springs that slip does).
+PreslidingCurve presliding_curve(const std::vector<PreslidingPoint>& points);
 
 // Elements with the shape of the presliding curve and the friction of the sliding curve; `force` scales all friction,
 // `displacement` all displacements. The creeping friction takes the place of the presliding curve's Coulomb friction.

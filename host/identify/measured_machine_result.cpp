@@ -39,10 +39,8 @@ void add_parameters(const MeasuredMachine& m, sim::ExperimentResult& result) {
   add("rise_velocity", "mm/s", "speed with 63 % of the rise", m.sliding.rise_velocity * 1e3);
   add("viscous", "N s/m", "viscous friction", m.sliding.viscous);
   add("sliding_deviation", "N", "points of Tab 5.1 about the curve, rms", m.sliding.deviation);
-  add("presliding_stiffness", "N/um", "initial stiffness, Tab 5.3", m.presliding.stiffness * 1e-6);
-  add("presliding_coulomb", "N", "Coulomb friction of the test rig, Tab 5.3", m.presliding.coulomb);
-  add("presliding_deviation", "", "points of Tab 5.3 about the curve, rms in units of their uncertainty",
-      m.presliding.deviation);
+  add("presliding_coulomb", "N",
+      "greatest force that the test rig's contact carried against the motion before, Tab 5.3", m.presliding.coulomb());
   for (const auto& axis : m.axes) {
     add("force_scale_" + axis.axis, "", "scale of the friction, " + axis.axis, axis.force);
     add("displacement_scale_" + axis.axis, "", "scale of the displacements, " + axis.axis, axis.displacement);
@@ -126,30 +124,28 @@ sim::Chart sliding_chart(const PermittedRows& rows, const SlidingCurve& curve) {
 }
 
 sim::Chart presliding_chart(const PermittedRows& rows, const PreslidingCurve& curve) {
-  sim::Chart chart{"Displacement before sliding",
-                   "force, N",
+  sim::Chart chart{"Force before sliding",
                    "displacement, um",
-                   "Tab 5.3: loaded after coasting to rest, in the direction of the motion before and against it. Both "
-                   "curves are one hyperbola under Masing's rule.",
+                   "force, N",
+                   "Tab 5.3: loaded after coasting to rest. The model's first loading follows the points against the "
+                   "motion before; those in its direction it does not explain.",
                    false,
                    {}};
   for (const bool same : {true, false}) {
-    const std::string direction = same ? "same direction" : "opposite direction";
-    sim::Series points{direction + ", measured", {}, {}, true}, line{direction + ", fitted", {}, {}, false};
-    double last = 0.0;
+    sim::Series points{same ? "in the direction of the motion before, measured" : "against it, measured", {}, {}, true};
     for (const auto& point : rows.presliding) {
       if (point.same_direction != same) continue;
-      points.x.push_back(point.force);
-      points.y.push_back(point.displacement * 1e6);
-      last = std::max(last, point.force);
-    }
-    for (double force = 0.0; force <= last; force += 1.0) {
-      line.x.push_back(force);
-      line.y.push_back(curve.displacement(same, force) * 1e6);
+      points.x.push_back(point.displacement * 1e6);
+      points.y.push_back(point.force);
     }
     chart.series.push_back(std::move(points));
-    chart.series.push_back(std::move(line));
   }
+  sim::Series line{"model, unscaled", {0.0}, {0.0}, false};
+  for (std::size_t i = 0; i < curve.force.size(); ++i) {
+    line.x.push_back(curve.displacement[i] * 1e6);
+    line.y.push_back(curve.force[i]);
+  }
+  chart.series.push_back(std::move(line));
   return chart;
 }
 
@@ -171,9 +167,9 @@ std::vector<std::string> findings(const MeasuredMachineStudy& study) {
       study.l_shape.kept_current(), study.kept_share() * 100.0, study.l_shape.same_error * 1e6,
       study.l_shape.opposite_error * 1e6));
   sentences.push_back(fmt::format(
-      "The calibration makes the contact {:.0f} (X) and {:.0f} (Y) times softer than the test rig of Tab 5.3: slow "
-      "circles below 3 m/min, or small reversals of the machine itself, would tell a soft contact from friction that "
-      "builds up with time.",
+      "The calibration makes the contact {:.1f} (X) and {:.1f} (Y) times softer than the test rig of Tab 5.3; small "
+      "reversals of the machine itself would decide on its presliding, and a restart after standstills of several "
+      "lengths on how long it remembers.",
       study.identified.axes[0].displacement, study.identified.axes[1].displacement));
   return sentences;
 }

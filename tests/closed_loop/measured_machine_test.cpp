@@ -28,8 +28,7 @@ const MeasuredMachine& identified() {
 }
 
 std::vector<double> numbers_of(const MeasuredMachine& m) {
-  std::vector<double> numbers{m.sliding.creeping, m.sliding.rise,         m.sliding.rise_velocity,
-                              m.sliding.viscous,  m.presliding.stiffness, m.presliding.coulomb};
+  std::vector<double> numbers{m.sliding.creeping, m.sliding.rise, m.sliding.rise_velocity, m.sliding.viscous};
   for (const auto& axis : m.axes) {
     const auto& p = axis.friction;
     numbers.insert(numbers.end(),
@@ -75,12 +74,13 @@ TEST(MeasuredMachine, PredictsTheFeedsItHasNotSeen) {
   ASSERT_EQ(std::count_if(study().rows.begin(), study().rows.end(), [](const auto& row) { return row.held_out; }), 8);
   const double mean = mean_of(scores);
   figure("held-out feeds of Tab 6.4, mean of the four quantities",
-         fmt::format("{:.2f} % (bound 5.5 % alone, NOT MET; 6.5 % together with the L-shape)", mean * 100));
-  figure("held-out feeds: x_e, y_e", fmt::format("{:.1f} % (bound 7 %, NOT MET), {:.1f} % (bound 7 %)",
-                                                 scores[0].error * 100, scores[1].error * 100));
+         fmt::format("{:.2f} % (bound 5.5 %, together with the L-shape 6.5 %; published model 9.7 %)", mean * 100));
+  figure("held-out feeds: x_e, y_e",
+         fmt::format("{:.1f} %, {:.1f} % (bound 7 %)", scores[0].error * 100, scores[1].error * 100));
   figure("held-out feeds: I_x, I_y",
          fmt::format("{:.1f} % (bound 4 %), {:.1f} % (bound 8 %)", scores[0].current * 100, scores[1].current * 100));
-  EXPECT_LE(mean, 0.065);
+  EXPECT_LE(mean, 0.055);
+  EXPECT_LE(scores[0].error, 0.07);
   EXPECT_LE(scores[1].error, 0.07);
   EXPECT_LE(scores[0].current, 0.04);
   EXPECT_LE(scores[1].current, 0.08);
@@ -109,52 +109,32 @@ TEST(FrictionCurves, SlidingCurveIsFoundAgain) {
   EXPECT_NEAR(fit.viscous, 300.0, 1e-3);
 }
 
-TEST(FrictionCurves, PreslidingCurveIsFoundAgain) {
-  const PreslidingCurve truth{5e7, 130.0, 0.0};
-  std::vector<PreslidingPoint> points;
-  for (const bool same : {true, false})
-    for (const double force : {20.0, 50.0, 80.0, 110.0})
-      points.push_back({same, force, truth.displacement(same, force)});
-  const auto fit = fit_presliding_curve(points);
-  EXPECT_NEAR(fit.coulomb, 130.0, 1e-3);
-  EXPECT_NEAR(fit.stiffness, 5e7, 1e3);
-}
-
 TEST(FrictionCurves, WhatTheDataDoNotDetermineIsSaid) {
   EXPECT_THROW(fit_sliding_curve({{0.1, 90.0}, {0.2, 95.0}}), NotDetermined);
   EXPECT_THROW(fit_sliding_curve({{0.1, 90.0}, {0.2, 80.0}, {0.3, 70.0}, {0.4, 60.0}, {0.5, 50.0}}), NotDetermined);
-  EXPECT_THROW(fit_presliding_curve({{true, 20.0, 1e-6}, {true, 40.0, 2e-6}, {false, 20.0, 1e-6}}), NotDetermined);
+  EXPECT_THROW(presliding_curve({{true, 20.0, 1e-6}, {true, 40.0, 2e-6}, {false, 20.0, 1e-6}}), NotDetermined);
+  EXPECT_THROW(presliding_curve({{false, 20.0, 1e-6}, {false, 40.0, 1.5e-6}}), NotDetermined) << "stiffens";
   auto machine = cross_table();
   std::erase_if(machine.circle_references, [](const auto& row) { return row.measured && row.axis == "Y"; });
   EXPECT_THROW(permitted_rows(machine), NotDetermined);
 }
 
-// Tab 5.3 is measured on the elements themselves: the contact slides, is let go, and is loaded either way.
-TEST(FrictionElements, ACarriageThatCoastedToRestIsStifferInTheDirectionItCameFrom) {
-  const auto curve = fit_presliding_curve(permitted_rows(cross_table()).presliding);
-  const auto p = friction_elements({curve.coulomb, 0.0, 0.02, 0.0, 0.0}, curve, 1.0, 1.0);
+TEST(FrictionElements, FirstLoadingIsTheMeasuredOne) {
+  const auto curve = presliding_curve(permitted_rows(cross_table()).presliding);
+  const auto p = friction_elements({curve.coulomb(), 0.0, 0.02, 0.0, 0.0}, curve, 1.0, 1.0);
   constexpr double nanometre = 1e-9, step = 15.625e-6;
-  for (const bool same : {true, false}) {
-    sim::MaxwellSlip contact(p, {225.0, step});
-    double force = 0.0, travelled = 0.0;
-    for (int i = 0; i < 200000; ++i) force = contact.move_contact(10.0 * nanometre / step);  // 2 mm
-    while (force > 0.0) force = contact.move_contact(-nanometre / step);
-    for (const double load : {20.0, 40.0, 60.0, 80.0, 100.0}) {
-      const double direction = same ? 1.0 : -1.0;
-      while (direction * force < load) {
-        force = contact.move_contact(direction * nanometre / step);
-        travelled += nanometre;
-      }
-      const double expected = curve.displacement(same, load);
-      // A polygon of ten sides in the hyperbola; the table itself is known to 0.4 um.
-      EXPECT_NEAR(travelled, expected, 0.06 * expected + 0.1e-6) << same << ' ' << load;
-    }
+  sim::MaxwellSlip contact(p, {225.0, step});
+  double travelled = 0.0;
+  for (const double point : {0.3e-6, 2.0e-6, 6.3e-6, 20e-6, 47e-6}) {
+    double force = 0.0;
+    for (; travelled < point - 0.5 * nanometre; travelled += nanometre) force = contact.move_contact(nanometre / step);
+    EXPECT_NEAR(force, curve.force_at(point), 1e-6) << point;
   }
 }
 
 TEST(FrictionElements, CarryTheSlidingCurve) {
   const SlidingCurve sliding{70.0, 60.0, 0.02, 300.0, 0.0};
-  const auto p = friction_elements(sliding, {7e7, 110.0, 0.0}, 2.0, 5.0);
+  const auto p = friction_elements(sliding, {{1e-6, 10e-6}, {60.0, 110.0}}, 2.0, 5.0);
   EXPECT_NEAR(std::accumulate(p.level.begin(), p.level.end(), 0.0), 140.0, 1e-9);
   EXPECT_EQ(p.rise, 120.0);
   EXPECT_EQ(p.viscous, 600.0);

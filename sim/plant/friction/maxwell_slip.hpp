@@ -3,9 +3,9 @@
 // plus viscous friction. Presliding with nonlocal memory; the sum of the levels at rest, level_i, is the friction of
 // creeping. Optionally the sliders are rate-and-state dependent (slip law of Ruina 1983): towards the sliding curve
 //   L_i -> level_i (1 + rise / sum(level) (1 - exp(-|v| / rise_velocity)))
-// a slider's level moves as it slips, over its own break-away displacement level_i / k_i; a sticking one keeps its
-// level. So the friction of steady sliding is sum(level) + rise (1 - exp(-|v| / rise_velocity)) + viscous |v|, and a
-// short stop forgets none of it. No element does work: its slip is never against its force.
+// a slider's level moves as it slips, over the displacement at which the last of them breaks away; a sticking one keeps
+// its level. So the friction of steady sliding is sum(level) + rise (1 - exp(-|v| / rise_velocity)) + viscous |v|, and
+// a short stop forgets none of it. No element does work: its slip is never against its force.
 #pragma once
 
 #include <algorithm>
@@ -47,11 +47,9 @@ class MaxwellSlip {
         gain_(body.step / body.mass),
         relative_rise_(p.rise / std::accumulate(p.level.begin(), p.level.end(), 0.0)),
         rises_(p.rise > 0.0),
+        memory_(memory_of(p)),
         level_(p.level),
-        force_(p.stiffness.size(), 0.0) {
-    if (p.stiffness.size() != p.level.size())
-      throw std::invalid_argument("maxwell_slip: 'stiffness' and 'level' differ in length");
-  }
+        force_(p.stiffness.size(), 0.0) {}
 
   // Velocity (m/s) one step later, under `force` (N), the sum of all forces but friction.
   double advance(double velocity, double force) {
@@ -68,7 +66,7 @@ class MaxwellSlip {
       const double stretched = force_[i] + p_.stiffness[i] * travel;
       const double excess = std::abs(stretched) - level_[i];
       if (excess > 0.0 && rises_)
-        level_[i] += (sliding * p_.level[i] - level_[i]) * one_minus_exp(excess / p_.level[i]);
+        level_[i] += (sliding * p_.level[i] - level_[i]) * one_minus_exp(excess / (p_.stiffness[i] * memory_));
       force_[i] = std::clamp(stretched, -level_[i], level_[i]);
       contact += force_[i];
     }
@@ -76,11 +74,21 @@ class MaxwellSlip {
   }
 
  private:
+  // m, the longest break-away displacement.
+  static double memory_of(const Parameters& p) {
+    if (p.stiffness.size() != p.level.size())
+      throw std::invalid_argument("maxwell_slip: 'stiffness' and 'level' differ in length");
+    double longest = 0.0;
+    for (std::size_t i = 0; i < p.level.size(); ++i) longest = std::max(longest, p.level[i] / p.stiffness[i]);
+    return longest;
+  }
+
   Parameters p_;
   double step_;
   double gain_;
   double relative_rise_;  // rise / sum of the levels
   bool rises_;
+  double memory_;              // m, of slip over which the levels follow the speed
   std::vector<double> level_;  // at which each element slips now, N
   std::vector<double> force_;  // of each element, N
 };
