@@ -43,6 +43,8 @@ TEST(ReferencePage, ListsEveryParameterOfEveryStruct) {
   expect_rows<Feedforward>(page, "axis.NAME.feedforward");
   expect_rows<Supervision>(page, "axis.NAME.supervision");
   expect_rows<CircleReference>(page, "[reference.circle]");
+  expect_rows<SteadyFrictionReference>(page, "[reference.steady_friction]");
+  expect_rows<PreslidingReference>(page, "[reference.presliding]");
   for_each_friction_model([&]<class Model>() {
     const std::string table = "axis.NAME.friction." + std::string(Model::name);
     for (const auto& p : Model::parameters)
