@@ -22,7 +22,8 @@ void identify_reference(const IdentifyReferenceOptions& options, const Invocatio
   const auto json = experiment_json(result, machine);
   if (!options.out.empty()) {
     PendingFolder folder(options.out);
-    folder.write("report.html", experiment_report_html({invocation.command_line, invocation.version, machine, result}));
+    folder.write("report.html", experiment_report_html({invocation.command_line, invocation.version,
+                                                        with_friction(machine, study.identified), result}));
     folder.write("result.json", json.dump(2) + "\n");
     folder.write("identified.toml", friction_toml(study.identified));
     folder.commit();

@@ -57,7 +57,7 @@ void add_chatter(const sim::Machine& machine, sim::ExperimentResult& result) {
   const auto& axis = machine.axes[0];
   const auto& parameters = std::get<sim::Parabolic::Parameters>(axis.friction.models.at("parabolic"));
   sim::Chart chart{"B2 evaluated explicitly and implicitly",
-                   "time, ms",
+                   "time since 500 ms, ms",
                    "friction force, N",
                    "Half a second after the step of force: the same law on the same machine, evaluated every 0.2 ms at "
                    "the velocity before, every 62.5 us, and solved together with the velocity.",

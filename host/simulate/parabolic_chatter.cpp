@@ -10,7 +10,7 @@
 namespace stiction::host {
 namespace {
 
-constexpr double duration = 1.0, settled = 0.5, shown = 0.01;  // s
+constexpr double duration = 1.0, settled = 0.5, shown = 0.005;  // s
 
 double explicit_friction(const sim::Parabolic::Parameters& p, double velocity) {
   if (velocity == 0.0) return 0.0;
@@ -52,7 +52,7 @@ ChatterRun impact_with_parabolic_friction(sim::Machine machine, double force, do
     run.tick(standstill);
     if (t < settled) continue;
     if (t < settled + shown) {
-      result.friction.x.push_back(t * 1e3);
+      result.friction.x.push_back((t - settled) * 1e3);
       result.friction.y.push_back(now);
     }
     if (!evaluated) continue;

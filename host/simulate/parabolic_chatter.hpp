@@ -20,7 +20,7 @@ struct ChatterRun {
   double least = 0.0, greatest = 0.0;  // N, of the friction
   double rms = 0.0;                    // N
   double alternating = 0.0;            // share of the evaluations at which the friction changed its sign
-  sim::Series friction;                // N over ms, a stretch of it
+  sim::Series friction;                // N over ms since its beginning, a stretch of it
 };
 
 // The impact of `force` (N) at `time` (s) on the machine's only axis, firmware in fixed point, with its parabolic
