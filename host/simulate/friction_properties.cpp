@@ -190,11 +190,14 @@ sim::ExperimentResult run_break_away(const ExperimentInput& input) {
   sim::Chart chart{"Break-away force over the rate of the force", "rate, N/s", "break-away force, N", "", true, {}};
   sim::Series series{"lugre", {}, {}, false};
   const auto axis = axis_with(input, "lugre");
-  const auto break_away = [&](double rate, BenchRecorder* recorder = nullptr) {
-    // The friction force at its greatest: from there on the mass is faster than its contact.
+  // The friction force at its greatest within presliding: from there on the mass is faster than its contact. Tab 4.2
+  // lets presliding reach 50 um. At slow rates the friction still grows a little beyond, as the bristles' approach to
+  // their limit takes several of their deflections of 15 um.
+  constexpr double presliding_range = 50e-6, sliding = 1e-3;  // m
+  const auto break_away = [&](double rate, double range, BenchRecorder* recorder = nullptr) {
     FrictionBench bench(axis);
     double greatest = 0.0;
-    while (bench.position() < 1e-3) {
+    while (bench.position() < range) {
       const double force = rate * bench.time();
       bench.advance(force);
       if (recorder != nullptr) recorder->add(bench, force);
@@ -205,15 +208,22 @@ sim::ExperimentResult run_break_away(const ExperimentInput& input) {
   for (const double rate : {10.0, 30.0, 100.0, 300.0, 1e3, 2e3, 3e3, 5e3, 1e4, 3e4, 1e5}) {
     BenchRecorder recorder(rate < 1e3 ? 50 : 1);
     series.x.push_back(rate);
-    series.y.push_back(break_away(rate, input.keep_log ? &recorder : nullptr));
+    series.y.push_back(break_away(rate, presliding_range, input.keep_log ? &recorder : nullptr));
     if (input.keep_log) input.keep_log(fmt::format("{:g} N/s", rate), recorder.take());
   }
   for (const auto& [rate, force] : {std::pair{10.0, 578.6}, {1e3, 551.5}, {3e3, 504.9}, {1e4, 415.3}})
     result.figures.push_back({fmt::format("break_away_at_{:g}_N_per_s", rate), "N",
-                              fmt::format("break-away force at {:g} N/s", rate), break_away(rate),
+                              fmt::format("break-away force at {:g} N/s", rate), break_away(rate, presliding_range),
                               within_2_percent(force, 0.05)});
   result.findings.push_back(fmt::format("From {:.0f} N at 10 N/s to {:.0f} N at 1e4 N/s.", result.figures.front().value,
                                         result.figures.back().value));
+  const double beyond = break_away(10.0, sliding);
+  result.figures.push_back(
+      {"greatest_friction_at_10_N_per_s", "N", "greatest friction at 10 N/s at any displacement", beyond, {}});
+  result.findings.push_back(
+      fmt::format("Break-away is counted within 50 um, the presliding range of Tab 4.2; at 10 N/s the friction reaches "
+                  "{:.0f} N a little later.",
+                  beyond));
   chart.series.push_back(std::move(series));
   result.charts.push_back(std::move(chart));
   return result;

@@ -1,12 +1,14 @@
 // Impact compliance of the position loop (Mendricky 2006, 6.2): a step of external force on the X axis at standstill.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "host/simulate/control_run.hpp"
 #include "host/simulate/experiments.hpp"
 #include "host/simulate/log_recorder.hpp"
+#include "host/simulate/parabolic_chatter.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
 namespace stiction::host {
@@ -49,6 +51,49 @@ Response respond(const sim::Machine& machine, const std::string& name, const Tra
     r.resting_friction = friction;
   }
   return r;
+}
+
+// The chatter that the source saw with B2: at its step, at the drive's tick, and with the implicit step of the plant.
+void add_chatter(const sim::Machine& machine, sim::ExperimentResult& result) {
+  const auto& axis = machine.axes[0];
+  const auto& parameters = std::get<sim::Parabolic::Parameters>(axis.friction.models.at("parabolic"));
+  sim::Chart chart{"B2 evaluated explicitly and implicitly",
+                   "time since 500 ms, ms",
+                   "friction force, N",
+                   "Half a second after the step of force: the same law on the same machine, evaluated every 0.2 ms at "
+                   "the velocity before, every 62.5 us, and solved together with the velocity.",
+                   false,
+                   {}};
+  struct Case {
+    const char* key;
+    const char* text;
+    std::optional<double> step;
+  };
+  for (const Case& c : {Case{"200_us", "explicit, 0.2 ms", 200e-6}, Case{"62.5_us", "explicit, 62.5 us", 62.5e-6},
+                        Case{"implicit", "implicit", std::nullopt}}) {
+    auto r = impact_with_parabolic_friction(machine, step_force, step_time, c.step);
+    r.friction.name = c.text;
+    const bool chatters = c.step && *c.step > 100e-6;
+    const std::string source = "plant study, 10: chatter at 0.2 ms, none at 62.5 us and below, none when implicit";
+    if (chatters) {
+      const double amplitude = chatter_amplitude(parameters, axis.mass, *c.step);
+      result.figures.push_back({"chatter_amplitude_200_us", "N", "B2 at rest, rms of the friction, explicit, 0.2 ms",
+                                r.rms, sim::Expectation{amplitude, 0.02 * amplitude, "a^(n/(n-1)) (h/2m)^(1/(n-1))"}});
+      result.figures.push_back(
+          {"chatter_least_200_us", "N", "B2 at rest, least friction, explicit, 0.2 ms", r.least, {}});
+      result.figures.push_back(
+          {"chatter_greatest_200_us", "N", "B2 at rest, greatest friction, explicit, 0.2 ms", r.greatest, {}});
+      result.findings.push_back(fmt::format(
+          "parabolic, evaluated explicitly every 0.2 ms, alternates between {:.0f} N and {:+.0f} N, {:.1f} N rms; "
+          "the step and the mass alone give {:.1f} N. It is no property of the machine: the implicit step has none.",
+          r.least, r.greatest, r.rms, amplitude));
+    }
+    result.figures.push_back({std::string("chatter_alternations_") + c.key, "%",
+                              std::string("B2 at rest, evaluations at which the friction changes its sign, ") + c.text,
+                              r.alternating * 100.0, sim::Expectation{chatters ? 100.0 : 0.0, 5.0, source}});
+    chart.series.push_back(std::move(r.friction));
+  }
+  result.charts.push_back(std::move(chart));
 }
 
 }  // namespace
@@ -123,6 +168,9 @@ sim::ExperimentResult run_impact(const ExperimentInput& input) {
       gain * axis.motor.force_constant, result.figures.front().value));
   result.charts = {std::move(deviation), std::move(force), std::move(friction)};
   for (auto& chart : result.charts) chart.x_range = {0.0, 150.0};
+  axis.velocity_controller.gain = gain;
+  if (std::find(input.friction.begin(), input.friction.end(), "parabolic") != input.friction.end())
+    add_chatter(machine, result);
   return result;
 }
 

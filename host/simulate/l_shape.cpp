@@ -1,5 +1,7 @@
 // The irregular path (Mendricky 2006, 6.4): straight lines and arcs with standstill of one axis, after which the axis
 // restarts in the direction it stopped from or in the opposite one.
+#include "host/simulate/l_shape.hpp"
+
 #include <fmt/format.h>
 
 #include <array>
@@ -53,6 +55,36 @@ std::optional<sim::Expectation> expect(const std::string& name, double Expected:
 
 }  // namespace
 
+LShapeRun drive_l_shape(const sim::Machine& machine, const TraceSink<FixedSignals>& trace) {
+  const auto path = l_shape();
+  const double stop = path.end_of(4), opposite = path.end_of(5), same = path.end_of(7);
+  const auto begin = path.at(0.0);
+  const std::array<double, 2> start{begin[0].position, begin[1].position};
+  ControlRun<FixedSignals> run(machine, start);
+  LShapeRun r;
+  int standing_ticks = 0;
+  while (run.time() < path.duration()) {
+    const double t = run.time();
+    const double amperes = run.plant(1).motor_force() / machine.axes[1].motor.force_constant;
+    run.tick(path.at(t), trace);
+    const double deviation = sim::to_si(run.signals(1).e);
+    r.error.x.push_back(t);
+    r.error.y.push_back(deviation * 1e6);
+    r.current.x.push_back(t);
+    r.current.y.push_back(amperes);
+    // A restart is over after 10 mm of path; the standstill is settled in its second half.
+    if (t >= opposite && t < opposite + 10 * mm / feed)
+      r.opposite_error = std::max(r.opposite_error, std::abs(deviation));
+    if (t >= same && t < same + 10 * mm / feed) r.same_error = std::max(r.same_error, std::abs(deviation));
+    if (t > 0.5 * (stop + opposite) && t < opposite) {
+      r.standing_current += amperes;
+      ++standing_ticks;
+    }
+  }
+  r.standing_current /= standing_ticks;
+  return r;
+}
+
 sim::ExperimentResult run_l_shape(const ExperimentInput& input) {
   sim::ExperimentResult result{
       "l-shape",
@@ -72,51 +104,28 @@ sim::ExperimentResult run_l_shape(const ExperimentInput& input) {
   for (const auto& name : input.friction) {
     auto machine = input.machine;
     for (auto& axis : machine.axes) axis.friction.use = name;
-    const auto begin = path.at(0.0);
-    const std::array<double, 2> start{begin[0].position, begin[1].position};
-    ControlRun<FixedSignals> run(machine, start);
     LogRecorder recorder(machine);
-    const auto trace = input.keep_log ? recorder.sink() : TraceSink<FixedSignals>{};
-    sim::Series e{name, {}, {}, false}, i{name, {}, {}, false};
-    double same_peak = 0.0, opposite_peak = 0.0, standing = 0.0;
-    int standing_ticks = 0;
-    while (run.time() < path.duration()) {
-      const double t = run.time();
-      const double amperes = run.plant(1).motor_force() / machine.axes[1].motor.force_constant;
-      run.tick(path.at(t), trace);
-      const double deviation = sim::to_si(run.signals(1).e);
-      e.x.push_back(t);
-      e.y.push_back(deviation * 1e6);
-      i.x.push_back(t);
-      i.y.push_back(amperes);
-      // A restart is over after 10 mm of path; the standstill is settled in its second half.
-      if (t >= opposite && t < opposite + 10 * mm / feed) opposite_peak = std::max(opposite_peak, std::abs(deviation));
-      if (t >= same && t < same + 10 * mm / feed) same_peak = std::max(same_peak, std::abs(deviation));
-      if (t > 0.5 * (stop + opposite) && t < opposite) {
-        standing += amperes;
-        ++standing_ticks;
-      }
-    }
+    auto run = drive_l_shape(machine, input.keep_log ? recorder.sink() : TraceSink<FixedSignals>{});
     if (input.keep_log) input.keep_log("", recorder.take());
-    standing /= standing_ticks;
+    run.error.name = run.current.name = name;
     result.figures.push_back({"standing_current_" + name, "A",
                               "current of Y while it stands from F to G (its sign against the last motion: +), " + name,
-                              std::abs(standing), expect(name, &Expected::current, 0.05)});
+                              std::abs(run.standing_current), expect(name, &Expected::current, 0.05)});
     result.figures.push_back({"same_direction_error_" + name, "um",
-                              "peak error of Y, restart in the same direction, " + name, same_peak * 1e6,
+                              "peak error of Y, restart in the same direction, " + name, run.same_error * 1e6,
                               expect(name, &Expected::same, 0.05)});
     result.figures.push_back({"opposite_direction_error_" + name, "um",
-                              "peak error of Y, restart in the opposite direction, " + name, opposite_peak * 1e6,
+                              "peak error of Y, restart in the opposite direction, " + name, run.opposite_error * 1e6,
                               expect(name, &Expected::opposite, 0.05)});
     result.findings.push_back(fmt::format(
         "{}: {:.2f} A {} at standstill; restart {:.1f} um in the same direction, {:.1f} um in the opposite one.", name,
-        std::abs(standing),
-        std::abs(standing) < 0.02 ? "left"
-        : standing < 0.0          ? "kept in the direction of the last motion"
-                                  : "turned against the last motion",
-        same_peak * 1e6, opposite_peak * 1e6));
-    error.series.push_back(std::move(e));
-    current.series.push_back(std::move(i));
+        std::abs(run.standing_current),
+        std::abs(run.standing_current) < 0.02 ? "left"
+        : run.kept_current() > 0.0            ? "kept in the direction of the last motion"
+                                              : "turned against the last motion",
+        run.same_error * 1e6, run.opposite_error * 1e6));
+    error.series.push_back(std::move(run.error));
+    current.series.push_back(std::move(run.current));
   }
   error.caption = fmt::format(
       "Y stands from {:.2f} s to {:.2f} s and restarts in the opposite direction; it stands again from "

@@ -143,6 +143,8 @@ const std::vector<TableDescription>& machine_file_description() {
     describe_table<Axis>("axis.NAME", "at least one", out);
     describe_friction_models(out);
     describe_table<CircleReference>("[reference.circle]", "any number", out);
+    describe_table<SteadyFrictionReference>("[reference.steady_friction]", "any number", out);
+    describe_table<PreslidingReference>("[reference.presliding]", "any number", out);
     KeyDescription schema;
     schema.key = "schema";
     schema.allowed = fmt::format("\"{}\"", machine_schema);

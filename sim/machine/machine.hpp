@@ -124,6 +124,21 @@ struct CircleReference {
   double current = 0.0;                 // A, peak
 };
 
+// Friction of steady motion, measured. SI units.
+struct SteadyFrictionReference {
+  std::string axis;
+  double velocity = 0.0;  // m/s
+  double current = 0.0;   // A; friction is force constant times current
+};
+
+// Presliding displacement, measured: the axis coasted to rest and was then loaded. SI units.
+struct PreslidingReference {
+  std::string axis;
+  bool same_direction = false;  // loaded in the direction of the motion before
+  double force = 0.0;           // N
+  double displacement = 0.0;    // m
+};
+
 struct Machine {
   std::string name;  // as in the file
   std::string id;    // file name without extension
@@ -131,6 +146,8 @@ struct Machine {
   std::vector<Axis> axes;               // in the order of the file; none only where there is a feed drive
   std::optional<FeedDrive> feed_drive;  // with screw and sliding carriage; nothing connects it with the axes
   std::vector<CircleReference> circle_references;
+  std::vector<SteadyFrictionReference> steady_friction_references;
+  std::vector<PreslidingReference> presliding_references;
 };
 
 }  // namespace stiction::sim

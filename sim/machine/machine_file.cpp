@@ -221,22 +221,35 @@ class MachineReader {
     if (references == nullptr) return;
     const TableReader reader(document_, false);
     for (auto&& [kind, node] : reader.as_table(*references, "reference", "published or measured rows")) {
-      if (kind.str() != "circle") document_.fail_unknown(kind.source(), join_key("reference", kind.str()), {"circle"});
-      if (!node.is_array())
-        document_.fail(node.source(), "reference.circle", describe_node(node), "rows [[reference.circle]]");
-      for (const toml::node& row : *node.as_array()) {
-        const std::string path = fmt::format("reference.circle[{}]", machine_.circle_references.size());
-        const toml::table& table = reader.as_table(row, path, Table<CircleReference>::text);
-        machine_.circle_references.push_back(reader.read<CircleReference>(table, path));
-        check_reference(table, path, machine_.circle_references.back());
-      }
+      const std::string path = join_key("reference", kind.str());
+      if (kind.str() == "circle")
+        read_rows(node, path, machine_.circle_references);
+      else if (kind.str() == "steady_friction")
+        read_rows(node, path, machine_.steady_friction_references);
+      else if (kind.str() == "presliding")
+        read_rows(node, path, machine_.presliding_references);
+      else
+        document_.fail_unknown(kind.source(), path, {"circle", "steady_friction", "presliding"});
     }
   }
 
-  void check_reference(const toml::table& table, const std::string& path, const CircleReference& row) const {
-    std::vector<std::string_view> axes;
-    for (const Axis& axis : machine_.axes) axes.push_back(axis.name);
-    check_name(table, path, "axis", row.axis, axes, "an axis of this machine");
+  template <class Row>
+  void read_rows(const toml::node& node, const std::string& path, std::vector<Row>& rows) const {
+    if (!node.is_array()) document_.fail(node.source(), path, describe_node(node), fmt::format("rows [[{}]]", path));
+    const TableReader reader(document_, false);
+    for (const toml::node& row : *node.as_array()) {
+      const std::string row_path = fmt::format("{}[{}]", path, rows.size());
+      const toml::table& table = reader.as_table(row, row_path, Table<Row>::text);
+      rows.push_back(reader.read<Row>(table, row_path));
+      std::vector<std::string_view> axes;
+      for (const Axis& axis : machine_.axes) axes.push_back(axis.name);
+      check_name(table, row_path, "axis", rows.back().axis, axes, "an axis of this machine");
+      if constexpr (std::is_same_v<Row, CircleReference>) check_source(table, row_path, rows.back());
+    }
+  }
+
+  // A measured row stands for the machine, a published simulation for one friction model.
+  void check_source(const toml::table& table, const std::string& path, const CircleReference& row) const {
     const toml::node* friction = table.get("friction");
     const std::string key = join_key(path, "friction");
     if (row.measured && friction != nullptr)

@@ -264,6 +264,37 @@ struct Table<CircleReference> : EmptyTable<CircleReference> {
 };
 
 template <>
+struct Table<SteadyFrictionReference> : EmptyTable<SteadyFrictionReference> {
+  static constexpr std::string_view text = "measured current of steady motion, from which friction is identified";
+  static constexpr std::array<TextParameter<SteadyFrictionReference>, 1> texts{{
+      {"axis", &SteadyFrictionReference::axis, "name of the axis"},
+  }};
+  static constexpr std::array<Parameter<SteadyFrictionReference>, 2> parameters{{
+      {"velocity", "m/s", positive(), &SteadyFrictionReference::velocity, {}, "steady velocity"},
+      {"current", "A", not_negative(), &SteadyFrictionReference::current, {}, "current of the whole axis"},
+  }};
+};
+
+inline constexpr std::array<Choice<bool>, 2> load_directions{{
+    {"same", true, "loaded in the direction of the motion before the rest"},
+    {"opposite", false, "loaded against it"},
+}};
+
+template <>
+struct Table<PreslidingReference> : EmptyTable<PreslidingReference> {
+  static constexpr std::string_view text = "measured displacement under a force too small for sliding, after coasting";
+  static constexpr std::array<TextParameter<PreslidingReference>, 1> texts{{
+      {"axis", &PreslidingReference::axis, "name of the axis, or of the one whose guides the test rig had"},
+  }};
+  static constexpr std::tuple choices{ChoiceParameter<PreslidingReference, bool>{
+      "direction", &PreslidingReference::same_direction, load_directions, {}, "direction of the force"}};
+  static constexpr std::array<Parameter<PreslidingReference>, 2> parameters{{
+      {"force", "N", positive(), &PreslidingReference::force, {}, "force on the carriage"},
+      {"displacement", "m", not_negative(), &PreslidingReference::displacement, {}, "displacement under it"},
+  }};
+};
+
+template <>
 struct Table<Machine> : EmptyTable<Machine> {
   static constexpr std::string_view text = "the machine";
   static constexpr std::array<TextParameter<Machine>, 1> texts{{{"name", &Machine::name, "name shown in reports"}}};

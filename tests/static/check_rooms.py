@@ -78,12 +78,6 @@ ROOMS = {
         "sim/*": "they are those of the simulation",
         f"{FIRMWARE}/*": "and what they compensate is the control",
     },
-    "host/response": {
-        "host/log": "a frequency response comes from a log",
-        "host/simulate": "or from a run",
-        "sim/*": "of a machine",
-        f"{FIRMWARE}/*": "under its own control",
-    },
     "host/diagnose": {
         "host/identify": "a cause is told from friction by the same fits",
         "host/response": "and by what the loops do at each frequency",

@@ -226,6 +226,26 @@ TEST(MachineFileError, OverridesOfEveryExperimentAreChecked) {
                   .starts_with("FILE:29: experiment.imapct: found an unknown key; expected one of circle, "));
 }
 
+TEST(MachineFileError, RowsOfFrictionMeasurementsAreChecked) {
+  const std::string steady = small_machine + "[[reference.steady_friction]]\naxis = \"B\"\n";
+  EXPECT_EQ(error_of(steady + "velocity = \"1 m/min\"\ncurrent = \"1.25 A\"\n"), "accepted");
+  EXPECT_EQ(
+      error_of(steady + "velocity = \"1 m/min\"\n"),
+      "FILE:29: reference.steady_friction[0].current: found no such key; expected a value of at least 0 A (current "
+      "of the whole axis)");
+  const std::string presliding = small_machine + "[[reference.presliding]]\n";
+  const std::string values = "force = \"20 N\"\ndisplacement = \"0.3 um\"\n";
+  EXPECT_EQ(error_of(presliding + "axis = \"B\"\ndirection = \"opposite\"\n" + values), "accepted");
+  EXPECT_EQ(
+      error_of(presliding + "axis = \"B\"\ndirection = \"back\"\n" + values),
+      "FILE:31: reference.presliding[0].direction: found \"back\"; expected \"same\" or \"opposite\" (direction of "
+      "the force)");
+  EXPECT_EQ(error_of(presliding + "axis = \"Q\"\ndirection = \"same\"\n" + values),
+            "FILE:30: reference.presliding[0].axis: found \"Q\"; expected an axis of this machine: \"B\"");
+  EXPECT_EQ(error_of(small_machine + "[reference]\npresliding = 3\n"),
+            "FILE:30: reference.presliding: found 3; expected rows [[reference.presliding]]");
+}
+
 TEST(MachineFileError, ReferenceRowsAreChecked) {
   const std::string start = small_machine + "[[reference.circle]]\n";
   const std::string values = "feed = \"16 m/min\"\nerror = \"7 um\"\ncurrent = \"3.6 A\"\n";

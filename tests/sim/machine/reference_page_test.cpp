@@ -52,6 +52,8 @@ TEST(ReferencePage, ListsEveryParameterOfEveryStruct) {
   expect_rows<FeedFriction>(page, "feed_drive.friction");
   expect_rows<FeedCutting>(page, "feed_drive.cutting");
   expect_rows<FeedTool>(page, "feed_drive.tool");
+  expect_rows<SteadyFrictionReference>(page, "[reference.steady_friction]");
+  expect_rows<PreslidingReference>(page, "[reference.presliding]");
   for_each_friction_model([&]<class Model>() {
     const std::string table = "axis.NAME.friction." + std::string(Model::name);
     for (const auto& p : Model::parameters)

@@ -1,0 +1,52 @@
+#include "host/cli/identify_reference.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "host/cli/errors.hpp"
+#include "host/cli/experiment_output.hpp"
+#include "host/cli/output.hpp"
+#include "host/identify/measured_machine_result.hpp"
+#include "host/report/experiment_report.hpp"
+
+namespace stiction::host {
+
+void identify_reference(const IdentifyReferenceOptions& options, const Invocation& invocation) try {
+  if (options.reference != "circle")
+    throw UsageError(fmt::format("--reference: found '{}'; expected circle", options.reference));
+  const auto machine = options.machine.load(options.machine.machine, "circle");
+  permitted_rows(machine);  // says what is missing before anything runs
+  const auto study = study_measured_machine(machine, options.machine.load(options.machine.machine, "l-shape"));
+  const auto result = measured_machine_result(machine, study);
+  const auto json = experiment_json(result, machine);
+  if (!options.out.empty()) {
+    PendingFolder folder(options.out);
+    folder.write("report.html", experiment_report_html({invocation.command_line, invocation.version,
+                                                        with_friction(machine, study.identified), result}));
+    folder.write("result.json", json.dump(2) + "\n");
+    folder.write("identified.toml", friction_toml(study.identified));
+    folder.commit();
+  }
+  if (options.json) {
+    fmt::print("{}\n", json.dump(2));
+    return;
+  }
+  fmt::print("{}\n{}", experiment_text(result, machine), prediction_text(machine, study));
+  if (!options.out.empty()) fmt::print("\nreport: {}/report.html\n", options.out);
+} catch (const NotDetermined& error) {
+  throw UsageError(error.what());
+}
+
+void add_identify_reference(CLI::App& program, const Invocation& invocation) {
+  auto* command = program.add_subcommand("identify", "friction parameters from the machine file's measured rows");
+  auto o = std::make_shared<IdentifyReferenceOptions>();
+  command->add_option("--reference", o->reference, "which rows: circle")->required()->type_name("KIND");
+  o->machine.add_to(*command, "shipped machine by name, or a machine file");
+  command->add_option("--out", o->out, "write report.html, result.json and identified.toml into this folder")
+      ->type_name("DIR");
+  command->add_flag("--json", o->json, "print the result as JSON on standard output");
+  command->callback([o, &invocation] { identify_reference(*o, invocation); });
+}
+
+}  // namespace stiction::host

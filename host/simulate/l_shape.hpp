@@ -1,0 +1,25 @@
+// The irregular path (Mendricky 2006, 6.4) on one machine: what is left at standstill and the two restarts of Y.
+#pragma once
+
+#include "host/simulate/control_run.hpp"
+#include "sim/experiment/experiment_result.hpp"
+#include "sim/machine/machine.hpp"
+#include "stiction/number/fixed_signals.hpp"
+
+namespace stiction::host {
+
+struct LShapeRun {
+  double standing_current = 0.0;  // A of Y standing from F to G, positive in +y; its motion before was in -y
+  double same_error = 0.0;        // m, peak of Y, restart in the direction of the motion before (8 m/min)
+  double opposite_error = 0.0;    // m, restart in the opposite direction
+  sim::Series error, current;     // of Y: um and A over s
+
+  // The current against the motion before: what the contact keeps of its friction.
+  double kept_current() const { return -standing_current; }
+};
+
+// With the friction models that the machine's axes use, firmware in fixed point. The machine has an X and a Y axis.
+// Throws FaultTripped.
+LShapeRun drive_l_shape(const sim::Machine& machine, const TraceSink<FixedSignals>& trace = {});
+
+}  // namespace stiction::host
