@@ -1,0 +1,36 @@
+// The rows of a CSV text (RFC 4180) with any separator: quoted fields, doubled quotes, LF or CRLF.
+#pragma once
+
+#include <deque>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stiction::host {
+
+class CsvRows {
+ public:
+  // `text` must outlive the fields. `name` and `first_line` are for messages.
+  CsvRows(std::string_view text, char separator, std::string name, std::size_t first_line = 1)
+      : rest_(text), separator_(separator), name_(std::move(name)), next_line_(first_line) {}
+
+  // The next row's fields, valid until the call after; false at the end of the text. An empty line is one empty field.
+  // Throws LogError for a quote that is never closed, or text behind one that is.
+  bool next(std::vector<std::string_view>& fields);
+
+  std::size_t line() const { return line_; }  // where the row began
+  std::string place() const;                  // "run.csv:17"
+  bool only_blanks_follow() const { return rest_.find_first_not_of(" \t\r\n") == std::string_view::npos; }
+
+ private:
+  std::string_view quoted_field();
+
+  std::string_view rest_;
+  char separator_;
+  std::string name_;
+  std::size_t next_line_;
+  std::size_t line_ = 0;
+  std::deque<std::string> unescaped_;  // of this row; a deque, because fields point into it
+};
+
+}  // namespace stiction::host
