@@ -1,0 +1,22 @@
+// matio's files and variables, owned. Only the .cpp files of this folder may include it.
+#pragma once
+
+#include <matio.h>
+
+#include <memory>
+
+namespace stiction::host {
+
+struct MatFree {
+  void operator()(mat_t* file) const { Mat_Close(file); }
+  void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
+};
+using MatFile = std::unique_ptr<mat_t, MatFree>;
+using MatVariable = std::unique_ptr<matvar_t, MatFree>;
+
+// matio prints what it finds wrong on standard error; our own messages say it.
+inline void silence_matio() {
+  Mat_LogInitFunc("stiction", [](int, char*) {});
+}
+
+}  // namespace stiction::host

@@ -1,0 +1,34 @@
+// Logs as MAT-files, level 5 and 7.3 (HDF5), through matio (https://github.com/tbeu/matio). A log stands in the file as
+// one would write it in MATLAB:
+//
+//   t = (0:24999)' * 1e-3;                    % s, always
+//   x = ...; x_set = ...; i = ...;            % one axis: its channels as plain variables, names and SI units of
+//                                             % contract.md, 2
+//   X.x = ...; X.i = ...; Y.x = ...;          % several axes: one struct an axis
+//   units.x = 'mm'; units.i = 'A';            % optional: other units, by channel; `units.t` for the time
+//   comments = sprintf('machine: table\n');   % optional: "key: value" lines
+//   save run.mat t X Y units comments         % or -v7.3
+//
+// Rows or columns, any real number type. Other variables and fields are listed in `ignored`.
+#pragma once
+
+#include <filesystem>
+
+#include "host/log/log.hpp"
+
+namespace stiction::host {
+
+enum class MatLevel { level_5, level_7_3 };
+
+// Whether the file begins as a MAT-file does, or is named ".mat".
+bool is_mat_file(const std::filesystem::path& file, std::string_view first_bytes);
+
+// Throws LogError: no MAT-file, an array of another shape or kind, another number of samples than t has, a value that
+// is not finite, a unit of another dimension, and all that sampling.hpp and channel_name.hpp refuse. A sample is named
+// as in MATLAB, "t(17)".
+Log read_mat_log(const std::filesystem::path& file);
+
+// Throws LogError for an axis whose name no variable can have; std::runtime_error when the file cannot be written.
+void write_mat_log(const std::filesystem::path& file, const Log& log, MatLevel level = MatLevel::level_5);
+
+}  // namespace stiction::host
