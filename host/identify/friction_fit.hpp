@@ -33,6 +33,9 @@ struct FrictionFit {
   Eigen::VectorXd residual;  // N, force minus fit
   std::vector<RowBlock> blocks;
   double correlation = 1.0;  // rows
+  // Mass, Coulomb and viscous friction come from the rows in steady sliding alone: the contact's model contradicts
+  // them.
+  bool sliding_only = false;
 
   const FittedParameter& at(std::string_view name) const;  // throws std::out_of_range
   const FittedParameter* find(std::string_view name) const;

@@ -20,17 +20,22 @@ LogRows::LogRows(std::vector<Motion> motions, const SignalSettings& settings) : 
   force = stacked([](const Motion& m) { return m.force; });
   acceleration = stacked([](const Motion& m) { return m.a; });
   velocity = stacked([](const Motion& m) { return m.v; });
-  time.resize(force.size());
-  for (std::size_t k = 0; k < motions_.size(); ++k) {
-    const auto t = filters_[k].sampled(motions_[k].t);
-    time.segment(static_cast<Eigen::Index>(logs_[k]), static_cast<Eigen::Index>(t.size())) = as_vector(t);
-  }
+  time = sampled([](const Motion& m) { return m.t; });
 }
 
 Eigen::VectorXd LogRows::stacked(const std::function<std::vector<double>(const Motion&)>& column) const {
   Eigen::VectorXd all(force.size());
   for (std::size_t k = 0; k < motions_.size(); ++k) {
     const auto rows = filters_[k](column(motions_[k]));
+    all.segment(static_cast<Eigen::Index>(logs_[k]), static_cast<Eigen::Index>(rows.size())) = as_vector(rows);
+  }
+  return all;
+}
+
+Eigen::VectorXd LogRows::sampled(const std::function<std::vector<double>(const Motion&)>& column) const {
+  Eigen::VectorXd all(force.size());
+  for (std::size_t k = 0; k < motions_.size(); ++k) {
+    const auto rows = filters_[k].sampled(column(motions_[k]));
     all.segment(static_cast<Eigen::Index>(logs_[k]), static_cast<Eigen::Index>(rows.size())) = as_vector(rows);
   }
   return all;

@@ -20,6 +20,8 @@ class LogRows {
 
   // A regressor: what `column` makes of each motion, filtered and stacked.
   Eigen::VectorXd stacked(const std::function<std::vector<double>(const Motion&)>& column) const;
+  // The same without the filter: for what is no regressor, a mask or the time.
+  Eigen::VectorXd sampled(const std::function<std::vector<double>(const Motion&)>& column) const;
   // A regressor of one log, zero in the rows of the others.
   Eigen::VectorXd of_log(std::size_t log, const std::vector<double>& column) const;
 
