@@ -20,5 +20,6 @@ void add_simulate(CLI::App& program, const Invocation& invocation);
 void add_experiments(CLI::App& simulate, const Invocation& invocation);
 void add_compare(CLI::App& program, const Invocation& invocation);
 void add_machine(CLI::App& program, const Invocation& invocation);
+void add_identify(CLI::App& program, const Invocation& invocation);
 
 }  // namespace stiction::host

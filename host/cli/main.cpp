@@ -35,6 +35,7 @@ int run(int argc, char** argv) {
   add_simulate(program, invocation);
   add_compare(program, invocation);
   add_machine(program, invocation);
+  add_identify(program, invocation);
 
   const auto bad_input = [](const std::exception& error) {
     fmt::print(stderr, "stiction: {}\n", error.what());

@@ -51,7 +51,8 @@ struct FitSettings {
 FrictionFit fit_coulomb_viscous(const LogRows& rows, const FitSettings& settings);
 
 // LuGre's contact beside them: also stiffness_N_per_m, damping_ratio, static_ratio, and stribeck_velocity_m_per_s where
-// held-out blocks show that friction falls with speed.
+// held-out blocks show that friction falls with speed. Where they do not, static_ratio is what a fall over 1 mm/s would
+// be, on either side of 1.
 FrictionFit fit_lugre(const LogRows& rows, const FitSettings& settings);
 
 // Viscous friction of each direction, a fit with both beside the other columns of `fit`:

@@ -216,8 +216,8 @@ FrictionFit fit_lugre(const LogRows& rows, const FitSettings& settings) {
   add_lugre_parameters(fit, rows, p, stribeck, settings);
   if (!stribeck) {
     const double coulomb = fit.weights[level];
-    FittedParameter ratio{"static_ratio", std::max(1.0, 1.0 + scan.rise_at_1_mm_per_s / coulomb), {}};
-    for (const double rise : scan.rise_replicates) ratio.replicates.push_back(std::max(1.0, 1.0 + rise / coulomb));
+    FittedParameter ratio{"static_ratio", 1.0 + scan.rise_at_1_mm_per_s / coulomb, {}};
+    for (const double rise : scan.rise_replicates) ratio.replicates.push_back(1.0 + rise / coulomb);
     fit.parameters.push_back(std::move(ratio));
   }
   check_against_sliding(fit, rows, settings);
