@@ -90,10 +90,10 @@ void run(const IdentifyCommandOptions& options, const Invocation& invocation) {
   const auto file = sim::find_machine(options.machine.machine);
   const auto [axis, result] = identify(options, machine);
   const auto json = identification_json(result);
-  const auto toml = identified_machine(file, options.machine.set, *axis, result, invocation.command_line);
   if (!options.out.empty()) {
     PendingFolder folder(options.out);
-    folder.write("identified.toml", toml);
+    folder.write("identified.toml",
+                 identified_machine(file, options.machine.set, *axis, result, invocation.command_line));
     sim::read_machine(folder.path() / "identified.toml");  // what was written must be a machine
     folder.write("result.json", json.dump(2) + "\n");
     folder.commit();
