@@ -17,7 +17,7 @@ namespace {
 enum class Scale {
   value,     // a share of the parameter's own value
   coulomb,   // a share of the Coulomb friction, in newtons
-  at_speed,  // a share of the value, or of the Coulomb friction at the highest speed
+  at_speed,  // a share of the value, or a tenth of the Coulomb friction at the machine's highest speed
   absolute,
 };
 struct Criterion {
@@ -61,7 +61,7 @@ const Criterion* criterion_of(std::string_view name) {
 
 struct Scales {
   double coulomb;        // N
-  double highest_speed;  // m/s
+  double highest_speed;  // m/s, of the machine
 };
 
 double allowed(const Criterion& c, double value, const Scales& scales) {
@@ -187,10 +187,10 @@ Identification identify_logs(const std::vector<Log>& logs, const sim::Axis& axis
     result.samples += log.t.size();
   }
   const LogRows rows(std::move(motions), signals);
-  const auto excitation = excitation_of(rows);
-  require_excitation(excitation, sources_of(rows.motions()));
+  require_excitation(excitation_of(rows), sources_of(rows.motions()));
+  refuse_swapped_sign(rows);
   const auto fit = recipe ? fit_coulomb_viscous(rows, options.fit) : fit_lugre(rows, options.fit);
-  refuse_swapped_sign(fit, rows);
+  refuse_contradiction(fit, rows);
 
   result.method =
       recipe ? "Least squares with sgn(v) of every sample (published EMPS recipe), filtered at 100 Hz, rows at "
@@ -201,7 +201,7 @@ Identification identify_logs(const std::vector<Log>& logs, const sim::Axis& axis
     result.method +=
         " The contact's model contradicts the rows in steady sliding: mass, Coulomb and viscous friction "
         "come from those alone, and the contact's parameters are a compromise.";
-  const Scales scales{std::abs(fit.at("coulomb_N").value), excitation.highest_speed};
+  const Scales scales{std::abs(fit.at("coulomb_N").value), axis.max_velocity};
   const char* how = fit.sliding_only ? "rows in steady sliding only" : "";
   for (const char* name : {"mass_kg", "coulomb_N", "viscous_N_s_per_m", "constant_force_N"})
     judge(result, fit.at(name), scales, fit.blocks.size(), how);
@@ -237,7 +237,7 @@ Identification identify_table(const SteadyTable& table, const sim::Axis& axis, s
   fitting::add(straight, "coulomb_N", centre, replicates, [=](const auto& w) { return w[sign]; });
   fitting::add(straight, "viscous_N_s_per_m", centre, replicates, [=](const auto& w) { return w[sign + 1]; });
   if (sign > 0) fitting::add(straight, "constant_force_N", centre, replicates, [](const auto& w) { return w[0]; });
-  const Scales scales{std::abs(centre[sign]), data.speed.cwiseAbs().maxCoeff()};
+  const Scales scales{std::abs(centre[sign]), axis.max_velocity};
   for (const auto& each : straight.parameters) judge(result, each, scales, data.blocks.size(), "straight line");
   if (sign == 0)
     result.not_determined.push_back(

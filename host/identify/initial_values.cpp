@@ -18,9 +18,13 @@ std::optional<double> median(std::vector<double> values) {
 
 double sign(double v) { return v > 0.0 ? 1.0 : v < 0.0 ? -1.0 : 0.0; }
 
-// Half the change of the force over each reversal, from the last row before that slides to the first one behind.
-std::vector<double> half_steps(const LogRows& rows, const Eigen::VectorXd& sliding) {
-  std::vector<double> steps;
+// The rows on both sides of a reversal: the last one before that slides and the first one behind.
+struct Reversal {
+  Eigen::Index before, after;
+};
+
+std::vector<Reversal> reversals_of(const LogRows& rows, const Eigen::VectorXd& sliding) {
+  std::vector<Reversal> reversals;
   for (std::size_t log = 0; log < rows.logs().size(); ++log) {
     const std::size_t end = log + 1 < rows.logs().size() ? rows.logs()[log + 1] : static_cast<std::size_t>(rows.rows());
     std::optional<Eigen::Index> last;
@@ -29,11 +33,11 @@ std::vector<double> half_steps(const LogRows& rows, const Eigen::VectorXd& slidi
       // Later than this the axis has stood, or accelerated to another force.
       constexpr double longest = 0.3;  // s
       if (last && rows.velocity[*last] * rows.velocity[i] < 0.0 && rows.time[i] - rows.time[*last] < longest)
-        steps.push_back(0.5 * (rows.force[i] - rows.force[*last]) * sign(rows.velocity[i]));
+        reversals.push_back({*last, i});
       last = i;
     }
   }
-  return steps;
+  return reversals;
 }
 
 }  // namespace
@@ -43,7 +47,6 @@ InitialValues initial_values(const LogRows& rows) {
   if (rows.rows() == 0) return values;
   const auto sliding = fitting::steady_sliding(rows);
   const double highest = rows.acceleration.cwiseAbs().maxCoeff();
-  values.coulomb = median(half_steps(rows, sliding));
   double n = 0.0, sum_v = 0.0, sum_f = 0.0, sum_vv = 0.0, sum_vf = 0.0;
   for (Eigen::Index i = 0; i < rows.rows(); ++i) {
     if (sliding[i] == 0.0 || std::abs(rows.acceleration[i]) > 0.05 * highest) continue;
@@ -65,6 +68,14 @@ InitialValues initial_values(const LogRows& rows) {
     masses.push_back((rows.force[i] - friction) / rows.acceleration[i]);
   }
   values.mass = median(std::move(masses));
+  if (!values.mass) return values;
+  std::vector<double> half_steps;
+  for (const auto& [before, after] : reversals_of(rows, sliding)) {
+    const auto without_mass = [&](Eigen::Index i) { return rows.force[i] - *values.mass * rows.acceleration[i]; };
+    const double viscous = 0.5 * slope * std::abs(rows.velocity[after] - rows.velocity[before]);
+    half_steps.push_back(0.5 * (without_mass(after) - without_mass(before)) * sign(rows.velocity[after]) - viscous);
+  }
+  values.coulomb = median(std::move(half_steps));
   return values;
 }
 

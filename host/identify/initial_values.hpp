@@ -10,7 +10,8 @@
 namespace stiction::host {
 
 struct InitialValues {
-  std::optional<double> coulomb;  // N, half the step of the force, median of the reversals
+  std::optional<double>
+      coulomb;  // N, half the step of the force without mass and viscous part, median of the reversals
   std::optional<double> viscous;  // N s/m, slope of the force over speed where the axis does not accelerate
   std::optional<double> mass;     // kg, median of what is left over acceleration where it accelerates
 };

@@ -207,7 +207,7 @@ FrictionFit fit_lugre(const LogRows& rows, const FitSettings& settings) {
   choose_blocks(fit, rows);
   const auto scan = scan_stribeck(rows, fit, settings);
   // One part in a hundred of the held-out residual: below, a named cause is false in one null record of two hundred.
-  const bool stribeck = scan.gain > 0.01 && scan.rise > 0.02 * fit.weights[level];
+  const bool stribeck = scan.gain > 0.01 && fit.weights[level] > 0.0 && scan.rise > 0.02 * fit.weights[level];
   if (stribeck) {
     p = refine(rows, {p[0], std::log(scan.rise / fit.weights[level]), std::log(scan.velocity)}, true);
     take_shape(fit, rows, shape_of(p.data(), true));

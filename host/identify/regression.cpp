@@ -197,10 +197,11 @@ Eigen::VectorXd solve_not_negative(const Eigen::MatrixXd& columns, const Eigen::
   std::vector<bool> active(static_cast<std::size_t>(n));
   for (std::size_t i = 0; i < active.size(); ++i) active[i] = i < free;
   Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
-  const auto solve_active = [&] {
+  const auto solve_active = [&]() -> Eigen::VectorXd {
     std::vector<Eigen::Index> index;
     for (Eigen::Index i = 0; i < n; ++i)
       if (active[static_cast<std::size_t>(i)]) index.push_back(i);
+    if (index.empty()) return Eigen::VectorXd::Zero(n).eval();
     const Eigen::MatrixXd g = gram(index, index);
     const Eigen::VectorXd solved = g.completeOrthogonalDecomposition().solve(moment(index));
     Eigen::VectorXd full = Eigen::VectorXd::Zero(n);

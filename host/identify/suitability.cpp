@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "host/identify/fit_support.hpp"
+
 namespace stiction::host {
 namespace {
 
@@ -45,16 +47,17 @@ Signal driving_signal(const AxisLog& channels, const sim::Axis& axis) {
   return {&channels.force, "force", "N", source ? none : current * axis.motor.force_constant};
 }
 
-// The speeds at which the axis was kept, sorted: rows of steady sliding whose acceleration is small, a bin each factor
-// of 1.5, at least 0.1 s in a bin.
+// The speeds at which the axis was kept, sorted: rows of steady sliding, a bin each factor of 1.5, at least 0.1 s in a
+// bin and 2 % of all: passing through a speed is not keeping it.
 std::vector<double> speeds_of(const LogRows& rows, double highest) {
-  constexpr double factor = 1.5, kept = 0.1;
+  constexpr double factor = 1.5, kept = 0.1, share = 0.02;
+  const auto sliding = fitting::steady_sliding(rows);
   std::vector<double> time_in, sum_in;
   for (std::size_t log = 0; log < rows.logs().size(); ++log) {
     const std::size_t end = log + 1 < rows.logs().size() ? rows.logs()[log + 1] : static_cast<std::size_t>(rows.rows());
     for (std::size_t i = rows.logs()[log]; i < end; ++i) {
       const double v = std::abs(rows.velocity[static_cast<Eigen::Index>(i)]);
-      if (v < 1e-3 * highest) continue;
+      if (sliding[static_cast<Eigen::Index>(i)] == 0.0) continue;
       const auto bin = static_cast<std::size_t>(std::log(highest / v) / std::log(factor) + 0.5);
       if (bin >= time_in.size()) {
         time_in.resize(bin + 1, 0.0);
@@ -64,9 +67,11 @@ std::vector<double> speeds_of(const LogRows& rows, double highest) {
       sum_in[bin] += rows.period(log) * v;
     }
   }
+  double total = 0.0;
+  for (const double time : time_in) total += time;
   std::vector<double> speeds;
   for (std::size_t bin = time_in.size(); bin-- > 0;)
-    if (time_in[bin] >= kept) speeds.push_back(sum_in[bin] / time_in[bin]);
+    if (time_in[bin] >= std::max(kept, share * total)) speeds.push_back(sum_in[bin] / time_in[bin]);
   return speeds;
 }
 
@@ -153,24 +158,30 @@ void require_excitation(const Excitation& e, const std::string& sources) {
                                      : fmt::format("one speed only, {:.3g} mm/s", e.speeds.front() * 1e3)));
 }
 
-void refuse_swapped_sign(const FrictionFit& fit, const LogRows& rows) {
-  const double coulomb = fit.at("coulomb_N").value, mass = fit.at("mass_kg").value;
-  // What the motor put in: over a log this is what friction took, apart from the kinetic energy of its two ends.
-  double power = 0.0;
-  for (Eigen::Index i = 0; i < rows.rows(); ++i) power += rows.force[i] * rows.velocity[i];
-  if (coulomb > 0.0 && mass > 0.0) return;
-  const auto sources = sources_of(rows.motions());
-  if (coulomb < 0.0 && power < 0.0)
-    throw LogError(
-        fmt::format("{}: found a force that pushes where friction must brake (Coulomb level {:.4g} N, mass "
-                    "{:.4g} kg); expected force and position positive in the same direction. The sign of one "
-                    "of them is swapped: turn the current's (or the encoder's) sign in the record",
-                    sources, coulomb, mass));
+void refuse_swapped_sign(const LogRows& rows) {
+  double power = 0.0, either_way = 0.0;
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    power += rows.force[i] * rows.velocity[i];
+    either_way += std::abs(rows.force[i] * rows.velocity[i]);
+  }
+  if (power >= -0.1 * either_way) return;
   throw LogError(
-      fmt::format("{}: found a mass of {:.4g} kg and a Coulomb level of {:.4g} N; expected both positive. "
-                  "Force and position do not belong together: check sign, scale and time of both channels, "
-                  "and record moves with higher acceleration",
-                  sources, mass, coulomb));
+      fmt::format("{}: found a force that pushes where friction must brake: the motor takes {:.3g} J out of the "
+                  "motion; expected force and position positive in the same direction. The sign of one of "
+                  "them is swapped: turn the current's (or the encoder's) sign in the record",
+                  sources_of(rows.motions()), -power * rows.period(0)));
+}
+
+void refuse_contradiction(const FrictionFit& fit, const LogRows& rows) {
+  for (const char* name : {"mass_kg", "coulomb_N"}) {
+    const auto interval = fit.at(name).interval();
+    if (interval.high >= 0.0) continue;
+    throw LogError(
+        fmt::format("{}: found {} = {:.4g}, from {:.4g} to {:.4g}; expected a positive value. Force and "
+                    "position do not belong together: check sign, scale and time of both channels, and record "
+                    "moves with higher acceleration",
+                    sources_of(rows.motions()), name, fit.at(name).value, interval.low, interval.high));
+  }
 }
 
 }  // namespace stiction::host

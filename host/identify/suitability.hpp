@@ -32,7 +32,10 @@ void refuse_saturation(const Log& log, const AxisLog& channels, const sim::Axis&
 // Refuses logs that are too short, without reversals or without enough speeds.
 void require_excitation(const Excitation& excitation, const std::string& sources);
 
-// Refuses a force that drives where friction brakes: its sign is swapped against the position's.
-void refuse_swapped_sign(const FrictionFit& fit, const LogRows& rows);
+// Refuses a force that drives where friction brakes, by its energy: its sign is swapped against the position's.
+void refuse_swapped_sign(const LogRows& rows);
+
+// Refuses a mass or a Coulomb level that the data say is negative.
+void refuse_contradiction(const FrictionFit& fit, const LogRows& rows);
 
 }  // namespace stiction::host

@@ -57,15 +57,9 @@ TEST_F(BadInput, a_log_without_reversals) {
 }
 
 TEST_F(BadInput, a_log_of_one_speed) {
-  // Accelerates in 0.02 s a way: that is not a second speed.
-  constexpr double speed = 0.02;
-  const test::Trajectory shuttle{
-      "shuttle", 8.0, [](double t) {
-        const double phase = std::fmod(t, 2.0);
-        const bool there = phase < 1.0;
-        return sim::AxisSetPoint{speed * (there ? phase : 2.0 - phase), there ? speed : -speed, 0.0};
-      }};
-  expect_refused({recorded(shuttle)}, {"one speed only, 20 mm/s", "Record constant speeds"});
+  // Accelerates in 0.05 s each time: that is not a second speed.
+  expect_refused({recorded(test::constant_speeds({0.02, 0.02, 0.02}, 0.6, 0.0))},
+                 {"one speed only, 2", "mm/s", "Record constant speeds"});
 }
 
 TEST_F(BadInput, a_current_at_the_machines_limit) {

@@ -84,7 +84,7 @@ TEST(SteadyTable, prefers_a_curve_that_bends_and_says_what_it_cannot_know) {
 }
 
 TEST(SteadyTable, rms_amperes_are_scaled) {
-  const auto& axis = test::bench_machine("lugre").axes.front();
+  const auto axis = test::bench_machine("lugre").axes.front();
   const auto peak = identify_table(parse_steady_table(table, "tab.csv"), axis, Amperes::amplitude, {});
   const auto rms = identify_table(parse_steady_table(std::string("# amperes: rms\n") + table, "tab.csv"), axis, {}, {});
   EXPECT_NEAR(rms.find("coulomb_N")->value / peak.find("coulomb_N")->value, std::numbers::sqrt2, 1e-9);
