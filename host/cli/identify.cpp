@@ -13,6 +13,7 @@
 #include "host/identify/identified_machine.hpp"
 #include "host/log/read_log.hpp"
 #include "host/log/text_file.hpp"
+#include "host/report/identification_report.hpp"
 #include "sim/machine/machine_file.hpp"
 
 namespace stiction::host {
@@ -95,6 +96,8 @@ void run(const IdentifyCommandOptions& options, const Invocation& invocation) {
     folder.write("identified.toml",
                  identified_machine(file, options.machine.set, *axis, result, invocation.command_line));
     sim::read_machine(folder.path() / "identified.toml");  // what was written must be a machine
+    folder.write("report.html",
+                 identification_report_html({invocation.command_line, invocation.version, machine, result}));
     folder.write("result.json", json.dump(2) + "\n");
     folder.commit();
   }
@@ -103,7 +106,7 @@ void run(const IdentifyCommandOptions& options, const Invocation& invocation) {
     return;
   }
   fmt::print("{}", identification_text(result));
-  if (!options.out.empty()) fmt::print("\nmachine file: {}/identified.toml\n", options.out);
+  if (!options.out.empty()) fmt::print("\nmachine file: {0}/identified.toml\nreport: {0}/report.html\n", options.out);
 }
 
 }  // namespace
