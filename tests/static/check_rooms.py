@@ -65,12 +65,20 @@ ROOMS = {
         "sim/*": "by the simulation",
         f"{FIRMWARE}/*": "never the control",
     },
+    "host/identify": {
+        "host/log": "identification works on logs",
+        "host/simulate": "and refines in the closed loop that experiments run",
+        "sim/*": "for the machine they belong to",
+        f"{FIRMWARE}/*": "whose signals it compares",
+    },
     "host/report": {
+        "host/identify": "results of identification become pages",
         "host/simulate": "results of runs become pages",
         "sim/*": "beside the machine they belong to",
     },
     "host/cli": {
         "host/log": "a command reads and writes logs",
+        "host/identify": "identifies from them",
         "host/simulate": "runs experiments",
         "host/report": "and shows their results",
         "sim/*": "for the machine it is given",
