@@ -11,6 +11,7 @@
 #include "host/cli/machine_options.hpp"
 #include "host/cli/output.hpp"
 #include "host/identify/identified_machine.hpp"
+#include "host/identify/refinement.hpp"
 #include "host/log/read_log.hpp"
 #include "host/log/text_file.hpp"
 #include "host/report/identification_report.hpp"
@@ -26,6 +27,7 @@ struct IdentifyCommandOptions {
   std::string friction;
   std::string amperes;
   std::string out;
+  bool refine = false;
   bool json = false;
 };
 
@@ -72,10 +74,23 @@ struct Run {
   Identification result;
 };
 
+// Puts what the closed loop made of them in place of the parameters, and says what it gained.
+void take(Identification& result, const Refinement& refinement) {
+  for (const auto& refined : refinement.parameters)
+    for (auto& parameter : result.parameters)
+      if (parameter.name == refined.name) parameter = refined;
+  result.method += fmt::format(
+      " Refined in closed loop ({} simulations): against the logs the simulated force is {:.4g} N rms off, before "
+      "{:.4g}; the position {:.3g} um, before {:.3g}.",
+      refinement.simulations, refinement.force_after, refinement.force_before, refinement.position_after * 1e6,
+      refinement.position_before * 1e6);
+}
+
 Run identify(const IdentifyCommandOptions& options, const sim::Machine& machine) {
   const auto amperes = amperes_of(options.amperes);
   if (options.logs.size() == 1)
     if (const auto text = read_text_file(options.logs.front()); is_steady_table(text)) {
+      if (options.refine) throw UsageError("--refine: found a table of steady states; expected logs with set-points");
       const auto& axis = axis_of_run(options.axis, machine, {});
       return {&axis, identify_table(parse_steady_table(text, options.logs.front()), axis,
                                     parse_amperes(options.amperes), FitSettings{})};
@@ -83,7 +98,10 @@ Run identify(const IdentifyCommandOptions& options, const sim::Machine& machine)
   std::vector<Log> logs;
   for (const auto& file : options.logs) logs.push_back(read_log(file));
   const auto& axis = axis_of_run(options.axis, machine, logs);
-  return {&axis, identify_logs(logs, axis, {model_to_identify(options.friction, axis), amperes, FitSettings{}})};
+  const IdentifyOptions settings{model_to_identify(options.friction, axis), amperes, FitSettings{}};
+  Run run{&axis, identify_logs(logs, axis, settings)};
+  if (options.refine) take(run.result, refine_in_closed_loop(logs, machine, axis, run.result, settings));
+  return run;
 }
 
 void run(const IdentifyCommandOptions& options, const Invocation& invocation) {
@@ -129,6 +147,9 @@ void add_identify(CLI::App& program, const Invocation& invocation) {
           "--amperes", o->amperes,
           "how currents were read, peak or rms; a log's are peak values unless told otherwise, a table must say")
       ->type_name("KIND");
+  command->add_flag("--refine", o->refine,
+                    "then refine mass, friction and stiffness in closed loop with the log's set-points: takes seconds, "
+                    "gains where the position is noisy or coarse");
   command->add_option("--out", o->out, "write identified.toml, report.html and result.json into this folder")
       ->type_name("DIR");
   command->add_flag("--json", o->json, "print the result as JSON on standard output");

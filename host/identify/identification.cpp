@@ -168,14 +168,6 @@ void keep_residuals(Identification& result, const LogRows& rows, const FrictionF
   }
 }
 
-const AxisLog& channels_of(const Log& log, const sim::Axis& axis) {
-  for (const auto& channels : log.axes)
-    if (channels.axis == axis.name || channels.axis.empty()) return channels;
-  std::string names;
-  for (const auto& channels : log.axes) names += (names.empty() ? "" : ", ") + channels.axis;
-  throw LogError(fmt::format("{}: found channels of {}; expected those of axis {}", log.source, names, axis.name));
-}
-
 constexpr std::size_t least_sliding_rows = 40;  // eight curves' worth of parameters
 
 void add_curve(Identification& result, const LogRows& rows, const FrictionFit& fit, const FitSettings& settings) {
@@ -187,6 +179,14 @@ void add_curve(Identification& result, const LogRows& rows, const FrictionFit& f
 }
 
 }  // namespace
+
+const AxisLog& channels_of(const Log& log, const sim::Axis& axis) {
+  for (const auto& channels : log.axes)
+    if (channels.axis == axis.name || channels.axis.empty()) return channels;
+  std::string names;
+  for (const auto& channels : log.axes) names += (names.empty() ? "" : ", ") + channels.axis;
+  throw LogError(fmt::format("{}: found channels of {}; expected those of axis {}", log.source, names, axis.name));
+}
 
 const IdentifiedParameter* Identification::find(std::string_view name) const {
   const auto found = std::find_if(parameters.begin(), parameters.end(), [&](const auto& p) { return p.name == name; });

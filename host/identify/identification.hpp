@@ -57,6 +57,9 @@ struct IdentifyOptions {
   FitSettings fit;
 };
 
+// The log's channels of that axis, or those without an axis' name. Throws LogError when it has neither.
+const AxisLog& channels_of(const Log& log, const sim::Axis& axis);
+
 // `axis`: of the machine that the logs belong to; each log's channels of that axis, or those without an axis' name.
 // Throws LogError for logs that cannot be used (suitability.hpp).
 Identification identify_logs(const std::vector<Log>& logs, const sim::Axis& axis, const IdentifyOptions& options);

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "host/identify/identification.hpp"
+#include "host/identify/refinement.hpp"
 #include "host/log/read_log.hpp"
 #include "sim/machine/machine_file.hpp"
 #include "tests/support/figure.hpp"
@@ -51,6 +51,17 @@ TEST_F(Emps, published_parameters_come_back) {
   figure("EMPS, published recipe: relative force error",
          fmt::format("{:.3f} %, published 4.083 %", 100.0 * result.residual_rms / result.force_rms));
   EXPECT_NEAR(100.0 * result.residual_rms / result.force_rms, 4.083, 0.001);
+}
+
+TEST_F(Emps, closed_loop_follows_the_record_as_published) {
+  const auto result = identify("coulomb_viscous");
+  const auto refined = host::refine_in_closed_loop({log_}, machine_, machine_.axes.front(), result,
+                                                   {"coulomb_viscous", host::Amperes::amplitude, {}});
+  figure("EMPS, closed loop with the published parameters: position",
+         fmt::format("{:.3f} um rms off the record, published 1.61 um; refined {:.3f} um",
+                     refined.position_before * 1e6, refined.position_after * 1e6));
+  EXPECT_NEAR(refined.position_before, 1.61e-6, 0.02e-6);
+  EXPECT_LE(refined.force_after, refined.force_before);
 }
 
 TEST_F(Emps, seven_large_reversals_do_not_determine_a_presliding_stiffness) {
