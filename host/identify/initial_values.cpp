@@ -76,6 +76,8 @@ InitialValues initial_values(const LogRows& rows) {
     half_steps.push_back(0.5 * (without_mass(after) - without_mass(before)) * sign(rows.velocity[after]) - viscous);
   }
   values.coulomb = median(std::move(half_steps));
+  // Where the axis hardly slides these readings mean nothing, and show it by their signs.
+  if (*values.mass <= 0.0 || slope <= 0.0 || values.coulomb.value_or(1.0) <= 0.0) return {};
   return values;
 }
 

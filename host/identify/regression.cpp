@@ -145,17 +145,18 @@ Eigen::MatrixXd BlockRegression::bootstrap(int replicates, std::uint64_t seed) c
   const double n = static_cast<double>(blocks_.size());
   const double spare = std::max(n - static_cast<double>(all.size()), 1.0);
   const double wider = std::sqrt(n / spare);
+  // What each block pulls the weights by.
+  std::vector<Eigen::VectorXd> pulls;
+  for (const auto& block : sums_) {
+    const Sums pull{total_.gram, block.moment - block.gram * centre, 0.0};
+    pulls.push_back(wider * solve(pull, all));
+  }
   std::mt19937_64 random(seed);
-  std::uniform_int_distribution<std::size_t> pick(0, blocks_.size() - 1);
   Eigen::MatrixXd result(replicates, centre.size());
   for (int r = 0; r < replicates; ++r) {
-    Sums sums{Eigen::MatrixXd::Zero(centre.size(), centre.size()), Eigen::VectorXd::Zero(centre.size()), 0.0};
-    for (std::size_t k = 0; k < blocks_.size(); ++k) {
-      const auto& block = sums_[pick(random)];
-      sums.gram += block.gram;
-      sums.moment += block.moment;
-    }
-    result.row(r) = (centre + wider * (solve(sums, all) - centre)).transpose();
+    Eigen::VectorXd weights = centre;
+    for (const auto& pull : pulls) weights += (random() >> 63 != 0 ? 1.0 : -1.0) * pull;
+    result.row(r) = weights.transpose();
   }
   return result;
 }

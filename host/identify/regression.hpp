@@ -1,5 +1,6 @@
 // Linear least squares over blocks of rows, and what blocks are for: intervals and held-out errors that hold when the
-// residual is correlated (block bootstrap: Kuensch 1989; one block a unit, not one row).
+// residual is correlated: a block is one piece of evidence, not each of its rows (Kuensch 1989; Cameron, Gelbach,
+// Miller 2008).
 #pragma once
 
 #include <Eigen/Dense>
@@ -37,7 +38,8 @@ class BlockRegression {
   // Sum of squared residuals over all rows (N^2) with the chosen columns and their weights.
   double residual_sum(std::span<const std::size_t> chosen, const Eigen::VectorXd& weights) const;
 
-  // Weights from resampled blocks, one row a replicate. The deviations from solve() are larger by
+  // Replicates of the weights, one a row: wild block bootstrap. The residual of each block keeps or changes its sign as
+  // a whole, at random; the regressors stay, so that a few blocks are enough. The deviations from solve() are larger by
   // sqrt(blocks / (blocks - columns)): a fit follows its own blocks.
   Eigen::MatrixXd bootstrap(int replicates, std::uint64_t seed) const;
 

@@ -41,7 +41,9 @@ TEST(Identification, of_a_truth_of_the_same_kind_is_exact_and_its_intervals_cove
 
 class OtherKind : public ::testing::TestWithParam<const char*> {};
 
-// The model is LuGre in all cases. A bias here is one of the mean of several records.
+// The model is LuGre in all cases. A bias here is one of the mean of several records. The linear ramp has no Coulomb
+// level in the model's sense: compared is its straight line taken back to standstill, 86.25 N; its F_C, the force at
+// the break velocity, is 90 N, 4.2 % more.
 TEST_P(OtherKind, of_a_truth_of_another_kind_is_biased_by_at_most_twice_as_much) {
   constexpr int runs = 10;
   const auto records = campaign(bench_machine(GetParam()), runs, 2000);
@@ -50,7 +52,7 @@ TEST_P(OtherKind, of_a_truth_of_another_kind_is_biased_by_at_most_twice_as_much)
     ASSERT_EQ(record.determined, runs) << name;
     const double bias = record.mean / record.truth - 1.0, bound = 2.0 * allowed.at(name);
     figure(fmt::format("identification, truth {}: bias of {}", GetParam(), name),
-           fmt::format("{:+.3g} % (bound {:g} %)", bias * 100.0, bound * 100.0));
+           fmt::format("{:+.3g} % of {:g} (bound {:g} %)", bias * 100.0, record.truth, bound * 100.0));
     EXPECT_LE(std::abs(bias), bound) << name;
   }
 }
