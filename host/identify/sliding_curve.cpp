@@ -79,16 +79,53 @@ Trials trials_of(const SlidingData& data) {
   return trials;
 }
 
-double best_shape(const BlockRegression& regression, const Trials& trials, std::size_t kind) {
-  double best = 0.0, least = INFINITY;
-  for (std::size_t i = 0; i < trials.choices[kind].size(); ++i) {
+// Others, sign, sign |v| where the curve has it, the term.
+Eigen::MatrixXd columns_of(const SlidingData& data, const CurveKind& kind, double shape) {
+  const Eigen::Index others = data.others.cols();
+  Eigen::MatrixXd columns(data.speed.size(), others + 1 + (kind.viscous ? 1 : 0) + (kind.term != nullptr ? 1 : 0));
+  columns.leftCols(others) = data.others;
+  columns.col(others) = data.sign;
+  if (kind.viscous) columns.col(others + 1) = data.sign.cwiseProduct(data.speed.cwiseAbs());
+  if (kind.term != nullptr) columns.rightCols(1) = term_column(data, kind, shape);
+  return columns;
+}
+
+// The nonlinear parameter with the least residual: the best trial, then golden sections between its neighbours.
+double best_shape(const SlidingData& data, const BlockRegression& regression, const Trials& trials, std::size_t kind) {
+  if (kinds[kind].term == nullptr) return 0.0;
+  const auto& shapes = trials.shapes[kind];
+  std::size_t best = 0;
+  double least = INFINITY;
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
     const auto& chosen = trials.choices[kind][i];
     const double left = regression.residual_sum(chosen, regression.solve(chosen));
     if (left >= least) continue;
     least = left;
-    best = trials.shapes[kind][i];
+    best = i;
   }
-  return best;
+  const auto left_over = [&](double logarithm) {
+    const auto columns = columns_of(data, kinds[kind], std::exp(logarithm));
+    return (data.force - columns * fitting::weights_of(columns, data.force)).squaredNorm();
+  };
+  constexpr double golden = 0.6180339887498949;
+  double low = std::log(shapes[best > 0 ? best - 1 : 0]),
+         high = std::log(shapes[std::min(best + 1, shapes.size() - 1)]);
+  double a = high - golden * (high - low), b = low + golden * (high - low);
+  double of_a = left_over(a), of_b = left_over(b);
+  while (high - low > 1e-3) {
+    if (of_a < of_b) {
+      high = b;
+      b = a;
+      of_b = of_a;
+      of_a = left_over(a = high - golden * (high - low));
+    } else {
+      low = a;
+      a = b;
+      of_a = of_b;
+      of_b = left_over(b = low + golden * (high - low));
+    }
+  }
+  return std::exp(0.5 * (low + high));
 }
 
 std::vector<MeasuredPoint> measured_points(const SlidingData& data, const Eigen::VectorXd& friction,
@@ -181,15 +218,12 @@ SlidingCurve choose_sliding_curve(const SlidingData& data, double correlation, c
     if (error < best && error * error < 0.99 * linear * linear) chosen = k;
   }
   const auto& kind = kinds[chosen];
-  const double shape = best_shape(regression, trials, chosen);
+  const double shape = best_shape(data, regression, trials, chosen);
   result.curve = kind.name;
 
   const Eigen::Index others = data.others.cols();
-  const Eigen::Index linear_columns = others + 1 + (kind.viscous ? 1 : 0) + (kind.term != nullptr ? 1 : 0);
-  Eigen::MatrixXd columns(data.speed.size(), linear_columns);
-  columns.leftCols(others + 1) = trials.columns.leftCols(others + 1);
-  if (kind.viscous) columns.col(others + 1) = trials.columns.col(others + 1);
-  if (kind.term != nullptr) columns.rightCols(1) = term_column(data, kind, shape);
+  Eigen::MatrixXd columns = columns_of(data, kind, shape);
+  const Eigen::Index linear_columns = columns.cols();
   Eigen::RowVectorXd centre = fitting::weights_of(columns, data.force).transpose();
   const Eigen::VectorXd friction = (data.force - data.others * centre.head(others).transpose()).eval();
   if (kind.term != nullptr) {  // the change with the logarithm of the nonlinear parameter
