@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <memory>
-
 #include "host/cli/errors.hpp"
 #include "host/cli/experiment_output.hpp"
 #include "host/cli/output.hpp"
@@ -34,19 +32,8 @@ void identify_reference(const IdentifyReferenceOptions& options, const Invocatio
   }
   fmt::print("{}\n{}", experiment_text(result, machine), prediction_text(machine, study));
   if (!options.out.empty()) fmt::print("\nreport: {}/report.html\n", options.out);
-} catch (const NotDetermined& error) {
+} catch (const MissingRows& error) {
   throw UsageError(error.what());
-}
-
-void add_identify_reference(CLI::App& program, const Invocation& invocation) {
-  auto* command = program.add_subcommand("identify", "friction parameters from the machine file's measured rows");
-  auto o = std::make_shared<IdentifyReferenceOptions>();
-  command->add_option("--reference", o->reference, "which rows: circle")->required()->type_name("KIND");
-  o->machine.add_to(*command, "shipped machine by name, or a machine file");
-  command->add_option("--out", o->out, "write report.html, result.json and identified.toml into this folder")
-      ->type_name("DIR");
-  command->add_flag("--json", o->json, "print the result as JSON on standard output");
-  command->callback([o, &invocation] { identify_reference(*o, invocation); });
 }
 
 }  // namespace stiction::host

@@ -18,7 +18,4 @@ struct IdentifyReferenceOptions {
 // Throws UsageError for another kind of rows or a machine without them.
 void identify_reference(const IdentifyReferenceOptions& options, const Invocation& invocation);
 
-// The command with these options alone.
-void add_identify_reference(CLI::App& program, const Invocation& invocation);
-
 }  // namespace stiction::host

@@ -6,7 +6,6 @@
 
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
-#include "host/cli/identify_reference.hpp"
 #include "host/log/log.hpp"
 #include "host/simulate/circle.hpp"
 #include "sim/control/axis_configuration.hpp"
@@ -45,7 +44,7 @@ int run(int argc, char** argv) {
   add_simulate(program, invocation);
   add_compare(program, invocation);
   add_machine(program, invocation);
-  add_identify_reference(program, invocation);
+  add_identify(program, invocation);
   add_convert(program);
   add_inspect(program);
 

@@ -56,7 +56,7 @@ double SlidingCurve::at(double velocity) const {
 
 SlidingCurve fit_sliding_curve(const std::vector<SteadyPoint>& points) {
   if (points.size() < 5)
-    throw NotDetermined(fmt::format(
+    throw MissingRows(fmt::format(
         "steady friction: found {} speeds; expected at least 5, from creeping to the highest speed", points.size()));
   const auto [slowest, fastest] = std::minmax_element(
       points.begin(), points.end(), [](const auto& a, const auto& b) { return a.velocity < b.velocity; });
@@ -70,7 +70,7 @@ SlidingCurve fit_sliding_curve(const std::vector<SteadyPoint>& points) {
   SlidingCurve curve{solution[0], solution[1], rise_velocity, solution[2],
                      std::sqrt(squares / static_cast<double>(points.size()))};
   if (!(curve.creeping > 0.0 && curve.rise >= 0.0 && curve.viscous >= 0.0))
-    throw NotDetermined(
+    throw MissingRows(
         fmt::format("steady friction: found a curve that falls ({:.1f} N creeping, {:.1f} N rise, {:.0f} N s/m); "
                     "expected friction that grows with the speed",
                     curve.creeping, curve.rise, curve.viscous));
@@ -92,14 +92,14 @@ PreslidingCurve presliding_curve(const std::vector<PreslidingPoint>& points) {
   std::erase_if(against, [](const PreslidingPoint& point) { return point.same_direction; });
   std::sort(against.begin(), against.end(), [](const auto& a, const auto& b) { return a.force < b.force; });
   if (against.size() < 2)
-    throw NotDetermined(fmt::format("presliding: found {} points loaded against the motion before; expected at least 2",
-                                    against.size()));
+    throw MissingRows(fmt::format("presliding: found {} points loaded against the motion before; expected at least 2",
+                                  against.size()));
   PreslidingCurve curve;
   double slope = std::numeric_limits<double>::infinity(), x = 0.0, f = 0.0;
   for (const auto& point : against) {
     const double next = (point.force - f) / (point.displacement - x);
     if (!(next > 0.0 && next < slope))
-      throw NotDetermined(
+      throw MissingRows(
           fmt::format("presliding: found {:g} um at {:g} N after {:g} um at {:g} N; expected displacements that grow "
                       "faster than the force",
                       point.displacement * 1e6, point.force, x * 1e6, f));

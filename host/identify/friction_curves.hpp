@@ -10,7 +10,7 @@
 namespace stiction::host {
 
 // Data that do not determine what was asked. what() is "what was found; what was expected".
-class NotDetermined : public std::runtime_error {
+class MissingRows : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
@@ -32,7 +32,7 @@ struct SlidingCurve {
 };
 
 // Least squares; linear in all but rise_velocity, which is searched between the lowest and the highest velocity. Throws
-// NotDetermined for fewer than five points or a curve that falls.
+// MissingRows for fewer than five points or a curve that falls.
 SlidingCurve fit_sliding_curve(const std::vector<SteadyPoint>& points);
 
 // A carriage that coasted to rest with no force on it, then loaded with `force`.
@@ -52,7 +52,7 @@ struct PreslidingCurve {
   double force_at(double x) const;                 // N, at x (m) of at least 0
 };
 
-// Throws NotDetermined for fewer than two points against the motion before, or a contact that stiffens under load (no
+// Throws MissingRows for fewer than two points against the motion before, or a contact that stiffens under load (no
 // sum of springs that slip does).
 PreslidingCurve presliding_curve(const std::vector<PreslidingPoint>& points);
 

@@ -85,7 +85,7 @@ class Calibration {
   static void check(const CalibratedAxis& axis, const sim::CircleReference& wanted) {
     if (std::abs(axis.error / wanted.error - 1.0) < 0.01 && std::abs(axis.current / wanted.current - 1.0) < 0.01)
       return;
-    throw NotDetermined(
+    throw MissingRows(
         fmt::format("axis {}: found no friction that gives {:.2f} um and {:.2f} A (nearest {:.2f} um, {:.2f} A); "
                     "expected a row of a circle that friction can explain",
                     axis.axis, wanted.error * 1e6, wanted.current, axis.error * 1e6, axis.current));
@@ -109,12 +109,12 @@ PermittedRows permitted_rows(const sim::Machine& machine) {
           return candidate.measured && candidate.axis == axis.name && at_calibration_feed(candidate.feed);
         });
     if (row == machine.circle_references.end())
-      throw NotDetermined(fmt::format("axis {}: found no measured [[reference.circle]] row at {:g} m/min; expected one",
-                                      axis.name, calibration_feed * 60.0));
+      throw MissingRows(fmt::format("axis {}: found no measured [[reference.circle]] row at {:g} m/min; expected one",
+                                    axis.name, calibration_feed * 60.0));
     rows.circle.push_back(*row);
   }
   if (rows.circle.size() != 2)
-    throw NotDetermined(fmt::format("found a machine with {} axes; expected 2", rows.circle.size()));
+    throw MissingRows(fmt::format("found a machine with {} axes; expected 2", rows.circle.size()));
   for (const auto& row : machine.presliding_references)
     rows.presliding.push_back({row.same_direction, row.force, row.displacement});
   return rows;

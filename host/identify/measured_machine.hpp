@@ -20,7 +20,7 @@ struct PermittedRows {
   std::vector<sim::CircleReference> circle;  // measured at the calibration feed, one an axis in the machine's order
 };
 
-// Throws NotDetermined when the machine has no such rows.
+// Throws MissingRows when the machine has no such rows.
 PermittedRows permitted_rows(const sim::Machine& machine);
 
 // One axis after calibration.
@@ -40,7 +40,7 @@ struct MeasuredMachine {
 };
 
 // Two numbers an axis, peak error and peak current at the calibration feed, determine its two scales, by circles in
-// double precision. Throws NotDetermined, FaultTripped.
+// double precision. Throws MissingRows, FaultTripped.
 MeasuredMachine identify_measured_machine(const sim::Machine& machine);
 
 // The machine with the identified friction in use on every axis.

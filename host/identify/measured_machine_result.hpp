@@ -21,7 +21,7 @@ struct MeasuredMachineStudy {
   double restart_share() const { return l_shape.same_error / l_shape.opposite_error; }
 };
 
-// `circle`, `l_shape`: the machine as it is in these experiments. Throws NotDetermined, FaultTripped.
+// `circle`, `l_shape`: the machine as it is in these experiments. Throws MissingRows, FaultTripped.
 MeasuredMachineStudy study_measured_machine(const sim::Machine& circle, const sim::Machine& l_shape);
 
 sim::ExperimentResult measured_machine_result(const sim::Machine& machine, const MeasuredMachineStudy& study);

@@ -9,6 +9,7 @@ std::string_view frame_html();
 std::string_view closing_html();
 std::string_view circle_html();
 std::string_view experiment_html();
+std::string_view identification_html();
 std::string_view report_css();
 std::string_view page_js();
 std::string_view models_js();
@@ -18,6 +19,7 @@ std::string_view circle_series_js();
 std::string_view circle_tables_js();
 std::string_view circle_js();
 std::string_view experiment_js();
+std::string_view identification_js();
 std::string_view plotly_js();
 std::string_view plotly_license();
 

@@ -110,13 +110,13 @@ TEST(FrictionCurves, SlidingCurveIsFoundAgain) {
 }
 
 TEST(FrictionCurves, WhatTheDataDoNotDetermineIsSaid) {
-  EXPECT_THROW(fit_sliding_curve({{0.1, 90.0}, {0.2, 95.0}}), NotDetermined);
-  EXPECT_THROW(fit_sliding_curve({{0.1, 90.0}, {0.2, 80.0}, {0.3, 70.0}, {0.4, 60.0}, {0.5, 50.0}}), NotDetermined);
-  EXPECT_THROW(presliding_curve({{true, 20.0, 1e-6}, {true, 40.0, 2e-6}, {false, 20.0, 1e-6}}), NotDetermined);
-  EXPECT_THROW(presliding_curve({{false, 20.0, 1e-6}, {false, 40.0, 1.5e-6}}), NotDetermined) << "stiffens";
+  EXPECT_THROW(fit_sliding_curve({{0.1, 90.0}, {0.2, 95.0}}), MissingRows);
+  EXPECT_THROW(fit_sliding_curve({{0.1, 90.0}, {0.2, 80.0}, {0.3, 70.0}, {0.4, 60.0}, {0.5, 50.0}}), MissingRows);
+  EXPECT_THROW(presliding_curve({{true, 20.0, 1e-6}, {true, 40.0, 2e-6}, {false, 20.0, 1e-6}}), MissingRows);
+  EXPECT_THROW(presliding_curve({{false, 20.0, 1e-6}, {false, 40.0, 1.5e-6}}), MissingRows) << "stiffens";
   auto machine = cross_table();
   std::erase_if(machine.circle_references, [](const auto& row) { return row.measured && row.axis == "Y"; });
-  EXPECT_THROW(permitted_rows(machine), NotDetermined);
+  EXPECT_THROW(permitted_rows(machine), MissingRows);
 }
 
 TEST(FrictionElements, FirstLoadingIsTheMeasuredOne) {

@@ -1,0 +1,173 @@
+// `stiction identify`: mass and friction of an axis from measured logs, or from a table of steady states.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "host/cli/commands.hpp"
+#include "host/cli/errors.hpp"
+#include "host/cli/identify_output.hpp"
+#include "host/cli/identify_reference.hpp"
+#include "host/cli/machine_options.hpp"
+#include "host/cli/output.hpp"
+#include "host/identify/identified_machine.hpp"
+#include "host/identify/refinement.hpp"
+#include "host/log/read_log.hpp"
+#include "host/log/text_file.hpp"
+#include "host/report/identification_report.hpp"
+#include "sim/machine/machine_file.hpp"
+
+namespace stiction::host {
+namespace {
+
+struct IdentifyCommandOptions {
+  std::vector<std::string> logs;
+  std::string reference;
+  MachineOptions machine;
+  std::string axis;
+  std::string friction;
+  std::string amperes;
+  std::string out;
+  bool refine = false;
+  bool json = false;
+};
+
+// The axis named, or the only one that machine and logs have in common.
+const sim::Axis& axis_of_run(const std::string& name, const sim::Machine& machine, const std::vector<Log>& logs) {
+  std::vector<std::string> names;
+  for (const auto& axis : machine.axes) names.push_back(axis.name);
+  if (!name.empty()) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end())
+      throw UsageError(
+          fmt::format("--axis: found '{}'; expected an axis of {}: {}", name, machine.id, fmt::join(names, ", ")));
+    return machine.axes[static_cast<std::size_t>(found - names.begin())];
+  }
+  std::vector<const sim::Axis*> common;
+  for (const auto& axis : machine.axes)
+    if (std::all_of(logs.begin(), logs.end(), [&](const Log& log) {
+          return std::any_of(log.axes.begin(), log.axes.end(),
+                             [&](const auto& c) { return c.axis.empty() || c.axis == axis.name; });
+        }))
+      common.push_back(&axis);
+  if (common.size() == 1) return *common.front();
+  throw UsageError(
+      fmt::format("--axis: found none, and {} axes of {} that the logs have channels of; expected one of {}",
+                  common.size(), machine.id, fmt::join(names, ", ")));
+}
+
+Amperes amperes_of(const std::string& text) {
+  if (text.empty()) return Amperes::amplitude;  // by the format of a log
+  if (const auto amperes = parse_amperes(text)) return *amperes;
+  throw UsageError(fmt::format("--amperes: found '{}'; expected peak or rms", text));
+}
+
+std::string model_to_identify(const std::string& wanted, const sim::Axis& axis) {
+  const std::string recipe(sim::CoulombViscous::name), contact(sim::LuGre::name);
+  if (wanted.empty()) return axis.friction.use == recipe ? recipe : contact;
+  if (wanted != recipe && wanted != contact)
+    throw UsageError(fmt::format("--friction: found '{}'; expected {} or {}", wanted, recipe, contact));
+  return wanted;
+}
+
+struct Run {
+  const sim::Axis* axis;
+  Identification result;
+};
+
+// Puts what the closed loop made of them in place of the parameters, and says what it gained.
+void take(Identification& result, const Refinement& refinement) {
+  for (const auto& refined : refinement.parameters)
+    for (auto& parameter : result.parameters)
+      if (parameter.name == refined.name) parameter = refined;
+  result.method += fmt::format(
+      " Refined in closed loop ({} simulations): against the logs the simulated force is {:.4g} N rms off, before "
+      "{:.4g}; the position {:.3g} um, before {:.3g}.",
+      refinement.simulations, refinement.force_after, refinement.force_before, refinement.position_after * 1e6,
+      refinement.position_before * 1e6);
+}
+
+Run identify(const IdentifyCommandOptions& options, const sim::Machine& machine) {
+  const auto amperes = amperes_of(options.amperes);
+  if (options.logs.size() == 1)
+    if (const auto text = read_text_file(options.logs.front()); is_steady_table(text)) {
+      if (options.refine) throw UsageError("--refine: found a table of steady states; expected logs with set-points");
+      const auto& axis = axis_of_run(options.axis, machine, {});
+      return {&axis, identify_table(parse_steady_table(text, options.logs.front()), axis,
+                                    parse_amperes(options.amperes), FitSettings{})};
+    }
+  std::vector<Log> logs;
+  for (const auto& file : options.logs) logs.push_back(read_log(file));
+  const auto& axis = axis_of_run(options.axis, machine, logs);
+  const IdentifyOptions settings{model_to_identify(options.friction, axis), amperes, FitSettings{}};
+  Run run{&axis, identify_logs(logs, axis, settings)};
+  if (options.refine) take(run.result, refine_in_closed_loop(logs, machine, axis, run.result, settings));
+  return run;
+}
+
+void run(const IdentifyCommandOptions& options, const Invocation& invocation) {
+  const auto machine = options.machine.load(options.machine.machine, "");
+  const auto file = sim::find_machine(options.machine.machine);
+  const auto [axis, result] = identify(options, machine);
+  const auto json = identification_json(result);
+  if (!options.out.empty()) {
+    PendingFolder folder(options.out);
+    folder.write("identified.toml",
+                 identified_machine(file, options.machine.set, *axis, result, invocation.command_line));
+    sim::read_machine(folder.path() / "identified.toml");  // what was written must be a machine
+    folder.write("report.html",
+                 identification_report_html({invocation.command_line, invocation.version, machine, result}));
+    folder.write("result.json", json.dump(2) + "\n");
+    folder.commit();
+  }
+  if (options.json) {
+    fmt::print("{}\n", json.dump(2));
+    return;
+  }
+  fmt::print("{}", identification_text(result));
+  if (!options.out.empty()) fmt::print("\nmachine file: {0}/identified.toml\nreport: {0}/report.html\n", options.out);
+}
+
+}  // namespace
+
+void add_identify(CLI::App& program, const Invocation& invocation) {
+  auto* command = program.add_subcommand("identify", "mass and friction from measured logs");
+  auto o = std::make_shared<IdentifyCommandOptions>();
+  auto* logs = command->add_option("logs", o->logs, "logs of one axis, or one table of steady states (v[m/min],i[A])")
+                   ->type_name("LOG");
+  command
+      ->add_option("--reference", o->reference,
+                   "instead of logs: the machine file's measured rows of this experiment (circle)")
+      ->excludes(logs)
+      ->type_name("KIND");
+  o->machine.add_to(*command, "shipped machine by name, or a machine file: force constant, limits, friction models");
+  command->add_option("--axis", o->axis, "the axis, where logs and machine have several")->type_name("NAME");
+  command
+      ->add_option("--friction", o->friction,
+                   "coulomb_viscous: sgn(v) of every sample, the published recipe; lugre: with presliding [the first "
+                   "where the machine file uses it, else the second]")
+      ->type_name("MODEL");
+  command
+      ->add_option(
+          "--amperes", o->amperes,
+          "how currents were read, peak or rms; a log's are peak values unless told otherwise, a table must say")
+      ->type_name("KIND");
+  command->add_flag("--refine", o->refine,
+                    "then refine mass, friction and stiffness in closed loop with the log's set-points: takes seconds, "
+                    "gains where the position is noisy or coarse");
+  command->add_option("--out", o->out, "write identified.toml, report.html and result.json into this folder")
+      ->type_name("DIR");
+  command->add_flag("--json", o->json, "print the result as JSON on standard output");
+  command->callback([o, &invocation] {
+    try {
+      if (!o->reference.empty()) return identify_reference({o->machine, o->reference, o->out, o->json}, invocation);
+      if (o->logs.empty()) throw UsageError("identify: found neither LOG nor --reference; expected one of them");
+      run(*o, invocation);
+    } catch (const LogError& error) {
+      throw UsageError(error.what());
+    }
+  });
+}
+
+}  // namespace stiction::host

@@ -1,0 +1,48 @@
+#include "host/identify/contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace stiction::host {
+
+Contact contact_of(const Motion& motion, const ContactShape& shape) {
+  const std::size_t n = motion.x.size();
+  Contact contact{std::vector<double>(n), std::vector<double>(n), std::vector<double>(n)};
+  const bool stribeck = shape.static_ratio != 1.0;
+  double s = 0.0, memory = 1.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double step = i == 0 ? 0.0 : motion.x[i] - motion.x[i - 1];
+    double limit = 1.0;
+    if (stribeck) {
+      const double ratio = step / (motion.period * shape.stribeck_velocity);
+      limit += (shape.static_ratio - 1.0) * std::exp(-ratio * ratio);
+    }
+    const double left = std::exp(-shape.inverse_length * std::abs(step) / limit);
+    const double to = std::copysign(limit, step);
+    s = to + (s - to) * left;
+    memory *= left;
+    contact.level[i] = s;
+    contact.memory[i] = memory;
+  }
+  contact.rate = central_difference(contact.level, motion.period);
+  return contact;
+}
+
+std::vector<double> stribeck_column(const Motion& motion, const std::vector<double>& level, double stribeck_velocity) {
+  std::vector<double> column(level.size());
+  for (std::size_t i = 0; i < column.size(); ++i) {
+    const double ratio = motion.v[i] / stribeck_velocity;
+    column[i] = level[i] * std::exp(-ratio * ratio);
+  }
+  return column;
+}
+
+std::vector<double> stop_operator(const Motion& motion, double distance) {
+  std::vector<double> column(motion.x.size());
+  double stretched = 0.0;
+  for (std::size_t i = 1; i < column.size(); ++i)
+    column[i] = stretched = std::clamp(stretched + motion.x[i] - motion.x[i - 1], -distance, distance);
+  return column;
+}
+
+}  // namespace stiction::host

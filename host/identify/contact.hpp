@@ -1,0 +1,36 @@
+// Friction that remembers, as regressors: states driven by the measured motion alone, so that a force is linear in
+// their weights. The LuGre contact (Canudas de Wit, Olsson, Astrom, Lischinsky 1995) and stop operators (Prandtl,
+// Ishlinskii; a Maxwell-slip element is one of them).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "host/identify/motion.hpp"
+
+namespace stiction::host {
+
+// The contact of unit Coulomb level: s' = k (v - |v| s / g(v)), g(v) = 1 + (static_ratio - 1) exp(-(v/v_s)^2). With the
+// Coulomb level F_C, F_C s is the LuGre model's k_s z and k = k_s / F_C.
+struct ContactShape {
+  double inverse_length = 0.0;  // k, 1/m
+  double static_ratio = 1.0;
+  double stribeck_velocity = 1e-3;  // m/s
+};
+
+struct Contact {
+  std::vector<double> level;   // s
+  std::vector<double> rate;    // s', 1/s
+  std::vector<double> memory;  // what is left of a unit level at the log's start: the state then is not known
+};
+
+// Each step is exact for the displacement it covers, whatever its length.
+Contact contact_of(const Motion& motion, const ContactShape& shape);
+
+// exp(-(v/v_s)^2) times the level of the contact: what Stribeck's effect adds to the force for one newton.
+std::vector<double> stribeck_column(const Motion& motion, const std::vector<double>& level, double stribeck_velocity);
+
+// Stop operator: a spring of unit stiffness (N/m) whose slider gives way at the displacement `distance` (m).
+std::vector<double> stop_operator(const Motion& motion, double distance);
+
+}  // namespace stiction::host

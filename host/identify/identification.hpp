@@ -1,0 +1,71 @@
+// Identification of one axis from its logs or from a table of steady states: parameters with intervals, how each was
+// found, and what the data could not determine.
+#pragma once
+
+#include <Eigen/Dense>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/identify/friction_fit.hpp"
+#include "host/identify/initial_values.hpp"
+#include "host/identify/sliding_curve.hpp"
+#include "host/identify/steady_table.hpp"
+
+namespace stiction::host {
+
+struct IdentifiedParameter {
+  std::string name;  // with its unit: "mass_kg"
+  double value = 0.0;
+  Interval ci95{};
+  std::string how;  // a clause for readers
+};
+
+struct NotDetermined {
+  std::string name;
+  std::string why;
+  std::string record;  // what to record instead
+};
+
+// What is left of the force in one log.
+struct LogResidual {
+  std::string source;
+  std::vector<double> time, speed, residual;  // s, m/s, N
+};
+
+struct Identification {
+  std::string axis;
+  std::vector<std::string> sources;
+  std::string method;  // sentences for readers
+  std::size_t samples = 0;
+  std::vector<IdentifiedParameter> parameters;
+  std::vector<NotDetermined> not_determined;
+  InitialValues initial;
+  std::optional<SlidingCurve> curve;  // none where the axis hardly slides
+  std::vector<SlipElement> elements;  // Maxwell slip; empty when the presliding was not determined
+  double force_rms = 0.0;             // N
+  double residual_rms = 0.0;          // N
+  std::vector<LogResidual> residuals;
+
+  const IdentifiedParameter* find(std::string_view name) const;
+};
+
+struct IdentifyOptions {
+  std::string
+      friction;  // model to identify by its name in a machine file; "coulomb_viscous" means the published recipe
+  Amperes amperes = Amperes::amplitude;
+  FitSettings fit;
+};
+
+// The log's channels of that axis, or those without an axis' name. Throws LogError when it has neither.
+const AxisLog& channels_of(const Log& log, const sim::Axis& axis);
+
+// `axis`: of the machine that the logs belong to; each log's channels of that axis, or those without an axis' name.
+// Throws LogError for logs that cannot be used (suitability.hpp).
+Identification identify_logs(const std::vector<Log>& logs, const sim::Axis& axis, const IdentifyOptions& options);
+
+// Throws LogError.
+Identification identify_table(const SteadyTable& table, const sim::Axis& axis, std::optional<Amperes> stated,
+                              const FitSettings& settings);
+
+}  // namespace stiction::host

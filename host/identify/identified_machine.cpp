@@ -1,0 +1,131 @@
+#include "host/identify/identified_machine.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "sim/machine/edited_machine.hpp"
+
+namespace stiction::host {
+namespace {
+
+using Value = decltype(sim::MachineEdit::value);
+
+// Keys of friction models and the parameters they are written from.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 6> parameter_of_key{{
+    {"coulomb", "coulomb_N"},
+    {"viscous", "viscous_N_s_per_m"},
+    {"static_ratio", "static_ratio"},
+    {"stiffness", "stiffness_N_per_m"},
+    {"damping_ratio", "damping_ratio"},
+    {"stribeck_velocity", "stribeck_velocity_m_per_s"},
+}};
+
+Value written(double value, std::string_view unit) {
+  if (unit == "1") return value;
+  return sim::written_quantity(value, unit);
+}
+
+std::optional<Value> elements_value(const Identification& result, std::string_view key, std::string_view unit) {
+  if (result.elements.empty()) return std::nullopt;
+  std::vector<std::string> list;
+  for (const auto& element : result.elements)
+    list.push_back(sim::written_quantity(key == "stiffness" ? element.stiffness : element.level, unit));
+  return list;
+}
+
+// The value of a model's key; nothing when the data did not determine it.
+std::optional<Value> key_value(const Identification& result, std::string_view key, std::string_view unit, bool list) {
+  if (list) return key == "stiffness" || key == "level" ? elements_value(result, key, unit) : std::nullopt;
+  const auto row = std::find_if(parameter_of_key.begin(), parameter_of_key.end(),
+                                [&](const auto& candidate) { return candidate.first == key; });
+  if (row == parameter_of_key.end()) return std::nullopt;
+  const auto* parameter = result.find(row->second);
+  if (parameter == nullptr) return std::nullopt;
+  // Without a fall of the friction over speed the ratio is 1, and what is above is noise.
+  if (key == "static_ratio" && result.find("stribeck_velocity_m_per_s") == nullptr) return written(1.0, unit);
+  return written(std::max(parameter->value, 0.0), unit);
+}
+
+struct FrictionTable {
+  std::string model;
+  std::vector<std::pair<std::string, Value>> keys;
+  std::vector<std::string> missing;
+};
+
+template <class Model>
+FrictionTable friction_table(const Identification& result) {
+  FrictionTable table{std::string(Model::name), {}, {}};
+  // A Stribeck velocity acts on nothing while the static ratio is 1: the file's may stay.
+  const bool no_fall = result.find("static_ratio") != nullptr && result.find("stribeck_velocity_m_per_s") == nullptr;
+  for (const auto& parameter : Model::parameters) {
+    const std::string key(parameter.key);
+    const bool list = parameter.member.index() == 3;
+    if (const auto value = key_value(result, key, parameter.unit, list))
+      table.keys.emplace_back(key, *value);
+    else if (!(key == "stribeck_velocity" && no_fall))
+      table.missing.push_back(key);
+  }
+  return table;
+}
+
+// The model that acts: the file's own if it is complete, else the most detailed one that is.
+std::string model_in_use(const std::string& wanted, const std::vector<std::string>& complete) {
+  for (const auto& name : {wanted, std::string(sim::LuGre::name)})
+    if (std::find(complete.begin(), complete.end(), name) != complete.end()) return name;
+  return complete.back();
+}
+
+}  // namespace
+
+std::string identified_machine(const std::filesystem::path& file, const std::vector<std::string>& set,
+                               const sim::Axis& axis, const Identification& result, const std::string& command) {
+  std::vector<sim::MachineEdit> edits;
+  std::vector<std::string> comment{
+      fmt::format("Identified from {}", fmt::join(result.sources, ", ")), fmt::format("by {}", command),
+      fmt::format("on the machine file {}; axis {}:", file.filename().string(), axis.name)};
+  for (const auto& p : result.parameters)
+    comment.push_back(
+        fmt::format("  {} = {:.6g}, 95 % interval {:.6g} to {:.6g}", p.name, p.value, p.ci95.low, p.ci95.high));
+  for (const auto& n : result.not_determined) comment.push_back(fmt::format("  not determined: {}: {}", n.name, n.why));
+
+  const std::vector<std::string> at{"axis", axis.name};
+  const auto path = [&](std::vector<std::string> tail) {
+    auto full = at;
+    full.insert(full.end(), tail.begin(), tail.end());
+    return full;
+  };
+  if (const auto* mass = result.find("mass_kg")) {
+    edits.push_back({path({"mass"}), sim::written_quantity(mass->value, "kg")});
+    edits.push_back({{"experiment", "*", "axis", axis.name, "mass"}, {}});
+  } else {
+    comment.push_back(fmt::format("  mass: kept from the machine file, {:g} kg", axis.mass));
+  }
+  edits.push_back({{"experiment", "*", "axis", axis.name, "friction"}, {}});
+  std::vector<std::string> complete;
+  sim::for_each_friction_model([&]<class Model>() {
+    if (!axis.friction.models.contains(std::string(Model::name))) return;
+    const auto table = friction_table<Model>(result);
+    if (!table.missing.empty()) {
+      edits.push_back({path({"friction", table.model}), {}});
+      comment.push_back(
+          fmt::format("  friction.{}: left out, not determined: {}", table.model, fmt::join(table.missing, ", ")));
+      return;
+    }
+    complete.push_back(table.model);
+    for (const auto& [key, value] : table.keys) edits.push_back({path({"friction", table.model, key}), value});
+  });
+  if (complete.empty())
+    throw LogError(
+        fmt::format("{}: found no friction model of axis {} in {} all of whose parameters these data determine; "
+                    "expected at least Coulomb and viscous friction. Record constant speeds from a few mm/s up "
+                    "to the highest, each both ways",
+                    fmt::join(result.sources, ", "), axis.name, file.filename().string()));
+  edits.push_back({path({"friction", "use"}), model_in_use(axis.friction.use, complete)});
+  return sim::edited_machine(file, set, edits, comment);
+}
+
+}  // namespace stiction::host

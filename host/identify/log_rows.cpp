@@ -1,0 +1,51 @@
+#include "host/identify/log_rows.hpp"
+
+namespace stiction::host {
+namespace {
+
+auto as_vector(const std::vector<double>& values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+}  // namespace
+
+LogRows::LogRows(std::vector<Motion> motions, const SignalSettings& settings) : motions_(std::move(motions)) {
+  std::size_t count = 0;
+  for (const auto& motion : motions_) {
+    filters_.emplace_back(motion, settings);
+    logs_.push_back(count);
+    count += filters_.back().rows();
+  }
+  force.resize(static_cast<Eigen::Index>(count));  // stacked() takes the number of rows from it
+  force = stacked([](const Motion& m) { return m.force; });
+  acceleration = stacked([](const Motion& m) { return m.a; });
+  velocity = stacked([](const Motion& m) { return m.v; });
+  time = sampled([](const Motion& m) { return m.t; });
+}
+
+Eigen::VectorXd LogRows::stacked(const std::function<std::vector<double>(const Motion&)>& column) const {
+  Eigen::VectorXd all(force.size());
+  for (std::size_t k = 0; k < motions_.size(); ++k) {
+    const auto rows = filters_[k](column(motions_[k]));
+    all.segment(static_cast<Eigen::Index>(logs_[k]), static_cast<Eigen::Index>(rows.size())) = as_vector(rows);
+  }
+  return all;
+}
+
+Eigen::VectorXd LogRows::sampled(const std::function<std::vector<double>(const Motion&)>& column) const {
+  Eigen::VectorXd all(force.size());
+  for (std::size_t k = 0; k < motions_.size(); ++k) {
+    const auto rows = filters_[k].sampled(column(motions_[k]));
+    all.segment(static_cast<Eigen::Index>(logs_[k]), static_cast<Eigen::Index>(rows.size())) = as_vector(rows);
+  }
+  return all;
+}
+
+Eigen::VectorXd LogRows::of_log(std::size_t log, const std::vector<double>& column) const {
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(force.size());
+  const auto rows = filters_[log](column);
+  all.segment(static_cast<Eigen::Index>(logs_[log]), static_cast<Eigen::Index>(rows.size())) = as_vector(rows);
+  return all;
+}
+
+}  // namespace stiction::host

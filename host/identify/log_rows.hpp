@@ -1,0 +1,36 @@
+// The rows of all logs of an identification: force and regressors, one below the other.
+#pragma once
+
+#include <Eigen/Dense>
+#include <functional>
+#include <vector>
+
+#include "host/identify/motion.hpp"
+
+namespace stiction::host {
+
+class LogRows {
+ public:
+  LogRows(std::vector<Motion> motions, const SignalSettings& settings);
+
+  const std::vector<Motion>& motions() const { return motions_; }
+  const std::vector<std::size_t>& logs() const { return logs_; }  // first row of each
+  Eigen::Index rows() const { return force.size(); }
+  double period(std::size_t log) const { return filters_[log].period(); }  // s, from row to row
+
+  // A regressor: what `column` makes of each motion, filtered and stacked.
+  Eigen::VectorXd stacked(const std::function<std::vector<double>(const Motion&)>& column) const;
+  // The same without the filter: for what is no regressor, a mask or the time.
+  Eigen::VectorXd sampled(const std::function<std::vector<double>(const Motion&)>& column) const;
+  // A regressor of one log, zero in the rows of the others.
+  Eigen::VectorXd of_log(std::size_t log, const std::vector<double>& column) const;
+
+  Eigen::VectorXd force, acceleration, velocity, time;
+
+ private:
+  std::vector<Motion> motions_;
+  std::vector<RowFilter> filters_;
+  std::vector<std::size_t> logs_;
+};
+
+}  // namespace stiction::host

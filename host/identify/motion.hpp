@@ -1,0 +1,70 @@
+// What a log says of the motion and of the force on the carriage, filtered: the position through a zero-phase lowpass
+// and twice differentiated at the log's rate; every regressor and the force through one anti-aliasing filter and down
+// to the rate of the rows that regressions work on (Janot, Gautier, Brunot 2019; Gautier 1997).
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "host/identify/filter.hpp"
+#include "host/log/log.hpp"
+#include "sim/machine/machine.hpp"
+
+namespace stiction::host {
+
+struct SignalSettings {
+  double cutoff = 100.0;    // Hz, of the position's Butterworth filter of order 4; at most a fifth of the log's rate
+  double row_rate = 100.0;  // Hz; the rows hold frequencies up to 0.4 of it
+  int difference_points = 7;
+  double skip_start = 0.05;  // s, dropped at the log's start: the filter's transient
+  double skip_end = 0.05;    // s
+};
+
+// The recipe of the published EMPS model (data: Janot, Gautier, Brunot 2019): differences of 3 points, the first 49 ms
+// dropped and nothing at the end.
+SignalSettings published_recipe();
+
+// One log at its full rate. The vectors are equally long.
+struct Motion {
+  std::string source;
+  double period = 0.0;             // s
+  std::vector<double> t, x, v, a;  // s, m, m/s, m/s^2; filtered
+  std::vector<double> force;       // N, of the motor and from outside; as logged
+  std::vector<double> current;     // A, as logged; empty when the log has force or voltage only
+  std::vector<double> x_set;       // m; empty when the log has none
+};
+
+// How the amperes of a record are to be read.
+enum class Amperes { amplitude, rms };
+
+// The force (N) on the carriage by what `log` holds: F, else i times the force constant, else (of a force source) u
+// times it; and F_ext. Throws LogError when it has none of them for this motor.
+std::vector<double> force_of(const Log& log, const AxisLog& channels, const sim::Axis& axis, Amperes amperes);
+
+// Throws LogError.
+Motion motion_of(const Log& log, const AxisLog& channels, const sim::Axis& axis, Amperes amperes,
+                 const SignalSettings& settings);
+
+// Takes columns of a motion at its full rate to rows.
+class RowFilter {
+ public:
+  RowFilter(const Motion& motion, const SignalSettings& settings);
+
+  std::size_t rows() const { return rows_; }
+  double period() const { return period_; }  // s, from row to row
+  // The column's rows: without the skipped ends, filtered, every n-th value.
+  std::vector<double> operator()(std::span<const double> column) const;
+  // The values at the rows, not filtered: of the time.
+  std::vector<double> sampled(std::span<const double> column) const;
+
+ private:
+  std::span<const double> kept(std::span<const double> column) const;
+
+  std::size_t begin_, end_, ratio_, padding_ = 0, rows_ = 0;
+  double period_;
+  std::optional<Lowpass> lowpass_;  // none when the log's rate is that of the rows
+};
+
+}  // namespace stiction::host

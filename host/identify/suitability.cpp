@@ -1,0 +1,187 @@
+#include "host/identify/suitability.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "host/identify/fit_support.hpp"
+
+namespace stiction::host {
+namespace {
+
+constexpr double shortest = 2.0;  // s, of all logs: 20 blocks of the shortest length
+
+// Where the magnitude `top` is held for at least `least` samples in a row: sample and length of the longest such run.
+struct Run {
+  std::size_t begin = 0, length = 0;
+};
+template <class AtTop>
+Run longest_run(const std::vector<double>& values, AtTop&& at_top) {
+  Run longest, now;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (!at_top(k)) {
+      now.length = 0;
+      continue;
+    }
+    if (now.length++ == 0) now.begin = k;
+    if (now.length > longest.length) longest = now;
+  }
+  return longest;
+}
+
+struct Signal {
+  const std::vector<double>* values;
+  const char* name;
+  const char* unit;
+  double limit;  // of the machine, in the signal's unit
+};
+
+Signal driving_signal(const AxisLog& channels, const sim::Axis& axis) {
+  const bool source = axis.motor.model == sim::MotorModel::force;
+  const double current = axis.inverter.current_limit * axis.motor.count;
+  const double none = std::numeric_limits<double>::infinity();
+  if (!channels.i.empty() && !source) return {&channels.i, "current", "A", current};
+  if (!channels.u.empty() && source) return {&channels.u, "voltage", "V", axis.inverter.voltage_limit};
+  return {&channels.force, "force", "N", source ? none : current * axis.motor.force_constant};
+}
+
+// The speeds at which the axis was kept, sorted: rows of steady sliding, a bin each factor of 1.5, at least 0.1 s in a
+// bin and 2 % of all: passing through a speed is not keeping it.
+std::vector<double> speeds_of(const LogRows& rows, double highest) {
+  constexpr double factor = 1.5, kept = 0.1, share = 0.02;
+  const auto sliding = fitting::steady_sliding(rows);
+  std::vector<double> time_in, sum_in;
+  for (std::size_t log = 0; log < rows.logs().size(); ++log) {
+    const std::size_t end = log + 1 < rows.logs().size() ? rows.logs()[log + 1] : static_cast<std::size_t>(rows.rows());
+    for (std::size_t i = rows.logs()[log]; i < end; ++i) {
+      const double v = std::abs(rows.velocity[static_cast<Eigen::Index>(i)]);
+      if (sliding[static_cast<Eigen::Index>(i)] == 0.0) continue;
+      const auto bin = static_cast<std::size_t>(std::log(highest / v) / std::log(factor) + 0.5);
+      if (bin >= time_in.size()) {
+        time_in.resize(bin + 1, 0.0);
+        sum_in.resize(bin + 1, 0.0);
+      }
+      time_in[bin] += rows.period(log);
+      sum_in[bin] += rows.period(log) * v;
+    }
+  }
+  double total = 0.0;
+  for (const double time : time_in) total += time;
+  std::vector<double> speeds;
+  for (std::size_t bin = time_in.size(); bin-- > 0;)
+    if (time_in[bin] >= std::max(kept, share * total)) speeds.push_back(sum_in[bin] / time_in[bin]);
+  return speeds;
+}
+
+}  // namespace
+
+std::string sources_of(const std::vector<Motion>& motions) {
+  std::string all;
+  for (const auto& motion : motions) all += (all.empty() ? "" : ", ") + motion.source;
+  return all;
+}
+
+void require_samples(const Log& log) {
+  const double duration = static_cast<double>(log.t.size()) * log.period;
+  if (log.t.size() >= 50 && duration > 0.2) return;
+  throw LogError(
+      fmt::format("{}: found a log of {} samples, {:.3g} s; expected more than 0.2 s and 50 samples. Record "
+                  "several reversals at several speeds, {:g} s or more together",
+                  log.source, log.t.size(), duration, shortest));
+}
+
+void refuse_saturation(const Log& log, const AxisLog& channels, const sim::Axis& axis) {
+  const auto signal = driving_signal(channels, axis);
+  const auto& values = *signal.values;
+  if (values.empty()) return;
+  double largest = 0.0;
+  for (const double value : values) largest = std::max(largest, std::abs(value));
+  const auto complain = [&](const Run& run, const std::string& why) {
+    throw LogError(fmt::format(
+        "{}: found the {} at {:.4g} {} for {:.3g} ms at t = {:.4g} s, {}; expected a {} that is never held back: what "
+        "the axis then needed is not in the log. Record the same motion with lower acceleration or speed, or a wider "
+        "measuring range",
+        log.source, signal.name, largest, signal.unit, 1e3 * static_cast<double>(run.length) * log.period,
+        log.t[run.begin], why, signal.name));
+  };
+  const auto limited = longest_run(values, [&](std::size_t k) { return std::abs(values[k]) >= 0.999 * signal.limit; });
+  if (limited.length >= 3)
+    complain(limited, fmt::format("the machine's limit of {:.4g} {}", signal.limit, signal.unit));
+  // A flat top: the largest value, to the digit, many times in a row, in a signal that otherwise changes.
+  const auto flat = longest_run(values, [&](std::size_t k) { return std::abs(values[k]) == largest; });
+  std::size_t repeats = 0;
+  for (std::size_t k = 1; k < values.size(); ++k) repeats += values[k] == values[k - 1];
+  if (flat.length >= 10 && 2 * repeats < values.size()) complain(flat, "the same to the last digit");
+}
+
+Excitation excitation_of(const LogRows& rows) {
+  Excitation e;
+  for (const auto& motion : rows.motions())
+    for (const double v : motion.v) e.highest_speed = std::max(e.highest_speed, std::abs(v));
+  if (rows.rows() > 0) e.highest_acceleration = rows.acceleration.cwiseAbs().maxCoeff();
+  for (const auto& motion : rows.motions()) {
+    e.duration += static_cast<double>(motion.t.size()) * motion.period;
+    // From one side to the other of a hundredth of this log's own highest speed.
+    double highest = 0.0, side = 0.0;
+    for (const double v : motion.v) highest = std::max(highest, std::abs(v));
+    for (const double v : motion.v) {
+      if (std::abs(v) <= 0.01 * highest) continue;
+      const double now = v > 0.0 ? 1.0 : -1.0;
+      if (side * now < 0.0) ++e.reversals;
+      side = now;
+    }
+  }
+  if (e.highest_speed > 0.0) e.speeds = speeds_of(rows, e.highest_speed);
+  return e;
+}
+
+void require_excitation(const Excitation& e, const std::string& sources) {
+  if (e.duration < shortest)
+    throw LogError(
+        fmt::format("{}: found {:.3g} s; expected at least {:g} s of motion. Record several reversals at "
+                    "several speeds",
+                    sources, e.duration, shortest));
+  if (e.reversals == 0)
+    throw LogError(
+        fmt::format("{}: found no reversal; expected motion in both directions, without which Coulomb "
+                    "friction cannot be told from a constant force. Record each speed there and back",
+                    sources));
+  if (e.speeds.size() < 2)
+    throw LogError(
+        fmt::format("{}: found {}; expected at least two, a factor 1.5 apart and each for 0.1 s, without "
+                    "which viscous friction cannot be told from Coulomb friction. Record constant speeds "
+                    "from a few mm/s up to the highest, each both ways",
+                    sources,
+                    e.speeds.empty() ? std::string("no speed kept for 0.1 s")
+                                     : fmt::format("one speed only, {:.3g} mm/s", e.speeds.front() * 1e3)));
+}
+
+void refuse_swapped_sign(const LogRows& rows) {
+  double power = 0.0, either_way = 0.0;
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    power += rows.force[i] * rows.velocity[i];
+    either_way += std::abs(rows.force[i] * rows.velocity[i]);
+  }
+  if (power >= -0.1 * either_way) return;
+  throw LogError(
+      fmt::format("{}: found a force that pushes where friction must brake: the motor takes {:.3g} J out of the "
+                  "motion; expected force and position positive in the same direction. The sign of one of "
+                  "them is swapped: turn the current's (or the encoder's) sign in the record",
+                  sources_of(rows.motions()), -power * rows.period(0)));
+}
+
+void refuse_contradiction(const FrictionFit& fit, const LogRows& rows) {
+  for (const char* name : {"mass_kg", "coulomb_N"}) {
+    const auto interval = fit.at(name).interval();
+    if (interval.high >= 0.0) continue;
+    throw LogError(
+        fmt::format("{}: found {} = {:.4g}, from {:.4g} to {:.4g}; expected a positive value. Force and "
+                    "position do not belong together: check sign, scale and time of both channels, and record "
+                    "moves with higher acceleration",
+                    sources_of(rows.motions()), name, fit.at(name).value, interval.low, interval.high));
+  }
+}
+
+}  // namespace stiction::host

@@ -1,0 +1,146 @@
+#include "host/report/identification_report.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "host/report/assets.hpp"
+#include "host/report/decimate.hpp"
+#include "host/report/engineering_unit.hpp"
+#include "host/report/page.hpp"
+#include "host/report/page_data.hpp"
+#include "host/report/typeset.hpp"
+
+namespace stiction::host {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+constexpr std::size_t rows_per_log = 3000;
+
+// Names of parameters as --json has them, for readers.
+struct Label {
+  std::string_view name, text, unit;  // SI
+};
+constexpr std::array<Label, 19> labels{{
+    {"mass_kg", "moving mass", "kg"},
+    {"coulomb_N", "Coulomb friction F_C", "N"},
+    {"viscous_N_s_per_m", "viscous friction mu_v", "N s/m"},
+    {"constant_force_N", "constant force", "N"},
+    {"coulomb_positive_N", "Coulomb friction and constant force, +x", "N"},
+    {"coulomb_negative_N", "Coulomb friction and constant force, -x", "N"},
+    {"viscous_positive_N_s_per_m", "viscous friction, +x", "N s/m"},
+    {"viscous_negative_N_s_per_m", "viscous friction, -x", "N s/m"},
+    {"stiffness_N_per_m", "contact stiffness k_s", "N/m"},
+    {"damping_ratio", "contact damping ratio zeta_s", "1"},
+    {"static_ratio", "static over Coulomb friction", "1"},
+    {"stribeck_velocity_m_per_s", "Stribeck velocity v_s", "m/s"},
+    {"knee_velocity_m_per_s", "speed of the knee", "m/s"},
+    {"slope_change_N_s_per_m", "change of the slope there", "N s/m"},
+    {"exponential_velocity_m_per_s", "speed of the exponential part", "m/s"},
+    {"exponential_force_N", "force of the exponential part", "N"},
+    {"exponent", "exponent of the speed", "1"},
+    {"force_at_1_m_per_s_N", "force of the power at 1 m/s", "N"},
+    {"sliding_curve", "sliding curve", "1"},
+}};
+
+Label label_of(const std::string& name) {
+  const auto found = std::find_if(labels.begin(), labels.end(), [&](const auto& l) { return l.name == name; });
+  return found == labels.end() ? Label{name, name, "1"} : *found;
+}
+
+json parameter_json(const std::string& name, double value, const Interval& ci, const std::string& how) {
+  const auto label = label_of(name);
+  const auto unit = engineering_unit(label.unit, std::max({std::abs(value), std::abs(ci.low), std::abs(ci.high)}));
+  // As many digits as the interval leaves: two of its half width.
+  const double half = 0.5 * (ci.high - ci.low) * unit.factor;
+  const int digits = half > 0.0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(half))), 0, 6) : 3;
+  const auto number = [&](double v) { return fmt::format("{:.{}f}", v * unit.factor, digits); };
+  return {{"label", label.text},   {"unit", typeset(unit.unit)}, {"value", number(value)},
+          {"low", number(ci.low)}, {"high", number(ci.high)},    {"how", typeset(how)}};
+}
+
+json curve_json(const Identification& result) {
+  if (!result.curve) return nullptr;
+  const auto& curve = *result.curve;
+  json speed = json::array(), force = json::array(), low = json::array(), high = json::array();
+  for (const auto& p : curve.points) {
+    speed.push_back(p.speed * 1e3);
+    force.push_back(p.force);
+    low.push_back(p.low);
+    high.push_back(p.high);
+  }
+  json measured = json::array();
+  for (const auto& p : curve.measured) measured.push_back({p.speed * 1e3, p.force, 1.96 * p.standard_error});
+  json errors = json::array(), parameters = json::array();
+  for (const auto& e : curve.errors) errors.push_back({{"curve", e.curve}, {"rms", fmt::format("{:.3g}", e.held_out)}});
+  for (const auto& p : curve.parameters) parameters.push_back(parameter_json(p.name, p.value, p.interval(), ""));
+  return {{"curve", curve.curve}, {"speed", speed},       {"force", force},   {"low", low},
+          {"high", high},         {"measured", measured}, {"errors", errors}, {"parameters", parameters}};
+}
+
+json residuals_json(const Identification& result) {
+  json logs = json::array();
+  for (const auto& log : result.residuals) {
+    const auto kept = select_extremes(log.time, log.residual, rows_per_log);
+    logs.push_back({{"name", log.source},
+                    {"time", packed(log.time, kept)},
+                    {"speed", packed(log.speed, kept, 1e3)},
+                    {"residual", packed(log.residual, kept)}});
+  }
+  return logs;
+}
+
+json initial_json(const InitialValues& initial) {
+  json rows = json::array();
+  const auto add = [&](const char* text, const std::optional<double>& value, const char* unit) {
+    if (value) rows.push_back({{"label", text}, {"value", fmt::format("{:.4g}", *value)}, {"unit", unit}});
+  };
+  add("Coulomb friction, from the steps at reversals", initial.coulomb, "N");
+  add("viscous friction, from constant speeds", initial.viscous, "N s/m");
+  add("mass, from acceleration", initial.mass, "kg");
+  return rows;
+}
+
+std::string verdict_of(const Identification& result) {
+  std::string text = fmt::format("{} of {} parameters determined", result.parameters.size(),
+                                 result.parameters.size() + result.not_determined.size());
+  if (result.force_rms > 0.0)
+    text += fmt::format("; the fit leaves {:.3g} N of {:.3g} N rms", result.residual_rms, result.force_rms);
+  return text + ".";
+}
+
+}  // namespace
+
+std::string identification_report_html(const IdentificationReport& report) {
+  const auto& result = report.result;
+  json parameters = json::array(), open = json::array();
+  for (const auto& p : result.parameters) parameters.push_back(parameter_json(p.name, p.value, p.ci95, p.how));
+  for (const auto& n : result.not_determined)
+    open.push_back({{"label", label_of(n.name).text}, {"why", typeset(n.why)}, {"record", typeset(n.record)}});
+  Conditions conditions;
+  conditions.add("Axis", result.axis);
+  std::vector<std::string> names;
+  for (const auto& source : result.sources) names.push_back(std::filesystem::path(source).filename().string());
+  conditions.add("Logs", fmt::format("{}", fmt::join(names, ", ")));
+  conditions.add("Samples", fmt::format("{}", result.samples));
+  const json data{{"schema", "stiction.identification-report/1"},
+                  {"conditions", conditions.json()},
+                  {"parameters", parameters},
+                  {"open", open},
+                  {"curve", curve_json(result)},
+                  {"residuals", residuals_json(result)},
+                  {"initial", initial_json(result.initial)},
+                  {"machine", machine_json(report.machine)}};
+  return report_page({"Identification: " + report.machine.name, report.command, report.version},
+                     assets::identification_html(),
+                     {{"verdict", escape_html(verdict_of(result))}, {"method", escape_html(typeset(result.method))}},
+                     data, {assets::identification_js()});
+}
+
+}  // namespace stiction::host

@@ -1,0 +1,82 @@
+// Fits to records without noise, and to what they must notice.
+#include "host/identify/friction_fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include "host/identify/identification.hpp"
+#include "tests/host/identify/campaign.hpp"
+
+namespace stiction::host {
+namespace {
+
+std::vector<Log> records(const sim::Machine& machine) {
+  std::vector<Log> logs;
+  for (const auto& trajectory : test::commissioning()) logs.push_back(test::simulated(machine, trajectory));
+  return logs;
+}
+
+TEST(FrictionFit, without_noise_gives_the_parameters_of_the_simulated_axis) {
+  const auto machine = test::bench_machine("lugre");
+  const auto result = identify_logs(records(machine), machine.axes.front(), {"lugre", Amperes::amplitude, {}});
+  for (const auto& truth : test::truths_of(machine.axes.front())) {
+    if (truth.value == 0.0) continue;
+    const auto* found = result.find(truth.name);
+    ASSERT_NE(found, nullptr) << truth.name;
+    // What is left is the plant's own step: friction acts up to 16 us late against the recorded force.
+    EXPECT_NEAR(found->value / truth.value, 1.0, truth.name == "damping_ratio" ? 1e-2 : 1e-3) << truth.name;
+  }
+}
+
+TEST(FrictionFit, finds_stribecks_fall_of_the_friction) {
+  auto machine = test::bench_machine("lugre");
+  auto& lugre = std::get<sim::LuGre::Parameters>(machine.axes.front().friction.models.at("lugre"));
+  lugre.static_ratio = 1.4;
+  lugre.stribeck_velocity = 5e-3;
+  std::vector<Log> logs = records(machine);
+  logs.push_back(test::simulated(machine, test::constant_speeds({1e-3, 2e-3, 4e-3, 7e-3, 12e-3}, 0.3, 0.5e-3)));
+  std::vector<Log> noisy;
+  for (std::size_t k = 0; k < logs.size(); ++k) noisy.push_back(test::with_noise(logs[k], {}, 40 + k));
+  const auto result = identify_logs(noisy, machine.axes.front(), {"lugre", Amperes::amplitude, {}});
+  ASSERT_NE(result.find("static_ratio"), nullptr);
+  ASSERT_NE(result.find("stribeck_velocity_m_per_s"), nullptr);
+  // 1 % of current noise is 8 N a sample, 9 % of the Coulomb level.
+  EXPECT_NEAR(result.find("static_ratio")->value, 1.4, 0.03);
+  EXPECT_NEAR(result.find("stribeck_velocity_m_per_s")->value, 5e-3, 0.5e-3);
+  EXPECT_NEAR(result.find("coulomb_N")->value, 90.0, 1.0);
+}
+
+TEST(FrictionFit, maxwell_slip_elements_sum_to_the_coulomb_level) {
+  const auto machine = test::bench_machine("maxwell_slip");
+  const auto result = identify_logs(records(machine), machine.axes.front(), {"lugre", Amperes::amplitude, {}});
+  ASSERT_FALSE(result.elements.empty());
+  double level = 0.0, displacement = 0.0;
+  for (const auto& element : result.elements) level += element.level;
+  // The fit's slip distances are a grid, those of the truth lie between.
+  EXPECT_NEAR(level, 90.0, 0.9);
+  // Tab 5.3 B, scaled by 0.9: 54 N at 6.3 um.
+  double force = 0.0;
+  displacement = 6.3e-6;
+  for (const auto& element : result.elements) force += std::min(element.stiffness * displacement, element.level);
+  EXPECT_NEAR(force, 54.0, 3.0);
+}
+
+TEST(FrictionFit, a_log_read_in_rms_is_the_amplitudes_root_2) {
+  const auto machine = test::bench_machine("lugre");
+  auto logs = records(machine);
+  for (auto& log : logs)
+    for (double& i : log.axes.front().i) i /= std::numbers::sqrt2;
+  const auto result = identify_logs(logs, machine.axes.front(), {"lugre", Amperes::rms, {}});
+  EXPECT_NEAR(result.find("mass_kg")->value, 225.0, 0.3);
+}
+
+TEST(InitialValues, are_within_a_third_of_the_truth) {
+  const auto machine = test::bench_machine("lugre");
+  const auto result = identify_logs(records(machine), machine.axes.front(), {"lugre", Amperes::amplitude, {}});
+  // By hand, at a reversal: viscous friction and the acceleration's part are in the step.
+  EXPECT_NEAR(result.initial.coulomb.value_or(0.0), 90.0, 30.0);
+  EXPECT_NEAR(result.initial.viscous.value_or(0.0), 500.0, 100.0);
+  EXPECT_NEAR(result.initial.mass.value_or(0.0), 225.0, 10.0);
+}
+
+}  // namespace
+}  // namespace stiction::host

@@ -1,0 +1,42 @@
+// Logs of the simulated cross table's X axis, as someone who commissions it would record them: constant speeds both
+// ways, a circle, small reversals. The closed loop runs once (laws in double precision); the noise of encoder and
+// current is added to the recorded signals, not inside the loop, so that one run serves any number of seeds.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "host/log/log.hpp"
+#include "sim/experiment/set_point.hpp"
+#include "sim/machine/machine.hpp"
+
+namespace stiction::test {
+
+struct Trajectory {
+  std::string name;
+  double duration = 0.0;                        // s
+  std::function<sim::AxisSetPoint(double)> at;  // rest at t = 0
+};
+
+// Jerk-limited moves there and back at each speed (m/s), `cruise` (s) long at least and at least `shortest` m.
+Trajectory constant_speeds(const std::vector<double>& speeds, double cruise, double shortest);
+// X of a circle of radius 90 mm at the feed (m/s), begun with the standard jerk-limited start.
+Trajectory circle(double feed, double turns);
+// A cosine of two periods at each amplitude (m), half of the stroke, at `frequency` (Hz).
+Trajectory small_reversals(const std::vector<double>& amplitudes, double frequency);
+// The three that the campaign records: 24 s together.
+std::vector<Trajectory> commissioning();
+
+// Runs the X axis of `machine` in closed loop and records t, x_set, x, i (A) at `period` (s), a multiple of the fast
+// period. Position and current are those of the plant, without noise.
+host::Log simulated(const sim::Machine& machine, const Trajectory& trajectory, double period = 1e-3);
+
+struct Noise {
+  double position = 5e-9;  // m rms, and the encoder's increment
+  double current = 0.01;   // rms, of the largest current of the log
+};
+host::Log with_noise(const host::Log& log, const Noise& noise, std::uint64_t seed);
+
+}  // namespace stiction::test

@@ -1,0 +1,25 @@
+// Opens the report of an identification in a browser and checks what a reader would see: every parameter with its
+// interval, what was not determined, the curve with its band and points, the residual of every log.
+// usage: node open_identification.mjs FILE.html [--screenshot FILE.png] [--width PIXELS] [--pdf FILE.pdf]
+// Browser and exit codes: opened_page.mjs.
+import { expect, openPage, traces } from './opened_page.mjs';
+
+await openPage('open_identification', '', async (page, data) => {
+  const rows = id => page.locator(`#${id} tbody tr`).count();
+  expect(await rows('parameters') === data.parameters.length, 'not every parameter stands in its table');
+  for (const row of data.parameters)
+    expect(Number(row.low) <= Number(row.value) && Number(row.value) <= Number(row.high), `${row.label} lies outside its interval`);
+  if (data.open.length) expect(await rows('open') === data.open.length, 'not everything that is open stands in its table');
+  if (data.curve) {
+    const drawn = await traces(page, 'characteristic');
+    const line = drawn.find(trace => trace.name === `${data.curve.curve} curve`);
+    expect(line && line.y.length === data.curve.force.length && line.y.every(Number.isFinite), 'the sliding curve is not drawn');
+    const points = drawn.filter(trace => trace.name.startsWith('measured')).reduce((sum, trace) => sum + trace.y.length, 0);
+    expect(points === data.curve.measured.length && points > 0, `${points} measured points are drawn, the data have ${data.curve.measured.length}`);
+    expect(data.curve.force.every((force, i) => data.curve.low[i] <= force && force <= data.curve.high[i]), 'the curve leaves its band');
+  }
+  for (const i of data.residuals.keys()) {
+    const [residual] = await traces(page, `residual-${i}`);
+    expect(residual && residual.y.length > 10 && residual.y.every(Number.isFinite), `the residual of ${data.residuals[i].name} is not drawn`);
+  }
+});
