@@ -50,11 +50,11 @@ Eigen::Vector3d linear_part(const std::vector<SteadyPoint>& points, double rise_
 
 }  // namespace
 
-double SlidingCurve::at(double velocity) const {
+double SteadyCurve::at(double velocity) const {
   return creeping - rise * std::expm1(-velocity / rise_velocity) + viscous * velocity;
 }
 
-SlidingCurve fit_sliding_curve(const std::vector<SteadyPoint>& points) {
+SteadyCurve fit_steady_curve(const std::vector<SteadyPoint>& points) {
   if (points.size() < 5)
     throw MissingRows(fmt::format(
         "steady friction: found {} speeds; expected at least 5, from creeping to the highest speed", points.size()));
@@ -67,7 +67,7 @@ SlidingCurve fit_sliding_curve(const std::vector<SteadyPoint>& points) {
     return cost;
   });
   const auto solution = linear_part(points, rise_velocity, &squares);
-  SlidingCurve curve{solution[0], solution[1], rise_velocity, solution[2],
+  SteadyCurve curve{solution[0], solution[1], rise_velocity, solution[2],
                      std::sqrt(squares / static_cast<double>(points.size()))};
   if (!(curve.creeping > 0.0 && curve.rise >= 0.0 && curve.viscous >= 0.0))
     throw MissingRows(
@@ -110,7 +110,7 @@ PreslidingCurve presliding_curve(const std::vector<PreslidingPoint>& points) {
   return curve;
 }
 
-sim::MaxwellSlip::Parameters friction_elements(const SlidingCurve& sliding, const PreslidingCurve& presliding,
+sim::MaxwellSlip::Parameters friction_elements(const SteadyCurve& sliding, const PreslidingCurve& presliding,
                                                double force, double displacement) {
   // Element i slips at point i; its stiffness is the fall of the curve's slope there.
   const double to_force = force * sliding.creeping / presliding.coulomb();

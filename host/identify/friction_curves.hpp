@@ -21,7 +21,7 @@ struct SteadyPoint {
 };
 
 // F(v) = creeping + rise (1 - exp(-v / rise_velocity)) + viscous v for v > 0.
-struct SlidingCurve {
+struct SteadyCurve {
   double creeping = 0.0;       // N, as v goes to 0
   double rise = 0.0;           // N
   double rise_velocity = 0.0;  // m/s
@@ -33,7 +33,7 @@ struct SlidingCurve {
 
 // Least squares; linear in all but rise_velocity, which is searched between the lowest and the highest velocity. Throws
 // MissingRows for fewer than five points or a curve that falls.
-SlidingCurve fit_sliding_curve(const std::vector<SteadyPoint>& points);
+SteadyCurve fit_steady_curve(const std::vector<SteadyPoint>& points);
 
 // A carriage that coasted to rest with no force on it, then loaded with `force`.
 struct PreslidingPoint {
@@ -58,7 +58,7 @@ PreslidingCurve presliding_curve(const std::vector<PreslidingPoint>& points);
 
 // Elements with the shape of the presliding curve and the friction of the sliding curve; `force` scales all friction,
 // `displacement` all displacements. The creeping friction takes the place of the presliding curve's Coulomb friction.
-sim::MaxwellSlip::Parameters friction_elements(const SlidingCurve& sliding, const PreslidingCurve& presliding,
+sim::MaxwellSlip::Parameters friction_elements(const SteadyCurve& sliding, const PreslidingCurve& presliding,
                                                double force, double displacement);
 
 }  // namespace stiction::host

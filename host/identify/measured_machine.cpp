@@ -25,7 +25,7 @@ sim::CircleRun circle(const sim::Machine& machine, double feed) {
 class Calibration {
  public:
   Calibration(const sim::Machine& machine, const PermittedRows& rows)
-      : machine_(machine), rows_(rows), result_{fit_sliding_curve(rows.steady), presliding_curve(rows.presliding), {}} {
+      : machine_(machine), rows_(rows), result_{fit_steady_curve(rows.steady), presliding_curve(rows.presliding), {}} {
     machine_.circle_references.clear();  // no row but those permitted can take part
     for (const auto& axis : machine.axes) result_.axes.push_back({axis.name, 1.0, 1.0, 0.0, 0.0, {}});
   }

@@ -34,7 +34,7 @@ struct CalibratedAxis {
 };
 
 struct MeasuredMachine {
-  SlidingCurve sliding;
+  SteadyCurve sliding;
   PreslidingCurve presliding;
   std::vector<CalibratedAxis> axes;
 };

@@ -101,7 +101,7 @@ sim::Chart over_feed(const sim::Machine& machine, const MeasuredMachineStudy& st
   return chart;
 }
 
-sim::Chart sliding_chart(const PermittedRows& rows, const SlidingCurve& curve) {
+sim::Chart sliding_chart(const PermittedRows& rows, const SteadyCurve& curve) {
   sim::Chart chart{
       "Friction over speed",
       "speed, mm/s",

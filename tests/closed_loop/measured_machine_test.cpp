@@ -99,10 +99,10 @@ TEST(MeasuredMachine, KeepsItsCurrentAtStandstillAndRestartsSmoothlyInTheSameDir
 }
 
 TEST(FrictionCurves, SlidingCurveIsFoundAgain) {
-  const SlidingCurve truth{70.0, 60.0, 0.02, 300.0, 0.0};
+  const SteadyCurve truth{70.0, 60.0, 0.02, 300.0, 0.0};
   std::vector<SteadyPoint> points;
   for (const double v : {3e-4, 2e-3, 8e-3, 0.02, 0.05, 0.1, 0.2, 0.4}) points.push_back({v, truth.at(v)});
-  const auto fit = fit_sliding_curve(points);
+  const auto fit = fit_steady_curve(points);
   EXPECT_NEAR(fit.creeping, 70.0, 1e-4);
   EXPECT_NEAR(fit.rise, 60.0, 1e-4);
   EXPECT_NEAR(fit.rise_velocity, 0.02, 1e-7);
@@ -110,8 +110,8 @@ TEST(FrictionCurves, SlidingCurveIsFoundAgain) {
 }
 
 TEST(FrictionCurves, WhatTheDataDoNotDetermineIsSaid) {
-  EXPECT_THROW(fit_sliding_curve({{0.1, 90.0}, {0.2, 95.0}}), MissingRows);
-  EXPECT_THROW(fit_sliding_curve({{0.1, 90.0}, {0.2, 80.0}, {0.3, 70.0}, {0.4, 60.0}, {0.5, 50.0}}), MissingRows);
+  EXPECT_THROW(fit_steady_curve({{0.1, 90.0}, {0.2, 95.0}}), MissingRows);
+  EXPECT_THROW(fit_steady_curve({{0.1, 90.0}, {0.2, 80.0}, {0.3, 70.0}, {0.4, 60.0}, {0.5, 50.0}}), MissingRows);
   EXPECT_THROW(presliding_curve({{true, 20.0, 1e-6}, {true, 40.0, 2e-6}, {false, 20.0, 1e-6}}), MissingRows);
   EXPECT_THROW(presliding_curve({{false, 20.0, 1e-6}, {false, 40.0, 1.5e-6}}), MissingRows) << "stiffens";
   auto machine = cross_table();
@@ -133,7 +133,7 @@ TEST(FrictionElements, FirstLoadingIsTheMeasuredOne) {
 }
 
 TEST(FrictionElements, CarryTheSlidingCurve) {
-  const SlidingCurve sliding{70.0, 60.0, 0.02, 300.0, 0.0};
+  const SteadyCurve sliding{70.0, 60.0, 0.02, 300.0, 0.0};
   const auto p = friction_elements(sliding, {{1e-6, 10e-6}, {60.0, 110.0}}, 2.0, 5.0);
   EXPECT_NEAR(std::accumulate(p.level.begin(), p.level.end(), 0.0), 140.0, 1e-9);
   EXPECT_EQ(p.rise, 120.0);
