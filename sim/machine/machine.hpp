@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/plant/effects/effect.hpp"
 #include "sim/plant/feed/feed_drive.hpp"
 #include "sim/plant/friction/friction.hpp"
 
@@ -112,6 +113,7 @@ struct Axis {
   Feedforward feedforward;
   Supervision supervision;
   Friction friction;
+  std::vector<Effect> effects;  // of the plant alone: the drive's configuration knows nothing of them
 };
 
 // A row of a published or measured circle that reports stand beside the simulation. SI units.

@@ -1,0 +1,76 @@
+// What a diagnosis found: causes with parameters and evidence, what was tried and rejected, what stays unexplained. The
+// report and verdict.json show it; they compute nothing.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/experiment/experiment_result.hpp"
+#include "sim/plant/effects/effect.hpp"
+
+namespace stiction::host {
+
+// A parameter of an effect under its name in verdict.json, with its SI unit as suffix ("pitch_m"). Lists have several
+// values.
+struct EffectParameter {
+  std::string name;
+  std::vector<double> values;
+  std::vector<double> standard_errors;  // one a value; empty: not known
+};
+
+struct ConfusedWith {
+  std::string effect;
+  std::string separate_by;  // the experiment that tells them apart
+};
+
+// Ratios of the extended to the baseline simulation on data that was not used.
+struct HoldoutGain {
+  double force_rms_ratio = 1.0;
+  std::optional<double> position_error_rms_ratio;  // none: no set-points to run in closed loop
+  std::array<double, 2> ci95{1.0, 1.0};            // of force_rms_ratio
+};
+
+struct Finding {
+  std::string axis;
+  sim::Effect effect;  // as it goes into the extended machine file
+  std::vector<EffectParameter> parameters;
+  double explains = 0.0;  // share of the residual's variance that it takes away, given the other findings
+  HoldoutGain holdout;
+  double p_value = 1.0;
+  std::vector<ConfusedWith> confused_with;
+  std::string evidence;              // sentences for readers
+  std::optional<double> part_error;  // m, what it does to the part: peak change of the position error by it
+  std::vector<sim::Chart> charts;
+};
+
+struct Rejected {
+  std::string effect;
+  std::string why;
+};
+
+// What is left over, by what it looks like.
+struct Unexplained {
+  double share = 0.0;                    // of the baseline's residual variance that is neither explained nor noise
+  std::optional<std::string> signature;  // none: nothing that repeats
+};
+
+struct ResidualFigures {
+  double force_rms = 0.0;                    // N
+  std::optional<double> position_error_rms;  // m, measured against simulated; none without set-points
+};
+
+struct Verdict {
+  std::string machine;
+  std::vector<std::string> logs, holdout;
+  bool holdout_is_a_part = false;      // no held-out log was given: the last third of each log stands in for one
+  ResidualFigures baseline, extended;  // on the held-out data
+  std::vector<Finding> findings;       // by what each explains, the largest first
+  std::vector<Rejected> rejected;
+  Unexplained unexplained;
+  std::vector<std::string> notes;        // on the data: suspicions, what to record next
+  std::vector<sim::Chart> before_after;  // measured against simulated, before and after; residual by position, speed..
+};
+
+}  // namespace stiction::host
