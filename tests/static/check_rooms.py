@@ -40,6 +40,7 @@ ROOMS = {
         "sim": "keys are described by sim/parameter.hpp",
         "sim/plant/friction": "and those of friction by the models",
         "sim/plant/feed": "a machine may be a feed drive",
+        "sim/plant/effects": "and hold what diagnosis adds to its plant",
     },
     "sim/plant": {
         "sim": "the mathematics that its parts share",

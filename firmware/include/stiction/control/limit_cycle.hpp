@@ -9,9 +9,9 @@ namespace stiction {
 
 struct LimitCycle {
   struct State {
-    std::int32_t side = 0;      // the limit that was touched last, -1 or 1
-    std::uint32_t changes = 0;  // from one limit to the other in this window
-    std::uint32_t ticks = 0;    // of this window
+    std::int32_t side = 0;        // the limit that was touched last, -1 or 1
+    std::uint32_t changes = 0;    // from one limit to the other in this window
+    std::int32_t ticks_left = 0;  // of this window
   };
 
   // Changes within a window that make a fault: no machine motion reverses its full force at 48 Hz.
@@ -19,8 +19,8 @@ struct LimitCycle {
 
   // `side`: -1, 0 or 1, the limit that holds the output back in this tick. True when the window has too many changes.
   static constexpr bool step(State& state, int side, std::uint32_t window_ticks) {
-    if (++state.ticks >= window_ticks) {
-      state.ticks = 0;
+    if (--state.ticks_left < 0) {
+      state.ticks_left = static_cast<std::int32_t>(window_ticks) - 1;
       state.changes = 0;
     }
     state.changes += side * state.side < 0;
