@@ -30,12 +30,14 @@ int own_decimals(double value) {
   return most_decimals;
 }
 
-// The tolerance shows up to a third of its size, the expected value as its source prints it, at most one digit further.
+// The tolerance shows up to a third of its size, the expected value as its source prints it, at most one digit further;
+// so does a tolerance that has no more digits than that.
 int decimals_of(const sim::Expectation& expected) {
   const int own = own_decimals(expected.value);
   if (expected.tolerance <= 0.0) return own;
-  const int needed = decimals_for(expected.tolerance / 3.0, 1);
-  return std::clamp(own, needed, std::min(needed + 1, most_decimals));
+  const int needed = decimals_for(expected.tolerance / 3.0, 1), most = std::min(needed + 1, most_decimals);
+  const int of_tolerance = own_decimals(expected.tolerance);
+  return std::clamp(of_tolerance <= most ? std::max(own, of_tolerance) : own, needed, most);
 }
 
 struct Group {
