@@ -17,6 +17,7 @@ struct Bound {
 };
 constexpr std::array<Bound, 2> bounds{{{"X", 0.07, 0.04}, {"Y", 0.07, 0.08}}};
 constexpr double mean_bound = 0.055, mean_bound_with_path = 0.065, kept_bound = 0.8, restart_bound = 0.2;
+constexpr double kept_room = 50.0;  // % above the least that is to be kept
 constexpr const char* source = "figure to reach";
 
 // A share in percent that is to be at most `bound`.
@@ -67,9 +68,9 @@ void add_scores(const MeasuredMachineStudy& study, sim::ExperimentResult& result
       {"held_out_mean", "%", "mean of all quantities, held-out feeds", mean * 100.0, at_most(mean_bound)});
   result.figures.push_back({"held_out_mean_beside_the_path", "%", "the same, where the path \"L\" is to come out too",
                             mean * 100.0, at_most(mean_bound_with_path)});
-  result.figures.push_back({"standstill_current_kept", "%",
-                            "path \"L\": standstill current of Y of its creeping friction, at least 80 %",
-                            study.kept_share() * 100.0, sim::Expectation{130.0, 50.0, source}});
+  result.figures.push_back(
+      {"standstill_current_kept", "%", "path \"L\": standstill current of Y of its creeping friction, at least 80 %",
+       study.kept_share() * 100.0, sim::Expectation{kept_bound * 100.0 + kept_room, kept_room, source}});
   result.figures.push_back({"same_direction_restart", "%",
                             "path \"L\": error of the restart in the same direction, of the opposite one",
                             study.restart_share() * 100.0, at_most(restart_bound)});
