@@ -98,7 +98,22 @@ class MachineReader {
     check_friction(table, path, axis.friction);
     check_dead_time(table, path, axis.inverter.dead_time);
     check_notch(table, path, axis.notch);
+    check_effects(table, path, axis);
     return axis;
+  }
+
+  // What the effects say of their values together and beside the friction model in use.
+  void check_effects(const toml::table& table, const std::string& path, const Axis& axis) const {
+    try {
+      plant_axis(axis);
+    } catch (const EffectError& error) {
+      const auto is_named = [&](const Effect& effect) { return effect.name == error.effect; };
+      const auto last = std::find_if(axis.effects.rbegin(), axis.effects.rend(), is_named);
+      const auto index = static_cast<std::size_t>(axis.effects.rend() - last) - 1;
+      document_.fail(table.get(effect_key)->as_array()->get(index)->source(),
+                     fmt::format("{}[{}]", join_key(path, effect_key), index),
+                     fmt::format("{} with {}", error.effect, error.found), error.expected);
+    }
   }
 
   void check_motor(const toml::table& table, const std::string& path, MotorModel model) const {
