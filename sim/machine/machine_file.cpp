@@ -289,6 +289,8 @@ class MachineReader {
   Machine machine_;
 };
 
+}  // namespace
+
 std::string content_of(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::error_code error;
@@ -298,28 +300,29 @@ std::string content_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-}  // namespace
-
-Machine read_machine(const std::filesystem::path& file, const ReadOptions& options) {
-  const std::string text = content_of(file);
-  const Document as_it_stands(file.string(), text);
+Machine parse_machine(const std::string& file, const std::string& text, const ReadOptions& options) {
+  const Document as_it_stands(file, text);
   Machine machine = MachineReader(as_it_stands).read();
   if (const toml::node* experiments = as_it_stands.root().get("experiment")) {
     for (auto&& [name, overrides] : *experiments->as_table()) {
-      Document document(file.string(), text);
+      Document document(file, text);
       document.apply_experiment(name.str());
       Machine overridden = MachineReader(document).read();
       if (name.str() == options.experiment) machine = std::move(overridden);
     }
   }
   if (!options.set.empty()) {
-    Document document(file.string(), text);
+    Document document(file, text);
     document.apply_experiment(options.experiment);
     for (const std::string& assignment : options.set) document.apply_set(assignment);
     machine = MachineReader(document).read();
   }
-  machine.id = file.stem().string();
+  machine.id = std::filesystem::path(file).stem().string();
   return machine;
+}
+
+Machine read_machine(const std::filesystem::path& file, const ReadOptions& options) {
+  return parse_machine(file.string(), content_of(file), options);
 }
 
 }  // namespace stiction::sim

@@ -25,9 +25,8 @@ std::vector<EffectAlias> aliases_of(std::string_view name) {
 void check_names(const Axis& axis) {
   std::vector<std::string_view> seen;
   for (const Effect& effect : axis.effects) {
-    const EffectKind* kind = find_effect_kind(effect.name);
-    if (kind == nullptr) throw EffectError(effect.name, "no such effect", "a known one");
-    if (!kind->several && std::find(seen.begin(), seen.end(), effect.name) != seen.end())
+    check_effect(effect);
+    if (!find_effect_kind(effect.name)->several && std::find(seen.begin(), seen.end(), effect.name) != seen.end())
       throw EffectError(effect.name, "it twice on one axis", "it once");
     seen.push_back(effect.name);
   }
@@ -55,6 +54,16 @@ const EffectKind* find_effect_kind(std::string_view name) {
   return found == kinds.end() ? nullptr : &*found;
 }
 
+void check_effect(const Effect& effect) {
+  bool known = false;
+  for_each_effect([&]<class E>() {
+    if (E::name != effect.name) return;
+    known = true;
+    parameters_of<E>(effect);
+  });
+  if (!known) throw EffectError(effect.name, "no such effect", "a known one");
+}
+
 std::string unit_suffix(std::string_view unit) {
   if (unit == "1") return {};
   std::string suffix = unit.starts_with("1/") ? "" : "_";
@@ -75,8 +84,6 @@ Axis plant_axis(const Axis& axis) {
   for_each_effect([&]<class E>() {
     if constexpr (requires(const typename E::Parameters& p) { E::change(p, plant); })
       for (const auto& parameters : effects_of<E>(axis)) E::change(parameters, plant);
-    else
-      effects_of<E>(axis);  // for its checks
   });
   return plant;
 }

@@ -50,6 +50,9 @@ std::span<const EffectKind> effect_kinds();
 // nullptr for a name that is none.
 const EffectKind* find_effect_kind(std::string_view name);
 
+// Throws EffectError for an unknown name and for values that parameters_of() refuses.
+void check_effect(const Effect& effect);
+
 // "N s/m" as the suffix of a name in verdict.json: "_N_s_per_m"; empty for "1".
 std::string unit_suffix(std::string_view unit);
 
