@@ -82,7 +82,10 @@ class ClosedLoop {
       first_row_.push_back(rows_);
       rows_ += filters_.back().rows();
     }
-    if (const auto* constant = result.find("constant_force_N")) constant_ = constant->value;
+    if (const auto* constant = result.find("constant_force_N")) {
+      constant_ = constant->value;  // takes the place of the file's
+      std::erase_if(machine_.axes.front().effects, [](const auto& effect) { return effect.name == "constant_force"; });
+    }
   }
 
   std::size_t rows() const { return rows_; }

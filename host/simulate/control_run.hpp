@@ -11,6 +11,7 @@
 
 #include "hal/control_loop.hpp"
 #include "hal/simulated/simulated_backend.hpp"
+#include "host/simulate/late_current.hpp"
 #include "sim/control/axis_configuration.hpp"
 #include "sim/experiment/set_point.hpp"
 
@@ -31,7 +32,7 @@ class FaultTripped : public std::runtime_error {
   double time;  // s
 };
 
-// Called for every tick with its time in ns and the signals of every axis.
+// Called for every tick with its time in ns and the signals of every axis, the currents as late as they are recorded.
 template <class S>
 using TraceSink = std::function<void(std::int64_t, std::span<const AxisSignals<S>>)>;
 
@@ -45,7 +46,8 @@ class ControlRun {
         configs_(configure(machine)),
         loop_(backend_, std::span<const AxisConfig<S>>(configs_),
               Ticker(sim::fast_period_ns(machine.timing), static_cast<std::uint32_t>(sim::slow_ratio(machine.timing)))),
-        set_(machine.axes.size()) {}
+        set_(machine.axes.size()),
+        late_(machine) {}
   ControlRun(const ControlRun&) = delete;
   ControlRun& operator=(const ControlRun&) = delete;
   ~ControlRun() = default;
@@ -59,7 +61,7 @@ class ControlRun {
     for (std::size_t i = 0; i < set_.size(); ++i) set_[i] = sim::to_set_point<S>(set_points[i]);
     const std::int64_t now_ns = loop_.now_ns();
     loop_.tick(set_);
-    if (trace) trace(now_ns, loop_.signals());
+    if (trace) late_.record(now_ns, loop_.signals(), trace);
     if (loop_.faulted()) throw_fault();
   }
 
@@ -85,6 +87,7 @@ class ControlRun {
   std::vector<AxisConfig<S>> configs_;
   hal::ControlLoop<hal::SimulatedBackend<S>> loop_;
   std::vector<SetPoint<S>> set_;
+  LateCurrent<S> late_;
 };
 
 }  // namespace stiction::host

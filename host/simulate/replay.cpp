@@ -9,6 +9,7 @@
 
 #include "host/log/set_points.hpp"
 #include "sim/control/double_signals.hpp"
+#include "sim/plant/effects/effects.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
 namespace stiction::host {
@@ -83,49 +84,73 @@ Sample between(const Sample& a, const Sample& b, double s) {
   return {mix(a.x, b.x), mix(a.v, b.v), mix(a.i, b.i), mix(a.i_set, b.i_set), mix(a.force, b.force)};
 }
 
-// Collects the simulated values at the log's times.
+// Collects the simulated values at the log's times; currents at the times at which the machine's record has them.
 class Sampler {
  public:
   Sampler(const Log& log, const std::vector<std::size_t>& axes, const sim::Machine& machine)
-      : times_(log.t), axes_(axes), machine_(machine), before_(log.axes.size()), now_(log.axes.size()) {
+      : times_(log.t), machine_(machine), before_(log.axes.size()), now_(log.axes.size()) {
     out_.source = log.source;
     out_.t = log.t;
     out_.period = log.period;
     for (const auto& axis : log.axes) out_.axes.emplace_back().axis = axis.axis;
+    for (const std::size_t axis : axes) places_.push_back({axis, sim::record_delay(machine.axes[axis])});
   }
 
-  bool done() const { return next_ == times_.size(); }
+  bool done() const {
+    return std::all_of(places_.begin(), places_.end(), [&](const Place& p) {
+      return p.next_motion == times_.size() && p.next_current == times_.size();
+    });
+  }
 
   // The values of the tick at t s; ticks come in order.
   void add(double t, std::vector<Sample> values) {
     before_ = std::exchange(now_, std::move(values));
     const double earlier = std::exchange(time_, t);
-    // Stamps and ticks are multiples of different steps: a nanosecond is none.
-    for (; !done() && times_[next_] <= t + 1e-9; ++next_) {
-      const double s = std::isfinite(earlier) ? std::clamp((times_[next_] - earlier) / (t - earlier), 0.0, 1.0) : 1.0;
-      for (std::size_t k = 0; k < axes_.size(); ++k) keep(k, between(before_[k], now_[k], s));
+    for (std::size_t k = 0; k < places_.size(); ++k) {
+      Place& p = places_[k];
+      take(p.next_motion, 0.0, earlier, [&](double s) { keep_motion(k, between(before_[k], now_[k], s)); });
+      take(p.next_current, p.delay, earlier, [&](double s) { keep_current(k, between(before_[k], now_[k], s)); });
     }
   }
 
   Log finish() { return std::move(out_); }
 
  private:
-  void keep(std::size_t k, const Sample& sample) {
+  struct Place {
+    std::size_t axis;  // of the machine
+    double delay;      // s
+    std::size_t next_motion = 0, next_current = 0;
+  };
+
+  // Calls keep(place between the last two ticks) for every sample that is due; what is recorded early ends with the
+  // log, where the last value stays.
+  template <class Keep>
+  void take(std::size_t& next, double delay, double earlier, Keep&& keep) const {
+    for (; next < times_.size(); ++next) {
+      const double due = std::min(times_[next] - delay, times_.back());
+      // Stamps and ticks are multiples of different steps: a nanosecond is none.
+      if (due > time_ + 1e-9) return;
+      keep(std::isfinite(earlier) ? std::clamp((due - earlier) / (time_ - earlier), 0.0, 1.0) : 1.0);
+    }
+  }
+
+  void keep_motion(std::size_t k, const Sample& sample) {
+    out_.axes[k].x.push_back(sample.x);
+    out_.axes[k].v.push_back(sample.v);
+  }
+  void keep_current(std::size_t k, const Sample& sample) {
     auto& axis = out_.axes[k];
-    const bool force_motor = machine_.axes[axes_[k]].motor.model == sim::MotorModel::force;
-    axis.x.push_back(sample.x);
-    axis.v.push_back(sample.v);
+    const bool force_motor = machine_.axes[places_[k].axis].motor.model == sim::MotorModel::force;
     axis.force.push_back(sample.force);
     (force_motor ? axis.u : axis.i).push_back(force_motor ? sample.i_set : sample.i);
     if (!force_motor) axis.i_set.push_back(sample.i_set);
   }
 
   const std::vector<double>& times_;
-  const std::vector<std::size_t>& axes_;
   const sim::Machine& machine_;
+  std::vector<Place> places_;
   std::vector<Sample> before_, now_;
   double time_ = -std::numeric_limits<double>::infinity();
-  std::size_t next_ = 0;
   Log out_;
 };
 

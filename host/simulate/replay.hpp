@@ -24,7 +24,8 @@ struct ReplaySettings {
 // is off its set-point by more than the following error that the machine allows, the encoder has another zero: its
 // mean distance is added to the simulated position, so that both can be compared (see encoder_offset).
 //
-// Between ticks the simulated values are interpolated linearly. S: FixedSignals or sim::DoubleSignals. Throws LogError
+// Between ticks the simulated values are interpolated linearly. Where the machine's record has the current late (effect
+// time_skew), so are i, u, i_set and force. S: FixedSignals or sim::DoubleSignals. Throws LogError
 // when log and machine do not fit (axes, no x_set, beyond the machine's velocity), FaultTripped,
 // sim::ConfigurationError.
 template <class S>
