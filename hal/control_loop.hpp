@@ -32,10 +32,16 @@ class ControlLoop {
   }
 
   // Controls this tick with one set-point an axis, then waits for the next. A fault of one axis stops all of them.
-  void tick(std::span<const SetPoint<S>> set_points) {
-    for (std::size_t i = 0; i < axes_.size(); ++i)
-      command_[i] = axes_[i].tick(set_points[i], feedback_[i], now_ns_, ticker_.slow(), signals_[i]);
-    if (faulted())
+  // With all it calls inline: the call of the axis alone costs 40 instructions around a tick of 250 in doubles.
+  [[gnu::flatten]] void tick(std::span<const SetPoint<S>> set_points) {
+    bool fault_seen = false;
+    std::size_t i = 0;
+    for (auto& axis : axes_) {
+      command_[i] = axis.tick(set_points[i], feedback_[i], now_ns_, ticker_.slow(), signals_[i]);
+      fault_seen |= axis.fault() != Fault::none;
+      ++i;
+    }
+    if (fault_seen)
       for (auto& command : command_) command = {};
     backend_.write(command_);
     ticker_.advance();

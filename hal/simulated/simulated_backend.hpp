@@ -55,8 +55,7 @@ class SimulatedBackend {
   // What cannot be represented (a plant that ran away to infinity or NaN) reaches the control as a position that is
   // not valid or as a fault input, never as a number.
   void sample(sim::AxisPlant& plant, Feedback<S>& f) const {
-    f.position_valid =
-        sim::convert(plant.read_encoder(), f.position) && sim::convert(plant.encoder_velocity(), f.velocity);
+    f.position_valid = sim::convert({plant.read_encoder(), plant.encoder_velocity()}, f.position, f.velocity);
     f.position_time_ns = now_ns_;
     f.fault = false;
     for (std::size_t k = 0; k < plant.phases(); ++k)

@@ -2,11 +2,13 @@
 // neither can enter the fixed-point side unseen.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <concepts>
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "sim/control/double_signals.hpp"
 #include "stiction/number/fixed.hpp"
@@ -42,6 +44,22 @@ bool convert(double value, T& signal) {
     signal = T::from_bounded_raw(static_cast<std::int64_t>(scaled + std::copysign(0x1.fffffffffffffp-2, scaled)));
   }
   return true;
+}
+
+// Several values at once. False when one of them has no place in its signal; for doubles nothing is written then. Of
+// doubles only the sum is looked at: it is finite only if all of them are, and no quantity here comes near its limit.
+template <class... T>
+bool convert(const std::array<double, sizeof...(T)>& values, T&... signals) {
+  return [&]<std::size_t... i>(std::index_sequence<i...>) {
+    if constexpr ((std::same_as<T, Real> && ...)) {
+      if (!std::isfinite((values[i] + ...))) return false;
+      ((signals.value = values[i]), ...);
+      return true;
+    } else {
+      return (convert(values[i], signals) && ...);
+    }
+  }
+  (std::index_sequence_for<T...>{});
 }
 
 template <class T>

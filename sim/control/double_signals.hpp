@@ -2,6 +2,7 @@
 // range. Tests use it to bound what fixed point costs, host tools where speed counts.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <concepts>
 #include <cstdint>
@@ -33,6 +34,10 @@ struct WholeReal {
   double value = 0.0;
 };
 constexpr Real operator*(WholeReal a, Real b) { return {a.value * b.value}; }
+
+// What rounding leaves of a Real.
+struct NoResidue {};
+constexpr Real operator+(Real a, NoResidue) { return a; }
 
 template <class Out>
 requires std::same_as<Out, Real>
@@ -87,7 +92,7 @@ struct DoubleSignals {
   using AccelerationGain = Real;
   using CurrentSum = Real;
   using FilterCoefficient = Real;
-  using FilterResidue = Real;
+  using FilterResidue = NoResidue;
   using PitchInverse = Real;
   using PeriodInverse = Real;
 
@@ -102,8 +107,9 @@ struct DoubleSignals {
     TickFraction fraction;
   };
   static constexpr Split split(Ticks delay, int highest) {
-    const double bounded = delay.value < 0.0 ? 0.0 : delay.value > highest + 1.0 ? highest + 1.0 : delay.value;
-    const int whole = bounded > highest ? highest : static_cast<int>(bounded);
+    const double positive = delay.value > 0.0 ? delay.value : 0.0;
+    const double bounded = positive < highest + 1.0 ? positive : highest + 1.0;
+    const int whole = std::min(static_cast<int>(bounded), highest);
     return {whole, {bounded - whole}};
   }
 

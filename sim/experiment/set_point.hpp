@@ -17,8 +17,8 @@ struct AxisSetPoint {
 template <class S>
 SetPoint<S> to_set_point(const AxisSetPoint& set) {
   SetPoint<S> signal;
-  signal.valid = convert(set.position, signal.position) && convert(set.velocity, signal.velocity) &&
-                 convert(set.acceleration, signal.acceleration);
+  signal.valid =
+      convert({set.position, set.velocity, set.acceleration}, signal.position, signal.velocity, signal.acceleration);
   if (set.injection != 0.0) signal.valid = convert(set.injection, signal.injection) && signal.valid;
   return signal;
 }
