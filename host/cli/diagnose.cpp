@@ -63,12 +63,12 @@ void run(const DiagnoseCommandOptions& options, const Invocation& invocation) {
   const auto json = verdict_json(verdict);
   if (!options.out.empty()) {
     PendingFolder folder(options.out);
-    std::vector<sim::Effect> effects;
-    for (const auto& finding : verdict.findings) effects.push_back(finding.effect);
+    sim::AxisEffects effects{input.machine.axes[input.axis].name, {}};
+    for (const auto& finding : verdict.findings) effects.effects.push_back(finding.effect);
+    const std::vector additions{effects};
     const std::vector<std::string> comment{"made by: " + invocation.command_line};
     folder.write("extended.toml",
-                 sim::extended_machine(sim::find_machine(options.machine.machine), options.machine.set,
-                                       input.machine.axes[input.axis].name, effects, comment));
+                 sim::extended_machine(sim::find_machine(options.machine.machine), options.machine.set, additions, comment));
     sim::read_machine(folder.path() / "extended.toml");  // what was written must be a machine
     folder.write("verdict.json", json.dump(2) + "\n");
     folder.commit();
