@@ -56,7 +56,7 @@ Eigen::VectorXd expected_force(const LogRows& rows, const sim::Axis& axis) {
 }
 
 Scene scene_of(const sim::Axis& axis, const LogRows& rows, const SignalSettings& settings) {
-  Scene scene{axis, settings, 0.0, 0.0, 0.0, {}};
+  Scene scene{axis, settings, 0.0, excitation_of(rows).reversals, 0.0, 0.0, {}};
   scene.lowest_position = scene.highest_position = rows.motions().front().x.front();
   for (const auto& motion : rows.motions())
     for (std::size_t i = 0; i < motion.x.size(); ++i) {

@@ -58,8 +58,9 @@ host::Log synthetic_log(int trajectory, const Hidden& hidden, double noise_rms, 
   const auto steps = static_cast<int>(duration / fine);
   for (int k = 0; k < steps; ++k) {
     const double t = k * fine, v = speed_at(trajectory, t);
-    const double a = (speed_at(trajectory, t + 0.5 * fine) - speed_at(trajectory, std::max(t - 0.5 * fine, 0.0))) / fine;
-    const double moved = v * fine;
+    const double a =
+        (speed_at(trajectory, t + 0.5 * fine) - speed_at(trajectory, std::max(t - 0.5 * fine, 0.0))) / fine;
+    const double moved = k == 0 ? 0.0 : 0.5 * (v + speed_at(trajectory, t - fine)) * fine;
     x += moved;
     const double sign = moved < 0.0 ? -1.0 : 1.0;
     z = sign + (z - sign) * std::exp(-std::abs(moved) / hidden.contact_length);
