@@ -335,6 +335,8 @@ std::vector<std::size_t> Search::alternatives(const Set& set, std::size_t term) 
 
 // Nonlinear parameters off the grid, by golden section; weights and covariance with them.
 void Search::refine(std::vector<Term>& terms, Eigen::VectorXd& residual) {
+  residual = evidence_.target();
+  if (terms.empty()) return;
   evidence_.truncate(0);
   std::vector<std::vector<Eigen::VectorXd>> groups;
   for (const auto& term : terms)
@@ -430,7 +432,7 @@ void Search::refine(std::vector<Term>& terms, Eigen::VectorXd& residual) {
     for (std::size_t i = 0; i < own.size(); ++i) chosen.push_back(first.back() + static_cast<Eigen::Index>(i));
     at += count;
   }
-  const auto covariance = terms.empty() ? Eigen::MatrixXd() : evidence_.covariance(chosen, all);
+  const auto covariance = evidence_.covariance(chosen, all);
   for (std::size_t k = 0; k < terms.size(); ++k) {
     const auto count = terms[k].weights.size() + (candidates()[terms[k].candidate].nonlinear ? 1 : 0);
     terms[k].covariance = covariance.block(first[k], first[k], count, count);
