@@ -2,6 +2,8 @@
 'use strict';
 
 const hidden = new Set();  // names of series
+// A simulation before and after its machine file was extended, by what the names of its series begin with.
+const ROLES = { before: { colour: '#d9771a' }, 'machine file': { colour: '#d9771a' }, after: { colour: '#0b5fa5' }, extended: { colour: '#0b5fa5' } };
 const VARIANT_DASHES = ['6px 3px', '2px 3px', '9px 3px 2px 3px'];
 
 // ---- series ----
@@ -11,6 +13,8 @@ const seriesStyles = (() => {
   const styles = stylesOf(DATA.series.map(series => series.model || series.name).filter(name => name !== 'measured'));
   const variants = {};
   return Object.fromEntries(DATA.series.map(({ name, model }) => {
+    const role = Object.keys(ROLES).find(each => name.startsWith(each));
+    if (role) return [name, { ...ROLES[role], symbol: 'circle' }];
     if (name === 'measured') return [name, { colour: MEASURED.color, symbol: MEASURED.symbol }];
     if (!model || model === name) return [name, styles[name]];
     const count = variants[model] = (variants[model] || 0) + 1;

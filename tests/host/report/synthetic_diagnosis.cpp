@@ -17,7 +17,7 @@ double ripple(double x) { return 3.1 * std::cos(2.0 * pi * x / pitch) + 0.4 * st
 sim::Chart over_time() {
   std::mt19937 random(1);
   std::normal_distribution<double> noise;
-  sim::Series measured{"measured", {}, {}}, before{"machine file", {}, {}}, after{"extended", {}, {}};
+  sim::Series measured{"measured", {}, {}}, before{"before", {}, {}}, after{"after", {}, {}};
   for (double t = 0.0; t < 3.0; t += 1e-3) {
     const double glitch = 6.0 * std::exp(-std::fmod(t, 0.75) / 0.03) * (std::fmod(t, 1.5) < 0.75 ? 1.0 : -1.0);
     const double wave = 0.5 * std::sin(4.0 * pi * t);
@@ -37,7 +37,7 @@ sim::Chart over_time() {
 sim::Chart over_position() {
   std::mt19937 random(2);
   std::normal_distribution<double> noise;
-  sim::Series before{"machine file", {}, {}, true}, after{"extended", {}, {}, true};
+  sim::Series before{"before", {}, {}, true}, after{"after", {}, {}, true};
   for (int k = 0; k < 1500; ++k) {
     const double x = -100.0 + 200.0 * k / 1500.0;
     before.x.push_back(x), after.x.push_back(x);
@@ -52,7 +52,7 @@ sim::Chart over_position() {
 }
 
 sim::Chart spectrum() {
-  sim::Series before{"machine file", {}, {}}, after{"extended", {}, {}};
+  sim::Series before{"before", {}, {}}, after{"after", {}, {}};
   for (double f = 0.5; f < 100.0; f *= 1.05) {
     before.x.push_back(f), after.x.push_back(f);
     after.y.push_back(0.8 / (1.0 + f / 20.0));
