@@ -23,6 +23,7 @@ void add_replay(CLI::App& simulate, const Invocation& invocation);
 void add_compare(CLI::App& program, const Invocation& invocation);
 void add_machine(CLI::App& program, const Invocation& invocation);
 void add_identify(CLI::App& program, const Invocation& invocation);
+void add_diagnose(CLI::App& program, const Invocation& invocation);
 void add_convert(CLI::App& program);
 void add_inspect(CLI::App& program);
 

@@ -45,6 +45,7 @@ int run(int argc, char** argv) {
   add_compare(program, invocation);
   add_machine(program, invocation);
   add_identify(program, invocation);
+  add_diagnose(program, invocation);
   add_convert(program);
   add_inspect(program);
 

@@ -226,10 +226,7 @@ Refinement refine_in_closed_loop(const std::vector<Log>& logs, const sim::Machin
   cost->Evaluate(&at, after.data(), &jacobian_block);
   const Eigen::MatrixXd jacobian = Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
       jacobian_values.data(), rows, static_cast<Eigen::Index>(factors.size()));
-  FrictionFit blocks;
-  blocks.residual = after;
-  blocks.correlation = correlation_length(after, loop.logs());
-  const auto shortest = static_cast<std::size_t>(std::ceil(3.0 * blocks.correlation));
+  const auto shortest = static_cast<std::size_t>(std::ceil(3.0 * correlation_length(after, loop.logs())));
   const BlockRegression linear(jacobian, -after,
                                blocks_of(loop.velocity(), loop.logs(), std::max<std::size_t>(shortest, 10)));
   const auto replicates = linear.bootstrap(options.fit.replicates, options.fit.seed);

@@ -58,7 +58,7 @@ std::vector<double> speeds_of(const LogRows& rows, double highest) {
     for (std::size_t i = rows.logs()[log]; i < end; ++i) {
       const double v = std::abs(rows.velocity[static_cast<Eigen::Index>(i)]);
       if (sliding[static_cast<Eigen::Index>(i)] == 0.0) continue;
-      const auto bin = static_cast<std::size_t>(std::log(highest / v) / std::log(factor) + 0.5);
+      const auto bin = static_cast<std::size_t>(std::lround(std::log(highest / v) / std::log(factor)));
       if (bin >= time_in.size()) {
         time_in.resize(bin + 1, 0.0);
         sum_in.resize(bin + 1, 0.0);

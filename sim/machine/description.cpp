@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "sim/machine/parameters.hpp"
+#include "sim/plant/effects/effects.hpp"
 
 namespace stiction::sim {
 namespace {
@@ -134,6 +135,23 @@ void describe_friction_models(std::vector<TableDescription>& out) {
   });
 }
 
+void describe_effects(std::vector<TableDescription>& out) {
+  for_each_effect([&]<class E>() {
+    TableDescription table{fmt::format("[axis.NAME.{}]", effect_key),
+                           E::several ? "any number" : "at most one an axis",
+                           fmt::format("effect {}: {}", E::name, E::text),
+                           {}};
+    KeyDescription& name = table.keys.emplace_back();
+    name.key = effect_name_key;
+    name.allowed = fmt::format("\"{}\"", E::name);
+    name.fallback = "required";
+    name.text = "name of the effect";
+    name.expected = name.allowed;
+    for (const auto& p : E::parameters) table.keys.push_back(describe(p, ""));
+    out.push_back(std::move(table));
+  });
+}
+
 }  // namespace
 
 const std::vector<TableDescription>& machine_file_description() {
@@ -142,6 +160,7 @@ const std::vector<TableDescription>& machine_file_description() {
     describe_table<Machine>("", "required", out);
     describe_table<Axis>("axis.NAME", "at least one", out);
     describe_friction_models(out);
+    describe_effects(out);
     describe_table<CircleReference>("[reference.circle]", "any number", out);
     describe_table<SteadyFrictionReference>("[reference.steady_friction]", "any number", out);
     describe_table<PreslidingReference>("[reference.presliding]", "any number", out);

@@ -98,7 +98,22 @@ class MachineReader {
     check_friction(table, path, axis.friction);
     check_dead_time(table, path, axis.inverter.dead_time);
     check_notch(table, path, axis.notch);
+    check_effects(table, path, axis);
     return axis;
+  }
+
+  // What the effects say of their values together and beside the friction model in use.
+  void check_effects(const toml::table& table, const std::string& path, const Axis& axis) const {
+    try {
+      plant_axis(axis);
+    } catch (const EffectError& error) {
+      const auto is_named = [&](const Effect& effect) { return effect.name == error.effect; };
+      const auto last = std::find_if(axis.effects.rbegin(), axis.effects.rend(), is_named);
+      const auto index = static_cast<std::size_t>(axis.effects.rend() - last) - 1;
+      document_.fail(table.get(effect_key)->as_array()->get(index)->source(),
+                     fmt::format("{}[{}]", join_key(path, effect_key), index),
+                     fmt::format("{} with {}", error.effect, error.found), error.expected);
+    }
   }
 
   void check_motor(const toml::table& table, const std::string& path, MotorModel model) const {
@@ -274,6 +289,8 @@ class MachineReader {
   Machine machine_;
 };
 
+}  // namespace
+
 std::string content_of(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::error_code error;
@@ -283,28 +300,29 @@ std::string content_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-}  // namespace
-
-Machine read_machine(const std::filesystem::path& file, const ReadOptions& options) {
-  const std::string text = content_of(file);
-  const Document as_it_stands(file.string(), text);
+Machine parse_machine(const std::string& file, const std::string& text, const ReadOptions& options) {
+  const Document as_it_stands(file, text);
   Machine machine = MachineReader(as_it_stands).read();
   if (const toml::node* experiments = as_it_stands.root().get("experiment")) {
     for (auto&& [name, overrides] : *experiments->as_table()) {
-      Document document(file.string(), text);
+      Document document(file, text);
       document.apply_experiment(name.str());
       Machine overridden = MachineReader(document).read();
       if (name.str() == options.experiment) machine = std::move(overridden);
     }
   }
   if (!options.set.empty()) {
-    Document document(file.string(), text);
+    Document document(file, text);
     document.apply_experiment(options.experiment);
     for (const std::string& assignment : options.set) document.apply_set(assignment);
     machine = MachineReader(document).read();
   }
-  machine.id = file.stem().string();
+  machine.id = std::filesystem::path(file).stem().string();
   return machine;
+}
+
+Machine read_machine(const std::filesystem::path& file, const ReadOptions& options) {
+  return parse_machine(file.string(), content_of(file), options);
 }
 
 }  // namespace stiction::sim

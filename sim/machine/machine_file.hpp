@@ -27,6 +27,12 @@ struct ReadOptions {
 // every experiment. Throws MachineFileError.
 Machine read_machine(const std::filesystem::path& file, const ReadOptions& options = {});
 
+// The same from a text; `file` is the name shown in messages.
+Machine parse_machine(const std::string& file, const std::string& text, const ReadOptions& options = {});
+
+// The text of a file. Throws MachineFileError when it cannot be read.
+std::string content_of(const std::filesystem::path& file);
+
 // The file of a machine named on the command line: a path, or the name of a shipped machine, looked up in the folders
 // of $STICTION_MACHINES (separated by ':') and in ../share/stiction/machines beside the program. Throws
 // MachineFileError with the machines found.

@@ -47,12 +47,6 @@ struct Subtable {
   Presence presence;
 };
 
-// A key that a later version may read; refused with a reason instead of as a typo.
-struct UnsupportedKey {
-  std::string_view key;
-  std::string_view reason;
-};
-
 // What a table of the file holds; specialised for each struct of machine.hpp.
 template <class Owner>
 struct Table;
@@ -63,7 +57,6 @@ struct EmptyTable {
   static constexpr std::tuple<> choices{};
   static constexpr std::array<Parameter<Owner>, 0> parameters{};
   static constexpr std::tuple<> subtables{};
-  static constexpr std::array<UnsupportedKey, 0> unsupported{};
 };
 
 }  // namespace stiction::sim

@@ -17,6 +17,10 @@ namespace stiction::sim {
 
 inline constexpr std::string_view machine_schema = "stiction.machine/1";
 
+// Rows [[axis.NAME.effect]]; the keys of each effect stand with it (sim/plant/effects).
+inline constexpr std::string_view effect_key = "effect";
+inline constexpr std::string_view effect_name_key = "name";
+
 // The experiments a file may hold overrides for, [experiment.NAME].
 inline constexpr std::array<std::string_view, 11> experiment_names{
     "circle",       "constant-velocity",  "impact", "l-shape", "presliding", "friction-lag", "break-away", "stick-slip",
@@ -220,7 +224,6 @@ struct Table<Axis> : EmptyTable<Axis> {
       Subtable<Axis, Supervision>{"supervision", &Axis::supervision, Presence::optional},
       Subtable<Axis, Friction>{"friction", &Axis::friction, Presence::required},
   };
-  static constexpr std::array<UnsupportedKey, 1> unsupported{{{"effect", "effects are not supported by this version"}}};
 };
 
 // Beyond the tables above: what each motor model makes necessary (keys from the axis on) and what it excludes.

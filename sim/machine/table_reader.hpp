@@ -3,6 +3,7 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <toml++/toml.h>
 
 #include <algorithm>
@@ -17,6 +18,7 @@
 #include "sim/machine/document.hpp"
 #include "sim/machine/parameters.hpp"
 #include "sim/machine/units.hpp"
+#include "sim/plant/effects/effects.hpp"
 
 namespace stiction::sim {
 
@@ -35,6 +37,7 @@ class TableReader {
     read_parameters(table, path, T::parameters, owner);
     std::apply([&](const auto&... s) { (read_subtable(table, path, s, owner), ...); }, T::subtables);
     if constexpr (std::is_same_v<Owner, Friction>) read_friction_models(table, path, owner);
+    if constexpr (std::is_same_v<Owner, Axis>) read_effects(table, path, owner);
     return owner;
   }
 
@@ -55,16 +58,13 @@ class TableReader {
     std::apply([&](const auto&... s) { (known.push_back(s.key), ...); }, T::subtables);
     if constexpr (std::is_same_v<Owner, Friction>)
       for_each_friction_model([&]<class Model>() { known.push_back(Model::name); });
+    if constexpr (std::is_same_v<Owner, Axis>) known.push_back(effect_key);
     if constexpr (std::is_same_v<Owner, Machine>) known.insert(known.end(), {"axis", "experiment", "reference"});
     return known;
   }
 
   template <class Owner>
   void refuse_unknown(const toml::table& table, const std::string& path) const {
-    for (const UnsupportedKey& key : Table<Owner>::unsupported)
-      if (const toml::node* node = table.get(key.key))
-        document_.fail(node->source(), join_key(path, key.key), "an unsupported key",
-                       fmt::format("none: {}", key.reason));
     refuse_unknown(table, path, known_keys<Owner>());
   }
 
@@ -112,7 +112,12 @@ class TableReader {
   void read_parameters(const toml::table& table, const std::string& path,
                        const std::array<Parameter<Owner>, Count>& parameters, Owner& owner) const {
     for (const Parameter<Owner>& p : parameters)
-      std::visit([&](auto member) { read_parameter(table, path, p, owner.*member); }, p.member);
+      std::visit(
+          [&]<class Member>(Member Owner::*member) {
+            // What is larger than its owner is no member of it; without this gcc warns of reading beyond the owner.
+            if constexpr (sizeof(Member) <= sizeof(Owner)) read_parameter(table, path, p, owner.*member);
+          },
+          p.member);
   }
 
   template <class Owner, class Member>
@@ -212,6 +217,47 @@ class TableReader {
       read_parameters(model, key, Model::parameters, parameters);
       friction.models.emplace(Model::name, parameters);
     });
+  }
+
+  void read_effects(const toml::table& table, const std::string& path, Axis& axis) const {
+    const toml::node* node = table.get(effect_key);
+    if (node == nullptr) return;
+    const std::string key = join_key(path, effect_key);
+    if (!node->is_array()) document_.fail(node->source(), key, describe_node(*node), fmt::format("tables [[{}]]", key));
+    for (const toml::node& element : *node->as_array()) {
+      const std::string element_path = fmt::format("{}[{}]", key, axis.effects.size());
+      axis.effects.push_back(read_effect(as_table(element, element_path, "an effect"), element_path));
+    }
+  }
+
+  Effect read_effect(const toml::table& table, const std::string& path) const {
+    Effect named;
+    read_text(table, path, TextParameter<Effect>{effect_name_key, &Effect::name, "name of the effect"}, named);
+    const std::string& name = named.name;
+    std::optional<Effect> effect;
+    std::vector<std::string_view> names;
+    for_each_effect([&]<class E>() {
+      names.push_back(E::name);
+      if (E::name == name) effect = read_values<E>(table, path);
+    });
+    if (effect) return *effect;
+    const std::string_view nearest = nearest_name(name, names);
+    document_.fail(table.get(effect_name_key)->source(), join_key(path, effect_name_key), fmt::format("\"{}\"", name),
+                   fmt::format("an effect: {}{}", quoted_list(names),
+                               nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest)));
+  }
+
+  template <class E>
+  Effect read_values(const toml::table& table, const std::string& path) const {
+    std::vector<std::string_view> known{effect_name_key};
+    for (const auto& p : E::parameters) known.push_back(p.key);
+    refuse_unknown(table, path, known);
+    if (table.size() == 1)
+      document_.fail(table.source(), path, "no key but its name",
+                     fmt::format("{} with its values: {}", E::name, fmt::join(known.begin() + 1, known.end(), ", ")));
+    typename E::Parameters parameters;
+    read_parameters(table, path, E::parameters, parameters);
+    return effect_of<E>(parameters);
   }
 
   const Document& document_;

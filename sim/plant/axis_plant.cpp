@@ -22,7 +22,7 @@ std::variant<DcMotor, SynchronousMotor, ForceSource> make_motor(const Motor& mot
 }  // namespace
 
 AxisPlant::AxisPlant(const Timing& timing, const Axis& axis, double position, std::uint64_t seed)
-    : AxisPlant(timing.fast_period / plant_steps_per_tick, axis, position, seed) {}
+    : AxisPlant(timing.fast_period / plant_steps_per_tick, plant_axis(axis), position, seed) {}
 
 AxisPlant::AxisPlant(double step, const Axis& axis, double position, std::uint64_t seed)
     : half_step_(0.5 * step),
@@ -30,7 +30,8 @@ AxisPlant::AxisPlant(double step, const Axis& axis, double position, std::uint64
       inverter_(axis.inverter, step, plant_steps_per_tick),
       motor_(make_motor(axis.motor, step)),
       friction_(make_friction(axis.friction.models.at(axis.friction.use), {axis.mass, step})),
-      tick_(tick_of(motor_, friction_)),
+      effects_(axis, {axis.mass, step}, position),
+      tick_(tick_of(motor_, friction_, effects_.any())),
       mount_(axis.encoder.mount, step),
       encoder_increment_(axis.encoder.increment),
       increments_per_metre_(1.0 / axis.encoder.increment),
@@ -46,58 +47,71 @@ void AxisPlant::switch_off() {
   current_ = {};
 }
 
-template <class MotorModel, class Friction>
+template <class MotorModel, class Friction, bool effects>
 void AxisPlant::tick(AxisPlant& plant) {
   auto& friction = std::get<Friction>(plant.friction_);
   const auto acting = plant.inverter_.advance_tick();
   if (plant.enabled_) {
     auto& motor = std::get<MotorModel>(plant.motor_);
-    plant.advance_tick(motor, friction, acting);
+    plant.advance_tick<effects>(motor, friction, acting);
     plant.current_ = motor.current();
   } else {
     OpenWindings none;
-    plant.advance_tick(none, friction, acting);
+    plant.advance_tick<effects>(none, friction, acting);
+  }
+  if constexpr (effects) {
+    plant.lost_position_ = plant.effects_.follower() - plant.position_;
+    plant.lost_velocity_ = plant.effects_.closed() ? 0.0 : -plant.velocity_;
   }
 }
 
 // The voltages are copied: that nothing read in the loop can be a part of the plant is what lets the compiler keep the
 // plant's state in registers. The steps of a tick with one voltage are written out, which saves one instruction in
 // twelve.
-template <class MotorModel, class Friction>
+template <bool effects, class MotorModel, class Friction>
 inline void AxisPlant::advance_tick(MotorModel& motor, Friction& friction, const InverterModel::Acting& acting) {
   const PhaseValues after = acting.after;
   double change = 0.0;
   if (acting.change == 0) {
     [&]<std::size_t... i>(std::index_sequence<i...>) {
-      ((static_cast<void>(i), change = step(motor, friction, after)), ...);
+      ((static_cast<void>(i), change = step<effects>(motor, friction, after)), ...);
     }
     (std::make_index_sequence<plant_steps_per_tick>());
   } else {
-    const PhaseValues before = acting.before;
-    for (int i = 0; i < plant_steps_per_tick; ++i) change = step(motor, friction, i < acting.change ? before : after);
+    const PhaseValues before = acting.before, between = acting.between;
+    for (int i = 0; i < plant_steps_per_tick; ++i)
+      change = step<effects>(motor, friction, i >= acting.change ? after : i + 1 < acting.change ? before : between);
   }
-  friction_force_ = motor_force_ + external_force_ - mass_per_step_ * change;
+  friction_force_ = motor_force_ + external_force_ + applied_force_ - mass_per_step_ * change;
 }
 
 // Semi-implicit Euler: the new velocity from the forces, the position from the mean of old and new. Returns the change
 // of the velocity.
-template <class MotorModel, class Friction>
+template <bool effects, class MotorModel, class Friction>
 inline double AxisPlant::step(MotorModel& motor, Friction& friction, const PhaseValues& voltage) {
   motor_force_ = motor.advance(voltage, position_, velocity_);
-  const double next = friction.advance(velocity_, motor_force_ + external_force_);
+  double force = motor_force_ + external_force_;
+  if constexpr (effects) {
+    const auto extra = effects_.advance(position_, velocity_);
+    applied_force_ = extra.applied;
+    force += extra.applied + extra.friction;
+  }
+  const double next = friction.advance(velocity_, force);
   const double change = next - velocity_;
   position_ += half_step_ * (velocity_ + next);
   velocity_ = next;
   mount_.advance(change);
+  if constexpr (effects) effects_.follow(position_);
   return change;
 }
 
 double AxisPlant::draw_noise() { return std::normal_distribution<double>(0.0, encoder_noise_)(random_); }
 
 // Behind the templates that it names: clang 14 forgets to instantiate, for a lambda like this, what is defined later.
-AxisPlant::Tick AxisPlant::tick_of(const MotorVariant& motor_model, const FrictionModel& friction_model) {
-  return std::visit([]<class M, class F>(const M&, const F&) -> Tick { return tick<M, F>; }, motor_model,
-                    friction_model);
+AxisPlant::Tick AxisPlant::tick_of(const MotorVariant& motor_model, const FrictionModel& friction_model, bool effects) {
+  return std::visit([effects]<class M, class F>(
+                        const M&, const F&) -> Tick { return effects ? tick<M, F, true> : tick<M, F, false>; },
+                    motor_model, friction_model);
 }
 
 }  // namespace stiction::sim

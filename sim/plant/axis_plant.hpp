@@ -1,4 +1,5 @@
-// One simulated axis: inverter, motor, carriage with friction, encoder on its mount. Double precision, SI units.
+// One simulated axis: inverter, motor, carriage with friction, encoder on its mount, and the effects of the machine
+// file. Double precision, SI units.
 #pragma once
 
 #include <cmath>
@@ -7,6 +8,7 @@
 #include <variant>
 
 #include "sim/machine/machine.hpp"
+#include "sim/plant/effects/acting_effects.hpp"
 #include "sim/plant/encoder_mount.hpp"
 #include "sim/plant/friction/friction.hpp"
 #include "sim/plant/inverter.hpp"
@@ -20,7 +22,8 @@ inline constexpr int plant_steps_per_tick = 4;
 
 class AxisPlant {
  public:
-  // At rest at `position` (m). `seed`: of the encoder's noise. Throws std::invalid_argument for an unknown model.
+  // At rest at `position` (m). `seed`: of the encoder's noise. Throws std::invalid_argument for an unknown model,
+  // EffectError for effects that the axis cannot have.
   AxisPlant(const Timing& timing, const Axis& axis, double position, std::uint64_t seed);
 
   // What the drive commands from now on: voltages (V), or the power stage off.
@@ -41,10 +44,11 @@ class AxisPlant {
   double velocity() const { return velocity_; }              // m/s, carriage
   double motor_force() const { return motor_force_; }        // N, at the end of the last step
   double friction_force() const { return friction_force_; }  // N, mean over the last step, positive opposes +v
-  double encoder_position() const { return position_ + mount_.deflection(); }  // m, before increment and noise
-  double encoder_velocity() const { return velocity_ + mount_.velocity(); }    // m/s
-  std::size_t phases() const { return phases_; }                               // that carry current: 3, or 1
-  const PhaseValues& current() const { return current_; }                      // A, of the phases
+  // m, before increment and noise
+  double encoder_position() const { return position_ + lost_position_ + mount_.deflection(); }
+  double encoder_velocity() const { return velocity_ + lost_velocity_ + mount_.velocity(); }  // m/s
+  std::size_t phases() const { return phases_; }           // that carry current: 3, or 1
+  const PhaseValues& current() const { return current_; }  // A, of the phases
 
   // What the encoder reads now: with increment and noise. Draws a new noise value at each call.
   double read_encoder() {
@@ -58,12 +62,12 @@ class AxisPlant {
   using Tick = void (*)(AxisPlant&);
 
   AxisPlant(double step, const Axis& axis, double position, std::uint64_t seed);
-  static Tick tick_of(const MotorVariant& motor, const FrictionModel& friction);
-  template <class MotorModel, class Friction>
+  static Tick tick_of(const MotorVariant& motor, const FrictionModel& friction, bool effects);
+  template <class MotorModel, class Friction, bool effects>
   static void tick(AxisPlant& plant);
-  template <class MotorModel, class Friction>
+  template <bool effects, class MotorModel, class Friction>
   [[gnu::always_inline]] void advance_tick(MotorModel& motor, Friction& friction, const InverterModel::Acting& acting);
-  template <class MotorModel, class Friction>
+  template <bool effects, class MotorModel, class Friction>
   [[gnu::always_inline]] double step(MotorModel& motor, Friction& friction, const PhaseValues& voltage);
   void switch_off();
   double draw_noise();
@@ -82,7 +86,10 @@ class AxisPlant {
   InverterModel inverter_;
   MotorVariant motor_;
   FrictionModel friction_;
-  Tick tick_;  // of this motor with this friction: chosen once; a visit of both costs 29 instructions a tick
+  ActingEffects effects_;
+  // Of this motor with this friction, with or without effects: chosen once; a visit of both costs 29 instructions a
+  // tick.
+  Tick tick_;
   EncoderMountModel mount_;
   double encoder_increment_;
   double increments_per_metre_;
@@ -95,6 +102,9 @@ class AxisPlant {
   double motor_force_ = 0.0;
   double friction_force_ = 0.0;
   double external_force_ = 0.0;
+  double applied_force_ = 0.0;  // of effects that are no friction
+  double lost_position_ = 0.0;  // m, of the encoder's base against the carriage, by play
+  double lost_velocity_ = 0.0;  // m/s
   std::size_t phases_;
   PhaseValues current_{};
 };

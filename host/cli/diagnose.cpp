@@ -1,0 +1,109 @@
+// `stiction diagnose`: what the simulation of an axis gets wrong, from measured logs.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "host/cli/commands.hpp"
+#include "host/cli/errors.hpp"
+#include "host/cli/machine_options.hpp"
+#include "host/cli/output.hpp"
+#include "host/cli/progress.hpp"
+#include "host/diagnose/diagnose.hpp"
+#include "host/diagnose/verdict_json.hpp"
+#include "host/log/read_log.hpp"
+#include "sim/machine/extended_machine.hpp"
+#include "sim/machine/machine_file.hpp"
+
+namespace stiction::host {
+namespace {
+
+struct DiagnoseCommandOptions {
+  std::vector<std::string> logs, held_out;
+  MachineOptions machine;
+  std::string axis;
+  std::string out;
+  std::uint64_t seed = 1;
+  bool json = false;
+};
+
+std::size_t axis_of_run(const std::string& name, const sim::Machine& machine, const std::vector<Log>& logs) {
+  std::vector<std::string> names;
+  for (const auto& axis : machine.axes) names.push_back(axis.name);
+  std::vector<std::size_t> fitting;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (!name.empty() && names[k] == name) return k;
+    if (std::all_of(logs.begin(), logs.end(), [&](const Log& log) {
+          return std::any_of(log.axes.begin(), log.axes.end(),
+                             [&](const AxisLog& c) { return c.axis.empty() || c.axis == names[k]; });
+        }))
+      fitting.push_back(k);
+  }
+  if (name.empty() && fitting.size() == 1) return fitting.front();
+  throw UsageError(fmt::format("--axis: found {}; expected one of {}", name.empty() ? "none" : "'" + name + "'",
+                               fmt::join(names, ", ")));
+}
+
+void run(const DiagnoseCommandOptions& options, const Invocation& invocation) {
+  DiagnoseInput input;
+  input.machine = options.machine.load(options.machine.machine, "");
+  for (const auto& file : options.logs) input.logs.push_back(read_log(file));
+  for (const auto& file : options.held_out) input.held_out.push_back(read_log(file));
+  auto all = input.logs;
+  all.insert(all.end(), input.held_out.begin(), input.held_out.end());
+  input.axis = axis_of_run(options.axis, input.machine, all);
+  input.seed = options.seed;
+  Verdict verdict;
+  {
+    Progress progress("diagnosis", 4);
+    input.progress = [&] { progress.add(); };
+    verdict = diagnose(input);
+  }
+  const auto json = verdict_json(verdict);
+  if (!options.out.empty()) {
+    PendingFolder folder(options.out);
+    std::vector<sim::Effect> effects;
+    for (const auto& finding : verdict.findings) effects.push_back(finding.effect);
+    const std::vector<std::string> comment{"made by: " + invocation.command_line};
+    folder.write("extended.toml",
+                 sim::extended_machine(sim::find_machine(options.machine.machine), options.machine.set,
+                                       input.machine.axes[input.axis].name, effects, comment));
+    sim::read_machine(folder.path() / "extended.toml");  // what was written must be a machine
+    folder.write("verdict.json", json.dump(2) + "\n");
+    folder.commit();
+  }
+  if (options.json) {
+    fmt::print("{}\n", json.dump(2));
+    return;
+  }
+  fmt::print("{}", verdict_text(verdict));
+  if (!options.out.empty()) fmt::print("\nverdict: {0}/verdict.json\nmachine file: {0}/extended.toml\n", options.out);
+}
+
+}  // namespace
+
+void add_diagnose(CLI::App& program, const Invocation& invocation) {
+  auto* command = program.add_subcommand("diagnose", "what the simulation gets wrong, from measured logs: causes");
+  auto o = std::make_shared<DiagnoseCommandOptions>();
+  command->add_option("logs", o->logs, "logs of one axis in which causes are looked for")->type_name("LOG");
+  o->machine.add_to(*command, "shipped machine by name, or a machine file: what the logs are judged against");
+  command
+      ->add_option("--holdout", o->held_out,
+                   "logs of other trajectories, on which causes are judged [the last third of each LOG]")
+      ->type_name("LOG");
+  command->add_option("--axis", o->axis, "the axis, where logs and machine have several")->type_name("NAME");
+  command->add_option("--seed", o->seed, "of the bootstrap for held-out intervals [1]")->type_name("N");
+  command->add_option("--out", o->out, "write verdict.json and extended.toml into this folder")->type_name("DIR");
+  command->add_flag("--json", o->json, "print the verdict as JSON on standard output");
+  command->callback([o, &invocation] {
+    try {
+      if (o->logs.empty()) throw UsageError("diagnose: found no LOG; expected at least one");
+      run(*o, invocation);
+    } catch (const LogError& error) {
+      throw UsageError(error.what());
+    }
+  });
+}
+
+}  // namespace stiction::host

@@ -1,0 +1,66 @@
+// What the engine knows of one effect: the regressors by which it shows in the residual force, the nonlinear parameters
+// to scan, and what fitted weights mean in a machine file's keys. One file an effect in effects/, one row in
+// candidates().
+#pragma once
+
+#include <Eigen/Dense>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "host/diagnose/verdict.hpp"
+#include "host/identify/motion.hpp"
+#include "sim/machine/machine.hpp"
+
+namespace stiction::host {
+
+// What the candidates may know: the axis as its file has it and what the training records cover. SI units.
+struct Scene {
+  sim::Axis axis;
+  SignalSettings signals;
+  double highest_speed = 0.0;
+  double lowest_position = 0.0, highest_position = 0.0;
+  std::vector<double> pitches;  // m, with peaks in the residual's spectrum over position; found as the search goes
+  double stroke() const { return highest_position - lowest_position; }
+};
+
+// Columns of the residual force at a motion's full rate (N per unit of weight): the motor's force is larger by column
+// times weight where the machine has the effect.
+using Columns = std::vector<std::vector<double>>;
+
+struct Candidate {
+  const char* name;
+  // Values of the nonlinear parameter to try; one value, not looked at, for an effect that has none. Empty: this axis
+  // or these records cannot have the effect.
+  std::vector<double> (*grid)(const Scene&);
+  Columns (*columns)(const Scene&, const Motion&, double nonlinear);
+  // Whether weights have a sign and size that the effect can have.
+  bool (*possible)(const Scene&, double nonlinear, const Eigen::VectorXd& weights);
+  // Keys of the machine file (the contract's); `deviations`: of weights and nonlinear parameter (last), covariance.
+  void (*describe)(const Scene&, double nonlinear, const Eigen::VectorXd& weights, const Eigen::MatrixXd& covariance,
+                   Finding&);
+  bool nonlinear = false;       // whether the scanned parameter is one of the effect's own
+  bool at_weight = false;       // the scanned value is where the law is linearised: at best the weight itself
+  bool names_constant = false;  // what it names is not a nuisance of its own evaluation
+  bool names_coulomb = false;
+  bool periodic = false;  // pairs cosine, sine by harmonics: the phase moves with the home position
+};
+
+// The vocabulary in the order of the contract.
+std::span<const Candidate> candidates();
+
+namespace effects {
+extern const Candidate mass_mismatch, coulomb_mismatch, viscous_mismatch, viscous_nonlinear, stribeck,
+    friction_asymmetry, presliding_hysteresis, constant_force, position_spring, force_ripple, backlash, time_skew;
+
+// Adds a key with its value and standard error under the unit's suffix ("_N_s_per_m").
+void add_key(Finding& finding, const char* key, const char* suffix, std::vector<double> values,
+             std::vector<double> errors);
+
+inline std::vector<double> no_scan(const Scene&) { return {0.0}; }
+inline bool any(const Scene&, double, const Eigen::VectorXd&) { return true; }
+// `count` values from `low` to `high`, each the same factor above the one before.
+std::vector<double> geometric(double low, double high, int count);
+}  // namespace effects
+
+}  // namespace stiction::host

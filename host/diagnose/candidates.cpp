@@ -1,0 +1,33 @@
+#include <array>
+#include <cmath>
+
+#include "host/diagnose/candidate.hpp"
+
+namespace stiction::host {
+
+std::span<const Candidate> candidates() {
+  static const std::array table{
+      effects::mass_mismatch,   effects::coulomb_mismatch,   effects::viscous_mismatch,
+      effects::viscous_nonlinear, effects::stribeck,         effects::friction_asymmetry,
+      effects::presliding_hysteresis, effects::constant_force, effects::position_spring,
+      effects::force_ripple,    effects::backlash,           effects::time_skew,
+  };
+  return table;
+}
+
+namespace effects {
+
+void add_key(Finding& finding, const char* key, const char* suffix, std::vector<double> values,
+             std::vector<double> errors) {
+  finding.effect.values[key] = values;
+  finding.parameters.push_back({std::string(key) + suffix, std::move(values), std::move(errors)});
+}
+
+std::vector<double> geometric(double low, double high, int count) {
+  std::vector<double> values;
+  for (int k = 0; k < count; ++k) values.push_back(low * std::pow(high / low, static_cast<double>(k) / (count - 1)));
+  return values;
+}
+
+}  // namespace effects
+}  // namespace stiction::host

@@ -1,0 +1,112 @@
+#include "host/diagnose/closed_loop.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/identify/identification.hpp"
+#include "host/simulate/replay.hpp"
+#include "stiction/number/fixed_signals.hpp"
+
+namespace stiction::host {
+namespace {
+
+constexpr double ignored = 0.25;  // s at a log's start, in which contact and loop come from a state that is not known
+
+// Only the axis' channels, of a machine of that axis alone.
+struct Bench {
+  sim::Machine machine;
+  std::vector<Log> logs;
+};
+
+Bench bench_of(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs) {
+  Bench bench{machine, {}};
+  bench.machine.axes = {machine.axes[axis]};
+  for (const auto& log : logs) {
+    const auto& channels = channels_of(log, machine.axes[axis]);
+    if (channels.x_set.empty()) continue;
+    auto own = log;
+    own.axes = {channels};
+    bench.logs.push_back(std::move(own));
+  }
+  return bench;
+}
+
+std::vector<std::vector<double>> positions(const Bench& bench) {
+  std::vector<std::vector<double>> all;
+  for (const auto& log : bench.logs)
+    all.push_back(replay<FixedSignals>(bench.machine, log, {bench.machine.axes.front().name}).axes.front().x);
+  return all;
+}
+
+// rms over all logs of the difference, less its mean in each: the encoders' zeros are not a cause's doing.
+double difference_rms(const std::vector<std::vector<double>>& a, const std::vector<std::vector<double>>& b,
+                      const std::vector<Log>& logs) {
+  double square = 0.0;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < logs.size(); ++k) {
+    const auto first = std::min(static_cast<std::size_t>(ignored / logs[k].period), a[k].size() / 2);
+    for (std::size_t i = first; i < a[k].size(); ++i, ++count) square += (a[k][i] - b[k][i]) * (a[k][i] - b[k][i]);
+  }
+  return std::sqrt(square / static_cast<double>(std::max<std::size_t>(count, 1)));
+}
+
+double largest_difference(const std::vector<std::vector<double>>& a, const std::vector<std::vector<double>>& b,
+                          const std::vector<Log>& logs) {
+  double largest = 0.0;
+  for (std::size_t k = 0; k < logs.size(); ++k) {
+    const auto first = std::min(static_cast<std::size_t>(ignored / logs[k].period), a[k].size() / 2);
+    for (std::size_t i = first; i < a[k].size(); ++i) largest = std::max(largest, std::abs(a[k][i] - b[k][i]));
+  }
+  return largest;
+}
+
+}  // namespace
+
+sim::Machine extended_machine(sim::Machine machine, const std::vector<Finding>& findings) {
+  for (const auto& finding : findings)
+    for (auto& axis : machine.axes)
+      if (axis.name == finding.axis) axis.effects.push_back(finding.effect);
+  return machine;
+}
+
+void judge_in_closed_loop(Verdict& verdict, const sim::Machine& machine, std::size_t axis,
+                          const std::vector<Log>& held_out) {
+  auto bench = bench_of(machine, axis, held_out);
+  if (bench.logs.empty()) return;
+  std::vector<std::vector<double>> measured;
+  for (const auto& log : bench.logs) measured.push_back(log.axes.front().x);
+  const auto with = [&](const std::vector<Finding>& findings) {
+    auto extended = bench;
+    extended.machine = extended_machine(bench.machine, findings);
+    return positions(extended);
+  };
+  std::vector<std::vector<double>> baseline;
+  try {
+    baseline = positions(bench);
+  } catch (const FaultTripped& fault) {
+    throw LogError(fmt::format("{}: found set-points that the simulated machine cannot follow ({}); expected a record "
+                               "of this machine file's machine",
+                               bench.logs.front().source, fault.what()));
+  }
+  verdict.baseline.position_error_rms = difference_rms(measured, baseline, bench.logs);
+  try {
+    const auto all = verdict.findings.empty() ? baseline : with(verdict.findings);
+    verdict.extended.position_error_rms = difference_rms(measured, all, bench.logs);
+    for (std::size_t k = 0; k < verdict.findings.size(); ++k) {
+      auto others = verdict.findings;
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
+      const auto without = with(others);
+      auto& finding = verdict.findings[k];
+      finding.holdout.position_error_rms_ratio =
+          *verdict.extended.position_error_rms / std::max(difference_rms(measured, without, bench.logs), 1e-15);
+      finding.part_error = largest_difference(all, without, bench.logs);
+    }
+  } catch (const FaultTripped& fault) {
+    verdict.notes.push_back(
+        fmt::format("The extended machine could not follow the held-out set-points ({}).", fault.what()));
+  }
+}
+
+}  // namespace stiction::host

@@ -1,0 +1,182 @@
+#include "host/diagnose/diagnose.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/diagnose/aliases.hpp"
+#include "host/diagnose/closed_loop.hpp"
+#include "host/diagnose/diagnosis_charts.hpp"
+#include "host/diagnose/holdout.hpp"
+#include "host/diagnose/inverse_dynamics.hpp"
+#include "host/diagnose/leftover.hpp"
+#include "host/diagnose/record_checks.hpp"
+#include "host/diagnose/search.hpp"
+#include "host/identify/identification.hpp"
+#include "host/identify/suitability.hpp"
+
+namespace stiction::host {
+namespace {
+
+constexpr double shortest = 3.0;  // s, of the training logs together
+
+SignalSettings wide_band() {
+  SignalSettings s;
+  s.row_rate = 250.0;  // 0 to 100 Hz, in which the share of an effect is counted
+  return s;
+}
+
+Log part_of(const Log& log, std::size_t begin, std::size_t end) {
+  const auto cut = [&](const std::vector<double>& values) {
+    return values.empty() ? values
+                          : std::vector<double>(values.begin() + static_cast<std::ptrdiff_t>(begin),
+                                                values.begin() + static_cast<std::ptrdiff_t>(end));
+  };
+  Log part = log;
+  part.t = cut(log.t);
+  for (auto& axis : part.axes)
+    for (const auto& channel : log_channels) axis.*channel.values = cut(axis.*channel.values);
+  return part;
+}
+
+LogRows rows_of(const std::vector<Log>& logs, const sim::Axis& axis, const SignalSettings& settings) {
+  std::vector<Motion> motions;
+  for (const auto& log : logs) {
+    require_samples(log);
+    const auto& channels = channels_of(log, axis);
+    refuse_saturation(log, channels, axis);
+    motions.push_back(motion_of(log, channels, axis, Amperes::amplitude, settings));
+  }
+  return {std::move(motions), settings};
+}
+
+Eigen::VectorXd expected_force(const LogRows& rows, const sim::Axis& axis) {
+  return rows.stacked([&](const Motion& m) { return force_along(axis, m); });
+}
+
+Scene scene_of(const sim::Axis& axis, const LogRows& rows, const SignalSettings& settings) {
+  Scene scene{axis, settings, 0.0, 0.0, 0.0, {}};
+  scene.lowest_position = scene.highest_position = rows.motions().front().x.front();
+  for (const auto& motion : rows.motions())
+    for (std::size_t i = 0; i < motion.x.size(); ++i) {
+      scene.highest_speed = std::max(scene.highest_speed, std::abs(motion.v[i]));
+      scene.lowest_position = std::min(scene.lowest_position, motion.x[i]);
+      scene.highest_position = std::max(scene.highest_position, motion.x[i]);
+    }
+  return scene;
+}
+
+// The alias table's, where the data do not separate them either, and what the data show besides.
+std::vector<ConfusedWith> confused_with(const Term& term) {
+  std::vector<ConfusedWith> list;
+  const auto known = aliases_of(candidates()[term.candidate].name);
+  for (const auto& alias : known)
+    if (alias.exact) list.push_back({std::string(alias.other), std::string(alias.separate_by)});
+  for (const auto c : term.alternatives) {
+    const std::string_view other = candidates()[c].name;
+    if (std::any_of(list.begin(), list.end(), [&](const ConfusedWith& l) { return l.effect == other; })) continue;
+    const auto alias = std::find_if(known.begin(), known.end(), [&](const Alias& a) { return a.other == other; });
+    list.push_back({std::string(other), alias != known.end()
+                                            ? std::string(alias->separate_by)
+                                            : "record longer, with other speeds, accelerations and strokes: in these "
+                                              "records the two leave residuals that cannot be told apart"});
+  }
+  return list;
+}
+
+std::string evidence_of(const Term& term, std::size_t blocks) {
+  const auto& j = term.judgement;
+  return fmt::format(
+      "It takes {:.1f} % of the residual force's variance away, beside the other findings ({:.1f} % cross-validated), "
+      "p = {:.2g} from {} blocks of rows; from the first half of the blocks alone it is {:.2f} times as large as from "
+      "all, from the second {:.2f} times.",
+      100.0 * term.explains, 100.0 * j.gain, j.p_value, blocks, j.first_half, j.second_half);
+}
+
+Finding finding_of(const Scene& scene, const Term& term, const HoldoutGain& gain, std::size_t blocks) {
+  const auto& candidate = candidates()[term.candidate];
+  Finding finding;
+  finding.axis = scene.axis.name;
+  finding.effect.name = candidate.name;
+  candidate.describe(scene, term.nonlinear, term.weights, term.covariance, finding);
+  finding.explains = term.explains;
+  finding.holdout = gain;
+  finding.p_value = term.judgement.p_value;
+  finding.confused_with = confused_with(term);
+  finding.evidence = evidence_of(term, blocks);
+  return finding;
+}
+
+// Withdraws the term that does worst on held-out data, until each gains.
+HeldOutFigures keep_what_holds(const LogRows& rows, const Eigen::VectorXd& target, const Scene& scene,
+                               SearchResult& found, Verdict& verdict, std::uint64_t seed) {
+  for (;;) {
+    auto figures = evaluate_held_out(rows, target, scene, found.terms, seed);
+    std::size_t worst = 0;
+    for (std::size_t k = 1; k < figures.gains.size(); ++k)
+      if (figures.gains[k].force_rms_ratio > figures.gains[worst].force_rms_ratio) worst = k;
+    if (figures.gains.empty() || figures.gains[worst].force_rms_ratio < 1.0) return figures;
+    verdict.rejected.push_back(
+        {candidates()[found.terms[worst].candidate].name,
+         fmt::format("withdrawn: found in the training data, but no gain on held-out data (force rms {:.3f} times "
+                     "that without it)",
+                     figures.gains[worst].force_rms_ratio)});
+    found.terms.erase(found.terms.begin() + static_cast<std::ptrdiff_t>(worst));
+  }
+}
+
+}  // namespace
+
+Verdict diagnose(const DiagnoseInput& input) {
+  const auto& axis = input.machine.axes.at(input.axis);
+  const auto settings = wide_band();
+  Verdict verdict;
+  verdict.machine = input.machine.id + ".toml";
+  auto logs = input.logs;
+  auto held_out = input.held_out;
+  for (const auto& log : logs) verdict.logs.push_back(log.source);
+  for (const auto& log : held_out) verdict.holdout.push_back(log.source);
+  for (const auto& log : logs) refuse_unreachable_set_points(log, axis);
+  for (const auto& log : held_out) refuse_unreachable_set_points(log, axis);
+  refuse_same_record(logs, held_out, axis);
+  if (held_out.empty()) {
+    verdict.holdout_is_a_part = true;
+    verdict.notes.push_back(
+        "No held-out log was given: causes were looked for in the first two thirds of each log and judged on the last "
+        "third. What repeats with the motion in both can still pass as a cause; only another trajectory tells. Record "
+        "one, with other speeds, stroke and accelerations, and give it with --holdout.");
+    for (auto& log : logs) {
+      const std::size_t cut = log.t.size() * 2 / 3;
+      held_out.push_back(part_of(log, cut, log.t.size()));
+      log = part_of(log, 0, cut);
+    }
+  }
+  const auto rows = rows_of(logs, axis, settings);
+  const auto held_rows = rows_of(held_out, axis, settings);
+  if (excitation_of(rows).duration < shortest)
+    throw LogError(fmt::format("{}: found {:.3g} s of training data; expected at least {:g} s",
+                               sources_of(rows.motions()), excitation_of(rows).duration, shortest));
+  const auto expected = expected_force(rows, axis);
+  refuse_other_machine(rows, expected);
+  refuse_other_machine(held_rows, expected_force(held_rows, axis));
+
+  const Eigen::VectorXd target = rows.force - expected;
+  const Eigen::VectorXd held_target = held_rows.force - expected_force(held_rows, axis);
+  auto scene = scene_of(axis, rows, settings);
+  auto found = search_causes(rows, target, scene, input.progress);
+  const auto found_before = found.terms.size();
+  const auto figures = keep_what_holds(held_rows, held_target, scene, found, verdict, input.seed);
+  verdict.baseline.force_rms = figures.force_baseline;
+  verdict.extended.force_rms = figures.force_extended;
+  for (std::size_t k = 0; k < found.terms.size(); ++k)
+    verdict.findings.push_back(finding_of(scene, found.terms[k], figures.gains[k], found.blocks));
+  for (const auto& d : found.discarded) verdict.rejected.push_back({candidates()[d.candidate].name, d.why});
+  if (found.terms.size() == found_before)
+    verdict.unexplained = signature_of(rows, found.residual, target.squaredNorm(), found.correlation);
+  add_charts(verdict, rows, target, found.residual);
+  if (input.closed_loop) judge_in_closed_loop(verdict, input.machine, input.axis, held_out);
+  return verdict;
+}
+
+}  // namespace stiction::host

@@ -1,0 +1,23 @@
+// Gravity, an unbalanced weight, an offset of the current: on the carriage in +x, so the motor needs less.
+#include <cmath>
+
+#include "host/diagnose/candidate.hpp"
+
+namespace stiction::host::effects {
+namespace {
+
+Columns columns(const Scene&, const Motion& motion, double) { return {std::vector<double>(motion.x.size(), -1.0)}; }
+void describe(const Scene&, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
+  add_key(finding, "force", "_N", {w[0]}, {std::sqrt(c(0, 0))});
+}
+
+}  // namespace
+
+const Candidate constant_force{.name = "constant_force",
+                               .grid = no_scan,
+                               .columns = columns,
+                               .possible = any,
+                               .describe = describe,
+                               .names_constant = true};
+
+}  // namespace stiction::host::effects

@@ -1,0 +1,37 @@
+// Cogging: force on the carriage periodic in position, cosine_h cos(2 pi h x / pitch) + sine_h sin(2 pi h x / pitch).
+// The pitches to try come from the residual's spectrum over position (ripple_scan.hpp).
+#include <cmath>
+#include <numbers>
+
+#include "host/diagnose/candidate.hpp"
+
+namespace stiction::host::effects {
+namespace {
+
+std::vector<double> grid(const Scene& scene) { return scene.pitches; }
+Columns columns(const Scene&, const Motion& motion, double pitch) {
+  Columns pair(2, std::vector<double>(motion.x.size()));
+  for (std::size_t i = 0; i < motion.x.size(); ++i) {
+    const double phase = 2.0 * std::numbers::pi * motion.x[i] / pitch;
+    pair[0][i] = -std::cos(phase);
+    pair[1][i] = -std::sin(phase);
+  }
+  return pair;
+}
+void describe(const Scene&, double pitch, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
+  add_key(finding, "pitch", "_m", {pitch}, {std::sqrt(c(2, 2))});
+  add_key(finding, "cosine", "_N", {w[0]}, {std::sqrt(c(0, 0))});
+  add_key(finding, "sine", "_N", {w[1]}, {std::sqrt(c(1, 1))});
+}
+
+}  // namespace
+
+const Candidate force_ripple{.name = "force_ripple",
+                             .grid = grid,
+                             .columns = columns,
+                             .possible = any,
+                             .describe = describe,
+                             .nonlinear = true,
+                             .periodic = true};
+
+}  // namespace stiction::host::effects

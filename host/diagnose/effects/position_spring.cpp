@@ -1,0 +1,37 @@
+// Force proportional to position, -stiffness (x - neutral) on the carriage: cable carrier, bellows, hose.
+#include <cmath>
+
+#include "host/diagnose/candidate.hpp"
+
+namespace stiction::host::effects {
+namespace {
+
+double middle(const Scene& scene) { return 0.5 * (scene.lowest_position + scene.highest_position); }
+
+std::vector<double> grid(const Scene& scene) {
+  return scene.stroke() > 0.0 ? std::vector{0.0} : std::vector<double>{};
+}
+Columns columns(const Scene& scene, const Motion& motion, double) {
+  auto way = motion.x;
+  for (double& x : way) x -= middle(scene);
+  return {way, std::vector<double>(motion.x.size(), -1.0)};
+}
+void describe(const Scene& scene, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
+  // k (x - neutral) = w0 (x - middle) - w1
+  const double shift = w[1] / w[0];
+  const double error =
+      std::sqrt(std::max(c(1, 1) + shift * shift * c(0, 0) - 2.0 * shift * c(0, 1), 0.0)) / std::abs(w[0]);
+  add_key(finding, "stiffness", "_N_per_m", {w[0]}, {std::sqrt(c(0, 0))});
+  add_key(finding, "neutral", "_m", {middle(scene) + shift}, {error});
+}
+
+}  // namespace
+
+const Candidate position_spring{.name = "position_spring",
+                                .grid = grid,
+                                .columns = columns,
+                                .possible = any,
+                                .describe = describe,
+                                .names_constant = true};
+
+}  // namespace stiction::host::effects

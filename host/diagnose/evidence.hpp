@@ -1,0 +1,67 @@
+// The regressors of all candidates over blocks of rows, and what any choice of them explains: from the blocks' Gram
+// matrices, so that no choice costs a pass over the rows. A block is one piece of evidence (Cameron, Gelbach, Miller
+// 2008).
+#pragma once
+
+#include <Eigen/Dense>
+#include <span>
+#include <vector>
+
+#include "host/identify/regression.hpp"
+
+namespace stiction::host {
+
+using ColumnIndices = std::vector<Eigen::Index>;
+
+class Evidence {
+ public:
+  // `target`: the residual force in all rows (N).
+  Evidence(Eigen::VectorXd target, std::vector<RowBlock> blocks);
+
+  // Appends columns; the blocks' matrices grow by them. Returns the index of the first.
+  Eigen::Index add(const std::vector<Eigen::VectorXd>& columns);
+  // Drops all columns from `first` on.
+  void truncate(Eigen::Index first);
+
+  std::size_t rows() const { return static_cast<std::size_t>(target_.size()); }
+  std::size_t blocks() const { return blocks_.size(); }
+  const std::vector<RowBlock>& row_blocks() const { return blocks_; }
+  double total() const { return total_.square; }  // sum of squares of the target, N^2
+  double column_square(Eigen::Index column) const { return total_.gram(column, column); }
+  const Eigen::VectorXd& target() const { return target_; }
+
+  struct Fit {
+    Eigen::VectorXd weights;
+    double left = 0.0;  // sum of squared residuals, N^2
+  };
+  Fit fit(const ColumnIndices& chosen) const;
+  // Over the blocks for which use[b] is true.
+  Fit fit(const ColumnIndices& chosen, const std::vector<bool>& use) const;
+  Eigen::VectorXd residual(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const;
+
+  // Sandwich covariance of the weights, clustered by blocks.
+  Eigen::MatrixXd covariance(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const;
+  // Number of blocks that bear on the columns `of` with these weights: (sum h)^2 / sum h^2 of their squared lengths.
+  double bearing_blocks(const ColumnIndices& of, const Eigen::VectorXd& weights) const;
+
+  // Sum of squared residuals of each block with weights from the other folds; block i is in fold i mod `folds`.
+  std::vector<double> held_out(const ColumnIndices& chosen, std::size_t folds = 5) const;
+
+ private:
+  struct Sums {
+    Eigen::MatrixXd gram;
+    Eigen::VectorXd moment;
+    double square = 0.0;
+  };
+  static Fit solve(const Sums& sums, const ColumnIndices& chosen);
+  static double left(const Sums& sums, const ColumnIndices& chosen, const Eigen::VectorXd& weights);
+  static Sums part(const Sums& sums, const ColumnIndices& chosen);
+
+  Eigen::VectorXd target_;
+  std::vector<RowBlock> blocks_;
+  std::vector<Eigen::VectorXd> columns_;
+  std::vector<Sums> sums_;  // of each block
+  Sums total_;
+};
+
+}  // namespace stiction::host

@@ -1,0 +1,151 @@
+#include "host/diagnose/holdout.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <random>
+
+#include "host/diagnose/inverse_dynamics.hpp"
+
+namespace stiction::host {
+namespace {
+
+struct Rows {
+  Eigen::Index begin, length;
+};
+
+std::vector<Rows> records_of(const LogRows& rows) {
+  std::vector<Rows> records;
+  for (std::size_t k = 0; k < rows.logs().size(); ++k) {
+    const auto begin = static_cast<Eigen::Index>(rows.logs()[k]);
+    const auto end = k + 1 < rows.logs().size() ? static_cast<Eigen::Index>(rows.logs()[k + 1]) : rows.rows();
+    records.push_back({begin, end - begin});
+  }
+  return records;
+}
+
+// Takes the nuisances of each record out of a column of all rows.
+class Nuisances {
+ public:
+  Nuisances(const LogRows& rows, const Scene& scene, bool constant, bool coulomb) {
+    std::vector<Eigen::VectorXd> columns;
+    if (constant) columns.push_back(Eigen::VectorXd::Ones(rows.rows()));
+    if (coulomb && coulomb_of(scene.axis))
+      columns.push_back(rows.stacked([&](const Motion& m) { return contact_level(scene.axis, m); }));
+    for (const auto& r : records_of(rows)) {
+      Eigen::MatrixXd own(r.length, static_cast<Eigen::Index>(columns.size()));
+      for (std::size_t c = 0; c < columns.size(); ++c)
+        own.col(static_cast<Eigen::Index>(c)) = columns[c].segment(r.begin, r.length);
+      records_.push_back(r);
+      columns_.push_back(own);
+      if (own.cols() > 0) solvers_.emplace_back(own);
+    }
+  }
+
+  Eigen::VectorXd without(Eigen::VectorXd column) const {
+    if (solvers_.empty()) return column;
+    for (std::size_t k = 0; k < records_.size(); ++k) {
+      const Eigen::VectorXd part = column.segment(records_[k].begin, records_[k].length);
+      column.segment(records_[k].begin, records_[k].length) -= columns_[k] * solvers_[k].solve(part);
+    }
+    return column;
+  }
+
+ private:
+  std::vector<Rows> records_;
+  std::vector<Eigen::MatrixXd> columns_;
+  std::vector<Eigen::ColPivHouseholderQR<Eigen::MatrixXd>> solvers_;
+};
+
+// A term's force in the rows; of a periodic one with the phase that fits each record best.
+Eigen::VectorXd force_of_term(const LogRows& rows, const Scene& scene, const Term& term, const Eigen::VectorXd& target) {
+  const auto& candidate = candidates()[term.candidate];
+  const auto columns = group_columns(rows, scene, candidate, term.nonlinear);
+  Eigen::VectorXd force = Eigen::VectorXd::Zero(rows.rows());
+  if (!candidate.periodic) {
+    for (std::size_t c = 0; c < columns.size(); ++c) force += term.weights[static_cast<Eigen::Index>(c)] * columns[c];
+    return force;
+  }
+  constexpr int phases = 72;
+  for (const auto& r : records_of(rows)) {
+    double least = 0.0;
+    for (int p = 0; p < phases; ++p) {
+      Eigen::VectorXd part = Eigen::VectorXd::Zero(r.length);
+      for (std::size_t c = 0; c + 1 < columns.size(); c += 2) {
+        const auto i = static_cast<Eigen::Index>(c);
+        const double harmonic = static_cast<double>(c / 2 + 1);
+        const auto turned = std::complex(term.weights[i], term.weights[i + 1]) *
+                            std::polar(1.0, 2.0 * std::numbers::pi * harmonic * p / phases);
+        part += turned.real() * columns[c].segment(r.begin, r.length) +
+                turned.imag() * columns[c + 1].segment(r.begin, r.length);
+      }
+      const double left = (target.segment(r.begin, r.length) - part).squaredNorm();
+      if (p > 0 && left >= least) continue;
+      least = left;
+      force.segment(r.begin, r.length) = part;
+    }
+  }
+  return force;
+}
+
+double rms(const Eigen::VectorXd& v) { return std::sqrt(v.squaredNorm() / static_cast<double>(v.size())); }
+
+// 95 % interval of the ratio of two rms over blocks.
+std::array<double, 2> ratio_interval(const Eigen::VectorXd& after, const Eigen::VectorXd& before, const LogRows& rows,
+                                     std::uint64_t seed) {
+  const auto blocks = blocks_of(rows.velocity, rows.logs(), static_cast<std::size_t>(rows.rows() / 60 + 1));
+  std::vector<std::pair<double, double>> squares;
+  for (const auto& b : blocks) {
+    const auto begin = static_cast<Eigen::Index>(b.begin), length = static_cast<Eigen::Index>(b.end - b.begin);
+    squares.emplace_back(after.segment(begin, length).squaredNorm(), before.segment(begin, length).squaredNorm());
+  }
+  std::mt19937_64 random(seed);
+  std::vector<double> ratios;
+  for (int r = 0; r < 400; ++r) {
+    double a = 0.0, b = 0.0;
+    for (std::size_t k = 0; k < squares.size(); ++k) {
+      const auto& drawn = squares[random() % squares.size()];
+      a += drawn.first;
+      b += drawn.second;
+    }
+    ratios.push_back(std::sqrt(a / b));
+  }
+  const auto interval = interval_95(std::move(ratios));
+  return {interval.low, interval.high};
+}
+
+}  // namespace
+
+HeldOutFigures evaluate_held_out(const LogRows& rows, const Eigen::VectorXd& target, const Scene& scene,
+                                 std::span<const Term> terms, std::uint64_t seed) {
+  // Phases of ripples are found with all other terms in place.
+  std::vector<Eigen::VectorXd> forces(terms.size());
+  Eigen::VectorXd rest = target;
+  for (const bool periodic : {false, true})
+    for (std::size_t k = 0; k < terms.size(); ++k) {
+      if (candidates()[terms[k].candidate].periodic != periodic) continue;
+      forces[k] = force_of_term(rows, scene, terms[k], rest);
+      rest -= forces[k];
+    }
+  bool constant = true, coulomb = true;
+  for (const auto& term : terms) {
+    constant = constant && !candidates()[term.candidate].names_constant;
+    coulomb = coulomb && !candidates()[term.candidate].names_coulomb;
+  }
+  const Nuisances nuisances(rows, scene, constant, coulomb);
+  const auto extended = nuisances.without(rest);
+  HeldOutFigures figures{rms(nuisances.without(target)), rms(extended), {}};
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    const auto& candidate = candidates()[terms[k].candidate];
+    const Nuisances own(rows, scene, !candidate.names_constant && constant, !candidate.names_coulomb && coulomb);
+    const Eigen::VectorXd after = own.without(rest), before = own.without(rest + forces[k]);
+    HoldoutGain gain;
+    gain.force_rms_ratio = rms(after) / rms(before);
+    gain.ci95 = ratio_interval(after, before, rows, seed + k);
+    figures.gains.push_back(gain);
+  }
+  return figures;
+}
+
+}  // namespace stiction::host

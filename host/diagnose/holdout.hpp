@@ -1,0 +1,22 @@
+// What terms gain on data that took no part in finding them. Each record's nuisances are estimated anew, the same in
+// baseline and extension: a constant force, today's Coulomb level, and of a ripple the home position; never what a term
+// names.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "host/diagnose/search.hpp"
+
+namespace stiction::host {
+
+struct HeldOutFigures {
+  double force_baseline = 0.0, force_extended = 0.0;  // N rms, without nuisances
+  std::vector<HoldoutGain> gains;                     // of each term beside the others; force only
+};
+
+// `target`: residual force of the held-out rows. Intervals: bootstrap over blocks of rows, from `seed`.
+HeldOutFigures evaluate_held_out(const LogRows& rows, const Eigen::VectorXd& target, const Scene& scene,
+                                 std::span<const Term> terms, std::uint64_t seed);
+
+}  // namespace stiction::host

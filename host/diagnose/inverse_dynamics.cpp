@@ -1,0 +1,173 @@
+#include "host/diagnose/inverse_dynamics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace stiction::host {
+namespace {
+
+// Below this share of the motion's highest speed sgn(v) is drawn out to a slope: what the encoder's noise makes of a
+// standstill must not chatter between +-1.
+constexpr double blurred = 5e-4;
+
+double highest_speed(const Motion& motion) {
+  double highest = 1e-9;
+  for (const double v : motion.v) highest = std::max(highest, std::abs(v));
+  return highest;
+}
+
+double soft_sign(double v, double width) { return std::clamp(v / width, -1.0, 1.0); }
+
+// Friction that follows the speed alone.
+template <class Law>
+std::vector<double> by_speed(const Motion& motion, Law&& law) {
+  std::vector<double> force(motion.v.size());
+  const double width = blurred * highest_speed(motion);
+  for (std::size_t i = 0; i < force.size(); ++i) force[i] = law(motion.v[i], soft_sign(motion.v[i], width));
+  return force;
+}
+
+// A model with a contact, moved by the displacement from sample to sample; viscous friction with the speed.
+template <class Model>
+std::vector<double> by_contact(const typename Model::Parameters& parameters, double mass, const Motion& motion) {
+  Model model(parameters, {mass, motion.period});
+  std::vector<double> force(motion.x.size());
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    const double moved = i == 0 ? 0.0 : motion.x[i] - motion.x[i - 1];
+    force[i] = model.move_contact(moved / motion.period) + parameters.viscous * motion.v[i];
+  }
+  return force;
+}
+
+struct Along {
+  const Motion& motion;
+  double mass;
+
+  std::vector<double> operator()(const sim::CoulombViscous::Parameters& p) const {
+    return by_speed(motion, [&](double v, double sign) { return p.coulomb * sign + p.viscous * v; });
+  }
+  std::vector<double> operator()(const sim::Classical::Parameters& p) const {
+    return by_speed(motion, [&](double v, double sign) { return p.coulomb * sign + p.viscous * v; });
+  }
+  std::vector<double> operator()(const sim::LinearRamp::Parameters& p) const {
+    const double edge = p.coulomb / p.slope;
+    return by_speed(motion, [&](double v, double) {
+      return std::abs(v) <= edge ? p.slope * v
+                                 : std::copysign(p.coulomb + p.viscous * (std::abs(v) - edge), v);
+    });
+  }
+  std::vector<double> operator()(const sim::Parabolic::Parameters& p) const {
+    return by_speed(motion, [&](double v, double) {
+      return std::copysign(p.force_at_1_m_per_s * std::pow(std::abs(v), 1.0 / p.order), v);
+    });
+  }
+  std::vector<double> operator()(const sim::LuGre::Parameters& p) const {
+    return by_contact<sim::LuGre>(p, mass, motion);
+  }
+  std::vector<double> operator()(const sim::MaxwellSlip::Parameters& p) const {
+    return by_contact<sim::MaxwellSlip>(p, mass, motion);
+  }
+};
+
+template <class P>
+constexpr bool has_coulomb = requires(P p) { p.coulomb; };
+template <class P>
+constexpr bool has_viscous = requires(P p) { p.viscous; };
+
+const sim::FrictionParameters& in_use(const sim::Axis& axis) { return axis.friction.models.at(axis.friction.use); }
+sim::FrictionParameters& in_use(sim::Axis& axis) { return axis.friction.models.at(axis.friction.use); }
+
+double sum_of(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
+
+}  // namespace
+
+std::vector<double> friction_along(const sim::Axis& axis, const Motion& motion) {
+  return std::visit(Along{motion, axis.mass}, in_use(axis));
+}
+
+std::vector<double> force_along(const sim::Axis& axis, const Motion& motion) {
+  auto force = friction_along(axis, motion);
+  for (std::size_t i = 0; i < force.size(); ++i) force[i] += axis.mass * motion.a[i];
+  return force;
+}
+
+std::vector<double> force_change(const sim::Axis& axis, const sim::Axis& changed, const Motion& motion, double by) {
+  auto difference = force_along(changed, motion);
+  const auto base = force_along(axis, motion);
+  for (std::size_t i = 0; i < base.size(); ++i) difference[i] = (difference[i] - base[i]) / by;
+  return difference;
+}
+
+std::vector<double> contact_level(const sim::Axis& axis, const Motion& motion) {
+  const auto coulomb = coulomb_of(axis);
+  const bool contact = contact_stiffness_of(axis).has_value();
+  if (!contact || !coulomb || *coulomb <= 0.0) return by_speed(motion, [](double, double sign) { return sign; });
+  auto bare = with_viscous(axis, 0.0);
+  auto& model = in_use(bare);
+  if (auto* lugre = std::get_if<sim::LuGre::Parameters>(&model)) {
+    lugre->static_ratio = 1.0;
+    lugre->damping_ratio = 0.0;
+  } else if (auto* slip = std::get_if<sim::MaxwellSlip::Parameters>(&model)) {
+    slip->rise = 0.0;
+  }
+  auto level = friction_along(bare, motion);
+  for (double& s : level) s /= *coulomb;
+  return level;
+}
+
+std::optional<double> coulomb_of(const sim::Axis& axis) {
+  return std::visit(
+      []<class P>(const P& p) -> std::optional<double> {
+        if constexpr (has_coulomb<P>)
+          return p.coulomb;
+        else if constexpr (std::is_same_v<P, sim::MaxwellSlip::Parameters>)
+          return sum_of(p.level);
+        else
+          return std::nullopt;
+      },
+      in_use(axis));
+}
+
+std::optional<double> viscous_of(const sim::Axis& axis) {
+  return std::visit(
+      []<class P>(const P& p) -> std::optional<double> {
+        if constexpr (has_viscous<P>)
+          return p.viscous;
+        else
+          return std::nullopt;
+      },
+      in_use(axis));
+}
+
+std::optional<double> contact_stiffness_of(const sim::Axis& axis) {
+  const auto& model = in_use(axis);
+  if (const auto* lugre = std::get_if<sim::LuGre::Parameters>(&model)) return lugre->stiffness;
+  if (const auto* slip = std::get_if<sim::MaxwellSlip::Parameters>(&model)) return sum_of(slip->stiffness);
+  return std::nullopt;
+}
+
+sim::Axis with_coulomb(sim::Axis axis, double coulomb) {
+  std::visit(
+      [coulomb]<class P>(P& p) {
+        if constexpr (has_coulomb<P>) {
+          p.coulomb = coulomb;
+        } else if constexpr (std::is_same_v<P, sim::MaxwellSlip::Parameters>) {
+          const double scale = coulomb / sum_of(p.level);
+          for (double& level : p.level) level *= scale;
+        }
+      },
+      in_use(axis));
+  return axis;
+}
+
+sim::Axis with_viscous(sim::Axis axis, double viscous) {
+  std::visit(
+      [viscous]<class P>(P& p) {
+        if constexpr (has_viscous<P>) p.viscous = viscous;
+      },
+      in_use(axis));
+  return axis;
+}
+
+}  // namespace stiction::host

@@ -1,0 +1,32 @@
+// The force that a machine file expects for a measured motion: m a + friction(v, history), with the friction models of
+// sim/plant/friction themselves driven by the measured displacement. A difference of two such forces is the regressor of
+// whatever differs between the two machines.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "host/identify/motion.hpp"
+#include "sim/machine/machine.hpp"
+
+namespace stiction::host {
+
+// N along the motion, at the log's rate. The history begins with the motion: the first reversal's way is not known.
+std::vector<double> friction_along(const sim::Axis& axis, const Motion& motion);
+std::vector<double> force_along(const sim::Axis& axis, const Motion& motion);  // m a + friction
+
+// The force with `changed` less the force with `axis`, over `by`.
+std::vector<double> force_change(const sim::Axis& axis, const sim::Axis& changed, const Motion& motion, double by);
+
+// Which way the contact pushes, -1 to 1: Coulomb friction without its level. Sticking lets it be anything between.
+std::vector<double> contact_level(const sim::Axis& axis, const Motion& motion);
+
+// Of the friction model in use; none where the model has no such parameter (a parabolic one).
+std::optional<double> coulomb_of(const sim::Axis& axis);  // N
+std::optional<double> viscous_of(const sim::Axis& axis);  // N s/m
+// Initial stiffness of the contact (N/m); none for a model whose friction follows the speed alone.
+std::optional<double> contact_stiffness_of(const sim::Axis& axis);
+sim::Axis with_coulomb(sim::Axis axis, double coulomb);
+sim::Axis with_viscous(sim::Axis axis, double viscous);
+
+}  // namespace stiction::host

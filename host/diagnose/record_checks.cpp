@@ -1,0 +1,84 @@
+#include "host/diagnose/record_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "host/identify/identification.hpp"
+#include "host/identify/suitability.hpp"
+#include "host/log/set_points.hpp"
+
+namespace stiction::host {
+
+void refuse_same_record(std::span<const Log> logs, std::span<const Log> held_out, const sim::Axis& axis) {
+  for (const auto& held : held_out)
+    for (const auto& log : logs) {
+      const auto& a = channels_of(log, axis).x;
+      const auto& b = channels_of(held, axis).x;
+      // The first hundred samples that change, anywhere in the other log.
+      const std::size_t length = std::min<std::size_t>(100, b.size());
+      const std::size_t from = b.size() / 2 > length ? b.size() / 2 : 0;
+      const auto part = std::span(b).subspan(from, length);
+      if (part.empty() || std::all_of(part.begin(), part.end(), [&](double x) { return x == part.front(); })) continue;
+      if (std::search(a.begin(), a.end(), part.begin(), part.end()) == a.end()) continue;
+      throw LogError(
+          fmt::format("{}: found the samples of {} again; expected a held-out log that took no part in finding the "
+                      "causes. Record another trajectory",
+                      held.source, log.source));
+    }
+}
+
+void refuse_unreachable_set_points(const Log& log, const sim::Axis& axis) {
+  const auto& channels = channels_of(log, axis);
+  if (channels.x_set.empty()) return;
+  const SetPoints points(log, channels);
+  double speed = 0.0;
+  for (const double v : points.velocity()) speed = std::max(speed, std::abs(v));
+  if (speed > 1.001 * axis.max_velocity)
+    throw LogError(
+        fmt::format("{}: found a set velocity of {:.4g} m/s; expected at most {:.4g} m/s, the max_velocity of axis {}: "
+                    "the machine file's machine cannot follow these set-points",
+                    log.source, speed, axis.max_velocity, axis.name));
+  const auto [low, high] = std::minmax_element(channels.x_set.begin(), channels.x_set.end());
+  if (axis.travel > 0.0 && *high - *low > 1.001 * axis.travel)
+    throw LogError(
+        fmt::format("{}: found set positions over {:.4g} m; expected at most {:.4g} m, the travel of axis {}: the "
+                    "machine file's machine cannot follow these set-points",
+                    log.source, *high - *low, axis.travel, axis.name));
+}
+
+void refuse_other_machine(const LogRows& rows, const Eigen::VectorXd& expected) {
+  const auto centred = [](const Eigen::VectorXd& v) { return Eigen::VectorXd(v.array() - v.mean()); };
+  const Eigen::VectorXd force = centred(rows.force), model = centred(expected);
+  const double force_square = force.squaredNorm(), model_square = model.squaredNorm();
+  if (!(force_square > 0.0) || !(model_square > 0.0)) return;
+  const auto source = sources_of(rows.motions());
+  // One factor between the logged and the expected force, and what it leaves of the force.
+  const double scale = force.dot(model) / model_square;
+  const double left = (force - scale * model).squaredNorm() / force_square;
+  const double off = (force - model).squaredNorm() / force_square;
+  if (scale < 0.0 && left < 0.5)
+    throw LogError(
+        fmt::format("{}: found a force {:.3g} times what the machine file expects for this motion; expected force and "
+                    "position positive in the same direction. The sign of the current (or of the encoder) is swapped",
+                    source, scale));
+  for (const auto& [ratio, text] :
+       {std::pair{1.0 / std::numbers::sqrt2, "the log's current is in effective (rms) amperes where amplitudes are "
+                                             "expected: multiply it by 1.414"},
+        std::pair{std::numbers::sqrt2, "the machine file's force constant is for effective (rms) amperes where "
+                                       "amplitudes are expected: divide it by 1.414"}})
+    if (std::abs(scale / ratio - 1.0) < 0.04 && left < 0.1 && left < 0.15 * off)
+      throw LogError(fmt::format("{}: found {:.3f} times the force that the machine file expects, over the whole "
+                                 "record; expected 1. By all signs {}",
+                                 source, scale, text));
+  if (off > 0.5)
+    throw LogError(
+        fmt::format("{}: found a force that leaves {:.0f} % of its variance unexplained by the machine file; expected "
+                    "less than 50 %, more than which no effect of the vocabulary makes. This is a log of another "
+                    "machine, or of another axis, or in other units",
+                    source, 100.0 * off));
+}
+
+}  // namespace stiction::host

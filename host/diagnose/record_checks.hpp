@@ -1,0 +1,22 @@
+// Records that cannot be diagnosed from, told before any cause is looked for. Every check throws LogError.
+#pragma once
+
+#include <span>
+
+#include "host/identify/log_rows.hpp"
+#include "host/log/log.hpp"
+#include "sim/machine/machine.hpp"
+
+namespace stiction::host {
+
+// A held-out log that is one of the training logs, or overlaps one.
+void refuse_same_record(std::span<const Log> logs, std::span<const Log> held_out, const sim::Axis& axis);
+
+// Set-points faster or further than the machine file allows.
+void refuse_unreachable_set_points(const Log& log, const sim::Axis& axis);
+
+// `expected`: the force (N) that the machine file gives for the rows' motion. A force of the other sign, in effective
+// amperes, or of another machine.
+void refuse_other_machine(const LogRows& rows, const Eigen::VectorXd& expected);
+
+}  // namespace stiction::host

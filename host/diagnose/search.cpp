@@ -1,0 +1,498 @@
+#include "host/diagnose/search.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "host/diagnose/fisher.hpp"
+#include "host/diagnose/ripple_scan.hpp"
+
+namespace stiction::host {
+namespace {
+
+constexpr std::size_t most_terms = 5;
+constexpr double significance = 0.01;  // over the number of candidates
+constexpr double least_gain = 0.01;    // of the cross-validated residual
+constexpr std::size_t pitches_tried = 3;
+
+struct Option {
+  std::size_t candidate;
+  double nonlinear;
+  ColumnIndices columns;
+};
+using Set = std::vector<const Option*>;
+
+std::vector<RowBlock> blocks_for(const LogRows& rows, double correlation) {
+  const auto n = static_cast<double>(rows.rows());
+  const double shortest = std::clamp(6.0 * correlation, n / 100.0, n / 30.0);
+  return blocks_of(rows.velocity, rows.logs(), static_cast<std::size_t>(shortest) + 1);
+}
+
+class Search {
+ public:
+  Search(const LogRows& rows, const Eigen::VectorXd& target, Scene& scene)
+      : rows_(rows),
+        scene_(scene),
+        correlation_(correlation_length(target, rows.logs())),
+        evidence_(target, blocks_for(rows, std::min(correlation_, 0.1 / rows.period(0)))) {
+    for (const double pitch : {scene.axis.motor.pole_pair_pitch, 0.5 * scene.axis.motor.pole_pair_pitch})
+      if (pitch > 0.0) known_pitches_.push_back(pitch);
+    for (std::size_t c = 0; c < candidates().size(); ++c)
+      if (!candidates()[c].periodic) add_options(c);
+  }
+
+  SearchResult run(const std::function<void()>& progress);
+
+ private:
+  void add_options(std::size_t candidate) {
+    for (const double value : candidates()[candidate].grid(scene_)) {
+      const auto columns = group_columns(rows_, scene_, candidates()[candidate], value);
+      const auto first = evidence_.add(columns);
+      Option option{candidate, value, {}};
+      for (std::size_t k = 0; k < columns.size(); ++k) option.columns.push_back(first + static_cast<Eigen::Index>(k));
+      options_.push_back(std::make_unique<Option>(std::move(option)));
+    }
+  }
+
+  // Pitches in what the set leaves; those in the set stay.
+  void scan_ripples(const Set& set) {
+    const auto columns = columns_of(set);
+    const auto scan = scan_pitches(rows_, evidence_.residual(columns, evidence_.fit(columns).weights), known_pitches_,
+                                   pitches_tried);
+    trials_ = std::max(trials_, scan.trials);
+    scene_.pitches = scan.pitches;
+    for (std::size_t c = 0; c < candidates().size(); ++c)
+      if (candidates()[c].periodic) add_options(c);
+  }
+
+  static ColumnIndices columns_of(const Set& set) {
+    ColumnIndices all;
+    for (const auto* option : set) all.insert(all.end(), option->columns.begin(), option->columns.end());
+    return all;
+  }
+  static bool has(const Set& set, std::size_t candidate) {
+    return std::any_of(set.begin(), set.end(), [&](const auto* o) { return o->candidate == candidate; });
+  }
+
+  // Number of independent values of the nonlinear parameter that were tried.
+  double trials(std::size_t candidate) const {
+    if (candidates()[candidate].periodic) return static_cast<double>(std::max<std::size_t>(trials_, 1));
+    return candidates()[candidate].nonlinear ? 3.0 : 1.0;
+  }
+  double effective_rows() const { return std::max(static_cast<double>(evidence_.rows()) / correlation_, 20.0); }
+  double penalty(std::size_t candidate, std::size_t columns) const {
+    return static_cast<double>(columns) * std::log(effective_rows()) + 2.0 * std::log(trials(candidate));
+  }
+  // n_eff ln(square) and the price of the columns (extended BIC: Chen, Chen 2008).
+  double score(const Set& set) const {
+    const auto columns = columns_of(set);
+    double price = 0.0;
+    for (const auto* option : set) price += penalty(option->candidate, option->columns.size());
+    return effective_rows() * std::log(std::max(evidence_.fit(columns).left, 1e-300)) + price;
+  }
+  bool all_possible(const Set& set) const {
+    const auto weights = evidence_.fit(columns_of(set)).weights;
+    Eigen::Index at = 0;
+    for (const auto* option : set) {
+      const auto count = static_cast<Eigen::Index>(option->columns.size());
+      if (!candidates()[option->candidate].possible(scene_, option->nonlinear, weights.segment(at, count)))
+        return false;
+      at += count;
+    }
+    return true;
+  }
+
+  const Option* best_of(std::size_t candidate, const Set& beside) const {
+    const Option* best = nullptr;
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& option : options_) {
+      if (option->candidate != candidate) continue;
+      auto set = beside;
+      set.push_back(option.get());
+      const double left = evidence_.fit(columns_of(set)).left;
+      if (left >= least || !all_possible(set)) continue;
+      least = left;
+      best = option.get();
+    }
+    return best;
+  }
+  // Every term's nonlinear parameter anew, given the others.
+  void profile(Set& set) const {
+    for (int round = 0; round < 2; ++round)
+      for (std::size_t k = 0; k < set.size(); ++k) {
+        auto others = set;
+        others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
+        if (const auto* better = best_of(set[k]->candidate, others)) set[k] = better;
+      }
+  }
+  bool exchange(Set& set) const;
+  bool grow(Set& set);
+  bool drop(Set& set);
+  Judgement judge(const Set& set, std::size_t term) const;
+  void note(std::size_t candidate, const Judgement& judgement);
+  void refine(std::vector<Term>& terms, Eigen::VectorXd& residual);
+  std::vector<std::size_t> alternatives(const Set& set, std::size_t term) const;
+  double size_in(const std::vector<bool>& use, const Set& set, std::size_t term, const Eigen::VectorXd& weights) const;
+
+  const LogRows& rows_;
+  Scene& scene_;
+  double correlation_;
+  Evidence evidence_;
+  std::vector<std::unique_ptr<Option>> options_;
+  std::size_t trials_ = 1, rounds_ = 0;
+  std::vector<double> known_pitches_;
+  std::vector<Discarded> discarded_;
+};
+
+// A term for another candidate, where that scores better.
+bool Search::exchange(Set& set) const {
+  double least = score(set);
+  for (std::size_t k = 0; k < set.size(); ++k) {
+    auto others = set;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
+    for (std::size_t c = 0; c < candidates().size(); ++c) {
+      if (has(set, c)) continue;
+      const auto* option = best_of(c, others);
+      if (option == nullptr) continue;
+      auto trial = others;
+      trial.push_back(option);
+      profile(trial);
+      if (const double s = score(trial); s < least - 1.0) {
+        set = trial;
+        exchange(set);
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+Judgement Search::judge(const Set& set, std::size_t term) const {
+  Judgement result;
+  auto others = set;
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(term));
+  const auto with = columns_of(set), without = columns_of(others);
+  const auto weights = evidence_.fit(with).weights;
+  Eigen::Index at = 0;
+  for (std::size_t k = 0; k < term; ++k) at += static_cast<Eigen::Index>(set[k]->columns.size());
+  const auto count = static_cast<Eigen::Index>(set[term]->columns.size());
+  const Eigen::VectorXd own = weights.segment(at, count);
+  const Eigen::MatrixXd covariance = evidence_.covariance(with, weights).block(at, at, count, count);
+
+  const double bearing = std::max(evidence_.bearing_blocks(set[term]->columns, own) - static_cast<double>(count), 2.0);
+  const double wald = own.dot(covariance.completeOrthogonalDecomposition().solve(own)) / static_cast<double>(count);
+  result.p_value = std::min(
+      1.0, trials(set[term]->candidate) * fisher_tail(wald, static_cast<double>(count), bearing));
+
+  const auto a = evidence_.held_out(without), b = evidence_.held_out(with);
+  std::vector<double> gains(a.size());
+  double before = 0.0, gained = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    gains[k] = a[k] - b[k];
+    before += a[k];
+    gained += gains[k];
+  }
+  result.gain = gained / before;
+  const double n = static_cast<double>(gains.size()), mean = gained / n;
+  double variance = 0.0;
+  for (const double g : gains) variance += (g - mean) * (g - mean) / (n - 1.0);
+  result.gain_p_value = mean <= 0.0 ? 1.0 : 0.5 * student_tails(mean / std::sqrt(variance / n), n - 1.0);
+  // Without the blocks that gain most: one odd event in fifty names no cause.
+  auto sorted = gains;
+  std::sort(sorted.begin(), sorted.end());
+  const auto odd = std::max<std::size_t>(1, sorted.size() / 50);
+  const double rest = std::accumulate(sorted.begin(), sorted.end() - static_cast<std::ptrdiff_t>(odd), 0.0);
+
+  std::vector<bool> first(evidence_.blocks()), second(evidence_.blocks());
+  for (std::size_t k = 0; k < first.size(); ++k) second[k] = !(first[k] = k < first.size() / 2);
+  result.first_half = size_in(first, set, term, weights);
+  result.second_half = size_in(second, set, term, weights);
+  const auto size_error = std::sqrt(static_cast<double>(count) / std::max(wald * static_cast<double>(count), 1e-12));
+  result.first_error = result.second_error = std::sqrt(2.0) * size_error;
+
+  const double limit = significance / static_cast<double>(candidates().size());
+  if (!(result.p_value < limit))
+    result.objection = fmt::format("not significant: p = {:.2g}, expected below {:.2g}", result.p_value, limit);
+  else if (!(result.gain > least_gain))
+    result.objection = fmt::format("takes {:.2g} % off the cross-validated residual; expected more than {:g} %",
+                                   100.0 * result.gain, 100.0 * least_gain);
+  else if (!(rest > 0.2 * gained))
+    result.objection = fmt::format("{} of {} blocks of rows make nearly all of its gain: an odd event", odd,
+                                   gains.size());
+  else if (result.first_half < 0.0 || result.second_half < 0.0)
+    result.objection = "the two halves of the records contradict each other on it";
+  return result;
+}
+
+double Search::size_in(const std::vector<bool>& use, const Set& set, std::size_t term,
+                       const Eigen::VectorXd& weights) const {
+  const auto part = evidence_.fit(columns_of(set), use).weights;
+  Eigen::Index at = 0;
+  for (std::size_t k = 0; k < term; ++k) at += static_cast<Eigen::Index>(set[k]->columns.size());
+  // Along the weights of all rows, in the metric of the columns' lengths.
+  double product = 0.0, square = 0.0;
+  for (std::size_t k = 0; k < set[term]->columns.size(); ++k) {
+    const auto i = at + static_cast<Eigen::Index>(k);
+    const double length = evidence_.column_square(set[term]->columns[k]);
+    product += length * part[i] * weights[i];
+    square += length * weights[i] * weights[i];
+  }
+  return square > 0.0 ? product / square : 0.0;
+}
+
+void Search::note(std::size_t candidate, const Judgement& judgement) {
+  const auto known = std::find_if(discarded_.begin(), discarded_.end(),
+                                  [&](const Discarded& d) { return d.candidate == candidate; });
+  if (known == discarded_.end())
+    discarded_.push_back({candidate, *judgement.objection});
+  else
+    known->why = *judgement.objection;
+}
+
+// Adds the best term that stands, or the best two that stand together: terms can mask one another.
+bool Search::grow(Set& set) {
+  struct Trial {
+    Set set;
+    double score;
+  };
+  std::vector<Trial> trials;
+  std::vector<const Option*> best;
+  for (std::size_t c = 0; c < candidates().size(); ++c) {
+    if (has(set, c)) continue;
+    const auto* option = best_of(c, set);
+    if (option == nullptr) continue;
+    best.push_back(option);
+    auto trial = set;
+    trial.push_back(option);
+    trials.push_back({trial, score(trial)});
+  }
+  const auto by_score = [](const Trial& a, const Trial& b) { return a.score < b.score; };
+  std::sort(trials.begin(), trials.end(), by_score);
+  for (auto& trial : trials) {
+    const auto judgement = judge(trial.set, trial.set.size() - 1);
+    if (!judgement.objection) {
+      set = trial.set;
+      return true;
+    }
+    note(trial.set.back()->candidate, judgement);
+  }
+  std::vector<Trial> pairs;
+  for (std::size_t i = 0; i < best.size(); ++i)
+    for (std::size_t j = i + 1; j < best.size(); ++j) {
+      auto trial = set;
+      trial.push_back(best[i]);
+      trial.push_back(best[j]);
+      if (all_possible(trial)) pairs.push_back({trial, score(trial)});
+    }
+  std::sort(pairs.begin(), pairs.end(), by_score);
+  if (pairs.empty() || pairs.front().score > score(set)) return false;
+  auto& pair = pairs.front().set;
+  for (std::size_t k = set.size(); k < pair.size(); ++k)
+    if (judge(pair, k).objection) return false;
+  set = pair;
+  return true;
+}
+
+bool Search::drop(Set& set) {
+  for (std::size_t k = 0; k < set.size(); ++k) {
+    const auto judgement = judge(set, k);
+    if (!judgement.objection) continue;
+    note(set[k]->candidate, judgement);
+    set.erase(set.begin() + static_cast<std::ptrdiff_t>(k));
+    return true;
+  }
+  return false;
+}
+
+// Candidates that in the term's place leave a residual that the blocks cannot tell from its own.
+std::vector<std::size_t> Search::alternatives(const Set& set, std::size_t term) const {
+  std::vector<std::size_t> as_good;
+  auto others = set;
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(term));
+  const auto without = evidence_.held_out(columns_of(others)), with = evidence_.held_out(columns_of(set));
+  for (std::size_t c = 0; c < candidates().size(); ++c) {
+    if (has(set, c)) continue;
+    const auto* option = best_of(c, others);
+    if (option == nullptr) continue;
+    auto trial = others;
+    trial.push_back(option);
+    const auto instead = evidence_.held_out(columns_of(trial));
+    double gained = 0.0, of = 0.0, mean = 0.0, square = 0.0;
+    const double n = static_cast<double>(with.size());
+    for (std::size_t b = 0; b < with.size(); ++b) {
+      of += without[b] - with[b];
+      gained += without[b] - instead[b];
+      mean += (instead[b] - with[b]) / n;
+      square += (instead[b] - with[b]) * (instead[b] - with[b]) / n;
+    }
+    const double error = std::sqrt(std::max(square - mean * mean, 0.0) / (n - 1.0));
+    if (gained > 0.7 * of && mean < 2.0 * error) as_good.push_back(c);
+  }
+  return as_good;
+}
+
+// Nonlinear parameters off the grid, by golden section; weights and covariance with them.
+void Search::refine(std::vector<Term>& terms, Eigen::VectorXd& residual) {
+  evidence_.truncate(0);
+  std::vector<std::vector<Eigen::VectorXd>> groups;
+  for (const auto& term : terms)
+    groups.push_back(group_columns(rows_, scene_, candidates()[term.candidate], term.nonlinear));
+  const auto stack = [&] {
+    Eigen::Index count = 0;
+    for (const auto& g : groups) count += static_cast<Eigen::Index>(g.size());
+    Eigen::MatrixXd columns(rows_.rows(), count);
+    Eigen::Index at = 0;
+    for (const auto& g : groups)
+      for (const auto& c : g) columns.col(at++) = c;
+    return columns;
+  };
+  const auto weights_of = [&](const Eigen::MatrixXd& columns) {
+    const Eigen::VectorXd scale = columns.colwise().norm().cwiseMax(1e-300).cwiseInverse().transpose();
+    const Eigen::MatrixXd gram = scale.asDiagonal() * (columns.transpose() * columns) * scale.asDiagonal();
+    const Eigen::VectorXd moment = scale.cwiseProduct(columns.transpose() * evidence_.target());
+    return Eigen::VectorXd(scale.cwiseProduct(gram.completeOrthogonalDecomposition().solve(moment)));
+  };
+  const auto square_with = [&](std::size_t k, double value) {
+    groups[k] = group_columns(rows_, scene_, candidates()[terms[k].candidate], value);
+    const auto columns = stack();
+    return (evidence_.target() - columns * weights_of(columns)).squaredNorm();
+  };
+  const double stroke = std::max(scene_.stroke(), 1e-6);
+  for (int round = 0; round < (terms.size() > 1 ? 2 : 1); ++round)
+    for (std::size_t k = 0; k < terms.size(); ++k) {
+      const auto& candidate = candidates()[terms[k].candidate];
+      auto& value = terms[k].nonlinear;
+      if (candidate.at_weight) {
+        for (int i = 0; i < 2; ++i) {
+          const auto columns = stack();
+          const auto weights = weights_of(columns);
+          Eigen::Index at = 0;
+          for (std::size_t j = 0; j < k; ++j) at += static_cast<Eigen::Index>(groups[j].size());
+          if (weights[at] == 0.0 || !std::isfinite(weights[at])) break;
+          value = weights[at];
+          groups[k] = group_columns(rows_, scene_, candidate, value);
+        }
+        continue;
+      }
+      if (!candidate.nonlinear) continue;
+      // A step of the grid to either side: in 1/pitch an eighth of 1/stroke, else a factor.
+      const double factor = candidate.periodic ? 1.0 / (1.0 - std::min(0.2 * value / stroke, 0.5)) : 1.6;
+      double low = value / factor, high = value * factor;
+      constexpr double golden = 0.6180339887498949;
+      double a = high * std::pow(low / high, golden), b = low * std::pow(high / low, golden);
+      double fa = square_with(k, a), fb = square_with(k, b);
+      for (int i = 0; i < 14; ++i) {
+        if (fa < fb) {
+          high = b;
+          b = a;
+          fb = fa;
+          fa = square_with(k, a = high * std::pow(low / high, golden));
+        } else {
+          low = a;
+          a = b;
+          fa = fb;
+          fb = square_with(k, b = low * std::pow(high / low, golden));
+        }
+      }
+      value = fa < fb ? a : b;
+      square_with(k, value);
+    }
+  // Weights; and with the slope of each nonlinear parameter beside them, covariances.
+  const auto columns = stack();
+  const auto weights = weights_of(columns);
+  residual = evidence_.target() - columns * weights;
+  ColumnIndices chosen;
+  std::vector<Eigen::Index> first;
+  Eigen::VectorXd all(0);
+  Eigen::Index at = 0;
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    const auto count = static_cast<Eigen::Index>(groups[k].size());
+    auto own = groups[k];
+    terms[k].weights = weights.segment(at, count);
+    const auto& candidate = candidates()[terms[k].candidate];
+    const Eigen::Index before = all.size();
+    if (candidate.nonlinear) {
+      const double by = candidate.periodic ? 0.02 * terms[k].nonlinear * terms[k].nonlinear / stroke
+                                           : 0.02 * terms[k].nonlinear;
+      Eigen::VectorXd slope = Eigen::VectorXd::Zero(rows_.rows());
+      const auto up = group_columns(rows_, scene_, candidate, terms[k].nonlinear + by);
+      const auto down = group_columns(rows_, scene_, candidate, terms[k].nonlinear - by);
+      for (std::size_t i = 0; i < up.size(); ++i)
+        slope += weights[at + static_cast<Eigen::Index>(i)] * (up[i] - down[i]) / (2.0 * by);
+      own.push_back(slope);
+    }
+    first.push_back(evidence_.add(own));
+    all.conservativeResize(before + static_cast<Eigen::Index>(own.size()));
+    all.segment(before, count) = terms[k].weights;
+    if (candidate.nonlinear) all[before + count] = 0.0;
+    for (std::size_t i = 0; i < own.size(); ++i) chosen.push_back(first.back() + static_cast<Eigen::Index>(i));
+    at += count;
+  }
+  const auto covariance = terms.empty() ? Eigen::MatrixXd() : evidence_.covariance(chosen, all);
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    const auto count = terms[k].weights.size() + (candidates()[terms[k].candidate].nonlinear ? 1 : 0);
+    terms[k].covariance = covariance.block(first[k], first[k], count, count);
+  }
+}
+
+SearchResult Search::run(const std::function<void()>& progress) {
+  const auto tick = [&] {
+    if (progress) progress();
+  };
+  Set set;
+  scan_ripples(set);
+  tick();
+  while (set.size() < most_terms && grow(set)) {
+    scan_ripples(set);
+    profile(set);
+    exchange(set);
+    while (drop(set)) profile(set);
+    correlation_ = correlation_length(evidence_.residual(columns_of(set), evidence_.fit(columns_of(set)).weights),
+                                      rows_.logs());
+    tick();
+    if (++rounds_ > 2 * most_terms) break;
+  }
+  SearchResult result;
+  for (std::size_t k = 0; k < set.size(); ++k) {
+    Term term{set[k]->candidate, set[k]->nonlinear, {}, {}, 0.0, judge(set, k), alternatives(set, k)};
+    auto others = set;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
+    term.explains =
+        (evidence_.fit(columns_of(others)).left - evidence_.fit(columns_of(set)).left) / evidence_.total();
+    result.terms.push_back(std::move(term));
+  }
+  for (const auto& d : discarded_)
+    if (!has(set, d.candidate)) result.discarded.push_back(d);
+  refine(result.terms, result.residual);
+  std::sort(result.terms.begin(), result.terms.end(),
+            [](const Term& a, const Term& b) { return a.explains > b.explains; });
+  result.correlation = correlation_;
+  result.blocks = evidence_.blocks();
+  tick();
+  return result;
+}
+
+}  // namespace
+
+std::vector<Eigen::VectorXd> group_columns(const LogRows& rows, const Scene& scene, const Candidate& candidate,
+                                           double nonlinear) {
+  std::vector<Columns> of_motion;
+  for (const auto& motion : rows.motions()) of_motion.push_back(candidate.columns(scene, motion, nonlinear));
+  std::vector<Eigen::VectorXd> stacked;
+  for (std::size_t c = 0; c < of_motion.front().size(); ++c)
+    stacked.push_back(rows.stacked([&](const Motion& motion) {
+      const auto index = static_cast<std::size_t>(&motion - rows.motions().data());
+      return of_motion[index][c];
+    }));
+  return stacked;
+}
+
+SearchResult search_causes(const LogRows& rows, const Eigen::VectorXd& target, Scene& scene,
+                           const std::function<void()>& progress) {
+  return Search(rows, target, scene).run(progress);
+}
+
+}  // namespace stiction::host

@@ -1,0 +1,109 @@
+#include "host/diagnose/verdict_json.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "sim/plant/effects/effects.hpp"
+
+namespace stiction::host {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+bool is_list(const std::string& effect, const std::string& parameter) {
+  const auto* kind = sim::find_effect_kind(effect);
+  if (kind == nullptr) return false;
+  for (const auto& key : kind->keys)
+    if (std::string(key.key) + key.suffix == parameter) return key.list;
+  return false;
+}
+
+Json number_or_list(const std::vector<double>& values, bool list) {
+  return list || values.size() != 1 ? Json(values) : Json(values.front());
+}
+
+Json figures(const ResidualFigures& f) {
+  Json out{{"force_rms_N", f.force_rms}};
+  if (f.position_error_rms) out["position_error_rms_um"] = *f.position_error_rms * 1e6;
+  return out;
+}
+
+Json finding_json(const Finding& f) {
+  Json parameters = Json::object(), errors = Json::object();
+  for (const auto& p : f.parameters) {
+    const bool list = is_list(f.effect.name, p.name);
+    parameters[p.name] = number_or_list(p.values, list);
+    if (!p.standard_errors.empty()) errors[p.name] = number_or_list(p.standard_errors, list);
+  }
+  Json gain{{"force_rms_ratio", f.holdout.force_rms_ratio}};
+  if (f.holdout.position_error_rms_ratio) gain["position_error_rms_ratio"] = *f.holdout.position_error_rms_ratio;
+  gain["ci95"] = f.holdout.ci95;
+  Json confused = Json::array();
+  for (const auto& c : f.confused_with) confused.push_back({{"effect", c.effect}, {"separate_by", c.separate_by}});
+  Json out{{"effect", f.effect.name},  {"axis", f.axis},         {"parameters", parameters},
+           {"standard_errors", errors}, {"explains", f.explains}, {"holdout_gain", gain},
+           {"p_value", f.p_value},     {"confused_with", confused}};
+  if (f.part_error) out["part_error_um"] = *f.part_error * 1e6;
+  return out;
+}
+
+}  // namespace
+
+Json verdict_json(const Verdict& verdict) {
+  Json findings = Json::array(), rejected = Json::array();
+  for (const auto& f : verdict.findings) findings.push_back(finding_json(f));
+  for (const auto& r : verdict.rejected) rejected.push_back({{"effect", r.effect}, {"why", r.why}});
+  return {{"schema", "stiction.verdict/1"},
+          {"machine", verdict.machine},
+          {"logs", verdict.logs},
+          {"holdout", verdict.holdout},
+          {"holdout_is_a_part", verdict.holdout_is_a_part},
+          {"baseline", figures(verdict.baseline)},
+          {"extended", figures(verdict.extended)},
+          {"findings", findings},
+          {"rejected", rejected},
+          {"unexplained",
+           {{"share", verdict.unexplained.share},
+            {"signature", verdict.unexplained.signature ? Json(*verdict.unexplained.signature) : Json(nullptr)}}},
+          {"notes", verdict.notes},
+          {"extended_machine", "extended.toml"}};
+}
+
+std::string verdict_text(const Verdict& verdict) {
+  std::string text;
+  const auto position = [](const ResidualFigures& f) {
+    return f.position_error_rms ? fmt::format(", position {:.3g} um rms", *f.position_error_rms * 1e6) : std::string();
+  };
+  text += fmt::format("on held-out data, measured against simulated:\n  {:<14} force {:.4g} N rms{}\n",
+                      "machine file", verdict.baseline.force_rms, position(verdict.baseline));
+  if (!verdict.findings.empty())
+    text += fmt::format("  {:<14} force {:.4g} N rms{}\n", "extended", verdict.extended.force_rms,
+                        position(verdict.extended));
+  if (verdict.findings.empty())
+    text += "\nno cause found: "
+            "beyond what is said below, the simulation agrees with the data within its noise\n";
+  for (std::size_t k = 0; k < verdict.findings.size(); ++k) {
+    const auto& f = verdict.findings[k];
+    text += fmt::format("\n{}. {}, axis {}\n", k + 1, f.effect.name, f.axis);
+    for (const auto& p : f.parameters)
+      for (std::size_t i = 0; i < p.values.size(); ++i)
+        text += fmt::format("   {} = {:.6g} +- {:.2g}\n", p.name, p.values[i],
+                            i < p.standard_errors.size() ? p.standard_errors[i] : 0.0);
+    text += fmt::format("   {}\n   held-out force rms {:.3f} times that without it (95 %: {:.3f} to {:.3f})", f.evidence,
+                        f.holdout.force_rms_ratio, f.holdout.ci95[0], f.holdout.ci95[1]);
+    if (f.holdout.position_error_rms_ratio)
+      text += fmt::format(", position error {:.3f} times", *f.holdout.position_error_rms_ratio);
+    text += "\n";
+    for (const auto& c : f.confused_with)
+      text += fmt::format("   may be {} instead; to separate: {}\n", c.effect, c.separate_by);
+  }
+  if (!verdict.rejected.empty()) text += "\ntried and rejected:\n";
+  for (const auto& r : verdict.rejected) text += fmt::format("  {}: {}\n", r.effect, r.why);
+  if (verdict.unexplained.signature)
+    text += fmt::format("\nunexplained: {:.1f} % of the residual's variance, {}\n", 100.0 * verdict.unexplained.share,
+                        *verdict.unexplained.signature);
+  for (const auto& note : verdict.notes) text += fmt::format("\nnote: {}\n", note);
+  return text;
+}
+
+}  // namespace stiction::host

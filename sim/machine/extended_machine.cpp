@@ -1,0 +1,120 @@
+#include "sim/machine/extended_machine.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "sim/machine/document.hpp"
+#include "sim/machine/edited_machine.hpp"
+#include "sim/machine/parameters.hpp"
+#include "sim/plant/effects/effects.hpp"
+
+namespace stiction::sim {
+namespace {
+
+std::string value_text(double value, std::string_view unit) {
+  return unit == "1" ? fmt::format("{:.7g}", value) : fmt::format("\"{}\"", written_quantity(value, unit));
+}
+
+// Of the effects that a kind allows once: whether the file has one that an addition names again.
+bool replaces_any(const Machine& machine, std::span<const AxisEffects> additions) {
+  for (const AxisEffects& addition : additions)
+    for (const Axis& axis : machine.axes)
+      for (const Effect& effect : addition.effects) {
+        const EffectKind* kind = find_effect_kind(effect.name);
+        const auto is_same = [&](const Effect& other) { return other.name == effect.name; };
+        if (axis.name == addition.axis && kind != nullptr && !kind->several &&
+            std::any_of(axis.effects.begin(), axis.effects.end(), is_same))
+          return true;
+      }
+  return false;
+}
+
+// Puts one effect into the tree of an axis, in the place of one that there may be only once.
+void put(toml::table& axis, const Effect& effect) {
+  toml::array& list = *axis.insert(effect_key, toml::array{}).first->second.as_array();
+  if (!find_effect_kind(effect.name)->several)
+    for (auto it = list.begin(); it != list.end();)
+      it = it->at_path(effect_name_key).value<std::string>() == effect.name ? list.erase(it) : it + 1;
+  toml::table table = toml::parse(effect_table("X", effect));
+  list.push_back(std::move(*table["axis"]["X"][effect_key].as_array()->get(0)->as_table()));
+  for (toml::node& element : list)
+    if (element.is_table()) element.as_table()->is_inline(false);
+}
+
+std::string rewritten(const std::filesystem::path& file, const std::vector<std::string>& set,
+                      std::span<const AxisEffects> additions) {
+  toml::table root = toml::parse(edited_machine(file, set, {}, {}));
+  for (const AxisEffects& addition : additions) {
+    toml::table* axis = root["axis"][addition.axis].as_table();
+    if (axis == nullptr) continue;
+    axis->is_inline(false);
+    for (const Effect& effect : addition.effects) put(*axis, effect);
+  }
+  std::ostringstream out;
+  out << root << '\n';
+  return out.str();
+}
+
+std::string continued(std::string text, std::span<const AxisEffects> additions) {
+  if (!text.empty() && text.back() != '\n') text += '\n';
+  for (const AxisEffects& addition : additions)
+    for (const Effect& effect : addition.effects) text += "\n" + effect_table(addition.axis, effect);
+  return text;
+}
+
+std::string with_comment(std::string text, std::span<const std::string> comment) {
+  if (comment.empty()) return text;
+  std::string head;
+  for (const std::string& line : comment) head += "# " + line + "\n";
+  return head + text;
+}
+
+void check_axes(const std::filesystem::path& file, const Machine& machine, std::span<const AxisEffects> additions) {
+  std::vector<std::string_view> known;
+  for (const Axis& axis : machine.axes) known.push_back(axis.name);
+  for (const AxisEffects& addition : additions)
+    if (std::find(known.begin(), known.end(), addition.axis) == known.end())
+      throw MachineFileError(fmt::format("{}: axis: found effects for the axis \"{}\"; expected one of {}",
+                                         file.string(), addition.axis, quoted_list(known)));
+}
+
+}  // namespace
+
+std::string effect_table(const std::string& axis, const Effect& effect) {
+  check_effect(effect);
+  const EffectKind* kind = find_effect_kind(effect.name);
+  std::string text = fmt::format("[[axis.{}.{}]]\n{} = \"{}\"\n", axis, effect_key, effect_name_key, effect.name);
+  for (const EffectKey& key : kind->keys) {
+    const auto found = effect.values.find(std::string(key.key));
+    const std::vector<double> values = found == effect.values.end() ? std::vector{0.0} : found->second;
+    std::vector<std::string> texts;
+    for (const double value : values) texts.push_back(value_text(value, key.unit));
+    text += key.list ? fmt::format("{} = [{}]\n", key.key, fmt::join(texts, ", "))
+                     : fmt::format("{} = {}\n", key.key, texts.front());
+  }
+  return text;
+}
+
+std::string extended_machine(const std::filesystem::path& file, const std::vector<std::string>& set,
+                             std::span<const AxisEffects> additions, std::span<const std::string> comment) {
+  const std::string original = content_of(file);
+  const Machine machine = parse_machine(file.string(), original, {{}, set});
+  check_axes(file, machine, additions);
+  if (set.empty() && !replaces_any(machine, additions)) {
+    std::string text = with_comment(continued(original, additions), comment);
+    try {
+      parse_machine(file.string(), text);
+      return text;
+    } catch (const MachineFileError&) {
+      // The file writes its axis or its effects in a way that no table can follow.
+    }
+  }
+  std::string text = with_comment(rewritten(file, set, additions), comment);
+  parse_machine(file.string(), text);
+  return text;
+}
+
+}  // namespace stiction::sim

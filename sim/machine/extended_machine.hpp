@@ -1,0 +1,30 @@
+// The text of a machine file with effects added: what diagnosis leaves behind.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/plant/effects/effect.hpp"
+
+namespace stiction::sim {
+
+struct AxisEffects {
+  std::string axis;
+  std::vector<Effect> effects;  // without a key that has a default, that default is written
+};
+
+// The file's own text, comments included, with `comment` (lines without "#") and tables [[axis.NAME.effect]] after it;
+// it reads back as a machine with these effects behind those of the file. Where the text cannot simply go on, because
+// of assignments in `set` (as on the command line, ReadOptions), because the file writes its effects as a list in one
+// line, or because an effect that an axis has only once is there already and so is replaced, the tree of the file is
+// written anew, and its comments are lost. Throws MachineFileError when the result is no valid machine file,
+// EffectError for effects with unknown names, keys or values.
+std::string extended_machine(const std::filesystem::path& file, const std::vector<std::string>& set,
+                             std::span<const AxisEffects> additions, std::span<const std::string> comment);
+
+// One table [[axis.NAME.effect]] as text, its values in SI units.
+std::string effect_table(const std::string& axis, const Effect& effect);
+
+}  // namespace stiction::sim

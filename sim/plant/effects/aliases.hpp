@@ -1,0 +1,40 @@
+// Pairs of effects that data of ordinary motion may not tell apart, with the experiment that does. The names are those
+// of the whole vocabulary; a pair stands here once and is shown with both.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace stiction::sim {
+
+struct AliasPair {
+  std::string_view one, other;
+  std::string_view separate_by;
+};
+
+inline constexpr std::string_view by_frequency_response =
+    "frequency response: a delay has a phase linear in frequency, friction none, an elastic mount a step of 180 deg";
+inline constexpr std::string_view by_known_mass = "accelerations at several levels, with a known added mass";
+
+inline constexpr std::array<AliasPair, 16> alias_pairs{{
+    {"constant_force", "friction_asymmetry", "turn the axis, another payload, or a reading at standstill"},
+    {"mass_mismatch", "force_constant_mismatch", by_known_mass},
+    {"coulomb_mismatch", "force_constant_mismatch", "a known added mass: a wrong force constant scales its force too"},
+    {"viscous_mismatch", "force_constant_mismatch", "a known added mass: a wrong force constant scales its force too"},
+    {"force_saturation", "force_constant_mismatch", by_known_mass},
+    {"mass_mismatch", "force_saturation", by_known_mass},
+    {"backlash", "presliding_hysteresis",
+     "load at standstill: presliding has an elastic slope, play has none; a second encoder"},
+    {"time_skew", "viscous_mismatch", by_frequency_response},
+    {"time_skew", "structural_resonance", by_frequency_response},
+    {"viscous_mismatch", "structural_resonance", by_frequency_response},
+    {"force_ripple", "encoder_subdivision_error",
+     "several speeds: the force of a subdivision error grows with the speed squared, cogging does not"},
+    {"force_ripple", "position_dependent_friction", "traverse the same stretch in both directions"},
+    {"viscous_nonlinear", "stribeck", "more speeds below 10 mm/s"},
+    {"viscous_mismatch", "thermal_drift", "several speeds at each temperature"},
+    {"coulomb_mismatch", "thermal_drift", "several speeds at each temperature"},
+    {"coulomb_mismatch", "presliding_hysteresis", "small reversals of several amplitudes"},
+}};
+
+}  // namespace stiction::sim

@@ -1,0 +1,30 @@
+// Times that the simulation lacks: `delay`, by which the current is recorded late against the position (of the record
+// alone: nothing in the loop knows it), and `loop_delay`, which the controller's output needs beyond the inverter's
+// dead time.
+#pragma once
+
+#include <array>
+
+#include "sim/machine/machine.hpp"
+#include "sim/parameter.hpp"
+
+namespace stiction::sim {
+
+struct TimeSkew {
+  struct Parameters {
+    double delay = 0.0;
+    double loop_delay = 0.0;
+  };
+  static constexpr std::string_view name = "time_skew";
+  static constexpr std::string_view text = "current recorded late against position, or a delay in the loop";
+  static constexpr bool several = false;
+  static constexpr std::array<Parameter<Parameters>, 2> parameters{{
+      {"delay", "s", {-0.1, 0.1}, &Parameters::delay, 0.0, "by which the current is recorded late; negative: early"},
+      {"loop_delay", "s", not_negative(0.1), &Parameters::loop_delay, 0.0, "of the loop, beyond the dead time"},
+  }};
+
+  // The dead time need not be a multiple of the plant's step, see InverterModel.
+  static void change(const Parameters& p, Axis& plant) { plant.inverter.dead_time += p.loop_delay; }
+};
+
+}  // namespace stiction::sim

@@ -1,0 +1,27 @@
+// The slope of viscous friction differs from the file's, whichever friction model acts (friction_level.hpp); the drive
+// knows nothing of it.
+#pragma once
+
+#include <array>
+
+#include "sim/machine/machine.hpp"
+#include "sim/parameter.hpp"
+#include "sim/plant/effects/friction_level.hpp"
+
+namespace stiction::sim {
+
+struct ViscousMismatch {
+  struct Parameters {
+    double viscous = 0.0;
+  };
+  static constexpr std::string_view name = "viscous_mismatch";
+  static constexpr std::string_view text = "the slope of viscous friction";
+  static constexpr bool several = false;
+  static constexpr std::array<Parameter<Parameters>, 1> parameters{{
+      {"viscous", "N s/m", not_negative(), &Parameters::viscous, {}, "true slope of viscous friction mu_v"},
+  }};
+
+  static void change(const Parameters& p, Axis& plant) { set_viscous(plant.friction, p.viscous); }
+};
+
+}  // namespace stiction::sim
