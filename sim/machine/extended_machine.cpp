@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <sstream>
 
+#include "sim/machine/description.hpp"
 #include "sim/machine/document.hpp"
 #include "sim/machine/edited_machine.hpp"
+#include "sim/machine/machine_file.hpp"
 #include "sim/machine/parameters.hpp"
 #include "sim/plant/effects/effects.hpp"
 
