@@ -133,14 +133,15 @@ double oracle(const std::vector<Signal>& signals, const Eigen::MatrixXd& held_re
               const std::vector<Signal>& held, const Eigen::MatrixXd& regressors) {
   const Eigen::VectorXd weights = regressors.colPivHouseholderQr().solve(stacked(signals));
   const Eigen::VectorXd before = stacked(held);
-  return (before - held_regressors * weights).norm() / before.norm();
+  return (before.squaredNorm() - (before - held_regressors * weights).squaredNorm()) /
+         static_cast<double>(before.size());
 }
 
 }  // namespace
 
 BlindCase make_case(const sim::Machine& shipped, const CaseOrder& order) {
   Random random(order.seed * 0x9E3779B97F4A7C15ULL + 1);
-  BlindCase blind{order, draw_machine(shipped, random), {}, {}, {}, 0.0, 1.0};
+  BlindCase blind{order, draw_machine(shipped, random), {}, {}, {}, 0.0, 0.0};
   const auto noise = draw_noise(random);
   const double period = random() & 1U ? 1e-3 : 0.5e-3;
   const auto training = training_trajectories(random), held = holdout_trajectories(random);
@@ -177,7 +178,7 @@ BlindCase make_case(const sim::Machine& shipped, const CaseOrder& order) {
       a.col(k) = stacked(regressors[static_cast<std::size_t>(k)]);
       b.col(k) = stacked(held_regressors[static_cast<std::size_t>(k)]);
     }
-    blind.oracle_ratio = oracle(before, b, held_before, a);
+    blind.oracle_cut = oracle(before, b, held_before, a);
   }
   return blind;
 }

@@ -27,9 +27,9 @@ struct BlindCase {
   std::vector<host::Log> training, holdout;
   std::vector<sim::Effect> truth;  // of each hidden one, with its parameters
   double noise_rms = 0.0;          // N, of the residual force without any effect
-  // Residual force's rms on the held-out logs with the true effects' own signals fitted on the training logs, over that
-  // of the machine file alone.
-  double oracle_ratio = 1.0;
+  // N^2: by how much the true effects' own signals, fitted on the training logs, lower the residual force's mean square
+  // on the held-out logs.
+  double oracle_cut = 0.0;
 };
 
 // `machine`: the shipped cross table. Throws std::runtime_error when the drive trips.

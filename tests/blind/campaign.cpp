@@ -81,8 +81,6 @@ std::vector<ParameterScore> score_parameters(const sim::Axis& file, const sim::E
   return scores;
 }
 
-double gain_of(double ratio) { return 1.0 - ratio * ratio; }
-
 }  // namespace
 
 std::span<const Kind> kinds() { return all_kinds; }
@@ -142,8 +140,9 @@ Outcome score(const PlannedCase& planned, const BlindCase& blind, const host::Ve
   }
   outcome.exact_set = explained.size() == order.hidden.size() && verdict.findings.size() == order.hidden.size();
   outcome.signature = verdict.unexplained.signature.has_value();
-  if (verdict.baseline.force_rms > 0.0) outcome.gain = gain_of(verdict.extended.force_rms / verdict.baseline.force_rms);
-  outcome.oracle_gain = gain_of(blind.oracle_ratio);
+  const auto square = [](double x) { return x * x; };
+  outcome.gain = square(verdict.baseline.force_rms) - square(verdict.extended.force_rms);
+  outcome.oracle_gain = blind.oracle_cut;
   return outcome;
 }
 

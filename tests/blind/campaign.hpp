@@ -51,7 +51,7 @@ struct Outcome {
   int wrong = 0;                   // findings that are neither
   bool signature = false;          // of what is unexplained
   std::vector<ParameterScore> parameters;
-  double gain = 0.0, oracle_gain = 0.0;  // of the residual force's variance on the held-out logs
+  double gain = 0.0, oracle_gain = 0.0;  // N^2, cut of the residual force's mean square, held out
   double judge_seconds = 0.0;
   std::string error;  // what the diagnosis threw
 };

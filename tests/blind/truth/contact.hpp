@@ -42,7 +42,7 @@ class Contact {
 // Elements whose curve of first loading is F = coulomb (1 - e^(-x / length)), straight between `corners`: from rest to
 // these fractions of the level, the last of which reaches it.
 inline std::vector<ContactElement> exponential_contact(double coulomb, double length) {
-  constexpr double fractions[] = {0.15, 0.35, 0.55, 0.72, 0.86, 0.95};
+  constexpr double fractions[] = {0.15, 0.35, 0.55, 0.75, 0.90, 0.97};
   std::vector<double> x{0.0}, f{0.0};
   for (const double fraction : fractions) {
     x.push_back(-length * std::log(1.0 - fraction));

@@ -54,8 +54,11 @@ AtStrength draw_asymmetry(Random& random, const Mechanics&) {
 }
 AtStrength draw_presliding(Random&, const Mechanics& file) {
   return [length = contact_length(file), c = coulomb_of(file)](double x) {
+    // The stiffness is that of the first chord, the distance a corner of the elements' curve.
     const double longer = length * (1.0 + x);
-    return sim::Effect{"presliding_hysteresis", {{"stiffness", {c / longer}}, {"distance", {std::log(10.0) * longer}}}};
+    return sim::Effect{
+        "presliding_hysteresis",
+        {{"stiffness", {0.15 * c / (-std::log(0.85) * longer)}}, {"distance", {std::log(10.0) * longer}}}};
   };
 }
 AtStrength draw_constant(Random& random, const Mechanics&) {
