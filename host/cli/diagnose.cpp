@@ -1,4 +1,6 @@
 // `stiction diagnose`: what the simulation of an axis gets wrong, from measured logs.
+#include "host/diagnose/diagnose.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -10,7 +12,6 @@
 #include "host/cli/machine_options.hpp"
 #include "host/cli/output.hpp"
 #include "host/cli/progress.hpp"
-#include "host/diagnose/diagnose.hpp"
 #include "host/diagnose/verdict_json.hpp"
 #include "host/log/read_log.hpp"
 #include "sim/machine/extended_machine.hpp"
@@ -63,12 +64,12 @@ void run(const DiagnoseCommandOptions& options, const Invocation& invocation) {
   const auto json = verdict_json(verdict);
   if (!options.out.empty()) {
     PendingFolder folder(options.out);
-    std::vector<sim::Effect> effects;
-    for (const auto& finding : verdict.findings) effects.push_back(finding.effect);
+    sim::AxisEffects effects{input.machine.axes[input.axis].name, {}};
+    for (const auto& finding : verdict.findings) effects.effects.push_back(finding.effect);
+    const std::vector additions{effects};
     const std::vector<std::string> comment{"made by: " + invocation.command_line};
-    folder.write("extended.toml",
-                 sim::extended_machine(sim::find_machine(options.machine.machine), options.machine.set,
-                                       input.machine.axes[input.axis].name, effects, comment));
+    folder.write("extended.toml", sim::extended_machine(sim::find_machine(options.machine.machine), options.machine.set,
+                                                        additions, comment));
     sim::read_machine(folder.path() / "extended.toml");  // what was written must be a machine
     folder.write("verdict.json", json.dump(2) + "\n");
     folder.commit();

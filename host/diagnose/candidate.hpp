@@ -19,6 +19,7 @@ struct Scene {
   sim::Axis axis;
   SignalSettings signals;
   double highest_speed = 0.0;
+  int reversals = 0;
   double lowest_position = 0.0, highest_position = 0.0;
   std::vector<double> pitches;  // m, with peaks in the residual's spectrum over position; found as the search goes
   double stroke() const { return highest_position - lowest_position; }

@@ -86,9 +86,10 @@ void judge_in_closed_loop(Verdict& verdict, const sim::Machine& machine, std::si
   try {
     baseline = positions(bench);
   } catch (const FaultTripped& fault) {
-    throw LogError(fmt::format("{}: found set-points that the simulated machine cannot follow ({}); expected a record "
-                               "of this machine file's machine",
-                               bench.logs.front().source, fault.what()));
+    throw LogError(
+        fmt::format("{}: found set-points that the simulated machine cannot follow ({}); expected a record "
+                    "of this machine file's machine",
+                    bench.logs.front().source, fault.what()));
   }
   verdict.baseline.position_error_rms = difference_rms(measured, baseline, bench.logs);
   try {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/diagnose/aliases.hpp"
 #include "host/diagnose/closed_loop.hpp"
 #include "host/diagnose/diagnosis_charts.hpp"
 #include "host/diagnose/holdout.hpp"
@@ -15,6 +14,7 @@
 #include "host/diagnose/search.hpp"
 #include "host/identify/identification.hpp"
 #include "host/identify/suitability.hpp"
+#include "sim/plant/effects/effects.hpp"
 
 namespace stiction::host {
 namespace {
@@ -56,7 +56,7 @@ Eigen::VectorXd expected_force(const LogRows& rows, const sim::Axis& axis) {
 }
 
 Scene scene_of(const sim::Axis& axis, const LogRows& rows, const SignalSettings& settings) {
-  Scene scene{axis, settings, 0.0, 0.0, 0.0, {}};
+  Scene scene{axis, settings, 0.0, excitation_of(rows).reversals, 0.0, 0.0, {}};
   scene.lowest_position = scene.highest_position = rows.motions().front().x.front();
   for (const auto& motion : rows.motions())
     for (std::size_t i = 0; i < motion.x.size(); ++i) {
@@ -67,16 +67,23 @@ Scene scene_of(const sim::Axis& axis, const LogRows& rows, const SignalSettings&
   return scene;
 }
 
-// The alias table's, where the data do not separate them either, and what the data show besides.
+bool always_confused(std::string_view one, std::string_view other) {
+  constexpr std::string_view constant = "constant_force", asymmetry = "friction_asymmetry";
+  return (one == constant && other == asymmetry) || (one == asymmetry && other == constant);
+}
+
+// The pair that no motion of this axis alone separates; else of the alias table and beside it what the data show.
 std::vector<ConfusedWith> confused_with(const Term& term) {
   std::vector<ConfusedWith> list;
-  const auto known = aliases_of(candidates()[term.candidate].name);
+  const std::string_view name = candidates()[term.candidate].name;
+  const auto& known = sim::find_effect_kind(name)->aliases;
   for (const auto& alias : known)
-    if (alias.exact) list.push_back({std::string(alias.other), std::string(alias.separate_by)});
+    if (always_confused(name, alias.effect))
+      list.push_back({std::string(alias.effect), std::string(alias.separate_by)});
   for (const auto c : term.alternatives) {
     const std::string_view other = candidates()[c].name;
     if (std::any_of(list.begin(), list.end(), [&](const ConfusedWith& l) { return l.effect == other; })) continue;
-    const auto alias = std::find_if(known.begin(), known.end(), [&](const Alias& a) { return a.other == other; });
+    const auto alias = std::find_if(known.begin(), known.end(), [&](const auto& a) { return a.effect == other; });
     list.push_back({std::string(other), alias != known.end()
                                             ? std::string(alias->separate_by)
                                             : "record longer, with other speeds, accelerations and strokes: in these "
@@ -129,7 +136,7 @@ HeldOutFigures keep_what_holds(const LogRows& rows, const Eigen::VectorXd& targe
 }  // namespace
 
 Verdict diagnose(const DiagnoseInput& input) {
-  const auto& axis = input.machine.axes.at(input.axis);
+  const auto axis = sim::plant_axis(input.machine.axes.at(input.axis));
   const auto settings = wide_band();
   Verdict verdict;
   verdict.machine = input.machine.id + ".toml";

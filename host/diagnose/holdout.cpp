@@ -59,7 +59,8 @@ class Nuisances {
 };
 
 // A term's force in the rows; of a periodic one with the phase that fits each record best.
-Eigen::VectorXd force_of_term(const LogRows& rows, const Scene& scene, const Term& term, const Eigen::VectorXd& target) {
+Eigen::VectorXd force_of_term(const LogRows& rows, const Scene& scene, const Term& term,
+                              const Eigen::VectorXd& target) {
   const auto& candidate = candidates()[term.candidate];
   const auto columns = group_columns(rows, scene, candidate, term.nonlinear);
   Eigen::VectorXd force = Eigen::VectorXd::Zero(rows.rows());

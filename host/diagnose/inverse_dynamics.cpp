@@ -53,8 +53,7 @@ struct Along {
   std::vector<double> operator()(const sim::LinearRamp::Parameters& p) const {
     const double edge = p.coulomb / p.slope;
     return by_speed(motion, [&](double v, double) {
-      return std::abs(v) <= edge ? p.slope * v
-                                 : std::copysign(p.coulomb + p.viscous * (std::abs(v) - edge), v);
+      return std::abs(v) <= edge ? p.slope * v : std::copysign(p.coulomb + p.viscous * (std::abs(v) - edge), v);
     });
   }
   std::vector<double> operator()(const sim::Parabolic::Parameters& p) const {
@@ -71,9 +70,13 @@ struct Along {
 };
 
 template <class P>
-constexpr bool has_coulomb = requires(P p) { p.coulomb; };
+constexpr bool has_coulomb = requires(P p) {
+  p.coulomb;
+};
 template <class P>
-constexpr bool has_viscous = requires(P p) { p.viscous; };
+constexpr bool has_viscous = requires(P p) {
+  p.viscous;
+};
 
 const sim::FrictionParameters& in_use(const sim::Axis& axis) { return axis.friction.models.at(axis.friction.use); }
 sim::FrictionParameters& in_use(sim::Axis& axis) { return axis.friction.models.at(axis.friction.use); }

@@ -1,6 +1,6 @@
 // The force that a machine file expects for a measured motion: m a + friction(v, history), with the friction models of
-// sim/plant/friction themselves driven by the measured displacement. A difference of two such forces is the regressor of
-// whatever differs between the two machines.
+// sim/plant/friction themselves driven by the measured displacement. A difference of two such forces is the regressor
+// of whatever differs between the two machines.
 #pragma once
 
 #include <optional>

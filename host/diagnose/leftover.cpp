@@ -16,8 +16,8 @@
 namespace stiction::host {
 namespace {
 
-constexpr double least_gain = 0.02;      // of the cross-validated residual
-constexpr double significance = 0.001;   // of the blocks' t-test
+constexpr double least_gain = 0.02;     // of the cross-validated residual
+constexpr double significance = 0.001;  // of the blocks' t-test
 
 struct Signature {
   double gain = 0.0;  // cross-validated share of the residual's square
@@ -53,7 +53,8 @@ std::vector<Eigen::VectorXd> ranges(const Eigen::VectorXd& quantity, const Eigen
   std::vector<Eigen::VectorXd> columns;
   for (int k = 0; k < count; ++k) {
     const auto edge = [&](int i) {
-      return sorted[std::min(sorted.size() - 1, sorted.size() * static_cast<std::size_t>(i) / static_cast<std::size_t>(count))];
+      return sorted[std::min(sorted.size() - 1,
+                             sorted.size() * static_cast<std::size_t>(i) / static_cast<std::size_t>(count))];
     };
     const double low = edge(k), high = edge(k + 1);
     Eigen::VectorXd column = Eigen::VectorXd::Zero(quantity.size());

@@ -64,15 +64,17 @@ void refuse_other_machine(const LogRows& rows, const Eigen::VectorXd& expected) 
         fmt::format("{}: found a force {:.3g} times what the machine file expects for this motion; expected force and "
                     "position positive in the same direction. The sign of the current (or of the encoder) is swapped",
                     source, scale));
-  for (const auto& [ratio, text] :
-       {std::pair{1.0 / std::numbers::sqrt2, "the log's current is in effective (rms) amperes where amplitudes are "
-                                             "expected: multiply it by 1.414"},
-        std::pair{std::numbers::sqrt2, "the machine file's force constant is for effective (rms) amperes where "
-                                       "amplitudes are expected: divide it by 1.414"}})
+  for (const auto& [ratio, text] : {std::pair{1.0 / std::numbers::sqrt2,
+                                              "the log's current is in effective (rms) amperes where amplitudes are "
+                                              "expected: multiply it by 1.414"},
+                                    std::pair{std::numbers::sqrt2,
+                                              "the machine file's force constant is for effective (rms) amperes where "
+                                              "amplitudes are expected: divide it by 1.414"}})
     if (std::abs(scale / ratio - 1.0) < 0.04 && left < 0.1 && left < 0.15 * off)
-      throw LogError(fmt::format("{}: found {:.3f} times the force that the machine file expects, over the whole "
-                                 "record; expected 1. By all signs {}",
-                                 source, scale, text));
+      throw LogError(
+          fmt::format("{}: found {:.3f} times the force that the machine file expects, over the whole "
+                      "record; expected 1. By all signs {}",
+                      source, scale, text));
   if (off > 0.5)
     throw LogError(
         fmt::format("{}: found a force that leaves {:.0f} % of its variance unexplained by the machine file; expected "

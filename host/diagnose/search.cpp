@@ -60,8 +60,8 @@ class Search {
   // Pitches in what the set leaves; those in the set stay.
   void scan_ripples(const Set& set) {
     const auto columns = columns_of(set);
-    const auto scan = scan_pitches(rows_, evidence_.residual(columns, evidence_.fit(columns).weights), known_pitches_,
-                                   pitches_tried);
+    const auto scan =
+        scan_pitches(rows_, evidence_.residual(columns, evidence_.fit(columns).weights), known_pitches_, pitches_tried);
     trials_ = std::max(trials_, scan.trials);
     scene_.pitches = scan.pitches;
     for (std::size_t c = 0; c < candidates().size(); ++c)
@@ -184,8 +184,7 @@ Judgement Search::judge(const Set& set, std::size_t term) const {
 
   const double bearing = std::max(evidence_.bearing_blocks(set[term]->columns, own) - static_cast<double>(count), 2.0);
   const double wald = own.dot(covariance.completeOrthogonalDecomposition().solve(own)) / static_cast<double>(count);
-  result.p_value = std::min(
-      1.0, trials(set[term]->candidate) * fisher_tail(wald, static_cast<double>(count), bearing));
+  result.p_value = std::min(1.0, trials(set[term]->candidate) * fisher_tail(wald, static_cast<double>(count), bearing));
 
   const auto a = evidence_.held_out(without), b = evidence_.held_out(with);
   std::vector<double> gains(a.size());
@@ -220,8 +219,8 @@ Judgement Search::judge(const Set& set, std::size_t term) const {
     result.objection = fmt::format("takes {:.2g} % off the cross-validated residual; expected more than {:g} %",
                                    100.0 * result.gain, 100.0 * least_gain);
   else if (!(rest > 0.2 * gained))
-    result.objection = fmt::format("{} of {} blocks of rows make nearly all of its gain: an odd event", odd,
-                                   gains.size());
+    result.objection =
+        fmt::format("{} of {} blocks of rows make nearly all of its gain: an odd event", odd, gains.size());
   else if (result.first_half < 0.0 || result.second_half < 0.0)
     result.objection = "the two halves of the records contradict each other on it";
   return result;
@@ -244,8 +243,8 @@ double Search::size_in(const std::vector<bool>& use, const Set& set, std::size_t
 }
 
 void Search::note(std::size_t candidate, const Judgement& judgement) {
-  const auto known = std::find_if(discarded_.begin(), discarded_.end(),
-                                  [&](const Discarded& d) { return d.candidate == candidate; });
+  const auto known =
+      std::find_if(discarded_.begin(), discarded_.end(), [&](const Discarded& d) { return d.candidate == candidate; });
   if (known == discarded_.end())
     discarded_.push_back({candidate, *judgement.objection});
   else
@@ -336,6 +335,8 @@ std::vector<std::size_t> Search::alternatives(const Set& set, std::size_t term) 
 
 // Nonlinear parameters off the grid, by golden section; weights and covariance with them.
 void Search::refine(std::vector<Term>& terms, Eigen::VectorXd& residual) {
+  residual = evidence_.target();
+  if (terms.empty()) return;
   evidence_.truncate(0);
   std::vector<std::vector<Eigen::VectorXd>> groups;
   for (const auto& term : terms)
@@ -415,8 +416,8 @@ void Search::refine(std::vector<Term>& terms, Eigen::VectorXd& residual) {
     const auto& candidate = candidates()[terms[k].candidate];
     const Eigen::Index before = all.size();
     if (candidate.nonlinear) {
-      const double by = candidate.periodic ? 0.02 * terms[k].nonlinear * terms[k].nonlinear / stroke
-                                           : 0.02 * terms[k].nonlinear;
+      const double by =
+          candidate.periodic ? 0.02 * terms[k].nonlinear * terms[k].nonlinear / stroke : 0.02 * terms[k].nonlinear;
       Eigen::VectorXd slope = Eigen::VectorXd::Zero(rows_.rows());
       const auto up = group_columns(rows_, scene_, candidate, terms[k].nonlinear + by);
       const auto down = group_columns(rows_, scene_, candidate, terms[k].nonlinear - by);
@@ -431,7 +432,7 @@ void Search::refine(std::vector<Term>& terms, Eigen::VectorXd& residual) {
     for (std::size_t i = 0; i < own.size(); ++i) chosen.push_back(first.back() + static_cast<Eigen::Index>(i));
     at += count;
   }
-  const auto covariance = terms.empty() ? Eigen::MatrixXd() : evidence_.covariance(chosen, all);
+  const auto covariance = evidence_.covariance(chosen, all);
   for (std::size_t k = 0; k < terms.size(); ++k) {
     const auto count = terms[k].weights.size() + (candidates()[terms[k].candidate].nonlinear ? 1 : 0);
     terms[k].covariance = covariance.block(first[k], first[k], count, count);
@@ -450,8 +451,8 @@ SearchResult Search::run(const std::function<void()>& progress) {
     profile(set);
     exchange(set);
     while (drop(set)) profile(set);
-    correlation_ = correlation_length(evidence_.residual(columns_of(set), evidence_.fit(columns_of(set)).weights),
-                                      rows_.logs());
+    correlation_ =
+        correlation_length(evidence_.residual(columns_of(set), evidence_.fit(columns_of(set)).weights), rows_.logs());
     tick();
     if (++rounds_ > 2 * most_terms) break;
   }
@@ -460,8 +461,7 @@ SearchResult Search::run(const std::function<void()>& progress) {
     Term term{set[k]->candidate, set[k]->nonlinear, {}, {}, 0.0, judge(set, k), alternatives(set, k)};
     auto others = set;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
-    term.explains =
-        (evidence_.fit(columns_of(others)).left - evidence_.fit(columns_of(set)).left) / evidence_.total();
+    term.explains = (evidence_.fit(columns_of(others)).left - evidence_.fit(columns_of(set)).left) / evidence_.total();
     result.terms.push_back(std::move(term));
   }
   for (const auto& d : discarded_)

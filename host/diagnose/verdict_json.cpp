@@ -40,9 +40,8 @@ Json finding_json(const Finding& f) {
   gain["ci95"] = f.holdout.ci95;
   Json confused = Json::array();
   for (const auto& c : f.confused_with) confused.push_back({{"effect", c.effect}, {"separate_by", c.separate_by}});
-  Json out{{"effect", f.effect.name},  {"axis", f.axis},         {"parameters", parameters},
-           {"standard_errors", errors}, {"explains", f.explains}, {"holdout_gain", gain},
-           {"p_value", f.p_value},     {"confused_with", confused}};
+  Json out{{"effect", f.effect.name}, {"axis", f.axis},       {"parameters", parameters}, {"standard_errors", errors},
+           {"explains", f.explains},  {"holdout_gain", gain}, {"p_value", f.p_value},     {"confused_with", confused}};
   if (f.part_error) out["part_error_um"] = *f.part_error * 1e6;
   return out;
 }
@@ -74,14 +73,15 @@ std::string verdict_text(const Verdict& verdict) {
   const auto position = [](const ResidualFigures& f) {
     return f.position_error_rms ? fmt::format(", position {:.3g} um rms", *f.position_error_rms * 1e6) : std::string();
   };
-  text += fmt::format("on held-out data, measured against simulated:\n  {:<14} force {:.4g} N rms{}\n",
-                      "machine file", verdict.baseline.force_rms, position(verdict.baseline));
+  text += fmt::format("on held-out data, measured against simulated:\n  {:<14} force {:.4g} N rms{}\n", "machine file",
+                      verdict.baseline.force_rms, position(verdict.baseline));
   if (!verdict.findings.empty())
     text += fmt::format("  {:<14} force {:.4g} N rms{}\n", "extended", verdict.extended.force_rms,
                         position(verdict.extended));
   if (verdict.findings.empty())
-    text += "\nno cause found: "
-            "beyond what is said below, the simulation agrees with the data within its noise\n";
+    text +=
+        "\nno cause found: "
+        "beyond what is said below, the simulation agrees with the data within its noise\n";
   for (std::size_t k = 0; k < verdict.findings.size(); ++k) {
     const auto& f = verdict.findings[k];
     text += fmt::format("\n{}. {}, axis {}\n", k + 1, f.effect.name, f.axis);
@@ -89,8 +89,8 @@ std::string verdict_text(const Verdict& verdict) {
       for (std::size_t i = 0; i < p.values.size(); ++i)
         text += fmt::format("   {} = {:.6g} +- {:.2g}\n", p.name, p.values[i],
                             i < p.standard_errors.size() ? p.standard_errors[i] : 0.0);
-    text += fmt::format("   {}\n   held-out force rms {:.3f} times that without it (95 %: {:.3f} to {:.3f})", f.evidence,
-                        f.holdout.force_rms_ratio, f.holdout.ci95[0], f.holdout.ci95[1]);
+    text += fmt::format("   {}\n   held-out force rms {:.3f} times that without it (95 %: {:.3f} to {:.3f})",
+                        f.evidence, f.holdout.force_rms_ratio, f.holdout.ci95[0], f.holdout.ci95[1]);
     if (f.holdout.position_error_rms_ratio)
       text += fmt::format(", position error {:.3f} times", *f.holdout.position_error_rms_ratio);
     text += "\n";

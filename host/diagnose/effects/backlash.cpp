@@ -27,7 +27,8 @@ std::vector<double> bearing_side(const Scene& scene, const Motion& motion) {
       const auto longest = static_cast<std::size_t>(longest_crossing / motion.period);
       const std::size_t from = std::max(last, i > longest ? i - longest : 0);
       for (std::size_t k = from; k < i; ++k)
-        side[k] = -direction * std::cos(std::numbers::pi * static_cast<double>(k - from) / static_cast<double>(i - from));
+        side[k] =
+            -direction * std::cos(std::numbers::pi * static_cast<double>(k - from) / static_cast<double>(i - from));
     } else if (now == 0.0) {
       std::fill(side.begin(), side.begin() + static_cast<std::ptrdiff_t>(i), direction);
     }
@@ -58,7 +59,11 @@ void describe(const Scene&, double, const Eigen::VectorXd& w, const Eigen::Matri
 
 }  // namespace
 
-const Candidate backlash{.name = "backlash", .grid = grid, .columns = columns, .possible = possible, .describe = describe,
- .at_weight = true};
+const Candidate backlash{.name = "backlash",
+                         .grid = grid,
+                         .columns = columns,
+                         .possible = possible,
+                         .describe = describe,
+                         .at_weight = true};
 
 }  // namespace stiction::host::effects

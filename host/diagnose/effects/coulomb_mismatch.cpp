@@ -25,8 +25,11 @@ void describe(const Scene& scene, double, const Eigen::VectorXd& w, const Eigen:
 
 }  // namespace
 
-const Candidate coulomb_mismatch{
-    .name = "coulomb_mismatch", .grid = grid, .columns = columns, .possible = possible, .describe = describe,
-    .names_coulomb = true};
+const Candidate coulomb_mismatch{.name = "coulomb_mismatch",
+                                 .grid = grid,
+                                 .columns = columns,
+                                 .possible = possible,
+                                 .describe = describe,
+                                 .names_coulomb = true};
 
 }  // namespace stiction::host::effects

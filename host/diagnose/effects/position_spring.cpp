@@ -8,9 +8,7 @@ namespace {
 
 double middle(const Scene& scene) { return 0.5 * (scene.lowest_position + scene.highest_position); }
 
-std::vector<double> grid(const Scene& scene) {
-  return scene.stroke() > 0.0 ? std::vector{0.0} : std::vector<double>{};
-}
+std::vector<double> grid(const Scene& scene) { return scene.stroke() > 0.0 ? std::vector{0.0} : std::vector<double>{}; }
 Columns columns(const Scene& scene, const Motion& motion, double) {
   auto way = motion.x;
   for (double& x : way) x -= middle(scene);

@@ -11,8 +11,11 @@
 namespace stiction::host::effects {
 namespace {
 
+// Seven large reversals do not identify a hysteresis: sgn(v) and a contact then fit one another.
+constexpr int least_reversals = 10;
+
 std::vector<double> grid(const Scene& scene) {
-  if (!coulomb_of(scene.axis)) return {};
+  if (!coulomb_of(scene.axis) || scene.reversals < least_reversals) return {};
   return geometric(1e-6, 3e-3, 20);
 }
 Columns columns(const Scene& scene, const Motion& motion, double distance) {

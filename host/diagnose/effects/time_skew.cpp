@@ -14,14 +14,17 @@ std::vector<double> grid(const Scene&) { return {1e-4, 1e-3, 3e-3, -1e-3, -3e-3}
 // `values` at a time `delay` (s) earlier; cubic through four samples, the ends held.
 std::vector<double> delayed(const std::vector<double>& values, double delay, double period) {
   const auto n = static_cast<std::ptrdiff_t>(values.size());
-  const auto at = [&](std::ptrdiff_t i) { return values[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(i, 0, n - 1))]; };
+  const auto at = [&](std::ptrdiff_t i) {
+    return values[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(i, 0, n - 1))];
+  };
   std::vector<double> out(values.size());
   const double shift = delay / period;
   const double whole = std::floor(-shift), s = -shift - whole;
   for (std::ptrdiff_t i = 0; i < n; ++i) {
     const auto k = i + static_cast<std::ptrdiff_t>(whole);
     const double a = at(k - 1), b = at(k), c = at(k + 1), d = at(k + 2);
-    out[static_cast<std::size_t>(i)] = -s * (s - 1.0) * (s - 2.0) / 6.0 * a + (s + 1.0) * (s - 1.0) * (s - 2.0) / 2.0 * b -
+    out[static_cast<std::size_t>(i)] = -s * (s - 1.0) * (s - 2.0) / 6.0 * a +
+                                       (s + 1.0) * (s - 1.0) * (s - 2.0) / 2.0 * b -
                                        (s + 1.0) * s * (s - 2.0) / 2.0 * c + (s + 1.0) * s * (s - 1.0) / 6.0 * d;
   }
   return out;
@@ -43,7 +46,11 @@ void describe(const Scene&, double, const Eigen::VectorXd& w, const Eigen::Matri
 
 }  // namespace
 
-const Candidate time_skew{.name = "time_skew", .grid = grid, .columns = columns, .possible = possible, .describe = describe,
- .at_weight = true};
+const Candidate time_skew{.name = "time_skew",
+                          .grid = grid,
+                          .columns = columns,
+                          .possible = possible,
+                          .describe = describe,
+                          .at_weight = true};
 
 }  // namespace stiction::host::effects

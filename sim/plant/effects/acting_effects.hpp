@@ -68,7 +68,7 @@ class ActingEffects {
  private:
   double step_;
   std::vector<ForceEffect> forces_;
-  Direction direction_;
+  FrictionDirection direction_;
   std::optional<Backlash> play_;
   double follower_;
   bool closed_ = true;

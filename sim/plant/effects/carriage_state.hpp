@@ -16,14 +16,14 @@ inline constexpr double turning_distance = 1e-6;  // m
 struct CarriageState {
   double position;   // m
   double velocity;   // m/s
-  double direction;  // the sign of the velocity as friction has it, -1 to 1, see Direction
+  double direction;  // the sign of the velocity as friction has it, -1 to 1, see FrictionDirection
 };
 
 // The sign of the velocity without its jump: d(direction)/dx = (sgn v - direction)/turning_distance along the way
 // (Dahl 1968, with exponent 1), stepped exactly for the way of the step. At standstill it keeps its value as contact
 // asperities do, so a force that follows it cannot chatter, and no motion but a displacement changes it. It begins at
 // 0.
-class Direction {
+class FrictionDirection {
  public:
   // One step of `step` s at held velocity (m/s); returns the value at its end.
   double advance(double velocity, double step) {

@@ -97,12 +97,6 @@ TEST(MachineFileError, UnknownKeyIsFoundAtEveryLevel) {
                   .starts_with("FILE:29: reference.square: found an unknown key; expected one of circle"));
 }
 
-TEST(MachineFileError, EffectsAreRefusedAsNotSupported) {
-  EXPECT_EQ(error_of(small_machine + "[[axis.B.effect]]\nname = \"backlash\"\n"),
-            "FILE:29: axis.B.effect: found an unsupported key; expected none: effects are not supported by this "
-            "version");
-}
-
 TEST(MachineFileError, InvalidTomlNamesTheLine) {
   EXPECT_TRUE(error_after("mass = \"95 kg\"", "mass = 95 kg").starts_with("FILE:4: found invalid TOML: "));
   EXPECT_TRUE(error_after("travel", "mass").starts_with("FILE:5: found invalid TOML: "));

@@ -1,0 +1,33 @@
+// Logs by simple arithmetic, without the plant's code: force = m a + LuGre's contact + what the test hides, along a
+// designed motion, with coloured noise on the force and the rounding of an encoder on the position.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "host/log/log.hpp"
+#include "sim/machine/machine.hpp"
+
+namespace stiction::test {
+
+// The machine of the tests: one axis, force from amplitude amperes, LuGre friction.
+sim::Machine bench_machine();
+
+struct Point {
+  double t, x, v, a;  // s, m, m/s, m/s^2
+  double level;       // of the contact, -1 to 1
+};
+
+struct Hidden {
+  double mass = 225.0, coulomb = 90.0, viscous = 500.0;  // kg, N, N s/m: true values
+  double contact_length = 90.0 / 8e5;                    // m
+  std::function<double(const Point&)> force{};           // N, what the motor must give besides; none: nothing
+  double delay = 0.0;                                    // s, of the recorded current
+  double lost_motion = 0.0;                              // m
+};
+
+// `trajectory` 0, 1, 2: constant speeds both ways, sines of several periods, steps of several lengths.
+host::Log synthetic_log(int trajectory, const Hidden& hidden, double noise_rms, std::uint64_t seed);
+
+}  // namespace stiction::test
