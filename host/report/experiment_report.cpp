@@ -3,12 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "host/report/assets.hpp"
+#include "host/report/chart_json.hpp"
 #include "host/report/circle_finding.hpp"
-#include "host/report/decimate.hpp"
 #include "host/report/experiment_table.hpp"
 #include "host/report/machine_sheet.hpp"
 #include "host/report/page.hpp"
@@ -19,60 +18,6 @@ namespace stiction::host {
 namespace {
 
 using json = nlohmann::ordered_json;
-
-constexpr std::size_t points_per_series = 3000;
-
-// Each name of a series once, with the friction model whose colour it takes. `points`: it is nowhere a line.
-json series_json(const sim::ExperimentResult& result) {
-  json list = json::array();
-  for (const auto& chart : result.charts)
-    for (const auto& series : chart.series) {
-      const auto known =
-          std::find_if(list.begin(), list.end(), [&](const json& each) { return each["name"] == series.name; });
-      if (known != list.end()) {
-        if (!series.points) (*known)["points"] = false;
-        continue;
-      }
-      const auto model = split_model(series.name).friction;
-      list.push_back({{"name", series.name},
-                      {"label", typeset(series.name)},
-                      {"model", model.empty() ? json(nullptr) : json(model)},
-                      {"points", series.points}});
-    }
-  return list;
-}
-
-void add_shape(json& out, const sim::Chart& chart) {
-  out["levels"] = chart.levels;
-  out["distances"] = json::array();
-  for (const auto& each : chart.distances)
-    out["distances"].push_back({{"x", each.x}, {"from", each.from}, {"to", each.to}, {"label", typeset(each.label)}});
-  if (chart.y_range) out["y_range"] = *chart.y_range;
-  if (chart.y_step > 0.0) out["y_step"] = chart.y_step;
-  using Height = sim::Shape::Height;
-  out["wide"] = chart.shape.wide;
-  out["height"] = chart.shape.height == Height::usual ? "" : chart.shape.height == Height::low ? "low" : "flat";
-}
-
-json chart_json(const sim::Chart& chart) {
-  json out{{"title", typeset(chart.title)},
-           {"x_label", typeset(chart.x_label)},
-           {"y_label", typeset(chart.y_label)},
-           {"caption", typeset(chart.caption)},
-           {"logarithmic_x", chart.logarithmic_x},
-           {"x_range", chart.x_range ? json(*chart.x_range) : json(nullptr)},
-           {"series", json::array()}};
-  add_shape(out, chart);
-  for (const auto& series : chart.series) {
-    const auto kept = select_extremes(series.x, series.y, points_per_series);
-    out["series"].push_back({{"name", series.name},
-                             {"points", series.points},
-                             {"bars", series.bars},
-                             {"x", packed(series.x, kept)},
-                             {"y", packed(series.y, kept)}});
-  }
-  return out;
-}
 
 json figures_json(const sim::ExperimentResult& result) {
   json rows = json::array();
@@ -124,11 +69,11 @@ std::string experiment_report_html(const ExperimentReport& report) {
   const auto& result = report.result;
   const auto found = typeset(verdict(result));
   json charts = json::array();
-  for (const auto& chart : result.charts) charts.push_back(chart_json(chart));
+  for (const auto& chart : result.charts) charts.push_back(chart_json(chart, "charts"));
   const json data{{"schema", "stiction.experiment-report/1"},
                   {"verdict", found},
                   {"conditions", conditions_json(report)},
-                  {"series", series_json(result)},
+                  {"series", series_json(result.charts)},
                   {"charts", charts},
                   {"figures", figures_json(result)},
                   {"machine", machine_json(report.machine)}};
@@ -138,7 +83,7 @@ std::string experiment_report_html(const ExperimentReport& report) {
                       {"verdict", escape_html(found)},
                       {"question", escape_html(typeset(result.question))},
                       {"findings", list_items(result.findings)}},
-                     data, {assets::experiment_js()});
+                     data, {assets::charts_js(), assets::experiment_js()});
 }
 
 }  // namespace stiction::host

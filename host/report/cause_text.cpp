@@ -1,0 +1,63 @@
+#include "host/report/cause_text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace stiction::host {
+namespace {
+
+struct Row {
+  std::string_view effect, title, meaning, advice;
+};
+constexpr std::array rows{
+    Row{"mass_mismatch", "Moving mass", "The axis accelerates another mass than the machine file says.",
+        "Take the extended file's mass; set it in the drive too, where the current feedforward uses it. Look for a "
+        "workpiece, a fixture or a second carriage that the file does not know."},
+    Row{"coulomb_mismatch", "Level of Coulomb friction", "The friction that does not depend on speed is another one.",
+        "Take the extended file's level. It moves by 2 to 4 % from day to day; more points to preload, lubrication or "
+        "wipers."},
+    Row{"viscous_mismatch", "Slope of viscous friction", "Friction grows with speed at another rate.",
+        "Take the extended file's slope. Compare a cold and a warm machine: lubricant is its usual cause."},
+    Row{"viscous_nonlinear", "Viscous friction that bends", "Friction does not grow in proportion to speed.",
+        "Take the extended file's curve, or choose a friction model with one; record more speeds where it bends."},
+    Row{"stribeck", "Stribeck effect", "Friction falls with speed near standstill.",
+        "Take the extended file's curve. Against stick-slip: lubricant with friction modifier, lower preload, a "
+        "stiffer "
+        "velocity loop."},
+    Row{"friction_asymmetry", "Friction differs between directions", "The axis runs heavier in one direction.",
+        "Turn the axis or take a reading at standstill to tell it from a constant force; then look for a wiper, a "
+        "cover "
+        "or a misalignment that acts in one direction."},
+    Row{"presliding_hysteresis", "Presliding displacement",
+        "Before it slides the axis gives way like a spring that remembers; reversals on a circle show it first.",
+        "Take the extended file's contact. For compensation at reversals the distance is the one to set."},
+    Row{"constant_force", "Constant force", "A force that is always there: weight, counterbalance, current offset.",
+        "Read the current at standstill with the drive off: what remains is the sensor's offset. The rest is weight: "
+        "check the counterbalance."},
+    Row{"position_spring", "Force proportional to position",
+        "Something pulls like a spring: cable carrier, bellows, hose.",
+        "Move it by hand over its stroke with and without cable carrier and covers; take the extended file's "
+        "stiffness."},
+    Row{"force_ripple", "Force ripple (cogging)",
+        "A force that repeats with the position and does not depend on current.",
+        "Compare the pitch with the magnets' pole pitch and the screw's lead. Most drives have a cogging compensation: "
+        "pitch, amplitudes and phases are its parameters."},
+    Row{"backlash", "Lost motion (backlash)", "The measured position stands while the motor moves on at a reversal.",
+        "Check couplings, nut preload and the scale's mounting; a backlash compensation hides it at low speed only."},
+    Row{"time_skew", "Time skew of the record", "Current and position were not recorded at the same instant.",
+        "Correct the recorder's delay before anything else is identified from its logs; where the delay is in the loop "
+        "itself, it costs phase margin."},
+};
+
+}  // namespace
+
+CauseText cause_text(const std::string& effect) {
+  const auto row = std::find_if(rows.begin(), rows.end(), [&](const Row& each) { return each.effect == effect; });
+  if (row != rows.end()) return {std::string(row->title), std::string(row->meaning), std::string(row->advice)};
+  std::string title = effect;
+  std::replace(title.begin(), title.end(), '_', ' ');
+  return {title, "", "Simulate with the extended machine file; see the effect's page."};
+}
+
+}  // namespace stiction::host

@@ -1,0 +1,19 @@
+// Charts of a result as charts.js draws them.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "sim/experiment/experiment_result.hpp"
+
+namespace stiction::host {
+
+// Each name of a series once, with the friction model whose colour it takes. `points`: it is nowhere a line.
+nlohmann::ordered_json series_json(const std::vector<sim::Chart>& charts);
+
+// `place`: the id of the page's element that it goes into. A series is drawn from at most 3000 of its points
+// (decimate.hpp, select_extremes). Throws std::invalid_argument when a series' x and y differ in length.
+nlohmann::ordered_json chart_json(const sim::Chart& chart, const std::string& place);
+
+}  // namespace stiction::host

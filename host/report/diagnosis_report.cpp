@@ -1,0 +1,216 @@
+#include "host/report/diagnosis_report.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "host/report/assets.hpp"
+#include "host/report/cause_text.hpp"
+#include "host/report/chart_json.hpp"
+#include "host/report/engineering_unit.hpp"
+#include "host/report/page.hpp"
+#include "host/report/page_data.hpp"
+#include "host/report/typeset.hpp"
+
+namespace stiction::host {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+// Suffixes of verdict.json's names; a longer one stands before its own end.
+struct Suffix {
+  std::string_view text, unit;  // SI
+};
+constexpr std::array suffixes{Suffix{"_N_s_per_m", "N s/m"},
+                              Suffix{"_N_per_m", "N/m"},
+                              Suffix{"_m_per_s", "m/s"},
+                              Suffix{"_kg", "kg"},
+                              Suffix{"_Hz", "Hz"},
+                              Suffix{"_N", "N"},
+                              Suffix{"_m", "m"},
+                              Suffix{"_s", "s"},
+                              Suffix{"_A", "A"}};
+
+struct Quantity {
+  std::string label, unit;
+};
+Quantity quantity_of(const std::string& name) {
+  Quantity quantity{name, "1"};
+  for (const auto& suffix : suffixes)
+    if (name.ends_with(suffix.text)) {
+      quantity = {name.substr(0, name.size() - suffix.text.size()), std::string(suffix.unit)};
+      break;
+    }
+  std::replace(quantity.label.begin(), quantity.label.end(), '_', ' ');
+  return quantity;
+}
+
+std::string percent(double share) { return fmt::format("{:.{}f}", 100.0 * share, std::abs(share) < 0.1 ? 1 : 0); }
+std::string micrometres(double metres) { return fmt::format("{:.2g}", metres * 1e6); }
+
+// One row a value; a list's values are its harmonics or points, counted from 1. As many digits as the interval leaves:
+// two of its half width.
+void add_rows(json& rows, const EffectParameter& parameter) {
+  const auto quantity = quantity_of(parameter.name);
+  for (std::size_t k = 0; k < parameter.values.size(); ++k) {
+    const double value = parameter.values[k];
+    const bool known = k < parameter.standard_errors.size() && parameter.standard_errors[k] > 0.0;
+    const double half = known ? 1.96 * parameter.standard_errors[k] : 0.0;
+    const auto unit = engineering_unit(quantity.unit, std::max(std::abs(value), half));
+    const auto number = [&](double v) {
+      if (!known) return fmt::format("{:.4g}", v * unit.factor);
+      const int digits = std::clamp(1 - static_cast<int>(std::floor(std::log10(half * unit.factor))), 0, 9);
+      return fmt::format("{:.{}f}", v * unit.factor, digits);
+    };
+    rows.push_back(
+        {{"label", parameter.values.size() > 1 ? fmt::format("{} {}", quantity.label, k + 1) : quantity.label},
+         {"unit", typeset(unit.unit)},
+         {"value", number(value)},
+         {"low", known ? json(number(value - half)) : json(nullptr)},
+         {"high", known ? json(number(value + half)) : json(nullptr)}});
+  }
+}
+
+std::string gain_percent(double ratio) { return fmt::format("{:.1f}", 100.0 * (1.0 - ratio)); }
+
+// The numbers of the evidence in one sentence.
+std::string figures_of(const Finding& finding) {
+  auto text = fmt::format(
+      "It takes away {} % of the residual's variance, given the other causes (p {}). On data that was not used the "
+      "residual force falls by {} % (95 %: {} to {})",
+      percent(finding.explains), finding.p_value < 1e-12 ? "< 1e-12" : fmt::format("= {:.1g}", finding.p_value),
+      gain_percent(finding.holdout.force_rms_ratio), gain_percent(finding.holdout.ci95[1]),
+      gain_percent(finding.holdout.ci95[0]));
+  if (const auto ratio = finding.holdout.position_error_rms_ratio)
+    text += fmt::format(", the position error of the simulation {} by {} %", *ratio <= 1.0 ? "falls" : "grows",
+                        fmt::format("{:.1f}", 100.0 * std::abs(1.0 - *ratio)));
+  return text + ".";
+}
+
+std::string on_part(const Finding& finding) {
+  if (!finding.part_error)
+    return "Not computed: the logs carry no set-points that the simulation could follow with and without it.";
+  return fmt::format("It changes the position error by up to {} µm.", micrometres(*finding.part_error));
+}
+
+json cause_json(const Finding& finding) {
+  const auto words = cause_text(finding.effect.name);
+  json parameters = json::array(), confused = json::array();
+  for (const auto& parameter : finding.parameters) add_rows(parameters, parameter);
+  for (const auto& each : finding.confused_with)
+    confused.push_back({{"title", cause_text(each.effect).title}, {"separate_by", typeset(each.separate_by)}});
+  return {{"name", finding.effect.name},
+          {"title", words.title},
+          {"axis", finding.axis},
+          {"meaning", words.meaning},
+          {"advice", words.advice},
+          {"page", fmt::format("docs/effects/{}.md", finding.effect.name)},
+          {"explains", percent(finding.explains)},
+          {"gain", gain_percent(finding.holdout.force_rms_ratio)},
+          {"gain_interval",
+           fmt::format("{} to {}", gain_percent(finding.holdout.ci95[1]), gain_percent(finding.holdout.ci95[0]))},
+          {"part", finding.part_error ? json(micrometres(*finding.part_error)) : json(nullptr)},
+          {"parameters", parameters},
+          {"evidence", typeset(finding.evidence)},
+          {"figures", figures_of(finding)},
+          {"on_part", on_part(finding)},
+          {"confused_with", confused}};
+}
+
+std::string headline(const Verdict& verdict) {
+  if (verdict.findings.empty())
+    return verdict.unexplained.signature ? "No cause of the vocabulary, but something is left that repeats."
+                                         : "The simulation agrees with the data within its noise.";
+  std::vector<std::string> names;
+  for (const auto& finding : verdict.findings) {
+    auto title = cause_text(finding.effect.name).title;
+    title[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(title[0])));
+    if (std::find(names.begin(), names.end(), title) == names.end()) names.push_back(title);
+  }
+  return fmt::format("The simulation lacks or has wrong: {}.", fmt::join(names, ", "));
+}
+
+std::string gain_line(const Verdict& verdict) {
+  const auto& [before, after] = std::pair(verdict.baseline, verdict.extended);
+  if (verdict.findings.empty() || before.force_rms <= 0.0) return "";
+  auto text = fmt::format("Extended by it, the residual force on held-out data falls from {:.3g} N to {:.3g} N rms",
+                          before.force_rms, after.force_rms);
+  if (before.position_error_rms && after.position_error_rms)
+    text += fmt::format(", the simulation's position error from {} µm to {} µm rms",
+                        micrometres(*before.position_error_rms), micrometres(*after.position_error_rms));
+  return text + ".";
+}
+
+std::string unexplained_text(const Unexplained& rest) {
+  const auto share = fmt::format("{} % of the residual's variance is neither explained nor noise", percent(rest.share));
+  if (rest.signature) return typeset(fmt::format("{}. It looks like this: {}.", share, *rest.signature));
+  return share + "; nothing in it repeats with position, time or speed.";
+}
+
+json residuals_json(const Verdict& verdict) {
+  const auto row = [](const ResidualFigures& figures) {
+    return json{
+        {"force", fmt::format("{:.3g}", figures.force_rms)},
+        {"position", figures.position_error_rms ? json(micrometres(*figures.position_error_rms)) : json(nullptr)}};
+  };
+  return {{"baseline", row(verdict.baseline)}, {"extended", row(verdict.extended)}};
+}
+
+std::string files(const std::vector<std::string>& paths) {
+  std::vector<std::string> names;
+  for (const auto& path : paths) names.push_back(std::filesystem::path(path).filename().string());
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+json conditions_json(const Verdict& verdict) {
+  Conditions conditions;
+  conditions.add("Machine file", std::filesystem::path(verdict.machine).filename().string());
+  conditions.add("Logs", files(verdict.logs));
+  conditions.add("Held out", verdict.holdout_is_a_part ? "the last third of each log" : files(verdict.holdout));
+  return conditions.json();
+}
+
+}  // namespace
+
+std::string diagnosis_report_html(const DiagnosisReport& report) {
+  const auto& verdict = report.verdict;
+  std::vector<sim::Chart> all = verdict.before_after;
+  json charts = json::array(), causes = json::array(), rejected = json::array(), notes = json::array();
+  for (const auto& chart : verdict.before_after) charts.push_back(chart_json(chart, "before-after"));
+  for (const auto& finding : verdict.findings) {
+    for (const auto& chart : finding.charts) {
+      charts.push_back(chart_json(chart, fmt::format("cause-charts-{}", causes.size())));
+      all.push_back(chart);
+    }
+    causes.push_back(cause_json(finding));
+  }
+  for (const auto& each : verdict.rejected)
+    rejected.push_back({{"title", cause_text(each.effect).title}, {"why", typeset(each.why)}});
+  for (const auto& note : verdict.notes) notes.push_back(typeset(note));
+  const json data{
+      {"schema", "stiction.diagnosis-report/1"},
+      {"conditions", conditions_json(verdict)},
+      {"picture", verdict.findings.empty() ? "" : "before and after the machine file was extended"},
+      {"residuals", residuals_json(verdict)},
+      {"holdout", verdict.holdout_is_a_part
+                      ? "No held-out log was given: the last third of each log stands in for one, which cannot tell a "
+                        "cause from something else that repeats with the same motion. Record another trajectory."
+                      : "The held-out logs took no part in choosing or fitting the causes."},
+      {"causes", causes},
+      {"rejected", rejected},
+      {"unexplained", unexplained_text(verdict.unexplained)},
+      {"notes", notes},
+      {"series", series_json(all)},
+      {"charts", charts},
+      {"machine", machine_json(report.machine)}};
+  return report_page({"Diagnosis: " + report.machine.name, report.command, report.version}, assets::diagnosis_html(),
+                     {{"verdict", escape_html(headline(verdict))}, {"gain", escape_html(gain_line(verdict))}}, data,
+                     {assets::charts_js(), assets::diagnosis_js()});
+}
+
+}  // namespace stiction::host

@@ -1,0 +1,23 @@
+// The report page of a diagnosis: measured against simulated, before and after; each cause with its value, evidence,
+// effect on the part, what it may be confused with and what to do; what was rejected; what remains unexplained.
+#pragma once
+
+#include <string>
+
+#include "host/diagnose/verdict.hpp"
+#include "sim/machine/machine.hpp"
+
+namespace stiction::host {
+
+struct DiagnosisReport {
+  std::string command;  // the command line that made it
+  std::string version;  // of stiction
+  sim::Machine machine;
+  Verdict verdict;
+};
+
+// The whole page, UTF-8; one file that loads nothing. Throws std::invalid_argument when a series' x and y differ in
+// length.
+std::string diagnosis_report_html(const DiagnosisReport& report);
+
+}  // namespace stiction::host

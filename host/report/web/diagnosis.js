@@ -1,0 +1,75 @@
+// The page of a diagnosis: measured against simulated, each cause with its evidence, what was rejected, what is left.
+'use strict';
+
+const minus = words => words.replace(/-(?=\d|x\b)/g, '−');  // of numbers and of the direction -x
+
+function bare(drawn) {
+  drawn.className = 'bare';
+  return drawn;
+}
+
+// ---- all causes in one table ----
+
+function drawSummary() {
+  const { baseline, extended } = DATA.residuals;
+  document.getElementById('summary-what').textContent = DATA.causes.length ? 'by what each explains' : 'nothing that the data show';
+  const rows = DATA.causes.map((cause, i) => classed('first', [
+    { text: element('a', { href: `#cause-${i}` }, `${i + 1}  ${cause.title}`), head: true, class: 'figure' }, text(cause.axis, { class: 'text' }),
+    text(cause.explains, { class: 'value' }), text(minus(cause.gain)), text(cause.gain_interval, { class: 'text unit' }),
+    text(cause.part || '–')]));
+  const head = [text('Cause', { class: 'text' }), text('Axis', { class: 'text' }), text('Explains, %'), text('Less residual force, %'),
+                text('95 % interval', { class: 'text unit' }), text('On the part, µm')];
+  if (rows.length) show('summary', bare(table([head], rows)));
+  const figures = [`Residual force on the held-out data: ${baseline.force} N rms with the machine file as it is, ${extended.force} N extended`];
+  if (baseline.position) figures.push(`position error of the simulation: ${baseline.position} µm rms, ${extended.position} µm extended`);
+  show('summary-caption', `${figures.join('; ')}. ${DATA.holdout}`);
+}
+
+// ---- one section a cause ----
+
+function parameters(cause) {
+  const head = [text('Parameter', { class: 'text' }), text('Value'), text('95 % from'), text('to'), text('Unit', { class: 'text unit' })];
+  return bare(table([head], cause.parameters.map(row => classed('first', [
+    { text: row.label, head: true, class: 'figure' }, text(minus(row.value), { class: 'value' }),
+    text(row.low === null ? '–' : minus(row.low)), text(row.high === null ? '–' : minus(row.high)), text(row.unit, { class: 'text unit' })]))));
+}
+
+function confusions(cause) {
+  if (!cause.confused_with.length) return element('p', {}, 'Nothing in the vocabulary looks like it in these data.');
+  return bare(table([[text('Looks the same', { class: 'text' }), text('Told apart by', { class: 'text' })]],
+    cause.confused_with.map(row => classed('first', [{ text: row.title, head: true, class: 'figure' }, text(row.separate_by, { class: 'text wrap' })]))));
+}
+
+function causeSection(cause, i) {
+  const minor = words => element('h3', { class: 'minor' }, words);
+  return element('section', { id: `cause-${i}`, class: 'cause' },
+    element('div', { class: 'heading' }, element('h2', {}, `${i + 1}  ${cause.title}`), element('span', { class: 'quiet' }, `axis ${cause.axis}, ${cause.name}`)),
+    element('p', { class: 'detail' }, minus(cause.meaning)),
+    element('div', { class: 'pair facts' },
+      element('div', {}, minor('Value'), element('div', { class: 'scroll' }, parameters(cause)), minor('Evidence'),
+              element('p', {}, minus(cause.evidence)), element('p', {}, minus(cause.figures))),
+      element('div', {}, minor('What it does to the part'), element('p', {}, cause.on_part), minor('May be confused with'), confusions(cause),
+              minor('What to do'), element('p', {}, cause.advice), element('p', { class: 'caption' }, `More: ${cause.page}`))),
+    element('div', { id: `cause-charts-${i}`, class: 'pair charts' }));
+}
+
+function drawRejected() {
+  if (!DATA.rejected.length) return document.getElementById('rejected-section').remove();
+  show('rejected', bare(table([[text('Cause', { class: 'text' }), text('Why it is not named', { class: 'text' })]],
+    DATA.rejected.map(row => classed('first', [{ text: row.title, head: true, class: 'figure' }, text(minus(row.why), { class: 'text wrap' })])))));
+}
+
+document.getElementById('causes').replaceChildren(...DATA.causes.map(causeSection));
+document.getElementById('picture-what').textContent = DATA.picture;
+if (!DATA.charts.some(chart => chart.place === 'before-after')) document.getElementById('picture-section').remove();
+show('unexplained', DATA.unexplained);
+show('notes', ...DATA.notes.map(note => element('li', {}, minus(note))));
+drawConditions();
+drawSummary();
+drawRejected();
+drawSeriesChoice();
+placeCharts();
+drawCharts();
+linkAbscissae();
+drawMachine();
+drawForPaper();

@@ -1,0 +1,186 @@
+#include "tests/blind/blind_case.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <utility>
+
+namespace stiction::blind {
+namespace {
+
+using Signal = std::vector<double>;
+
+double uniform(Random& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
+
+double mean_square(const std::vector<Signal>& signals) {
+  double sum = 0.0, count = 0.0;
+  for (const auto& signal : signals) {
+    for (const double value : signal) sum += value * value;
+    count += static_cast<double>(signal.size());
+  }
+  return sum / count;
+}
+
+std::vector<Signal> difference(std::vector<Signal> a, const std::vector<Signal>& b) {
+  for (std::size_t k = 0; k < a.size(); ++k)
+    for (std::size_t n = 0; n < a[k].size(); ++n) a[k][n] -= b[k][n];
+  return a;
+}
+
+Eigen::VectorXd stacked(const std::vector<Signal>& signals) {
+  Eigen::Index size = 0;
+  for (const auto& signal : signals) size += static_cast<Eigen::Index>(signal.size());
+  Eigen::VectorXd all(size);
+  Eigen::Index at = 0;
+  for (const auto& signal : signals) {
+    all.segment(at, static_cast<Eigen::Index>(signal.size())) =
+        Eigen::Map<const Eigen::VectorXd>(signal.data(), static_cast<Eigen::Index>(signal.size()));
+    at += static_cast<Eigen::Index>(signal.size());
+  }
+  return all;
+}
+
+// X of the cross table with a friction that the file can express to the end and a motor constant that is that of its
+// windings: the inverse dynamics of the machine file is exact.
+sim::Machine draw_machine(sim::Machine machine, Random& random) {
+  machine.axes.resize(1);
+  auto& axis = machine.axes.front();
+  axis.mass = uniform(random, 190.0, 250.0);
+  axis.motor.force_constant = 1.5 * axis.motor.phase_force_constant;
+  axis.encoder.velocity = sim::VelocitySource::estimated;
+  sim::MaxwellSlip::Parameters friction;
+  friction.viscous = uniform(random, 300.0, 600.0);
+  for (const auto& e : exponential_contact(uniform(random, 70.0, 130.0), uniform(random, 2e-6, 6e-6))) {
+    friction.stiffness.push_back(e.stiffness);
+    friction.level.push_back(e.level);
+  }
+  axis.friction.models["maxwell_slip"] = friction;
+  axis.friction.use = "maxwell_slip";
+  return machine;
+}
+
+Mechanics mechanics_of(const sim::Axis& axis) {
+  const auto& friction = std::get<sim::MaxwellSlip::Parameters>(axis.friction.models.at("maxwell_slip"));
+  Mechanics m;
+  m.mass = axis.mass;
+  m.viscous = friction.viscous;
+  for (std::size_t k = 0; k < friction.level.size(); ++k)
+    m.contact.push_back({friction.stiffness[k], friction.level[k]});
+  return m;
+}
+
+NoiseLevels draw_noise(Random& random) {
+  return {.slow_force = uniform(random, 1.5, 3.0),
+          .slow_force_corner = uniform(random, 1.0, 5.0),
+          .fast_force = uniform(random, 2.0, 4.0),
+          .fast_force_corner = uniform(random, 15.0, 60.0),
+          .encoder = uniform(random, 0.5e-9, 2e-9),
+          .phase_current = uniform(random, 0.02, 0.05)};
+}
+
+// The runs of one case: the same trajectories with other mechanics.
+class Runs {
+ public:
+  Runs(const sim::Machine& machine, const std::vector<Trajectory>& trajectories, double period, std::uint64_t seed)
+      : machine_(machine),
+        file_(mechanics_of(machine.axes.front())),
+        trajectories_(trajectories),
+        period_(period),
+        seed_(seed) {}
+
+  std::vector<host::Log> logs(const Mechanics& mechanics, const NoiseLevels& noise) const {
+    std::vector<host::Log> all;
+    for (std::size_t k = 0; k < trajectories_.size(); ++k)
+      all.push_back(record(machine_, mechanics, trajectories_[k], noise, period_, seed_ + k));
+    return all;
+  }
+  std::vector<Signal> residuals(const std::vector<host::Log>& logs) const {
+    std::vector<Signal> all;
+    for (const auto& log : logs) all.push_back(residual_force(log, file_, machine_.axes.front().motor.force_constant));
+    return all;
+  }
+  // Residual force that `mechanics` alone makes, without noise.
+  std::vector<Signal> effect(const Mechanics& mechanics) {
+    if (plain_.empty()) plain_ = residuals(logs(file_, {}));
+    return difference(residuals(logs(mechanics, {})), plain_);
+  }
+  const Mechanics& file() const { return file_; }
+
+ private:
+  const sim::Machine& machine_;
+  Mechanics file_;
+  const std::vector<Trajectory>& trajectories_;
+  double period_;
+  std::uint64_t seed_;
+  std::vector<Signal> plain_;
+};
+
+// The strength with the wanted mean square; most residual forces grow like it or like its root.
+sim::Effect scaled(const Hideable& row, const AtStrength& at, double wanted, Runs& runs) {
+  double strength = 1.0;
+  for (int round = 0; round < 8; ++round) {
+    Mechanics m = runs.file();
+    row.apply(at(strength), m);
+    const double ratio = wanted / mean_square(runs.effect(m));
+    if (std::abs(ratio - 1.0) < 0.05) break;
+    strength *= std::sqrt(ratio);
+  }
+  return at(strength);
+}
+
+double oracle(const std::vector<Signal>& signals, const Eigen::MatrixXd& held_regressors,
+              const std::vector<Signal>& held, const Eigen::MatrixXd& regressors) {
+  const Eigen::VectorXd weights = regressors.colPivHouseholderQr().solve(stacked(signals));
+  const Eigen::VectorXd before = stacked(held);
+  return (before.squaredNorm() - (before - held_regressors * weights).squaredNorm()) /
+         static_cast<double>(before.size());
+}
+
+}  // namespace
+
+BlindCase make_case(const sim::Machine& shipped, const CaseOrder& order) {
+  Random random(order.seed * 0x9E3779B97F4A7C15ULL + 1);
+  BlindCase blind{order, draw_machine(shipped, random), {}, {}, {}, 0.0, 0.0};
+  const auto noise = draw_noise(random);
+  const double period = random() & 1U ? 1e-3 : 0.5e-3;
+  const auto training = training_trajectories(random), held = holdout_trajectories(random);
+  Runs runs(blind.machine, training, period, order.seed * 100),
+      held_runs(blind.machine, held, period, order.seed * 100 + 50);
+  const double noise_power = mean_square(runs.residuals(runs.logs(runs.file(), noise)));
+  blind.noise_rms = std::sqrt(noise_power);
+
+  Mechanics truth = runs.file();
+  std::vector<std::vector<Signal>> regressors, held_regressors;
+  for (const auto& name : order.hidden) {
+    const auto& row = hideable(name);
+    blind.truth.push_back(
+        scaled(row, row.draw(random, runs.file()), noise_power * order.share / (1.0 - order.share), runs));
+    Mechanics alone = runs.file();
+    row.apply(blind.truth.back(), alone);
+    regressors.push_back(runs.effect(alone));
+    held_regressors.push_back(held_runs.effect(alone));
+    row.apply(blind.truth.back(), truth);
+  }
+  if (order.slightly_off) {
+    truth.mass *= uniform(random, 0.97, 1.03);
+    truth.viscous *= uniform(random, 0.92, 1.08);
+    const double level = uniform(random, 0.95, 1.05);
+    for (auto& e : truth.contact) e.stiffness *= level, e.level *= level;
+  }
+  blind.training = runs.logs(truth, noise);
+  blind.holdout = held_runs.logs(truth, noise);
+  if (!order.hidden.empty()) {
+    const auto columns = static_cast<Eigen::Index>(regressors.size());
+    const auto before = runs.residuals(blind.training), held_before = held_runs.residuals(blind.holdout);
+    Eigen::MatrixXd a(stacked(before).size(), columns), b(stacked(held_before).size(), columns);
+    for (Eigen::Index k = 0; k < columns; ++k) {
+      a.col(k) = stacked(regressors[static_cast<std::size_t>(k)]);
+      b.col(k) = stacked(held_regressors[static_cast<std::size_t>(k)]);
+    }
+    blind.oracle_cut = oracle(before, b, held_before, a);
+  }
+  return blind;
+}
+
+}  // namespace stiction::blind

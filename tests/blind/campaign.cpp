@@ -1,0 +1,177 @@
+#include "tests/blind/campaign.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+#include <thread>
+
+namespace stiction::blind {
+namespace {
+
+constexpr std::array<Kind, 7> all_kinds{{
+    {"null", "nothing hidden", 0, false, false, 0.0, 10},
+    {"one10", "one effect, share 10 %", 1, false, false, 0.10, 10},
+    {"one5", "one effect, share 5 %", 1, false, false, 0.05, 6},
+    {"one2", "one effect, share 2 %", 1, false, false, 0.02, 4},
+    {"two10", "two effects, 10 % each", 2, false, false, 0.10, 5},
+    {"outside10", "one outside the vocabulary, 10 %", 0, true, false, 0.10, 4},
+    {"off", "parameters slightly off", 0, false, true, 0.0, 1},
+}};
+
+std::vector<std::string> names_of(bool in_vocabulary) {
+  std::vector<std::string> names;
+  for (const auto& row : hideables())
+    if (row.in_vocabulary == in_vocabulary) names.emplace_back(row.name);
+  return names;
+}
+
+// Exact aliases (diagnosis.md): a half difference of Coulomb friction is a constant force.
+bool same_class(const std::string& a, const std::string& b) {
+  const std::set<std::string> offset{"constant_force", "friction_asymmetry"};
+  return a == b || (offset.contains(a) && offset.contains(b));
+}
+
+// What may be named for a hidden one.
+bool right_for(const std::string& named, const std::string& hidden) {
+  return same_class(named, hidden) || named == hideable(hidden).accepted;
+}
+bool right(const std::string& named, const CaseOrder& order) {
+  if (order.slightly_off) return named == "mass_mismatch" || named == "coulomb_mismatch" || named == "viscous_mismatch";
+  return std::any_of(order.hidden.begin(), order.hidden.end(), [&](const auto& h) { return right_for(named, h); });
+}
+
+// The machine file's own value of what a *_mismatch changes; 0 for others.
+double value_of_file(const sim::Axis& axis, const std::string& effect) {
+  const auto& friction = std::get<sim::MaxwellSlip::Parameters>(axis.friction.models.at("maxwell_slip"));
+  if (effect == "mass_mismatch") return axis.mass;
+  if (effect == "viscous_mismatch") return friction.viscous;
+  if (effect != "coulomb_mismatch") return 0.0;
+  double sum = 0.0;
+  for (const double level : friction.level) sum += level;
+  return sum;
+}
+
+double scale_of(const sim::Effect& truth, const std::string& key) {
+  if (key == "neutral") return 0.1;
+  if (truth.name == "force_ripple" && key != "pitch")
+    return std::hypot(truth.values.at("cosine").front(), truth.values.at("sine").front());
+  return std::abs(truth.values.at(key).front());
+}
+
+std::vector<ParameterScore> score_parameters(const sim::Axis& file, const sim::Effect& truth,
+                                             const host::Finding& finding) {
+  std::vector<ParameterScore> scores;
+  for (const auto& [key, values] : truth.values) {
+    const auto found = finding.effect.values.find(key);
+    if (found == finding.effect.values.end() || found->second.empty()) continue;
+    const double off = found->second.front() - values.front(), base = value_of_file(file, truth.name);
+    ParameterScore each{truth.name, key, std::abs(off) / std::max(scale_of(truth, key), 1e-12), 0.0, false, false};
+    if (base != 0.0) each.of_change = std::abs(off / (values.front() - base));
+    for (const auto& parameter : finding.parameters)
+      if (parameter.name.starts_with(key + "_") && !parameter.standard_errors.empty()) {
+        each.interval = true;
+        each.covered = std::abs(off) <= 1.96 * parameter.standard_errors.front();
+      }
+    scores.push_back(each);
+  }
+  return scores;
+}
+
+}  // namespace
+
+std::span<const Kind> kinds() { return all_kinds; }
+
+std::vector<PlannedCase> plan(int count, std::uint64_t seed, const std::string& only) {
+  if (!only.empty() && std::none_of(all_kinds.begin(), all_kinds.end(), [&](const Kind& k) { return only == k.name; }))
+    throw std::out_of_range("no kind '" + only + "'");
+  const auto inside = names_of(true), outside = names_of(false);
+  std::array<int, all_kinds.size()> made{};
+  std::vector<PlannedCase> cases;
+  for (int n = 0; n < count; ++n) {
+    // The kind that is furthest behind its weight.
+    std::size_t next = all_kinds.size();
+    for (std::size_t k = 0; k < all_kinds.size(); ++k) {
+      if (!only.empty() && only != all_kinds[k].name) continue;
+      const auto load = [&](std::size_t i) { return (made[i] + 0.5) / all_kinds[i].weight; };
+      if (next == all_kinds.size() || load(k) < load(next)) next = k;
+    }
+    const Kind& kind = all_kinds[next];
+    const auto turn = static_cast<std::size_t>(made[next]++);
+    CaseOrder order{{}, kind.share, kind.slightly_off, seed * 100000 + static_cast<std::uint64_t>(n)};
+    const std::size_t first = (turn + seed) % inside.size();
+    if (kind.effects > 0) order.hidden.push_back(inside[first]);
+    if (kind.effects > 1) {
+      // A step of 1 to 11, so that every pair comes up; exact aliases of each other are no pair.
+      std::size_t step = 1 + (turn / inside.size() * 5 + turn) % (inside.size() - 1);
+      if (same_class(inside[first], inside[(first + step) % inside.size()])) step = step % (inside.size() - 1) + 1;
+      order.hidden.push_back(inside[(first + step) % inside.size()]);
+    }
+    if (kind.outside) order.hidden.push_back(outside[(turn + seed) % outside.size()]);
+    cases.push_back({&kind, order});
+  }
+  return cases;
+}
+
+Outcome score(const PlannedCase& planned, const BlindCase& blind, const host::Verdict& verdict) {
+  Outcome outcome;
+  outcome.kind = planned.kind;
+  outcome.order = planned.order;
+  const auto& order = planned.order;
+  std::set<std::string> explained;
+  for (const auto& finding : verdict.findings) {
+    const auto& name = finding.effect.name;
+    const bool hit = right(name, order);
+    const bool alias = !hit && std::any_of(finding.confused_with.begin(), finding.confused_with.end(),
+                                           [&](const auto& c) { return right(c.effect, order); });
+    if (outcome.named.empty()) outcome.first_right = hit, outcome.first_aliased = alias;
+    outcome.wrong += !hit && !alias;
+    outcome.named.push_back(name);
+    for (const auto& hidden : order.hidden)
+      if (right_for(name, hidden)) explained.insert(hidden);
+    for (const auto& truth : blind.truth)
+      if (truth.name == name) {
+        const auto scores = score_parameters(blind.machine.axes.front(), truth, finding);
+        outcome.parameters.insert(outcome.parameters.end(), scores.begin(), scores.end());
+      }
+  }
+  outcome.exact_set = explained.size() == order.hidden.size() && verdict.findings.size() == order.hidden.size();
+  outcome.signature = verdict.unexplained.signature.has_value();
+  const auto square = [](double x) { return x * x; };
+  outcome.gain = square(verdict.baseline.force_rms) - square(verdict.extended.force_rms);
+  outcome.oracle_gain = blind.oracle_cut;
+  return outcome;
+}
+
+std::vector<Outcome> run(const sim::Machine& shipped, const std::vector<PlannedCase>& plan, const Judge& judge,
+                         int threads, const std::function<void(std::size_t)>& done) {
+  std::vector<Outcome> outcomes(plan.size());
+  std::atomic<std::size_t> next{0}, finished{0};
+  const auto work = [&] {
+    for (std::size_t n = next++; n < plan.size(); n = next++) {
+      const auto begin = std::chrono::steady_clock::now();
+      try {
+        const auto blind = make_case(shipped, plan[n].order);
+        const auto made = std::chrono::steady_clock::now();
+        const auto verdict = judge(blind);
+        outcomes[n] = score(plan[n], blind, verdict);
+        outcomes[n].judge_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - made).count();
+      } catch (const std::exception& error) {
+        outcomes[n].kind = plan[n].kind;
+        outcomes[n].order = plan[n].order;
+        outcomes[n].error = error.what();
+        outcomes[n].judge_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+      }
+      if (done) done(++finished);
+    }
+  };
+  std::vector<std::thread> pool;
+  for (int k = 0; k < threads; ++k) pool.emplace_back(work);
+  for (auto& thread : pool) thread.join();
+  return outcomes;
+}
+
+}  // namespace stiction::blind

@@ -1,0 +1,252 @@
+#include "tests/blind/truth/axis.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <deque>
+#include <numbers>
+#include <stdexcept>
+
+#include "sim/control/axis_configuration.hpp"
+#include "sim/control/conversion.hpp"
+#include "stiction/drive/ticker.hpp"
+#include "stiction/number/fixed_signals.hpp"
+
+namespace stiction::blind {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr int steps_per_tick = 4;
+
+double sign_of(double v) { return v > 0.0 ? 1.0 : v < 0.0 ? -1.0 : 0.0; }
+
+// Three windings with a star point, trapezoidal rule.
+class Motor {
+ public:
+  Motor(const sim::Motor& m, double h)
+      : resistance_(0.5 * h * m.phase_resistance / (m.phase_inductance - m.mutual_inductance)),
+        gain_(h / (m.phase_inductance - m.mutual_inductance)),
+        emf_(m.emf_constant),
+        force_(m.phase_force_constant),
+        wave_(2.0 * pi / m.pole_pair_pitch) {}
+
+  double advance(const std::array<double, 3>& u, double x, double v) {
+    const double star = (u[0] + u[1] + u[2]) / 3.0;
+    const double s = std::sin(wave_ * x), c = std::cos(wave_ * x), root = 0.5 * std::numbers::sqrt3;
+    const std::array<double, 3> sines{s, -0.5 * s + root * c, -0.5 * s - root * c};
+    double force = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double sine = sines[k];
+      const double before = current[k];
+      current[k] = (before * (1.0 - resistance_) + gain_ * (u[k] - star - emf_ * v * sine)) / (1.0 + resistance_);
+      force += 0.5 * (before + current[k]) * sine;
+    }
+    return force_ * force;
+  }
+  std::array<double, 3> current{};  // A
+
+ private:
+  double resistance_, gain_, emf_, force_, wave_;
+};
+
+// Friction and what is hidden in it, as a force that opposes the motion, and forces of the surroundings.
+class Carriage {
+ public:
+  Carriage(const Mechanics& m, double x) : m_(m), contact_(m.contact), x_(x) {}
+
+  // One step of h s under the force of motor and noise.
+  void advance(double force, double h, double t) {
+    const double resisting = friction(t);
+    const double next = (v_ + h / m_.mass * (force + surroundings(t) - resisting)) / (1.0 + h / m_.mass * m_.viscous);
+    moved_ = 0.5 * h * (v_ + next);
+    if (next * v_ < 0.0) reversed_at_ = t;
+    v_ = next;
+    x_ += moved_;
+  }
+  double x() const { return x_; }
+  double v() const { return v_; }
+
+ private:
+  // All but the viscous part, which is taken at the end of the step.
+  double friction(double t) {
+    const double contact = contact_.move(moved_), speed = std::abs(v_);
+    const double slip = contact / contact_.coulomb();  // -1 to 1: how much of it is broken away
+    const double ratio = v_ / m_.stribeck_velocity;
+    return contact + m_.rise * sign_of(v_) * (1.0 - std::exp(-speed / m_.rise_velocity)) +
+           m_.break_away * slip * std::exp(-ratio * ratio) + m_.more_in_plus * std::abs(slip) +
+           m_.more_viscous_in_plus * speed + m_.drift * slip * (1.0 - std::exp(-t / m_.drift_time));
+  }
+  double surroundings(double t) const {
+    double force = m_.constant_force - m_.spring * (x_ - m_.spring_neutral);
+    for (std::size_t k = 0; k < m_.ripple_cosine.size(); ++k) {
+      const double angle = 2.0 * pi * static_cast<double>(k + 1) * x_ / m_.ripple_pitch;
+      force += m_.ripple_cosine[k] * std::cos(angle) + m_.ripple_sine[k] * std::sin(angle);
+    }
+    const double off = (x_ - m_.bump_position) / m_.bump_width;
+    if (m_.bump != 0.0) force += m_.bump * std::exp(-0.5 * off * off);
+    if (m_.tone != 0.0) force += m_.tone * std::sin(2.0 * pi * m_.tone_frequency * t);
+    if (m_.speed_ripple != 0.0)
+      force += m_.speed_ripple * std::abs(v_) * std::sin(2.0 * pi * x_ / m_.speed_ripple_pitch);
+    if (m_.kick != 0.0) force += m_.kick * sign_of(v_) * std::exp(-(t - reversed_at_) / m_.kick_time);
+    return force;
+  }
+
+  Mechanics m_;
+  Contact contact_;
+  double x_, v_ = 0.0, moved_ = 0.0;
+  double reversed_at_ = -1e3;
+};
+
+// Rider on an elastic mount behind the lost motion, and what the encoder reads of it.
+class Encoder {
+ public:
+  Encoder(const sim::Encoder& e, double backlash, double x)
+      : half_(0.5 * backlash), dragged_(x), increment_(e.increment) {
+    if (!e.mount) return;
+    w_ = 2.0 * pi * e.mount->natural_frequency;
+    damping_ = 2.0 * e.mount->damping_ratio * w_;
+  }
+  void advance(double x, double h) {
+    const double before = dragged_;
+    dragged_ = std::clamp(dragged_, x - half_, x + half_);
+    const double v = (dragged_ - before) / h;
+    rate_ -= v - v_ + h * (damping_ * rate_ + w_ * w_ * deflection_);
+    v_ = v;
+    if (w_ > 0.0) deflection_ += h * rate_;
+  }
+  double read(double noise) const { return increment_ * std::round((dragged_ + deflection_ + noise) / increment_); }
+
+ private:
+  double half_, dragged_, increment_, v_ = 0.0;
+  double w_ = 0.0, damping_ = 0.0, deflection_ = 0.0, rate_ = 0.0;
+};
+
+// The newest values, one a tick; linear between them.
+class Memory {
+ public:
+  double delayed(double value, double ticks) {
+    values_.push_front(value);
+    if (values_.size() > 64) values_.pop_back();
+    const auto k = std::min(static_cast<std::size_t>(ticks), values_.size() - 1);
+    const auto next = std::min(k + 1, values_.size() - 1);
+    return values_[k] + (values_[next] - values_[k]) * (ticks - static_cast<double>(k));
+  }
+
+ private:
+  std::deque<double> values_;
+};
+
+// Butterworth of second order, forwards and backwards: no phase, -6 dB at the corner.
+void zero_phase(std::vector<double>& values, double corner, double period) {
+  const double c = std::tan(pi * corner * period), d = 1.0 + std::numbers::sqrt2 * c + c * c;
+  const double b = c * c / d, a1 = 2.0 * (c * c - 1.0) / d, a2 = (1.0 - std::numbers::sqrt2 * c + c * c) / d;
+  for (int pass = 0; pass < 2; ++pass) {
+    double x1 = values.front(), x2 = x1, y1 = x1, y2 = x1;
+    for (double& value : values) {
+      const double y = b * (value + 2.0 * x1 + x2) - a1 * y1 - a2 * y2;
+      x2 = x1, x1 = value, y2 = y1, y1 = y;
+      value = y;
+    }
+    std::reverse(values.begin(), values.end());
+  }
+}
+
+}  // namespace
+
+host::Log record(const sim::Machine& machine, const Mechanics& mechanics, const Trajectory& trajectory,
+                 const NoiseLevels& noise, double period, std::uint64_t seed) {
+  using S = FixedSignals;
+  const auto& axis = machine.axes.front();
+  const double tick = machine.timing.fast_period, h = tick / steps_per_tick;
+  const auto config = sim::configure_axis<S>(machine.timing, axis);
+  const auto period_ns = sim::fast_period_ns(machine.timing);
+  Ticker ticker(period_ns, static_cast<std::uint32_t>(sim::slow_ratio(machine.timing)));
+  Axis<S> drive(config);
+
+  const double start = trajectory.at(0.0).position;
+  Motor motor(axis.motor, h);
+  Carriage carriage(mechanics, start);
+  Encoder encoder(axis.encoder, mechanics.backlash, start);
+  GaussMarkov slow(noise.slow_force, noise.slow_force_corner, tick, seed * 8 + 1);
+  GaussMarkov fast(noise.fast_force, noise.fast_force_corner, tick, seed * 8 + 2);
+  GaussMarkov jitter(noise.encoder, 2000.0, tick, seed * 8 + 3);
+  std::array<GaussMarkov, 3> sensors{GaussMarkov(noise.phase_current, 3000.0, tick, seed * 8 + 4),
+                                     GaussMarkov(noise.phase_current, 3000.0, tick, seed * 8 + 5),
+                                     GaussMarkov(noise.phase_current, 3000.0, tick, seed * 8 + 6)};
+  Memory current;
+  const auto dead_ticks = static_cast<std::size_t>(std::lround(axis.inverter.dead_time / tick));
+  std::deque<std::array<double, 3>> voltages(dead_ticks, std::array<double, 3>{});
+
+  host::Log log;
+  log.source = trajectory.name() + ".csv";
+  log.period = period;
+  auto& channels = log.axes.emplace_back();
+  channels.axis = axis.name;
+  const auto stride = std::lround(period / tick);
+  const auto ticks = std::lround(trajectory.duration() / tick);
+  AxisSignals<S> signals;
+  for (long k = 0; k < ticks; ++k) {
+    const std::int64_t now_ns = k * period_ns;
+    const double t = static_cast<double>(k) * tick;
+    Feedback<S> feedback;
+    feedback.position_valid = sim::convert(encoder.read(jitter.next()), feedback.position);
+    feedback.position_time_ns = now_ns;
+    for (std::size_t p = 0; p < 3; ++p)
+      feedback.fault |= !sim::convert(motor.current[p] + sensors[p].next(), feedback.current[p]);
+    if (k == 0) drive.start(feedback);
+    const auto set = trajectory.at(t);
+    const auto command = drive.tick(sim::to_set_point<S>(set), feedback, now_ns, ticker.slow(), signals);
+    if (drive.fault() != Fault::none)
+      throw std::runtime_error(fmt::format("blind: fault {} at {:.4f} s of {}", name_of(drive.fault()), t, log.source));
+    ticker.advance();
+
+    const double recorded = current.delayed(sim::to_si(signals.i), mechanics.current_delay / tick);
+    if (k % stride == 0) {
+      log.t.push_back(t);
+      channels.x_set.push_back(set.position);
+      channels.x.push_back(sim::to_si(signals.x));
+      channels.i.push_back(recorded);
+    }
+    voltages.push_back(
+        {sim::to_si(command.voltage[0]), sim::to_si(command.voltage[1]), sim::to_si(command.voltage[2])});
+    const auto u = voltages.front();
+    voltages.pop_front();
+    const double disturbance = slow.next() + fast.next();
+    for (int step = 0; step < steps_per_tick; ++step) {
+      const double force = motor.advance(u, carriage.x(), carriage.v());
+      carriage.advance(force + disturbance, h, t + step * h);
+      encoder.advance(carriage.x(), h);
+    }
+  }
+  return log;
+}
+
+std::vector<double> residual_force(const host::Log& log, const Mechanics& mechanics, double force_constant,
+                                   double band) {
+  const auto& axis = log.axes.front();
+  const std::size_t n = axis.x.size();
+  const double h = log.period;
+  // Central differences of sixth order: at 100 Hz and 1 kHz the second is 1e-4 off.
+  constexpr std::array<double, 4> first{0.0, 0.75, -0.15, 1.0 / 60.0};
+  constexpr std::array<double, 4> second{-49.0 / 18.0, 1.5, -0.15, 1.0 / 90.0};
+  Contact contact(mechanics.contact);
+  std::vector<double> residual(n, 0.0);
+  double contact_force = 0.0;
+  for (std::size_t k = 0; k < n; ++k) {
+    if (k > 0) contact_force = contact.move(axis.x[k] - axis.x[k - 1]);
+    if (k < 3 || k + 3 >= n) continue;
+    double v = 0.0, a = second[0] * axis.x[k];
+    for (std::size_t j = 1; j < 4; ++j) {
+      v += first[j] * (axis.x[k + j] - axis.x[k - j]);
+      a += second[j] * (axis.x[k + j] + axis.x[k - j]);
+    }
+    residual[k] = force_constant * axis.i[k] - mechanics.mass * a / (h * h) - mechanics.viscous * v / h - contact_force;
+  }
+  zero_phase(residual, band, h);
+  const auto cut = static_cast<std::ptrdiff_t>(std::min<double>(5.0 / (band * h), static_cast<double>(n) / 4.0));
+  return {residual.begin() + cut, residual.end() - cut};
+}
+
+}  // namespace stiction::blind

@@ -1,0 +1,52 @@
+// The truth: one axis of a cross table in closed loop with the firmware's control. Motor, carriage, friction, encoder,
+// noise and effects are its own; only the control law and its configuration are those under test.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "host/log/log.hpp"
+#include "sim/machine/machine.hpp"
+#include "tests/blind/truth/contact.hpp"
+#include "tests/blind/truth/noise.hpp"
+#include "tests/blind/truth/trajectory.hpp"
+
+namespace stiction::blind {
+
+// The mechanics, with everything that may be hidden in them; by default nothing is. Forces on the carriage, positive in
+// +x; friction positive against +v.
+struct Mechanics {
+  double mass = 0.0;
+  double viscous = 0.0;
+  std::vector<ContactElement> contact;
+
+  double rise = 0.0, rise_velocity = 1.0;                 // N, m/s: friction above the line, 1 - e^(-|v|/V)
+  double break_away = 0.0, stribeck_velocity = 1.0;       // N, m/s
+  double more_in_plus = 0.0, more_viscous_in_plus = 0.0;  // N, N s/m
+  double constant_force = 0.0;
+  double spring = 0.0, spring_neutral = 0.0;  // N/m, m
+  double ripple_pitch = 1.0;
+  std::vector<double> ripple_cosine, ripple_sine;  // N, of the harmonics
+  double backlash = 0.0;                           // m, between carriage and encoder
+  double current_delay = 0.0;                      // s, of the current's record
+
+  // Outside of the vocabulary, or of its first half.
+  double bump = 0.0, bump_position = 0.0, bump_width = 1.0;  // N, m, m: a push at one place
+  double tone = 0.0, tone_frequency = 1.0;                   // N, Hz
+  double drift = 0.0, drift_time = 1.0;                 // N, s: friction's level, 1 - e^(-t/T) from each log's start
+  double speed_ripple = 0.0, speed_ripple_pitch = 1.0;  // N s/m, m: periodic in position, grows with speed
+  double kick = 0.0, kick_time = 1.0;                   // N, s: pushes forward after each reversal and dies away
+};
+
+// Runs `trajectory` and records x_set, x, i every `period` s, a multiple of the fast period. One axis: the machine's
+// first, whose motor, encoder, inverter and control are taken from `machine`. Throws std::runtime_error when the drive
+// trips.
+host::Log record(const sim::Machine& machine, const Mechanics& mechanics, const Trajectory& trajectory,
+                 const NoiseLevels& noise, double period, std::uint64_t seed);
+
+// Residual force of a record against `mechanics` (its mass, viscous friction and contact alone), N, zero-phase 0 to
+// `band` Hz; the band's settling at both ends is cut off.
+std::vector<double> residual_force(const host::Log& log, const Mechanics& mechanics, double force_constant,
+                                   double band = 100.0);
+
+}  // namespace stiction::blind

@@ -1,0 +1,171 @@
+#include "tests/blind/truth/hidden.hpp"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace stiction::blind {
+namespace {
+
+double uniform(Random& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
+double log_uniform(Random& random, double low, double high) {
+  return std::exp(uniform(random, std::log(low), std::log(high)));
+}
+double either_sign(Random& random) { return random() & 1U ? 1.0 : -1.0; }
+double coulomb_of(const Mechanics& m) { return Contact(m.contact).coulomb(); }
+// 90 % of the level is reached 2.303 lengths from rest (exponential_contact); the first element's end gives the length.
+double contact_length(const Mechanics& m) {
+  return -m.contact.front().level / m.contact.front().stiffness / std::log(1.0 - 0.15);
+}
+double value(const sim::Effect& e, const char* key) { return e.values.at(key).front(); }
+
+AtStrength draw_mass(Random& random, const Mechanics& file) {
+  return [s = either_sign(random), m = file.mass](double x) {
+    return sim::Effect{"mass_mismatch", {{"mass", {m * (1.0 + 0.005 * s * x)}}}};
+  };
+}
+AtStrength draw_coulomb(Random& random, const Mechanics& file) {
+  return [s = either_sign(random), c = coulomb_of(file)](double x) {
+    return sim::Effect{"coulomb_mismatch", {{"coulomb", {c * (1.0 + 0.02 * s * x)}}}};
+  };
+}
+AtStrength draw_viscous(Random& random, const Mechanics& file) {
+  return [s = either_sign(random), mu = file.viscous](double x) {
+    return sim::Effect{"viscous_mismatch", {{"viscous", {mu * (1.0 + 0.03 * s * x)}}}};
+  };
+}
+AtStrength draw_viscous_nonlinear(Random& random, const Mechanics&) {
+  return [s = either_sign(random), v = log_uniform(random, 0.02, 0.1)](double x) {
+    return sim::Effect{"viscous_nonlinear", {{"force", {3.0 * s * x}}, {"velocity", {v}}}};
+  };
+}
+AtStrength draw_stribeck(Random& random, const Mechanics&) {
+  return [v = log_uniform(random, 0.002, 0.01)](double x) {
+    return sim::Effect{"stribeck", {{"break_away", {5.0 * x}}, {"velocity", {v}}}};
+  };
+}
+AtStrength draw_asymmetry(Random& random, const Mechanics&) {
+  return [s = either_sign(random), both = uniform(random, 0.0, 20.0)](double x) {
+    return sim::Effect{"friction_asymmetry", {{"coulomb", {2.0 * s * x}}, {"viscous", {both * s * x}}}};
+  };
+}
+AtStrength draw_presliding(Random&, const Mechanics& file) {
+  return [length = contact_length(file), c = coulomb_of(file)](double x) {
+    // The stiffness is that of the first chord, the distance a corner of the elements' curve.
+    const double longer = length * (1.0 + x);
+    return sim::Effect{
+        "presliding_hysteresis",
+        {{"stiffness", {0.15 * c / (-std::log(0.85) * longer)}}, {"distance", {std::log(10.0) * longer}}}};
+  };
+}
+AtStrength draw_constant(Random& random, const Mechanics&) {
+  return [s = either_sign(random)](double x) { return sim::Effect{"constant_force", {{"force", {2.0 * s * x}}}}; };
+}
+AtStrength draw_spring(Random& random, const Mechanics&) {
+  return [neutral = uniform(random, -0.1, 0.1)](double x) {
+    return sim::Effect{"position_spring", {{"stiffness", {20.0 * x}}, {"neutral", {neutral}}}};
+  };
+}
+AtStrength draw_ripple(Random& random, const Mechanics&) {
+  constexpr std::array pitches{0.072, 0.036, 0.024};
+  const double pitch = random() % 2 == 0 ? pitches[random() % 3] : log_uniform(random, 0.008, 0.06);
+  return [pitch, phase = uniform(random, 0.0, 2.0 * std::numbers::pi)](double x) {
+    return sim::Effect{
+        "force_ripple",
+        {{"pitch", {pitch}}, {"cosine", {3.0 * x * std::cos(phase)}}, {"sine", {3.0 * x * std::sin(phase)}}}};
+  };
+}
+AtStrength draw_backlash(Random&, const Mechanics&) {
+  return [](double x) { return sim::Effect{"backlash", {{"width", {2e-6 * x}}}}; };
+}
+AtStrength draw_skew(Random&, const Mechanics&) {
+  return [](double x) { return sim::Effect{"time_skew", {{"delay", {1e-4 * x}}}}; };
+}
+
+AtStrength draw_bump(Random& random, const Mechanics&) {
+  return [s = either_sign(random), x0 = uniform(random, -0.05, 0.08), w = uniform(random, 0.003, 0.008)](double x) {
+    return sim::Effect{"push_at_one_place", {{"force", {8.0 * s * x}}, {"position", {x0}}, {"width", {w}}}};
+  };
+}
+AtStrength draw_tone(Random& random, const Mechanics&) {
+  return [f = log_uniform(random, 6.0, 45.0)](double x) {
+    return sim::Effect{"force_at_a_frequency", {{"force", {4.0 * x}}, {"frequency", {f}}}};
+  };
+}
+AtStrength draw_drift(Random& random, const Mechanics&) {
+  return [s = either_sign(random), time = uniform(random, 4.0, 15.0)](double x) {
+    return sim::Effect{"friction_that_drifts", {{"change", {5.0 * s * x}}, {"time_constant", {time}}}};
+  };
+}
+AtStrength draw_speed_ripple(Random& random, const Mechanics&) {
+  return [p = log_uniform(random, 0.015, 0.05)](double x) {
+    return sim::Effect{"ripple_that_grows_with_speed", {{"per_speed", {30.0 * x}}, {"pitch", {p}}}};
+  };
+}
+AtStrength draw_kick(Random& random, const Mechanics&) {
+  return [time = uniform(random, 0.03, 0.08)](double x) {
+    return sim::Effect{"kick_after_reversals", {{"force", {8.0 * x}}, {"time", {time}}}};
+  };
+}
+
+void scale_contact(Mechanics& m, double ratio) {
+  for (auto& element : m.contact) {
+    element.stiffness *= ratio;
+    element.level *= ratio;
+  }
+}
+
+using E = const sim::Effect&;
+using M = Mechanics&;
+
+constexpr std::array<Hideable, 17> table{{
+    {"mass_mismatch", true, "", draw_mass, [](E e, M m) { m.mass = value(e, "mass"); }},
+    {"coulomb_mismatch", true, "", draw_coulomb,
+     [](E e, M m) { scale_contact(m, value(e, "coulomb") / coulomb_of(m)); }},
+    {"viscous_mismatch", true, "", draw_viscous, [](E e, M m) { m.viscous = value(e, "viscous"); }},
+    {"viscous_nonlinear", true, "", draw_viscous_nonlinear,
+     [](E e, M m) { m.rise = value(e, "force"), m.rise_velocity = value(e, "velocity"); }},
+    {"stribeck", true, "", draw_stribeck,
+     [](E e, M m) { m.break_away = value(e, "break_away"), m.stribeck_velocity = value(e, "velocity"); }},
+    {"friction_asymmetry", true, "", draw_asymmetry,
+     [](E e, M m) { m.more_in_plus = value(e, "coulomb"), m.more_viscous_in_plus = value(e, "viscous"); }},
+    {"presliding_hysteresis", true, "", draw_presliding,
+     [](E e, M m) { m.contact = exponential_contact(coulomb_of(m), value(e, "distance") / std::log(10.0)); }},
+    {"constant_force", true, "", draw_constant, [](E e, M m) { m.constant_force = value(e, "force"); }},
+    {"position_spring", true, "", draw_spring,
+     [](E e, M m) { m.spring = value(e, "stiffness"), m.spring_neutral = value(e, "neutral"); }},
+    {"force_ripple", true, "", draw_ripple,
+     [](E e, M m) {
+       m.ripple_pitch = value(e, "pitch");
+       m.ripple_cosine = e.values.at("cosine"), m.ripple_sine = e.values.at("sine");
+     }},
+    {"backlash", true, "", draw_backlash, [](E e, M m) { m.backlash = value(e, "width"); }},
+    {"time_skew", true, "", draw_skew, [](E e, M m) { m.current_delay = value(e, "delay"); }},
+    {"push_at_one_place", false, "", draw_bump,
+     [](E e, M m) {
+       m.bump = value(e, "force"), m.bump_position = value(e, "position"), m.bump_width = value(e, "width");
+     }},
+    {"force_at_a_frequency", false, "periodic_disturbance", draw_tone,
+     [](E e, M m) { m.tone = value(e, "force"), m.tone_frequency = value(e, "frequency"); }},
+    {"friction_that_drifts", false, "thermal_drift", draw_drift,
+     [](E e, M m) { m.drift = value(e, "change"), m.drift_time = value(e, "time_constant"); }},
+    {"ripple_that_grows_with_speed", false, "", draw_speed_ripple,
+     [](E e, M m) { m.speed_ripple = value(e, "per_speed"), m.speed_ripple_pitch = value(e, "pitch"); }},
+    {"kick_after_reversals", false, "", draw_kick,
+     [](E e, M m) { m.kick = value(e, "force"), m.kick_time = value(e, "time"); }},
+}};
+
+}  // namespace
+
+std::span<const Hideable> hideables() { return table; }
+
+const Hideable& hideable(const std::string& name) {
+  for (const auto& row : table)
+    if (name == row.name) return row;
+  throw std::out_of_range("blind: no effect '" + name + "'");
+}
+
+}  // namespace stiction::blind

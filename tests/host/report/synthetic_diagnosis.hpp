@@ -1,0 +1,13 @@
+// Verdicts as an engine might leave them, for tests of their report: shapes that look like an axis', and no engine.
+#pragma once
+
+#include "host/report/diagnosis_report.hpp"
+
+namespace stiction::host {
+
+// Two causes with charts, rejected ones, something unexplained, notes.
+DiagnosisReport synthetic_diagnosis();
+// Nothing found, nothing rejected, no held-out log, no set-points.
+DiagnosisReport synthetic_agreement();
+
+}  // namespace stiction::host
