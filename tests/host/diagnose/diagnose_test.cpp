@@ -83,16 +83,20 @@ std::vector<Case> cases() {
   return all;
 }
 
-TEST(Diagnosis, finds_each_effect_and_its_parameters) {
-  for (const auto& c : cases()) {
-    const auto verdict = verdict_of(c.hidden, 7, c.trajectory);
-    const double value = names_of(verdict).starts_with(c.effect) ? value_of(verdict, c.key) : NAN;
-    figure(fmt::format("diagnosis of {}", c.effect),
-           fmt::format("found {}; {} {:.4g}, hidden {:.4g}", names_of(verdict), c.key, value, c.value));
-    EXPECT_EQ(names_of(verdict), c.effect);
-    EXPECT_NEAR(value, c.value, c.tolerance * c.value) << c.effect;
-  }
+class EachEffect : public ::testing::TestWithParam<std::size_t> {};
+
+TEST_P(EachEffect, is_found_with_its_parameters) {
+  const auto c = cases()[GetParam()];
+  const auto verdict = verdict_of(c.hidden, 7, c.trajectory);
+  const double value = names_of(verdict).starts_with(c.effect) ? value_of(verdict, c.key) : NAN;
+  figure(fmt::format("diagnosis of {}", c.effect),
+         fmt::format("found {}; {} {:.4g}, hidden {:.4g}", names_of(verdict), c.key, value, c.value));
+  EXPECT_EQ(names_of(verdict), c.effect);
+  EXPECT_NEAR(value, c.value, c.tolerance * c.value) << c.effect;
 }
+
+INSTANTIATE_TEST_SUITE_P(Diagnosis, EachEffect, ::testing::Range<std::size_t>(0, cases().size()),
+                         [](const auto& each) { return std::string(cases()[each.param].effect); });
 
 TEST(Diagnosis, says_that_a_constant_force_may_be_an_asymmetry) {
   const auto verdict = verdict_of({.force = [](const Point&) { return -6.0; }}, 3);
