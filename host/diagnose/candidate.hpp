@@ -10,7 +10,7 @@
 
 #include "host/diagnose/verdict.hpp"
 #include "host/identify/motion.hpp"
-#include "sim/machine/machine.hpp"
+#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 

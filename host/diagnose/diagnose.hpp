@@ -8,7 +8,7 @@
 
 #include "host/diagnose/verdict.hpp"
 #include "host/log/log.hpp"
-#include "sim/machine/machine.hpp"
+#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 

@@ -5,7 +5,7 @@
 
 #include "host/identify/log_rows.hpp"
 #include "host/log/log.hpp"
-#include "sim/machine/machine.hpp"
+#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 

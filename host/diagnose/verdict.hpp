@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sim/experiment/experiment_result.hpp"
-#include "sim/plant/effects/effect.hpp"
+#include "sim/model/effect.hpp"
 
 namespace stiction::host {
 

@@ -10,7 +10,7 @@
 
 #include "host/identify/filter.hpp"
 #include "host/log/log.hpp"
-#include "sim/machine/machine.hpp"
+#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "host/identify/identification.hpp"
-#include "sim/machine/machine.hpp"
+#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "sim/experiment/circle_result.hpp"
-#include "sim/machine/machine.hpp"
+#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 

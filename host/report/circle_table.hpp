@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/experiment/circle_result.hpp"
-#include "sim/machine/machine.hpp"
+#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 

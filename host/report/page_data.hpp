@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/machine/machine.hpp"
+#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "sim/machine/machine.hpp"
+#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 

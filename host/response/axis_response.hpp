@@ -27,7 +27,7 @@
 
 #include "host/response/margins.hpp"
 #include "host/response/spectra.hpp"
-#include "sim/machine/machine.hpp"
+#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 

@@ -6,7 +6,7 @@
 
 #include "host/response/axis_response.hpp"
 #include "sim/experiment/experiment_result.hpp"
-#include "sim/machine/machine.hpp"
+#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 

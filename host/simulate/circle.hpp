@@ -6,7 +6,7 @@
 #include "host/simulate/control_run.hpp"
 #include "sim/experiment/circle_path.hpp"
 #include "sim/experiment/circle_result.hpp"
-#include "sim/machine/machine.hpp"
+#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 

@@ -9,7 +9,7 @@
 
 #include "host/log/log.hpp"
 #include "sim/experiment/experiment_result.hpp"
-#include "sim/machine/machine.hpp"
+#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "host/log/log.hpp"
-#include "sim/machine/machine.hpp"
+#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 

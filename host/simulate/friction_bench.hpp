@@ -2,7 +2,7 @@
 // 4.4.3).
 #pragma once
 
-#include "sim/machine/machine.hpp"
+#include "sim/model/machine.hpp"
 #include "sim/plant/friction/friction.hpp"
 
 namespace stiction::host {

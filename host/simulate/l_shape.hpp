@@ -3,7 +3,7 @@
 
 #include "host/simulate/control_run.hpp"
 #include "sim/experiment/experiment_result.hpp"
-#include "sim/machine/machine.hpp"
+#include "sim/model/machine.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
 namespace stiction::host {

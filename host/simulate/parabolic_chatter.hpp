@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "sim/experiment/experiment_result.hpp"
-#include "sim/machine/machine.hpp"
+#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 

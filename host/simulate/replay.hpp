@@ -5,7 +5,7 @@
 
 #include "host/log/log.hpp"
 #include "host/simulate/control_run.hpp"
-#include "sim/machine/machine.hpp"
+#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "sim/machine/machine.hpp"
+#include "sim/model/machine.hpp"
 #include "stiction/drive/axis.hpp"
 
 namespace stiction::sim {

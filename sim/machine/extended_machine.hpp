@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/plant/effects/effect.hpp"
+#include "sim/model/effect.hpp"
 
 namespace stiction::sim {
 

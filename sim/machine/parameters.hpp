@@ -10,8 +10,8 @@
 #include <tuple>
 
 #include "sim/machine/feed_drive_parameters.hpp"
-#include "sim/machine/machine.hpp"
 #include "sim/machine/parameter_tables.hpp"
+#include "sim/model/machine.hpp"
 
 namespace stiction::sim {
 

@@ -7,7 +7,7 @@
 #include <random>
 #include <variant>
 
-#include "sim/machine/machine.hpp"
+#include "sim/model/machine.hpp"
 #include "sim/plant/effects/acting_effects.hpp"
 #include "sim/plant/encoder_mount.hpp"
 #include "sim/plant/friction/friction.hpp"

@@ -12,7 +12,7 @@
 #include <numbers>
 #include <optional>
 
-#include "sim/machine/machine.hpp"
+#include "sim/model/machine.hpp"
 
 namespace stiction::sim {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/machine/machine.hpp"
+#include "sim/model/machine.hpp"
 #include "sim/sine_cosine.hpp"
 
 namespace stiction::sim {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "host/log/log.hpp"
-#include "sim/machine/machine.hpp"
+#include "sim/model/machine.hpp"
 #include "tests/blind/truth/hidden.hpp"
 
 namespace stiction::blind {

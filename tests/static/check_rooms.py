@@ -36,20 +36,31 @@ ROOMS = {
     "sim": {},
     "sim/plant/friction": {"sim": "a model describes its parameters (sim/parameter.hpp)"},
     "sim/plant/feed": {},
+    "sim/model": {
+        "sim/plant/friction": "a machine holds the parameters of its friction models",
+        "sim/plant/feed": "and may be a feed drive",
+    },
+    "sim/plant/effects": {
+        "sim": "an effect describes its parameters",
+        "sim/model": "and changes what a machine has, or adds to it",
+        "sim/plant/friction": "on every friction model",
+    },
     "sim/machine": {
         "sim": "keys are described by sim/parameter.hpp",
+        "sim/model": "a file becomes a machine",
         "sim/plant/friction": "and those of friction by the models",
-        "sim/plant/feed": "a machine may be a feed drive",
-        "sim/plant/effects": "and hold what diagnosis adds to its plant",
+        "sim/plant/feed": "and of a feed drive by its equations",
+        "sim/plant/effects": "and of effects by the effects",
     },
     "sim/plant": {
         "sim": "the mathematics that its parts share",
-        "sim/machine": "the plant is built from a machine",
+        "sim/model": "the plant is built from a machine",
+        "sim/plant/effects": "with what diagnosis added",
         "sim/plant/friction": "with one of the friction models",
     },
     "sim/control": {
         "sim": "the mathematics of the double-precision policy",
-        "sim/machine": "the drive's configuration is computed from a machine",
+        "sim/model": "the drive's configuration is computed from a machine",
         f"{FIRMWARE}/*": "and is the cascade's own",
     },
     "sim/experiment": {

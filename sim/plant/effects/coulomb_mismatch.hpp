@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "sim/machine/machine.hpp"
+#include "sim/model/machine.hpp"
 #include "sim/parameter.hpp"
 #include "sim/plant/effects/friction_level.hpp"
 

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "sim/model/effect.hpp"
 #include "sim/parameter.hpp"
-#include "sim/plant/effects/effect.hpp"
 
 namespace stiction::sim {
 

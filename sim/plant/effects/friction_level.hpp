@@ -2,7 +2,7 @@
 // in the file; there both begin at 0 and stand beside its root law.
 #pragma once
 
-#include "sim/machine/machine.hpp"
+#include "sim/model/machine.hpp"
 
 namespace stiction::sim {
 

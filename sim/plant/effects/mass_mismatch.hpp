@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "sim/machine/machine.hpp"
+#include "sim/model/machine.hpp"
 #include "sim/parameter.hpp"
 
 namespace stiction::sim {

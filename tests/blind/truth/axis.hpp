@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "host/log/log.hpp"
-#include "sim/machine/machine.hpp"
+#include "sim/model/machine.hpp"
 #include "tests/blind/truth/contact.hpp"
 #include "tests/blind/truth/noise.hpp"
 #include "tests/blind/truth/trajectory.hpp"

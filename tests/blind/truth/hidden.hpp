@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "sim/plant/effects/effect.hpp"
+#include "sim/model/effect.hpp"
 #include "tests/blind/truth/axis.hpp"
 #include "tests/blind/truth/trajectory.hpp"
 

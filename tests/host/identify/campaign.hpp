@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "host/identify/identification.hpp"
-#include "sim/machine/machine.hpp"
+#include "sim/model/machine.hpp"
 #include "tests/host/identify/simulated_log.hpp"
 
 namespace stiction::test {

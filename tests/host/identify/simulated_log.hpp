@@ -10,7 +10,7 @@
 
 #include "host/log/log.hpp"
 #include "sim/experiment/set_point.hpp"
-#include "sim/machine/machine.hpp"
+#include "sim/model/machine.hpp"
 
 namespace stiction::test {
 

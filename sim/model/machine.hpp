@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/plant/effects/effect.hpp"
+#include "sim/model/effect.hpp"
 #include "sim/plant/feed/feed_drive.hpp"
 #include "sim/plant/friction/friction.hpp"
 
