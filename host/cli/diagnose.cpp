@@ -14,6 +14,7 @@
 #include "host/cli/progress.hpp"
 #include "host/diagnose/verdict_json.hpp"
 #include "host/log/read_log.hpp"
+#include "host/report/diagnosis_report.hpp"
 #include "sim/machine/extended_machine.hpp"
 #include "sim/machine/machine_file.hpp"
 
@@ -72,6 +73,7 @@ void run(const DiagnoseCommandOptions& options, const Invocation& invocation) {
                                                         additions, comment));
     sim::read_machine(folder.path() / "extended.toml");  // what was written must be a machine
     folder.write("verdict.json", json.dump(2) + "\n");
+    folder.write("report.html", diagnosis_report_html({invocation.command_line, invocation.version, machine, verdict}));
     folder.commit();
   }
   if (options.json) {
@@ -79,7 +81,8 @@ void run(const DiagnoseCommandOptions& options, const Invocation& invocation) {
     return;
   }
   fmt::print("{}", verdict_text(verdict));
-  if (!options.out.empty()) fmt::print("\nverdict: {0}/verdict.json\nmachine file: {0}/extended.toml\n", options.out);
+  if (!options.out.empty())
+    fmt::print("\nverdict: {0}/verdict.json\nmachine file: {0}/extended.toml\nreport: {0}/report.html\n", options.out);
 }
 
 }  // namespace
@@ -95,7 +98,8 @@ void add_diagnose(CLI::App& program, const Invocation& invocation) {
       ->type_name("LOG");
   command->add_option("--axis", o->axis, "the axis, where logs and machine have several")->type_name("NAME");
   command->add_option("--seed", o->seed, "of the bootstrap for held-out intervals [1]")->type_name("N");
-  command->add_option("--out", o->out, "write verdict.json and extended.toml into this folder")->type_name("DIR");
+  command->add_option("--out", o->out, "write verdict.json, extended.toml and report.html into this folder")
+      ->type_name("DIR");
   command->add_flag("--json", o->json, "print the verdict as JSON on standard output");
   command->callback([o, &invocation] {
     try {
