@@ -73,7 +73,8 @@ void run(const DiagnoseCommandOptions& options, const Invocation& invocation) {
                                                         additions, comment));
     sim::read_machine(folder.path() / "extended.toml");  // what was written must be a machine
     folder.write("verdict.json", json.dump(2) + "\n");
-    folder.write("report.html", diagnosis_report_html({invocation.command_line, invocation.version, machine, verdict}));
+    folder.write("report.html",
+                 diagnosis_report_html({invocation.command_line, invocation.version, input.machine, verdict}));
     folder.commit();
   }
   if (options.json) {
