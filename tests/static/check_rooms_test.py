@@ -52,7 +52,7 @@ class CheckRooms(unittest.TestCase):
         self.expect_finding(CONTROL, "  #  include <cmath>", "<cmath>")
 
     def test_finds_the_firmware_including_the_simulation(self):
-        self.expect_finding(CONTROL, '#include "sim/model/machine.hpp"', "may not include sim/machine")
+        self.expect_finding(CONTROL, '#include "sim/model/machine.hpp"', "may not include sim/model")
 
     def test_finds_numbers_that_know_the_laws(self):
         findings = findings_in(SOUND | {NUMBER: '#include "stiction/control/pi.hpp"\n'})
@@ -69,7 +69,7 @@ class CheckRooms(unittest.TestCase):
 
     def test_finds_the_simulation_including_a_tool(self):
         findings = findings_in(SOUND | {"sim/model/machine.hpp": '#include "host/report/page.hpp"\n'})
-        self.assertIn("sim/machine may not include host/report", findings[0])
+        self.assertIn("sim/model may not include host/report", findings[0])
 
     def test_tells_a_folder_from_what_lies_below_it(self):
         shared = {"sim/parameter.hpp": "#include <limits>\n", "sim/control/policy.hpp": ""}
