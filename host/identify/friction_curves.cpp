@@ -68,7 +68,7 @@ SteadyCurve fit_steady_curve(const std::vector<SteadyPoint>& points) {
   });
   const auto solution = linear_part(points, rise_velocity, &squares);
   SteadyCurve curve{solution[0], solution[1], rise_velocity, solution[2],
-                     std::sqrt(squares / static_cast<double>(points.size()))};
+                    std::sqrt(squares / static_cast<double>(points.size()))};
   if (!(curve.creeping > 0.0 && curve.rise >= 0.0 && curve.viscous >= 0.0))
     throw MissingRows(
         fmt::format("steady friction: found a curve that falls ({:.1f} N creeping, {:.1f} N rise, {:.0f} N s/m); "

@@ -70,13 +70,10 @@ std::string experiment_report_html(const ExperimentReport& report) {
   const auto found = typeset(verdict(result));
   json charts = json::array();
   for (const auto& chart : result.charts) charts.push_back(chart_json(chart, "charts"));
-  const json data{{"schema", "stiction.experiment-report/1"},
-                  {"verdict", found},
-                  {"conditions", conditions_json(report)},
-                  {"series", series_json(result.charts)},
-                  {"charts", charts},
-                  {"figures", figures_json(result)},
-                  {"machine", machine_json(report.machine)}};
+  const json data{
+      {"schema", "stiction.experiment-report/1"}, {"verdict", found}, {"conditions", conditions_json(report)},
+      {"series", series_json(result.charts)},     {"charts", charts}, {"figures", figures_json(result)},
+      {"machine", machine_json(report.machine)}};
   return report_page({result.title + ": " + report.machine.name, report.command, report.version},
                      assets::experiment_html(),
                      {{"experiment", escape_html(result.experiment)},

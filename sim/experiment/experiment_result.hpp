@@ -58,7 +58,7 @@ struct Chart {
   bool logarithmic_x = false;
   std::vector<Series> series;
   std::optional<std::array<double, 2>> x_range{};  // what is shown first, of a longer record; none: all
-  std::vector<double> levels{};  // horizontal lines across the chart
+  std::vector<double> levels{};                    // horizontal lines across the chart
   std::vector<Distance> distances{};
   std::optional<std::array<double, 2>> y_range{};  // what is shown; none: all of it
   double y_step = 0.0;                             // from tick to tick; 0: chosen by the page
