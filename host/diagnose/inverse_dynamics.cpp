@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "sim/plant/effects/acting_effects.hpp"
+
 namespace stiction::host {
 namespace {
 
@@ -92,6 +94,13 @@ std::vector<double> friction_along(const sim::Axis& axis, const Motion& motion) 
 std::vector<double> force_along(const sim::Axis& axis, const Motion& motion) {
   auto force = friction_along(axis, motion);
   for (std::size_t i = 0; i < force.size(); ++i) force[i] += axis.mass * motion.a[i];
+  // What the machine file says of forces on the carriage is known already: the motor need not hold it.
+  sim::ActingEffects effects(axis, {axis.mass, motion.period}, motion.x.front());
+  if (!effects.any()) return force;
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    const auto on_carriage = effects.advance(motion.x[i], motion.v[i]);
+    force[i] -= on_carriage.applied + on_carriage.friction;
+  }
   return force;
 }
 
