@@ -5,40 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/identify/identification.hpp"
-#include "host/simulate/replay.hpp"
-#include "stiction/number/fixed_signals.hpp"
+#include "host/diagnose/bench.hpp"
+#include "host/simulate/control_run.hpp"
 
 namespace stiction::host {
 namespace {
 
 constexpr double ignored = 0.25;  // s at a log's start, in which contact and loop come from a state that is not known
-
-// Only the axis' channels, of a machine of that axis alone.
-struct Bench {
-  sim::Machine machine;
-  std::vector<Log> logs;
-};
-
-Bench bench_of(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs) {
-  Bench bench{machine, {}};
-  bench.machine.axes = {machine.axes[axis]};
-  for (const auto& log : logs) {
-    const auto& channels = channels_of(log, machine.axes[axis]);
-    if (channels.x_set.empty()) continue;
-    auto own = log;
-    own.axes = {channels};
-    bench.logs.push_back(std::move(own));
-  }
-  return bench;
-}
-
-std::vector<std::vector<double>> positions(const Bench& bench) {
-  std::vector<std::vector<double>> all;
-  for (const auto& log : bench.logs)
-    all.push_back(replay<FixedSignals>(bench.machine, log, {bench.machine.axes.front().name}).axes.front().x);
-  return all;
-}
 
 // rms over all logs of the difference, less its mean in each: the encoders' zeros are not a cause's doing.
 double difference_rms(const std::vector<std::vector<double>>& a, const std::vector<std::vector<double>>& b,
@@ -80,11 +53,11 @@ void judge_in_closed_loop(Verdict& verdict, const sim::Machine& machine, std::si
   const auto with = [&](const std::vector<Finding>& findings) {
     auto extended = bench;
     extended.machine = extended_machine(bench.machine, findings);
-    return positions(extended);
+    return simulated_positions(extended);
   };
   std::vector<std::vector<double>> baseline;
   try {
-    baseline = positions(bench);
+    baseline = simulated_positions(bench);
   } catch (const FaultTripped& fault) {
     throw LogError(
         fmt::format("{}: found set-points that the simulated machine cannot follow ({}); expected a record "

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/diagnose/bench.hpp"
 #include "host/diagnose/closed_loop.hpp"
 #include "host/diagnose/diagnosis_charts.hpp"
 #include "host/diagnose/holdout.hpp"
@@ -24,6 +25,7 @@ constexpr double shortest = 3.0;  // s, of the training logs together
 SignalSettings wide_band() {
   SignalSettings s;
   s.row_rate = 250.0;  // 0 to 100 Hz, in which the share of an effect is counted
+  s.cutoff = 250.0;    // of the position alone, so well above: what it took off m a at 100 Hz the force still has
   return s;
 }
 
@@ -171,16 +173,24 @@ Verdict diagnose(const DiagnoseInput& input) {
   const Eigen::VectorXd target = rows.force - expected;
   const Eigen::VectorXd held_target = held_rows.force - expected_force(held_rows, axis);
   auto scene = scene_of(axis, rows, settings);
-  auto found = search_causes(rows, target, scene, input.progress);
+  const auto motion = without_noise(input.machine, input.axis, logs);
+  const auto held_motion = motion.empty() ? motion : without_noise(input.machine, input.axis, held_out);
+  if (held_motion.empty())
+    verdict.notes.push_back(
+        "The machine's set-points could not be followed in simulation, or are not in the logs: regressors were made "
+        "from the measured motion, which carries the disturbances through the control loop. Log x_set.");
+  const auto regressors = held_motion.empty() ? rows : rows_of(motion, axis, settings);
+  const auto held_regressors = held_motion.empty() ? held_rows : rows_of(held_motion, axis, settings);
+  auto found = search_causes(regressors, target, scene, input.progress);
   const auto found_before = found.terms.size();
-  const auto figures = keep_what_holds(held_rows, held_target, scene, found, verdict, input.seed);
+  const auto figures = keep_what_holds(held_regressors, held_target, scene, found, verdict, input.seed);
   verdict.baseline.force_rms = figures.force_baseline;
   verdict.extended.force_rms = figures.force_extended;
   for (std::size_t k = 0; k < found.terms.size(); ++k)
     verdict.findings.push_back(finding_of(scene, found.terms[k], figures.gains[k], found.blocks));
   for (const auto& d : found.discarded) verdict.rejected.push_back({candidates()[d.candidate].name, d.why});
   if (found.terms.size() == found_before)
-    verdict.unexplained = signature_of(rows, found.residual, target.squaredNorm(), found.correlation);
+    verdict.unexplained = signature_of(regressors, found.residual, target.squaredNorm(), found.correlation);
   add_charts(verdict, rows, target, found.residual);
   if (input.closed_loop) judge_in_closed_loop(verdict, input.machine, input.axis, held_out);
   return verdict;

@@ -7,10 +7,16 @@ namespace stiction::host {
 
 Evidence::Evidence(Eigen::VectorXd target, std::vector<RowBlock> blocks)
     : target_(std::move(target)), blocks_(std::move(blocks)), sums_(blocks_.size()) {
+  sum_target();
+}
+
+void Evidence::sum_target() {
+  white_target_ = whitening_(target_);
+  total_.square = 0.0;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     const auto begin = static_cast<Eigen::Index>(blocks_[b].begin);
     const auto length = static_cast<Eigen::Index>(blocks_[b].end - blocks_[b].begin);
-    sums_[b].square = target_.segment(begin, length).squaredNorm();
+    sums_[b].square = white_target_.segment(begin, length).squaredNorm();
     total_.square += sums_[b].square;
   }
 }
@@ -18,12 +24,25 @@ Evidence::Evidence(Eigen::VectorXd target, std::vector<RowBlock> blocks)
 Eigen::Index Evidence::add(const std::vector<Eigen::VectorXd>& columns) {
   const auto first = static_cast<Eigen::Index>(columns_.size());
   columns_.insert(columns_.end(), columns.begin(), columns.end());
+  sum_columns(first);
+  return first;
+}
+
+void Evidence::whiten(Whitening whitening) {
+  whitening_ = std::move(whitening);
+  sum_target();
+  white_columns_.clear();
+  sum_columns(0);
+}
+
+// The sums of the columns from `first` on; those before it are there.
+void Evidence::sum_columns(Eigen::Index first) {
   const auto count = static_cast<Eigen::Index>(columns_.size());
+  for (Eigen::Index j = first; j < count; ++j)
+    white_columns_.push_back(whitening_(columns_[static_cast<std::size_t>(j)]));
   const auto grow = [count](Sums& sums) {
-    const Eigen::Index before = sums.moment.size();
     sums.gram.conservativeResize(count, count);
     sums.moment.conservativeResize(count);
-    return before;
   };
   grow(total_);
   total_.gram.rightCols(count - first).setZero();
@@ -35,20 +54,21 @@ Eigen::Index Evidence::add(const std::vector<Eigen::VectorXd>& columns) {
     const auto begin = static_cast<Eigen::Index>(blocks_[b].begin);
     const auto length = static_cast<Eigen::Index>(blocks_[b].end - blocks_[b].begin);
     for (Eigen::Index j = first; j < count; ++j) {
-      const auto column = columns_[static_cast<std::size_t>(j)].segment(begin, length);
-      sums.moment[j] = column.dot(target_.segment(begin, length));
+      const auto column = white_columns_[static_cast<std::size_t>(j)].segment(begin, length);
+      sums.moment[j] = column.dot(white_target_.segment(begin, length));
       for (Eigen::Index i = 0; i <= j; ++i)
-        sums.gram(i, j) = sums.gram(j, i) = column.dot(columns_[static_cast<std::size_t>(i)].segment(begin, length));
+        sums.gram(i, j) = sums.gram(j, i) =
+            column.dot(white_columns_[static_cast<std::size_t>(i)].segment(begin, length));
     }
     total_.gram.rightCols(count - first) += sums.gram.rightCols(count - first);
     total_.gram.bottomLeftCorner(count - first, first) += sums.gram.bottomLeftCorner(count - first, first);
     total_.moment.tail(count - first) += sums.moment.tail(count - first);
   }
-  return first;
 }
 
 void Evidence::truncate(Eigen::Index first) {
   columns_.resize(static_cast<std::size_t>(first));
+  white_columns_.resize(static_cast<std::size_t>(first));
   const auto cut = [first](Sums& sums) {
     sums.gram.conservativeResize(first, first);
     sums.moment.conservativeResize(first);

@@ -1,12 +1,13 @@
 // The regressors of all candidates over blocks of rows, and what any choice of them explains: from the blocks' Gram
-// matrices, so that no choice costs a pass over the rows. A block is one piece of evidence (Cameron, Gelbach, Miller
-// 2008).
+// matrices of the whitened rows, so that no choice costs a pass over the rows. A block is one piece of evidence
+// (Cameron, Gelbach, Miller 2008).
 #pragma once
 
 #include <Eigen/Dense>
 #include <span>
 #include <vector>
 
+#include "host/diagnose/whitening.hpp"
 #include "host/identify/regression.hpp"
 
 namespace stiction::host {
@@ -22,21 +23,25 @@ class Evidence {
   Eigen::Index add(const std::vector<Eigen::VectorXd>& columns);
   // Drops all columns from `first` on.
   void truncate(Eigen::Index first);
+  // Looks at target and columns through `whitening` from now on; without it, as they are.
+  void whiten(Whitening whitening);
 
   std::size_t rows() const { return static_cast<std::size_t>(target_.size()); }
   std::size_t blocks() const { return blocks_.size(); }
   const std::vector<RowBlock>& row_blocks() const { return blocks_; }
-  double total() const { return total_.square; }  // sum of squares of the target, N^2
+  double total() const { return total_.square; }  // sum of squares of the whitened target
   double column_square(Eigen::Index column) const { return total_.gram(column, column); }
-  const Eigen::VectorXd& target() const { return target_; }
+  const Eigen::VectorXd& target() const { return target_; }  // not whitened
+  const Whitening& whitening() const { return whitening_; }
 
   struct Fit {
     Eigen::VectorXd weights;
-    double left = 0.0;  // sum of squared residuals, N^2
+    double left = 0.0;  // sum of squared residuals, whitened
   };
   Fit fit(const ColumnIndices& chosen) const;
   // Over the blocks for which use[b] is true.
   Fit fit(const ColumnIndices& chosen, const std::vector<bool>& use) const;
+  // N, not whitened.
   Eigen::VectorXd residual(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const;
 
   // Sandwich covariance of the weights, clustered by blocks.
@@ -56,10 +61,13 @@ class Evidence {
   static Fit solve(const Sums& sums, const ColumnIndices& chosen);
   static double left(const Sums& sums, const ColumnIndices& chosen, const Eigen::VectorXd& weights);
   static Sums part(const Sums& sums, const ColumnIndices& chosen);
+  void sum_target();
+  void sum_columns(Eigen::Index first);
 
-  Eigen::VectorXd target_;
+  Eigen::VectorXd target_, white_target_;
   std::vector<RowBlock> blocks_;
-  std::vector<Eigen::VectorXd> columns_;
+  Whitening whitening_;
+  std::vector<Eigen::VectorXd> columns_, white_columns_;
   std::vector<Sums> sums_;  // of each block
   Sums total_;
 };

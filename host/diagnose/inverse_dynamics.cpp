@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "sim/plant/effects/acting_effects.hpp"
@@ -159,6 +160,27 @@ std::optional<double> contact_stiffness_of(const sim::Axis& axis) {
   return std::nullopt;
 }
 
+double contact_distance_of(const sim::Axis& axis) {
+  const auto& model = in_use(axis);
+  if (const auto* lugre = std::get_if<sim::LuGre::Parameters>(&model))
+    return lugre->coulomb * std::numbers::ln10 / lugre->stiffness;
+  const auto* slip = std::get_if<sim::MaxwellSlip::Parameters>(&model);
+  if (slip == nullptr) return 0.0;
+  // The curve of first loading rises: from its initial slope and its last corner, by halves.
+  const auto force_at = [&](double x) {
+    double force = 0.0;
+    for (std::size_t k = 0; k < slip->level.size(); ++k) force += std::min(slip->stiffness[k] * x, slip->level[k]);
+    return force;
+  };
+  double low = 0.0, high = 0.0;
+  for (std::size_t k = 0; k < slip->level.size(); ++k) high = std::max(high, slip->level[k] / slip->stiffness[k]);
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (force_at(middle) < 0.9 * sum_of(slip->level) ? low : high) = middle;
+  }
+  return high;
+}
+
 sim::Axis with_coulomb(sim::Axis axis, double coulomb) {
   std::visit(
       [coulomb]<class P>(P& p) {
@@ -179,6 +201,20 @@ sim::Axis with_viscous(sim::Axis axis, double viscous) {
         if constexpr (has_viscous<P>) p.viscous = viscous;
       },
       in_use(axis));
+  return axis;
+}
+
+sim::Axis with_contact_distance(sim::Axis axis, double distance) {
+  const double shorter = contact_distance_of(axis) / distance;
+  auto& model = in_use(axis);
+  if (auto* lugre = std::get_if<sim::LuGre::Parameters>(&model)) {
+    lugre->stiffness *= shorter;
+  } else if (auto* slip = std::get_if<sim::MaxwellSlip::Parameters>(&model)) {
+    for (double& stiffness : slip->stiffness) stiffness *= shorter;
+  } else {
+    const double stiffness = *coulomb_of(axis) * std::numbers::ln10 / distance;
+    sim::PreslidingHysteresis::change({stiffness, distance}, axis);
+  }
   return axis;
 }
 

@@ -26,7 +26,13 @@ std::optional<double> coulomb_of(const sim::Axis& axis);  // N
 std::optional<double> viscous_of(const sim::Axis& axis);  // N s/m
 // Initial stiffness of the contact (N/m); none for a model whose friction follows the speed alone.
 std::optional<double> contact_stiffness_of(const sim::Axis& axis);
+// Displacement from rest in which the contact reaches 90 % of its level (m); 0 for friction that follows the speed
+// alone.
+double contact_distance_of(const sim::Axis& axis);
 sim::Axis with_coulomb(sim::Axis axis, double coulomb);
 sim::Axis with_viscous(sim::Axis axis, double viscous);
+// The contact drawn out to that distance, its level and the shape of its curve kept; for friction without a contact, of
+// the shape that the effect presliding_hysteresis has with a curve that is exponential.
+sim::Axis with_contact_distance(sim::Axis axis, double distance);
 
 }  // namespace stiction::host

@@ -106,11 +106,15 @@ Unexplained signature_of(const LogRows& rows, const Eigen::VectorXd& residual, d
                          double correlation) {
   const double n = static_cast<double>(rows.rows());
   const auto shortest = static_cast<std::size_t>(std::clamp(6.0 * correlation, n / 100.0, n / 30.0)) + 1;
-  Evidence evidence(residual, blocks_of(rows.velocity, rows.logs(), shortest));
+  Evidence plain(residual, blocks_of(rows.velocity, rows.logs(), shortest)), white = plain;
+  const Whitening whitening(residual, rows.logs());
+  white.whiten(whitening);
   std::vector<Signature> found;
   const auto look = [&](const std::vector<Eigen::VectorXd>& columns, const std::string& text) {
-    const auto cv = cross_validate(evidence, columns);
-    if (cv.gain > least_gain && cv.p_value < significance) found.push_back({cv.gain, text});
+    for (auto* evidence : {&plain, &white}) {
+      const auto cv = cross_validate(*evidence, columns);
+      if (cv.gain > least_gain && cv.p_value < significance) found.push_back({cv.gain, text});
+    }
   };
   const Eigen::VectorXd one = Eigen::VectorXd::Ones(rows.rows());
   const Eigen::VectorXd sign = rows.velocity.array().sign();
@@ -119,7 +123,7 @@ Unexplained signature_of(const LogRows& rows, const Eigen::VectorXd& residual, d
     const Eigen::VectorXd angle = 2.0 * std::numbers::pi * per_unit * place;
     return std::vector<Eigen::VectorXd>{angle.array().cos(), angle.array().sin()};
   };
-  const auto scan = scan_pitches(rows, residual, {}, 1);
+  const auto scan = scan_pitches(rows, residual, whitening, {}, 1);
   if (!scan.pitches.empty())
     look(waves(position, 1.0 / scan.pitches.front()),
          fmt::format("periodic in position with pitch {:.4g} mm", 1e3 * scan.pitches.front()));

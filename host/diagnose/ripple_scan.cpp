@@ -14,15 +14,16 @@ constexpr double most_cycles = 400.0;    // of the stroke
 constexpr double shortest_pitch = 5e-4;  // m
 constexpr double least_share = 0.2;      // of the rows must see a pitch slower than the band's edge
 
-// What a sine and a cosine of one pitch take off the residual's square.
-double gain(const std::vector<Complex>& wave, const Eigen::VectorXd& residual, const std::vector<bool>& seen) {
+// What a sine and a cosine of one pitch take off the whitened residual's square. A wave that the rows see at a slowly
+// changing frequency f comes out of the whitening |W(f)| times as large, so that no wave has to be whitened itself.
+double gain(const std::vector<Complex>& wave, const Eigen::VectorXd& residual, const std::vector<double>& weight) {
   double cc = 0.0, ss = 0.0, cs = 0.0, cr = 0.0, sr = 0.0;
   for (std::size_t i = 0; i < wave.size(); ++i) {
-    if (!seen[i]) continue;
+    if (weight[i] == 0.0) continue;
     const double c = wave[i].real(), s = wave[i].imag(), r = residual[static_cast<Eigen::Index>(i)];
-    cc += c * c;
-    ss += s * s;
-    cs += c * s;
+    cc += weight[i] * c * c;
+    ss += weight[i] * s * s;
+    cs += weight[i] * c * s;
     cr += c * r;
     sr += s * r;
   }
@@ -37,8 +38,8 @@ struct Peak {
 
 }  // namespace
 
-PitchScan scan_pitches(const LogRows& rows, const Eigen::VectorXd& residual, std::span<const double> known,
-                       std::size_t count) {
+PitchScan scan_pitches(const LogRows& rows, const Eigen::VectorXd& residual, const Whitening& whitening,
+                       std::span<const double> known, std::size_t count) {
   const auto x = rows.sampled([](const Motion& m) { return m.x; });
   const double stroke = x.maxCoeff() - x.minCoeff();
   PitchScan scan;
@@ -59,14 +60,23 @@ PitchScan scan_pitches(const LogRows& rows, const Eigen::VectorXd& residual, std
     wave[i] = std::polar(1.0, angle * lowest);
     turn[i] = std::polar(1.0, angle * step);
   }
-  const auto seen_at = [&](double order) {
-    std::vector<bool> seen(speeds.size());
-    for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = speeds[i] * order < band;
-    return seen;
+  // |W|^2 over the rows' frequencies, in a table.
+  constexpr std::size_t steps = 512;
+  std::vector<double> gain_square(steps + 1);
+  for (std::size_t k = 0; k <= steps; ++k)
+    gain_square[k] = whitening.gain_square(0.5 * static_cast<double>(k) / static_cast<double>(steps));
+  const auto weights_at = [&](double order) {
+    std::vector<double> weight(speeds.size(), 0.0);
+    for (std::size_t i = 0; i < weight.size(); ++i) {
+      const double frequency = speeds[i] * order;
+      if (frequency < band) weight[i] = gain_square[static_cast<std::size_t>(2.0 * steps * frequency * rows.period(0))];
+    }
+    return weight;
   };
+  const Eigen::VectorXd weighed = whitening.transposed(whitening(residual));
   std::vector<Peak> all;
   for (double order = lowest; order <= highest; order += step) {
-    all.push_back({order, gain(wave, residual, seen_at(order))});
+    all.push_back({order, gain(wave, weighed, weights_at(order))});
     for (std::size_t i = 0; i < wave.size(); ++i) wave[i] *= turn[i];
   }
   scan.trials = all.size() / 8 + 1;

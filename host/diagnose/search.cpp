@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "host/diagnose/fisher.hpp"
+#include "host/diagnose/refinement.hpp"
 #include "host/diagnose/ripple_scan.hpp"
 
 namespace stiction::host {
@@ -27,8 +28,32 @@ using Set = std::vector<const Option*>;
 
 std::vector<RowBlock> blocks_for(const LogRows& rows, double correlation) {
   const auto n = static_cast<double>(rows.rows());
-  const double shortest = std::clamp(6.0 * correlation, n / 100.0, n / 30.0);
+  const double shortest = std::clamp(6.0 * correlation, n / 200.0, n / 30.0);
   return blocks_of(rows.velocity, rows.logs(), static_cast<std::size_t>(shortest) + 1);
+}
+
+// What columns take off the cross-validated residual.
+struct CrossValidated {
+  double gain = 0.0;     // share
+  double p_value = 1.0;  // block t-test
+  bool odd = false;      // owed to one block in fifty: one odd event names no cause
+};
+
+CrossValidated cross_validate(const Evidence& evidence, const ColumnIndices& without, const ColumnIndices& with) {
+  auto gains = evidence.held_out(without);
+  const auto left = evidence.held_out(with);
+  const double before = std::accumulate(gains.begin(), gains.end(), 0.0), n = static_cast<double>(gains.size());
+  for (std::size_t k = 0; k < gains.size(); ++k) gains[k] -= left[k];
+  const double gained = std::accumulate(gains.begin(), gains.end(), 0.0), mean = gained / n;
+  double variance = 0.0;
+  for (const double g : gains) variance += (g - mean) * (g - mean) / (n - 1.0);
+  CrossValidated result;
+  result.gain = gained / before;
+  result.p_value = mean <= 0.0 ? 1.0 : 0.5 * student_tails(mean / std::sqrt(variance / n), n - 1.0);
+  std::sort(gains.begin(), gains.end());
+  const auto odd = std::max<std::size_t>(1, gains.size() / 50);
+  result.odd = !(std::accumulate(gains.begin(), gains.end() - static_cast<std::ptrdiff_t>(odd), 0.0) > 0.2 * gained);
+  return result;
 }
 
 class Search {
@@ -36,12 +61,13 @@ class Search {
   Search(const LogRows& rows, const Eigen::VectorXd& target, Scene& scene)
       : rows_(rows),
         scene_(scene),
-        correlation_(correlation_length(target, rows.logs())),
-        evidence_(target, blocks_for(rows, std::min(correlation_, 0.1 / rows.period(0)))) {
+        evidence_(target, blocks_for(rows, std::min(correlation_length(target, rows.logs()), 0.1 / rows.period(0)))),
+        plain_(target, evidence_.row_blocks()) {
     for (const double pitch : {scene.axis.motor.pole_pair_pitch, 0.5 * scene.axis.motor.pole_pair_pitch})
       if (pitch > 0.0) known_pitches_.push_back(pitch);
     for (std::size_t c = 0; c < candidates().size(); ++c)
       if (!candidates()[c].periodic) add_options(c);
+    whiten({});
   }
 
   SearchResult run(const std::function<void()>& progress);
@@ -51,17 +77,26 @@ class Search {
     for (const double value : candidates()[candidate].grid(scene_)) {
       const auto columns = group_columns(rows_, scene_, candidates()[candidate], value);
       const auto first = evidence_.add(columns);
+      plain_.add(columns);
       Option option{candidate, value, {}};
       for (std::size_t k = 0; k < columns.size(); ++k) option.columns.push_back(first + static_cast<Eigen::Index>(k));
       options_.push_back(std::make_unique<Option>(std::move(option)));
     }
   }
 
+  Eigen::VectorXd residual(const Set& set) const {
+    const auto columns = columns_of(set);
+    return evidence_.residual(columns, evidence_.fit(columns).weights);
+  }
+  // The noise is what the set leaves.
+  void whiten(const Set& set) {
+    evidence_.whiten({residual(set), rows_.logs()});
+    correlation_ = correlation_length(evidence_.whitening()(residual(set)), rows_.logs());
+  }
+
   // Pitches in what the set leaves; those in the set stay.
   void scan_ripples(const Set& set) {
-    const auto columns = columns_of(set);
-    const auto scan =
-        scan_pitches(rows_, evidence_.residual(columns, evidence_.fit(columns).weights), known_pitches_, pitches_tried);
+    const auto scan = scan_pitches(rows_, residual(set), evidence_.whitening(), known_pitches_, pitches_tried);
     trials_ = std::max(trials_, scan.trials);
     scene_.pitches = scan.pitches;
     for (std::size_t c = 0; c < candidates().size(); ++c)
@@ -133,14 +168,14 @@ class Search {
   bool drop(Set& set);
   Judgement judge(const Set& set, std::size_t term) const;
   void note(std::size_t candidate, const Judgement& judgement);
-  void refine(std::vector<Term>& terms, Eigen::VectorXd& residual);
   std::vector<std::size_t> alternatives(const Set& set, std::size_t term) const;
   double size_in(const std::vector<bool>& use, const Set& set, std::size_t term, const Eigen::VectorXd& weights) const;
 
   const LogRows& rows_;
   Scene& scene_;
-  double correlation_;
-  Evidence evidence_;
+  double correlation_ = 1.0;  // rows, of the whitened residual
+  Evidence evidence_;         // whitened
+  Evidence plain_;            // the same as it is: for what a term takes off the force
   std::vector<std::unique_ptr<Option>> options_;
   std::size_t trials_ = 1, rounds_ = 0;
   std::vector<double> known_pitches_;
@@ -186,24 +221,12 @@ Judgement Search::judge(const Set& set, std::size_t term) const {
   const double wald = own.dot(covariance.completeOrthogonalDecomposition().solve(own)) / static_cast<double>(count);
   result.p_value = std::min(1.0, trials(set[term]->candidate) * fisher_tail(wald, static_cast<double>(count), bearing));
 
-  const auto a = evidence_.held_out(without), b = evidence_.held_out(with);
-  std::vector<double> gains(a.size());
-  double before = 0.0, gained = 0.0;
-  for (std::size_t k = 0; k < a.size(); ++k) {
-    gains[k] = a[k] - b[k];
-    before += a[k];
-    gained += gains[k];
-  }
-  result.gain = gained / before;
-  const double n = static_cast<double>(gains.size()), mean = gained / n;
-  double variance = 0.0;
-  for (const double g : gains) variance += (g - mean) * (g - mean) / (n - 1.0);
-  result.gain_p_value = mean <= 0.0 ? 1.0 : 0.5 * student_tails(mean / std::sqrt(variance / n), n - 1.0);
-  // Without the blocks that gain most: one odd event in fifty names no cause.
-  auto sorted = gains;
-  std::sort(sorted.begin(), sorted.end());
-  const auto odd = std::max<std::size_t>(1, sorted.size() / 50);
-  const double rest = std::accumulate(sorted.begin(), sorted.end() - static_cast<std::ptrdiff_t>(odd), 0.0);
+  // Off the force itself, or off what whitening leaves of it: a wave of minutes is much of the first and little of the
+  // second, a push of milliseconds the other way round.
+  const auto white = cross_validate(evidence_, without, with), plain = cross_validate(plain_, without, with);
+  const auto& larger = white.gain > plain.gain ? white : plain;
+  result.gain = larger.gain;
+  result.gain_p_value = larger.p_value;
 
   std::vector<bool> first(evidence_.blocks()), second(evidence_.blocks());
   for (std::size_t k = 0; k < first.size(); ++k) second[k] = !(first[k] = k < first.size() / 2);
@@ -218,9 +241,9 @@ Judgement Search::judge(const Set& set, std::size_t term) const {
   else if (!(result.gain > least_gain))
     result.objection = fmt::format("takes {:.2g} % off the cross-validated residual; expected more than {:g} %",
                                    100.0 * result.gain, 100.0 * least_gain);
-  else if (!(rest > 0.2 * gained))
-    result.objection =
-        fmt::format("{} of {} blocks of rows make nearly all of its gain: an odd event", odd, gains.size());
+  else if (larger.odd)
+    result.objection = fmt::format("a fiftieth of the {} blocks of rows makes nearly all of its gain: an odd event",
+                                   evidence_.blocks());
   else if (result.first_half < 0.0 || result.second_half < 0.0)
     result.objection = "the two halves of the records contradict each other on it";
   return result;
@@ -333,112 +356,6 @@ std::vector<std::size_t> Search::alternatives(const Set& set, std::size_t term) 
   return as_good;
 }
 
-// Nonlinear parameters off the grid, by golden section; weights and covariance with them.
-void Search::refine(std::vector<Term>& terms, Eigen::VectorXd& residual) {
-  residual = evidence_.target();
-  if (terms.empty()) return;
-  evidence_.truncate(0);
-  std::vector<std::vector<Eigen::VectorXd>> groups;
-  for (const auto& term : terms)
-    groups.push_back(group_columns(rows_, scene_, candidates()[term.candidate], term.nonlinear));
-  const auto stack = [&] {
-    Eigen::Index count = 0;
-    for (const auto& g : groups) count += static_cast<Eigen::Index>(g.size());
-    Eigen::MatrixXd columns(rows_.rows(), count);
-    Eigen::Index at = 0;
-    for (const auto& g : groups)
-      for (const auto& c : g) columns.col(at++) = c;
-    return columns;
-  };
-  const auto weights_of = [&](const Eigen::MatrixXd& columns) {
-    const Eigen::VectorXd scale = columns.colwise().norm().cwiseMax(1e-300).cwiseInverse().transpose();
-    const Eigen::MatrixXd gram = scale.asDiagonal() * (columns.transpose() * columns) * scale.asDiagonal();
-    const Eigen::VectorXd moment = scale.cwiseProduct(columns.transpose() * evidence_.target());
-    return Eigen::VectorXd(scale.cwiseProduct(gram.completeOrthogonalDecomposition().solve(moment)));
-  };
-  const auto square_with = [&](std::size_t k, double value) {
-    groups[k] = group_columns(rows_, scene_, candidates()[terms[k].candidate], value);
-    const auto columns = stack();
-    return (evidence_.target() - columns * weights_of(columns)).squaredNorm();
-  };
-  const double stroke = std::max(scene_.stroke(), 1e-6);
-  for (int round = 0; round < (terms.size() > 1 ? 2 : 1); ++round)
-    for (std::size_t k = 0; k < terms.size(); ++k) {
-      const auto& candidate = candidates()[terms[k].candidate];
-      auto& value = terms[k].nonlinear;
-      if (candidate.at_weight) {
-        for (int i = 0; i < 2; ++i) {
-          const auto columns = stack();
-          const auto weights = weights_of(columns);
-          Eigen::Index at = 0;
-          for (std::size_t j = 0; j < k; ++j) at += static_cast<Eigen::Index>(groups[j].size());
-          if (weights[at] == 0.0 || !std::isfinite(weights[at])) break;
-          value = weights[at];
-          groups[k] = group_columns(rows_, scene_, candidate, value);
-        }
-        continue;
-      }
-      if (!candidate.nonlinear) continue;
-      // A step of the grid to either side: in 1/pitch an eighth of 1/stroke, else a factor.
-      const double factor = candidate.periodic ? 1.0 / (1.0 - std::min(0.2 * value / stroke, 0.5)) : 1.6;
-      double low = value / factor, high = value * factor;
-      constexpr double golden = 0.6180339887498949;
-      double a = high * std::pow(low / high, golden), b = low * std::pow(high / low, golden);
-      double fa = square_with(k, a), fb = square_with(k, b);
-      for (int i = 0; i < 14; ++i) {
-        if (fa < fb) {
-          high = b;
-          b = a;
-          fb = fa;
-          fa = square_with(k, a = high * std::pow(low / high, golden));
-        } else {
-          low = a;
-          a = b;
-          fa = fb;
-          fb = square_with(k, b = low * std::pow(high / low, golden));
-        }
-      }
-      value = fa < fb ? a : b;
-      square_with(k, value);
-    }
-  // Weights; and with the slope of each nonlinear parameter beside them, covariances.
-  const auto columns = stack();
-  const auto weights = weights_of(columns);
-  residual = evidence_.target() - columns * weights;
-  ColumnIndices chosen;
-  std::vector<Eigen::Index> first;
-  Eigen::VectorXd all(0);
-  Eigen::Index at = 0;
-  for (std::size_t k = 0; k < terms.size(); ++k) {
-    const auto count = static_cast<Eigen::Index>(groups[k].size());
-    auto own = groups[k];
-    terms[k].weights = weights.segment(at, count);
-    const auto& candidate = candidates()[terms[k].candidate];
-    const Eigen::Index before = all.size();
-    if (candidate.nonlinear) {
-      const double by =
-          candidate.periodic ? 0.02 * terms[k].nonlinear * terms[k].nonlinear / stroke : 0.02 * terms[k].nonlinear;
-      Eigen::VectorXd slope = Eigen::VectorXd::Zero(rows_.rows());
-      const auto up = group_columns(rows_, scene_, candidate, terms[k].nonlinear + by);
-      const auto down = group_columns(rows_, scene_, candidate, terms[k].nonlinear - by);
-      for (std::size_t i = 0; i < up.size(); ++i)
-        slope += weights[at + static_cast<Eigen::Index>(i)] * (up[i] - down[i]) / (2.0 * by);
-      own.push_back(slope);
-    }
-    first.push_back(evidence_.add(own));
-    all.conservativeResize(before + static_cast<Eigen::Index>(own.size()));
-    all.segment(before, count) = terms[k].weights;
-    if (candidate.nonlinear) all[before + count] = 0.0;
-    for (std::size_t i = 0; i < own.size(); ++i) chosen.push_back(first.back() + static_cast<Eigen::Index>(i));
-    at += count;
-  }
-  const auto covariance = evidence_.covariance(chosen, all);
-  for (std::size_t k = 0; k < terms.size(); ++k) {
-    const auto count = terms[k].weights.size() + (candidates()[terms[k].candidate].nonlinear ? 1 : 0);
-    terms[k].covariance = covariance.block(first[k], first[k], count, count);
-  }
-}
-
 SearchResult Search::run(const std::function<void()>& progress) {
   const auto tick = [&] {
     if (progress) progress();
@@ -451,8 +368,7 @@ SearchResult Search::run(const std::function<void()>& progress) {
     profile(set);
     exchange(set);
     while (drop(set)) profile(set);
-    correlation_ =
-        correlation_length(evidence_.residual(columns_of(set), evidence_.fit(columns_of(set)).weights), rows_.logs());
+    whiten(set);
     tick();
     if (++rounds_ > 2 * most_terms) break;
   }
@@ -461,12 +377,12 @@ SearchResult Search::run(const std::function<void()>& progress) {
     Term term{set[k]->candidate, set[k]->nonlinear, {}, {}, 0.0, judge(set, k), alternatives(set, k)};
     auto others = set;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
-    term.explains = (evidence_.fit(columns_of(others)).left - evidence_.fit(columns_of(set)).left) / evidence_.total();
+    term.explains = (plain_.fit(columns_of(others)).left - plain_.fit(columns_of(set)).left) / plain_.total();
     result.terms.push_back(std::move(term));
   }
   for (const auto& d : discarded_)
     if (!has(set, d.candidate)) result.discarded.push_back(d);
-  refine(result.terms, result.residual);
+  result.residual = refine(rows_, evidence_, scene_, result.terms);
   std::sort(result.terms.begin(), result.terms.end(),
             [](const Term& a, const Term& b) { return a.explains > b.explains; });
   result.correlation = correlation_;

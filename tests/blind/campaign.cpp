@@ -1,5 +1,7 @@
 #include "tests/blind/campaign.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -139,7 +141,10 @@ Outcome score(const PlannedCase& planned, const BlindCase& blind, const host::Ve
       }
   }
   outcome.exact_set = explained.size() == order.hidden.size() && verdict.findings.size() == order.hidden.size();
-  outcome.signature = verdict.unexplained.signature.has_value();
+  outcome.signature = verdict.unexplained.signature.value_or("");
+  for (const auto& rejected : verdict.rejected)
+    if (right(rejected.effect, order) && !explained.contains(rejected.effect))
+      outcome.why += fmt::format("{}{}: {}", outcome.why.empty() ? "" : "; ", rejected.effect, rejected.why);
   const auto square = [](double x) { return x * x; };
   outcome.gain = square(verdict.baseline.force_rms) - square(verdict.extended.force_rms);
   outcome.oracle_gain = blind.oracle_cut;

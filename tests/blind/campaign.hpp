@@ -49,7 +49,8 @@ struct Outcome {
   bool first_aliased = false;      // or one that it says cannot be told from a hidden one
   bool exact_set = false;          // all hidden ones and no other (exact aliases count)
   int wrong = 0;                   // findings that are neither
-  bool signature = false;          // of what is unexplained
+  std::string signature;           // of what is unexplained; empty: none
+  std::string why;                 // what the diagnosis says of a hidden one that it did not name
   std::vector<ParameterScore> parameters;
   double gain = 0.0, oracle_gain = 0.0;  // N^2, cut of the residual force's mean square, held out
   double judge_seconds = 0.0;

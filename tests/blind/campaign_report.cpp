@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
@@ -37,7 +38,7 @@ bool first_right(const Outcome& o) { return o.first_right; }
 bool first_in_class(const Outcome& o) { return o.first_right || o.first_aliased; }
 bool first_wrong(const Outcome& o) { return !o.named.empty() && !o.first_right && !o.first_aliased; }
 bool exact_set(const Outcome& o) { return o.exact_set; }
-bool no_name_but_signature(const Outcome& o) { return o.wrong == 0 && (o.signature || o.first_right); }
+bool no_name_but_signature(const Outcome& o) { return o.wrong == 0 && (!o.signature.empty() || o.first_right); }
 bool no_false_name(const Outcome& o) { return o.wrong == 0; }
 
 std::string rates(const std::vector<Outcome>& outcomes) {
@@ -164,6 +165,21 @@ std::string gains(const std::vector<Outcome>& outcomes) {
   return text;
 }
 
+// The cases whose first name is not right, or that have a name too many: what was hidden, named, left, and why.
+std::string misses(const std::vector<Outcome>& outcomes) {
+  std::string text;
+  for (const auto& each : outcomes) {
+    const bool inside = each.kind->effects > 0, right = inside ? each.exact_set : each.wrong == 0;
+    if (!each.error.empty() || (right && (!each.kind->outside || !each.signature.empty()))) continue;
+    text += fmt::format("  {} {}: hidden {}; named {}; left: {}{}\n", each.kind->name, each.order.seed,
+                        each.order.hidden.empty() ? "nothing" : fmt::format("{}", fmt::join(each.order.hidden, " ")),
+                        each.named.empty() ? "nothing" : fmt::format("{}", fmt::join(each.named, " ")),
+                        each.signature.empty() ? "nothing" : each.signature,
+                        each.why.empty() ? "" : fmt::format("; {}", each.why));
+  }
+  return text.empty() ? "" : "\nCases that are not right\n" + text;
+}
+
 }  // namespace
 
 std::string report(const std::vector<Outcome>& outcomes) {
@@ -173,6 +189,7 @@ std::string report(const std::vector<Outcome>& outcomes) {
   text += matrix(outcomes, {"null", "one10", "outside10"}, "Share 10 %");
   text += matrix(outcomes, {"one5", "one2"}, "Share 5 % and 2 %");
   text += parameters(outcomes);
+  text += misses(outcomes);
   std::vector<double> seconds;
   for (const auto& each : outcomes) {
     seconds.push_back(each.judge_seconds);

@@ -1,9 +1,9 @@
-// Lost motion between motor and measured position: the motor goes through the gap while the measured position stands.
-// Its position is x + width/2 u, u the side of the gap that bears, from -1 to 1 in the time in which the measured
-// position turns round. The column is what the file's own forces are for that motion less those for the measured one.
+// Lost motion between motor and measured position. While the gap is crossed the measured position stands and the motor
+// goes on as the set-points have it: what the drive cannot see it does not correct. So the motor is ahead of the
+// measured position by what a play of this width leaves of the motion that the set-points make. The column is what the
+// file's own forces are for the motor's motion less those for the measured one.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "host/diagnose/candidate.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
@@ -11,48 +11,35 @@
 namespace stiction::host::effects {
 namespace {
 
-constexpr double longest_crossing = 0.1;  // s; a longer standstill lets the crossing happen at its end
-
-// -1 .. 1 along the motion, through the position's own filter.
-std::vector<double> bearing_side(const Scene& scene, const Motion& motion) {
-  const double still = 1e-3 * scene.highest_speed;
-  std::vector<double> side(motion.v.size(), 0.0);
-  double now = 0.0;
-  std::size_t last = 0;  // with a speed in direction `now`
-  for (std::size_t i = 0; i < side.size(); ++i) {
-    side[i] = now;
-    if (std::abs(motion.v[i]) <= still) continue;
-    const double direction = std::copysign(1.0, motion.v[i]);
-    if (now != 0.0 && direction != now) {
-      const auto longest = static_cast<std::size_t>(longest_crossing / motion.period);
-      const std::size_t from = std::max(last, i > longest ? i - longest : 0);
-      for (std::size_t k = from; k < i; ++k)
-        side[k] =
-            -direction * std::cos(std::numbers::pi * static_cast<double>(k - from) / static_cast<double>(i - from));
-    } else if (now == 0.0) {
-      std::fill(side.begin(), side.begin() + static_cast<std::ptrdiff_t>(i), direction);
-    }
-    side[i] = now = direction;
-    last = i;
+// Motor ahead of the measured position (m), through the position's own filter.
+std::vector<double> ahead(const Scene& scene, const Motion& motion, double width) {
+  std::vector<double> way(motion.x.size());
+  double follower = motion.x.front();
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    follower = std::clamp(follower, motion.x[i] - 0.5 * width, motion.x[i] + 0.5 * width);
+    way[i] = motion.x[i] - follower;
   }
   const auto lowpass = butterworth(4, 2.0 * std::min(scene.signals.cutoff, 0.2 / motion.period) * motion.period);
-  return filter_both_ways(lowpass, side, default_padding(lowpass));
+  return filter_both_ways(lowpass, way, default_padding(lowpass));
 }
 
 std::vector<double> grid(const Scene&) { return {1e-6, 4e-6, 16e-6, 64e-6}; }
 
 Columns columns(const Scene& scene, const Motion& motion, double width) {
   auto motor = motion;
-  const auto side = bearing_side(scene, motion);
-  for (std::size_t i = 0; i < side.size(); ++i) motor.x[i] += 0.5 * width * side[i];
+  const auto way = ahead(scene, motion, std::abs(width));
+  for (std::size_t i = 0; i < way.size(); ++i) motor.x[i] += way[i];
   motor.v = central_difference(motor.x, motion.period, scene.signals.difference_points);
   motor.a = central_difference(motor.v, motion.period, scene.signals.difference_points);
   auto column = force_along(scene.axis, motor);
   const auto base = force_along(scene.axis, motion);
-  for (std::size_t i = 0; i < column.size(); ++i) column[i] = (column[i] - base[i]) / width;
+  for (std::size_t i = 0; i < column.size(); ++i) column[i] = (column[i] - base[i]) / std::abs(width);
   return {column};
 }
-bool possible(const Scene&, double, const Eigen::VectorXd& w) { return w[0] > 0.0; }
+// A grid of fours: a width beyond the next value is described by that one.
+bool possible(const Scene&, double width, const Eigen::VectorXd& w) {
+  return w[0] > 0.25 * width && w[0] < 4.0 * width;
+}
 void describe(const Scene&, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
   add_key(finding, "width", "_m", {w[0]}, {std::sqrt(c(0, 0))});
 }

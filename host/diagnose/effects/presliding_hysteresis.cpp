@@ -1,12 +1,12 @@
-// Spring-like displacement before sliding: the contact's level, driven by the position, with another length than the
-// file's. Of a contact s' = (v - |v| s) / length that starts unloaded, 90 % of the level are reached after ln(10)
-// lengths.
+// Spring-like displacement before sliding: the file's contact, drawn out or shortened to another distance to 90 % of
+// its level; for a file without one, a contact in place of sgn(v). The scanned value is how much longer the distance
+// is: with the level held, the weight at the true one is that length itself.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "host/diagnose/candidate.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
-#include "host/identify/contact.hpp"
 
 namespace stiction::host::effects {
 namespace {
@@ -14,24 +14,32 @@ namespace {
 // Seven large reversals do not identify a hysteresis: sgn(v) and a contact then fit one another.
 constexpr int least_reversals = 10;
 
+double distance_with(const Scene& scene, double longer) {
+  const double file = contact_distance_of(scene.axis);
+  return std::max(file + longer, std::max(0.02 * file, 1e-8));
+}
+
 std::vector<double> grid(const Scene& scene) {
   if (!coulomb_of(scene.axis) || scene.reversals < least_reversals) return {};
-  return geometric(1e-6, 3e-3, 20);
+  std::vector<double> longer = geometric(1e-6, 3e-3, 14);
+  for (const double share : {-0.25, -0.5, -0.75})
+    if (const double file = contact_distance_of(scene.axis); file > 0.0) longer.push_back(share * file);
+  return longer;
 }
-Columns columns(const Scene& scene, const Motion& motion, double distance) {
-  auto column = contact_of(motion, {std::numbers::ln10 / distance, 1.0, 1e-3}).level;
-  const auto file = contact_level(scene.axis, motion);
-  for (std::size_t i = 0; i < column.size(); ++i) column[i] -= file[i];
-  return {column};
+Columns columns(const Scene& scene, const Motion& motion, double longer) {
+  return {force_change(scene.axis, with_contact_distance(scene.axis, distance_with(scene, longer)), motion, longer)};
 }
-// The whole Coulomb level presliding, or a good part of it.
-bool possible(const Scene& scene, double, const Eigen::VectorXd& w) {
-  return w[0] > 0.1 * *coulomb_of(scene.axis) && w[0] < 2.0 * *coulomb_of(scene.axis);
+// The column holds near the distance for which it was made.
+bool possible(const Scene&, double longer, const Eigen::VectorXd& w) {
+  return w[0] / longer > 0.4 && w[0] / longer < 2.5;
 }
-void describe(const Scene& scene, double distance, const Eigen::VectorXd&, const Eigen::MatrixXd& c, Finding& finding) {
-  const double error = std::sqrt(c(1, 1));
-  const double stiffness = *coulomb_of(scene.axis) * std::numbers::ln10 / distance;
-  add_key(finding, "stiffness", "_N_per_m", {stiffness}, {stiffness * error / distance});
+void describe(const Scene& scene, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
+  const double distance = distance_with(scene, w[0]), error = std::sqrt(c(0, 0));
+  // Of the same shape as the file's curve; without one, exponential.
+  const auto file = contact_stiffness_of(scene.axis);
+  const double sharpness =
+      file ? *file * contact_distance_of(scene.axis) : *coulomb_of(scene.axis) * std::numbers::ln10;
+  add_key(finding, "stiffness", "_N_per_m", {sharpness / distance}, {sharpness * error / (distance * distance)});
   add_key(finding, "distance", "_m", {distance}, {error});
 }
 
@@ -42,6 +50,6 @@ const Candidate presliding_hysteresis{.name = "presliding_hysteresis",
                                       .columns = columns,
                                       .possible = possible,
                                       .describe = describe,
-                                      .nonlinear = true};
+                                      .at_weight = true};
 
 }  // namespace stiction::host::effects

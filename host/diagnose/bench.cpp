@@ -1,0 +1,64 @@
+#include "host/diagnose/bench.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/identify/identification.hpp"
+#include "host/simulate/replay.hpp"
+#include "stiction/number/fixed_signals.hpp"
+
+namespace stiction::host {
+namespace {
+
+// Of the stroke: a simulated position that is further away, rms, is another motion.
+constexpr double another_way = 0.01;
+
+bool same_way(const std::vector<double>& simulated, const std::vector<double>& measured) {
+  double mean = 0.0, square = 0.0;
+  const double n = static_cast<double>(measured.size());
+  for (std::size_t i = 0; i < measured.size(); ++i) mean += (simulated[i] - measured[i]) / n;
+  for (std::size_t i = 0; i < measured.size(); ++i) square += std::pow(simulated[i] - measured[i] - mean, 2) / n;
+  const auto [low, high] = std::minmax_element(measured.begin(), measured.end());
+  return std::sqrt(square) < another_way * (*high - *low);
+}
+
+}  // namespace
+
+Bench bench_of(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs) {
+  Bench bench{machine, {}};
+  bench.machine.axes = {machine.axes[axis]};
+  for (const auto& log : logs) {
+    const auto& channels = channels_of(log, machine.axes[axis]);
+    if (channels.x_set.empty()) continue;
+    auto own = log;
+    own.axes = {channels};
+    bench.logs.push_back(std::move(own));
+  }
+  return bench;
+}
+
+std::vector<std::vector<double>> simulated_positions(const Bench& bench) {
+  std::vector<std::vector<double>> all;
+  for (const auto& log : bench.logs)
+    all.push_back(replay<FixedSignals>(bench.machine, log, {bench.machine.axes.front().name}).axes.front().x);
+  return all;
+}
+
+std::vector<Log> without_noise(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs) {
+  auto bench = bench_of(machine, axis, logs);
+  if (bench.logs.size() != logs.size()) return {};
+  bench.machine.axes.front().encoder.noise = 0.0;
+  try {
+    auto positions = simulated_positions(bench);
+    for (std::size_t k = 0; k < positions.size(); ++k) {
+      auto& x = bench.logs[k].axes.front().x;
+      if (!same_way(positions[k], x)) return {};
+      x = std::move(positions[k]);
+    }
+  } catch (const FaultTripped&) {
+    return {};
+  }
+  return bench.logs;
+}
+
+}  // namespace stiction::host

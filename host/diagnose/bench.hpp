@@ -1,0 +1,28 @@
+// One axis of a machine alone, with the logs that have set-points for it: what replays run on.
+#pragma once
+
+#include <vector>
+
+#include "host/log/log.hpp"
+#include "sim/model/machine.hpp"
+
+namespace stiction::host {
+
+struct Bench {
+  sim::Machine machine;   // of one axis
+  std::vector<Log> logs;  // with its channels only
+};
+
+// Logs without set-points are left out.
+Bench bench_of(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs);
+
+// The simulated position (m) for each log's set-points, at the log's samples. Throws FaultTripped, LogError.
+std::vector<std::vector<double>> simulated_positions(const Bench& bench);
+
+// The same logs with the simulated position in place of the measured one: the motion without what noise and the effects
+// looked for did to it. A regressor of the measured motion carries the disturbance that it is regressed on, through the
+// control loop (Gilson, Garnier, Young, Van den Hof 2011); one of this motion does not. Empty when a log has no
+// set-points, when the machine cannot follow them, or when it goes another way than the measured one.
+std::vector<Log> without_noise(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs);
+
+}  // namespace stiction::host

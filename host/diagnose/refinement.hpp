@@ -1,0 +1,13 @@
+// The terms that a search chose, off its grids: nonlinear parameters by golden section, weights and covariances of all
+// together.
+#pragma once
+
+#include "host/diagnose/search.hpp"
+
+namespace stiction::host {
+
+// Sets nonlinear parameter, weights and covariance of each term by the whitened rows of `searched`; returns the
+// residual force that the terms leave (N, of the rows, not whitened).
+Eigen::VectorXd refine(const LogRows& rows, const Evidence& searched, const Scene& scene, std::vector<Term>& terms);
+
+}  // namespace stiction::host

@@ -1,0 +1,33 @@
+// What makes a coloured residual white: the prediction errors of an autoregressive model of it (Yule-Walker equations,
+// solved by Levinson and Durbin). Least squares on whitened rows weighs each frequency by how little noise it carries,
+// so that a push of milliseconds is not drowned by a force that wanders for seconds (Aitken 1936; Cochrane, Orcutt
+// 1949).
+#pragma once
+
+#include <Eigen/Dense>
+#include <complex>
+#include <span>
+#include <vector>
+
+namespace stiction::host {
+
+class Whitening {
+ public:
+  // Leaves everything as it is.
+  Whitening() = default;
+  // Of a residual in rows of several logs; `logs`: first row of each.
+  Whitening(const Eigen::VectorXd& residual, std::span<const std::size_t> logs);
+
+  // A column of all rows, whitened; the rows at each log's start that have too little before them are 0.
+  Eigen::VectorXd operator()(const Eigen::VectorXd& column) const;
+  // The transpose of that: (W'c)'d = c'(W d).
+  Eigen::VectorXd transposed(const Eigen::VectorXd& column) const;
+  // Square of the gain at `cycles` a row.
+  double gain_square(double cycles) const;
+
+ private:
+  std::vector<std::size_t> logs_;
+  std::vector<double> predictor_;  // of a row from those before it
+};
+
+}  // namespace stiction::host
