@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
+#include "host/diagnose/inverse_dynamics.hpp"
 #include "host/identify/identification.hpp"
 #include "host/simulate/replay.hpp"
+#include "sim/plant/effects/effects.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
 namespace stiction::host {
@@ -59,6 +62,35 @@ std::vector<Log> without_noise(const sim::Machine& machine, std::size_t axis, co
     return {};
   }
   return bench.logs;
+}
+
+LoopResponse::LoopResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
+                           SignalSettings settings)
+    : bench_(bench_of(machine, axis, logs)), settings_(settings) {
+  bench_.machine.axes.front().encoder.noise = 0.0;
+  for (std::size_t k = 0; k < bench_.logs.size(); ++k) without_.push_back(residual(k, bench_.machine));
+}
+
+std::vector<double> LoopResponse::residual(std::size_t log, const sim::Machine& machine) const {
+  const auto& file = bench_.machine.axes.front();
+  const auto simulated = replay<FixedSignals>(machine, bench_.logs[log], {file.name});
+  const auto motion = motion_of(simulated, simulated.axes.front(), file, Amperes::amplitude, settings_);
+  auto force = motion.force;
+  const auto expected = force_along(sim::plant_axis(file), motion);
+  for (std::size_t i = 0; i < force.size(); ++i) force[i] -= expected[i];
+  return force;
+}
+
+std::vector<double> LoopResponse::operator()(const Motion& motion, const sim::Effect& effect) const {
+  for (std::size_t k = 0; k < bench_.logs.size(); ++k) {
+    if (bench_.logs[k].source != motion.source || bench_.logs[k].t.front() != motion.t.front()) continue;
+    auto machine = bench_.machine;
+    machine.axes.front().effects.push_back(effect);
+    auto force = residual(k, machine);
+    for (std::size_t i = 0; i < force.size(); ++i) force[i] -= without_[k][i];
+    return force;
+  }
+  throw std::out_of_range("no log of " + motion.source);
 }
 
 }  // namespace stiction::host

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "host/identify/motion.hpp"
 #include "host/log/log.hpp"
 #include "sim/model/machine.hpp"
 
@@ -24,5 +25,24 @@ std::vector<std::vector<double>> simulated_positions(const Bench& bench);
 // control loop (Gilson, Garnier, Young, Van den Hof 2011); one of this motion does not. Empty when a log has no
 // set-points, when the machine cannot follow them, or when it goes another way than the measured one.
 std::vector<Log> without_noise(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs);
+
+// What an effect does to the residual force of a replayed log, through the control loop. Motions are known by the
+// source and the first time of the logs.
+class LoopResponse {
+ public:
+  // `logs`: with set-points, of that axis; `settings`: those of the motions.
+  LoopResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs, SignalSettings settings);
+
+  // N at the motion's rate: with the effect less without. Throws FaultTripped, sim::EffectError, std::out_of_range for
+  // a motion of another log.
+  std::vector<double> operator()(const Motion& motion, const sim::Effect& effect) const;
+
+ private:
+  std::vector<double> residual(std::size_t log, const sim::Machine& machine) const;
+
+  Bench bench_;
+  SignalSettings settings_;
+  std::vector<std::vector<double>> without_;  // of each log
+};
 
 }  // namespace stiction::host

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,6 +23,9 @@ struct Scene {
   int reversals = 0;
   double lowest_position = 0.0, highest_position = 0.0;
   std::vector<double> pitches;  // m, with peaks in the residual's spectrum over position; found as the search goes
+  // The residual force (N, at the motion's rate) that a motion's set-points leave in simulation where the machine has
+  // the effect, less that where it has not: what the effect does through the control loop. Empty: no set-points.
+  std::function<std::vector<double>(const Motion&, const sim::Effect&)> response;
   double stroke() const { return highest_position - lowest_position; }
 };
 

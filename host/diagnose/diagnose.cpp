@@ -58,7 +58,10 @@ Eigen::VectorXd expected_force(const LogRows& rows, const sim::Axis& axis) {
 }
 
 Scene scene_of(const sim::Axis& axis, const LogRows& rows, const SignalSettings& settings) {
-  Scene scene{axis, settings, 0.0, excitation_of(rows).reversals, 0.0, 0.0, {}};
+  Scene scene;
+  scene.axis = axis;
+  scene.signals = settings;
+  scene.reversals = excitation_of(rows).reversals;
   scene.lowest_position = scene.highest_position = rows.motions().front().x.front();
   for (const auto& motion : rows.motions())
     for (std::size_t i = 0; i < motion.x.size(); ++i) {
@@ -181,6 +184,11 @@ Verdict diagnose(const DiagnoseInput& input) {
         "from the measured motion, which carries the disturbances through the control loop. Log x_set.");
   const auto regressors = held_motion.empty() ? rows : rows_of(motion, axis, settings);
   const auto held_regressors = held_motion.empty() ? held_rows : rows_of(held_motion, axis, settings);
+  if (!held_motion.empty()) {
+    auto all = logs;
+    all.insert(all.end(), held_out.begin(), held_out.end());
+    scene.response = LoopResponse(input.machine, input.axis, all, settings);
+  }
   auto found = search_causes(regressors, target, scene, input.progress);
   const auto found_before = found.terms.size();
   const auto figures = keep_what_holds(held_regressors, held_target, scene, found, verdict, input.seed);
