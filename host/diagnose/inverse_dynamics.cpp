@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
+#include "host/identify/filter.hpp"
 #include "sim/plant/effects/acting_effects.hpp"
 
 namespace stiction::host {
@@ -85,7 +87,31 @@ sim::FrictionParameters& in_use(sim::Axis& axis) { return axis.friction.models.a
 
 double sum_of(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
+// What bending the mode takes of the motor's force, see ModeColumns.
+void add_mode(const sim::StructuralResonance::Parameters& mode, const sim::Axis& axis, const Motion& motion,
+              std::vector<double>& force) {
+  const auto columns = mode_columns(axis.mass, motion, force);
+  const double w = 2.0 * std::numbers::pi * mode.frequency, softness = 1.0 / (w * w);
+  for (std::size_t i = 0; i < force.size(); ++i)
+    force[i] += softness * (columns.inertia[i] + columns.load[i] / mode.mass_ratio +
+                            2.0 * mode.damping_ratio / w * columns.damping[i]);
+}
+
 }  // namespace
+
+ModeColumns mode_columns(double mass, const Motion& motion, const std::vector<double>& force) {
+  constexpr int points = 7;
+  const auto rate = [&](const std::vector<double>& values) {
+    return central_difference(values, motion.period, points);
+  };
+  auto load = force;
+  for (std::size_t i = 0; i < load.size(); ++i) load[i] -= mass * motion.a[i];
+  ModeColumns columns{rate(rate(motion.a)), rate(rate(load)), {}};
+  for (double& v : columns.inertia) v *= mass;
+  columns.damping = rate(columns.inertia);
+  for (double& v : columns.damping) v = -v;
+  return columns;
+}
 
 std::vector<double> friction_along(const sim::Axis& axis, const Motion& motion) {
   return std::visit(Along{motion, axis.mass}, in_use(axis));
@@ -95,12 +121,15 @@ std::vector<double> force_along(const sim::Axis& axis, const Motion& motion) {
   auto force = friction_along(axis, motion);
   for (std::size_t i = 0; i < force.size(); ++i) force[i] += axis.mass * motion.a[i];
   // What the machine file says of forces on the carriage is known already: the motor need not hold it.
-  sim::ActingEffects effects(axis, {axis.mass, motion.period}, motion.x.front());
+  sim::ActingEffects effects(axis, motion.period, motion.x.front());
   if (!effects.any()) return force;
   for (std::size_t i = 0; i < force.size(); ++i) {
+    if (!motion.other_a.empty()) effects.set_other_acceleration(motion.other_a[i]);
     const auto on_carriage = effects.advance(motion.x[i], motion.v[i]);
     force[i] -= on_carriage.applied + on_carriage.friction;
   }
+  for (const auto& mode : sim::effects_of<sim::StructuralResonance>(axis)) add_mode(mode, axis, motion, force);
+  for (double& f : force) f = effects.linear_force(f);
   return force;
 }
 
