@@ -14,20 +14,24 @@ namespace {
 
 constexpr double ignored = 0.25;  // s at a log's start, in which contact and loop come from a state that is not known
 
-// Only the axis' channels, of a machine of that axis alone.
+// The axis' channels, of a machine of that axis alone; behind them those of the other axis where it acts on this one.
 struct Bench {
   sim::Machine machine;
   std::vector<Log> logs;
 };
 
-Bench bench_of(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs) {
+Bench bench_of(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs, bool coupled) {
   Bench bench{machine, {}};
   bench.machine.axes = {machine.axes[axis]};
+  coupled = coupled && machine.axes.size() == 2;
+  if (coupled) bench.machine.axes.push_back(machine.axes[1 - axis]);
   for (const auto& log : logs) {
     const auto& channels = channels_of(log, machine.axes[axis]);
     if (channels.x_set.empty()) continue;
     auto own = log;
     own.axes = {channels};
+    if (coupled && !channels_of(log, machine.axes[1 - axis]).x_set.empty())
+      own.axes.push_back(channels_of(log, machine.axes[1 - axis]));
     bench.logs.push_back(std::move(own));
   }
   return bench;
@@ -73,7 +77,12 @@ sim::Machine extended_machine(sim::Machine machine, const std::vector<Finding>& 
 
 void judge_in_closed_loop(Verdict& verdict, const sim::Machine& machine, std::size_t axis,
                           const std::vector<Log>& held_out) {
-  auto bench = bench_of(machine, axis, held_out);
+  const auto is_coupling = [](const sim::Effect& effect) { return effect.name == "cross_axis_coupling"; };
+  const auto& known = machine.axes[axis].effects;
+  const bool coupled = std::any_of(known.begin(), known.end(), is_coupling) ||
+                       std::any_of(verdict.findings.begin(), verdict.findings.end(),
+                                   [&](const Finding& finding) { return is_coupling(finding.effect); });
+  auto bench = bench_of(machine, axis, held_out, coupled);
   if (bench.logs.empty()) return;
   std::vector<std::vector<double>> measured;
   for (const auto& log : bench.logs) measured.push_back(log.axes.front().x);
