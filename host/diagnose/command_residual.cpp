@@ -51,12 +51,18 @@ class Commands {
     for (const auto& log : records_.logs) all.push_back(replay_command<S>(timing_, axis, log, channels_of(log, axis_)));
     return rows_of(all);
   }
-  // What the command changes by with a parameter, per its unit.
-  Eigen::VectorXd slope(const sim::Axis& axis, const CommandParameter& parameter) const {
-    const double step = parameter.step(axis, timing_);
-    auto changed = axis;
-    parameter.set(changed, *parameter.value(axis) + step);
-    return (replayed<sim::DoubleSignals>(changed) - replayed<sim::DoubleSignals>(axis)) / step;
+  // What the command changes by with each parameter, per its unit. In doubles: the drive's rounding has no slope.
+  std::vector<Eigen::VectorXd> slopes(const sim::Axis& axis, const Places& places) const {
+    std::vector<Eigen::VectorXd> all;
+    const auto base = replayed<sim::DoubleSignals>(axis);
+    for (const auto place : places) {
+      const auto& parameter = command_parameters()[place];
+      const double step = parameter.step(axis, timing_);
+      auto changed = axis;
+      parameter.set(changed, *parameter.value(axis) + step);
+      all.push_back((replayed<sim::DoubleSignals>(changed) - base) / step);
+    }
+    return all;
   }
 
  private:
@@ -197,9 +203,7 @@ class Selection {
 };
 
 Selection select(const Commands& commands, const sim::Axis& axis, const Eigen::VectorXd& target, const Places& places) {
-  std::vector<Eigen::VectorXd> columns;
-  for (const auto place : places) columns.push_back(commands.slope(axis, command_parameters()[place]));
-  return {target, commands.rows(), places, std::move(columns)};
+  return {target, commands.rows(), places, commands.slopes(axis, places)};
 }
 
 // The chosen parameters' values by replays around them.
@@ -207,6 +211,7 @@ std::vector<CommandTerm> refined(const Commands& commands, const sim::Axis& axis
                                  const ColumnIndices& chosen) {
   std::vector<CommandTerm> terms;
   Places places;
+  if (chosen.empty()) return terms;
   const auto fit = selection.evidence().fit(chosen);
   for (std::size_t k = 0; k < chosen.size(); ++k) {
     places.push_back(selection.place(chosen[k]));
@@ -287,14 +292,9 @@ void judge_held_out(Verdict& verdict, std::vector<Finding>& findings, const Comm
   }
 }
 
-}  // namespace
-
-void judge_command(Verdict& verdict, const DiagnoseInput& input, const CommandRecords& training,
-                   const CommandRecords& held_out, const RecordDelay& delay) {
+void find_and_judge(Verdict& verdict, const DiagnoseInput& input, const CommandRecords& training,
+                    const CommandRecords& held_out, const RecordDelay& delay, const sim::Axis& axis) {
   const auto& file = input.machine.axes[input.axis];
-  auto axis = sim::drive_axis(file);
-  std::erase_if(axis.effects, [](const sim::Effect& effect) { return effect.name == "controller_gain_mismatch"; });
-  if (!usable(training, axis) || !usable(held_out, axis)) return;
   const auto& timing = input.machine.timing;
   const Commands commands(training, timing, axis, delay.found), held(held_out, timing, axis, delay.found);
   const Eigen::VectorXd target = commands.logged() - commands.replayed<FixedSignals>(axis);
@@ -305,7 +305,8 @@ void judge_command(Verdict& verdict, const DiagnoseInput& input, const CommandRe
   auto selection = select(commands, axis, target, places);
   const auto chosen = selection.run();
   auto terms = refined(commands, axis, selection, chosen);
-  const auto left = commands.logged() - commands.replayed<FixedSignals>(with_terms(axis, terms));
+  const Eigen::VectorXd left =
+      terms.empty() ? target : commands.logged() - commands.replayed<FixedSignals>(with_terms(axis, terms));
   if (rms(left) > foreign * rms(commands.logged())) {
     verdict.notes.push_back(fmt::format(
         "The recorded command is not what this controller gives for the recorded set-points and positions, whatever "
@@ -352,6 +353,20 @@ void judge_command(Verdict& verdict, const DiagnoseInput& input, const CommandRe
   }
   std::stable_sort(verdict.findings.begin(), verdict.findings.end(),
                    [](const Finding& a, const Finding& b) { return a.explains > b.explains; });
+}
+
+}  // namespace
+
+void judge_command(Verdict& verdict, const DiagnoseInput& input, const CommandRecords& training,
+                   const CommandRecords& held_out, const RecordDelay& delay) {
+  auto axis = sim::drive_axis(input.machine.axes[input.axis]);
+  std::erase_if(axis.effects, [](const sim::Effect& effect) { return effect.name == "controller_gain_mismatch"; });
+  if (!usable(training, axis) || !usable(held_out, axis)) return;
+  try {
+    find_and_judge(verdict, input, training, held_out, delay, axis);
+  } catch (const LogError& error) {
+    verdict.notes.push_back(fmt::format("The drive's gains were not judged: {}.", error.what()));
+  }
 }
 
 }  // namespace stiction::host

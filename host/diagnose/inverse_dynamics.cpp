@@ -87,28 +87,26 @@ sim::FrictionParameters& in_use(sim::Axis& axis) { return axis.friction.models.a
 
 double sum_of(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
-// What bending the mode takes of the motor's force, see ModeColumns.
 void add_mode(const sim::StructuralResonance::Parameters& mode, const sim::Axis& axis, const Motion& motion,
               std::vector<double>& force) {
-  const auto columns = mode_columns(axis.mass, motion, force);
-  const double w = 2.0 * std::numbers::pi * mode.frequency, softness = 1.0 / (w * w);
+  const auto columns = mode_columns(axis.mass, mode.mass_ratio, motion, force);
+  const double w = 2.0 * std::numbers::pi * mode.frequency;
   for (std::size_t i = 0; i < force.size(); ++i)
-    force[i] += softness * (columns.inertia[i] + columns.load[i] / mode.mass_ratio +
-                            2.0 * mode.damping_ratio / w * columns.damping[i]);
+    force[i] += (columns.bend[i] + 2.0 * mode.damping_ratio / w * columns.damping[i]) / (w * w);
 }
 
 }  // namespace
 
-ModeColumns mode_columns(double mass, const Motion& motion, const std::vector<double>& force) {
+ModeColumns mode_columns(double mass, double ratio, const Motion& motion, const std::vector<double>& force) {
   constexpr int points = 7;
   const auto rate = [&](const std::vector<double>& values) {
     return central_difference(values, motion.period, points);
   };
-  auto load = force;
-  for (std::size_t i = 0; i < load.size(); ++i) load[i] -= mass * motion.a[i];
-  ModeColumns columns{rate(rate(motion.a)), rate(rate(load)), {}};
-  for (double& v : columns.inertia) v *= mass;
-  columns.damping = rate(columns.inertia);
+  // With its inertia the load's force is M a + load/r, for the load's share of the mass.
+  auto bent = force;
+  for (std::size_t i = 0; i < bent.size(); ++i) bent[i] = mass * motion.a[i] + (force[i] - mass * motion.a[i]) / ratio;
+  ModeColumns columns{rate(rate(bent)), {}};
+  columns.damping = rate(columns.bend);
   for (double& v : columns.damping) v = -v;
   return columns;
 }

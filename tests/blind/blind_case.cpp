@@ -107,17 +107,13 @@ class Runs {
     for (const auto& log : logs) all.push_back(residual_force(log, file_, machine_.axes.front().motor.force_constant));
     return all;
   }
-  std::vector<Signal> command_residuals(const std::vector<host::Log>& logs) const {
-    std::vector<Signal> all;
-    for (const auto& log : logs) all.push_back(command_residual(log, machine_.axes.front()));
-    return all;
-  }
-  // Residual force, or command residual, that `mechanics` with `noise` makes beside the file without any.
-  std::vector<Signal> effect(const Mechanics& mechanics, bool in_command, const NoiseLevels& noise = {}) {
+  // Residual force that `mechanics` alone makes, without noise; or what it leaves in the command residual.
+  std::vector<Signal> effect(const Mechanics& mechanics, bool in_command) {
     if (plain_.empty()) plain_ = logs(file_, {});
-    const auto with = logs(mechanics, noise);
-    return in_command ? difference(command_residuals(with), command_residuals(plain_))
-                      : difference(residuals(with), residuals(plain_));
+    if (!in_command) return difference(residuals(logs(mechanics, {})), residuals(plain_));
+    std::vector<Signal> all;
+    for (const auto& log : plain_) all.push_back(command_effect(log, machine_.axes.front(), mechanics));
+    return all;
   }
   const Mechanics& file() const { return file_; }
 
@@ -129,6 +125,12 @@ class Runs {
   std::uint64_t seed_;
   std::vector<host::Log> plain_;
 };
+
+// A^2 below 100 Hz in the recorded current's amplitude: the sensors' noise, white at the record's rate. The rest of a
+// command residual is what a replay between samples cannot know, and as small as that replay is good.
+double sensor_noise(const NoiseLevels& noise, double period) {
+  return 2.0 / 3.0 * noise.phase_current * noise.phase_current * std::min(1.0, 200.0 * period);
+}
 
 // The strength with the wanted mean square; most residual forces grow like it or like its root.
 sim::Effect scaled(const Hideable& row, const AtStrength& at, double wanted, Runs& runs) {
@@ -168,7 +170,7 @@ BlindCase make_case(const sim::Machine& shipped, const CaseOrder& order) {
   std::vector<std::vector<Signal>> regressors, held_regressors;
   for (const auto& name : order.hidden) {
     const auto& row = hideable(name);
-    const double power = row.in_command ? mean_square(runs.effect(runs.file(), true, noise)) : noise_power;
+    const double power = row.in_command ? sensor_noise(noise, period) : noise_power;
     blind.truth.push_back(scaled(row, row.draw(random, runs.file()), power * order.share / (1.0 - order.share), runs));
     Mechanics alone = runs.file();
     row.apply(blind.truth.back(), alone);

@@ -9,6 +9,7 @@ namespace {
 
 constexpr const char* gains = "controller_gain_mismatch";
 constexpr double relative_step = 0.01;
+constexpr double longest_delay = 0.3e-3;  // s; longer ones no current loop of this kind survives
 
 using A = sim::Axis;
 using Value = std::optional<double>;
@@ -23,7 +24,7 @@ void set_loop_delay(sim::Axis& axis, double delay) {
   const auto known =
       std::find_if(axis.effects.begin(), axis.effects.end(), [](const auto& e) { return e.name == "time_skew"; });
   auto& effect = known == axis.effects.end() ? axis.effects.emplace_back(sim::Effect{"time_skew", {}}) : *known;
-  effect.values["loop_delay"] = {std::clamp(delay, 0.0, 0.1)};
+  effect.values["loop_delay"] = {std::clamp(delay, 0.0, longest_delay)};
 }
 template <Value (*value)(const A&)>
 double part(const A& axis, const sim::Timing&) {

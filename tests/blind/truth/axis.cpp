@@ -231,7 +231,7 @@ host::Log record(const sim::Machine& machine, const Mechanics& mechanics, const 
                                      GaussMarkov(noise.phase_current, 3000.0, tick, seed * 8 + 5),
                                      GaussMarkov(noise.phase_current, 3000.0, tick, seed * 8 + 6)};
   Memory current;
-  Inverter inverter(axis.inverter.dead_time + mechanics.loop_delay, tick);
+  Inverter inverter(axis.inverter.dead_time, tick);
 
   host::Log log;
   log.source = trajectory.name() + ".csv";

@@ -33,7 +33,6 @@ struct Mechanics {
   double saturation_current = 0.0;                                   // A; 0: none
   double mode_frequency = 0.0, mode_damping = 0.0, mode_load = 0.5;  // Hz (0: none), ratio, share of the mass
   double other_mass = 0.0;                                           // kg: the other axis' acceleration as force
-  double loop_delay = 0.0;                                           // s, beyond the dead time
   // Of the file: N/A, 1/s, A s/m, s.
   double force_constant = 0.0;
   double file_position_gain = 0.0, file_velocity_gain = 0.0, file_velocity_integral_time = 0.0;

@@ -95,16 +95,14 @@ AtStrength draw_saturation(Random&, const Mechanics&) {
   return [](double x) { return sim::Effect{"force_saturation", {{"current", {100.0 / std::sqrt(x)}}}}; };
 }
 AtStrength draw_mode(Random& random, const Mechanics&) {
-  return [d = uniform(random, 0.02, 0.08), r = uniform(random, 0.2, 0.8)](double x) {
+  // Well enough damped that the velocity loop of this axis does not swing it up.
+  return [d = uniform(random, 0.1, 0.3), r = uniform(random, 0.3, 0.8)](double x) {
     return sim::Effect{"structural_resonance",
-                       {{"frequency", {150.0 / std::sqrt(x)}}, {"damping_ratio", {d}}, {"mass_ratio", {r}}}};
+                       {{"frequency", {400.0 / std::sqrt(x)}}, {"damping_ratio", {d}}, {"mass_ratio", {r}}}};
   };
 }
 AtStrength draw_coupling(Random& random, const Mechanics&) {
   return [s = either_sign(random)](double x) { return sim::Effect{"cross_axis_coupling", {{"mass", {3.0 * s * x}}}}; };
-}
-AtStrength draw_loop_delay(Random&, const Mechanics&) {
-  return [](double x) { return sim::Effect{"time_skew", {{"loop_delay", {3e-5 * x}}}}; };
 }
 AtStrength draw_gain(Random& random, const Mechanics& file) {
   const std::array<std::pair<const char*, double>, 3> gains{
@@ -159,7 +157,7 @@ void scale_contact(Mechanics& m, double ratio) {
 using E = const sim::Effect&;
 using M = Mechanics&;
 
-constexpr std::array<Hideable, 23> table{{
+constexpr std::array<Hideable, 22> table{{
     {"mass_mismatch", true, "", draw_mass, [](E e, M m) { m.mass = value(e, "mass"); }},
     {"coulomb_mismatch", true, "", draw_coulomb,
      [](E e, M m) { scale_contact(m, value(e, "coulomb") / coulomb_of(m)); }},
@@ -191,7 +189,6 @@ constexpr std::array<Hideable, 23> table{{
        m.mode_damping = value(e, "damping_ratio"), m.mode_load = value(e, "mass_ratio");
      }},
     {"cross_axis_coupling", true, "", draw_coupling, [](E e, M m) { m.other_mass = value(e, "mass"); }},
-    {"loop_delay", true, "time_skew", draw_loop_delay, [](E e, M m) { m.loop_delay = value(e, "loop_delay"); }, true},
     {"controller_gain_mismatch", true, "", draw_gain, change_gains, true},
     {"push_at_one_place", false, "", draw_bump,
      [](E e, M m) {
