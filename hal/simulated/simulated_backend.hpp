@@ -2,6 +2,7 @@
 // that knows both the control's border and the simulation.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -22,6 +23,7 @@ class SimulatedBackend {
       : period_ns_(std::llround(machine.timing.fast_period * 1e9)) {
     for (std::size_t i = 0; i < machine.axes.size(); ++i)
       plants_.emplace_back(machine.timing, machine.axes[i], positions[i], seed + i);
+    coupled_ = plants_.size() == 2 && (plants_[0].coupled() || plants_[1].coupled());
   }
 
   std::size_t axis_count() const { return plants_.size(); }
@@ -30,7 +32,10 @@ class SimulatedBackend {
 
   std::int64_t wait_for_tick() {
     if (started_) {
-      for (auto& plant : plants_) plant.advance_tick();
+      if (coupled_) [[unlikely]]
+        advance_coupled();
+      else
+        for (auto& plant : plants_) plant.advance_tick();
       now_ns_ += period_ns_;
     }
     started_ = true;
@@ -52,6 +57,15 @@ class SimulatedBackend {
   }
 
  private:
+  // Each of the two axes feels the other's mean acceleration of this tick in the next one.
+  void advance_coupled() {
+    const std::array before{plants_[0].velocity(), plants_[1].velocity()};
+    const double per_tick = 1e9 / static_cast<double>(period_ns_);
+    for (auto& plant : plants_) plant.advance_tick();
+    for (std::size_t k = 0; k < 2; ++k)
+      plants_[1 - k].set_other_acceleration((plants_[k].velocity() - before[k]) * per_tick);
+  }
+
   // What cannot be represented (a plant that ran away to infinity or NaN) reaches the control as a position that is
   // not valid or as a fault input, never as a number.
   void sample(sim::AxisPlant& plant, Feedback<S>& f) const {
@@ -65,6 +79,7 @@ class SimulatedBackend {
   std::int64_t period_ns_;
   std::int64_t now_ns_ = 0;
   bool started_ = false;
+  bool coupled_ = false;  // whether an axis feels the other's acceleration
   std::vector<sim::AxisPlant> plants_;
 };
 

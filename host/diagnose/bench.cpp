@@ -27,14 +27,18 @@ bool same_way(const std::vector<double>& simulated, const std::vector<double>& m
 
 }  // namespace
 
-Bench bench_of(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs) {
+Bench bench_of(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs, bool coupled) {
   Bench bench{machine, {}};
   bench.machine.axes = {machine.axes[axis]};
+  coupled = coupled && machine.axes.size() == 2;
+  if (coupled) bench.machine.axes.push_back(machine.axes[1 - axis]);
   for (const auto& log : logs) {
     const auto& channels = channels_of(log, machine.axes[axis]);
     if (channels.x_set.empty()) continue;
     auto own = log;
     own.axes = {channels};
+    if (coupled && !channels_of(log, machine.axes[1 - axis]).x_set.empty())
+      own.axes.push_back(channels_of(log, machine.axes[1 - axis]));
     bench.logs.push_back(std::move(own));
   }
   return bench;
@@ -53,15 +57,16 @@ std::vector<Log> without_noise(const sim::Machine& machine, std::size_t axis, co
   bench.machine.axes.front().encoder.noise = 0.0;
   try {
     auto positions = simulated_positions(bench);
+    auto motion = logs;
     for (std::size_t k = 0; k < positions.size(); ++k) {
-      auto& x = bench.logs[k].axes.front().x;
-      if (!same_way(positions[k], x)) return {};
-      x = std::move(positions[k]);
+      const auto& measured = channels_of(logs[k], machine.axes[axis]);
+      if (!same_way(positions[k], measured.x)) return {};
+      motion[k].axes[static_cast<std::size_t>(&measured - logs[k].axes.data())].x = std::move(positions[k]);
     }
+    return motion;
   } catch (const FaultTripped&) {
     return {};
   }
-  return bench.logs;
 }
 
 LoopResponse::LoopResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
@@ -86,9 +91,13 @@ std::vector<double> LoopResponse::operator()(const Motion& motion, const sim::Ef
     if (bench_.logs[k].source != motion.source || bench_.logs[k].t.front() != motion.t.front()) continue;
     auto machine = bench_.machine;
     machine.axes.front().effects.push_back(effect);
-    auto force = residual(k, machine);
-    for (std::size_t i = 0; i < force.size(); ++i) force[i] -= without_[k][i];
-    return force;
+    try {
+      auto force = residual(k, machine);
+      for (std::size_t i = 0; i < force.size(); ++i) force[i] -= without_[k][i];
+      return force;
+    } catch (const FaultTripped&) {
+      return std::vector<double>(motion.t.size(), 0.0);
+    }
   }
   throw std::out_of_range("no log of " + motion.source);
 }

@@ -10,12 +10,12 @@
 namespace stiction::host {
 
 struct Bench {
-  sim::Machine machine;   // of one axis
-  std::vector<Log> logs;  // with its channels only
+  sim::Machine machine;   // of one axis, or of both where they act on each other
+  std::vector<Log> logs;  // with their channels only, the axis' first
 };
 
-// Logs without set-points are left out.
-Bench bench_of(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs);
+// Logs without set-points are left out. `coupled`: with the other axis of two, where a log has its set-points.
+Bench bench_of(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs, bool coupled = false);
 
 // The simulated position (m) for each log's set-points, at the log's samples. Throws FaultTripped, LogError.
 std::vector<std::vector<double>> simulated_positions(const Bench& bench);
@@ -33,8 +33,8 @@ class LoopResponse {
   // `logs`: with set-points, of that axis; `settings`: those of the motions.
   LoopResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs, SignalSettings settings);
 
-  // N at the motion's rate: with the effect less without. Throws FaultTripped, sim::EffectError, std::out_of_range for
-  // a motion of another log.
+  // N at the motion's rate: with the effect less without; zeros where the machine cannot follow with it. Throws
+  // sim::EffectError, std::out_of_range for a motion of another log.
   std::vector<double> operator()(const Motion& motion, const sim::Effect& effect) const;
 
  private:

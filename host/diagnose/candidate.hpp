@@ -22,7 +22,10 @@ struct Scene {
   double highest_speed = 0.0;
   int reversals = 0;
   double lowest_position = 0.0, highest_position = 0.0;
-  std::vector<double> pitches;  // m, with peaks in the residual's spectrum over position; found as the search goes
+  double highest_force = 0.0;     // N, expected
+  bool force_is_current = false;  // in every record: current (or voltage) times the file's force constant
+  bool other_axis = false;        // its motion is in every record
+  std::vector<double> pitches;    // m, with peaks in the residual's spectrum over position; found as the search goes
   // The residual force (N, at the motion's rate) that a motion's set-points leave in simulation where the machine has
   // the effect, less that where it has not: what the effect does through the control loop. Empty: no set-points.
   std::function<std::vector<double>(const Motion&, const sim::Effect&)> response;
@@ -56,7 +59,8 @@ std::span<const Candidate> candidates();
 
 namespace effects {
 extern const Candidate mass_mismatch, coulomb_mismatch, viscous_mismatch, viscous_nonlinear, stribeck,
-    friction_asymmetry, presliding_hysteresis, constant_force, position_spring, force_ripple, backlash, time_skew;
+    friction_asymmetry, presliding_hysteresis, constant_force, position_spring, force_ripple, force_constant_mismatch,
+    force_saturation, backlash, structural_resonance, time_skew, cross_axis_coupling;
 
 // Adds a key with its value and standard error under the unit's suffix ("_N_s_per_m").
 void add_key(Finding& finding, const char* key, const char* suffix, std::vector<double> values,

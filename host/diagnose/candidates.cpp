@@ -7,10 +7,22 @@ namespace stiction::host {
 
 std::span<const Candidate> candidates() {
   static const std::array table{
-      effects::mass_mismatch,         effects::coulomb_mismatch, effects::viscous_mismatch,
-      effects::viscous_nonlinear,     effects::stribeck,         effects::friction_asymmetry,
-      effects::presliding_hysteresis, effects::constant_force,   effects::position_spring,
-      effects::force_ripple,          effects::backlash,         effects::time_skew,
+      effects::mass_mismatch,
+      effects::coulomb_mismatch,
+      effects::viscous_mismatch,
+      effects::viscous_nonlinear,
+      effects::stribeck,
+      effects::friction_asymmetry,
+      effects::presliding_hysteresis,
+      effects::constant_force,
+      effects::position_spring,
+      effects::force_ripple,
+      effects::force_constant_mismatch,
+      effects::force_saturation,
+      effects::backlash,
+      effects::structural_resonance,
+      effects::time_skew,
+      effects::cross_axis_coupling,
   };
   return table;
 }

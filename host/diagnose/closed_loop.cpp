@@ -46,7 +46,12 @@ sim::Machine extended_machine(sim::Machine machine, const std::vector<Finding>& 
 
 void judge_in_closed_loop(Verdict& verdict, const sim::Machine& machine, std::size_t axis,
                           const std::vector<Log>& held_out) {
-  auto bench = bench_of(machine, axis, held_out);
+  const auto is_coupling = [](const sim::Effect& effect) { return effect.name == "cross_axis_coupling"; };
+  const auto& known = machine.axes[axis].effects;
+  const bool coupled = std::any_of(known.begin(), known.end(), is_coupling) ||
+                       std::any_of(verdict.findings.begin(), verdict.findings.end(),
+                                   [&](const Finding& finding) { return is_coupling(finding.effect); });
+  auto bench = bench_of(machine, axis, held_out, coupled);
   if (bench.logs.empty()) return;
   std::vector<std::vector<double>> measured;
   for (const auto& log : bench.logs) measured.push_back(log.axes.front().x);

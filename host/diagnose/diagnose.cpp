@@ -7,6 +7,7 @@
 
 #include "host/diagnose/bench.hpp"
 #include "host/diagnose/closed_loop.hpp"
+#include "host/diagnose/command_residual.hpp"
 #include "host/diagnose/diagnosis_charts.hpp"
 #include "host/diagnose/holdout.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
@@ -62,19 +63,29 @@ Scene scene_of(const sim::Axis& axis, const LogRows& rows, const SignalSettings&
   scene.axis = axis;
   scene.signals = settings;
   scene.reversals = excitation_of(rows).reversals;
+  scene.force_is_current = scene.other_axis = true;
   scene.lowest_position = scene.highest_position = rows.motions().front().x.front();
-  for (const auto& motion : rows.motions())
+  for (const auto& motion : rows.motions()) {
+    scene.force_is_current = scene.force_is_current && motion.force_is_current;
+    scene.other_axis = scene.other_axis && !motion.other_a.empty();
+    for (const double force : force_along(axis, motion))
+      scene.highest_force = std::max(scene.highest_force, std::abs(force));
     for (std::size_t i = 0; i < motion.x.size(); ++i) {
       scene.highest_speed = std::max(scene.highest_speed, std::abs(motion.v[i]));
       scene.lowest_position = std::min(scene.lowest_position, motion.x[i]);
       scene.highest_position = std::max(scene.highest_position, motion.x[i]);
     }
+  }
   return scene;
 }
 
+// Exact aliases: half a difference of Coulomb friction is a constant force, and a force constant scales mass, Coulomb
+// and viscous friction together.
 bool always_confused(std::string_view one, std::string_view other) {
   constexpr std::string_view constant = "constant_force", asymmetry = "friction_asymmetry";
-  return (one == constant && other == asymmetry) || (one == asymmetry && other == constant);
+  const bool scaled = other == "mass_mismatch" || other == "coulomb_mismatch" || other == "viscous_mismatch";
+  return (one == constant && other == asymmetry) || (one == asymmetry && other == constant) ||
+         (one == "force_constant_mismatch" && scaled);
 }
 
 // The pair that no motion of this axis alone separates; else of the alias table and beside it what the data show.
@@ -118,6 +129,19 @@ Finding finding_of(const Scene& scene, const Term& term, const HoldoutGain& gain
   finding.confused_with = confused_with(term);
   finding.evidence = evidence_of(term, blocks);
   return finding;
+}
+
+// What the residual force says of a current that is recorded late: by its time_skew, and in what is left.
+RecordDelay record_delay(const LogRows& rows, const Scene& scene, const SearchResult& found) {
+  RecordDelay delay;
+  for (const auto& term : found.terms)
+    if (std::string_view(candidates()[term.candidate].name) == "time_skew") delay.found = term.weights[0];
+  Evidence evidence(found.residual,
+                    blocks_of(rows.velocity, rows.logs(), static_cast<std::size_t>(rows.rows() / 60 + 1)));
+  evidence.add(group_columns(rows, scene, effects::time_skew, 1e-4));
+  delay.estimate = evidence.fit({0}).weights[0];
+  delay.deviation = std::sqrt(evidence.covariance({0}, evidence.fit({0}).weights)(0, 0));
+  return delay;
 }
 
 // Withdraws the term that does worst on held-out data, until each gains.
@@ -196,6 +220,7 @@ Verdict diagnose(const DiagnoseInput& input) {
   verdict.extended.force_rms = figures.force_extended;
   for (std::size_t k = 0; k < found.terms.size(); ++k)
     verdict.findings.push_back(finding_of(scene, found.terms[k], figures.gains[k], found.blocks));
+  judge_command(verdict, input, {logs, rows}, {held_out, held_rows}, record_delay(regressors, scene, found));
   for (const auto& d : found.discarded) verdict.rejected.push_back({candidates()[d.candidate].name, d.why});
   if (found.terms.size() == found_before)
     verdict.unexplained = signature_of(regressors, found.residual, target.squaredNorm(), found.correlation);

@@ -92,7 +92,8 @@ Eigen::VectorXd force_of_term(const LogRows& rows, const Scene& scene, const Ter
 
 double rms(const Eigen::VectorXd& v) { return std::sqrt(v.squaredNorm() / static_cast<double>(v.size())); }
 
-// 95 % interval of the ratio of two rms over blocks.
+}  // namespace
+
 std::array<double, 2> ratio_interval(const Eigen::VectorXd& after, const Eigen::VectorXd& before, const LogRows& rows,
                                      std::uint64_t seed) {
   const auto blocks = blocks_of(rows.velocity, rows.logs(), static_cast<std::size_t>(rows.rows() / 60 + 1));
@@ -115,8 +116,6 @@ std::array<double, 2> ratio_interval(const Eigen::VectorXd& after, const Eigen::
   const auto interval = interval_95(std::move(ratios));
   return {interval.low, interval.high};
 }
-
-}  // namespace
 
 HeldOutFigures evaluate_held_out(const LogRows& rows, const Eigen::VectorXd& target, const Scene& scene,
                                  std::span<const Term> terms, std::uint64_t seed) {

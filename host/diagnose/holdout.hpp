@@ -19,4 +19,8 @@ struct HeldOutFigures {
 HeldOutFigures evaluate_held_out(const LogRows& rows, const Eigen::VectorXd& target, const Scene& scene,
                                  std::span<const Term> terms, std::uint64_t seed);
 
+// 95 % interval of the ratio of two residuals' rms, from a bootstrap over blocks of rows.
+std::array<double, 2> ratio_interval(const Eigen::VectorXd& after, const Eigen::VectorXd& before, const LogRows& rows,
+                                     std::uint64_t seed);
+
 }  // namespace stiction::host

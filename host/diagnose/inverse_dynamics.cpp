@@ -5,6 +5,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "host/identify/filter.hpp"
 #include "sim/plant/effects/acting_effects.hpp"
 
 namespace stiction::host {
@@ -86,7 +87,29 @@ sim::FrictionParameters& in_use(sim::Axis& axis) { return axis.friction.models.a
 
 double sum_of(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
+void add_mode(const sim::StructuralResonance::Parameters& mode, const sim::Axis& axis, const Motion& motion,
+              std::vector<double>& force) {
+  const auto columns = mode_columns(axis.mass, mode.mass_ratio, motion, force);
+  const double w = 2.0 * std::numbers::pi * mode.frequency;
+  for (std::size_t i = 0; i < force.size(); ++i)
+    force[i] += (columns.bend[i] + 2.0 * mode.damping_ratio / w * columns.damping[i]) / (w * w);
+}
+
 }  // namespace
+
+ModeColumns mode_columns(double mass, double ratio, const Motion& motion, const std::vector<double>& force) {
+  constexpr int points = 7;
+  const auto rate = [&](const std::vector<double>& values) {
+    return central_difference(values, motion.period, points);
+  };
+  // With its inertia the load's force is M a + load/r, for the load's share of the mass.
+  auto bent = force;
+  for (std::size_t i = 0; i < bent.size(); ++i) bent[i] = mass * motion.a[i] + (force[i] - mass * motion.a[i]) / ratio;
+  ModeColumns columns{rate(rate(bent)), {}};
+  columns.damping = rate(columns.bend);
+  for (double& v : columns.damping) v = -v;
+  return columns;
+}
 
 std::vector<double> friction_along(const sim::Axis& axis, const Motion& motion) {
   return std::visit(Along{motion, axis.mass}, in_use(axis));
@@ -96,12 +119,15 @@ std::vector<double> force_along(const sim::Axis& axis, const Motion& motion) {
   auto force = friction_along(axis, motion);
   for (std::size_t i = 0; i < force.size(); ++i) force[i] += axis.mass * motion.a[i];
   // What the machine file says of forces on the carriage is known already: the motor need not hold it.
-  sim::ActingEffects effects(axis, {axis.mass, motion.period}, motion.x.front());
+  sim::ActingEffects effects(axis, motion.period, motion.x.front());
   if (!effects.any()) return force;
   for (std::size_t i = 0; i < force.size(); ++i) {
+    if (!motion.other_a.empty()) effects.set_other_acceleration(motion.other_a[i]);
     const auto on_carriage = effects.advance(motion.x[i], motion.v[i]);
     force[i] -= on_carriage.applied + on_carriage.friction;
   }
+  for (const auto& mode : sim::effects_of<sim::StructuralResonance>(axis)) add_mode(mode, axis, motion, force);
+  for (double& f : force) f = effects.linear_force(f);
   return force;
 }
 

@@ -164,6 +164,7 @@ class Search {
       }
   }
   bool exchange(Set& set) const;
+  bool merge(Set& set) const;
   bool grow(Set& set);
   bool drop(Set& set);
   Judgement judge(const Set& set, std::size_t term) const;
@@ -202,6 +203,27 @@ bool Search::exchange(Set& set) const {
       }
     }
   }
+  return false;
+}
+
+// Two terms for one other, where that scores better: a force constant is mass, Coulomb and viscous friction together.
+bool Search::merge(Set& set) const {
+  for (std::size_t i = 0; i < set.size(); ++i)
+    for (std::size_t j = i + 1; j < set.size(); ++j) {
+      auto others = set;
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(j));
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+      for (std::size_t c = 0; c < candidates().size(); ++c) {
+        if (has(set, c)) continue;
+        const auto* option = best_of(c, others);
+        if (option == nullptr) continue;
+        auto trial = others;
+        trial.push_back(option);
+        if (score(trial) > score(set) - 1.0) continue;
+        set = trial;
+        return true;
+      }
+    }
   return false;
 }
 
@@ -367,6 +389,7 @@ SearchResult Search::run(const std::function<void()>& progress) {
     scan_ripples(set);
     profile(set);
     exchange(set);
+    while (merge(set)) profile(set);
     while (drop(set)) profile(set);
     whiten(set);
     tick();

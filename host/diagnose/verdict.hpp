@@ -29,13 +29,16 @@ struct ConfusedWith {
 struct HoldoutGain {
   double force_rms_ratio = 1.0;
   std::optional<double> position_error_rms_ratio;  // none: no set-points to run in closed loop
-  std::array<double, 2> ci95{1.0, 1.0};            // of force_rms_ratio
+  std::optional<double> command_rms_ratio;         // of a finding in the command residual
+  std::array<double, 2> ci95{1.0, 1.0};            // of force_rms_ratio, or of command_rms_ratio where there is one
 };
 
 struct Finding {
   std::string axis;
   sim::Effect effect;  // as it goes into the extended machine file
   std::vector<EffectParameter> parameters;
+  // Where it shows: explains, p_value and holdout speak of the command residual, not of the residual force.
+  bool in_command = false;
   double explains = 0.0;  // share of the residual's variance that it takes away, given the other findings
   HoldoutGain holdout;
   double p_value = 1.0;
@@ -44,6 +47,11 @@ struct Finding {
   std::optional<double> part_error;  // m, what it does to the part: peak change of the position error by it
   std::vector<sim::Chart> charts;
 };
+
+// Of the residual in which it shows, on held-out data: with it over without it, rms.
+inline double gained_ratio(const Finding& finding) {
+  return finding.holdout.command_rms_ratio.value_or(finding.holdout.force_rms_ratio);
+}
 
 struct Rejected {
   std::string effect;
@@ -59,6 +67,7 @@ struct Unexplained {
 struct ResidualFigures {
   double force_rms = 0.0;                    // N
   std::optional<double> position_error_rms;  // m, measured against simulated; none without set-points
+  std::optional<double> command_rms;         // A, or V of a force source, above 1 Hz; none without set-points
 };
 
 struct Verdict {
@@ -66,6 +75,7 @@ struct Verdict {
   std::vector<std::string> logs, holdout;
   bool holdout_is_a_part = false;      // no held-out log was given: the last third of each log stands in for one
   ResidualFigures baseline, extended;  // on the held-out data
+  std::string command_unit = "A";      // of their command_rms
   std::vector<Finding> findings;       // by what each explains, the largest first
   std::vector<Rejected> rejected;
   Unexplained unexplained;

@@ -22,9 +22,10 @@ Json number_or_list(const std::vector<double>& values, bool list) {
   return list || values.size() != 1 ? Json(values) : Json(values.front());
 }
 
-Json figures(const ResidualFigures& f) {
+Json figures(const ResidualFigures& f, const std::string& command_unit) {
   Json out{{"force_rms_N", f.force_rms}};
   if (f.position_error_rms) out["position_error_rms_um"] = *f.position_error_rms * 1e6;
+  if (f.command_rms) out["command_rms_" + command_unit] = *f.command_rms;
   return out;
 }
 
@@ -37,11 +38,13 @@ Json finding_json(const Finding& f) {
   }
   Json gain{{"force_rms_ratio", f.holdout.force_rms_ratio}};
   if (f.holdout.position_error_rms_ratio) gain["position_error_rms_ratio"] = *f.holdout.position_error_rms_ratio;
+  if (f.holdout.command_rms_ratio) gain["command_rms_ratio"] = *f.holdout.command_rms_ratio;
   gain["ci95"] = f.holdout.ci95;
   Json confused = Json::array();
   for (const auto& c : f.confused_with) confused.push_back({{"effect", c.effect}, {"separate_by", c.separate_by}});
   Json out{{"effect", f.effect.name}, {"axis", f.axis},       {"parameters", parameters}, {"standard_errors", errors},
            {"explains", f.explains},  {"holdout_gain", gain}, {"p_value", f.p_value},     {"confused_with", confused}};
+  if (f.in_command) out["residual"] = "command";
   if (f.part_error) out["part_error_um"] = *f.part_error * 1e6;
   return out;
 }
@@ -57,8 +60,8 @@ Json verdict_json(const Verdict& verdict) {
           {"logs", verdict.logs},
           {"holdout", verdict.holdout},
           {"holdout_is_a_part", verdict.holdout_is_a_part},
-          {"baseline", figures(verdict.baseline)},
-          {"extended", figures(verdict.extended)},
+          {"baseline", figures(verdict.baseline, verdict.command_unit)},
+          {"extended", figures(verdict.extended, verdict.command_unit)},
           {"findings", findings},
           {"rejected", rejected},
           {"unexplained",
@@ -89,8 +92,9 @@ std::string verdict_text(const Verdict& verdict) {
       for (std::size_t i = 0; i < p.values.size(); ++i)
         text += fmt::format("   {} = {:.6g} +- {:.2g}\n", p.name, p.values[i],
                             i < p.standard_errors.size() ? p.standard_errors[i] : 0.0);
-    text += fmt::format("   {}\n   held-out force rms {:.3f} times that without it (95 %: {:.3f} to {:.3f})",
-                        f.evidence, f.holdout.force_rms_ratio, f.holdout.ci95[0], f.holdout.ci95[1]);
+    text +=
+        fmt::format("   {}\n   held-out {} rms {:.3f} times that without it (95 %: {:.3f} to {:.3f})", f.evidence,
+                    f.in_command ? "command residual" : "force", gained_ratio(f), f.holdout.ci95[0], f.holdout.ci95[1]);
     if (f.holdout.position_error_rms_ratio)
       text += fmt::format(", position error {:.3f} times", *f.holdout.position_error_rms_ratio);
     text += "\n";

@@ -59,12 +59,18 @@ Motion motion_of(const Log& log, const AxisLog& channels, const sim::Axis& axis,
                  const SignalSettings& settings) {
   Motion motion{log.source, log.period, log.t, {}, {}, {}, {}, channels.i, channels.x_set};
   motion.force = force_of(log, channels, axis, amperes);
+  motion.force_is_current = channels.force.empty() && channels.external_force.empty();
   if (log.t.size() < 20) return motion;
   const double cutoff = std::min(settings.cutoff, 0.2 / log.period);
   const auto lowpass = butterworth(position_order, 2.0 * cutoff * log.period);
   motion.x = filter_both_ways(lowpass, channels.x, scaled_padding(lowpass, 1e-3 / log.period));
   motion.v = central_difference(motion.x, log.period, settings.difference_points);
   motion.a = central_difference(motion.v, log.period, settings.difference_points);
+  if (log.axes.size() != 2) return motion;
+  const auto& other = &log.axes.front() == &channels ? log.axes.back() : log.axes.front();
+  const auto x = filter_both_ways(lowpass, other.x, scaled_padding(lowpass, 1e-3 / log.period));
+  motion.other_a = central_difference(central_difference(x, log.period, settings.difference_points), log.period,
+                                      settings.difference_points);
   return motion;
 }
 

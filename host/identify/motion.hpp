@@ -34,6 +34,8 @@ struct Motion {
   std::vector<double> force;       // N, of the motor and from outside; as logged
   std::vector<double> current;     // A, as logged; empty when the log has force or voltage only
   std::vector<double> x_set;       // m; empty when the log has none
+  bool force_is_current = false;   // `force` is the current or voltage times the file's force constant
+  std::vector<double> other_a{};   // m/s^2, of the other axis; empty when the log does not have exactly two
 };
 
 // How the amperes of a record are to be read.

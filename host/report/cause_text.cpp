@@ -43,11 +43,27 @@ constexpr std::array rows{
         "A force that repeats with the position and does not depend on current.",
         "Compare the pitch with the magnets' pole pitch and the screw's lead. Most drives have a cogging compensation: "
         "pitch, amplitudes and phases are its parameters."},
+    Row{"force_constant_mismatch", "Force constant or current scale",
+        "The motor gives another force per ampere, or the current is recorded on another scale.",
+        "Check peak against RMS amperes and the recorder's scale first, then the motor's data sheet and temperature; "
+        "weigh a known mass to tell it from mass and friction."},
+    Row{"force_saturation", "Saturation of the motor", "At high current the force grows less than the current.",
+        "Keep accelerations below where it bends, or enter the motor's force curve in the drive."},
     Row{"backlash", "Lost motion (backlash)", "The measured position stands while the motor moves on at a reversal.",
         "Check couplings, nut preload and the scale's mounting; a backlash compensation hides it at low speed only."},
+    Row{"structural_resonance", "Elastic mode", "Something between motor and encoder swings: coupling, screw, mount.",
+        "Set a notch at its frequency or lower the velocity gain; make jerk times multiples of its period; stiffen the "
+        "joint, or measure nearer to the motor."},
     Row{"time_skew", "Time skew of the record", "Current and position were not recorded at the same instant.",
         "Correct the recorder's delay before anything else is identified from its logs; where the delay is in the loop "
         "itself, it costs phase margin."},
+    Row{"cross_axis_coupling", "Coupling with the other axis", "The other axis' acceleration pushes this one.",
+        "Check squareness and where the centre of mass of what is mounted lies; feed the other axis' set acceleration "
+        "forward."},
+    Row{"controller_gain_mismatch", "Gains of the drive",
+        "The drive commands something else than the file's controller would for the same set-points and positions.",
+        "Read the gains out of the drive and put them into the machine file; look for units (RMS or peak amperes, 1/s "
+        "or m/min/mm) before a new tuning."},
 };
 
 }  // namespace

@@ -31,6 +31,12 @@ constexpr std::array suffixes{Suffix{"_N_s_per_m", "N s/m"},
                               Suffix{"_m_per_s", "m/s"},
                               Suffix{"_kg", "kg"},
                               Suffix{"_Hz", "Hz"},
+                              Suffix{"_N_per_A", "N/A"},
+                              Suffix{"_N_per_V", "N/V"},
+                              Suffix{"_A_s_per_m", "A s/m"},
+                              Suffix{"_V_s_per_m", "V s/m"},
+                              Suffix{"_V_per_A", "V/A"},
+                              Suffix{"_per_s", "1/s"},
                               Suffix{"_N", "N"},
                               Suffix{"_m", "m"},
                               Suffix{"_s", "s"},
@@ -81,11 +87,12 @@ std::string gain_percent(double ratio) { return fmt::format("{:.1f}", 100.0 * (1
 // The numbers of the evidence in one sentence.
 std::string figures_of(const Finding& finding) {
   auto text = fmt::format(
-      "It takes away {} % of the residual's variance, given the other causes (p {}). On data that was not used the "
-      "residual force falls by {} % (95 %: {} to {})",
-      percent(finding.explains), finding.p_value < 1e-12 ? "< 1e-12" : fmt::format("= {:.1g}", finding.p_value),
-      gain_percent(finding.holdout.force_rms_ratio), gain_percent(finding.holdout.ci95[1]),
-      gain_percent(finding.holdout.ci95[0]));
+      "It takes away {} % of the {}'s variance, given the other causes (p {}). On data that was not used the "
+      "{} falls by {} % (95 %: {} to {})",
+      percent(finding.explains), finding.in_command ? "command residual" : "residual",
+      finding.p_value < 1e-12 ? "< 1e-12" : fmt::format("= {:.1g}", finding.p_value),
+      finding.in_command ? "command residual" : "residual force", gain_percent(gained_ratio(finding)),
+      gain_percent(finding.holdout.ci95[1]), gain_percent(finding.holdout.ci95[0]));
   if (const auto ratio = finding.holdout.position_error_rms_ratio)
     text += fmt::format(", the position error of the simulation {} by {} %", *ratio <= 1.0 ? "falls" : "grows",
                         fmt::format("{:.1f}", 100.0 * std::abs(1.0 - *ratio)));
@@ -111,7 +118,7 @@ json cause_json(const Finding& finding) {
           {"advice", words.advice},
           {"page", fmt::format("docs/effects/{}.md", finding.effect.name)},
           {"explains", percent(finding.explains)},
-          {"gain", gain_percent(finding.holdout.force_rms_ratio)},
+          {"gain", gain_percent(gained_ratio(finding))},
           {"gain_interval",
            fmt::format("{} to {}", gain_percent(finding.holdout.ci95[1]), gain_percent(finding.holdout.ci95[0]))},
           {"part", finding.part_error ? json(micrometres(*finding.part_error)) : json(nullptr)},
@@ -143,6 +150,11 @@ std::string gain_line(const Verdict& verdict) {
   if (before.position_error_rms && after.position_error_rms)
     text += fmt::format(", the simulation's position error from {} µm to {} µm rms",
                         micrometres(*before.position_error_rms), micrometres(*after.position_error_rms));
+  if (before.command_rms && after.command_rms && *after.command_rms < *before.command_rms)
+    text += fmt::format(
+        ", the command residual (what the drive commanded less what the file's controller gives) from "
+        "{:.2g} to {:.2g} {} rms",
+        *before.command_rms, *after.command_rms, verdict.command_unit);
   return text + ".";
 }
 

@@ -8,6 +8,7 @@
 
 #include "sim/control/conversion.hpp"
 #include "sim/control/double_signals.hpp"
+#include "sim/plant/effects/effects.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
 namespace stiction::sim {
@@ -103,7 +104,8 @@ std::int64_t fast_period_ns(const Timing& timing) { return std::llround(timing.f
 int slow_ratio(const Timing& timing) { return static_cast<int>(std::lround(timing.slow_period / timing.fast_period)); }
 
 template <class S>
-AxisConfig<S> configure_axis(const Timing& timing, const Axis& axis) {
+AxisConfig<S> configure_axis(const Timing& timing, const Axis& file_axis) {
+  const Axis axis = drive_axis(file_axis);
   const Converter convert(axis.name);
   const double period = timing.fast_period;
   AxisConfig<S> c;

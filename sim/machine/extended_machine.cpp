@@ -35,35 +35,41 @@ bool replaces_any(const Machine& machine, std::span<const AxisEffects> additions
 }
 
 // Puts one effect into the tree of an axis, in the place of one that there may be only once.
-void put(toml::table& axis, const Effect& effect) {
+void put(toml::table& axis, const Effect& effect, bool force_motor) {
   toml::array& list = *axis.insert(effect_key, toml::array{}).first->second.as_array();
   if (!find_effect_kind(effect.name)->several)
     for (auto it = list.begin(); it != list.end();)
       it = it->at_path(effect_name_key).value<std::string>() == effect.name ? list.erase(it) : it + 1;
-  toml::table table = toml::parse(effect_table("X", effect));
+  toml::table table = toml::parse(effect_table("X", effect, force_motor));
   list.push_back(std::move(*table["axis"]["X"][effect_key].as_array()->get(0)->as_table()));
   for (toml::node& element : list)
     if (element.is_table()) element.as_table()->is_inline(false);
 }
 
-std::string rewritten(const std::filesystem::path& file, const std::vector<std::string>& set,
+bool has_force_motor(const Machine& machine, const std::string& name) {
+  return std::any_of(machine.axes.begin(), machine.axes.end(),
+                     [&](const Axis& axis) { return axis.name == name && axis.motor.model == MotorModel::force; });
+}
+
+std::string rewritten(const std::filesystem::path& file, const Machine& machine, const std::vector<std::string>& set,
                       std::span<const AxisEffects> additions) {
   toml::table root = toml::parse(edited_machine(file, set, {}, {}));
   for (const AxisEffects& addition : additions) {
     toml::table* axis = root["axis"][addition.axis].as_table();
     if (axis == nullptr) continue;
     axis->is_inline(false);
-    for (const Effect& effect : addition.effects) put(*axis, effect);
+    for (const Effect& effect : addition.effects) put(*axis, effect, has_force_motor(machine, addition.axis));
   }
   std::ostringstream out;
   out << root << '\n';
   return out.str();
 }
 
-std::string continued(std::string text, std::span<const AxisEffects> additions) {
+std::string continued(std::string text, const Machine& machine, std::span<const AxisEffects> additions) {
   if (!text.empty() && text.back() != '\n') text += '\n';
   for (const AxisEffects& addition : additions)
-    for (const Effect& effect : addition.effects) text += "\n" + effect_table(addition.axis, effect);
+    for (const Effect& effect : addition.effects)
+      text += "\n" + effect_table(addition.axis, effect, has_force_motor(machine, addition.axis));
   return text;
 }
 
@@ -85,15 +91,17 @@ void check_axes(const std::filesystem::path& file, const Machine& machine, std::
 
 }  // namespace
 
-std::string effect_table(const std::string& axis, const Effect& effect) {
+std::string effect_table(const std::string& axis, const Effect& effect, bool force_motor) {
   check_effect(effect);
   const EffectKind* kind = find_effect_kind(effect.name);
   std::string text = fmt::format("[[axis.{}.{}]]\n{} = \"{}\"\n", axis, effect_key, effect_name_key, effect.name);
   for (const EffectKey& key : kind->keys) {
     const auto found = effect.values.find(std::string(key.key));
+    if (found == effect.values.end() && key.optional) continue;
     const std::vector<double> values = found == effect.values.end() ? std::vector{0.0} : found->second;
     std::vector<std::string> texts;
-    for (const double value : values) texts.push_back(value_text(value, key.unit));
+    const auto unit = force_motor && !key.unit_of_force_motor.empty() ? key.unit_of_force_motor : key.unit;
+    for (const double value : values) texts.push_back(value_text(value, unit));
     text += key.list ? fmt::format("{} = [{}]\n", key.key, fmt::join(texts, ", "))
                      : fmt::format("{} = {}\n", key.key, texts.front());
   }
@@ -106,7 +114,7 @@ std::string extended_machine(const std::filesystem::path& file, const std::vecto
   const Machine machine = parse_machine(file.string(), original, {{}, set});
   check_axes(file, machine, additions);
   if (set.empty() && !replaces_any(machine, additions)) {
-    std::string text = with_comment(continued(original, additions), comment);
+    std::string text = with_comment(continued(original, machine, additions), comment);
     try {
       parse_machine(file.string(), text);
       return text;
@@ -114,7 +122,7 @@ std::string extended_machine(const std::filesystem::path& file, const std::vecto
       // The file writes its axis or its effects in a way that no table can follow.
     }
   }
-  std::string text = with_comment(rewritten(file, set, additions), comment);
+  std::string text = with_comment(rewritten(file, machine, set, additions), comment);
   parse_machine(file.string(), text);
   return text;
 }

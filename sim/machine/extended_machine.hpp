@@ -24,7 +24,8 @@ struct AxisEffects {
 std::string extended_machine(const std::filesystem::path& file, const std::vector<std::string>& set,
                              std::span<const AxisEffects> additions, std::span<const std::string> comment);
 
-// One table [[axis.NAME.effect]] as text, its values in SI units.
-std::string effect_table(const std::string& axis, const Effect& effect);
+// One table [[axis.NAME.effect]] as text, its values in SI units. `force_motor`: the axis' motor is a force source,
+// which some keys take in volts.
+std::string effect_table(const std::string& axis, const Effect& effect, bool force_motor = false);
 
 }  // namespace stiction::sim

@@ -106,6 +106,7 @@ class MachineReader {
   void check_effects(const toml::table& table, const std::string& path, const Axis& axis) const {
     try {
       plant_axis(axis);
+      drive_axis(axis);
     } catch (const EffectError& error) {
       const auto is_named = [&](const Effect& effect) { return effect.name == error.effect; };
       const auto last = std::find_if(axis.effects.rbegin(), axis.effects.rend(), is_named);

@@ -26,11 +26,11 @@ AxisPlant::AxisPlant(const Timing& timing, const Axis& axis, double position, st
 
 AxisPlant::AxisPlant(double step, const Axis& axis, double position, std::uint64_t seed)
     : half_step_(0.5 * step),
-      mass_per_step_(axis.mass / step),
       inverter_(axis.inverter, step, plant_steps_per_tick),
       motor_(make_motor(axis.motor, step)),
-      friction_(make_friction(axis.friction.models.at(axis.friction.use), {axis.mass, step})),
-      effects_(axis, {axis.mass, step}, position),
+      effects_(axis, step, position),
+      mass_per_step_(effects_.carriage(axis).mass / step),
+      friction_(make_friction(axis.friction.models.at(axis.friction.use), effects_.carriage(axis))),
       tick_(tick_of(motor_, friction_, effects_.any())),
       mount_(axis.encoder.mount, step),
       encoder_increment_(axis.encoder.increment),
@@ -89,19 +89,24 @@ inline void AxisPlant::advance_tick(MotorModel& motor, Friction& friction, const
 // of the velocity.
 template <bool effects, class MotorModel, class Friction>
 inline double AxisPlant::step(MotorModel& motor, Friction& friction, const PhaseValues& voltage) {
-  motor_force_ = motor.advance(voltage, position_, velocity_);
-  double force = motor_force_ + external_force_;
+  double force = 0.0;
   if constexpr (effects) {
+    const double linear =
+        motor.advance(voltage, position_ + effects_.motor_lead(), velocity_ + effects_.motor_lead_rate());
+    motor_force_ = effects_.motor_force(linear);
     const auto extra = effects_.advance(position_, velocity_);
-    applied_force_ = extra.applied;
-    force += extra.applied + extra.friction;
+    applied_force_ = extra.applied + (effects_.transmitted(motor_force_) - motor_force_);
+    force = motor_force_ + external_force_ + applied_force_ + extra.friction;
+  } else {
+    motor_force_ = motor.advance(voltage, position_, velocity_);
+    force = motor_force_ + external_force_;
   }
   const double next = friction.advance(velocity_, force);
   const double change = next - velocity_;
   position_ += half_step_ * (velocity_ + next);
   velocity_ = next;
   mount_.advance(change);
-  if constexpr (effects) effects_.follow(position_);
+  if constexpr (effects) effects_.follow(position_, change);
   return change;
 }
 

@@ -37,6 +37,10 @@ class AxisPlant {
   // Force from outside on the carriage (N, positive in +x), held until changed.
   void set_external_force(double force) { external_force_ = force; }
 
+  bool coupled() const { return effects_.coupled(); }  // whether the other axis' acceleration acts on the carriage
+  // Of the other axis, m/s^2, held until changed.
+  void set_other_acceleration(double acceleration) { effects_.set_other_acceleration(acceleration); }
+
   // Moves on by one fast tick of the drive.
   void advance_tick() { tick_(*this); }
 
@@ -82,11 +86,11 @@ class AxisPlant {
   }
 
   double half_step_;
-  double mass_per_step_;
   InverterModel inverter_;
   MotorVariant motor_;
-  FrictionModel friction_;
   ActingEffects effects_;
+  double mass_per_step_;  // of the carriage
+  FrictionModel friction_;
   // Of this motor with this friction, with or without effects: chosen once; a visit of both costs 29 instructions a
   // tick.
   Tick tick_;
@@ -102,7 +106,7 @@ class AxisPlant {
   double motor_force_ = 0.0;
   double friction_force_ = 0.0;
   double external_force_ = 0.0;
-  double applied_force_ = 0.0;  // of effects that are no friction
+  double applied_force_ = 0.0;  // of effects that are no friction, and what the motor's way to the carriage adds
   double lost_position_ = 0.0;  // m, of the encoder's base against the carriage, by play
   double lost_velocity_ = 0.0;  // m/s
   std::size_t phases_;

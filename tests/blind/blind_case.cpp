@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "tests/blind/truth/command.hpp"
+
 namespace stiction::blind {
 namespace {
 
@@ -65,6 +67,10 @@ Mechanics mechanics_of(const sim::Axis& axis) {
   Mechanics m;
   m.mass = axis.mass;
   m.viscous = friction.viscous;
+  m.force_constant = axis.motor.force_constant;
+  m.file_position_gain = axis.position_controller.gain;
+  m.file_velocity_gain = axis.velocity_controller.gain;
+  m.file_velocity_integral_time = axis.velocity_controller.integral_time.value_or(1.0);
   for (std::size_t k = 0; k < friction.level.size(); ++k)
     m.contact.push_back({friction.stiffness[k], friction.level[k]});
   return m;
@@ -92,7 +98,8 @@ class Runs {
   std::vector<host::Log> logs(const Mechanics& mechanics, const NoiseLevels& noise) const {
     std::vector<host::Log> all;
     for (std::size_t k = 0; k < trajectories_.size(); ++k)
-      all.push_back(record(machine_, mechanics, trajectories_[k], noise, period_, seed_ + k));
+      all.push_back(record(machine_, mechanics, trajectories_[k], trajectories_[(k + 1) % trajectories_.size()], noise,
+                           period_, seed_ + k));
     return all;
   }
   std::vector<Signal> residuals(const std::vector<host::Log>& logs) const {
@@ -100,10 +107,13 @@ class Runs {
     for (const auto& log : logs) all.push_back(residual_force(log, file_, machine_.axes.front().motor.force_constant));
     return all;
   }
-  // Residual force that `mechanics` alone makes, without noise.
-  std::vector<Signal> effect(const Mechanics& mechanics) {
-    if (plain_.empty()) plain_ = residuals(logs(file_, {}));
-    return difference(residuals(logs(mechanics, {})), plain_);
+  // Residual force that `mechanics` alone makes, without noise; or what it leaves in the command residual.
+  std::vector<Signal> effect(const Mechanics& mechanics, bool in_command) {
+    if (plain_.empty()) plain_ = logs(file_, {});
+    if (!in_command) return difference(residuals(logs(mechanics, {})), residuals(plain_));
+    std::vector<Signal> all;
+    for (const auto& log : plain_) all.push_back(command_effect(log, machine_.axes.front(), mechanics));
+    return all;
   }
   const Mechanics& file() const { return file_; }
 
@@ -113,8 +123,14 @@ class Runs {
   const std::vector<Trajectory>& trajectories_;
   double period_;
   std::uint64_t seed_;
-  std::vector<Signal> plain_;
+  std::vector<host::Log> plain_;
 };
+
+// A^2 below 100 Hz in the recorded current's amplitude: the sensors' noise, white at the record's rate. The rest of a
+// command residual is what a replay between samples cannot know, and as small as that replay is good.
+double sensor_noise(const NoiseLevels& noise, double period) {
+  return 2.0 / 3.0 * noise.phase_current * noise.phase_current * std::min(1.0, 200.0 * period);
+}
 
 // The strength with the wanted mean square; most residual forces grow like it or like its root.
 sim::Effect scaled(const Hideable& row, const AtStrength& at, double wanted, Runs& runs) {
@@ -122,7 +138,7 @@ sim::Effect scaled(const Hideable& row, const AtStrength& at, double wanted, Run
   for (int round = 0; round < 8; ++round) {
     Mechanics m = runs.file();
     row.apply(at(strength), m);
-    const double ratio = wanted / mean_square(runs.effect(m));
+    const double ratio = wanted / mean_square(runs.effect(m, row.in_command));
     if (std::abs(ratio - 1.0) < 0.05) break;
     strength *= std::sqrt(ratio);
   }
@@ -154,12 +170,14 @@ BlindCase make_case(const sim::Machine& shipped, const CaseOrder& order) {
   std::vector<std::vector<Signal>> regressors, held_regressors;
   for (const auto& name : order.hidden) {
     const auto& row = hideable(name);
-    blind.truth.push_back(
-        scaled(row, row.draw(random, runs.file()), noise_power * order.share / (1.0 - order.share), runs));
+    const double power = row.in_command ? sensor_noise(noise, period) : noise_power;
+    blind.truth.push_back(scaled(row, row.draw(random, runs.file()), power * order.share / (1.0 - order.share), runs));
     Mechanics alone = runs.file();
     row.apply(blind.truth.back(), alone);
-    regressors.push_back(runs.effect(alone));
-    held_regressors.push_back(held_runs.effect(alone));
+    if (!row.in_command) {
+      regressors.push_back(runs.effect(alone, false));
+      held_regressors.push_back(held_runs.effect(alone, false));
+    }
     row.apply(blind.truth.back(), truth);
   }
   if (order.slightly_off) {
@@ -170,7 +188,7 @@ BlindCase make_case(const sim::Machine& shipped, const CaseOrder& order) {
   }
   blind.training = runs.logs(truth, noise);
   blind.holdout = held_runs.logs(truth, noise);
-  if (!order.hidden.empty()) {
+  if (!regressors.empty()) {
     const auto columns = static_cast<Eigen::Index>(regressors.size());
     const auto before = runs.residuals(blind.training), held_before = held_runs.residuals(blind.holdout);
     Eigen::MatrixXd a(stacked(before).size(), columns), b(stacked(held_before).size(), columns);

@@ -48,7 +48,7 @@ TEST(blind_truth, agrees_with_its_machine_file_where_nothing_is_hidden) {
   mechanics.contact = exponential_contact(90.0, 3e-6);
   Random random(5);
   const auto trajectory = training_trajectories(random)[1];
-  const auto log = record(machine, mechanics, trajectory, {}, 1e-3, 1);
+  const auto log = record(machine, mechanics, trajectory, trajectory, {}, 1e-3, 1);
   const double left = rms(residual_force(log, mechanics, axis.motor.force_constant));
   test::figure("blind truth without noise against its machine file", fmt::format("{:.2f} N rms (bound 0.2 N)", left));
   EXPECT_LT(left, 0.2);

@@ -31,7 +31,8 @@ std::vector<std::string> names_of(bool in_vocabulary) {
   return names;
 }
 
-// Exact aliases (diagnosis.md): a half difference of Coulomb friction is a constant force.
+// Exact aliases (diagnosis.md): a half difference of Coulomb friction is a constant force. That a force constant is
+// mass, Coulomb and viscous friction together is an alias that a finding must name itself.
 bool same_class(const std::string& a, const std::string& b) {
   const std::set<std::string> offset{"constant_force", "friction_asymmetry"};
   return a == b || (offset.contains(a) && offset.contains(b));
@@ -51,6 +52,7 @@ double value_of_file(const sim::Axis& axis, const std::string& effect) {
   const auto& friction = std::get<sim::MaxwellSlip::Parameters>(axis.friction.models.at("maxwell_slip"));
   if (effect == "mass_mismatch") return axis.mass;
   if (effect == "viscous_mismatch") return friction.viscous;
+  if (effect == "force_constant_mismatch") return axis.motor.force_constant;
   if (effect != "coulomb_mismatch") return 0.0;
   double sum = 0.0;
   for (const double level : friction.level) sum += level;

@@ -1,5 +1,5 @@
-// What the effects of one axis do in the steps of its plant: forces on the carriage, and the play in front of the
-// encoder. What they change in the plant's parameters is done before, by plant_axis().
+// What the effects of one axis do in the steps of its plant: between motor and carriage, forces on the carriage, and
+// the play in front of the encoder. What they change in the plant's parameters is done before, by plant_axis().
 #pragma once
 
 #include <optional>
@@ -33,7 +33,12 @@ using ForceEffect = detail::ForcesOf<EffectTable>::type;
 class ActingEffects {
  public:
   // `axis` as plant_axis() returns it, at rest at `position` (m). Throws EffectError.
-  ActingEffects(const Axis& axis, Body body, double position) : step_(body.step), follower_(position) {
+  ActingEffects(const Axis& axis, double step, double position) : step_(step), follower_(position) {
+    for (const auto& parameters : effects_of<StructuralResonance>(axis))
+      mode_.emplace(parameters, Body{axis.mass, step});
+    for (const auto& parameters : effects_of<ForceSaturation>(axis)) saturation_.emplace(parameters, axis);
+    for (const auto& parameters : effects_of<CrossAxisCoupling>(axis)) coupling_mass_ += parameters.mass;
+    const Body body = carriage(axis);
     for_each_effect([&]<class E>() {
       if constexpr (ForceOnCarriage<E>)
         for (const auto& parameters : effects_of<E>(axis)) forces_.emplace_back(E(parameters, body));
@@ -41,7 +46,27 @@ class ActingEffects {
     for (const auto& parameters : effects_of<Backlash>(axis)) play_.emplace(parameters, position);
   }
 
-  bool any() const { return !forces_.empty() || play_; }
+  bool any() const { return !forces_.empty() || play_ || mode_ || saturation_ || coupled(); }
+  bool coupled() const { return coupling_mass_ != 0.0; }  // with the other axis
+  // What moves with the encoder: of an axis with an elastic mode the load alone.
+  Body carriage(const Axis& axis) const { return {mode_ ? mode_->load_mass() : axis.mass, step_}; }
+
+  // Of the other axis, m/s^2; held until changed.
+  void set_other_acceleration(double acceleration) { coupling_force_ = coupling_mass_ * acceleration; }
+
+  // Of the motor against the carriage: m, m/s.
+  double motor_lead() const { return mode_ ? mode_->motor_lead() : 0.0; }
+  double motor_lead_rate() const { return mode_ ? mode_->motor_lead_rate() : 0.0; }
+  // Force (N) of a motor whose force is proportional to its current but for the effects.
+  double motor_force(double linear) const { return saturation_ ? saturation_->of_linear(linear) : linear; }
+  // The same the other way about.
+  double linear_force(double force) const { return saturation_ ? saturation_->linear_for(force) : force; }
+  // What of the motor's force (N) reaches the carriage during one step; ends with follow().
+  double transmitted(double motor_force) {
+    if (!mode_) return motor_force;
+    motor_force_ = motor_force;
+    return transmitted_ = mode_->force();
+  }
 
   // Forces on the carriage during one step, N, positive in +x: those that are friction, and the others.
   struct Forces {
@@ -51,14 +76,15 @@ class ActingEffects {
   // From position (m) and velocity (m/s) at the beginning of the step.
   Forces advance(double position, double velocity) {
     const CarriageState state{position, velocity, direction_.advance(velocity, step_)};
-    Forces sum;
+    Forces sum{coupling_force_, 0.0};
     for (const ForceEffect& effect : forces_)
       std::visit([&]<class E>(const E& e) { (E::is_friction ? sum.friction : sum.applied) += e.force(state); }, effect);
     return sum;
   }
 
-  // The carriage is at `position` (m) at the end of a step.
-  void follow(double position) {
+  // The carriage is at `position` (m) at the end of a step that changed its velocity by `change` (m/s).
+  void follow(double position, double change) {
+    if (mode_) mode_->advance(motor_force_, transmitted_, change);
     closed_ = !play_ || play_->advance(position);
     follower_ = play_ ? play_->follower() : position;
   }
@@ -67,6 +93,10 @@ class ActingEffects {
 
  private:
   double step_;
+  std::optional<StructuralResonance> mode_;
+  std::optional<ForceSaturation> saturation_;
+  double coupling_mass_ = 0.0, coupling_force_ = 0.0;
+  double motor_force_ = 0.0, transmitted_ = 0.0;
   std::vector<ForceEffect> forces_;
   SlidingDirection direction_;
   std::optional<Backlash> play_;

@@ -16,7 +16,7 @@ inline constexpr std::string_view by_frequency_response =
     "frequency response: a delay has a phase linear in frequency, friction none, an elastic mount a step of 180 deg";
 inline constexpr std::string_view by_known_mass = "accelerations at several levels, with a known added mass";
 
-inline constexpr std::array<AliasPair, 16> alias_pairs{{
+inline constexpr std::array<AliasPair, 17> alias_pairs{{
     {"constant_force", "friction_asymmetry", "turn the axis, another payload, or a reading at standstill"},
     {"mass_mismatch", "force_constant_mismatch", by_known_mass},
     {"coulomb_mismatch", "force_constant_mismatch", "a known added mass: a wrong force constant scales its force too"},
@@ -27,6 +27,8 @@ inline constexpr std::array<AliasPair, 16> alias_pairs{{
      "load at standstill: presliding has an elastic slope, play has none; a second encoder"},
     {"time_skew", "viscous_mismatch", by_frequency_response},
     {"time_skew", "structural_resonance", by_frequency_response},
+    {"time_skew", "controller_gain_mismatch",
+     "a test signal on the current: the phase of a delay grows with frequency"},
     {"viscous_mismatch", "structural_resonance", by_frequency_response},
     {"force_ripple", "encoder_subdivision_error",
      "several speeds: the force of a subdivision error grows with the speed squared, cogging does not"},

@@ -51,6 +51,11 @@ void assign(std::string_view effect, const Parameter<Owner>& p, const std::vecto
       p.member);
 }
 
+template <class Owner>
+bool is_optional(const Parameter<Owner>& p) {
+  return std::holds_alternative<std::optional<double> Owner::*>(p.member);
+}
+
 template <class E>
 bool has_key(std::string_view key) {
   return std::any_of(E::parameters.begin(), E::parameters.end(), [&](const auto& p) { return p.key == key; });
@@ -58,18 +63,21 @@ bool has_key(std::string_view key) {
 
 }  // namespace detail
 
-// Every key of the effect with its value.
+// Every key of the effect with its value; no key for an optional one that has none.
 template <class E>
 Effect effect_of(const typename E::Parameters& parameters) {
   Effect effect{std::string(E::name), {}};
   for (const auto& p : E::parameters)
     std::visit(
         [&]<class Member>(Member E::Parameters::*member) {
-          auto& values = effect.values[std::string(p.key)];
-          if constexpr (detail::is_list<Member>)
-            values = parameters.*member;
-          else if constexpr (std::is_arithmetic_v<Member>)
-            values = {static_cast<double>(parameters.*member)};
+          const std::string key(p.key);
+          if constexpr (detail::is_list<Member>) {
+            effect.values[key] = parameters.*member;
+          } else if constexpr (std::is_arithmetic_v<Member>) {
+            effect.values[key] = {static_cast<double>(parameters.*member)};
+          } else {
+            if (parameters.*member) effect.values[key] = {*(parameters.*member)};
+          }
         },
         p.member);
   return effect;
@@ -84,6 +92,7 @@ typename E::Parameters parameters_of(const Effect& effect) {
   typename E::Parameters parameters;
   for (const auto& p : E::parameters) {
     const auto found = effect.values.find(std::string(p.key));
+    if (found == effect.values.end() && detail::is_optional(p)) continue;
     if (found == effect.values.end() && !p.fallback) throw EffectError(E::name, fmt::format("no {}", p.key), "one");
     detail::assign(E::name, p, found == effect.values.end() ? std::vector{*p.fallback} : found->second, parameters);
   }

@@ -10,7 +10,9 @@ namespace {
 template <class Owner>
 EffectKey key_of(const Parameter<Owner>& p) {
   const bool list = std::holds_alternative<std::vector<double> Owner::*>(p.member);
-  return {p.key, p.unit, unit_suffix(p.unit), p.range, list, !p.fallback.has_value(), p.text};
+  const bool optional = detail::is_optional(p);
+  return {p.key,    p.unit, p.unit_of_force_motor, unit_suffix(p.unit), p.range, list, !p.fallback && !optional,
+          optional, p.text};
 }
 
 std::vector<EffectAlias> aliases_of(std::string_view name) {
@@ -86,6 +88,15 @@ Axis plant_axis(const Axis& axis) {
       for (const auto& parameters : effects_of<E>(axis)) E::change(parameters, plant);
   });
   return plant;
+}
+
+Axis drive_axis(const Axis& axis) {
+  Axis drive = axis;
+  for_each_effect([&]<class E>() {
+    if constexpr (requires(const typename E::Parameters& p) { E::change_drive(p, drive); })
+      for (const auto& parameters : effects_of<E>(axis)) E::change_drive(parameters, drive);
+  });
+  return drive;
 }
 
 double record_delay(const Axis& axis) {

@@ -5,6 +5,9 @@
 //   static void change(const Parameters&, Axis&)             the plant's own parameters; the drive keeps the file's
 //   class with force(const CarriageState&), is_friction      a force on the carriage in each step (N, positive in +x)
 //   Backlash, TimeSkew::delay                                what is measured and recorded
+//   ForceSaturation, StructuralResonance                     between motor and carriage
+//   CrossAxisCoupling                                        a force by the other axis
+//   static void change_drive(const Parameters&, Axis&)       the drive's parameters; the plant keeps the file's
 // Changes are made in the order of the table, whatever the order in the file.
 #pragma once
 
@@ -16,15 +19,20 @@
 
 #include "sim/plant/effects/backlash.hpp"
 #include "sim/plant/effects/constant_force.hpp"
+#include "sim/plant/effects/controller_gain_mismatch.hpp"
 #include "sim/plant/effects/coulomb_mismatch.hpp"
+#include "sim/plant/effects/cross_axis_coupling.hpp"
 #include "sim/plant/effects/effect_kind.hpp"
 #include "sim/plant/effects/effect_values.hpp"
+#include "sim/plant/effects/force_constant_mismatch.hpp"
 #include "sim/plant/effects/force_ripple.hpp"
+#include "sim/plant/effects/force_saturation.hpp"
 #include "sim/plant/effects/friction_asymmetry.hpp"
 #include "sim/plant/effects/mass_mismatch.hpp"
 #include "sim/plant/effects/position_spring.hpp"
 #include "sim/plant/effects/presliding_hysteresis.hpp"
 #include "sim/plant/effects/stribeck.hpp"
+#include "sim/plant/effects/structural_resonance.hpp"
 #include "sim/plant/effects/time_skew.hpp"
 #include "sim/plant/effects/viscous_mismatch.hpp"
 #include "sim/plant/effects/viscous_nonlinear.hpp"
@@ -33,7 +41,8 @@ namespace stiction::sim {
 
 using EffectTable =
     std::tuple<MassMismatch, CoulombMismatch, ViscousMismatch, ViscousNonlinear, Stribeck, FrictionAsymmetry,
-               PreslidingHysteresis, ConstantForce, PositionSpring, ForceRipple, Backlash, TimeSkew>;
+               PreslidingHysteresis, ConstantForce, PositionSpring, ForceRipple, ForceConstantMismatch, ForceSaturation,
+               Backlash, StructuralResonance, TimeSkew, CrossAxisCoupling, ControllerGainMismatch>;
 
 // Calls visit.operator()<E>() for each effect of the table, in order.
 template <class Visit, std::size_t Index = 0>
@@ -69,6 +78,9 @@ std::vector<typename E::Parameters> effects_of(const Axis& axis) {
 // Throws EffectError for an unknown effect, for one too many, for values that parameters_of() refuses and for those
 // that do not go with the friction model in use.
 Axis plant_axis(const Axis& axis);
+
+// The axis as its drive is configured: with the changes of those effects that are the drive's. Throws EffectError.
+Axis drive_axis(const Axis& axis);
 
 // By which the current of this axis is recorded late against its position, s.
 double record_delay(const Axis& axis);

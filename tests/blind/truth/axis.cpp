@@ -8,6 +8,7 @@
 #include <deque>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include "sim/control/axis_configuration.hpp"
 #include "sim/control/conversion.hpp"
@@ -25,11 +26,12 @@ double sign_of(double v) { return v > 0.0 ? 1.0 : v < 0.0 ? -1.0 : 0.0; }
 // Three windings with a star point, trapezoidal rule.
 class Motor {
  public:
-  Motor(const sim::Motor& m, double h)
+  Motor(const sim::Motor& m, const Mechanics& hidden, double h)
       : resistance_(0.5 * h * m.phase_resistance / (m.phase_inductance - m.mutual_inductance)),
         gain_(h / (m.phase_inductance - m.mutual_inductance)),
         emf_(m.emf_constant),
-        force_(m.phase_force_constant),
+        force_(m.phase_force_constant * hidden.force_ratio),
+        most_(hidden.saturation_current * 1.5 * force_),
         wave_(2.0 * pi / m.pole_pair_pitch) {}
 
   double advance(const std::array<double, 3>& u, double x, double v) {
@@ -43,30 +45,49 @@ class Motor {
       current[k] = (before * (1.0 - resistance_) + gain_ * (u[k] - star - emf_ * v * sine)) / (1.0 + resistance_);
       force += 0.5 * (before + current[k]) * sine;
     }
-    return force_ * force;
+    return most_ > 0.0 ? most_ * std::tanh(force_ * force / most_) : force_ * force;
   }
   std::array<double, 3> current{};  // A
 
  private:
-  double resistance_, gain_, emf_, force_, wave_;
+  double resistance_, gain_, emf_, force_, most_, wave_;
 };
 
 // Friction and what is hidden in it, as a force that opposes the motion, and forces of the surroundings.
 class Carriage {
  public:
-  Carriage(const Mechanics& m, double x) : m_(m), contact_(m.contact), x_(x) {}
+  Carriage(const Mechanics& m, double x) : m_(m), contact_(m.contact), x_(x) {
+    if (m.mode_frequency <= 0.0) return;
+    const double w = 2.0 * pi * m.mode_frequency;
+    load_ = m.mode_load * m.mass;
+    spring_ = w * w * load_ * (1.0 - m.mode_load);
+    damper_ = 2.0 * m.mode_damping * spring_ / w;
+  }
 
-  // One step of h s under the force of motor and noise.
-  void advance(double force, double h, double t) {
+  // One step of h s under the motor's force and that of noise; `other`: the other axis' acceleration.
+  void advance(double motor, double disturbance, double other, double h, double t) {
     const double resisting = friction(t);
-    const double next = (v_ + h / m_.mass * (force + surroundings(t) - resisting)) / (1.0 + h / m_.mass * m_.viscous);
+    double force = motor, mass = m_.mass;
+    if (load_ > 0.0) {
+      // The motor on its spring: half of the way, the forces, the other half.
+      lead_ += 0.5 * h * lead_rate_;
+      force = spring_ * lead_ + damper_ * lead_rate_;
+      mass = load_;
+    }
+    const double push = force + disturbance + m_.other_mass * other + surroundings(t) - resisting;
+    const double next = (v_ + h / mass * push) / (1.0 + h / mass * m_.viscous);
+    if (load_ > 0.0) {
+      lead_rate_ += h / (m_.mass - load_) * (motor - force) - (next - v_);
+      lead_ += 0.5 * h * lead_rate_;
+    }
     moved_ = 0.5 * h * (v_ + next);
     if (next * v_ < 0.0) reversed_at_ = t;
     v_ = next;
     x_ += moved_;
   }
   double x() const { return x_; }
-  double v() const { return v_; }
+  double motor_x() const { return x_ + lead_; }
+  double motor_v() const { return v_ + lead_rate_; }
 
  private:
   // All but the viscous part, which is taken at the end of the step.
@@ -96,6 +117,8 @@ class Carriage {
   Mechanics m_;
   Contact contact_;
   double x_, v_ = 0.0, moved_ = 0.0;
+  double load_ = 0.0, spring_ = 0.0, damper_ = 0.0;  // kg, N/m, N s/m; of the elastic mode
+  double lead_ = 0.0, lead_rate_ = 0.0;              // of the motor before the load
   double reversed_at_ = -1e3;
 };
 
@@ -138,6 +161,40 @@ class Memory {
   std::deque<double> values_;
 };
 
+sim::Axis true_drive(sim::Axis axis, const Mechanics& m) {
+  axis.position_controller.gain *= m.position_gain;
+  axis.velocity_controller.gain *= m.velocity_gain;
+  if (axis.velocity_controller.integral_time) *axis.velocity_controller.integral_time *= m.velocity_integral_time;
+  return axis;
+}
+
+// Voltages that act some time after they were commanded; the mean of two in the step of the change.
+class Inverter {
+ public:
+  Inverter(double delay, double tick) : ticks_(delay / tick), sent_(static_cast<std::size_t>(ticks_) + 3) {}
+
+  void command(const std::array<double, 3>& u) {
+    sent_.push_front(u);
+    sent_.pop_back();
+  }
+  // During the step from `begin` to `end`, in ticks since the newest command.
+  std::array<double, 3> acting(double begin, double end) const {
+    const double first = std::floor(begin - ticks_ + 1e-9), change = first + 1.0 + ticks_;
+    const double share = std::clamp((change - begin) / (end - begin), 0.0, 1.0);
+    const auto& a = sent_[static_cast<std::size_t>(-first)];
+    const auto& b = sent_[static_cast<std::size_t>(std::max(-first - 1.0, 0.0))];
+    std::array<double, 3> u;
+    for (std::size_t k = 0; k < 3; ++k) u[k] = share * a[k] + (1.0 - share) * b[k];
+    return u;
+  }
+
+ private:
+  double ticks_;
+  std::deque<std::array<double, 3>> sent_;
+};
+
+}  // namespace
+
 // Butterworth of second order, forwards and backwards: no phase, -6 dB at the corner.
 void zero_phase(std::vector<double>& values, double corner, double period) {
   const double c = std::tan(pi * corner * period), d = 1.0 + std::numbers::sqrt2 * c + c * c;
@@ -153,20 +210,18 @@ void zero_phase(std::vector<double>& values, double corner, double period) {
   }
 }
 
-}  // namespace
-
 host::Log record(const sim::Machine& machine, const Mechanics& mechanics, const Trajectory& trajectory,
-                 const NoiseLevels& noise, double period, std::uint64_t seed) {
+                 const Trajectory& other, const NoiseLevels& noise, double period, std::uint64_t seed) {
   using S = FixedSignals;
   const auto& axis = machine.axes.front();
   const double tick = machine.timing.fast_period, h = tick / steps_per_tick;
-  const auto config = sim::configure_axis<S>(machine.timing, axis);
+  const auto config = sim::configure_axis<S>(machine.timing, true_drive(axis, mechanics));
   const auto period_ns = sim::fast_period_ns(machine.timing);
   Ticker ticker(period_ns, static_cast<std::uint32_t>(sim::slow_ratio(machine.timing)));
   Axis<S> drive(config);
 
   const double start = trajectory.at(0.0).position;
-  Motor motor(axis.motor, h);
+  Motor motor(axis.motor, mechanics, h);
   Carriage carriage(mechanics, start);
   Encoder encoder(axis.encoder, mechanics.backlash, start);
   GaussMarkov slow(noise.slow_force, noise.slow_force_corner, tick, seed * 8 + 1);
@@ -176,14 +231,15 @@ host::Log record(const sim::Machine& machine, const Mechanics& mechanics, const 
                                      GaussMarkov(noise.phase_current, 3000.0, tick, seed * 8 + 5),
                                      GaussMarkov(noise.phase_current, 3000.0, tick, seed * 8 + 6)};
   Memory current;
-  const auto dead_ticks = static_cast<std::size_t>(std::lround(axis.inverter.dead_time / tick));
-  std::deque<std::array<double, 3>> voltages(dead_ticks, std::array<double, 3>{});
+  Inverter inverter(axis.inverter.dead_time, tick);
 
   host::Log log;
   log.source = trajectory.name() + ".csv";
   log.period = period;
   auto& channels = log.axes.emplace_back();
   channels.axis = axis.name;
+  host::AxisLog second;
+  second.axis = "Y";
   const auto stride = std::lround(period / tick);
   const auto ticks = std::lround(trajectory.duration() / tick);
   AxisSignals<S> signals;
@@ -208,18 +264,19 @@ host::Log record(const sim::Machine& machine, const Mechanics& mechanics, const 
       channels.x_set.push_back(set.position);
       channels.x.push_back(sim::to_si(signals.x));
       channels.i.push_back(recorded);
+      second.x.push_back(1e-9 * std::round(1e9 * other.at(t).position));
     }
-    voltages.push_back(
-        {sim::to_si(command.voltage[0]), sim::to_si(command.voltage[1]), sim::to_si(command.voltage[2])});
-    const auto u = voltages.front();
-    voltages.pop_front();
+    inverter.command({sim::to_si(command.voltage[0]), sim::to_si(command.voltage[1]), sim::to_si(command.voltage[2])});
+    const double acceleration = other.at(t + 0.5 * tick).acceleration;
     const double disturbance = slow.next() + fast.next();
     for (int step = 0; step < steps_per_tick; ++step) {
-      const double force = motor.advance(u, carriage.x(), carriage.v());
-      carriage.advance(force + disturbance, h, t + step * h);
+      const auto u = inverter.acting(step / double{steps_per_tick}, (step + 1) / double{steps_per_tick});
+      const double force = motor.advance(u, carriage.motor_x(), carriage.motor_v());
+      carriage.advance(force, disturbance, acceleration, h, t + step * h);
       encoder.advance(carriage.x(), h);
     }
   }
+  log.axes.push_back(std::move(second));
   return log;
 }
 

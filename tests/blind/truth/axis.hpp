@@ -26,9 +26,18 @@ struct Mechanics {
   double constant_force = 0.0;
   double spring = 0.0, spring_neutral = 0.0;  // N/m, m
   double ripple_pitch = 1.0;
-  std::vector<double> ripple_cosine, ripple_sine;  // N, of the harmonics
-  double backlash = 0.0;                           // m, between carriage and encoder
-  double current_delay = 0.0;                      // s, of the current's record
+  std::vector<double> ripple_cosine, ripple_sine;                    // N, of the harmonics
+  double backlash = 0.0;                                             // m, between carriage and encoder
+  double current_delay = 0.0;                                        // s, of the current's record
+  double force_ratio = 1.0;                                          // true force constant over the file's
+  double saturation_current = 0.0;                                   // A; 0: none
+  double mode_frequency = 0.0, mode_damping = 0.0, mode_load = 0.5;  // Hz (0: none), ratio, share of the mass
+  double other_mass = 0.0;                                           // kg: the other axis' acceleration as force
+  // Of the file: N/A, 1/s, A s/m, s.
+  double force_constant = 0.0;
+  double file_position_gain = 0.0, file_velocity_gain = 0.0, file_velocity_integral_time = 0.0;
+  // True gains and integral times of the drive over the file's.
+  double position_gain = 1.0, velocity_gain = 1.0, velocity_integral_time = 1.0;
 
   // Outside of the vocabulary, or of its first half.
   double bump = 0.0, bump_position = 0.0, bump_width = 1.0;  // N, m, m: a push at one place
@@ -39,14 +48,17 @@ struct Mechanics {
 };
 
 // Runs `trajectory` and records x_set, x, i every `period` s, a multiple of the fast period. One axis: the machine's
-// first, whose motor, encoder, inverter and control are taken from `machine`. Throws std::runtime_error when the drive
-// trips.
+// first, whose motor, encoder, inverter and control are taken from `machine`; beside it the record has the position of
+// a second one, Y, which follows `other` without any error. Throws std::runtime_error when the drive trips.
 host::Log record(const sim::Machine& machine, const Mechanics& mechanics, const Trajectory& trajectory,
-                 const NoiseLevels& noise, double period, std::uint64_t seed);
+                 const Trajectory& other, const NoiseLevels& noise, double period, std::uint64_t seed);
 
 // Residual force of a record against `mechanics` (its mass, viscous friction and contact alone), N, zero-phase 0 to
 // `band` Hz; the band's settling at both ends is cut off.
 std::vector<double> residual_force(const host::Log& log, const Mechanics& mechanics, double force_constant,
                                    double band = 100.0);
+
+// Butterworth of second order, forwards and backwards: no phase, -6 dB at the corner (Hz).
+void zero_phase(std::vector<double>& values, double corner, double period);
 
 }  // namespace stiction::blind

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 namespace stiction::blind {
 namespace {
@@ -85,6 +86,41 @@ AtStrength draw_skew(Random&, const Mechanics&) {
   return [](double x) { return sim::Effect{"time_skew", {{"delay", {1e-4 * x}}}}; };
 }
 
+AtStrength draw_force_constant(Random& random, const Mechanics& file) {
+  return [s = either_sign(random), k = file.force_constant](double x) {
+    return sim::Effect{"force_constant_mismatch", {{"force_constant", {k * (1.0 + 0.005 * s * x)}}}};
+  };
+}
+AtStrength draw_saturation(Random&, const Mechanics&) {
+  return [](double x) { return sim::Effect{"force_saturation", {{"current", {100.0 / std::sqrt(x)}}}}; };
+}
+AtStrength draw_mode(Random& random, const Mechanics&) {
+  // Well enough damped that the velocity loop of this axis does not swing it up.
+  return [d = uniform(random, 0.1, 0.3), r = uniform(random, 0.3, 0.8)](double x) {
+    return sim::Effect{"structural_resonance",
+                       {{"frequency", {400.0 / std::sqrt(x)}}, {"damping_ratio", {d}}, {"mass_ratio", {r}}}};
+  };
+}
+AtStrength draw_coupling(Random& random, const Mechanics&) {
+  return [s = either_sign(random)](double x) { return sim::Effect{"cross_axis_coupling", {{"mass", {3.0 * s * x}}}}; };
+}
+AtStrength draw_gain(Random& random, const Mechanics& file) {
+  const std::array<std::pair<const char*, double>, 3> gains{
+      {{"position_gain", file.file_position_gain},
+       {"velocity_gain", file.file_velocity_gain},
+       {"velocity_integral_time", file.file_velocity_integral_time}}};
+  return [s = either_sign(random), gain = gains[random() % 3]](double x) {
+    return sim::Effect{"controller_gain_mismatch", {{gain.first, {gain.second * (1.0 + 0.01 * s * x)}}}};
+  };
+}
+void change_gains(const sim::Effect& e, Mechanics& m) {
+  for (const auto& [key, values] : e.values) {
+    if (key == "position_gain") m.position_gain = values.front() / m.file_position_gain;
+    if (key == "velocity_gain") m.velocity_gain = values.front() / m.file_velocity_gain;
+    if (key == "velocity_integral_time") m.velocity_integral_time = values.front() / m.file_velocity_integral_time;
+  }
+}
+
 AtStrength draw_bump(Random& random, const Mechanics&) {
   return [s = either_sign(random), x0 = uniform(random, -0.05, 0.08), w = uniform(random, 0.003, 0.008)](double x) {
     return sim::Effect{"push_at_one_place", {{"force", {8.0 * s * x}}, {"position", {x0}}, {"width", {w}}}};
@@ -121,7 +157,7 @@ void scale_contact(Mechanics& m, double ratio) {
 using E = const sim::Effect&;
 using M = Mechanics&;
 
-constexpr std::array<Hideable, 17> table{{
+constexpr std::array<Hideable, 22> table{{
     {"mass_mismatch", true, "", draw_mass, [](E e, M m) { m.mass = value(e, "mass"); }},
     {"coulomb_mismatch", true, "", draw_coulomb,
      [](E e, M m) { scale_contact(m, value(e, "coulomb") / coulomb_of(m)); }},
@@ -144,6 +180,16 @@ constexpr std::array<Hideable, 17> table{{
      }},
     {"backlash", true, "", draw_backlash, [](E e, M m) { m.backlash = value(e, "width"); }},
     {"time_skew", true, "", draw_skew, [](E e, M m) { m.current_delay = value(e, "delay"); }},
+    {"force_constant_mismatch", true, "", draw_force_constant,
+     [](E e, M m) { m.force_ratio = value(e, "force_constant") / m.force_constant; }},
+    {"force_saturation", true, "", draw_saturation, [](E e, M m) { m.saturation_current = value(e, "current"); }},
+    {"structural_resonance", true, "", draw_mode,
+     [](E e, M m) {
+       m.mode_frequency = value(e, "frequency");
+       m.mode_damping = value(e, "damping_ratio"), m.mode_load = value(e, "mass_ratio");
+     }},
+    {"cross_axis_coupling", true, "", draw_coupling, [](E e, M m) { m.other_mass = value(e, "mass"); }},
+    {"controller_gain_mismatch", true, "", draw_gain, change_gains, true},
     {"push_at_one_place", false, "", draw_bump,
      [](E e, M m) {
        m.bump = value(e, "force"), m.bump_position = value(e, "position"), m.bump_width = value(e, "width");

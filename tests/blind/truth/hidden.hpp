@@ -22,6 +22,7 @@ struct Hideable {
   const char* accepted;
   AtStrength (*draw)(Random&, const Mechanics& file);
   void (*apply)(const sim::Effect&, Mechanics&);
+  bool in_command = false;  // shows in the command residual, not in the residual force
 };
 
 std::span<const Hideable> hideables();

@@ -79,6 +79,10 @@ std::vector<Case> cases() {
       {"friction_asymmetry", {.force = [](const Point& p) { return 60.0 * std::abs(p.v); }}, "viscous", 60.0, 0.2});
   all.push_back({"presliding_hysteresis", {.contact_length = 8e-4}, "distance", 8e-4 * std::log(10.0), 0.2});
   all.push_back({"time_skew", {.delay = 1e-3}, "delay", 1e-3, 0.05});
+  // What scales mass, Coulomb and viscous friction together is one cause, not three.
+  all.push_back({"force_constant_mismatch", {.force_constant = 91.5}, "force_constant", 91.5, 0.005});
+  all.push_back({"force_saturation", {.saturation_current = 12.0}, "current", 12.0, 0.2});
+  all.push_back({"cross_axis_coupling", {.other_mass = 6.0}, "mass", 6.0, 0.05});
   return all;
 }
 
@@ -103,6 +107,14 @@ TEST(Diagnosis, says_that_a_constant_force_may_be_an_asymmetry) {
   const auto& others = verdict.findings.front().confused_with;
   EXPECT_TRUE(
       std::any_of(others.begin(), others.end(), [](const auto& c) { return c.effect == "friction_asymmetry"; }));
+}
+
+TEST(Diagnosis, says_that_a_force_constant_may_be_mass_and_friction_together) {
+  const auto verdict = verdict_of({.force_constant = 91.5}, 3);
+  ASSERT_FALSE(verdict.findings.empty());
+  const auto& others = verdict.findings.front().confused_with;
+  for (const char* part : {"mass_mismatch", "coulomb_mismatch", "viscous_mismatch"})
+    EXPECT_TRUE(std::any_of(others.begin(), others.end(), [&](const auto& c) { return c.effect == part; })) << part;
 }
 
 std::string refusal(const host::DiagnoseInput& input) {

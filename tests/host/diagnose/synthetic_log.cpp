@@ -30,6 +30,22 @@ double speed_at(int trajectory, double t) {
          0.02 * std::sin(2.0 * pi * 1.9 * t);
 }
 
+// Position of the other axis and its acceleration.
+struct Other {
+  double x, a;
+};
+Other other_at(double t) {
+  constexpr double pi = std::numbers::pi, first = 2.0 * pi * 0.53, second = 2.0 * pi * 2.1;
+  return {0.06 * std::sin(first * t + 0.4) + 0.006 * std::sin(second * t),
+          -0.06 * first * first * std::sin(first * t + 0.4) - 0.006 * second * second * std::sin(second * t)};
+}
+
+// Current for a force (N).
+double current_of(const Hidden& hidden, double force) {
+  if (hidden.saturation_current <= 0.0) return force / hidden.force_constant;
+  return hidden.saturation_current * std::atanh(force / (hidden.force_constant * hidden.saturation_current));
+}
+
 }  // namespace
 
 sim::Machine bench_machine() {
@@ -66,15 +82,17 @@ host::Log synthetic_log(int trajectory, const Hidden& hidden, double noise_rms, 
     z = sign + (z - sign) * std::exp(-std::abs(moved) / hidden.contact_length);
     measured = std::clamp(measured, x - 0.5 * hidden.lost_motion, x + 0.5 * hidden.lost_motion);
     const Point point{t, x, v, a, z};
-    force.push_back(hidden.mass * a + hidden.coulomb * z + hidden.viscous * v +
+    force.push_back(hidden.mass * a + hidden.coulomb * z + hidden.viscous * v - hidden.other_mass * other_at(t).a +
                     (hidden.force ? hidden.force(point) : 0.0));
     position.push_back(measured);
   }
   host::Log log;
   log.source = "trajectory " + std::to_string(trajectory);
   log.period = period;
-  log.axes.emplace_back();
+  log.axes.resize(2);
+  log.axes[1].axis = "Y";
   auto& axis = log.axes.front();
+  axis.axis = "X";
   const auto ratio = static_cast<int>(std::lround(period / fine));
   const auto late = static_cast<int>(std::lround(hidden.delay / fine));
   double noise = noise_rms * normal(random);
@@ -83,7 +101,8 @@ host::Log synthetic_log(int trajectory, const Hidden& hidden, double noise_rms, 
     noise = keep * noise + noise_rms * std::sqrt(1.0 - keep * keep) * normal(random);
     log.t.push_back(k * fine);
     axis.x.push_back(1e-9 * std::round(1e9 * position[static_cast<std::size_t>(k)]));
-    axis.i.push_back((force[static_cast<std::size_t>(std::clamp(k - late, 0, steps - 1))] + noise) / force_constant);
+    log.axes[1].x.push_back(1e-9 * std::round(1e9 * other_at(k * fine).x));
+    axis.i.push_back(current_of(hidden, force[static_cast<std::size_t>(std::clamp(k - late, 0, steps - 1))] + noise));
   }
   return log;
 }

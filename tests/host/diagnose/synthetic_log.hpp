@@ -25,9 +25,13 @@ struct Hidden {
   std::function<double(const Point&)> force{};           // N, what the motor must give besides; none: nothing
   double delay = 0.0;                                    // s, of the recorded current
   double lost_motion = 0.0;                              // m
+  double force_constant = 94.0;                          // N/A, true value
+  double saturation_current = 0.0;                       // A; 0: none
+  double other_mass = 0.0;                               // kg: the other axis' acceleration pushes towards +x
 };
 
-// `trajectory` 0, 1, 2: constant speeds both ways, sines of several periods, steps of several lengths.
+// `trajectory` 0, 1, 2: constant speeds both ways, sines of several periods, steps of several lengths. The log has a
+// second axis, which swings on its own.
 host::Log synthetic_log(int trajectory, const Hidden& hidden, double noise_rms, std::uint64_t seed);
 
 }  // namespace stiction::test

@@ -54,7 +54,8 @@ TEST(EffectsFile, AnUnknownNameListsTheNamesAndTheNearest) {
       message.starts_with("FILE:30: axis.B.effect[0].name: found \"force_riple\"; expected an effect: "
                           "\"mass_mismatch\", \"coulomb_mismatch\", "))
       << message;
-  EXPECT_NE(message.find("\"backlash\" or \"time_skew\"; did you mean \"force_ripple\"?"), std::string::npos);
+  EXPECT_NE(message.find("\"cross_axis_coupling\" or \"controller_gain_mismatch\"; did you mean \"force_ripple\"?"),
+            std::string::npos);
   EXPECT_TRUE(error_of_effect("width = \"2 um\"\n")
                   .starts_with("FILE:29: axis.B.effect[0].name: found no such key; expected a text"));
   EXPECT_TRUE(error_of_effect("name = 3\n").starts_with("FILE:30: axis.B.effect[0].name: found 3; expected a text"));
@@ -138,8 +139,14 @@ TEST(EffectKinds, HaveTheNamesKeysAndSuffixesOfTheVocabulary) {
             "constant_force: force_N\n"
             "position_spring: stiffness_N_per_m neutral_m\n"
             "force_ripple: pitch_m cosine_N[] sine_N[]\n"
+            "force_constant_mismatch: force_constant_N_per_A\n"
+            "force_saturation: current_A\n"
             "backlash: width_m\n"
-            "time_skew: delay_s loop_delay_s\n");
+            "structural_resonance: frequency_Hz damping_ratio mass_ratio\n"
+            "time_skew: delay_s loop_delay_s\n"
+            "cross_axis_coupling: mass_kg\n"
+            "controller_gain_mismatch: position_gain_per_s velocity_gain_A_s_per_m velocity_integral_time_s "
+            "current_gain_V_per_A current_integral_time_s\n");
   EXPECT_EQ(unit_suffix("1"), "");
   EXPECT_EQ(unit_suffix("1/s"), "_per_s");
   EXPECT_EQ(unit_suffix("m/s^2"), "_m_per_s2");
@@ -184,7 +191,7 @@ TEST(ExtendedMachine, KeepsTheTextAndReadsBackWithTheEffects) {
 
 TEST(ExtendedMachine, ContinuesTheEffectsOfTheFileWhicheverWayTheyAreWritten) {
   for (const std::string before : {"[[axis.B.effect]]\nname = \"constant_force\"\nforce = \"1 N\"\n",
-                                    "[axis.B]\neffect = [{ name = \"constant_force\", force = \"1 N\" }]\n"}) {
+                                   "[axis.B]\neffect = [{ name = \"constant_force\", force = \"1 N\" }]\n"}) {
     const bool in_one_line = before.starts_with("[axis");
     const std::string text = in_one_line ? replaced(small_machine, "[axis.B]\n", before) : small_machine + before;
     const MachineFileOnDisk file(text);
@@ -223,6 +230,12 @@ TEST(ExtendedMachine, RefusesUnknownAxesAndEffects) {
   EXPECT_THROW(extended_machine(file.path(), {}, two, {}), EffectError);
   const std::vector<AxisEffects> stranger{{"B", {effect("backlash", {{"width", {1e-6}}, {"force", {1.0}}})}}};
   EXPECT_THROW(extended_machine(file.path(), {}, stranger, {}), EffectError);
+}
+
+TEST(ExtendedMachine, WritesOnlyTheOptionalKeysThatAreGivenAndVoltsForAForceSource) {
+  const std::string text = effect_table("X", effect("controller_gain_mismatch", {{"velocity_gain", {3.0}}}), true);
+  EXPECT_NE(text.find("velocity_gain = \"3 V s/m\""), std::string::npos) << text;
+  EXPECT_EQ(text.find("position_gain"), std::string::npos) << text;
 }
 
 TEST(ExtendedMachine, TheShippedMachinesTakeEveryEffect) {

@@ -1,0 +1,372 @@
+#include "host/diagnose/command_residual.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/diagnose/command_replay.hpp"
+#include "host/diagnose/evidence.hpp"
+#include "host/diagnose/fisher.hpp"
+#include "host/diagnose/holdout.hpp"
+#include "host/identify/filter.hpp"
+#include "host/identify/identification.hpp"
+#include "sim/control/double_signals.hpp"
+#include "sim/plant/effects/effects.hpp"
+#include "stiction/number/fixed_signals.hpp"
+
+namespace stiction::host {
+namespace {
+
+constexpr double significance = 0.01;  // over the number of parameters
+constexpr double least_gain = 0.01;    // of the cross-validated residual
+// Slower than this the residual is the integrator's, which adds up the position quantizer's rounding and does not know
+// where the record began.
+constexpr double slowest = 1.0;  // Hz
+// The rest of a command that is another controller's, over the command itself.
+constexpr double foreign = 0.3;
+constexpr int refinements = 2;
+
+using Places = std::vector<std::size_t>;  // of command_parameters()
+
+// The records' commands in the rows of the residual force, without what is slower than `slowest`.
+class Commands {
+ public:
+  Commands(const CommandRecords& records, const sim::Timing& timing, const sim::Axis& axis, double record_delay)
+      : records_(records), timing_(timing), axis_(axis) {
+    std::vector<std::vector<double>> logged;
+    for (const auto& log : records.logs) {
+      const auto& channels = channels_of(log, axis);
+      auto values = channels.*(recorded_command(channels, axis)->values);
+      logged.push_back(earlier(values, record_delay / log.period));
+    }
+    logged_ = rows_of(logged);
+  }
+
+  const LogRows& rows() const { return records_.rows; }
+  const Eigen::VectorXd& logged() const { return logged_; }
+  template <class S>
+  Eigen::VectorXd replayed(const sim::Axis& axis) const {
+    std::vector<std::vector<double>> all;
+    for (const auto& log : records_.logs) all.push_back(replay_command<S>(timing_, axis, log, channels_of(log, axis_)));
+    return rows_of(all);
+  }
+  // What the command changes by with each parameter, per its unit. In doubles: the drive's rounding has no slope.
+  std::vector<Eigen::VectorXd> slopes(const sim::Axis& axis, const Places& places) const {
+    std::vector<Eigen::VectorXd> all;
+    const auto base = replayed<sim::DoubleSignals>(axis);
+    for (const auto place : places) {
+      const auto& parameter = command_parameters()[place];
+      const double step = parameter.step(axis, timing_);
+      auto changed = axis;
+      parameter.set(changed, *parameter.value(axis) + step);
+      all.push_back((replayed<sim::DoubleSignals>(changed) - base) / step);
+    }
+    return all;
+  }
+
+ private:
+  static std::vector<double> earlier(const std::vector<double>& values, double samples) {
+    if (samples == 0.0) return values;
+    std::vector<double> moved(values.size());
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      const double place = std::clamp(static_cast<double>(k) + samples, 0.0, static_cast<double>(values.size() - 1));
+      const auto before = std::min(static_cast<std::size_t>(place), values.size() - 2);
+      moved[k] = values[before] + (values[before + 1] - values[before]) * (place - static_cast<double>(before));
+    }
+    return moved;
+  }
+  Eigen::VectorXd rows_of(const std::vector<std::vector<double>>& columns) const {
+    const auto& rows = records_.rows;
+    Eigen::VectorXd all = rows.stacked(
+        [&](const Motion& motion) { return columns[static_cast<std::size_t>(&motion - rows.motions().data())]; });
+    for (std::size_t k = 0; k < rows.logs().size(); ++k) {
+      const std::size_t begin = rows.logs()[k];
+      const std::size_t end = k + 1 < rows.logs().size() ? rows.logs()[k + 1] : static_cast<std::size_t>(all.size());
+      const std::span<double> own(all.data() + begin, end - begin);
+      const auto lowpass = butterworth(2, std::min(2.0 * slowest * rows.period(k), 0.5));
+      const auto slow = filter_both_ways(lowpass, own, own.size() / 4);
+      for (std::size_t i = 0; i < own.size(); ++i) own[i] -= slow[i];
+    }
+    return all;
+  }
+
+  const CommandRecords& records_;
+  const sim::Timing& timing_;
+  const sim::Axis& axis_;
+  Eigen::VectorXd logged_;
+};
+
+struct CommandTerm {
+  std::size_t place;
+  double value = 0.0, deviation = 0.0;
+  double explains = 0.0, p_value = 1.0;
+};
+
+double rms(const Eigen::VectorXd& v) { return std::sqrt(v.squaredNorm() / static_cast<double>(v.size())); }
+
+sim::Axis with_terms(sim::Axis axis, const std::vector<CommandTerm>& terms, const char* without = "") {
+  for (const auto& term : terms)
+    if (const auto& p = command_parameters()[term.place]; std::string_view(p.effect) != without)
+      p.set(axis, term.value);
+  return axis;
+}
+
+// Which parameters the target needs: the best that stands is added, those that stand no longer are dropped.
+class Selection {
+ public:
+  Selection(const Eigen::VectorXd& target, const LogRows& rows, Places places, std::vector<Eigen::VectorXd> columns)
+      : places_(std::move(places)), evidence_(target, blocks_for(target, rows)) {
+    evidence_.add(columns);
+  }
+
+  // Indices of columns.
+  ColumnIndices run() {
+    ColumnIndices chosen;
+    while (grow(chosen))
+      while (drop(chosen)) continue;
+    return chosen;
+  }
+  double p_value(const ColumnIndices& chosen, std::size_t term) const {
+    const auto fit = evidence_.fit(chosen);
+    const auto i = static_cast<Eigen::Index>(term);
+    const double variance = evidence_.covariance(chosen, fit.weights)(i, i);
+    const double t = fit.weights[i] / std::sqrt(std::max(variance, 1e-300));
+    const double freedom = std::max(evidence_.bearing_blocks({chosen[term]}, fit.weights.segment(i, 1)) - 1.0, 2.0);
+    return student_tails(t, freedom);
+  }
+  double explains(const ColumnIndices& chosen, std::size_t term) const {
+    return (evidence_.fit(without(chosen, term)).left - evidence_.fit(chosen).left) / evidence_.total();
+  }
+  const Evidence& evidence() const { return evidence_; }
+  std::size_t place(Eigen::Index column) const { return places_[static_cast<std::size_t>(column)]; }
+
+ private:
+  static std::vector<RowBlock> blocks_for(const Eigen::VectorXd& target, const LogRows& rows) {
+    const auto n = static_cast<double>(rows.rows());
+    const double correlation = std::min(correlation_length(target, rows.logs()), 0.1 / rows.period(0));
+    return blocks_of(rows.velocity, rows.logs(),
+                     static_cast<std::size_t>(std::clamp(6.0 * correlation, n / 100.0, n / 30.0)) + 1);
+  }
+  static ColumnIndices without(ColumnIndices chosen, std::size_t term) {
+    chosen.erase(chosen.begin() + static_cast<std::ptrdiff_t>(term));
+    return chosen;
+  }
+  bool stands(const ColumnIndices& chosen, std::size_t term) const {
+    if (!(p_value(chosen, term) < significance / static_cast<double>(command_parameters().size()))) return false;
+    const auto before = evidence_.held_out(without(chosen, term)), after = evidence_.held_out(chosen);
+    std::vector<double> gains(before.size());
+    double total = 0.0, gained = 0.0;
+    for (std::size_t k = 0; k < gains.size(); ++k) {
+      gained += gains[k] = before[k] - after[k];
+      total += before[k];
+    }
+    // Not the doing of one odd event.
+    const double most = *std::max_element(gains.begin(), gains.end());
+    if (!(gained > least_gain * total && gained - most > 0.2 * gained)) return false;
+    std::vector<bool> half(evidence_.blocks());
+    const double whole = evidence_.fit(chosen).weights[static_cast<Eigen::Index>(term)];
+    for (const bool first : {true, false}) {
+      for (std::size_t k = 0; k < half.size(); ++k) half[k] = (k < half.size() / 2) == first;
+      if (evidence_.fit(chosen, half).weights[static_cast<Eigen::Index>(term)] * whole < 0.0) return false;
+    }
+    return true;
+  }
+  bool grow(ColumnIndices& chosen) const {
+    Eigen::Index best = -1;
+    double least = evidence_.fit(chosen).left;
+    for (std::size_t k = 0; k < places_.size(); ++k) {
+      auto trial = chosen;
+      const auto column = static_cast<Eigen::Index>(k);
+      if (std::find(chosen.begin(), chosen.end(), column) != chosen.end()) continue;
+      trial.push_back(column);
+      if (const double left = evidence_.fit(trial).left; left < least && stands(trial, trial.size() - 1)) {
+        least = left;
+        best = column;
+      }
+    }
+    if (best < 0) return false;
+    chosen.push_back(best);
+    return true;
+  }
+  bool drop(ColumnIndices& chosen) const {
+    for (std::size_t k = 0; k + 1 < chosen.size(); ++k)
+      if (!stands(chosen, k)) {
+        chosen = without(chosen, k);
+        return true;
+      }
+    return false;
+  }
+
+  Places places_;
+  Evidence evidence_;
+};
+
+Selection select(const Commands& commands, const sim::Axis& axis, const Eigen::VectorXd& target, const Places& places) {
+  return {target, commands.rows(), places, commands.slopes(axis, places)};
+}
+
+// The chosen parameters' values by replays around them.
+std::vector<CommandTerm> refined(const Commands& commands, const sim::Axis& axis, const Selection& selection,
+                                 const ColumnIndices& chosen) {
+  std::vector<CommandTerm> terms;
+  Places places;
+  if (chosen.empty()) return terms;
+  const auto fit = selection.evidence().fit(chosen);
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    places.push_back(selection.place(chosen[k]));
+    const double value = *command_parameters()[places[k]].value(axis);
+    terms.push_back({places[k], value + fit.weights[static_cast<Eigen::Index>(k)], 0.0, selection.explains(chosen, k),
+                     selection.p_value(chosen, k)});
+  }
+  for (int round = 0; round < refinements; ++round) {
+    for (auto& term : terms) {
+      // A step may not leave the range in which the slope says anything.
+      const double file = *command_parameters()[term.place].value(axis);
+      if (file > 0.0) term.value = std::clamp(term.value, 0.2 * file, 5.0 * file);
+      if (file == 0.0) term.value = std::max(term.value, 0.0);
+    }
+    const auto at = with_terms(axis, terms);
+    const auto local = select(commands, at, commands.logged() - commands.replayed<FixedSignals>(at), places);
+    ColumnIndices all;
+    for (std::size_t k = 0; k < places.size(); ++k) all.push_back(static_cast<Eigen::Index>(k));
+    const auto step = local.evidence().fit(all).weights;
+    const auto covariance = local.evidence().covariance(all, step);
+    for (std::size_t k = 0; k < terms.size(); ++k) {
+      const auto i = static_cast<Eigen::Index>(k);
+      terms[k].value += step[i];
+      terms[k].deviation = std::sqrt(covariance(i, i));
+    }
+  }
+  return terms;
+}
+
+Finding finding_of(const sim::Axis& file, const char* effect, const std::vector<CommandTerm>& terms) {
+  Finding finding;
+  finding.axis = file.name;
+  finding.in_command = true;
+  finding.effect.name = effect;
+  for (const auto& known : file.effects)
+    if (known.name == effect) finding.effect.values = known.values;
+  const bool force_motor = file.motor.model == sim::MotorModel::force;
+  for (const auto& term : terms) {
+    const auto& p = command_parameters()[term.place];
+    if (std::string_view(p.effect) != effect) continue;
+    finding.effect.values[p.key] = {term.value};
+    finding.parameters.push_back(
+        {std::string(p.key) + (force_motor ? p.force_motor_suffix : p.suffix), {term.value}, {term.deviation}});
+    finding.explains += term.explains;
+    finding.p_value = std::min(finding.p_value, term.p_value);
+  }
+  return finding;
+}
+
+bool usable(const CommandRecords& records, const sim::Axis& axis) {
+  return std::all_of(records.logs.begin(), records.logs.end(),
+                     [&](const Log& log) { return recorded_command(channels_of(log, axis), axis).has_value(); });
+}
+
+// The current's record that is late looks like a delay in the loop, but shows in the residual force too.
+bool is_record_delay(const RecordDelay& delay, double loop_delay) {
+  return std::abs(delay.estimate) > 2.0 * delay.deviation &&
+         std::abs(delay.estimate - loop_delay) < std::abs(delay.estimate);
+}
+
+void judge_held_out(Verdict& verdict, std::vector<Finding>& findings, const Commands& held_out, const sim::Axis& axis,
+                    const std::vector<CommandTerm>& terms, std::uint64_t seed) {
+  const auto residual_with = [&](const sim::Axis& each) {
+    return Eigen::VectorXd(held_out.logged() - held_out.replayed<FixedSignals>(each));
+  };
+  const auto before = residual_with(axis);
+  verdict.baseline.command_rms = rms(before);
+  if (axis.motor.model == sim::MotorModel::force) verdict.command_unit = "V";
+  verdict.extended.command_rms = verdict.baseline.command_rms;
+  if (findings.empty()) return;
+  const auto after = residual_with(with_terms(axis, terms));
+  verdict.extended.command_rms = rms(after);
+  for (auto& finding : findings) {
+    const auto other =
+        findings.size() == 1 ? before : residual_with(with_terms(axis, terms, finding.effect.name.c_str()));
+    finding.holdout.command_rms_ratio = rms(after) / rms(other);
+    finding.holdout.ci95 = ratio_interval(after, other, held_out.rows(), seed);
+  }
+}
+
+void find_and_judge(Verdict& verdict, const DiagnoseInput& input, const CommandRecords& training,
+                    const CommandRecords& held_out, const RecordDelay& delay, const sim::Axis& axis) {
+  const auto& file = input.machine.axes[input.axis];
+  const auto& timing = input.machine.timing;
+  const Commands commands(training, timing, axis, delay.found), held(held_out, timing, axis, delay.found);
+  const Eigen::VectorXd target = commands.logged() - commands.replayed<FixedSignals>(axis);
+
+  Places places;
+  for (std::size_t k = 0; k < command_parameters().size(); ++k)
+    if (command_parameters()[k].value(axis)) places.push_back(k);
+  auto selection = select(commands, axis, target, places);
+  const auto chosen = selection.run();
+  auto terms = refined(commands, axis, selection, chosen);
+  const Eigen::VectorXd left =
+      terms.empty() ? target : commands.logged() - commands.replayed<FixedSignals>(with_terms(axis, terms));
+  if (rms(left) > foreign * rms(commands.logged())) {
+    verdict.notes.push_back(fmt::format(
+        "The recorded command is not what this controller gives for the recorded set-points and positions, whatever "
+        "its gains: {:.0f} % of its rms above {:g} Hz remain. Controller, filters or set-points of the drive are not "
+        "those of the machine file; its gains were not judged.",
+        100.0 * rms(left) / rms(commands.logged()), slowest));
+    return;
+  }
+  std::erase_if(terms, [&](const CommandTerm& term) {
+    const auto& p = command_parameters()[term.place];
+    if (std::string_view(p.key) != "loop_delay") return false;
+    return term.value - *p.value(axis) <= 0.0 || is_record_delay(delay, term.value - *p.value(axis));
+  });
+
+  std::vector<Finding> findings;
+  for (const char* effect : {"controller_gain_mismatch", "time_skew"})
+    if (std::any_of(terms.begin(), terms.end(), [&](const CommandTerm& t) {
+          return std::string_view(command_parameters()[t.place].effect) == effect;
+        }))
+      findings.push_back(finding_of(file, effect, terms));
+  judge_held_out(verdict, findings, held, axis, terms, input.seed);
+  for (auto& finding : findings) {
+    if (*finding.holdout.command_rms_ratio >= 1.0) {
+      verdict.rejected.push_back({finding.effect.name,
+                                  "withdrawn: found in the training data's command residual, but "
+                                  "no gain on held-out data"});
+      continue;
+    }
+    finding.evidence = fmt::format(
+        "It takes {:.1f} % of the command residual's variance away (recorded command less what the file's controller "
+        "gives for the recorded set-points and positions); in the residual force it leaves nothing.",
+        100.0 * finding.explains);
+    const auto same = std::find_if(verdict.findings.begin(), verdict.findings.end(),
+                                   [&](const Finding& f) { return f.effect.name == finding.effect.name; });
+    if (same == verdict.findings.end()) {
+      verdict.findings.push_back(std::move(finding));
+      continue;
+    }
+    // A delay of the record and one of the loop are keys of one effect.
+    same->effect.values.merge(finding.effect.values);
+    same->effect.values["loop_delay"] = {finding.parameters.front().values};
+    same->parameters.insert(same->parameters.end(), finding.parameters.begin(), finding.parameters.end());
+    same->evidence += " " + finding.evidence;
+  }
+  std::stable_sort(verdict.findings.begin(), verdict.findings.end(),
+                   [](const Finding& a, const Finding& b) { return a.explains > b.explains; });
+}
+
+}  // namespace
+
+void judge_command(Verdict& verdict, const DiagnoseInput& input, const CommandRecords& training,
+                   const CommandRecords& held_out, const RecordDelay& delay) {
+  auto axis = sim::drive_axis(input.machine.axes[input.axis]);
+  std::erase_if(axis.effects, [](const sim::Effect& effect) { return effect.name == "controller_gain_mismatch"; });
+  if (!usable(training, axis) || !usable(held_out, axis)) return;
+  try {
+    find_and_judge(verdict, input, training, held_out, delay, axis);
+  } catch (const LogError& error) {
+    verdict.notes.push_back(fmt::format("The drive's gains were not judged: {}.", error.what()));
+  }
+}
+
+}  // namespace stiction::host

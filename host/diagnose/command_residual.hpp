@@ -1,0 +1,44 @@
+// The second residual: what the drive commanded, less what the file's controller gives for the recorded set-points and
+// positions (command_replay.hpp). A wrong gain or integral time and a delay in the loop show here and leave nothing in
+// the residual force. Their regressors are differences of such replays with one parameter changed; selection as in
+// search.hpp, then Gauss-Newton on the replay itself.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "host/diagnose/diagnose.hpp"
+#include "host/identify/log_rows.hpp"
+
+namespace stiction::host {
+
+// A parameter of the drive or its loop that may differ. One row each in effects/controller_gain_mismatch.cpp.
+struct CommandParameter {
+  const char* effect;  // the cause that it belongs to
+  const char* key;
+  const char* suffix;                                // of the unit, in verdict.json
+  const char* force_motor_suffix;                    // with a motor that is a force source
+  std::optional<double> (*value)(const sim::Axis&);  // SI; none: this axis has no such parameter
+  void (*set)(sim::Axis&, double);
+  double (*step)(const sim::Axis&, const sim::Timing&);  // for the difference, SI
+};
+std::span<const CommandParameter> command_parameters();
+
+// Records of one kind with their rows.
+struct CommandRecords {
+  std::span<const Log> logs;
+  const LogRows& rows;
+};
+
+// By how much the current came late in the records (s) as the residual force says, with its standard error.
+struct RecordDelay {
+  double found = 0.0;     // named by the residual force's search; taken out
+  double estimate = 0.0;  // of what its residual still has
+  double deviation = 0.0;
+};
+
+// Adds findings and the figures of the command residual to the verdict, where all records have what it takes.
+void judge_command(Verdict& verdict, const DiagnoseInput& input, const CommandRecords& training,
+                   const CommandRecords& held_out, const RecordDelay& delay);
+
+}  // namespace stiction::host

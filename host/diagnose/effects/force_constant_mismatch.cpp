@@ -1,0 +1,33 @@
+// Force constant, or the scale of the current: where the true one is K, the logged current times the file's K_file is
+// the expected force times K_file / K. The column is the expected force, which has none of the current's noise; to
+// mass, Coulomb and viscous friction it is their common scale.
+#include <cmath>
+
+#include "host/diagnose/candidate.hpp"
+#include "host/diagnose/inverse_dynamics.hpp"
+
+namespace stiction::host::effects {
+namespace {
+
+// A logged force says nothing of the current.
+std::vector<double> grid(const Scene& scene) {
+  return scene.force_is_current ? std::vector{0.0} : std::vector<double>{};
+}
+Columns columns(const Scene& scene, const Motion& motion, double) { return {force_along(scene.axis, motion)}; }
+bool possible(const Scene&, double, const Eigen::VectorXd& w) { return w[0] > -0.9; }
+void describe(const Scene& scene, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
+  const double constant = scene.axis.motor.force_constant / (1.0 + w[0]);
+  add_key(finding, "force_constant", scene.axis.motor.model == sim::MotorModel::force ? "_N_per_V" : "_N_per_A",
+          {constant}, {std::sqrt(c(0, 0)) * constant / (1.0 + w[0])});
+}
+
+}  // namespace
+
+const Candidate force_constant_mismatch{.name = "force_constant_mismatch",
+                                        .grid = grid,
+                                        .columns = columns,
+                                        .possible = possible,
+                                        .describe = describe,
+                                        .names_coulomb = true};
+
+}  // namespace stiction::host::effects

@@ -1,0 +1,54 @@
+// Force that grows less than the current, F = K I_s tanh(I / I_s): for the expected force F the motor needs the current
+// of K I_s artanh(F / (K I_s)), which is F and to lowest order F^3 / (3 (K I_s)^2) more. The column is that surplus
+// over 1 / (K I_s)^2, so that at the true I_s the weight is 1 / (K I_s)^2 itself.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "host/diagnose/candidate.hpp"
+#include "host/diagnose/inverse_dynamics.hpp"
+
+namespace stiction::host::effects {
+namespace {
+
+// By the highest expected force over K I_s; more is a motor that has no force left.
+constexpr std::array reached{0.15, 0.5, 0.75, 0.9, 0.97};
+
+std::vector<double> grid(const Scene& scene) {
+  std::vector<double> values;
+  if (!scene.force_is_current || scene.highest_force <= 0.0) return values;
+  for (const double part : reached) values.push_back(std::pow(part / scene.highest_force, 2));
+  return values;
+}
+Columns columns(const Scene& scene, const Motion& motion, double softness) {
+  const double limit = 1.0 / std::sqrt(std::max(softness, 1e-20));
+  auto column = force_along(scene.axis, motion);
+  for (double& f : column) {
+    const double part = std::clamp(f / limit, -0.99, 0.99);
+    f = limit * limit * limit * (std::atanh(part) - part);
+  }
+  return {column};
+}
+// A curve of another bend than the weight's does not describe it; a weak bend is the cube whatever its size.
+bool possible(const Scene& scene, double softness, const Eigen::VectorXd& w) {
+  if (w[0] <= 0.0) return false;
+  const double part = std::sqrt(w[0]) * scene.highest_force;
+  const bool weak = std::sqrt(softness) * scene.highest_force < 0.2;
+  return part < 1.0 && (weak ? part < 0.4 : w[0] / softness > 0.4 && w[0] / softness < 2.5);
+}
+void describe(const Scene& scene, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
+  const double current = 1.0 / (std::sqrt(w[0]) * scene.axis.motor.force_constant);
+  add_key(finding, "current", scene.axis.motor.model == sim::MotorModel::force ? "_V" : "_A", {current},
+          {0.5 * current / w[0] * std::sqrt(c(0, 0))});
+}
+
+}  // namespace
+
+const Candidate force_saturation{.name = "force_saturation",
+                                 .grid = grid,
+                                 .columns = columns,
+                                 .possible = possible,
+                                 .describe = describe,
+                                 .at_weight = true};
+
+}  // namespace stiction::host::effects

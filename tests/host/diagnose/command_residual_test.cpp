@@ -1,0 +1,157 @@
+// The command residual: records of a drive with other gains than the file's, its control and the carriage by arithmetic
+// of the test's own.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "host/diagnose/command_replay.hpp"
+#include "host/diagnose/diagnose.hpp"
+#include "stiction/number/fixed_signals.hpp"
+#include "tests/support/figure.hpp"
+
+namespace stiction::test {
+namespace {
+
+constexpr double tick = 62.5e-6, period = 1e-3, duration = 20.0;  // s
+constexpr int ratio = 16;
+
+struct Gains {
+  double position = 80.0, velocity = 300.0, integral_time = 8e-3;  // 1/s, V s/m, s
+};
+
+// A force source of 10 N/V that moves 50 kg against 20 N and 100 N s/m.
+sim::Machine force_machine() {
+  sim::Machine machine;
+  machine.name = machine.id = "bench";
+  sim::Axis axis;
+  axis.name = "X";
+  axis.mass = 50.0;
+  axis.travel = 1.0;
+  axis.max_velocity = 1.0;
+  axis.max_acceleration = 20.0;
+  axis.motor.model = sim::MotorModel::force;
+  axis.motor.force_constant = 10.0;
+  axis.inverter.voltage_limit = 300.0;
+  axis.encoder.velocity = sim::VelocitySource::ideal;
+  axis.position_controller.gain = Gains{}.position;
+  axis.velocity_controller = {Gains{}.velocity, Gains{}.integral_time};
+  axis.feedforward = {1.0, 1.0};
+  axis.friction.use = "coulomb_viscous";
+  axis.friction.models["coulomb_viscous"] = sim::CoulombViscous::Parameters{20.0, 100.0};
+  machine.axes = {axis};
+  return machine;
+}
+
+struct Set {
+  double x, v, a;
+};
+Set set_at(double t, double shift) {
+  constexpr double pi = std::numbers::pi;
+  Set set{};
+  // From rest: what a record begins with in motion is not what is tested here.
+  const auto add = [&](double amplitude, double frequency) {
+    const double w = 2.0 * pi * frequency;
+    set.x += amplitude * (1.0 - std::cos(w * t));
+    set.v += amplitude * w * std::sin(w * t);
+    set.a += amplitude * w * w * std::cos(w * t);
+  };
+  add(0.06, 0.31 + 0.07 * shift);
+  add(0.01, 1.13 - 0.2 * shift);
+  return set;
+}
+
+// P position controller each millisecond, PI velocity controller with both feedforwards each tick, then the force.
+host::Log record(const Gains& gains, double shift, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  host::Log log;
+  log.source = "shift " + std::to_string(shift);
+  log.period = period;
+  auto& axis = log.axes.emplace_back();
+  double x = set_at(0.0, shift).x, v = 0.0, held = 0.0, integral = 0.0, disturbance = 0.0;
+  for (int k = 0; k < static_cast<int>(duration / tick); ++k) {
+    const auto set = set_at(k * tick, shift);
+    if (k % ratio == 0) held = set.x - x;
+    const double error = gains.position * held + set.v - v;
+    integral += error * tick / gains.integral_time;
+    const double u = gains.velocity * (error + integral) + 50.0 / 10.0 * set.a;
+    if (k % ratio == 0) {
+      log.t.push_back(k * tick);
+      axis.x_set.push_back(set.x);
+      axis.x.push_back(x);
+      axis.u.push_back(u + 0.01 * normal(random));
+    }
+    disturbance += 0.02 * (4.0 * normal(random) - disturbance);  // N, correlated over 3 ms
+    const double friction = 20.0 * std::tanh(v / 1e-4) + 100.0 * v;
+    const double next = v + tick / 50.0 * (10.0 * u - friction + disturbance);
+    x += 0.5 * tick * (v + next);
+    v = next;
+  }
+  return log;
+}
+
+host::Verdict verdict_of(const Gains& gains, std::uint64_t seed) {
+  host::DiagnoseInput input;
+  input.machine = force_machine();
+  input.logs = {record(gains, 0.0, 3 * seed), record(gains, 0.5, 3 * seed + 1)};
+  input.held_out = {record(gains, 1.0, 3 * seed + 2)};
+  input.closed_loop = false;
+  return host::diagnose(input);
+}
+
+const host::Finding* gains_in(const host::Verdict& verdict) {
+  for (const auto& finding : verdict.findings)
+    if (finding.effect.name == "controller_gain_mismatch") return &finding;
+  return nullptr;
+}
+
+TEST(CommandResidual, the_replay_commands_what_the_recorded_controller_did) {
+  const auto log = record({}, 0.5, 1);
+  const auto command =
+      host::replay_command<FixedSignals>(force_machine().timing, force_machine().axes.front(), log, log.axes.front());
+  // Above the integrator's memory: differences over 10 ms, noise of 10 mV on each.
+  double square = 0.0, size = 0.0;
+  for (std::size_t k = 1000; k < command.size(); ++k) {
+    const auto& u = log.axes.front().u;
+    const double recorded = u[k] - u[k - 10], replayed = command[k] - command[k - 10];
+    square += (recorded - replayed) * (recorded - replayed);
+    size += recorded * recorded;
+  }
+  EXPECT_LT(std::sqrt(square / static_cast<double>(command.size())), 0.05);
+  EXPECT_GT(size, 100.0 * square);
+}
+
+TEST(CommandResidual, names_nothing_where_the_gains_are_those_of_the_file) {
+  int named = 0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) named += gains_in(verdict_of({}, seed)) != nullptr;
+  EXPECT_EQ(named, 0);
+}
+
+struct Case {
+  Gains gains;
+  const char* key;
+  double value;
+};
+
+TEST(CommandResidual, names_the_gain_that_differs_with_its_value_and_leaves_the_others) {
+  for (const auto& c :
+       {Case{{.position = 88.0}, "position_gain", 88.0}, Case{{.velocity = 285.0}, "velocity_gain", 285.0},
+        Case{{.integral_time = 9e-3}, "velocity_integral_time", 9e-3}}) {
+    const auto verdict = verdict_of(c.gains, 5);
+    const auto* finding = gains_in(verdict);
+    ASSERT_NE(finding, nullptr) << c.key;
+    ASSERT_TRUE(finding->effect.values.contains(c.key)) << c.key;
+    const double value = finding->effect.values.at(c.key).front();
+    figure(std::string("command residual, ") + c.key, std::to_string(value) + ", true " + std::to_string(c.value));
+    EXPECT_EQ(finding->parameters.size(), 1u) << c.key;
+    EXPECT_NEAR(value, c.value, 0.005 * c.value) << c.key;
+    EXPECT_TRUE(finding->in_command);
+    EXPECT_LT(*finding->holdout.command_rms_ratio, 0.9);
+    EXPECT_LT(*verdict.extended.command_rms, *verdict.baseline.command_rms);
+  }
+}
+
+}  // namespace
+}  // namespace stiction::test
