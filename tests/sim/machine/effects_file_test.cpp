@@ -54,7 +54,8 @@ TEST(EffectsFile, AnUnknownNameListsTheNamesAndTheNearest) {
       message.starts_with("FILE:30: axis.B.effect[0].name: found \"force_riple\"; expected an effect: "
                           "\"mass_mismatch\", \"coulomb_mismatch\", "))
       << message;
-  EXPECT_NE(message.find("\"backlash\" or \"time_skew\"; did you mean \"force_ripple\"?"), std::string::npos);
+  EXPECT_NE(message.find("\"backlash\", "), std::string::npos);
+  EXPECT_NE(message.find(" or \"periodic_disturbance\"; did you mean \"force_ripple\"?"), std::string::npos);
   EXPECT_TRUE(error_of_effect("width = \"2 um\"\n")
                   .starts_with("FILE:29: axis.B.effect[0].name: found no such key; expected a text"));
   EXPECT_TRUE(error_of_effect("name = 3\n").starts_with("FILE:30: axis.B.effect[0].name: found 3; expected a text"));
@@ -135,11 +136,17 @@ TEST(EffectKinds, HaveTheNamesKeysAndSuffixesOfTheVocabulary) {
             "stribeck: break_away_N velocity_m_per_s\n"
             "friction_asymmetry: coulomb_N viscous_N_s_per_m\n"
             "presliding_hysteresis: stiffness_N_per_m distance_m\n"
+            "friction_lag: time_s\n"
+            "position_dependent_friction: position_m[] force_N[]\n"
+            "thermal_drift: change_N time_constant_s\n"
             "constant_force: force_N\n"
             "position_spring: stiffness_N_per_m neutral_m\n"
             "force_ripple: pitch_m cosine_N[] sine_N[]\n"
+            "force_constant_ripple: pitch_m cosine[] sine[]\n"
             "backlash: width_m\n"
-            "time_skew: delay_s loop_delay_s\n");
+            "encoder_subdivision_error: period_m cosine_m[] sine_m[]\n"
+            "time_skew: delay_s loop_delay_s\n"
+            "periodic_disturbance: frequency_Hz cosine_N sine_N\n");
   EXPECT_EQ(unit_suffix("1"), "");
   EXPECT_EQ(unit_suffix("1/s"), "_per_s");
   EXPECT_EQ(unit_suffix("m/s^2"), "_m_per_s2");
@@ -184,7 +191,7 @@ TEST(ExtendedMachine, KeepsTheTextAndReadsBackWithTheEffects) {
 
 TEST(ExtendedMachine, ContinuesTheEffectsOfTheFileWhicheverWayTheyAreWritten) {
   for (const std::string before : {"[[axis.B.effect]]\nname = \"constant_force\"\nforce = \"1 N\"\n",
-                                    "[axis.B]\neffect = [{ name = \"constant_force\", force = \"1 N\" }]\n"}) {
+                                   "[axis.B]\neffect = [{ name = \"constant_force\", force = \"1 N\" }]\n"}) {
     const bool in_one_line = before.starts_with("[axis");
     const std::string text = in_one_line ? replaced(small_machine, "[axis.B]\n", before) : small_machine + before;
     const MachineFileOnDisk file(text);
