@@ -40,6 +40,12 @@ Log part_of(const Log& log, std::size_t begin, std::size_t end) {
   return part;
 }
 
+// Time runs from the record's start, of parts of it too: what warms up does so from there.
+void count_from_start(Log& log) {
+  const double start = log.t.empty() ? 0.0 : log.t.front();
+  for (double& t : log.t) t -= start;
+}
+
 LogRows rows_of(const std::vector<Log>& logs, const sim::Axis& axis, const SignalSettings& settings) {
   std::vector<Motion> motions;
   for (const auto& log : logs) {
@@ -58,12 +64,14 @@ Eigen::VectorXd expected_force(const LogRows& rows, const sim::Axis& axis) {
 Scene scene_of(const sim::Axis& axis, const LogRows& rows, const SignalSettings& settings) {
   Scene scene{axis, settings, 0.0, excitation_of(rows).reversals, 0.0, 0.0, {}};
   scene.lowest_position = scene.highest_position = rows.motions().front().x.front();
-  for (const auto& motion : rows.motions())
+  for (const auto& motion : rows.motions()) {
+    scene.duration = std::max(scene.duration, motion.t.back() - motion.t.front());
     for (std::size_t i = 0; i < motion.x.size(); ++i) {
       scene.highest_speed = std::max(scene.highest_speed, std::abs(motion.v[i]));
       scene.lowest_position = std::min(scene.lowest_position, motion.x[i]);
       scene.highest_position = std::max(scene.highest_position, motion.x[i]);
     }
+  }
   return scene;
 }
 
@@ -142,6 +150,8 @@ Verdict diagnose(const DiagnoseInput& input) {
   verdict.machine = input.machine.id + ".toml";
   auto logs = input.logs;
   auto held_out = input.held_out;
+  for (auto* records : {&logs, &held_out})
+    for (auto& log : *records) count_from_start(log);
   for (const auto& log : logs) verdict.logs.push_back(log.source);
   for (const auto& log : held_out) verdict.holdout.push_back(log.source);
   for (const auto& log : logs) refuse_unreachable_set_points(log, axis);

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "host/diagnose/fisher.hpp"
+#include "host/diagnose/inverse_dynamics.hpp"
 #include "host/diagnose/ripple_scan.hpp"
 
 namespace stiction::host {
@@ -17,6 +18,7 @@ constexpr std::size_t most_terms = 5;
 constexpr double significance = 0.01;  // over the number of candidates
 constexpr double least_gain = 0.01;    // of the cross-validated residual
 constexpr std::size_t pitches_tried = 3;
+constexpr std::size_t lines_tried = 2;
 
 struct Option {
   std::size_t candidate;
@@ -37,6 +39,7 @@ class Search {
       : rows_(rows),
         scene_(scene),
         correlation_(correlation_length(target, rows.logs())),
+        carrier_(rows.stacked([&](const Motion& m) { return force_along(scene.axis, m); })),
         evidence_(target, blocks_for(rows, std::min(correlation_, 0.1 / rows.period(0)))) {
     for (const double pitch : {scene.axis.motor.pole_pair_pitch, 0.5 * scene.axis.motor.pole_pair_pitch})
       if (pitch > 0.0) known_pitches_.push_back(pitch);
@@ -60,10 +63,13 @@ class Search {
   // Pitches in what the set leaves; those in the set stay.
   void scan_ripples(const Set& set) {
     const auto columns = columns_of(set);
-    const auto scan =
-        scan_pitches(rows_, evidence_.residual(columns, evidence_.fit(columns).weights), known_pitches_, pitches_tried);
+    const Eigen::VectorXd residual = evidence_.residual(columns, evidence_.fit(columns).weights);
+    const auto scan = scan_pitches(rows_, residual, known_pitches_, pitches_tried);
     trials_ = std::max(trials_, scan.trials);
     scene_.pitches = scan.pitches;
+    scene_.times = scan_times(rows_, residual, lines_tried);
+    scene_.modulation = scan_modulation(rows_, residual, carrier_, known_pitches_, pitches_tried);
+    scene_.signals_of_encoder = scan_signal_periods(rows_, residual, lines_tried);
     for (std::size_t c = 0; c < candidates().size(); ++c)
       if (candidates()[c].periodic) add_options(c);
   }
@@ -79,8 +85,10 @@ class Search {
 
   // Number of independent values of the nonlinear parameter that were tried.
   double trials(std::size_t candidate) const {
+    if (const auto scan = candidates()[candidate].scan)
+      return static_cast<double>(std::max<std::size_t>(scan(scene_).trials, 1));
     if (candidates()[candidate].periodic) return static_cast<double>(std::max<std::size_t>(trials_, 1));
-    return candidates()[candidate].nonlinear ? 3.0 : 1.0;
+    return std::max(candidates()[candidate].trials, candidates()[candidate].nonlinear ? 3.0 : 1.0);
   }
   double effective_rows() const { return std::max(static_cast<double>(evidence_.rows()) / correlation_, 20.0); }
   double penalty(std::size_t candidate, std::size_t columns) const {
@@ -112,7 +120,7 @@ class Search {
       if (option->candidate != candidate) continue;
       auto set = beside;
       set.push_back(option.get());
-      const double left = evidence_.fit(columns_of(set)).left;
+      const double left = score(set);  // options of one candidate may differ in columns
       if (left >= least || !all_possible(set)) continue;
       least = left;
       best = option.get();
@@ -140,6 +148,7 @@ class Search {
   const LogRows& rows_;
   Scene& scene_;
   double correlation_;
+  Eigen::VectorXd carrier_;  // N, the force that the file expects
   Evidence evidence_;
   std::vector<std::unique_ptr<Option>> options_;
   std::size_t trials_ = 1, rounds_ = 0;
@@ -361,7 +370,9 @@ void Search::refine(std::vector<Term>& terms, Eigen::VectorXd& residual) {
     const auto columns = stack();
     return (evidence_.target() - columns * weights_of(columns)).squaredNorm();
   };
-  const double stroke = std::max(scene_.stroke(), 1e-6);
+  const auto extent_of = [&](const Candidate& candidate) {
+    return std::max(candidate.scan ? candidate.scan(scene_).extent : scene_.stroke(), 1e-6);
+  };
   for (int round = 0; round < (terms.size() > 1 ? 2 : 1); ++round)
     for (std::size_t k = 0; k < terms.size(); ++k) {
       const auto& candidate = candidates()[terms[k].candidate];
@@ -380,7 +391,7 @@ void Search::refine(std::vector<Term>& terms, Eigen::VectorXd& residual) {
       }
       if (!candidate.nonlinear) continue;
       // A step of the grid to either side: in 1/pitch an eighth of 1/stroke, else a factor.
-      const double factor = candidate.periodic ? 1.0 / (1.0 - std::min(0.2 * value / stroke, 0.5)) : 1.6;
+      const double factor = candidate.periodic ? 1.0 / (1.0 - std::min(0.2 * value / extent_of(candidate), 0.5)) : 1.6;
       double low = value / factor, high = value * factor;
       constexpr double golden = 0.6180339887498949;
       double a = high * std::pow(low / high, golden), b = low * std::pow(high / low, golden);
@@ -416,8 +427,8 @@ void Search::refine(std::vector<Term>& terms, Eigen::VectorXd& residual) {
     const auto& candidate = candidates()[terms[k].candidate];
     const Eigen::Index before = all.size();
     if (candidate.nonlinear) {
-      const double by =
-          candidate.periodic ? 0.02 * terms[k].nonlinear * terms[k].nonlinear / stroke : 0.02 * terms[k].nonlinear;
+      const double by = candidate.periodic ? 0.02 * terms[k].nonlinear * terms[k].nonlinear / extent_of(candidate)
+                                           : 0.02 * terms[k].nonlinear;
       Eigen::VectorXd slope = Eigen::VectorXd::Zero(rows_.rows());
       const auto up = group_columns(rows_, scene_, candidate, terms[k].nonlinear + by);
       const auto down = group_columns(rows_, scene_, candidate, terms[k].nonlinear - by);
@@ -479,6 +490,22 @@ SearchResult Search::run(const std::function<void()>& progress) {
 
 std::vector<Eigen::VectorXd> group_columns(const LogRows& rows, const Scene& scene, const Candidate& candidate,
                                            double nonlinear) {
+  const auto shared = shared_columns(rows, scene, candidate, nonlinear);
+  if (!candidate.per_record) return shared;
+  std::vector<Eigen::VectorXd> own;
+  for (std::size_t r = 0; r < rows.logs().size(); ++r) {
+    const auto begin = static_cast<Eigen::Index>(rows.logs()[r]);
+    const auto end = r + 1 < rows.logs().size() ? static_cast<Eigen::Index>(rows.logs()[r + 1]) : rows.rows();
+    for (const auto& column : shared) {
+      own.emplace_back(Eigen::VectorXd::Zero(rows.rows()));
+      own.back().segment(begin, end - begin) = column.segment(begin, end - begin);
+    }
+  }
+  return own;
+}
+
+std::vector<Eigen::VectorXd> shared_columns(const LogRows& rows, const Scene& scene, const Candidate& candidate,
+                                            double nonlinear) {
   std::vector<Columns> of_motion;
   for (const auto& motion : rows.motions()) of_motion.push_back(candidate.columns(scene, motion, nonlinear));
   std::vector<Eigen::VectorXd> stacked;

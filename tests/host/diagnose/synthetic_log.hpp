@@ -25,6 +25,9 @@ struct Hidden {
   std::function<double(const Point&)> force{};           // N, what the motor must give besides; none: nothing
   double delay = 0.0;                                    // s, of the recorded current
   double lost_motion = 0.0;                              // m
+  double friction_lag = 0.0;                             // s, of viscous friction
+  std::function<double(double)> constant_ripple{};       // share of the motor's force, over x (m)
+  std::function<double(double)> reading_error{};         // m, of the encoder over x (m)
 };
 
 // `trajectory` 0, 1, 2: constant speeds both ways, sines of several periods, steps of several lengths.
