@@ -25,6 +25,7 @@ struct Scene {
   double lowest_position = 0.0, highest_position = 0.0;
   std::vector<double> pitches;  // m, with peaks in the residual's spectrum over position; found as the search goes
   double duration = 0.0;        // s, of the longest record
+  sim::Timing timing{};         // of the drive
   // Found as the search goes: lines over time, over position in proportion to the force, over the encoder's signal.
   LineScan times{}, modulation{}, signals_of_encoder{};
   double stroke() const { return highest_position - lowest_position; }

@@ -181,6 +181,7 @@ Verdict diagnose(const DiagnoseInput& input) {
   const Eigen::VectorXd target = rows.force - expected;
   const Eigen::VectorXd held_target = held_rows.force - expected_force(held_rows, axis);
   auto scene = scene_of(axis, rows, settings);
+  scene.timing = input.machine.timing;
   auto found = search_causes(rows, target, scene, input.progress);
   const auto found_before = found.terms.size();
   const auto figures = keep_what_holds(held_rows, held_target, scene, found, verdict, input.seed);

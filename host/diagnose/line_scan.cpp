@@ -1,10 +1,13 @@
 #include "host/diagnose/line_scan.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <numbers>
 #include <unsupported/Eigen/FFT>
+
+#include "host/diagnose/reading_response.hpp"
 
 namespace stiction::host {
 namespace {
@@ -18,7 +21,10 @@ constexpr double most_cycles = 400.0;     // of the stroke
 constexpr double shortest_pitch = 5e-4;   // m, of a ripple in the force constant
 constexpr double shortest_signal = 2e-6;  // m
 constexpr double longest_signal = 1e-3;   // m
-constexpr double stretch_cycles = 48.0;   // of a stretch of rows that is looked at by itself
+// m, of linear scales and of inductive and magnetic ones
+constexpr std::array usual_signals{2e-6,   4e-6,   8e-6,   10e-6,  16e-6,  20e-6,  40e-6,  50e-6, 80e-6,
+                                   100e-6, 128e-6, 200e-6, 250e-6, 400e-6, 500e-6, 512e-6, 1e-3};
+constexpr double stretch_cycles = 48.0;  // of a stretch of rows that is looked at by itself
 
 // The count of lines with the highest value over the median of their surroundings, apart by `apart` lines.
 std::vector<std::size_t> outstanding(const std::vector<double>& power, std::size_t count, std::size_t apart) {
@@ -147,6 +153,57 @@ std::vector<double> gains(const LogRows& rows, const Eigen::VectorXd& residual, 
   return all;
 }
 
+// What an error of the encoder's reading takes off the residual, each record with its own phase, of all rows in which
+// the log shows it within the band.
+class ShownError {
+ public:
+  ShownError(const LogRows& rows, const Eigen::VectorXd& residual, const Eigen::VectorXd& x, const sim::Axis& axis,
+             const sim::Timing& timing)
+      : rows_(rows), residual_(residual), x_(x) {
+    for (const auto& motion : rows.motions()) {
+      responses_.emplace_back(axis, timing, motion.period);
+      auto& table = drive_.emplace_back();
+      for (double f = 0.0; f < highest_shown; f += frequency_step)
+        table.push_back(f < 0.5 / motion.period ? 0.0 : responses_.back().drive(f));
+    }
+  }
+
+  double gain(double order) const {
+    double all = 0.0;
+    for (std::size_t r = 0; r < rows_.logs().size(); ++r) {
+      Complex moment = 0.0, twice = 0.0;
+      double square = 0.0;
+      for (std::size_t i = rows_.logs()[r]; i < record_end(rows_, r); ++i) {
+        const auto row = static_cast<Eigen::Index>(i);
+        const double v = rows_.velocity[row], frequency = std::abs(v) * order;
+        if (frequency < slowest_shown || frequency >= highest_shown) continue;
+        const double shown = responses_[r].shown_at(frequency);
+        if (shown > band / rows_.period(r)) continue;
+        const double w = 2.0 * std::numbers::pi * shown;
+        Complex response = drive_[r][static_cast<std::size_t>(frequency / frequency_step)];
+        response += responses_[r].mass() * w * w;
+        if (v < 0.0) response = std::conj(response);
+        const Complex wave = response * std::polar(1.0, 2.0 * std::numbers::pi * std::remainder(x_[row] * order, 1.0));
+        moment += residual_[row] * wave;
+        twice += wave * wave;
+        square += std::norm(wave);
+      }
+      all += gain_of(moment, twice, square);
+    }
+    return all;
+  }
+
+ private:
+  static constexpr double slowest_shown = 4.0;    // Hz, at which a row moves along the signal at all
+  static constexpr double highest_shown = 32e3;   // Hz
+  static constexpr double frequency_step = 10.0;  // Hz, of the drive's answer
+  const LogRows& rows_;
+  const Eigen::VectorXd& residual_;
+  const Eigen::VectorXd& x_;
+  std::vector<ReadingResponse> responses_;
+  std::vector<std::vector<Complex>> drive_;
+};
+
 }  // namespace
 
 LineScan scan_times(const LogRows& rows, const Eigen::VectorXd& residual, std::size_t count) {
@@ -213,15 +270,20 @@ LineScan scan_modulation(const LogRows& rows, const Eigen::VectorXd& residual, c
   return scan;
 }
 
-// First over stretches of some fifty periods, each with its own phase; around what stands out then over all slow rows
-// of each record together, which tell periods apart as finely as their extent allows.
-LineScan scan_signal_periods(const LogRows& rows, const Eigen::VectorXd& residual, std::size_t count) {
+// First over stretches of slow rows of some fifty periods, each with its own phase. Around what stands out, and at the
+// usual periods, then over all rows that show the error at all, which tell periods apart as finely as their extent
+// allows.
+LineScan scan_signal_periods(const LogRows& rows, const Eigen::VectorXd& residual, const sim::Axis& axis,
+                             const sim::Timing& timing, std::size_t count) {
   const auto x = rows.sampled([](const Motion& m) { return m.x; });
   LineScan scan;
+  scan.extent = x.maxCoeff() - x.minCoeff();
+  if (!(scan.extent > 0.0)) return scan;
   struct Peak {
-    double order, excess;
+    double order, height;
   };
-  std::vector<Peak> peaks;
+  const auto higher = [](const Peak& a, const Peak& b) { return a.height > b.height; };
+  std::vector<Peak> slow;
   const double variance = residual.squaredNorm() / static_cast<double>(residual.size());
   for (double order = 1.0 / longest_signal; order < 1.0 / shortest_signal; order *= 2.0) {
     const auto in = stretches(rows, x, 2.0 * order, stretch_cycles / order);
@@ -230,26 +292,24 @@ LineScan scan_signal_periods(const LogRows& rows, const Eigen::VectorXd& residua
     const auto found = gains(rows, residual, x, in, order, step, static_cast<std::size_t>(order / step));
     scan.trials += found.size() / 8 + 1;
     for (const auto k : outstanding(found, count, 8))
-      peaks.push_back(
+      slow.push_back(
           {order + step * static_cast<double>(k), found[k] / variance - 2.0 * static_cast<double>(in.size())});
   }
-  std::sort(peaks.begin(), peaks.end(), [](const Peak& a, const Peak& b) { return a.excess > b.excess; });
-  peaks.resize(std::min(peaks.size(), count));
-  for (const auto& peak : peaks) {
-    const auto in = stretches(rows, x, peak.order, 1e9);
-    double extent = 0.0;
-    for (const auto& s : in) {
-      const auto part = x.segment(static_cast<Eigen::Index>(s.begin), static_cast<Eigen::Index>(s.end - s.begin));
-      extent = std::max(extent, part.maxCoeff() - part.minCoeff());
-    }
-    if (!(extent > 0.0)) continue;
-    const double reach = 0.5 * peak.order / stretch_cycles, step = 0.125 / extent;
-    const auto fine =
-        gains(rows, residual, x, in, peak.order - reach, step, static_cast<std::size_t>(2.0 * reach / step) + 1);
-    const auto best = static_cast<std::size_t>(std::max_element(fine.begin(), fine.end()) - fine.begin());
-    scan.periods.push_back(1.0 / (peak.order - reach + step * static_cast<double>(best)));
-    scan.extent = std::max(scan.extent, extent);
+  std::sort(slow.begin(), slow.end(), higher);
+  slow.resize(std::min(slow.size(), count));
+  const ShownError shown(rows, residual, x, axis, timing);
+  std::vector<Peak> peaks;
+  for (const auto& peak : slow) {
+    const double step = 0.25 / scan.extent, reach = std::min(peak.order / stretch_cycles, 300.0 * step);
+    Peak best{peak.order, 0.0};
+    for (double order = peak.order - reach; order <= peak.order + reach; order += step)
+      if (const double gain = shown.gain(order); gain > best.height) best = {order, gain};
+    peaks.push_back(best);
   }
+  for (const double period : usual_signals) peaks.push_back({1.0 / period, shown.gain(1.0 / period)});
+  std::sort(peaks.begin(), peaks.end(), higher);
+  for (const auto& peak : peaks)
+    if (scan.periods.size() < count && peak.height > 0.0) scan.periods.push_back(1.0 / peak.order);
   return scan;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "host/identify/log_rows.hpp"
+#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
@@ -25,8 +26,9 @@ LineScan scan_times(const LogRows& rows, const Eigen::VectorXd& residual, std::s
 LineScan scan_modulation(const LogRows& rows, const Eigen::VectorXd& residual, const Eigen::VectorXd& carrier,
                          std::span<const double> known, std::size_t count);
 
-// Signal periods (m) of the encoder, 2 um to 1 mm, where the rows are slow enough to see them. Every record has a
-// phase of its own.
-LineScan scan_signal_periods(const LogRows& rows, const Eigen::VectorXd& residual, std::size_t count);
+// Signal periods (m) of the encoder, 2 um to 1 mm: where the rows are slow enough to see them, and where the samples of
+// the log fold the drive's answer down (reading_response.hpp). Every record has a phase of its own.
+LineScan scan_signal_periods(const LogRows& rows, const Eigen::VectorXd& residual, const sim::Axis& axis,
+                             const sim::Timing& timing, std::size_t count);
 
 }  // namespace stiction::host

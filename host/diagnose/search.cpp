@@ -69,7 +69,7 @@ class Search {
     scene_.pitches = scan.pitches;
     scene_.times = scan_times(rows_, residual, lines_tried);
     scene_.modulation = scan_modulation(rows_, residual, carrier_, known_pitches_, pitches_tried);
-    scene_.signals_of_encoder = scan_signal_periods(rows_, residual, lines_tried);
+    scene_.signals_of_encoder = scan_signal_periods(rows_, residual, scene_.axis, scene_.timing, lines_tried);
     for (std::size_t c = 0; c < candidates().size(); ++c)
       if (candidates()[c].periodic) add_options(c);
   }
