@@ -113,7 +113,8 @@ AtStrength draw_constant_ripple(Random& random, const Mechanics&) {
 }
 AtStrength draw_subdivision(Random& random, const Mechanics&) {
   constexpr std::array periods{20e-6, 40e-6, 100e-6, 200e-6, 500e-6};
-  return [period = periods[random() % 5], phase = uniform(random, 0.0, 2.0 * std::numbers::pi)](double x) {
+  const double drawn = random() % 2 == 0 ? periods[random() % 5] : log_uniform(random, 20e-6, 500e-6);
+  return [period = drawn, phase = uniform(random, 0.0, 2.0 * std::numbers::pi)](double x) {
     return sim::Effect{"encoder_subdivision_error",
                        {{"period", {period}},
                         {"cosine", {0.003 * period * x * std::cos(phase)}},
