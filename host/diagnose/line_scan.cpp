@@ -153,8 +153,7 @@ std::vector<double> gains(const LogRows& rows, const Eigen::VectorXd& residual, 
   return all;
 }
 
-// What an error of the encoder's reading takes off the residual, each record with its own phase, of all rows in which
-// the log shows it within the band.
+// What an error of the encoder's reading takes off the residual, of all rows in which the log shows it within the band.
 class ShownError {
  public:
   ShownError(const LogRows& rows, const Eigen::VectorXd& residual, const Eigen::VectorXd& x, const sim::Axis& axis,
@@ -168,27 +167,24 @@ class ShownError {
     }
   }
 
-  double gain(double order) const {
-    double all = 0.0;
-    for (std::size_t r = 0; r < rows_.logs().size(); ++r) {
+  // Of orders first, first + step, .., near enough to one another that the same rows show them.
+  std::vector<double> gains(double first, double step, std::size_t count) const {
+    gather(first + 0.5 * step * static_cast<double>(count - 1));
+    for (std::size_t n = 0; n < row_.size(); ++n) {
+      wave_[n] *= wave_at(x_[row_[n]] * first);
+      turn_.push_back(wave_at(x_[row_[n]] * step));
+    }
+    std::vector<double> all;
+    for (std::size_t k = 0; k < count; ++k) {
       Complex moment = 0.0, twice = 0.0;
       double square = 0.0;
-      for (std::size_t i = rows_.logs()[r]; i < record_end(rows_, r); ++i) {
-        const auto row = static_cast<Eigen::Index>(i);
-        const double v = rows_.velocity[row], frequency = std::abs(v) * order;
-        if (frequency < slowest_shown || frequency >= highest_shown) continue;
-        const double shown = responses_[r].shown_at(frequency);
-        if (shown > band / rows_.period(r)) continue;
-        const double w = 2.0 * std::numbers::pi * shown;
-        Complex response = drive_[r][static_cast<std::size_t>(frequency / frequency_step)];
-        response += responses_[r].mass() * w * w;
-        if (v < 0.0) response = std::conj(response);
-        const Complex wave = response * std::polar(1.0, 2.0 * std::numbers::pi * std::remainder(x_[row] * order, 1.0));
-        moment += residual_[row] * wave;
-        twice += wave * wave;
-        square += std::norm(wave);
+      for (std::size_t n = 0; n < row_.size(); ++n) {
+        moment += residual_[row_[n]] * wave_[n];
+        twice += wave_[n] * wave_[n];
+        square += std::norm(wave_[n]);
+        wave_[n] *= turn_[n];
       }
-      all += gain_of(moment, twice, square);
+      all.push_back(gain_of(moment, twice, square));
     }
     return all;
   }
@@ -197,11 +193,34 @@ class ShownError {
   static constexpr double slowest_shown = 4.0;    // Hz, at which a row moves along the signal at all
   static constexpr double highest_shown = 32e3;   // Hz
   static constexpr double frequency_step = 10.0;  // Hz, of the drive's answer
+
+  static Complex wave_at(double turns) { return std::polar(1.0, 2.0 * std::numbers::pi * std::remainder(turns, 1.0)); }
+
+  // The rows that show this order, and the response in each.
+  void gather(double order) const {
+    row_.clear(), wave_.clear(), turn_.clear();
+    for (std::size_t r = 0; r < rows_.logs().size(); ++r)
+      for (std::size_t i = rows_.logs()[r]; i < record_end(rows_, r); ++i) {
+        const auto row = static_cast<Eigen::Index>(i);
+        const double v = rows_.velocity[row], frequency = std::abs(v) * order;
+        if (frequency < slowest_shown || frequency >= highest_shown) continue;
+        const double shown = responses_[r].shown_at(frequency);
+        if (shown > band / rows_.period(r)) continue;
+        const double w = 2.0 * std::numbers::pi * shown;
+        const Complex response =
+            drive_[r][static_cast<std::size_t>(frequency / frequency_step)] + responses_[r].mass() * w * w;
+        row_.push_back(row);
+        wave_.push_back(v < 0.0 ? std::conj(response) : response);
+      }
+  }
+
   const LogRows& rows_;
   const Eigen::VectorXd& residual_;
   const Eigen::VectorXd& x_;
   std::vector<ReadingResponse> responses_;
   std::vector<std::vector<Complex>> drive_;
+  mutable std::vector<Eigen::Index> row_;
+  mutable std::vector<Complex> wave_, turn_;
 };
 
 }  // namespace
@@ -300,13 +319,17 @@ LineScan scan_signal_periods(const LogRows& rows, const Eigen::VectorXd& residua
   const ShownError shown(rows, residual, x, axis, timing);
   std::vector<Peak> peaks;
   for (const auto& peak : slow) {
-    const double step = 0.25 / scan.extent, reach = std::min(peak.order / stretch_cycles, 300.0 * step);
+    constexpr std::size_t together = 16;
+    const double step = 0.25 / scan.extent, reach = std::min(peak.order / stretch_cycles, 320.0 * step);
     Peak best{peak.order, 0.0};
-    for (double order = peak.order - reach; order <= peak.order + reach; order += step)
-      if (const double gain = shown.gain(order); gain > best.height) best = {order, gain};
+    for (double first = peak.order - reach; first <= peak.order + reach; first += step * together) {
+      const auto heights = shown.gains(first, step, together);
+      const auto highest = std::max_element(heights.begin(), heights.end());
+      if (*highest > best.height) best = {first + step * static_cast<double>(highest - heights.begin()), *highest};
+    }
     peaks.push_back(best);
   }
-  for (const double period : usual_signals) peaks.push_back({1.0 / period, shown.gain(1.0 / period)});
+  for (const double period : usual_signals) peaks.push_back({1.0 / period, shown.gains(1.0 / period, 0.0, 1).front()});
   std::sort(peaks.begin(), peaks.end(), higher);
   for (const auto& peak : peaks)
     if (scan.periods.size() < count && peak.height > 0.0) scan.periods.push_back(1.0 / peak.order);

@@ -1,7 +1,7 @@
-// The encoder reads x + e(x), e periodic in its signal period; in each record with a phase of its own, for no home is
-// known to a part of a signal period. What was read moved less e, the forces of the file are other ones: their
-// difference over e is the column, in crawls nearly - mass d2e/dt2. At higher speed the drive answers the error with
-// currents that the log's samples fold down (reading_response.hpp). The signal periods to try come from line_scan.hpp.
+// The encoder reads x + e(x), e periodic in its signal period. The acceleration and viscous friction of e are in what
+// was read but needed no force: in crawls the column is - mass d2e/dt2. At higher speed the drive answers the error
+// with currents that the log's samples fold down (reading_response.hpp). The signal periods to try come from
+// line_scan.hpp.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -13,45 +13,38 @@
 namespace stiction::host::effects {
 namespace {
 
-constexpr double probe = 1e-8;  // m, small beside a contact's length
-
 const LineScan& scan(const Scene& scene) { return scene.signals_of_encoder; }
 std::vector<double> grid(const Scene& scene) { return scan(scene).periods; }
 
 Columns columns(const Scene& scene, const Motion& motion, double period) {
-  const auto base = force_along(scene.axis, motion);
   const auto lowpass = butterworth(4, 2.0 * std::min(scene.signals.cutoff, 0.2 / motion.period) * motion.period);
   const ReadingResponse response(scene.axis, scene.timing, motion.period);
+  const double viscous = viscous_of(scene.axis).value_or(0.0);
   const auto column = [&](double quarter) {
-    auto moved = motion;
-    std::vector<double> error(motion.x.size());
-    for (std::size_t i = 0; i < error.size(); ++i)
-      error[i] = probe * std::cos(2.0 * std::numbers::pi * motion.x[i] / period - quarter);
+    std::vector<double> phase(motion.x.size()), error(motion.x.size());
+    for (std::size_t i = 0; i < error.size(); ++i) {
+      phase[i] = 2.0 * std::numbers::pi * std::remainder(motion.x[i] / period, 1.0) - quarter;
+      error[i] = std::cos(phase[i]);
+    }
     error = filter_both_ways(lowpass, error, default_padding(lowpass));
-    for (std::size_t i = 0; i < error.size(); ++i) moved.x[i] -= error[i];
-    moved.v = central_difference(moved.x, motion.period, scene.signals.difference_points);
-    moved.a = central_difference(moved.v, motion.period, scene.signals.difference_points);
-    auto force = force_along(scene.axis, moved);
+    const auto speed = central_difference(error, motion.period, scene.signals.difference_points);
+    auto force = central_difference(speed, motion.period, scene.signals.difference_points);
     for (std::size_t i = 0; i < force.size(); ++i) {
-      force[i] = (force[i] - base[i]) / probe;
+      force[i] = -scene.axis.mass * force[i] - viscous * speed[i];
       const double frequency = std::abs(motion.v[i]) / period;
       if (frequency < 0.5 / motion.period) continue;
       const auto answer = response.drive(frequency);
-      const double phase = 2.0 * std::numbers::pi * std::remainder(motion.x[i] / period, 1.0) - quarter;
-      force[i] +=
-          answer.real() * std::cos(phase) - (motion.v[i] < 0.0 ? -answer.imag() : answer.imag()) * std::sin(phase);
+      force[i] += answer.real() * std::cos(phase[i]) -
+                  (motion.v[i] < 0.0 ? -answer.imag() : answer.imag()) * std::sin(phase[i]);
     }
     return force;
   };
   return {column(0.0), column(0.5 * std::numbers::pi)};
 }
-// The phase is that of the first record.
 void describe(const Scene&, double period, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
-  const auto wave = first_wave(w);
-  const auto last = c.rows() - 1;
-  add_key(finding, "period", "_m", {period}, {std::sqrt(c(last, last))});
-  add_key(finding, "cosine", "_m", {wave[0]}, {std::sqrt(c(0, 0))});
-  add_key(finding, "sine", "_m", {wave[1]}, {std::sqrt(c(1, 1))});
+  add_key(finding, "period", "_m", {period}, {std::sqrt(c(2, 2))});
+  add_key(finding, "cosine", "_m", {w[0]}, {std::sqrt(c(0, 0))});
+  add_key(finding, "sine", "_m", {w[1]}, {std::sqrt(c(1, 1))});
 }
 
 }  // namespace
@@ -63,7 +56,6 @@ const Candidate encoder_subdivision_error{.name = "encoder_subdivision_error",
                                           .describe = describe,
                                           .nonlinear = true,
                                           .periodic = true,
-                                          .per_record = true,
                                           .scan = scan};
 
 }  // namespace stiction::host::effects

@@ -119,14 +119,13 @@ class Carriage {
 // signal.
 class Encoder {
  public:
-  Encoder(const sim::Encoder& e, const Mechanics& m, double x, double turn)
+  Encoder(const sim::Encoder& e, const Mechanics& m, double x)
       : half_(0.5 * m.backlash),
         dragged_(x),
         increment_(e.increment),
         cosine_(m.reading_cosine),
         sine_(m.reading_sine),
-        signal_(2.0 * pi / m.reading_period),
-        turn_(turn) {
+        signal_(2.0 * pi / m.reading_period) {
     if (!e.mount) return;
     w_ = 2.0 * pi * e.mount->natural_frequency;
     damping_ = 2.0 * e.mount->damping_ratio * w_;
@@ -140,13 +139,13 @@ class Encoder {
     if (w_ > 0.0) deflection_ += h * rate_;
   }
   double read(double noise) const {
-    const double head = dragged_ + deflection_, phase = signal_ * head + turn_;
+    const double head = dragged_ + deflection_, phase = signal_ * head;
     const double error = cosine_ == 0.0 && sine_ == 0.0 ? 0.0 : cosine_ * std::cos(phase) + sine_ * std::sin(phase);
     return increment_ * std::round((head + error + noise) / increment_);
   }
 
  private:
-  double half_, dragged_, increment_, cosine_, sine_, signal_, turn_, v_ = 0.0;
+  double half_, dragged_, increment_, cosine_, sine_, signal_, v_ = 0.0;
   double w_ = 0.0, damping_ = 0.0, deflection_ = 0.0, rate_ = 0.0;
 };
 
@@ -196,7 +195,7 @@ host::Log record(const sim::Machine& machine, const Mechanics& mechanics, const 
   Motor motor(axis.motor, h);
   const double turn = 2.0 * pi * 0.6180339887 * static_cast<double>(seed % 100);
   Carriage carriage(mechanics, start, turn);
-  Encoder encoder(axis.encoder, mechanics, start, turn);
+  Encoder encoder(axis.encoder, mechanics, start);
   GaussMarkov slow(noise.slow_force, noise.slow_force_corner, tick, seed * 8 + 1);
   GaussMarkov fast(noise.fast_force, noise.fast_force_corner, tick, seed * 8 + 2);
   GaussMarkov jitter(noise.encoder, 2000.0, tick, seed * 8 + 3);

@@ -36,7 +36,7 @@ struct Mechanics {
   double constant_ripple_pitch = 1.0;                   // m
   double constant_cosine = 0.0, constant_sine = 0.0;    // share of the motor's force
   double reading_period = 1.0;                          // m
-  double reading_cosine = 0.0, reading_sine = 0.0;      // m, of the encoder's error; home differs from log to log
+  double reading_cosine = 0.0, reading_sine = 0.0;      // m, of the encoder's error
   double tone_frequency = 1.0;                          // Hz
   double tone_cosine = 0.0, tone_sine = 0.0;            // N, in the first log; the phase differs from log to log
 
