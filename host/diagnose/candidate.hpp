@@ -4,11 +4,13 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <array>
 #include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "host/diagnose/line_scan.hpp"
 #include "host/diagnose/verdict.hpp"
 #include "host/identify/motion.hpp"
 #include "sim/model/machine.hpp"
@@ -26,6 +28,10 @@ struct Scene {
   bool force_is_current = false;  // in every record: current (or voltage) times the file's force constant
   bool other_axis = false;        // its motion is in every record
   std::vector<double> pitches;    // m, with peaks in the residual's spectrum over position; found as the search goes
+  double duration = 0.0;        // s, of the longest record
+  sim::Timing timing{};         // of the drive
+  // Found as the search goes: lines over time, over position in proportion to the force, over the encoder's signal.
+  LineScan times{}, modulation{}, signals_of_encoder{};
   // The residual force (N, at the motion's rate) that a motion's set-points leave in simulation where the machine has
   // the effect, less that where it has not: what the effect does through the control loop. Empty: no set-points.
   std::function<std::vector<double>(const Motion&, const sim::Effect&)> response;
@@ -52,6 +58,12 @@ struct Candidate {
   bool names_constant = false;  // what it names is not a nuisance of its own evaluation
   bool names_coulomb = false;
   bool periodic = false;  // pairs cosine, sine by harmonics: the phase moves with the home position
+  // Whether each record has weights of its own, the first record's before the second's: the phase moves from record to
+  // record.
+  bool per_record = false;
+  // The lines among which a periodic one is looked for; null: scene.pitches over the stroke.
+  const LineScan& (*scan)(const Scene&) = nullptr;
+  double trials = 1.0;  // independent values that a grid without a scan tries
 };
 
 // The vocabulary in the order of the contract.
@@ -59,8 +71,9 @@ std::span<const Candidate> candidates();
 
 namespace effects {
 extern const Candidate mass_mismatch, coulomb_mismatch, viscous_mismatch, viscous_nonlinear, stribeck,
-    friction_asymmetry, presliding_hysteresis, constant_force, position_spring, force_ripple, force_constant_mismatch,
-    force_saturation, backlash, structural_resonance, time_skew, cross_axis_coupling;
+    friction_asymmetry, presliding_hysteresis, friction_lag, position_dependent_friction, thermal_drift, constant_force,
+    position_spring, force_ripple, force_constant_ripple, force_constant_mismatch, force_saturation, backlash,
+    structural_resonance, encoder_subdivision_error, time_skew, cross_axis_coupling, periodic_disturbance;
 
 // Adds a key with its value and standard error under the unit's suffix ("_N_s_per_m").
 void add_key(Finding& finding, const char* key, const char* suffix, std::vector<double> values,
@@ -68,6 +81,9 @@ void add_key(Finding& finding, const char* key, const char* suffix, std::vector<
 
 inline std::vector<double> no_scan(const Scene&) { return {0.0}; }
 inline bool any(const Scene&, double, const Eigen::VectorXd&) { return true; }
+// Of the weights of a wave that has a pair in each record: the amplitude that they have in common (their root mean
+// square) with the first record's phase, as cosine and sine.
+std::array<double, 2> first_wave(const Eigen::VectorXd& weights);
 // `count` values from `low` to `high`, each the same factor above the one before.
 std::vector<double> geometric(double low, double high, int count);
 }  // namespace effects

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -14,15 +15,21 @@ std::span<const Candidate> candidates() {
       effects::stribeck,
       effects::friction_asymmetry,
       effects::presliding_hysteresis,
-      effects::constant_force,
-      effects::position_spring,
-      effects::force_ripple,
-      effects::force_constant_mismatch,
-      effects::force_saturation,
-      effects::backlash,
-      effects::structural_resonance,
-      effects::time_skew,
-      effects::cross_axis_coupling,
+        effects::friction_lag,
+        effects::position_dependent_friction,
+        effects::thermal_drift,
+        effects::constant_force,
+        effects::position_spring,
+        effects::force_ripple,
+        effects::force_constant_ripple,
+        effects::force_constant_mismatch,
+        effects::force_saturation,
+        effects::backlash,
+        effects::structural_resonance,
+        effects::encoder_subdivision_error,
+        effects::time_skew,
+        effects::cross_axis_coupling,
+        effects::periodic_disturbance,
   };
   return table;
 }
@@ -33,6 +40,12 @@ void add_key(Finding& finding, const char* key, const char* suffix, std::vector<
              std::vector<double> errors) {
   finding.effect.values[key] = values;
   finding.parameters.push_back({std::string(key) + suffix, std::move(values), std::move(errors)});
+}
+
+std::array<double, 2> first_wave(const Eigen::VectorXd& weights) {
+  const double amplitude = std::sqrt(weights.squaredNorm() / (0.5 * static_cast<double>(weights.size())));
+  const double turn = amplitude / std::max(std::hypot(weights[0], weights[1]), 1e-300);
+  return {turn * weights[0], turn * weights[1]};
 }
 
 std::vector<double> geometric(double low, double high, int count) {

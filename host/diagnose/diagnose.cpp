@@ -43,6 +43,12 @@ Log part_of(const Log& log, std::size_t begin, std::size_t end) {
   return part;
 }
 
+// Time runs from the record's start, of parts of it too: what warms up does so from there.
+void count_from_start(Log& log) {
+  const double start = log.t.empty() ? 0.0 : log.t.front();
+  for (double& t : log.t) t -= start;
+}
+
 LogRows rows_of(const std::vector<Log>& logs, const sim::Axis& axis, const SignalSettings& settings) {
   std::vector<Motion> motions;
   for (const auto& log : logs) {
@@ -70,6 +76,7 @@ Scene scene_of(const sim::Axis& axis, const LogRows& rows, const SignalSettings&
     scene.other_axis = scene.other_axis && !motion.other_a.empty();
     for (const double force : force_along(axis, motion))
       scene.highest_force = std::max(scene.highest_force, std::abs(force));
+    scene.duration = std::max(scene.duration, motion.t.back() - motion.t.front());
     for (std::size_t i = 0; i < motion.x.size(); ++i) {
       scene.highest_speed = std::max(scene.highest_speed, std::abs(motion.v[i]));
       scene.lowest_position = std::min(scene.lowest_position, motion.x[i]);
@@ -171,6 +178,8 @@ Verdict diagnose(const DiagnoseInput& input) {
   verdict.machine = input.machine.id + ".toml";
   auto logs = input.logs;
   auto held_out = input.held_out;
+  for (auto* records : {&logs, &held_out})
+    for (auto& log : *records) count_from_start(log);
   for (const auto& log : logs) verdict.logs.push_back(log.source);
   for (const auto& log : held_out) verdict.holdout.push_back(log.source);
   for (const auto& log : logs) refuse_unreachable_set_points(log, axis);
@@ -200,6 +209,7 @@ Verdict diagnose(const DiagnoseInput& input) {
   const Eigen::VectorXd target = rows.force - expected;
   const Eigen::VectorXd held_target = held_rows.force - expected_force(held_rows, axis);
   auto scene = scene_of(axis, rows, settings);
+  scene.timing = input.machine.timing;
   const auto motion = without_noise(input.machine, input.axis, logs);
   const auto held_motion = motion.empty() ? motion : without_noise(input.machine, input.axis, held_out);
   if (held_motion.empty())

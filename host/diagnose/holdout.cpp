@@ -62,10 +62,15 @@ class Nuisances {
 Eigen::VectorXd force_of_term(const LogRows& rows, const Scene& scene, const Term& term,
                               const Eigen::VectorXd& target) {
   const auto& candidate = candidates()[term.candidate];
-  const auto columns = group_columns(rows, scene, candidate, term.nonlinear);
+  const auto columns = shared_columns(rows, scene, candidate, term.nonlinear);
+  // The training records' phases are not those of these.
+  const Eigen::VectorXd weights =
+      candidate.per_record
+          ? Eigen::VectorXd(Eigen::Map<const Eigen::Vector2d>(effects::first_wave(term.weights).data()))
+          : term.weights;
   Eigen::VectorXd force = Eigen::VectorXd::Zero(rows.rows());
   if (!candidate.periodic) {
-    for (std::size_t c = 0; c < columns.size(); ++c) force += term.weights[static_cast<Eigen::Index>(c)] * columns[c];
+    for (std::size_t c = 0; c < columns.size(); ++c) force += weights[static_cast<Eigen::Index>(c)] * columns[c];
     return force;
   }
   constexpr int phases = 72;
@@ -76,8 +81,8 @@ Eigen::VectorXd force_of_term(const LogRows& rows, const Scene& scene, const Ter
       for (std::size_t c = 0; c + 1 < columns.size(); c += 2) {
         const auto i = static_cast<Eigen::Index>(c);
         const double harmonic = static_cast<double>(c / 2 + 1);
-        const auto turned = std::complex(term.weights[i], term.weights[i + 1]) *
-                            std::polar(1.0, 2.0 * std::numbers::pi * harmonic * p / phases);
+        const auto turned =
+            std::complex(weights[i], weights[i + 1]) * std::polar(1.0, 2.0 * std::numbers::pi * harmonic * p / phases);
         part += turned.real() * columns[c].segment(r.begin, r.length) +
                 turned.imag() * columns[c + 1].segment(r.begin, r.length);
       }

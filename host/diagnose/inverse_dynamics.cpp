@@ -119,12 +119,13 @@ std::vector<double> force_along(const sim::Axis& axis, const Motion& motion) {
   auto force = friction_along(axis, motion);
   for (std::size_t i = 0; i < force.size(); ++i) force[i] += axis.mass * motion.a[i];
   // What the machine file says of forces on the carriage is known already: the motor need not hold it.
-  sim::ActingEffects effects(axis, motion.period, motion.x.front());
+  sim::ActingEffects effects(axis, motion.period, motion.x.front(), motion.t.front());
   if (!effects.any()) return force;
   for (std::size_t i = 0; i < force.size(); ++i) {
     if (!motion.other_a.empty()) effects.set_other_acceleration(motion.other_a[i]);
-    const auto on_carriage = effects.advance(motion.x[i], motion.v[i]);
-    force[i] -= on_carriage.applied + on_carriage.friction;
+    const auto without = effects.advance(motion.x[i], motion.v[i], 0.0), with_one = effects.forces(1.0);
+    const double per_motor_force = with_one.applied - without.applied;  // of those that follow the motor
+    force[i] = (force[i] - without.applied - without.friction) / (1.0 + per_motor_force);
   }
   for (const auto& mode : sim::effects_of<sim::StructuralResonance>(axis)) add_mode(mode, axis, motion, force);
   for (double& f : force) f = effects.linear_force(f);

@@ -16,8 +16,7 @@ class Refinement {
         searched_(searched),
         scene_(scene),
         terms_(terms),
-        white_target_(searched.whitening()(searched.target())),
-        stroke_(std::max(scene.stroke(), 1e-6)) {
+        white_target_(searched.whitening()(searched.target())) {
     for (const auto& term : terms) white_.push_back(whitened(group(term, term.nonlinear)));
   }
 
@@ -36,6 +35,10 @@ class Refinement {
   using Group = std::vector<Eigen::VectorXd>;
 
   const Candidate& candidate(std::size_t k) const { return candidates()[terms_[k].candidate]; }
+  // What the lines of a periodic one are resolved over: m, or s.
+  double extent(std::size_t k) const {
+    return std::max(candidate(k).scan ? candidate(k).scan(scene_).extent : scene_.stroke(), 1e-6);
+  }
   Group group(const Term& term, double nonlinear) const {
     return group_columns(rows_, scene_, candidates()[term.candidate], nonlinear);
   }
@@ -82,7 +85,7 @@ class Refinement {
   void bracket(std::size_t k) {
     constexpr double golden = 0.6180339887498949;
     auto& value = terms_[k].nonlinear;
-    const double factor = candidate(k).periodic ? 1.0 / (1.0 - std::min(0.2 * value / stroke_, 0.5)) : 1.6;
+    const double factor = candidate(k).periodic ? 1.0 / (1.0 - std::min(0.2 * value / extent(k), 0.5)) : 1.6;
     double low = value / factor, high = value * factor;
     double a = high * std::pow(low / high, golden), b = low * std::pow(high / low, golden);
     double left_a = left_with(k, a), left_b = left_with(k, b);
@@ -146,7 +149,6 @@ class Refinement {
   const Scene& scene_;
   std::vector<Term>& terms_;
   Eigen::VectorXd white_target_;
-  double stroke_;
   std::vector<Group> white_;  // columns of each term, whitened
 };
 

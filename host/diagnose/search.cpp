@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "host/diagnose/fisher.hpp"
+#include "host/diagnose/inverse_dynamics.hpp"
 #include "host/diagnose/refinement.hpp"
 #include "host/diagnose/ripple_scan.hpp"
 
@@ -18,6 +19,7 @@ constexpr std::size_t most_terms = 5;
 constexpr double significance = 0.01;  // over the number of candidates
 constexpr double least_gain = 0.01;    // of the cross-validated residual
 constexpr std::size_t pitches_tried = 3;
+constexpr std::size_t lines_tried = 2;
 
 struct Option {
   std::size_t candidate;
@@ -61,6 +63,7 @@ class Search {
   Search(const LogRows& rows, const Eigen::VectorXd& target, Scene& scene)
       : rows_(rows),
         scene_(scene),
+        carrier_(rows.stacked([&](const Motion& m) { return force_along(scene.axis, m); })),
         evidence_(target, blocks_for(rows, std::min(correlation_length(target, rows.logs()), 0.1 / rows.period(0)))),
         plain_(target, evidence_.row_blocks()) {
     for (const double pitch : {scene.axis.motor.pole_pair_pitch, 0.5 * scene.axis.motor.pole_pair_pitch})
@@ -96,9 +99,13 @@ class Search {
 
   // Pitches in what the set leaves; those in the set stay.
   void scan_ripples(const Set& set) {
-    const auto scan = scan_pitches(rows_, residual(set), evidence_.whitening(), known_pitches_, pitches_tried);
+    const Eigen::VectorXd left = residual(set);
+    const auto scan = scan_pitches(rows_, left, evidence_.whitening(), known_pitches_, pitches_tried);
     trials_ = std::max(trials_, scan.trials);
     scene_.pitches = scan.pitches;
+    scene_.times = scan_times(rows_, left, lines_tried);
+    scene_.modulation = scan_modulation(rows_, left, carrier_, known_pitches_, pitches_tried);
+    scene_.signals_of_encoder = scan_signal_periods(rows_, left, scene_.axis, scene_.timing, lines_tried);
     for (std::size_t c = 0; c < candidates().size(); ++c)
       if (candidates()[c].periodic) add_options(c);
   }
@@ -114,8 +121,10 @@ class Search {
 
   // Number of independent values of the nonlinear parameter that were tried.
   double trials(std::size_t candidate) const {
+    if (const auto scan = candidates()[candidate].scan)
+      return static_cast<double>(std::max<std::size_t>(scan(scene_).trials, 1));
     if (candidates()[candidate].periodic) return static_cast<double>(std::max<std::size_t>(trials_, 1));
-    return candidates()[candidate].nonlinear ? 3.0 : 1.0;
+    return std::max(candidates()[candidate].trials, candidates()[candidate].nonlinear ? 3.0 : 1.0);
   }
   double effective_rows() const { return std::max(static_cast<double>(evidence_.rows()) / correlation_, 20.0); }
   double penalty(std::size_t candidate, std::size_t columns) const {
@@ -147,7 +156,7 @@ class Search {
       if (option->candidate != candidate) continue;
       auto set = beside;
       set.push_back(option.get());
-      const double left = evidence_.fit(columns_of(set)).left;
+      const double left = score(set);  // options of one candidate may differ in columns
       if (left >= least || !all_possible(set)) continue;
       least = left;
       best = option.get();
@@ -175,6 +184,7 @@ class Search {
   const LogRows& rows_;
   Scene& scene_;
   double correlation_ = 1.0;  // rows, of the whitened residual
+  Eigen::VectorXd carrier_;  // N, the force that the file expects
   Evidence evidence_;         // whitened
   Evidence plain_;            // the same as it is: for what a term takes off the force
   std::vector<std::unique_ptr<Option>> options_;
@@ -418,6 +428,22 @@ SearchResult Search::run(const std::function<void()>& progress) {
 
 std::vector<Eigen::VectorXd> group_columns(const LogRows& rows, const Scene& scene, const Candidate& candidate,
                                            double nonlinear) {
+  const auto shared = shared_columns(rows, scene, candidate, nonlinear);
+  if (!candidate.per_record) return shared;
+  std::vector<Eigen::VectorXd> own;
+  for (std::size_t r = 0; r < rows.logs().size(); ++r) {
+    const auto begin = static_cast<Eigen::Index>(rows.logs()[r]);
+    const auto end = r + 1 < rows.logs().size() ? static_cast<Eigen::Index>(rows.logs()[r + 1]) : rows.rows();
+    for (const auto& column : shared) {
+      own.emplace_back(Eigen::VectorXd::Zero(rows.rows()));
+      own.back().segment(begin, end - begin) = column.segment(begin, end - begin);
+    }
+  }
+  return own;
+}
+
+std::vector<Eigen::VectorXd> shared_columns(const LogRows& rows, const Scene& scene, const Candidate& candidate,
+                                            double nonlinear) {
   std::vector<Columns> of_motion;
   for (const auto& motion : rows.motions()) of_motion.push_back(candidate.columns(scene, motion, nonlinear));
   std::vector<Eigen::VectorXd> stacked;

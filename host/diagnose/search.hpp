@@ -53,7 +53,10 @@ struct SearchResult {
 SearchResult search_causes(const LogRows& rows, const Eigen::VectorXd& target, Scene& scene,
                            const std::function<void()>& progress = {});
 
-// The rows' column group of a candidate.
+// The rows' column group of a candidate: `shared_columns` as one for all records, and with those that have weights of
+// their own in each record in the rows of that one alone.
+std::vector<Eigen::VectorXd> shared_columns(const LogRows& rows, const Scene& scene, const Candidate& candidate,
+                                            double nonlinear);
 std::vector<Eigen::VectorXd> group_columns(const LogRows& rows, const Scene& scene, const Candidate& candidate,
                                            double nonlinear);
 

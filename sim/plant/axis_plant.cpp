@@ -38,6 +38,7 @@ AxisPlant::AxisPlant(double step, const Axis& axis, double position, std::uint64
       encoder_noise_(axis.encoder.noise),
       random_(seed),
       position_(position),
+      lost_position_(effects_.reading_error(position).value),
       phases_(axis.motor.model == MotorModel::synchronous ? 3 : 1) {}
 
 // The freewheeling diodes end the currents within a fraction of a millisecond: here at once.
@@ -62,6 +63,9 @@ void AxisPlant::tick(AxisPlant& plant) {
   if constexpr (effects) {
     plant.lost_position_ = plant.effects_.follower() - plant.position_;
     plant.lost_velocity_ = plant.effects_.closed() ? 0.0 : -plant.velocity_;
+    const auto error = plant.effects_.reading_error(plant.encoder_position());
+    plant.lost_velocity_ += error.slope * plant.encoder_velocity();
+    plant.lost_position_ += error.value;
   }
 }
 
@@ -94,7 +98,7 @@ inline double AxisPlant::step(MotorModel& motor, Friction& friction, const Phase
     const double linear =
         motor.advance(voltage, position_ + effects_.motor_lead(), velocity_ + effects_.motor_lead_rate());
     motor_force_ = effects_.motor_force(linear);
-    const auto extra = effects_.advance(position_, velocity_);
+    const auto extra = effects_.advance(position_, velocity_, motor_force_);
     applied_force_ = extra.applied + (effects_.transmitted(motor_force_) - motor_force_);
     force = motor_force_ + external_force_ + applied_force_ + extra.friction;
   } else {

@@ -107,7 +107,7 @@ class AxisPlant {
   double friction_force_ = 0.0;
   double external_force_ = 0.0;
   double applied_force_ = 0.0;  // of effects that are no friction, and what the motor's way to the carriage adds
-  double lost_position_ = 0.0;  // m, of the encoder's base against the carriage, by play
+  double lost_position_;        // m, of what the encoder reads against the carriage, by play and reading errors
   double lost_velocity_ = 0.0;  // m/s
   std::size_t phases_;
   PhaseValues current_{};

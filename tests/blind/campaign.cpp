@@ -61,14 +61,34 @@ double value_of_file(const sim::Axis& axis, const std::string& effect) {
 
 double scale_of(const sim::Effect& truth, const std::string& key) {
   if (key == "neutral") return 0.1;
-  if (truth.name == "force_ripple" && key != "pitch")
+  if (key == "cosine" || key == "sine")
     return std::hypot(truth.values.at("cosine").front(), truth.values.at("sine").front());
   return std::abs(truth.values.at(key).front());
+}
+
+// A profile is found with other knots: the rms difference at places along those that were found.
+ParameterScore score_profile(const sim::Effect& truth, const sim::Effect& found) {
+  const auto level = [](const sim::Effect& effect, double x) {
+    const auto &at = effect.values.at("position"), &of = effect.values.at("force");
+    const auto k = static_cast<std::size_t>(std::upper_bound(at.begin(), at.end(), x) - at.begin());
+    if (k == 0 || k == at.size()) return k == 0 ? of.front() : of.back();
+    return of[k - 1] + (of[k] - of[k - 1]) * (x - at[k - 1]) / (at[k] - at[k - 1]);
+  };
+  constexpr int places = 60;
+  const auto& ends = found.values.at("position");
+  double off = 0.0, of = 0.0;
+  for (int i = 0; i <= places; ++i) {
+    const double x = ends.front() + (ends.back() - ends.front()) * i / places, true_level = level(truth, x);
+    off += (level(found, x) - true_level) * (level(found, x) - true_level);
+    of += true_level * true_level;
+  }
+  return {truth.name, "profile", std::sqrt(off / of), 0.0, false, false};
 }
 
 std::vector<ParameterScore> score_parameters(const sim::Axis& file, const sim::Effect& truth,
                                              const host::Finding& finding) {
   std::vector<ParameterScore> scores;
+  if (truth.name == "position_dependent_friction") return {score_profile(truth, finding.effect)};
   for (const auto& [key, values] : truth.values) {
     const auto found = finding.effect.values.find(key);
     if (found == finding.effect.values.end() || found->second.empty()) continue;
@@ -76,7 +96,7 @@ std::vector<ParameterScore> score_parameters(const sim::Axis& file, const sim::E
     ParameterScore each{truth.name, key, std::abs(off) / std::max(scale_of(truth, key), 1e-12), 0.0, false, false};
     if (base != 0.0) each.of_change = std::abs(off / (values.front() - base));
     for (const auto& parameter : finding.parameters)
-      if (parameter.name.starts_with(key + "_") && !parameter.standard_errors.empty()) {
+      if ((parameter.name == key || parameter.name.starts_with(key + "_")) && !parameter.standard_errors.empty()) {
         each.interval = true;
         each.covered = std::abs(off) <= 1.96 * parameter.standard_errors.front();
       }

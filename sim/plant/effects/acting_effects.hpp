@@ -1,8 +1,11 @@
-// What the effects of one axis do in the steps of its plant: between motor and carriage, forces on the carriage, and
-// the play in front of the encoder. What they change in the plant's parameters is done before, by plant_axis().
+// What the effects of one axis do in the steps of its plant: between motor and carriage, forces on the carriage, the
+// play in front of the encoder, and the errors of what it reads. What they change in the plant's parameters is done
+// before, by plant_axis().
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -32,8 +35,9 @@ using ForceEffect = detail::ForcesOf<EffectTable>::type;
 
 class ActingEffects {
  public:
-  // `axis` as plant_axis() returns it, at rest at `position` (m). Throws EffectError.
-  ActingEffects(const Axis& axis, double step, double position) : step_(step), follower_(position) {
+  // `axis` as plant_axis() returns it, at rest at `position` (m); its clock begins at `time` (s). Throws EffectError.
+  ActingEffects(const Axis& axis, double step, double position, double time = 0.0)
+      : step_(step), start_(time), follower_(position) {
     for (const auto& parameters : effects_of<StructuralResonance>(axis))
       mode_.emplace(parameters, Body{axis.mass, step});
     for (const auto& parameters : effects_of<ForceSaturation>(axis)) saturation_.emplace(parameters, axis);
@@ -41,12 +45,13 @@ class ActingEffects {
     const Body body = carriage(axis);
     for_each_effect([&]<class E>() {
       if constexpr (ForceOnCarriage<E>)
-        for (const auto& parameters : effects_of<E>(axis)) forces_.emplace_back(E(parameters, body));
+        for (const auto& parameters : effects_of<E>(axis)) forces_.emplace_back(made<E>(parameters, body, axis));
     });
     for (const auto& parameters : effects_of<Backlash>(axis)) play_.emplace(parameters, position);
+    for (const auto& parameters : effects_of<EncoderSubdivisionError>(axis)) reading_.emplace_back(parameters);
   }
 
-  bool any() const { return !forces_.empty() || play_ || mode_ || saturation_ || coupled(); }
+  bool any() const { return !forces_.empty() || play_ || !reading_.empty() || mode_ || saturation_ || coupled(); }
   bool coupled() const { return coupling_mass_ != 0.0; }  // with the other axis
   // What moves with the encoder: of an axis with an elastic mode the load alone.
   Body carriage(const Axis& axis) const { return {mode_ ? mode_->load_mass() : axis.mass, step_}; }
@@ -73,9 +78,22 @@ class ActingEffects {
     double applied = 0.0;
     double friction = 0.0;
   };
-  // From position (m) and velocity (m/s) at the beginning of the step.
-  Forces advance(double position, double velocity) {
-    const CarriageState state{position, velocity, direction_.advance(velocity, step_)};
+  // From position (m) and velocity (m/s) at the beginning of the step, and the motor's mean force (N) in it.
+  Forces advance(double position, double velocity, double motor_force) {
+    state_ = {position, velocity, direction_.advance(velocity, step_), start_ + step_ * static_cast<double>(steps_++),
+              motor_force};
+    for (ForceEffect& effect : forces_)
+      std::visit(
+          [&]<class E>(E& e) {
+            if constexpr (requires { e.advance(state_); }) e.advance(state_);
+          },
+          effect);
+    return forces(motor_force);
+  }
+  // In the same step with another motor's force.
+  Forces forces(double motor_force) const {
+    auto state = state_;
+    state.motor_force = motor_force;
     Forces sum{coupling_force_, 0.0};
     for (const ForceEffect& effect : forces_)
       std::visit([&]<class E>(const E& e) { (E::is_friction ? sum.friction : sum.applied) += e.force(state); }, effect);
@@ -91,15 +109,38 @@ class ActingEffects {
   double follower() const { return follower_; }  // m, the position behind the play
   bool closed() const { return closed_; }        // whether it moved with the carriage in the last step
 
+  // What the encoder reads at `position` (m) less the position, m, and its slope.
+  Harmonics::Point reading_error(double position) const {
+    Harmonics::Point sum;
+    for (const auto& error : reading_) {
+      const auto one = error.at(position);
+      sum.value += one.value;
+      sum.slope += one.slope;
+    }
+    return sum;
+  }
+
  private:
+  template <class E>
+  static E made(const typename E::Parameters& parameters, Body body, const Axis& axis) {
+    if constexpr (std::is_constructible_v<E, const typename E::Parameters&, Body, const Axis&>)
+      return E(parameters, body, axis);
+    else
+      return E(parameters, body);
+  }
+
   double step_;
   std::optional<StructuralResonance> mode_;
   std::optional<ForceSaturation> saturation_;
   double coupling_mass_ = 0.0, coupling_force_ = 0.0;
   double motor_force_ = 0.0, transmitted_ = 0.0;
+  double start_;
+  std::int64_t steps_ = 0;
+  CarriageState state_{};
   std::vector<ForceEffect> forces_;
   SlidingDirection direction_;
   std::optional<Backlash> play_;
+  std::vector<EncoderSubdivisionError> reading_;
   double follower_;
   bool closed_ = true;
 };

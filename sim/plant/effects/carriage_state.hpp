@@ -14,9 +14,11 @@ namespace stiction::sim {
 inline constexpr double turning_distance = 1e-6;  // m
 
 struct CarriageState {
-  double position;   // m
-  double velocity;   // m/s
-  double direction;  // the sign of the velocity as friction has it, -1 to 1, see SlidingDirection
+  double position;           // m
+  double velocity;           // m/s
+  double direction;          // the sign of the velocity as friction has it, -1 to 1, see SlidingDirection
+  double time = 0.0;         // s, from the start
+  double motor_force = 0.0;  // N, of the motor's current
 };
 
 // The sign of the velocity without its jump: d(direction)/dx = (sgn v - direction)/turning_distance along the way

@@ -3,8 +3,9 @@
 //
 // What an effect's physics may be:
 //   static void change(const Parameters&, Axis&)             the plant's own parameters; the drive keeps the file's
-//   class with force(const CarriageState&), is_friction      a force on the carriage in each step (N, positive in +x)
-//   Backlash, TimeSkew::delay                                what is measured and recorded
+//   class with force(const CarriageState&), is_friction      a force on the carriage in each step (N, positive in +x);
+//                                                            with advance(const CarriageState&), one that remembers
+//   Backlash, EncoderSubdivisionError, TimeSkew::delay       what is measured and recorded
 //   ForceSaturation, StructuralResonance                     between motor and carriage
 //   CrossAxisCoupling                                        a force by the other axis
 //   static void change_drive(const Parameters&, Axis&)       the drive's parameters; the plant keeps the file's
@@ -24,15 +25,21 @@
 #include "sim/plant/effects/cross_axis_coupling.hpp"
 #include "sim/plant/effects/effect_kind.hpp"
 #include "sim/plant/effects/effect_values.hpp"
+#include "sim/plant/effects/encoder_subdivision_error.hpp"
 #include "sim/plant/effects/force_constant_mismatch.hpp"
+#include "sim/plant/effects/force_constant_ripple.hpp"
 #include "sim/plant/effects/force_ripple.hpp"
 #include "sim/plant/effects/force_saturation.hpp"
 #include "sim/plant/effects/friction_asymmetry.hpp"
+#include "sim/plant/effects/friction_lag.hpp"
 #include "sim/plant/effects/mass_mismatch.hpp"
+#include "sim/plant/effects/periodic_disturbance.hpp"
+#include "sim/plant/effects/position_dependent_friction.hpp"
 #include "sim/plant/effects/position_spring.hpp"
 #include "sim/plant/effects/presliding_hysteresis.hpp"
 #include "sim/plant/effects/stribeck.hpp"
 #include "sim/plant/effects/structural_resonance.hpp"
+#include "sim/plant/effects/thermal_drift.hpp"
 #include "sim/plant/effects/time_skew.hpp"
 #include "sim/plant/effects/viscous_mismatch.hpp"
 #include "sim/plant/effects/viscous_nonlinear.hpp"
@@ -41,8 +48,10 @@ namespace stiction::sim {
 
 using EffectTable =
     std::tuple<MassMismatch, CoulombMismatch, ViscousMismatch, ViscousNonlinear, Stribeck, FrictionAsymmetry,
-               PreslidingHysteresis, ConstantForce, PositionSpring, ForceRipple, ForceConstantMismatch, ForceSaturation,
-               Backlash, StructuralResonance, TimeSkew, CrossAxisCoupling, ControllerGainMismatch>;
+               PreslidingHysteresis, FrictionLag, PositionDependentFriction, ThermalDrift, ConstantForce,
+               PositionSpring, ForceRipple, ForceConstantRipple, ForceConstantMismatch, ForceSaturation, Backlash,
+               StructuralResonance, EncoderSubdivisionError, TimeSkew, CrossAxisCoupling, PeriodicDisturbance,
+               ControllerGainMismatch>;
 
 // Calls visit.operator()<E>() for each effect of the table, in order.
 template <class Visit, std::size_t Index = 0>

@@ -4,12 +4,11 @@
 #pragma once
 
 #include <array>
-#include <numbers>
 #include <vector>
 
 #include "sim/parameter.hpp"
 #include "sim/plant/effects/carriage_state.hpp"
-#include "sim/plant/effects/effect_values.hpp"
+#include "sim/plant/effects/harmonics.hpp"
 
 namespace stiction::sim {
 
@@ -30,30 +29,14 @@ class ForceRipple {
   static constexpr bool is_friction = false;
 
   // Throws EffectError.
-  static void check(const Parameters& p) {
-    if (p.sine.size() != p.cosine.size())
-      throw EffectError(name, fmt::format("a list of {} as sine", p.sine.size()),
-                        fmt::format("a list of {}, as many as cosine has", p.cosine.size()));
-  }
+  static void check(const Parameters& p) { Harmonics::check(name, p.cosine, p.sine); }
 
-  ForceRipple(const Parameters& p, Body) : p_(p), angle_per_metre_(2.0 * std::numbers::pi / p.pitch) {}
+  ForceRipple(const Parameters& p, Body) : ripple_(p.pitch, p.cosine, p.sine) {}
 
-  double force(const CarriageState& s) const {
-    // Harmonic k from k - 1 by rotating once more.
-    const double c1 = std::cos(angle_per_metre_ * s.position), s1 = std::sin(angle_per_metre_ * s.position);
-    double c = 1.0, sn = 0.0, sum = 0.0;
-    for (std::size_t k = 0; k < p_.cosine.size(); ++k) {
-      const double rotated = c * c1 - sn * s1;
-      sn = sn * c1 + c * s1;
-      c = rotated;
-      sum += p_.cosine[k] * c + p_.sine[k] * sn;
-    }
-    return sum;
-  }
+  double force(const CarriageState& s) const { return ripple_.at(s.position).value; }
 
  private:
-  Parameters p_;
-  double angle_per_metre_;
+  Harmonics ripple_;
 };
 
 }  // namespace stiction::sim

@@ -56,7 +56,8 @@ class Motor {
 // Friction and what is hidden in it, as a force that opposes the motion, and forces of the surroundings.
 class Carriage {
  public:
-  Carriage(const Mechanics& m, double x) : m_(m), contact_(m.contact), x_(x) {
+  // `turn`: phase (rad) by which this log differs from the first in what has no fixed phase.
+  Carriage(const Mechanics& m, double x, double turn) : m_(m), contact_(m.contact), x_(x), turn_(turn) {
     if (m.mode_frequency <= 0.0) return;
     const double w = 2.0 * pi * m.mode_frequency;
     load_ = m.mode_load * m.mass;
@@ -66,6 +67,8 @@ class Carriage {
 
   // One step of h s under the motor's force and that of noise; `other`: the other axis' acceleration.
   void advance(double motor, double disturbance, double other, double h, double t) {
+    const double angle = 2.0 * pi * x_ / m_.constant_ripple_pitch;
+    motor *= 1.0 + m_.constant_cosine * std::cos(angle) + m_.constant_sine * std::sin(angle);
     const double resisting = friction(t);
     double force = motor, mass = m_.mass;
     if (load_ > 0.0) {
@@ -80,6 +83,7 @@ class Carriage {
       lead_rate_ += h / (m_.mass - load_) * (motor - force) - (next - v_);
       lead_ += 0.5 * h * lead_rate_;
     }
+    if (m_.friction_lag > 0.0) late_ += h / (m_.friction_lag + h) * (next - late_);
     moved_ = 0.5 * h * (v_ + next);
     if (next * v_ < 0.0) reversed_at_ = t;
     v_ = next;
@@ -97,7 +101,16 @@ class Carriage {
     const double ratio = v_ / m_.stribeck_velocity;
     return contact + m_.rise * sign_of(v_) * (1.0 - std::exp(-speed / m_.rise_velocity)) +
            m_.break_away * slip * std::exp(-ratio * ratio) + m_.more_in_plus * std::abs(slip) +
-           m_.more_viscous_in_plus * speed + m_.drift * slip * (1.0 - std::exp(-t / m_.drift_time));
+           m_.more_viscous_in_plus * speed + (m_.drift * (1.0 - std::exp(-t / m_.drift_time)) + profile()) * slip +
+           (m_.friction_lag > 0.0 ? m_.viscous * (late_ - v_) : 0.0);
+  }
+  double profile() const {
+    const auto& at = m_.profile_position;
+    const auto& of = m_.profile_force;
+    if (at.empty()) return 0.0;
+    for (std::size_t k = 0; k < at.size(); ++k)
+      if (x_ < at[k]) return k == 0 ? of[0] : of[k] + (of[k - 1] - of[k]) * (at[k] - x_) / (at[k] - at[k - 1]);
+    return of.back();
   }
   double surroundings(double t) const {
     double force = m_.constant_force - m_.spring * (x_ - m_.spring_neutral);
@@ -107,7 +120,9 @@ class Carriage {
     }
     const double off = (x_ - m_.bump_position) / m_.bump_width;
     if (m_.bump != 0.0) force += m_.bump * std::exp(-0.5 * off * off);
-    if (m_.tone != 0.0) force += m_.tone * std::sin(2.0 * pi * m_.tone_frequency * t);
+    const double wave = 2.0 * pi * m_.tone_frequency * t + turn_;
+    if (m_.tone_cosine != 0.0 || m_.tone_sine != 0.0)
+      force += m_.tone_cosine * std::cos(wave) + m_.tone_sine * std::sin(wave);
     if (m_.speed_ripple != 0.0)
       force += m_.speed_ripple * std::abs(v_) * std::sin(2.0 * pi * x_ / m_.speed_ripple_pitch);
     if (m_.kick != 0.0) force += m_.kick * sign_of(v_) * std::exp(-(t - reversed_at_) / m_.kick_time);
@@ -116,17 +131,23 @@ class Carriage {
 
   Mechanics m_;
   Contact contact_;
-  double x_, v_ = 0.0, moved_ = 0.0;
+  double x_, v_ = 0.0, moved_ = 0.0, late_ = 0.0, turn_;
   double load_ = 0.0, spring_ = 0.0, damper_ = 0.0;  // kg, N/m, N s/m; of the elastic mode
   double lead_ = 0.0, lead_rate_ = 0.0;              // of the motor before the load
   double reversed_at_ = -1e3;
 };
 
-// Rider on an elastic mount behind the lost motion, and what the encoder reads of it.
+// Rider on an elastic mount behind the lost motion, and what the encoder reads of it: with an error periodic in its
+// signal.
 class Encoder {
  public:
-  Encoder(const sim::Encoder& e, double backlash, double x)
-      : half_(0.5 * backlash), dragged_(x), increment_(e.increment) {
+  Encoder(const sim::Encoder& e, const Mechanics& m, double x)
+      : half_(0.5 * m.backlash),
+        dragged_(x),
+        increment_(e.increment),
+        cosine_(m.reading_cosine),
+        sine_(m.reading_sine),
+        signal_(2.0 * pi / m.reading_period) {
     if (!e.mount) return;
     w_ = 2.0 * pi * e.mount->natural_frequency;
     damping_ = 2.0 * e.mount->damping_ratio * w_;
@@ -139,10 +160,14 @@ class Encoder {
     v_ = v;
     if (w_ > 0.0) deflection_ += h * rate_;
   }
-  double read(double noise) const { return increment_ * std::round((dragged_ + deflection_ + noise) / increment_); }
+  double read(double noise) const {
+    const double head = dragged_ + deflection_, phase = signal_ * head;
+    const double error = cosine_ == 0.0 && sine_ == 0.0 ? 0.0 : cosine_ * std::cos(phase) + sine_ * std::sin(phase);
+    return increment_ * std::round((head + error + noise) / increment_);
+  }
 
  private:
-  double half_, dragged_, increment_, v_ = 0.0;
+  double half_, dragged_, increment_, cosine_, sine_, signal_, v_ = 0.0;
   double w_ = 0.0, damping_ = 0.0, deflection_ = 0.0, rate_ = 0.0;
 };
 
@@ -222,8 +247,9 @@ host::Log record(const sim::Machine& machine, const Mechanics& mechanics, const 
 
   const double start = trajectory.at(0.0).position;
   Motor motor(axis.motor, mechanics, h);
-  Carriage carriage(mechanics, start);
-  Encoder encoder(axis.encoder, mechanics.backlash, start);
+  const double turn = 2.0 * pi * 0.6180339887 * static_cast<double>(seed % 100);
+  Carriage carriage(mechanics, start, turn);
+  Encoder encoder(axis.encoder, mechanics, start);
   GaussMarkov slow(noise.slow_force, noise.slow_force_corner, tick, seed * 8 + 1);
   GaussMarkov fast(noise.fast_force, noise.fast_force_corner, tick, seed * 8 + 2);
   GaussMarkov jitter(noise.encoder, 2000.0, tick, seed * 8 + 3);

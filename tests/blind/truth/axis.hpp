@@ -39,17 +39,26 @@ struct Mechanics {
   // True gains and integral times of the drive over the file's.
   double position_gain = 1.0, velocity_gain = 1.0, velocity_integral_time = 1.0;
 
-  // Outside of the vocabulary, or of its first half.
+  double friction_lag = 0.0;                            // s, viscous friction after the speed
+  std::vector<double> profile_position, profile_force;  // m, N: more friction there, linear between
+  double drift = 0.0, drift_time = 1.0;                 // N, s: friction's level, 1 - e^(-t/T) from a log's start
+  double constant_ripple_pitch = 1.0;                   // m
+  double constant_cosine = 0.0, constant_sine = 0.0;    // share of the motor's force
+  double reading_period = 1.0;                          // m
+  double reading_cosine = 0.0, reading_sine = 0.0;      // m, of the encoder's error
+  double tone_frequency = 1.0;                          // Hz
+  double tone_cosine = 0.0, tone_sine = 0.0;            // N, in the first log; the phase differs from log to log
+
+  // Outside of the vocabulary.
   double bump = 0.0, bump_position = 0.0, bump_width = 1.0;  // N, m, m: a push at one place
-  double tone = 0.0, tone_frequency = 1.0;                   // N, Hz
-  double drift = 0.0, drift_time = 1.0;                 // N, s: friction's level, 1 - e^(-t/T) from each log's start
-  double speed_ripple = 0.0, speed_ripple_pitch = 1.0;  // N s/m, m: periodic in position, grows with speed
-  double kick = 0.0, kick_time = 1.0;                   // N, s: pushes forward after each reversal and dies away
+  double speed_ripple = 0.0, speed_ripple_pitch = 1.0;       // N s/m, m: periodic in position, grows with speed
+  double kick = 0.0, kick_time = 1.0;                        // N, s: pushes forward after each reversal and dies away
 };
 
 // Runs `trajectory` and records x_set, x, i every `period` s, a multiple of the fast period. One axis: the machine's
 // first, whose motor, encoder, inverter and control are taken from `machine`; beside it the record has the position of
-// a second one, Y, which follows `other` without any error. Throws std::runtime_error when the drive trips.
+// a second one, Y, which follows `other` without any error. Throws std::runtime_error when the drive trips. The last two
+// digits of the seed number the record: phases that differ from log to log follow them.
 host::Log record(const sim::Machine& machine, const Mechanics& mechanics, const Trajectory& trajectory,
                  const Trajectory& other, const NoiseLevels& noise, double period, std::uint64_t seed);
 

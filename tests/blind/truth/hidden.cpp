@@ -121,19 +121,58 @@ void change_gains(const sim::Effect& e, Mechanics& m) {
   }
 }
 
-AtStrength draw_bump(Random& random, const Mechanics&) {
-  return [s = either_sign(random), x0 = uniform(random, -0.05, 0.08), w = uniform(random, 0.003, 0.008)](double x) {
-    return sim::Effect{"push_at_one_place", {{"force", {8.0 * s * x}}, {"position", {x0}}, {"width", {w}}}};
+AtStrength draw_lag(Random&, const Mechanics&) {
+  return [](double x) { return sim::Effect{"friction_lag", {{"time", {4e-3 * x}}}}; };
+}
+AtStrength draw_profile(Random& random, const Mechanics&) {
+  std::vector<double> position, force;
+  const auto knots = 3 + random() % 3;
+  for (std::size_t k = 0; k < knots; ++k) {
+    const double place = -0.15 + 0.33 * static_cast<double>(k) / static_cast<double>(knots - 1);
+    position.push_back(place + (k % 2 == 1 ? uniform(random, -0.02, 0.02) : 0.0));
+    force.push_back(uniform(random, -6.0, 6.0));
+  }
+  return [position, force](double x) {
+    auto scaled = force;
+    for (double& f : scaled) f *= x;
+    return sim::Effect{"position_dependent_friction", {{"position", position}, {"force", scaled}}};
+  };
+}
+AtStrength draw_constant_ripple(Random& random, const Mechanics&) {
+  constexpr std::array pitches{0.072, 0.036, 0.024, 0.012};
+  const double pitch = random() % 2 == 0 ? pitches[random() % 4] : log_uniform(random, 0.008, 0.06);
+  return [pitch, phase = uniform(random, 0.0, 2.0 * std::numbers::pi)](double x) {
+    return sim::Effect{
+        "force_constant_ripple",
+        {{"pitch", {pitch}}, {"cosine", {0.02 * x * std::cos(phase)}}, {"sine", {0.02 * x * std::sin(phase)}}}};
+  };
+}
+AtStrength draw_subdivision(Random& random, const Mechanics&) {
+  constexpr std::array periods{20e-6, 40e-6, 100e-6, 200e-6, 500e-6};
+  const double drawn = random() % 2 == 0 ? periods[random() % 5] : log_uniform(random, 20e-6, 500e-6);
+  return [period = drawn, phase = uniform(random, 0.0, 2.0 * std::numbers::pi)](double x) {
+    return sim::Effect{"encoder_subdivision_error",
+                       {{"period", {period}},
+                        {"cosine", {0.003 * period * x * std::cos(phase)}},
+                        {"sine", {0.003 * period * x * std::sin(phase)}}}};
   };
 }
 AtStrength draw_tone(Random& random, const Mechanics&) {
-  return [f = log_uniform(random, 6.0, 45.0)](double x) {
-    return sim::Effect{"force_at_a_frequency", {{"force", {4.0 * x}}, {"frequency", {f}}}};
+  return [f = log_uniform(random, 6.0, 45.0), phase = uniform(random, 0.0, 2.0 * std::numbers::pi)](double x) {
+    return sim::Effect{
+        "periodic_disturbance",
+        {{"frequency", {f}}, {"cosine", {4.0 * x * std::cos(phase)}}, {"sine", {4.0 * x * std::sin(phase)}}}};
   };
 }
 AtStrength draw_drift(Random& random, const Mechanics&) {
   return [s = either_sign(random), time = uniform(random, 4.0, 15.0)](double x) {
-    return sim::Effect{"friction_that_drifts", {{"change", {5.0 * s * x}}, {"time_constant", {time}}}};
+    return sim::Effect{"thermal_drift", {{"change", {5.0 * s * x}}, {"time_constant", {time}}}};
+  };
+}
+
+AtStrength draw_bump(Random& random, const Mechanics&) {
+  return [s = either_sign(random), x0 = uniform(random, -0.05, 0.08), w = uniform(random, 0.003, 0.008)](double x) {
+    return sim::Effect{"push_at_one_place", {{"force", {8.0 * s * x}}, {"position", {x0}}, {"width", {w}}}};
   };
 }
 AtStrength draw_speed_ripple(Random& random, const Mechanics&) {
@@ -157,7 +196,7 @@ void scale_contact(Mechanics& m, double ratio) {
 using E = const sim::Effect&;
 using M = Mechanics&;
 
-constexpr std::array<Hideable, 22> table{{
+constexpr std::array<Hideable, 26> table{{
     {"mass_mismatch", true, "", draw_mass, [](E e, M m) { m.mass = value(e, "mass"); }},
     {"coulomb_mismatch", true, "", draw_coulomb,
      [](E e, M m) { scale_contact(m, value(e, "coulomb") / coulomb_of(m)); }},
@@ -190,14 +229,30 @@ constexpr std::array<Hideable, 22> table{{
      }},
     {"cross_axis_coupling", true, "", draw_coupling, [](E e, M m) { m.other_mass = value(e, "mass"); }},
     {"controller_gain_mismatch", true, "", draw_gain, change_gains, true},
+    {"friction_lag", true, "", draw_lag, [](E e, M m) { m.friction_lag = value(e, "time"); }},
+    {"position_dependent_friction", true, "", draw_profile,
+     [](E e, M m) { m.profile_position = e.values.at("position"), m.profile_force = e.values.at("force"); }},
+    {"thermal_drift", true, "", draw_drift,
+     [](E e, M m) { m.drift = value(e, "change"), m.drift_time = value(e, "time_constant"); }},
+    {"force_constant_ripple", true, "", draw_constant_ripple,
+     [](E e, M m) {
+       m.constant_ripple_pitch = value(e, "pitch");
+       m.constant_cosine = value(e, "cosine"), m.constant_sine = value(e, "sine");
+     }},
+    {"encoder_subdivision_error", true, "", draw_subdivision,
+     [](E e, M m) {
+       m.reading_period = value(e, "period");
+       m.reading_cosine = value(e, "cosine"), m.reading_sine = value(e, "sine");
+     }},
+    {"periodic_disturbance", true, "", draw_tone,
+     [](E e, M m) {
+       m.tone_frequency = value(e, "frequency");
+       m.tone_cosine = value(e, "cosine"), m.tone_sine = value(e, "sine");
+     }},
     {"push_at_one_place", false, "", draw_bump,
      [](E e, M m) {
        m.bump = value(e, "force"), m.bump_position = value(e, "position"), m.bump_width = value(e, "width");
      }},
-    {"force_at_a_frequency", false, "periodic_disturbance", draw_tone,
-     [](E e, M m) { m.tone = value(e, "force"), m.tone_frequency = value(e, "frequency"); }},
-    {"friction_that_drifts", false, "thermal_drift", draw_drift,
-     [](E e, M m) { m.drift = value(e, "change"), m.drift_time = value(e, "time_constant"); }},
     {"ripple_that_grows_with_speed", false, "", draw_speed_ripple,
      [](E e, M m) { m.speed_ripple = value(e, "per_speed"), m.speed_ripple_pitch = value(e, "pitch"); }},
     {"kick_after_reversals", false, "", draw_kick,

@@ -83,6 +83,27 @@ std::vector<Case> cases() {
   all.push_back({"force_constant_mismatch", {.force_constant = 91.5}, "force_constant", 91.5, 0.005});
   all.push_back({"force_saturation", {.saturation_current = 12.0}, "current", 12.0, 0.2});
   all.push_back({"cross_axis_coupling", {.other_mass = 6.0}, "mass", 6.0, 0.05});
+  all.push_back({"friction_lag", {.friction_lag = 0.03}, "time", 0.03, 0.2});
+  all.push_back({"thermal_drift",
+                 {.force = [](const Point& p) { return 12.0 * (1.0 - std::exp(-p.t / 6.0)) * p.level; }},
+                 "time_constant",
+                 6.0,
+                 0.2});
+  all.push_back({"force_constant_ripple",
+                 {.constant_ripple = [](double x) { return 0.08 * std::sin(2 * pi * x / 0.03); }},
+                 "pitch",
+                 0.03,
+                 0.005});
+  all.push_back({"encoder_subdivision_error",
+                 {.reading_error = [](double x) { return 1.5e-6 * std::cos(2 * pi * x / 2e-4); }},
+                 "period",
+                 2e-4,
+                 0.005});
+  all.push_back({"periodic_disturbance",
+                 {.force = [](const Point& p) { return 4.0 * std::cos(2 * pi * 17.3 * p.t); }},
+                 "frequency",
+                 17.3,
+                 0.001});
   return all;
 }
 
@@ -100,6 +121,20 @@ TEST_P(EachEffect, is_found_with_its_parameters) {
 
 INSTANTIATE_TEST_SUITE_P(Diagnosis, EachEffect, ::testing::Range<std::size_t>(0, cases().size()),
                          [](const auto& each) { return std::string(cases()[each.param].effect); });
+
+// Trajectory 0 runs from 0 to 0.25 m: in its middle friction is 12 N higher, falling to nothing at both ends.
+TEST(Diagnosis, finds_where_along_the_stroke_the_friction_is_higher) {
+  const auto tent = [](double x) { return std::max(12.0 - 96.0 * std::abs(x - 0.125), 0.0); };
+  const auto verdict = verdict_of({.force = [&](const Point& p) { return tent(p.x) * p.level; }}, 7);
+  ASSERT_EQ(names_of(verdict), "position_dependent_friction");
+  const auto& found = verdict.findings.front().effect.values;
+  const auto &at = found.at("position"), &level = found.at("force");
+  double worst = 0.0;
+  for (std::size_t k = 0; k < at.size(); ++k) worst = std::max(worst, std::abs(level[k] - tent(at[k])));
+  figure("diagnosis of position_dependent_friction",
+         fmt::format("{} knots, {:.2g} N off at most (12 N hidden)", at.size(), worst));
+  EXPECT_LT(worst, 2.4);  // 20 %, as of a scale
+}
 
 TEST(Diagnosis, says_that_a_constant_force_may_be_an_asymmetry) {
   const auto verdict = verdict_of({.force = [](const Point&) { return -6.0; }}, 3);

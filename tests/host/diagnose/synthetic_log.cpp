@@ -70,7 +70,7 @@ host::Log synthetic_log(int trajectory, const Hidden& hidden, double noise_rms, 
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
   std::vector<double> force, position;
-  double x = 0.0, z = 0.0, measured = 0.0;
+  double x = 0.0, z = 0.0, measured = 0.0, followed = 0.0;
   const auto steps = static_cast<int>(duration / fine);
   for (int k = 0; k < steps; ++k) {
     const double t = k * fine, v = speed_at(trajectory, t);
@@ -82,9 +82,11 @@ host::Log synthetic_log(int trajectory, const Hidden& hidden, double noise_rms, 
     z = sign + (z - sign) * std::exp(-std::abs(moved) / hidden.contact_length);
     measured = std::clamp(measured, x - 0.5 * hidden.lost_motion, x + 0.5 * hidden.lost_motion);
     const Point point{t, x, v, a, z};
-    force.push_back(hidden.mass * a + hidden.coulomb * z + hidden.viscous * v - hidden.other_mass * other_at(t).a +
-                    (hidden.force ? hidden.force(point) : 0.0));
-    position.push_back(measured);
+    followed = hidden.friction_lag > 0.0 ? v + (followed - v) * std::exp(-fine / hidden.friction_lag) : v;
+    const double needed =
+        hidden.mass * a + hidden.coulomb * z + hidden.viscous * followed - hidden.other_mass * other_at(t).a + (hidden.force ? hidden.force(point) : 0.0);
+    force.push_back(hidden.constant_ripple ? needed / (1.0 + hidden.constant_ripple(x)) : needed);
+    position.push_back(measured + (hidden.reading_error ? hidden.reading_error(measured) : 0.0));
   }
   host::Log log;
   log.source = "trajectory " + std::to_string(trajectory);

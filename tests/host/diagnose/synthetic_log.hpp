@@ -28,6 +28,9 @@ struct Hidden {
   double force_constant = 94.0;                          // N/A, true value
   double saturation_current = 0.0;                       // A; 0: none
   double other_mass = 0.0;                               // kg: the other axis' acceleration pushes towards +x
+  double friction_lag = 0.0;                             // s, of viscous friction
+  std::function<double(double)> constant_ripple{};       // share of the motor's force, over x (m)
+  std::function<double(double)> reading_error{};         // m, of the encoder over x (m)
 };
 
 // `trajectory` 0, 1, 2: constant speeds both ways, sines of several periods, steps of several lengths. The log has a

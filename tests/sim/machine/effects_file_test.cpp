@@ -54,7 +54,8 @@ TEST(EffectsFile, AnUnknownNameListsTheNamesAndTheNearest) {
       message.starts_with("FILE:30: axis.B.effect[0].name: found \"force_riple\"; expected an effect: "
                           "\"mass_mismatch\", \"coulomb_mismatch\", "))
       << message;
-  EXPECT_NE(message.find("\"cross_axis_coupling\" or \"controller_gain_mismatch\"; did you mean \"force_ripple\"?"),
+  EXPECT_NE(message.find("\"backlash\", "), std::string::npos);
+  EXPECT_NE(message.find("\"periodic_disturbance\" or \"controller_gain_mismatch\"; did you mean \"force_ripple\"?"),
             std::string::npos);
   EXPECT_TRUE(error_of_effect("width = \"2 um\"\n")
                   .starts_with("FILE:29: axis.B.effect[0].name: found no such key; expected a text"));
@@ -136,15 +137,21 @@ TEST(EffectKinds, HaveTheNamesKeysAndSuffixesOfTheVocabulary) {
             "stribeck: break_away_N velocity_m_per_s\n"
             "friction_asymmetry: coulomb_N viscous_N_s_per_m\n"
             "presliding_hysteresis: stiffness_N_per_m distance_m\n"
+            "friction_lag: time_s\n"
+            "position_dependent_friction: position_m[] force_N[]\n"
+            "thermal_drift: change_N time_constant_s\n"
             "constant_force: force_N\n"
             "position_spring: stiffness_N_per_m neutral_m\n"
             "force_ripple: pitch_m cosine_N[] sine_N[]\n"
+            "force_constant_ripple: pitch_m cosine[] sine[]\n"
             "force_constant_mismatch: force_constant_N_per_A\n"
             "force_saturation: current_A\n"
             "backlash: width_m\n"
             "structural_resonance: frequency_Hz damping_ratio mass_ratio\n"
+            "encoder_subdivision_error: period_m cosine_m[] sine_m[]\n"
             "time_skew: delay_s loop_delay_s\n"
             "cross_axis_coupling: mass_kg\n"
+            "periodic_disturbance: frequency_Hz cosine_N sine_N\n"
             "controller_gain_mismatch: position_gain_per_s velocity_gain_A_s_per_m velocity_integral_time_s "
             "current_gain_V_per_A current_integral_time_s\n");
   EXPECT_EQ(unit_suffix("1"), "");

@@ -1,0 +1,61 @@
+// The encoder reads x + e(x), e periodic in its signal period. The acceleration and viscous friction of e are in what
+// was read but needed no force: in crawls the column is - mass d2e/dt2. At higher speed the drive answers the error
+// with currents that the log's samples fold down (reading_response.hpp). The signal periods to try come from
+// line_scan.hpp.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "host/diagnose/candidate.hpp"
+#include "host/diagnose/inverse_dynamics.hpp"
+#include "host/diagnose/reading_response.hpp"
+
+namespace stiction::host::effects {
+namespace {
+
+const LineScan& scan(const Scene& scene) { return scene.signals_of_encoder; }
+std::vector<double> grid(const Scene& scene) { return scan(scene).periods; }
+
+Columns columns(const Scene& scene, const Motion& motion, double period) {
+  const auto lowpass = butterworth(4, 2.0 * std::min(scene.signals.cutoff, 0.2 / motion.period) * motion.period);
+  const ReadingResponse response(scene.axis, scene.timing, motion.period);
+  const double viscous = viscous_of(scene.axis).value_or(0.0);
+  const auto column = [&](double quarter) {
+    std::vector<double> phase(motion.x.size()), error(motion.x.size());
+    for (std::size_t i = 0; i < error.size(); ++i) {
+      phase[i] = 2.0 * std::numbers::pi * std::remainder(motion.x[i] / period, 1.0) - quarter;
+      error[i] = std::cos(phase[i]);
+    }
+    error = filter_both_ways(lowpass, error, default_padding(lowpass));
+    const auto speed = central_difference(error, motion.period, scene.signals.difference_points);
+    auto force = central_difference(speed, motion.period, scene.signals.difference_points);
+    for (std::size_t i = 0; i < force.size(); ++i) {
+      force[i] = -scene.axis.mass * force[i] - viscous * speed[i];
+      const double frequency = std::abs(motion.v[i]) / period;
+      if (frequency < 0.5 / motion.period) continue;
+      const auto answer = response.drive(frequency);
+      force[i] += answer.real() * std::cos(phase[i]) -
+                  (motion.v[i] < 0.0 ? -answer.imag() : answer.imag()) * std::sin(phase[i]);
+    }
+    return force;
+  };
+  return {column(0.0), column(0.5 * std::numbers::pi)};
+}
+void describe(const Scene&, double period, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
+  add_key(finding, "period", "_m", {period}, {std::sqrt(c(2, 2))});
+  add_key(finding, "cosine", "_m", {w[0]}, {std::sqrt(c(0, 0))});
+  add_key(finding, "sine", "_m", {w[1]}, {std::sqrt(c(1, 1))});
+}
+
+}  // namespace
+
+const Candidate encoder_subdivision_error{.name = "encoder_subdivision_error",
+                                          .grid = grid,
+                                          .columns = columns,
+                                          .possible = any,
+                                          .describe = describe,
+                                          .nonlinear = true,
+                                          .periodic = true,
+                                          .scan = scan};
+
+}  // namespace stiction::host::effects

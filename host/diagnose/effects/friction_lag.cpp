@@ -1,0 +1,43 @@
+// Friction that follows the speed with a first-order lag: g(w) - g(v) over the time, g the file's friction as far as it
+// depends on the speed. The scanned time is the place of the slope: at the true one the weight is the time itself. Of
+// viscous friction alone it is for short times - viscous time dv/dt, a mass that is missing.
+#include "sim/plant/effects/friction_lag.hpp"
+
+#include <cmath>
+
+#include "host/diagnose/candidate.hpp"
+#include "host/diagnose/inverse_dynamics.hpp"
+
+namespace stiction::host::effects {
+namespace {
+
+std::vector<double> grid(const Scene&) { return {1e-3, 3e-3, 9e-3, 27e-3, 80e-3}; }
+Columns columns(const Scene& scene, const Motion& motion, double time) {
+  const auto friction = sim::sliding_friction(scene.axis.friction.models.at(scene.axis.friction.use));
+  const auto direction = contact_level(scene.axis, motion);
+  std::vector<double> column(motion.v.size());
+  const double share = motion.period / (2.0 * time + motion.period);  // trapezoidal rule
+  double followed = motion.v.front();
+  for (std::size_t i = 0; i < column.size(); ++i) {
+    if (i > 0) followed += share * (motion.v[i] + motion.v[i - 1] - 2.0 * followed);
+    column[i] = (friction(followed, direction[i]) - friction(motion.v[i], direction[i])) / time;
+  }
+  return {column};
+}
+// Slopes far from the weight do not describe it.
+bool possible(const Scene&, double time, const Eigen::VectorXd& w) { return w[0] > 0.4 * time && w[0] < 2.5 * time; }
+void describe(const Scene&, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
+  add_key(finding, "time", "_s", {w[0]}, {std::sqrt(c(0, 0))});
+}
+
+}  // namespace
+
+const Candidate friction_lag{.name = "friction_lag",
+                             .grid = grid,
+                             .columns = columns,
+                             .possible = possible,
+                             .describe = describe,
+                             .at_weight = true,
+                             .trials = 5.0};
+
+}  // namespace stiction::host::effects

@@ -1,0 +1,339 @@
+#include "host/diagnose/line_scan.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <unsupported/Eigen/FFT>
+
+#include "host/diagnose/reading_response.hpp"
+
+namespace stiction::host {
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr double lowest_frequency = 1.0;  // Hz; below it a record of some seconds holds drift, not a line
+constexpr double band = 0.4;              // of the rows' rate
+constexpr std::size_t surroundings = 64;  // lines to either side whose median is the noise around one
+constexpr double most_cycles = 400.0;     // of the stroke
+constexpr double shortest_pitch = 5e-4;   // m, of a ripple in the force constant
+constexpr double shortest_signal = 2e-6;  // m
+constexpr double longest_signal = 1e-3;   // m
+// m, of linear scales and of inductive and magnetic ones
+constexpr std::array usual_signals{2e-6,   4e-6,   8e-6,   10e-6,  16e-6,  20e-6,  40e-6,  50e-6, 80e-6,
+                                   100e-6, 128e-6, 200e-6, 250e-6, 400e-6, 500e-6, 512e-6, 1e-3};
+constexpr double stretch_cycles = 48.0;  // of a stretch of rows that is looked at by itself
+
+// The count of lines with the highest value over the median of their surroundings, apart by `apart` lines.
+std::vector<std::size_t> outstanding(const std::vector<double>& power, std::size_t count, std::size_t apart) {
+  std::vector<std::pair<double, std::size_t>> ratios;
+  std::vector<double> around;
+  double median = 0.0;
+  for (std::size_t k = 0; k < power.size(); ++k) {
+    if (k % 16 == 0) {  // the surroundings change slowly
+      const std::size_t from = k > surroundings * apart ? k - surroundings * apart : 0;
+      const std::size_t to = std::min(power.size(), k + surroundings * apart + 1);
+      around.assign(power.begin() + static_cast<std::ptrdiff_t>(from), power.begin() + static_cast<std::ptrdiff_t>(to));
+      const auto middle = around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2);
+      std::nth_element(around.begin(), middle, around.end());
+      median = std::max(*middle, 1e-300);
+    }
+    ratios.emplace_back(power[k] / median, k);
+  }
+  std::sort(ratios.begin(), ratios.end(), std::greater<>());
+  std::vector<std::size_t> chosen;
+  for (const auto& [ratio, k] : ratios) {
+    if (chosen.size() == count) break;
+    if (std::all_of(chosen.begin(), chosen.end(),
+                    [&, line = k](std::size_t c) { return (c > line ? c - line : line - c) >= apart; }))
+      chosen.push_back(k);
+  }
+  return chosen;
+}
+
+std::size_t record_end(const LogRows& rows, std::size_t record) {
+  return record + 1 < rows.logs().size() ? rows.logs()[record + 1] : static_cast<std::size_t>(rows.rows());
+}
+
+std::size_t power_of_two(std::size_t at_least) {
+  std::size_t n = 1;
+  while (n < at_least) n *= 2;
+  return n;
+}
+
+// Sum of weight times a wave over a place, for all orders 0, step, 2 step, ..: the places fall into the bins of a
+// transform, fine beside the shortest period that is looked at.
+class Binned {
+ public:
+  Binned(double step, double highest_order)
+      : bins_(power_of_two(static_cast<std::size_t>(16.0 * highest_order / step) + 1)),
+        per_metre_(step * static_cast<double>(bins_)) {}
+
+  // `place` (m) from 0 on.
+  std::vector<Complex> transform(const Eigen::VectorXd& place, const Eigen::VectorXd& weight) {
+    std::vector<Complex> bins(bins_), out;
+    for (Eigen::Index i = 0; i < place.size(); ++i)
+      bins[static_cast<std::size_t>(std::lround(place[i] * per_metre_)) % bins_] += weight[i];
+    fft_.inv(out, bins);  // e^(+i ..), over the number of bins
+    for (auto& sum : out) sum *= static_cast<double>(bins_);
+    return out;
+  }
+
+ private:
+  std::size_t bins_;
+  double per_metre_;
+  Eigen::FFT<double> fft_;
+};
+
+// What weight times (cosine, sine) takes off the residual's square, from the sums over residual times weight times
+// wave, weight squared times the wave of twice the order, and weight squared.
+double gain_of(Complex moment, Complex twice, double square) {
+  const double cc = 0.5 * (square + twice.real()), ss = 0.5 * (square - twice.real()), cs = 0.5 * twice.imag();
+  const double determinant = cc * ss - cs * cs;
+  if (determinant <= 1e-6 * square * square) return 0.0;
+  const double cr = moment.real(), sr = moment.imag();
+  return (ss * cr * cr - 2.0 * cs * cr * sr + cc * sr * sr) / determinant;
+}
+
+// Rows in a row of one record that see an order: slower than the band and some periods long.
+struct Stretch {
+  std::size_t begin, end;
+};
+std::vector<Stretch> stretches(const LogRows& rows, const Eigen::VectorXd& x, double order, double longest) {
+  const double fastest = band / rows.period(0) / order;
+  std::vector<Stretch> found;
+  for (std::size_t r = 0; r < rows.logs().size(); ++r) {
+    const std::size_t end = record_end(rows, r);
+    for (std::size_t i = rows.logs()[r]; i < end;) {
+      const std::size_t begin = i;
+      double low = x[static_cast<Eigen::Index>(i)], high = low;
+      for (; i < end && std::abs(rows.velocity[static_cast<Eigen::Index>(i)]) < fastest; ++i) {
+        low = std::min(low, x[static_cast<Eigen::Index>(i)]);
+        high = std::max(high, x[static_cast<Eigen::Index>(i)]);
+        if (high - low > longest) break;
+      }
+      if ((high - low) * order > 3.0 && i - begin > 16) found.push_back({begin, i});
+      if (i == begin) ++i;
+    }
+  }
+  return found;
+}
+
+// Of the stretches, the gain at orders first, first + step, ..; the columns grow with the speed squared.
+std::vector<double> gains(const LogRows& rows, const Eigen::VectorXd& residual, const Eigen::VectorXd& x,
+                          const std::vector<Stretch>& in, double first, double step, std::size_t count) {
+  std::vector<double> all(count, 0.0);
+  for (const auto& s : in) {
+    const std::size_t n = s.end - s.begin;
+    std::vector<Complex> wave(n), turn(n);
+    std::vector<double> weight(n), moment(n);
+    double square = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto row = static_cast<Eigen::Index>(s.begin + i);
+      const double way = 2.0 * std::numbers::pi * (x[row] - x[static_cast<Eigen::Index>(s.begin)]);
+      wave[i] = std::polar(1.0, way * first);
+      turn[i] = std::polar(1.0, way * step);
+      weight[i] = rows.velocity[row] * rows.velocity[row];
+      moment[i] = weight[i] * residual[row];
+      weight[i] *= weight[i];
+      square += weight[i];
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      Complex sum = 0.0, twice = 0.0;
+      for (std::size_t i = 0; i < n; ++i) {
+        sum += moment[i] * wave[i];
+        twice += weight[i] * (wave[i] * wave[i]);
+        wave[i] *= turn[i];
+      }
+      all[k] += gain_of(sum, twice, square);
+    }
+  }
+  return all;
+}
+
+// What an error of the encoder's reading takes off the residual, of all rows in which the log shows it within the band.
+class ShownError {
+ public:
+  ShownError(const LogRows& rows, const Eigen::VectorXd& residual, const Eigen::VectorXd& x, const sim::Axis& axis,
+             const sim::Timing& timing)
+      : rows_(rows), residual_(residual), x_(x) {
+    for (const auto& motion : rows.motions()) {
+      responses_.emplace_back(axis, timing, motion.period);
+      auto& table = drive_.emplace_back();
+      for (double f = 0.0; f < highest_shown; f += frequency_step)
+        table.push_back(f < 0.5 / motion.period ? 0.0 : responses_.back().drive(f));
+    }
+  }
+
+  // Of orders first, first + step, .., near enough to one another that the same rows show them.
+  std::vector<double> gains(double first, double step, std::size_t count) const {
+    gather(first + 0.5 * step * static_cast<double>(count - 1));
+    for (std::size_t n = 0; n < row_.size(); ++n) {
+      wave_[n] *= wave_at(x_[row_[n]] * first);
+      turn_.push_back(wave_at(x_[row_[n]] * step));
+    }
+    std::vector<double> all;
+    for (std::size_t k = 0; k < count; ++k) {
+      Complex moment = 0.0, twice = 0.0;
+      double square = 0.0;
+      for (std::size_t n = 0; n < row_.size(); ++n) {
+        moment += residual_[row_[n]] * wave_[n];
+        twice += wave_[n] * wave_[n];
+        square += std::norm(wave_[n]);
+        wave_[n] *= turn_[n];
+      }
+      all.push_back(gain_of(moment, twice, square));
+    }
+    return all;
+  }
+
+ private:
+  static constexpr double slowest_shown = 4.0;    // Hz, at which a row moves along the signal at all
+  static constexpr double highest_shown = 32e3;   // Hz
+  static constexpr double frequency_step = 10.0;  // Hz, of the drive's answer
+
+  static Complex wave_at(double turns) { return std::polar(1.0, 2.0 * std::numbers::pi * std::remainder(turns, 1.0)); }
+
+  // The rows that show this order, and the response in each.
+  void gather(double order) const {
+    row_.clear(), wave_.clear(), turn_.clear();
+    for (std::size_t r = 0; r < rows_.logs().size(); ++r)
+      for (std::size_t i = rows_.logs()[r]; i < record_end(rows_, r); ++i) {
+        const auto row = static_cast<Eigen::Index>(i);
+        const double v = rows_.velocity[row], frequency = std::abs(v) * order;
+        if (frequency < slowest_shown || frequency >= highest_shown) continue;
+        const double shown = responses_[r].shown_at(frequency);
+        if (shown > band / rows_.period(r)) continue;
+        const double w = 2.0 * std::numbers::pi * shown;
+        const Complex response =
+            drive_[r][static_cast<std::size_t>(frequency / frequency_step)] + responses_[r].mass() * w * w;
+        row_.push_back(row);
+        wave_.push_back(v < 0.0 ? std::conj(response) : response);
+      }
+  }
+
+  const LogRows& rows_;
+  const Eigen::VectorXd& residual_;
+  const Eigen::VectorXd& x_;
+  std::vector<ReadingResponse> responses_;
+  std::vector<std::vector<Complex>> drive_;
+  mutable std::vector<Eigen::Index> row_;
+  mutable std::vector<Complex> wave_, turn_;
+};
+
+}  // namespace
+
+LineScan scan_times(const LogRows& rows, const Eigen::VectorXd& residual, std::size_t count) {
+  std::size_t longest = 0;
+  for (std::size_t r = 0; r < rows.logs().size(); ++r)
+    longest = std::max(longest, record_end(rows, r) - rows.logs()[r]);
+  LineScan scan;
+  scan.extent = static_cast<double>(longest) * rows.period(0);
+  if (scan.extent * lowest_frequency < 1.0) return scan;
+  const std::size_t points = power_of_two(4 * longest);  // a quarter of a line apart
+  std::vector<double> power(points / 2, 0.0);
+  Eigen::FFT<double> fft;
+  for (std::size_t r = 0; r < rows.logs().size(); ++r) {
+    const std::size_t begin = rows.logs()[r], length = record_end(rows, r) - begin;
+    std::vector<Complex> padded(points), spectrum;
+    for (std::size_t i = 0; i < length; ++i) padded[i] = residual[static_cast<Eigen::Index>(begin + i)];
+    fft.fwd(spectrum, padded);
+    for (std::size_t k = 0; k < power.size(); ++k)
+      power[k] += 2.0 * std::norm(spectrum[k]) / static_cast<double>(std::max<std::size_t>(length, 1));
+  }
+  const double step = 1.0 / (static_cast<double>(points) * rows.period(0));
+  const auto lowest = static_cast<std::size_t>(lowest_frequency / step) + 1;
+  const auto highest = std::min(power.size(), static_cast<std::size_t>(band / rows.period(0) / step));
+  if (highest <= lowest) return scan;
+  power = {power.begin() + static_cast<std::ptrdiff_t>(lowest), power.begin() + static_cast<std::ptrdiff_t>(highest)};
+  for (const auto k : outstanding(power, count, 8))
+    scan.periods.push_back(1.0 / (step * static_cast<double>(lowest + k)));
+  scan.trials = static_cast<std::size_t>(scan.extent * band / rows.period(0)) + 1;
+  return scan;
+}
+
+LineScan scan_modulation(const LogRows& rows, const Eigen::VectorXd& residual, const Eigen::VectorXd& carrier,
+                         std::span<const double> known, std::size_t count) {
+  Eigen::VectorXd x = rows.sampled([](const Motion& m) { return m.x; });
+  x.array() -= x.minCoeff();
+  LineScan scan;
+  scan.extent = x.maxCoeff();
+  if (!(scan.extent > 2.0 * shortest_pitch)) return scan;
+  const double step = 0.125 / scan.extent, highest = std::min(most_cycles / scan.extent, 1.0 / shortest_pitch);
+  std::vector<double> all(static_cast<std::size_t>(highest / step), 0.0);
+  // By octaves, each of the rows that are slow enough for its shortest period.
+  for (std::size_t from = 8; from < all.size(); from *= 2) {
+    const double top = step * static_cast<double>(std::min(2 * from, all.size()));
+    Eigen::VectorXd weight = carrier;
+    for (Eigen::Index i = 0; i < weight.size(); ++i)
+      if (std::abs(rows.velocity[i]) * top > band / rows.period(0)) weight[i] = 0.0;
+    const double square = weight.squaredNorm();
+    if (square < 0.05 * carrier.squaredNorm()) break;
+    Binned binned(step, 2.0 * top);
+    const auto moment = binned.transform(x, weight.cwiseProduct(residual));
+    const auto twice = binned.transform(x, weight.cwiseAbs2());
+    for (std::size_t k = from; k < std::min(2 * from, all.size()); ++k)
+      all[k] = gain_of(moment[k], twice[2 * k], square);
+  }
+  scan.trials = all.size() / 8 + 1;
+  std::vector<std::size_t> peaks;
+  for (std::size_t k = 1; k + 1 < all.size(); ++k)
+    if (all[k] >= all[k - 1] && all[k] > all[k + 1]) peaks.push_back(k);
+  std::sort(peaks.begin(), peaks.end(), [&](std::size_t a, std::size_t b) { return all[a] > all[b]; });
+  for (const auto k : peaks)
+    if (scan.periods.size() < count) scan.periods.push_back(1.0 / (step * static_cast<double>(k)));
+  for (const double pitch : known)
+    if (pitch > shortest_pitch && pitch < scan.extent) scan.periods.push_back(pitch);
+  return scan;
+}
+
+// First over stretches of slow rows of some fifty periods, each with its own phase. Around what stands out, and at the
+// usual periods, then over all rows that show the error at all, which tell periods apart as finely as their extent
+// allows.
+LineScan scan_signal_periods(const LogRows& rows, const Eigen::VectorXd& residual, const sim::Axis& axis,
+                             const sim::Timing& timing, std::size_t count) {
+  const auto x = rows.sampled([](const Motion& m) { return m.x; });
+  LineScan scan;
+  scan.extent = x.maxCoeff() - x.minCoeff();
+  if (!(scan.extent > 0.0)) return scan;
+  struct Peak {
+    double order, height;
+  };
+  const auto higher = [](const Peak& a, const Peak& b) { return a.height > b.height; };
+  std::vector<Peak> slow;
+  const double variance = residual.squaredNorm() / static_cast<double>(residual.size());
+  for (double order = 1.0 / longest_signal; order < 1.0 / shortest_signal; order *= 2.0) {
+    const auto in = stretches(rows, x, 2.0 * order, stretch_cycles / order);
+    if (in.empty()) break;
+    const double step = 0.125 * order / stretch_cycles;
+    const auto found = gains(rows, residual, x, in, order, step, static_cast<std::size_t>(order / step));
+    scan.trials += found.size() / 8 + 1;
+    for (const auto k : outstanding(found, count, 8))
+      slow.push_back(
+          {order + step * static_cast<double>(k), found[k] / variance - 2.0 * static_cast<double>(in.size())});
+  }
+  std::sort(slow.begin(), slow.end(), higher);
+  slow.resize(std::min(slow.size(), count));
+  const ShownError shown(rows, residual, x, axis, timing);
+  std::vector<Peak> peaks;
+  for (const auto& peak : slow) {
+    constexpr std::size_t together = 16;
+    const double step = 0.25 / scan.extent, reach = std::min(peak.order / stretch_cycles, 320.0 * step);
+    Peak best{peak.order, 0.0};
+    for (double first = peak.order - reach; first <= peak.order + reach; first += step * together) {
+      const auto heights = shown.gains(first, step, together);
+      const auto highest = std::max_element(heights.begin(), heights.end());
+      if (*highest > best.height) best = {first + step * static_cast<double>(highest - heights.begin()), *highest};
+    }
+    peaks.push_back(best);
+  }
+  for (const double period : usual_signals) peaks.push_back({1.0 / period, shown.gains(1.0 / period, 0.0, 1).front()});
+  std::sort(peaks.begin(), peaks.end(), higher);
+  for (const auto& peak : peaks)
+    if (scan.periods.size() < count && peak.height > 0.0) scan.periods.push_back(1.0 / peak.order);
+  return scan;
+}
+
+}  // namespace stiction::host
