@@ -31,7 +31,7 @@ inline double one_minus_exp(double a) {
 }
 
 // (1 - exp(-a)) / a, the mean rate of a relaxation over a step in units of that at its beginning.
-inline double relaxation(double a) {
+[[gnu::always_inline]] inline double relaxation(double a) {
   if (a > detail::longest) [[unlikely]]
     return one_minus_exp(a) / a;
   return detail::relaxation_series(a);
