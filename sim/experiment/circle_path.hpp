@@ -29,7 +29,8 @@ class CirclePath {
   explicit CirclePath(const CircleSettings& settings)
       : radius_(settings.radius),
         curvature_(1.0 / settings.radius),
-        sense_(settings.direction == Direction::counter_clockwise ? 1.0 : -1.0),
+        signed_radius_(settings.direction == Direction::counter_clockwise ? radius_ : -radius_),
+        signed_curvature_(1.0 / signed_radius_),
         ramp_(settings.feed, settings.acceleration, settings.jerk) {}
 
   struct Point {
@@ -41,11 +42,11 @@ class CirclePath {
   [[gnu::always_inline]] Point at(double t) const {
     const auto motion = ramp_.at(t);
     const double phi = motion.distance * curvature_;
-    const double omega = sense_ * motion.speed * curvature_;
-    const double epsilon = sense_ * motion.acceleration * curvature_;
+    const double omega = motion.speed * signed_curvature_;
+    const double epsilon = motion.acceleration * signed_curvature_;
     const auto [sine, cosine] = sine_cosine(phi);
     const double x = radius_ * cosine;
-    const double y = sense_ * radius_ * sine;
+    const double y = signed_radius_ * sine;
     const double v_x = -y * omega;
     const double v_y = x * omega;
     return {phi, {{{x, v_x, -y * epsilon - v_y * omega}, {y, v_y, x * epsilon + v_x * omega}}}};
@@ -53,8 +54,9 @@ class CirclePath {
 
  private:
   double radius_;
-  double curvature_;  // 1/m
-  double sense_;
+  double curvature_;         // 1/m
+  double signed_radius_;     // m, positive counter-clockwise
+  double signed_curvature_;  // 1/m
   SpeedRamp ramp_;
 };
 

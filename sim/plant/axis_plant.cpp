@@ -51,14 +51,17 @@ void AxisPlant::switch_off() {
 template <class MotorModel, class Friction, bool effects>
 void AxisPlant::tick(AxisPlant& plant) {
   auto& friction = std::get<Friction>(plant.friction_);
-  const auto acting = plant.inverter_.advance_tick();
-  if (plant.enabled_) {
+  plant.inverter_.advance_tick<MotorModel::phases>();
+  if (plant.enabled_) [[likely]] {
     auto& motor = std::get<MotorModel>(plant.motor_);
-    plant.advance_tick<effects>(motor, friction, acting);
+    if (plant.inverter_.changes_within_tick()) [[unlikely]]
+      plant.advance_unevenly<effects>(motor, friction);
+    else
+      plant.advance_evenly<effects>(motor, friction);
     plant.current_ = motor.current();
   } else {
     OpenWindings none;
-    plant.advance_tick<effects>(none, friction, acting);
+    plant.advance_unevenly<effects>(none, friction);
   }
   if constexpr (effects) {
     plant.lost_position_ = plant.effects_.follower() - plant.position_;
@@ -69,30 +72,37 @@ void AxisPlant::tick(AxisPlant& plant) {
   }
 }
 
-// The voltages are copied: that nothing read in the loop can be a part of the plant is what lets the compiler keep the
-// plant's state in registers. The steps of a tick with one voltage are written out, which saves one instruction in
+// With one voltage for the whole tick. It is copied: that nothing read in a step can be a part of the plant is what
+// lets the compiler keep the plant's state in registers. The steps are written out, which saves one instruction in
 // twelve.
 template <bool effects, class MotorModel, class Friction>
-inline void AxisPlant::advance_tick(MotorModel& motor, Friction& friction, const InverterModel::Acting& acting) {
-  const PhaseValues after = acting.after;
+inline void AxisPlant::advance_evenly(MotorModel& motor, Friction& friction) {
+  const PhaseValues voltage = inverter_.voltage();
   double change = 0.0;
-  if (acting.change == 0) {
-    [&]<std::size_t... i>(std::index_sequence<i...>) {
-      ((static_cast<void>(i), change = step<effects>(motor, friction, after)), ...);
-    }
-    (std::make_index_sequence<plant_steps_per_tick>());
-  } else {
-    const PhaseValues before = acting.before, between = acting.between;
-    for (int i = 0; i < plant_steps_per_tick; ++i)
-      change = step<effects>(motor, friction, i >= acting.change ? after : i + 1 < acting.change ? before : between);
+  [&]<std::size_t... i>(std::index_sequence<i...>) {
+    ((static_cast<void>(i), change = step<effects>(motor, friction, voltage)), ...);
   }
+  (std::make_index_sequence<plant_steps_per_tick>());
+  friction_force_ = motor_force_ + external_force_ + applied_force_ - mass_per_step_ * change;
+}
+
+// Not inline: registers that it alone needs would cost each tick of the other 10 instructions.
+template <bool effects, class MotorModel, class Friction>
+[[gnu::noinline]] void AxisPlant::advance_unevenly(MotorModel& motor, Friction& friction) {
+  const auto acting = inverter_.acting();
+  double change = 0.0;
+  for (int i = 0; i < plant_steps_per_tick; ++i)
+    change = step<effects>(motor, friction,
+                           i >= acting.change      ? acting.after
+                           : i + 1 < acting.change ? acting.before
+                                                   : acting.between);
   friction_force_ = motor_force_ + external_force_ + applied_force_ - mass_per_step_ * change;
 }
 
 // Semi-implicit Euler: the new velocity from the forces, the position from the mean of old and new. Returns the change
 // of the velocity.
 template <bool effects, class MotorModel, class Friction>
-inline double AxisPlant::step(MotorModel& motor, Friction& friction, const PhaseValues& voltage) {
+inline double AxisPlant::step(MotorModel& motor, Friction& friction, PhaseValues voltage) {
   double force = 0.0;
   if constexpr (effects) {
     const double linear =
@@ -114,7 +124,9 @@ inline double AxisPlant::step(MotorModel& motor, Friction& friction, const Phase
   return change;
 }
 
-double AxisPlant::draw_noise() { return std::normal_distribution<double>(0.0, encoder_noise_)(random_); }
+double AxisPlant::with_noise(double reading) {
+  return reading + std::normal_distribution<double>(0.0, encoder_noise_)(random_);
+}
 
 // Behind the templates that it names: clang 14 forgets to instantiate, for a lambda like this, what is defined later.
 AxisPlant::Tick AxisPlant::tick_of(const MotorVariant& motor_model, const FrictionModel& friction_model, bool effects) {

@@ -56,9 +56,10 @@ class AxisPlant {
 
   // What the encoder reads now: with increment and noise. Draws a new noise value at each call.
   double read_encoder() {
+    double reading = encoder_position();
     if (encoder_noise_ > 0.0) [[unlikely]]
-      return nearest_increment(encoder_position() + draw_noise());
-    return nearest_increment(encoder_position());
+      reading = with_noise(reading);
+    return nearest_increment(reading);
   }
 
  private:
@@ -70,19 +71,22 @@ class AxisPlant {
   template <class MotorModel, class Friction, bool effects>
   static void tick(AxisPlant& plant);
   template <bool effects, class MotorModel, class Friction>
-  [[gnu::always_inline]] void advance_tick(MotorModel& motor, Friction& friction, const InverterModel::Acting& acting);
+  [[gnu::always_inline]] void advance_evenly(MotorModel& motor, Friction& friction);
   template <bool effects, class MotorModel, class Friction>
-  [[gnu::always_inline]] double step(MotorModel& motor, Friction& friction, const PhaseValues& voltage);
+  void advance_unevenly(MotorModel& motor, Friction& friction);
+  template <bool effects, class MotorModel, class Friction>
+  [[gnu::always_inline]] double step(MotorModel& motor, Friction& friction, PhaseValues voltage);
   void switch_off();
-  double draw_noise();
+  double with_noise(double reading);
 
   double nearest_increment(double reading) const {
-    if (encoder_increment_ == 0.0) return reading;
     const double increments = reading * increments_per_metre_;
-    // Beyond 2^62 increments a plant has run away; the reading passes as it is, for the control's border to refuse.
-    if (!(std::abs(increments) < 0x1p62)) return reading;
-    return encoder_increment_ *
-           static_cast<double>(static_cast<std::int64_t>(increments + std::copysign(0.5, increments)));
+    // Beyond 2^51 increments a plant has run away; the reading passes as it is, for the control's border to refuse.
+    // So it does without an increment.
+    if (!(std::abs(increments) < 0x1p51)) [[unlikely]]
+      return reading;
+    constexpr double no_fraction = 0x1.8p52;  // added, it leaves no room for a fraction
+    return encoder_increment_ * (increments + no_fraction - no_fraction);
   }
 
   double half_step_;

@@ -25,29 +25,33 @@ class InverterModel {
   }
 
   // What the drive commands from this tick on.
-  void command(const PhaseValues& voltage) {
-    const auto limited = [limit = voltage_limit_](double u) { return std::clamp(u, -limit, limit); };
-    command_ = {limited(voltage[0]), limited(voltage[1]), limited(voltage[2])};
+  void command(const PhaseValues& voltage) { command_ = voltage; }
+
+  // One tick. Of the voltages only those of the first `phases` are taken over.
+  template <std::size_t phases>
+  [[gnu::always_inline]] void advance_tick() {
+    for (std::size_t k = 0; k < phases; ++k) commands_[newest_][k] = limited(command_[k]);
+    newest_ = after(newest_);
   }
 
-  // The voltages that act during one tick: `before` for the first `change` steps of the plant but the last of these,
+  // Whether the voltage that acts changes within a tick; if not, it is `voltage`.
+  bool changes_within_tick() const { return change_ != 0; }
+  const PhaseValues& voltage() const { return commands_[after(newest_)]; }
+
+  // The voltages that act during the tick: `before` for the first `change` steps of the plant but the last of these,
   // where `between` acts, then `after`.
   struct Acting {
     const PhaseValues& before;
-    const PhaseValues& between;
+    PhaseValues between;
     const PhaseValues& after;
     int change;
   };
-  Acting advance_tick() {
-    commands_[newest_] = command_;
-    newest_ = after(newest_);
-    const std::size_t oldest = newest_;
-    const std::size_t second = after(oldest);
-    if (share_before_ == 1.0) [[likely]]
-      return {commands_[oldest], commands_[oldest], commands_[second], change_};
-    for (std::size_t k = 0; k < between_.size(); ++k)
-      between_[k] = share_before_ * commands_[oldest][k] + (1.0 - share_before_) * commands_[second][k];
-    return {commands_[oldest], between_, commands_[second], change_};
+  Acting acting() const {
+    const PhaseValues &oldest = commands_[newest_], &second = voltage();
+    PhaseValues between;
+    for (std::size_t k = 0; k < between.size(); ++k)
+      between[k] = share_before_ == 1.0 ? oldest[k] : share_before_ * oldest[k] + (1.0 - share_before_) * second[k];
+    return {oldest, between, second, change_};
   }
 
   void switch_off() {
@@ -56,12 +60,16 @@ class InverterModel {
   }
 
  private:
+  // std::clamp gives a reference, for which the compiler takes branches.
+  double limited(double voltage) const {
+    const double above = voltage < -voltage_limit_ ? -voltage_limit_ : voltage;
+    return above > voltage_limit_ ? voltage_limit_ : above;
+  }
   std::size_t after(std::size_t slot) const { return slot == last_ ? 0 : slot + 1; }
 
   double voltage_limit_;
   int change_;
   double share_before_;  // of the step in which the voltage changes
-  PhaseValues between_{};
   PhaseValues command_{};
   std::vector<PhaseValues> commands_;  // ring, one a tick; the slot after the newest is the oldest
   std::size_t last_;                   // slot; size() of the vector is a division by the size of its elements

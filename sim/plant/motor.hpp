@@ -32,6 +32,8 @@ class Winding {
 // parallel: the current is their sum, R and L are divided.
 class DcMotor {
  public:
+  static constexpr std::size_t phases = 1;
+
   DcMotor(const Motor& motor, double step)
       : winding_(motor.phase_resistance / motor.count, motor.phase_inductance / motor.count, step),
         emf_gain_(winding_.gain() * motor.emf_constant),
@@ -58,6 +60,8 @@ class DcMotor {
 // inductance only lowers the effective one, L - M, and the mean of the phase voltages has no effect.
 class SynchronousMotor {
  public:
+  static constexpr std::size_t phases = 3;
+
   SynchronousMotor(const Motor& motor, double step)
       : winding_(motor.phase_resistance / motor.count, (motor.phase_inductance - motor.mutual_inductance) / motor.count,
                  step),
@@ -101,6 +105,8 @@ struct OpenWindings {
 // Ideal force source driven by a voltage command, N/V.
 class ForceSource {
  public:
+  static constexpr std::size_t phases = 1;
+
   ForceSource(const Motor& motor, double) : force_constant_(motor.force_constant) {}
 
   double advance(const PhaseValues& voltage, double, double) {

@@ -40,6 +40,7 @@ class LuGre {
         rise_(p.coulomb * (p.static_ratio - 1.0)),
         per_stribeck_velocity_(1.0 / p.stribeck_velocity),
         stribeck_(p.static_ratio > 1.0),
+        series_up_to_(stribeck_ ? -1.0 : detail::longest),
         stiffness_(p.stiffness),
         stiffness_step_(p.stiffness * body.step),
         stiffness_step_per_coulomb_(stiffness_step_ / p.coulomb),
@@ -61,24 +62,31 @@ class LuGre {
   // Lets the contact creep for one step of held velocity (m/s); returns k_s z + b_s z' (N) at its end.
   [[gnu::always_inline]] double move_contact(double velocity) {
     double relaxed = stiffness_step_per_coulomb_ * std::abs(velocity);  // |v| step / g(v)
-    if (stribeck_) [[unlikely]]
-      relaxed = stiffness_step_ * std::abs(velocity) / level(velocity);
-    const double change = relaxation(relaxed) * (stiffness_step_ * velocity - relaxed * spring_);
+    double rate = 0.0;
+    if (relaxed <= series_up_to_) [[likely]] {
+      rate = detail::relaxation_series(relaxed);
+    } else {
+      if (stribeck_) relaxed = stiffness_step_ * std::abs(velocity) / level(velocity);
+      rate = relaxation(relaxed);
+    }
+    const double change = rate * (stiffness_step_ * velocity - relaxed * spring_);
     spring_ += change;
     return spring_ + damping_ * change;
   }
 
  private:
   // k_s g(v), N.
-  double level(double velocity) const {
-    const double ratio = velocity * per_stribeck_velocity_;
-    return coulomb_ + rise_ * std::exp(-ratio * ratio);
+  [[gnu::always_inline]] double level(double velocity) const {
+    return coulomb_ + rise_ * fall(velocity * per_stribeck_velocity_);
   }
+  // A function without effects that is called, as in relaxation(): where g is constant it costs nothing.
+  [[gnu::const, gnu::noinline]] static double fall(double ratio) { return std::exp(-ratio * ratio); }
 
   double coulomb_;                     // F_C
   double rise_;                        // F_Ts - F_C
   double per_stribeck_velocity_;       // 1 / v_s
   bool stribeck_;                      // whether g depends on v
+  double series_up_to_;                // |v| step / g(v) for which the series holds; one test for this and Stribeck's
   double stiffness_;                   // k_s
   double stiffness_step_;              // k_s times step
   double stiffness_step_per_coulomb_;  // the share of the limit that 1 m/s creeps in a step

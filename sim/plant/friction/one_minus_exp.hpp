@@ -30,10 +30,14 @@ inline double one_minus_exp(double a) {
   return s;
 }
 
+// The same for where it is seldom needed: as a function without effects that is called, its loop costs what stands
+// around it neither registers nor stores. Inline it cost LuGre's circle 30 instructions a tick.
+[[gnu::const, gnu::noinline]] inline double seldom_one_minus_exp(double a) { return one_minus_exp(a); }
+
 // (1 - exp(-a)) / a, the mean rate of a relaxation over a step in units of that at its beginning.
-inline double relaxation(double a) {
+[[gnu::always_inline]] inline double relaxation(double a) {
   if (a > detail::longest) [[unlikely]]
-    return one_minus_exp(a) / a;
+    return seldom_one_minus_exp(a) / a;
   return detail::relaxation_series(a);
 }
 

@@ -16,7 +16,8 @@ struct Limited {
 // Holds |value| <= bound; the bound is not negative.
 template <class Signal>
 constexpr Limited<Signal> limit(Signal value, Signal bound) {
-  if (!exceeds(value, bound)) return {value, 0};
+  if (!exceeds(value, bound)) [[likely]]
+    return {value, 0};
   if (value > Signal{}) return {bound, 1};
   return {negative(bound), -1};
 }
@@ -26,7 +27,8 @@ constexpr Limited<Signal> limit(Signal value, Signal bound) {
 template <class Signal, class Sum>
 constexpr Limited<Signal> limit_sum(Sum sum, Signal bound) {
   const auto rounded = round_to<Signal>(sum);
-  if (!exceeds(rounded, bound)) return {cut<Signal>(rounded), 0};
+  if (!exceeds(rounded, bound)) [[likely]]
+    return {cut<Signal>(rounded), 0};
   if (rounded > decltype(rounded){}) return {bound, 1};
   return {negative(bound), -1};
 }
