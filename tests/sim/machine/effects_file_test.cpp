@@ -184,7 +184,7 @@ TEST(ExtendedMachine, KeepsTheTextAndReadsBackWithTheEffects) {
 
 TEST(ExtendedMachine, ContinuesTheEffectsOfTheFileWhicheverWayTheyAreWritten) {
   for (const std::string before : {"[[axis.B.effect]]\nname = \"constant_force\"\nforce = \"1 N\"\n",
-                                    "[axis.B]\neffect = [{ name = \"constant_force\", force = \"1 N\" }]\n"}) {
+                                   "[axis.B]\neffect = [{ name = \"constant_force\", force = \"1 N\" }]\n"}) {
     const bool in_one_line = before.starts_with("[axis");
     const std::string text = in_one_line ? replaced(small_machine, "[axis.B]\n", before) : small_machine + before;
     const MachineFileOnDisk file(text);
