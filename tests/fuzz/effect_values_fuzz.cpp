@@ -46,10 +46,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                 text_of(valid_machine("force"))};
   static FileInMemory file;
   FuzzedDataProvider bytes(data, size);
-  std::string text = bases[bytes.ConsumeIntegralInRange<std::size_t>(0, bases.size() - 1)];
-  for (int count = 0; bytes.remaining_bytes() > 0 && count < 6; ++count) text += effect_of(bytes);
-  file.replace_by(text);
-  read_and_run(file.path(), {});
+  const auto& base = bases[bytes.ConsumeIntegralInRange<std::size_t>(0, bases.size() - 1)];
+  std::string effects;
+  for (int count = 0; bytes.remaining_bytes() > 0 && count < 6; ++count) effects += effect_of(bytes);
+  file.replace_by(base + effects);
+  read_and_run(file.path(), {}, effects);
   return 0;
 }
 
