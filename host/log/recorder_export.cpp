@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "host/log/message.hpp"
 #include "host/log/recording.hpp"
@@ -15,7 +16,7 @@ namespace {
 using json = nlohmann::json;
 
 constexpr std::string_view zip_mark = "PK\x03\x04";
-constexpr std::uint64_t largest_entry = std::uint64_t{2} << 30;  // a bomb, or hours at 1 kHz
+constexpr std::size_t largest_entry = std::size_t{2} << 30;  // a bomb, or hours at 1 kHz
 
 struct ZipFree {
   void operator()(zip_t* archive) const { zip_discard(archive); }
@@ -49,13 +50,20 @@ std::string unzipped(const std::string& bytes, const std::string& name) {
   }
   if (json_files != 1)
     throw LogError(fmt::format("{}: found {} JSON files in the archive; expected one recording", name, json_files));
-  if (found.size > largest_entry)
-    throw LogError(fmt::format("{}: found {} with {} bytes; expected at most {}", name, excerpt(found.name), found.size,
-                               largest_entry));
+  // In pieces: the size that the archive states may be a false one, and too much for the memory.
   const std::unique_ptr<zip_file_t, ZipFree> file(zip_fopen_index(archive.get(), found.index, 0));
-  std::string content(found.size, '\0');
-  if (!file || zip_fread(file.get(), content.data(), found.size) != static_cast<zip_int64_t>(found.size))
+  std::string content;
+  std::vector<char> piece(std::size_t{1} << 16);
+  zip_int64_t count = file ? 1 : -1;
+  while (count > 0 && content.size() <= largest_entry) {
+    count = zip_fread(file.get(), piece.data(), piece.size());
+    if (count > 0) content.append(piece.data(), static_cast<std::size_t>(count));
+  }
+  if (count < 0)
     throw LogError(fmt::format("{}: {} cannot be unpacked; expected a whole archive", name, excerpt(found.name)));
+  if (count > 0)
+    throw LogError(
+        fmt::format("{}: found more than {} bytes in {}; expected less", name, largest_entry, excerpt(found.name)));
   return content;
 }
 
@@ -83,7 +91,7 @@ Recording read_recorder_export(const std::string& bytes, const std::string& name
   json document;
   try {
     document = json::parse(content);
-  } catch (const json::parse_error& error) {
+  } catch (const json::exception& error) {  // also a number beyond the range of double, which is no parse_error
     throw LogError(
         fmt::format("{}: found no valid JSON ({}); expected a recorder's export", name, excerpt(error.what(), 120)));
   }
@@ -129,7 +137,7 @@ Recording read_recorder_export(const std::string& bytes, const std::string& name
         if (k == counter || !channel.bad.empty() || row[k].is_null()) continue;
         if (!row[k].is_number()) {
           channel.bad = fmt::format("{}: row {} of HFData, {}: found {}", name, row_number, excerpt(channel.name),
-                                    excerpt(row[k].dump()));
+                                    row[k].is_structured() ? row[k].type_name() : excerpt(row[k].dump()));
           continue;
         }
         channel.t.push_back((count - first) * period);

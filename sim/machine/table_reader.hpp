@@ -136,6 +136,10 @@ class TableReader {
     }
   }
 
+  // Far beyond what any machine has; but the plant divides by these numbers and multiplies them, and a mass of 1e-323
+  // kg has no finite reciprocal.
+  static constexpr double least_magnitude = 1e-30, largest_magnitude = 1e30;
+
   // One value to read: its key and what it must be.
   struct Wanted {
     std::string key;
@@ -168,6 +172,8 @@ class TableReader {
   void read_value(const toml::node& node, const Wanted& wanted, double& value) const {
     value = quantity(node, wanted);
     if (!std::isfinite(value) || !wanted.range.contains(value)) fail_value(node, wanted, ValueKind::number);
+    if (value != 0.0 && !(std::abs(value) >= least_magnitude && std::abs(value) <= largest_magnitude))
+      fail_value(node, wanted, ValueKind::number, "beyond all machines: 1e-30 to 1e30 in SI units");
   }
   void read_value(const toml::node& node, const Wanted& wanted, std::optional<double>& value) const {
     read_value(node, wanted, value.emplace());

@@ -20,7 +20,9 @@ namespace {
 
 constexpr int ticks = 10;
 
-const std::vector<std::string>* current_overrides = nullptr;  // of the input that runs, for the message of a finding
+// Of the input that runs, for the message of a finding.
+const std::vector<std::string>* current_overrides = nullptr;
+const std::string* current_text = nullptr;
 
 bool is_finite(const sim::AxisPlant& plant) {
   return std::isfinite(plant.encoder_position()) && std::isfinite(plant.encoder_velocity()) &&
@@ -29,6 +31,8 @@ bool is_finite(const sim::AxisPlant& plant) {
 
 void rest(const sim::Machine& machine) {
   for (const auto& axis : machine.axes) {
+    // An effect may be a force that no step can follow, like a spring of 1e13 N/m; the drive must notice, below.
+    if (!axis.effects.empty()) continue;
     sim::AxisPlant plant(machine.timing, axis, 0.0, 1);
     for (int i = 0; i < ticks; ++i) plant.advance_tick();
     if (!is_finite(plant) || !std::isfinite(plant.read_encoder()))
@@ -83,8 +87,9 @@ void run_briefly(const sim::Machine& machine) {
   control<sim::DoubleSignals>(machine);
 }
 
-void read_and_run(const std::filesystem::path& file, const sim::ReadOptions& options) {
+void read_and_run(const std::filesystem::path& file, const sim::ReadOptions& options, const std::string& made) {
   current_overrides = &options.set;
+  current_text = &made;
   sim::Machine machine;
   try {
     machine = sim::read_machine(file, options);
@@ -96,6 +101,7 @@ void read_and_run(const std::filesystem::path& file, const sim::ReadOptions& opt
 
 void finding(const std::string& what) {
   fmt::print(stderr, "finding: {}\n", what);
+  if (current_text != nullptr) fmt::print(stderr, "{}", *current_text);
   if (current_overrides != nullptr)
     for (const auto& assignment : *current_overrides) fmt::print(stderr, "  --set '{}'\n", assignment);
   std::abort();

@@ -31,10 +31,11 @@ std::filesystem::path valid_machine(const std::string& motor);
 // Reads the file and, when it is accepted, runs the machine for a moment. A refusal that names its reason
 // (sim::MachineFileError, sim::ConfigurationError) is right for any input; every other exception, and a machine that
 // breaks the promises of run_briefly, ends the program as a finding.
-void read_and_run(const std::filesystem::path& file, const sim::ReadOptions& options);
+// `made`: what a fuzzer made of its bytes, for the message of a finding.
+void read_and_run(const std::filesystem::path& file, const sim::ReadOptions& options, const std::string& made = {});
 
-// Ten fast ticks: a plant at rest without command stays finite; in closed loop, in both signal policies, a plant that
-// is no longer finite has stopped its drive with a fault.
+// Ten fast ticks: a plant without effects at rest without command stays finite; in closed loop, in both signal
+// policies, a plant that is no longer finite has stopped its drive with a fault.
 void run_briefly(const sim::Machine& machine);
 
 // Ends the program as a finding.

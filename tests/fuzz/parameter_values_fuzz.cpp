@@ -6,6 +6,7 @@
 #include <array>
 
 #include "sim/machine/description.hpp"
+#include "tests/fuzz/fuzzed_number.hpp"
 #include "tests/fuzz/machine_bytes.hpp"
 
 namespace stiction::fuzz {
@@ -37,17 +38,8 @@ struct Base {
   std::vector<Key> keys;
 };
 
-// Whole numbers, because only they fit a count; magnitudes that a careless engineer might write; and the rest.
-std::string number_of(FuzzedDataProvider& bytes) {
-  const int kind = bytes.ConsumeIntegralInRange<int>(0, 3);
-  if (kind == 0) return fmt::format("{}", bytes.ConsumeIntegralInRange<int>(-1, 100));
-  const int reach = kind == 3 ? 323 : 13;
-  return fmt::format("{}e{}", bytes.ConsumeFloatingPointInRange(0.5, 2.0),
-                     bytes.ConsumeIntegralInRange<int>(-reach, reach));
-}
-
 std::string value_of(FuzzedDataProvider& bytes, const Key& key) {
-  const std::string number = number_of(bytes);
+  const std::string number = fuzzed_number(bytes);
   const std::string quantity = key.unit == "1" ? number : fmt::format("\"{} {}\"", number, key.unit);
   return key.list ? fmt::format("[{0}, {0}, {0}]", quantity) : quantity;
 }

@@ -6,16 +6,18 @@
 
 #include "sim/machine/description.hpp"
 #include "sim/machine/parameters.hpp"
+#include "sim/plant/effects/effects.hpp"
 
 int main() {
   namespace sim = stiction::sim;
-  std::set<std::string> words{std::string(sim::machine_schema), "axis.", "axis.*.", "experiment.",
-                              "[reference.circle]"};
+  std::set<std::string> words{
+      std::string(sim::machine_schema), "axis.", "axis.*.", "experiment.", "[reference.circle]", "[[axis.B.effect]]"};
   for (const auto name : sim::experiment_names) words.emplace(name);
   for (const auto& choice : sim::motor_models) words.emplace(choice.name);
   for (const auto& choice : sim::velocity_sources) words.emplace(choice.name);
   for (const auto& choice : sim::reference_sources) words.emplace(choice.name);
   sim::for_each_friction_model([&]<class Model>() { words.emplace(Model::name); });
+  for (const auto& effect : sim::effect_kinds()) words.emplace(effect.name);
   for (const auto& table : sim::machine_file_description()) {
     words.insert(table.name);
     for (const auto& key : table.keys) {
@@ -23,6 +25,40 @@ int main() {
       if (!key.unit.empty()) words.insert(key.unit);
     }
   }
+  // Of mapping files and of what they map (recording_fuzz).
+  for (const char* word : {"stiction.mapping/1",
+                           "[[channel]]",
+                           "[table]",
+                           "[time]",
+                           "from",
+                           "to",
+                           "unit",
+                           "amperes",
+                           "peak",
+                           "rms",
+                           "reverse",
+                           "fill",
+                           "hold",
+                           "linear",
+                           "separator",
+                           "decimal",
+                           "header_line",
+                           "column",
+                           "period",
+                           "Name\\x09",
+                           "SampleTime[ms]",
+                           "SymbolName",
+                           "Unit",
+                           "StartRecord",
+                           "EOF",
+                           "Header",
+                           "CycleTimeMs",
+                           "SignalListHFData",
+                           "Payload",
+                           "HFData",
+                           "Address",
+                           "CYCLE"})
+    words.emplace(word);
   for (const char* unit : {"us", "ms", "mm", "um", "nm", "m/min", "mH", "kN", "degC", "%", "rpm"}) words.emplace(unit);
   for (const auto& word : words)
     if (!word.empty()) fmt::print("\"{}\"\n", word);

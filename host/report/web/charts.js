@@ -158,15 +158,17 @@ function drawCharts() {
   });
 }
 
-// A magnified abscissa is magnified in all charts that have it.
+// A magnified abscissa is magnified in all charts that have it. Those that have it already are left alone, which also
+// ends the echo of each change; nothing is passed over while another change is still being drawn.
 function linkAbscissae() {
-  let following = false;
+  const abscissa = i => document.getElementById(chartId(i)).layout.xaxis;
+  const same = (one, other) => one.autorange === true ? other.autorange === true : one.range.join() === other.range.join();
   const follow = (from, event) => {
     const ranges = Object.fromEntries(Object.entries(event).filter(([key]) => /^xaxis\.(range|autorange)/.test(key)));
-    if (following || !Object.keys(ranges).length) return;
-    following = true;
-    const others = DATA.charts.map((chart, i) => i).filter(i => i !== from && DATA.charts[i].x_label === DATA.charts[from].x_label);
-    Promise.all(others.map(i => Plotly.relayout(chartId(i), ranges))).finally(() => { following = false; });
+    if (!Object.keys(ranges).length) return;
+    DATA.charts.forEach((chart, i) => {
+      if (i !== from && chart.x_label === DATA.charts[from].x_label && !same(abscissa(from), abscissa(i))) Plotly.relayout(chartId(i), ranges);
+    });
   };
   DATA.charts.forEach((_, i) => document.getElementById(chartId(i)).on('plotly_relayout', event => follow(i, event)));
 }

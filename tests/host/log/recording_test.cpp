@@ -205,6 +205,8 @@ TEST(RecorderExport, IsRefusedWithWhatItLacks) {
          "no CYCLE (HFProbeCounter)");
   expect(replaced(json, "[1.1, 5001, 1.11, 2.5]", "[1.1, 5001, 1.11]"), "row 2 of HFData: found 3 values");
   expect(replaced(json, "1.11, 2.5", "\"x\", 2.5"), "row 2 of HFData, ENC_POS|1: found \"x\"");
+  expect(replaced(json, "1.11, 2.5", "[[\"x\"]], 2.5"), "row 2 of HFData, ENC_POS|1: found array");
+  expect(replaced(json, "1.11, 2.5", "1e999, 2.5"), "no valid JSON");  // beyond the range of double
   expect(replaced(json, "5001", "null"), "no number as CYCLE");
   expect(zipped(json, "job.txt"), "found 0 JSON files");
   expect(zipped(json).substr(0, 200), "cannot be read");

@@ -10,6 +10,8 @@ import { parseArgs } from 'node:util';
 
 const { chromium } = createRequire(new URL('../../../host/report/web/package.json', import.meta.url))('playwright-core');
 
+const PATIENCE = 120000;  // ms; a page is slow on a machine that compiles, or runs the other tests, at the same time
+
 const problems = [];
 export function expect(holds, message) {
   if (!holds) problems.push(message);
@@ -29,6 +31,11 @@ function parse(script, more) {
   } catch (error) {
     return usage(error.message);
   }
+}
+
+// Waits until `holds`(argument), a function that runs in the page, is true; false when it is not in all the time.
+export async function becomes(page, holds, argument, timeout = PATIENCE) {
+  return page.waitForFunction(holds, argument, { timeout, polling: 50 }).then(() => true, () => false);
 }
 
 // Names of a chart's traces and their points, as the chart library holds them.
@@ -53,6 +60,7 @@ export async function openPage(script, more, checks) {
   const address = pathToFileURL(resolve(file)).href;
   const open = async browser => {
     const page = await browser.newPage({ viewport: { width: Number(options.width), height: 1000 } });
+    page.setDefaultTimeout(PATIENCE);
     page.on('console', message => { if (['error', 'warning'].includes(message.type())) problems.push(`console: ${message.text()}`); });
     page.on('pageerror', error => problems.push(`script: ${error.message}`));
     page.on('request', request => {
@@ -65,9 +73,9 @@ export async function openPage(script, more, checks) {
     if (options.pdf) await page.pdf({ path: options.pdf, preferCSSPageSize: true, printBackground: true });
   };
   try {
-    const browser = await chromium.launch({ executablePath: process.env.CHROMIUM || '/usr/bin/chromium',
+    const browser = await chromium.launch({ executablePath: process.env.CHROMIUM || '/usr/bin/chromium', timeout: PATIENCE,
       args: ['--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
-             '--disable-component-update', '--disable-sync'] });
+             '--disable-component-update', '--disable-sync', '--disable-dev-shm-usage'] });  // /dev/shm is small in containers
     await open(browser).finally(() => browser.close());
   } catch (error) {
     problems.push(error.message);

@@ -18,8 +18,8 @@ using F = FixedSignals;
 template <class T>
 class ConversionOf : public ::testing::Test {};
 using Formats =
-    ::testing::Types<F::Position, F::Distance, F::Step, F::Velocity, F::Acceleration, F::Current, F::Voltage,
-                     F::Ticks, F::TickFraction, F::Seconds, F::PositionGain, F::VelocityGain, F::IncrementInverse, F::Increment,
+    ::testing::Types<F::Position, F::Distance, F::Step, F::Velocity, F::Acceleration, F::Current, F::Voltage, F::Ticks,
+                     F::TickFraction, F::Seconds, F::PositionGain, F::VelocityGain, F::IncrementInverse, F::Increment,
                      F::FilterCoefficient, F::PitchInverse, F::PeriodInverse, F::Rate>;
 TYPED_TEST_SUITE(ConversionOf, Formats);
 

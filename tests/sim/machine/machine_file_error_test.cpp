@@ -36,6 +36,16 @@ TEST(MachineFileError, ValueOutOfRange) {
             "Coulomb friction, F_Ts / F_C)");
 }
 
+// Found by the fuzzer: the plant divides by the mass.
+TEST(MachineFileError, MagnitudeBeyondAllMachines) {
+  for (const std::string mass : {"5e-324 kg", "0.9e-30 kg", "1.1e30 kg"})
+    EXPECT_EQ(
+        error_of(replaced(small_machine, "95 kg", mass)),
+        "FILE:4: axis.B.mass: found \"" + mass +
+            "\" (beyond all machines: 1e-30 to 1e30 in SI units); expected a value greater than 0 kg (moving mass)");
+  EXPECT_EQ(error_of(replaced(small_machine, "95 kg", "1e-30 kg")), "accepted");
+}
+
 TEST(MachineFileError, WrongDimensionNamesBoth) {
   EXPECT_EQ(error_after("95 kg", "3 A"),
             "FILE:4: axis.B.mass: found \"3 A\" (dimension A, not kg); expected a value greater than 0 kg (moving "

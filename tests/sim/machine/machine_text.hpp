@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -56,13 +57,13 @@ inline std::string replaced(std::string text, const std::string& from, const std
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
-// A file with this text, named after the running test.
+// A file with this text in a folder of its own: tests of several builds may run at once.
 class MachineFileOnDisk {
  public:
   explicit MachineFileOnDisk(const std::string& text) {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    static int count = 0;
     folder_ = std::filesystem::path(testing::TempDir()) /
-              (std::string("stiction_") + test->test_suite_name() + "_" + test->name());
+              ("stiction-machine-" + std::to_string(::getpid()) + "-" + std::to_string(count++));
     std::filesystem::create_directories(folder_);
     std::ofstream(path()) << text;
   }
