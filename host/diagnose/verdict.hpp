@@ -61,6 +61,43 @@ struct ResidualFigures {
   std::optional<double> position_error_rms;  // m, measured against simulated; none without set-points
 };
 
+// A measured row of the machine file beside the simulation: largest error (m) and largest current (A) of a circle.
+struct RowFigures {
+  double error = 0.0;
+  double current = 0.0;
+};
+struct RowShare {
+  std::string effect;
+  RowFigures by;  // what the extended simulation loses without it
+};
+struct DiagnosedRow {
+  std::string axis;
+  double feed = 0.0;  // m/s
+  bool training = false;
+  RowFigures measured, machine_file, extended;
+  std::optional<RowFigures> published;  // with the friction model in use
+  std::vector<RowShare> shares;
+};
+// Mean |simulated / measured - 1| over rows.
+struct RowScore {
+  double error = 0.0, current = 0.0;
+};
+struct RowScores {
+  RowScore published, machine_file, extended;  // published: of rows that have it
+};
+// The score had another feed been the training feed.
+struct OtherTraining {
+  double feed = 0.0;  // m/s
+  RowScores unused;   // rows of all other feeds
+};
+struct ReferenceRows {
+  std::string reference;  // "circle"
+  std::string friction;   // the model in use
+  std::vector<DiagnosedRow> rows;
+  RowScores unused;  // rows of feeds that took no part
+  std::vector<OtherTraining> others;
+};
+
 struct Verdict {
   std::string machine;
   std::vector<std::string> logs, holdout;
@@ -69,7 +106,8 @@ struct Verdict {
   std::vector<Finding> findings;       // by what each explains, the largest first
   std::vector<Rejected> rejected;
   Unexplained unexplained;
-  std::vector<std::string> notes;        // on the data: suspicions, what to record next
+  std::vector<std::string> notes;          // on the data: suspicions, what to record next
+  std::optional<ReferenceRows> reference;  // of a diagnosis of the machine file's own rows
   std::vector<sim::Chart> before_after;  // measured against simulated, before and after; residual by position, speed..
 };
 
