@@ -16,7 +16,7 @@ void diagnose_from_reference(const DiagnoseReferenceOptions& options, const Invo
   const auto machine = options.machine.load(options.machine.machine, "circle");
   Verdict verdict;
   {
-    Progress progress("diagnosis", 13);  // the extension, eight causes, four other training feeds
+    Progress progress("diagnosis", 10);  // the extension, four causes an axis, five feeds left out
     verdict = diagnose_reference(machine, [&] { progress.add(); });
   }
   put_out(verdict, machine, options.machine, options.out, options.json, invocation);

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <random>
 
-#include "host/diagnose/fisher.hpp"
 #include "host/diagnose/reference_charts.hpp"
 #include "host/diagnose/reference_extension.hpp"
 #include "host/diagnose/reference_words.hpp"
@@ -59,85 +59,84 @@ std::vector<DiagnosedRow> rows_of(const sim::Machine& machine, double training_f
                       before.at(feed)[k],
                       after.at(feed)[k],
                       published_row(machine, axis, feed),
+                      after.at(feed)[k],
                       {}});
     }
   return rows;
 }
 
-RowScores scores_of(const std::vector<DiagnosedRow>& rows) {
-  RowScores scores;
-  double count = 0.0, published = 0.0;
-  const auto add = [](RowScore& score, const RowFigures& simulated, const RowFigures& measured) {
-    score.error += std::abs(simulated.error / measured.error - 1.0);
-    score.current += std::abs(simulated.current / measured.current - 1.0);
-  };
-  for (const auto& row : rows) {
-    if (row.training) continue;
-    add(scores.machine_file, row.machine_file, row.measured);
-    add(scores.extended, row.extended, row.measured);
-    count += 1.0;
-    if (!row.published) continue;
-    add(scores.published, *row.published, row.measured);
-    published += 1.0;
-  }
-  const auto mean = [](RowScore& score, double of) { score = {score.error / of, score.current / of}; };
-  mean(scores.machine_file, count);
-  mean(scores.extended, count);
-  mean(scores.published, published);
-  return scores;
+RowFigures off(const RowFigures& simulated, const RowFigures& measured) {
+  return {simulated.error / measured.error - 1.0, simulated.current / measured.current - 1.0};
 }
 
-// rms over the unused rows of an axis (of all: empty name), of what is `off` in a row.
-template <class Off>
-double unused_rms(const std::vector<DiagnosedRow>& rows, const std::string& axis, Off&& off) {
+RowScore score_of(const std::vector<DiagnosedRow>& rows, bool all,
+                  const std::function<std::optional<RowFigures>(const DiagnosedRow&)>& of) {
+  RowScore sum;
+  double count = 0.0;
+  for (const auto& row : rows) {
+    const auto simulated = of(row);
+    if ((row.training && !all) || !simulated) continue;
+    const auto deviation = off(*simulated, row.measured);
+    sum.error += std::abs(deviation.error);
+    sum.current += std::abs(deviation.current);
+    count += 1.0;
+  }
+  return {sum.error / count, sum.current / count};
+}
+
+// `all`: every row, each predicted with its feed left out; else the rows of feeds that took no part.
+RowScores scores_of(const std::vector<DiagnosedRow>& rows, bool all) {
+  return {score_of(rows, all, [](const DiagnosedRow& r) { return r.published; }),
+          score_of(rows, all, [](const DiagnosedRow& r) { return r.machine_file; }),
+          score_of(rows, all, [&](const DiagnosedRow& r) { return all ? r.left_out : r.extended; })};
+}
+
+using Member = double RowFigures::*;
+
+// rms over the unused rows of an axis (of all: empty name), of what `of` gives for a row.
+template <class Of>
+double unused_rms(const std::vector<DiagnosedRow>& rows, const std::string& axis, Of&& of) {
   double square = 0.0, count = 0.0;
   for (const auto& row : rows)
     if (!row.training && (axis.empty() || row.axis == axis)) {
-      square += std::pow(off(row), 2);
+      square += std::pow(of(row), 2);
       count += 1.0;
     }
   return std::sqrt(square / count);
 }
 
-// What a row is off without one cause.
-RowFigures off_without(const DiagnosedRow& row, std::size_t share) {
-  const auto& by = row.shares[share].by;
-  return {row.extended.error - by.error - row.measured.error, row.extended.current - by.current - row.measured.current};
-}
-
 // 95 % interval over feeds drawn with repetition: a handful of them, so a wide one.
 std::array<double, 2> ratio_interval(const std::vector<DiagnosedRow>& rows, const std::string& axis,
-                                     std::size_t share) {
+                                     const Laps& without, std::size_t k) {
   std::vector<std::pair<double, double>> squares;
   for (const auto& row : rows)
     if (!row.training && row.axis == axis)
-      squares.emplace_back(std::pow(row.extended.current - row.measured.current, 2),
-                           std::pow(off_without(row, share).current, 2));
+      squares.emplace_back(std::pow(off(row.extended, row.measured).current, 2),
+                           std::pow(off(without.at(row.feed)[k], row.measured).current, 2));
   std::mt19937_64 random(1);
   std::vector<double> ratios;
   for (int r = 0; r < 400; ++r) {
-    double with = 0.0, without = 0.0;
+    double with = 0.0, left_away = 0.0;
     for (std::size_t i = 0; i < squares.size(); ++i) {
       const auto& drawn = squares[random() % squares.size()];
       with += drawn.first;
-      without += drawn.second;
+      left_away += drawn.second;
     }
-    ratios.push_back(std::sqrt(with / without));
+    ratios.push_back(std::sqrt(with / left_away));
   }
   std::sort(ratios.begin(), ratios.end());
   return {ratios[9], ratios[389]};
 }
 
-HoldoutGain gain_of(const std::vector<DiagnosedRow>& rows, const std::string& axis, std::size_t share) {
-  HoldoutGain gain;
-  gain.force_rms_ratio =
-      unused_rms(rows, axis, [](const DiagnosedRow& r) { return r.extended.current - r.measured.current; }) /
-      unused_rms(rows, axis, [&](const DiagnosedRow& r) { return off_without(r, share).current; });
-  gain.position_error_rms_ratio =
-      unused_rms(rows, axis, [](const DiagnosedRow& r) { return r.extended.error - r.measured.error; }) /
-      unused_rms(rows, axis, [&](const DiagnosedRow& r) { return off_without(r, share).error; });
-  gain.ci95 = ratio_interval(rows, axis, share);
-  return gain;
+// Ratios of relative deviations: every feed counts alike.
+HoldoutGain gain_of(const std::vector<DiagnosedRow>& rows, const std::string& axis, const Laps& without,
+                    std::size_t k) {
+  const auto ratio = [&](Member member) {
+    return unused_rms(rows, axis, [&](const DiagnosedRow& r) { return off(r.extended, r.measured).*member; }) /
+           unused_rms(rows, axis,
+                      [&](const DiagnosedRow& r) { return off(without.at(r.feed)[k], r.measured).*member; });
+  };
+  return {ratio(&RowFigures::current), ratio(&RowFigures::error), ratio_interval(rows, axis, without, k)};
 }
 
 EffectParameter parameter(const char* name, double value, double error) { return {name, {value}, {error}}; }
@@ -164,7 +163,8 @@ std::vector<EffectParameter> parameters_of(const sim::Effect& effect, const Refe
           parameter("distance_m", value("distance"), displacement * value("distance"))};
 }
 
-// How much each cause takes of its rows' squares, given the others; a contact of its axis' error at the training feed.
+// How much each cause takes of the training rows' squares, given the others: a part of the sliding law of the rows of
+// steady friction, a contact of those and its axis' error at the training feed, all as relative deviations.
 void judge(Finding& finding, const ReferenceExtension& extension, const AxisExtension& axis, double measured_error) {
   for (const auto part : sliding_parts) {
     const auto& test = extension.sliding.tests[static_cast<std::size_t>(part)];
@@ -173,9 +173,10 @@ void judge(Finding& finding, const ReferenceExtension& extension, const AxisExte
     finding.p_value = test.p_value;
     return;
   }
-  const double off = axis.error_with_file_contact - measured_error;
-  finding.explains = 1.0 - std::pow(error_reading / off, 2);
-  finding.p_value = std::erfc(std::abs(off) / error_reading / std::sqrt(2.0));
+  const double by = axis.error_with_file_contact - measured_error;
+  const double square = std::pow(by / measured_error, 2);
+  finding.explains = square / (square + extension.sliding.relative_square);
+  finding.p_value = std::erfc(std::abs(by) / error_reading / std::sqrt(2.0));
 }
 
 void add_findings(const sim::Machine& machine, const ReferenceExtension& extension, Verdict& verdict) {
@@ -193,29 +194,41 @@ void add_findings(const sim::Machine& machine, const ReferenceExtension& extensi
     }
 }
 
-// What each row loses without each finding of its axis.
-void add_shares(const sim::Machine& machine, Verdict& verdict, const std::function<void()>& progress) {
+// All findings but those of which `leave_away` is true.
+Laps simulated_without(const sim::Machine& machine, const Verdict& verdict,
+                       const std::function<bool(const Finding&)>& leave_away) {
+  auto without = machine;
+  for (auto& axis : without.axes)
+    for (const auto& finding : verdict.findings)
+      if (finding.axis == axis.name && !leave_away(finding)) axis.effects.push_back(finding.effect);
+  return simulated(without);
+}
+
+// What each row loses without each finding, and what that gains. The parts of a borrowed law came from one number and
+// are judged together. Both axes' findings of a name are left away at once: no axis feels the other.
+void add_shares(const sim::Machine& machine, const ReferenceExtension& extension, Verdict& verdict,
+                const std::function<void()>& progress) {
   auto& rows = verdict.reference->rows;
+  const auto is_contact = [](const Finding& f) { return f.effect.name == "presliding_hysteresis"; };
+  const auto without_law = simulated_without(machine, verdict, std::not_fn(is_contact));
+  std::map<std::string, Laps> without;
   for (auto& finding : verdict.findings) {
-    auto without = machine;
-    for (auto& axis : without.axes)
-      for (const auto& other : verdict.findings)
-        if (&other != &finding && other.axis == axis.name) axis.effects.push_back(other.effect);
-    const auto laps = simulated(without);
+    const auto& name = finding.effect.name;
+    if (!without.contains(name)) {
+      without[name] = simulated_without(machine, verdict, [&](const Finding& f) { return f.effect.name == name; });
+      if (progress) progress();
+    }
+    const auto k = static_cast<std::size_t>(finding.axis == machine.axes[0].name ? 0 : 1);
+    double largest = 0.0;
     for (auto& row : rows) {
       if (row.axis != finding.axis) continue;
-      const auto& lap = laps.at(row.feed)[row.axis == machine.axes[0].name ? 0 : 1];
-      row.shares.push_back({finding.effect.name, {row.extended.error - lap.error, row.extended.current - lap.current}});
+      const auto& lap = without.at(name).at(row.feed)[k];
+      row.shares.push_back({name, {row.extended.error - lap.error, row.extended.current - lap.current}});
+      largest = std::max(largest, std::abs(row.shares.back().by.error));
     }
-    const auto share =
-        std::find_if(rows.begin(), rows.end(), [&](const auto& r) { return r.axis == finding.axis; })->shares.size() -
-        1;
-    finding.holdout = gain_of(rows, finding.axis, share);
-    double largest = 0.0;
-    for (const auto& row : rows)
-      if (row.axis == finding.axis) largest = std::max(largest, std::abs(row.shares[share].by.error));
+    const bool together = !extension.axes[k].own_rows && !is_contact(finding);
+    finding.holdout = gain_of(rows, finding.axis, together ? without_law : without.at(name), k);
     finding.part_error = largest;
-    if (progress) progress();
   }
 }
 
@@ -233,25 +246,79 @@ void add_figures(const sim::Machine& machine, Verdict& verdict) {
   };
   verdict.baseline = figures(&DiagnosedRow::machine_file);
   verdict.extended = figures(&DiagnosedRow::extended);
-  verdict.unexplained = left_words(rows, verdict.baseline, verdict.extended);
+  verdict.unexplained = left_words(rows);
 }
 
-// The same with every other feed as the training feed, where a friction is found that gives its row.
-std::vector<OtherTraining> other_trainings(const sim::Machine& machine, const Laps& before, double training_feed,
-                                           const std::function<void()>& progress) {
-  std::vector<OtherTraining> others;
-  for (const double feed : measured_feeds(machine)) {
-    if (std::abs(feed - training_feed) < 1e-6 * feed) continue;
-    try {
-      const auto extension = extend_by_rows(machine, feed);
-      const auto after = simulated(extended_by(machine, extension));
-      others.push_back({feed, scores_of(rows_of(machine, feed, before, after))});
-    } catch (const MissingRows&) {
-      // A row that no scale of the friction gives: nothing to score.
+// Scales of an axis that make least squares of the relative deviations of some rows, by Gauss-Newton with the
+// sensitivities of all rows to a tenth of each scale.
+class LeftOut {
+ public:
+  LeftOut(const sim::Machine& machine, ReferenceExtension extension, const Laps& at)
+      : machine_(machine),
+        start_(std::move(extension)),
+        at_(at),
+        force_(changed(&AxisExtension::force)),
+        displacement_(changed(&AxisExtension::displacement)) {}
+
+  // Rows of `feed`, predicted from those of all others.
+  std::array<RowFigures, 2> predict(double feed) const {
+    auto extension = start_;
+    auto laps = at_;
+    for (int step = 0; step < 2; ++step) {
+      for (std::size_t k = 0; k < 2; ++k) {
+        auto& axis = extension.axes[k];
+        if (!axis.own_rows) axis.force *= std::exp(best_step(feed, k, laps, force_, &RowFigures::current));
+        if (axis.contact) axis.displacement *= std::exp(best_step(feed, k, laps, displacement_, &RowFigures::error));
+      }
+      const auto extended = extended_by(machine_, extension);
+      for (auto& [each, lap] : laps) {
+        if (step == 0 ? each == feed : each != feed) continue;  // the left out row is wanted only at the end
+        const auto run = reference_circle(extended, each);
+        for (std::size_t k = 0; k < 2; ++k) lap[k] = {run.axes[k].peak_error, run.axes[k].peak_current};
+      }
     }
+    return laps.at(feed);
+  }
+
+ private:
+  static constexpr double tenth = 0.1;
+
+  Laps changed(double AxisExtension::*scale) const {
+    auto extension = start_;
+    for (auto& axis : extension.axes) axis.*scale *= std::exp(tenth);
+    return simulated(extended_by(machine_, extension));
+  }
+
+  // Of the scale's logarithm, at most a factor of two.
+  double best_step(double feed, std::size_t k, const Laps& laps, const Laps& moved, Member member) const {
+    double slope_square = 0.0, moment = 0.0;
+    for (const auto& [each, lap] : laps) {
+      const auto* row = measured_row(machine_, machine_.axes[k].name, each);
+      if (each == feed || row == nullptr) continue;
+      const RowFigures measured{row->error, row->current};
+      const double slope = (moved.at(each)[k].*member - at_.at(each)[k].*member) / tenth / (measured.*member);
+      slope_square += slope * slope;
+      moment += slope * (1.0 - lap[k].*member / (measured.*member));
+    }
+    return std::clamp(moment / slope_square, -std::log(2.0), std::log(2.0));
+  }
+
+  const sim::Machine& machine_;
+  ReferenceExtension start_;
+  const Laps& at_;
+  Laps force_, displacement_;
+};
+
+void leave_each_feed_out(const sim::Machine& machine, const ReferenceExtension& extension, const Laps& after,
+                         ReferenceRows& reference, const std::function<void()>& progress) {
+  const LeftOut left_out(machine, extension, after);
+  for (const double feed : measured_feeds(machine)) {
+    const auto predicted = left_out.predict(feed);
+    for (auto& row : reference.rows)
+      if (row.feed == feed) row.left_out = predicted[row.axis == machine.axes[0].name ? 0 : 1];
     if (progress) progress();
   }
-  return others;
+  reference.left_out = scores_of(reference.rows, true);
 }
 
 }  // namespace
@@ -268,12 +335,12 @@ Verdict diagnose_reference(const sim::Machine& machine, const std::function<void
   add_findings(machine, extension, verdict);
   verdict.reference = ReferenceRows{
       "circle", machine.axes.front().friction.use, rows_of(machine, extension.training_feed, before, after), {}, {}};
-  verdict.reference->unused = scores_of(verdict.reference->rows);
-  add_shares(machine, verdict, progress);
+  verdict.reference->unused = scores_of(verdict.reference->rows, false);
+  add_shares(machine, extension, verdict, progress);
   add_figures(machine, verdict);
-  verdict.reference->others = other_trainings(machine, before, extension.training_feed, progress);
+  leave_each_feed_out(machine, extension, after, *verdict.reference, progress);
   verdict.rejected = rejection_words(machine, verdict);
-  verdict.notes = note_words(extension, verdict);
+  verdict.notes = note_words(extension);
   add_reference_charts(verdict, machine, extension);
   std::stable_sort(verdict.findings.begin(), verdict.findings.end(),
                    [](const Finding& a, const Finding& b) { return a.explains > b.explains; });

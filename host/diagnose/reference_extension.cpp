@@ -93,7 +93,7 @@ class Scales {
       auto& axis = extension_.axes[k];
       if (axis.own_rows) continue;
       axis.force = std::max(0.05, axis.force + (wanted_[k].current - laps[k].current) / slopes_[k]);
-      axis.force_error = current_reading / std::abs(slopes_[k]);
+      axis.force_error = std::hypot(current_reading / slopes_[k], friction_drift * axis.force);
     }
   }
 

@@ -15,6 +15,8 @@ namespace stiction::host {
 // that the position controller sees has steps of 1 um. Standard deviations of even distributions of these widths.
 inline constexpr double current_reading = 0.029, error_reading = 0.32e-6;  // A, m
 
+inline constexpr double friction_drift = 0.03;  // of friction from day to day (2 to 4 % measured)
+
 struct AxisExtension {
   std::string axis;
   bool own_rows = false;      // of steady friction; else the law is another axis', scaled

@@ -21,10 +21,10 @@ std::vector<ConfusedWith> confusion_words(const ReferenceExtension& extension, c
 // Every effect of the vocabulary that is not named, and why.
 std::vector<Rejected> rejection_words(const sim::Machine& machine, const Verdict& verdict);
 
-// What the extended simulation leaves of the rows that took no part.
-Unexplained left_words(const std::vector<DiagnosedRow>& rows, const ResidualFigures& baseline,
-                       const ResidualFigures& extended);
+// What the extended simulation leaves of the rows that took no part, as share of the squared relative deviations of
+// their currents.
+Unexplained left_words(const std::vector<DiagnosedRow>& rows);
 
-std::vector<std::string> note_words(const ReferenceExtension& extension, const Verdict& verdict);
+std::vector<std::string> note_words(const ReferenceExtension& extension);
 
 }  // namespace stiction::host

@@ -169,7 +169,9 @@ SlidingFit fit_sliding_law(const std::vector<SteadyPoint>& points, const Sliding
     }
     const auto solution = fitter.fit(chosen);
     const auto rms = [&](double square) { return std::sqrt(square / static_cast<double>(points.size())); };
-    return {solution.law, fitter.errors(chosen, solution), tests, rms(total), rms(solution.left)};
+    double relative = 0.0;
+    for (const auto& point : points) relative += std::pow(file.at(point.velocity) / point.force - 1.0, 2);
+    return {solution.law, fitter.errors(chosen, solution), tests, relative, rms(total), rms(solution.left)};
   }
 }
 

@@ -37,6 +37,7 @@ struct SlidingFit {
   SlidingLaw law;
   SlidingLaw errors;  // standard errors; 0 for what stays at the file's value
   std::array<SlidingPartTest, 3> tests;
+  double relative_square = 0.0;  // sum of squares of the file's relative deviations from the points
   double deviation_before = 0.0, deviation_after = 0.0;  // N rms, of the points about the file's law and the fitted one
 };
 

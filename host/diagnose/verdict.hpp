@@ -76,6 +76,7 @@ struct DiagnosedRow {
   bool training = false;
   RowFigures measured, machine_file, extended;
   std::optional<RowFigures> published;  // with the friction model in use
+  RowFigures left_out;                  // extended, had this feed alone been left out of the training
   std::vector<RowShare> shares;
 };
 // Mean |simulated / measured - 1| over rows.
@@ -85,17 +86,12 @@ struct RowScore {
 struct RowScores {
   RowScore published, machine_file, extended;  // published: of rows that have it
 };
-// The score had another feed been the training feed.
-struct OtherTraining {
-  double feed = 0.0;  // m/s
-  RowScores unused;   // rows of all other feeds
-};
 struct ReferenceRows {
   std::string reference;  // "circle"
   std::string friction;   // the model in use
   std::vector<DiagnosedRow> rows;
-  RowScores unused;  // rows of feeds that took no part
-  std::vector<OtherTraining> others;
+  RowScores unused;    // rows of feeds that took no part
+  RowScores left_out;  // all rows, each predicted with its feed left out of the training
 };
 
 struct Verdict {

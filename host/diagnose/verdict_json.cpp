@@ -59,7 +59,7 @@ Json scores_json(const RowScores& s) {
 }
 
 void add_reference(Json& out, const ReferenceRows& reference) {
-  Json rows = Json::array(), others = Json::array();
+  Json rows = Json::array();
   for (const auto& row : reference.rows) {
     Json shares = Json::array();
     for (const auto& share : row.shares)
@@ -71,16 +71,14 @@ void add_reference(Json& out, const ReferenceRows& reference) {
                     {"published_simulation", row.published ? row_figures(*row.published) : Json(nullptr)},
                     {"machine_file", row_figures(row.machine_file)},
                     {"extended", row_figures(row.extended)},
+                    {"extended_without_this_feed", row_figures(row.left_out)},
                     {"changed_by", shares}});
   }
-  for (const auto& other : reference.others)
-    others.push_back(
-        {{"training_feed_m_per_min", other.feed * 60.0}, {"mean_error_of_feeds_not_used", scores_json(other.unused)}});
   out["reference"] = reference.reference;
   out["friction"] = reference.friction;
   out["mean_error_of_feeds_not_used"] = scores_json(reference.unused);
+  out["mean_error_leaving_one_feed_out"] = scores_json(reference.left_out);
   out["rows"] = rows;
-  out["with_other_training_feeds"] = others;
 }
 
 }  // namespace
@@ -110,12 +108,15 @@ Json verdict_json(const Verdict& verdict) {
 namespace {
 
 std::string rows_text(const ReferenceRows& reference) {
-  const auto& unused = reference.unused;
-  std::string text = fmt::format(
-      "mean current error on the feeds not used: before {:.1f} % (published simulation; this one {:.1f} %), after "
-      "{:.1f} %\nmean position error on the feeds not used: before {:.1f} % (this one {:.1f} %), after {:.1f} %\n\n",
-      100.0 * unused.published.current, 100.0 * unused.machine_file.current, 100.0 * unused.extended.current,
-      100.0 * unused.published.error, 100.0 * unused.machine_file.error, 100.0 * unused.extended.error);
+  const auto line = [](const char* what, const char* which, const RowScores& s, double RowScore::*member) {
+    return fmt::format("mean {} error {}: before {:.1f} % (published simulation; this one {:.1f} %), after {:.1f} %\n",
+                       what, which, 100.0 * s.published.*member, 100.0 * s.machine_file.*member,
+                       100.0 * s.extended.*member);
+  };
+  std::string text = line("current", "on the feeds not used", reference.unused, &RowScore::current) +
+                     line("position", "on the feeds not used", reference.unused, &RowScore::error) +
+                     line("current", "leaving each feed out in turn", reference.left_out, &RowScore::current) +
+                     line("position", "leaving each feed out in turn", reference.left_out, &RowScore::error) + "\n";
   text +=
       "                     error at reversals, um                           largest current, A\n"
       "axis  m/min  measured  published  simulated  extended    measured  published  simulated  extended\n";
