@@ -14,7 +14,7 @@ namespace stiction::host {
 namespace {
 
 constexpr double least_displacement = 0.05, most_displacement = 500.0;  // scales between which the contact is sought
-constexpr int halvings = 11;  // to 0.5 % of the displacement: the error moves by less than 0.03 um over that
+constexpr int halvings = 8, corrections = 3;
 
 double force_constant_of(const sim::Axis& axis) { return axis.motor.force_constant; }
 
@@ -58,8 +58,9 @@ class Scales {
   void find() {
     find_forces();
     choose_contacts();
-    find_displacements();
-    find_errors();
+    bracket_displacements();
+    correct_displacements();
+    check();
   }
 
  private:
@@ -85,7 +86,7 @@ class Scales {
       axis.force /= 1.1;
       slopes_[k] = (more[k].current - laps[k].current) / (0.1 * axis.force);
     }
-    for (int i = 0; i < 4; ++i) correct_forces(simulate());
+    for (int i = 0; i < corrections; ++i) correct_forces(simulate());
   }
 
   void correct_forces(const std::vector<Lap>& laps) {
@@ -106,19 +107,42 @@ class Scales {
     }
   }
 
-  // A softer contact makes a smaller error.
-  void find_displacements() {
+  // A softer contact makes a smaller error. The forces follow on the way.
+  void bracket_displacements() {
     std::vector<double> low(wanted_.size(), least_displacement), high(wanted_.size(), most_displacement);
     for (int i = 0; i < halvings; ++i) {
       for (std::size_t k = 0; k < low.size(); ++k) extension_.axes[k].displacement = std::sqrt(low[k] * high[k]);
-      correct_forces(simulate());
       const auto laps = simulate();
+      correct_forces(laps);
       for (std::size_t k = 0; k < low.size(); ++k)
         (laps[k].error > wanted_[k].error ? low : high)[k] = extension_.axes[k].displacement;
     }
   }
 
-  void find_errors() {
+  // Newton's steps from there, with the slope over a tenth of the displacement.
+  void correct_displacements() {
+    const auto laps = simulate();
+    for (auto& axis : extension_.axes) axis.displacement *= 1.1;
+    const auto softer = simulate();
+    std::vector<double> slopes;
+    for (std::size_t k = 0; k < laps.size(); ++k) {
+      auto& axis = extension_.axes[k];
+      axis.displacement /= 1.1;
+      slopes.push_back((softer[k].error - laps[k].error) / (0.1 * axis.displacement));
+      axis.displacement_error = error_reading / std::abs(slopes[k]);
+    }
+    for (int i = 0; i < corrections; ++i) {
+      const auto now = simulate();
+      correct_forces(now);
+      for (std::size_t k = 0; k < now.size(); ++k) {
+        auto& displacement = extension_.axes[k].displacement;
+        displacement = std::clamp(displacement + (wanted_[k].error - now[k].error) / slopes[k], 0.5 * displacement,
+                                  2.0 * displacement);
+      }
+    }
+  }
+
+  void check() const {
     const auto laps = simulate();
     for (std::size_t k = 0; k < laps.size(); ++k) {
       const auto& axis = extension_.axes[k];
@@ -129,14 +153,6 @@ class Scales {
             "axis {}: found no friction that gives {:.2f} um and {:.2f} A (nearest {:.2f} um, {:.2f} A); expected a "
             "row of a circle that friction can explain",
             axis.axis, wanted_[k].error * 1e6, wanted_[k].current, laps[k].error * 1e6, laps[k].current));
-    }
-    for (auto& axis : extension_.axes) axis.displacement *= 1.1;
-    const auto softer = simulate();
-    for (std::size_t k = 0; k < laps.size(); ++k) {
-      auto& axis = extension_.axes[k];
-      axis.displacement /= 1.1;
-      const double slope = (softer[k].error - laps[k].error) / (0.1 * axis.displacement);
-      axis.displacement_error = error_reading / std::abs(slope);
     }
   }
 

@@ -64,6 +64,7 @@ class Fitter {
   SlidingLaw errors(const Chosen& chosen, const Solution& solution) const {
     const auto n = static_cast<Eigen::Index>(points_.size());
     const int count = parameters_of(chosen);
+    if (count == 0) return {};
     Eigen::MatrixXd slopes(n, count);
     const auto& law = solution.law;
     for (Eigen::Index i = 0; i < n; ++i) {

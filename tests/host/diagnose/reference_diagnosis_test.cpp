@@ -63,9 +63,11 @@ TEST(ReferenceDiagnosis, looks_at_no_row_but_those_of_the_training) {
   auto other = machine;
   for (auto& row : other.circle_references)
     if (std::abs(row.feed - host::calibration_feed) > 1e-6) row.error = row.current = 1e3;
+  const auto extension = host::extend_by_rows(machine, host::calibration_feed);
+  const auto with_other_rows = host::extend_by_rows(other, host::calibration_feed);
   for (std::size_t axis = 0; axis < 2; ++axis) {
-    const auto effects = host::effects_of(machine, host::extend_by_rows(machine, host::calibration_feed), axis);
-    const auto again = host::effects_of(other, host::extend_by_rows(other, host::calibration_feed), axis);
+    const auto effects = host::effects_of(machine, extension, axis);
+    const auto again = host::effects_of(other, with_other_rows, axis);
     ASSERT_EQ(effects.size(), again.size());
     for (std::size_t k = 0; k < effects.size(); ++k) EXPECT_EQ(effects[k].values, again[k].values);
   }
