@@ -86,9 +86,13 @@ sim::Chart partial(const LogRows& rows, const Abscissa& abscissa, const Eigen::V
   chart.levels = {0.0};
   const Eigen::VectorXd sign = abscissa.opposing ? direction(rows) : Eigen::VectorXd::Ones(rows.rows());
   const Eigen::VectorXd over = abscissa.values(rows);
-  auto residual = means("residual without it", over, 1.0, sign.cwiseProduct(left));
+  const auto mean = [&](const char* name, const Eigen::VectorXd& force) {
+    const Eigen::VectorXd signed_force = sign.cwiseProduct(force);
+    return abscissa.logarithmic ? means(name, over, 1.0, signed_force) : even_means(name, over, 1.0, signed_force);
+  };
+  auto residual = mean("residual without it", left);
   residual.points = true;
-  chart.series = {std::move(residual), means("this cause", over, 1.0, sign.cwiseProduct(by))};
+  chart.series = {std::move(residual), mean("this cause", by)};
   return chart;
 }
 

@@ -31,4 +31,24 @@ inline sim::Series means(std::string name, const Eigen::VectorXd& over, double s
   return series;
 }
 
+// Mean of `values` in ranges of `over` of equal width: for what repeats along it. Ranges with fewer than three values
+// are left away.
+inline sim::Series even_means(std::string name, const Eigen::VectorXd& over, double scale,
+                              const Eigen::VectorXd& values, std::size_t ranges = 160) {
+  const double low = over.minCoeff(), width = (over.maxCoeff() - low) / static_cast<double>(ranges);
+  std::vector<double> sum(ranges, 0.0), count(ranges, 0.0);
+  for (Eigen::Index i = 0; i < over.size(); ++i) {
+    const auto k = std::min(static_cast<std::size_t>((over[i] - low) / std::max(width, 1e-300)), ranges - 1);
+    sum[k] += values[i];
+    count[k] += 1.0;
+  }
+  sim::Series series{.name = std::move(name), .x = {}, .y = {}};
+  for (std::size_t k = 0; k < ranges; ++k) {
+    if (count[k] < 3.0) continue;
+    series.x.push_back(scale * (low + (static_cast<double>(k) + 0.5) * width));
+    series.y.push_back(sum[k] / count[k]);
+  }
+  return series;
+}
+
 }  // namespace stiction::host

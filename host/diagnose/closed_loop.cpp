@@ -82,7 +82,8 @@ void add_pictures(Verdict& verdict, const std::vector<Log>& logs, const std::vec
   error.caption =
       fmt::format("{}, around the instant at which the machine file is furthest off; double-click shows all.",
                   std::filesystem::path(chosen.source).filename().string());
-  error.x_range = std::array{chosen.t[at] - shown, chosen.t[at] + shown};
+  const double from = std::clamp(chosen.t[at] - shown, chosen.t.front(), chosen.t.back() - 2.0 * shown);
+  error.x_range = std::array{from, from + 2.0 * shown};
   auto difference = error;
   difference.title.clear();
   difference.y_label = "simulated less measured, µm";

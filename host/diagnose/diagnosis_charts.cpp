@@ -72,7 +72,8 @@ void add_charts(Verdict& verdict, const LogRows& rows, const Eigen::VectorXd& be
     chart.title = a.title;
     chart.x_label = a.label;
     chart.y_label = "mean of measured less expected force, N";
-    chart.series = {means("machine file", a.values, a.scale, before), means("extended", a.values, a.scale, after)};
+    chart.series = {even_means("machine file", a.values, a.scale, before),
+                    even_means("extended", a.values, a.scale, after)};
     chart.levels = {0.0};
     verdict.before_after.push_back(std::move(chart));
   }
