@@ -20,6 +20,8 @@ void add_simulate(CLI::App& program, const Invocation& invocation);
 void add_experiments(CLI::App& simulate, const Invocation& invocation);
 // The set-points of a log, below `stiction simulate`.
 void add_replay(CLI::App& simulate, const Invocation& invocation);
+// Records of one axis, below `stiction simulate`.
+void add_commissioning(CLI::App& simulate, const Invocation& invocation);
 void add_compare(CLI::App& program, const Invocation& invocation);
 void add_machine(CLI::App& program, const Invocation& invocation);
 void add_identify(CLI::App& program, const Invocation& invocation);

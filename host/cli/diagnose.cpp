@@ -8,15 +8,12 @@
 #include <memory>
 
 #include "host/cli/commands.hpp"
+#include "host/cli/diagnose_output.hpp"
+#include "host/cli/diagnose_reference.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/machine_options.hpp"
-#include "host/cli/output.hpp"
 #include "host/cli/progress.hpp"
-#include "host/diagnose/verdict_json.hpp"
 #include "host/log/read_log.hpp"
-#include "host/report/diagnosis_report.hpp"
-#include "sim/machine/extended_machine.hpp"
-#include "sim/machine/machine_file.hpp"
 
 namespace stiction::host {
 namespace {
@@ -24,6 +21,7 @@ namespace {
 struct DiagnoseCommandOptions {
   std::vector<std::string> logs, held_out;
   MachineOptions machine;
+  std::string reference;  // instead of logs
   std::string axis;
   std::string out;
   std::uint64_t seed = 1;
@@ -62,28 +60,7 @@ void run(const DiagnoseCommandOptions& options, const Invocation& invocation) {
     input.progress = [&] { progress.add(); };
     verdict = diagnose(input);
   }
-  const auto json = verdict_json(verdict);
-  if (!options.out.empty()) {
-    PendingFolder folder(options.out);
-    sim::AxisEffects effects{input.machine.axes[input.axis].name, {}};
-    for (const auto& finding : verdict.findings) effects.effects.push_back(finding.effect);
-    const std::vector additions{effects};
-    const std::vector<std::string> comment{"made by: " + invocation.command_line};
-    folder.write("extended.toml", sim::extended_machine(sim::find_machine(options.machine.machine), options.machine.set,
-                                                        additions, comment));
-    sim::read_machine(folder.path() / "extended.toml");  // what was written must be a machine
-    folder.write("verdict.json", json.dump(2) + "\n");
-    folder.write("report.html",
-                 diagnosis_report_html({invocation.command_line, invocation.version, input.machine, verdict}));
-    folder.commit();
-  }
-  if (options.json) {
-    fmt::print("{}\n", json.dump(2));
-    return;
-  }
-  fmt::print("{}", verdict_text(verdict));
-  if (!options.out.empty())
-    fmt::print("\nverdict: {0}/verdict.json\nmachine file: {0}/extended.toml\nreport: {0}/report.html\n", options.out);
+  put_out(verdict, input.machine, options.machine, options.out, options.json, invocation);
 }
 
 }  // namespace
@@ -97,6 +74,8 @@ void add_diagnose(CLI::App& program, const Invocation& invocation) {
       ->add_option("--holdout", o->held_out,
                    "logs of other trajectories, on which causes are judged [the last third of each LOG]")
       ->type_name("LOG");
+  command->add_option("--reference", o->reference, "instead of logs the machine file's measured rows: circle")
+      ->type_name("KIND");
   command->add_option("--axis", o->axis, "the axis, where logs and machine have several")->type_name("NAME");
   command->add_option("--seed", o->seed, "of the bootstrap for held-out intervals [1]")->type_name("N");
   command->add_option("--out", o->out, "write verdict.json, extended.toml and report.html into this folder")
@@ -104,7 +83,13 @@ void add_diagnose(CLI::App& program, const Invocation& invocation) {
   command->add_flag("--json", o->json, "print the verdict as JSON on standard output");
   command->callback([o, &invocation] {
     try {
-      if (o->logs.empty()) throw UsageError("diagnose: found no LOG; expected at least one");
+      if (!o->reference.empty()) {
+        if (!o->logs.empty() || !o->held_out.empty() || !o->axis.empty())
+          throw UsageError("--reference: found it with LOG, --holdout or --axis; expected it without them");
+        diagnose_from_reference({o->machine, o->reference, o->out, o->json}, invocation);
+        return;
+      }
+      if (o->logs.empty()) throw UsageError("diagnose: found no LOG; expected at least one, or --reference circle");
       run(*o, invocation);
     } catch (const LogError& error) {
       throw UsageError(error.what());

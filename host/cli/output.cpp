@@ -3,6 +3,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -16,8 +18,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Marks a folder as a result, so that only results are ever replaced.
-constexpr const char* marker = "result.json";
+// One of them marks a folder as a result, so that only results are ever replaced.
+constexpr std::array markers{"result.json", "verdict.json"};
+
+bool is_result(const fs::path& folder) {
+  return std::any_of(markers.begin(), markers.end(), [&](const char* marker) { return fs::exists(folder / marker); });
+}
 
 fs::path pending_name(const fs::path& place) {
   // A trailing slash leaves an empty file name.
@@ -46,11 +52,10 @@ void PendingFile::commit() {
 PendingFolder::PendingFolder(fs::path place) : place_(std::move(place)), pending_(pending_name(place_)) {
   if (fs::exists(place_) && !fs::is_directory(place_))
     throw UsageError(place_.string() + ": found a file; expected a folder for the results");
-  if (fs::exists(place_) && !fs::is_empty(place_) && !fs::exists(place_ / marker))
+  if (fs::exists(place_) && !fs::is_empty(place_) && !is_result(place_))
     throw UsageError(place_.string() +
                      ": found a folder with other things in it; expected a new or an empty folder, or "
-                     "an earlier result (with " +
-                     marker + "), which is replaced");
+                     "an earlier result (with result.json or verdict.json), which is replaced");
   std::error_code error;
   fs::create_directories(pending_, error);
   if (error) throw UsageError(place_.string() + ": cannot be made: " + error.message());

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "host/diagnose/bench.hpp"
 #include "host/simulate/control_run.hpp"
@@ -33,6 +34,47 @@ double largest_difference(const std::vector<std::vector<double>>& a, const std::
     for (std::size_t i = first; i < a[k].size(); ++i) largest = std::max(largest, std::abs(a[k][i] - b[k][i]));
   }
   return largest;
+}
+
+// Position error of the held-out log whose baseline is furthest off, over time, first shown around the worst instant;
+// and the difference of simulated and measured position below it.
+void add_pictures(Verdict& verdict, const std::vector<Log>& logs, const std::vector<std::vector<double>>& measured,
+                  const std::vector<std::vector<double>>& baseline, const std::vector<std::vector<double>>& extended) {
+  std::size_t log = 0, at = 0;
+  double largest = -1.0;
+  for (std::size_t k = 0; k < logs.size(); ++k)
+    for (auto i = static_cast<std::size_t>(ignored / logs[k].period); i < measured[k].size(); ++i)
+      if (const double off = std::abs(measured[k][i] - baseline[k][i]); off > largest) largest = off, log = k, at = i;
+  const auto& chosen = logs[log];
+  const auto& set = chosen.axes.front().x_set;
+  const double shown = std::min(1.0, 0.5 * (chosen.t.back() - chosen.t.front()));  // s, to either side
+  sim::Chart error;
+  error.title = "Position error on held-out data";
+  error.x_label = "time, s";
+  error.y_label = "set less actual position, µm";
+  error.caption =
+      fmt::format("{}, around the instant at which the machine file is furthest off; double-click shows all.",
+                  std::filesystem::path(chosen.source).filename().string());
+  const double from = std::clamp(chosen.t[at] - shown, chosen.t.front(), chosen.t.back() - 2.0 * shown);
+  error.x_range = std::array{from, from + 2.0 * shown};
+  auto difference = error;
+  difference.title.clear();
+  difference.y_label = "simulated less measured, µm";
+  difference.caption.clear();
+  difference.levels = {0.0};
+  const auto line = [&](const char* name, const auto& value) {
+    sim::Series series{.name = name, .x = chosen.t, .y = {}};
+    for (std::size_t i = 0; i < chosen.t.size(); ++i) series.y.push_back(1e6 * value(i));
+    return series;
+  };
+  for (const auto& [name, x] :
+       {std::pair{"measured", &measured[log]}, {"machine file", &baseline[log]}, {"extended", &extended[log]}}) {
+    if (name == std::string_view("extended") && verdict.findings.empty()) continue;
+    error.series.push_back(line(name, [&](std::size_t i) { return set[i] - (*x)[i]; }));
+    if (x != &measured[log])
+      difference.series.push_back(line(name, [&](std::size_t i) { return (*x)[i] - measured[log][i]; }));
+  }
+  verdict.before_after.insert(verdict.before_after.begin(), {std::move(error), std::move(difference)});
 }
 
 }  // namespace
@@ -73,6 +115,7 @@ void judge_in_closed_loop(Verdict& verdict, const sim::Machine& machine, std::si
   try {
     const auto all = verdict.findings.empty() ? baseline : with(verdict.findings);
     verdict.extended.position_error_rms = difference_rms(measured, all, bench.logs);
+    add_pictures(verdict, bench.logs, measured, baseline, all);
     for (std::size_t k = 0; k < verdict.findings.size(); ++k) {
       auto others = verdict.findings;
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));

@@ -234,6 +234,7 @@ Verdict diagnose(const DiagnoseInput& input) {
   for (const auto& d : found.discarded) verdict.rejected.push_back({candidates()[d.candidate].name, d.why});
   if (found.terms.size() == found_before)
     verdict.unexplained = signature_of(regressors, found.residual, target.squaredNorm(), found.correlation);
+  add_cause_charts(verdict, regressors, scene, found.terms, found.residual);
   add_charts(verdict, rows, target, found.residual);
   if (input.closed_loop) judge_in_closed_loop(verdict, input.machine, input.axis, held_out);
   return verdict;

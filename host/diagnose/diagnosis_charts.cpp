@@ -1,7 +1,11 @@
 #include "host/diagnose/diagnosis_charts.hpp"
 
 #include <algorithm>
-#include <numeric>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "host/diagnose/chart_means.hpp"
 
 namespace stiction::host {
 namespace {
@@ -14,23 +18,26 @@ std::vector<double> thinned(const Eigen::VectorXd& values, std::size_t step) {
   return kept;
 }
 
-// Mean of `values` in equally filled ranges of `over`.
-sim::Series means(const char* name, const Eigen::VectorXd& over, double scale, const Eigen::VectorXd& values) {
-  constexpr std::size_t ranges = 60;
-  std::vector<Eigen::Index> order(static_cast<std::size_t>(over.size()));
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return over[a] < over[b]; });
+// Root of the power density of the first log's rows, N/sqrt(Hz): Welch's mean over windows of 4 s, half overlapping.
+sim::Series spectrum(const char* name, const Eigen::VectorXd& values, double period) {
   sim::Series series{.name = name, .x = {}, .y = {}};
-  for (std::size_t k = 0; k < ranges; ++k) {
-    const std::size_t from = order.size() * k / ranges, to = order.size() * (k + 1) / ranges;
-    if (to == from) continue;
-    double x = 0.0, y = 0.0;
-    for (std::size_t i = from; i < to; ++i) {
-      x += over[order[i]] / static_cast<double>(to - from);
-      y += values[order[i]] / static_cast<double>(to - from);
+  const auto length = std::min<Eigen::Index>(values.size(), static_cast<Eigen::Index>(4.0 / period));
+  const auto hop = std::max<Eigen::Index>(length / 2, 1);
+  const double pi = std::numbers::pi;
+  for (double f = 0.5; f < 0.4 / period; f *= 1.03) {
+    double power = 0.0, windows = 0.0;
+    for (Eigen::Index begin = 0; begin + length <= values.size(); begin += hop) {
+      std::complex<double> sum = 0.0;
+      const auto turn = std::polar(1.0, -2.0 * pi * f * period);
+      std::complex<double> phase = 1.0;
+      for (Eigen::Index i = 0; i < length; ++i, phase *= turn)
+        sum += values[begin + i] * phase *
+               (1.0 - std::cos(2.0 * pi * static_cast<double>(i) / static_cast<double>(length)));
+      power += std::norm(sum) * 2.0 * period / (1.5 * static_cast<double>(length));
+      windows += 1.0;
     }
-    series.x.push_back(scale * x);
-    series.y.push_back(y);
+    series.x.push_back(f);
+    series.y.push_back(std::sqrt(power / windows));
   }
   return series;
 }
@@ -44,8 +51,8 @@ void add_charts(Verdict& verdict, const LogRows& rows, const Eigen::VectorXd& be
   const auto time = thinned(rows.time.head(first), step);
   sim::Chart over_time;
   over_time.title = "Residual force over time";
-  over_time.x_label = "time (s)";
-  over_time.y_label = "measured minus expected force (N)";
+  over_time.x_label = "time, s";
+  over_time.y_label = "measured less expected force, N";
   over_time.caption = "What the motor's force holds beyond what the machine file expects of the measured motion.";
   over_time.series = {{.name = "machine file", .x = time, .y = thinned(before.head(first), step)},
                       {.name = "extended", .x = time, .y = thinned(after.head(first), step)}};
@@ -58,16 +65,26 @@ void add_charts(Verdict& verdict, const LogRows& rows, const Eigen::VectorXd& be
     const Eigen::VectorXd& values;
     double scale;
   };
-  for (const auto& a : {Abscissa{"Residual force over position", "position (mm)", position, 1e3},
-                        Abscissa{"Residual force over speed", "velocity (mm/s)", rows.velocity, 1e3},
-                        Abscissa{"Residual force over acceleration", "acceleration (m/s²)", rows.acceleration, 1.0}}) {
+  for (const auto& a : {Abscissa{"Residual force over position", "position, mm", position, 1e3},
+                        Abscissa{"Residual force over speed", "velocity, mm/s", rows.velocity, 1e3},
+                        Abscissa{"Residual force over acceleration", "acceleration, m/s²", rows.acceleration, 1.0}}) {
     sim::Chart chart;
     chart.title = a.title;
     chart.x_label = a.label;
-    chart.y_label = "mean of measured minus expected force (N)";
-    chart.series = {means("machine file", a.values, a.scale, before), means("extended", a.values, a.scale, after)};
+    chart.y_label = "mean of measured less expected force, N";
+    chart.series = {even_means("machine file", a.values, a.scale, before),
+                    even_means("extended", a.values, a.scale, after)};
+    chart.levels = {0.0};
     verdict.before_after.push_back(std::move(chart));
   }
+  sim::Chart frequencies;
+  frequencies.title = "Spectrum of the residual force";
+  frequencies.x_label = "frequency, Hz";
+  frequencies.y_label = "residual force, N/√Hz";
+  frequencies.logarithmic_x = true;
+  frequencies.series = {spectrum("machine file", before.head(first), rows.period(0)),
+                        spectrum("extended", after.head(first), rows.period(0))};
+  verdict.before_after.push_back(std::move(frequencies));
 }
 
 }  // namespace stiction::host

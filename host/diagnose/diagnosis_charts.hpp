@@ -1,8 +1,10 @@
-// The pictures of a verdict: the residual force before and after, over time, position and speed.
+// The pictures of a verdict: the residual force before and after, over time, position, speed and frequency; of each
+// cause the residual that it explains, over what it depends on.
 #pragma once
 
 #include <Eigen/Dense>
 
+#include "host/diagnose/search.hpp"
 #include "host/diagnose/verdict.hpp"
 #include "host/identify/log_rows.hpp"
 
@@ -10,5 +12,11 @@ namespace stiction::host {
 
 // `before`, `after`: residual force in the rows (N), with the file's machine and with all causes.
 void add_charts(Verdict& verdict, const LogRows& rows, const Eigen::VectorXd& before, const Eigen::VectorXd& after);
+
+// To each finding: the residual with all other causes taken out, beside what the cause makes of it (a partial residual
+// plot: Larsen and McCleary 1972), over position, speed, way since the last reversal, or whatever the cause depends on.
+// `terms` in the order of the findings, of the rows whose residual is `after`.
+void add_cause_charts(Verdict& verdict, const LogRows& rows, const Scene& scene, const std::vector<Term>& terms,
+                      const Eigen::VectorXd& after);
 
 }  // namespace stiction::host

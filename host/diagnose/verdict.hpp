@@ -70,6 +70,39 @@ struct ResidualFigures {
   std::optional<double> command_rms;         // A, or V of a force source, above 1 Hz; none without set-points
 };
 
+// A measured row of the machine file beside the simulation: largest error (m) and largest current (A) of a circle.
+struct RowFigures {
+  double error = 0.0;
+  double current = 0.0;
+};
+struct RowShare {
+  std::string effect;
+  RowFigures by;  // what the extended simulation loses without it
+};
+struct DiagnosedRow {
+  std::string axis;
+  double feed = 0.0;  // m/s
+  bool training = false;
+  RowFigures measured, machine_file, extended;
+  std::optional<RowFigures> published;  // with the friction model in use
+  RowFigures left_out;                  // extended, had this feed alone been left out of the training
+  std::vector<RowShare> shares;
+};
+// Mean |simulated / measured - 1| over rows.
+struct RowScore {
+  double error = 0.0, current = 0.0;
+};
+struct RowScores {
+  RowScore published, machine_file, extended;  // published: of rows that have it
+};
+struct ReferenceRows {
+  std::string reference;  // "circle"
+  std::string friction;   // the model in use
+  std::vector<DiagnosedRow> rows;
+  RowScores unused;    // rows of feeds that took no part
+  RowScores left_out;  // all rows, each predicted with its feed left out of the training
+};
+
 struct Verdict {
   std::string machine;
   std::vector<std::string> logs, holdout;
@@ -79,7 +112,8 @@ struct Verdict {
   std::vector<Finding> findings;       // by what each explains, the largest first
   std::vector<Rejected> rejected;
   Unexplained unexplained;
-  std::vector<std::string> notes;        // on the data: suspicions, what to record next
+  std::vector<std::string> notes;          // on the data: suspicions, what to record next
+  std::optional<ReferenceRows> reference;  // of a diagnosis of the machine file's own rows
   std::vector<sim::Chart> before_after;  // measured against simulated, before and after; residual by position, speed..
 };
 

@@ -49,30 +49,97 @@ Json finding_json(const Finding& f) {
   return out;
 }
 
+Json row_figures(const RowFigures& f) { return {{"error_um", f.error * 1e6}, {"current_A", f.current}}; }
+
+Json score_json(const RowScore& s) {
+  return {{"error_percent", 100.0 * s.error}, {"current_percent", 100.0 * s.current}};
+}
+
+Json scores_json(const RowScores& s) {
+  return {{"published_simulation", score_json(s.published)},
+          {"machine_file", score_json(s.machine_file)},
+          {"extended", score_json(s.extended)}};
+}
+
+void add_reference(Json& out, const ReferenceRows& reference) {
+  Json rows = Json::array();
+  for (const auto& row : reference.rows) {
+    Json shares = Json::array();
+    for (const auto& share : row.shares)
+      shares.push_back({{"effect", share.effect}, {"error_um", share.by.error * 1e6}, {"current_A", share.by.current}});
+    rows.push_back({{"axis", row.axis},
+                    {"feed_m_per_min", row.feed * 60.0},
+                    {"used", row.training ? "training" : "held out"},
+                    {"measured", row_figures(row.measured)},
+                    {"published_simulation", row.published ? row_figures(*row.published) : Json(nullptr)},
+                    {"machine_file", row_figures(row.machine_file)},
+                    {"extended", row_figures(row.extended)},
+                    {"extended_without_this_feed", row_figures(row.left_out)},
+                    {"changed_by", shares}});
+  }
+  out["reference"] = reference.reference;
+  out["friction"] = reference.friction;
+  out["mean_error_of_feeds_not_used"] = scores_json(reference.unused);
+  out["mean_error_leaving_one_feed_out"] = scores_json(reference.left_out);
+  out["rows"] = rows;
+}
+
 }  // namespace
 
 Json verdict_json(const Verdict& verdict) {
   Json findings = Json::array(), rejected = Json::array();
   for (const auto& f : verdict.findings) findings.push_back(finding_json(f));
   for (const auto& r : verdict.rejected) rejected.push_back({{"effect", r.effect}, {"why", r.why}});
-  return {{"schema", "stiction.verdict/1"},
-          {"machine", verdict.machine},
-          {"logs", verdict.logs},
-          {"holdout", verdict.holdout},
-          {"holdout_is_a_part", verdict.holdout_is_a_part},
-          {"baseline", figures(verdict.baseline, verdict.command_unit)},
-          {"extended", figures(verdict.extended, verdict.command_unit)},
-          {"findings", findings},
-          {"rejected", rejected},
-          {"unexplained",
-           {{"share", verdict.unexplained.share},
-            {"signature", verdict.unexplained.signature ? Json(*verdict.unexplained.signature) : Json(nullptr)}}},
-          {"notes", verdict.notes},
-          {"extended_machine", "extended.toml"}};
+  Json out{{"schema", "stiction.verdict/1"},
+           {"machine", verdict.machine},
+           {"logs", verdict.logs},
+           {"holdout", verdict.holdout},
+           {"holdout_is_a_part", verdict.holdout_is_a_part},
+           {"baseline", figures(verdict.baseline, verdict.command_unit)},
+           {"extended", figures(verdict.extended, verdict.command_unit)},
+           {"findings", findings},
+           {"rejected", rejected},
+           {"unexplained",
+            {{"share", verdict.unexplained.share},
+             {"signature", verdict.unexplained.signature ? Json(*verdict.unexplained.signature) : Json(nullptr)}}},
+           {"notes", verdict.notes},
+           {"extended_machine", "extended.toml"}};
+  if (verdict.reference) add_reference(out, *verdict.reference);
+  return out;
 }
 
+namespace {
+
+std::string rows_text(const ReferenceRows& reference) {
+  const auto line = [](const char* what, const char* which, const RowScores& s, double RowScore::*member) {
+    return fmt::format("mean {} error {}: before {:.1f} % (published simulation; this one {:.1f} %), after {:.1f} %\n",
+                       what, which, 100.0 * s.published.*member, 100.0 * s.machine_file.*member,
+                       100.0 * s.extended.*member);
+  };
+  std::string text = line("current", "on the feeds not used", reference.unused, &RowScore::current) +
+                     line("position", "on the feeds not used", reference.unused, &RowScore::error) +
+                     line("current", "leaving each feed out in turn", reference.left_out, &RowScore::current) +
+                     line("position", "leaving each feed out in turn", reference.left_out, &RowScore::error) + "\n";
+  text +=
+      "                     error at reversals, um                           largest current, A\n"
+      "axis  m/min  measured  published  simulated  extended    measured  published  simulated  extended\n";
+  for (const auto& row : reference.rows) {
+    const auto cell = [&](double RowFigures::*member, double scale) {
+      return row.published ? fmt::format("{:.1f}", *row.published.*member * scale) : std::string("-");
+    };
+    text += fmt::format("{:<4} {:>6.1f} {:>9.1f} {:>10} {:>10.2f} {:>9.2f} {:>11.1f} {:>10} {:>10.2f} {:>9.2f}{}\n",
+                        row.axis, row.feed * 60.0, row.measured.error * 1e6, cell(&RowFigures::error, 1e6),
+                        row.machine_file.error * 1e6, row.extended.error * 1e6, row.measured.current,
+                        cell(&RowFigures::current, 1.0), row.machine_file.current, row.extended.current,
+                        row.training ? "  (training)" : "");
+  }
+  return text + "\n";
+}
+
+}  // namespace
+
 std::string verdict_text(const Verdict& verdict) {
-  std::string text;
+  std::string text = verdict.reference ? rows_text(*verdict.reference) : std::string();
   const auto position = [](const ResidualFigures& f) {
     return f.position_error_rms ? fmt::format(", position {:.3g} um rms", *f.position_error_rms * 1e6) : std::string();
   };

@@ -129,6 +129,51 @@ json cause_json(const Finding& finding) {
           {"confused_with", confused}};
 }
 
+// The measured rows of the machine file beside the simulation, with what is off and the causes that change it most.
+json rows_json(const ReferenceRows& reference) {
+  json rows = json::array();
+  const auto number = [](double value, int digits) { return fmt::format("{:.{}f}", value, digits); };
+  const auto off = [](double simulated, double measured) {
+    return fmt::format("{:+.0f}", 100.0 * (simulated / measured - 1.0));
+  };
+  for (const auto& row : reference.rows) {
+    json out{{"axis", row.axis}, {"feed", fmt::format("{:g}", row.feed * 60.0)}, {"training", row.training}};
+    const auto add = [&](const char* what, double RowFigures::*member, double scale, int digits) {
+      const double measured = row.measured.*member;
+      out[what] = {{"measured", number(measured * scale, 1)},
+                   {"published", row.published ? json(number((*row.published).*member * scale, 1)) : json(nullptr)},
+                   {"published_off", row.published ? json(off((*row.published).*member, measured)) : json(nullptr)},
+                   {"machine_file", number(row.machine_file.*member * scale, digits)},
+                   {"machine_file_off", off(row.machine_file.*member, measured)},
+                   {"extended", number(row.extended.*member * scale, digits)},
+                   {"extended_off", off(row.extended.*member, measured)}};
+    };
+    add("error", &RowFigures::error, 1e6, 1);
+    add("current", &RowFigures::current, 1.0, 2);
+    std::vector<std::string> causes;
+    auto shares = row.shares;
+    std::sort(shares.begin(), shares.end(),
+              [](const RowShare& a, const RowShare& b) { return std::abs(a.by.current) > std::abs(b.by.current); });
+    for (std::size_t k = 0; k < std::min<std::size_t>(shares.size(), 2); ++k)
+      causes.push_back(fmt::format("{} {:+.2f} A", cause_text(shares[k].effect).title, shares[k].by.current));
+    out["causes"] = fmt::format("{}", fmt::join(causes, ", "));
+    rows.push_back(out);
+  }
+  return rows;
+}
+
+std::string scores_text(const ReferenceRows& reference) {
+  const auto line = [](const RowScores& s, double RowScore::*member) {
+    return fmt::format("from {} % (published simulation) to {} %", percent(s.published.*member),
+                       percent(s.extended.*member));
+  };
+  return fmt::format(
+      "On the feeds that took no part, the mean error of the current falls {}; that of the error at reversals goes {}. "
+      "With each feed left out in turn, the current's falls {}.",
+      line(reference.unused, &RowScore::current), line(reference.unused, &RowScore::error),
+      line(reference.left_out, &RowScore::current));
+}
+
 std::string headline(const Verdict& verdict) {
   if (verdict.findings.empty())
     return verdict.unexplained.signature ? "No cause of the vocabulary, but something is left that repeats."
@@ -143,6 +188,7 @@ std::string headline(const Verdict& verdict) {
 }
 
 std::string gain_line(const Verdict& verdict) {
+  if (verdict.reference) return scores_text(*verdict.reference);
   const auto& [before, after] = std::pair(verdict.baseline, verdict.extended);
   if (verdict.findings.empty() || before.force_rms <= 0.0) return "";
   auto text = fmt::format("Extended by it, the residual force on held-out data falls from {:.3g} N to {:.3g} N rms",
@@ -182,6 +228,16 @@ std::string files(const std::vector<std::string>& paths) {
 json conditions_json(const Verdict& verdict) {
   Conditions conditions;
   conditions.add("Machine file", std::filesystem::path(verdict.machine).filename().string());
+  if (verdict.reference) {
+    std::vector<std::string> feeds;
+    for (const auto& row : verdict.reference->rows)
+      if (row.training && row.axis == verdict.reference->rows.front().axis)
+        feeds.push_back(fmt::format("{:g}", row.feed * 60.0));
+    conditions.add("Measured", "rows of the machine file, " + verdict.reference->reference);
+    conditions.add("Training", fmt::format("circle at {} m/min, steady friction, presliding", fmt::join(feeds, ", ")));
+    conditions.add("Held out", "the circles at all other feeds");
+    return conditions.json();
+  }
   conditions.add("Logs", files(verdict.logs));
   conditions.add("Held out", verdict.holdout_is_a_part ? "the last third of each log" : files(verdict.holdout));
   return conditions.json();
@@ -209,7 +265,9 @@ std::string diagnosis_report_html(const DiagnosisReport& report) {
       {"conditions", conditions_json(verdict)},
       {"picture", verdict.findings.empty() ? "" : "before and after the machine file was extended"},
       {"residuals", residuals_json(verdict)},
-      {"holdout", verdict.holdout_is_a_part
+      {"rows", verdict.reference ? rows_json(*verdict.reference) : json::array()},
+      {"holdout", verdict.reference ? "Shares of squares are of relative deviations, so that every feed counts alike."
+                  : verdict.holdout_is_a_part
                       ? "No held-out log was given: the last third of each log stands in for one, which cannot tell a "
                         "cause from something else that repeats with the same motion. Record another trajectory."
                       : "The held-out logs took no part in choosing or fitting the causes."},

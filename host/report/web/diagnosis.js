@@ -25,6 +25,28 @@ function drawSummary() {
   show('summary-caption', `${figures.join('; ')}. ${DATA.holdout}`);
 }
 
+// ---- measured rows of the machine file ----
+
+function drawRows() {
+  if (!DATA.rows.length) return document.getElementById('rows-section').remove();
+  const pair = (value, off) => value === null ? [text('–', { class: 'gap none' }), text('')] :
+    [text(value, { class: 'gap' }), text(minus(off), { class: Math.abs(Number(off)) > 10 ? 'differs' : 'unit' })];
+  const half = cells => [text(cells.measured, { class: 'gap value' }), ...pair(cells.published, cells.published_off),
+                         ...pair(cells.machine_file, cells.machine_file_off), ...pair(cells.extended, cells.extended_off)];
+  const heads = () => [text('measured', { class: 'gap' }), ...['published', 'file', 'extended'].flatMap(name => [text(name, { class: 'gap' }), text('%')])];
+  let axis = '';
+  show('rows', table(
+    [[text('', { span: 2 }), text('Error at reversals, µm', { class: 'group', span: 7 }), text('Largest current, A', { class: 'group', span: 7 }), text('')],
+     [text('Axis', { class: 'text' }), text('m/min'), ...heads(), ...heads(), text('Changed most by', { class: 'text gap' })]],
+    DATA.rows.map(row => {
+      const cells = [{ text: row.axis === axis ? '' : row.axis, head: true }, text(row.feed), ...half(row.error), ...half(row.current),
+                     text(row.training ? `${minus(row.causes)} (training)` : minus(row.causes), { class: 'text gap' })];
+      const first = row.axis !== axis;
+      axis = row.axis;
+      return first ? classed('first', cells) : cells;
+    })));
+}
+
 // ---- one section a cause ----
 
 function parameters(cause) {
@@ -65,6 +87,7 @@ if (!DATA.charts.some(chart => chart.place === 'before-after')) document.getElem
 show('unexplained', DATA.unexplained);
 show('notes', ...DATA.notes.map(note => element('li', {}, minus(note))));
 drawConditions();
+drawRows();
 drawSummary();
 drawRejected();
 drawSeriesChoice();

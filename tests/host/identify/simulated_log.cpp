@@ -3,70 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <random>
 
 #include "host/simulate/control_run.hpp"
 #include "sim/control/double_signals.hpp"
-#include "sim/experiment/circle_path.hpp"
-#include "sim/experiment/speed_ramp.hpp"
 
 namespace stiction::test {
-namespace {
-
-constexpr double acceleration = 2.0, jerk = 40.0;  // m/s^2, m/s^3: those of the circle's start
-
-// From rest to rest.
-struct Move {
-  sim::SpeedRamp ramp;
-  double speed, cruise, sign, from, begin;
-  double duration() const { return 2.0 * ramp.duration() + cruise; }
-  double distance() const { return speed * (ramp.duration() + cruise); }
-  sim::AxisSetPoint at(double t) const {
-    const double left = duration() - t;
-    const auto m = ramp.at(std::min(t, left));
-    if (t <= 0.5 * duration()) return {from + sign * m.distance, sign * m.speed, sign * m.acceleration};
-    return {from + sign * (distance() - m.distance), sign * m.speed, -sign * m.acceleration};
-  }
-};
-
-}  // namespace
-
-Trajectory constant_speeds(const std::vector<double>& speeds, double cruise, double shortest) {
-  std::vector<Move> moves;
-  double time = 0.05;
-  for (const double speed : speeds)
-    for (const double sign : {1.0, -1.0}) {
-      const sim::SpeedRamp ramp(speed, acceleration, jerk);
-      const Move move{ramp, speed, std::max(cruise, shortest / speed), sign, 0.0, time};
-      moves.push_back({move});
-      if (sign < 0.0) moves.back().from = moves[moves.size() - 2].distance();
-      time += move.duration() + 0.05;
-    }
-  return {"constant speeds", time, [moves](double t) {
-            for (auto move = moves.rbegin(); move != moves.rend(); ++move)
-              if (t >= move->begin) return move->at(std::min(t - move->begin, move->duration()));
-            return sim::AxisSetPoint{};
-          }};
-}
-
-Trajectory circle(double feed, double turns) {
-  sim::CircleSettings settings;
-  settings.feed = feed;
-  const double duration = 2.0 * std::numbers::pi * settings.radius * turns / feed + 0.3;
-  return {"circle", duration, [path = sim::CirclePath(settings)](double t) { return path.at(t).axes[0]; }};
-}
-
-Trajectory small_reversals(const std::vector<double>& amplitudes, double frequency) {
-  const double w = 2.0 * std::numbers::pi * frequency;
-  const double each = 2.0 / frequency;
-  return {"small reversals", each * static_cast<double>(amplitudes.size()), [=](double t) {
-            const auto k = std::min(static_cast<std::size_t>(t / each), amplitudes.size() - 1);
-            const double a = amplitudes[k], phase = w * (t - each * static_cast<double>(k));
-            return sim::AxisSetPoint{a * (1.0 - std::cos(phase)), a * w * std::sin(phase), a * w * w * std::cos(phase)};
-          }};
-}
-
 std::vector<Trajectory> commissioning() {
   std::vector<double> speeds;
   for (const double m_per_min : {0.05, 0.2, 0.5, 1.0, 3.2, 8.0, 16.0, 24.0}) speeds.push_back(m_per_min / 60.0);

@@ -4,28 +4,20 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "host/log/log.hpp"
-#include "sim/experiment/set_point.hpp"
+#include "sim/experiment/commissioning_path.hpp"
 #include "sim/model/machine.hpp"
 
 namespace stiction::test {
 
-struct Trajectory {
-  std::string name;
-  double duration = 0.0;                        // s
-  std::function<sim::AxisSetPoint(double)> at;  // rest at t = 0
-};
+using sim::circle;
+using sim::constant_speeds;
+using sim::small_reversals;
+using sim::Trajectory;
 
-// Jerk-limited moves there and back at each speed (m/s), `cruise` (s) long at least and at least `shortest` m.
-Trajectory constant_speeds(const std::vector<double>& speeds, double cruise, double shortest);
-// X of a circle of radius 90 mm at the feed (m/s), begun with the standard jerk-limited start.
-Trajectory circle(double feed, double turns);
-// A cosine of two periods at each amplitude (m), half of the stroke, at `frequency` (Hz).
-Trajectory small_reversals(const std::vector<double>& amplitudes, double frequency);
 // The three that the campaign records: 24 s together.
 std::vector<Trajectory> commissioning();
 

@@ -255,5 +255,14 @@ TEST(ExtendedMachine, TheShippedMachinesTakeEveryEffect) {
   }
 }
 
+// The shipped table has experiments on a bench with 400 N of Coulomb friction, beside which this contact cannot be.
+TEST(ExtendedMachine, AnEffectNeedNotFitTheMachineOfAnExperimentThatDoesNotRun) {
+  const std::vector<AxisEffects> contact{
+      {"X", {effect("presliding_hysteresis", {{"stiffness", {7e5}}, {"distance", {300e-6}}})}}};
+  const auto text = extended_machine(shipped_machine(), {}, contact, {});
+  EXPECT_EQ(parse_machine("e.toml", text).axes[0].effects.size(), 1u);
+  EXPECT_THROW(parse_machine("e.toml", text, {"presliding", {}}), MachineFileError);
+}
+
 }  // namespace
 }  // namespace stiction::sim::test

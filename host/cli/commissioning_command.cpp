@@ -1,0 +1,102 @@
+// `stiction simulate commissioning`: records of a simulated machine to identify and diagnose from, on request with an
+// effect hidden in it that its file does not have.
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "host/cli/commands.hpp"
+#include "host/cli/errors.hpp"
+#include "host/cli/machine_options.hpp"
+#include "host/cli/output.hpp"
+#include "host/cli/progress.hpp"
+#include "host/log/csv_log.hpp"
+#include "host/simulate/commissioning.hpp"
+#include "host/simulate/hidden_effect.hpp"
+#include "sim/machine/extended_machine.hpp"
+#include "sim/machine/machine_file.hpp"
+
+namespace stiction::host {
+namespace {
+
+struct CommissioningOptions {
+  MachineOptions machine;
+  std::string axis = "X";
+  std::uint64_t seed = 1;
+  std::optional<std::uint64_t> hide;
+  std::string out;
+  bool json = false;
+};
+
+std::size_t axis_of(const CommissioningOptions& options, const sim::Machine& machine) {
+  for (std::size_t k = 0; k < machine.axes.size(); ++k)
+    if (machine.axes[k].name == options.axis) return k;
+  throw UsageError(fmt::format("--axis: found '{}'; expected an axis of {}", options.axis, machine.id));
+}
+
+void run(const CommissioningOptions& options, const Invocation& invocation) {
+  const auto file = options.machine.load(options.machine.machine, "commissioning");
+  const std::size_t axis = axis_of(options, file);
+  auto machine = file;
+  PendingFolder folder(options.out);
+  if (options.hide) {
+    const auto effect = draw_hidden_effect(file.axes[axis], *options.hide);
+    machine.axes[axis].effects.push_back(effect);
+    folder.write("hidden.toml", sim::effect_table(options.axis, effect));
+  }
+  std::vector<CommissioningRecord> records;
+  {
+    Progress progress("records", commissioning_records);
+    records = record_commissioning(machine, axis, options.seed, [&] { progress.add(); });
+  }
+  nlohmann::ordered_json training = nlohmann::ordered_json::array(), held_out = nlohmann::ordered_json::array();
+  for (auto& record : records) {
+    record.log.comments = {
+        {"made by", invocation.command_line}, {"machine", file.name}, {"current", "amplitude (peak) amperes"}};
+    const std::string name = record.name + ".csv";
+    write_csv_log(folder.path() / name, record.log);
+    (record.held_out ? held_out : training).push_back(name);
+  }
+  const std::vector<std::string> comment{"as its records were made by: " + invocation.command_line};
+  folder.write("machine.toml",
+               sim::extended_machine(sim::find_machine(options.machine.machine), options.machine.set, {}, comment));
+  const nlohmann::ordered_json json{{"schema", "stiction.commissioning/1"},
+                                    {"machine", "machine.toml"},
+                                    {"axis", options.axis},
+                                    {"logs", training},
+                                    {"holdout", held_out},
+                                    {"hidden", options.hide ? nlohmann::ordered_json("hidden.toml") : nullptr}};
+  folder.write("result.json", json.dump(2) + "\n");
+  folder.commit();
+  if (options.json) {
+    fmt::print("{}\n", json.dump(2));
+    return;
+  }
+  for (const auto& record : records)
+    fmt::print("{}/{}.csv: {:.1f} s{}\n", options.out, record.name, record.log.t.back(),
+               record.held_out ? ", to judge on" : "");
+  fmt::print("{0}/machine.toml: what its maker says of the machine{1}\n", options.out,
+             options.hide
+                 ? fmt::format("\n{}/hidden.toml: what the machine has beside it; not for the diagnosis", options.out)
+                 : "");
+}
+
+}  // namespace
+
+void add_commissioning(CLI::App& simulate, const Invocation& invocation) {
+  auto* command = simulate.add_subcommand(
+      "commissioning", "records of one axis to identify and diagnose from: constant speeds, circle, small reversals");
+  auto o = std::make_shared<CommissioningOptions>();
+  o->machine.add_to(*command, "shipped machine by name, or a machine file");
+  command->add_option("--axis", o->axis, "the axis that moves")->type_name("NAME")->capture_default_str();
+  command->add_option("--hide", o->hide, "hide an effect, drawn from this seed, in the machine but not in its file")
+      ->type_name("SEED");
+  command->add_option("--seed", o->seed, "of the noise")->type_name("N")->capture_default_str();
+  command->add_option("--out", o->out, "write the logs, the machine file and what was hidden into this folder")
+      ->required()
+      ->type_name("DIR");
+  command->add_flag("--json", o->json, "print what was written as JSON on standard output");
+  command->callback([o, &invocation] { run(*o, invocation); });
+}
+
+}  // namespace stiction::host

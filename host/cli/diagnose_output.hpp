@@ -1,0 +1,17 @@
+// What `stiction diagnose` leaves behind, from logs and from rows alike.
+#pragma once
+
+#include <string>
+
+#include "host/cli/commands.hpp"
+#include "host/cli/machine_options.hpp"
+#include "host/diagnose/verdict.hpp"
+
+namespace stiction::host {
+
+// Writes verdict.json, extended.toml and report.html into `out` (empty: nothing) and prints the verdict, as JSON or for
+// readers. The extended file is read back before anything appears.
+void put_out(const Verdict& verdict, const sim::Machine& machine, const MachineOptions& options, const std::string& out,
+             bool json, const Invocation& invocation);
+
+}  // namespace stiction::host

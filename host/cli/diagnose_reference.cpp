@@ -1,0 +1,27 @@
+#include "host/cli/diagnose_reference.hpp"
+
+#include <fmt/format.h>
+
+#include "host/cli/diagnose_output.hpp"
+#include "host/cli/errors.hpp"
+#include "host/cli/progress.hpp"
+#include "host/diagnose/reference_diagnosis.hpp"
+#include "host/identify/friction_curves.hpp"
+
+namespace stiction::host {
+
+void diagnose_from_reference(const DiagnoseReferenceOptions& options, const Invocation& invocation) try {
+  if (options.reference != "circle")
+    throw UsageError(fmt::format("--reference: found '{}'; expected circle", options.reference));
+  const auto machine = options.machine.load(options.machine.machine, "circle");
+  Verdict verdict;
+  {
+    Progress progress("diagnosis", 10);  // the extension, four causes an axis, five feeds left out
+    verdict = diagnose_reference(machine, [&] { progress.add(); });
+  }
+  put_out(verdict, machine, options.machine, options.out, options.json, invocation);
+} catch (const MissingRows& error) {
+  throw UsageError(fmt::format("{}: {}", options.machine.machine, error.what()));
+}
+
+}  // namespace stiction::host

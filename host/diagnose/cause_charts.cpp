@@ -1,0 +1,129 @@
+#include <array>
+#include <cmath>
+#include <string_view>
+
+#include "host/diagnose/chart_means.hpp"
+#include "host/diagnose/diagnosis_charts.hpp"
+
+namespace stiction::host {
+namespace {
+
+constexpr double creeping = 1e-5;  // m/s; a slower motion has no direction that can be trusted
+
+Eigen::VectorXd direction(const LogRows& rows) {
+  return rows.velocity.unaryExpr([](double v) { return v > creeping ? 1.0 : v < -creeping ? -1.0 : 0.0; });
+}
+
+// Way since the motion last turned round, at the log's rate.
+std::vector<double> since_reversal(const Motion& motion) {
+  std::vector<double> way;
+  double turned = motion.x.front(), sign = 0.0;
+  for (std::size_t i = 0; i < motion.x.size(); ++i) {
+    const double v = motion.v[i];
+    const double now = v > creeping ? 1.0 : v < -creeping ? -1.0 : sign;
+    if (now != sign) turned = motion.x[i];
+    sign = now;
+    way.push_back(std::abs(motion.x[i] - turned));
+  }
+  return way;
+}
+
+// What a cause's force is shown over. `opposing`: as a friction, positive when it opposes the motion.
+struct Abscissa {
+  std::string_view title, label;
+  Eigen::VectorXd (*values)(const LogRows&);  // in the label's unit
+  bool opposing = false;
+  bool logarithmic = false;
+};
+
+Eigen::VectorXd position(const LogRows& rows) {
+  return 1e3 * rows.sampled([](const Motion& m) { return m.x; });
+}
+Eigen::VectorXd velocity(const LogRows& rows) { return 1e3 * rows.velocity; }
+Eigen::VectorXd speed(const LogRows& rows) { return 1e3 * rows.velocity.cwiseAbs().cwiseMax(creeping); }
+Eigen::VectorXd acceleration(const LogRows& rows) { return rows.acceleration; }
+Eigen::VectorXd way(const LogRows& rows) { return 1e6 * rows.sampled(since_reversal).cwiseMax(1e-8); }
+
+constexpr Abscissa over_position{"Along the stroke", "position, mm", position};
+constexpr Abscissa over_velocity{"Over velocity", "velocity, mm/s", velocity};
+constexpr Abscissa over_speed{"Over speed", "speed, mm/s", speed, true, true};
+constexpr Abscissa over_acceleration{"Over acceleration", "acceleration, m/s²", acceleration};
+constexpr Abscissa after_reversals{"After reversals", "way since the last reversal, µm", way, true, true};
+
+struct Row {
+  std::string_view effect;
+  Abscissa abscissa;
+};
+constexpr std::array abscissae{
+    Row{"mass_mismatch", over_acceleration},
+    Row{"cross_axis_coupling", over_acceleration},
+    Row{"coulomb_mismatch", over_speed},
+    Row{"viscous_mismatch", over_speed},
+    Row{"viscous_nonlinear", over_speed},
+    Row{"stribeck", over_speed},
+    Row{"friction_lag", over_speed},
+    Row{"friction_asymmetry", over_velocity},
+    Row{"constant_force", over_velocity},
+    Row{"presliding_hysteresis", after_reversals},
+    Row{"backlash", after_reversals},
+    Row{"position_spring", over_position},
+    Row{"force_ripple", over_position},
+    Row{"force_constant_ripple", over_position},
+    Row{"position_dependent_friction", over_position},
+    Row{"encoder_subdivision_error", over_position},
+};
+
+sim::Chart partial(const LogRows& rows, const Abscissa& abscissa, const Eigen::VectorXd& left,
+                   const Eigen::VectorXd& by) {
+  sim::Chart chart;
+  chart.title = abscissa.title;
+  chart.x_label = abscissa.label;
+  chart.y_label = abscissa.opposing ? "force against the motion, N" : "force, N";
+  chart.caption =
+      "Means over equally many samples: the residual force with all other causes taken out, and what this "
+      "cause makes of it.";
+  chart.logarithmic_x = abscissa.logarithmic;
+  chart.levels = {0.0};
+  const Eigen::VectorXd sign = abscissa.opposing ? direction(rows) : Eigen::VectorXd::Ones(rows.rows());
+  const Eigen::VectorXd over = abscissa.values(rows);
+  const auto mean = [&](const char* name, const Eigen::VectorXd& force) {
+    const Eigen::VectorXd signed_force = sign.cwiseProduct(force);
+    return abscissa.logarithmic ? means(name, over, 1.0, signed_force) : even_means(name, over, 1.0, signed_force);
+  };
+  auto residual = mean("residual without it", left);
+  residual.points = true;
+  chart.series = {std::move(residual), mean("this cause", by)};
+  return chart;
+}
+
+// Against the cause's own force: what is right lies on the diagonal.
+sim::Chart added_variable(const Eigen::VectorXd& left, const Eigen::VectorXd& by) {
+  sim::Chart chart;
+  chart.title = "Residual against this cause";
+  chart.x_label = "force of this cause, N";
+  chart.y_label = "residual force without it, N";
+  chart.caption = "Means over equally many samples, all other causes taken out. On the line the cause explains it all.";
+  auto residual = means("residual without it", by, 1.0, left, 40);
+  residual.points = true;
+  sim::Series line{.name = "this cause", .x = residual.x, .y = residual.x};
+  chart.series = {std::move(residual), std::move(line)};
+  return chart;
+}
+
+}  // namespace
+
+void add_cause_charts(Verdict& verdict, const LogRows& rows, const Scene& scene, const std::vector<Term>& terms,
+                      const Eigen::VectorXd& after) {
+  for (std::size_t k = 0; k < terms.size() && k < verdict.findings.size(); ++k) {
+    const auto columns = group_columns(rows, scene, candidates()[terms[k].candidate], terms[k].nonlinear);
+    Eigen::VectorXd by = Eigen::VectorXd::Zero(rows.rows());
+    for (std::size_t c = 0; c < columns.size(); ++c) by += terms[k].weights[static_cast<Eigen::Index>(c)] * columns[c];
+    const Eigen::VectorXd left = after + by;
+    auto& finding = verdict.findings[k];
+    for (const auto& row : abscissae)
+      if (row.effect == finding.effect.name) finding.charts.push_back(partial(rows, row.abscissa, left, by));
+    finding.charts.push_back(added_variable(left, by));
+  }
+}
+
+}  // namespace stiction::host

@@ -1,0 +1,174 @@
+#include "host/diagnose/reference_charts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/plant/effects/presliding_hysteresis.hpp"
+
+namespace stiction::host {
+namespace {
+
+using Of = double (*)(const RowFigures&);
+
+double error_of(const RowFigures& f) { return f.error * 1e6; }
+double current_of(const RowFigures& f) { return f.current; }
+
+// One axis over the feed: what the simulation is off the measured row.
+sim::Chart deviation(const ReferenceRows& reference, const std::string& axis, bool error) {
+  sim::Chart chart;
+  chart.title = fmt::format("{}: {}", axis, error ? "error at reversals" : "largest current");
+  chart.x_label = "feed, m/min";
+  chart.y_label = error ? "simulated less measured, µm" : "simulated against measured, %";
+  chart.logarithmic_x = true;
+  chart.levels = {0.0};
+  sim::Series before{.name = "machine file", .x = {}, .y = {}}, after{.name = "extended", .x = {}, .y = {}},
+      published{.name = "published", .x = {}, .y = {}, .points = true};
+  const auto off = [&](const RowFigures& simulated, const RowFigures& measured) {
+    return error ? error_of(simulated) - error_of(measured) : 100.0 * (simulated.current / measured.current - 1.0);
+  };
+  for (const auto& row : reference.rows) {
+    if (row.axis != axis) continue;
+    const double feed = row.feed * 60.0;
+    before.x.push_back(feed);
+    before.y.push_back(off(row.machine_file, row.measured));
+    after.x.push_back(feed);
+    after.y.push_back(off(row.extended, row.measured));
+    if (!row.published) continue;
+    published.x.push_back(feed);
+    published.y.push_back(off(*row.published, row.measured));
+    if (row.training)
+      chart.distances.push_back({feed, chart.levels.front(), off(row.extended, row.measured), "training"});
+  }
+  chart.series = {before, after, published};
+  return chart;
+}
+
+// A finding's part in every row of its axis.
+sim::Chart shares(const ReferenceRows& reference, const Finding& finding, bool error) {
+  const Of value = error ? error_of : current_of;
+  sim::Chart chart;
+  chart.title = error ? "What it does to the error at reversals" : "What it does to the largest current";
+  chart.x_label = "feed, m/min";
+  chart.y_label = error ? "change by it, µm" : "change by it, A";
+  chart.caption = error ? "The extended simulation with it less that without it."
+                        : "The extended simulation with it less that without it, beside what the machine file lacks.";
+  chart.logarithmic_x = true;
+  chart.levels = {0.0};
+  sim::Series by{.name = "by this cause", .x = {}, .y = {}},
+      lacks{.name = "measured", .x = {}, .y = {}, .points = true};
+  for (const auto& row : reference.rows) {
+    if (row.axis != finding.axis) continue;
+    for (const auto& share : row.shares)
+      if (share.effect == finding.effect.name) {
+        by.x.push_back(row.feed * 60.0);
+        by.y.push_back(value(share.by));
+        lacks.x.push_back(row.feed * 60.0);
+        lacks.y.push_back(value(row.measured) - value(row.machine_file));
+      }
+  }
+  lacks.name = "measured less machine file";
+  chart.series = {by, lacks};
+  return chart;
+}
+
+// Friction over speed: the rows, the file, the extended one, and the extended one without this cause.
+sim::Chart sliding(const sim::Machine& machine, const ReferenceExtension& extension, const AxisExtension& axis,
+                   const Finding& finding) {
+  sim::Chart chart;
+  chart.title = "Friction over speed";
+  chart.x_label = "speed, m/min";
+  chart.y_label = "friction force, N";
+  chart.logarithmic_x = true;
+  const auto own =
+      std::find_if(machine.axes.begin(), machine.axes.end(), [&](const auto& each) { return each.name == axis.axis; });
+  const auto file = file_law(*own);
+  const auto& law = extension.sliding.law;
+  const SlidingLaw extended{axis.force * law.coulomb, axis.force * law.viscous, axis.force * law.rise,
+                            law.rise_velocity};
+  auto without = extended;
+  if (finding.effect.name == "coulomb_mismatch") without.coulomb = file.coulomb;
+  if (finding.effect.name == "viscous_mismatch") without.viscous = file.viscous;
+  if (finding.effect.name == "viscous_nonlinear") without.rise = 0.0;
+  sim::Series rows{.name = axis.own_rows ? "measured" : "measured on " + axis.law_from + ", scaled",
+                   .x = {},
+                   .y = {},
+                   .points = true};
+  for (const auto& row : machine.steady_friction_references)
+    if (row.axis == axis.law_from) {
+      rows.x.push_back(row.velocity * 60.0);
+      rows.y.push_back(axis.force * row.current * own->motor.force_constant);
+    }
+  chart.series = {std::move(rows)};
+  for (const auto& [name, each] :
+       {std::pair{"machine file", file}, {"extended", extended}, {"without this cause", without}}) {
+    sim::Series line{.name = name, .x = {}, .y = {}};
+    for (double v = 3e-4; v < 0.42; v *= 1.05) {
+      line.x.push_back(v * 60.0);
+      line.y.push_back(each.at(v));
+    }
+    chart.series.push_back(std::move(line));
+  }
+  return chart;
+}
+
+sim::Chart contact(const sim::Machine& machine, const AxisExtension& axis, const Finding& finding) {
+  sim::Chart chart;
+  chart.title = "Force before sliding";
+  chart.x_label = "displacement, µm";
+  chart.y_label = "share of Coulomb friction, %";
+  chart.caption = "First loading against the motion before.";
+  const double stiffness = finding.effect.values.at("stiffness").front();
+  const double distance = finding.effect.values.at("distance").front();
+  const double coulomb = stiffness * axis.displacement / axis.stiffness_per_force;
+  sim::Series extended{.name = "extended", .x = {}, .y = {}}, file{.name = "machine file", .x = {}, .y = {}},
+      rows{.name = "rows of presliding, scaled", .x = {}, .y = {}, .points = true};
+  const auto elements = sim::presliding_elements(coulomb, stiffness, distance);
+  const double longest = 2.0 * distance;
+  const auto own =
+      std::find_if(machine.axes.begin(), machine.axes.end(), [&](const auto& each) { return each.name == axis.axis; });
+  const auto& in_use = own->friction.models.at(own->friction.use);
+  for (int k = 0; k <= 200; ++k) {
+    const double x = longest * std::pow(k / 200.0, 2);
+    double force = 0.0;
+    for (std::size_t j = 0; j < elements.stiffness.size(); ++j)
+      force += std::min(elements.stiffness[j] * x, elements.level[j]);
+    extended.x.push_back(x * 1e6);
+    extended.y.push_back(100.0 * force / coulomb);
+    if (const auto* lugre = std::get_if<sim::LuGre::Parameters>(&in_use)) {
+      file.x.push_back(x * 1e6);
+      file.y.push_back(-100.0 * std::expm1(-lugre->stiffness * x / lugre->coulomb));
+    }
+  }
+  double most = 0.0;
+  for (const auto& row : machine.presliding_references)
+    if (!row.same_direction) most = std::max(most, row.force);
+  for (const auto& row : machine.presliding_references)
+    if (!row.same_direction) {
+      rows.x.push_back(row.displacement * axis.displacement * 1e6);
+      rows.y.push_back(100.0 * row.force / most);
+    }
+  chart.series = {extended};
+  if (!file.x.empty()) chart.series.push_back(file);
+  chart.series.push_back(rows);
+  return chart;
+}
+
+}  // namespace
+
+void add_reference_charts(Verdict& verdict, const sim::Machine& machine, const ReferenceExtension& extension) {
+  for (const bool error : {false, true})
+    for (const auto& axis : machine.axes)
+      verdict.before_after.push_back(deviation(*verdict.reference, axis.name, error));
+  for (auto& finding : verdict.findings) {
+    const auto axis = std::find_if(extension.axes.begin(), extension.axes.end(),
+                                   [&](const auto& each) { return each.axis == finding.axis; });
+    const bool of_contact = finding.effect.name == "presliding_hysteresis";
+    finding.charts.push_back(of_contact ? contact(machine, *axis, finding)
+                                        : sliding(machine, extension, *axis, finding));
+    finding.charts.push_back(shares(*verdict.reference, finding, of_contact));
+  }
+}
+
+}  // namespace stiction::host

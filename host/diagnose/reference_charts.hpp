@@ -1,0 +1,12 @@
+// The pictures of a diagnosis from measured rows: over the feed, measured against simulated before and after; of each
+// cause the curve that it changes and what it does to each row.
+#pragma once
+
+#include "host/diagnose/reference_extension.hpp"
+#include "host/diagnose/verdict.hpp"
+
+namespace stiction::host {
+
+void add_reference_charts(Verdict& verdict, const sim::Machine& machine, const ReferenceExtension& extension);
+
+}  // namespace stiction::host

@@ -1,0 +1,30 @@
+// What is said of causes that were found, or could not be told, from measured rows. Sentences only; the numbers come
+// from reference_extension.hpp and the simulated rows.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "host/diagnose/reference_extension.hpp"
+#include "host/diagnose/verdict.hpp"
+
+namespace stiction::host {
+
+const char* name_of(SlidingPart part);  // in the vocabulary
+
+std::string evidence_words(const ReferenceExtension& extension, const AxisExtension& axis, const std::string& effect,
+                           const sim::CircleReference& training_row);
+
+std::vector<ConfusedWith> confusion_words(const ReferenceExtension& extension, const AxisExtension& axis,
+                                          const std::string& effect);
+
+// Every effect of the vocabulary that is not named, and why.
+std::vector<Rejected> rejection_words(const sim::Machine& machine, const Verdict& verdict);
+
+// What the extended simulation leaves of the rows that took no part, as share of the squared relative deviations of
+// their currents.
+Unexplained left_words(const std::vector<DiagnosedRow>& rows);
+
+std::vector<std::string> note_words(const ReferenceExtension& extension);
+
+}  // namespace stiction::host

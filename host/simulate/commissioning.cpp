@@ -1,0 +1,117 @@
+#include "host/simulate/commissioning.hpp"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "host/simulate/replay.hpp"
+#include "sim/experiment/commissioning_path.hpp"
+#include "stiction/number/fixed_signals.hpp"
+
+namespace stiction::host {
+namespace {
+
+constexpr double period = 1e-3;         // s, of the log
+constexpr double current_noise = 0.03;  // A rms
+
+std::vector<double> per_second(std::vector<double> metres_per_minute) {
+  for (double& v : metres_per_minute) v /= 60.0;
+  return metres_per_minute;
+}
+
+struct Planned {
+  const char* name;
+  bool held_out;
+  sim::Trajectory trajectory;
+};
+
+std::vector<Planned> plan() {
+  std::vector<Planned> all;
+  all.push_back(
+      {"speeds", false, sim::constant_speeds(per_second({0.05, 0.2, 0.5, 1.0, 3.2, 8.0, 16.0, 24.0}), 0.3, 0.4e-3)});
+  all.push_back({"circle", false, sim::circle(16.0 / 60.0, 2.0)});
+  all.push_back({"reversals", false, sim::small_reversals({5e-6, 10e-6, 20e-6, 50e-6, 100e-6, 200e-6}, 2.0)});
+  all.push_back(
+      {"other-speeds", true, sim::constant_speeds(per_second({0.1, 0.35, 1.5, 5.0, 12.0, 20.0}), 0.4, 0.6e-3)});
+  all.push_back({"other-circle", true, sim::circle(10.0 / 60.0, 2.0)});
+  all.push_back({"other-reversals", true, sim::small_reversals({8e-6, 30e-6, 80e-6, 150e-6, 400e-6}, 1.5)});
+  return all;
+}
+
+// Standard normal numbers by Box and Muller; those of the library differ from one to another.
+class Normal {
+ public:
+  explicit Normal(std::uint64_t seed) : random_(seed) {}
+  double operator()() {
+    const double radius = std::sqrt(-2.0 * std::log1p(-even()));
+    return radius * std::cos(2.0 * std::numbers::pi * even());
+  }
+
+ private:
+  double even() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
+  std::mt19937_64 random_;
+};
+
+// First-order low-pass of white noise.
+class Coloured {
+ public:
+  Coloured(double rms, double corner) : keep_(std::exp(-2.0 * std::numbers::pi * corner * period)), rms_(rms) {}
+  double next(Normal& normal) {
+    value_ = keep_ * value_ + rms_ * std::sqrt(1.0 - keep_ * keep_) * normal();
+    return value_;
+  }
+
+ private:
+  double keep_, rms_, value_ = 0.0;
+};
+
+Log set_points(const Planned& planned, const std::string& axis, Normal& normal) {
+  Log log;
+  log.source = planned.name;
+  log.period = period;
+  auto& channels = log.axes.emplace_back();
+  channels.axis = axis;
+  Coloured slow(2.5, 3.0), fast(2.0, 40.0);  // N, Hz
+  const auto count = static_cast<int>(planned.trajectory.duration / period);
+  for (int k = 0; k < count; ++k) {
+    const auto point = planned.trajectory.at(k * period);
+    log.t.push_back(k * period);
+    channels.x_set.push_back(point.position);
+    channels.v_set.push_back(point.velocity);
+    channels.a_set.push_back(point.acceleration);
+    channels.x.push_back(point.position);
+    channels.external_force.push_back(slow.next(normal) + fast.next(normal));
+  }
+  return log;
+}
+
+}  // namespace
+
+std::vector<CommissioningRecord> record_commissioning(const sim::Machine& machine, std::size_t axis, std::uint64_t seed,
+                                                      const std::function<void()>& progress) {
+  auto bench = machine;
+  bench.axes = {machine.axes.at(axis)};
+  Normal normal(seed);
+  std::vector<CommissioningRecord> records;
+  for (const auto& planned : plan()) {
+    const auto wanted = set_points(planned, bench.axes.front().name, normal);
+    const auto simulated = replay<FixedSignals>(bench, wanted);
+    CommissioningRecord record{planned.name, planned.held_out, simulated};
+    auto& channels = record.log.axes.front();
+    AxisLog kept;
+    kept.axis = channels.axis;
+    kept.x_set = std::move(channels.x_set);
+    kept.v_set = std::move(channels.v_set);
+    kept.a_set = std::move(channels.a_set);
+    kept.x = std::move(channels.x);
+    kept.i = std::move(channels.i);
+    for (double& i : kept.i) i += current_noise * normal();
+    channels = std::move(kept);
+    records.push_back(std::move(record));
+    if (progress) progress();
+  }
+  return records;
+}
+
+}  // namespace stiction::host

@@ -1,0 +1,28 @@
+// Records of one axis as someone who commissions a machine makes them, on the simulated machine: constant speeds both
+// ways, a circle, small reversals; and the same kinds of motion with other speeds, feeds and amplitudes, to judge on.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "host/log/log.hpp"
+#include "sim/model/machine.hpp"
+
+namespace stiction::host {
+
+struct CommissioningRecord {
+  std::string name;  // of its file: "speeds"
+  bool held_out = false;
+  Log log;  // 1 kHz: x_set, x, i
+};
+
+// Runs the axis in closed loop (the firmware). Noise, drawn from `seed`: a coloured force on the carriage that the log
+// does not have (2.5 N rms below 3 Hz and 2 N rms below 40 Hz, as guides and wipers give), 0.03 A rms on the recorded
+// current, and what the machine's encoder adds. Throws FaultTripped.
+std::vector<CommissioningRecord> record_commissioning(const sim::Machine& machine, std::size_t axis, std::uint64_t seed,
+                                                      const std::function<void()>& progress = {});
+inline constexpr int commissioning_records = 6;
+
+}  // namespace stiction::host
