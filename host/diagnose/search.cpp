@@ -290,6 +290,7 @@ double Search::size_in(const std::vector<bool>& use, const Set& set, std::size_t
   double product = 0.0, square = 0.0;
   for (std::size_t k = 0; k < set[term]->columns.size(); ++k) {
     const auto i = at + static_cast<Eigen::Index>(k);
+    if (part[i] == 0.0) continue;  // weights of a record that has no rows in use
     const double length = evidence_.column_square(set[term]->columns[k]);
     product += length * part[i] * weights[i];
     square += length * weights[i] * weights[i];

@@ -1,7 +1,9 @@
-// Friction whose level varies along the stroke: at knots evenly over it a level each, linear between, times the
-// contact's direction. How many knots is what the scan finds: as few as the data ask for. Their common level belongs to
-// the profile; a change of the level alone is a Coulomb mismatch, which needs one column for it.
+// Friction whose level varies along the stroke: at knots over it a level each, linear between, times the contact's
+// direction. How many knots, and whether they stand closer at one end, is what the scan finds: as few as the data ask
+// for. Their common level belongs to the profile; a change of the level alone is a Coulomb mismatch, which needs one
+// column for it.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "host/diagnose/candidate.hpp"
@@ -10,32 +12,47 @@
 namespace stiction::host::effects {
 namespace {
 
-std::vector<double> grid(const Scene& scene) {
-  return scene.stroke() > 0.0 ? std::vector{2.0, 3.0, 4.0, 6.0, 9.0} : std::vector<double>{};
-}
-double spacing(const Scene& scene, double knots) { return scene.stroke() / (knots - 1.0); }
+// Knot k of `count` stands at (k / (count - 1))^warp of the stroke.
+struct Shape {
+  int count;
+  double warp;
+};
+constexpr std::array<Shape, 9> shapes{
+    {{2, 1.0}, {3, 1.0}, {3, 0.55}, {3, 1.7}, {4, 1.0}, {4, 0.7}, {4, 1.4}, {6, 1.0}, {9, 1.0}}};
 
-Columns columns(const Scene& scene, const Motion& motion, double knots) {
+// The scanned value is the index of a shape.
+std::vector<double> grid(const Scene& scene) {
+  std::vector<double> indices;
+  if (scene.stroke() > 0.0)
+    for (std::size_t i = 0; i < shapes.size(); ++i) indices.push_back(static_cast<double>(i));
+  return indices;
+}
+std::vector<double> knots_of(const Scene& scene, double index) {
+  const auto [count, warp] = shapes[static_cast<std::size_t>(index)];
+  std::vector<double> places;
+  for (int k = 0; k < count; ++k)
+    places.push_back(scene.lowest_position + scene.stroke() * std::pow(static_cast<double>(k) / (count - 1), warp));
+  return places;
+}
+
+Columns columns(const Scene& scene, const Motion& motion, double index) {
   const auto level = contact_level(scene.axis, motion);
-  Columns hats(static_cast<std::size_t>(knots), std::vector<double>(level.size(), 0.0));
+  const auto at = knots_of(scene, index);
+  Columns hats(at.size(), std::vector<double>(level.size(), 0.0));
   for (std::size_t i = 0; i < level.size(); ++i) {
-    const double place = std::clamp((motion.x[i] - scene.lowest_position) / spacing(scene, knots), 0.0, knots - 1.0);
-    const auto k = std::min(static_cast<std::size_t>(place), hats.size() - 2);
-    const double share = place - static_cast<double>(k);
-    hats[k][i] = (1.0 - share) * level[i];
-    hats[k + 1][i] = share * level[i];
+    const auto next = static_cast<std::size_t>(std::upper_bound(at.begin(), at.end(), motion.x[i]) - at.begin());
+    const std::size_t k = std::clamp<std::size_t>(next, 1, at.size() - 1);
+    const double share = std::clamp((motion.x[i] - at[k - 1]) / (at[k] - at[k - 1]), 0.0, 1.0);
+    hats[k - 1][i] = (1.0 - share) * level[i];
+    hats[k][i] = share * level[i];
   }
   return hats;
 }
-void describe(const Scene& scene, double knots, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
-  std::vector<double> position, force, error;
-  for (Eigen::Index k = 0; k < w.size(); ++k) {
-    position.push_back(scene.lowest_position + spacing(scene, knots) * static_cast<double>(k));
-    force.push_back(w[k]);
-    error.push_back(std::sqrt(c(k, k)));
-  }
-  add_key(finding, "position", "_m", position, {});
-  add_key(finding, "force", "_N", force, error);
+void describe(const Scene& scene, double index, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
+  std::vector<double> error;
+  for (Eigen::Index k = 0; k < w.size(); ++k) error.push_back(std::sqrt(c(k, k)));
+  add_key(finding, "position", "_m", knots_of(scene, index), {});
+  add_key(finding, "force", "_N", {w.data(), w.data() + w.size()}, error);
 }
 
 }  // namespace
@@ -45,6 +62,7 @@ const Candidate position_dependent_friction{.name = "position_dependent_friction
                                             .columns = columns,
                                             .possible = any,
                                             .describe = describe,
-                                            .names_coulomb = true};
+                                            .names_coulomb = true,
+                                            .trials = 3.0};
 
 }  // namespace stiction::host::effects
