@@ -202,6 +202,12 @@ class Selection {
   Evidence evidence_;
 };
 
+ColumnIndices all_of(const Places& places) {
+  ColumnIndices all;
+  for (std::size_t k = 0; k < places.size(); ++k) all.push_back(static_cast<Eigen::Index>(k));
+  return all;
+}
+
 Selection select(const Commands& commands, const sim::Axis& axis, const Eigen::VectorXd& target, const Places& places) {
   return {target, commands.rows(), places, commands.slopes(axis, places)};
 }
@@ -228,8 +234,7 @@ std::vector<CommandTerm> refined(const Commands& commands, const sim::Axis& axis
     }
     const auto at = with_terms(axis, terms);
     const auto local = select(commands, at, commands.logged() - commands.replayed<FixedSignals>(at), places);
-    ColumnIndices all;
-    for (std::size_t k = 0; k < places.size(); ++k) all.push_back(static_cast<Eigen::Index>(k));
+    const auto all = all_of(places);
     const auto step = local.evidence().fit(all).weights;
     const auto covariance = local.evidence().covariance(all, step);
     for (std::size_t k = 0; k < terms.size(); ++k) {
@@ -296,13 +301,23 @@ void find_and_judge(Verdict& verdict, const DiagnoseInput& input, const CommandR
                     const CommandRecords& held_out, const RecordDelay& delay, const sim::Axis& axis) {
   const auto& file = input.machine.axes[input.axis];
   const auto& timing = input.machine.timing;
-  const Commands commands(training, timing, axis, delay.found), held(held_out, timing, axis, delay.found);
-  const Eigen::VectorXd target = commands.logged() - commands.replayed<FixedSignals>(axis);
-
   Places places;
   for (std::size_t k = 0; k < command_parameters().size(); ++k)
     if (command_parameters()[k].value(axis)) places.push_back(k);
-  auto selection = select(commands, axis, target, places);
+  // A delay of the record that the residual force names is taken out where the command, whatever the gains, agrees.
+  const Commands as_recorded(training, timing, axis, 0.0), moved(training, timing, axis, delay.found);
+  const auto replayed = as_recorded.replayed<FixedSignals>(axis);
+  const auto slopes = as_recorded.slopes(axis, places);
+  const auto selection_of = [&](const Commands& each) {
+    return Selection(each.logged() - replayed, each.rows(), places, slopes);
+  };
+  const auto left_by = [&](const Commands& each) { return selection_of(each).evidence().fit(all_of(places)).left; };
+  const bool late = delay.found != 0.0 && left_by(moved) < left_by(as_recorded);
+  const Commands& commands = late ? moved : as_recorded;
+  const Commands held(held_out, timing, axis, late ? delay.found : 0.0);
+  const Eigen::VectorXd target = commands.logged() - replayed;
+
+  auto selection = selection_of(commands);
   const auto chosen = selection.run();
   auto terms = refined(commands, axis, selection, chosen);
   const Eigen::VectorXd left =
