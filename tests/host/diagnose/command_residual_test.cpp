@@ -14,7 +14,7 @@
 namespace stiction::test {
 namespace {
 
-constexpr double tick = 62.5e-6, period = 1e-3, duration = 20.0;  // s
+constexpr double tick = 62.5e-6, period = 1e-3, duration = 12.0;  // s
 constexpr int ratio = 16;
 
 struct Gains {
@@ -95,8 +95,8 @@ host::Log record(const Gains& gains, double shift, std::uint64_t seed) {
 host::Verdict verdict_of(const Gains& gains, std::uint64_t seed) {
   host::DiagnoseInput input;
   input.machine = force_machine();
-  input.logs = {record(gains, 0.0, 3 * seed), record(gains, 0.5, 3 * seed + 1)};
-  input.held_out = {record(gains, 1.0, 3 * seed + 2)};
+  input.logs = {record(gains, 0.0, 2 * seed)};
+  input.held_out = {record(gains, 1.0, 2 * seed + 1)};
   input.closed_loop = false;
   return host::diagnose(input);
 }
@@ -125,7 +125,7 @@ TEST(CommandResidual, the_replay_commands_what_the_recorded_controller_did) {
 
 TEST(CommandResidual, names_nothing_where_the_gains_are_those_of_the_file) {
   int named = 0;
-  for (std::uint64_t seed = 1; seed <= 4; ++seed) named += gains_in(verdict_of({}, seed)) != nullptr;
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) named += gains_in(verdict_of({}, seed)) != nullptr;
   EXPECT_EQ(named, 0);
 }
 
