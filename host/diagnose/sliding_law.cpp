@@ -169,6 +169,11 @@ SlidingFit fit_sliding_law(const std::vector<SteadyPoint>& points, const Sliding
       continue;
     }
     const auto solution = fitter.fit(chosen);
+    if (!(solution.law.coulomb > 0.0 && solution.law.viscous >= 0.0))
+      throw MissingRows(
+          fmt::format("steady friction: found a curve with {:.1f} N at standstill and {:.0f} N s/m; expected friction "
+                      "above zero that grows with the speed",
+                      solution.law.coulomb, solution.law.viscous));
     const auto rms = [&](double square) { return std::sqrt(square / static_cast<double>(points.size())); };
     double relative = 0.0;
     for (const auto& point : points) relative += std::pow(file.at(point.velocity) / point.force - 1.0, 2);

@@ -41,7 +41,8 @@ struct SlidingFit {
   double deviation_before = 0.0, deviation_after = 0.0;  // N rms, of the points about the file's law and the fitted one
 };
 
-// `file`: the law of the machine file, without rise. Throws MissingRows for fewer than seven points.
+// `file`: the law of the machine file, without rise. Throws MissingRows for fewer than seven points
+// and for a curve that no guide has (no Coulomb friction, or a slope below zero).
 SlidingFit fit_sliding_law(const std::vector<SteadyPoint>& points, const SlidingLaw& file);
 
 }  // namespace stiction::host

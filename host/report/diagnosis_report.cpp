@@ -134,7 +134,7 @@ json rows_json(const ReferenceRows& reference) {
   json rows = json::array();
   const auto number = [](double value, int digits) { return fmt::format("{:.{}f}", value, digits); };
   const auto off = [](double simulated, double measured) {
-    return fmt::format("{:+.0f}", 100.0 * (simulated / measured - 1.0));
+    return fmt::format("{:+.0f}", std::round(100.0 * (simulated / measured - 1.0)) + 0.0);  // no "-0"
   };
   for (const auto& row : reference.rows) {
     json out{{"axis", row.axis}, {"feed", fmt::format("{:g}", row.feed * 60.0)}, {"training", row.training}};

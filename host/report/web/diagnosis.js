@@ -15,7 +15,7 @@ function drawSummary() {
   document.getElementById('summary-what').textContent = DATA.causes.length ? 'by what each explains' : 'nothing that the data show';
   const rows = DATA.causes.map((cause, i) => classed('first', [
     { text: element('a', { href: `#cause-${i}` }, `${i + 1}  ${cause.title}`), head: true, class: 'figure' }, text(cause.axis, { class: 'text' }),
-    text(cause.explains, { class: 'value' }), text(minus(cause.gain)), text(cause.gain_interval, { class: 'text unit' }),
+    text(cause.explains, { class: 'value' }), text(minus(cause.gain)), text(minus(cause.gain_interval), { class: 'text unit' }),
     text(cause.part || '–')]));
   const head = [text('Cause', { class: 'text' }), text('Axis', { class: 'text' }), text('Explains, %'), text('Less residual force, %'),
                 text('95 % interval', { class: 'text unit' }), text('On the part, µm')];
@@ -40,7 +40,7 @@ function drawRows() {
      [text('Axis', { class: 'text' }), text('m/min'), ...heads(), ...heads(), text('Changed most by', { class: 'text gap' })]],
     DATA.rows.map(row => {
       const cells = [{ text: row.axis === axis ? '' : row.axis, head: true }, text(row.feed), ...half(row.error), ...half(row.current),
-                     text(row.training ? `${minus(row.causes)} (training)` : minus(row.causes), { class: 'text gap' })];
+                     text(minus(row.causes) + (row.training ? ' (training)' : ''), { class: 'text gap wrap' })];
       const first = row.axis !== axis;
       axis = row.axis;
       return first ? classed('first', cells) : cells;

@@ -1,0 +1,67 @@
+// The demonstration: an effect drawn from a seed, hidden in the simulated machine, is named from its records. Truth and
+// engine share the effects' laws here; what the diagnosis is worth is measured by tests/blind.
+#include "host/simulate/commissioning.hpp"
+
+#include <gtest/gtest.h>
+
+#include "host/diagnose/diagnose.hpp"
+#include "host/simulate/hidden_effect.hpp"
+#include "sim/machine/machine_file.hpp"
+#include "tests/support/figure.hpp"
+
+namespace stiction::test {
+namespace {
+
+// As the demonstration has it.
+sim::Machine demonstration_machine() {
+  return sim::read_machine(
+      std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/mcfv5050ln.toml",
+      {{}, {"axis.X.encoder.velocity=estimated", "axis.X.encoder.noise=2 nm", "axis.X.motor.force_constant=94.2 N/A"}});
+}
+
+host::Verdict verdict_of(const std::vector<sim::Effect>& hidden, std::uint64_t seed) {
+  host::DiagnoseInput input;
+  input.machine = demonstration_machine();
+  input.closed_loop = false;
+  auto machine = input.machine;
+  machine.axes.front().effects = hidden;
+  for (auto& record : host::record_commissioning(machine, 0, seed))
+    (record.held_out ? input.held_out : input.logs).push_back(std::move(record.log));
+  return host::diagnose(input);
+}
+
+TEST(Commissioning, names_nothing_where_nothing_is_hidden) { EXPECT_TRUE(verdict_of({}, 1).findings.empty()); }
+
+TEST(Commissioning, names_what_is_hidden) {
+  constexpr int seeds = 12;
+  int right = 0;
+  std::string missed;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    const auto hidden = host::draw_hidden_effect(demonstration_machine().axes.front(), seed);
+    const auto verdict = verdict_of({hidden}, seed);
+    const auto found = verdict.findings.empty() ? "nothing" : verdict.findings.front().effect.name;
+    if (found == hidden.name)
+      ++right;
+    else
+      missed += fmt::format("; {} found as {} (seed {})", hidden.name, found, seed);
+  }
+  figure("demonstration: hidden effect named first", fmt::format("{} of {} (bound 9){}", right, seeds, missed));
+  EXPECT_GE(right, 9);
+}
+
+TEST(Commissioning, is_the_same_for_the_same_seed) {
+  const auto machine = demonstration_machine();
+  const auto one = host::draw_hidden_effect(machine.axes.front(), 14);
+  EXPECT_EQ(one.name, host::draw_hidden_effect(machine.axes.front(), 14).name);
+  EXPECT_EQ(one.values, host::draw_hidden_effect(machine.axes.front(), 14).values);
+  const auto records = host::record_commissioning(machine, 0, 3), again = host::record_commissioning(machine, 0, 3);
+  ASSERT_EQ(records.size(), static_cast<std::size_t>(host::commissioning_records));
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    EXPECT_EQ(records[k].log.axes.front().x, again[k].log.axes.front().x);
+    EXPECT_EQ(records[k].log.axes.front().i, again[k].log.axes.front().i);
+    EXPECT_TRUE(records[k].log.axes.front().external_force.empty());  // the noise is no channel
+  }
+}
+
+}  // namespace
+}  // namespace stiction::test
