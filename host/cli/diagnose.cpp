@@ -61,6 +61,7 @@ void run(const DiagnoseCommandOptions& options, const Invocation& invocation) {
     Progress progress("diagnosis", 4);
     input.progress = [&] { progress.add(); };
     verdict = diagnose(input);
+    input.progress = {};
   }
   const auto json = verdict_json(verdict);
   if (!options.out.empty()) {
