@@ -59,6 +59,7 @@ void run(const DiagnoseCommandOptions& options, const Invocation& invocation) {
     Progress progress("diagnosis", 4);
     input.progress = [&] { progress.add(); };
     verdict = diagnose(input);
+    input.progress = {};
   }
   put_out(verdict, input.machine, options.machine, options.out, options.json, invocation);
 }

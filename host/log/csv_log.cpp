@@ -214,11 +214,10 @@ std::string csv_log_text(const Log& log) {
       columns.push_back(&(axis.*channel.values));
     }
   text += '\n';
-  auto out = std::back_inserter(text);
   for (std::size_t k = 0; k < log.t.size(); ++k) {
     for (const auto* column : columns) {
       if (column != columns.front()) text += ',';
-      fmt::format_to(out, "{}", (*column)[k]);
+      fmt::format_to(std::back_inserter(text), "{}", (*column)[k]);
     }
     text += '\n';
   }

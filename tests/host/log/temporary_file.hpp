@@ -10,11 +10,9 @@ namespace stiction::test {
 
 class TemporaryFile {
  public:
-  explicit TemporaryFile(const std::string& extension) {
-    static int count = 0;
-    path_ = std::filesystem::temp_directory_path() /
-            ("stiction-log-" + std::to_string(::getpid()) + "-" + std::to_string(count++) + extension);
-  }
+  explicit TemporaryFile(const std::string& extension)
+      : path_(std::filesystem::temp_directory_path() /
+              ("stiction-log-" + std::to_string(::getpid()) + "-" + std::to_string(count++) + extension)) {}
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
   ~TemporaryFile() {
@@ -24,6 +22,7 @@ class TemporaryFile {
   const std::filesystem::path& path() const { return path_; }
 
  private:
+  static inline int count = 0;
   std::filesystem::path path_;
 };
 

@@ -60,10 +60,9 @@ inline std::string replaced(std::string text, const std::string& from, const std
 // A file with this text in a folder of its own: tests of several builds may run at once.
 class MachineFileOnDisk {
  public:
-  explicit MachineFileOnDisk(const std::string& text) {
-    static int count = 0;
-    folder_ = std::filesystem::path(testing::TempDir()) /
-              ("stiction-machine-" + std::to_string(::getpid()) + "-" + std::to_string(count++));
+  explicit MachineFileOnDisk(const std::string& text)
+      : folder_(std::filesystem::path(testing::TempDir()) /
+                ("stiction-machine-" + std::to_string(::getpid()) + "-" + std::to_string(count++))) {
     std::filesystem::create_directories(folder_);
     std::ofstream(path()) << text;
   }
@@ -74,6 +73,7 @@ class MachineFileOnDisk {
   std::filesystem::path path() const { return folder_ / "machine.toml"; }
 
  private:
+  static inline int count = 0;
   std::filesystem::path folder_;
 };
 
