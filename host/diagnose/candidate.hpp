@@ -28,8 +28,8 @@ struct Scene {
   bool force_is_current = false;  // in every record: current (or voltage) times the file's force constant
   bool other_axis = false;        // its motion is in every record
   std::vector<double> pitches;    // m, with peaks in the residual's spectrum over position; found as the search goes
-  double duration = 0.0;        // s, of the longest record
-  sim::Timing timing{};         // of the drive
+  double duration = 0.0;          // s, of the longest record
+  sim::Timing timing{};           // of the drive
   // Found as the search goes: lines over time, over position in proportion to the force, over the encoder's signal.
   LineScan times{}, modulation{}, signals_of_encoder{};
   // The residual force (N, at the motion's rate) that a motion's set-points leave in simulation where the machine has

@@ -32,7 +32,8 @@ class Windings {
   // One tick from position x (m) at velocity v (m/s).
   void advance_tick(const sim::PhaseValues& voltage, double x, double v) {
     inverter_.command(voltage);
-    const auto acting = inverter_.advance_tick();
+    inverter_.advance_tick<std::tuple_size_v<sim::PhaseValues>>();
+    const auto acting = inverter_.acting();
     std::visit(
         [&](auto& motor) {
           for (int i = 0; i < sim::plant_steps_per_tick; ++i)

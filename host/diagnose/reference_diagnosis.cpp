@@ -136,7 +136,11 @@ HoldoutGain gain_of(const std::vector<DiagnosedRow>& rows, const std::string& ax
            unused_rms(rows, axis,
                       [&](const DiagnosedRow& r) { return off(without.at(r.feed)[k], r.measured).*member; });
   };
-  return {ratio(&RowFigures::current), ratio(&RowFigures::error), ratio_interval(rows, axis, without, k)};
+  HoldoutGain gain;
+  gain.force_rms_ratio = ratio(&RowFigures::current);
+  gain.position_error_rms_ratio = ratio(&RowFigures::error);
+  gain.ci95 = ratio_interval(rows, axis, without, k);
+  return gain;
 }
 
 EffectParameter parameter(const char* name, double value, double error) { return {name, {value}, {error}}; }

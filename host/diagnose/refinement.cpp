@@ -109,7 +109,8 @@ class Refinement {
   // How the term's force changes with its nonlinear parameter.
   Eigen::VectorXd slope(std::size_t k) const {
     const auto& term = terms_[k];
-    const double by = candidate(k).periodic ? 0.02 * term.nonlinear * term.nonlinear / stroke_ : 0.02 * term.nonlinear;
+    const double by =
+        candidate(k).periodic ? 0.02 * term.nonlinear * term.nonlinear / extent(k) : 0.02 * term.nonlinear;
     const auto up = group(term, term.nonlinear + by), down = group(term, term.nonlinear - by);
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(rows_.rows());
     for (std::size_t i = 0; i < up.size(); ++i)

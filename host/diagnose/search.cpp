@@ -184,7 +184,7 @@ class Search {
   const LogRows& rows_;
   Scene& scene_;
   double correlation_ = 1.0;  // rows, of the whitened residual
-  Eigen::VectorXd carrier_;  // N, the force that the file expects
+  Eigen::VectorXd carrier_;   // N, the force that the file expects
   Evidence evidence_;         // whitened
   Evidence plain_;            // the same as it is: for what a term takes off the force
   std::vector<std::unique_ptr<Option>> options_;

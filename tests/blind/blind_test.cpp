@@ -71,10 +71,10 @@ TEST(blind_truth, answers_a_subdivision_error_at_speed_as_the_diagnosis_expects)
   mechanics.contact = exponential_contact(90.0, 3e-6);
   const double speed = 0.052, signal = 40e-6, error = 50e-9;
   const Trajectory cruise("cruise", 0.0, {{.kind = Piece::Kind::move, .length = 0.12, .speed = speed}});
-  const auto plain = record(machine, mechanics, cruise, {}, 1e-3, 1);
+  const auto plain = record(machine, mechanics, cruise, cruise, {}, 1e-3, 1);
   mechanics.reading_period = signal;
   mechanics.reading_cosine = error;
-  const auto with = record(machine, mechanics, cruise, {}, 1e-3, 1);
+  const auto with = record(machine, mechanics, cruise, cruise, {}, 1e-3, 1);
   const auto &a = plain.axes.front(), &b = with.axes.front();
   std::complex<double> answer = 0.0;
   int count = 0;

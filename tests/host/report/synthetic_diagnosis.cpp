@@ -95,15 +95,15 @@ DiagnosisReport synthetic_diagnosis() {
   v.machine = "mcfv5050ln.toml";
   v.logs = {"logs/run1.csv", "logs/run2.csv"};
   v.holdout = {"logs/run3.csv"};
-  v.baseline = {3.42, 0.61e-6};
-  v.extended = {1.18, 0.22e-6};
+  v.baseline = {3.42, 0.61e-6, {}};
+  v.extended = {1.18, 0.22e-6, {}};
   Finding cogging;
   cogging.axis = "X";
   cogging.effect = {"force_ripple", {{"pitch", {0.072}}, {"cosine", {3.1}}, {"sine", {0.4}}}};
   cogging.parameters = {
       {"pitch_m", {0.07201}, {1e-5}}, {"cosine_N", {3.1, 0.21}, {0.08, 0.07}}, {"sine_N", {0.4, -0.02}, {0.08, 0.07}}};
   cogging.explains = 0.63;
-  cogging.holdout = {0.41, 0.44, {0.38, 0.45}};
+  cogging.holdout = {0.41, 0.44, {}, {0.38, 0.45}};
   cogging.p_value = 1e-9;
   cogging.confused_with = {{"position_dependent_friction", "traverse the same stretch in both directions"}};
   cogging.evidence = "The residual repeats every 72.0 mm with 3.1 N, in both directions and at all six speeds.";
@@ -114,7 +114,7 @@ DiagnosisReport synthetic_diagnosis() {
   constant.effect = {"constant_force", {{"force", {-1.4}}}};
   constant.parameters = {{"force_N", {-1.4}, {}}};
   constant.explains = 0.08;
-  constant.holdout = {0.95, {}, {0.93, 0.98}};
+  constant.holdout = {0.95, {}, {}, {0.93, 0.98}};
   constant.p_value = 1e-14;
   constant.confused_with = {{"friction_asymmetry", "turn the axis, another payload, a reading at standstill"}};
   constant.evidence = "The residual's mean is -1.4 N in every block.";
@@ -132,7 +132,7 @@ DiagnosisReport synthetic_agreement() {
   v.machine = "mcfv5050ln.toml";
   v.logs = {"run1.csv"};
   v.holdout_is_a_part = true;
-  v.baseline = v.extended = {1.2, {}};
+  v.baseline = v.extended = {1.2, {}, {}};
   return report;
 }
 
