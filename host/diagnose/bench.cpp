@@ -88,7 +88,7 @@ std::vector<double> LoopResponse::residual(std::size_t log, const sim::Machine& 
 
 std::vector<double> LoopResponse::operator()(const Motion& motion, const sim::Effect& effect) const {
   for (std::size_t k = 0; k < bench_.logs.size(); ++k) {
-    if (bench_.logs[k].source != motion.source || bench_.logs[k].t.front() != motion.t.front()) continue;
+    if (bench_.logs[k].source != motion.source || bench_.logs[k].axes.front().x_set != motion.x_set) continue;
     auto machine = bench_.machine;
     machine.axes.front().effects.push_back(effect);
     try {

@@ -21,6 +21,8 @@
 namespace stiction::host {
 namespace {
 
+// Of the held-out force rms: what takes away less is no gain that a reader would see in its three digits.
+constexpr double least_held_out_ratio = 0.9995;
 constexpr double shortest = 3.0;  // s, of the training logs together
 
 SignalSettings wide_band() {
@@ -159,7 +161,7 @@ HeldOutFigures keep_what_holds(const LogRows& rows, const Eigen::VectorXd& targe
     std::size_t worst = 0;
     for (std::size_t k = 1; k < figures.gains.size(); ++k)
       if (figures.gains[k].force_rms_ratio > figures.gains[worst].force_rms_ratio) worst = k;
-    if (figures.gains.empty() || figures.gains[worst].force_rms_ratio < 1.0) return figures;
+    if (figures.gains.empty() || figures.gains[worst].force_rms_ratio < least_held_out_ratio) return figures;
     verdict.rejected.push_back(
         {candidates()[found.terms[worst].candidate].name,
          fmt::format("withdrawn: found in the training data, but no gain on held-out data (force rms {:.3f} times "

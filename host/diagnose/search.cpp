@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 
 #include "host/diagnose/fisher.hpp"
@@ -15,9 +16,10 @@
 namespace stiction::host {
 namespace {
 
-constexpr std::size_t most_terms = 5;
+constexpr std::size_t most_terms = 8;
 constexpr double significance = 0.01;  // over the number of candidates
 constexpr double least_gain = 0.01;    // of the cross-validated residual
+constexpr double least_share = 2e-3;   // of the residual's variance: what is less is no cause that a part would show
 constexpr std::size_t pitches_tried = 3;
 constexpr std::size_t lines_tried = 2;
 
@@ -63,14 +65,14 @@ class Search {
   Search(const LogRows& rows, const Eigen::VectorXd& target, Scene& scene)
       : rows_(rows),
         scene_(scene),
+        correlation_(correlation_length(target, rows.logs())),
         carrier_(rows.stacked([&](const Motion& m) { return force_along(scene.axis, m); })),
-        evidence_(target, blocks_for(rows, std::min(correlation_length(target, rows.logs()), 0.1 / rows.period(0)))),
+        evidence_(target, blocks_for(rows, std::min(correlation_, 0.1 / rows.period(0)))),
         plain_(target, evidence_.row_blocks()) {
     for (const double pitch : {scene.axis.motor.pole_pair_pitch, 0.5 * scene.axis.motor.pole_pair_pitch})
       if (pitch > 0.0) known_pitches_.push_back(pitch);
     for (std::size_t c = 0; c < candidates().size(); ++c)
       if (!candidates()[c].periodic) add_options(c);
-    whiten({});
   }
 
   SearchResult run(const std::function<void()>& progress);
@@ -183,17 +185,18 @@ class Search {
 
   const LogRows& rows_;
   Scene& scene_;
-  double correlation_ = 1.0;  // rows, of the whitened residual
-  Eigen::VectorXd carrier_;   // N, the force that the file expects
-  Evidence evidence_;         // whitened
-  Evidence plain_;            // the same as it is: for what a term takes off the force
+  double correlation_ = 1.0;          // rows, of the residual, whitened or not
+  Eigen::VectorXd carrier_;           // N, the force that the file expects
+  Evidence evidence_;                 // whitened in the second part of a run
+  Evidence plain_;                    // never whitened: for what a term takes off the force
+  std::vector<std::size_t> settled_;  // candidates that stood before it
   std::vector<std::unique_ptr<Option>> options_;
   std::size_t trials_ = 1, rounds_ = 0;
   std::vector<double> known_pitches_;
   std::vector<Discarded> discarded_;
 };
 
-// A term for another candidate, where that scores better.
+// A term for another candidate, where that scores better and would stay.
 bool Search::exchange(Set& set) const {
   double least = score(set);
   for (std::size_t k = 0; k < set.size(); ++k) {
@@ -206,7 +209,7 @@ bool Search::exchange(Set& set) const {
       auto trial = others;
       trial.push_back(option);
       profile(trial);
-      if (const double s = score(trial); s < least - 1.0) {
+      if (const double s = score(trial); s < least - 1.0 && !judge(trial, trial.size() - 1).objection) {
         set = trial;
         exchange(set);
         return true;
@@ -229,7 +232,7 @@ bool Search::merge(Set& set) const {
         if (option == nullptr) continue;
         auto trial = others;
         trial.push_back(option);
-        if (score(trial) > score(set) - 1.0) continue;
+        if (score(trial) > score(set) - 1.0 || judge(trial, trial.size() - 1).objection) continue;
         set = trial;
         return true;
       }
@@ -353,6 +356,7 @@ bool Search::grow(Set& set) {
 
 bool Search::drop(Set& set) {
   for (std::size_t k = 0; k < set.size(); ++k) {
+    if (std::find(settled_.begin(), settled_.end(), set[k]->candidate) != settled_.end()) continue;
     const auto judgement = judge(set, k);
     if (!judgement.objection) continue;
     note(set[k]->candidate, judgement);
@@ -393,6 +397,12 @@ SearchResult Search::run(const std::function<void()>& progress) {
   const auto tick = [&] {
     if (progress) progress();
   };
+  std::map<std::size_t, Judgement> judged;
+  const auto judge_new = [&](const Set& set) {
+    for (std::size_t k = 0; k < set.size(); ++k)
+      if (!judged.contains(set[k]->candidate)) judged[set[k]->candidate] = judge(set, k);
+  };
+  // As the rows are, until nothing more stands.
   Set set;
   scan_ripples(set);
   tick();
@@ -402,20 +412,44 @@ SearchResult Search::run(const std::function<void()>& progress) {
     exchange(set);
     while (merge(set)) profile(set);
     while (drop(set)) profile(set);
-    whiten(set);
+    correlation_ = correlation_length(residual(set), rows_.logs());
     tick();
     if (++rounds_ > 2 * most_terms) break;
   }
+  judge_new(set);
+  for (const auto* option : set) settled_.push_back(option->candidate);
+  // Then through a whitening: what is small beside a wandering force, and short.
+  whiten(set);
+  scan_ripples(set);
+  while (set.size() < most_terms && grow(set)) {
+    profile(set);
+    while (drop(set)) profile(set);
+    whiten(set);
+    tick();
+    if (++rounds_ > 4 * most_terms) break;
+  }
+  judge_new(set);
+  // Where causes were found without it, what is left may be more physics rather than noise, and would get the weight
+  // of noise: weights are then those of least squares as it is.
+  if (!settled_.empty()) evidence_.whiten({});
   SearchResult result;
   for (std::size_t k = 0; k < set.size(); ++k) {
-    Term term{set[k]->candidate, set[k]->nonlinear, {}, {}, 0.0, judge(set, k), alternatives(set, k)};
+    Term term{set[k]->candidate, set[k]->nonlinear, {}, {}, 0.0, judged.at(set[k]->candidate), alternatives(set, k)};
     auto others = set;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
     term.explains = (plain_.fit(columns_of(others)).left - plain_.fit(columns_of(set)).left) / plain_.total();
+    if (term.explains < least_share) {
+      discarded_.push_back(
+          {term.candidate, fmt::format("takes {:.2g} % off the residual force's variance; expected at least {:g} %",
+                                       100.0 * std::max(term.explains, 0.0), 100.0 * least_share)});
+      continue;
+    }
     result.terms.push_back(std::move(term));
   }
   for (const auto& d : discarded_)
-    if (!has(set, d.candidate)) result.discarded.push_back(d);
+    if (std::none_of(result.terms.begin(), result.terms.end(),
+                     [&](const Term& term) { return term.candidate == d.candidate; }))
+      result.discarded.push_back(d);
   result.residual = refine(rows_, evidence_, scene_, result.terms);
   std::sort(result.terms.begin(), result.terms.end(),
             [](const Term& a, const Term& b) { return a.explains > b.explains; });

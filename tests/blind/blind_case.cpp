@@ -155,8 +155,10 @@ double oracle(const std::vector<Signal>& signals, const Eigen::MatrixXd& held_re
 
 }  // namespace
 
-BlindCase make_case(const sim::Machine& shipped, const CaseOrder& order) {
-  Random random(order.seed * 0x9E3779B97F4A7C15ULL + 1);
+namespace {
+
+BlindCase make_case_of(const sim::Machine& shipped, const CaseOrder& order, std::uint64_t attempt) {
+  Random random(order.seed * 0x9E3779B97F4A7C15ULL + 1 + attempt);
   BlindCase blind{order, draw_machine(shipped, random), {}, {}, {}, 0.0, 0.0};
   const auto noise = draw_noise(random);
   const double period = random() & 1U ? 1e-3 : 0.5e-3;
@@ -199,6 +201,18 @@ BlindCase make_case(const sim::Machine& shipped, const CaseOrder& order) {
     blind.oracle_cut = oracle(before, b, held_before, a);
   }
   return blind;
+}
+
+}  // namespace
+
+// A machine whose drive trips on the way leaves no log: another one is drawn for the same order.
+BlindCase make_case(const sim::Machine& shipped, const CaseOrder& order) {
+  constexpr std::uint64_t attempts = 8;
+  for (std::uint64_t attempt = 0;; ++attempt) try {
+      return make_case_of(shipped, order, attempt);
+    } catch (const Tripped&) {
+      if (attempt + 1 == attempts) throw;
+    }
 }
 
 }  // namespace stiction::blind

@@ -32,7 +32,7 @@ struct BlindCase {
   double oracle_cut = 0.0;
 };
 
-// `machine`: the shipped cross table. Throws std::runtime_error when the drive trips.
+// `machine`: the shipped cross table. Throws Tripped where no drive of eight drawn gets through.
 BlindCase make_case(const sim::Machine& machine, const CaseOrder& order);
 
 }  // namespace stiction::blind

@@ -61,6 +61,7 @@ ROOMS = {
     "sim/control": {
         "sim": "the mathematics of the double-precision policy",
         "sim/model": "the drive's configuration is computed from a machine",
+        "sim/plant/effects": "whose drive may have other gains than its file",
         f"{FIRMWARE}/*": "and is the cascade's own",
     },
     "sim/experiment": {

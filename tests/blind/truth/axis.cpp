@@ -281,7 +281,7 @@ host::Log record(const sim::Machine& machine, const Mechanics& mechanics, const 
     const auto set = trajectory.at(t);
     const auto command = drive.tick(sim::to_set_point<S>(set), feedback, now_ns, ticker.slow(), signals);
     if (drive.fault() != Fault::none)
-      throw std::runtime_error(fmt::format("blind: fault {} at {:.4f} s of {}", name_of(drive.fault()), t, log.source));
+      throw Tripped(fmt::format("blind: fault {} at {:.4f} s of {}", name_of(drive.fault()), t, log.source));
     ticker.advance();
 
     const double recorded = current.delayed(sim::to_si(signals.i), mechanics.current_delay / tick);

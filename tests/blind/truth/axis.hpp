@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <stdexcept>
 #include <vector>
 
 #include "host/log/log.hpp"
@@ -55,9 +56,13 @@ struct Mechanics {
   double kick = 0.0, kick_time = 1.0;                        // N, s: pushes forward after each reversal and dies away
 };
 
+struct Tripped : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 // Runs `trajectory` and records x_set, x, i every `period` s, a multiple of the fast period. One axis: the machine's
 // first, whose motor, encoder, inverter and control are taken from `machine`; beside it the record has the position of
-// a second one, Y, which follows `other` without any error. Throws std::runtime_error when the drive trips. The last two
+// a second one, Y, which follows `other` without any error. Throws Tripped when the drive trips. The last two
 // digits of the seed number the record: phases that differ from log to log follow them.
 host::Log record(const sim::Machine& machine, const Mechanics& mechanics, const Trajectory& trajectory,
                  const Trajectory& other, const NoiseLevels& noise, double period, std::uint64_t seed);

@@ -83,8 +83,8 @@ host::Log synthetic_log(int trajectory, const Hidden& hidden, double noise_rms, 
     measured = std::clamp(measured, x - 0.5 * hidden.lost_motion, x + 0.5 * hidden.lost_motion);
     const Point point{t, x, v, a, z};
     followed = hidden.friction_lag > 0.0 ? v + (followed - v) * std::exp(-fine / hidden.friction_lag) : v;
-    const double needed =
-        hidden.mass * a + hidden.coulomb * z + hidden.viscous * followed - hidden.other_mass * other_at(t).a + (hidden.force ? hidden.force(point) : 0.0);
+    const double needed = hidden.mass * a + hidden.coulomb * z + hidden.viscous * followed -
+                          hidden.other_mass * other_at(t).a + (hidden.force ? hidden.force(point) : 0.0);
     force.push_back(hidden.constant_ripple ? needed / (1.0 + hidden.constant_ripple(x)) : needed);
     position.push_back(measured + (hidden.reading_error ? hidden.reading_error(measured) : 0.0));
   }
