@@ -70,7 +70,7 @@ std::vector<Log> without_noise(const sim::Machine& machine, std::size_t axis, co
 }
 
 LoopResponse::LoopResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
-                           SignalSettings settings)
+                           const SignalSettings& settings)
     : bench_(bench_of(machine, axis, logs)), settings_(settings) {
   bench_.machine.axes.front().encoder.noise = 0.0;
   for (std::size_t k = 0; k < bench_.logs.size(); ++k) without_.push_back(residual(k, bench_.machine));

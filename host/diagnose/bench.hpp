@@ -31,7 +31,8 @@ std::vector<Log> without_noise(const sim::Machine& machine, std::size_t axis, co
 class LoopResponse {
  public:
   // `logs`: with set-points, of that axis; `settings`: those of the motions.
-  LoopResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs, SignalSettings settings);
+  LoopResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
+               const SignalSettings& settings);
 
   // N at the motion's rate: with the effect less without; zeros where the machine cannot follow with it. Throws
   // sim::EffectError, std::out_of_range for a motion of another log.

@@ -70,9 +70,10 @@ void add_pictures(Verdict& verdict, const std::vector<Log>& logs, const std::vec
   for (const auto& [name, x] :
        {std::pair{"measured", &measured[log]}, {"machine file", &baseline[log]}, {"extended", &extended[log]}}) {
     if (name == std::string_view("extended") && verdict.findings.empty()) continue;
-    error.series.push_back(line(name, [&](std::size_t i) { return set[i] - (*x)[i]; }));
+    const auto& position = *x;
+    error.series.push_back(line(name, [&](std::size_t i) { return set[i] - position[i]; }));
     if (x != &measured[log])
-      difference.series.push_back(line(name, [&](std::size_t i) { return (*x)[i] - measured[log][i]; }));
+      difference.series.push_back(line(name, [&](std::size_t i) { return position[i] - measured[log][i]; }));
   }
   verdict.before_after.insert(verdict.before_after.begin(), {std::move(error), std::move(difference)});
 }

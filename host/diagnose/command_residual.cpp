@@ -118,7 +118,8 @@ sim::Axis with_terms(sim::Axis axis, const std::vector<CommandTerm>& terms, cons
 // Which parameters the target needs: the best that stands is added, those that stand no longer are dropped.
 class Selection {
  public:
-  Selection(const Eigen::VectorXd& target, const LogRows& rows, Places places, std::vector<Eigen::VectorXd> columns)
+  Selection(const Eigen::VectorXd& target, const LogRows& rows, Places places,
+            const std::vector<Eigen::VectorXd>& columns)
       : places_(std::move(places)), evidence_(target, blocks_for(target, rows)) {
     evidence_.add(columns);
   }
