@@ -38,22 +38,18 @@ std::vector<RowBlock> blocks_for(const LogRows& rows, double correlation) {
 
 // What columns take off the cross-validated residual.
 struct CrossValidated {
-  double gain = 0.0;     // share
-  double p_value = 1.0;  // block t-test
-  bool odd = false;      // owed to one block in fifty: one odd event names no cause
+  double gain = 0.0;  // share
+  bool odd = false;   // owed to one block in fifty: one odd event names no cause
 };
 
 CrossValidated cross_validate(const Evidence& evidence, const ColumnIndices& without, const ColumnIndices& with) {
   auto gains = evidence.held_out(without);
   const auto left = evidence.held_out(with);
-  const double before = std::accumulate(gains.begin(), gains.end(), 0.0), n = static_cast<double>(gains.size());
+  const double before = std::accumulate(gains.begin(), gains.end(), 0.0);
   for (std::size_t k = 0; k < gains.size(); ++k) gains[k] -= left[k];
-  const double gained = std::accumulate(gains.begin(), gains.end(), 0.0), mean = gained / n;
-  double variance = 0.0;
-  for (const double g : gains) variance += (g - mean) * (g - mean) / (n - 1.0);
+  const double gained = std::accumulate(gains.begin(), gains.end(), 0.0);
   CrossValidated result;
   result.gain = gained / before;
-  result.p_value = mean <= 0.0 ? 1.0 : 0.5 * student_tails(mean / std::sqrt(variance / n), n - 1.0);
   std::sort(gains.begin(), gains.end());
   const auto odd = std::max<std::size_t>(1, gains.size() / 50);
   result.odd = !(std::accumulate(gains.begin(), gains.end() - static_cast<std::ptrdiff_t>(odd), 0.0) > 0.2 * gained);
@@ -261,7 +257,6 @@ Judgement Search::judge(const Set& set, std::size_t term) const {
   const auto white = cross_validate(evidence_, without, with), plain = cross_validate(plain_, without, with);
   const auto& larger = white.gain > plain.gain ? white : plain;
   result.gain = larger.gain;
-  result.gain_p_value = larger.p_value;
 
   std::vector<bool> first(evidence_.blocks()), second(evidence_.blocks());
   for (std::size_t k = 0; k < first.size(); ++k) second[k] = !(first[k] = k < first.size() / 2);

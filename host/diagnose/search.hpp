@@ -2,6 +2,7 @@
 // parameters scanned inside, joint refits, exchange, and a try to drop each (Billings 2013, ch. 3, over groups). A term
 // stays when blocks of rows agree on it: Wald test with covariance clustered by blocks below 0.01 over the number of
 // candidates, and at least one percent off the cross-validated residual, not owed to a single event.
+// First on the rows as they are, then, beside what stands, on whitened ones (whitening.hpp).
 #pragma once
 
 #include <functional>
@@ -18,9 +19,8 @@ namespace stiction::host {
 
 // What the data say of one term beside the others.
 struct Judgement {
-  double p_value = 1.0;       // that its weights are zero, times what was tried for its nonlinear parameter
-  double gain = 0.0;          // share of the cross-validated residual that it takes away
-  double gain_p_value = 1.0;  // block t-test of that gain
+  double p_value = 1.0;  // that its weights are zero, times what was tried for its nonlinear parameter
+  double gain = 0.0;     // share of the cross-validated residual that it takes away
   double first_half = 0.0, second_half = 0.0;  // its size found in each half of the rows, over that in all
   double first_error = 0.0, second_error = 0.0;
   std::optional<std::string> objection;  // why it does not stay
