@@ -27,11 +27,11 @@ struct Scene {
   double highest_force = 0.0;     // N, expected
   bool force_is_current = false;  // in every record: current (or voltage) times the file's force constant
   bool other_axis = false;        // its motion is in every record
-  std::vector<double> pitches;    // m, with peaks in the residual's spectrum over position; found as the search goes
   double duration = 0.0;          // s, of the longest record
   sim::Timing timing{};           // of the drive
-  // Found as the search goes: lines over time, over position in proportion to the force, over the encoder's signal.
-  LineScan times{}, modulation{}, signals_of_encoder{};
+  // Found as the search goes: lines over position, over position in proportion to the force, over time, over the
+  // encoder's signal.
+  LineScan pitches{}, modulation{}, times{}, signals_of_encoder{};
   // The residual force (N, at the motion's rate) that a motion's set-points leave in simulation where the machine has
   // the effect, less that where it has not: what the effect does through the control loop. Empty: no set-points.
   std::function<std::vector<double>(const Motion&, const sim::Effect&)> response;
@@ -61,7 +61,7 @@ struct Candidate {
   // Whether each record has weights of its own, the first record's before the second's: the phase moves from record to
   // record.
   bool per_record = false;
-  // The lines among which a periodic one is looked for; null: scene.pitches over the stroke.
+  // The lines among which a periodic one is looked for; null for others.
   const LineScan& (*scan)(const Scene&) = nullptr;
   double trials = 1.0;  // independent values that a grid without a scan tries
 };

@@ -136,7 +136,7 @@ class Selection {
     const auto i = static_cast<Eigen::Index>(term);
     const double variance = evidence_.covariance(chosen, fit.weights)(i, i);
     const double t = fit.weights[i] / std::sqrt(std::max(variance, 1e-300));
-    const double freedom = std::max(evidence_.bearing_blocks({chosen[term]}, fit.weights.segment(i, 1)) - 1.0, 2.0);
+    const double freedom = std::max(evidence_.bearing_clusters({chosen[term]}, fit.weights.segment(i, 1)) - 1.0, 2.0);
     return student_tails(t, freedom);
   }
   double explains(const ColumnIndices& chosen, std::size_t term) const {

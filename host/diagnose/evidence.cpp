@@ -2,11 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace stiction::host {
+namespace {
+
+// Of the columns of a part() of them: all, in their order.
+ColumnIndices own_columns(const ColumnIndices& chosen) {
+  ColumnIndices own(chosen.size());
+  std::iota(own.begin(), own.end(), Eigen::Index{0});
+  return own;
+}
+
+}  // namespace
 
 Evidence::Evidence(Eigen::VectorXd target, std::vector<RowBlock> blocks)
-    : target_(std::move(target)), blocks_(std::move(blocks)), sums_(blocks_.size()) {
+    : target_(std::move(target)), blocks_(std::move(blocks)), clusters_(blocks_), sums_(blocks_.size()) {
   sum_target();
 }
 
@@ -22,53 +33,57 @@ void Evidence::sum_target() {
 }
 
 Eigen::Index Evidence::add(const std::vector<Eigen::VectorXd>& columns) {
-  const auto first = static_cast<Eigen::Index>(columns_.size());
-  columns_.insert(columns_.end(), columns.begin(), columns.end());
+  const Eigen::Index first = columns_.cols();
+  columns_.conservativeResize(target_.size(), first + static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t k = 0; k < columns.size(); ++k) columns_.col(first + static_cast<Eigen::Index>(k)) = columns[k];
   sum_columns(first);
   return first;
 }
 
-void Evidence::whiten(Whitening whitening) {
+void Evidence::whiten(Whitening whitening, std::size_t correlated) {
   whitening_ = std::move(whitening);
+  clusters_.clear();
+  for (const auto& block : blocks_) {
+    const std::size_t length = block.end - block.begin;
+    const std::size_t pieces = correlated > 0 ? std::max<std::size_t>(1, length / correlated) : 1;
+    for (std::size_t p = 0; p < pieces; ++p)
+      clusters_.push_back({block.begin + length * p / pieces, block.begin + length * (p + 1) / pieces});
+  }
   sum_target();
-  white_columns_.clear();
   sum_columns(0);
 }
 
 // The sums of the columns from `first` on; those before it are there.
 void Evidence::sum_columns(Eigen::Index first) {
-  const auto count = static_cast<Eigen::Index>(columns_.size());
-  for (Eigen::Index j = first; j < count; ++j)
-    white_columns_.push_back(whitening_(columns_[static_cast<std::size_t>(j)]));
+  const Eigen::Index count = columns_.cols(), fresh = count - first;
+  white_columns_.conservativeResize(target_.size(), count);
+  for (Eigen::Index j = first; j < count; ++j) white_columns_.col(j) = whitening_(columns_.col(j));
   const auto grow = [count](Sums& sums) {
     sums.gram.conservativeResize(count, count);
     sums.moment.conservativeResize(count);
   };
   grow(total_);
-  total_.gram.rightCols(count - first).setZero();
-  total_.gram.bottomRows(count - first).setZero();
-  total_.moment.tail(count - first).setZero();
+  total_.gram.rightCols(fresh).setZero();
+  total_.gram.bottomRows(fresh).setZero();
+  total_.moment.tail(fresh).setZero();
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     auto& sums = sums_[b];
     grow(sums);
     const auto begin = static_cast<Eigen::Index>(blocks_[b].begin);
     const auto length = static_cast<Eigen::Index>(blocks_[b].end - blocks_[b].begin);
-    for (Eigen::Index j = first; j < count; ++j) {
-      const auto column = white_columns_[static_cast<std::size_t>(j)].segment(begin, length);
-      sums.moment[j] = column.dot(white_target_.segment(begin, length));
-      for (Eigen::Index i = 0; i <= j; ++i)
-        sums.gram(i, j) = sums.gram(j, i) =
-            column.dot(white_columns_[static_cast<std::size_t>(i)].segment(begin, length));
-    }
-    total_.gram.rightCols(count - first) += sums.gram.rightCols(count - first);
-    total_.gram.bottomLeftCorner(count - first, first) += sums.gram.bottomLeftCorner(count - first, first);
-    total_.moment.tail(count - first) += sums.moment.tail(count - first);
+    const auto rows = white_columns_.middleRows(begin, length);
+    sums.moment.tail(fresh).noalias() = rows.rightCols(fresh).transpose() * white_target_.segment(begin, length);
+    sums.gram.rightCols(fresh).noalias() = rows.transpose() * rows.rightCols(fresh);
+    sums.gram.bottomLeftCorner(fresh, first) = sums.gram.topRightCorner(first, fresh).transpose();
+    total_.gram.rightCols(fresh) += sums.gram.rightCols(fresh);
+    total_.gram.bottomLeftCorner(fresh, first) += sums.gram.bottomLeftCorner(fresh, first);
+    total_.moment.tail(fresh) += sums.moment.tail(fresh);
   }
 }
 
 void Evidence::truncate(Eigen::Index first) {
-  columns_.resize(static_cast<std::size_t>(first));
-  white_columns_.resize(static_cast<std::size_t>(first));
+  columns_.conservativeResize(Eigen::NoChange, first);
+  white_columns_.conservativeResize(Eigen::NoChange, first);
   const auto cut = [first](Sums& sums) {
     sums.gram.conservativeResize(first, first);
     sums.moment.conservativeResize(first);
@@ -104,21 +119,21 @@ Evidence::Fit Evidence::solve(const Sums& sums, const ColumnIndices& chosen) {
 Evidence::Fit Evidence::fit(const ColumnIndices& chosen) const { return solve(total_, chosen); }
 
 Evidence::Fit Evidence::fit(const ColumnIndices& chosen, const std::vector<bool>& use) const {
-  const auto n = static_cast<Eigen::Index>(columns_.size());
+  const auto n = static_cast<Eigen::Index>(chosen.size());
   Sums some{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), 0.0};
   for (std::size_t b = 0; b < sums_.size(); ++b) {
     if (!use[b]) continue;
-    some.gram += sums_[b].gram;
-    some.moment += sums_[b].moment;
-    some.square += sums_[b].square;
+    const auto p = part(sums_[b], chosen);
+    some.gram += p.gram;
+    some.moment += p.moment;
+    some.square += p.square;
   }
-  return solve(some, chosen);
+  return solve(some, own_columns(chosen));
 }
 
 Eigen::VectorXd Evidence::residual(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const {
   Eigen::VectorXd r = target_;
-  for (std::size_t i = 0; i < chosen.size(); ++i)
-    r -= weights[static_cast<Eigen::Index>(i)] * columns_[static_cast<std::size_t>(chosen[i])];
+  for (std::size_t i = 0; i < chosen.size(); ++i) r -= weights[static_cast<Eigen::Index>(i)] * columns_.col(chosen[i]);
   return r;
 }
 
@@ -131,20 +146,26 @@ Eigen::MatrixXd Evidence::covariance(const ColumnIndices& chosen, const Eigen::V
   decomposition.setThreshold(1e-9);
   decomposition.compute(scale.asDiagonal() * all.gram * scale.asDiagonal());
   const Eigen::MatrixXd inverse = scale.asDiagonal() * decomposition.pseudoInverse() * scale.asDiagonal();
+  const Eigen::MatrixXd columns = white_columns_(Eigen::all, chosen);
+  const Eigen::VectorXd left = white_target_ - columns * weights;
   Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(k, k);
-  for (const auto& sums : sums_) {
-    const auto p = part(sums, chosen);
-    const Eigen::VectorXd score = p.moment - p.gram * weights;
+  for (const auto& cluster : clusters_) {
+    const auto begin = static_cast<Eigen::Index>(cluster.begin);
+    const auto length = static_cast<Eigen::Index>(cluster.end - cluster.begin);
+    const Eigen::VectorXd score = columns.middleRows(begin, length).transpose() * left.segment(begin, length);
     meat += score * score.transpose();
   }
-  const double n = static_cast<double>(blocks_.size());
+  const double n = static_cast<double>(clusters_.size());
   return n / std::max(n - static_cast<double>(k), 1.0) * inverse * meat * inverse;
 }
 
-double Evidence::bearing_blocks(const ColumnIndices& of, const Eigen::VectorXd& weights) const {
+double Evidence::bearing_clusters(const ColumnIndices& of, const Eigen::VectorXd& weights) const {
+  const Eigen::VectorXd force = white_columns_(Eigen::all, of) * weights;
   double sum = 0.0, squares = 0.0;
-  for (const auto& sums : sums_) {
-    const double h = weights.dot(Eigen::MatrixXd(sums.gram(of, of)) * weights);
+  for (const auto& cluster : clusters_) {
+    const double h =
+        force.segment(static_cast<Eigen::Index>(cluster.begin), static_cast<Eigen::Index>(cluster.end - cluster.begin))
+            .squaredNorm();
     sum += h;
     squares += h * h;
   }
@@ -154,8 +175,7 @@ double Evidence::bearing_blocks(const ColumnIndices& of, const Eigen::VectorXd& 
 std::vector<double> Evidence::held_out(const ColumnIndices& chosen, std::size_t folds) const {
   std::vector<double> square(sums_.size());
   const auto all = part(total_, chosen);
-  ColumnIndices own(chosen.size());
-  for (std::size_t i = 0; i < own.size(); ++i) own[i] = static_cast<Eigen::Index>(i);
+  const auto own = own_columns(chosen);
   for (std::size_t fold = 0; fold < folds; ++fold) {
     auto train = all;
     for (std::size_t b = fold; b < sums_.size(); b += folds) {

@@ -23,10 +23,12 @@ class Evidence {
   Eigen::Index add(const std::vector<Eigen::VectorXd>& columns);
   // Drops all columns from `first` on.
   void truncate(Eigen::Index first);
-  // Looks at target and columns through `whitening` from now on; without it, as they are.
-  void whiten(Whitening whitening);
+  // Looks at target and columns through `whitening` from now on; without it, as they are. `correlated`: rows that
+  // belong together still: the clusters of covariances are no shorter (0: whole blocks).
+  void whiten(Whitening whitening, std::size_t correlated = 0);
 
   std::size_t rows() const { return static_cast<std::size_t>(target_.size()); }
+  Eigen::Index columns() const { return columns_.cols(); }
   std::size_t blocks() const { return blocks_.size(); }
   const std::vector<RowBlock>& row_blocks() const { return blocks_; }
   double total() const { return total_.square; }  // sum of squares of the whitened target
@@ -44,10 +46,10 @@ class Evidence {
   // N, not whitened.
   Eigen::VectorXd residual(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const;
 
-  // Sandwich covariance of the weights, clustered by blocks.
+  // Sandwich covariance of the weights, by clusters of rows.
   Eigen::MatrixXd covariance(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const;
-  // Number of blocks that bear on the columns `of` with these weights: (sum h)^2 / sum h^2 of their squared lengths.
-  double bearing_blocks(const ColumnIndices& of, const Eigen::VectorXd& weights) const;
+  // Number of clusters that bear on the columns `of` with these weights: (sum h)^2 / sum h^2 of their squared lengths.
+  double bearing_clusters(const ColumnIndices& of, const Eigen::VectorXd& weights) const;
 
   // Sum of squared residuals of each block with weights from the other folds; block i is in fold i mod `folds`.
   std::vector<double> held_out(const ColumnIndices& chosen, std::size_t folds = 5) const;
@@ -65,9 +67,9 @@ class Evidence {
   void sum_columns(Eigen::Index first);
 
   Eigen::VectorXd target_, white_target_;
-  std::vector<RowBlock> blocks_;
+  std::vector<RowBlock> blocks_, clusters_;
   Whitening whitening_;
-  std::vector<Eigen::VectorXd> columns_, white_columns_;
+  Eigen::MatrixXd columns_, white_columns_;
   std::vector<Sums> sums_;  // of each block
   Sums total_;
 };

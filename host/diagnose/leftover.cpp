@@ -11,7 +11,7 @@
 
 #include "host/diagnose/evidence.hpp"
 #include "host/diagnose/fisher.hpp"
-#include "host/diagnose/ripple_scan.hpp"
+#include "host/diagnose/line_scan.hpp"
 
 namespace stiction::host {
 namespace {
@@ -123,10 +123,10 @@ Unexplained signature_of(const LogRows& rows, const Eigen::VectorXd& residual, d
     const Eigen::VectorXd angle = 2.0 * std::numbers::pi * per_unit * place;
     return std::vector<Eigen::VectorXd>{angle.array().cos(), angle.array().sin()};
   };
-  const auto scan = scan_pitches(rows, residual, whitening, {}, 1);
-  if (!scan.pitches.empty())
-    look(waves(position, 1.0 / scan.pitches.front()),
-         fmt::format("periodic in position with pitch {:.4g} mm", 1e3 * scan.pitches.front()));
+  const auto scan = scan_pitches(rows, residual, whitening, one, {}, 1);
+  if (!scan.periods.empty())
+    look(waves(position, 1.0 / scan.periods.front()),
+         fmt::format("periodic in position with pitch {:.4g} mm", 1e3 * scan.periods.front()));
   if (const double frequency = strongest_line(rows, residual); frequency > 0.0)
     look(waves(rows.time, frequency), fmt::format("periodic in time with frequency {:.4g} Hz", frequency));
   look(ranges(position, one, 12), "force that depends on position");

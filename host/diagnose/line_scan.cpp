@@ -18,7 +18,8 @@ constexpr double lowest_frequency = 1.0;  // Hz; below it a record of some secon
 constexpr double band = 0.4;              // of the rows' rate
 constexpr std::size_t surroundings = 64;  // lines to either side whose median is the noise around one
 constexpr double most_cycles = 400.0;     // of the stroke
-constexpr double shortest_pitch = 5e-4;   // m, of a ripple in the force constant
+constexpr double shortest_pitch = 5e-4;   // m
+constexpr double least_seen = 0.1;        // of the carrier's square must be in rows slow enough for a pitch
 constexpr double shortest_signal = 2e-6;  // m
 constexpr double longest_signal = 1e-3;   // m
 // m, of linear scales and of inductive and magnetic ones
@@ -254,33 +255,48 @@ LineScan scan_times(const LogRows& rows, const Eigen::VectorXd& residual, std::s
   return scan;
 }
 
-LineScan scan_modulation(const LogRows& rows, const Eigen::VectorXd& residual, const Eigen::VectorXd& carrier,
-                         std::span<const double> known, std::size_t count) {
+LineScan scan_pitches(const LogRows& rows, const Eigen::VectorXd& residual, const Whitening& whitening,
+                      const Eigen::VectorXd& carrier, std::span<const double> known, std::size_t count) {
   Eigen::VectorXd x = rows.sampled([](const Motion& m) { return m.x; });
   x.array() -= x.minCoeff();
   LineScan scan;
   scan.extent = x.maxCoeff();
   if (!(scan.extent > 2.0 * shortest_pitch)) return scan;
   const double step = 0.125 / scan.extent, highest = std::min(most_cycles / scan.extent, 1.0 / shortest_pitch);
+  const Eigen::VectorXd moments = whitening.transposed(whitening(residual)).cwiseProduct(carrier);
   std::vector<double> all(static_cast<std::size_t>(highest / step), 0.0);
-  // By octaves, each of the rows that are slow enough for its shortest period.
-  for (std::size_t from = 8; from < all.size(); from *= 2) {
-    const double top = step * static_cast<double>(std::min(2 * from, all.size()));
-    Eigen::VectorXd weight = carrier;
-    for (Eigen::Index i = 0; i < weight.size(); ++i)
-      if (std::abs(rows.velocity[i]) * top > band / rows.period(0)) weight[i] = 0.0;
-    const double square = weight.squaredNorm();
-    if (square < 0.05 * carrier.squaredNorm()) break;
+  // |W|^2 over the rows' frequencies up to the band's end, in a table.
+  constexpr std::size_t table_steps = 256;
+  std::vector<double> gain_square(table_steps + 1);
+  for (std::size_t k = 0; k <= table_steps; ++k)
+    gain_square[k] = whitening.gain_square(band * static_cast<double>(k) / static_cast<double>(table_steps));
+  const double table_step = band / static_cast<double>(table_steps) / rows.period(0);  // Hz
+  // By thirds of an octave, each of the rows that are slow enough for its shortest pitch.
+  std::size_t end = all.size();
+  for (std::size_t from = 8, to = from; from < all.size(); from = to) {
+    to = std::min(static_cast<std::size_t>(std::ceil(static_cast<double>(from) * std::cbrt(2.0))), all.size());
+    const double top = step * static_cast<double>(to), middle = step * 0.5 * static_cast<double>(from + to);
+    Eigen::VectorXd moment = moments, square = carrier.cwiseAbs2();
+    double seen = 0.0;
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+      const double speed = std::abs(rows.velocity[i]);
+      if (speed * top > band / rows.period(0))
+        moment[i] = square[i] = 0.0;
+      else
+        seen += square[i], square[i] *= gain_square[static_cast<std::size_t>(speed * middle / table_step)];
+    }
+    if (seen < least_seen * carrier.squaredNorm()) {
+      end = from;
+      break;
+    }
     Binned binned(step, 2.0 * top);
-    const auto moment = binned.transform(x, weight.cwiseProduct(residual));
-    const auto twice = binned.transform(x, weight.cwiseAbs2());
-    for (std::size_t k = from; k < std::min(2 * from, all.size()); ++k)
-      all[k] = gain_of(moment[k], twice[2 * k], square);
+    const auto single = binned.transform(x, moment), twice = binned.transform(x, square);
+    for (std::size_t k = from; k < to; ++k) all[k] = gain_of(single[k], twice[2 * k], square.sum());
   }
-  scan.trials = all.size() / 8 + 1;
+  scan.trials = end / 8 + 1;
   std::vector<std::size_t> peaks;
-  for (std::size_t k = 1; k + 1 < all.size(); ++k)
-    if (all[k] >= all[k - 1] && all[k] > all[k + 1]) peaks.push_back(k);
+  for (std::size_t k = 1; k + 1 < end; ++k)
+    if (all[k] > 0.0 && all[k] >= all[k - 1] && all[k] > all[k + 1]) peaks.push_back(k);
   std::sort(peaks.begin(), peaks.end(), [&](std::size_t a, std::size_t b) { return all[a] > all[b]; });
   for (const auto k : peaks)
     if (scan.periods.size() < count) scan.periods.push_back(1.0 / (step * static_cast<double>(k)));

@@ -1,6 +1,6 @@
-// Lines in a residual beside those over position (ripple_scan.hpp): over time, over position in proportion to the
-// expected force, and over the encoder's signal, whose error grows with the speed squared. What stands out of its
-// surroundings is worth a try as a candidate's period.
+// Lines in a residual: over position (order tracking), by itself or in proportion to the expected force; over time; and
+// over the encoder's signal, whose error grows with the speed squared. What stands out is worth a try as a candidate's
+// period.
 #pragma once
 
 #include <Eigen/Dense>
@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "host/diagnose/whitening.hpp"
 #include "host/identify/log_rows.hpp"
 #include "sim/model/machine.hpp"
 
@@ -22,9 +23,12 @@ struct LineScan {
 // Periods in time (s). Every record has a phase of its own.
 LineScan scan_times(const LogRows& rows, const Eigen::VectorXd& residual, std::size_t count);
 
-// Pitches (m) of a force that is `carrier` (N, of the rows) times a wave over position; `known` are tried beside them.
-LineScan scan_modulation(const LogRows& rows, const Eigen::VectorXd& residual, const Eigen::VectorXd& carrier,
-                         std::span<const double> known, std::size_t count);
+// Pitches (m) of a force that is `carrier` (of the rows; ones, or N) times a wave over position, looked at through
+// `whitening`; `known` are tried beside them. A wave that the rows see at a slowly changing frequency f comes out of
+// the whitening |W(f)| times as large, so that no wave has to be whitened itself. The step in 1/pitch is a quarter of
+// 1/(2 stroke): an entry 2 % off the true pitch is never found.
+LineScan scan_pitches(const LogRows& rows, const Eigen::VectorXd& residual, const Whitening& whitening,
+                      const Eigen::VectorXd& carrier, std::span<const double> known, std::size_t count);
 
 // Signal periods (m) of the encoder, 2 um to 1 mm: where the rows are slow enough to see them, and where the samples of
 // the log fold the drive's answer down (reading_response.hpp). The count knows the signal: one phase in all records.

@@ -36,9 +36,7 @@ class Refinement {
 
   const Candidate& candidate(std::size_t k) const { return candidates()[terms_[k].candidate]; }
   // What the lines of a periodic one are resolved over: m, or s.
-  double extent(std::size_t k) const {
-    return std::max(candidate(k).scan ? candidate(k).scan(scene_).extent : scene_.stroke(), 1e-6);
-  }
+  double extent(std::size_t k) const { return std::max(candidate(k).scan(scene_).extent, 1e-6); }
   Group group(const Term& term, double nonlinear) const {
     return group_columns(rows_, scene_, candidates()[term.candidate], nonlinear);
   }

@@ -11,7 +11,6 @@
 #include "host/diagnose/fisher.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
 #include "host/diagnose/refinement.hpp"
-#include "host/diagnose/ripple_scan.hpp"
 
 namespace stiction::host {
 namespace {
@@ -20,6 +19,11 @@ constexpr std::size_t most_terms = 8;
 constexpr double significance = 0.01;  // over the number of candidates
 constexpr double least_gain = 0.01;    // of the cross-validated residual
 constexpr double least_share = 2e-3;   // of the residual's variance: what is less is no cause that a part would show
+// Of the residual's variance: beside what takes more, the residual is no model of the noise, and what is whitened by it
+// would get the weight of noise.
+constexpr double dominant = 0.25;
+constexpr double strong_evidence = 6.0;  // twice the logarithm of a Bayes factor
+constexpr double cluster_lengths = 6.0;  // correlation lengths of the whitened residual in a cluster
 constexpr std::size_t pitches_tried = 3;
 constexpr std::size_t lines_tried = 2;
 
@@ -67,22 +71,29 @@ class Search {
         plain_(target, evidence_.row_blocks()) {
     for (const double pitch : {scene.axis.motor.pole_pair_pitch, 0.5 * scene.axis.motor.pole_pair_pitch})
       if (pitch > 0.0) known_pitches_.push_back(pitch);
-    for (std::size_t c = 0; c < candidates().size(); ++c)
-      if (!candidates()[c].periodic) add_options(c);
+    add_options(false);
   }
 
   SearchResult run(const std::function<void()>& progress);
 
  private:
-  void add_options(std::size_t candidate) {
-    for (const double value : candidates()[candidate].grid(scene_)) {
-      const auto columns = group_columns(rows_, scene_, candidates()[candidate], value);
-      const auto first = evidence_.add(columns);
-      plain_.add(columns);
-      Option option{candidate, value, {}};
-      for (std::size_t k = 0; k < columns.size(); ++k) option.columns.push_back(first + static_cast<Eigen::Index>(k));
-      options_.push_back(std::make_unique<Option>(std::move(option)));
+  // The options of all candidates that are periodic, or that are not.
+  void add_options(bool periodic) {
+    std::vector<Eigen::VectorXd> columns;
+    Eigen::Index next = evidence_.columns();
+    for (std::size_t c = 0; c < candidates().size(); ++c) {
+      if (candidates()[c].periodic != periodic) continue;
+      for (const double value : candidates()[c].grid(scene_)) {
+        Option option{c, value, {}};
+        for (auto& column : group_columns(rows_, scene_, candidates()[c], value)) {
+          option.columns.push_back(next++);
+          columns.push_back(std::move(column));
+        }
+        options_.push_back(std::make_unique<Option>(std::move(option)));
+      }
     }
+    evidence_.add(columns);
+    plain_.add(columns);
   }
 
   Eigen::VectorXd residual(const Set& set) const {
@@ -91,21 +102,22 @@ class Search {
   }
   // The noise is what the set leaves.
   void whiten(const Set& set) {
-    evidence_.whiten({residual(set), rows_.logs()});
-    correlation_ = correlation_length(evidence_.whitening()(residual(set)), rows_.logs());
+    const Eigen::VectorXd noise = residual(set);
+    const Whitening whitening(noise, rows_.logs());
+    correlation_ = correlation_length(whitening(noise), rows_.logs());
+    evidence_.whiten(whitening, static_cast<std::size_t>(std::ceil(cluster_lengths * correlation_)));
   }
 
   // Pitches in what the set leaves; those in the set stay.
   void scan_ripples(const Set& set) {
     const Eigen::VectorXd left = residual(set);
-    const auto scan = scan_pitches(rows_, left, evidence_.whitening(), known_pitches_, pitches_tried);
-    trials_ = std::max(trials_, scan.trials);
-    scene_.pitches = scan.pitches;
+    const auto& whitening = evidence_.whitening();
+    const Eigen::VectorXd by_itself = Eigen::VectorXd::Ones(rows_.rows());
+    scene_.pitches = scan_pitches(rows_, left, whitening, by_itself, known_pitches_, pitches_tried);
+    scene_.modulation = scan_pitches(rows_, left, whitening, carrier_, known_pitches_, pitches_tried);
     scene_.times = scan_times(rows_, left, lines_tried);
-    scene_.modulation = scan_modulation(rows_, left, carrier_, known_pitches_, pitches_tried);
     scene_.signals_of_encoder = scan_signal_periods(rows_, left, scene_.axis, scene_.timing, lines_tried);
-    for (std::size_t c = 0; c < candidates().size(); ++c)
-      if (candidates()[c].periodic) add_options(c);
+    add_options(true);
   }
 
   static ColumnIndices columns_of(const Set& set) {
@@ -117,16 +129,23 @@ class Search {
     return std::any_of(set.begin(), set.end(), [&](const auto* o) { return o->candidate == candidate; });
   }
 
+  bool settled(const Option* option) const {
+    return std::find(settled_.begin(), settled_.end(), option->candidate) != settled_.end();
+  }
+
   // Number of independent values of the nonlinear parameter that were tried.
   double trials(std::size_t candidate) const {
     if (const auto scan = candidates()[candidate].scan)
       return static_cast<double>(std::max<std::size_t>(scan(scene_).trials, 1));
-    if (candidates()[candidate].periodic) return static_cast<double>(std::max<std::size_t>(trials_, 1));
     return std::max(candidates()[candidate].trials, candidates()[candidate].nonlinear ? 3.0 : 1.0);
   }
   double effective_rows() const { return std::max(static_cast<double>(evidence_.rows()) / correlation_, 20.0); }
+  // A nonlinear parameter on a grid is fitted as a weight is, and must show strongly (Kass, Raftery 1995): a drift that
+  // settles at once is a level. One that is looked for in a scan costs its trials.
   double penalty(std::size_t candidate, std::size_t columns) const {
-    return static_cast<double>(columns) * std::log(effective_rows()) + 2.0 * std::log(trials(candidate));
+    const bool fitted = candidates()[candidate].nonlinear && candidates()[candidate].scan == nullptr;
+    return static_cast<double>(columns + fitted) * std::log(effective_rows()) +
+           (fitted ? strong_evidence : 2.0 * std::log(trials(candidate)));
   }
   // n_eff ln(square) and the price of the columns (extended BIC: Chen, Chen 2008).
   double score(const Set& set) const {
@@ -170,9 +189,15 @@ class Search {
         if (const auto* better = best_of(set[k]->candidate, others)) set[k] = better;
       }
   }
+  void improve(Set& set) {
+    profile(set);
+    exchange(set);
+    while (merge(set)) profile(set);
+    while (drop(set)) profile(set);
+  }
   bool exchange(Set& set) const;
   bool merge(Set& set) const;
-  bool grow(Set& set);
+  bool grow(Set& set, double least_taken = 0.0);
   bool drop(Set& set);
   Judgement judge(const Set& set, std::size_t term) const;
   void note(std::size_t candidate, const Judgement& judgement);
@@ -187,7 +212,7 @@ class Search {
   Evidence plain_;                    // never whitened: for what a term takes off the force
   std::vector<std::size_t> settled_;  // candidates that stood before it
   std::vector<std::unique_ptr<Option>> options_;
-  std::size_t trials_ = 1, rounds_ = 0;
+  std::size_t rounds_ = 0;
   std::vector<double> known_pitches_;
   std::vector<Discarded> discarded_;
 };
@@ -196,6 +221,7 @@ class Search {
 bool Search::exchange(Set& set) const {
   double least = score(set);
   for (std::size_t k = 0; k < set.size(); ++k) {
+    if (settled(set[k])) continue;
     auto others = set;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
     for (std::size_t c = 0; c < candidates().size(); ++c) {
@@ -219,6 +245,7 @@ bool Search::exchange(Set& set) const {
 bool Search::merge(Set& set) const {
   for (std::size_t i = 0; i < set.size(); ++i)
     for (std::size_t j = i + 1; j < set.size(); ++j) {
+      if (settled(set[i]) || settled(set[j])) continue;
       auto others = set;
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(j));
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
@@ -248,7 +275,8 @@ Judgement Search::judge(const Set& set, std::size_t term) const {
   const Eigen::VectorXd own = weights.segment(at, count);
   const Eigen::MatrixXd covariance = evidence_.covariance(with, weights).block(at, at, count, count);
 
-  const double bearing = std::max(evidence_.bearing_blocks(set[term]->columns, own) - static_cast<double>(count), 2.0);
+  const double bearing =
+      std::max(evidence_.bearing_clusters(set[term]->columns, own) - static_cast<double>(count), 2.0);
   const double wald = own.dot(covariance.completeOrthogonalDecomposition().solve(own)) / static_cast<double>(count);
   result.p_value = std::min(1.0, trials(set[term]->candidate) * fisher_tail(wald, static_cast<double>(count), bearing));
 
@@ -305,8 +333,9 @@ void Search::note(std::size_t candidate, const Judgement& judgement) {
     known->why = *judgement.objection;
 }
 
-// Adds the best term that stands, or the best two that stand together: terms can mask one another.
-bool Search::grow(Set& set) {
+// Adds the best term that stands, or the best two that stand together: terms can mask one another. `least_taken`: share
+// of the residual's square that they must take.
+bool Search::grow(Set& set, double least_taken) {
   struct Trial {
     Set set;
     double score;
@@ -324,7 +353,13 @@ bool Search::grow(Set& set) {
   }
   const auto by_score = [](const Trial& a, const Trial& b) { return a.score < b.score; };
   std::sort(trials.begin(), trials.end(), by_score);
+  const double before = evidence_.fit(columns_of(set)).left;
+  const auto takes_enough = [&](const Set& with) {
+    return 1.0 - evidence_.fit(columns_of(with)).left / before >= least_taken;
+  };
   for (auto& trial : trials) {
+    if (!takes_enough(trial.set)) continue;
+    if (trial.score > score(set)) break;
     const auto judgement = judge(trial.set, trial.set.size() - 1);
     if (!judgement.objection) {
       set = trial.set;
@@ -341,7 +376,7 @@ bool Search::grow(Set& set) {
       if (all_possible(trial)) pairs.push_back({trial, score(trial)});
     }
   std::sort(pairs.begin(), pairs.end(), by_score);
-  if (pairs.empty() || pairs.front().score > score(set)) return false;
+  if (pairs.empty() || pairs.front().score > score(set) || !takes_enough(pairs.front().set)) return false;
   auto& pair = pairs.front().set;
   for (std::size_t k = set.size(); k < pair.size(); ++k)
     if (judge(pair, k).objection) return false;
@@ -351,7 +386,7 @@ bool Search::grow(Set& set) {
 
 bool Search::drop(Set& set) {
   for (std::size_t k = 0; k < set.size(); ++k) {
-    if (std::find(settled_.begin(), settled_.end(), set[k]->candidate) != settled_.end()) continue;
+    if (settled(set[k])) continue;
     const auto judgement = judge(set, k);
     if (!judgement.objection) continue;
     note(set[k]->candidate, judgement);
@@ -397,28 +432,25 @@ SearchResult Search::run(const std::function<void()>& progress) {
     for (std::size_t k = 0; k < set.size(); ++k)
       if (!judged.contains(set[k]->candidate)) judged[set[k]->candidate] = judge(set, k);
   };
-  // As the rows are, until nothing more stands.
+  // What dominates, on the rows as they are.
   Set set;
   scan_ripples(set);
   tick();
-  while (set.size() < most_terms && grow(set)) {
+  while (set.size() < most_terms && grow(set, dominant)) {
     scan_ripples(set);
-    profile(set);
-    exchange(set);
-    while (merge(set)) profile(set);
-    while (drop(set)) profile(set);
+    improve(set);
     correlation_ = correlation_length(residual(set), rows_.logs());
     tick();
     if (++rounds_ > 2 * most_terms) break;
   }
   judge_new(set);
   for (const auto* option : set) settled_.push_back(option->candidate);
-  // Then through a whitening: what is small beside a wandering force, and short.
+  // Then what is small beside the noise, each frequency by how little noise it carries.
   whiten(set);
   scan_ripples(set);
   while (set.size() < most_terms && grow(set)) {
-    profile(set);
-    while (drop(set)) profile(set);
+    scan_ripples(set);
+    improve(set);
     whiten(set);
     tick();
     if (++rounds_ > 4 * most_terms) break;

@@ -2,7 +2,7 @@
 // parameters scanned inside, joint refits, exchange, and a try to drop each (Billings 2013, ch. 3, over groups). A term
 // stays when blocks of rows agree on it: Wald test with covariance clustered by blocks below 0.01 over the number of
 // candidates, and at least one percent off the cross-validated residual, not owed to a single event.
-// First on the rows as they are, then, beside what stands, on whitened ones (whitening.hpp).
+// What dominates the residual is found on the rows as they are, the rest beside it on whitened ones (whitening.hpp).
 #pragma once
 
 #include <functional>

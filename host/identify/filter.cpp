@@ -51,21 +51,27 @@ Lowpass design(int order, double edge, double gain, Prototype&& prototype) {
   return filter;
 }
 
-// In place, from the state that a constant input of `start` would have left.
+// In place, from the state that a constant input of `start` would have left. Sample by sample through all sections:
+// each waits for its own last output only, so that they work side by side.
 void filter_forward(const Lowpass& filter, std::vector<double>& values, double start) {
+  struct State {
+    FilterSection section;
+    double first, second;
+  };
+  std::vector<State> states;
   double level = start;
   for (const auto& s : filter.sections) {
     const double settled = level * (s.b0 + s.b1 + s.b2) / (1.0 + s.a1 + s.a2);
-    double second = s.b2 * level - s.a2 * settled;
-    double first = settled - s.b0 * level;
-    for (double& value : values) {
+    states.push_back({s, settled - s.b0 * level, s.b2 * level - s.a2 * settled});
+    level = settled;
+  }
+  for (double& value : values)
+    for (auto& [s, first, second] : states) {
       const double out = s.b0 * value + first;
       first = s.b1 * value - s.a1 * out + second;
       second = s.b2 * value - s.a2 * out;
       value = out;
     }
-    level = settled;
-  }
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace {
 std::vector<double> grid(const Scene& scene) {
   if (!scene.response) return {};
   if (!contact_stiffness_of(scene.axis)) return {16e-6, 64e-6};
-  return {1e-6, 4e-6, 16e-6, 64e-6};
+  return {0.25e-6, 1e-6, 4e-6, 16e-6, 64e-6};
 }
 
 Columns columns(const Scene& scene, const Motion& motion, double width) {

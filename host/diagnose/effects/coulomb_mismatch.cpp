@@ -1,5 +1,6 @@
 // Level of Coulomb friction: what the friction model's force changes by with its level. Near the file's own level the
-// change is linear in it; the contact's stiffness stays.
+// change is linear in it. Whether the contact's stiffness stays then (more to overcome) or its distance (more pressed
+// on) is not known beforehand, and shows where small reversals are recorded: both are tried.
 #include <algorithm>
 #include <cmath>
 
@@ -9,14 +10,18 @@
 namespace stiction::host::effects {
 namespace {
 
-double step_of(double coulomb) { return std::max(0.02 * coulomb, 0.01); }
+constexpr double stiffness_stays = 0.0, distance_stays = 1.0;
 
 std::vector<double> grid(const Scene& scene) {
-  return coulomb_of(scene.axis) ? std::vector{0.0} : std::vector<double>{};
+  if (!coulomb_of(scene.axis)) return {};
+  if (!contact_stiffness_of(scene.axis)) return {stiffness_stays};
+  return {stiffness_stays, distance_stays};
 }
-Columns columns(const Scene& scene, const Motion& motion, double) {
-  const double coulomb = *coulomb_of(scene.axis), step = step_of(coulomb);
-  return {force_change(scene.axis, with_coulomb(scene.axis, coulomb + step), motion, step)};
+Columns columns(const Scene& scene, const Motion& motion, double contact) {
+  const double coulomb = *coulomb_of(scene.axis), step = std::max(0.02 * coulomb, 0.01);
+  auto changed = with_coulomb(scene.axis, coulomb + step);
+  if (contact == distance_stays) changed = with_contact_distance(changed, contact_distance_of(scene.axis));
+  return {force_change(scene.axis, changed, motion, step)};
 }
 bool possible(const Scene& scene, double, const Eigen::VectorXd& w) { return *coulomb_of(scene.axis) + w[0] > 0.0; }
 void describe(const Scene& scene, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
@@ -30,6 +35,7 @@ const Candidate coulomb_mismatch{.name = "coulomb_mismatch",
                                  .columns = columns,
                                  .possible = possible,
                                  .describe = describe,
-                                 .names_coulomb = true};
+                                 .names_coulomb = true,
+                                 .trials = 2.0};
 
 }  // namespace stiction::host::effects

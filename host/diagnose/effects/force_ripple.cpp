@@ -1,5 +1,5 @@
 // Cogging: force on the carriage periodic in position, cosine_h cos(2 pi h x / pitch) + sine_h sin(2 pi h x / pitch).
-// The pitches to try come from the residual's spectrum over position (ripple_scan.hpp).
+// The pitches to try come from the residual's spectrum over position (line_scan.hpp).
 #include <cmath>
 #include <numbers>
 
@@ -8,7 +8,8 @@
 namespace stiction::host::effects {
 namespace {
 
-std::vector<double> grid(const Scene& scene) { return scene.pitches; }
+const LineScan& scan(const Scene& scene) { return scene.pitches; }
+std::vector<double> grid(const Scene& scene) { return scan(scene).periods; }
 Columns columns(const Scene&, const Motion& motion, double pitch) {
   Columns pair(2, std::vector<double>(motion.x.size()));
   for (std::size_t i = 0; i < motion.x.size(); ++i) {
@@ -32,6 +33,7 @@ const Candidate force_ripple{.name = "force_ripple",
                              .possible = any,
                              .describe = describe,
                              .nonlinear = true,
-                             .periodic = true};
+                             .periodic = true,
+                             .scan = scan};
 
 }  // namespace stiction::host::effects
