@@ -21,8 +21,8 @@
 namespace stiction::host {
 namespace {
 
-// Of the held-out force rms: what takes away less is no gain that a reader would see in its three digits.
-constexpr double least_held_out_ratio = 0.9995;
+// Of what a term should take off the held-out rows: a true one takes about all, one of noise gives about as much back.
+constexpr double least_confirmed = 0.25;
 constexpr double shortest = 3.0;  // s, of the training logs together
 
 SignalSettings wide_band() {
@@ -153,20 +153,24 @@ RecordDelay record_delay(const LogRows& rows, const Scene& scene, const SearchRe
   return delay;
 }
 
-// Withdraws the term that does worst on held-out data, until each gains.
+// Withdraws the term that does worst on held-out data, until each gains and holds.
 HeldOutFigures keep_what_holds(const LogRows& rows, const Eigen::VectorXd& target, const Scene& scene,
                                SearchResult& found, Verdict& verdict, std::uint64_t seed) {
   for (;;) {
     auto figures = evaluate_held_out(rows, target, scene, found.terms, seed);
+    if (found.terms.empty()) return figures;
+    const auto holds = [&](std::size_t k) {
+      return figures.gains[k].force_rms_ratio < 1.0 ? figures.confirmed[k] : std::min(figures.confirmed[k], 0.0);
+    };
     std::size_t worst = 0;
-    for (std::size_t k = 1; k < figures.gains.size(); ++k)
-      if (figures.gains[k].force_rms_ratio > figures.gains[worst].force_rms_ratio) worst = k;
-    if (figures.gains.empty() || figures.gains[worst].force_rms_ratio < least_held_out_ratio) return figures;
+    for (std::size_t k = 1; k < found.terms.size(); ++k)
+      if (holds(k) < holds(worst)) worst = k;
+    if (holds(worst) > least_confirmed) return figures;
     verdict.rejected.push_back(
         {candidates()[found.terms[worst].candidate].name,
-         fmt::format("withdrawn: found in the training data, but no gain on held-out data (force rms {:.3f} times "
-                     "that without it)",
-                     figures.gains[worst].force_rms_ratio)});
+         fmt::format("withdrawn: found in the training data, but held-out data do not confirm it: it takes {:.0f} % of "
+                     "what it should there, expected more than {:.0f} % (force rms {:.4f} times that without it)",
+                     100.0 * figures.confirmed[worst], 100.0 * least_confirmed, figures.gains[worst].force_rms_ratio)});
     found.terms.erase(found.terms.begin() + static_cast<std::ptrdiff_t>(worst));
   }
 }

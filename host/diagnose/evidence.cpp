@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "host/diagnose/fisher.hpp"
+
 namespace stiction::host {
 namespace {
 
@@ -13,6 +15,9 @@ ColumnIndices own_columns(const ColumnIndices& chosen) {
   std::iota(own.begin(), own.end(), Eigen::Index{0});
   return own;
 }
+
+// Of the noise that all clusters agree on, against what the few under a term say of their own.
+constexpr double most_freedom = 30.0;
 
 }  // namespace
 
@@ -137,16 +142,19 @@ Eigen::VectorXd Evidence::residual(const ColumnIndices& chosen, const Eigen::Vec
   return r;
 }
 
-Eigen::MatrixXd Evidence::covariance(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const {
-  const auto k = static_cast<Eigen::Index>(chosen.size());
+Eigen::MatrixXd Evidence::inverse_gram(const ColumnIndices& chosen) const {
   const auto all = part(total_, chosen);
   const Eigen::VectorXd scale =
       all.gram.diagonal().unaryExpr([](double g) { return g > 0.0 ? 1.0 / std::sqrt(g) : 0.0; });
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
   decomposition.setThreshold(1e-9);
   decomposition.compute(scale.asDiagonal() * all.gram * scale.asDiagonal());
-  const Eigen::MatrixXd inverse = scale.asDiagonal() * decomposition.pseudoInverse() * scale.asDiagonal();
-  const Eigen::MatrixXd columns = white_columns_(Eigen::all, chosen);
+  return scale.asDiagonal() * decomposition.pseudoInverse() * scale.asDiagonal();
+}
+
+Eigen::MatrixXd Evidence::covariance(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const {
+  const auto k = static_cast<Eigen::Index>(chosen.size());
+  const Eigen::MatrixXd inverse = inverse_gram(chosen), columns = white_columns_(Eigen::all, chosen);
   const Eigen::VectorXd left = white_target_ - columns * weights;
   Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(k, k);
   for (const auto& cluster : clusters_) {
@@ -157,6 +165,45 @@ Eigen::MatrixXd Evidence::covariance(const ColumnIndices& chosen, const Eigen::V
   }
   const double n = static_cast<double>(clusters_.size());
   return n / std::max(n - static_cast<double>(k), 1.0) * inverse * meat * inverse;
+}
+
+// How evenly the noise lies over the clusters: their mean squares as if drawn around one variance with d0 degrees of
+// freedom, from the first two moments of the F distribution.
+Evidence::Noise Evidence::noise(const Eigen::VectorXd& left) const {
+  double mean = 0.0, square = 0.0, rows = 0.0;
+  const double n = static_cast<double>(clusters_.size());
+  for (const auto& cluster : clusters_) {
+    const double length = static_cast<double>(cluster.end - cluster.begin);
+    const double each =
+        left.segment(static_cast<Eigen::Index>(cluster.begin), static_cast<Eigen::Index>(cluster.end - cluster.begin))
+            .squaredNorm() /
+        length;
+    mean += each / n;
+    square += each * each / n;
+    rows += length / n;
+  }
+  const double spread = rows * (square / (mean * mean) - 1.0);  // 2 where all clusters have one variance
+  if (!(mean > 0.0)) return {0.0, 0.0};
+  return {mean, spread > 2.0 ? std::min((4.0 * spread + 2.0 * rows - 4.0) / (spread - 2.0), most_freedom)
+                             : most_freedom};
+}
+
+Evidence::Test Evidence::test(const ColumnIndices& chosen, const Eigen::VectorXd& weights, Eigen::Index first,
+                              Eigen::Index count) const {
+  const Eigen::VectorXd own = weights.segment(first, count);
+  const ColumnIndices of(chosen.begin() + first, chosen.begin() + first + count);
+  Eigen::MatrixXd spread = covariance(chosen, weights).block(first, first, count, count);
+  double freedom = std::max(bearing_clusters(of, own) - static_cast<double>(count), 2.0);
+  // Where few clusters bear on a term, what all clusters say of the noise stands in for what those few cannot. Rows
+  // that are correlated have no such variance.
+  if (whitening_) {
+    const auto all = noise(white_target_ - white_columns_(Eigen::all, chosen) * weights);
+    const Eigen::MatrixXd even = all.variance * inverse_gram(chosen).block(first, first, count, count);
+    spread = (all.freedom * even + freedom * spread) / (all.freedom + freedom);
+    freedom += all.freedom;
+  }
+  const double wald = own.dot(spread.completeOrthogonalDecomposition().solve(own)) / static_cast<double>(count);
+  return {wald, fisher_tail(wald, static_cast<double>(count), freedom)};
 }
 
 double Evidence::bearing_clusters(const ColumnIndices& of, const Eigen::VectorXd& weights) const {

@@ -48,6 +48,13 @@ class Evidence {
 
   // Sandwich covariance of the weights, by clusters of rows.
   Eigen::MatrixXd covariance(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const;
+  struct Test {
+    double wald = 0.0;  // over the number of columns
+    double p_value = 1.0;
+  };
+  // That the weights first .. first + count - 1 are zero. Of whitened rows the covariance by clusters is drawn to that
+  // of even noise by as much as the noise is even (moderated F: Smyth, Stat. Appl. Genet. Mol. Biol. 3, 2004).
+  Test test(const ColumnIndices& chosen, const Eigen::VectorXd& weights, Eigen::Index first, Eigen::Index count) const;
   // Number of clusters that bear on the columns `of` with these weights: (sum h)^2 / sum h^2 of their squared lengths.
   double bearing_clusters(const ColumnIndices& of, const Eigen::VectorXd& weights) const;
 
@@ -60,6 +67,11 @@ class Evidence {
     Eigen::VectorXd moment;
     double square = 0.0;
   };
+  struct Noise {
+    double variance, freedom;
+  };
+  Noise noise(const Eigen::VectorXd& left) const;
+  Eigen::MatrixXd inverse_gram(const ColumnIndices& chosen) const;
   static Fit solve(const Sums& sums, const ColumnIndices& chosen);
   static double left(const Sums& sums, const ColumnIndices& chosen, const Eigen::VectorXd& weights);
   static Sums part(const Sums& sums, const ColumnIndices& chosen);

@@ -140,7 +140,8 @@ HeldOutFigures evaluate_held_out(const LogRows& rows, const Eigen::VectorXd& tar
   }
   const Nuisances nuisances(rows, scene, constant, coulomb);
   const auto extended = nuisances.without(rest);
-  HeldOutFigures figures{rms(nuisances.without(target)), rms(extended), {}};
+  HeldOutFigures figures{rms(nuisances.without(target)), rms(extended), {}, {}};
+  const Whitening whitening(extended, rows.logs());
   for (std::size_t k = 0; k < terms.size(); ++k) {
     const auto& candidate = candidates()[terms[k].candidate];
     const Nuisances own(rows, scene, !candidate.names_constant && constant, !candidate.names_coulomb && coulomb);
@@ -149,6 +150,10 @@ HeldOutFigures evaluate_held_out(const LogRows& rows, const Eigen::VectorXd& tar
     gain.force_rms_ratio = rms(after) / rms(before);
     gain.ci95 = ratio_interval(after, before, rows, seed + k);
     figures.gains.push_back(gain);
+    const double whole = terms[k].whitened ? whitening(before - after).squaredNorm() : (before - after).squaredNorm();
+    const double taken = terms[k].whitened ? whitening(before).squaredNorm() - whitening(after).squaredNorm()
+                                           : before.squaredNorm() - after.squaredNorm();
+    figures.confirmed.push_back(whole > 0.0 ? taken / whole : 0.0);
   }
   return figures;
 }

@@ -13,6 +13,10 @@ namespace stiction::host {
 struct HeldOutFigures {
   double force_baseline = 0.0, force_extended = 0.0;  // N rms, without nuisances
   std::vector<HoldoutGain> gains;                     // of each term beside the others; force only
+  // Of what each term's force would take off the rows' square if it were all true, the share that it takes: about 1 of
+  // a true one, about -1 of one that fits the training records' noise. Of terms that were found on whitened rows,
+  // whitened.
+  std::vector<double> confirmed;
 };
 
 // `target`: residual force of the held-out rows. Intervals: bootstrap over blocks of rows, from `seed`.

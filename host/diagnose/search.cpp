@@ -8,7 +8,6 @@
 #include <map>
 #include <numeric>
 
-#include "host/diagnose/fisher.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
 #include "host/diagnose/refinement.hpp"
 
@@ -16,7 +15,7 @@ namespace stiction::host {
 namespace {
 
 constexpr std::size_t most_terms = 8;
-constexpr double significance = 0.01;  // over the number of candidates
+constexpr double significance = 0.05;  // over the number of candidates; held-out data have the last word
 constexpr double least_gain = 0.01;    // of the cross-validated residual
 constexpr double least_share = 2e-3;   // of the residual's variance: what is less is no cause that a part would show
 // Of the residual's variance: beside what takes more, the residual is no model of the noise, and what is whitened by it
@@ -272,13 +271,8 @@ Judgement Search::judge(const Set& set, std::size_t term) const {
   Eigen::Index at = 0;
   for (std::size_t k = 0; k < term; ++k) at += static_cast<Eigen::Index>(set[k]->columns.size());
   const auto count = static_cast<Eigen::Index>(set[term]->columns.size());
-  const Eigen::VectorXd own = weights.segment(at, count);
-  const Eigen::MatrixXd covariance = evidence_.covariance(with, weights).block(at, at, count, count);
-
-  const double bearing =
-      std::max(evidence_.bearing_clusters(set[term]->columns, own) - static_cast<double>(count), 2.0);
-  const double wald = own.dot(covariance.completeOrthogonalDecomposition().solve(own)) / static_cast<double>(count);
-  result.p_value = std::min(1.0, trials(set[term]->candidate) * fisher_tail(wald, static_cast<double>(count), bearing));
+  const auto test = evidence_.test(with, weights, at, count);
+  result.p_value = std::min(1.0, trials(set[term]->candidate) * test.p_value);
 
   // Off the force itself, or off what whitening leaves of it: a wave of minutes is much of the first and little of the
   // second, a push of milliseconds the other way round.
@@ -290,7 +284,8 @@ Judgement Search::judge(const Set& set, std::size_t term) const {
   for (std::size_t k = 0; k < first.size(); ++k) second[k] = !(first[k] = k < first.size() / 2);
   result.first_half = size_in(first, set, term, weights);
   result.second_half = size_in(second, set, term, weights);
-  const auto size_error = std::sqrt(static_cast<double>(count) / std::max(wald * static_cast<double>(count), 1e-12));
+  const auto size_error =
+      std::sqrt(static_cast<double>(count) / std::max(test.wald * static_cast<double>(count), 1e-12));
   result.first_error = result.second_error = std::sqrt(2.0) * size_error;
 
   const double limit = significance / static_cast<double>(candidates().size());
@@ -461,7 +456,8 @@ SearchResult Search::run(const std::function<void()>& progress) {
   if (!settled_.empty()) evidence_.whiten({});
   SearchResult result;
   for (std::size_t k = 0; k < set.size(); ++k) {
-    Term term{set[k]->candidate, set[k]->nonlinear, {}, {}, 0.0, judged.at(set[k]->candidate), alternatives(set, k)};
+    Term term{set[k]->candidate, set[k]->nonlinear,   {}, {}, 0.0, judged.at(set[k]->candidate),
+              !settled(set[k]),  alternatives(set, k)};
     auto others = set;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
     term.explains = (plain_.fit(columns_of(others)).left - plain_.fit(columns_of(set)).left) / plain_.total();

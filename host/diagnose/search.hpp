@@ -33,6 +33,7 @@ struct Term {
   Eigen::MatrixXd covariance;  // of the weights, and of the nonlinear parameter behind them
   double explains = 0.0;       // share of the target's square, given the others
   Judgement judgement;
+  bool whitened = false;                  // found on whitened rows
   std::vector<std::size_t> alternatives;  // candidates that do as well in its place, as far as the blocks tell
 };
 

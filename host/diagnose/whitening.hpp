@@ -18,6 +18,8 @@ class Whitening {
   // Of a residual in rows of several logs; `logs`: first row of each.
   Whitening(const Eigen::VectorXd& residual, std::span<const std::size_t> logs);
 
+  // Whether it changes anything.
+  explicit operator bool() const { return !predictor_.empty(); }
   // A column of all rows, whitened; the rows at each log's start that have too little before them are 0.
   Eigen::VectorXd operator()(const Eigen::VectorXd& column) const;
   // The transpose of that: (W'c)'d = c'(W d).
