@@ -21,8 +21,6 @@
 namespace stiction::host {
 namespace {
 
-// Of what a term should take off the held-out rows: a true one takes about all, one of noise gives about as much back.
-constexpr double least_confirmed = 0.25;
 constexpr double shortest = 3.0;  // s, of the training logs together
 
 SignalSettings wide_band() {
@@ -165,12 +163,13 @@ HeldOutFigures keep_what_holds(const LogRows& rows, const Eigen::VectorXd& targe
     std::size_t worst = 0;
     for (std::size_t k = 1; k < found.terms.size(); ++k)
       if (holds(k) < holds(worst)) worst = k;
-    if (holds(worst) > least_confirmed) return figures;
+    if (holds(worst) > 0.0) return figures;
     verdict.rejected.push_back(
         {candidates()[found.terms[worst].candidate].name,
-         fmt::format("withdrawn: found in the training data, but held-out data do not confirm it: it takes {:.0f} % of "
-                     "what it should there, expected more than {:.0f} % (force rms {:.4f} times that without it)",
-                     100.0 * figures.confirmed[worst], 100.0 * least_confirmed, figures.gains[worst].force_rms_ratio)});
+         fmt::format(
+             "withdrawn: found in the training data, but no gain on held-out data: of what it should take there it "
+             "takes {:.0f} % (force rms {:.4f} times that without it)",
+             100.0 * figures.confirmed[worst], figures.gains[worst].force_rms_ratio)});
     found.terms.erase(found.terms.begin() + static_cast<std::ptrdiff_t>(worst));
   }
 }

@@ -108,6 +108,12 @@ std::vector<Case> cases() {
   return all;
 }
 
+std::string rejections_of(const host::Verdict& verdict) {
+  std::string text;
+  for (const auto& rejected : verdict.rejected) text += fmt::format("{}: {}\n", rejected.effect, rejected.why);
+  return text;
+}
+
 class EachEffect : public ::testing::TestWithParam<std::size_t> {};
 
 TEST_P(EachEffect, is_found_with_its_parameters) {
@@ -117,7 +123,7 @@ TEST_P(EachEffect, is_found_with_its_parameters) {
   const double value = names_of(verdict).starts_with(c.effect) ? value_of(verdict, c.key) : NAN;
   figure(fmt::format("diagnosis of {}", c.effect),
          fmt::format("found {}; {} {:.4g}, hidden {:.4g}", names_of(verdict), c.key, value, c.value));
-  EXPECT_EQ(names_of(verdict), c.effect);
+  EXPECT_EQ(names_of(verdict), c.effect) << rejections_of(verdict);
   EXPECT_NEAR(value, c.value, c.tolerance * c.value) << c.effect;
 }
 
