@@ -69,14 +69,14 @@ std::vector<Log> without_noise(const sim::Machine& machine, std::size_t axis, co
   }
 }
 
-LoopResponse::LoopResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
-                           const SignalSettings& settings)
+EffectResponse::EffectResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
+                               const SignalSettings& settings)
     : bench_(bench_of(machine, axis, logs)), settings_(settings) {
   bench_.machine.axes.front().encoder.noise = 0.0;
-  for (std::size_t k = 0; k < bench_.logs.size(); ++k) without_.push_back(residual(k, bench_.machine));
+  without_.resize(bench_.logs.size());
 }
 
-std::vector<double> LoopResponse::residual(std::size_t log, const sim::Machine& machine) const {
+std::vector<double> EffectResponse::residual(std::size_t log, const sim::Machine& machine) const {
   const auto& file = bench_.machine.axes.front();
   const auto simulated = replay<FixedSignals>(machine, bench_.logs[log], {file.name});
   const auto motion = motion_of(simulated, simulated.axes.front(), file, Amperes::amplitude, settings_);
@@ -86,12 +86,13 @@ std::vector<double> LoopResponse::residual(std::size_t log, const sim::Machine& 
   return force;
 }
 
-std::vector<double> LoopResponse::operator()(const Motion& motion, const sim::Effect& effect) const {
+std::vector<double> EffectResponse::operator()(const Motion& motion, const sim::Effect& effect) {
   for (std::size_t k = 0; k < bench_.logs.size(); ++k) {
     if (bench_.logs[k].source != motion.source || bench_.logs[k].axes.front().x_set != motion.x_set) continue;
     auto machine = bench_.machine;
     machine.axes.front().effects.push_back(effect);
     try {
+      if (without_[k].empty()) without_[k] = residual(k, bench_.machine);
       auto force = residual(k, machine);
       for (std::size_t i = 0; i < force.size(); ++i) force[i] -= without_[k][i];
       return force;

@@ -28,22 +28,22 @@ std::vector<Log> without_noise(const sim::Machine& machine, std::size_t axis, co
 
 // What an effect does to the residual force of a replayed log, through the control loop. Motions are known by the
 // source and the first time of the logs.
-class LoopResponse {
+class EffectResponse {
  public:
   // `logs`: with set-points, of that axis; `settings`: those of the motions.
-  LoopResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
-               const SignalSettings& settings);
+  EffectResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
+                 const SignalSettings& settings);
 
   // N at the motion's rate: with the effect less without; zeros where the machine cannot follow with it. Throws
   // sim::EffectError, std::out_of_range for a motion of another log.
-  std::vector<double> operator()(const Motion& motion, const sim::Effect& effect) const;
+  std::vector<double> operator()(const Motion& motion, const sim::Effect& effect);
 
  private:
   std::vector<double> residual(std::size_t log, const sim::Machine& machine) const;
 
   Bench bench_;
   SignalSettings settings_;
-  std::vector<std::vector<double>> without_;  // of each log
+  std::vector<std::vector<double>> without_;  // of each log, where it was asked for
 };
 
 }  // namespace stiction::host

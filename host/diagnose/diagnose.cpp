@@ -226,7 +226,7 @@ Verdict diagnose(const DiagnoseInput& input) {
   if (!held_motion.empty()) {
     auto all = logs;
     all.insert(all.end(), held_out.begin(), held_out.end());
-    scene.response = LoopResponse(input.machine, input.axis, all, settings);
+    scene.response = EffectResponse(input.machine, input.axis, all, settings);
   }
   auto found = search_causes(regressors, target, scene, input.progress);
   const auto found_before = found.terms.size();

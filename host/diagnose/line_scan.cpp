@@ -98,6 +98,22 @@ double gain_of(Complex moment, Complex twice, double square) {
   return (ss * cr * cr - 2.0 * cs * cr * sr + cc * sr * sr) / determinant;
 }
 
+// |W|^2 of a whitening over the rows' frequencies up to the band's end, in a table.
+class WhitenedGain {
+ public:
+  WhitenedGain(const Whitening& whitening, double row_period) : step_(band / steps / row_period) {
+    for (std::size_t k = 0; k <= steps; ++k)
+      table_.push_back(whitening.gain_square(band * static_cast<double>(k) / static_cast<double>(steps)));
+  }
+  // Hz, up to the band's end.
+  double at(double frequency) const { return table_[std::min(static_cast<std::size_t>(frequency / step_), steps)]; }
+
+ private:
+  static constexpr std::size_t steps = 256;
+  double step_;
+  std::vector<double> table_;
+};
+
 // Rows in a row of one record that see an order: slower than the band and some periods long.
 struct Stretch {
   std::size_t begin, end;
@@ -122,9 +138,12 @@ std::vector<Stretch> stretches(const LogRows& rows, const Eigen::VectorXd& x, do
   return found;
 }
 
-// Of the stretches, the gain at orders first, first + step, ..; the columns grow with the speed squared.
-std::vector<double> gains(const LogRows& rows, const Eigen::VectorXd& residual, const Eigen::VectorXd& x,
-                          const std::vector<Stretch>& in, double first, double step, std::size_t count) {
+// Of the stretches, the gain at orders first, first + step, ..; the columns grow with the speed squared. `weighed`: the
+// residual, whitened and taken back (Whitening::transposed).
+std::vector<double> gains(const LogRows& rows, const Eigen::VectorXd& weighed, const WhitenedGain& whitened,
+                          const Eigen::VectorXd& x, const std::vector<Stretch>& in, double first, double step,
+                          std::size_t count) {
+  const double middle = first + 0.5 * step * static_cast<double>(count);
   std::vector<double> all(count, 0.0);
   for (const auto& s : in) {
     const std::size_t n = s.end - s.begin;
@@ -137,8 +156,8 @@ std::vector<double> gains(const LogRows& rows, const Eigen::VectorXd& residual, 
       wave[i] = std::polar(1.0, way * first);
       turn[i] = std::polar(1.0, way * step);
       weight[i] = rows.velocity[row] * rows.velocity[row];
-      moment[i] = weight[i] * residual[row];
-      weight[i] *= weight[i];
+      moment[i] = weight[i] * weighed[row];
+      weight[i] *= weight[i] * whitened.at(std::abs(rows.velocity[row]) * middle);
       square += weight[i];
     }
     for (std::size_t k = 0; k < count; ++k) {
@@ -157,9 +176,9 @@ std::vector<double> gains(const LogRows& rows, const Eigen::VectorXd& residual, 
 // What an error of the encoder's reading takes off the residual, of all rows in which the log shows it within the band.
 class ShownError {
  public:
-  ShownError(const LogRows& rows, const Eigen::VectorXd& residual, const Eigen::VectorXd& x, const sim::Axis& axis,
-             const sim::Timing& timing)
-      : rows_(rows), residual_(residual), x_(x) {
+  ShownError(const LogRows& rows, const Eigen::VectorXd& weighed, const WhitenedGain& whitened,
+             const Eigen::VectorXd& x, const sim::Axis& axis, const sim::Timing& timing)
+      : rows_(rows), weighed_(weighed), whitened_(whitened), x_(x) {
     for (const auto& motion : rows.motions()) {
       responses_.emplace_back(axis, timing, motion.period);
       auto& table = drive_.emplace_back();
@@ -180,9 +199,9 @@ class ShownError {
       Complex moment = 0.0, twice = 0.0;
       double square = 0.0;
       for (std::size_t n = 0; n < row_.size(); ++n) {
-        moment += residual_[row_[n]] * wave_[n];
-        twice += wave_[n] * wave_[n];
-        square += std::norm(wave_[n]);
+        moment += weighed_[row_[n]] * wave_[n];
+        twice += gain_[n] * (wave_[n] * wave_[n]);
+        square += gain_[n] * std::norm(wave_[n]);
         wave_[n] *= turn_[n];
       }
       all.push_back(gain_of(moment, twice, square));
@@ -199,7 +218,7 @@ class ShownError {
 
   // The rows that show this order, and the response in each.
   void gather(double order) const {
-    row_.clear(), wave_.clear(), turn_.clear();
+    row_.clear(), wave_.clear(), turn_.clear(), gain_.clear();
     for (std::size_t r = 0; r < rows_.logs().size(); ++r)
       for (std::size_t i = rows_.logs()[r]; i < record_end(rows_, r); ++i) {
         const auto row = static_cast<Eigen::Index>(i);
@@ -211,17 +230,20 @@ class ShownError {
         const Complex response =
             drive_[r][static_cast<std::size_t>(frequency / frequency_step)] + responses_[r].mass() * w * w;
         row_.push_back(row);
+        gain_.push_back(whitened_.at(shown));
         wave_.push_back(v < 0.0 ? std::conj(response) : response);
       }
   }
 
   const LogRows& rows_;
-  const Eigen::VectorXd& residual_;
+  const Eigen::VectorXd& weighed_;
+  const WhitenedGain& whitened_;
   const Eigen::VectorXd& x_;
   std::vector<ReadingResponse> responses_;
   std::vector<std::vector<Complex>> drive_;
   mutable std::vector<Eigen::Index> row_;
   mutable std::vector<Complex> wave_, turn_;
+  mutable std::vector<double> gain_;
 };
 
 }  // namespace
@@ -265,12 +287,7 @@ LineScan scan_pitches(const LogRows& rows, const Eigen::VectorXd& residual, cons
   const double step = 0.125 / scan.extent, highest = std::min(most_cycles / scan.extent, 1.0 / shortest_pitch);
   const Eigen::VectorXd moments = whitening.transposed(whitening(residual)).cwiseProduct(carrier);
   std::vector<double> all(static_cast<std::size_t>(highest / step), 0.0);
-  // |W|^2 over the rows' frequencies up to the band's end, in a table.
-  constexpr std::size_t table_steps = 256;
-  std::vector<double> gain_square(table_steps + 1);
-  for (std::size_t k = 0; k <= table_steps; ++k)
-    gain_square[k] = whitening.gain_square(band * static_cast<double>(k) / static_cast<double>(table_steps));
-  const double table_step = band / static_cast<double>(table_steps) / rows.period(0);  // Hz
+  const WhitenedGain whitened(whitening, rows.period(0));
   // By thirds of an octave, each of the rows that are slow enough for its shortest pitch.
   std::size_t end = all.size();
   for (std::size_t from = 8, to = from; from < all.size(); from = to) {
@@ -283,7 +300,7 @@ LineScan scan_pitches(const LogRows& rows, const Eigen::VectorXd& residual, cons
       if (speed * top > band / rows.period(0))
         moment[i] = square[i] = 0.0;
       else
-        seen += square[i], square[i] *= gain_square[static_cast<std::size_t>(speed * middle / table_step)];
+        seen += square[i], square[i] *= whitened.at(speed * middle);
     }
     if (seen < least_seen * carrier.squaredNorm()) {
       end = from;
@@ -308,8 +325,8 @@ LineScan scan_pitches(const LogRows& rows, const Eigen::VectorXd& residual, cons
 // First over stretches of slow rows of some fifty periods, each with its own phase. Around what stands out, and at the
 // usual periods, then over all rows that show the error at all, which tell periods apart as finely as their extent
 // allows.
-LineScan scan_signal_periods(const LogRows& rows, const Eigen::VectorXd& residual, const sim::Axis& axis,
-                             const sim::Timing& timing, std::size_t count) {
+LineScan scan_signal_periods(const LogRows& rows, const Eigen::VectorXd& residual, const Whitening& whitening,
+                             const sim::Axis& axis, const sim::Timing& timing, std::size_t count) {
   const auto x = rows.sampled([](const Motion& m) { return m.x; });
   LineScan scan;
   scan.extent = x.maxCoeff() - x.minCoeff();
@@ -319,12 +336,14 @@ LineScan scan_signal_periods(const LogRows& rows, const Eigen::VectorXd& residua
   };
   const auto higher = [](const Peak& a, const Peak& b) { return a.height > b.height; };
   std::vector<Peak> slow;
-  const double variance = residual.squaredNorm() / static_cast<double>(residual.size());
+  const Eigen::VectorXd white = whitening(residual), weighed = whitening.transposed(white);
+  const WhitenedGain whitened(whitening, rows.period(0));
+  const double variance = white.squaredNorm() / static_cast<double>(white.size());
   for (double order = 1.0 / longest_signal; order < 1.0 / shortest_signal; order *= 2.0) {
     const auto in = stretches(rows, x, 2.0 * order, stretch_cycles / order);
     if (in.empty()) break;
     const double step = 0.125 * order / stretch_cycles;
-    const auto found = gains(rows, residual, x, in, order, step, static_cast<std::size_t>(order / step));
+    const auto found = gains(rows, weighed, whitened, x, in, order, step, static_cast<std::size_t>(order / step));
     scan.trials += found.size() / 8 + 1;
     for (const auto k : outstanding(found, count, 8))
       slow.push_back(
@@ -332,7 +351,7 @@ LineScan scan_signal_periods(const LogRows& rows, const Eigen::VectorXd& residua
   }
   std::sort(slow.begin(), slow.end(), higher);
   slow.resize(std::min(slow.size(), count));
-  const ShownError shown(rows, residual, x, axis, timing);
+  const ShownError shown(rows, weighed, whitened, x, axis, timing);
   std::vector<Peak> peaks;
   for (const auto& peak : slow) {
     constexpr std::size_t together = 16;

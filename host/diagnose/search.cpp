@@ -114,8 +114,8 @@ class Search {
     const Eigen::VectorXd by_itself = Eigen::VectorXd::Ones(rows_.rows());
     scene_.pitches = scan_pitches(rows_, left, whitening, by_itself, known_pitches_, pitches_tried);
     scene_.modulation = scan_pitches(rows_, left, whitening, carrier_, known_pitches_, pitches_tried);
-    scene_.times = scan_times(rows_, left, lines_tried);
-    scene_.signals_of_encoder = scan_signal_periods(rows_, left, scene_.axis, scene_.timing, lines_tried);
+    scene_.times = scan_times(rows_, whitening(left), lines_tried);
+    scene_.signals_of_encoder = scan_signal_periods(rows_, left, whitening, scene_.axis, scene_.timing, lines_tried);
     add_options(true);
   }
 

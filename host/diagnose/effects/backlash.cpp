@@ -12,8 +12,8 @@ namespace {
 // A file whose friction has no presliding of its own leaves one in the residual, over micrometres as a small gap does.
 std::vector<double> grid(const Scene& scene) {
   if (!scene.response) return {};
-  if (!contact_stiffness_of(scene.axis)) return {16e-6, 64e-6};
-  return {0.25e-6, 1e-6, 4e-6, 16e-6, 64e-6};
+  if (!contact_stiffness_of(scene.axis)) return {32e-6};
+  return {0.5e-6, 4e-6, 32e-6};
 }
 
 Columns columns(const Scene& scene, const Motion& motion, double width) {
@@ -21,9 +21,9 @@ Columns columns(const Scene& scene, const Motion& motion, double width) {
   for (double& force : column) force /= std::abs(width);
   return {column};
 }
-// A grid of fours: a width beyond the next value is described by that one.
+// A width beyond the next value of the grid is described by that one.
 bool possible(const Scene&, double width, const Eigen::VectorXd& w) {
-  return w[0] > 0.25 * width && w[0] < 4.0 * width;
+  return w[0] > 0.125 * width && w[0] < 8.0 * width;
 }
 void describe(const Scene&, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
   add_key(finding, "width", "_m", {w[0]}, {std::sqrt(c(0, 0))});
