@@ -19,6 +19,14 @@ std::variant<DcMotor, SynchronousMotor, ForceSource> make_motor(const Motor& mot
   throw std::invalid_argument("motor.model: unknown model");
 }
 
+// The alternative that a variant is known to hold.
+template <class T, class Variant>
+T& held(Variant& variant) {
+  T* const alternative = std::get_if<T>(&variant);
+  if (alternative == nullptr) __builtin_unreachable();
+  return *alternative;
+}
+
 }  // namespace
 
 AxisPlant::AxisPlant(const Timing& timing, const Axis& axis, double position, std::uint64_t seed)
@@ -50,15 +58,15 @@ void AxisPlant::switch_off() {
 
 template <class MotorModel, class Friction, bool effects>
 void AxisPlant::tick(AxisPlant& plant) {
-  auto& friction = std::get<Friction>(plant.friction_);
+  auto& friction = held<Friction>(plant.friction_);
   plant.inverter_.advance_tick<MotorModel::phases>();
   if (plant.enabled_) [[likely]] {
-    auto& motor = std::get<MotorModel>(plant.motor_);
+    auto& motor = held<MotorModel>(plant.motor_);
     if (plant.inverter_.changes_within_tick()) [[unlikely]]
       plant.advance_unevenly<effects>(motor, friction);
     else
       plant.advance_evenly<effects>(motor, friction);
-    plant.current_ = motor.current();
+    for (std::size_t k = 0; k < MotorModel::phases; ++k) plant.current_[k] = motor.current()[k];
   } else {
     OpenWindings none;
     plant.advance_unevenly<effects>(none, friction);
@@ -77,7 +85,7 @@ void AxisPlant::tick(AxisPlant& plant) {
 // twelve.
 template <bool effects, class MotorModel, class Friction>
 inline void AxisPlant::advance_evenly(MotorModel& motor, Friction& friction) {
-  const PhaseValues voltage = inverter_.voltage();
+  const PhaseValues voltage = inverter_.voltage<MotorModel::phases>();
   double change = 0.0;
   [&]<std::size_t... i>(std::index_sequence<i...>) {
     ((static_cast<void>(i), change = step<effects>(motor, friction, voltage)), ...);

@@ -62,14 +62,14 @@ class LuGre {
   // Lets the contact creep for one step of held velocity (m/s); returns k_s z + b_s z' (N) at its end.
   [[gnu::always_inline]] double move_contact(double velocity) {
     double relaxed = stiffness_step_per_coulomb_ * std::abs(velocity);  // |v| step / g(v)
-    double rate = 0.0;
+    double divisor = 0.0;
     if (relaxed <= series_up_to_) [[likely]] {
-      rate = detail::relaxation_series(relaxed);
+      divisor = detail::relaxation_divisor(relaxed);
     } else {
       if (stribeck_) relaxed = stiffness_step_ * std::abs(velocity) / level(velocity);
-      rate = relaxation(relaxed);
+      divisor = relaxation_divisor(relaxed);
     }
-    const double change = rate * (stiffness_step_ * velocity - relaxed * spring_);
+    const double change = (stiffness_step_ * velocity - relaxed * spring_) / divisor;
     spring_ += change;
     return spring_ + damping_ * change;
   }
@@ -79,7 +79,7 @@ class LuGre {
   [[gnu::always_inline]] double level(double velocity) const {
     return coulomb_ + rise_ * fall(velocity * per_stribeck_velocity_);
   }
-  // A function without effects that is called, as in relaxation(): where g is constant it costs nothing.
+  // A function without effects that is called, as in relaxation_divisor(): where g is constant it costs nothing.
   [[gnu::const, gnu::noinline]] static double fall(double ratio) { return std::exp(-ratio * ratio); }
 
   double coulomb_;                     // F_C

@@ -245,13 +245,11 @@ class Axis {
     const auto phase = Commutation<S>::phases(S::angle(s.x, config_.inverse_pole_pair_pitch));
     s.i = Commutation<S>::amplitude(s.i_phase, phase, saturations);
     const auto set = Commutation<S>::phase_currents(s.i_set, phase, saturations);
-    int side = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      auto u = control_current(k, set[k], s.i_phase[k], s);
-      command.voltage[k] = u.value;
-      if (k == 0) side = phase[k] < typename S::Sine{} ? -u.side : u.side;
-    }
-    return side;
+    auto a = control_current(0, set[0], s.i_phase[0], s);
+    auto b = control_current(1, set[1], s.i_phase[1], s);
+    auto c = control_current(2, set[2], s.i_phase[2], s);
+    command.voltage = {a.value, b.value, c.value};
+    return phase[0] < typename S::Sine{} ? -a.side : a.side;
   }
 
   constexpr int control_direct(AxisSignals<S>& s, Command<S>& command) {
