@@ -40,10 +40,11 @@ class LuGre {
         rise_(p.coulomb * (p.static_ratio - 1.0)),
         per_stribeck_velocity_(1.0 / p.stribeck_velocity),
         stribeck_(p.static_ratio > 1.0),
-        series_up_to_(stribeck_ ? -1.0 : detail::longest),
         stiffness_(p.stiffness),
         stiffness_step_(p.stiffness * body.step),
-        stiffness_step_per_coulomb_(stiffness_step_ / p.coulomb),
+        creep_(p.coulomb / stiffness_step_),
+        series_up_to_(stribeck_ ? -1.0 : detail::longest * creep_),
+        square_(detail::divisor_c2 / creep_),
         damping_(2.0 * p.damping_ratio * std::sqrt(p.stiffness * body.mass) / stiffness_step_),
         decay_(1.0 / (1.0 + body.step / body.mass * p.viscous)),
         gain_(decay_ * body.step / body.mass) {}
@@ -61,15 +62,17 @@ class LuGre {
 
   // Lets the contact creep for one step of held velocity (m/s); returns k_s z + b_s z' (N) at its end.
   [[gnu::always_inline]] double move_contact(double velocity) {
-    double relaxed = stiffness_step_per_coulomb_ * std::abs(velocity);  // |v| step / g(v)
-    double divisor = 0.0;
-    if (relaxed <= series_up_to_) [[likely]] {
-      divisor = detail::relaxation_divisor(relaxed);
+    const double speed = std::abs(velocity);
+    double level = coulomb_;
+    double divisor = 0.0;  // relaxation_divisor(speed / creep) * creep
+    if (speed <= series_up_to_) [[likely]] {
+      divisor = creep_ + speed * (detail::divisor_c1 + speed * square_);
     } else {
-      if (stribeck_) relaxed = stiffness_step_ * std::abs(velocity) / level(velocity);
-      divisor = relaxation_divisor(relaxed);
+      if (stribeck_) level = this->level(velocity);
+      const double creep = level / stiffness_step_;
+      divisor = relaxation_divisor(speed / creep) * creep;
     }
-    const double change = (stiffness_step_ * velocity - relaxed * spring_) / divisor;
+    const double change = (level * velocity - speed * spring_) / divisor;
     spring_ += change;
     return spring_ + damping_ * change;
   }
@@ -86,10 +89,11 @@ class LuGre {
   double rise_;                        // F_Ts - F_C
   double per_stribeck_velocity_;       // 1 / v_s
   bool stribeck_;                      // whether g depends on v
-  double series_up_to_;                // |v| step / g(v) for which the series holds; one test for this and Stribeck's
   double stiffness_;                   // k_s
   double stiffness_step_;              // k_s times step
-  double stiffness_step_per_coulomb_;  // the share of the limit that 1 m/s creeps in a step
+  double creep_;                       // m/s that creeps F_C / k_s in a step
+  double series_up_to_;                // m/s up to which the series holds; one test for this and Stribeck's
+  double square_;                      // of the divisor
   double damping_;                     // b_s / (k_s step)
   double decay_;                       // of the velocity by viscous friction in a step
   double gain_;                        // m/s per N in a step

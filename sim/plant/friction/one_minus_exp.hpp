@@ -10,10 +10,8 @@ namespace detail {
 // a / (1 - exp(-a)) up to `longest`: exact at 0, minimax to 1.9e-8. Its series 1 + a / 2 + a^2 / 12 - a^4 / 720 has no
 // third power, so that two terms do what its inverse needs three for; who divides by it spares the product, too.
 inline constexpr double longest = 0.117;
-constexpr double relaxation_divisor(double a) {
-  constexpr double c1 = 0.50000150353258043, c2 = 0.083302942132800786;
-  return 1.0 + a * (c1 + a * c2);
-}
+inline constexpr double divisor_c1 = 0.50000150353258043, divisor_c2 = 0.083302942132800786;
+constexpr double relaxation_divisor(double a) { return 1.0 + a * (divisor_c1 + a * divisor_c2); }
 
 }  // namespace detail
 
