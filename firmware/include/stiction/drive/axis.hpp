@@ -74,6 +74,7 @@ struct AxisState {
   typename VelocityPi<S>::State velocity_pi{};
   typename Notch<S>::State notch{};
   std::array<typename CurrentPi<S>::State, 3> current_pi{};
+  std::int32_t cycle_ticks_left = 0;  // of the window of both limit cycles
   LimitCycle::State current_cycle{};
   LimitCycle::State voltage_cycle{};  // of the first phase: an unstable current loop oscillates in every phase
   SaturationCounter saturations{};
@@ -184,6 +185,8 @@ class Axis {
     s.i_set = i_set.value;
     s.limiting.current = i_set.limiting();
     VelocityPi<S>::track(config_.velocity, state_.velocity_pi, pi.beyond_format, i_wanted, i_set.value, saturations);
+    LimitCycle::advance_window(state_.cycle_ticks_left, config_.limit_cycle_window_ticks, state_.current_cycle,
+                               state_.voltage_cycle);
     watch_cycle(state_.current_cycle, i_set.side, now_ns);
   }
 
@@ -203,7 +206,7 @@ class Axis {
   using Voltage = typename S::Voltage;
 
   constexpr void watch_cycle(LimitCycle::State& cycle, int side, std::int64_t now_ns) {
-    if (LimitCycle::step(cycle, side, config_.limit_cycle_window_ticks)) trip(Fault::limit_cycle, now_ns);
+    if (LimitCycle::step(cycle, side)) trip(Fault::limit_cycle, now_ns);
   }
   // A sample that is not valid leaves position and velocity as they were; too many in a row are a fault.
   constexpr void take_feedback(const Feedback<S>& feedback, std::int64_t now_ns) {
