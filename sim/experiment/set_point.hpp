@@ -16,6 +16,7 @@ struct AxisSetPoint {
 // Marks the set-point as not valid when one of its values is not a number or out of range.
 template <class S>
 SetPoint<S> to_set_point(const AxisSetPoint& set) {
+  // One by one: into a part of the whole the compiler writes zeros first, which costs five instructions.
   typename S::Position position{};
   typename S::Velocity velocity{};
   typename S::Acceleration acceleration{};

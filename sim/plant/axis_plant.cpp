@@ -19,7 +19,7 @@ std::variant<DcMotor, SynchronousMotor, ForceSource> make_motor(const Motor& mot
   throw std::invalid_argument("motor.model: unknown model");
 }
 
-// The alternative that a variant is known to hold.
+// The alternative that a variant is known to hold: tick() is chosen by it, and std::get would test it in every tick.
 template <class T, class Variant>
 T& held(Variant& variant) {
   T* const alternative = std::get_if<T>(&variant);

@@ -44,9 +44,9 @@ class AxisPlant {
   // Moves on by one fast tick of the drive.
   void advance_tick() { tick_(*this); }
 
-  double position() const { return position_; }              // m, carriage
-  double velocity() const { return velocity_; }              // m/s, carriage
-  double motor_force() const { return motor_force_; }        // N, at the end of the last step
+  double position() const { return position_; }        // m, carriage
+  double velocity() const { return velocity_; }        // m/s, carriage
+  double motor_force() const { return motor_force_; }  // N, at the end of the last step
   // N, mean over the last step, positive opposes +v
   double friction_force() const { return force_ - mass_per_step_ * change_; }
   // m, before increment and noise

@@ -79,7 +79,7 @@ class InverterModel {
   PhaseValues command_{};
   std::vector<PhaseValues> commands_;  // ring, one a tick: those that act in this one and what comes after them
   std::size_t last_;                   // slot; size() of the vector is a division by the size of its elements
-  std::size_t oldest_ = 0;  // slot
+  std::size_t oldest_ = 0;             // slot
 };
 
 }  // namespace stiction::sim

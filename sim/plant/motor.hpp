@@ -53,10 +53,10 @@ class DcMotor {
 
  private:
   Winding winding_;
-  double gain_;      // N per V in a step, of half the force
-  double emf_gain_;  // N per m/s in a step, of half the force
-  double amperes_;   // A per N of half the force
-  double half_force_ = 0.0;  // N, of the current: in this unit a step costs a product less
+  double gain_;              // N per V in a step, of half the force
+  double emf_gain_;          // N per m/s in a step, of half the force
+  double amperes_;           // A per N of half the force
+  double half_force_ = 0.0;  // N, in place of the current: a step costs a product less
 };
 
 // Three-phase synchronous linear motor (3.7-3.12) with a star point: its currents sum to zero, so that the mutual

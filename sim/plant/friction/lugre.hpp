@@ -63,16 +63,16 @@ class LuGre {
   // Lets the contact creep for one step of held velocity (m/s); returns k_s z + b_s z' (N) at its end.
   [[gnu::always_inline]] double move_contact(double velocity) {
     const double speed = std::abs(velocity);
-    double level = coulomb_;
-    double divisor = 0.0;  // relaxation_divisor(speed / creep) * creep
+    double most = coulomb_;  // k_s g(v)
+    double divisor = 0.0;    // relaxation_divisor(speed / creep) times creep, the speed that creeps g(v) in a step
     if (speed <= series_up_to_) [[likely]] {
       divisor = creep_ + speed * (detail::divisor_c1 + speed * square_);
     } else {
-      if (stribeck_) level = this->level(velocity);
-      const double creep = level / stiffness_step_;
+      if (stribeck_) most = level(velocity);
+      const double creep = most / stiffness_step_;
       divisor = relaxation_divisor(speed / creep) * creep;
     }
-    const double change = (level * velocity - speed * spring_) / divisor;
+    const double change = (most * velocity - speed * spring_) / divisor;
     spring_ += change;
     return spring_ + damping_ * change;
   }
@@ -85,19 +85,19 @@ class LuGre {
   // A function without effects that is called, as in relaxation_divisor(): where g is constant it costs nothing.
   [[gnu::const, gnu::noinline]] static double fall(double ratio) { return std::exp(-ratio * ratio); }
 
-  double coulomb_;                     // F_C
-  double rise_;                        // F_Ts - F_C
-  double per_stribeck_velocity_;       // 1 / v_s
-  bool stribeck_;                      // whether g depends on v
-  double stiffness_;                   // k_s
-  double stiffness_step_;              // k_s times step
-  double creep_;                       // m/s that creeps F_C / k_s in a step
-  double series_up_to_;                // m/s up to which the series holds; one test for this and Stribeck's
-  double square_;                      // of the divisor
-  double damping_;                     // b_s / (k_s step)
-  double decay_;                       // of the velocity by viscous friction in a step
-  double gain_;                        // m/s per N in a step
-  double spring_ = 0.0;                // k_s z, N
+  double coulomb_;                // F_C
+  double rise_;                   // F_Ts - F_C
+  double per_stribeck_velocity_;  // 1 / v_s
+  bool stribeck_;                 // whether g depends on v
+  double stiffness_;              // k_s
+  double stiffness_step_;         // k_s times step
+  double creep_;                  // m/s that creeps F_C / k_s in a step
+  double series_up_to_;           // m/s up to which the series holds; one test for this and Stribeck's
+  double square_;                 // s/m, of the speed's square in the divisor
+  double damping_;                // b_s / (k_s step)
+  double decay_;                  // of the velocity by viscous friction in a step
+  double gain_;                   // m/s per N in a step
+  double spring_ = 0.0;           // k_s z, N
 };
 
 }  // namespace stiction::sim

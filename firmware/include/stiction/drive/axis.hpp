@@ -248,6 +248,7 @@ class Axis {
     const auto phase = Commutation<S>::phases(S::angle(s.x, config_.inverse_pole_pair_pitch));
     s.i = Commutation<S>::amplitude(s.i_phase, phase, saturations);
     const auto set = Commutation<S>::phase_currents(s.i_set, phase, saturations);
+    // Written out: a signal with a running index must be stored even where nobody reads it.
     auto a = control_current(0, set[0], s.i_phase[0], s);
     auto b = control_current(1, set[1], s.i_phase[1], s);
     auto c = control_current(2, set[2], s.i_phase[2], s);
