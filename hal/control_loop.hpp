@@ -32,21 +32,13 @@ class ControlLoop {
   }
 
   // Controls this tick with one set-point an axis, then waits for the next. A fault of one axis stops all of them.
-  // With all it calls inline: the call of the axis alone costs 40 instructions around a tick of 250 in doubles.
-  [[gnu::flatten]] void tick(std::span<const SetPoint<S>> set_points) {
-    bool fault_seen = false;
-    std::size_t i = 0;
-    for (auto& axis : axes_) {
-      command_[i] = axis.tick(set_points[i], feedback_[i], now_ns_, ticker_.slow(), signals_[i]);
-      fault_seen |= axis.fault() != Fault::none;
-      ++i;
-    }
-    if (fault_seen)
-      for (auto& command : command_) command = {};
-    backend_.write(command_);
-    ticker_.advance();
-    now_ns_ = backend_.wait_for_tick();
-    backend_.read(feedback_);
+  void tick(std::span<const SetPoint<S>> set_points) {
+    control(set_points, [this](std::size_t axis) -> AxisSignals<S>& { return signals_[axis]; });
+  }
+
+  // The same where nobody reads signals(), which stay as they were: 40 instructions a tick of 770 less in doubles.
+  void tick_untraced(std::span<const SetPoint<S>> set_points) {
+    control(set_points, [](std::size_t) { return AxisSignals<S>{}; });
   }
 
   std::int64_t now_ns() const { return now_ns_; }  // time of the tick that comes next
@@ -61,6 +53,26 @@ class ControlLoop {
   }
 
  private:
+  // `place` gives where an axis' signals go. Into a value that ends with the tick the compiler writes none of them.
+  // With all it calls inline: the call of the axis alone costs 40 instructions around a tick of 250 in doubles.
+  template <class Place>
+  [[gnu::flatten]] void control(std::span<const SetPoint<S>> set_points, Place place) {
+    bool fault_seen = false;
+    std::size_t i = 0;
+    for (auto& axis : axes_) {
+      auto&& signals = place(i);
+      command_[i] = axis.tick(set_points[i], feedback_[i], now_ns_, ticker_.slow(), signals);
+      fault_seen |= axis.fault() != Fault::none;
+      ++i;
+    }
+    if (fault_seen)
+      for (auto& command : command_) command = {};
+    backend_.write(command_);
+    ticker_.advance();
+    now_ns_ = backend_.wait_for_tick();
+    backend_.read(feedback_);
+  }
+
   B& backend_;
   Ticker ticker_;
   std::int64_t now_ns_ = 0;

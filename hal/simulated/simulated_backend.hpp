@@ -71,9 +71,9 @@ class SimulatedBackend {
   void sample(sim::AxisPlant& plant, Feedback<S>& f) const {
     f.position_valid = sim::convert({plant.read_encoder(), plant.encoder_velocity()}, f.position, f.velocity);
     f.position_time_ns = now_ns_;
-    f.fault = false;
-    for (std::size_t k = 0; k < plant.phases(); ++k)
-      if (!sim::convert(plant.current()[k], f.current[k])) f.fault = true;
+    const auto& current = plant.current();
+    f.fault = !sim::convert(current[0], f.current[0]);
+    if (plant.phases() == 3 && !sim::convert({current[1], current[2]}, f.current[1], f.current[2])) f.fault = true;
   }
 
   std::int64_t period_ns_;

@@ -26,8 +26,8 @@ class Windings {
   Windings(const sim::Axis& axis, double step)
       : step_(step), inverter_(axis.inverter, step, sim::plant_steps_per_tick), motor_(make(axis.motor, step)) {}
 
-  const sim::PhaseValues& current() const {
-    return std::visit([](const auto& motor) -> const sim::PhaseValues& { return motor.current(); }, motor_);
+  sim::PhaseValues current() const {
+    return std::visit([](const auto& motor) -> sim::PhaseValues { return motor.current(); }, motor_);
   }
   // One tick from position x (m) at velocity v (m/s).
   void advance_tick(const sim::PhaseValues& voltage, double x, double v) {

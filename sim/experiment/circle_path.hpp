@@ -28,10 +28,8 @@ class CirclePath {
 
   explicit CirclePath(const CircleSettings& settings)
       : radius_(settings.radius),
-        curvature_(1.0 / settings.radius),
-        signed_radius_(settings.direction == Direction::counter_clockwise ? radius_ : -radius_),
-        signed_curvature_(1.0 / signed_radius_),
-        ramp_(settings.feed, settings.acceleration, settings.jerk) {}
+        turn_(settings.direction == Direction::counter_clockwise ? 1.0 : -1.0),
+        ramp_(settings.feed / radius_, settings.acceleration / radius_, settings.jerk / radius_) {}
 
   struct Point {
     double turned;  // rad along the path since the start
@@ -40,24 +38,18 @@ class CirclePath {
 
   // Inline, so that a caller who asks for one axis pays for one.
   [[gnu::always_inline]] Point at(double t) const {
-    const auto motion = ramp_.at(t);
-    const double phi = motion.distance * curvature_;
-    const double omega = motion.speed * signed_curvature_;
-    const double epsilon = motion.acceleration * signed_curvature_;
+    const auto [phi, omega, epsilon] = ramp_.at(t);
     const auto [sine, cosine] = sine_cosine(phi);
-    const double x = radius_ * cosine;
-    const double y = signed_radius_ * sine;
-    const double v_x = -y * omega;
-    const double v_y = x * omega;
-    return {phi, {{{x, v_x, -y * epsilon - v_y * omega}, {y, v_y, x * epsilon + v_x * omega}}}};
+    const double x = radius_ * cosine, minus_y = -radius_ * sine, square = omega * omega;
+    return {phi,
+            {{{x, minus_y * omega, minus_y * epsilon - x * square},
+              {-turn_ * minus_y, turn_ * (x * omega), turn_ * (x * epsilon + minus_y * square)}}}};
   }
 
  private:
   double radius_;
-  double curvature_;         // 1/m
-  double signed_radius_;     // m, positive counter-clockwise
-  double signed_curvature_;  // 1/m
-  SpeedRamp ramp_;
+  double turn_;     // 1 counter-clockwise, -1 clockwise
+  SpeedRamp ramp_;  // of phi, rad
 };
 
 }  // namespace stiction::sim

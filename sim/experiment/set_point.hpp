@@ -16,11 +16,14 @@ struct AxisSetPoint {
 // Marks the set-point as not valid when one of its values is not a number or out of range.
 template <class S>
 SetPoint<S> to_set_point(const AxisSetPoint& set) {
-  SetPoint<S> signal;
-  signal.valid =
-      convert({set.position, set.velocity, set.acceleration}, signal.position, signal.velocity, signal.acceleration);
-  if (set.injection != 0.0) signal.valid = convert(set.injection, signal.injection) && signal.valid;
-  return signal;
+  // One by one: into a part of the whole the compiler writes zeros first, which costs five instructions.
+  typename S::Position position{};
+  typename S::Velocity velocity{};
+  typename S::Acceleration acceleration{};
+  typename S::Current injection{};
+  bool valid = convert({set.position, set.velocity, set.acceleration}, position, velocity, acceleration);
+  if (set.injection != 0.0) valid = convert(set.injection, injection) && valid;
+  return {position, velocity, acceleration, valid, injection};
 }
 
 }  // namespace stiction::sim

@@ -19,6 +19,14 @@ std::variant<DcMotor, SynchronousMotor, ForceSource> make_motor(const Motor& mot
   throw std::invalid_argument("motor.model: unknown model");
 }
 
+// The alternative that a variant is known to hold: tick() is chosen by it, and std::get would test it in every tick.
+template <class T, class Variant>
+T& held(Variant& variant) {
+  T* const alternative = std::get_if<T>(&variant);
+  if (alternative == nullptr) __builtin_unreachable();
+  return *alternative;
+}
+
 }  // namespace
 
 AxisPlant::AxisPlant(const Timing& timing, const Axis& axis, double position, std::uint64_t seed)
@@ -50,15 +58,16 @@ void AxisPlant::switch_off() {
 
 template <class MotorModel, class Friction, bool effects>
 void AxisPlant::tick(AxisPlant& plant) {
-  auto& friction = std::get<Friction>(plant.friction_);
+  auto& friction = held<Friction>(plant.friction_);
   plant.inverter_.advance_tick<MotorModel::phases>();
   if (plant.enabled_) [[likely]] {
-    auto& motor = std::get<MotorModel>(plant.motor_);
+    auto& motor = held<MotorModel>(plant.motor_);
     if (plant.inverter_.changes_within_tick()) [[unlikely]]
       plant.advance_unevenly<effects>(motor, friction);
     else
       plant.advance_evenly<effects>(motor, friction);
-    plant.current_ = motor.current();
+    const PhaseValues current = motor.current();
+    for (std::size_t k = 0; k < MotorModel::phases; ++k) plant.current_[k] = current[k];
   } else {
     OpenWindings none;
     plant.advance_unevenly<effects>(none, friction);
@@ -77,51 +86,46 @@ void AxisPlant::tick(AxisPlant& plant) {
 // twelve.
 template <bool effects, class MotorModel, class Friction>
 inline void AxisPlant::advance_evenly(MotorModel& motor, Friction& friction) {
-  const PhaseValues voltage = inverter_.voltage();
-  double change = 0.0;
+  const PhaseValues voltage = inverter_.voltage<MotorModel::phases>();
   [&]<std::size_t... i>(std::index_sequence<i...>) {
-    ((static_cast<void>(i), change = step<effects>(motor, friction, voltage)), ...);
+    ((static_cast<void>(i), step<effects>(motor, friction, voltage)), ...);
   }
   (std::make_index_sequence<plant_steps_per_tick>());
-  friction_force_ = motor_force_ + external_force_ + applied_force_ - mass_per_step_ * change;
 }
 
 // Not inline: registers that it alone needs would cost each tick of the other 10 instructions.
 template <bool effects, class MotorModel, class Friction>
 [[gnu::noinline]] void AxisPlant::advance_unevenly(MotorModel& motor, Friction& friction) {
   const auto acting = inverter_.acting();
-  double change = 0.0;
   for (int i = 0; i < plant_steps_per_tick; ++i)
-    change = step<effects>(motor, friction,
-                           i >= acting.change      ? acting.after
-                           : i + 1 < acting.change ? acting.before
-                                                   : acting.between);
-  friction_force_ = motor_force_ + external_force_ + applied_force_ - mass_per_step_ * change;
+    step<effects>(motor, friction,
+                  i >= acting.change      ? acting.after
+                  : i + 1 < acting.change ? acting.before
+                                          : acting.between);
 }
 
-// Semi-implicit Euler: the new velocity from the forces, the position from the mean of old and new. Returns the change
-// of the velocity.
+// Semi-implicit Euler: the new velocity from the forces, the position from the mean of old and new.
 template <bool effects, class MotorModel, class Friction>
-inline double AxisPlant::step(MotorModel& motor, Friction& friction, PhaseValues voltage) {
-  double force = 0.0;
+inline void AxisPlant::step(MotorModel& motor, Friction& friction, PhaseValues voltage) {
+  double friction_of_effects = 0.0;
   if constexpr (effects) {
     const double linear =
         motor.advance(voltage, position_ + effects_.motor_lead(), velocity_ + effects_.motor_lead_rate());
     motor_force_ = effects_.motor_force(linear);
     const auto extra = effects_.advance(position_, velocity_, motor_force_);
     applied_force_ = extra.applied + (effects_.transmitted(motor_force_) - motor_force_);
-    force = motor_force_ + external_force_ + applied_force_ + extra.friction;
+    force_ = motor_force_ + external_force_ + applied_force_;
+    friction_of_effects = extra.friction;
   } else {
     motor_force_ = motor.advance(voltage, position_, velocity_);
-    force = motor_force_ + external_force_;
+    force_ = motor_force_ + external_force_;
   }
-  const double next = friction.advance(velocity_, force);
-  const double change = next - velocity_;
+  const double next = friction.advance(velocity_, effects ? force_ + friction_of_effects : force_);
+  change_ = next - velocity_;
   position_ += half_step_ * (velocity_ + next);
   velocity_ = next;
-  mount_.advance(change);
-  if constexpr (effects) effects_.follow(position_, change);
-  return change;
+  mount_.advance(change_);
+  if constexpr (effects) effects_.follow(position_, change_);
 }
 
 double AxisPlant::with_noise(double reading) {

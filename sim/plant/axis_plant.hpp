@@ -44,10 +44,11 @@ class AxisPlant {
   // Moves on by one fast tick of the drive.
   void advance_tick() { tick_(*this); }
 
-  double position() const { return position_; }              // m, carriage
-  double velocity() const { return velocity_; }              // m/s, carriage
-  double motor_force() const { return motor_force_; }        // N, at the end of the last step
-  double friction_force() const { return friction_force_; }  // N, mean over the last step, positive opposes +v
+  double position() const { return position_; }        // m, carriage
+  double velocity() const { return velocity_; }        // m/s, carriage
+  double motor_force() const { return motor_force_; }  // N, at the end of the last step
+  // N, mean over the last step, positive opposes +v
+  double friction_force() const { return force_ - mass_per_step_ * change_; }
   // m, before increment and noise
   double encoder_position() const { return position_ + lost_position_ + mount_.deflection(); }
   double encoder_velocity() const { return velocity_ + lost_velocity_ + mount_.velocity(); }  // m/s
@@ -75,7 +76,7 @@ class AxisPlant {
   template <bool effects, class MotorModel, class Friction>
   void advance_unevenly(MotorModel& motor, Friction& friction);
   template <bool effects, class MotorModel, class Friction>
-  [[gnu::always_inline]] double step(MotorModel& motor, Friction& friction, PhaseValues voltage);
+  [[gnu::always_inline]] void step(MotorModel& motor, Friction& friction, PhaseValues voltage);
   void switch_off();
   double with_noise(double reading);
 
@@ -108,7 +109,8 @@ class AxisPlant {
   double position_;
   double velocity_ = 0.0;
   double motor_force_ = 0.0;
-  double friction_force_ = 0.0;
+  double force_ = 0.0;   // N, of all but friction, in the last step
+  double change_ = 0.0;  // m/s, of the velocity, in the last step
   double external_force_ = 0.0;
   double applied_force_ = 0.0;  // of effects that are no friction, and what the motor's way to the carriage adds
   double lost_position_;        // m, of what the encoder reads against the carriage, by play and reading errors

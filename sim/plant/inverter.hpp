@@ -20,7 +20,7 @@ class InverterModel {
     const auto steps = static_cast<int>(whole ? std::lround(exact) : std::lround(std::floor(exact)));
     share_before_ = whole ? 1.0 : exact - steps;
     change_ = steps % steps_per_tick + (whole ? 0 : 1);
-    last_ = static_cast<std::size_t>(steps / steps_per_tick) + 1;
+    last_ = static_cast<std::size_t>(steps / steps_per_tick) + (changes_within_tick() ? 1 : 0);
     commands_.resize(last_ + 1);
   }
 
@@ -30,13 +30,18 @@ class InverterModel {
   // One tick. Of the voltages only those of the first `phases` are taken over.
   template <std::size_t phases>
   [[gnu::always_inline]] void advance_tick() {
-    for (std::size_t k = 0; k < phases; ++k) commands_[newest_][k] = limited(command_[k]);
-    newest_ = after(newest_);
+    for (std::size_t k = 0; k < phases; ++k) commands_[oldest_][k] = limited(command_[k]);
+    oldest_ = after(oldest_);
   }
 
   // Whether the voltage that acts changes within a tick; if not, it is `voltage`.
   bool changes_within_tick() const { return change_ != 0; }
-  const PhaseValues& voltage() const { return commands_[after(newest_)]; }
+  template <std::size_t phases>
+  PhaseValues voltage() const {
+    PhaseValues first{};
+    for (std::size_t k = 0; k < phases; ++k) first[k] = commands_[oldest_][k];
+    return first;
+  }
 
   // The voltages that act during the tick: `before` for the first `change` steps of the plant but the last of these,
   // where `between` acts, then `after`.
@@ -47,7 +52,8 @@ class InverterModel {
     int change;
   };
   Acting acting() const {
-    const PhaseValues &oldest = commands_[newest_], &second = voltage();
+    const PhaseValues& oldest = commands_[oldest_];
+    const PhaseValues& second = changes_within_tick() ? commands_[after(oldest_)] : oldest;
     PhaseValues between;
     for (std::size_t k = 0; k < between.size(); ++k)
       between[k] = share_before_ == 1.0 ? oldest[k] : share_before_ * oldest[k] + (1.0 - share_before_) * second[k];
@@ -71,9 +77,9 @@ class InverterModel {
   int change_;
   double share_before_;  // of the step in which the voltage changes
   PhaseValues command_{};
-  std::vector<PhaseValues> commands_;  // ring, one a tick; the slot after the newest is the oldest
+  std::vector<PhaseValues> commands_;  // ring, one a tick: those that act in this one and what comes after them
   std::size_t last_;                   // slot; size() of the vector is a division by the size of its elements
-  std::size_t newest_ = 0;
+  std::size_t oldest_ = 0;             // slot
 };
 
 }  // namespace stiction::sim

@@ -38,7 +38,7 @@ double run(double seconds) {
   for (long long i = 0; i < ticks; ++i) {
     const auto point = path.at(static_cast<double>(loop.now_ns()) * 1e-9);
     const std::array<SetPoint<S>, 1> set{sim::to_set_point<S>(point.axes[0])};
-    loop.tick(set);
+    loop.tick_untraced(set);
   }
   return backend.plant(0).position();
 }

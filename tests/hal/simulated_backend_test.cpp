@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cmath>
+#include <span>
+#include <vector>
 
 #include "sim/experiment/circle_path.hpp"
 #include "stiction/number/fixed_signals.hpp"
@@ -56,6 +58,27 @@ TEST(SimulatedBackend, LetsACommandActAfterTheInvertersDeadTime) {
   EXPECT_EQ(current[2], 0.0);
   // One tick of U (1 - e^(-R T / L)) / R = 0.346 A has acted by the fourth.
   EXPECT_NEAR(current[3], 100.0 / 1.8 * (1.0 - std::exp(-1.8 * 62.5e-6 / 0.018)), 1e-5);
+}
+
+TEST(ControlLoop, MovesTheMachineTheSameToTheBitWhereNobodyReadsItsSignals) {
+  using S = FixedSignals;
+  const auto machine = cross_table();
+  const sim::CirclePath path({.feed = 0.4});
+  const auto configs = configurations<S>(machine);
+  const auto run = [&](auto tick) {
+    hal::SimulatedBackend<S> backend(machine, start);
+    hal::ControlLoop loop(backend, std::span<const AxisConfig<S>>(configs), ticker_of(machine));
+    std::vector<double> way;
+    for (int i = 0; i < 4000; ++i) {
+      const auto point = path.at(static_cast<double>(loop.now_ns()) * 1e-9);
+      const std::array set{sim::to_set_point<S>(point.axes[0]), sim::to_set_point<S>(point.axes[1])};
+      tick(loop, set);
+      for (std::size_t k = 0; k < 2; ++k) way.push_back(backend.plant(k).position());
+    }
+    return way;
+  };
+  EXPECT_EQ(run([](auto& loop, const auto& set) { loop.tick_untraced(set); }),
+            run([](auto& loop, const auto& set) { loop.tick(set); }));
 }
 
 TEST(SimulatedBackend, ReportsAPlantThatIsNotANumberAsAFaultAndNeverAsANumber) {

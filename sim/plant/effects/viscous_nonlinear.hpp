@@ -28,7 +28,7 @@ class ViscousNonlinear {
       : slope_(p.force / p.velocity), per_velocity_(1.0 / p.velocity), body_(body) {}
 
   double force(const CarriageState& s) const {
-    return damping_force(slope_ * relaxation(std::abs(s.velocity) * per_velocity_), s.velocity, body_);
+    return damping_force(slope_ / relaxation_divisor(std::abs(s.velocity) * per_velocity_), s.velocity, body_);
   }
 
  private:

@@ -40,10 +40,11 @@ class LuGre {
         rise_(p.coulomb * (p.static_ratio - 1.0)),
         per_stribeck_velocity_(1.0 / p.stribeck_velocity),
         stribeck_(p.static_ratio > 1.0),
-        series_up_to_(stribeck_ ? -1.0 : detail::longest),
         stiffness_(p.stiffness),
         stiffness_step_(p.stiffness * body.step),
-        stiffness_step_per_coulomb_(stiffness_step_ / p.coulomb),
+        creep_(p.coulomb / stiffness_step_),
+        series_up_to_(stribeck_ ? -1.0 : detail::longest * creep_),
+        square_(detail::divisor_c2 / creep_),
         damping_(2.0 * p.damping_ratio * std::sqrt(p.stiffness * body.mass) / stiffness_step_),
         decay_(1.0 / (1.0 + body.step / body.mass * p.viscous)),
         gain_(decay_ * body.step / body.mass) {}
@@ -61,15 +62,17 @@ class LuGre {
 
   // Lets the contact creep for one step of held velocity (m/s); returns k_s z + b_s z' (N) at its end.
   [[gnu::always_inline]] double move_contact(double velocity) {
-    double relaxed = stiffness_step_per_coulomb_ * std::abs(velocity);  // |v| step / g(v)
-    double rate = 0.0;
-    if (relaxed <= series_up_to_) [[likely]] {
-      rate = detail::relaxation_series(relaxed);
+    const double speed = std::abs(velocity);
+    double most = coulomb_;  // k_s g(v)
+    double divisor = 0.0;    // relaxation_divisor(speed / creep) times creep, the speed that creeps g(v) in a step
+    if (speed <= series_up_to_) [[likely]] {
+      divisor = creep_ + speed * (detail::divisor_c1 + speed * square_);
     } else {
-      if (stribeck_) relaxed = stiffness_step_ * std::abs(velocity) / level(velocity);
-      rate = relaxation(relaxed);
+      if (stribeck_) most = level(velocity);
+      const double creep = most / stiffness_step_;
+      divisor = relaxation_divisor(speed / creep) * creep;
     }
-    const double change = rate * (stiffness_step_ * velocity - relaxed * spring_);
+    const double change = (most * velocity - speed * spring_) / divisor;
     spring_ += change;
     return spring_ + damping_ * change;
   }
@@ -79,21 +82,22 @@ class LuGre {
   [[gnu::always_inline]] double level(double velocity) const {
     return coulomb_ + rise_ * fall(velocity * per_stribeck_velocity_);
   }
-  // A function without effects that is called, as in relaxation(): where g is constant it costs nothing.
+  // A function without effects that is called, as in relaxation_divisor(): where g is constant it costs nothing.
   [[gnu::const, gnu::noinline]] static double fall(double ratio) { return std::exp(-ratio * ratio); }
 
-  double coulomb_;                     // F_C
-  double rise_;                        // F_Ts - F_C
-  double per_stribeck_velocity_;       // 1 / v_s
-  bool stribeck_;                      // whether g depends on v
-  double series_up_to_;                // |v| step / g(v) for which the series holds; one test for this and Stribeck's
-  double stiffness_;                   // k_s
-  double stiffness_step_;              // k_s times step
-  double stiffness_step_per_coulomb_;  // the share of the limit that 1 m/s creeps in a step
-  double damping_;                     // b_s / (k_s step)
-  double decay_;                       // of the velocity by viscous friction in a step
-  double gain_;                        // m/s per N in a step
-  double spring_ = 0.0;                // k_s z, N
+  double coulomb_;                // F_C
+  double rise_;                   // F_Ts - F_C
+  double per_stribeck_velocity_;  // 1 / v_s
+  bool stribeck_;                 // whether g depends on v
+  double stiffness_;              // k_s
+  double stiffness_step_;         // k_s times step
+  double creep_;                  // m/s that creeps F_C / k_s in a step
+  double series_up_to_;           // m/s up to which the series holds; one test for this and Stribeck's
+  double square_;                 // s/m, of the speed's square in the divisor
+  double damping_;                // b_s / (k_s step)
+  double decay_;                  // of the velocity by viscous friction in a step
+  double gain_;                   // m/s per N in a step
+  double spring_ = 0.0;           // k_s z, N
 };
 
 }  // namespace stiction::sim

@@ -74,6 +74,7 @@ struct AxisState {
   typename VelocityPi<S>::State velocity_pi{};
   typename Notch<S>::State notch{};
   std::array<typename CurrentPi<S>::State, 3> current_pi{};
+  std::int32_t cycle_ticks_left = 0;  // of the window of both limit cycles
   LimitCycle::State current_cycle{};
   LimitCycle::State voltage_cycle{};  // of the first phase: an unstable current loop oscillates in every phase
   SaturationCounter saturations{};
@@ -184,6 +185,8 @@ class Axis {
     s.i_set = i_set.value;
     s.limiting.current = i_set.limiting();
     VelocityPi<S>::track(config_.velocity, state_.velocity_pi, pi.beyond_format, i_wanted, i_set.value, saturations);
+    LimitCycle::advance_window(state_.cycle_ticks_left, config_.limit_cycle_window_ticks, state_.current_cycle,
+                               state_.voltage_cycle);
     watch_cycle(state_.current_cycle, i_set.side, now_ns);
   }
 
@@ -203,7 +206,7 @@ class Axis {
   using Voltage = typename S::Voltage;
 
   constexpr void watch_cycle(LimitCycle::State& cycle, int side, std::int64_t now_ns) {
-    if (LimitCycle::step(cycle, side, config_.limit_cycle_window_ticks)) trip(Fault::limit_cycle, now_ns);
+    if (LimitCycle::step(cycle, side)) trip(Fault::limit_cycle, now_ns);
   }
   // A sample that is not valid leaves position and velocity as they were; too many in a row are a fault.
   constexpr void take_feedback(const Feedback<S>& feedback, std::int64_t now_ns) {
@@ -245,13 +248,12 @@ class Axis {
     const auto phase = Commutation<S>::phases(S::angle(s.x, config_.inverse_pole_pair_pitch));
     s.i = Commutation<S>::amplitude(s.i_phase, phase, saturations);
     const auto set = Commutation<S>::phase_currents(s.i_set, phase, saturations);
-    int side = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      auto u = control_current(k, set[k], s.i_phase[k], s);
-      command.voltage[k] = u.value;
-      if (k == 0) side = phase[k] < typename S::Sine{} ? -u.side : u.side;
-    }
-    return side;
+    // Written out: a signal with a running index must be stored even where nobody reads it.
+    auto a = control_current(0, set[0], s.i_phase[0], s);
+    auto b = control_current(1, set[1], s.i_phase[1], s);
+    auto c = control_current(2, set[2], s.i_phase[2], s);
+    command.voltage = {a.value, b.value, c.value};
+    return phase[0] < typename S::Sine{} ? -a.side : a.side;
   }
 
   constexpr int control_direct(AxisSignals<S>& s, Command<S>& command) {
