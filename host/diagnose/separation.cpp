@@ -1,0 +1,152 @@
+#include "host/diagnose/separation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/diagnose/inverse_dynamics.hpp"
+#include "host/diagnose/ripple_scan.hpp"
+
+namespace stiction::host {
+namespace {
+
+constexpr std::size_t lines_tried = 3;
+
+// Columns side by side, each of unit length where it has one.
+class Basis {
+ public:
+  explicit Basis(const std::vector<Eigen::VectorXd>& columns) {
+    if (columns.empty()) return;
+    matrix_.resize(columns.front().size(), static_cast<Eigen::Index>(columns.size()));
+    for (std::size_t k = 0; k < columns.size(); ++k) matrix_.col(static_cast<Eigen::Index>(k)) = columns[k];
+    scale_ = matrix_.colwise().norm().unaryExpr([](double l) { return l > 0.0 ? 1.0 / l : 0.0; }).transpose();
+    solver_.setThreshold(1e-9);
+    solver_.compute(matrix_ * scale_.asDiagonal());
+  }
+  Eigen::VectorXd weights(const Eigen::VectorXd& force) const {
+    return scale_.cwiseProduct(Eigen::VectorXd(solver_.solve(force)));
+  }
+  Eigen::VectorXd without(const Eigen::VectorXd& force) const {
+    return matrix_.cols() == 0 ? force : Eigen::VectorXd(force - matrix_ * weights(force));
+  }
+
+ private:
+  Eigen::MatrixXd matrix_;
+  Eigen::VectorXd scale_;
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver_;
+};
+
+Eigen::VectorXd force_of(const Records& records, const Explanation& cause) {
+  const auto& candidate = candidates()[cause.candidate];
+  const auto columns = shared_columns(records.rows, records.scene, candidate, cause.nonlinear);
+  Eigen::VectorXd weights = cause.weights;
+  if (candidate.per_record) weights = Eigen::Map<const Eigen::Vector2d>(effects::first_wave(cause.weights).data());
+  Eigen::VectorXd force = Eigen::VectorXd::Zero(records.rows.rows());
+  for (std::size_t c = 0; c < columns.size(); ++c) force += weights[static_cast<Eigen::Index>(c)] * columns[c];
+  return force;
+}
+
+}  // namespace
+
+Separation::Separation(const LogRows& rows, const Eigen::VectorXd& residual) : whitening_(residual, rows.logs()) {
+  const Eigen::VectorXd white = whitening_(residual);
+  deviation_ =
+      std::sqrt(white.squaredNorm() / static_cast<double>(white.size()) * correlation_length(white, rows.logs()));
+}
+
+Eigen::VectorXd Separation::white(const LogRows& rows, const Eigen::VectorXd& column) const {
+  return whitening_.over(rows.logs())(column);
+}
+
+void Separation::add_white(std::vector<Eigen::VectorXd>& columns, const Records& records, const Scene& scene,
+                           std::size_t candidate, double nonlinear) const {
+  for (const auto& column : group_columns(records.rows, scene, candidates()[candidate], nonlinear))
+    columns.push_back(white(records.rows, column));
+}
+
+// The lines that a periodic candidate would be looked for at, were `force` what these records leave.
+Scene Separation::scanned(const Records& records, const Eigen::VectorXd& force) const {
+  const auto& rows = records.rows;
+  auto scene = records.scene;
+  std::vector<double> known;
+  for (const double pitch : {scene.axis.motor.pole_pair_pitch, 0.5 * scene.axis.motor.pole_pair_pitch})
+    if (pitch > 0.0) known.push_back(pitch);
+  const auto carrier = rows.stacked([&](const Motion& m) { return force_along(scene.axis, m); });
+  scene.pitches = scan_pitches(rows, force, whitening_.over(rows.logs()), known, lines_tried).pitches;
+  scene.times = scan_times(rows, force, lines_tried);
+  scene.modulation = scan_modulation(rows, force, carrier, known, lines_tried);
+  scene.signals_of_encoder = scan_signal_periods(rows, force, scene.axis, scene.timing, lines_tried);
+  return scene;
+}
+
+std::vector<double> Separation::values_of(const Records& records, std::size_t candidate,
+                                          const Eigen::VectorXd& force) const {
+  const auto& c = candidates()[candidate];
+  return c.grid(c.periodic ? scanned(records, force) : records.scene);
+}
+
+std::optional<Explanation> Separation::best_fit(const Records& records, const Eigen::VectorXd& target,
+                                                std::size_t candidate, std::span<const Explanation> others) const {
+  std::vector<Eigen::VectorXd> beside;
+  for (const auto& other : others) add_white(beside, records, records.scene, other.candidate, other.nonlinear);
+  const Basis rest(beside);
+  const Eigen::VectorXd force = rest.without(white(records.rows, target));
+  std::optional<Explanation> best;
+  double least = force.squaredNorm();
+  for (const double value : values_of(records, candidate, target)) {
+    std::vector<Eigen::VectorXd> own;
+    add_white(own, records, records.scene, candidate, value);
+    for (auto& column : own) column = rest.without(column);
+    const Basis basis(own);
+    const auto weights = basis.weights(force);
+    const double left = basis.without(force).squaredNorm();
+    if (left >= least || !candidates()[candidate].possible(records.scene, value, weights)) continue;
+    least = left;
+    best = Explanation{candidate, value, weights};
+  }
+  return best;
+}
+
+double Separation::expected(const Records& records, const Explanation& truth, const std::optional<Explanation>& rival,
+                            std::span<const Explanation> others) const {
+  const auto& rows = records.rows;
+  bool constant = true, coulomb = true;
+  const auto named = [&](std::size_t candidate) {
+    constant = constant && !candidates()[candidate].names_constant;
+    coulomb = coulomb && !candidates()[candidate].names_coulomb;
+  };
+  std::vector<Eigen::VectorXd> beside;
+  for (const auto& other : others) {
+    add_white(beside, records, records.scene, other.candidate, other.nonlinear);
+    named(other.candidate);
+  }
+  named(truth.candidate);
+  if (rival) named(rival->candidate);
+  for (std::size_t k = 0; k < rows.motions().size(); ++k) {
+    const auto& motion = rows.motions()[k];
+    if (constant) beside.push_back(white(rows, rows.of_log(k, std::vector<double>(motion.t.size(), 1.0))));
+    if (coulomb && coulomb_of(records.scene.axis))
+      beside.push_back(white(rows, rows.of_log(k, contact_level(records.scene.axis, motion))));
+  }
+  const Basis rest(beside);
+  const auto acting = force_of(records, truth);
+  const Eigen::VectorXd force = rest.without(white(rows, acting));
+  double least = force.norm();
+  if (rival) {
+    auto values = std::vector{rival->nonlinear};
+    if (!candidates()[rival->candidate].replays) {
+      const auto more = values_of(records, rival->candidate, acting);
+      values.insert(values.end(), more.begin(), more.end());
+    }
+    for (const double value : values) {
+      std::vector<Eigen::VectorXd> own;
+      add_white(own, records, records.scene, rival->candidate, value);
+      for (auto& column : own) column = rest.without(column);
+      const Basis basis(own);
+      if (candidates()[rival->candidate].possible(records.scene, value, basis.weights(force)))
+        least = std::min(least, basis.without(force).norm());
+    }
+  }
+  return least / deviation_;
+}
+
+}  // namespace stiction::host
