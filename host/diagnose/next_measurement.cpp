@@ -36,7 +36,10 @@ double separation_of(const Separation& separation, const Records& records, const
 class Questions {
  public:
   Questions(const Searched& searched, const Separation& separation)
-      : searched_(searched), separation_(separation), records_{searched.rows, searched.scene} {}
+      : searched_(searched), separation_(separation), scene_(searched.scene) {
+    // Few reversals keep the search from trying a contact, but not these records from holding one.
+    scene_.reversals = enough_reversals;
+  }
 
   // Which of a finding and what it may be confused with, the largest finding first.
   void add_confusions(std::vector<Finding>& findings) {
@@ -86,25 +89,23 @@ class Questions {
   }
   // Known aliases of a finding that the search does not try on records like these, and that these cannot tell from it.
   void add_untried(Finding& finding, std::size_t k) {
-    auto scene = searched_.scene;
-    scene.reversals = 1000;
     const auto others = others_than(k);
     for (const auto& alias : sim::find_effect_kind(finding.effect.name)->aliases) {
       const auto rival = index_of(std::string(alias.effect));
-      if (!rival || !candidates()[*rival].grid(searched_.scene).empty() || candidates()[*rival].grid(scene).empty())
+      if (!rival || !candidates()[*rival].grid(searched_.scene).empty() || candidates()[*rival].grid(scene_).empty())
         continue;
-      const Records records{searched_.rows, scene};
-      const auto fit = separation_.best_fit(records, searched_.target, *rival, others);
+      const auto fit = separation_.best_fit(records_, searched_.target, *rival, others);
       if (!fit) continue;
       const Question question{{}, explanation_of(searched_.found.terms[k]), fit, others};
-      if (separation_of(separation_, records, question) < not_told_apart)
+      if (separation_of(separation_, records_, question) < not_told_apart)
         finding.confused_with.push_back({std::string(alias.effect), std::string(alias.separate_by)});
     }
   }
 
   const Searched& searched_;
   const Separation& separation_;
-  Records records_;
+  Scene scene_;
+  Records records_{searched_.rows, scene_};
   std::vector<Question> questions_;
 };
 
@@ -118,7 +119,7 @@ std::vector<sim::Chart> charts_of(const Log& log, const std::string& name) {
   const auto& axis = log.axes.front();
   const auto over_time = [&](const char* label, const std::vector<double>& values) {
     sim::Chart chart;
-    chart.x_label = "time, s";
+    chart.x_label = "time of the proposed record, s";
     chart.y_label = label;
     chart.shape = {true, sim::Shape::Height::low};
     chart.series = {{.name = "proposed", .x = log.t, .y = values}};

@@ -20,8 +20,6 @@ constexpr double usual_period = 1e-3;  // s, of a proposed log
 constexpr double least_of_travel = 0.25;
 constexpr double speed_share = 0.9, acceleration_share = 0.7, force_share = 0.7;
 constexpr double rise = 0.05;  // s, from rest to the highest acceleration
-// A proposal is judged by what it makes of a cause, not by whether its reversals would do for the search to try one.
-constexpr int enough_reversals = 100;
 
 struct Covered {
   double low, high;

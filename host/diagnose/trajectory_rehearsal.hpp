@@ -11,6 +11,9 @@
 
 namespace stiction::host {
 
+// In a scene: no candidate is left out for want of reversals.
+inline constexpr int enough_reversals = 1000;
+
 // Within the positions that the records cover; where these are less than a quarter of the travel, that much about their
 // middle. Nine tenths of the axis' speed, 0.7 of its acceleration and no more than 0.7 of its motor's force gives.
 sim::MotionRange motion_range(const sim::Axis& axis, const LogRows& rows);

@@ -49,6 +49,34 @@ Json finding_json(const Finding& f) {
   return out;
 }
 
+Json next_json(const NextMeasurement& next) {
+  const auto separation = [](const OpenQuestion& question, double value) {
+    return question.by_motion ? Json(value) : Json(nullptr);
+  };
+  Json questions = Json::array(), trajectories = Json::array();
+  for (const auto& q : next.questions)
+    questions.push_back({{"effect", q.effect},
+                         {"or", q.rival.empty() ? Json(nullptr) : Json(q.rival)},
+                         {"separate_by", q.separate_by},
+                         {"by_motion", q.by_motion},
+                         {"standard_errors_of_these_logs", separation(q, q.these_logs)}});
+  for (const auto& t : next.trajectories) {
+    Json separations = Json::array();
+    for (std::size_t k = 0; k < t.separations.size(); ++k)
+      separations.push_back(separation(next.questions[k], t.separations[k]));
+    trajectories.push_back({{"name", t.name}, {"duration_s", t.duration}, {"standard_errors", separations}});
+  }
+  Json out{{"axis", next.axis}, {"log", next.log ? Json(next_measurement_file) : Json(nullptr)}};
+  if (next.log) {
+    out["trajectory"] = next.trajectories.front().name;
+    out["times"] = next.times;
+    out["note"] = next.note;
+  }
+  out["questions"] = questions;
+  out["trajectories"] = trajectories;
+  return out;
+}
+
 Json row_figures(const RowFigures& f) { return {{"error_um", f.error * 1e6}, {"current_A", f.current}}; }
 
 Json score_json(const RowScore& s) {
@@ -104,6 +132,7 @@ Json verdict_json(const Verdict& verdict) {
              {"signature", verdict.unexplained.signature ? Json(*verdict.unexplained.signature) : Json(nullptr)}}},
            {"notes", verdict.notes},
            {"extended_machine", "extended.toml"}};
+  if (verdict.next) out["next_measurement"] = next_json(*verdict.next);
   if (verdict.reference) add_reference(out, *verdict.reference);
   return out;
 }
@@ -137,6 +166,27 @@ std::string rows_text(const ReferenceRows& reference) {
 }
 
 }  // namespace
+
+std::string next_measurement_text(const NextMeasurement& next) {
+  std::string text = "next measurement: ";
+  if (!next.log) {
+    const auto& q = next.questions.front();
+    return text + fmt::format("no motion of axis {} answers what is open; {}", next.axis, q.separate_by);
+  }
+  const auto& best = next.trajectories.front();
+  text += fmt::format("{}, {:.0f} s{}; expected", best.name, best.duration,
+                      next.times > 1 ? fmt::format(", {} times", next.times) : std::string());
+  bool first = true;
+  for (std::size_t k = 0; k < next.questions.size(); ++k) {
+    const auto& q = next.questions[k];
+    if (!q.by_motion) continue;
+    text += fmt::format("{} {:.1f} standard errors {} (these logs: {:.1f})", first ? "" : ",", best.separations[k],
+                        q.rival.empty() ? "for " + q.effect : fmt::format("between {} and {}", q.effect, q.rival),
+                        q.these_logs);
+    first = false;
+  }
+  return text;
+}
 
 std::string verdict_text(const Verdict& verdict) {
   std::string text = verdict.reference ? rows_text(*verdict.reference) : std::string();
@@ -173,6 +223,7 @@ std::string verdict_text(const Verdict& verdict) {
   if (verdict.unexplained.signature)
     text += fmt::format("\nunexplained: {:.1f} % of the residual's variance, {}\n", 100.0 * verdict.unexplained.share,
                         *verdict.unexplained.signature);
+  if (verdict.next) text += "\n" + next_measurement_text(*verdict.next) + "\n";
   for (const auto& note : verdict.notes) text += fmt::format("\nnote: {}\n", note);
   return text;
 }
