@@ -15,22 +15,26 @@ namespace {
 
 // Standard errors from which the search names a cause: p < 0.01/22 from some tens of blocks asks for four to five.
 constexpr double enough = 5.0;
-constexpr double least = 1.0;           // less, and nothing is worth proposing
-constexpr double not_told_apart = 2.0;  // standard errors between causes that the search could not compare
+constexpr double ample = 2.0 * enough;   // more is not worth a fiercer motion
+constexpr double least = 2.5;            // less would have to be recorded more than four times
+constexpr double usual_duration = 20.0;  // s, for which separations of long and short trajectories are compared
+// Of what the findings take away: as much by a cause that the search could not try on these records, and it may be
+// that.
+constexpr double as_good = 0.9;
 constexpr std::size_t most_questions = 6;
 
 struct Question {
   OpenQuestion shown;
-  Explanation truth;
-  std::optional<Explanation> rival;  // none with an empty shown.rival
-  std::vector<Explanation> others;   // that act beside either
+  std::vector<Explanation> truth;
+  std::vector<Explanation> rival;   // none with an empty shown.rival
+  std::vector<Explanation> others;  // that act beside either
 };
 
 double separation_of(const Separation& separation, const Records& records, const Question& question) {
   const double one = separation.expected(records, question.truth, question.rival, question.others);
-  if (!question.rival) return one;
+  if (question.rival.empty()) return one;
   // Either may be true: what is certain is the smaller.
-  return std::min(one, separation.expected(records, *question.rival, question.truth, question.others));
+  return std::min(one, separation.expected(records, question.rival, question.truth, question.others));
 }
 
 class Questions {
@@ -39,23 +43,25 @@ class Questions {
       : searched_(searched), separation_(separation), scene_(searched.scene) {
     // Few reversals keep the search from trying a contact, but not these records from holding one.
     scene_.reversals = enough_reversals;
+    for (const auto& term : searched.found.terms) terms_.push_back(explanation_of(term));
   }
 
   // Which of a finding and what it may be confused with, the largest finding first.
   void add_confusions(std::vector<Finding>& findings) {
-    for (std::size_t k = 0; k < findings.size(); ++k) {
-      add_untried(findings[k], k);
+    add_untried(findings);
+    for (std::size_t k = 0; k < findings.size(); ++k)
       for (const auto& other : findings[k].confused_with) add(findings[k], k, other);
-    }
   }
   // Whether there is what was not quite significant.
   void add_nearly_found() {
-    std::vector<Explanation> terms;
-    for (const auto& term : searched_.found.terms) terms.push_back(explanation_of(term));
     for (const auto& discarded : searched_.found.discarded) {
       if (!discarded.nearly) continue;
-      const auto fit = separation_.best_fit(records_, searched_.target, discarded.candidate, terms);
-      if (fit) ask({{candidates()[discarded.candidate].name, "", "more data, where it shows most"}, *fit, {}, terms});
+      const auto fit = separation_.best_fit(records_, searched_.target, discarded.candidate, terms_);
+      if (!fit) continue;
+      const Question question{
+          {candidates()[discarded.candidate].name, "", "more data, where it shows most"}, {*fit}, {}, terms_};
+      // What these records should have shown and did not, more of the kind will not.
+      if (separation_of(separation_, records_, question) < enough) ask(question);
     }
   }
   std::vector<Question> take() { return std::move(questions_); }
@@ -68,8 +74,8 @@ class Questions {
   }
   std::vector<Explanation> others_than(std::size_t term) const {
     std::vector<Explanation> others;
-    for (std::size_t k = 0; k < searched_.found.terms.size(); ++k)
-      if (k != term) others.push_back(explanation_of(searched_.found.terms[k]));
+    for (std::size_t k = 0; k < terms_.size(); ++k)
+      if (k != term) others.push_back(terms_[k]);
     return others;
   }
   static std::optional<std::size_t> index_of(const std::string& effect) {
@@ -78,27 +84,37 @@ class Questions {
     return std::nullopt;
   }
   void add(const Finding& finding, std::size_t k, const ConfusedWith& other) {
-    const auto truth = explanation_of(searched_.found.terms[k]);
     const OpenQuestion shown{finding.effect.name, other.effect, other.separate_by, !other.always};
-    if (other.always) return ask({shown, truth, {}, {}});
+    if (other.always) return ask({shown, {}, {}, {}});
     const auto rival = index_of(other.effect);
-    if (!rival) return;
+    if (!rival || asked(*rival)) return;
     auto others = others_than(k);
     if (auto fit = separation_.best_fit(records_, searched_.target, *rival, others))
-      ask({shown, truth, std::move(fit), std::move(others)});
+      ask({shown, {terms_[k]}, {std::move(*fit)}, std::move(others)});
   }
-  // Known aliases of a finding that the search does not try on records like these, and that these cannot tell from it.
-  void add_untried(Finding& finding, std::size_t k) {
-    const auto others = others_than(k);
-    for (const auto& alias : sim::find_effect_kind(finding.effect.name)->aliases) {
-      const auto rival = index_of(std::string(alias.effect));
-      if (!rival || !candidates()[*rival].grid(searched_.scene).empty() || candidates()[*rival].grid(scene_).empty())
-        continue;
-      const auto fit = separation_.best_fit(records_, searched_.target, *rival, others);
-      if (!fit) continue;
-      const Question question{{}, explanation_of(searched_.found.terms[k]), fit, others};
-      if (separation_of(separation_, records_, question) < not_told_apart)
-        finding.confused_with.push_back({std::string(alias.effect), std::string(alias.separate_by)});
+  // Whether it is already asked after instead of all findings.
+  bool asked(std::size_t rival) const {
+    return std::any_of(questions_.begin(), questions_.end(),
+                       [&](const Question& q) { return q.truth.size() > 1 && q.rival.front().candidate == rival; });
+  }
+  // What the search does not try on records like these, and what alone takes away as much as all findings.
+  void add_untried(std::vector<Finding>& findings) {
+    if (terms_.empty()) return;
+    const double by_all = separation_.explained(records_, searched_.target, terms_);
+    for (std::size_t c = 0; c < candidates().size(); ++c) {
+      if (!candidates()[c].grid(searched_.scene).empty() || candidates()[c].grid(scene_).empty()) continue;
+      const auto fit = separation_.best_fit(records_, searched_.target, c, {});
+      if (!fit || separation_.explained(records_, searched_.target, {&*fit, 1}) < as_good * by_all) continue;
+      const std::string name = candidates()[c].name;
+      const auto& known = sim::find_effect_kind(name)->aliases;
+      const auto told_by = [&](const std::string& other) {
+        const auto alias = std::find_if(known.begin(), known.end(), [&](const auto& a) { return a.effect == other; });
+        return alias != known.end() ? std::string(alias->separate_by)
+                                    : "small reversals of several amplitudes, which these records lack";
+      };
+      if (terms_.size() > 1)
+        ask({{findings.front().effect.name, name, told_by(findings.front().effect.name)}, terms_, {*fit}, {}});
+      for (auto& finding : findings) finding.confused_with.push_back({name, told_by(finding.effect.name)});
     }
   }
 
@@ -106,13 +122,19 @@ class Questions {
   const Separation& separation_;
   Scene scene_;
   Records records_{searched_.rows, scene_};
+  std::vector<Explanation> terms_;
   std::vector<Question> questions_;
 };
 
-// How much of the questions a record is expected to settle; beyond that, how clearly.
-double worth(const std::vector<double>& separations) {
-  return std::accumulate(separations.begin(), separations.end(), 0.0,
-                         [](double sum, double s) { return sum + std::min(s / enough, 1.0) + 1e-3 * std::log1p(s); });
+// How much of the questions as much time of it is expected to settle; of equal ones the gentler is worth more: what a
+// model has wrong grows with the force, and the first run of a machine's new motion should not be its fiercest.
+double worth(const RehearsedTrajectory& trajectory, const Log& log) {
+  double sum = 0.0, highest = 0.0;
+  for (const double separation : trajectory.separations)
+    sum += std::min(separation * std::sqrt(usual_duration / trajectory.duration) / ample, 1.0);
+  const auto& axis = log.axes.front();
+  for (const double effort : axis.i.empty() ? axis.u : axis.i) highest = std::max(highest, std::abs(effort));
+  return sum - 1e-5 * highest;
 }
 
 std::vector<sim::Chart> charts_of(const Log& log, const std::string& name) {
@@ -135,9 +157,9 @@ std::vector<sim::Chart> charts_of(const Log& log, const std::string& name) {
 void rank(NextMeasurement& next, std::vector<Rehearsal>& rehearsals, std::vector<RehearsedTrajectory> judged) {
   std::vector<std::size_t> order(judged.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return worth(judged[a].separations) > worth(judged[b].separations);
-  });
+  std::vector<double> worths;
+  for (std::size_t k = 0; k < judged.size(); ++k) worths.push_back(worth(judged[k], rehearsals[k].log));
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return worths[a] > worths[b]; });
   for (const auto k : order) next.trajectories.push_back(judged[k]);
   if (order.empty()) return;
   // Of the questions that the best one bears on, that which it settles last.
@@ -181,7 +203,8 @@ void propose_next_measurement(Verdict& verdict, const Searched& searched) {
     rank(next, rehearsals, std::move(judged));
     if (next.log) next.note = range_words(range, searched.rows);
   }
-  verdict.next = std::move(next);
+  // What was nearly found and no trajectory shows is no news.
+  if (next.log || !next.questions.front().rival.empty()) verdict.next = std::move(next);
 }
 
 }  // namespace stiction::host

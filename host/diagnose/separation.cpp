@@ -10,6 +10,9 @@ namespace stiction::host {
 namespace {
 
 constexpr std::size_t lines_tried = 3;
+// Of the expected force: what inverse dynamics from samples and filtered derivatives may be off by, whatever the cause.
+// Rows of high acceleration count for less than their noise alone would have it.
+constexpr double model_error = 2e-3;
 
 // Columns side by side, each of unit length where it has one.
 class Basis {
@@ -49,12 +52,20 @@ Eigen::VectorXd force_of(const Records& records, const Explanation& cause) {
 
 Separation::Separation(const LogRows& rows, const Eigen::VectorXd& residual) : whitening_(residual, rows.logs()) {
   const Eigen::VectorXd white = whitening_(residual);
+  noise_ = std::sqrt(residual.squaredNorm() / static_cast<double>(residual.size()));
   deviation_ =
       std::sqrt(white.squaredNorm() / static_cast<double>(white.size()) * correlation_length(white, rows.logs()));
 }
 
 Eigen::VectorXd Separation::white(const LogRows& rows, const Eigen::VectorXd& column) const {
   return whitening_.over(rows.logs())(column);
+}
+
+// Of each row: its noise over that and the model's error together.
+Eigen::VectorXd Separation::trust(const Records& records) const {
+  const auto& scene = records.scene;
+  const auto force = records.rows.stacked([&](const Motion& m) { return force_along(scene.axis, m); });
+  return force.unaryExpr([this](double f) { return noise_ / std::hypot(noise_, model_error * f); });
 }
 
 void Separation::add_white(std::vector<Eigen::VectorXd>& columns, const Records& records, const Scene& scene,
@@ -106,45 +117,61 @@ std::optional<Explanation> Separation::best_fit(const Records& records, const Ei
   return best;
 }
 
-double Separation::expected(const Records& records, const Explanation& truth, const std::optional<Explanation>& rival,
-                            std::span<const Explanation> others) const {
+double Separation::explained(const Records& records, const Eigen::VectorXd& target,
+                             std::span<const Explanation> causes) const {
+  std::vector<Eigen::VectorXd> columns;
+  for (const auto& cause : causes) add_white(columns, records, records.scene, cause.candidate, cause.nonlinear);
+  const auto force = white(records.rows, target);
+  return 1.0 - Basis(columns).without(force).squaredNorm() / force.squaredNorm();
+}
+
+double Separation::expected(const Records& records, std::span<const Explanation> truth,
+                            std::span<const Explanation> rival, std::span<const Explanation> others) const {
   const auto& rows = records.rows;
-  bool constant = true, coulomb = true;
-  const auto named = [&](std::size_t candidate) {
-    constant = constant && !candidates()[candidate].names_constant;
-    coulomb = coulomb && !candidates()[candidate].names_coulomb;
+  const auto& scene = records.scene;
+  const auto trusted = trust(records);
+  const auto columns_of = [&](const Explanation& cause, double value) {
+    std::vector<Eigen::VectorXd> columns;
+    add_white(columns, records, scene, cause.candidate, value);
+    for (auto& column : columns) column = column.cwiseProduct(trusted);
+    return columns;
   };
   std::vector<Eigen::VectorXd> beside;
-  for (const auto& other : others) {
-    add_white(beside, records, records.scene, other.candidate, other.nonlinear);
-    named(other.candidate);
-  }
-  named(truth.candidate);
-  if (rival) named(rival->candidate);
+  const auto add = [&](const std::vector<Eigen::VectorXd>& columns) {
+    beside.insert(beside.end(), columns.begin(), columns.end());
+  };
+  bool constant = true, coulomb = true;
+  for (const auto causes : {truth, rival, others})
+    for (const auto& cause : causes) {
+      constant = constant && !candidates()[cause.candidate].names_constant;
+      coulomb = coulomb && !candidates()[cause.candidate].names_coulomb;
+    }
   for (std::size_t k = 0; k < rows.motions().size(); ++k) {
     const auto& motion = rows.motions()[k];
-    if (constant) beside.push_back(white(rows, rows.of_log(k, std::vector<double>(motion.t.size(), 1.0))));
-    if (coulomb && coulomb_of(records.scene.axis))
-      beside.push_back(white(rows, rows.of_log(k, contact_level(records.scene.axis, motion))));
+    if (constant) add({white(rows, rows.of_log(k, std::vector<double>(motion.t.size(), 1.0))).cwiseProduct(trusted)});
+    if (coulomb && coulomb_of(scene.axis))
+      add({white(rows, rows.of_log(k, contact_level(scene.axis, motion))).cwiseProduct(trusted)});
   }
+  for (const auto& other : others) add(columns_of(other, other.nonlinear));
+  if (rival.size() > 1)
+    for (const auto& each : rival) add(columns_of(each, each.nonlinear));
+  Eigen::VectorXd acting = Eigen::VectorXd::Zero(rows.rows());
+  for (const auto& cause : truth) acting += force_of(records, cause);
   const Basis rest(beside);
-  const auto acting = force_of(records, truth);
-  const Eigen::VectorXd force = rest.without(white(rows, acting));
+  const Eigen::VectorXd force = rest.without(white(rows, acting).cwiseProduct(trusted));
   double least = force.norm();
-  if (rival) {
-    auto values = std::vector{rival->nonlinear};
-    if (!candidates()[rival->candidate].replays) {
-      const auto more = values_of(records, rival->candidate, acting);
-      values.insert(values.end(), more.begin(), more.end());
-    }
-    for (const double value : values) {
-      std::vector<Eigen::VectorXd> own;
-      add_white(own, records, records.scene, rival->candidate, value);
-      for (auto& column : own) column = rest.without(column);
-      const Basis basis(own);
-      if (candidates()[rival->candidate].possible(records.scene, value, basis.weights(force)))
-        least = std::min(least, basis.without(force).norm());
-    }
+  if (rival.size() != 1) return least / deviation_;
+  auto values = std::vector{rival.front().nonlinear};
+  if (!candidates()[rival.front().candidate].replays) {
+    const auto more = values_of(records, rival.front().candidate, acting);
+    values.insert(values.end(), more.begin(), more.end());
+  }
+  for (const double value : values) {
+    auto own = columns_of(rival.front(), value);
+    for (auto& column : own) column = rest.without(column);
+    const Basis basis(own);
+    if (candidates()[rival.front().candidate].possible(scene, value, basis.weights(force)))
+      least = std::min(least, basis.without(force).norm());
   }
   return least / deviation_;
 }

@@ -34,20 +34,25 @@ class Separation {
   std::optional<Explanation> best_fit(const Records& records, const Eigen::VectorXd& target, std::size_t candidate,
                                       std::span<const Explanation> others) const;
 
-  // Standard errors by which such records are expected to prefer `truth` to `rival`, or to nothing, where `truth`
-  // acts; `others` act beside either. Nuisances are those of held-out data: the level of Coulomb friction and a
-  // constant force of each record.
-  double expected(const Records& records, const Explanation& truth, const std::optional<Explanation>& rival,
+  // Standard errors by which such records are expected to prefer the causes `truth` to the causes `rival` (none:
+  // nothing) where `truth` act; `others` act beside either. A rival alone takes the values that imitate best, of
+  // several the weights do. Nuisances are those of held-out data: the level of Coulomb friction and a constant force of
+  // each record.
+  double expected(const Records& records, std::span<const Explanation> truth, std::span<const Explanation> rival,
                   std::span<const Explanation> others) const;
+  // Share of `target`'s square (whitened) that causes take away at their best weights.
+  double explained(const Records& records, const Eigen::VectorXd& target, std::span<const Explanation> causes) const;
 
  private:
   Scene scanned(const Records& records, const Eigen::VectorXd& force) const;
   std::vector<double> values_of(const Records& records, std::size_t candidate, const Eigen::VectorXd& force) const;
   Eigen::VectorXd white(const LogRows& rows, const Eigen::VectorXd& column) const;
+  Eigen::VectorXd trust(const Records& records) const;
   void add_white(std::vector<Eigen::VectorXd>& columns, const Records& records, const Scene& scene,
                  std::size_t candidate, double nonlinear) const;
 
   Whitening whitening_;
+  double noise_ = 0.0;      // N rms
   double deviation_ = 0.0;  // N, of whitened rows as if each said something of its own
 };
 

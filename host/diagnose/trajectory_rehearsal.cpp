@@ -18,8 +18,9 @@ namespace {
 
 constexpr double usual_period = 1e-3;  // s, of a proposed log
 constexpr double least_of_travel = 0.25;
-constexpr double speed_share = 0.9, acceleration_share = 0.7, force_share = 0.7;
-constexpr double rise = 0.05;  // s, from rest to the highest acceleration
+constexpr double speed_share = 0.9, acceleration_share = 0.7, force_share = 0.5;
+constexpr double beyond_the_records = 1.5;  // times their acceleration
+constexpr double rise = 0.05;               // s, from rest to the highest acceleration
 
 struct Covered {
   double low, high;
@@ -92,15 +93,16 @@ sim::MotionRange motion_range(const sim::Axis& axis, const LogRows& rows) {
   const double speed = speed_share * axis.max_velocity;
   const double friction = coulomb_of(axis).value_or(0.0) + viscous_of(axis).value_or(0.0) * speed;
   const double by_force = (force_share * highest_motor_force(axis) - friction) / axis.mass;
-  const double acceleration = std::min(acceleration_share * axis.max_acceleration, by_force);
-  return {low, high, speed, acceleration, acceleration / rise};
+  const double highest = std::min(acceleration_share * axis.max_acceleration, by_force);
+  const double acceleration = std::min(beyond_the_records * rows.acceleration.cwiseAbs().maxCoeff(), highest);
+  return {low, high, speed, acceleration, acceleration / rise, highest};
 }
 
 std::string range_words(const sim::MotionRange& range, const LogRows& rows) {
   auto words = fmt::format(
       "It begins at rest at {:.3f} mm and stays between there and {:.3f} mm, below {:.3g} m/s and "
       "{:.3g} m/s^2.",
-      1e3 * range.low, 1e3 * range.high, range.speed, range.acceleration);
+      1e3 * range.low, 1e3 * range.high, range.speed, range.highest_acceleration);
   const auto covered = covered_by(rows);
   if (range.low < covered.low || range.high > covered.high)
     words += fmt::format(" These records cover {:.3f} to {:.3f} mm only: make sure that the way is free.",

@@ -15,7 +15,8 @@ namespace stiction::host {
 inline constexpr int enough_reversals = 1000;
 
 // Within the positions that the records cover; where these are less than a quarter of the travel, that much about their
-// middle. Nine tenths of the axis' speed, 0.7 of its acceleration and no more than 0.7 of its motor's force gives.
+// middle. Nine tenths of the axis' speed. Accelerations are half as high again as in the records; where they are what
+// is looked at, 0.7 of the axis' and what half of its motor's force gives.
 sim::MotionRange motion_range(const sim::Axis& axis, const LogRows& rows);
 // Where trajectories of that range begin, how far they go, and a warning where the records did not go there.
 std::string range_words(const sim::MotionRange& range, const LogRows& rows);

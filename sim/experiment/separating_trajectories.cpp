@@ -15,6 +15,11 @@ namespace {
 constexpr double settled = 0.3;  // s, before the first motion and behind the last
 
 Dynamics full(const MotionRange& r) { return {r.acceleration, r.jerk}; }
+// A share of the highest acceleration, reached in the same time.
+Dynamics up_to(const MotionRange& r, double share) {
+  const double acceleration = share * r.highest_acceleration;
+  return {acceleration, acceleration * r.jerk / r.acceleration};
+}
 double stroke(const MotionRange& r) { return r.high - r.low; }
 
 Trajectory finished(MoveSequence moves) {
@@ -37,10 +42,10 @@ void both_ways(MoveSequence& moves, const MotionRange& r, double speed, double c
   }
 }
 
-void over_the_stroke(MoveSequence& moves, const MotionRange& r, double seconds, double acceleration_share = 1.0) {
-  const Dynamics dynamics{acceleration_share * r.acceleration, acceleration_share * r.jerk};
+void over_the_stroke(MoveSequence& moves, const MotionRange& r, double seconds, const Dynamics& dynamics) {
+  const double speed = seconds > 0.0 ? std::min(stroke(r) / seconds, r.speed) : r.speed;
   for (const double sign : {1.0, -1.0}) {
-    moves.move(sign * stroke(r), std::min(stroke(r) / seconds, r.speed), dynamics);
+    moves.move(sign * stroke(r), speed, dynamics);
     moves.rest(0.1);
   }
 }
@@ -80,7 +85,7 @@ Trajectory accelerations(const MotionRange& r) {
   for (const double share : {0.1, 0.2, 0.35, 0.5, 0.7, 0.85, 1.0})
     for (int turn = 0; turn < 3; ++turn)
       for (const double sign : {1.0, -1.0}) {
-        moves.move(sign * way, r.speed, {share * r.acceleration, r.jerk});
+        moves.move(sign * way, r.speed, up_to(r, share));
         moves.rest(0.05);
       }
   return finished(moves);
@@ -88,22 +93,22 @@ Trajectory accelerations(const MotionRange& r) {
 
 Trajectory sweep(const MotionRange& r) {
   auto moves = begun(r);
-  over_the_stroke(moves, r, 8.0);
-  over_the_stroke(moves, r, 4.0);
+  over_the_stroke(moves, r, 8.0, full(r));
+  over_the_stroke(moves, r, 4.0, full(r));
   return finished(moves);
 }
 
 Trajectory stroke_at_speeds(const MotionRange& r) {
   auto moves = begun(r);
-  for (const double seconds : {5.0, 2.5, 1.5, 0.8, 0.4}) over_the_stroke(moves, r, seconds);
+  for (const double seconds : {5.0, 2.5, 1.5, 0.8, 0.4}) over_the_stroke(moves, r, seconds, full(r));
   return finished(moves);
 }
 
 Trajectory stroke_at_accelerations(const MotionRange& r) {
   auto moves = begun(r);
   for (const double share : {0.05, 0.15, 0.4, 1.0})
-    over_the_stroke(moves, r, 0.0, share), over_the_stroke(moves, r, 0.0, share);
-  over_the_stroke(moves, r, 5.0);
+    for (int turn = 0; turn < 2; ++turn) over_the_stroke(moves, r, 0.0, up_to(r, share));
+  over_the_stroke(moves, r, 5.0, full(r));
   return finished(moves);
 }
 
@@ -204,7 +209,7 @@ Trajectory warm_up(const MotionRange& r) {
   for (int round = 0; round < 4; ++round) {
     look();
     const double begin = moves.duration();
-    while (moves.duration() < begin + 5.0) over_the_stroke(moves, r, 0.0);
+    while (moves.duration() < begin + 5.0) over_the_stroke(moves, r, 0.0, full(r));
   }
   look();
   return finished(moves);

@@ -10,10 +10,11 @@ namespace stiction::sim {
 
 // What a motion may use of the axis.
 struct MotionRange {
-  double low, high;     // m, positions
-  double speed;         // m/s
-  double acceleration;  // m/s^2
-  double jerk;          // m/s^3
+  double low, high;             // m, positions
+  double speed;                 // m/s
+  double acceleration;          // m/s^2
+  double jerk;                  // m/s^3
+  double highest_acceleration;  // m/s^2, where accelerations are what is looked at; jerk in proportion
 };
 
 struct SeparatingTrajectory {

@@ -5,11 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
-#include <iostream>
+#include <numbers>
 
 #include "host/diagnose/diagnose.hpp"
-#include "host/diagnose/verdict_json.hpp"
 #include "host/simulate/commissioning.hpp"
 #include "sim/experiment/commissioning_path.hpp"
 #include "sim/machine/machine_file.hpp"
@@ -42,57 +40,106 @@ host::Log set_points(const char* name, const sim::Trajectory& path) {
   return log;
 }
 
+host::Log recorded(const sim::Machine& real, const host::Log& wanted, std::uint64_t seed) {
+  return host::record_set_points(real, 0, wanted, seed);
+}
+
+std::string findings_of(const host::Verdict& verdict) {
+  std::string all;
+  for (const auto& finding : verdict.findings) {
+    all += (all.empty() ? "" : ", ") + finding.effect.name;
+    for (const auto& other : finding.confused_with) all += " or " + other.effect;
+  }
+  return all.empty() ? "nothing" : all;
+}
+
+bool says(const host::Verdict& verdict, const std::string& effect, const std::string& rival) {
+  return std::any_of(verdict.findings.begin(), verdict.findings.end(), [&](const host::Finding& f) {
+    const auto confused = [&](const std::string& with) {
+      return std::any_of(f.confused_with.begin(), f.confused_with.end(),
+                         [&](const auto& c) { return c.effect == with; });
+    };
+    return (f.effect.name == effect && confused(rival)) || (f.effect.name == rival && confused(effect));
+  });
+}
+
 struct Case {
   const char* name;
-  std::vector<sim::Effect> hidden;
-  const char* rival;
+  sim::Effect hidden;
+  std::string rival;
   sim::Trajectory training, held_out;
 };
 
+// Contact of the file's own shape: stiffness times distance is ln 10 times the Coulomb level.
 std::vector<Case> cases() {
-  std::vector<Case> all;
-  all.push_back({"few reversals",
-                 {{"presliding_hysteresis", {{"stiffness", {1.2e6}}, {"distance", {300e-6}}}}},
-                 "coulomb_mismatch",
-                 sim::constant_speeds({0.02, 0.1, 0.2}, 0.5, 2e-3),
-                 sim::constant_speeds({0.03, 0.07, 0.15}, 0.5, 2e-3)});
-  all.push_back({"no slow speeds",
-                 {{"stribeck", {{"break_away", {35.0}}, {"velocity", {10e-3}}}}},
-                 "viscous_nonlinear",
-                 sim::constant_speeds({0.025, 0.05, 0.1, 0.2, 0.3}, 0.4, 2e-3),
-                 sim::constant_speeds({0.03, 0.07, 0.15, 0.25}, 0.5, 2e-3)});
-  all.push_back({"one acceleration",
-                 {{"force_saturation", {{"current", {12.0}}}}},
-                 "mass_mismatch",
-                 sim::constant_speeds({0.05, 0.1, 0.2, 0.3}, 0.2, 2e-3),
-                 sim::constant_speeds({0.07, 0.15, 0.25}, 0.2, 2e-3)});
-  all.push_back({"one speed",
-                 {{"viscous_mismatch", {{"viscous", {650.0}}}}},
-                 "coulomb_mismatch",
-                 sim::constant_speeds({0.2, 0.2, 0.2, 0.2, 0.2, 0.2}, 0.4, 2e-3),
-                 sim::constant_speeds({0.21, 0.21, 0.21, 0.21}, 0.5, 2e-3)});
-  return all;
+  const auto speeds = [](const std::vector<double>& v) { return sim::constant_speeds(v, 0.4, 2e-3); };
+  return {
+      {"few reversals",
+       {"presliding_hysteresis", {{"stiffness", {90.0 * std::numbers::ln10 / 300e-6}}, {"distance", {300e-6}}}},
+       "coulomb_mismatch",
+       speeds({0.3, 0.25}),
+       speeds({0.28, 0.22})},
+      {"few speeds",
+       {"viscous_mismatch", {{"viscous", {530.0}}}},
+       "viscous_nonlinear",
+       speeds({0.02, 0.1, 0.2, 0.05}),
+       speeds({0.03, 0.07, 0.15})},
+      {"two speeds", {"friction_lag", {{"time", {0.01}}}}, "mass_mismatch", speeds({0.3, 0.25}), speeds({0.28, 0.22})}};
 }
 
-TEST(NextMeasurement, explore) {
-  const auto file = machine();
-  for (const auto& c : cases()) {
-    auto real = file;
-    real.axes.front().effects = c.hidden;
-    host::DiagnoseInput input;
-    input.machine = file;
-    input.closed_loop = false;
-    input.logs = {host::record_set_points(real, 0, set_points("training", c.training), 1)};
-    input.held_out = {host::record_set_points(real, 0, set_points("held out", c.held_out), 2)};
-    auto verdict = host::diagnose(input);
-    std::cout << "=== " << c.name << "\n" << host::verdict_text(verdict) << "\n";
-    if (!verdict.next) continue;
-    std::cout << host::verdict_json(verdict)["next_measurement"].dump(1) << "\n";
-    if (!verdict.next->log) continue;
-    input.logs.push_back(host::record_set_points(real, 0, *verdict.next->log, 3));
-    verdict = host::diagnose(input);
-    std::cout << "--- with the proposed\n" << host::verdict_text(verdict) << "\n";
-  }
+class EachAmbiguity : public ::testing::TestWithParam<std::size_t> {};
+
+TEST_P(EachAmbiguity, is_settled_by_the_proposed_record) {
+  const auto c = cases()[GetParam()];
+  host::DiagnoseInput input;
+  input.machine = machine();
+  input.closed_loop = false;
+  auto real = input.machine;
+  real.axes.front().effects = {c.hidden};
+  input.logs = {recorded(real, set_points("training", c.training), 1)};
+  input.held_out = {recorded(real, set_points("held out", c.held_out), 2)};
+  const auto before = host::diagnose(input);
+  EXPECT_TRUE(says(before, c.hidden.name, c.rival)) << findings_of(before);
+  ASSERT_TRUE(before.next.has_value() && before.next->log.has_value()) << findings_of(before);
+  const auto& best = before.next->trajectories.front();
+  // What it promises for the question it is asked: enough to be named, and more than the records have.
+  EXPECT_GT(best.separations.front(), 5.0);
+  EXPECT_GT(best.separations.front(), 2.0 * before.next->questions.front().these_logs);
+
+  input.logs.push_back(recorded(real, *before.next->log, 3));
+  const auto after = host::diagnose(input);
+  figure(fmt::format("next measurement, {} hidden, {}", c.hidden.name, c.name),
+         fmt::format("{}; {} proposed, {:.1f} standard errors expected (present logs {:.1f}); with it: {}",
+                     findings_of(before), best.name, best.separations.front(),
+                     before.next->questions.front().these_logs, findings_of(after)));
+  ASSERT_FALSE(after.findings.empty());
+  EXPECT_EQ(after.findings.front().effect.name, c.hidden.name);
+  EXPECT_FALSE(says(after, c.hidden.name, c.rival)) << findings_of(after);
+}
+
+INSTANTIATE_TEST_SUITE_P(NextMeasurement, EachAmbiguity, ::testing::Range<std::size_t>(0, cases().size()),
+                         [](const auto& each) {
+                           std::string name = cases()[each.param].name;
+                           std::replace(name.begin(), name.end(), ' ', '_');
+                           return name;
+                         });
+
+// No motion of one axis tells a constant force from an asymmetry: it says so, with the experiment that does.
+TEST(NextMeasurement, proposes_no_motion_where_none_can_tell) {
+  host::DiagnoseInput input;
+  input.machine = machine();
+  input.closed_loop = false;
+  auto real = input.machine;
+  real.axes.front().effects = {{"constant_force", {{"force", {12.0}}}}};
+  input.logs = {recorded(real, set_points("training", sim::constant_speeds({0.02, 0.1, 0.2, 0.05}, 0.5, 2e-3)), 1)};
+  input.held_out = {recorded(real, set_points("held out", sim::constant_speeds({0.03, 0.07, 0.15}, 0.5, 2e-3)), 2)};
+  const auto verdict = host::diagnose(input);
+  ASSERT_TRUE(verdict.next.has_value()) << findings_of(verdict);
+  const auto& question = verdict.next->questions.front();
+  EXPECT_EQ(question.effect, "constant_force");
+  EXPECT_EQ(question.rival, "friction_asymmetry");
+  EXPECT_FALSE(question.by_motion);
+  EXPECT_NE(question.separate_by.find("turn the axis"), std::string::npos);
 }
 
 }  // namespace
