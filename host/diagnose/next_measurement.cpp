@@ -201,7 +201,7 @@ void propose_next_measurement(Verdict& verdict, const Searched& searched) {
             question.shown.by_motion ? separation_of(separation, {rehearsal.rows, rehearsal.scene}, question) : 0.0);
     }
     rank(next, rehearsals, std::move(judged));
-    if (next.log) next.note = range_words(range, searched.rows);
+    if (next.log) next.note = extent_words(*next.log, searched.rows);
   }
   // What was nearly found and no trajectory shows is no news.
   if (next.log || !next.questions.front().rival.empty()) verdict.next = std::move(next);

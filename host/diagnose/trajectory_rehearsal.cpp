@@ -98,13 +98,20 @@ sim::MotionRange motion_range(const sim::Axis& axis, const LogRows& rows) {
   return {low, high, speed, acceleration, acceleration / rise, highest};
 }
 
-std::string range_words(const sim::MotionRange& range, const LogRows& rows) {
+std::string extent_words(const Log& proposed, const LogRows& rows) {
+  const auto& axis = proposed.axes.front();
+  const auto [low, high] = std::minmax_element(axis.x_set.begin(), axis.x_set.end());
+  const auto largest = [](const std::vector<double>& values) {
+    return std::abs(
+        *std::max_element(values.begin(), values.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
+  };
   auto words = fmt::format(
-      "It begins at rest at {:.3f} mm and stays between there and {:.3f} mm, below {:.3g} m/s and "
+      "It begins at rest at {:.3f} mm, stays between {:.3f} and {:.3f} mm and reaches {:.3g} m/s and "
       "{:.3g} m/s^2.",
-      1e3 * range.low, 1e3 * range.high, range.speed, range.highest_acceleration);
+      1e3 * axis.x_set.front(), 1e3 * *low, 1e3 * *high, largest(axis.v_set), largest(axis.a_set));
   const auto covered = covered_by(rows);
-  if (range.low < covered.low || range.high > covered.high)
+  const double slack = 1e-3 * (covered.high - covered.low);
+  if (*low < covered.low - slack || *high > covered.high + slack)
     words += fmt::format(" These records cover {:.3f} to {:.3f} mm only: make sure that the way is free.",
                          1e3 * covered.low, 1e3 * covered.high);
   return words;

@@ -18,8 +18,8 @@ inline constexpr int enough_reversals = 1000;
 // middle. Nine tenths of the axis' speed. Accelerations are half as high again as in the records; where they are what
 // is looked at, 0.7 of the axis' and what half of its motor's force gives.
 sim::MotionRange motion_range(const sim::Axis& axis, const LogRows& rows);
-// Where trajectories of that range begin, how far they go, and a warning where the records did not go there.
-std::string range_words(const sim::MotionRange& range, const LogRows& rows);
+// Where a proposed log begins, how far and how fast it goes, and a warning where the records did not go there.
+std::string extent_words(const Log& proposed, const LogRows& rows);
 
 struct Rehearsal {
   const sim::SeparatingTrajectory* trajectory;

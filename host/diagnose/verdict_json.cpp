@@ -171,7 +171,12 @@ std::string next_measurement_text(const NextMeasurement& next) {
   std::string text = "next measurement: ";
   if (!next.log) {
     const auto& q = next.questions.front();
-    return text + fmt::format("no motion of axis {} answers what is open; {}", next.axis, q.separate_by);
+    const bool could = !next.trajectories.empty() || !q.by_motion;
+    return text +
+           fmt::format("{}; {}",
+                       could ? fmt::format("no motion of axis {} that is known here answers what is open", next.axis)
+                             : "no trajectory could be run on the machine file's simulation",
+                       q.separate_by);
   }
   const auto& best = next.trajectories.front();
   text += fmt::format("{}, {:.0f} s{}; expected", best.name, best.duration,

@@ -19,6 +19,7 @@ std::string title_of(const OpenQuestion& question) {
 std::string standard_errors(double value) { return fmt::format("{:.{}f}", value, value < 9.95 ? 1 : 0); }
 
 std::string what_to_do(const NextMeasurement& next) {
+  if (next.trajectories.empty()) return "No trajectory could be run on the machine file's simulation.";
   if (!next.log) return "No motion of this axis that was tried in simulation answers what is open.";
   const auto& best = next.trajectories.front();
   return typeset(

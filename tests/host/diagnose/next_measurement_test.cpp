@@ -8,9 +8,13 @@
 #include <numbers>
 
 #include "host/diagnose/diagnose.hpp"
+#include "host/diagnose/verdict_json.hpp"
+#include "host/log/csv_log.hpp"
 #include "host/simulate/commissioning.hpp"
+#include "host/simulate/replay.hpp"
 #include "sim/experiment/commissioning_path.hpp"
 #include "sim/machine/machine_file.hpp"
+#include "stiction/number/fixed_signals.hpp"
 #include "tests/support/figure.hpp"
 
 namespace stiction::test {
@@ -106,7 +110,15 @@ TEST_P(EachAmbiguity, is_settled_by_the_proposed_record) {
   EXPECT_GT(best.separations.front(), 5.0);
   EXPECT_GT(best.separations.front(), 2.0 * before.next->questions.front().these_logs);
 
-  input.logs.push_back(recorded(real, *before.next->log, 3));
+  // As a user gets it: a file that `simulate replay --from` reads and runs.
+  const auto as_file = host::parse_csv_log(host::csv_log_text(*before.next->log), "next_measurement.csv");
+  const auto run = host::replay<FixedSignals>(input.machine, as_file);
+  EXPECT_EQ(run.axes.front().x.size(), as_file.t.size());
+  const auto json = host::verdict_json(before)["next_measurement"];
+  EXPECT_EQ(json["log"], "next_measurement.csv");
+  EXPECT_EQ(json["questions"].size(), json["trajectories"][0]["standard_errors"].size());
+
+  input.logs.push_back(recorded(real, as_file, 3));
   const auto after = host::diagnose(input);
   figure(fmt::format("next measurement, {} hidden, {}", c.hidden.name, c.name),
          fmt::format("{}; {} proposed, {:.1f} standard errors expected (present logs {:.1f}); with it: {}",
@@ -140,6 +152,7 @@ TEST(NextMeasurement, proposes_no_motion_where_none_can_tell) {
   EXPECT_EQ(question.rival, "friction_asymmetry");
   EXPECT_FALSE(question.by_motion);
   EXPECT_NE(question.separate_by.find("turn the axis"), std::string::npos);
+  EXPECT_TRUE(host::verdict_json(verdict)["next_measurement"]["log"].is_null() || verdict.next->questions.size() > 1);
 }
 
 }  // namespace
