@@ -16,7 +16,6 @@ namespace {
 // Standard errors from which the search names a cause: p < 0.01/22 from some tens of blocks asks for four to five.
 constexpr double enough = 5.0;
 constexpr double ample = 2.0 * enough;   // more is not worth a fiercer motion
-constexpr double least = 2.5;            // less would have to be recorded more than four times
 constexpr double usual_duration = 20.0;  // s, for which separations of long and short trajectories are compared
 // Of what the findings take away: as much by a cause that the search could not try on these records, and it may be
 // that.
@@ -166,7 +165,7 @@ void rank(NextMeasurement& next, std::vector<Rehearsal>& rehearsals, std::vector
   double weakest = enough;
   bool any = false;
   for (const double s : next.trajectories.front().separations) {
-    if (s < least) continue;
+    if (s < least_separation) continue;
     weakest = std::min(weakest, s);
     any = true;
   }
@@ -196,9 +195,10 @@ void propose_next_measurement(Verdict& verdict, const Searched& searched) {
     std::vector<RehearsedTrajectory> judged;
     for (const auto& rehearsal : rehearsals) {
       judged.push_back({rehearsal.trajectory->name, rehearsal.trajectory->words, rehearsal.log.t.back(), {}});
+      const Records records{rehearsal.rows, rehearsal.scene};
       for (const auto& question : questions)
-        judged.back().separations.push_back(
-            question.shown.by_motion ? separation_of(separation, {rehearsal.rows, rehearsal.scene}, question) : 0.0);
+        judged.back().separations.push_back(question.shown.by_motion ? separation_of(separation, records, question)
+                                                                     : 0.0);
     }
     rank(next, rehearsals, std::move(judged));
     if (next.log) next.note = extent_words(*next.log, searched.rows);

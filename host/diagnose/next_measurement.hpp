@@ -10,6 +10,9 @@
 
 namespace stiction::host {
 
+// Standard errors: what a trajectory separates by less it leaves open, even recorded four times.
+inline constexpr double least_separation = 2.5;
+
 // A finished search with its records.
 struct Searched {
   const sim::Machine& machine;

@@ -38,6 +38,10 @@ class Basis {
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver_;
 };
 
+void append(std::vector<Eigen::VectorXd>& all, const std::vector<Eigen::VectorXd>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
 Eigen::VectorXd force_of(const Records& records, const Explanation& cause) {
   const auto& candidate = candidates()[cause.candidate];
   const auto columns = shared_columns(records.rows, records.scene, candidate, cause.nonlinear);
@@ -62,16 +66,20 @@ Eigen::VectorXd Separation::white(const LogRows& rows, const Eigen::VectorXd& co
 }
 
 // Of each row: its noise over that and the model's error together.
-Eigen::VectorXd Separation::trust(const Records& records) const {
-  const auto& scene = records.scene;
-  const auto force = records.rows.stacked([&](const Motion& m) { return force_along(scene.axis, m); });
-  return force.unaryExpr([this](double f) { return noise_ / std::hypot(noise_, model_error * f); });
+const Eigen::VectorXd& Separation::trust(const Records& records) const {
+  if (records.trust.size() > 0) return records.trust;
+  const auto force = records.rows.stacked([&](const Motion& m) { return force_along(records.scene.axis, m); });
+  records.trust = force.unaryExpr([this](double f) { return noise_ / std::hypot(noise_, model_error * f); });
+  return records.trust;
 }
 
-void Separation::add_white(std::vector<Eigen::VectorXd>& columns, const Records& records, const Scene& scene,
-                           std::size_t candidate, double nonlinear) const {
-  for (const auto& column : group_columns(records.rows, scene, candidates()[candidate], nonlinear))
-    columns.push_back(white(records.rows, column));
+const std::vector<Eigen::VectorXd>& Separation::white_columns(const Records& records, std::size_t candidate,
+                                                              double nonlinear) const {
+  const auto [place, unknown] = records.columns.try_emplace({candidate, nonlinear});
+  if (unknown)
+    for (const auto& column : group_columns(records.rows, records.scene, candidates()[candidate], nonlinear))
+      place->second.push_back(white(records.rows, column));
+  return place->second;
 }
 
 // The lines that a periodic candidate would be looked for at, were `force` what these records leave.
@@ -98,14 +106,13 @@ std::vector<double> Separation::values_of(const Records& records, std::size_t ca
 std::optional<Explanation> Separation::best_fit(const Records& records, const Eigen::VectorXd& target,
                                                 std::size_t candidate, std::span<const Explanation> others) const {
   std::vector<Eigen::VectorXd> beside;
-  for (const auto& other : others) add_white(beside, records, records.scene, other.candidate, other.nonlinear);
+  for (const auto& other : others) append(beside, white_columns(records, other.candidate, other.nonlinear));
   const Basis rest(beside);
   const Eigen::VectorXd force = rest.without(white(records.rows, target));
   std::optional<Explanation> best;
   double least = force.squaredNorm();
   for (const double value : values_of(records, candidate, target)) {
-    std::vector<Eigen::VectorXd> own;
-    add_white(own, records, records.scene, candidate, value);
+    auto own = white_columns(records, candidate, value);
     for (auto& column : own) column = rest.without(column);
     const Basis basis(own);
     const auto weights = basis.weights(force);
@@ -120,7 +127,7 @@ std::optional<Explanation> Separation::best_fit(const Records& records, const Ei
 double Separation::explained(const Records& records, const Eigen::VectorXd& target,
                              std::span<const Explanation> causes) const {
   std::vector<Eigen::VectorXd> columns;
-  for (const auto& cause : causes) add_white(columns, records, records.scene, cause.candidate, cause.nonlinear);
+  for (const auto& cause : causes) append(columns, white_columns(records, cause.candidate, cause.nonlinear));
   const auto force = white(records.rows, target);
   return 1.0 - Basis(columns).without(force).squaredNorm() / force.squaredNorm();
 }
@@ -129,17 +136,13 @@ double Separation::expected(const Records& records, std::span<const Explanation>
                             std::span<const Explanation> rival, std::span<const Explanation> others) const {
   const auto& rows = records.rows;
   const auto& scene = records.scene;
-  const auto trusted = trust(records);
+  const auto& trusted = trust(records);
   const auto columns_of = [&](const Explanation& cause, double value) {
-    std::vector<Eigen::VectorXd> columns;
-    add_white(columns, records, scene, cause.candidate, value);
+    auto columns = white_columns(records, cause.candidate, value);
     for (auto& column : columns) column = column.cwiseProduct(trusted);
     return columns;
   };
   std::vector<Eigen::VectorXd> beside;
-  const auto add = [&](const std::vector<Eigen::VectorXd>& columns) {
-    beside.insert(beside.end(), columns.begin(), columns.end());
-  };
   bool constant = true, coulomb = true;
   for (const auto causes : {truth, rival, others})
     for (const auto& cause : causes) {
@@ -148,13 +151,14 @@ double Separation::expected(const Records& records, std::span<const Explanation>
     }
   for (std::size_t k = 0; k < rows.motions().size(); ++k) {
     const auto& motion = rows.motions()[k];
-    if (constant) add({white(rows, rows.of_log(k, std::vector<double>(motion.t.size(), 1.0))).cwiseProduct(trusted)});
+    if (constant)
+      beside.emplace_back(white(rows, rows.of_log(k, std::vector<double>(motion.t.size(), 1.0))).cwiseProduct(trusted));
     if (coulomb && coulomb_of(scene.axis))
-      add({white(rows, rows.of_log(k, contact_level(scene.axis, motion))).cwiseProduct(trusted)});
+      beside.emplace_back(white(rows, rows.of_log(k, contact_level(scene.axis, motion))).cwiseProduct(trusted));
   }
-  for (const auto& other : others) add(columns_of(other, other.nonlinear));
+  for (const auto& other : others) append(beside, columns_of(other, other.nonlinear));
   if (rival.size() > 1)
-    for (const auto& each : rival) add(columns_of(each, each.nonlinear));
+    for (const auto& each : rival) append(beside, columns_of(each, each.nonlinear));
   Eigen::VectorXd acting = Eigen::VectorXd::Zero(rows.rows());
   for (const auto& cause : truth) acting += force_of(records, cause);
   const Basis rest(beside);

@@ -3,8 +3,11 @@
 // T-optimal experiment (Atkinson, Fedorov: Biometrika 62, 1975).
 #pragma once
 
+#include <map>
 #include <optional>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "host/diagnose/search.hpp"
 
@@ -18,10 +21,12 @@ struct Explanation {
 };
 inline Explanation explanation_of(const Term& term) { return {term.candidate, term.nonlinear, term.weights}; }
 
-// Records, real or simulated, with what candidates may know of them.
+// Records, real or simulated, with what candidates may know of them. Keeps what one Separation has made of them.
 struct Records {
   const LogRows& rows;
   const Scene& scene;
+  mutable std::map<std::pair<std::size_t, double>, std::vector<Eigen::VectorXd>> columns{};  // whitened
+  mutable Eigen::VectorXd trust{};
 };
 
 class Separation {
@@ -47,9 +52,9 @@ class Separation {
   Scene scanned(const Records& records, const Eigen::VectorXd& force) const;
   std::vector<double> values_of(const Records& records, std::size_t candidate, const Eigen::VectorXd& force) const;
   Eigen::VectorXd white(const LogRows& rows, const Eigen::VectorXd& column) const;
-  Eigen::VectorXd trust(const Records& records) const;
-  void add_white(std::vector<Eigen::VectorXd>& columns, const Records& records, const Scene& scene,
-                 std::size_t candidate, double nonlinear) const;
+  const Eigen::VectorXd& trust(const Records& records) const;
+  const std::vector<Eigen::VectorXd>& white_columns(const Records& records, std::size_t candidate,
+                                                    double nonlinear) const;
 
   Whitening whitening_;
   double noise_ = 0.0;      // N rms

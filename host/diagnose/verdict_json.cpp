@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "host/diagnose/next_measurement.hpp"
 #include "sim/plant/effects/effects.hpp"
 
 namespace stiction::host {
@@ -181,16 +182,18 @@ std::string next_measurement_text(const NextMeasurement& next) {
   const auto& best = next.trajectories.front();
   text += fmt::format("{}, {:.0f} s{}; expected", best.name, best.duration,
                       next.times > 1 ? fmt::format(", {} times", next.times) : std::string());
-  bool first = true;
+  std::vector<std::string> settled, open;
   for (std::size_t k = 0; k < next.questions.size(); ++k) {
     const auto& q = next.questions[k];
-    if (!q.by_motion) continue;
-    text += fmt::format("{} {:.1f} standard errors {} (these logs: {:.1f})", first ? "" : ",", best.separations[k],
-                        q.rival.empty() ? "for " + q.effect : fmt::format("between {} and {}", q.effect, q.rival),
-                        q.these_logs);
-    first = false;
+    const auto what = q.rival.empty() ? q.effect : fmt::format("{} or {}", q.effect, q.rival);
+    if (q.by_motion && best.separations[k] >= least_separation)
+      settled.push_back(
+          fmt::format("{:.1f} standard errors for {} (these logs: {:.1f})", best.separations[k], what, q.these_logs));
+    else
+      open.push_back(what);
   }
-  return text;
+  text += fmt::format(" {}", fmt::join(settled, ", "));
+  return open.empty() ? text : text + fmt::format("; leaves open {}", fmt::join(open, ", "));
 }
 
 std::string verdict_text(const Verdict& verdict) {
