@@ -233,7 +233,8 @@ Verdict diagnose(const DiagnoseInput& input) {
   verdict.extended.force_rms = figures.force_extended;
   for (std::size_t k = 0; k < found.terms.size(); ++k)
     verdict.findings.push_back(finding_of(scene, found.terms[k], figures.gains[k], found.blocks));
-  propose_next_measurement(verdict, {input.machine, input.axis, settings, regressors, target, scene, found});
+  propose_next_measurement(verdict, {input.machine, input.axis, settings, regressors, target, scene, found},
+                           input.next_measurement);
   judge_command(verdict, input, {logs, rows}, {held_out, held_rows}, record_delay(regressors, scene, found));
   for (const auto& d : found.discarded) verdict.rejected.push_back({candidates()[d.candidate].name, d.why});
   if (found.terms.size() == found_before)

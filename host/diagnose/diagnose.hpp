@@ -19,6 +19,7 @@ struct DiagnoseInput {
   std::vector<Log> held_out;  // empty: the last third of each log is held out
   std::uint64_t seed = 1;     // of the bootstrap
   bool closed_loop = true;    // replay the held-out logs where they have set-points
+  bool next_measurement = true;  // propose one where something is open
   std::function<void()> progress;
 };
 

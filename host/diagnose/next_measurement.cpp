@@ -45,9 +45,28 @@ class Questions {
     for (const auto& term : searched.found.terms) terms_.push_back(explanation_of(term));
   }
 
+  // What the search does not try on records like these, and what alone takes away as much as all findings.
+  void add_untried(std::vector<Finding>& findings) {
+    if (terms_.empty()) return;
+    const double by_all = separation_.explained(records_, searched_.target, terms_);
+    for (std::size_t c = 0; c < candidates().size(); ++c) {
+      if (!candidates()[c].grid(searched_.scene).empty() || candidates()[c].grid(scene_).empty()) continue;
+      const auto fit = separation_.best_fit(records_, searched_.target, c, {});
+      if (!fit || separation_.explained(records_, searched_.target, {&*fit, 1}) < as_good * by_all) continue;
+      const std::string name = candidates()[c].name;
+      const auto& known = sim::find_effect_kind(name)->aliases;
+      const auto told_by = [&](const std::string& other) {
+        const auto alias = std::find_if(known.begin(), known.end(), [&](const auto& a) { return a.effect == other; });
+        return alias != known.end() ? std::string(alias->separate_by)
+                                    : "small reversals of several amplitudes, which these records lack";
+      };
+      if (terms_.size() > 1)
+        ask({{findings.front().effect.name, name, told_by(findings.front().effect.name)}, terms_, {*fit}, {}});
+      for (auto& finding : findings) finding.confused_with.push_back({name, told_by(finding.effect.name)});
+    }
+  }
   // Which of a finding and what it may be confused with, the largest finding first.
-  void add_confusions(std::vector<Finding>& findings) {
-    add_untried(findings);
+  void add_confusions(const std::vector<Finding>& findings) {
     for (std::size_t k = 0; k < findings.size(); ++k)
       for (const auto& other : findings[k].confused_with) add(findings[k], k, other);
   }
@@ -95,26 +114,6 @@ class Questions {
   bool asked(std::size_t rival) const {
     return std::any_of(questions_.begin(), questions_.end(),
                        [&](const Question& q) { return q.truth.size() > 1 && q.rival.front().candidate == rival; });
-  }
-  // What the search does not try on records like these, and what alone takes away as much as all findings.
-  void add_untried(std::vector<Finding>& findings) {
-    if (terms_.empty()) return;
-    const double by_all = separation_.explained(records_, searched_.target, terms_);
-    for (std::size_t c = 0; c < candidates().size(); ++c) {
-      if (!candidates()[c].grid(searched_.scene).empty() || candidates()[c].grid(scene_).empty()) continue;
-      const auto fit = separation_.best_fit(records_, searched_.target, c, {});
-      if (!fit || separation_.explained(records_, searched_.target, {&*fit, 1}) < as_good * by_all) continue;
-      const std::string name = candidates()[c].name;
-      const auto& known = sim::find_effect_kind(name)->aliases;
-      const auto told_by = [&](const std::string& other) {
-        const auto alias = std::find_if(known.begin(), known.end(), [&](const auto& a) { return a.effect == other; });
-        return alias != known.end() ? std::string(alias->separate_by)
-                                    : "small reversals of several amplitudes, which these records lack";
-      };
-      if (terms_.size() > 1)
-        ask({{findings.front().effect.name, name, told_by(findings.front().effect.name)}, terms_, {*fit}, {}});
-      for (auto& finding : findings) finding.confused_with.push_back({name, told_by(finding.effect.name)});
-    }
   }
 
   const Searched& searched_;
@@ -177,10 +176,12 @@ void rank(NextMeasurement& next, std::vector<Rehearsal>& rehearsals, std::vector
 
 }  // namespace
 
-void propose_next_measurement(Verdict& verdict, const Searched& searched) {
+void propose_next_measurement(Verdict& verdict, const Searched& searched, bool propose) {
   if (searched.found.residual.squaredNorm() <= 0.0) return;
   const Separation separation(searched.rows, searched.found.residual);
   Questions collected(searched, separation);
+  collected.add_untried(verdict.findings);
+  if (!propose) return;
   collected.add_confusions(verdict.findings);
   collected.add_nearly_found();
   const auto questions = collected.take();

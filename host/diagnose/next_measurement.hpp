@@ -24,8 +24,9 @@ struct Searched {
   const SearchResult& found;
 };
 
-// Sets verdict.next where something is open; `verdict.findings` are those of found.terms, in that order. Adds to a
-// finding's confused_with what the search could not try on these records and what they cannot tell from it.
-void propose_next_measurement(Verdict& verdict, const Searched& searched);
+// Adds to the findings' confused_with what the search could not try on these records and what explains as much as all
+// of them; sets verdict.next where something is open and `propose`. `verdict.findings` are those of found.terms, in
+// that order.
+void propose_next_measurement(Verdict& verdict, const Searched& searched, bool propose);
 
 }  // namespace stiction::host
