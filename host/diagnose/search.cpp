@@ -17,10 +17,9 @@ namespace stiction::host {
 namespace {
 
 constexpr std::size_t most_terms = 8;
-constexpr double significance = 0.01;        // over the number of candidates
-constexpr double nearly_significant = 10.0;  // times that
-constexpr double least_gain = 0.01;          // of the cross-validated residual
-constexpr double least_share = 2e-3;  // of the residual's variance: what is less is no cause that a part would show
+constexpr double significance = 0.01;  // over the number of candidates
+constexpr double least_gain = 0.01;    // of the cross-validated residual
+constexpr double least_share = 2e-3;   // of the residual's variance: what is less is no cause that a part would show
 constexpr std::size_t pitches_tried = 3;
 constexpr std::size_t lines_tried = 2;
 
@@ -300,9 +299,9 @@ double Search::size_in(const std::vector<bool>& use, const Set& set, std::size_t
 void Search::note(std::size_t candidate, const Judgement& judgement) {
   const auto known =
       std::find_if(discarded_.begin(), discarded_.end(), [&](const Discarded& d) { return d.candidate == candidate; });
-  const double limit = significance / static_cast<double>(candidates().size());
-  const Discarded now{candidate, *judgement.objection,
-                      judgement.p_value >= limit && judgement.p_value < nearly_significant * limit};
+  constexpr double nearly_significant = 0.1;  // over the number of candidates, as `significance`
+  const double trials = static_cast<double>(candidates().size()), p = judgement.p_value;
+  const Discarded now{candidate, *judgement.objection, p >= significance / trials && p < nearly_significant / trials};
   if (known == discarded_.end())
     discarded_.push_back(now);
   else

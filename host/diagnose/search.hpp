@@ -39,7 +39,7 @@ struct Term {
 struct Discarded {
   std::size_t candidate;
   std::string why;
-  bool nearly = false;  // not significant, but within ten times of it: better data may name it
+  bool nearly = false;  // not quite significant: better data may name it
 };
 
 struct SearchResult {

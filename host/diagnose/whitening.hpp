@@ -18,19 +18,18 @@ class Whitening {
   // Of a residual in rows of several logs; `logs`: first row of each.
   Whitening(const Eigen::VectorXd& residual, std::span<const std::size_t> logs);
 
-  // The same noise in rows of other logs at the same rate.
-  Whitening over(std::span<const std::size_t> logs) const {
-    auto other = *this;
-    other.logs_.assign(logs.begin(), logs.end());
-    return other;
-  }
-
   // A column of all rows, whitened; the rows at each log's start that have too little before them are 0.
   Eigen::VectorXd operator()(const Eigen::VectorXd& column) const;
   // The transpose of that: (W'c)'d = c'(W d).
   Eigen::VectorXd transposed(const Eigen::VectorXd& column) const;
   // Square of the gain at `cycles` a row.
   double gain_square(double cycles) const;
+  // The same noise in rows of other logs at the same rate.
+  Whitening over(std::span<const std::size_t> logs) const {
+    auto other = *this;
+    other.logs_.assign(logs.begin(), logs.end());
+    return other;
+  }
 
  private:
   std::vector<std::size_t> logs_;
