@@ -13,9 +13,8 @@ namespace stiction::test {
 namespace {
 
 // A fast linear axis, a slow screw axis, and a stroke of millimetres.
-constexpr sim::MotionRange ranges[] = {{-0.1, 0.15, 1.2, 3.0, 60.0, 14.0},
-                                       {0.0, 0.24, 0.2, 0.7, 14.0, 0.7},
-                                       {0.002, 0.008, 0.5, 5.0, 100.0, 5.0}};
+constexpr sim::MotionRange ranges[] = {
+    {-0.1, 0.15, 1.2, 3.0, 60.0, 14.0}, {0.0, 0.24, 0.2, 0.7, 14.0, 0.7}, {0.002, 0.008, 0.5, 5.0, 100.0, 5.0}};
 
 TEST(SeparatingTrajectories, stay_within_the_range_and_are_consistent) {
   for (const auto& range : ranges)
