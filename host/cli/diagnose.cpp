@@ -79,7 +79,9 @@ void add_diagnose(CLI::App& program, const Invocation& invocation) {
       ->type_name("KIND");
   command->add_option("--axis", o->axis, "the axis, where logs and machine have several")->type_name("NAME");
   command->add_option("--seed", o->seed, "of the bootstrap for held-out intervals [1]")->type_name("N");
-  command->add_option("--out", o->out, "write verdict.json, extended.toml and report.html into this folder")
+  command
+      ->add_option("--out", o->out,
+                   "write verdict.json, extended.toml, report.html and next_measurement.csv into this folder")
       ->type_name("DIR");
   command->add_flag("--json", o->json, "print the verdict as JSON on standard output");
   command->callback([o, &invocation] {

@@ -4,6 +4,7 @@
 
 #include "host/cli/output.hpp"
 #include "host/diagnose/verdict_json.hpp"
+#include "host/log/csv_log.hpp"
 #include "host/report/diagnosis_report.hpp"
 #include "sim/machine/extended_machine.hpp"
 #include "sim/machine/machine_file.hpp"
@@ -27,6 +28,15 @@ void put_out(const Verdict& verdict, const sim::Machine& machine, const MachineO
                  sim::extended_machine(sim::find_machine(options.machine), options.set, additions, comment));
     sim::read_machine(folder.path() / "extended.toml");  // what was written must be a machine
     folder.write("verdict.json", document.dump(2) + "\n");
+    if (verdict.next && verdict.next->log) {
+      auto log = *verdict.next->log;
+      log.comments = {{"made by", invocation.command_line},
+                      {"proposed", fmt::format("{}: {}", verdict.next->trajectories.front().name,
+                                               verdict.next->trajectories.front().words)},
+                      {"set-points", "x_set, v_set, a_set; " + verdict.next->note},
+                      {"not measured", "x and current are those of the machine file's simulation"}};
+      write_csv_log(folder.path() / next_measurement_file, log);
+    }
     folder.write("report.html", diagnosis_report_html({invocation.command_line, invocation.version, machine, verdict}));
     folder.commit();
   }
@@ -35,6 +45,8 @@ void put_out(const Verdict& verdict, const sim::Machine& machine, const MachineO
     return;
   }
   fmt::print("{}", verdict_text(verdict));
+  if (!out.empty() && verdict.next && verdict.next->log)
+    fmt::print("\nset-points to record: {}/{}", out, next_measurement_file);
   if (!out.empty())
     fmt::print("\nverdict: {0}/verdict.json\nmachine file: {0}/extended.toml\nreport: {0}/report.html\n", out);
 }

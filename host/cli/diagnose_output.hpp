@@ -9,7 +9,8 @@
 
 namespace stiction::host {
 
-// Writes verdict.json, extended.toml and report.html into `out` (empty: nothing) and prints the verdict, as JSON or for
+// Writes verdict.json, extended.toml, report.html and, where something is open that a motion answers, the set-points of
+// the next measurement into `out` (empty: nothing) and prints the verdict, as JSON or for
 // readers. The extended file is read back before anything appears.
 void put_out(const Verdict& verdict, const sim::Machine& machine, const MachineOptions& options, const std::string& out,
              bool json, const Invocation& invocation);

@@ -63,7 +63,8 @@ struct Candidate {
   bool per_record = false;
   // The lines among which a periodic one is looked for; null for others.
   const LineScan& (*scan)(const Scene&) = nullptr;
-  double trials = 1.0;  // independent values that a grid without a scan tries
+  bool replays = false;  // its columns cost a run of the closed loop
+  double trials = 1.0;   // independent values that a grid without a scan tries
 };
 
 // The vocabulary in the order of the contract.

@@ -12,6 +12,7 @@
 #include "host/diagnose/holdout.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
 #include "host/diagnose/leftover.hpp"
+#include "host/diagnose/next_measurement.hpp"
 #include "host/diagnose/record_checks.hpp"
 #include "host/diagnose/search.hpp"
 #include "host/identify/identification.hpp"
@@ -102,7 +103,7 @@ std::vector<ConfusedWith> confused_with(const Term& term) {
   const auto& known = sim::find_effect_kind(name)->aliases;
   for (const auto& alias : known)
     if (always_confused(name, alias.effect))
-      list.push_back({std::string(alias.effect), std::string(alias.separate_by)});
+      list.push_back({std::string(alias.effect), std::string(alias.separate_by), true});
   for (const auto c : term.alternatives) {
     const std::string_view other = candidates()[c].name;
     if (std::any_of(list.begin(), list.end(), [&](const ConfusedWith& l) { return l.effect == other; })) continue;
@@ -235,6 +236,8 @@ Verdict diagnose(const DiagnoseInput& input) {
   verdict.extended.force_rms = figures.force_extended;
   for (std::size_t k = 0; k < found.terms.size(); ++k)
     verdict.findings.push_back(finding_of(scene, found.terms[k], figures.gains[k], found.blocks));
+  propose_next_measurement(verdict, {input.machine, input.axis, settings, regressors, target, scene, found},
+                           input.next_measurement);
   judge_command(verdict, input, {logs, rows}, {held_out, held_rows}, record_delay(regressors, scene, found));
   for (const auto& d : found.discarded) verdict.rejected.push_back({candidates()[d.candidate].name, d.why});
   if (found.terms.size() == found_before)

@@ -14,11 +14,12 @@ namespace stiction::host {
 
 struct DiagnoseInput {
   sim::Machine machine;
-  std::size_t axis = 0;       // of the machine
-  std::vector<Log> logs;      // at least one
-  std::vector<Log> held_out;  // empty: the last third of each log is held out
-  std::uint64_t seed = 1;     // of the bootstrap
-  bool closed_loop = true;    // replay the held-out logs where they have set-points
+  std::size_t axis = 0;          // of the machine
+  std::vector<Log> logs;         // at least one
+  std::vector<Log> held_out;     // empty: the last third of each log is held out
+  std::uint64_t seed = 1;        // of the bootstrap
+  bool closed_loop = true;       // replay the held-out logs where they have set-points
+  bool next_measurement = true;  // propose one where something is open
   std::function<void()> progress;
 };
 

@@ -322,10 +322,13 @@ double Search::size_in(const std::vector<bool>& use, const Set& set, std::size_t
 void Search::note(std::size_t candidate, const Judgement& judgement) {
   const auto known =
       std::find_if(discarded_.begin(), discarded_.end(), [&](const Discarded& d) { return d.candidate == candidate; });
+  constexpr double nearly_significant = 0.1;  // over the number of candidates, as `significance`
+  const double trials = static_cast<double>(candidates().size()), p = judgement.p_value;
+  const Discarded now{candidate, *judgement.objection, p >= significance / trials && p < nearly_significant / trials};
   if (known == discarded_.end())
-    discarded_.push_back({candidate, *judgement.objection});
+    discarded_.push_back(now);
   else
-    known->why = *judgement.objection;
+    *known = now;
 }
 
 // Adds the best term that stands, or the best two that stand together: terms can mask one another. `least_taken`: share

@@ -40,6 +40,7 @@ struct Term {
 struct Discarded {
   std::size_t candidate;
   std::string why;
+  bool nearly = false;  // not quite significant: better data may name it
 };
 
 struct SearchResult {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "host/log/log.hpp"
 #include "sim/experiment/experiment_result.hpp"
 #include "sim/model/effect.hpp"
 
@@ -23,6 +24,7 @@ struct EffectParameter {
 struct ConfusedWith {
   std::string effect;
   std::string separate_by;  // the experiment that tells them apart
+  bool always = false;      // no motion of this axis alone does
 };
 
 // Ratios of the extended to the baseline simulation on data that was not used.
@@ -62,6 +64,34 @@ struct Rejected {
 struct Unexplained {
   double share = 0.0;                    // of the baseline's residual variance that is neither explained nor noise
   std::optional<std::string> signature;  // none: nothing that repeats
+};
+
+// What the records leave open: which of two causes it is, or whether it is there at all.
+struct OpenQuestion {
+  std::string effect;
+  std::string rival;        // empty: whether the effect is there
+  std::string separate_by;  // the experiment in words
+  bool by_motion = true;    // false: no motion of this axis alone answers it
+  double these_logs = 0.0;  // standard errors between the two answers that these records were to be expected to give
+};
+
+struct RehearsedTrajectory {
+  std::string name, words;
+  double duration = 0.0;            // s
+  std::vector<double> separations;  // standard errors expected of it, one a question; 0 where no motion answers
+};
+
+// What to record next, chosen by running each trajectory in simulation.
+struct NextMeasurement {
+  std::string axis;
+  std::vector<OpenQuestion> questions;
+  std::vector<RehearsedTrajectory> trajectories;  // the best first
+  // Of the best one: set-points, and x and i as the machine file's simulation gives them. None: no trajectory answers
+  // any of the questions.
+  std::optional<Log> log;
+  int times = 1;     // how often it must be recorded until the question that it answers worst is settled
+  std::string note;  // where it begins, how far it goes
+  std::vector<sim::Chart> charts;
 };
 
 struct ResidualFigures {
@@ -113,6 +143,7 @@ struct Verdict {
   std::vector<Rejected> rejected;
   Unexplained unexplained;
   std::vector<std::string> notes;          // on the data: suspicions, what to record next
+  std::optional<NextMeasurement> next;     // none: nothing is open
   std::optional<ReferenceRows> reference;  // of a diagnosis of the machine file's own rows
   std::vector<sim::Chart> before_after;  // measured against simulated, before and after; residual by position, speed..
 };

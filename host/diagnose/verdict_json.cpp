@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "host/diagnose/next_measurement.hpp"
 #include "sim/plant/effects/effects.hpp"
 
 namespace stiction::host {
@@ -46,6 +47,34 @@ Json finding_json(const Finding& f) {
            {"explains", f.explains},  {"holdout_gain", gain}, {"p_value", f.p_value},     {"confused_with", confused}};
   if (f.in_command) out["residual"] = "command";
   if (f.part_error) out["part_error_um"] = *f.part_error * 1e6;
+  return out;
+}
+
+Json next_json(const NextMeasurement& next) {
+  const auto separation = [](const OpenQuestion& question, double value) {
+    return question.by_motion ? Json(value) : Json(nullptr);
+  };
+  Json questions = Json::array(), trajectories = Json::array();
+  for (const auto& q : next.questions)
+    questions.push_back({{"effect", q.effect},
+                         {"or", q.rival.empty() ? Json(nullptr) : Json(q.rival)},
+                         {"separate_by", q.separate_by},
+                         {"by_motion", q.by_motion},
+                         {"standard_errors_of_these_logs", separation(q, q.these_logs)}});
+  for (const auto& t : next.trajectories) {
+    Json separations = Json::array();
+    for (std::size_t k = 0; k < t.separations.size(); ++k)
+      separations.push_back(separation(next.questions[k], t.separations[k]));
+    trajectories.push_back({{"name", t.name}, {"duration_s", t.duration}, {"standard_errors", separations}});
+  }
+  Json out{{"axis", next.axis}, {"log", next.log ? Json(next_measurement_file) : Json(nullptr)}};
+  if (next.log) {
+    out["trajectory"] = next.trajectories.front().name;
+    out["times"] = next.times;
+    out["note"] = next.note;
+  }
+  out["questions"] = questions;
+  out["trajectories"] = trajectories;
   return out;
 }
 
@@ -104,6 +133,7 @@ Json verdict_json(const Verdict& verdict) {
              {"signature", verdict.unexplained.signature ? Json(*verdict.unexplained.signature) : Json(nullptr)}}},
            {"notes", verdict.notes},
            {"extended_machine", "extended.toml"}};
+  if (verdict.next) out["next_measurement"] = next_json(*verdict.next);
   if (verdict.reference) add_reference(out, *verdict.reference);
   return out;
 }
@@ -137,6 +167,34 @@ std::string rows_text(const ReferenceRows& reference) {
 }
 
 }  // namespace
+
+std::string next_measurement_text(const NextMeasurement& next) {
+  std::string text = "next measurement: ";
+  if (!next.log) {
+    const auto& q = next.questions.front();
+    const bool could = !next.trajectories.empty() || !q.by_motion;
+    return text +
+           fmt::format("{}; {}",
+                       could ? fmt::format("no motion of axis {} that is known here answers what is open", next.axis)
+                             : "no trajectory could be run on the machine file's simulation",
+                       q.separate_by);
+  }
+  const auto& best = next.trajectories.front();
+  text += fmt::format("{}, {:.0f} s{}; expected", best.name, best.duration,
+                      next.times > 1 ? fmt::format(", {} times", next.times) : std::string());
+  std::vector<std::string> settled, open;
+  for (std::size_t k = 0; k < next.questions.size(); ++k) {
+    const auto& q = next.questions[k];
+    const auto what = q.rival.empty() ? q.effect : fmt::format("{} or {}", q.effect, q.rival);
+    if (q.by_motion && best.separations[k] >= least_separation)
+      settled.push_back(
+          fmt::format("{:.1f} standard errors for {} (these logs: {:.1f})", best.separations[k], what, q.these_logs));
+    else
+      open.push_back(what);
+  }
+  text += fmt::format(" {}", fmt::join(settled, ", "));
+  return open.empty() ? text : text + fmt::format("; leaves open {}", fmt::join(open, ", "));
+}
 
 std::string verdict_text(const Verdict& verdict) {
   std::string text = verdict.reference ? rows_text(*verdict.reference) : std::string();
@@ -173,6 +231,7 @@ std::string verdict_text(const Verdict& verdict) {
   if (verdict.unexplained.signature)
     text += fmt::format("\nunexplained: {:.1f} % of the residual's variance, {}\n", 100.0 * verdict.unexplained.share,
                         *verdict.unexplained.signature);
+  if (verdict.next) text += "\n" + next_measurement_text(*verdict.next) + "\n";
   for (const auto& note : verdict.notes) text += fmt::format("\nnote: {}\n", note);
   return text;
 }

@@ -26,6 +26,12 @@ class Whitening {
   Eigen::VectorXd transposed(const Eigen::VectorXd& column) const;
   // Square of the gain at `cycles` a row.
   double gain_square(double cycles) const;
+  // The same noise in rows of other logs at the same rate.
+  Whitening over(std::span<const std::size_t> logs) const {
+    auto other = *this;
+    other.logs_.assign(logs.begin(), logs.end());
+    return other;
+  }
 
  private:
   std::vector<std::size_t> logs_;

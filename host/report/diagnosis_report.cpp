@@ -13,6 +13,7 @@
 #include "host/report/cause_text.hpp"
 #include "host/report/chart_json.hpp"
 #include "host/report/engineering_unit.hpp"
+#include "host/report/next_measurement_section.hpp"
 #include "host/report/page.hpp"
 #include "host/report/page_data.hpp"
 #include "host/report/typeset.hpp"
@@ -257,6 +258,11 @@ std::string diagnosis_report_html(const DiagnosisReport& report) {
     }
     causes.push_back(cause_json(finding));
   }
+  if (verdict.next)
+    for (const auto& chart : verdict.next->charts) {
+      charts.push_back(chart_json(chart, "next-charts"));
+      all.push_back(chart);
+    }
   for (const auto& each : verdict.rejected)
     rejected.push_back({{"title", cause_text(each.effect).title}, {"why", typeset(each.why)}});
   for (const auto& note : verdict.notes) notes.push_back(typeset(note));
@@ -272,6 +278,7 @@ std::string diagnosis_report_html(const DiagnosisReport& report) {
                         "cause from something else that repeats with the same motion. Record another trajectory."
                       : "The held-out logs took no part in choosing or fitting the causes."},
       {"causes", causes},
+      {"next", next_measurement_json(verdict.next)},
       {"rejected", rejected},
       {"unexplained", unexplained_text(verdict.unexplained)},
       {"notes", notes},

@@ -56,7 +56,8 @@ class Normal {
 // First-order low-pass of white noise.
 class Coloured {
  public:
-  Coloured(double rms, double corner) : keep_(std::exp(-2.0 * std::numbers::pi * corner * period)), rms_(rms) {}
+  Coloured(double rms, double corner, double step)
+      : keep_(std::exp(-2.0 * std::numbers::pi * corner * step)), rms_(rms) {}
   double next(Normal& normal) {
     value_ = keep_ * value_ + rms_ * std::sqrt(1.0 - keep_ * keep_) * normal();
     return value_;
@@ -66,13 +67,12 @@ class Coloured {
   double keep_, rms_, value_ = 0.0;
 };
 
-Log set_points(const Planned& planned, const std::string& axis, Normal& normal) {
+Log set_points(const Planned& planned, const std::string& axis) {
   Log log;
   log.source = planned.name;
   log.period = period;
   auto& channels = log.axes.emplace_back();
   channels.axis = axis;
-  Coloured slow(2.5, 3.0), fast(2.0, 40.0);  // N, Hz
   const auto count = static_cast<int>(planned.trajectory.duration / period);
   for (int k = 0; k < count; ++k) {
     const auto point = planned.trajectory.at(k * period);
@@ -81,34 +81,51 @@ Log set_points(const Planned& planned, const std::string& axis, Normal& normal) 
     channels.v_set.push_back(point.velocity);
     channels.a_set.push_back(point.acceleration);
     channels.x.push_back(point.position);
-    channels.external_force.push_back(slow.next(normal) + fast.next(normal));
   }
   return log;
 }
 
+// `bench`: of that axis alone.
+Log recorded(const sim::Machine& bench, Log wanted, Normal& normal) {
+  Coloured slow(2.5, 3.0, wanted.period), fast(2.0, 40.0, wanted.period);  // N, Hz
+  auto& push = wanted.axes.front().external_force;
+  push.clear();
+  for (std::size_t k = 0; k < wanted.t.size(); ++k) push.push_back(slow.next(normal) + fast.next(normal));
+  auto log = replay<FixedSignals>(bench, wanted);
+  auto& channels = log.axes.front();
+  AxisLog kept;
+  kept.axis = channels.axis;
+  kept.x_set = std::move(channels.x_set);
+  kept.v_set = std::move(channels.v_set);
+  kept.a_set = std::move(channels.a_set);
+  kept.x = std::move(channels.x);
+  kept.i = std::move(channels.i);
+  for (double& i : kept.i) i += current_noise * normal();
+  channels = std::move(kept);
+  return log;
+}
+
+sim::Machine alone(const sim::Machine& machine, std::size_t axis) {
+  auto bench = machine;
+  bench.axes = {machine.axes.at(axis)};
+  return bench;
+}
+
 }  // namespace
+
+Log record_set_points(const sim::Machine& machine, std::size_t axis, const Log& set_points, std::uint64_t seed) {
+  Normal normal(seed);
+  return recorded(alone(machine, axis), set_points, normal);
+}
 
 std::vector<CommissioningRecord> record_commissioning(const sim::Machine& machine, std::size_t axis, std::uint64_t seed,
                                                       const std::function<void()>& progress) {
-  auto bench = machine;
-  bench.axes = {machine.axes.at(axis)};
+  const auto bench = alone(machine, axis);
   Normal normal(seed);
   std::vector<CommissioningRecord> records;
   for (const auto& planned : plan()) {
-    const auto wanted = set_points(planned, bench.axes.front().name, normal);
-    const auto simulated = replay<FixedSignals>(bench, wanted);
-    CommissioningRecord record{planned.name, planned.held_out, simulated};
-    auto& channels = record.log.axes.front();
-    AxisLog kept;
-    kept.axis = channels.axis;
-    kept.x_set = std::move(channels.x_set);
-    kept.v_set = std::move(channels.v_set);
-    kept.a_set = std::move(channels.a_set);
-    kept.x = std::move(channels.x);
-    kept.i = std::move(channels.i);
-    for (double& i : kept.i) i += current_noise * normal();
-    channels = std::move(kept);
-    records.push_back(std::move(record));
+    records.push_back(
+        {planned.name, planned.held_out, recorded(bench, set_points(planned, bench.axes.front().name), normal)});
     if (progress) progress();
   }
   return records;

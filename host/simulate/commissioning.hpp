@@ -25,4 +25,7 @@ std::vector<CommissioningRecord> record_commissioning(const sim::Machine& machin
                                                       const std::function<void()>& progress = {});
 inline constexpr int commissioning_records = 6;
 
+// The same of any set-points, one axis' log at 1 kHz or near it: such as those that a diagnosis proposes.
+Log record_set_points(const sim::Machine& machine, std::size_t axis, const Log& set_points, std::uint64_t seed);
+
 }  // namespace stiction::host

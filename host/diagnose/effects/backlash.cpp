@@ -36,6 +36,7 @@ const Candidate backlash{.name = "backlash",
                          .columns = columns,
                          .possible = possible,
                          .describe = describe,
-                         .at_weight = true};
+                         .at_weight = true,
+                         .replays = true};
 
 }  // namespace stiction::host::effects

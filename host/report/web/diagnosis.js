@@ -81,6 +81,27 @@ function drawRejected() {
     DATA.rejected.map(row => classed('first', [{ text: row.title, head: true, class: 'figure' }, text(minus(row.why), { class: 'text wrap' })])))));
 }
 
+// ---- what to record next ----
+
+function drawNext() {
+  const next = DATA.next;
+  if (!next) return document.getElementById('next-section').remove();
+  show('next-axis', `axis ${next.axis}`);
+  for (const id of ['next-what', 'next-table', 'next-caption', 'next-charts']) if (!next.what) document.getElementById(id).remove();
+  if (next.what) {
+    show('next-what', minus(next.what));
+    const proposed = i => next.proposed && i === 1;
+    show('next-table', bare(table(
+      [[text('Trajectory', { class: 'text' }), text('s'), ...next.questions.map(question => text(question, { class: 'wrap question' }))]],
+      next.rows.map((row, i) => classed('first', [
+        { text: row.name + (proposed(i) ? ' (proposed)' : ''), head: true, class: 'figure' }, text(row.duration || ''),
+        ...row.standard_errors.map(value => text(value, { class: proposed(i) ? 'value' : null }))])))));
+  }
+  if (next.elsewhere.length) show('next-elsewhere', bare(table(
+    [[text('No motion of this axis tells apart', { class: 'text' }), text('What does', { class: 'text' })]],
+    next.elsewhere.map(row => classed('first', [{ text: row.title, head: true, class: 'figure' }, text(row.separate_by, { class: 'text wrap' })])))));
+}
+
 document.getElementById('causes').replaceChildren(...DATA.causes.map(causeSection));
 document.getElementById('picture-what').textContent = DATA.picture;
 if (!DATA.charts.some(chart => chart.place === 'before-after')) document.getElementById('picture-section').remove();
@@ -89,6 +110,7 @@ show('notes', ...DATA.notes.map(note => element('li', {}, minus(note))));
 drawConditions();
 drawRows();
 drawSummary();
+drawNext();
 drawRejected();
 drawSeriesChoice();
 placeCharts();

@@ -22,7 +22,7 @@ sim::Machine demonstration_machine() {
 host::Verdict verdict_of(const std::vector<sim::Effect>& hidden, std::uint64_t seed) {
   host::DiagnoseInput input;
   input.machine = demonstration_machine();
-  input.closed_loop = false;
+  input.closed_loop = input.next_measurement = false;
   auto machine = input.machine;
   machine.axes.front().effects = hidden;
   for (auto& record : host::record_commissioning(machine, 0, seed))

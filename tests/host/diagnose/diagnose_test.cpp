@@ -17,6 +17,7 @@ constexpr double noise = 6.0;  // N rms
 host::Verdict verdict_of(const Hidden& hidden, std::uint64_t seed, int trajectory = 0) {
   host::DiagnoseInput input;
   input.machine = bench_machine();
+  input.next_measurement = false;
   input.logs = {synthetic_log(trajectory, hidden, noise, 2 * seed)};
   input.held_out = {synthetic_log((trajectory + 1) % 3, hidden, noise, 2 * seed + 1)};
   return host::diagnose(input);

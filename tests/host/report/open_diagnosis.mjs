@@ -23,6 +23,14 @@ await openPage('open_diagnosis', '', async (page, data) => {
   }
   if (data.rows.length) expect(await rows('rows') === data.rows.length, 'not every measured row is listed');
   else expect(await page.locator('#rows-section').count() === 0, 'an empty table of measured rows is shown');
+  if (data.next) {
+    const says = await page.locator('#next-section').innerText();
+    if (data.next.what) {
+      expect(await rows('next-table') === data.next.rows.length, 'not every trajectory is listed');
+      expect(says.includes(data.next.questions[0]), 'what is open is not said');
+    }
+    for (const row of data.next.elsewhere) expect(says.includes(row.separate_by), `"${row.separate_by}" is not said`);
+  } else expect(await page.locator('#next-section').count() === 0, 'an empty proposal is shown');
   if (data.rejected.length) expect(await rows('rejected') === data.rejected.length, 'not every rejected cause is listed');
   else expect(await page.locator('#rejected-section').count() === 0, 'an empty table of rejected causes is shown');
   expect((await page.locator('#unexplained').innerText()).length > 20, 'nothing is said of what remains');

@@ -80,6 +80,27 @@ sim::Chart fitted() {
           .series = {means, fit}};
 }
 
+// One question that a motion answers, one that none does.
+NextMeasurement next_measurement() {
+  NextMeasurement next;
+  next.axis = "X";
+  next.questions = {
+      {"force_ripple", "position_dependent_friction", "traverse the same stretch in both directions", true, 0.7},
+      {"constant_force", "friction_asymmetry", "turn the axis, another payload, a reading at standstill", false, 0.0}};
+  next.trajectories = {{"slow sweep", "the stroke both ways, slowly and at twice the speed", 25.0, {14.2, 0.0}},
+                       {"constant speeds", "ten constant speeds", 12.3, {6.1, 0.0}}};
+  next.log.emplace();
+  next.note = "It begins at rest at 0.000 mm.";
+  sim::Series way{"proposed", {}, {}};
+  for (double t = 0.0; t < 25.0; t += 0.05) way.x.push_back(t), way.y.push_back(100.0 - std::abs(8.0 * t - 100.0));
+  next.charts = {{.title = "Proposed: slow sweep",
+                  .x_label = "time of the proposed record, s",
+                  .y_label = "set position, mm",
+                  .caption = "",
+                  .series = {way}}};
+  return next;
+}
+
 DiagnosisReport frame() {
   return {"stiction diagnose run1.csv run2.csv --machine mcfv5050ln --holdout run3.csv --out diagnosis",
           "0.1.0",
@@ -123,6 +144,7 @@ DiagnosisReport synthetic_diagnosis() {
   v.unexplained = {0.04, "grows with acceleration"};
   v.notes = {"Record small reversals of 5 to 200 um: presliding cannot be judged without them."};
   v.before_after = {over_time(), over_position(), spectrum()};
+  v.next = next_measurement();
   return report;
 }
 

@@ -1,0 +1,147 @@
+#include "host/diagnose/trajectory_rehearsal.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "host/diagnose/bench.hpp"
+#include "host/diagnose/inverse_dynamics.hpp"
+#include "host/simulate/control_run.hpp"
+#include "host/simulate/replay.hpp"
+#include "sim/control/axis_configuration.hpp"
+#include "stiction/number/fixed_signals.hpp"
+
+namespace stiction::host {
+namespace {
+
+constexpr double usual_period = 1e-3;  // s, of a proposed log
+constexpr double least_of_travel = 0.25;
+constexpr double speed_share = 0.9, acceleration_share = 0.7, force_share = 0.5;
+constexpr double beyond_the_records = 1.5;  // times their acceleration
+constexpr double rise = 0.05;               // s, from rest to the highest acceleration
+
+struct Covered {
+  double low, high;
+};
+Covered covered_by(const LogRows& rows) {
+  const auto place = [](const Motion& m) -> const std::vector<double>& { return m.x_set.empty() ? m.x : m.x_set; };
+  Covered covered{place(rows.motions().front()).front(), place(rows.motions().front()).front()};
+  for (const auto& motion : rows.motions()) {
+    const auto [low, high] = std::minmax_element(place(motion).begin(), place(motion).end());
+    covered = {std::min(covered.low, *low), std::max(covered.high, *high)};
+  }
+  return covered;
+}
+
+double highest_motor_force(const sim::Axis& axis) {
+  return axis.motor.force_constant * (axis.motor.model == sim::MotorModel::force
+                                          ? axis.inverter.voltage_limit
+                                          : axis.inverter.current_limit * axis.motor.count);
+}
+
+Log set_points(const sim::SeparatingTrajectory& kind, const sim::MotionRange& range, const std::string& axis,
+               double period) {
+  const auto trajectory = kind.make(range);
+  Log log;
+  log.source = kind.name;
+  log.period = period;
+  auto& channels = log.axes.emplace_back();
+  channels.axis = axis;
+  const auto count = static_cast<std::size_t>(trajectory.duration / period);
+  for (std::size_t k = 0; k < count; ++k) {
+    log.t.push_back(static_cast<double>(k) * period);
+    const auto point = trajectory.at(log.t.back());
+    channels.x_set.push_back(point.position);
+    channels.v_set.push_back(point.velocity);
+    channels.a_set.push_back(point.acceleration);
+  }
+  channels.x = channels.x_set;
+  return log;
+}
+
+// Runs the closed loop only for a candidate that asks for it.
+auto lazy_response(const sim::Machine& machine, std::size_t axis, const Log& log, const SignalSettings& settings) {
+  return [machine, axis, log, settings, made = std::make_shared<std::optional<LoopResponse>>()](
+             const Motion& motion, const sim::Effect& effect) {
+    if (!*made) made->emplace(machine, axis, std::vector{log}, settings);
+    return (**made)(motion, effect);
+  };
+}
+
+Scene scene_with(Scene scene, const LogRows& rows) {
+  const auto& motion = rows.motions().front();
+  for (const double v : motion.v) scene.highest_speed = std::max(scene.highest_speed, std::abs(v));
+  for (const double f : force_along(scene.axis, motion))
+    scene.highest_force = std::max(scene.highest_force, std::abs(f));
+  scene.reversals = enough_reversals;
+  scene.force_is_current = true;
+  scene.other_axis = false;
+  return scene;
+}
+
+}  // namespace
+
+sim::MotionRange motion_range(const sim::Axis& axis, const LogRows& rows) {
+  auto [low, high] = covered_by(rows);
+  if (const double least = least_of_travel * axis.travel; high - low < least) {
+    const double middle = 0.5 * (low + high);
+    low = middle - 0.5 * least;
+    high = middle + 0.5 * least;
+  }
+  const double speed = speed_share * axis.max_velocity;
+  const double friction = coulomb_of(axis).value_or(0.0) + viscous_of(axis).value_or(0.0) * speed;
+  const double by_force = (force_share * highest_motor_force(axis) - friction) / axis.mass;
+  const double highest = std::min(acceleration_share * axis.max_acceleration, by_force);
+  const double acceleration = std::min(beyond_the_records * rows.acceleration.cwiseAbs().maxCoeff(), highest);
+  return {low, high, speed, acceleration, acceleration / rise, highest};
+}
+
+std::string extent_words(const Log& proposed, const LogRows& rows) {
+  const auto& axis = proposed.axes.front();
+  const auto [low, high] = std::minmax_element(axis.x_set.begin(), axis.x_set.end());
+  const auto largest = [](const std::vector<double>& values) {
+    return std::abs(
+        *std::max_element(values.begin(), values.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
+  };
+  auto words = fmt::format(
+      "It begins at rest at {:.3f} mm, stays between {:.3f} and {:.3f} mm and reaches {:.3g} m/s and "
+      "{:.3g} m/s^2.",
+      1e3 * axis.x_set.front(), 1e3 * *low, 1e3 * *high, largest(axis.v_set), largest(axis.a_set));
+  const auto covered = covered_by(rows);
+  const double slack = 1e-3 * (covered.high - covered.low);
+  if (*low < covered.low - slack || *high > covered.high + slack)
+    words += fmt::format(" These records cover {:.3f} to {:.3f} mm only: make sure that the way is free.",
+                         1e3 * covered.low, 1e3 * covered.high);
+  return words;
+}
+
+std::vector<Rehearsal> rehearse(const sim::Machine& machine, std::size_t axis, const sim::MotionRange& range,
+                                const LogRows& rows, const Scene& scene, const SignalSettings& settings) {
+  std::vector<Rehearsal> all;
+  if (!(range.high > range.low) || !(range.speed > 0.0) || !(range.acceleration > 0.0)) return all;
+  auto bench = machine;
+  bench.axes = {machine.axes.at(axis)};
+  bench.axes.front().encoder.noise = 0.0;
+  const auto& own = bench.axes.front();
+  const double row_period = rows.period(0), period = row_period / std::max(1.0, std::round(row_period / usual_period));
+  for (const auto& kind : sim::separating_trajectories()) {
+    try {
+      auto log = replay<FixedSignals>(bench, set_points(kind, range, own.name, period));
+      log.axes.front().i_set.clear();
+      LogRows moved({motion_of(log, log.axes.front(), own, Amperes::amplitude, settings)}, settings);
+      log.axes.front().force.clear();
+      log.axes.front().v.clear();
+      auto known = scene_with(scene, moved);
+      known.response = lazy_response(bench, 0, log, settings);
+      all.push_back({&kind, std::move(log), std::move(moved), std::move(known)});
+    } catch (const FaultTripped&) {  // not for this machine
+    } catch (const sim::ConfigurationError&) {
+    } catch (const LogError&) {
+    }
+  }
+  return all;
+}
+
+}  // namespace stiction::host

@@ -1,0 +1,61 @@
+#include "host/report/next_measurement_section.hpp"
+
+#include <fmt/format.h>
+
+#include "host/diagnose/verdict_json.hpp"
+#include "host/report/cause_text.hpp"
+#include "host/report/typeset.hpp"
+
+namespace stiction::host {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+std::string title_of(const OpenQuestion& question) {
+  const auto title = cause_text(question.effect).title;
+  return question.rival.empty() ? title + ": is it there?" : title + " or " + cause_text(question.rival).title;
+}
+
+std::string standard_errors(double value) { return fmt::format("{:.{}f}", value, value < 9.95 ? 1 : 0); }
+
+std::string what_to_do(const NextMeasurement& next) {
+  if (next.trajectories.empty()) return "No trajectory could be run on the machine file's simulation.";
+  if (!next.log) return "No motion of this axis that was tried in simulation answers what is open.";
+  const auto& best = next.trajectories.front();
+  return typeset(
+      fmt::format("Run the set-points of {} and record it{}: {} ({:.0f} s), {}. {} Diagnose it together with "
+                  "these logs, or with them as --holdout.",
+                  next_measurement_file, next.times > 1 ? fmt::format(" {} times", next.times) : "", best.name,
+                  best.duration, best.words, next.note));
+}
+
+}  // namespace
+
+json next_measurement_json(const std::optional<NextMeasurement>& next) {
+  if (!next) return nullptr;
+  json asked = json::array(), rows = json::array(), elsewhere = json::array(), present = json::array();
+  for (const auto& q : next->questions) {
+    if (!q.by_motion) {
+      elsewhere.push_back({{"title", title_of(q)}, {"separate_by", typeset(q.separate_by)}});
+      continue;
+    }
+    asked.push_back(title_of(q));
+    present.push_back(standard_errors(q.these_logs));
+  }
+  if (!asked.empty()) rows.push_back({{"name", "these logs"}, {"duration", nullptr}, {"standard_errors", present}});
+  for (const auto& t : next->trajectories) {
+    json separations = json::array();
+    for (std::size_t k = 0; k < t.separations.size(); ++k)
+      if (next->questions[k].by_motion) separations.push_back(standard_errors(t.separations[k]));
+    rows.push_back(
+        {{"name", t.name}, {"duration", fmt::format("{:.0f}", t.duration)}, {"standard_errors", separations}});
+  }
+  return {{"axis", next->axis},
+          {"what", asked.empty() ? json(nullptr) : json(what_to_do(*next))},
+          {"proposed", next->log.has_value()},
+          {"questions", asked},
+          {"rows", rows},
+          {"elsewhere", elsewhere}};
+}
+
+}  // namespace stiction::host

@@ -1,0 +1,13 @@
+// The section "What to record next" of a diagnosis' page.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "host/diagnose/verdict.hpp"
+
+namespace stiction::host {
+
+// For drawNext() of diagnosis.js; null where nothing is open.
+nlohmann::ordered_json next_measurement_json(const std::optional<NextMeasurement>& next);
+
+}  // namespace stiction::host
