@@ -184,8 +184,8 @@ Evidence::Noise Evidence::noise(const Eigen::VectorXd& left) const {
   }
   const double spread = rows * (square / (mean * mean) - 1.0);  // 2 where all clusters have one variance
   if (!(mean > 0.0)) return {0.0, 0.0};
-  return {mean, spread > 2.0 ? std::min((4.0 * spread + 2.0 * rows - 4.0) / (spread - 2.0), most_freedom)
-                             : most_freedom};
+  return {mean,
+          spread > 2.0 ? std::min((4.0 * spread + 2.0 * rows - 4.0) / (spread - 2.0), most_freedom) : most_freedom};
 }
 
 Evidence::Test Evidence::test(const ColumnIndices& chosen, const Eigen::VectorXd& weights, Eigen::Index first,

@@ -8,8 +8,8 @@
 #include <map>
 #include <numeric>
 
-#include "host/diagnose/inverse_dynamics.hpp"
 #include "host/diagnose/refinement.hpp"
+#include "host/diagnose/scene_lines.hpp"
 
 namespace stiction::host {
 namespace {
@@ -23,8 +23,6 @@ constexpr double least_share = 2e-3;   // of the residual's variance: what is le
 constexpr double dominant = 0.25;
 constexpr double strong_evidence = 6.0;  // twice the logarithm of a Bayes factor
 constexpr double cluster_lengths = 6.0;  // correlation lengths of the whitened residual in a cluster
-constexpr std::size_t pitches_tried = 3;
-constexpr std::size_t lines_tried = 2;
 
 struct Option {
   std::size_t candidate;
@@ -65,11 +63,8 @@ class Search {
       : rows_(rows),
         scene_(scene),
         correlation_(correlation_length(target, rows.logs())),
-        carrier_(rows.stacked([&](const Motion& m) { return force_along(scene.axis, m); })),
         evidence_(target, blocks_for(rows, std::min(correlation_, 0.1 / rows.period(0)))),
         plain_(target, evidence_.row_blocks()) {
-    for (const double pitch : {scene.axis.motor.pole_pair_pitch, 0.5 * scene.axis.motor.pole_pair_pitch})
-      if (pitch > 0.0) known_pitches_.push_back(pitch);
     add_options(false);
   }
 
@@ -107,15 +102,9 @@ class Search {
     evidence_.whiten(whitening, static_cast<std::size_t>(std::ceil(cluster_lengths * correlation_)));
   }
 
-  // Pitches in what the set leaves; those in the set stay.
-  void scan_ripples(const Set& set) {
-    const Eigen::VectorXd left = residual(set);
-    const auto& whitening = evidence_.whitening();
-    const Eigen::VectorXd by_itself = Eigen::VectorXd::Ones(rows_.rows());
-    scene_.pitches = scan_pitches(rows_, left, whitening, by_itself, known_pitches_, pitches_tried);
-    scene_.modulation = scan_pitches(rows_, left, whitening, carrier_, known_pitches_, pitches_tried);
-    scene_.times = scan_times(rows_, whitening(left), lines_tried);
-    scene_.signals_of_encoder = scan_signal_periods(rows_, left, whitening, scene_.axis, scene_.timing, lines_tried);
+  // Lines in what the set leaves; those in the set stay.
+  void scan_lines(const Set& set) {
+    find_lines(rows_, residual(set), evidence_.whitening(), scene_);
     add_options(true);
   }
 
@@ -206,13 +195,11 @@ class Search {
   const LogRows& rows_;
   Scene& scene_;
   double correlation_ = 1.0;          // rows, of the residual, whitened or not
-  Eigen::VectorXd carrier_;           // N, the force that the file expects
   Evidence evidence_;                 // whitened in the second part of a run
   Evidence plain_;                    // never whitened: for what a term takes off the force
   std::vector<std::size_t> settled_;  // candidates that stood before it
   std::vector<std::unique_ptr<Option>> options_;
   std::size_t rounds_ = 0;
-  std::vector<double> known_pitches_;
   std::vector<Discarded> discarded_;
 };
 
@@ -432,10 +419,10 @@ SearchResult Search::run(const std::function<void()>& progress) {
   };
   // What dominates, on the rows as they are.
   Set set;
-  scan_ripples(set);
+  scan_lines(set);
   tick();
   while (set.size() < most_terms && grow(set, dominant)) {
-    scan_ripples(set);
+    scan_lines(set);
     improve(set);
     correlation_ = correlation_length(residual(set), rows_.logs());
     tick();
@@ -445,9 +432,9 @@ SearchResult Search::run(const std::function<void()>& progress) {
   for (const auto* option : set) settled_.push_back(option->candidate);
   // Then what is small beside the noise, each frequency by how little noise it carries.
   whiten(set);
-  scan_ripples(set);
+  scan_lines(set);
   while (set.size() < most_terms && grow(set)) {
-    scan_ripples(set);
+    scan_lines(set);
     improve(set);
     whiten(set);
     tick();

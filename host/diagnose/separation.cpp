@@ -4,12 +4,11 @@
 #include <cmath>
 
 #include "host/diagnose/inverse_dynamics.hpp"
-#include "host/diagnose/ripple_scan.hpp"
+#include "host/diagnose/scene_lines.hpp"
 
 namespace stiction::host {
 namespace {
 
-constexpr std::size_t lines_tried = 3;
 // Of the expected force: what inverse dynamics from samples and filtered derivatives may be off by, whatever the cause.
 // Rows of high acceleration count for less than their noise alone would have it.
 constexpr double model_error = 2e-3;
@@ -84,16 +83,8 @@ const std::vector<Eigen::VectorXd>& Separation::white_columns(const Records& rec
 
 // The lines that a periodic candidate would be looked for at, were `force` what these records leave.
 Scene Separation::scanned(const Records& records, const Eigen::VectorXd& force) const {
-  const auto& rows = records.rows;
   auto scene = records.scene;
-  std::vector<double> known;
-  for (const double pitch : {scene.axis.motor.pole_pair_pitch, 0.5 * scene.axis.motor.pole_pair_pitch})
-    if (pitch > 0.0) known.push_back(pitch);
-  const auto carrier = rows.stacked([&](const Motion& m) { return force_along(scene.axis, m); });
-  scene.pitches = scan_pitches(rows, force, whitening_.over(rows.logs()), known, lines_tried).pitches;
-  scene.times = scan_times(rows, force, lines_tried);
-  scene.modulation = scan_modulation(rows, force, carrier, known, lines_tried);
-  scene.signals_of_encoder = scan_signal_periods(rows, force, scene.axis, scene.timing, lines_tried);
+  find_lines(records.rows, force, whitening_.over(records.rows.logs()), scene);
   return scene;
 }
 

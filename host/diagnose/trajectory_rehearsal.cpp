@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "host/diagnose/bench.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
@@ -59,15 +58,6 @@ Log set_points(const sim::SeparatingTrajectory& kind, const sim::MotionRange& ra
   }
   channels.x = channels.x_set;
   return log;
-}
-
-// Runs the closed loop only for a candidate that asks for it.
-auto lazy_response(const sim::Machine& machine, std::size_t axis, const Log& log, const SignalSettings& settings) {
-  return [machine, axis, log, settings, made = std::make_shared<std::optional<LoopResponse>>()](
-             const Motion& motion, const sim::Effect& effect) {
-    if (!*made) made->emplace(machine, axis, std::vector{log}, settings);
-    return (**made)(motion, effect);
-  };
 }
 
 Scene scene_with(Scene scene, const LogRows& rows) {
@@ -134,7 +124,7 @@ std::vector<Rehearsal> rehearse(const sim::Machine& machine, std::size_t axis, c
       log.axes.front().force.clear();
       log.axes.front().v.clear();
       auto known = scene_with(scene, moved);
-      known.response = lazy_response(bench, 0, log, settings);
+      known.response = EffectResponse(bench, 0, {log}, settings);
       all.push_back({&kind, std::move(log), std::move(moved), std::move(known)});
     } catch (const FaultTripped&) {  // not for this machine
     } catch (const sim::ConfigurationError&) {

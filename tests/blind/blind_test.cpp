@@ -28,6 +28,7 @@ host::Verdict diagnosed(const BlindCase& blind) {
   input.held_out = blind.holdout;
   input.seed = blind.order.seed;
   input.closed_loop = false;
+  input.next_measurement = false;
   return host::diagnose(input);
 }
 

@@ -36,6 +36,7 @@ int main(int argc, char** argv) {
       input.held_out = blind.holdout;
       input.seed = blind.order.seed;
       input.closed_loop = closed_loop;
+      input.next_measurement = false;
       return host::diagnose(input);
     };
     const bool terminal = isatty(fileno(stderr)) == 1;

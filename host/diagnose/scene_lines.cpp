@@ -1,0 +1,27 @@
+#include "host/diagnose/scene_lines.hpp"
+
+#include <vector>
+
+#include "host/diagnose/inverse_dynamics.hpp"
+
+namespace stiction::host {
+namespace {
+
+constexpr std::size_t pitches_tried = 3;
+constexpr std::size_t lines_tried = 2;
+
+}  // namespace
+
+void find_lines(const LogRows& rows, const Eigen::VectorXd& residual, const Whitening& whitening, Scene& scene) {
+  std::vector<double> known;
+  for (const double pitch : {scene.axis.motor.pole_pair_pitch, 0.5 * scene.axis.motor.pole_pair_pitch})
+    if (pitch > 0.0) known.push_back(pitch);
+  const Eigen::VectorXd by_itself = Eigen::VectorXd::Ones(rows.rows());
+  const auto carrier = rows.stacked([&](const Motion& m) { return force_along(scene.axis, m); });
+  scene.pitches = scan_pitches(rows, residual, whitening, by_itself, known, pitches_tried);
+  scene.modulation = scan_pitches(rows, residual, whitening, carrier, known, pitches_tried);
+  scene.times = scan_times(rows, whitening(residual), lines_tried);
+  scene.signals_of_encoder = scan_signal_periods(rows, residual, whitening, scene.axis, scene.timing, lines_tried);
+}
+
+}  // namespace stiction::host
