@@ -2,6 +2,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "host/diagnose/candidate_columns.hpp"
 #include "host/diagnose/chart_means.hpp"
 #include "host/diagnose/diagnosis_charts.hpp"
 

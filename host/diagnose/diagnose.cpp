@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "host/diagnose/bench.hpp"
+#include "host/diagnose/candidate_columns.hpp"
 #include "host/diagnose/closed_loop.hpp"
 #include "host/diagnose/command_residual.hpp"
 #include "host/diagnose/diagnosis_charts.hpp"

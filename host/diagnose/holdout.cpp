@@ -6,6 +6,7 @@
 #include <numbers>
 #include <random>
 
+#include "host/diagnose/candidate_columns.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
 
 namespace stiction::host {

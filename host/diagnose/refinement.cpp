@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/diagnose/candidate_columns.hpp"
+
 namespace stiction::host {
 namespace {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 
+#include "host/diagnose/candidate_columns.hpp"
 #include "host/diagnose/refinement.hpp"
 #include "host/diagnose/scene_lines.hpp"
 
@@ -15,9 +15,7 @@ namespace stiction::host {
 namespace {
 
 constexpr std::size_t most_terms = 8;
-constexpr double significance = 0.05;  // over the number of candidates; held-out data have the last word
-constexpr double least_gain = 0.01;    // of the cross-validated residual
-constexpr double least_share = 2e-3;   // of the residual's variance: what is less is no cause that a part would show
+constexpr double least_share = 2e-3;  // of the residual's variance: what is less is no cause that a part would show
 // Of the residual's variance: beside what takes more, the residual is no model of the noise, and what is whitened by it
 // would get the weight of noise.
 constexpr double dominant = 0.25;
@@ -35,26 +33,6 @@ std::vector<RowBlock> blocks_for(const LogRows& rows, double correlation) {
   const auto n = static_cast<double>(rows.rows());
   const double shortest = std::clamp(6.0 * correlation, n / 200.0, n / 30.0);
   return blocks_of(rows.velocity, rows.logs(), static_cast<std::size_t>(shortest) + 1);
-}
-
-// What columns take off the cross-validated residual.
-struct CrossValidated {
-  double gain = 0.0;  // share
-  bool odd = false;   // owed to one block in fifty: one odd event names no cause
-};
-
-CrossValidated cross_validate(const Evidence& evidence, const ColumnIndices& without, const ColumnIndices& with) {
-  auto gains = evidence.held_out(without);
-  const auto left = evidence.held_out(with);
-  const double before = std::accumulate(gains.begin(), gains.end(), 0.0);
-  for (std::size_t k = 0; k < gains.size(); ++k) gains[k] -= left[k];
-  const double gained = std::accumulate(gains.begin(), gains.end(), 0.0);
-  CrossValidated result;
-  result.gain = gained / before;
-  std::sort(gains.begin(), gains.end());
-  const auto odd = std::max<std::size_t>(1, gains.size() / 50);
-  result.odd = !(std::accumulate(gains.begin(), gains.end() - static_cast<std::ptrdiff_t>(odd), 0.0) > 0.2 * gained);
-  return result;
 }
 
 class Search {
@@ -190,7 +168,6 @@ class Search {
   Judgement judge(const Set& set, std::size_t term) const;
   void note(std::size_t candidate, const Judgement& judgement);
   std::vector<std::size_t> alternatives(const Set& set, std::size_t term) const;
-  double size_in(const std::vector<bool>& use, const Set& set, std::size_t term, const Eigen::VectorXd& weights) const;
 
   const LogRows& rows_;
   Scene& scene_;
@@ -250,68 +227,15 @@ bool Search::merge(Set& set) const {
 }
 
 Judgement Search::judge(const Set& set, std::size_t term) const {
-  Judgement result;
   auto others = set;
   others.erase(others.begin() + static_cast<std::ptrdiff_t>(term));
-  const auto with = columns_of(set), without = columns_of(others);
-  const auto weights = evidence_.fit(with).weights;
-  Eigen::Index at = 0;
-  for (std::size_t k = 0; k < term; ++k) at += static_cast<Eigen::Index>(set[k]->columns.size());
-  const auto count = static_cast<Eigen::Index>(set[term]->columns.size());
-  const auto test = evidence_.test(with, weights, at, count);
-  result.p_value = std::min(1.0, trials(set[term]->candidate) * test.p_value);
-
-  // Off the force itself, or off what whitening leaves of it: a wave of minutes is much of the first and little of the
-  // second, a push of milliseconds the other way round.
-  const auto white = cross_validate(evidence_, without, with), plain = cross_validate(plain_, without, with);
-  const auto& larger = white.gain > plain.gain ? white : plain;
-  result.gain = larger.gain;
-
-  std::vector<bool> first(evidence_.blocks()), second(evidence_.blocks());
-  for (std::size_t k = 0; k < first.size(); ++k) second[k] = !(first[k] = k < first.size() / 2);
-  result.first_half = size_in(first, set, term, weights);
-  result.second_half = size_in(second, set, term, weights);
-  const auto size_error =
-      std::sqrt(static_cast<double>(count) / std::max(test.wald * static_cast<double>(count), 1e-12));
-  result.first_error = result.second_error = std::sqrt(2.0) * size_error;
-
-  const double limit = significance / static_cast<double>(candidates().size());
-  if (!(result.p_value < limit))
-    result.objection = fmt::format("not significant: p = {:.2g}, expected below {:.2g}", result.p_value, limit);
-  else if (!(result.gain > least_gain))
-    result.objection = fmt::format("takes {:.2g} % off the cross-validated residual; expected more than {:g} %",
-                                   100.0 * result.gain, 100.0 * least_gain);
-  else if (larger.odd)
-    result.objection = fmt::format("a fiftieth of the {} blocks of rows makes nearly all of its gain: an odd event",
-                                   evidence_.blocks());
-  else if (result.first_half < 0.0 || result.second_half < 0.0)
-    result.objection = "the two halves of the records contradict each other on it";
-  return result;
-}
-
-double Search::size_in(const std::vector<bool>& use, const Set& set, std::size_t term,
-                       const Eigen::VectorXd& weights) const {
-  const auto part = evidence_.fit(columns_of(set), use).weights;
-  Eigen::Index at = 0;
-  for (std::size_t k = 0; k < term; ++k) at += static_cast<Eigen::Index>(set[k]->columns.size());
-  // Along the weights of all rows, in the metric of the columns' lengths.
-  double product = 0.0, square = 0.0;
-  for (std::size_t k = 0; k < set[term]->columns.size(); ++k) {
-    const auto i = at + static_cast<Eigen::Index>(k);
-    if (part[i] == 0.0) continue;  // weights of a record that has no rows in use
-    const double length = evidence_.column_square(set[term]->columns[k]);
-    product += length * part[i] * weights[i];
-    square += length * weights[i] * weights[i];
-  }
-  return square > 0.0 ? product / square : 0.0;
+  return judge_columns(evidence_, plain_, columns_of(others), set[term]->columns, trials(set[term]->candidate));
 }
 
 void Search::note(std::size_t candidate, const Judgement& judgement) {
   const auto known =
       std::find_if(discarded_.begin(), discarded_.end(), [&](const Discarded& d) { return d.candidate == candidate; });
-  constexpr double nearly_significant = 0.1;  // over the number of candidates, as `significance`
-  const double trials = static_cast<double>(candidates().size()), p = judgement.p_value;
-  const Discarded now{candidate, *judgement.objection, p >= significance / trials && p < nearly_significant / trials};
+  const Discarded now{candidate, *judgement.objection, judgement.nearly};
   if (known == discarded_.end())
     discarded_.push_back(now);
   else
@@ -473,35 +397,6 @@ SearchResult Search::run(const std::function<void()>& progress) {
 }
 
 }  // namespace
-
-std::vector<Eigen::VectorXd> group_columns(const LogRows& rows, const Scene& scene, const Candidate& candidate,
-                                           double nonlinear) {
-  const auto shared = shared_columns(rows, scene, candidate, nonlinear);
-  if (!candidate.per_record) return shared;
-  std::vector<Eigen::VectorXd> own;
-  for (std::size_t r = 0; r < rows.logs().size(); ++r) {
-    const auto begin = static_cast<Eigen::Index>(rows.logs()[r]);
-    const auto end = r + 1 < rows.logs().size() ? static_cast<Eigen::Index>(rows.logs()[r + 1]) : rows.rows();
-    for (const auto& column : shared) {
-      own.emplace_back(Eigen::VectorXd::Zero(rows.rows()));
-      own.back().segment(begin, end - begin) = column.segment(begin, end - begin);
-    }
-  }
-  return own;
-}
-
-std::vector<Eigen::VectorXd> shared_columns(const LogRows& rows, const Scene& scene, const Candidate& candidate,
-                                            double nonlinear) {
-  std::vector<Columns> of_motion;
-  for (const auto& motion : rows.motions()) of_motion.push_back(candidate.columns(scene, motion, nonlinear));
-  std::vector<Eigen::VectorXd> stacked;
-  for (std::size_t c = 0; c < of_motion.front().size(); ++c)
-    stacked.push_back(rows.stacked([&](const Motion& motion) {
-      const auto index = static_cast<std::size_t>(&motion - rows.motions().data());
-      return of_motion[index][c];
-    }));
-  return stacked;
-}
 
 SearchResult search_causes(const LogRows& rows, const Eigen::VectorXd& target, Scene& scene,
                            const std::function<void()>& progress) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/diagnose/candidate_columns.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
 #include "host/diagnose/scene_lines.hpp"
 

@@ -1,0 +1,19 @@
+// A candidate's columns in the rows of all records: its regressors, filtered as the force is.
+#pragma once
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "host/diagnose/candidate.hpp"
+#include "host/identify/log_rows.hpp"
+
+namespace stiction::host {
+
+// As one for all records (N per unit of weight).
+std::vector<Eigen::VectorXd> shared_columns(const LogRows& rows, const Scene& scene, const Candidate& candidate,
+                                            double nonlinear);
+// The same, and of those that have weights of their own in each record in the rows of that one alone.
+std::vector<Eigen::VectorXd> group_columns(const LogRows& rows, const Scene& scene, const Candidate& candidate,
+                                           double nonlinear);
+
+}  // namespace stiction::host

@@ -1,0 +1,91 @@
+#include "host/diagnose/judgement.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "host/diagnose/candidate.hpp"
+
+namespace stiction::host {
+namespace {
+
+// Over the number of candidates; held-out data have the last word.
+constexpr double significance = 0.05, nearly_significant = 0.1;
+constexpr double least_gain = 0.01;  // of the cross-validated residual
+
+// What columns take off the cross-validated residual.
+struct CrossValidated {
+  double gain = 0.0;  // share
+  bool odd = false;   // owed to one block in fifty: one odd event names no cause
+};
+
+CrossValidated cross_validate(const Evidence& evidence, const ColumnIndices& without, const ColumnIndices& with) {
+  auto gains = evidence.held_out(without);
+  const auto left = evidence.held_out(with);
+  const double before = std::accumulate(gains.begin(), gains.end(), 0.0);
+  for (std::size_t k = 0; k < gains.size(); ++k) gains[k] -= left[k];
+  const double gained = std::accumulate(gains.begin(), gains.end(), 0.0);
+  CrossValidated result;
+  result.gain = gained / before;
+  std::sort(gains.begin(), gains.end());
+  const auto odd = std::max<std::size_t>(1, gains.size() / 50);
+  result.odd = !(std::accumulate(gains.begin(), gains.end() - static_cast<std::ptrdiff_t>(odd), 0.0) > 0.2 * gained);
+  return result;
+}
+
+// The columns' size along their weights of all rows, over that, from the blocks in use; `own` are the last of `with`.
+double size_in(const Evidence& evidence, const std::vector<bool>& use, const ColumnIndices& with,
+               const ColumnIndices& own, const Eigen::VectorXd& weights) {
+  const auto part = evidence.fit(with, use).weights;
+  // In the metric of the columns' lengths.
+  double product = 0.0, square = 0.0;
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(with.size() - own.size() + k);
+    if (part[i] == 0.0) continue;  // weights of a record that has no rows in use
+    const double length = evidence.column_square(own[k]);
+    product += length * part[i] * weights[i];
+    square += length * weights[i] * weights[i];
+  }
+  return square > 0.0 ? product / square : 0.0;
+}
+
+}  // namespace
+
+Judgement judge_columns(const Evidence& evidence, const Evidence& plain, const ColumnIndices& others,
+                        const ColumnIndices& own, double trials) {
+  Judgement result;
+  auto with = others;
+  with.insert(with.end(), own.begin(), own.end());
+  const auto weights = evidence.fit(with).weights;
+  const auto count = static_cast<Eigen::Index>(own.size()), first_own = static_cast<Eigen::Index>(others.size());
+  result.p_value = std::min(1.0, trials * evidence.test(with, weights, first_own, count).p_value);
+
+  // Off the force itself, or off what whitening leaves of it: a wave of minutes is much of the first and little of the
+  // second, a push of milliseconds the other way round.
+  const auto white = cross_validate(evidence, others, with), as_is = cross_validate(plain, others, with);
+  const auto& larger = white.gain > as_is.gain ? white : as_is;
+  result.gain = larger.gain;
+
+  std::vector<bool> first(evidence.blocks()), second(evidence.blocks());
+  for (std::size_t k = 0; k < first.size(); ++k) second[k] = !(first[k] = k < first.size() / 2);
+  result.first_half = size_in(evidence, first, with, own, weights);
+  result.second_half = size_in(evidence, second, with, own, weights);
+
+  const double among = static_cast<double>(candidates().size()), limit = significance / among;
+  result.nearly = result.p_value >= limit && result.p_value < nearly_significant / among;
+  if (!(result.p_value < limit))
+    result.objection = fmt::format("not significant: p = {:.2g}, expected below {:.2g}", result.p_value, limit);
+  else if (!(result.gain > least_gain))
+    result.objection = fmt::format("takes {:.2g} % off the cross-validated residual; expected more than {:g} %",
+                                   100.0 * result.gain, 100.0 * least_gain);
+  else if (larger.odd)
+    result.objection = fmt::format("a fiftieth of the {} blocks of rows makes nearly all of its gain: an odd event",
+                                   evidence.blocks());
+  else if (result.first_half < 0.0 || result.second_half < 0.0)
+    result.objection = "the two halves of the records contradict each other on it";
+  return result;
+}
+
+}  // namespace stiction::host
