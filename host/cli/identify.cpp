@@ -34,7 +34,7 @@ struct IdentifyCommandOptions {
 };
 
 // The axis named, or the only one that machine and logs have in common.
-const sim::Axis& axis_of_run(const std::string& name, const sim::Machine& machine, const std::vector<Log>& logs) {
+const sim::Axis& axis_to_identify(const std::string& name, const sim::Machine& machine, const std::vector<Log>& logs) {
   std::vector<std::string> names;
   for (const auto& axis : machine.axes) names.push_back(axis.name);
   if (!name.empty()) {
@@ -93,13 +93,13 @@ Run identify(const IdentifyCommandOptions& options, const sim::Machine& machine)
   if (options.logs.size() == 1)
     if (const auto text = read_text_file(options.logs.front()); is_steady_table(text)) {
       if (options.refine) throw UsageError("--refine: found a table of steady states; expected logs with set-points");
-      const auto& axis = axis_of_run(options.axis, machine, {});
+      const auto& axis = axis_to_identify(options.axis, machine, {});
       return {&axis, identify_table(parse_steady_table(text, options.logs.front()), axis,
                                     parse_amperes(options.amperes), FitSettings{})};
     }
   std::vector<Log> logs;
   for (const auto& file : options.logs) logs.push_back(read_log(file));
-  const auto& axis = axis_of_run(options.axis, machine, logs);
+  const auto& axis = axis_to_identify(options.axis, machine, logs);
   const IdentifyOptions settings{model_to_identify(options.friction, axis), amperes, FitSettings{}};
   Run run{&axis, identify_logs(logs, axis, settings)};
   if (options.refine) take(run.result, refine_in_closed_loop(logs, machine, axis, run.result, settings));
