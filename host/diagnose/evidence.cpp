@@ -207,16 +207,27 @@ Evidence::Test Evidence::test(const ColumnIndices& chosen, const Eigen::VectorXd
 }
 
 double Evidence::bearing_clusters(const ColumnIndices& of, const Eigen::VectorXd& weights) const {
-  const Eigen::VectorXd force = white_columns_(Eigen::all, of) * weights;
   double sum = 0.0, squares = 0.0;
-  for (const auto& cluster : clusters_) {
-    const double h =
-        force.segment(static_cast<Eigen::Index>(cluster.begin), static_cast<Eigen::Index>(cluster.end - cluster.begin))
-            .squaredNorm();
+  for (const double h : bearing(of, weights, clusters_)) {
     sum += h;
     squares += h * h;
   }
   return squares > 0.0 ? sum * sum / squares : 0.0;
+}
+
+std::vector<double> Evidence::bearing(const ColumnIndices& of, const Eigen::VectorXd& weights) const {
+  return bearing(of, weights, blocks_);
+}
+
+std::vector<double> Evidence::bearing(const ColumnIndices& of, const Eigen::VectorXd& weights,
+                                      std::span<const RowBlock> pieces) const {
+  const Eigen::VectorXd force = white_columns_(Eigen::all, of) * weights;
+  std::vector<double> squares;
+  for (const auto& piece : pieces)
+    squares.push_back(
+        force.segment(static_cast<Eigen::Index>(piece.begin), static_cast<Eigen::Index>(piece.end - piece.begin))
+            .squaredNorm());
+  return squares;
 }
 
 std::vector<double> Evidence::held_out(const ColumnIndices& chosen, std::size_t folds) const {

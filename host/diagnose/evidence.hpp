@@ -58,6 +58,9 @@ class Evidence {
   // Number of clusters that bear on the columns `of` with these weights: (sum h)^2 / sum h^2 of their squared lengths.
   double bearing_clusters(const ColumnIndices& of, const Eigen::VectorXd& weights) const;
 
+  // Square of the columns' force with these weights in each block.
+  std::vector<double> bearing(const ColumnIndices& of, const Eigen::VectorXd& weights) const;
+
   // Sum of squared residuals of each block with weights from the other folds; block i is in fold i mod `folds`.
   std::vector<double> held_out(const ColumnIndices& chosen, std::size_t folds = 5) const;
 
@@ -70,6 +73,8 @@ class Evidence {
   struct Noise {
     double variance, freedom;
   };
+  std::vector<double> bearing(const ColumnIndices& of, const Eigen::VectorXd& weights,
+                              std::span<const RowBlock> pieces) const;
   Noise noise(const Eigen::VectorXd& left) const;
   Eigen::MatrixXd inverse_gram(const ColumnIndices& chosen) const;
   static Fit solve(const Sums& sums, const ColumnIndices& chosen);

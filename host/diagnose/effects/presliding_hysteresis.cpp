@@ -13,6 +13,7 @@ namespace {
 
 // Seven large reversals do not identify a hysteresis: sgn(v) and a contact then fit one another.
 constexpr int least_reversals = 10;
+constexpr double longest = 3e-3;  // m
 
 double distance_with(const Scene& scene, double longer) {
   const double file = contact_distance_of(scene.axis);
@@ -21,9 +22,11 @@ double distance_with(const Scene& scene, double longer) {
 
 std::vector<double> grid(const Scene& scene) {
   if (!coulomb_of(scene.axis) || scene.reversals < least_reversals) return {};
-  std::vector<double> longer = geometric(1e-6, 3e-3, 14);
-  for (const double share : {-0.25, -0.5, -0.75})
-    if (const double file = contact_distance_of(scene.axis); file > 0.0) longer.push_back(share * file);
+  const double file = contact_distance_of(scene.axis);
+  if (!(file > 0.0)) return geometric(1e-6, 3e-3, 14);
+  std::vector<double> longer;
+  for (const double share : {-0.75, -0.5, -0.25, -0.1, -0.03, 0.03, 0.1, 0.25, 0.6, 1.5, 4.0, 10.0, 25.0, 60.0, 150.0})
+    if (share * file < longest) longer.push_back(share * file);
   return longer;
 }
 Columns columns(const Scene& scene, const Motion& motion, double longer) {
