@@ -124,8 +124,7 @@ inline void AxisPlant::step(MotorModel& motor, Friction& friction, PhaseValues v
   change_ = next - velocity_;
   position_ += half_step_ * (velocity_ + next);
   velocity_ = next;
-  mount_.advance(change_);
-  if constexpr (effects) effects_.follow(position_, change_);
+  mount_.advance(effects ? effects_.follow(position_, velocity_, change_) : change_);
 }
 
 double AxisPlant::with_noise(double reading) {

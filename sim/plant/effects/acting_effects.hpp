@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -100,11 +101,18 @@ class ActingEffects {
     return sum;
   }
 
-  // The carriage is at `position` (m) at the end of a step that changed its velocity by `change` (m/s).
-  void follow(double position, double change) {
+  // The carriage is at `position` (m) with `velocity` (m/s) at the end of a step that changed it by `change`. Returns
+  // by how much the velocity behind the play changed: what the encoder's mount stands on.
+  double follow(double position, double velocity, double change) {
     if (mode_) mode_->advance(motor_force_, transmitted_, change);
-    closed_ = !play_ || play_->advance(position);
-    follower_ = play_ ? play_->follower() : position;
+    if (!play_) {
+      follower_ = position;
+      return change;
+    }
+    closed_ = play_->advance(position);
+    follower_ = play_->follower();
+    const double before = std::exchange(follower_velocity_, closed_ ? velocity : 0.0);
+    return follower_velocity_ - before;
   }
   double follower() const { return follower_; }  // m, the position behind the play
   bool closed() const { return closed_; }        // whether it moved with the carriage in the last step
@@ -141,7 +149,7 @@ class ActingEffects {
   SlidingDirection direction_;
   std::optional<Backlash> play_;
   std::vector<EncoderSubdivisionError> reading_;
-  double follower_;
+  double follower_, follower_velocity_ = 0.0;  // m, m/s
   bool closed_ = true;
 };
 
