@@ -87,10 +87,15 @@ std::vector<double> EffectResponse::residual(std::size_t log, const sim::Machine
 }
 
 std::vector<double> EffectResponse::operator()(const Motion& motion, const sim::Effect& effect) {
+  return together(motion, {&effect, 1});
+}
+
+std::vector<double> EffectResponse::together(const Motion& motion, std::span<const sim::Effect> effects) {
   for (std::size_t k = 0; k < bench_.logs.size(); ++k) {
     if (bench_.logs[k].source != motion.source || bench_.logs[k].axes.front().x_set != motion.x_set) continue;
     auto machine = bench_.machine;
-    machine.axes.front().effects.push_back(effect);
+    auto& acting = machine.axes.front().effects;
+    acting.insert(acting.end(), effects.begin(), effects.end());
     try {
       if (without_[k].empty()) without_[k] = residual(k, bench_.machine);
       auto force = residual(k, machine);

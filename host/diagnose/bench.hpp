@@ -1,6 +1,7 @@
 // One axis of a machine alone, with the logs that have set-points for it: what replays run on.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "host/identify/motion.hpp"
@@ -37,6 +38,8 @@ class EffectResponse {
   // N at the motion's rate: with the effect less without; zeros where the machine cannot follow with it. Throws
   // sim::EffectError, std::out_of_range for a motion of another log.
   std::vector<double> operator()(const Motion& motion, const sim::Effect& effect);
+  // The same of several effects that act together.
+  std::vector<double> together(const Motion& motion, std::span<const sim::Effect> effects);
 
  private:
   std::vector<double> residual(std::size_t log, const sim::Machine& machine) const;

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <optional>
 
 #include "host/diagnose/bench.hpp"
 #include "host/diagnose/candidate_columns.hpp"
 #include "host/diagnose/closed_loop.hpp"
+#include "host/diagnose/closed_loop_refinement.hpp"
 #include "host/diagnose/command_residual.hpp"
 #include "host/diagnose/diagnosis_charts.hpp"
 #include "host/diagnose/holdout.hpp"
@@ -225,10 +228,12 @@ Verdict diagnose(const DiagnoseInput& input) {
         "from the measured motion, which carries the disturbances through the control loop. Log x_set.");
   const auto regressors = held_motion.empty() ? rows : rows_of(motion, axis, settings);
   const auto held_regressors = held_motion.empty() ? held_rows : rows_of(held_motion, axis, settings);
+  std::optional<EffectResponse> response;
   if (!held_motion.empty()) {
     auto all = logs;
     all.insert(all.end(), held_out.begin(), held_out.end());
-    scene.response = EffectResponse(input.machine, input.axis, all, settings);
+    response.emplace(input.machine, input.axis, all, settings);
+    scene.response = std::ref(*response);
   }
   auto found = search_causes(regressors, target, scene, input.progress);
   const auto found_before = found.terms.size();
@@ -237,6 +242,7 @@ Verdict diagnose(const DiagnoseInput& input) {
   verdict.extended.force_rms = figures.force_extended;
   for (std::size_t k = 0; k < found.terms.size(); ++k)
     verdict.findings.push_back(finding_of(scene, found.terms[k], figures.gains[k], found.blocks));
+  if (response) refine_in_closed_loop(verdict.findings, found, *response, regressors, target, scene);
   propose_next_measurement(verdict, {input.machine, input.axis, settings, regressors, target, scene, found},
                            input.next_measurement);
   judge_command(verdict, input, {logs, rows}, {held_out, held_rows}, record_delay(regressors, scene, found));

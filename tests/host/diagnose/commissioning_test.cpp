@@ -49,6 +49,24 @@ TEST(Commissioning, names_what_is_hidden) {
   EXPECT_GE(right, 9);
 }
 
+// A contact that gives is softer in the drive's hands than any regressor of the planned motion says: without the steps
+// in closed loop its stiffness is 58 % off.
+TEST(Commissioning, finds_a_contact_in_closed_loop) {
+  constexpr std::uint64_t seed = 7;
+  const auto hidden = host::draw_hidden_effect(demonstration_machine().axes.front(), seed);
+  ASSERT_EQ(hidden.name, "presliding_hysteresis");
+  const auto verdict = verdict_of({hidden}, seed);
+  ASSERT_EQ(verdict.findings.size(), 1U);
+  const auto& found = verdict.findings.front().effect;
+  ASSERT_EQ(found.name, hidden.name);
+  for (const auto* key : {"stiffness", "distance"}) {
+    const double value = found.values.at(key).front(), truth = hidden.values.at(key).front();
+    figure(fmt::format("demonstration: {} of a hidden contact", key),
+           fmt::format("{:.1f} % off", 100.0 * std::abs(value / truth - 1.0)));
+    EXPECT_NEAR(value, truth, 0.05 * truth) << key;
+  }
+}
+
 TEST(Commissioning, is_the_same_for_the_same_seed) {
   const auto machine = demonstration_machine();
   const auto one = host::draw_hidden_effect(machine.axes.front(), 14);

@@ -1,0 +1,167 @@
+#include "host/diagnose/closed_loop_refinement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "host/diagnose/candidate_columns.hpp"
+#include "sim/plant/effects/effects.hpp"
+
+namespace stiction::host {
+namespace {
+
+constexpr int most_steps = 3;
+constexpr int halvings = 2;
+constexpr double settled = 1e-4;  // of the residual's square: a smaller gain ends the steps
+
+// One number among a finding's parameters.
+struct Free {
+  std::size_t finding;
+  std::size_t parameter;  // of the finding
+  std::string key;        // of the effect
+  std::size_t index;      // of the key's values
+};
+
+class ClosedLoopFit {
+ public:
+  ClosedLoopFit(std::vector<Finding>& findings, const SearchResult& found, EffectResponse& response,
+                const LogRows& rows, const Eigen::VectorXd& target, const Scene& scene)
+      : findings_(findings), response_(response), rows_(rows), target_(target) {
+    bool whitened = true;
+    for (std::size_t k = 0; k < findings.size(); ++k) {
+      const auto& term = found.terms[k];
+      whitened = whitened && term.whitened;
+      if (candidates()[term.candidate].per_record)
+        take_out(term, scene);
+      else
+        free_parameters(k);
+    }
+    if (whitened) {
+      whitening_ = Whitening(found.residual, rows.logs());
+      cluster_ = static_cast<std::size_t>(std::ceil(6.0 * correlation_length(whitening_(found.residual), rows.logs())));
+    }
+  }
+
+  void run() {
+    if (free_.empty()) return;
+    Eigen::VectorXd force = simulated(start());
+    double left = square(force);
+    const double before = left;
+    Eigen::VectorXd at = start();
+    Eigen::MatrixXd slopes = slopes_at(at, force);
+    for (int step = 0; step < most_steps; ++step) {
+      Eigen::VectorXd way = evidence_of(force, slopes).fit(all()).weights;
+      double gained = 0.0;
+      for (int half = 0; half <= halvings && gained <= 0.0; ++half, way *= 0.5) {
+        const Eigen::VectorXd next = at + way, next_force = simulated(next);
+        if (const double next_left = square(next_force); next_left < left) {
+          gained = (left - next_left) / left;
+          at = next, force = next_force, left = next_left;
+        }
+      }
+      if (gained <= settled) break;
+      slopes = slopes_at(at, force);
+    }
+    if (left < before) write(at, evidence_of(force, slopes).covariance(all(), Eigen::VectorXd::Zero(at.size())));
+  }
+
+ private:
+  void take_out(const Term& term, const Scene& scene) {
+    const auto columns = group_columns(rows_, scene, candidates()[term.candidate], term.nonlinear);
+    for (std::size_t c = 0; c < columns.size(); ++c) target_ -= term.weights[static_cast<Eigen::Index>(c)] * columns[c];
+  }
+  void free_parameters(std::size_t finding) {
+    effects_.push_back(findings_[finding].effect);
+    of_finding_.push_back(finding);
+    const auto& parameters = findings_[finding].parameters;
+    for (std::size_t p = 0; p < parameters.size(); ++p)
+      for (const auto& [key, values] : findings_[finding].effect.values)
+        if (parameters[p].name == key || parameters[p].name.starts_with(key + "_"))
+          for (std::size_t i = 0; i < parameters[p].standard_errors.size(); ++i)
+            free_.push_back({effects_.size() - 1, p, key, i});
+  }
+
+  Eigen::VectorXd start() const {
+    Eigen::VectorXd at(static_cast<Eigen::Index>(free_.size()));
+    for (std::size_t i = 0; i < free_.size(); ++i)
+      at[static_cast<Eigen::Index>(i)] = effects_[free_[i].finding].values.at(free_[i].key)[free_[i].index];
+    return at;
+  }
+  std::vector<sim::Effect> effects_at(const Eigen::VectorXd& at) const {
+    auto effects = effects_;
+    for (std::size_t i = 0; i < free_.size(); ++i)
+      effects[free_[i].finding].values.at(free_[i].key)[free_[i].index] = at[static_cast<Eigen::Index>(i)];
+    return effects;
+  }
+  // N, of the rows; infinite where the effects cannot have these values.
+  Eigen::VectorXd simulated(const Eigen::VectorXd& at) {
+    const auto effects = effects_at(at);
+    try {
+      return rows_.stacked([&](const Motion& motion) { return response_.together(motion, effects); });
+    } catch (const sim::EffectError&) {
+      return Eigen::VectorXd::Constant(rows_.rows(), std::numeric_limits<double>::infinity());
+    }
+  }
+  double square(const Eigen::VectorXd& force) const {
+    const double left = whitening_(target_ - force).squaredNorm();
+    return std::isfinite(left) ? left : std::numeric_limits<double>::infinity();
+  }
+  // Over a standard error, towards zero where the parameter has a bound there.
+  Eigen::MatrixXd slopes_at(const Eigen::VectorXd& at, const Eigen::VectorXd& force) {
+    Eigen::MatrixXd slopes(rows_.rows(), at.size());
+    for (Eigen::Index i = 0; i < at.size(); ++i) {
+      const auto& free = free_[static_cast<std::size_t>(i)];
+      const double error = findings_[of_finding_[free.finding]].parameters[free.parameter].standard_errors[free.index];
+      const double size = std::abs(at[i]);
+      double by = std::isfinite(error) && error > 0.0 ? error : 0.01 * size;
+      if (size > 0.0) by = std::clamp(by, 1e-5 * size, 0.1 * size);
+      Eigen::VectorXd moved = at;
+      moved[i] += by;
+      const auto there = simulated(moved);
+      slopes.col(i) = there.allFinite() ? Eigen::VectorXd((there - force) / by) : Eigen::VectorXd::Zero(rows_.rows());
+    }
+    return slopes;
+  }
+  Evidence evidence_of(const Eigen::VectorXd& force, const Eigen::MatrixXd& slopes) const {
+    const auto longest = static_cast<std::size_t>(rows_.rows() / 60 + 1);
+    Evidence evidence(target_ - force, blocks_of(rows_.velocity, rows_.logs(), longest));
+    evidence.whiten(whitening_, cluster_);
+    std::vector<Eigen::VectorXd> columns;
+    for (Eigen::Index i = 0; i < slopes.cols(); ++i) columns.emplace_back(slopes.col(i));
+    evidence.add(columns);
+    return evidence;
+  }
+  ColumnIndices all() const {
+    ColumnIndices indices(free_.size());
+    for (std::size_t i = 0; i < indices.size(); ++i) indices[i] = static_cast<Eigen::Index>(i);
+    return indices;
+  }
+  void write(const Eigen::VectorXd& at, const Eigen::MatrixXd& covariance) {
+    for (std::size_t i = 0; i < free_.size(); ++i) {
+      auto& finding = findings_[of_finding_[free_[i].finding]];
+      auto& parameter = finding.parameters[free_[i].parameter];
+      const auto k = static_cast<Eigen::Index>(i);
+      finding.effect.values.at(free_[i].key)[free_[i].index] = parameter.values[free_[i].index] = at[k];
+      parameter.standard_errors[free_[i].index] = std::sqrt(std::max(covariance(k, k), 0.0));
+    }
+  }
+
+  std::vector<Finding>& findings_;
+  EffectResponse& response_;
+  const LogRows& rows_;
+  Eigen::VectorXd target_;
+  std::vector<sim::Effect> effects_;  // of the findings that are simulated
+  std::vector<std::size_t> of_finding_;
+  std::vector<Free> free_;
+  Whitening whitening_;
+  std::size_t cluster_ = 0;
+};
+
+}  // namespace
+
+void refine_in_closed_loop(std::vector<Finding>& findings, const SearchResult& found, EffectResponse& response,
+                           const LogRows& rows, const Eigen::VectorXd& target, const Scene& scene) {
+  ClosedLoopFit(findings, found, response, rows, target, scene).run();
+}
+
+}  // namespace stiction::host
