@@ -10,6 +10,7 @@
 #include "host/diagnose/candidate_columns.hpp"
 #include "host/diagnose/refinement.hpp"
 #include "host/diagnose/scene_lines.hpp"
+#include "sim/plant/effects/effects.hpp"
 
 namespace stiction::host {
 namespace {
@@ -33,6 +34,22 @@ std::vector<RowBlock> blocks_for(const LogRows& rows, double correlation) {
   const auto n = static_cast<double>(rows.rows());
   const double shortest = std::clamp(6.0 * correlation, n / 200.0, n / 30.0);
   return blocks_of(rows.velocity, rows.logs(), static_cast<std::size_t>(shortest) + 1);
+}
+
+// Why a refined term is no effect that a machine can have.
+std::optional<std::string> impossible(const Scene& scene, const Term& term) {
+  const auto& candidate = candidates()[term.candidate];
+  if (!candidate.possible(scene, term.nonlinear, term.weights))
+    return "beside the other causes it fits with a sign or a size that it cannot have";
+  Finding finding;
+  finding.effect.name = candidate.name;
+  candidate.describe(scene, term.nonlinear, term.weights, term.covariance, finding);
+  try {
+    sim::check_effect(finding.effect);
+  } catch (const sim::EffectError& error) {
+    return error.what();
+  }
+  return {};
 }
 
 class Search {
@@ -383,11 +400,22 @@ SearchResult Search::run(const std::function<void()>& progress) {
     }
     result.terms.push_back(std::move(term));
   }
+  result.residual = refine(rows_, evidence_, scene_, result.terms);
+  // Terms that nearly cancel each other can end with values that they cannot have.
+  for (std::size_t k = 0; k < result.terms.size();) {
+    if (const auto why = impossible(scene_, result.terms[k])) {
+      discarded_.push_back({result.terms[k].candidate, *why});
+      result.terms.erase(result.terms.begin() + static_cast<std::ptrdiff_t>(k));
+      result.residual = refine(rows_, evidence_, scene_, result.terms);
+      k = 0;
+    } else {
+      ++k;
+    }
+  }
   for (const auto& d : discarded_)
     if (std::none_of(result.terms.begin(), result.terms.end(),
                      [&](const Term& term) { return term.candidate == d.candidate; }))
       result.discarded.push_back(d);
-  result.residual = refine(rows_, evidence_, scene_, result.terms);
   std::sort(result.terms.begin(), result.terms.end(),
             [](const Term& a, const Term& b) { return a.explains > b.explains; });
   result.correlation = correlation_;
