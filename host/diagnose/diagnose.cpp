@@ -169,12 +169,13 @@ HeldOutFigures keep_what_holds(const LogRows& rows, const Eigen::VectorXd& targe
     for (std::size_t k = 1; k < found.terms.size(); ++k)
       if (holds(k) < holds(worst)) worst = k;
     if (holds(worst) > 0.0) return figures;
+    const double ratio = figures.gains[worst].force_rms_ratio;
     verdict.rejected.push_back(
         {candidates()[found.terms[worst].candidate].name,
-         fmt::format(
-             "withdrawn: found in the training data, but no gain on held-out data: of what it should take there it "
-             "takes {:.0f} % (force rms {:.4f} times that without it)",
-             100.0 * figures.confirmed[worst], figures.gains[worst].force_rms_ratio)});
+         fmt::format("withdrawn: found in the training data, but no gain on held-out data: {}",
+                     ratio >= 1.0 ? fmt::format("force rms {:.4f} times that without it", ratio)
+                                  : fmt::format("whitened as it was found it takes {:.0f} % of what it should there",
+                                                100.0 * figures.confirmed[worst]))});
     found.terms.erase(found.terms.begin() + static_cast<std::ptrdiff_t>(worst));
   }
 }
