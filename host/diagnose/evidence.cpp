@@ -61,6 +61,7 @@ void Evidence::whiten(Whitening whitening, std::size_t correlated) {
 // The sums of the columns from `first` on; those before it are there.
 void Evidence::sum_columns(Eigen::Index first) {
   const Eigen::Index count = columns_.cols(), fresh = count - first;
+  if (fresh == 0) return;
   white_columns_.conservativeResize(target_.size(), count);
   for (Eigen::Index j = first; j < count; ++j) white_columns_.col(j) = whitening_(columns_.col(j));
   const auto grow = [count](Sums& sums) {
