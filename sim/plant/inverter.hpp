@@ -52,12 +52,13 @@ class InverterModel {
     int change;
   };
   Acting acting() const {
-    const PhaseValues& oldest = commands_[oldest_];
-    const PhaseValues& second = changes_within_tick() ? commands_[after(oldest_)] : oldest;
+    const std::size_t second = changes_within_tick() ? after(oldest_) : oldest_;
     PhaseValues between;
     for (std::size_t k = 0; k < between.size(); ++k)
-      between[k] = share_before_ == 1.0 ? oldest[k] : share_before_ * oldest[k] + (1.0 - share_before_) * second[k];
-    return {oldest, between, second, change_};
+      between[k] = share_before_ == 1.0
+                       ? commands_[oldest_][k]
+                       : share_before_ * commands_[oldest_][k] + (1.0 - share_before_) * commands_[second][k];
+    return {commands_[oldest_], between, commands_[second], change_};
   }
 
   void switch_off() {
