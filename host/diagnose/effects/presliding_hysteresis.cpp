@@ -25,8 +25,8 @@ std::vector<double> grid(const Scene& scene) {
   const double file = contact_distance_of(scene.axis);
   if (!(file > 0.0)) return geometric(1e-6, 3e-3, 14);
   std::vector<double> longer;
-  for (const double share : {-0.75, -0.5, -0.25, -0.1, -0.03, 0.03, 0.1, 0.25, 0.6, 1.5, 4.0, 10.0, 25.0, 60.0, 150.0})
-    if (share * file < longest) longer.push_back(share * file);
+  for (const double share : {-0.75, -0.5, -0.25, -0.1, -0.03, 0.03, 0.08, 0.2}) longer.push_back(share * file);
+  for (double more = 0.4 * file; more < longest; more *= 1.6) longer.push_back(more);
   return longer;
 }
 Columns columns(const Scene& scene, const Motion& motion, double longer) {
