@@ -106,7 +106,7 @@ class ClosedLoopFit {
     const double left = whitening_(target_ - force).squaredNorm();
     return std::isfinite(left) ? left : std::numeric_limits<double>::infinity();
   }
-  // Over a standard error, towards zero where the parameter has a bound there.
+  // By differences over a standard error, within 1e-5 to a tenth of the value; none where the effect cannot have it.
   Eigen::MatrixXd slopes_at(const Eigen::VectorXd& at, const Eigen::VectorXd& force) {
     Eigen::MatrixXd slopes(rows_.rows(), at.size());
     for (Eigen::Index i = 0; i < at.size(); ++i) {
