@@ -15,6 +15,7 @@ namespace {
 
 // Of the stroke: a simulated position that is further away, rms, is another motion.
 constexpr double another_way = 0.01;
+constexpr double fine = 0.01;  // of the position controller's increment
 
 bool same_way(const std::vector<double>& simulated, const std::vector<double>& measured) {
   double mean = 0.0, square = 0.0;
@@ -70,9 +71,11 @@ std::vector<Log> without_noise(const sim::Machine& machine, std::size_t axis, co
 }
 
 EffectResponse::EffectResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
-                               const SignalSettings& settings)
+                               const SignalSettings& settings, Hunting hunting)
     : bench_(bench_of(machine, axis, logs)), settings_(settings) {
-  bench_.machine.axes.front().encoder.noise = 0.0;
+  auto& own = bench_.machine.axes.front();
+  own.encoder.noise = 0.0;
+  if (hunting == Hunting::smoothed) own.position_controller.increment *= fine;
   without_.resize(bench_.logs.size());
 }
 

@@ -27,13 +27,19 @@ std::vector<std::vector<double>> simulated_positions(const Bench& bench);
 // set-points, when the machine cannot follow them, or when it goes another way than the measured one.
 std::vector<Log> without_noise(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs);
 
+// Within an increment of its position controller an axis hunts. Near reversals a replay does so as the record did, and
+// friction's contact follows it; elsewhere noise made the record hunt at other instants, and the difference is an error
+// of the regressor that takes up to two thirds off the weight of an elastic mode. A finer increment leaves the motion
+// that all records have in common.
+enum class Hunting { simulated, smoothed };
+
 // What an effect does to the residual force of a replayed log, through the control loop. Motions are known by the
 // source and the first time of the logs.
 class EffectResponse {
  public:
   // `logs`: with set-points, of that axis; `settings`: those of the motions.
   EffectResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
-                 const SignalSettings& settings);
+                 const SignalSettings& settings, Hunting hunting = Hunting::simulated);
 
   // N at the motion's rate: with the effect less without; zeros where the machine cannot follow with it. Throws
   // sim::EffectError, std::out_of_range for a motion of another log.

@@ -29,9 +29,9 @@ struct Scene {
   bool other_axis = false;        // its motion is in every record
   double duration = 0.0;          // s, of the longest record
   sim::Timing timing{};           // of the drive
-  // Found as the search goes: lines over position, over position in proportion to the force, over time, over the
-  // encoder's signal.
-  LineScan pitches{}, modulation{}, times{}, signals_of_encoder{};
+  // Found as the search goes: lines over position, over position in proportion to the force and to the speed, over
+  // time, over the encoder's signal.
+  LineScan pitches{}, modulation{}, by_speed{}, times{}, signals_of_encoder{};
   // The residual force (N, at the motion's rate) that a motion's set-points leave in simulation where the machine has
   // the effect, less that where it has not: what the effect does through the control loop. Empty: no set-points.
   std::function<std::vector<double>(const Motion&, const sim::Effect&)> response;
@@ -65,9 +65,13 @@ struct Candidate {
   const LineScan& (*scan)(const Scene&) = nullptr;
   bool replays = false;  // its columns cost a run of the closed loop
   double trials = 1.0;   // independent values that a grid without a scan tries
+  // Of a force outside of the vocabulary: what it looks like. It takes part in the search so that no name is forced
+  // upon what none fits; found, it is no finding but the signature of what stays unexplained. Null for an effect.
+  std::string (*looks_like)(const Scene&, double nonlinear, const Eigen::VectorXd& weights) = nullptr;
+  bool outside() const { return looks_like != nullptr; }
 };
 
-// The vocabulary in the order of the contract.
+// The vocabulary in the order of the contract; behind it what is outside of it.
 std::span<const Candidate> candidates();
 
 namespace effects {
@@ -80,6 +84,9 @@ extern const Candidate mass_mismatch, coulomb_mismatch, viscous_mismatch, viscou
 void add_key(Finding& finding, const char* key, const char* suffix, std::vector<double> values,
              std::vector<double> errors);
 
+// Cosine and sine of a wave over position, as force on the carriage of `size` (of each sample) times it.
+Columns waves_over_position(const Motion& motion, double pitch, const std::vector<double>& size);
+
 inline std::vector<double> no_scan(const Scene&) { return {0.0}; }
 inline bool any(const Scene&, double, const Eigen::VectorXd&) { return true; }
 // Of the weights of a wave that has a pair in each record: the amplitude that they have in common (their root mean
@@ -88,5 +95,10 @@ std::array<double, 2> first_wave(const Eigen::VectorXd& weights);
 // `count` values from `low` to `high`, each the same factor above the one before.
 std::vector<double> geometric(double low, double high, int count);
 }  // namespace effects
+
+namespace signatures {
+extern const Candidate localised_force, ripple_with_speed, force_after_reversal, force_with_acceleration,
+    drifting_force;
+}
 
 }  // namespace stiction::host

@@ -31,4 +31,12 @@ std::vector<Eigen::VectorXd> shared_columns(const LogRows& rows, const Scene& sc
   return stacked;
 }
 
+Eigen::VectorXd weighted_columns(const LogRows& rows, const Scene& scene, const Candidate& candidate, double nonlinear,
+                                 const Eigen::VectorXd& weights) {
+  const auto columns = group_columns(rows, scene, candidate, nonlinear);
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(rows.rows());
+  for (std::size_t c = 0; c < columns.size(); ++c) sum += weights[static_cast<Eigen::Index>(c)] * columns[c];
+  return sum;
+}
+
 }  // namespace stiction::host

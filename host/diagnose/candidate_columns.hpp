@@ -15,5 +15,8 @@ std::vector<Eigen::VectorXd> shared_columns(const LogRows& rows, const Scene& sc
 // The same, and of those that have weights of their own in each record in the rows of that one alone.
 std::vector<Eigen::VectorXd> group_columns(const LogRows& rows, const Scene& scene, const Candidate& candidate,
                                            double nonlinear);
+// Their sum with these weights (N).
+Eigen::VectorXd weighted_columns(const LogRows& rows, const Scene& scene, const Candidate& candidate, double nonlinear,
+                                 const Eigen::VectorXd& weights);
 
 }  // namespace stiction::host

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "host/diagnose/candidate.hpp"
 
@@ -30,6 +31,11 @@ std::span<const Candidate> candidates() {
       effects::time_skew,
       effects::cross_axis_coupling,
       effects::periodic_disturbance,
+      signatures::localised_force,
+      signatures::ripple_with_speed,
+      signatures::force_after_reversal,
+      signatures::force_with_acceleration,
+      signatures::drifting_force,
   };
   return table;
 }
@@ -40,6 +46,16 @@ void add_key(Finding& finding, const char* key, const char* suffix, std::vector<
              std::vector<double> errors) {
   finding.effect.values[key] = values;
   finding.parameters.push_back({std::string(key) + suffix, std::move(values), std::move(errors)});
+}
+
+Columns waves_over_position(const Motion& motion, double pitch, const std::vector<double>& size) {
+  Columns pair(2, std::vector<double>(motion.x.size()));
+  for (std::size_t i = 0; i < motion.x.size(); ++i) {
+    const double phase = 2.0 * std::numbers::pi * motion.x[i] / pitch;
+    pair[0][i] = -size[i] * std::cos(phase);
+    pair[1][i] = -size[i] * std::sin(phase);
+  }
+  return pair;
 }
 
 std::array<double, 2> first_wave(const Eigen::VectorXd& weights) {

@@ -116,9 +116,8 @@ sim::Chart added_variable(const Eigen::VectorXd& left, const Eigen::VectorXd& by
 void add_cause_charts(Verdict& verdict, const LogRows& rows, const Scene& scene, const std::vector<Term>& terms,
                       const Eigen::VectorXd& after) {
   for (std::size_t k = 0; k < terms.size() && k < verdict.findings.size(); ++k) {
-    const auto columns = group_columns(rows, scene, candidates()[terms[k].candidate], terms[k].nonlinear);
-    Eigen::VectorXd by = Eigen::VectorXd::Zero(rows.rows());
-    for (std::size_t c = 0; c < columns.size(); ++c) by += terms[k].weights[static_cast<Eigen::Index>(c)] * columns[c];
+    const auto by =
+        weighted_columns(rows, scene, candidates()[terms[k].candidate], terms[k].nonlinear, terms[k].weights);
     const Eigen::VectorXd left = after + by;
     auto& finding = verdict.findings[k];
     for (const auto& row : abscissae)

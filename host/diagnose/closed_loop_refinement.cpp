@@ -24,15 +24,15 @@ struct Free {
 
 class ClosedLoopFit {
  public:
-  ClosedLoopFit(std::vector<Finding>& findings, const SearchResult& found, EffectResponse& response,
-                const LogRows& rows, const Eigen::VectorXd& target, const Scene& scene)
-      : findings_(findings), response_(response), rows_(rows), target_(target) {
+  ClosedLoopFit(std::vector<Finding> findings, const SearchResult& found, EffectResponse& response, const LogRows& rows,
+                const Eigen::VectorXd& target, const Scene& scene)
+      : findings_(std::move(findings)), response_(response), rows_(rows), target_(target) {
     bool whitened = true;
-    for (std::size_t k = 0; k < findings.size(); ++k) {
+    for (std::size_t k = 0; k < findings_.size(); ++k) {
       const auto& term = found.terms[k];
       whitened = whitened && term.whitened;
       if (candidates()[term.candidate].per_record)
-        take_out(term, scene);
+        target_ -= weighted_columns(rows, scene, candidates()[term.candidate], term.nonlinear, term.weights);
       else
         free_parameters(k);
     }
@@ -42,10 +42,12 @@ class ClosedLoopFit {
     }
   }
 
-  void run() {
-    if (free_.empty()) return;
+  // Returns the square that is left, infinity where nothing is free. Where no step gains, the findings stay as they
+  // were.
+  double run() {
+    if (free_.empty()) return std::numeric_limits<double>::infinity();
     Eigen::VectorXd force = simulated(start());
-    double left = square(force);
+    double left = square(target_ - force);
     const double before = left;
     Eigen::VectorXd at = start();
     Eigen::MatrixXd slopes = slopes_at(at, force);
@@ -54,7 +56,7 @@ class ClosedLoopFit {
       double gained = 0.0;
       for (int half = 0; half <= halvings && gained <= 0.0; ++half, way *= 0.5) {
         const Eigen::VectorXd next = at + way, next_force = simulated(next);
-        if (const double next_left = square(next_force); next_left < left) {
+        if (const double next_left = square(target_ - next_force); next_left < left) {
           gained = (left - next_left) / left;
           at = next, force = next_force, left = next_left;
         }
@@ -63,13 +65,16 @@ class ClosedLoopFit {
       slopes = slopes_at(at, force);
     }
     if (left < before) write(at, evidence_of(force, slopes).covariance(all(), Eigen::VectorXd::Zero(at.size())));
+    return left;
+  }
+  const std::vector<Finding>& findings() const { return findings_; }
+  // Of a residual (N, of the rows), whitened as the findings were found; infinite where it is.
+  double square(const Eigen::VectorXd& residual) const {
+    const double left = whitening_(residual).squaredNorm();
+    return std::isfinite(left) ? left : std::numeric_limits<double>::infinity();
   }
 
  private:
-  void take_out(const Term& term, const Scene& scene) {
-    const auto columns = group_columns(rows_, scene, candidates()[term.candidate], term.nonlinear);
-    for (std::size_t c = 0; c < columns.size(); ++c) target_ -= term.weights[static_cast<Eigen::Index>(c)] * columns[c];
-  }
   void free_parameters(std::size_t finding) {
     effects_.push_back(findings_[finding].effect);
     of_finding_.push_back(finding);
@@ -101,10 +106,6 @@ class ClosedLoopFit {
     } catch (const sim::EffectError&) {
       return Eigen::VectorXd::Constant(rows_.rows(), std::numeric_limits<double>::infinity());
     }
-  }
-  double square(const Eigen::VectorXd& force) const {
-    const double left = whitening_(target_ - force).squaredNorm();
-    return std::isfinite(left) ? left : std::numeric_limits<double>::infinity();
   }
   // By differences over a standard error, within 1e-5 to a tenth of the value; none where the effect cannot have it.
   Eigen::MatrixXd slopes_at(const Eigen::VectorXd& at, const Eigen::VectorXd& force) {
@@ -146,7 +147,7 @@ class ClosedLoopFit {
     }
   }
 
-  std::vector<Finding>& findings_;
+  std::vector<Finding> findings_;
   EffectResponse& response_;
   const LogRows& rows_;
   Eigen::VectorXd target_;
@@ -159,9 +160,19 @@ class ClosedLoopFit {
 
 }  // namespace
 
-void refine_in_closed_loop(std::vector<Finding>& findings, const SearchResult& found, EffectResponse& response,
-                           const LogRows& rows, const Eigen::VectorXd& target, const Scene& scene) {
-  ClosedLoopFit(findings, found, response, rows, target, scene).run();
+void refine_in_closed_loop(std::vector<Finding>& findings, const SearchResult& found,
+                           std::span<EffectResponse> responses, const LogRows& rows, const Eigen::VectorXd& target,
+                           const Scene& scene) {
+  const auto start = findings;
+  double least = std::numeric_limits<double>::infinity();
+  for (auto& response : responses) {
+    ClosedLoopFit fit(start, found, response, rows, target, scene);
+    least = std::min(least, fit.square(found.residual));
+    if (const double left = fit.run(); left < least) {
+      least = left;
+      findings = fit.findings();
+    }
+  }
 }
 
 }  // namespace stiction::host

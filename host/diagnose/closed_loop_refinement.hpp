@@ -14,9 +14,11 @@
 namespace stiction::host {
 
 // `findings`: with start values and standard errors of their parameters; both are replaced where the fit gets better.
-// `found`: their terms in the same order; `rows`, `target`: what they were found on. A term whose phase differs from
-// record to record stays as it is.
-void refine_in_closed_loop(std::vector<Finding>& findings, const SearchResult& found, EffectResponse& response,
-                           const LogRows& rows, const Eigen::VectorXd& target, const Scene& scene);
+// `found`: their terms in the same order; `rows`, `target`: what they were found on; `responses`: of these records,
+// with different hunting, of which the one that fits best counts. A term whose phase differs from record to record
+// stays as it is.
+void refine_in_closed_loop(std::vector<Finding>& findings, const SearchResult& found,
+                           std::span<EffectResponse> responses, const LogRows& rows, const Eigen::VectorXd& target,
+                           const Scene& scene);
 
 }  // namespace stiction::host

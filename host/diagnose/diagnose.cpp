@@ -1,11 +1,11 @@
 #include "host/diagnose/diagnose.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <optional>
 
 #include "host/diagnose/bench.hpp"
 #include "host/diagnose/candidate_columns.hpp"
@@ -157,27 +157,49 @@ RecordDelay record_delay(const LogRows& rows, const Scene& scene, const SearchRe
 }
 
 // Withdraws the term that does worst on held-out data, until each gains and holds.
-HeldOutFigures keep_what_holds(const LogRows& rows, const Eigen::VectorXd& target, const Scene& scene,
-                               SearchResult& found, Verdict& verdict, std::uint64_t seed) {
+void keep_what_holds(const LogRows& rows, const Eigen::VectorXd& target, const Scene& scene, SearchResult& found,
+                     Verdict& verdict, std::uint64_t seed) {
   for (;;) {
-    auto figures = evaluate_held_out(rows, target, scene, found.terms, seed);
-    if (found.terms.empty()) return figures;
+    const auto figures = evaluate_held_out(rows, target, scene, found.terms, seed);
+    if (found.terms.empty()) return;
     const auto holds = [&](std::size_t k) {
       return figures.gains[k].force_rms_ratio < 1.0 ? figures.confirmed[k] : std::min(figures.confirmed[k], 0.0);
     };
     std::size_t worst = 0;
     for (std::size_t k = 1; k < found.terms.size(); ++k)
       if (holds(k) < holds(worst)) worst = k;
-    if (holds(worst) > 0.0) return figures;
+    if (holds(worst) > 0.0) return;
     const double ratio = figures.gains[worst].force_rms_ratio;
-    verdict.rejected.push_back(
-        {candidates()[found.terms[worst].candidate].name,
-         fmt::format("withdrawn: found in the training data, but no gain on held-out data: {}",
-                     ratio >= 1.0 ? fmt::format("force rms {:.4f} times that without it", ratio)
-                                  : fmt::format("whitened as it was found it takes {:.0f} % of what it should there",
-                                                100.0 * figures.confirmed[worst]))});
+    const auto& candidate = candidates()[found.terms[worst].candidate];
+    if (!candidate.outside())
+      verdict.rejected.push_back(
+          {candidate.name,
+           fmt::format("withdrawn: found in the training data, but no gain on held-out data: {}",
+                       ratio >= 1.0 ? fmt::format("force rms {:.4f} times that without it", ratio)
+                                    : fmt::format("whitened as it was found it takes {:.0f} % of what it should there",
+                                                  100.0 * figures.confirmed[worst]))});
     found.terms.erase(found.terms.begin() + static_cast<std::ptrdiff_t>(worst));
   }
+}
+
+// What was found outside of the vocabulary: taken out of the terms, with the force (N, of the rows) that it makes.
+struct Outside {
+  Eigen::VectorXd force;
+  Unexplained unexplained;
+};
+Outside take_outside(const LogRows& rows, const Scene& scene, SearchResult& found) {
+  Outside outside{Eigen::VectorXd::Zero(rows.rows()), {}};
+  std::vector<std::string> words;
+  std::erase_if(found.terms, [&](const Term& term) {
+    const auto& candidate = candidates()[term.candidate];
+    if (!candidate.outside()) return false;
+    outside.force += weighted_columns(rows, scene, candidate, term.nonlinear, term.weights);
+    outside.unexplained.share += term.explains;
+    words.push_back(candidate.looks_like(scene, term.nonlinear, term.weights));
+    return true;
+  });
+  if (!words.empty()) outside.unexplained.signature = fmt::format("{}", fmt::join(words, "; and "));
+  return outside;
 }
 
 }  // namespace
@@ -229,26 +251,33 @@ Verdict diagnose(const DiagnoseInput& input) {
         "from the measured motion, which carries the disturbances through the control loop. Log x_set.");
   const auto regressors = held_motion.empty() ? rows : rows_of(motion, axis, settings);
   const auto held_regressors = held_motion.empty() ? held_rows : rows_of(held_motion, axis, settings);
-  std::optional<EffectResponse> response;
+  std::vector<EffectResponse> responses;
   if (!held_motion.empty()) {
     auto all = logs;
     all.insert(all.end(), held_out.begin(), held_out.end());
-    response.emplace(input.machine, input.axis, all, settings);
-    scene.response = std::ref(*response);
+    for (const auto hunting : {Hunting::simulated, Hunting::smoothed})
+      responses.emplace_back(input.machine, input.axis, all, settings, hunting);
+    scene.response = std::ref(responses.front());
   }
   auto found = search_causes(regressors, target, scene, input.progress);
   const auto found_before = found.terms.size();
-  const auto figures = keep_what_holds(held_regressors, held_target, scene, found, verdict, input.seed);
+  keep_what_holds(held_regressors, held_target, scene, found, verdict, input.seed);
+  const bool all_held = found.terms.size() == found_before;
+  const auto outside = take_outside(regressors, scene, found);
+  const Eigen::VectorXd inside = target - outside.force;
+  const auto figures = evaluate_held_out(held_regressors, held_target, scene, found.terms, input.seed);
   verdict.baseline.force_rms = figures.force_baseline;
   verdict.extended.force_rms = figures.force_extended;
   for (std::size_t k = 0; k < found.terms.size(); ++k)
     verdict.findings.push_back(finding_of(scene, found.terms[k], figures.gains[k], found.blocks));
-  if (response) refine_in_closed_loop(verdict.findings, found, *response, regressors, target, scene);
-  propose_next_measurement(verdict, {input.machine, input.axis, settings, regressors, target, scene, found},
+  refine_in_closed_loop(verdict.findings, found, responses, regressors, inside, scene);
+  propose_next_measurement(verdict, {input.machine, input.axis, settings, regressors, inside, scene, found},
                            input.next_measurement);
   judge_command(verdict, input, {logs, rows}, {held_out, held_rows}, record_delay(regressors, scene, found));
   for (const auto& d : found.discarded) verdict.rejected.push_back({candidates()[d.candidate].name, d.why});
-  if (found.terms.size() == found_before)
+  if (outside.unexplained.signature)
+    verdict.unexplained = outside.unexplained;
+  else if (all_held)
     verdict.unexplained = signature_of(regressors, found.residual, target.squaredNorm(), found.correlation);
   add_cause_charts(verdict, regressors, scene, found.terms, found.residual);
   add_charts(verdict, rows, target, found.residual);

@@ -20,6 +20,8 @@ void find_lines(const LogRows& rows, const Eigen::VectorXd& residual, const Whit
   const auto carrier = rows.stacked([&](const Motion& m) { return force_along(scene.axis, m); });
   scene.pitches = scan_pitches(rows, residual, whitening, by_itself, known, pitches_tried);
   scene.modulation = scan_pitches(rows, residual, whitening, carrier, known, pitches_tried);
+  scene.by_speed =
+      scan_pitches(rows, residual, whitening, rows.velocity.cwiseAbs() / scene.highest_speed, known, pitches_tried);
   scene.times = scan_times(rows, whitening(residual), lines_tried);
   scene.signals_of_encoder = scan_signal_periods(rows, residual, whitening, scene.axis, scene.timing, lines_tried);
 }

@@ -1,5 +1,5 @@
 // The lines that periodic candidates are tried at: what stands out of a residual over position, over position in
-// proportion to the force, over time, and over the encoder's signal.
+// proportion to the force and to the speed, over time, and over the encoder's signal.
 #pragma once
 
 #include <Eigen/Dense>

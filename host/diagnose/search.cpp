@@ -41,6 +41,7 @@ std::optional<std::string> impossible(const Scene& scene, const Term& term) {
   const auto& candidate = candidates()[term.candidate];
   if (!candidate.possible(scene, term.nonlinear, term.weights))
     return "beside the other causes it fits with a sign or a size that it cannot have";
+  if (candidate.outside()) return {};
   Finding finding;
   finding.effect.name = candidate.name;
   candidate.describe(scene, term.nonlinear, term.weights, term.covariance, finding);
@@ -123,12 +124,13 @@ class Search {
     return std::max(candidates()[candidate].trials, candidates()[candidate].nonlinear ? 3.0 : 1.0);
   }
   double effective_rows() const { return std::max(static_cast<double>(evidence_.rows()) / correlation_, 20.0); }
-  // A nonlinear parameter on a grid is fitted as a weight is, and must show strongly (Kass, Raftery 1995): a drift that
-  // settles at once is a level. One that is looked for in a scan costs its trials.
+  // A nonlinear parameter on a grid must show strongly (Kass, Raftery 1995): a drift that settles at once is a level.
+  // One that is looked for in a scan costs its trials. What no name fits must show strongly beside what has one.
   double penalty(std::size_t candidate, std::size_t columns) const {
     const bool fitted = candidates()[candidate].nonlinear && candidates()[candidate].scan == nullptr;
-    return static_cast<double>(columns + fitted) * std::log(effective_rows()) +
-           (fitted ? strong_evidence : 2.0 * std::log(trials(candidate)));
+    return static_cast<double>(columns) * std::log(effective_rows()) +
+           (fitted ? strong_evidence : 2.0 * std::log(trials(candidate))) +
+           (candidates()[candidate].outside() ? strong_evidence : 0.0);
   }
   // n_eff ln(square) and the price of the columns (extended BIC: Chen, Chen 2008).
   double score(const Set& set) const {
@@ -329,7 +331,7 @@ std::vector<std::size_t> Search::alternatives(const Set& set, std::size_t term) 
   others.erase(others.begin() + static_cast<std::ptrdiff_t>(term));
   const auto without = evidence_.held_out(columns_of(others)), with = evidence_.held_out(columns_of(set));
   for (std::size_t c = 0; c < candidates().size(); ++c) {
-    if (has(set, c)) continue;
+    if (has(set, c) || candidates()[c].outside()) continue;
     const auto* option = best_of(c, others);
     if (option == nullptr) continue;
     auto trial = others;
@@ -413,7 +415,8 @@ SearchResult Search::run(const std::function<void()>& progress) {
     }
   }
   for (const auto& d : discarded_)
-    if (std::none_of(result.terms.begin(), result.terms.end(),
+    if (!candidates()[d.candidate].outside() &&
+        std::none_of(result.terms.begin(), result.terms.end(),
                      [&](const Term& term) { return term.candidate == d.candidate; }))
       result.discarded.push_back(d);
   std::sort(result.terms.begin(), result.terms.end(),

@@ -1,7 +1,6 @@
 // Cogging: force on the carriage periodic in position, cosine_h cos(2 pi h x / pitch) + sine_h sin(2 pi h x / pitch).
 // The pitches to try come from the residual's spectrum over position (line_scan.hpp).
 #include <cmath>
-#include <numbers>
 
 #include "host/diagnose/candidate.hpp"
 
@@ -11,13 +10,7 @@ namespace {
 const LineScan& scan(const Scene& scene) { return scene.pitches; }
 std::vector<double> grid(const Scene& scene) { return scan(scene).periods; }
 Columns columns(const Scene&, const Motion& motion, double pitch) {
-  Columns pair(2, std::vector<double>(motion.x.size()));
-  for (std::size_t i = 0; i < motion.x.size(); ++i) {
-    const double phase = 2.0 * std::numbers::pi * motion.x[i] / pitch;
-    pair[0][i] = -std::cos(phase);
-    pair[1][i] = -std::sin(phase);
-  }
-  return pair;
+  return waves_over_position(motion, pitch, std::vector<double>(motion.x.size(), 1.0));
 }
 void describe(const Scene&, double pitch, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
   add_key(finding, "pitch", "_m", {pitch}, {std::sqrt(c(2, 2))});

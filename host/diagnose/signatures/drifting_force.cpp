@@ -1,0 +1,27 @@
+// A force that grows with time from each record's start, the same both ways: no friction does.
+#include <fmt/format.h>
+
+#include "host/diagnose/candidate.hpp"
+
+namespace stiction::host::signatures {
+namespace {
+
+Columns columns(const Scene& scene, const Motion& motion, double) {
+  std::vector<double> column(motion.t.size());
+  for (std::size_t i = 0; i < column.size(); ++i) column[i] = -motion.t[i] / scene.duration;
+  return {column};
+}
+std::string looks_like(const Scene& scene, double, const Eigen::VectorXd& w) {
+  return fmt::format("drifting with time, the same both ways: {:.2g} N after {:.3g} s", w[0], scene.duration);
+}
+
+}  // namespace
+
+const Candidate drifting_force{.name = "drifting_force",
+                               .grid = effects::no_scan,
+                               .columns = columns,
+                               .possible = effects::any,
+                               .describe = nullptr,
+                               .looks_like = looks_like};
+
+}  // namespace stiction::host::signatures

@@ -1,0 +1,30 @@
+// A force that grows with acceleration, the same way for both signs of it: no mass, no force constant makes one.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/diagnose/candidate.hpp"
+
+namespace stiction::host::signatures {
+namespace {
+
+Columns columns(const Scene&, const Motion& motion, double) {
+  std::vector<double> column(motion.a.size());
+  for (std::size_t i = 0; i < column.size(); ++i) column[i] = -std::abs(motion.a[i]);
+  return {column};
+}
+std::string looks_like(const Scene&, double, const Eigen::VectorXd& w) {
+  return fmt::format("growing with acceleration, the same way for both signs of it: {:.2g} N at 1 m/s^2", w[0]);
+}
+
+}  // namespace
+
+const Candidate force_with_acceleration{.name = "force_with_acceleration",
+                                        .grid = effects::no_scan,
+                                        .columns = columns,
+                                        .possible = effects::any,
+                                        .describe = nullptr,
+                                        .looks_like = looks_like};
+
+}  // namespace stiction::host::signatures

@@ -1,0 +1,54 @@
+// A push at one place of the stroke, the same in both directions: a Gaussian of one of two widths.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "host/diagnose/candidate.hpp"
+
+namespace stiction::host::signatures {
+namespace {
+
+// Places along the stroke, half a width apart: narrow ones, then wide ones.
+constexpr int narrow = 60, wide = 20;
+
+struct Place {
+  double at, width;  // m; width: standard deviation
+};
+Place place_of(const Scene& scene, double number) {
+  const bool is_wide = number >= narrow;
+  const double step = scene.stroke() / (is_wide ? wide : narrow);
+  return {scene.lowest_position + (number - (is_wide ? narrow : 0) + 0.5) * step, 1.2 * step};
+}
+std::vector<double> grid(const Scene& scene) {
+  std::vector<double> numbers;
+  if (scene.stroke() > 0.0)
+    for (int k = 0; k < narrow + wide; ++k) numbers.push_back(k);
+  return numbers;
+}
+Columns columns(const Scene& scene, const Motion& motion, double number) {
+  const auto place = place_of(scene, number);
+  std::vector<double> column(motion.x.size());
+  for (std::size_t i = 0; i < column.size(); ++i) {
+    const double off = (motion.x[i] - place.at) / place.width;
+    column[i] = -std::exp(-0.5 * off * off);
+  }
+  return {column};
+}
+std::string looks_like(const Scene& scene, double number, const Eigen::VectorXd& w) {
+  const auto place = place_of(scene, number);
+  return fmt::format("localised at {:.4g} mm: a push of {:.2g} N, the same both ways, over about {:.2g} mm",
+                     1e3 * place.at, w[0], 2e3 * place.width);
+}
+
+}  // namespace
+
+const Candidate localised_force{.name = "localised_force",
+                                .grid = grid,
+                                .columns = columns,
+                                .possible = effects::any,
+                                .describe = nullptr,
+                                .trials = narrow + wide,
+                                .looks_like = looks_like};
+
+}  // namespace stiction::host::signatures
