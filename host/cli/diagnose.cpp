@@ -56,8 +56,8 @@ void run(const DiagnoseCommandOptions& options, const Invocation& invocation) {
   input.seed = options.seed;
   Verdict verdict;
   {
-    Progress progress("diagnosis", 4);
-    input.progress = [&] { progress.add(); };
+    Progress progress("diagnosis", diagnosis_parts.size());
+    input.progress = [&](std::string_view part) { progress.add(part); };
     verdict = diagnose(input);
     input.progress = {};
   }

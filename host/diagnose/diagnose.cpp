@@ -19,6 +19,7 @@
 #include "host/diagnose/next_measurement.hpp"
 #include "host/diagnose/record_checks.hpp"
 #include "host/diagnose/search.hpp"
+#include "host/diagnose/second_band.hpp"
 #include "host/identify/identification.hpp"
 #include "host/identify/suitability.hpp"
 #include "sim/plant/effects/effects.hpp"
@@ -170,8 +171,12 @@ void keep_what_holds(const LogRows& rows, const Eigen::VectorXd& target, const S
       if (holds(k) < holds(worst)) worst = k;
     if (holds(worst) > 0.0) return;
     const double ratio = figures.gains[worst].force_rms_ratio;
-    const auto& candidate = candidates()[found.terms[worst].candidate];
-    if (!candidate.outside())
+    const auto& term = found.terms[worst];
+    const auto& candidate = candidates()[term.candidate];
+    if (candidate.outside())
+      verdict.unexplained = {term.explains, candidate.looks_like(scene, term.nonlinear, term.weights) +
+                                                " (in the training logs; the held-out ones do not confirm it)"};
+    else
       verdict.rejected.push_back(
           {candidate.name,
            fmt::format("withdrawn: found in the training data, but no gain on held-out data: {}",
@@ -207,6 +212,9 @@ Outside take_outside(const LogRows& rows, const Scene& scene, SearchResult& foun
 Verdict diagnose(const DiagnoseInput& input) {
   const auto axis = sim::plant_axis(input.machine.axes.at(input.axis));
   const auto settings = wide_band();
+  const auto begin = [&](std::size_t part) {
+    if (input.progress) input.progress(diagnosis_parts[part]);
+  };
   Verdict verdict;
   verdict.machine = input.machine.id + ".toml";
   auto logs = input.logs;
@@ -243,6 +251,7 @@ Verdict diagnose(const DiagnoseInput& input) {
   const Eigen::VectorXd held_target = held_rows.force - expected_force(held_rows, axis);
   auto scene = scene_of(axis, rows, settings);
   scene.timing = input.machine.timing;
+  begin(0);
   const auto motion = without_noise(input.machine, input.axis, logs);
   const auto held_motion = motion.empty() ? motion : without_noise(input.machine, input.axis, held_out);
   if (held_motion.empty())
@@ -259,7 +268,9 @@ Verdict diagnose(const DiagnoseInput& input) {
       responses.emplace_back(input.machine, input.axis, all, settings, hunting);
     scene.response = std::ref(responses.front());
   }
-  auto found = search_causes(regressors, target, scene, input.progress);
+  begin(1);
+  auto found = search_causes(regressors, target, scene);
+  begin(2);
   const auto found_before = found.terms.size();
   keep_what_holds(held_regressors, held_target, scene, found, verdict, input.seed);
   const bool all_held = found.terms.size() == found_before;
@@ -270,7 +281,10 @@ Verdict diagnose(const DiagnoseInput& input) {
   verdict.extended.force_rms = figures.force_extended;
   for (std::size_t k = 0; k < found.terms.size(); ++k)
     verdict.findings.push_back(finding_of(scene, found.terms[k], figures.gains[k], found.blocks));
+  compare_bands(verdict, found.terms, regressors, inside, scene);
+  begin(3);
   refine_in_closed_loop(verdict.findings, found, responses, regressors, inside, scene);
+  begin(4);
   propose_next_measurement(verdict, {input.machine, input.axis, settings, regressors, inside, scene, found},
                            input.next_measurement);
   judge_command(verdict, input, {logs, rows}, {held_out, held_rows}, record_delay(regressors, scene, found));
@@ -281,6 +295,7 @@ Verdict diagnose(const DiagnoseInput& input) {
     verdict.unexplained = signature_of(regressors, found.residual, target.squaredNorm(), found.correlation);
   add_cause_charts(verdict, regressors, scene, found.terms, found.residual);
   add_charts(verdict, rows, target, found.residual);
+  begin(5);
   if (input.closed_loop) judge_in_closed_loop(verdict, input.machine, input.axis, held_out);
   return verdict;
 }

@@ -64,7 +64,7 @@ class Search {
     add_options(false);
   }
 
-  SearchResult run(const std::function<void()>& progress);
+  SearchResult run();
 
  private:
   // The options of all candidates that are periodic, or that are not.
@@ -351,10 +351,7 @@ std::vector<std::size_t> Search::alternatives(const Set& set, std::size_t term) 
   return as_good;
 }
 
-SearchResult Search::run(const std::function<void()>& progress) {
-  const auto tick = [&] {
-    if (progress) progress();
-  };
+SearchResult Search::run() {
   std::map<std::size_t, Judgement> judged;
   const auto judge_new = [&](const Set& set) {
     for (std::size_t k = 0; k < set.size(); ++k)
@@ -363,12 +360,10 @@ SearchResult Search::run(const std::function<void()>& progress) {
   // What dominates, on the rows as they are.
   Set set;
   scan_lines(set);
-  tick();
   while (set.size() < most_terms && grow(set, dominant)) {
     scan_lines(set);
     improve(set);
     correlation_ = correlation_length(residual(set), rows_.logs());
-    tick();
     if (++rounds_ > 2 * most_terms) break;
   }
   judge_new(set);
@@ -380,7 +375,6 @@ SearchResult Search::run(const std::function<void()>& progress) {
     scan_lines(set);
     improve(set);
     whiten(set);
-    tick();
     if (++rounds_ > 4 * most_terms) break;
   }
   judge_new(set);
@@ -423,15 +417,13 @@ SearchResult Search::run(const std::function<void()>& progress) {
             [](const Term& a, const Term& b) { return a.explains > b.explains; });
   result.correlation = correlation_;
   result.blocks = evidence_.blocks();
-  tick();
   return result;
 }
 
 }  // namespace
 
-SearchResult search_causes(const LogRows& rows, const Eigen::VectorXd& target, Scene& scene,
-                           const std::function<void()>& progress) {
-  return Search(rows, target, scene).run(progress);
+SearchResult search_causes(const LogRows& rows, const Eigen::VectorXd& target, Scene& scene) {
+  return Search(rows, target, scene).run();
 }
 
 }  // namespace stiction::host

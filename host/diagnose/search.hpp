@@ -42,7 +42,6 @@ struct SearchResult {
 };
 
 // `target`: the residual force of the rows. `scene` gets the pitches that were found.
-SearchResult search_causes(const LogRows& rows, const Eigen::VectorXd& target, Scene& scene,
-                           const std::function<void()>& progress = {});
+SearchResult search_causes(const LogRows& rows, const Eigen::VectorXd& target, Scene& scene);
 
 }  // namespace stiction::host

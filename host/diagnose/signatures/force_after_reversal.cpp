@@ -1,8 +1,9 @@
 // A force along the motion that begins at each reversal and dies away with time, whatever the way: friction's contact
-// does so with distance.
+// does so with distance. A reversal is where the axis then goes back by more than it hunts.
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
 #include "host/diagnose/candidate.hpp"
 
@@ -10,17 +11,23 @@ namespace stiction::host::signatures {
 namespace {
 
 constexpr int fewest_reversals = 4;
+constexpr double way_back = 2e-6;  // m
 
 std::vector<double> grid(const Scene& scene) {
   return scene.reversals < fewest_reversals ? std::vector<double>{} : effects::geometric(5e-3, 0.3, 7);
 }
 Columns columns(const Scene&, const Motion& motion, double time) {
   std::vector<double> column(motion.v.size(), 0.0);
-  double decay = 0.0;  // none before the first reversal
-  for (std::size_t i = 1; i < column.size(); ++i) {
-    decay *= std::exp(-motion.period / time);
-    if (motion.v[i] * motion.v[i - 1] < 0.0) decay = 1.0;
-    column[i] = std::copysign(decay, motion.v[i]);
+  double turned_at = -std::numeric_limits<double>::infinity();  // s; none yet
+  double direction = 0.0, furthest = motion.x.front();
+  for (std::size_t i = 0; i < column.size(); ++i) {
+    const double ahead = motion.x[i] - furthest;
+    if (direction == 0.0 ? std::abs(ahead) > way_back : direction * ahead < -way_back) {
+      if (direction != 0.0) turned_at = motion.t[i];
+      direction = std::copysign(1.0, ahead);
+    }
+    if (direction * ahead >= 0.0) furthest = motion.x[i];
+    column[i] = direction * std::exp(-(motion.t[i] - turned_at) / time);
   }
   return {column};
 }

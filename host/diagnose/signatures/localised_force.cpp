@@ -9,8 +9,8 @@
 namespace stiction::host::signatures {
 namespace {
 
-// Places along the stroke, half a width apart: narrow ones, then wide ones.
-constexpr int narrow = 60, wide = 20;
+// Places along the stroke, a standard deviation apart: narrow ones, then wide ones.
+constexpr int narrow = 40, wide = 12;
 
 struct Place {
   double at, width;  // m; width: standard deviation
@@ -18,7 +18,7 @@ struct Place {
 Place place_of(const Scene& scene, double number) {
   const bool is_wide = number >= narrow;
   const double step = scene.stroke() / (is_wide ? wide : narrow);
-  return {scene.lowest_position + (number - (is_wide ? narrow : 0) + 0.5) * step, 1.2 * step};
+  return {scene.lowest_position + (number - (is_wide ? narrow : 0) + 0.5) * step, step};
 }
 std::vector<double> grid(const Scene& scene) {
   std::vector<double> numbers;

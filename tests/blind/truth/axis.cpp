@@ -57,7 +57,7 @@ class Motor {
 class Carriage {
  public:
   // `turn`: phase (rad) by which this log differs from the first in what has no fixed phase.
-  Carriage(const Mechanics& m, double x, double turn) : m_(m), contact_(m.contact), x_(x), turn_(turn) {
+  Carriage(const Mechanics& m, double x, double turn) : m_(m), contact_(m.contact), x_(x), turn_(turn), furthest_(x) {
     if (m.mode_frequency <= 0.0) return;
     const double w = 2.0 * pi * m.mode_frequency;
     load_ = m.mode_load * m.mass;
@@ -85,9 +85,9 @@ class Carriage {
     }
     if (m_.friction_lag > 0.0) late_ += h / (m_.friction_lag + h) * (next - late_);
     moved_ = 0.5 * h * (v_ + next);
-    if (next * v_ < 0.0) reversed_at_ = t;
     v_ = next;
     x_ += moved_;
+    watch_reversals(t);
   }
   double x() const { return x_; }
   double motor_x() const { return x_ + lead_; }
@@ -125,8 +125,17 @@ class Carriage {
       force += m_.tone_cosine * std::cos(wave) + m_.tone_sine * std::sin(wave);
     if (m_.speed_ripple != 0.0)
       force += m_.speed_ripple * std::abs(v_) * std::sin(2.0 * pi * x_ / m_.speed_ripple_pitch);
-    if (m_.kick != 0.0) force += m_.kick * sign_of(v_) * std::exp(-(t - reversed_at_) / m_.kick_time);
+    if (m_.kick != 0.0) force += m_.kick * direction_ * std::exp(-(t - reversed_at_) / m_.kick_time);
     return force;
+  }
+  // A reversal is where the carriage has come back by more than it hunts at standstill: kicks by chance would be noise.
+  void watch_reversals(double t) {
+    constexpr double way_back = 3e-6;  // m
+    if (direction_ * (x_ - furthest_) < -way_back) {
+      direction_ = -direction_;
+      reversed_at_ = t;
+    }
+    if (direction_ * (x_ - furthest_) > 0.0) furthest_ = x_;
   }
 
   Mechanics m_;
@@ -134,7 +143,7 @@ class Carriage {
   double x_, v_ = 0.0, moved_ = 0.0, late_ = 0.0, turn_;
   double load_ = 0.0, spring_ = 0.0, damper_ = 0.0;  // kg, N/m, N s/m; of the elastic mode
   double lead_ = 0.0, lead_rate_ = 0.0;              // of the motor before the load
-  double reversed_at_ = -1e3;
+  double direction_ = 1.0, furthest_ = 0.0, reversed_at_ = -1e3;
 };
 
 // Rider on an elastic mount behind the lost motion, and what the encoder reads of it: with an error periodic in its
