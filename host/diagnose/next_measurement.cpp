@@ -13,7 +13,8 @@
 namespace stiction::host {
 namespace {
 
-// Standard errors from which the search names a cause: p < 0.01/22 from some tens of blocks asks for four to five.
+// Standard errors that a record must promise: the search names a cause from three to four on, and a record always turns
+// out to hold less than was expected of it.
 constexpr double enough = 5.0;
 constexpr double ample = 2.0 * enough;   // more is not worth a fiercer motion
 constexpr double usual_duration = 20.0;  // s, for which separations of long and short trajectories are compared
