@@ -13,6 +13,7 @@ namespace {
 constexpr int most_steps = 3;
 constexpr int halvings = 2;
 constexpr double settled = 1e-4;  // of the residual's square: a smaller gain ends the steps
+constexpr double far = 0.02;      // a smaller gain leaves the slopes as they are: each costs a run
 
 // One number among a finding's parameters.
 struct Free {
@@ -62,7 +63,7 @@ class ClosedLoopFit {
         }
       }
       if (gained <= settled) break;
-      slopes = slopes_at(at, force);
+      if (gained > far) slopes = slopes_at(at, force);
     }
     if (left < before) write(at, evidence_of(force, slopes).covariance(all(), Eigen::VectorXd::Zero(at.size())));
     return left;

@@ -109,7 +109,10 @@ TEST(blind_campaign, short_one_names_what_is_hidden_and_nothing_else) {
     each.order.share = 0.2;
     cases.push_back(each);
   }
-  for (const auto& each : plan(2, 13, "two10")) cases.push_back(each);
+  for (auto& each : plan(3, 14, "outside10")) {
+    each.order.share = 0.2;
+    cases.push_back(each);
+  }
   const auto outcomes = run(machine, cases, diagnosed, 1, {});
   fmt::print("{}", report(outcomes));
   const auto count = [&](const std::string& kind, auto holds) {
@@ -119,10 +122,14 @@ TEST(blind_campaign, short_one_names_what_is_hidden_and_nothing_else) {
   for (const auto& each : outcomes) EXPECT_EQ(each.error, "") << "seed " << each.order.seed;
   const auto named = count("null", [](const Outcome& o) { return !o.named.empty(); });
   const auto right = count("one10", [](const Outcome& o) { return o.first_right || o.first_aliased; });
+  const auto outside = count("outside10", [](const Outcome& o) { return o.named.empty() && !o.signature.empty(); });
   test::figure("blind, short: nulls with a named cause", fmt::format("{} of 6 (bound 2)", named));
   test::figure("blind, short: one effect at 20 %, named or declared an alias",
                fmt::format("{} of 12 (bound 8)", right));
+  test::figure("blind, short: outside the vocabulary at 20 %, no name but a signature",
+               fmt::format("{} of 3 (bound 1)", outside));
   EXPECT_LE(named, 2);
+  EXPECT_GE(outside, 1);
   EXPECT_GE(right, 8);
 }
 
