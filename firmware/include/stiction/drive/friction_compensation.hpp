@@ -91,11 +91,12 @@ class FrictionCompensation {
         set.velocity = saturated_sum(set.velocity, terms.pulse, saturations_);
         break;
       case CompensationKind::friction:
-        terms.friction =
-            FrictionFeedforward<S>::step(config_.friction, friction_, newest.position, newest.velocity, saturations_);
-        current_.push(terms.friction.sum);
-        terms.current = read_between<S>(current_, config_.lag_ticks, config_.lag_fraction, saturations_);
-        set.injection = saturated_sum(set.injection, terms.current, saturations_);
+        add(set, oppose_friction(newest, terms), terms);
+        break;
+      case CompensationKind::learning:
+        terms.learned = GlitchLearning<S>::play(config_.learning, learning_, newest.position, newest.velocity,
+                                                newest.acceleration, saturations_);
+        add(set, saturated_sum(oppose_friction(newest, terms), terms.learned, saturations_), terms);
         break;
     }
     return set;
