@@ -55,7 +55,7 @@ class ControlLoop {
   std::span<const AxisSignals<S>> signals() const { return signals_; }  // of the tick controlled last
   // Of the same tick; empty without friction compensation.
   std::span<const FrictionCompensationSignals<S>> compensation_signals() const { return compensation_signals_; }
-  std::span<FrictionCompensation<S>> compensations() { return compensations_; }
+  std::span<const FrictionCompensation<S>> compensations() const { return compensations_; }
 
   bool faulted() const {
     for (const auto& axis : axes_)

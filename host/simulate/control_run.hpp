@@ -58,6 +58,11 @@ class ControlRun {
   double time() const { return static_cast<double>(loop_.now_ns()) * 1e-9; }  // s, of the tick that comes next
   sim::AxisPlant& plant(std::size_t axis) { return backend_.plant(axis); }    // as the samples of that tick see it
   const AxisSignals<S>& signals(std::size_t axis) const { return loop_.signals()[axis]; }  // of the tick before
+  // Of an axis; none where the machine has no friction compensation.
+  const FrictionCompensation<S>* compensation(std::size_t axis) const {
+    return loop_.compensations().empty() ? nullptr : &loop_.compensations()[axis];
+  }
+  std::span<const FrictionCompensationSignals<S>> compensation_signals() const { return loop_.compensation_signals(); }
   // The time (s) of the set-points that the axes follow in the tick that comes next: friction compensation holds them
   // back.
   double set_point_time() const { return time() - machine_.timing.set_point_delay; }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "sim/machine/units.hpp"
-#include "stiction/drive/compensation_kind.hpp"
+#include "stiction/control/compensation_kind.hpp"
 
 namespace stiction::sim {
 namespace {

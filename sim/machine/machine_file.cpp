@@ -11,7 +11,7 @@
 #include "sim/machine/compensation_checks.hpp"
 #include "sim/machine/document.hpp"
 #include "sim/machine/table_reader.hpp"
-#include "stiction/drive/compensation_kind.hpp"
+#include "stiction/control/compensation_kind.hpp"
 
 namespace stiction::sim {
 namespace {

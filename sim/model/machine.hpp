@@ -11,7 +11,7 @@
 #include "sim/model/effect.hpp"
 #include "sim/plant/feed/feed_drive.hpp"
 #include "sim/plant/friction/friction.hpp"
-#include "stiction/drive/compensation_kind.hpp"
+#include "stiction/control/compensation_kind.hpp"
 
 namespace stiction::sim {
 

@@ -10,8 +10,8 @@
 #include <array>
 #include <cstdint>
 
+#include "stiction/control/compensation_kind.hpp"
 #include "stiction/control/limit.hpp"
-#include "stiction/drive/compensation_kind.hpp"
 #include "stiction/number/fixed.hpp"
 
 namespace stiction {

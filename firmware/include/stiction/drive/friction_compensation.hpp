@@ -8,12 +8,12 @@
 #include <cstdint>
 #include <string_view>
 
+#include "stiction/control/compensation_kind.hpp"
 #include "stiction/control/delay_line.hpp"
 #include "stiction/control/friction_feedforward.hpp"
 #include "stiction/control/glitch_learning.hpp"
 #include "stiction/control/reversal_pulse.hpp"
 #include "stiction/drive/axis_signals.hpp"
-#include "stiction/drive/compensation_kind.hpp"
 #include "stiction/drive/exchange.hpp"
 #include "stiction/number/fixed.hpp"
 
