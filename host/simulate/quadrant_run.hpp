@@ -2,6 +2,7 @@
 // circle's axes know nothing of each other unless an effect couples them, so this is half of the work.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "host/simulate/control_run.hpp"
@@ -22,8 +23,15 @@ struct QuadrantRun {
   std::vector<double> learned_forward, learned_backward;  // A
 };
 
+// Noise of the current's sensors, as it acts: a reading that is too high by some amperes takes as many from the motor,
+// so it is put on the set current.
+struct CurrentNoise {
+  double rms = 0.0;  // A
+  std::uint64_t seed = 1;
+};
+
 // Throws InfeasibleMotion where the circle is beyond the axis, FaultTripped, sim::ConfigurationError.
 QuadrantRun run_quadrants(const sim::Machine& machine, std::size_t axis, const sim::CircleSettings& settings, int laps,
-                          const TraceSink<FixedSignals>& trace = {});
+                          const TraceSink<FixedSignals>& trace = {}, const CurrentNoise& noise = {});
 
 }  // namespace stiction::host

@@ -179,13 +179,7 @@ void check_rows(const std::vector<Log>& logs, const LogRows& rows) {
 }  // namespace
 
 double expected_look_ahead(const sim::Timing& timing, const sim::Axis& axis) {
-  double ahead = 0.5 * timing.fast_period + axis.inverter.dead_time;
-  if (axis.current_controller) {
-    const double inductance = axis.motor.phase_inductance -
-                              (axis.motor.model == sim::MotorModel::synchronous ? axis.motor.mutual_inductance : 0.0);
-    ahead += 0.5 * inductance / (axis.motor.count * axis.current_controller->gain);
-  }
-  return ahead;
+  return 1.5 * timing.fast_period + axis.inverter.dead_time;
 }
 
 FrictionTuning tune_friction(const std::vector<Log>& logs, const sim::Axis& axis, const TuningSettings& settings) {

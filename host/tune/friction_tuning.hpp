@@ -21,7 +21,7 @@ struct TuningSettings {
 };
 
 struct FrictionTuning {
-  sim::FrictionFeedforward friction;  // look_ahead as the loop's gains say; timing_rule.hpp refines it
+  sim::FrictionFeedforward friction;  // look_ahead is left at 0: expected_look_ahead(), then timing_rule.hpp
   double coulomb = 0.0;               // A, sum of the levels
   double mass = 0.0;                  // kg, as the logs say; the drive's feedforward keeps the machine file's
   double constant_current = 0.0;      // A, of the first log
@@ -35,8 +35,8 @@ struct FrictionTuning {
 // which never slide further than the longest presliding element.
 FrictionTuning tune_friction(const std::vector<Log>& logs, const sim::Axis& axis, const TuningSettings& settings = {});
 
-// The look-ahead (s) that the loop's own delays suggest: half a tick, the inverter's dead time, and half of the time
-// constant of the current loop (its integral takes the rest).
+// The look-ahead (s) that the drive's own delays suggest: the inverter's dead time, a tick of hold and half a tick of
+// sampling; the current loop's lag is small beside them.
 double expected_look_ahead(const sim::Timing& timing, const sim::Axis& axis);
 
 }  // namespace stiction::host
