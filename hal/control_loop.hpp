@@ -89,7 +89,8 @@ class ControlLoop {
 
   // Not inline: an axis without compensation keeps its registers.
   [[gnu::noinline]] Command<S> tick_compensated(std::size_t i, const SetPoint<S>& newest, AxisSignals<S>& signals) {
-    const auto set = compensations_[i].step(newest, compensation_signals_[i]);
+    SetPoint<S> set = newest;
+    compensations_[i].step(set, compensation_signals_[i]);
     const auto command = axes_[i].tick(set, feedback_[i], now_ns_, ticker_.slow(), signals);
     compensations_[i].observe(signals, compensation_signals_[i]);
     return command;

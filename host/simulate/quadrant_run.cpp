@@ -42,8 +42,8 @@ QuadrantRun run_quadrants(const sim::Machine& machine, std::size_t axis, const s
   }
   if (const auto* compensation = run.compensation(0)) {
     result.dropped = compensation->dropped();
-    for (const auto current : compensation->learned().forward) result.learned_forward.push_back(sim::to_si(current));
-    for (const auto current : compensation->learned().backward) result.learned_backward.push_back(sim::to_si(current));
+    for (const auto current : compensation->learned()[1]) result.learned_forward.push_back(sim::to_si(current));
+    for (const auto current : compensation->learned()[0]) result.learned_backward.push_back(sim::to_si(current));
   }
   return result;
 }

@@ -25,11 +25,13 @@ std::vector<double> feedforward(const AxisLog& channels, const std::vector<doubl
   sim::Machine at_rate = machine;
   at_rate.timing.fast_period = period;  // the law counts its damping in ticks
   const auto config = sim::configure_compensation<S>(at_rate, axis).friction;
-  auto state = FrictionFeedforward<S>::start({channels.x_set.front()});
+  FrictionFeedforward<S>::State state;
   SaturationCounter none;
   std::vector<double> current;
-  for (std::size_t k = 0; k < channels.x_set.size(); ++k)
-    current.push_back(FrictionFeedforward<S>::step(config, state, {channels.x_set[k]}, {v_set[k]}, none).sum.value);
+  for (std::size_t k = 0; k < channels.x_set.size(); ++k) {
+    const double dx = k == 0 ? 0.0 : channels.x_set[k] - channels.x_set[k - 1];
+    current.push_back(FrictionFeedforward<S>::step(config, state, {dx}, {v_set[k]}, none).sum.value);
+  }
   return current;
 }
 

@@ -126,6 +126,9 @@ struct DoubleSignals {
   };
   static Place speed_place(Velocity speed) { return place(speed.value, 0x1p-12, speed_nodes); }
 
+  static constexpr Step bounded_step(Step dx) { return dx; }
+  static constexpr Step add_steps(Step deflection, Step dx) { return deflection + dx; }
+
   static constexpr double longest_travel = 0x1p-9;
   static constexpr std::size_t travel_nodes = octave_nodes<20> - 1;
   static Step add_travel(Step travel, Step dx) { return {std::min(travel.value + std::abs(dx.value), longest_travel)}; }

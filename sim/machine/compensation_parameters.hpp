@@ -85,7 +85,7 @@ struct Table<GlitchLearning> : EmptyTable<GlitchLearning> {
       {"forgetting", "1", {0.0, 1.0}, &GlitchLearning::forgetting, 0.02, "share that is forgotten in a lap"},
       {"smoothing", "1", {0.0, 0.33}, &GlitchLearning::smoothing, 0.2, "share that is taken from each neighbour"},
       {"limit", "A", not_negative(), &GlitchLearning::limit, {}, "largest current that can be learned"},
-      {"dead_zone", "m", not_negative(1e-5), &GlitchLearning::dead_zone, 0.3e-6, "error from which nothing is learned"},
+      {"dead_zone", "m", not_negative(1e-5), &GlitchLearning::dead_zone, 0.1e-6, "error from which nothing is learned"},
       {"filter", "s", {1e-4, 0.01}, &GlitchLearning::filter, 1e-3, "time constant of the lowpass on what is missing"},
       {"lead",
        "s",

@@ -81,7 +81,7 @@ TunedAxis tune(const Truth& truth, std::size_t axis, bool with_pulse) {
   }
   tuned.tuning.friction.look_ahead = compensation.friction->look_ahead;
 
-  sim::GlitchLearning learning{0.6, 0.02, 0.2, 0.0, 0.3e-6, 1e-3, {}};
+  sim::GlitchLearning learning{0.6, 0.02, 0.2, 0.0, 0.1e-6, 1e-3, {}};
   double coulomb = tuned.tuning.coulomb;
   if (coulomb < 0.1 * tuned.tuning.current_rms) coulomb = tuned.tuning.current_rms;
   learning.limit = 0.5 * coulomb;

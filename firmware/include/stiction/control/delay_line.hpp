@@ -29,11 +29,17 @@ class DelayLine {
   std::uint32_t newest_ = 0;
 };
 
+// The value `fraction` of the way from one to the other. It lies between them, so that it needs no test of its range.
+template <class S, class Signal>
+constexpr Signal between(Signal from, Signal to, typename S::TickFraction fraction) {
+  return cut<Signal>(round_to<Signal>(from * S::complement(fraction) + to * fraction));
+}
+
 // The signal at `ticks` and a fraction of a tick before the newest; reads two values, the older one at ticks + 1.
 template <class S, class Signal, std::uint32_t Length>
 constexpr Signal read_between(const DelayLine<Signal, Length>& line, std::uint32_t ticks,
-                              typename S::TickFraction fraction, SaturationCounter& saturations) {
-  return narrow<Signal>(line.at(ticks) * S::complement(fraction) + line.at(ticks + 1) * fraction, saturations);
+                              typename S::TickFraction fraction) {
+  return between<S>(line.at(ticks), line.at(ticks + 1), fraction);
 }
 
 }  // namespace stiction

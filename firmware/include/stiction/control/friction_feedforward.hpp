@@ -11,6 +11,7 @@
 #include <cstdint>
 
 #include "stiction/control/compensation_kind.hpp"
+#include "stiction/control/delay_line.hpp"
 #include "stiction/control/limit.hpp"
 #include "stiction/number/fixed.hpp"
 
@@ -22,7 +23,7 @@ struct FrictionFeedforward {
   static constexpr std::size_t speed_nodes = S::speed_nodes;
 
   struct Element {
-    typename S::Step reach{};                  // the deflection at which it slips; not negative
+    typename S::Step reach{};                  // the deflection at which it slips; 0 to half of the format
     typename S::ContactStiffness stiffness{};  // A/m
   };
   using SlidingTable = std::array<typename S::Current, speed_nodes>;
@@ -34,7 +35,6 @@ struct FrictionFeedforward {
     typename S::Current limit{};  // of the whole
   };
   struct State {
-    typename S::Position x{};
     std::array<typename S::Step, element_count> stretch{};
     typename S::Current contact{};
   };
@@ -45,22 +45,16 @@ struct FrictionFeedforward {
     typename S::Current sum{};  // behind the limit
   };
 
-  // At rest at `x`, without a memory of how it came there.
-  static constexpr State start(typename S::Position x) {
-    State state;
-    state.x = x;
-    return state;
-  }
-
-  [[gnu::always_inline]] static constexpr Terms step(const Config& config, State& state, typename S::Position x,
+  // `dx`: how much further the set-point is than the one before.
+  [[gnu::always_inline]] static constexpr Terms step(const Config& config, State& state, typename S::Step dx,
                                                      typename S::Velocity v, SaturationCounter& saturations) {
     Terms terms;
-    const auto dx = narrow<typename S::Step>(x - state.x, saturations);
-    state.x = x;
+    const auto bounded = S::bounded_step(dx);
     typename S::ContactSum sum{};
+#pragma GCC unroll 8
     for (std::size_t k = 0; k < element_count; ++k) {
       const auto& element = config.elements[k];
-      const auto z = clamped(saturated_sum(state.stretch[k], dx, saturations), element.reach);
+      const auto z = clamped(S::add_steps(state.stretch[k], bounded), element.reach);
       state.stretch[k] = z;
       sum = cut<typename S::ContactSum>(sum + element.stiffness * z);
     }
@@ -68,20 +62,18 @@ struct FrictionFeedforward {
     const auto change = saturated_difference(terms.contact, state.contact, saturations);
     state.contact = terms.contact;
     terms.damping = narrow<typename S::Current>(config.damping * change, saturations);
-    terms.sliding = sliding(config, v, saturations);
+    terms.sliding = sliding(config, v);
     terms.sum =
         clamped(saturated_sum(saturated_sum(terms.contact, terms.damping, saturations), terms.sliding, saturations),
                 config.limit);
     return terms;
   }
 
-  static constexpr typename S::Current sliding(const Config& config, typename S::Velocity v,
-                                               SaturationCounter& saturations) {
+  static constexpr typename S::Current sliding(const Config& config, typename S::Velocity v) {
     const bool backward = v < typename S::Velocity{};
     const auto& table = backward ? config.backward : config.forward;
     const auto [node, fraction] = S::speed_place(backward ? opposite(v) : v);
-    const auto current =
-        narrow<typename S::Current>(table[node] * S::complement(fraction) + table[node + 1] * fraction, saturations);
+    const auto current = between<S>(table[node], table[node + 1], fraction);
     return backward ? opposite(current) : current;
   }
 };

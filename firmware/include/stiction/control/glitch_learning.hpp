@@ -28,9 +28,7 @@ struct GlitchLearning {
   static constexpr std::size_t nodes = S::travel_nodes;
   static constexpr std::uint32_t credit_buffer = 256;  // ticks
   using Table = std::array<Current, nodes>;
-  struct Tables {
-    Table backward{}, forward{};
-  };
+  using Tables = std::array<Table, 2>;  // by direction: backward, forward
 
   struct Config {
     bool adapt = true;                          // false: the table is played as it is
@@ -53,18 +51,22 @@ struct GlitchLearning {
   static constexpr std::size_t references = 12;  // octaves of acceleration, from 1/64 m/s^2
   struct State {
     Tables tables{};
-    typename S::Position x{};
     typename S::Step travel{};      // since the last reversal; stays at 2 mm
     Current current{};              // played now
     Current before{};               // at the last reversal
     bool forward = false;           // direction of the last motion
     bool full = false;              // the way before the last reversal was a long one
+    bool reversed = false;          // in this tick; what that means is judged in the place of its learning
+    bool was_full = false;          // the stretch that it ended began after a long way
     bool silent = false;            // the table is not played since the last reversal, to take the reference
     bool teaches = false;           // since the last reversal
+    bool plays = false;             // likewise: it is a long way, not silent, not dropped
     std::array<bool, 2> learned{};  // something, by direction
     bool dropped = false;
     std::uint8_t octave = 0;                          // of the acceleration at the last reversal
+    typename S::Acceleration acceleration{};          // of the newest set-point
     DelayLine<std::uint8_t, credit_buffer> passed{};  // where the set-point was: direction and node, 0: not to learn
+    std::uint8_t credited = 0;                        // what of it the tick before credited
     Distance error{};                                 // of the tick before
     Current missing{};                                // lowpassed
     Distance peak{};                                  // largest error since the last reversal
@@ -74,70 +76,52 @@ struct GlitchLearning {
   // Whether the configured table is of this machine; of another one none is taken.
   static constexpr bool takes(const Config& config) { return config.tables_machine == config.machine; }
 
-  static constexpr State start(const Config& config, typename S::Position x) {
+  static constexpr State start(const Config& config) {
     State state;
-    state.x = x;
     if (!takes(config)) return state;
     state.tables = config.tables;
-    state.learned = {!is_empty(config.tables.backward), !is_empty(config.tables.forward)};
+    state.learned = {!is_empty(config.tables[0]), !is_empty(config.tables[1])};
     return state;
   }
 
-  // The current for the newest set-point. `v`, `a`: its speed and acceleration.
-  [[gnu::always_inline]] static constexpr Current play(const Config& config, State& state, typename S::Position x,
+  // The current for the newest set-point, `dx` further than the one before. `v`, `a`: its speed and acceleration.
+  [[gnu::always_inline]] static constexpr Current play(const Config&, State& state, typename S::Step dx,
                                                        typename S::Velocity v, typename S::Acceleration a,
                                                        SaturationCounter& saturations) {
     const typename S::Velocity rest{};
     const bool forward = v > rest || (state.forward && !(v < rest));
-    if (forward != state.forward) reverse(config, state, forward, a);
-    const auto dx = narrow<typename S::Step>(x - state.x, saturations);
-    state.x = x;
+    state.reversed = forward != state.forward;
+    state.acceleration = a;
+    if (state.reversed) turn(state, forward);
     state.travel = S::add_travel(state.travel, dx);
 
     const auto [node, fraction] = S::travel_place(state.travel);
-    const auto& table = forward ? state.tables.forward : state.tables.backward;
+    const auto& table = state.tables[forward];
     const std::size_t upper = node + 1 < nodes ? node + 1 : node;
-    const auto learned = narrow<Current>(table[node] * S::complement(fraction) + table[upper] * fraction, saturations);
-    const bool plays = state.full && !state.silent && !state.dropped;
-    const Current at_reversal = plays ? table[0] : Current{};
-    const auto jump = saturated_difference(state.before, at_reversal, saturations);
-    const auto blended = saturated_sum(plays ? learned : Current{},
-                                       narrow<Current>(jump * S::blend(state.travel), saturations), saturations);
+    // In the tick of a reversal it does not matter yet whether the table plays: all is still as before.
+    const auto learned = state.plays ? between<S>(table[node], table[upper], fraction) : Current{};
+    const auto jump = saturated_difference(state.before, state.plays ? table[0] : Current{}, saturations);
+    const auto blended = saturated_sum(learned, between<S>(Current{}, jump, S::blend(state.travel)), saturations);
     state.current = state.full ? blended : state.before;
-    state.passed.push(state.teaches ? static_cast<std::uint8_t>((node + 1) | (forward ? forward_mark : 0u))
-                                    : std::uint8_t{0});
+    state.passed.push(static_cast<std::uint8_t>(state.teaches ? node + 1 + (forward ? forward_mark : 0u) : 0u));
     return state.current;
   }
 
-  // Takes the following error of the tick that the axis has just controlled.
+  // Takes the following error of the tick that the axis has just controlled. A tick does one of three things, so that
+  // it never costs all of them: after a reversal it judges the stretch that ended, where the set-point came to another
+  // node it teaches the table, else it filters the error; what changes meanwhile is in the next difference.
   [[gnu::always_inline]] static constexpr void learn(const Config& config, State& state, Distance e,
                                                      SaturationCounter& saturations) {
-    const Distance none{};
-    const Distance magnitude = e < none ? opposite(e) : e;
+    const Distance magnitude = e < Distance{} ? opposite(e) : e;
     state.peak = magnitude > state.peak ? magnitude : state.peak;
-
-    const auto change = clamped(saturated_difference(e, state.error, saturations), config.error_limit);
-    state.error = e;
-    const auto in_zone = clamped(e, config.dead_zone);
-    const auto beyond = clamped(saturated_difference(e, in_zone, saturations), config.error_limit);
-    const auto raw = narrow<Current>(config.rate_gain * change + config.error_gain * beyond, saturations);
-    state.missing = narrow<Current>(config.filter * raw + config.filter_rest * state.missing, saturations);
-
     const std::uint8_t now = state.passed.at(config.credit_ticks);
-    const std::uint8_t last = state.passed.at(config.credit_ticks + 1);
-    // Worked out in every tick, kept where the set-point came to another node.
-    const bool passes = now != 0 && now != last && config.adapt && !state.dropped;
-    auto& table = (now & forward_mark) != 0 ? state.tables.forward : state.tables.backward;
-    const std::size_t place = now & (forward_mark - 1u);
-    const std::size_t node = place > 0 ? place - 1 : 0;
-    const std::size_t lower = node > 0 ? node - 1 : node, upper = node + 1 < nodes ? node + 1 : node;
-    const auto taught = clamped(narrow<Current>(config.keep * table[node] + config.gain * state.missing +
-                                                    config.smoothing * table[lower] + config.smoothing * table[upper],
-                                                saturations),
-                                config.limit);
-    table[node] = passes ? taught : table[node];
-    auto& learned = state.learned[(now & forward_mark) != 0];
-    learned = learned || passes;
+    if (state.reversed) {
+      judge(config, state);
+    } else if (now != state.credited) {
+      teach(config, state, now, saturations);
+    } else {
+      filter(config, state, e, saturations);
+    }
   }
 
  private:
@@ -150,23 +134,51 @@ struct GlitchLearning {
     return empty;
   }
 
-  // Ends the stretch since the last reversal, judges it and begins the next one.
-  static constexpr void reverse(const Config& config, State& state, bool forward, typename S::Acceleration a) {
-    auto& reference = state.reference[state.forward][state.octave];
-    if (state.full && state.silent) reference = state.peak;
-    if (state.full && !state.silent && !state.dropped && S::has_grown(state.peak, reference, config.tolerance)) {
-      state.dropped = true;
-      state.tables = {};
-    }
+  static constexpr void turn(State& state, bool forward) {
     state.forward = forward;
+    state.was_full = state.full;
     state.full = S::far_travelled(state.travel);
-    state.octave = static_cast<std::uint8_t>(S::acceleration_octave(a, references - 1));
+    state.teaches = false;
+    state.before = state.current;
+    state.travel = {};
+  }
+
+  // Judges the stretch that ended and decides on the next one.
+  static constexpr void judge(const Config& config, State& state) {
+    auto& reference = state.reference[!state.forward][state.octave];
+    if (state.was_full && state.silent) reference = state.peak;
+    if (state.was_full && !state.silent && S::has_grown(state.peak, reference, config.tolerance)) state.dropped = true;
+    state.octave = static_cast<std::uint8_t>(S::acceleration_octave(state.acceleration, references - 1));
     state.silent = state.reference[state.forward][state.octave] == Distance{};
     // A silent table is taught only while it is empty: what is missing then is missing without it.
     state.teaches = state.full && (!state.silent || !state.learned[state.forward]);
+    state.plays = state.full && !state.silent && !state.dropped;
     state.peak = {};
-    state.before = state.current;
-    state.travel = {};
+  }
+
+  [[gnu::always_inline]] static constexpr void filter(const Config& config, State& state, Distance e,
+                                                      SaturationCounter& saturations) {
+    const auto change = clamped(saturated_difference(e, state.error, saturations), config.error_limit);
+    state.error = e;
+    const auto in_zone = clamped(e, config.dead_zone);
+    const auto beyond = clamped(saturated_difference(e, in_zone, saturations), config.error_limit);
+    const auto raw = narrow<Current>(config.rate_gain * change + config.error_gain * beyond, saturations);
+    state.missing = narrow<Current>(config.filter * raw + config.filter_rest * state.missing, saturations);
+  }
+
+  [[gnu::always_inline]] static constexpr void teach(const Config& config, State& state, std::uint8_t now,
+                                                     SaturationCounter& saturations) {
+    state.credited = now;
+    if (now == 0 || !config.adapt || state.dropped) return;
+    const bool forward = (now & forward_mark) != 0;
+    auto& table = state.tables[forward];
+    const std::size_t node = (now & (forward_mark - 1u)) - 1;
+    const std::size_t lower = node > 0 ? node - 1 : node, upper = node + 1 < nodes ? node + 1 : node;
+    const auto neighbours = saturated_sum(table[lower], table[upper], saturations);
+    const auto taught = narrow<Current>(
+        config.keep * table[node] + config.gain * state.missing + config.smoothing * neighbours, saturations);
+    table[node] = clamped(taught, config.limit);
+    state.learned[forward] = true;
   }
 };
 

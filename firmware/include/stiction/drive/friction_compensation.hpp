@@ -6,7 +6,6 @@
 
 #include <array>
 #include <cstdint>
-#include <string_view>
 
 #include "stiction/control/compensation_kind.hpp"
 #include "stiction/control/delay_line.hpp"
@@ -73,16 +72,20 @@ class FrictionCompensation {
     set_points_.fill({x, {}, {}});
     current_.fill({});
     pulse_ = ReversalPulse<S>::start(config_.pulse);
-    friction_ = FrictionFeedforward<S>::start(x);
-    learning_ = GlitchLearning<S>::start(config_.learning, x);
+    friction_ = {};
+    learning_ = GlitchLearning<S>::start(config_.learning);
+    newest_ = x;
   }
 
-  // Takes the newest set-point and gives the one for the axis. A test signal and the mark of a set-point that is not
-  // valid are not held back.
-  constexpr SetPoint<S> step(const SetPoint<S>& newest, Signals& terms) {
-    set_points_.push({newest.position, newest.velocity, newest.acceleration});
-    const Motion& motion = set_points_.at(config_.set_point_delay);
-    SetPoint<S> set{motion.position, motion.velocity, motion.acceleration, newest.valid, newest.injection};
+  // Takes the newest set-point and puts the one for the axis in its place. A test signal and the mark of a set-point
+  // that is not valid are not held back.
+  constexpr void step(SetPoint<S>& set, Signals& terms) {
+    const Motion newest{set.position, set.velocity, set.acceleration};
+    set_points_.push(newest);
+    const Motion& late = set_points_.at(config_.set_point_delay);
+    set.position = late.position;
+    set.velocity = late.velocity;
+    set.acceleration = late.acceleration;
     switch (config_.kind) {
       case CompensationKind::off:
         break;
@@ -91,15 +94,16 @@ class FrictionCompensation {
         set.velocity = saturated_sum(set.velocity, terms.pulse, saturations_);
         break;
       case CompensationKind::friction:
-        add(set, oppose_friction(newest, terms), terms);
+        add(set, oppose_friction(step_to(newest.position), newest.velocity, terms), terms);
         break;
-      case CompensationKind::learning:
-        terms.learned = GlitchLearning<S>::play(config_.learning, learning_, newest.position, newest.velocity,
-                                                newest.acceleration, saturations_);
-        add(set, saturated_sum(oppose_friction(newest, terms), terms.learned, saturations_), terms);
+      case CompensationKind::learning: {
+        const auto dx = step_to(newest.position);
+        terms.learned = GlitchLearning<S>::play(config_.learning, learning_, dx, newest.velocity, newest.acceleration,
+                                                saturations_);
+        add(set, saturated_sum(oppose_friction(dx, newest.velocity, terms), terms.learned, saturations_), terms);
         break;
+      }
     }
-    return set;
   }
 
   // After the axis' tick: what its error teaches.
@@ -121,19 +125,24 @@ class FrictionCompensation {
     typename S::Acceleration acceleration{};
   };
 
-  constexpr typename S::Current oppose_friction(const SetPoint<S>& newest, Signals& terms) {
-    terms.friction =
-        FrictionFeedforward<S>::step(config_.friction, friction_, newest.position, newest.velocity, saturations_);
+  constexpr typename S::Step step_to(typename S::Position x) {
+    const auto dx = narrow<typename S::Step>(x - newest_, saturations_);
+    newest_ = x;
+    return dx;
+  }
+  constexpr typename S::Current oppose_friction(typename S::Step dx, typename S::Velocity v, Signals& terms) {
+    terms.friction = FrictionFeedforward<S>::step(config_.friction, friction_, dx, v, saturations_);
     return terms.friction.sum;
   }
   constexpr void add(SetPoint<S>& set, typename S::Current newest, Signals& terms) {
     current_.push(newest);
-    terms.current = read_between<S>(current_, config_.lag_ticks, config_.lag_fraction, saturations_);
+    terms.current = read_between<S>(current_, config_.lag_ticks, config_.lag_fraction);
     set.injection = saturated_sum(set.injection, terms.current, saturations_);
   }
 
   Config config_;
   DelayLine<Motion, Config::buffer_ticks> set_points_{};
+  typename S::Position newest_{};
   DelayLine<typename S::Current, Config::buffer_ticks> current_{};
   typename ReversalPulse<S>::State pulse_{};
   typename FrictionFeedforward<S>::State friction_{};

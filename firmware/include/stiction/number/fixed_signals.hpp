@@ -98,6 +98,15 @@ struct FixedSignals {
     return place(octave_place<lowest_speed_bit>(static_cast<std::uint32_t>(speed.raw())));
   }
 
+  // A step held within half of the format, and the sum of such a one and a deflection within that half, which no sum
+  // leaves: eight elements add without a test.
+  static constexpr Step bounded_step(Step dx) {
+    constexpr std::int32_t most = (std::int32_t{1} << 30) - 1;
+    const std::int32_t below = dx.raw() > most ? most : dx.raw();
+    return Step::from_raw(below < -most ? -most : below);
+  }
+  static constexpr Step add_steps(Step deflection, Step dx) { return Step::from_raw(deflection.raw() + dx.raw()); }
+
   // The way since a reversal, which stays at the format's end, 1.95 mm; its place in a table with two nodes an octave
   // from 0.95 um on; and how much of what was before the reversal is left: 1 at the reversal, 0 from 30.5 um on.
   static constexpr int lowest_travel_bit = 20;
