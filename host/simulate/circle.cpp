@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "sim/control/double_signals.hpp"
 #include "sim/experiment/circle_measurement.hpp"
@@ -52,7 +53,8 @@ sim::CircleRun run_circle(const sim::Machine& machine, const sim::CircleSettings
   sim::CircleMeasurement measurement(settings, machine.timing.fast_period,
                                      {machine.axes[0].name, machine.axes[1].name});
   for (;;) {
-    const auto point = path.at(std::max(0.0, run.set_point_time()));
+    auto point = path.at(std::max(0.0, run.set_point_time()));
+    point.turned -= 2.0 * std::numbers::pi * settings.laps_before;
     if (point.turned >= sim::CirclePath::lap_end) break;
     // The force at the time of the samples, before the tick moves the plant on.
     const std::array<double, 2> force{run.plant(0).motor_force(), run.plant(1).motor_force()};

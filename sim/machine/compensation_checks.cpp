@@ -115,8 +115,8 @@ class Checker {
     const double coulomb = std::accumulate(friction.level.begin(), friction.level.end(), 0.0);
     const auto check = [&](const char* key, double current, const char* what) {
       if (current <= limit) return;
-      fail(key, fmt::format("{} {}", format_quantity(current, "A", "A"), what),
-           fmt::format("at most {}, the axis' current limit", format_quantity(limit, "A", "A")));
+      fail(key, fmt::format("{} {}", format_quantity(current, unit(), unit()), what),
+           fmt::format("at most {}, the axis' {} limit", format_quantity(limit, unit(), unit()), what_limits()));
     };
     check("friction.level", coulomb, "in all");
     for (const auto& [key, list] :
@@ -126,8 +126,9 @@ class Checker {
 
   void check_learning(const GlitchLearning& learning) const {
     if (learning.limit > current_limit())
-      fail("learning.limit", format_quantity(learning.limit, "A", "A"),
-           fmt::format("at most {}, the axis' current limit", format_quantity(current_limit(), "A", "A")));
+      fail("learning.limit", format_quantity(learning.limit, unit(), unit()),
+           fmt::format("at most {}, the axis' {} limit", format_quantity(current_limit(), unit(), unit()),
+                       what_limits()));
     if (learning.forgetting + 2.0 * learning.smoothing > 1.0)
       fail("learning.smoothing",
            fmt::format("{:g} beside a forgetting of {:g}", learning.smoothing, learning.forgetting),
@@ -148,14 +149,16 @@ class Checker {
           axis_.friction_compensation->learning ? axis_.friction_compensation->learning->limit : current_limit();
       for (const double current : *list)
         if (std::abs(current) > limit)
-          fail(key, format_quantity(current, "A", "A"),
-               fmt::format("at most {} in magnitude, the limit of learning", format_quantity(limit, "A", "A")));
+          fail(key, format_quantity(current, unit(), unit()),
+               fmt::format("at most {} in magnitude, the limit of learning", format_quantity(limit, unit(), unit())));
     }
   }
 
+  bool force_motor() const { return axis_.motor.model == MotorModel::force; }
+  const char* unit() const { return force_motor() ? "V" : "A"; }
+  const char* what_limits() const { return force_motor() ? "voltage" : "current"; }
   double current_limit() const {
-    return axis_.motor.model == MotorModel::force ? axis_.inverter.voltage_limit
-                                                  : axis_.inverter.current_limit * axis_.motor.count;
+    return force_motor() ? axis_.inverter.voltage_limit : axis_.inverter.current_limit * axis_.motor.count;
   }
 
   const Document& document_;

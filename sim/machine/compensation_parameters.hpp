@@ -63,7 +63,8 @@ struct Table<FrictionFeedforward> : EmptyTable<FrictionFeedforward> {
        not_negative(),
        &FrictionFeedforward::level,
        {},
-       "current of each element; their sum is the Coulomb level"},
+       "current of each element; their sum is the Coulomb level",
+       "V"},
       {"contact_damping", "s", not_negative(0.05), &FrictionFeedforward::contact_damping, 0.0,
        "time by which the presliding current's rate counts beside it"},
       {"speed", "m/s", positive(), &FrictionFeedforward::speed, {}, "speeds of the sliding curve, increasing"},
@@ -72,8 +73,9 @@ struct Table<FrictionFeedforward> : EmptyTable<FrictionFeedforward> {
        any_value(),
        &FrictionFeedforward::forward,
        {},
-       "current beyond the Coulomb level at each speed, in the positive direction"},
-      {"backward", "A", any_value(), &FrictionFeedforward::backward, {}, "the same in the negative direction"},
+       "current beyond the Coulomb level at each speed, in the positive direction",
+       "V"},
+      {"backward", "A", any_value(), &FrictionFeedforward::backward, {}, "the same in the negative direction", "V"},
   }};
 };
 
@@ -84,7 +86,7 @@ struct Table<GlitchLearning> : EmptyTable<GlitchLearning> {
       {"gain", "1", {0.0, 1.0}, &GlitchLearning::gain, 0.6, "share of the missing current that is learned in a lap"},
       {"forgetting", "1", {0.0, 1.0}, &GlitchLearning::forgetting, 0.02, "share that is forgotten in a lap"},
       {"smoothing", "1", {0.0, 0.33}, &GlitchLearning::smoothing, 0.2, "share that is taken from each neighbour"},
-      {"limit", "A", not_negative(), &GlitchLearning::limit, {}, "largest current that can be learned"},
+      {"limit", "A", not_negative(), &GlitchLearning::limit, {}, "largest current that can be learned", "V"},
       {"dead_zone", "m", not_negative(1e-5), &GlitchLearning::dead_zone, 0.1e-6, "error from which nothing is learned"},
       {"filter", "s", {1e-4, 0.01}, &GlitchLearning::filter, 1e-3, "time constant of the lowpass on what is missing"},
       {"lead",
@@ -109,8 +111,9 @@ struct Table<LearnedTable> : EmptyTable<LearnedTable> {
        any_value(),
        &LearnedTable::forward,
        {},
-       "current after a reversal into the positive direction, 23 values at 0, 0.95 um and then twice an octave"},
-      {"backward", "A", any_value(), &LearnedTable::backward, {}, "the same into the negative direction"},
+       "current after a reversal into the positive direction, 23 values at 0, 0.95 um and then twice an octave",
+       "V"},
+      {"backward", "A", any_value(), &LearnedTable::backward, {}, "the same into the negative direction", "V"},
   }};
 };
 
