@@ -7,6 +7,7 @@
 
 #include "hal/backend.hpp"
 #include "stiction/drive/axis.hpp"
+#include "stiction/drive/friction_compensation.hpp"
 #include "stiction/drive/ticker.hpp"
 
 namespace stiction::hal {
@@ -18,17 +19,24 @@ class ControlLoop {
 
   // One configuration per axis of the backend, in its order. The first tick happens here: it starts the axes at rest
   // where they are.
-  ControlLoop(B& backend, std::span<const AxisConfig<S>> configs, Ticker ticker)
+  // `compensations`: as many, or none where no axis has friction compensation.
+  ControlLoop(B& backend, std::span<const AxisConfig<S>> configs, Ticker ticker,
+              std::span<const FrictionCompensationConfig<S>> compensations = {})
       : backend_(backend),
         ticker_(ticker),
         feedback_(configs.size()),
         command_(configs.size()),
-        signals_(configs.size()) {
+        signals_(configs.size()),
+        compensation_signals_(compensations.size()) {
     axes_.reserve(configs.size());
     for (const auto& config : configs) axes_.emplace_back(config);
     now_ns_ = backend_.wait_for_tick();
     backend_.read(feedback_);
     for (std::size_t i = 0; i < axes_.size(); ++i) axes_[i].start(feedback_[i]);
+    for (const auto& config : compensations) {
+      compensations_.emplace_back(config);
+      compensations_.back().start(feedback_[compensations_.size() - 1].position);
+    }
   }
 
   // Controls this tick with one set-point an axis, then waits for the next. A fault of one axis stops all of them.
@@ -45,6 +53,9 @@ class ControlLoop {
   bool slow() const { return ticker_.slow(); }     // whether that one is a slow tick
   std::span<const Axis<S>> axes() const { return axes_; }
   std::span<const AxisSignals<S>> signals() const { return signals_; }  // of the tick controlled last
+  // Of the same tick; empty without friction compensation.
+  std::span<const FrictionCompensationSignals<S>> compensation_signals() const { return compensation_signals_; }
+  std::span<const FrictionCompensation<S>> compensations() const { return compensations_; }
 
   bool faulted() const {
     for (const auto& axis : axes_)
@@ -61,7 +72,10 @@ class ControlLoop {
     std::size_t i = 0;
     for (auto& axis : axes_) {
       auto&& signals = place(i);
-      command_[i] = axis.tick(set_points[i], feedback_[i], now_ns_, ticker_.slow(), signals);
+      if (compensations_.empty()) [[likely]]
+        command_[i] = axis.tick(set_points[i], feedback_[i], now_ns_, ticker_.slow(), signals);
+      else
+        command_[i] = tick_compensated(i, set_points[i], signals);
       fault_seen |= axis.fault() != Fault::none;
       ++i;
     }
@@ -73,6 +87,15 @@ class ControlLoop {
     backend_.read(feedback_);
   }
 
+  // Not inline: an axis without compensation keeps its registers.
+  [[gnu::noinline]] Command<S> tick_compensated(std::size_t i, const SetPoint<S>& newest, AxisSignals<S>& signals) {
+    SetPoint<S> set = newest;
+    compensations_[i].step(set, compensation_signals_[i]);
+    const auto command = axes_[i].tick(set, feedback_[i], now_ns_, ticker_.slow(), signals);
+    compensations_[i].observe(signals, compensation_signals_[i]);
+    return command;
+  }
+
   B& backend_;
   Ticker ticker_;
   std::int64_t now_ns_ = 0;
@@ -80,6 +103,8 @@ class ControlLoop {
   std::vector<Feedback<S>> feedback_;
   std::vector<Command<S>> command_;
   std::vector<AxisSignals<S>> signals_;
+  std::vector<FrictionCompensation<S>> compensations_;
+  std::vector<FrictionCompensationSignals<S>> compensation_signals_;
 };
 
 }  // namespace stiction::hal

@@ -143,6 +143,7 @@ void add_experiments(CLI::App& simulate, const Invocation& invocation) {
     auto* command = simulate.add_subcommand(experiment.name, experiment.text);
     auto o = std::make_shared<ExperimentOptions>();
     o->machine.add_to(*command, "shipped machine by name, or a machine file");
+    if (experiment.compensation) o->machine.add_compensation_to(*command);
     if (experiment.machine == ExperimentMachine::axes)
       command
           ->add_option("--friction", o->friction, "friction model, or a list of models [all that it makes sense for]")

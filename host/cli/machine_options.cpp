@@ -7,6 +7,8 @@
 
 #include "host/cli/errors.hpp"
 #include "sim/control/axis_configuration.hpp"
+#include "sim/control/compensation_configuration.hpp"
+#include "sim/machine/compensation_parameters.hpp"
 #include "sim/machine/machine_file.hpp"
 #include "sim/machine/units.hpp"
 #include "stiction/number/fixed_signals.hpp"
@@ -21,9 +23,21 @@ void MachineOptions::add_to(CLI::App& command, const std::string& machine_help) 
       ->allow_extra_args(false);
 }
 
+void MachineOptions::add_compensation_to(CLI::App& command) {
+  std::vector<std::string> names;
+  for (const auto& kind : sim::compensation_kinds) names.emplace_back(kind.name);
+  command
+      .add_option("--compensation", compensation,
+                  "friction compensation of every axis, with the machine file's parameters [the machine file's]")
+      ->check(CLI::IsMember(names))
+      ->type_name("KIND");
+}
+
 sim::Machine MachineOptions::load(const std::string& name, const std::string& experiment, MachinePart needed) const {
   const auto file = sim::find_machine(name);
-  auto result = sim::read_machine(file, {experiment, set});
+  auto assignments = set;
+  if (!compensation.empty()) assignments.push_back("axis.*.friction_compensation.use=" + compensation);
+  auto result = sim::read_machine(file, {experiment, assignments});
   if (needed == MachinePart::axes && result.axes.empty())
     throw UsageError(
         fmt::format("{}: found a feed drive and no axis; expected a machine with a table [axis.NAME]", file.string()));
@@ -35,6 +49,7 @@ sim::Machine MachineOptions::load(const std::string& name, const std::string& ex
   // What the drive's number formats cannot hold is bad input too, found before anything runs.
   try {
     for (const auto& axis : result.axes) sim::configure_axis<FixedSignals>(result.timing, axis);
+    sim::configure_compensations<FixedSignals>(result);
   } catch (const sim::ConfigurationError& error) {
     throw UsageError(fmt::format("{}: {}", file.string(), error.what()));
   }

@@ -16,8 +16,11 @@ enum class MachinePart { axes, feed_drive, any };
 struct MachineOptions {
   std::string machine;           // names or paths, separated by commas where a command takes several
   std::vector<std::string> set;  // KEY=VALUE
+  std::string compensation;      // kind of friction compensation for every axis; empty: the machine file's
 
   void add_to(CLI::App& command, const std::string& machine_help);
+  // The option --compensation, of commands that drive the axes.
+  void add_compensation_to(CLI::App& command);
   // The machine, checked down to the drive's number formats. Throws sim::MachineFileError, UsageError.
   sim::Machine load(const std::string& name, const std::string& experiment,
                     MachinePart needed = MachinePart::axes) const;

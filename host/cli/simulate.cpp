@@ -65,6 +65,7 @@ void add_simulate(CLI::App& program, const Invocation& invocation) {
       "circle", "a circle of two axes with a jerk-limited start; peak errors, currents and ISO 230-4 terms of one lap");
   auto o = std::make_shared<CircleOptions>();
   o->machine.add_to(*circle, "shipped machine by name, or a machine file");
+  o->machine.add_compensation_to(*circle);
   circle->add_option("--friction", o->friction, "friction model, list of models, or all [the machine file's]")
       ->type_name("MODEL");
   circle->add_option("--feed", o->feed, "feed along the path, or a list of feeds")

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "sim/control/double_signals.hpp"
 #include "sim/experiment/circle_measurement.hpp"
@@ -47,14 +49,16 @@ sim::CircleRun run_circle(const sim::Machine& machine, const sim::CircleSettings
   const auto start = path.at(0.0);
   const std::array<double, 2> positions{start.axes[0].position, start.axes[1].position};
   ControlRun<S> run(machine, positions);
+  const bool late = machine.timing.set_point_delay > 0.0;
   sim::CircleMeasurement measurement(settings, machine.timing.fast_period,
                                      {machine.axes[0].name, machine.axes[1].name});
   for (;;) {
-    const auto point = path.at(run.time());
+    auto point = path.at(std::max(0.0, run.set_point_time()));
+    point.turned -= 2.0 * std::numbers::pi * settings.laps_before;
     if (point.turned >= sim::CirclePath::lap_end) break;
     // The force at the time of the samples, before the tick moves the plant on.
     const std::array<double, 2> force{run.plant(0).motor_force(), run.plant(1).motor_force()};
-    run.tick(point.axes, trace);
+    run.tick(late ? path.at(run.time()).axes : point.axes, trace);
     std::array<sim::CircleAxisSample, 2> samples;
     for (std::size_t k = 0; k < 2; ++k) {
       const auto& s = run.signals(k);

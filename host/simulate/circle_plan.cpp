@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <exception>
 #include <optional>
@@ -14,6 +15,14 @@
 
 namespace stiction::host {
 namespace {
+
+constexpr int learning_laps = 4;
+
+bool learns(const sim::Machine& machine) {
+  return std::any_of(machine.axes.begin(), machine.axes.end(), [](const sim::Axis& axis) {
+    return axis.friction_compensation && axis.friction_compensation->use == CompensationKind::learning;
+  });
+}
 
 sim::CircleRun run_case(const CircleCase& c) {
   return c.signals == SignalKind::fixed_point ? run_circle<FixedSignals>(c.machine, c.settings)
@@ -46,6 +55,7 @@ std::vector<CircleCase> cases_of(const CirclePlan& plan) {
         c.settings.feed = feed;
         c.settings.radius = plan.radius;
         c.settings.direction = direction;
+        if (learns(c.machine)) c.settings.laps_before = learning_laps;
         check_circle(c.machine, c.settings);
         cases.push_back(std::move(c));
       }

@@ -13,6 +13,7 @@
 #include "hal/simulated/simulated_backend.hpp"
 #include "host/simulate/late_current.hpp"
 #include "sim/control/axis_configuration.hpp"
+#include "sim/control/compensation_configuration.hpp"
 #include "sim/experiment/set_point.hpp"
 
 namespace stiction::host {
@@ -44,8 +45,10 @@ class ControlRun {
       : machine_(machine),
         backend_(machine, positions),
         configs_(configure(machine)),
+        compensations_(sim::configure_compensations<S>(machine)),
         loop_(backend_, std::span<const AxisConfig<S>>(configs_),
-              Ticker(sim::fast_period_ns(machine.timing), static_cast<std::uint32_t>(sim::slow_ratio(machine.timing)))),
+              Ticker(sim::fast_period_ns(machine.timing), static_cast<std::uint32_t>(sim::slow_ratio(machine.timing))),
+              std::span<const FrictionCompensationConfig<S>>(compensations_)),
         set_(machine.axes.size()),
         late_(machine) {}
   ControlRun(const ControlRun&) = delete;
@@ -55,6 +58,14 @@ class ControlRun {
   double time() const { return static_cast<double>(loop_.now_ns()) * 1e-9; }  // s, of the tick that comes next
   sim::AxisPlant& plant(std::size_t axis) { return backend_.plant(axis); }    // as the samples of that tick see it
   const AxisSignals<S>& signals(std::size_t axis) const { return loop_.signals()[axis]; }  // of the tick before
+  // Of an axis; none where the machine has no friction compensation.
+  const FrictionCompensation<S>* compensation(std::size_t axis) const {
+    return loop_.compensations().empty() ? nullptr : &loop_.compensations()[axis];
+  }
+  std::span<const FrictionCompensationSignals<S>> compensation_signals() const { return loop_.compensation_signals(); }
+  // The time (s) of the set-points that the axes follow in the tick that comes next: friction compensation holds them
+  // back.
+  double set_point_time() const { return time() - machine_.timing.set_point_delay; }
 
   // Controls one tick with a set-point an axis. Throws FaultTripped after the trace has had the tick.
   void tick(std::span<const sim::AxisSetPoint> set_points, const TraceSink<S>& trace = {}) {
@@ -85,6 +96,7 @@ class ControlRun {
   const sim::Machine& machine_;
   hal::SimulatedBackend<S> backend_;
   std::vector<AxisConfig<S>> configs_;
+  std::vector<FrictionCompensationConfig<S>> compensations_;
   hal::ControlLoop<hal::SimulatedBackend<S>> loop_;
   std::vector<SetPoint<S>> set_;
   LateCurrent<S> late_;

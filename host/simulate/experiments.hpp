@@ -39,6 +39,7 @@ struct Experiment {
   ExperimentMachine machine = ExperimentMachine::axes;
   const char* feeds = nullptr;           // what --feed is unless it is given; null: the experiment has no --feed
   std::vector<std::string> equations{};  // what --equations chooses from, all unless it is given
+  bool compensation = false;             // whether it shows what friction compensation does: it has --compensation
 };
 
 std::span<const Experiment> experiments();

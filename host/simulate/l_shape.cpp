@@ -63,10 +63,10 @@ LShapeRun drive_l_shape(const sim::Machine& machine, const TraceSink<FixedSignal
   ControlRun<FixedSignals> run(machine, start);
   LShapeRun r;
   int standing_ticks = 0;
-  while (run.time() < path.duration()) {
-    const double t = run.time();
+  while (run.set_point_time() < path.duration()) {
+    const double t = run.set_point_time();
     const double amperes = run.plant(1).motor_force() / machine.axes[1].motor.force_constant;
-    run.tick(path.at(t), trace);
+    run.tick(path.at(run.time()), trace);
     const double deviation = sim::to_si(run.signals(1).e);
     r.error.x.push_back(t);
     r.error.y.push_back(deviation * 1e6);

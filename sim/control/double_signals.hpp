@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "stiction/number/fixed.hpp"
+#include "stiction/number/octave.hpp"
 
 namespace stiction::sim {
 
@@ -95,6 +96,10 @@ struct DoubleSignals {
   using FilterResidue = NoResidue;
   using PitchInverse = Real;
   using PeriodInverse = Real;
+  using ContactStiffness = Real;
+  using ContactSum = Real;
+  using ContactDamping = Real;
+  using PulseSlope = Real;
 
   static constexpr Rate rate(std::int64_t interval_ns) { return {1e9 / static_cast<double>(interval_ns)}; }
   static constexpr Ticks ticks(std::int64_t duration_ns, PeriodInverse inverse_period) {
@@ -113,6 +118,31 @@ struct DoubleSignals {
     return {whole, {bounded - whole}};
   }
 
+  // As the firmware's tables have it: their nodes are the same.
+  static constexpr std::size_t speed_nodes = octave_nodes<16>;
+  struct Place {
+    std::size_t node;
+    TickFraction fraction;
+  };
+  static Place speed_place(Velocity speed) { return place(speed.value, 0x1p-12, speed_nodes); }
+
+  static constexpr Step bounded_step(Step dx) { return dx; }
+  static constexpr Step add_steps(Step deflection, Step dx) { return deflection + dx; }
+
+  static constexpr double longest_travel = 0x1p-9;
+  static constexpr std::size_t travel_nodes = octave_nodes<20> - 1;
+  static Step add_travel(Step travel, Step dx) { return {std::min(travel.value + std::abs(dx.value), longest_travel)}; }
+  static bool far_travelled(Step travel) { return travel.value >= longest_travel; }
+  static Place travel_place(Step travel) { return place(travel.value, 0x1p-20, travel_nodes + 1); }
+  static TickFraction blend(Step travel) { return {std::max(0.0, 1.0 - travel.value * 0x1p15)}; }
+  static int acceleration_octave(Acceleration a, int highest) {
+    if (a.value == 0.0) return 0;
+    return std::clamp(std::ilogb(a.value) + 6, 0, highest);
+  }
+  static bool has_grown(Distance value, Distance reference, Distance tolerance) {
+    return value.value - tolerance.value > 1.25 * reference.value;
+  }
+
   static constexpr TickFraction complement(TickFraction fraction) { return {1.0 - fraction.value}; }
   static constexpr FilterResidue filter_residue(Real, Real) { return {}; }
 
@@ -122,6 +152,18 @@ struct DoubleSignals {
   static Sine sine(Angle angle) { return {std::sin(angle.value)}; }
   static constexpr Angle third_of_turn_after(Angle angle) { return {angle.value + 2.0 * std::numbers::pi / 3.0}; }
   static constexpr Real two_thirds() { return {2.0 / 3.0}; }
+
+ private:
+  // In a table of `nodes` whose node 1 is at `first`; beyond its end at the end.
+  static Place place(double magnitude, double first, std::size_t nodes) {
+    if (magnitude < first) return {0, {magnitude / first}};
+    int exponent = 0;
+    const double mantissa = 2.0 * std::frexp(magnitude / first, &exponent);  // 1 .. 2
+    const bool upper = mantissa >= 1.5;
+    const std::size_t node = 1 + 2 * static_cast<std::size_t>(exponent - 1) + upper;
+    if (node + 1 >= nodes) return {nodes - 2, {1.0}};
+    return {node, {2.0 * (mantissa - (upper ? 1.5 : 1.0))}};
+  }
 };
 
 }  // namespace stiction::sim

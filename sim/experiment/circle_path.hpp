@@ -18,6 +18,7 @@ struct CircleSettings {
   Direction direction = Direction::counter_clockwise;
   double acceleration = 2.0;  // m/s^2 along the path, during the start
   double jerk = 40.0;         // m/s^3
+  int laps_before = 0;        // more laps before the evaluated one, for a control that learns
 };
 
 class CirclePath {

@@ -8,8 +8,10 @@
 #include <iterator>
 #include <utility>
 
+#include "sim/machine/compensation_checks.hpp"
 #include "sim/machine/document.hpp"
 #include "sim/machine/table_reader.hpp"
+#include "stiction/control/compensation_kind.hpp"
 
 namespace stiction::sim {
 namespace {
@@ -101,6 +103,7 @@ class MachineReader {
     check_friction(table, path, axis.friction);
     check_dead_time(table, path, axis.inverter.dead_time);
     check_notch(table, path, axis.notch);
+    check_compensation(document_, table, path, axis, machine_);
     if (runs_) check_effects(table, path, axis);
     return axis;
   }
@@ -187,6 +190,13 @@ class MachineReader {
     const Timing& timing = machine_.timing;
     check_multiple(root_, "", "timing.fast_period", timing.fast_period, nanosecond, "a nanosecond");
     check_multiple(root_, "", "timing.slow_period", timing.slow_period, timing.fast_period, "fast_period");
+    check_multiple(root_, "", "timing.set_point_delay", timing.set_point_delay, timing.fast_period, "fast_period");
+    constexpr auto most = compensation_buffer_ticks - 1;
+    if (timing.set_point_delay > (most + 0.5) * timing.fast_period)
+      document_.fail(node_at(root_, "timing.set_point_delay")->source(), "timing.set_point_delay",
+                     format_quantity(timing.set_point_delay, "s", "us"),
+                     fmt::format("at most {}, {} times fast_period: what the drive's buffer of set-points holds",
+                                 format_quantity(most * timing.fast_period, "s", "us"), most));
   }
 
   void check_dead_time(const toml::table& axis, const std::string& path, double dead_time) const {

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <tuple>
 
+#include "sim/machine/compensation_parameters.hpp"
 #include "sim/machine/feed_drive_parameters.hpp"
 #include "sim/machine/parameter_tables.hpp"
 #include "sim/model/machine.hpp"
@@ -29,7 +30,7 @@ inline constexpr std::array<std::string_view, 11> experiment_names{
 template <>
 struct Table<Timing> : EmptyTable<Timing> {
   static constexpr std::string_view text = "periods of the control loops";
-  static constexpr std::array<Parameter<Timing>, 2> parameters{{
+  static constexpr std::array<Parameter<Timing>, 3> parameters{{
       {"fast_period",
        "s",
        {33e-6, 0.1},
@@ -37,6 +38,9 @@ struct Table<Timing> : EmptyTable<Timing> {
        62.5e-6,
        "current and velocity controllers, feedforwards"},
       {"slow_period", "s", {1e-6, 1.0}, &Timing::slow_period, 1e-3, "position controller, a multiple of fast_period"},
+      {"set_point_delay", "s", not_negative(0.1), &Timing::set_point_delay, 0.0,
+       "time by which every axis follows its set-points late, so that friction compensation can look ahead; a multiple "
+       "of fast_period, at most 15 of them"},
   }};
 };
 
@@ -223,6 +227,8 @@ struct Table<Axis> : EmptyTable<Axis> {
       Subtable<Axis, Feedforward>{"feedforward", &Axis::feedforward, Presence::optional},
       Subtable<Axis, Supervision>{"supervision", &Axis::supervision, Presence::optional},
       Subtable<Axis, Friction>{"friction", &Axis::friction, Presence::required},
+      Subtable<Axis, std::optional<FrictionCompensation>>{"friction_compensation", &Axis::friction_compensation,
+                                                          Presence::optional},
   };
 };
 

@@ -11,6 +11,7 @@
 #include "sim/model/effect.hpp"
 #include "sim/plant/feed/feed_drive.hpp"
 #include "sim/plant/friction/friction.hpp"
+#include "stiction/control/compensation_kind.hpp"
 
 namespace stiction::sim {
 
@@ -26,6 +27,7 @@ enum class VelocitySource {
 struct Timing {
   double fast_period = 62.5e-6;  // s: current and velocity controllers, feedforwards
   double slow_period = 1e-3;     // s: position controller
+  double set_point_delay = 0.0;  // s: by which the axes follow their set-points late, for compensation to look ahead
 };
 
 struct Motor {
@@ -97,6 +99,53 @@ struct Friction {
   std::map<std::string, FrictionParameters> models;  // every subtable of the file, by name
 };
 
+// Speed pulse at reversals, its amplitude over the acceleration there.
+struct PulseCompensation {
+  double amplitude = 0.0;        // m/s
+  double final_amplitude = 0.0;  // m/s
+  double rise_until = 0.0;       // m/s^2, a1
+  double flat_until = 0.0;       // m/s^2, a2
+  double fall_until = 0.0;       // m/s^2, a3
+  double delay = 0.0;            // s, from the reversal of the newest set-point
+  double duration = 0.0;         // s
+};
+
+// Current against friction from the set-points: presliding by distance, a sliding curve by speed.
+struct FrictionFeedforward {
+  double look_ahead = 0.0;                // s, by which the current comes before the set-point
+  std::vector<double> distance;           // m after a reversal at which each element slips again
+  std::vector<double> level;              // A of each element; their sum is the Coulomb level
+  double contact_damping = 0.0;           // s
+  std::vector<double> speed;              // m/s
+  std::vector<double> forward, backward;  // A beyond the Coulomb level at these speeds, in +v and in -v
+};
+
+// How the drive learns from the errors of earlier laps.
+struct GlitchLearning {
+  double gain = 0.0;           // of what was missing, per lap
+  double forgetting = 0.0;     // share per lap
+  double smoothing = 0.0;      // share of each neighbour per lap
+  double limit = 0.0;          // A
+  double dead_zone = 0.0;      // m
+  double filter = 0.0;         // s
+  std::optional<double> lead;  // s; none: mass / (velocity gain * force constant) - filter
+};
+
+// What a drive has learned; of one axis of one machine.
+struct LearnedTable {
+  std::string machine, axis;              // names
+  std::vector<double> forward, backward;  // A at the nodes over the way since a reversal
+};
+
+// What the drive does against friction; the plant knows nothing of it.
+struct FrictionCompensation {
+  CompensationKind use = CompensationKind::off;
+  std::optional<PulseCompensation> pulse;
+  std::optional<FrictionFeedforward> friction;
+  std::optional<GlitchLearning> learning;
+  std::optional<LearnedTable> learned;
+};
+
 struct Axis {
   std::string name;
   double mass = 0.0;              // kg
@@ -113,6 +162,7 @@ struct Axis {
   Feedforward feedforward;
   Supervision supervision;
   Friction friction;
+  std::optional<FrictionCompensation> friction_compensation;
   std::vector<Effect> effects;  // of the plant alone: the drive's configuration knows nothing of them
 };
 

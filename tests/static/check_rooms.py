@@ -37,6 +37,7 @@ ROOMS = {
     "sim/plant/friction": {"sim": "a model describes its parameters (sim/parameter.hpp)"},
     "sim/plant/feed": {},
     "sim/model": {
+        f"{FIRMWARE}/control": "a machine names what its drive does against friction (compensation_kind.hpp)",
         "sim/plant/friction": "a machine holds the parameters of its friction models",
         "sim/plant/feed": "and may be a feed drive",
     },
@@ -47,6 +48,7 @@ ROOMS = {
     },
     "sim/machine": {
         "sim": "keys are described by sim/parameter.hpp",
+        f"{FIRMWARE}/control": "and held to what the drive's buffers and tables hold (compensation_kind.hpp)",
         "sim/model": "a file becomes a machine",
         "sim/plant/friction": "and those of friction by the models",
         "sim/plant/feed": "and of a feed drive by its equations",
@@ -99,6 +101,13 @@ ROOMS = {
         "sim/*": "with the effects of the simulation",
         f"{FIRMWARE}/*": "and the control as it is",
     },
+    "host/tune": {
+        "host/identify": "friction is compensated as it was identified",
+        "host/log": "from logs",
+        "host/simulate": "and tried on runs",
+        "sim/*": "of a machine",
+        f"{FIRMWARE}/*": "with the drive's own laws",
+    },
     "host/cam": {
         "sim/*": "a profile is made for a machine",
         f"{FIRMWARE}/*": "in the tables that the drive interpolates",
@@ -110,6 +119,7 @@ ROOMS = {
         "host/identify": "models,",
         "host/response": "frequency responses",
         "host/simulate": "and results of runs become pages",
+        "host/tune": "parameters of the friction compensation too,",
         "host/log": "with the signals behind them",
         "sim/*": "beside the machine they belong to",
     },
@@ -119,6 +129,7 @@ ROOMS = {
         "host/response": "measures loops",
         "host/identify": "finds models",
         "host/diagnose": "and causes",
+        "host/tune": "tunes the drive",
         "host/cam": "makes profiles",
         "host/report": "and shows the results",
         "sim/*": "for the machine it is given",

@@ -60,12 +60,13 @@ void describe(const LawContext& c) {
 
 // Brings the context to the next tick.
 void prepare(LawContext& c, const Sample& sample, const Ticker& ticker, bool first) {
-  c.set = sample.set;
+  c.set = c.set_of_pulse = c.set_of_friction = c.set_of_learning = sample.set;
   c.feedback = sample.feedback;
   c.now_ns = ticker.now_ns();
   c.slow = ticker.slow();
   if (!first) return;
   for (auto* axis : {&c.axis, &c.cascade, &c.given}) axis->start(c.feedback);
+  for (auto* compensation : {&c.pulse, &c.friction, &c.learning}) compensation->start(c.feedback.position);
 }
 
 template <class EachTick>

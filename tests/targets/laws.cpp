@@ -93,6 +93,17 @@ STICTION_LAW(law_current_pi) {
                                 saturations);
 }
 
+// What the friction compensation adds to a tick: the delayed set-point with all that it puts on it, and what it takes
+// from the axis' signals.
+STICTION_LAW(law_pulse) { c.pulse.step(c.set_of_pulse, c.compensation_signals); }
+
+STICTION_LAW(law_friction) { c.friction.step(c.set_of_friction, c.compensation_signals); }
+
+STICTION_LAW(law_learning) {
+  c.learning.step(c.set_of_learning, c.compensation_signals);
+  c.learning.observe(c.signals, c.compensation_signals);
+}
+
 namespace stiction::targets {
 
 #define STICTION_ROW(name) \
@@ -102,7 +113,7 @@ const std::array<Law, laws.size()> laws{
      STICTION_ROW(law_p_ff_pi_notch), STICTION_ROW(law_velocity_loop), STICTION_ROW(law_estimate),
      STICTION_ROW(law_quantizer), STICTION_ROW(law_delay), STICTION_ROW(law_p_feedforward),
      STICTION_ROW(law_velocity_pi), STICTION_ROW(law_notch), STICTION_ROW(law_commutation),
-     STICTION_ROW(law_current_pi)}};
+     STICTION_ROW(law_current_pi), STICTION_ROW(law_pulse), STICTION_ROW(law_friction), STICTION_ROW(law_learning)}};
 #undef STICTION_ROW
 
 }  // namespace stiction::targets

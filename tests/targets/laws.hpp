@@ -7,6 +7,7 @@
 
 #include "stiction/drive/axis.hpp"
 #include "stiction/number/fixed_signals.hpp"
+#include "tests/targets/compensation.hpp"
 
 namespace stiction::targets {
 
@@ -62,6 +63,13 @@ struct LawContext {
   std::array<S::Current, 3> i_set_phase;
   S::Current amplitude;
   Limited<S::Voltage> voltage{};
+
+  // The stage between set-points and axis, one of each kind; they keep their own state.
+  FrictionCompensation<S> pulse{compensation_config(CompensationKind::pulse)};
+  FrictionCompensation<S> friction{compensation_config(CompensationKind::friction)};
+  FrictionCompensation<S> learning{compensation_config(CompensationKind::learning)};
+  FrictionCompensationSignals<S> compensation_signals;
+  SetPoint<S> set_of_pulse, set_of_friction, set_of_learning;  // each kind changes its own
 };
 
 struct Law {
@@ -73,6 +81,6 @@ extern "C" void law_axis(void* data);
 extern "C" void law_velocity_loop(void* data);
 
 // In the order in which a tick runs them: the whole axis first, as the others take its signals.
-extern const std::array<Law, 14> laws;
+extern const std::array<Law, 17> laws;
 
 }  // namespace stiction::targets

@@ -142,6 +142,7 @@ int record(const char* name) {
   hal::ControlLoop loop(backend, std::span<const AxisConfig<S>>(opening.configs),
                         Ticker(opening.header.period_ns, static_cast<std::uint32_t>(opening.header.slow_ratio)));
   std::array<targets::TraceHash, targets::axis_count> hashes;
+  std::array<targets::CompensationBeside, targets::axis_count> compensations;
   std::array<targets::Sample, targets::axis_count> samples;
   Visits visits;
   for (std::int64_t i = 0; i < opening.header.ticks; ++i) {
@@ -150,12 +151,14 @@ int record(const char* name) {
     for (std::size_t k = 0; k < targets::axis_count; ++k) {
       set[k] = sim::to_set_point<S>(motion.at(static_cast<double>(loop.now_ns()) * 1e-9, k));
       samples[k] = {set[k], backend.latest(k)};
+      if (i == 0) compensations[k].start(backend.latest(k));
       direction[k] = loop.signals()[k].v.raw() < 0;
     }
     loop.tick(set);
     for (std::size_t k = 0; k < targets::axis_count; ++k) {
       const auto& s = loop.signals()[k];
-      samples[k].digest = hashes[k].add(s, loop.axes()[k]);
+      compensations[k].tick(set[k], s);
+      samples[k].digest = hashes[k].add(s, loop.axes()[k], compensations[k]);
       targets::write_record(sink, samples[k]);
       visits.add(s, samples[k].feedback, direction[k] != (s.v.raw() < 0));
     }

@@ -17,6 +17,7 @@ using namespace stiction::targets;
 
 Opening opening;
 std::array<TraceHash, axis_count> hashes;
+std::array<CompensationBeside, axis_count> compensations;
 
 int replay(const char* path) {
   Input input(path);
@@ -35,10 +36,14 @@ int replay(const char* path) {
         print("replay: the recording is shorter than it says\n");
         return 2;
       }
-      if (i == 0) axes[k].start(sample.feedback);
+      if (i == 0) {
+        axes[k].start(sample.feedback);
+        compensations[k].start(sample.feedback);
+      }
       AxisSignals<FixedSignals> signals;
       axes[k].tick(sample.set, sample.feedback, ticker.now_ns(), ticker.slow(), signals);
-      if (hashes[k].add(signals, axes[k]) == sample.digest || !equal) continue;
+      compensations[k].tick(sample.set, signals);
+      if (hashes[k].add(signals, axes[k], compensations[k]) == sample.digest || !equal) continue;
       equal = false;
       print("differs first at tick ");
       print_decimal(static_cast<std::uint32_t>(i));

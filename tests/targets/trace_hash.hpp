@@ -8,6 +8,7 @@
 
 #include "stiction/drive/axis.hpp"
 #include "stiction/number/fixed_signals.hpp"
+#include "tests/targets/compensation.hpp"
 
 namespace stiction::targets {
 
@@ -25,23 +26,26 @@ class Hash {
 
 // Calls visit(name, word) for all that an axis shows of itself in a tick.
 template <class Visit>
-void each_word(const AxisSignals<FixedSignals>& s, const Axis<FixedSignals>& axis, Visit&& visit) {
+void each_word(const AxisSignals<FixedSignals>& s, const Axis<FixedSignals>& axis,
+               const CompensationBeside& compensation, Visit&& visit) {
   for_each_signal(s, [&](const char* name, auto, auto, auto value) { visit(name, std::int64_t{value.raw()}); });
   visit("limiting_velocity", std::int64_t{s.limiting.velocity});
   visit("limiting_current", std::int64_t{s.limiting.current});
   visit("limiting_voltage", std::int64_t{s.limiting.voltage});
   visit("fault", static_cast<std::int64_t>(s.fault));
   visit("saturations", static_cast<std::int64_t>(axis.state().saturations.count));
+  compensation.each_word(visit);
 }
 
 // The hash of every signal of one axis.
 class TraceHash {
  public:
   // Returns the digest of this tick.
-  std::uint64_t add(const AxisSignals<FixedSignals>& s, const Axis<FixedSignals>& axis) {
+  std::uint64_t add(const AxisSignals<FixedSignals>& s, const Axis<FixedSignals>& axis,
+                    const CompensationBeside& compensation) {
     Hash tick;
     std::size_t i = 0;
-    each_word(s, axis, [&](const char* name, std::int64_t word) {
+    each_word(s, axis, compensation, [&](const char* name, std::int64_t word) {
       names_[i] = name;
       signals_[i++].add(word);
       tick.add(word);
@@ -66,7 +70,7 @@ class TraceHash {
   }
 
  private:
-  static constexpr std::size_t capacity = 32;
+  static constexpr std::size_t capacity = 48;
   std::array<const char*, capacity> names_{};
   std::array<Hash, capacity> signals_{};
   std::size_t count_ = 0;

@@ -22,8 +22,16 @@ constexpr Limited<Signal> limit(Signal value, Signal bound) {
   return {negative(bound), -1};
 }
 
-// The same for an exact sum, rounded to the format of the bound first. The limit lies within the format, so that
-// nothing else needs to saturate.
+// The value alone, without a branch: for what saturates as a rule and not as an exception.
+template <class Signal>
+constexpr Signal clamped(Signal value, Signal bound) {
+  const Signal low = negative(bound);
+  const Signal below = value > bound ? bound : value;
+  return below < low ? low : below;
+}
+
+// The same as limit() for an exact sum, rounded to the format of the bound first. The limit lies within the format, so
+// that nothing else needs to saturate.
 template <class Signal, class Sum>
 constexpr Limited<Signal> limit_sum(Sum sum, Signal bound) {
   const auto rounded = round_to<Signal>(sum);

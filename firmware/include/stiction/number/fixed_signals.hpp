@@ -3,9 +3,11 @@
 // with the simulation so that no floating point enters these headers.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 
 #include "stiction/number/fixed.hpp"
+#include "stiction/number/octave.hpp"
 #include "stiction/number/reciprocal.hpp"
 #include "stiction/number/trigonometry.hpp"
 
@@ -48,6 +50,10 @@ struct FixedSignals {
   using FilterCoefficient = Coefficient<28, 29>;              // +-2
   using FilterResidue = Fixed<48>;                            // of half a bit of current
   using PitchInverse = Coefficient<20>;                       // 1/m, pitches from 1 mm
+  using ContactStiffness = Coefficient<3, 28>;                // A/m, +-3.3e7: eight of them share a sum
+  using ContactSum = Wide<43, std::uint64_t{1} << 62>;        // A
+  using ContactDamping = Coefficient<20>;                     // ticks, below 1024
+  using PulseSlope = Coefficient<24>;                         // s, of a speed over acceleration, +-64
 
   // Time.
   static constexpr Rate rate(std::int64_t interval_ns) { return rate_of_interval(interval_ns); }
@@ -81,6 +87,54 @@ struct FixedSignals {
     return TickFraction::from_bounded_raw((std::int32_t{1} << TickFraction::fraction_bits) - fraction.raw());
   }
 
+  // Place of a speed, not negative, in a table over speed: two nodes an octave from 0.24 mm/s on.
+  static constexpr int lowest_speed_bit = 16;
+  static constexpr std::size_t speed_nodes = octave_nodes<lowest_speed_bit>;
+  struct Place {
+    std::size_t node;
+    TickFraction fraction;
+  };
+  static constexpr Place speed_place(Velocity speed) {
+    return place(octave_place<lowest_speed_bit>(static_cast<std::uint32_t>(speed.raw())));
+  }
+
+  // A step held within half of the format, and the sum of such a one and a deflection within that half, which no sum
+  // leaves: eight elements add without a test.
+  static constexpr Step bounded_step(Step dx) {
+    constexpr std::int32_t most = (std::int32_t{1} << 30) - 1;
+    const std::int32_t below = dx.raw() > most ? most : dx.raw();
+    return Step::from_raw(below < -most ? -most : below);
+  }
+  static constexpr Step add_steps(Step deflection, Step dx) { return Step::from_raw(deflection.raw() + dx.raw()); }
+
+  // The way since a reversal, which stays at the format's end, 1.95 mm; its place in a table with two nodes an octave
+  // from 0.95 um on; and how much of what was before the reversal is left: 1 at the reversal, 0 from 30.5 um on.
+  static constexpr int lowest_travel_bit = 20;
+  static constexpr std::size_t travel_nodes = octave_nodes<lowest_travel_bit> - 1;
+  static constexpr Step add_travel(Step travel, Step dx) {
+    SaturationCounter meant;
+    return saturated_sum(travel, dx < Step{} ? opposite(dx) : dx, meant);
+  }
+  static constexpr bool far_travelled(Step travel) { return travel.raw() == INT32_MAX; }
+  static constexpr Place travel_place(Step travel) {
+    return place(octave_place<lowest_travel_bit>(static_cast<std::uint32_t>(travel.raw())));
+  }
+  static constexpr TickFraction blend(Step travel) {
+    constexpr std::int32_t end = std::int32_t{1} << 25;
+    return TickFraction::from_bounded_raw(travel.raw() < end ? (end - travel.raw()) << 3 : 0);
+  }
+
+  // Octave of an acceleration's magnitude from 2^-6 m/s^2 on, 0 .. highest.
+  static constexpr int acceleration_octave(Acceleration a, int highest) {
+    const auto magnitude = static_cast<std::uint32_t>(a < Acceleration{} ? opposite(a).raw() : a.raw());
+    const int octave = 31 - std::countl_zero(magnitude | 1u) - (Acceleration::fraction_bits - 6);
+    return octave < 0 ? 0 : octave > highest ? highest : octave;
+  }
+  // value > 5/4 reference + tolerance
+  static constexpr bool has_grown(Distance value, Distance reference, Distance tolerance) {
+    return value.raw() - tolerance.raw() > reference.raw() + (reference.raw() >> 2);
+  }
+
   // What rounding `exact` to `rounded` left. The lower word holds it, as it is below half a bit of the output; where
   // the output saturated there is no remainder worth keeping, and the word bounds what stands in its place.
   template <class Exact>
@@ -102,6 +156,10 @@ struct FixedSignals {
   static constexpr Coefficient<30> two_thirds() { return Coefficient<30>::from_raw(715827883); }
 
  private:
+  static constexpr Place place(OctavePlace found) {
+    static_assert(TickFraction::fraction_bits == octave_fraction_bits);
+    return {static_cast<std::size_t>(found.node), TickFraction::from_bounded_raw(found.fraction)};
+  }
   static constexpr std::int32_t clamp_to_word(std::int64_t value) {
     const auto word = static_cast<std::int32_t>(value);
     if (word == value) [[likely]]

@@ -1,0 +1,137 @@
+// The keys of [axis.NAME.friction_compensation].
+#pragma once
+
+#include <array>
+#include <tuple>
+
+#include "sim/machine/parameter_tables.hpp"
+#include "sim/model/machine.hpp"
+
+namespace stiction::sim {
+
+inline constexpr std::array<Choice<CompensationKind>, 4> compensation_kinds{{
+    {"off", CompensationKind::off, "none; set-points are held back all the same"},
+    {"pulse", CompensationKind::pulse, "speed pulse at reversals"},
+    {"friction", CompensationKind::friction, "current from presliding and sliding curve"},
+    {"learning", CompensationKind::learning, "the same, and what was learned from the errors of earlier laps"},
+}};
+
+template <>
+struct Table<PulseCompensation> : EmptyTable<PulseCompensation> {
+  static constexpr std::string_view text = "speed pulse at reversals, its amplitude over the acceleration there";
+  static constexpr std::array<Parameter<PulseCompensation>, 7> parameters{{
+      {"amplitude",
+       "m/s",
+       not_negative(),
+       &PulseCompensation::amplitude,
+       {},
+       "amplitude from rise_until to flat_until"},
+      {"final_amplitude", "m/s", not_negative(), &PulseCompensation::final_amplitude, 0.0,
+       "amplitude from fall_until on; at most amplitude"},
+      {"rise_until",
+       "m/s^2",
+       positive(),
+       &PulseCompensation::rise_until,
+       {},
+       "a1: up to it the amplitude rises from 0"},
+      {"flat_until", "m/s^2", positive(), &PulseCompensation::flat_until, {}, "a2: from it on the amplitude falls"},
+      {"fall_until", "m/s^2", positive(), &PulseCompensation::fall_until, {}, "a3: up to it the amplitude falls"},
+      {"delay", "s", not_negative(), &PulseCompensation::delay, 0.0,
+       "from the reversal of the newest set-point to the pulse"},
+      {"duration", "s", positive(10.0), &PulseCompensation::duration, {}, "length of the pulse"},
+  }};
+};
+
+template <>
+struct Table<FrictionFeedforward> : EmptyTable<FrictionFeedforward> {
+  static constexpr std::string_view text = "current against friction, by distance and by speed";
+  static constexpr std::array<Parameter<FrictionFeedforward>, 7> parameters{{
+      {"look_ahead",
+       "s",
+       not_negative(0.1),
+       &FrictionFeedforward::look_ahead,
+       {},
+       "time by which the current comes before the set-point; at most timing.set_point_delay"},
+      {"distance",
+       "m",
+       positive(1.9e-3),
+       &FrictionFeedforward::distance,
+       {},
+       "way after a reversal at which each presliding element slips again, increasing; at most 8"},
+      {"level",
+       "A",
+       not_negative(),
+       &FrictionFeedforward::level,
+       {},
+       "current of each element; their sum is the Coulomb level",
+       "V"},
+      {"contact_damping", "s", not_negative(0.05), &FrictionFeedforward::contact_damping, 0.0,
+       "time by which the presliding current's rate counts beside it"},
+      {"speed", "m/s", positive(), &FrictionFeedforward::speed, {}, "speeds of the sliding curve, increasing"},
+      {"forward",
+       "A",
+       any_value(),
+       &FrictionFeedforward::forward,
+       {},
+       "current beyond the Coulomb level at each speed, in the positive direction",
+       "V"},
+      {"backward", "A", any_value(), &FrictionFeedforward::backward, {}, "the same in the negative direction", "V"},
+  }};
+};
+
+template <>
+struct Table<GlitchLearning> : EmptyTable<GlitchLearning> {
+  static constexpr std::string_view text = "learning from the errors of earlier laps";
+  static constexpr std::array<Parameter<GlitchLearning>, 7> parameters{{
+      {"gain", "1", {0.0, 1.0}, &GlitchLearning::gain, 0.6, "share of the missing current that is learned in a lap"},
+      {"forgetting", "1", {0.0, 1.0}, &GlitchLearning::forgetting, 0.02, "share that is forgotten in a lap"},
+      {"smoothing", "1", {0.0, 0.33}, &GlitchLearning::smoothing, 0.2, "share that is taken from each neighbour"},
+      {"limit", "A", not_negative(), &GlitchLearning::limit, {}, "largest current that can be learned", "V"},
+      {"dead_zone", "m", not_negative(1e-5), &GlitchLearning::dead_zone, 0.1e-6, "error from which nothing is learned"},
+      {"filter", "s", {1e-4, 0.01}, &GlitchLearning::filter, 1e-3, "time constant of the lowpass on what is missing"},
+      {"lead",
+       "s",
+       not_negative(0.012),
+       &GlitchLearning::lead,
+       {},
+       "time from a force to its error; left out: mass / (velocity gain * force constant) - filter"},
+  }};
+};
+
+template <>
+struct Table<LearnedTable> : EmptyTable<LearnedTable> {
+  static constexpr std::string_view text = "what the drive has learned; of this machine only";
+  static constexpr std::array<TextParameter<LearnedTable>, 2> texts{{
+      {"machine", &LearnedTable::machine, "name of the machine that learned it"},
+      {"axis", &LearnedTable::axis, "name of its axis"},
+  }};
+  static constexpr std::array<Parameter<LearnedTable>, 2> parameters{{
+      {"forward",
+       "A",
+       any_value(),
+       &LearnedTable::forward,
+       {},
+       "current after a reversal into the positive direction, 23 values at 0, 0.95 um and then twice an octave",
+       "V"},
+      {"backward", "A", any_value(), &LearnedTable::backward, {}, "the same into the negative direction", "V"},
+  }};
+};
+
+template <>
+struct Table<FrictionCompensation> : EmptyTable<FrictionCompensation> {
+  static constexpr std::string_view text = "what the drive does against friction";
+  static constexpr std::tuple choices{ChoiceParameter<FrictionCompensation, CompensationKind>{
+      "use", &FrictionCompensation::use, compensation_kinds, CompensationKind::off, "the compensation that acts"}};
+  static constexpr std::tuple subtables{
+      Subtable<FrictionCompensation, std::optional<PulseCompensation>>{"pulse", &FrictionCompensation::pulse,
+                                                                       Presence::optional},
+      Subtable<FrictionCompensation, std::optional<FrictionFeedforward>>{"friction", &FrictionCompensation::friction,
+                                                                         Presence::optional},
+      Subtable<FrictionCompensation, std::optional<GlitchLearning>>{"learning", &FrictionCompensation::learning,
+                                                                    Presence::optional},
+      Subtable<FrictionCompensation, std::optional<LearnedTable>>{"learned", &FrictionCompensation::learned,
+                                                                  Presence::optional},
+  };
+};
+
+}  // namespace stiction::sim

@@ -1,0 +1,107 @@
+#include "tests/compensation/truth.hpp"
+
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <variant>
+
+#include "sim/machine/machine_file.hpp"
+#include "sim/plant/effects/friction_level.hpp"
+
+namespace stiction::compensation {
+namespace {
+
+double coulomb(const sim::Axis& axis) { return sim::coulomb_of(axis.friction.models.at(axis.friction.use)); }
+
+// Eleven elements, none where the compensation's fit has a distance, with a curve between power law and exponential;
+// levels that follow the speed over 30 N of 90, and viscous friction that bends.
+void many_elements(sim::Axis& axis) {
+  const double level = axis.name == "X" ? 85.0 : 210.0;
+  sim::MaxwellSlip::Parameters p;
+  constexpr int count = 11;
+  double sum = 0.0;
+  std::vector<double> distance, share;
+  for (int k = 0; k < count; ++k) {
+    distance.push_back(0.37e-6 * std::pow(2.13, k));
+    share.push_back(std::exp(-std::pow((k - 6.3) / 2.6, 2.0)));
+    sum += share.back();
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    p.level.push_back(level * share[k] / sum);
+    p.stiffness.push_back(p.level.back() / distance[k]);
+  }
+  p.viscous = axis.name == "X" ? 430.0 : 1100.0;
+  p.rise = 0.15 * level;
+  p.rise_velocity = 0.02;
+  axis.friction.models["maxwell_slip"] = p;
+  axis.friction.use = "maxwell_slip";
+  axis.effects.push_back({"viscous_nonlinear", {{"force", {0.4 * level}}, {"velocity", {0.15}}}});
+}
+
+void lugre(sim::Axis& axis) { axis.friction.use = "lugre"; }
+
+void lugre_stribeck(sim::Axis& axis) {
+  axis.friction.use = "lugre";
+  std::get<sim::LuGre::Parameters>(axis.friction.models["lugre"]).static_ratio = 1.1;
+}
+
+void asymmetric(sim::Axis& axis) {
+  many_elements(axis);
+  axis.effects.push_back({"friction_asymmetry",
+                          {{"coulomb", {0.1 * coulomb(axis)}},
+                           {"viscous", {0.1 * sim::viscous_of(axis.friction.models["maxwell_slip"])}}}});
+}
+
+// The level rises from one end of the circle to the other.
+void along_the_stroke(sim::Axis& axis) {
+  axis.friction.use = "lugre";
+  const double part = 0.12 * coulomb(axis);
+  axis.effects.push_back({"position_dependent_friction",
+                          {{"position", {-0.1, -0.03, 0.02, 0.1}}, {"force", {-part, 0.4 * part, -0.5 * part, part}}}});
+}
+
+void rigid(sim::Axis& axis) { axis.friction.use = "classical"; }
+
+void scale_friction(sim::Axis& axis, double factor) {
+  sim::set_coulomb(axis.friction, factor * coulomb(axis));
+  sim::set_viscous(axis.friction, factor * sim::viscous_of(axis.friction.models.at(axis.friction.use)));
+}
+void change_mass(sim::Axis& axis, double factor) {
+  axis.effects.push_back({"mass_mismatch", {{"mass", {factor * axis.mass}}}});
+}
+void change_delay(sim::Axis& axis, double by) { axis.inverter.dead_time += by; }
+
+}  // namespace
+
+sim::Machine cross_table() {
+  return sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/mcfv5050ln.toml",
+                           {"circle", {"axis.*.encoder.velocity=estimated", "axis.*.encoder.noise=2 nm"}});
+}
+
+std::span<const Truth> truths() {
+  static constexpr std::array<Truth, 6> table{{
+      {"elements", "eleven Maxwell-slip elements whose levels follow the speed, viscous friction that bends",
+       many_elements},
+      {"LuGre", "the shipped machine's LuGre contact", lugre},
+      {"LuGre, Stribeck", "the same with static friction 10 % above Coulomb's", lugre_stribeck},
+      {"asymmetric", "the elements with 10 % more friction in +x and 10 % less in -x", asymmetric},
+      {"along the stroke", "LuGre with a level that varies by +-12 % along the stroke", along_the_stroke},
+      {"rigid", "classical friction without any presliding: a limit, no machine", rigid, false},
+  }};
+  return table;
+}
+
+std::span<const Change> changes() {
+  static constexpr std::array<Change, 6> table{{
+      {"friction +20 %", [](sim::Axis& axis) { scale_friction(axis, 1.2); }},
+      {"friction -20 %", [](sim::Axis& axis) { scale_friction(axis, 0.8); }},
+      {"mass +10 %", [](sim::Axis& axis) { change_mass(axis, 1.1); }},
+      {"mass -10 %", [](sim::Axis& axis) { change_mass(axis, 0.9); }},
+      {"delay +62.5 us", [](sim::Axis& axis) { change_delay(axis, 62.5e-6); }},
+      {"delay -62.5 us", [](sim::Axis& axis) { change_delay(axis, -62.5e-6); }},
+  }};
+  return table;
+}
+
+}  // namespace stiction::compensation
