@@ -14,13 +14,14 @@ Progress::~Progress() {
   if (shown_) fmt::print(stderr, "\r\x1b[K");
 }
 
-void Progress::add() {
+void Progress::add(std::string_view now) {
   const std::lock_guard lock(mutex_);
   ++done_;
   if (!terminal_ || std::chrono::steady_clock::now() - begin_ < std::chrono::seconds(1)) return;
   constexpr std::size_t width = 30;
   const std::size_t filled = width * done_ / total_;
-  fmt::print(stderr, "\r\x1b[K{} [{:#<{}}{:.<{}}] {} of {}", what_, "", filled, "", width - filled, done_, total_);
+  fmt::print(stderr, "\r\x1b[K{} [{:#<{}}{:.<{}}] {} of {}  {}", what_, "", filled, "", width - filled, done_, total_,
+             now);
   std::fflush(stderr);
   shown_ = true;
 }

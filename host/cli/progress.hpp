@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <mutex>
 #include <string>
+#include <string_view>
 
 namespace stiction::host {
 
@@ -15,7 +16,8 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
   ~Progress();  // wipes the line
 
-  void add();  // one more done; may be called from any thread
+  // One more done; `now`: what comes next. May be called from any thread.
+  void add(std::string_view now = {});
 
  private:
   std::string what_;
