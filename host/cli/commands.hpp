@@ -26,6 +26,7 @@ void add_compare(CLI::App& program, const Invocation& invocation);
 void add_machine(CLI::App& program, const Invocation& invocation);
 void add_identify(CLI::App& program, const Invocation& invocation);
 void add_diagnose(CLI::App& program, const Invocation& invocation);
+void add_tune_friction(CLI::App& program, const Invocation& invocation);
 void add_convert(CLI::App& program);
 void add_inspect(CLI::App& program);
 

@@ -46,6 +46,7 @@ int run(int argc, char** argv) {
   add_machine(program, invocation);
   add_identify(program, invocation);
   add_diagnose(program, invocation);
+  add_tune_friction(program, invocation);
   add_convert(program);
   add_inspect(program);
 

@@ -22,6 +22,7 @@ void add_shape(json& out, const sim::Chart& chart) {
   if (chart.y_step > 0.0) out["y_step"] = chart.y_step;
   using Height = sim::Shape::Height;
   out["wide"] = chart.shape.wide;
+  if (chart.same_scale) out["same_scale"] = true;
   out["height"] = chart.shape.height == Height::usual ? "" : chart.shape.height == Height::low ? "low" : "flat";
 }
 

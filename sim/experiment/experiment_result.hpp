@@ -63,6 +63,7 @@ struct Chart {
   std::optional<std::array<double, 2>> y_range{};  // what is shown; none: all of it
   double y_step = 0.0;                             // from tick to tick; 0: chosen by the page
   Shape shape{};
+  bool same_scale = false;  // of both axes: a picture of a path
 };
 
 struct ExperimentResult {

@@ -142,6 +142,7 @@ function marksOf(chart) {
 function ordinateStyle(chart) {
   const style = { zeroline: !chart.levels.some(level => level === 0), zerolinecolor: '#9aa5b1', nticks: 7 };
   if (chart.y_range) style.range = chart.y_range;
+  if (chart.same_scale) style.scaleanchor = 'x';
   if (chart.y_step) style.dtick = chart.y_step;
   return style;
 }

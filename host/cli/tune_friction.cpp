@@ -1,0 +1,147 @@
+// `stiction tune-friction`: parameters of the friction compensation, and what it takes away.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "host/cli/commands.hpp"
+#include "host/cli/errors.hpp"
+#include "host/cli/experiment_output.hpp"
+#include "host/cli/machine_options.hpp"
+#include "host/cli/output.hpp"
+#include "host/cli/progress.hpp"
+#include "host/log/read_log.hpp"
+#include "host/report/experiment_report.hpp"
+#include "host/tune/tuned_machine.hpp"
+#include "sim/machine/machine_file.hpp"
+
+namespace stiction::host {
+namespace {
+
+struct TuneOptions {
+  std::vector<std::string> logs;
+  MachineOptions machine;
+  std::string axis;
+  std::string feed = "3.2 m/min, 8 m/min, 16 m/min, 24 m/min, 48 m/min";
+  std::string shown = "16 m/min";
+  std::string out;
+  bool no_pulse = false;
+  bool json = false;
+};
+
+constexpr double timing_feed = 0.4;  // m/s, of the laps that the timing rule judges
+constexpr std::array<double, 3> feeds_without_logs{3.2 / 60.0, 16.0 / 60.0, 48.0 / 60.0};  // m/s
+
+// The axes to tune: the one named, else all that every log has channels of.
+std::vector<std::size_t> axes_to_tune(const std::string& name, const sim::Machine& machine,
+                                      const std::vector<Log>& logs) {
+  std::vector<std::size_t> chosen;
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < machine.axes.size(); ++k) {
+    const auto& axis = machine.axes[k].name;
+    names.push_back(axis);
+    const auto in = [&](const Log& log) {
+      return std::any_of(log.axes.begin(), log.axes.end(),
+                         [&](const auto& c) { return c.axis == axis || (c.axis.empty() && machine.axes.size() == 1); });
+    };
+    if (name.empty() ? std::all_of(logs.begin(), logs.end(), in) : axis == name) chosen.push_back(k);
+  }
+  if (!chosen.empty()) return chosen;
+  throw UsageError(fmt::format("--axis: found {}; expected an axis of {} that every log has channels of: {}",
+                               name.empty() ? "none" : "'" + name + "'", machine.id, fmt::join(names, ", ")));
+}
+
+sim::CircleSettings circle_at(double feed) {
+  sim::CircleSettings circle;
+  circle.feed = feed;
+  return circle;
+}
+
+// Of an axis: those given, or circles of the machine file's simulation.
+std::vector<Log> logs_of(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& given) {
+  if (!given.empty()) return given;
+  std::vector<Log> logs;
+  for (const double feed : feeds_without_logs) logs.push_back(simulated_circle(machine, axis, circle_at(feed), 2));
+  return logs;
+}
+
+TunedCompensations tune(const TuneOptions& options, const sim::Machine& machine, const std::vector<Log>& logs) {
+  const auto shown = feeds(options.shown);
+  if (shown.size() != 1) throw UsageError(fmt::format("--show: found {} feeds; expected one", shown.size()));
+  ComparisonSettings comparison;
+  comparison.circle = circle_at(shown.front());
+  comparison.feeds = feeds(options.feed);
+  if (std::find(comparison.feeds.begin(), comparison.feeds.end(), shown.front()) == comparison.feeds.end())
+    comparison.feeds.push_back(shown.front());
+  TunedCompensations all{machine, {}, {}, comparison.circle};
+  const auto chosen = axes_to_tune(options.axis, machine, logs);
+  {
+    Progress progress("tuning", chosen.size());
+    for (const auto k : chosen) {
+      CompensationSettings settings;
+      if (!options.no_pulse) settings.pulse = comparison.circle;
+      const auto lap = [k](const sim::Machine& with) { return simulated_circle(with, k, circle_at(timing_feed), 2); };
+      auto tuning = tune_compensation(all.machine, k, logs_of(machine, k, logs), lap, settings);
+      all.machine = tuning.machine;
+      all.tuned.emplace_back(k, std::move(tuning));
+      progress.add(machine.axes[k].name);
+    }
+  }
+  Progress progress("circles", compared_circles(all.machine, comparison));
+  comparison.progress = [&] { progress.add(); };
+  all.circles = compare_compensations(all.machine, comparison);
+  return all;
+}
+
+void run(const TuneOptions& options, const Invocation& invocation) {
+  const auto machine = options.machine.load(options.machine.machine, "");
+  std::vector<Log> logs;
+  for (const auto& file : options.logs) logs.push_back(read_log(file));
+  const auto all = tune(options, machine, logs);
+  const auto result = tuning_result(all);
+  const auto json = experiment_json(result, all.machine);
+  if (!options.out.empty()) {
+    PendingFolder folder(options.out);
+    auto sources = options.logs;
+    if (sources.empty()) sources.emplace_back("circles of its own simulation");
+    folder.write("tuned.toml", tuned_machine(sim::find_machine(options.machine.machine), options.machine.set, all,
+                                             sources, invocation.command_line));
+    sim::read_machine(folder.path() / "tuned.toml");  // what was written must be a machine
+    folder.write("report.html",
+                 experiment_report_html({invocation.command_line, invocation.version, all.machine, result}));
+    folder.write("result.json", json.dump(2) + "\n");
+    folder.commit();
+  }
+  if (options.json) {
+    fmt::print("{}\n", json.dump(2));
+    return;
+  }
+  fmt::print("{}", experiment_text(result, all.machine));
+  if (!options.out.empty()) fmt::print("\nmachine file: {0}/tuned.toml\nreport: {0}/report.html\n", options.out);
+}
+
+}  // namespace
+
+void add_tune_friction(CLI::App& program, const Invocation& invocation) {
+  auto* command = program.add_subcommand("tune-friction", "parameters of the friction compensation, before and after");
+  auto o = std::make_shared<TuneOptions>();
+  command
+      ->add_option("logs", o->logs,
+                   "circles without compensation, slow and fast, with position and current [the machine file's "
+                   "simulation]")
+      ->type_name("LOG");
+  o->machine.add_to(*command,
+                    "shipped machine by name, or a machine file: drive and simulation, such as identified.toml");
+  command->add_option("--axis", o->axis, "the axis [all that every log has]")->type_name("NAME");
+  command->add_option("--feed", o->feed, "feeds of the circles before and after [" + o->feed + "]")->type_name("FEEDS");
+  command->add_option("--show", o->shown, "feed of the pictures, at which the speed pulse is tuned [" + o->shown + "]")
+      ->type_name("FEED");
+  command->add_flag("--no-pulse", o->no_pulse, "leave out the speed pulse, which takes 250 simulated laps an axis");
+  command->add_option("--out", o->out, "write tuned.toml, report.html and result.json into this folder")
+      ->type_name("DIR");
+  command->add_flag("--json", o->json, "print the figures as JSON on standard output");
+  command->callback([o, &invocation] { run(*o, invocation); });
+}
+
+}  // namespace stiction::host
