@@ -7,6 +7,7 @@
 
 #include "host/simulate/circle.hpp"
 #include "host/simulate/quadrant_run.hpp"
+#include "sim/control/compensation_configuration.hpp"
 
 namespace stiction::host {
 namespace {
@@ -86,7 +87,7 @@ ComparedCircle drive(const sim::Machine& machine, CompensationKind kind, const s
     TraceSink<FixedSignals> sink;
     if (drawn)
       sink = [&](std::int64_t now_ns, std::span<const AxisSignals<FixedSignals>> signals) {
-        const double t = static_cast<double>(now_ns) * 1e-9 - own.timing.set_point_delay;
+        const double t = static_cast<double>(now_ns) * 1e-9 - sim::set_point_delay(own);
         const double turned = t > 0.0 ? path.at(t).turned : 0.0;
         if (turned < begin) return;
         lap.angle.push_back(turned);
