@@ -16,7 +16,7 @@ enum class MachinePart { axes, feed_drive, any };
 struct MachineOptions {
   std::string machine;           // names or paths, separated by commas where a command takes several
   std::vector<std::string> set;  // KEY=VALUE
-  std::string compensation;      // kind of friction compensation for every axis; empty: the machine file's
+  std::string compensation{};    // kind of friction compensation for every axis; empty: the machine file's
 
   void add_to(CLI::App& command, const std::string& machine_help);
   // The option --compensation, of commands that drive the axes.

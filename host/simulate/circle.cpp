@@ -49,7 +49,7 @@ sim::CircleRun run_circle(const sim::Machine& machine, const sim::CircleSettings
   const auto start = path.at(0.0);
   const std::array<double, 2> positions{start.axes[0].position, start.axes[1].position};
   ControlRun<S> run(machine, positions);
-  const bool late = machine.timing.set_point_delay > 0.0;
+  const bool late = sim::set_point_delay(machine) > 0.0;
   sim::CircleMeasurement measurement(settings, machine.timing.fast_period,
                                      {machine.axes[0].name, machine.axes[1].name});
   for (;;) {

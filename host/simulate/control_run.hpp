@@ -43,6 +43,7 @@ class ControlRun {
   // Rests at `positions` (m), one an axis of the machine. Throws sim::ConfigurationError.
   ControlRun(const sim::Machine& machine, std::span<const double> positions)
       : machine_(machine),
+        set_point_delay_(sim::set_point_delay(machine)),
         backend_(machine, positions),
         configs_(configure(machine)),
         compensations_(sim::configure_compensations<S>(machine)),
@@ -65,7 +66,7 @@ class ControlRun {
   std::span<const FrictionCompensationSignals<S>> compensation_signals() const { return loop_.compensation_signals(); }
   // The time (s) of the set-points that the axes follow in the tick that comes next: friction compensation holds them
   // back.
-  double set_point_time() const { return time() - machine_.timing.set_point_delay; }
+  double set_point_time() const { return time() - set_point_delay_; }
 
   // Controls one tick with a set-point an axis. Throws FaultTripped after the trace has had the tick.
   void tick(std::span<const sim::AxisSetPoint> set_points, const TraceSink<S>& trace = {}) {
@@ -94,6 +95,7 @@ class ControlRun {
   }
 
   const sim::Machine& machine_;
+  double set_point_delay_;
   hal::SimulatedBackend<S> backend_;
   std::vector<AxisConfig<S>> configs_;
   std::vector<FrictionCompensationConfig<S>> compensations_;

@@ -150,10 +150,13 @@ double learning_lead(const Axis& axis) {
 }
 
 bool has_compensation(const Machine& machine) {
-  return machine.timing.set_point_delay > 0.0 ||
-         std::any_of(machine.axes.begin(), machine.axes.end(), [](const Axis& axis) {
-           return axis.friction_compensation && axis.friction_compensation->use != CompensationKind::off;
-         });
+  return std::any_of(machine.axes.begin(), machine.axes.end(), [](const Axis& axis) {
+    return axis.friction_compensation && axis.friction_compensation->use != CompensationKind::off;
+  });
+}
+
+double set_point_delay(const Machine& machine) {
+  return has_compensation(machine) ? machine.timing.set_point_delay : 0.0;
 }
 
 std::vector<double> sliding_node_speeds() {

@@ -10,8 +10,11 @@
 
 namespace stiction::sim {
 
-// Whether an axis needs the compensation's stage: one that acts, or set-points that are held back.
+// Whether an axis has friction compensation that acts; all axes then have its stage, so that a path stays together.
 bool has_compensation(const Machine& machine);
+
+// s, by which the axes follow their set-points late: none where no compensation acts.
+double set_point_delay(const Machine& machine);
 
 // S: FixedSignals or DoubleSignals. Throws ConfigurationError.
 template <class S>

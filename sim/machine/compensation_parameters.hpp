@@ -10,7 +10,7 @@
 namespace stiction::sim {
 
 inline constexpr std::array<Choice<CompensationKind>, 4> compensation_kinds{{
-    {"off", CompensationKind::off, "none; set-points are held back all the same"},
+    {"off", CompensationKind::off, "none; set-points are held back where another axis has one"},
     {"pulse", CompensationKind::pulse, "speed pulse at reversals"},
     {"friction", CompensationKind::friction, "current from presliding and sliding curve"},
     {"learning", CompensationKind::learning, "the same, and what was learned from the errors of earlier laps"},

@@ -39,8 +39,8 @@ struct Table<Timing> : EmptyTable<Timing> {
        "current and velocity controllers, feedforwards"},
       {"slow_period", "s", {1e-6, 1.0}, &Timing::slow_period, 1e-3, "position controller, a multiple of fast_period"},
       {"set_point_delay", "s", not_negative(0.1), &Timing::set_point_delay, 0.0,
-       "time by which every axis follows its set-points late, so that friction compensation can look ahead; a multiple "
-       "of fast_period, at most 15 of them"},
+       "time by which every axis follows its set-points late while friction compensation acts, which looks ahead by "
+       "it; a multiple of fast_period, at most 15 of them"},
   }};
 };
 

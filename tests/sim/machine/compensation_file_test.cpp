@@ -105,6 +105,11 @@ TEST(CompensationFile, a_learned_table_of_another_machine_is_refused) {
             "learned.forward: found 0.4 V; expected at most 0.3 V in magnitude, the limit of learning");
 }
 
+TEST(CompensationFile, a_learned_table_with_a_foreign_unit_is_refused) {
+  const std::string error = error_after("forward = " + list_of_23("0.1 V"), "forward = [\"1 mol\"]");
+  EXPECT_TRUE(error.starts_with("learned.forward[0]: found \"1 mol\" (dimension mol, not ")) << error;
+}
+
 TEST(CompensationFile, a_kind_without_its_table_is_refused) {
   const std::string bare = small_machine + "[axis.B.friction_compensation]\nuse = ";
   EXPECT_NE(error_of(bare + "\"friction\"\n")

@@ -313,6 +313,8 @@ TEST(MachineFileError, EveryDescribedQuantityRefusesAForeignUnitAndNamesItsKey) 
   int quantities = 0;
   for (const TableDescription& table : machine_file_description()) {
     if (table.name.starts_with('[') || table.name.empty()) continue;
+    // A drive writes this one; its messages are in compensation_file_test.
+    if (table.name.ends_with(".learned")) continue;
     for (const KeyDescription& key : table.keys) {
       if (key.unit.empty()) continue;
       ++quantities;
