@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <functional>
+#include <iterator>
 #include <mutex>
 #include <thread>
 
@@ -207,6 +208,11 @@ std::vector<Figure> figures(const Proof& p) {
   um("the same with (c) after 4 laps", p.circles, &Row::learning, 1e-6);
   share("the same with (b), share of off", p.circles, &Row::friction, 0.3);
   share("the same with (c), share of off", p.circles, &Row::learning, 0.3);
+  // At 3.2 m/min 30 % of off are 0.5 um: the half increment that the position controller does not see.
+  std::vector<Row> faster;
+  std::copy_if(p.circles.begin(), p.circles.end(), std::back_inserter(faster),
+               [](const Row& r) { return r.feed > 3.2; });
+  share("from 8 m/min on with (b), share of off", faster, &Row::friction, 0.3);
   if (!p.circles.empty() && p.circles.front().with_pulse) {
     const auto others = [](const Row& r) { return r.feed == pulse_feed ? 0.0 : r.friction.error / r.pulse.error; };
     const auto [worst, where] = largest(p.circles, others);
@@ -238,20 +244,23 @@ std::vector<Figure> figures(const Proof& p) {
   });
   list.push_back({"peak current added, over the Coulomb current", fmt::format("{:.2f} ({}); at most 1.3", added, where),
                   added <= 1.3});
-  double creep = 0.0, swing = 0.0, swing_off = 0.0;
-  int changes = 0;
+  double creep = 0.0, swing = 0.0, more = 0.0;
+  int changes = 0, changes_off = 0;
   for (const auto& row : p.standstill)
     for (const auto* with : {&row.friction, &row.learning}) {
       creep = std::max(creep, with->creep);
       swing = std::max(swing, with->peak_to_peak);
-      swing_off = std::max(swing_off, row.off.peak_to_peak);
+      more = std::max(more, with->peak_to_peak - row.off.peak_to_peak);
       changes = std::max(changes, with->changes_of_held_error);
+      changes_off = std::max(changes_off, row.off.changes_of_held_error);
     }
   list.push_back({"standstill: creep of the mean position of a second",
                   fmt::format("{:.4f} um; at most one increment, 1 um", creep * 1e6), creep <= 1e-6});
-  list.push_back({"standstill: largest swing in a second (off); changes of the quantised error",
-                  fmt::format("{:.4f} um ({:.4f}); {}; no limit cycle", swing * 1e6, swing_off * 1e6, changes),
-                  swing <= 0.5e-6 && changes <= 2});
+  // A limit cycle would swing by an increment and change the quantised error in every slow tick or few.
+  list.push_back({"standstill: swing in a second; changes of the quantised error (off)",
+                  fmt::format("{:.3f} um, {:.3f} more than off; {} ({}); no limit cycle", swing * 1e6, more * 1e6,
+                              changes, changes_off),
+                  swing <= 0.5e-6 && more <= 0.05e-6 && changes <= changes_off + 2});
   double restart = 0.0;
   for (const auto& row : p.l_shape)
     if (row.truth != "rigid")

@@ -54,8 +54,12 @@ TEST(Compensation, learned_table_of_a_run_serves_the_next) {
       sim::LearnedTable{machine.name, "X", first.learned_forward, first.learned_backward};
   const auto second = host::run_quadrants(machine, 0, circle, 3);
   EXPECT_FALSE(second.dropped);
-  // The first lap is silent, to take the reference.
-  EXPECT_LT(second.peak_error.back(), 1e-6);
+  test::figure("kept learned table: silent first lap, first lap with it",
+               fmt::format("{:.2f}, {:.2f} um", second.peak_error[1] * 1e6, second.peak_error[2] * 1e6));
+  // The silent lap takes the reference; the next one plays what five laps taught, and need not begin anew: it is at the
+  // 1 um of the learned laps but for the quantiser's hunting.
+  EXPECT_LT(second.peak_error[2], 1.2e-6);
+  EXPECT_LT(second.peak_error[2], 0.7 * *std::max_element(second.peak_error.begin(), second.peak_error.end()));
 }
 
 }  // namespace
