@@ -117,8 +117,13 @@ typename stiction::GlitchLearning<S>::Config learning_of(const Machine& machine,
       convert.template operator()<Weight>(1.0 - learning.forgetting - 2.0 * learning.smoothing, "learning.forgetting");
   c.smoothing = convert.template operator()<Weight>(learning.smoothing, "learning.smoothing");
   c.limit = convert.template operator()<typename S::Current>(learning.limit, "learning.limit");
-  c.credit_ticks = std::min(set_point_delay + whole_ticks(learning_lead(axis), period),
-                            stiction::GlitchLearning<S>::credit_buffer - 2);
+  c.credit_ticks = set_point_delay + whole_ticks(learning_lead(axis), period);
+  constexpr auto most = stiction::GlitchLearning<S>::credit_buffer - 1;
+  if (c.credit_ticks > most)
+    throw ConfigurationError(
+        fmt::format("axis.{}.friction_compensation.learning.lead: found {:g} ms, with set_point_delay {} ticks of "
+                    "fast_period; expected at most {}, what the drive's buffer of credits holds",
+                    axis.name, learning_lead(axis) * 1e3, c.credit_ticks, most));
   // An error within one increment of the position controller is none.
   c.tolerance = convert.template operator()<typename S::Distance>(std::max(axis.position_controller.increment, 0.5e-6),
                                                                   "learning");

@@ -62,8 +62,8 @@ class FeedforwardOf : public ::testing::Test {};
 using Policies = ::testing::Types<FixedSignals, sim::DoubleSignals>;
 TYPED_TEST_SUITE(FeedforwardOf, Policies);
 
-// Stiffnesses are rounded to an eighth of an A/m, 1e-6 of the softest element; a current to 1e-6 A.
-constexpr double rounding = 3e-6;
+// A stiffness is rounded by up to 1/16 A/m, and the reaches are 255 um in all; a current is rounded by 5e-7 A.
+constexpr double rounding = 255e-6 / 16 + 5e-7;
 
 TYPED_TEST(FeedforwardOf, SlidesAtTheCoulombLevelInBothDirections) {
   Feedforward<TypeParam> f(elements<TypeParam>());

@@ -194,7 +194,7 @@ TEST(MachineFileError, MotorModelNeedsItsKeys) {
                                        "phase_force_constant", "pole_pair_pitch",  "force_constant"};
   for (const std::string& key : of_motor) {
     const std::string message = error_of_set({"axis.X.motor." + key + "="});
-    EXPECT_NE(message.find(":17: axis.X.motor." + key + ": found no such key; expected a value "), std::string::npos)
+    EXPECT_NE(message.find(":18: axis.X.motor." + key + ": found no such key; expected a value "), std::string::npos)
         << message;
     if (key != "force_constant") {
       EXPECT_TRUE(message.ends_with(", with motor model \"synchronous\"")) << message;
@@ -204,7 +204,7 @@ TEST(MachineFileError, MotorModelNeedsItsKeys) {
     EXPECT_EQ(error_of_set({"axis.X.motor.model=dc", "axis.X.motor." + key + "="}), "accepted");
   const std::string message = error_of_set({"axis.X.current_controller="});
   EXPECT_TRUE(
-      message.ends_with(":11: axis.X.current_controller: found no such key; expected a table (current "
+      message.ends_with(":12: axis.X.current_controller: found no such key; expected a table (current "
                         "controller; a force motor has none), with motor model \"synchronous\""))
       << message;
 }

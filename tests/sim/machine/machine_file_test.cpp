@@ -129,7 +129,8 @@ TEST(MachineFile, EmptySetRemovesAnOptionalKeyOrTable) {
 
 TEST(MachineFile, ShippedMachineCanBeTurnedIntoAForceMachine) {
   const Machine machine = read_shipped({"axis.X.motor.model=force", "axis.X.motor.force_constant=35 N/V",
-                                        "axis.X.velocity_controller.gain=243 V s/m", "axis.X.current_controller="});
+                                        "axis.X.velocity_controller.gain=243 V s/m",
+                                        "axis.X.current_controller=", "axis.X.friction_compensation="});
   EXPECT_EQ(machine.axes[0].motor.force_constant, 35.0);
   EXPECT_FALSE(machine.axes[0].current_controller);
 }

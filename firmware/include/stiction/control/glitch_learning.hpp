@@ -26,7 +26,7 @@ struct GlitchLearning {
   using Weight = typename S::FilterCoefficient;
 
   static constexpr std::size_t nodes = S::travel_nodes;
-  static constexpr std::uint32_t credit_buffer = 256;  // ticks
+  static constexpr std::uint32_t credit_buffer = 128;  // ticks
   using Table = std::array<Current, nodes>;
   using Tables = std::array<Table, 2>;  // by direction: backward, forward
 
