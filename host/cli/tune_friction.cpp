@@ -58,9 +58,10 @@ sim::CircleSettings circle_at(double feed) {
   return circle;
 }
 
-// Of an axis: those given, or circles of the machine file's simulation.
-std::vector<Log> logs_of(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& given) {
+// Of an axis: those given, or circles of the machine file's simulation without compensation.
+std::vector<Log> logs_of(sim::Machine machine, std::size_t axis, const std::vector<Log>& given) {
   if (!given.empty()) return given;
+  machine.axes[axis].friction_compensation.reset();
   std::vector<Log> logs;
   for (const double feed : feeds_without_logs) logs.push_back(simulated_circle(machine, axis, circle_at(feed), 2));
   return logs;

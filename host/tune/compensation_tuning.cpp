@@ -42,9 +42,7 @@ CompensationTuning tune_compensation(const sim::Machine& machine, std::size_t ax
   tuning.friction.friction.look_ahead = ahead;
   compensation.learning = learning_for(tuning.friction);
   if (settings.pulse) {
-    auto plain = machine;
-    plain.axes[axis].friction_compensation.reset();
-    tuning.pulse = tune_pulse(plain, axis, *settings.pulse);
+    tuning.pulse = tune_pulse(tuning.machine, axis, *settings.pulse);
     compensation.pulse = tuning.pulse->pulse;
   }
   compensation.use = CompensationKind::learning;

@@ -53,7 +53,7 @@ Row row_of(const Truth& truth, const TunedAxis& tuned, double feed, double radiu
   row.feed = feed;
   row.radius = radius;
   row.held = truth.held;
-  row.coulomb = tuned.tuning.coulomb;
+  row.coulomb = tuned.tuning.friction.coulomb;
   return row;
 }
 

@@ -8,13 +8,13 @@
 
 #include "host/simulate/log_recorder.hpp"
 #include "host/simulate/quadrant_run.hpp"
-#include "host/tune/timing_rule.hpp"
 #include "tests/blind/truth/trajectory.hpp"
 
 namespace stiction::compensation {
 namespace {
 
-constexpr double radius = 0.09;  // m, of the circles that are logged
+constexpr double radius = 0.09;       // m, of the circles that are logged
+constexpr double timing_feed = 24.0;  // m/min, of the laps that the timing rule judges
 
 sim::CircleSettings circle(double feed, double r = radius) {
   sim::CircleSettings settings;
@@ -60,46 +60,18 @@ TunedAxis tune(const Truth& truth, std::size_t axis, bool with_pulse) {
 
   std::vector<host::Log> logs;
   for (const double feed : {3.2, 16.0, 48.0}) logs.push_back(log_circle(machine, axis, feed, 100 + logs.size()));
-  tuned.tuning = host::tune_friction(logs, machine.axes[axis]);
-
-  machine.timing.set_point_delay = 10 * machine.timing.fast_period;
-  auto& compensation = machine.axes[axis].friction_compensation.emplace();
-  compensation.use = CompensationKind::friction;
-  compensation.friction = tuned.tuning.friction;
-  compensation.friction->look_ahead = tuned.look_ahead_at_first =
-      host::expected_look_ahead(machine.timing, machine.axes[axis]);
-  // Two laps with the compensation on, each judged by the timing rule.
-  for (int lap = 0; lap < 2; ++lap) {
-    const auto timing =
-        host::timing_of(log_circle(machine, axis, 24.0, 200 + static_cast<std::uint64_t>(lap)), machine, axis);
-    auto& ahead = compensation.friction->look_ahead;
-    tuned.timing.push_back(fmt::format("look-ahead {:.0f} us: {} ({:+.0f} +- {:.0f} us)", ahead * 1e6,
-                                       timing.verdict(machine.timing.fast_period), timing.late * 1e6,
-                                       timing.standard_error * 1e6));
-    if (timing.verdict(machine.timing.fast_period) == "in time") break;
-    ahead = std::clamp(ahead + timing.late, 0.0, machine.timing.set_point_delay);
-  }
-  tuned.tuning.friction.look_ahead = compensation.friction->look_ahead;
-
-  sim::GlitchLearning learning{0.6, 0.02, 0.2, 0.0, 0.1e-6, 1e-3, {}};
-  double coulomb = tuned.tuning.coulomb;
-  if (coulomb < 0.1 * tuned.tuning.current_rms) coulomb = tuned.tuning.current_rms;
-  learning.limit = 0.5 * coulomb;
-  compensation.learning = learning;
-  if (with_pulse) {
-    auto without = machine;
-    without.timing.set_point_delay = 0.0;
-    tuned.pulse = host::tune_pulse(without, axis, circle(pulse_feed));
-    compensation.pulse = tuned.pulse.pulse;
-  }
+  std::uint64_t seed = 200;
+  const auto lap = [&](const sim::Machine& with) { return log_circle(with, axis, timing_feed, seed++); };
+  host::CompensationSettings settings;
+  if (with_pulse) settings.pulse = circle(pulse_feed);
+  tuned.tuning = host::tune_compensation(machine, axis, logs, lap, settings);
+  machine = tuned.tuning.machine;
   return tuned;
 }
 
 sim::Machine with_compensation(const TunedAxis& tuned, CompensationKind kind) {
   auto machine = tuned.machine;
   machine.axes[tuned.axis].friction_compensation->use = kind;
-  // The pulse stands in a control without look-ahead.
-  if (kind == CompensationKind::pulse) machine.timing.set_point_delay = 0.0;
   return machine;
 }
 

@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "host/tune/friction_tuning.hpp"
-#include "host/tune/pulse_tuning.hpp"
+#include "host/tune/compensation_tuning.hpp"
 #include "sim/model/machine.hpp"
 #include "tests/compensation/truth.hpp"
 
@@ -24,10 +23,7 @@ inline constexpr int learning_laps = 4;
 struct TunedAxis {
   sim::Machine machine;  // the truth; both axes, of which `axis` is tuned
   std::size_t axis = 0;
-  host::FrictionTuning tuning;
-  double look_ahead_at_first = 0.0;  // s
-  std::vector<std::string> timing;   // what the timing rule said, lap by lap
-  host::PulseTuning pulse;
+  host::CompensationTuning tuning;
 };
 
 // `with_pulse`: tunes (a) too, which takes 250 laps.

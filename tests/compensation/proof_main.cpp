@@ -18,7 +18,7 @@ void print_tuned(const Proof& proof) {
              current_noise);
   std::size_t k = 0;
   for (const auto& tuned : proof.tuned) {
-    const auto& t = tuned.tuning;
+    const auto& t = tuned.tuning.friction;
     const auto& truth = proof.circles[5 * k++].truth;
     fmt::print(
         "{:<17}{}: Coulomb {:.3f} A, damping {:.2f} ms, mass {:.1f} kg, residual {:.4f} of {:.3f} A rms; {} elements "
@@ -27,14 +27,16 @@ void print_tuned(const Proof& proof) {
         t.current_rms, t.friction.distance.size());
     for (const double d : t.friction.distance) fmt::print(" {:.1f}", d * 1e6);
     fmt::print(" um\n");
-    for (const auto& line : tuned.timing) fmt::print("{:20}{}\n", "", line);
-    if (tuned.pulse.evaluations > 0)
+    const double tick = tuned.machine.timing.fast_period;
+    for (const auto& lap : tuned.tuning.laps)
+      fmt::print("{:20}look-ahead {:.0f} us: {} ({:+.0f} +- {:.0f} us)\n", "", lap.look_ahead * 1e6,
+                 lap.timing.verdict(tick), lap.timing.late * 1e6, lap.timing.standard_error * 1e6);
+    if (const auto& best = tuned.tuning.pulse)
       fmt::print(
           "{:20}best pulse at {:g} m/min: {:.3f} mm/s after {:.2f} ms for {:.2f} ms, {:.2f} to {:.2f} um in {} "
           "evaluations\n",
-          "", pulse_feed, tuned.pulse.pulse.amplitude * 1e3, tuned.pulse.pulse.delay * 1e3,
-          tuned.pulse.pulse.duration * 1e3, tuned.pulse.error_off * 1e6, tuned.pulse.error * 1e6,
-          tuned.pulse.evaluations);
+          "", pulse_feed, best->pulse.amplitude * 1e3, best->pulse.delay * 1e3, best->pulse.duration * 1e3,
+          best->error_off * 1e6, best->error * 1e6, best->evaluations);
   }
 }
 
