@@ -78,10 +78,10 @@ class CompensationBeside {
     visit("compensated_position", std::int64_t{set_.position.raw()});
     visit("compensated_injection", std::int64_t{set_.injection.raw()});
     visit("learning_dropped", std::int64_t{signals_.dropped});
-    std::int64_t table = 0;
+    std::uint64_t table = 0;  // of all its currents, modulo 2^64
     for (const auto& each : learning_.learned())
-      for (const auto& current : each) table = 31 * table + current.raw();
-    visit("learned_table", table);
+      for (const auto& current : each) table = 31 * table + static_cast<std::uint64_t>(current.raw());
+    visit("learned_table", static_cast<std::int64_t>(table));
     visit("compensation_saturations", static_cast<std::int64_t>(learning_.saturations()));
   }
 
