@@ -199,7 +199,8 @@ FrictionTuning tune_friction(const std::vector<Log>& logs, const sim::Axis& axis
   const auto d = distances(settings.per_decade);
   const auto v = node_speeds(fastest);
   const Equations q = equations(rows, d, v, axis.motor.force_constant);
-  const auto [fit, damping] = best_damping(q);
+  const auto best = best_damping(q);
+  const Fit& fit = best.first;  // no structured binding: clang captures none
 
   FrictionTuning t;
   const std::vector<double> levels(fit.w.data(), fit.w.data() + q.operators);
@@ -207,7 +208,7 @@ FrictionTuning tune_friction(const std::vector<Log>& logs, const sim::Axis& axis
   t.reduction_error = elements.error;
   t.friction.distance = elements.distance;
   t.friction.level = elements.level;
-  t.friction.contact_damping = damping;
+  t.friction.contact_damping = best.second;
   t.friction.speed = v;
   const auto curve = [&](Index from) {
     return std::vector<double>(fit.w.data() + from, fit.w.data() + from + q.nodes);
