@@ -191,5 +191,24 @@ TEST(GlitchLearning, CanBeStoppedAtAnyTime) {
   EXPECT_GT(frozen.largest(), 0.0);
 }
 
+TEST(GlitchLearning, LearnsNothingMoreOnceItIsDropped) {
+  Swings swings(config());
+  for (int lap = 0; lap < 3; ++lap) swings.swing();
+  swings.state().dropped = true;
+  const auto before = swings.state().tables;
+  for (int lap = 0; lap < 2; ++lap) swings.swing(3.0);
+  EXPECT_TRUE(swings.state().tables == before);
+}
+
+TEST(GlitchLearning, OctavesOfAccelerationEndAtBothEnds) {
+  constexpr int highest = 5;
+  const auto octave = [](double a) { return S::acceleration_octave(signal<S::Acceleration>(a), highest); };
+  EXPECT_EQ(octave(0.0), 0);
+  EXPECT_EQ(octave(0.01), 0);
+  EXPECT_EQ(octave(0.04), 1);  // from 1/32 m/s^2
+  EXPECT_EQ(octave(-0.04), 1);
+  EXPECT_EQ(octave(40.0), highest);
+}
+
 }  // namespace
 }  // namespace stiction

@@ -138,5 +138,28 @@ TEST(FrictionCompensation, StartForgetsWhatWas) {
   EXPECT_NEAR(to_si(set.position), 0.2, 1e-11);
 }
 
+// What the axis' error teaches comes through the stage, and only to a stage that learns.
+TEST(FrictionCompensation, ObservesTheErrorWhereItLearns) {
+  for (const auto kind : {CompensationKind::friction, CompensationKind::learning}) {
+    auto c = config(kind, 10);
+    c.learning.error_gain = signal<S::ContactStiffness>(1e5);
+    c.learning.error_limit = signal<S::Distance>(50e-6);
+    c.learning.filter = signal<S::FilterCoefficient>(0.5);
+    c.learning.filter_rest = signal<S::FilterCoefficient>(0.5);
+    FrictionCompensation<S> stage(c);
+    stage.start({});
+    FrictionCompensationSignals<S> terms;
+    AxisSignals<S> axis;
+    axis.e = signal<S::Distance>(2e-6);
+    for (int k = 0; k < 40; ++k) {
+      auto set = set_point(0.0);
+      stage.step(set, terms);
+      stage.observe(axis, terms);
+    }
+    EXPECT_NEAR(to_si(terms.missing), kind == CompensationKind::learning ? 0.2 : 0.0, 1e-3);
+    EXPECT_FALSE(stage.dropped());
+  }
+}
+
 }  // namespace
 }  // namespace stiction
