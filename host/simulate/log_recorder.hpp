@@ -19,6 +19,7 @@ class LogRecorder {
   }
   LogRecorder(const LogRecorder&) = delete;
   LogRecorder& operator=(const LogRecorder&) = delete;
+  ~LogRecorder() = default;
 
   TraceSink<FixedSignals> sink() {
     return [this](std::int64_t now_ns, std::span<const AxisSignals<FixedSignals>> signals) {
