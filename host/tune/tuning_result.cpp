@@ -33,7 +33,7 @@ std::vector<std::string> findings(const TunedCompensations& all) {
         "sliding curve leave {:.2g} A.",
         axis, friction.friction.level.size(), friction.coulomb, friction.current_rms, friction.residual_rms));
     for (const auto& lap : tuning.laps) sentences.push_back(timing_sentence(all.machine, axis, lap));
-    for (const auto& note : friction.notes) sentences.push_back(axis + ": " + note + ".");
+    for (const auto& note : friction.notes) sentences.push_back(fmt::format("{}: {}.", axis, note));
     if (tuning.pulse)
       sentences.push_back(
           fmt::format("{}: the best speed pulse of {} tried leaves {:.2g} of {:.2g} um at {} m/min: {:.3g} mm/s, "
