@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "sim/control/conversion.hpp"
 #include "stiction/number/fixed_signals.hpp"
@@ -202,12 +204,9 @@ TEST(GlitchLearning, LearnsNothingMoreOnceItIsDropped) {
 
 TEST(GlitchLearning, OctavesOfAccelerationEndAtBothEnds) {
   constexpr int highest = 5;
-  const auto octave = [](double a) { return S::acceleration_octave(signal<S::Acceleration>(a), highest); };
-  EXPECT_EQ(octave(0.0), 0);
-  EXPECT_EQ(octave(0.01), 0);
-  EXPECT_EQ(octave(0.04), 1);  // from 1/32 m/s^2
-  EXPECT_EQ(octave(-0.04), 1);
-  EXPECT_EQ(octave(40.0), highest);
+  const std::array<std::pair<double, int>, 5> wanted{{{0.0, 0}, {0.01, 0}, {0.04, 1}, {-0.04, 1}, {40.0, highest}}};
+  for (const auto& [acceleration, place] : wanted)  // m/s^2; the first octave begins at 1/32
+    EXPECT_EQ(S::acceleration_octave(signal<S::Acceleration>(acceleration), highest), place) << acceleration;
 }
 
 }  // namespace

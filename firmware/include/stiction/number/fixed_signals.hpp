@@ -128,7 +128,7 @@ struct FixedSignals {
   static constexpr int acceleration_octave(Acceleration a, int highest) {
     const auto magnitude = static_cast<std::uint32_t>(a < Acceleration{} ? opposite(a).raw() : a.raw());
     const int octave = 31 - std::countl_zero(magnitude | 1u) - (Acceleration::fraction_bits - 6);
-    return octave < 0 ? 0 : octave > highest ? highest : octave;
+    return octave < 0 ? 0 : (octave > highest ? highest : octave);
   }
   // value > 5/4 reference + tolerance
   static constexpr bool has_grown(Distance value, Distance reference, Distance tolerance) {
