@@ -10,6 +10,7 @@
 #include <span>
 
 #include "stiction/drive/exchange.hpp"
+#include "stiction/drive/faults.hpp"
 
 namespace stiction::hal {
 
@@ -33,6 +34,18 @@ concept Backend = requires(B backend, std::span<Feedback<typename B::Signals>> f
   // The voltages of this tick and whether the power stage may be on. They may act later by the inverter's delay but
   // must act in order; a command without enable must turn the power stage off.
   { backend.write(command) } -> std::same_as<void>;
+};
+
+// What a backend over wires gives beyond that; the simulated one has no wires.
+template <class B>
+concept WiredBackend = Backend<B> &&
+    requires(B backend, std::size_t axis, std::span<DigitalInputs<typename B::Signals>> inputs) {
+  // Switches and marks of every axis for this tick; all false where none are wired.
+  { backend.read_inputs(inputs) } -> std::same_as<void>;
+
+  // What the backend's own watch says of an axis in this tick: a fault with Detector::backend, or none. It stays as
+  // long as its cause does.
+  { backend.fault(axis) } -> std::same_as<Fault>;
 };
 
 }  // namespace stiction::hal

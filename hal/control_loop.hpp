@@ -52,6 +52,9 @@ class ControlLoop {
   std::int64_t now_ns() const { return now_ns_; }  // time of the tick that comes next
   bool slow() const { return ticker_.slow(); }     // whether that one is a slow tick
   std::span<const Axis<S>> axes() const { return axes_; }
+  // For who starts, stops and trips axes between ticks, as a drive's state machine does.
+  std::span<Axis<S>> axes() { return axes_; }
+  std::span<const Feedback<S>> feedback() const { return feedback_; }   // of the tick that comes next
   std::span<const AxisSignals<S>> signals() const { return signals_; }  // of the tick controlled last
   // Of the same tick; empty without friction compensation.
   std::span<const FrictionCompensationSignals<S>> compensation_signals() const { return compensation_signals_; }

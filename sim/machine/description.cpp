@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "sim/machine/drive_parameters.hpp"
 #include "sim/machine/parameters.hpp"
 #include "sim/plant/effects/effects.hpp"
 
@@ -161,6 +162,8 @@ const std::vector<TableDescription>& machine_file_description() {
     describe_table<Axis>("axis.NAME", "at least one", out);
     describe_friction_models(out);
     describe_effects(out);
+    describe_table<DriveSetup>("drive", "optional", out);
+    describe_table<DriveAxisSetup>("drive.axis.NAME", "optional", out);
     describe_table<CircleReference>("[reference.circle]", "any number", out);
     describe_table<SteadyFrictionReference>("[reference.steady_friction]", "any number", out);
     describe_table<PreslidingReference>("[reference.presliding]", "any number", out);

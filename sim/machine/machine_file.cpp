@@ -10,6 +10,7 @@
 
 #include "sim/machine/compensation_checks.hpp"
 #include "sim/machine/document.hpp"
+#include "sim/machine/drive_file.hpp"
 #include "sim/machine/table_reader.hpp"
 #include "stiction/control/compensation_kind.hpp"
 
@@ -50,6 +51,7 @@ class MachineReader {
     check_periods();
     read_axes();
     check_feed_drive();
+    drive_setup_of(document_, machine_);
     check_experiments();
     read_references();
     return std::move(machine_);

@@ -16,6 +16,7 @@
 
 #include "sim/machine/description.hpp"
 #include "sim/machine/document.hpp"
+#include "sim/machine/drive_parameters.hpp"
 #include "sim/machine/parameters.hpp"
 #include "sim/machine/units.hpp"
 #include "sim/plant/effects/effects.hpp"
@@ -59,7 +60,9 @@ class TableReader {
     if constexpr (std::is_same_v<Owner, Friction>)
       for_each_friction_model([&]<class Model>() { known.push_back(Model::name); });
     if constexpr (std::is_same_v<Owner, Axis>) known.push_back(effect_key);
-    if constexpr (std::is_same_v<Owner, Machine>) known.insert(known.end(), {"axis", "experiment", "reference"});
+    if constexpr (std::is_same_v<Owner, Machine>)
+      known.insert(known.end(), {"axis", "drive", "experiment", "reference"});
+    if constexpr (std::is_same_v<Owner, DriveSetup>) known.push_back("axis");
     return known;
   }
 

@@ -26,8 +26,15 @@ ROOMS = {
     "firmware/drive": {
         f"{FIRMWARE}/*": "the drive's programme runs the cascade",
         "hal/*": "over the backend that its command line names",
+        "sim/machine": "its configuration is computed before the loop starts, from the machine file",
+        "sim/model": "of a machine",
+        "sim/control": "for the cascade",
+        "sim/experiment": "and a motion to try it with may be one of the standard tests'",
     },
     "hal": {f"{FIRMWARE}/*": "the border to the world is written in the cascade's types"},
+    "hal/can": {"hal": "it is a backend", f"{FIRMWARE}/*": "in the cascade's types"},
+    "hal/gpio": {"hal": "it is a backend", f"{FIRMWARE}/*": "in the cascade's types"},
+    "hal/modbus": {"hal": "it is a backend", f"{FIRMWARE}/*": "in the cascade's types"},
     "hal/simulated": {
         "hal": "it is a backend",
         f"{FIRMWARE}/*": "in the cascade's types",
@@ -111,6 +118,11 @@ ROOMS = {
     "host/cam": {
         "sim/*": "a profile is made for a machine",
         f"{FIRMWARE}/*": "in the tables that the drive interpolates",
+    },
+    "host/plant": {
+        "hal/*": "the simulated machine behind a real bus speaks the backends' frames",
+        "sim/*": "and is the simulation",
+        f"{FIRMWARE}/*": "at the control's border",
     },
     # Above the tools whose results it shows; none of them knows how it is shown.
     "host/report": {

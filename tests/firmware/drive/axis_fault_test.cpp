@@ -1,4 +1,5 @@
-// Each row of the fault table: injected, detected after its number of ticks, reacted to, latched, reset.
+// Each row of the fault table that the axis itself watches: injected, detected after its number of ticks, reacted to,
+// latched, reset.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -54,7 +55,7 @@ FixedBench bench() {
 std::vector<FaultDescription> rows_with_a_detection_time() {
   std::vector<FaultDescription> rows;
   for (const auto& row : fault_table)
-    if (row.detection_ticks > 0) rows.push_back(row);
+    if (row.detector == Detector::axis && row.detection_ticks > 0) rows.push_back(row);
   return rows;
 }
 
@@ -122,7 +123,9 @@ TEST(FaultTable, HasAnInjectionForEveryRowAndARowForEveryNumber) {
   std::set<Fault> listed;
   for (const auto& row : fault_table) {
     listed.insert(row.fault);
-    EXPECT_TRUE(row.fault == Fault::limit_cycle || smallest_violation.contains(row.fault)) << row.name;
+    EXPECT_TRUE(row.detector != Detector::axis || row.fault == Fault::limit_cycle ||
+                smallest_violation.contains(row.fault))
+        << row.name;
     EXPECT_STREQ(name_of(row.fault), row.name);
   }
   EXPECT_EQ(listed.size(), fault_table.size());

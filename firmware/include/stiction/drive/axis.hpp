@@ -102,6 +102,9 @@ class Axis {
     state_.velocity = {{}, feedback.position_time_ns};
   }
 
+  // Takes the power off without a fault; the velocity is still estimated. start() begins again.
+  constexpr void stop() { state_.running = false; }
+
   // Latches a fault that was seen outside of the axis, such as a set-point that could not be represented.
   constexpr void trip(Fault fault, std::int64_t now_ns) {
     if (state_.fault != Fault::none) return;

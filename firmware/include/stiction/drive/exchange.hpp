@@ -31,4 +31,14 @@ struct Command {
   bool enable = false;                           // false: the power stage must be off
 };
 
+// Switches and marks of an axis, for its supervision and its homing. True: the switch is reached, whatever its wiring.
+template <class S>
+struct DigitalInputs {
+  bool limit_negative = false;
+  bool limit_positive = false;
+  bool home = false;
+  bool index = false;                     // the encoder's index mark was passed since the tick before,
+  typename S::Position index_position{};  // here
+};
+
 }  // namespace stiction

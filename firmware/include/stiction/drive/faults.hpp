@@ -1,4 +1,6 @@
-// The faults an axis detects. Numbers are stable: they appear in logs and on buses. "Limiting" is not a fault.
+// The faults of a drive: what is watched, by whom, how fast it is seen and what follows. One table; numbers are stable,
+// they appear in logs and on buses. "Limiting" is not a fault. Conventions: shared practice of CiA 402 drives (a fault
+// is latched, the reaction runs to its end, a reset is taken only when the cause has gone).
 #pragma once
 
 #include <array>
@@ -8,6 +10,7 @@ namespace stiction {
 
 enum class Fault : std::uint8_t {
   none = 0,
+  // Seen by the axis itself (axis.hpp).
   following_error = 1,
   over_current = 2,
   over_speed = 3,
@@ -15,6 +18,32 @@ enum class Fault : std::uint8_t {
   drive_input = 5,
   set_point = 6,
   limit_cycle = 7,
+  // Seen by the supervision around it (supervision.hpp).
+  encoder_frozen = 16,
+  encoder_jump = 17,
+  current_offset = 18,
+  runaway = 19,
+  limit_switch = 20,
+  limit_switch_stuck = 21,
+  homing = 22,
+  // Seen by the backend on its bus (hal/).
+  frames_lost = 32,
+  frames_disturbed = 33,
+  bus_off = 34,
+  bus_overload = 35,
+  // Seen by the drive's programme and by who watches it (firmware/drive).
+  missed_deadline = 48,
+  clock_jump = 49,
+  parameters_damaged = 50,
+  watchdog_starved = 51,
+};
+
+enum class Detector : std::uint8_t { axis, supervision, backend, programme };
+
+enum class Reaction : std::uint8_t {
+  disable,       // the power stage is off in the same tick
+  quick_stop,    // controlled stop with the quick-stop deceleration, then off; a second fault on the way disables
+  refuse_start,  // nothing is enabled
 };
 
 struct FaultDescription {
@@ -22,11 +51,12 @@ struct FaultDescription {
   const char* name;
   const char* condition;
   int detection_ticks;  // of the fast loop, from the first violating sample; 0: depends on the signal
+  Detector detector = Detector::axis;
+  Reaction reaction = Reaction::disable;
 };
 
-// Reaction of all: the power stage is disabled in the same tick and the fault latched. Reset of all: a new start of
-// the axis with the cause gone.
-inline constexpr std::array<FaultDescription, 7> fault_table{{
+// Reset of all: a fault reset, taken only when the cause has gone, then a new start of the axis.
+inline constexpr std::array<FaultDescription, 22> fault_table{{
     {Fault::following_error, "following error", "|x_set - x| above supervision.following_error", 1},
     {Fault::over_current, "over-current", "|i| above supervision.over_current", 1},
     {Fault::over_speed, "over-speed", "|v| above supervision.over_speed", 1},
@@ -35,12 +65,46 @@ inline constexpr std::array<FaultDescription, 7> fault_table{{
     {Fault::set_point, "set-point", "a set-point that is not a number or beyond the format's range", 1},
     {Fault::limit_cycle, "limit cycle", "current or voltage from one limit to the other more than 12 times in 125 ms",
      0},
+    {Fault::encoder_frozen, "encoder frozen", "the very same position while the set-point moved by frozen_distance", 0,
+     Detector::supervision},
+    {Fault::encoder_jump, "encoder jump", "the position is further than encoder_jump from where the speed leads", 1,
+     Detector::supervision},
+    {Fault::current_offset, "current sensor offset", "|i_A + i_B + i_C| above current_sum for 16 ticks in a row", 16,
+     Detector::supervision},
+    {Fault::runaway, "runaway", "speed rises against a force above runaway_current for 16 ticks in a row", 16,
+     Detector::supervision},
+    {Fault::limit_switch, "limit switch", "a limit switch is reached while the axis moves towards it", 1,
+     Detector::supervision, Reaction::quick_stop},
+    {Fault::limit_switch_stuck, "limit switch stuck", "both limit switches at once, or one far from its end", 1,
+     Detector::supervision, Reaction::quick_stop},
+    {Fault::homing, "homing", "the switch or index was not found within the travel or the time", 0,
+     Detector::supervision, Reaction::quick_stop},
+    {Fault::frames_lost, "frames lost", "no valid frame of a node in three ticks in a row", 3, Detector::backend},
+    {Fault::frames_disturbed, "frames disturbed",
+     "more than 10 frames late, twice, out of order, stale or damaged within a second", 1, Detector::backend,
+     Reaction::quick_stop},
+    {Fault::bus_off, "bus off", "the controller left the bus", 1, Detector::backend},
+    {Fault::bus_overload, "bus overload", "more than 16 frames of nobody's within 16 ticks", 16, Detector::backend,
+     Reaction::quick_stop},
+    {Fault::missed_deadline, "missed deadline", "two ticks in a row began later than a period", 2, Detector::programme,
+     Reaction::quick_stop},
+    {Fault::clock_jump, "clock jump", "the clock went back, or on by more than 100 ms between two ticks", 1,
+     Detector::programme},
+    {Fault::parameters_damaged, "parameters damaged", "version, length or checksum of the parameter file is wrong", 0,
+     Detector::programme, Reaction::refuse_start},
+    {Fault::watchdog_starved, "watchdog starved", "the loop made no progress for the watchdog's time", 0,
+     Detector::programme},
 }};
 
-constexpr const char* name_of(Fault fault) {
+constexpr const FaultDescription* description_of(Fault fault) {
   for (const auto& row : fault_table)
-    if (row.fault == fault) return row.name;
-  return "none";
+    if (row.fault == fault) return &row;
+  return nullptr;
+}
+
+constexpr const char* name_of(Fault fault) {
+  const auto* row = description_of(fault);
+  return row == nullptr ? "none" : row->name;
 }
 
 // Which limits held an output back in a tick.
