@@ -8,7 +8,7 @@
 #include <optional>
 #include <thread>
 
-#include "host/log/trace_writer.hpp"
+#include "sim/control/trace_writer.hpp"
 #include "sim/control/double_signals.hpp"
 #include "sim/experiment/circle_measurement.hpp"
 #include "stiction/number/fixed_signals.hpp"
@@ -30,7 +30,7 @@ sim::CircleRun run_case(const CircleCase& c) {
 }
 
 template <class S>
-sim::CircleRun run_into(const CircleCase& c, TraceWriter& writer) {
+sim::CircleRun run_into(const CircleCase& c, sim::TraceWriter& writer) {
   return run_circle<S>(c.machine, c.settings,
                        [&](std::int64_t now_ns, std::span<const AxisSignals<S>> s) { writer.write(now_ns, s); });
 }
@@ -112,7 +112,7 @@ sim::CircleRun run_traced(const CircleCase& c, const std::filesystem::path& file
       "current: amplitude (peak) amperes"};
   std::vector<std::string> axes;
   for (const auto& axis : c.machine.axes) axes.push_back(axis.name);
-  TraceWriter writer(file, axes, comments);
+  sim::TraceWriter writer(file, axes, comments);
   std::optional<sim::CircleRun> run;
   std::exception_ptr fault;
   try {

@@ -225,7 +225,7 @@ TEST(MachineFileError, OverridesOfEveryExperimentAreChecked) {
             "FILE:29: experiment.impact.axis.C: found an unknown key; expected one of B; did you mean \"B\"?");
   EXPECT_EQ(
       error_of(small_machine + "[experiment.impact.reference]\n"),
-      "FILE:29: experiment.impact.reference: found an unknown key; expected one of name, timing, axis, feed_drive");
+      "FILE:29: experiment.impact.reference: found an unknown key; expected one of name, timing, axis, drive, feed_drive");
   EXPECT_TRUE(error_of(small_machine + "[experiment.imapct.axis.B]\nmass = \"3 kg\"\n")
                   .starts_with("FILE:29: experiment.imapct: found an unknown key; expected one of circle, "));
 }
@@ -283,7 +283,7 @@ TEST(MachineFileError, SetNamesItselfAsThePlace) {
   EXPECT_EQ(error_of_set({"axis.Q.mass=3 kg"}),
             "--set axis.Q.mass: axis.Q: found an unknown key; expected one of X, Y; did you mean \"X\"?");
   EXPECT_EQ(error_of_set({"reference.circle=3"}),
-            "--set reference.circle: reference: found an unknown key; expected one of name, timing, axis, feed_drive");
+            "--set reference.circle: reference: found an unknown key; expected one of name, timing, axis, drive, feed_drive");
 }
 
 TEST(MachineFileError, SetWithoutKeyOrValue) {

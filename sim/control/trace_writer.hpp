@@ -16,7 +16,7 @@
 #include "sim/control/conversion.hpp"
 #include "stiction/drive/axis_signals.hpp"
 
-namespace stiction::host {
+namespace stiction::sim {
 
 class TraceWriter {
  public:
@@ -39,7 +39,7 @@ class TraceWriter {
     auto out = std::back_inserter(buffer_);
     fmt::format_to(out, "{:.7f}", static_cast<double>(now_ns) * 1e-9);
     for (const auto& s : signals) {
-      for_each_signal(s, [&](auto, auto, auto, auto value) { fmt::format_to(out, ",{:.10g}", sim::to_si(value)); });
+      for_each_signal(s, [&](auto, auto, auto, auto value) { fmt::format_to(out, ",{:.10g}", to_si(value)); });
       fmt::format_to(out, ",{:d},{:d},{:d},{:d}", s.limiting.velocity, s.limiting.current, s.limiting.voltage,
                      static_cast<int>(s.fault));
     }
@@ -82,4 +82,4 @@ class TraceWriter {
   bool header_written_ = false;
 };
 
-}  // namespace stiction::host
+}  // namespace stiction::sim

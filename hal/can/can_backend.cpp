@@ -1,0 +1,170 @@
+#include "hal/can/can_backend.hpp"
+
+#include <linux/can.h>
+#include <linux/can/error.h>
+
+#include <algorithm>
+#include <set>
+
+namespace stiction::hal::can {
+namespace {
+
+constexpr std::uint32_t overload_window_ticks = 16;  // fault_table: bus overload
+constexpr std::uint32_t overload_frames = 16;
+
+// The nodes' own identifiers.
+std::vector<Filter> own_frames(const CanBackendConfig& config) {
+  std::vector<Filter> filters;
+  for (const int node : config.nodes) {
+    filters.push_back({position_id + static_cast<std::uint32_t>(node), CAN_SFF_MASK});
+    if (config.format == Format::classical)
+      filters.push_back({current_id + static_cast<std::uint32_t>(node), CAN_SFF_MASK});
+  }
+  return filters;
+}
+
+std::vector<Filter> all_others(const CanBackendConfig& config) {
+  auto filters = own_frames(config);
+  for (auto& filter : filters) filter.inverted = true;
+  return filters;
+}
+
+const CanBackendConfig& checked(const CanBackendConfig& config) {
+  std::set<int> seen;
+  for (const int node : config.nodes) {
+    if (node < 1 || node > highest_node)
+      throw CanError("can: found node " + std::to_string(node) + "; expected 1 to 127 for every axis");
+    if (!seen.insert(node).second)
+      throw CanError("can: found node " + std::to_string(node) + " twice; expected one node an axis");
+  }
+  if (config.nodes.empty()) throw CanError("can: found no node; expected one an axis");
+  return config;
+}
+
+}  // namespace
+
+CanBackend::CanBackend(const CanBackendConfig& config, TickClock& clock)
+    : format_(checked(config).format),
+      clock_(clock),
+      answer_ns_(static_cast<std::int64_t>(config.answer_share * static_cast<double>(clock.period_ns()))),
+      nodes_socket_(config.interface, config.format, own_frames(config), false),
+      watch_socket_(config.interface, config.format, all_others(config), true) {
+  const auto format = properties(format_);
+  const auto ticks_a_second = static_cast<std::uint32_t>(1'000'000'000 / clock.period_ns());
+  for (const int id : config.nodes)
+    nodes_.push_back({id, FrameWatch(format.feedback_frames, format.counter_mask, ticks_a_second)});
+}
+
+std::int64_t CanBackend::wait_for_tick() {
+  now_ns_ = clock_.wait();
+  // The nodes follow the number, so that a tick that was missed here passes there as well.
+  tick_ += started_ ? 1 + static_cast<std::uint32_t>(clock_.missed_before()) : 0;
+  started_ = true;
+  for (auto& node : nodes_) node.watch.begin(tick_, now_ns_);
+  send(encode_sync(tick_));
+  return now_ns_;
+}
+
+// Through the socket that hears all others: a socket does not hear itself, and what another one sends under the drive's
+// own identifiers is of nobody.
+void CanBackend::send(const Frame& frame) {
+  if (!watch_socket_.send(frame)) ++bus_.send_failed;
+}
+
+bool CanBackend::complete() const {
+  return std::all_of(nodes_.begin(), nodes_.end(), [](const Node& node) { return node.watch.complete(); });
+}
+
+void CanBackend::read(std::span<Feedback<Signals>> feedback) {
+  Received received;
+  // From when the tick really began: a late tick waits as long for its answers as any other.
+  const std::int64_t deadline = now_ns_ + clock_.lateness_ns() + answer_ns_;
+  while (!complete() && nodes_socket_.receive(received, deadline)) take(received);
+  // What is in the queue beyond the answers belongs to no tick to come.
+  while (nodes_socket_.receive(received, 0)) take(received);
+  watch_bus();
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    auto& node = nodes_[i];
+    node.watch.end();
+    if (node.watch.complete()) {
+      node.state = node.arriving;
+      node.state.feedback.position_time_ns += now_ns_;
+      feedback[i] = node.state.feedback;
+    } else {
+      feedback[i] = node.state.feedback;
+      feedback[i].position_valid = false;
+    }
+  }
+}
+
+void CanBackend::take(const Received& received) {
+  const Address address = address_of(received.frame, format_);
+  const auto node =
+      std::find_if(nodes_.begin(), nodes_.end(), [&](const Node& each) { return each.id == address.node; });
+  if (node == nodes_.end() || (address.kind != Kind::position && address.kind != Kind::current)) {
+    ++bus_.of_nobody;  // a node's identifier with another format's size
+    ++of_nobody_in_window_;
+    return;
+  }
+  std::uint32_t counter = 0;
+  NodeFeedback state = node->arriving;
+  if (!decode_feedback(format_, address.kind, received.frame, counter, state))
+    node->watch.take_damaged();
+  else if (node->watch.take(address.kind == Kind::current ? 1 : 0, counter, received.received_ns))
+    node->arriving = state;
+}
+
+// A bounded number of frames a tick: a babbling node must not hold the loop.
+void CanBackend::watch_bus() {
+  Received received;
+  for (std::uint32_t i = 0; i <= overload_frames && watch_socket_.receive(received, 0); ++i) {
+    if (!received.error) {
+      ++bus_.of_nobody;
+      ++of_nobody_in_window_;
+      continue;
+    }
+    ++bus_.error_frames;
+    if ((received.frame.id & CAN_ERR_BUSOFF) != 0) bus_off_ = true;
+    if ((received.frame.id & CAN_ERR_RESTARTED) != 0) bus_off_ = false;
+  }
+  overloaded_ = of_nobody_in_window_ > overload_frames;
+  if (++window_ticks_ < overload_window_ticks) return;
+  window_ticks_ = 0;
+  of_nobody_in_window_ = 0;
+}
+
+void CanBackend::read_inputs(std::span<DigitalInputs<Signals>> inputs) const {
+  for (std::size_t i = 0; i < nodes_.size(); ++i) inputs[i] = nodes_[i].state.inputs;
+}
+
+void CanBackend::write(std::span<const Command<Signals>> command) {
+  for (std::size_t i = 0; i < nodes_.size(); ++i)
+    send(encode_command(format_, nodes_[i].id, tick_, command[i]));
+}
+
+Fault CanBackend::fault(std::size_t axis) const {
+  if (bus_off_) return Fault::bus_off;
+  if (const Fault fault = nodes_[axis].watch.fault(); fault != Fault::none) return fault;
+  return overloaded_ ? Fault::bus_overload : Fault::none;
+}
+
+bool CanBackend::find_nodes(int ticks, std::vector<int>& silent) {
+  std::vector<Feedback<Signals>> feedback(nodes_.size());
+  for (int i = 0; i < ticks; ++i) {
+    wait_for_tick();
+    read(feedback);
+    silent.clear();
+    for (const auto& node : nodes_)
+      if (!node.watch.complete()) silent.push_back(node.id);
+    if (silent.empty()) return true;
+  }
+  return false;
+}
+
+BusCounts CanBackend::bus_counts() const {
+  BusCounts counts = bus_;
+  counts.lost_in_kernel = nodes_socket_.lost_in_kernel() + watch_socket_.lost_in_kernel();
+  return counts;
+}
+
+}  // namespace stiction::hal::can

@@ -1,0 +1,84 @@
+// The axes' power stages and encoders as nodes of a CAN bus whose master is this drive (frames.hpp): SYNC at each tick,
+// feedback of every node, voltages to every node.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "hal/backend.hpp"
+#include "hal/can/can_socket.hpp"
+#include "hal/can/frame_watch.hpp"
+#include "hal/tick_clock.hpp"
+
+namespace stiction::hal::can {
+
+struct CanBackendConfig {
+  std::string interface;
+  Format format = Format::fd;
+  std::vector<int> nodes;      // one an axis, 1 to 127, all different
+  double answer_share = 0.75;  // of the period, for which answers are waited for
+};
+
+struct BusCounts {
+  std::uint64_t send_failed = 0;   // frames that the kernel did not take
+  std::uint64_t of_nobody = 0;     // frames with an identifier that the drive does not use
+  std::uint64_t error_frames = 0;  // of the controller
+  std::uint64_t lost_in_kernel = 0;
+};
+
+class CanBackend {
+ public:
+  using Signals = FixedSignals;
+
+  // `clock` gives the ticks. Throws CanError where the bus or the configuration is not as it must be.
+  CanBackend(const CanBackendConfig& config, TickClock& clock);
+
+  std::size_t axis_count() const { return nodes_.size(); }
+  std::int64_t wait_for_tick();
+  void read(std::span<Feedback<Signals>> feedback);
+  void read_inputs(std::span<DigitalInputs<Signals>> inputs) const;
+  void write(std::span<const Command<Signals>> command);
+  Fault fault(std::size_t axis) const;
+
+  // Whether every node has answered SYNC within `ticks` ticks; to be asked before the loop starts. No voltage is sent.
+  // The nodes that did not are in `silent`.
+  bool find_nodes(int ticks, std::vector<int>& silent);
+
+  const FrameCounts& counts(std::size_t axis) const { return nodes_[axis].watch.counts(); }
+  BusCounts bus_counts() const;
+
+ private:
+  struct Node {
+    int id;
+    FrameWatch watch;
+    NodeFeedback state{};
+    NodeFeedback arriving{};
+  };
+
+  void send(const Frame& frame);
+  void take(const Received& received);
+  void watch_bus();
+  bool complete() const;
+
+  Format format_;
+  TickClock& clock_;
+  std::int64_t answer_ns_;
+  CanSocket nodes_socket_;  // the nodes' frames alone
+  CanSocket watch_socket_;  // all others, and error frames
+  std::vector<Node> nodes_;
+  std::uint32_t tick_ = 0;
+  bool started_ = false;
+  std::int64_t now_ns_ = 0;
+  bool bus_off_ = false;
+  // Frames of nobody: the count now and that of the window's start.
+  std::uint32_t window_ticks_ = 0;
+  std::uint32_t of_nobody_in_window_ = 0;
+  bool overloaded_ = false;
+  BusCounts bus_;
+};
+
+static_assert(WiredBackend<CanBackend>);
+
+}  // namespace stiction::hal::can

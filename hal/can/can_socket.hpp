@@ -1,0 +1,61 @@
+// A raw SocketCAN socket (linux/can/raw.h): classical and FD frames, kernel filters, receive time stamps, error frames.
+// Nothing here waits but receive(), which waits in ppoll() until a deadline.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <stdexcept>
+#include <string>
+
+#include "hal/can/frames.hpp"
+
+namespace stiction::hal::can {
+
+// what() says what was found, what was expected and what to do.
+class CanError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct Filter {
+  std::uint32_t id;
+  std::uint32_t mask;
+  bool inverted = false;  // the frames that do not match
+};
+
+struct Received {
+  Frame frame;
+  bool error = false;            // an error frame: `frame.id` holds the classes of linux/can/error.h
+  std::int64_t received_ns = 0;  // by the kernel, on CLOCK_MONOTONIC
+};
+
+class CanSocket {
+ public:
+  // Opens the interface. All filters must be passed by a frame if they are inverted, one of them otherwise. Throws
+  // CanError where the interface is not there, is down, or carries no frames of this format.
+  CanSocket(const std::string& interface, Format format, std::span<const Filter> filters, bool errors);
+  CanSocket(const CanSocket&) = delete;
+  CanSocket& operator=(const CanSocket&) = delete;
+  ~CanSocket();
+
+  // False when the kernel's queue is full or the interface went down; the frame is lost then.
+  bool send(const Frame& frame);
+
+  // The next frame; waits for it until `deadline_ns` on CLOCK_MONOTONIC (0: does not wait). False when none came.
+  bool receive(Received& received, std::int64_t deadline_ns);
+
+  std::uint64_t lost_in_kernel() const { return lost_in_kernel_; }  // frames that the socket's queue had no room for
+
+ private:
+  bool take(Received& received);
+
+  int descriptor_ = -1;
+  Format format_;
+  std::uint64_t lost_in_kernel_ = 0;
+};
+
+// Whether the interface has no wire (vcan, vxcan): what it carries is not bounded by a bit rate.
+bool is_virtual(const std::string& interface);
+
+}  // namespace stiction::hal::can
