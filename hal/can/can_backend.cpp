@@ -138,8 +138,7 @@ void CanBackend::read_inputs(std::span<DigitalInputs<Signals>> inputs) const {
 }
 
 void CanBackend::write(std::span<const Command<Signals>> command) {
-  for (std::size_t i = 0; i < nodes_.size(); ++i)
-    send(encode_command(format_, nodes_[i].id, tick_, command[i]));
+  for (std::size_t i = 0; i < nodes_.size(); ++i) send(encode_command(format_, nodes_[i].id, tick_, command[i]));
 }
 
 Fault CanBackend::fault(std::size_t axis) const {

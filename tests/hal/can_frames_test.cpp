@@ -1,0 +1,244 @@
+// What crosses a CAN bus: the same state on both sides, and nothing that was changed on the way.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <random>
+#include <regex>
+#include <sstream>
+#include <string>
+
+#include "hal/can/dbc.hpp"
+#include "hal/can/frames.hpp"
+#include "sim/control/conversion.hpp"
+#include "stiction/number/crc.hpp"
+
+namespace stiction::hal::can {
+namespace {
+
+using S = FixedSignals;
+
+constexpr std::array formats{Format::classical, Format::fd};
+
+NodeFeedback random_state(std::mt19937_64& random, double largest_current, double largest_position) {
+  const auto within = [&](double largest) { return std::uniform_real_distribution(-largest, largest)(random); };
+  NodeFeedback state;
+  auto& f = state.feedback;
+  EXPECT_TRUE(sim::convert(within(largest_position), f.position));
+  EXPECT_TRUE(sim::convert(within(7.0), f.velocity));
+  for (auto& current : f.current) EXPECT_TRUE(sim::convert(within(largest_current), current));
+  EXPECT_TRUE(sim::convert(within(largest_position), state.inputs.index_position));
+  f.position_time_ns = -std::uniform_int_distribution<std::int64_t>(0, 60000)(random);
+  f.position_valid = (random() & 1) != 0;
+  f.fault = (random() & 1) != 0;
+  state.inputs.limit_negative = (random() & 1) != 0;
+  state.inputs.limit_positive = (random() & 1) != 0;
+  state.inputs.home = (random() & 1) != 0;
+  state.inputs.index = (random() & 1) != 0;
+  return state;
+}
+
+// Every frame of a state, decoded into another one.
+NodeFeedback through_the_bus(Format format, const NodeFeedback& state, std::uint32_t tick) {
+  std::array<Frame, 2> frames;
+  const auto count = encode_feedback(format, 5, tick, state, std::span<Frame, 2>(frames));
+  EXPECT_EQ(count, properties(format).feedback_frames);
+  NodeFeedback found;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto address = address_of(frames[i], format);
+    EXPECT_EQ(address.node, 5);
+    std::uint32_t counter = 0;
+    EXPECT_TRUE(decode_feedback(format, address.kind, frames[i], counter, found));
+    EXPECT_EQ(counter, tick & properties(format).counter_mask);
+  }
+  return found;
+}
+
+void expect_same_flags(const NodeFeedback& found, const NodeFeedback& sent) {
+  EXPECT_EQ(found.feedback.position_valid, sent.feedback.position_valid);
+  EXPECT_EQ(found.feedback.fault, sent.feedback.fault);
+  EXPECT_EQ(found.inputs.limit_negative, sent.inputs.limit_negative);
+  EXPECT_EQ(found.inputs.limit_positive, sent.inputs.limit_positive);
+  EXPECT_EQ(found.inputs.home, sent.inputs.home);
+  EXPECT_EQ(found.inputs.index, sent.inputs.index);
+}
+
+TEST(CanFrames, OfCanFdCarryTheControlsIntegers) {
+  std::mt19937_64 random(1);
+  for (int i = 0; i < 1000; ++i) {
+    const auto sent = random_state(random, 2000.0, 2e6);
+    const auto found = through_the_bus(Format::fd, sent, static_cast<std::uint32_t>(random()));
+    EXPECT_EQ(found.feedback.position, sent.feedback.position);
+    EXPECT_EQ(found.feedback.velocity, sent.feedback.velocity);
+    EXPECT_EQ(found.feedback.current, sent.feedback.current);
+    EXPECT_EQ(found.feedback.position_time_ns, sent.feedback.position_time_ns);
+    EXPECT_EQ(found.inputs.index_position, sent.inputs.index_position);
+    expect_same_flags(found, sent);
+  }
+}
+
+TEST(CanFrames, ClassicalOnesRoundToTheirResolution) {
+  std::mt19937_64 random(2);
+  for (int i = 0; i < 1000; ++i) {
+    const auto sent = random_state(random, 127.0, 1000.0);
+    const auto found = through_the_bus(Format::classical, sent, static_cast<std::uint32_t>(random()));
+    EXPECT_NEAR(sim::to_si(found.feedback.position), sim::to_si(sent.feedback.position), std::ldexp(0.5, -32));
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_NEAR(sim::to_si(found.feedback.current[k]), sim::to_si(sent.feedback.current[k]), std::ldexp(0.5, -8));
+    expect_same_flags(found, sent);
+  }
+}
+
+TEST(CanFrames, ClassicalOnesHoldWhatIsBeyondTheirRangeAtItsEnd) {
+  NodeFeedback sent;
+  ASSERT_TRUE(sim::convert(1000.0, sent.feedback.current[0]));
+  ASSERT_TRUE(sim::convert(-1000.0, sent.feedback.current[1]));
+  const auto found = through_the_bus(Format::classical, sent, 0);
+  EXPECT_NEAR(sim::to_si(found.feedback.current[0]), 128.0, 0.01);
+  EXPECT_NEAR(sim::to_si(found.feedback.current[1]), -128.0, 0.01);
+}
+
+TEST(CanFrames, CommandsAndSyncComeThrough) {
+  for (const auto format : formats) {
+    Command<S> sent;
+    sent.enable = true;
+    for (std::size_t k = 0; k < 3; ++k)
+      ASSERT_TRUE(sim::convert(100.0 * static_cast<double>(k) - 90.0, sent.voltage[k]));
+    const Frame frame = encode_command(format, 9, 1234567, sent);
+    const auto address = address_of(frame, format);
+    EXPECT_EQ(address.kind, Kind::command);
+    EXPECT_EQ(address.node, 9);
+    Command<S> found;
+    std::uint32_t counter = 0;
+    ASSERT_TRUE(decode_command(format, frame, counter, found));
+    EXPECT_EQ(counter, 1234567 & properties(format).counter_mask);
+    EXPECT_TRUE(found.enable);
+    EXPECT_EQ(found.voltage, sent.voltage) << "these fit the classical resolution too";
+    std::uint32_t tick = 0;
+    EXPECT_EQ(address_of(encode_sync(77), format).kind, Kind::sync);
+    ASSERT_TRUE(decode_sync(encode_sync(0xFEDCBA98), tick));
+    EXPECT_EQ(tick, 0xFEDCBA98);
+  }
+}
+
+TEST(CanFrames, AnyOneOrTwoFlippedBitsAreSeen) {
+  std::mt19937_64 random(3);
+  std::uint64_t tried = 0;
+  for (const auto format : formats) {
+    std::array<Frame, 2> frames;
+    const auto count = encode_feedback(format, 1, 99, random_state(random, 100.0, 1.0), std::span<Frame, 2>(frames));
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto kind = address_of(frames[i], format).kind;
+      const int bits = 8 * frames[i].size;
+      for (int a = 0; a < bits; ++a)
+        for (int b = a; b < bits; ++b) {
+          Frame damaged = frames[i];
+          damaged.data[static_cast<std::size_t>(a / 8)] ^= static_cast<std::uint8_t>(1 << (a % 8));
+          if (b != a) damaged.data[static_cast<std::size_t>(b / 8)] ^= static_cast<std::uint8_t>(1 << (b % 8));
+          std::uint32_t counter = 0;
+          NodeFeedback state;
+          ASSERT_FALSE(decode_feedback(format, kind, damaged, counter, state)) << "bits " << a << " and " << b;
+          ++tried;
+        }
+    }
+  }
+  EXPECT_GT(tried, 70000u);
+}
+
+TEST(CanFrames, OfAnotherNodeAreNotTakenForThisOnes) {
+  for (const auto format : formats) {
+    Frame frame = encode_command(format, 1, 5, {});
+    frame.id += 1;
+    Command<S> command;
+    std::uint32_t counter = 0;
+    EXPECT_FALSE(decode_command(format, frame, counter, command)) << "the checksum covers the identifier";
+  }
+}
+
+TEST(CanFrames, OfAnotherSizeOrFormatHaveNoAddress) {
+  for (const auto format : formats) {
+    Frame frame = encode_command(format, 1, 5, {});
+    frame.size -= 1;
+    EXPECT_EQ(address_of(frame, format).kind, Kind::unknown);
+    frame.size += 1;
+    frame.id |= 0x80000000u;  // a 29-bit identifier
+    EXPECT_EQ(address_of(frame, format).kind, Kind::unknown);
+  }
+}
+
+TEST(Crc, HasTheCheckValuesOfItsCatalogue) {
+  const std::string digits = "123456789";
+  EXPECT_EQ(Crc16().add(digits, digits.size()).value(), 0x29B1);
+  EXPECT_EQ(Crc8().add(digits, digits.size()).value() ^ 0xFF, 0x4B) << "SAE J1850 inverts at the end";
+}
+
+// A reader of DBC that knows nothing of frames.cpp: signals by message, each with its bits and scale.
+struct DbcSignal {
+  int first = 0, bits = 0;
+  bool is_signed = false;
+  double scale = 0.0;
+  double read(const Frame& frame) const {
+    std::uint64_t raw = 0;
+    for (int i = 0; i < bits; ++i) {
+      const int bit = first + i;
+      raw |= std::uint64_t{(frame.data[static_cast<std::size_t>(bit / 8)] >> (bit % 8)) & 1u} << i;
+    }
+    const int unused = 64 - bits;
+    const auto value =
+        is_signed ? static_cast<double>(static_cast<std::int64_t>(raw << unused) >> unused) : static_cast<double>(raw);
+    return value * scale;
+  }
+};
+std::map<std::uint32_t, std::map<std::string, DbcSignal>> parse_dbc(const std::string& text) {
+  const std::regex message(R"(BO_ (\d+) (\w+): (\d+) (\w+))");
+  const std::regex signal(R"( SG_ (\w+) : (\d+)\|(\d+)@1([+-]) \(([^,]+),0\) .*)");
+  std::map<std::uint32_t, std::map<std::string, DbcSignal>> found;
+  std::uint32_t id = 0;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    std::smatch match;
+    if (std::regex_match(line, match, message)) id = static_cast<std::uint32_t>(std::stoul(match[1]));
+    if (std::regex_match(line, match, signal))
+      found[id][match[1]] = {std::stoi(match[2]), std::stoi(match[3]), match[4] == "-", std::stod(match[5])};
+  }
+  return found;
+}
+
+TEST(Dbc, DescribesTheFramesAsTheyAre) {
+  std::mt19937_64 random(4);
+  for (const auto format : formats) {
+    const auto dbc = parse_dbc(dbc_text(format, std::array<DbcAxis, 2>{{{"X", 5}, {"Y", 6}}}));
+    for (int i = 0; i < 20; ++i) {
+      const auto state = random_state(random, 100.0, 1.0);
+      std::array<Frame, 2> frames;
+      const auto count = encode_feedback(format, 5, 7, state, std::span<Frame, 2>(frames));
+      std::map<std::string, double> read;
+      for (std::size_t k = 0; k < count; ++k)
+        for (const auto& [name, signal] : dbc.at(frames[k].id)) read[name] = signal.read(frames[k]);
+      const auto found = through_the_bus(format, state, 7);
+      EXPECT_EQ(read.at("position"), sim::to_si(found.feedback.position));
+      EXPECT_EQ(read.at("current_B"), sim::to_si(found.feedback.current[1]));
+      EXPECT_EQ(read.at("valid"), found.feedback.position_valid);
+      EXPECT_EQ(read.at("limit_positive"), found.inputs.limit_positive);
+      EXPECT_EQ(read.at("home"), found.inputs.home);
+      EXPECT_EQ(read.at("index_passed"), found.inputs.index);
+      EXPECT_EQ(read.at("counter"), 7);
+      if (format == Format::fd) {
+        EXPECT_EQ(read.at("sample_age"), static_cast<double>(-state.feedback.position_time_ns));
+        EXPECT_EQ(read.at("index_position"), sim::to_si(state.inputs.index_position));
+        EXPECT_EQ(read.at("velocity"), sim::to_si(state.feedback.velocity));
+      }
+    }
+    Command<S> command;
+    command.enable = true;
+    ASSERT_TRUE(sim::convert(-17.25, command.voltage[2]));
+    const Frame frame = encode_command(format, 6, 3, command);
+    EXPECT_EQ(dbc.at(frame.id).at("voltage_C").read(frame), -17.25);
+    EXPECT_EQ(dbc.at(frame.id).at("enable").read(frame), 1.0);
+    EXPECT_EQ(dbc.at(sync_id).at("tick").read(encode_sync(4000000000u)), 4e9);
+  }
+}
+
+}  // namespace
+}  // namespace stiction::hal::can
