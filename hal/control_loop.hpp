@@ -12,6 +12,12 @@
 
 namespace stiction::hal {
 
+// Whose power a fault takes off in its tick.
+enum class FaultScope {
+  all_axes,  // a path is lost with any of its axes
+  own_axis,  // the others are stopped by who runs the loop
+};
+
 template <Backend B>
 class ControlLoop {
  public:
@@ -21,9 +27,11 @@ class ControlLoop {
   // where they are.
   // `compensations`: as many, or none where no axis has friction compensation.
   ControlLoop(B& backend, std::span<const AxisConfig<S>> configs, Ticker ticker,
-              std::span<const FrictionCompensationConfig<S>> compensations = {})
+              std::span<const FrictionCompensationConfig<S>> compensations = {},
+              FaultScope scope = FaultScope::all_axes)
       : backend_(backend),
         ticker_(ticker),
+        scope_(scope),
         feedback_(configs.size()),
         command_(configs.size()),
         signals_(configs.size()),
@@ -39,7 +47,7 @@ class ControlLoop {
     }
   }
 
-  // Controls this tick with one set-point an axis, then waits for the next. A fault of one axis stops all of them.
+  // Controls this tick with one set-point an axis, then waits for the next.
   void tick(std::span<const SetPoint<S>> set_points) {
     control(set_points, [this](std::size_t axis) -> AxisSignals<S>& { return signals_[axis]; });
   }
@@ -82,7 +90,7 @@ class ControlLoop {
       fault_seen |= axis.fault() != Fault::none;
       ++i;
     }
-    if (fault_seen)
+    if (fault_seen && scope_ == FaultScope::all_axes)
       for (auto& command : command_) command = {};
     backend_.write(command_);
     ticker_.advance();
@@ -101,6 +109,7 @@ class ControlLoop {
 
   B& backend_;
   Ticker ticker_;
+  FaultScope scope_;
   std::int64_t now_ns_ = 0;
   std::vector<Axis<S>> axes_;
   std::vector<Feedback<S>> feedback_;

@@ -118,10 +118,12 @@ struct Table<LineSetup> : EmptyTable<LineSetup> {
 template <>
 struct Table<DriveAxisSetup> : EmptyTable<DriveAxisSetup> {
   static constexpr std::string_view text = "one axis as the drive's programme runs it";
-  static constexpr std::array<Parameter<DriveAxisSetup>, 8> parameters{{
+  static constexpr std::array<Parameter<DriveAxisSetup>, 9> parameters{{
       {"node", "1", {0, 127}, &DriveAxisSetup::node, 0.0, "node of its power stage and encoder on the bus; 0: none"},
       {"quick_stop_deceleration", "m/s^2", positive(500.0), &DriveAxisSetup::quick_stop_deceleration, 10.0,
        "deceleration of a controlled stop"},
+      {"brake_time", "s", not_negative(10.0), &DriveAxisSetup::brake_time, 0.0,
+       "time that the brake takes to open or to close"},
       {"frozen_distance", "m", positive(0.1), &DriveAxisSetup::frozen_distance, 100e-6,
        "way of the set-point during which the encoder must show another position"},
       {"encoder_jump", "m", positive(0.1), &DriveAxisSetup::encoder_jump, 5e-6,

@@ -63,6 +63,7 @@ struct LineSetup {
 struct DriveAxisSetup {
   int node = 0;                                      // of the axis' power stage and encoder on the bus; 0: none
   double quick_stop_deceleration = 10.0;             // m/s^2
+  double brake_time = 0.0;                           // s, that the brake takes to open or to close
   double frozen_distance = 100e-6;                   // m
   double encoder_jump = 5e-6;                        // m
   std::optional<double> current_sum;                 // A; none: a twentieth of the current limit

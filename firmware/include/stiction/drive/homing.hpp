@@ -1,0 +1,126 @@
+// Finds the zero of an axis whose encoder does not know it: homing methods of CiA 402 (IEC 61800-7-201, homing mode,
+// 6098h) as a generator of set-points. The set-points are those of the encoder's own coordinates; what comes out is
+// where the machine's zero lies in these. Fixed work.
+#pragma once
+
+#include <cstdint>
+
+#include "stiction/drive/exchange.hpp"
+#include "stiction/motion/velocity_ramp.hpp"
+#include "stiction/number/fixed.hpp"
+
+namespace stiction {
+
+// Numbers of 6098h.
+enum class HomingMethod : std::int8_t {
+  none = 0,             // the encoder is absolute
+  limit_negative = 17,  // onto the negative limit switch and off it again: where it opens
+  limit_positive = 18,
+  index_negative = 33,  // the next index mark in -x
+  index_positive = 34,
+  here = 35,  // where the axis stands
+};
+
+template <class S>
+struct HomingConfig {
+  HomingMethod method = HomingMethod::none;
+  typename S::Velocity search_speed{};  // to the switch
+  typename S::Velocity creep_speed{};   // off the switch, or to the index
+  typename S::Position offset{};        // the machine's position of the mark
+  typename S::Position longest_way{};   // from the start to the mark
+  std::uint32_t longest_ticks = 0;      // of it all
+};
+
+template <class S>
+class Homing {
+ public:
+  using Position = typename S::Position;
+  using Velocity = typename S::Velocity;
+  using Ramp = VelocityRamp<S>;
+
+  enum class Phase : std::uint8_t {
+    idle,
+    search,  // towards the switch
+    leave,   // off it, or towards the index
+    settle,  // the mark is known; to standstill
+    done,
+    failed,  // no mark within the way or the time
+  };
+
+  explicit constexpr Homing(const HomingConfig<S>& config) : config_(config) {}
+
+  constexpr const HomingConfig<S>& config() const { return config_; }
+  constexpr Phase phase() const { return state_.phase; }
+  // Of the machine's zero in the encoder's coordinates, when done.
+  constexpr Position origin() const { return state_.origin; }
+  constexpr bool seeks_negative() const { return seeks(HomingMethod::limit_negative); }
+  constexpr bool seeks_positive() const { return seeks(HomingMethod::limit_positive); }
+
+  // Begins where the set-point is. `position`: measured, in the encoder's coordinates.
+  constexpr void start(Position position) {
+    state_ = {};
+    state_.begin = position;
+    state_.mark = position;
+    const bool to_switch =
+        config_.method == HomingMethod::limit_negative || config_.method == HomingMethod::limit_positive;
+    state_.phase = config_.method == HomingMethod::none   ? Phase::done
+                   : config_.method == HomingMethod::here ? Phase::settle
+                   : to_switch                            ? Phase::search
+                                                          : Phase::leave;
+  }
+
+  constexpr void stop() { state_.phase = Phase::idle; }
+
+  // The speed to which the set-point is to go in this tick. `set`: the set-point of the last tick.
+  constexpr Velocity step(const typename Ramp::State& set, Position measured, const DigitalInputs<S>& inputs) {
+    const bool negative_end = config_.method == HomingMethod::limit_negative;
+    const bool to_index =
+        config_.method == HomingMethod::index_negative || config_.method == HomingMethod::index_positive;
+    const bool at_switch = negative_end ? inputs.limit_negative : inputs.limit_positive;
+    // A switch that bounces while the axis still runs onto it marks nothing.
+    const bool leaving = negative_end ? set.velocity > Velocity{} : set.velocity < Velocity{};
+    const bool marked = to_index ? inputs.index : leaving && !at_switch;
+    SaturationCounter none;  // ends in `failed`, as it is beyond every way
+    const auto way = narrow<Position>(measured - state_.begin, none);
+    const bool too_far = way > config_.longest_way || way < -config_.longest_way;
+    const bool moving = state_.phase == Phase::search || state_.phase == Phase::leave;
+    state_.ticks += moving ? 1u : 0u;
+    if (moving && (too_far || state_.ticks > config_.longest_ticks)) {
+      state_.phase = Phase::failed;
+    } else if (state_.phase == Phase::search && at_switch) {
+      state_.phase = Phase::leave;
+    } else if (state_.phase == Phase::leave && marked) {
+      state_.mark = to_index ? inputs.index_position : measured;
+      state_.phase = Phase::settle;
+    } else if (state_.phase == Phase::settle && set.velocity == Velocity{}) {
+      state_.origin = narrow<Position>(state_.mark - config_.offset, none);
+      state_.phase = Phase::done;
+    }
+    return target();
+  }
+
+ private:
+  struct State {
+    Phase phase = Phase::idle;
+    Position begin{}, mark{}, origin{};
+    std::uint32_t ticks = 0;
+  };
+
+  constexpr bool seeks(HomingMethod method) const {
+    return config_.method == method && (state_.phase == Phase::search || state_.phase == Phase::leave);
+  }
+
+  constexpr Velocity target() const {
+    const bool to_negative =
+        config_.method == HomingMethod::limit_negative || config_.method == HomingMethod::index_negative;
+    const bool back = config_.method == HomingMethod::limit_negative || config_.method == HomingMethod::limit_positive;
+    if (state_.phase == Phase::search) return to_negative ? opposite(config_.search_speed) : config_.search_speed;
+    if (state_.phase != Phase::leave) return {};
+    return to_negative != back ? opposite(config_.creep_speed) : config_.creep_speed;
+  }
+
+  HomingConfig<S> config_;
+  State state_;
+};
+
+}  // namespace stiction

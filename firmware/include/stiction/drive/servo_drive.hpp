@@ -1,0 +1,347 @@
+// One axis as a drive: the state machine of CiA 402, the supervision, homing, controlled stops and the brake around the
+// cascade. before() a tick gives the cascade its set-point, starts and stops it; after() it takes over what the
+// cascade itself found. The cascade runs in the encoder's coordinates; set-points of outside and position() are the
+// machine's, which homing shifts.
+//
+// While the power stage is off the set-point follows the measured position, so that an enabled axis begins where it
+// stands. A fault whose reaction is a quick stop ends in a stop by the ramp; any other fault on the way takes the power
+// off at once, and so does a stop that is not over stop_margin_ticks after its set-point came to rest.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "stiction/control/commutation.hpp"
+#include "stiction/drive/axis.hpp"
+#include "stiction/drive/homing.hpp"
+#include "stiction/drive/state_machine.hpp"
+#include "stiction/drive/supervision.hpp"
+#include "stiction/motion/velocity_ramp.hpp"
+
+namespace stiction {
+
+template <class S>
+struct ServoDriveConfig {
+  StateMachine::Config states{};
+  typename VelocityRamp<S>::Config ramp{};  // of stops and of homing
+  SupervisionConfig<S> supervision{};
+  HomingConfig<S> homing{};
+  typename S::Velocity standstill_speed{};  // of the measured speed, below which a stop is over
+  std::uint32_t stop_margin_ticks = 1600;   // 100 ms at 62.5 us
+  std::uint32_t brake_ticks = 0;            // that the brake takes to open or to close; 0: none
+};
+
+// What is asked of an axis in a tick.
+template <class S>
+struct DriveDemand {
+  std::uint16_t controlword = 0;
+  OperationMode mode = OperationMode::cyclic_position;
+  SetPoint<S> set_point{};    // csp, of the machine's coordinates
+  Fault cause = Fault::none;  // what the backend or the programme sees in this tick
+  bool quick_stop = false;    // another axis has a fault
+};
+
+// A fault as it was seen. `following`: it came on top of another one, or during its stop.
+template <class S>
+struct DriveEvent {
+  Fault fault = Fault::none;
+  bool following = false;
+  std::int64_t time_ns = 0;
+  typename S::Position position{};  // measured, the machine's coordinates
+  typename S::Velocity set_velocity{};
+};
+
+template <class S>
+class ServoDrive {
+ public:
+  using Position = typename S::Position;
+  using Velocity = typename S::Velocity;
+  using Ramp = VelocityRamp<S>;
+
+  // Ticks of a healthy axis at rest before the drive is ready: a current sensor's offset shows in it.
+  static constexpr std::uint8_t self_test_ticks = 64;
+  static constexpr std::uint8_t standstill_ticks = 16;
+
+  explicit constexpr ServoDrive(const ServoDriveConfig<S>& config)
+      : config_(config), machine_(config.states), supervision_(config.supervision), homing_(config.homing) {
+    referenced_ = config.homing.method == HomingMethod::none;
+  }
+
+  // Takes the power off and begins with the self-test. Before the first tick, with its feedback.
+  constexpr void start(const Feedback<S>& feedback, Axis<S>& axis) {
+    measured_ = feedback.position;
+    last_ = {feedback.position, {}};
+    axis.start(feedback);
+    axis.stop();
+  }
+
+  // The set-point of this tick for the cascade. Its power is on or off as the drive's state says.
+  constexpr SetPoint<S> before(const DriveDemand<S>& demand, const Feedback<S>& feedback,
+                               const DigitalInputs<S>& inputs, std::int64_t now_ns, Axis<S>& axis) {
+    event_ = {};
+    const Fault supervised = supervision_.step(seen(feedback, inputs, now_ns, axis));
+    if (supervision_.fresh()) measured_ = feedback.position;
+    const bool unfound = homing_.phase() == Homing<S>::Phase::failed;
+    const Fault found = demand.cause != Fault::none ? demand.cause
+                        : supervised != Fault::none ? supervised
+                        : unfound                   ? Fault::homing
+                                                    : Fault::none;
+    raise(found, now_ns, axis);
+    const bool present = found != Fault::none || cause_holds(demand, feedback, axis);
+    self_test_ = present ? 0 : self_test_ < self_test_ticks ? static_cast<std::uint8_t>(self_test_ + 1) : self_test_;
+    advance_states(demand, feedback, present, axis);
+    return set_point(demand, inputs);
+  }
+
+  // Of the tick that the cascade has made.
+  constexpr void after(const AxisSignals<S>& signals, Axis<S>& axis) {
+    standing_ = exceeds(signals.v, config_.standstill_speed) ? 0
+                : standing_ < standstill_ticks               ? static_cast<std::uint8_t>(standing_ + 1)
+                                                             : standing_;
+    v_ = signals.v;
+    i_set_ = signals.i_set;
+    event_ = {};
+    if (axis.fault() == fault_ || axis.fault() == Fault::none) return;
+    raise(axis.fault(), axis.fault_time_ns(), axis);
+    machine_.step(controlword_, {.fault = fault_raised_});
+  }
+
+  constexpr DriveState state() const { return machine_.state(); }
+  constexpr Fault fault() const { return fault_; }  // the first one, latched until a reset is taken
+  constexpr bool powered() const { return powered_; }
+  constexpr bool brake_released() const { return powered_ && !brake_closing_; }
+  constexpr bool referenced() const { return referenced_; }
+  constexpr Position origin() const { return origin_; }  // of the machine's coordinates in the encoder's
+  constexpr Position position() const { return to_machine(measured_); }
+  // Where the set-point stands, machine's coordinates: where a source of set-points begins after enabling or homing.
+  constexpr Position set_position() const { return to_machine(last_.position); }
+  constexpr const DriveEvent<S>& event() const { return event_; }  // of this tick; Fault::none: nothing happened
+  constexpr typename Homing<S>::Phase homing_phase() const { return homing_.phase(); }
+
+  constexpr std::uint16_t statusword() const {
+    std::uint16_t word = statusword::of(machine_.state()) | statusword::remote_bit;
+    if (powered_) word |= statusword::voltage_bit;
+    if (mode_ == OperationMode::homing) {
+      using Phase = typename Homing<S>::Phase;
+      if (homing_.phase() == Phase::done) word |= statusword::homed_bit | statusword::target_bit;
+      if (homing_.phase() == Phase::failed) word |= statusword::homing_error_bit;
+    } else if (follows_) {
+      word |= statusword::follows_bit;
+    }
+    return word;
+  }
+
+ private:
+  constexpr Position to_machine(Position x) const {
+    SaturationCounter none;
+    return narrow<Position>(x - origin_, none);
+  }
+
+  constexpr typename Supervision<S>::Seen seen(const Feedback<S>& feedback, const DigitalInputs<S>& inputs,
+                                               std::int64_t now_ns, const Axis<S>& axis) {
+    typename Supervision<S>::Seen seen{};
+    seen.feedback = feedback;
+    seen.inputs = inputs;
+    seen.now_ns = now_ns;
+    seen.powered = powered_;
+    seen.current = force_current(feedback, axis);
+    seen.set_position = last_.position;
+    seen.set_velocity = last_.velocity;
+    seen.referenced = referenced_;
+    seen.position = to_machine(feedback.position_valid ? feedback.position : measured_);
+    seen.seeks_negative = homing_.seeks_negative();
+    seen.seeks_positive = homing_.seeks_positive();
+    return seen;
+  }
+
+  constexpr typename S::Current force_current(const Feedback<S>& feedback, const Axis<S>& axis) {
+    const auto& config = axis.config();
+    if (config.current_loop == CurrentLoop::direct) return feedback.current[0];
+    if (config.current_loop == CurrentLoop::none) return i_set_;
+    const auto x = feedback.position_valid ? feedback.position : measured_;
+    const auto phases = Commutation<S>::phases(S::angle(x, config.inverse_pole_pair_pitch));
+    return Commutation<S>::amplitude(feedback.current, phases, saturations_);
+  }
+
+  // Conditions behind faults of the axis that would come back right after a reset.
+  constexpr bool cause_holds(const DriveDemand<S>& demand, const Feedback<S>& feedback, const Axis<S>& axis) const {
+    const auto& config = axis.config();
+    bool holds = feedback.fault || !supervision_.fresh() || (fault_ == Fault::set_point && !demand.set_point.valid);
+    for (const auto i : feedback.current) holds |= exceeds(i, config.over_current_fault);
+    return holds || exceeds(v_, config.over_speed_fault);
+  }
+
+  constexpr void raise(Fault fault, std::int64_t now_ns, Axis<S>& axis) {
+    fault_raised_ = fault != Fault::none && fault != fault_;
+    if (!fault_raised_) return;
+    const bool following = fault_ != Fault::none;
+    if (following_ != Fault::none) return;
+    event_ = {fault, following, now_ns, position(), last_.velocity};
+    (following ? following_ : fault_) = fault;
+    const auto* row = description_of(fault);
+    const bool stops = !following && row != nullptr && row->reaction == Reaction::quick_stop && powered_;
+    if (stops) {
+      stopping_ = true;
+    } else {
+      axis.trip(fault, now_ns);
+      power_off(axis);
+    }
+  }
+
+  constexpr void power_off(Axis<S>& axis) {
+    axis.stop();
+    homing_.stop();
+    powered_ = false;
+    stopping_ = false;
+    follows_ = false;
+  }
+
+  constexpr void advance_states(const DriveDemand<S>& demand, const Feedback<S>& feedback, bool present,
+                                Axis<S>& axis) {
+    mode_ = demand.mode;
+    controlword_ = demand.controlword;
+    const auto before = machine_.state();
+    if (before == DriveState::operation_enabled) {
+      const auto command = command_of(demand.controlword);
+      stopping_ |= command == DriveCommand::shutdown || command == DriveCommand::switch_on;
+      // A stop once begun is finished: by its end the set-points have gone on.
+      if (stopping_ && command == DriveCommand::enable_operation)
+        controlword_ = static_cast<std::uint16_t>(controlword_ & ~controlword::enable_operation_bit);
+    }
+    const auto taken = machine_.step(controlword_, {.initialised = self_test_ == self_test_ticks,
+                                                    .fault = fault_raised_,
+                                                    .quick_stop = demand.quick_stop,
+                                                    .stop_ended = stop_ended(),
+                                                    .cause_present = present});
+    switch (taken) {
+      case 4:
+        power_on(feedback, axis);
+        break;
+      case 11:
+        stopping_ = true;
+        break;
+      case 15:
+        forget(feedback, axis);
+        break;
+      case 16:
+        stopping_ = false;
+        stop_ticks_ = 0;
+        brake_closing_ = false;
+        hold_ticks_ = config_.brake_ticks;
+        break;
+      default:
+        break;
+    }
+    const auto now = machine_.state();
+    if (powered_ && now != DriveState::operation_enabled && now != DriveState::quick_stop_active &&
+        now != DriveState::fault_reaction_active)
+      power_off(axis);
+  }
+
+  constexpr void power_on(const Feedback<S>& feedback, Axis<S>& axis) {
+    restart(feedback, axis);
+    powered_ = true;
+    stopping_ = false;
+    brake_closing_ = false;
+    hold_ticks_ = config_.brake_ticks;
+    stop_ticks_ = 0;
+    standing_ = 0;
+    last_ = {measured_, {}};
+  }
+
+  constexpr void restart(Feedback<S> feedback, Axis<S>& axis) const {
+    feedback.position = measured_;  // of a tick that may have brought none
+    axis.start(feedback);
+  }
+
+  constexpr void forget(const Feedback<S>& feedback, Axis<S>& axis) {
+    const bool lost = lost_by(fault_) || lost_by(following_);
+    if (lost && config_.homing.method != HomingMethod::none) referenced_ = false;
+    fault_ = following_ = Fault::none;
+    supervision_.restart();
+    restart(feedback, axis);
+    axis.stop();
+  }
+
+  // Whether the encoder may have lost its place.
+  static constexpr bool lost_by(Fault fault) {
+    return fault == Fault::encoder_frozen || fault == Fault::encoder_jump || fault == Fault::position_lost;
+  }
+
+  // The set-point has come to rest and the carriage stands, or the margin is over; then the brake has closed.
+  constexpr bool stop_ended() {
+    if (!stopping_) return true;
+    if (last_.velocity != Velocity{}) return false;
+    if (!brake_closing_) {
+      ++stop_ticks_;
+      brake_closing_ = standing_ == standstill_ticks || stop_ticks_ > config_.stop_margin_ticks;
+      hold_ticks_ = config_.brake_ticks;
+    }
+    if (!brake_closing_) return false;
+    if (hold_ticks_ == 0) return true;
+    --hold_ticks_;
+    return false;
+  }
+
+  constexpr SetPoint<S> set_point(const DriveDemand<S>& demand, const DigitalInputs<S>& inputs) {
+    follows_ = false;
+    if (!powered_) {
+      last_ = {measured_, {}};
+      return {last_.position, {}, {}};
+    }
+    if (stopping_ || machine_.state() != DriveState::operation_enabled) return ramped({});
+    if (hold_ticks_ != 0) {  // the brake opens
+      --hold_ticks_;
+      return ramped({});
+    }
+    if (mode_ == OperationMode::homing) return ramped(homing_speed(inputs));
+    homing_.stop();
+    follows_ = true;
+    SetPoint<S> set = demand.set_point;
+    set.position = narrow<Position>(set.position + origin_, saturations_);
+    last_ = {set.position, set.velocity};
+    return set;
+  }
+
+  constexpr SetPoint<S> ramped(Velocity target) {
+    const auto acceleration = Ramp::step(config_.ramp, last_, target, saturations_);
+    return {last_.position, last_.velocity, acceleration};
+  }
+
+  constexpr Velocity homing_speed(const DigitalInputs<S>& inputs) {
+    using Phase = typename Homing<S>::Phase;
+    const bool wanted = (controlword_ & controlword::homing_start_bit) != 0;
+    if (!wanted) homing_.stop();
+    if (wanted && homing_.phase() == Phase::idle) {
+      homing_.start(measured_);
+      referenced_ = false;
+    }
+    const auto speed = homing_.step(last_, measured_, inputs);
+    if (homing_.phase() == Phase::done && !referenced_) {
+      origin_ = homing_.origin();
+      referenced_ = true;
+    }
+    return speed;
+  }
+
+  ServoDriveConfig<S> config_;
+  StateMachine machine_;
+  Supervision<S> supervision_;
+  Homing<S> homing_;
+
+  OperationMode mode_ = OperationMode::cyclic_position;
+  std::uint16_t controlword_ = 0;
+  Fault fault_ = Fault::none, following_ = Fault::none;
+  bool fault_raised_ = false;
+  bool powered_ = false, stopping_ = false, brake_closing_ = false, follows_ = false, referenced_ = false;
+  std::uint8_t self_test_ = 0, standing_ = 0;
+  std::uint32_t hold_ticks_ = 0, stop_ticks_ = 0;
+  Position measured_{}, origin_{};
+  Velocity v_{};
+  typename S::Current i_set_{};  // of the last tick
+  typename Ramp::State last_{};  // the set-point of the last tick, the encoder's coordinates
+  DriveEvent<S> event_{};
+  SaturationCounter saturations_;
+};
+
+}  // namespace stiction

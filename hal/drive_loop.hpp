@@ -1,0 +1,150 @@
+// All axes of a machine as drives over a backend: the control loop with state machines, supervision, homing and brakes
+// around it. A fault of one axis stops the others by a quick stop each; none can be enabled before every fault is
+// reset. Allocates at construction only.
+//
+// Use: a tick is set_controlword()/set_mode()/trip() as wanted, then tick(set_points), then what became of it:
+// statusword(), fault(), next_event(). stiction::controlword_to_enable() walks an axis to operation enabled.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "hal/backend.hpp"
+#include "hal/control_loop.hpp"
+#include "hal/tick_watch.hpp"
+#include "stiction/drive/servo_drive.hpp"
+
+namespace stiction::hal {
+
+// A backend that drives holding brakes.
+template <class B>
+concept BrakeBackend = Backend<B> && requires(B backend, std::size_t axis, bool released) {
+  { backend.set_brake(axis, released) } -> std::same_as<void>;
+};
+
+template <class S>
+struct AxisEvent {
+  std::size_t axis = 0;
+  DriveEvent<S> event{};
+};
+
+template <Backend B>
+class DriveLoop {
+ public:
+  using S = typename B::Signals;
+
+  // Events that wait for next_event(); what comes on top is counted and dropped.
+  static constexpr std::size_t event_capacity = 64;
+
+  // One of each configuration an axis. The first tick happens here, with the power off.
+  DriveLoop(B& backend, std::span<const AxisConfig<S>> axes, std::span<const ServoDriveConfig<S>> drives, Ticker ticker,
+            std::span<const FrictionCompensationConfig<S>> compensations = {})
+      : backend_(backend),
+        loop_(backend, axes, ticker, compensations, FaultScope::own_axis),
+        watch_(ticker.period_ns()),
+        demands_(drives.size()),
+        trips_(drives.size(), Fault::none),
+        inputs_(drives.size()),
+        set_(drives.size()) {
+    drives_.reserve(drives.size());
+    for (const auto& config : drives) drives_.emplace_back(config);
+    for (std::size_t i = 0; i < drives_.size(); ++i) drives_[i].start(loop_.feedback()[i], loop_.axes()[i]);
+  }
+
+  std::size_t axis_count() const { return drives_.size(); }
+
+  // Hold until changed.
+  void set_controlword(std::size_t axis, std::uint16_t word) { demands_[axis].controlword = word; }
+  void set_mode(std::size_t axis, OperationMode mode) { demands_[axis].mode = mode; }
+  // A fault that the programme sees (Detector::programme), in the coming tick. As long as its cause holds it is to be
+  // repeated each tick: no reset is taken in a tick with one.
+  void trip(std::size_t axis, Fault fault) { trips_[axis] = fault; }
+  void trip(Fault fault) {
+    for (auto& trip : trips_) trip = fault;
+  }
+
+  // One tick with a set-point an axis (csp, of the machine's coordinates), then waits for the next.
+  void tick(std::span<const SetPoint<S>> set_points) {
+    if constexpr (WiredBackend<B>) backend_.read_inputs(inputs_);
+    const Fault clock = watch_.step(loop_.now_ns());
+    const bool stop_all = faulted();
+    for (std::size_t i = 0; i < drives_.size(); ++i) {
+      demands_[i].set_point = set_points[i];
+      demands_[i].quick_stop = stop_all;
+      demands_[i].cause = cause(i, clock);
+      set_[i] = drives_[i].before(demands_[i], loop_.feedback()[i], inputs_[i], loop_.now_ns(), loop_.axes()[i]);
+      note(i);
+      if constexpr (BrakeBackend<B>) backend_.set_brake(i, drives_[i].brake_released());
+      trips_[i] = Fault::none;
+    }
+    loop_.tick(set_);
+    for (std::size_t i = 0; i < drives_.size(); ++i) {
+      drives_[i].after(loop_.signals()[i], loop_.axes()[i]);
+      note(i);
+    }
+  }
+
+  // Of the last tick.
+  const ServoDrive<S>& drive(std::size_t axis) const { return drives_[axis]; }
+  DriveState state(std::size_t axis) const { return drives_[axis].state(); }
+  std::uint16_t statusword(std::size_t axis) const { return drives_[axis].statusword(); }
+  Fault fault(std::size_t axis) const { return drives_[axis].fault(); }
+  bool faulted() const {
+    for (const auto& drive : drives_)
+      if (drive.fault() != Fault::none) return true;
+    return false;
+  }
+  bool all_in(DriveState state) const {
+    for (const auto& drive : drives_)
+      if (drive.state() != state) return false;
+    return true;
+  }
+  const ControlLoop<B>& loop() const { return loop_; }  // signals, feedback, time
+  std::int64_t now_ns() const { return loop_.now_ns(); }
+  std::uint64_t missed_ticks() const { return watch_.missed(); }
+
+  // Takes the oldest event that waits; false where there is none.
+  bool next_event(AxisEvent<S>& event) {
+    if (waiting_ == 0) return false;
+    event = events_[first_];
+    first_ = (first_ + 1) % event_capacity;
+    --waiting_;
+    return true;
+  }
+  std::uint64_t dropped_events() const { return dropped_; }
+
+ private:
+  Fault cause(std::size_t axis, Fault clock) {
+    if (trips_[axis] != Fault::none) return trips_[axis];
+    if (clock != Fault::none) return clock;
+    if constexpr (WiredBackend<B>) return backend_.fault(axis);
+    return Fault::none;
+  }
+
+  void note(std::size_t axis) {
+    const auto& event = drives_[axis].event();
+    if (event.fault == Fault::none) return;
+    if (waiting_ == event_capacity) {
+      ++dropped_;
+      return;
+    }
+    events_[(first_ + waiting_) % event_capacity] = {axis, event};
+    ++waiting_;
+  }
+
+  B& backend_;
+  ControlLoop<B> loop_;
+  TickWatch watch_;
+  std::vector<ServoDrive<S>> drives_;
+  std::vector<DriveDemand<S>> demands_;
+  std::vector<Fault> trips_;
+  std::vector<DigitalInputs<S>> inputs_;
+  std::vector<SetPoint<S>> set_;
+  std::array<AxisEvent<S>, event_capacity> events_{};
+  std::size_t first_ = 0, waiting_ = 0;
+  std::uint64_t dropped_ = 0;
+};
+
+}  // namespace stiction::hal

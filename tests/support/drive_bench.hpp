@@ -1,0 +1,163 @@
+// The cross table as drives over a backend with faults on command: switches on, moves circles, keeps what happened.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "hal/drive_loop.hpp"
+#include "hal/simulated/faulty_backend.hpp"
+#include "hal/simulated/simulated_backend.hpp"
+#include "sim/control/drive_configuration.hpp"
+#include "sim/experiment/circle_path.hpp"
+#include "stiction/number/fixed_signals.hpp"
+#include "tests/support/closed_loop.hpp"
+
+namespace stiction::test {
+
+// What a machine file without [drive] says.
+inline sim::DriveSetup drive_setup(const sim::Machine& machine) {
+  sim::DriveSetup setup;
+  for (const auto& axis : machine.axes) {
+    auto& of_axis = setup.axes[axis.name];
+    const double limit = axis.inverter.current_limit * axis.motor.count;
+    of_axis.current_sum = limit / 20.0;
+    of_axis.runaway_current = limit / 5.0;
+    of_axis.negative_end = -axis.travel / 2.0;
+    of_axis.positive_end = axis.travel / 2.0;
+  }
+  return setup;
+}
+
+// A circle that begins at rest where the axes are. Its centre lies on the way to the machine's zero, so that circles
+// one after the other stay around it.
+class CircleFromHere {
+ public:
+  CircleFromHere(const sim::CircleSettings& settings, double x, double y) : path_(settings) {
+    const double distance = std::hypot(x, y);
+    cosine_ = distance > 0.0 ? x / distance : 1.0;
+    sine_ = distance > 0.0 ? y / distance : 0.0;
+    centre_ = {x - settings.radius * cosine_, y - settings.radius * sine_};
+  }
+
+  std::array<sim::AxisSetPoint, 2> at(double t) const {
+    const auto [a, b] = path_.at(t).axes;
+    const auto turned = [&](double u, double v) {
+      return std::array{cosine_ * u - sine_ * v, sine_ * u + cosine_ * v};
+    };
+    const auto x = turned(a.position, b.position), v = turned(a.velocity, b.velocity),
+               acceleration = turned(a.acceleration, b.acceleration);
+    return {{{centre_[0] + x[0], v[0], acceleration[0]}, {centre_[1] + x[1], v[1], acceleration[1]}}};
+  }
+
+ private:
+  sim::CirclePath path_;
+  double cosine_, sine_;
+  std::array<double, 2> centre_{};
+};
+
+template <class Signals = FixedSignals>
+class DriveBench {
+ public:
+  using S = Signals;
+  using Simulated = hal::SimulatedBackend<S>;
+  using Faulty = hal::FaultyBackend<Simulated>;
+  using Loop = hal::DriveLoop<Faulty>;
+
+  enum class Want { off, on, quick_stop };
+
+  DriveBench(const sim::Machine& machine, const sim::DriveSetup& setup, std::uint64_t seed = 1)
+      : DriveBench(machine, sim::configure_drives<S>(machine, setup), seed) {}
+  DriveBench(const sim::Machine& machine, const std::vector<ServoDriveConfig<S>>& drives, std::uint64_t seed = 1)
+      : period(machine.timing.fast_period),
+        simulated(machine, std::array{0.09, 0.0}, seed),
+        backend(simulated, sim::fast_period_ns(machine.timing), machine.axes[0].encoder.increment),
+        loop(backend, configurations<S>(machine), drives, ticker_of(machine)) {
+    hold_here();
+  }
+
+  // The source of set-points stands still where the axes are.
+  void hold_here() {
+    for (std::size_t i = 0; i < 2; ++i) {
+      set_[i] = {};
+      set_[i].position = loop.drive(i).position();
+    }
+    circle_.clear();
+  }
+  void move(const sim::CircleSettings& settings) {
+    hold_here();
+    circle_.assign(1, CircleFromHere(settings, position(0), position(1)));
+    motion_ticks_ = 0;
+  }
+
+  void tick() {
+    for (std::size_t i = 0; i < 2; ++i) {
+      loop.set_controlword(i, word(i));
+      loop.set_mode(i, mode);
+    }
+    if (!circle_.empty()) {
+      const auto si = circle_.front().at(static_cast<double>(++motion_ticks_) * period);
+      for (std::size_t i = 0; i < 2; ++i) set_[i] = sim::to_set_point<S>(si[i]);
+    }
+    if (invalid_set_point) set_[0].valid = false;
+    loop.tick(set_);
+    ++ticks;
+    hal::AxisEvent<S> event;
+    while (loop.next_event(event)) events.push_back(event);
+  }
+  void run(int count) {
+    for (int i = 0; i < count; ++i) tick();
+  }
+  // Switches on and waits for it; false when the drives do not get there within 0.1 s.
+  bool enable() {
+    want = Want::on;
+    for (int i = 0; i < 1600; ++i) {
+      if (loop.all_in(DriveState::operation_enabled)) return true;
+      hold_here();
+      tick();
+    }
+    return false;
+  }
+  // A reset of every axis; false when one of them does not leave its fault.
+  bool reset() {
+    want = Want::off;
+    run(2);
+    resetting_ = true;
+    run(2);
+    resetting_ = false;
+    tick();
+    return !loop.faulted();
+  }
+
+  double position(std::size_t axis) const { return sim::to_si(loop.drive(axis).position()); }  // m, measured
+  bool powered(std::size_t axis) const { return loop.drive(axis).powered(); }
+
+  double period;
+  Simulated simulated;
+  Faulty backend;
+  Loop loop;
+  Want want = Want::off;
+  OperationMode mode = OperationMode::cyclic_position;
+  std::uint16_t extra_bits = 0;  // of the controlwords
+  bool invalid_set_point = false;
+  std::uint64_t ticks = 0;
+  std::vector<hal::AxisEvent<S>> events;
+
+ private:
+  std::uint16_t word(std::size_t axis) const {
+    if (resetting_) return controlword::fault_reset;
+    if (want == Want::off) return controlword::disable_voltage;
+    if (want == Want::quick_stop) return controlword::quick_stop;
+    return static_cast<std::uint16_t>(controlword_to_enable(loop.state(axis)) | extra_bits);
+  }
+
+  bool resetting_ = false;
+  std::array<SetPoint<S>, 2> set_{};
+  std::vector<CircleFromHere> circle_;
+  std::uint64_t motion_ticks_ = 0;
+};
+
+}  // namespace stiction::test
