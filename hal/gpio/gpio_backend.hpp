@@ -1,0 +1,65 @@
+// A machine on GPIO alone: incremental encoders by the edges of two lines, voltages by the kernel's PWM class, enable,
+// brake, fault and switches by lines. There is no current on it: it suits axes whose power stage takes a voltage as it
+// is (motor model "force"), not those whose current controllers run in the drive.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "hal/backend.hpp"
+#include "hal/gpio/config.hpp"
+#include "hal/gpio/inputs_outputs.hpp"
+#include "hal/gpio/lines.hpp"
+#include "hal/gpio/pwm.hpp"
+#include "hal/gpio/quadrature_input.hpp"
+#include "hal/tick_clock.hpp"
+
+namespace stiction::hal {
+
+class GpioBackend {
+ public:
+  using Signals = FixedSignals;
+
+  // `period_ns` of the fast loop. Reserves everything and enables nothing. Throws GpioError.
+  GpioBackend(const GpioBackendConfig& config, std::int64_t period_ns);
+  ~GpioBackend();  // power stages off before anything else is given back
+  GpioBackend(const GpioBackend&) = delete;
+  GpioBackend& operator=(const GpioBackend&) = delete;
+
+  std::size_t axis_count() const { return axes_.size(); }
+  std::int64_t wait_for_tick();
+  void read(std::span<Feedback<Signals>> feedback) const;
+  void write(std::span<const Command<Signals>> command);
+  void read_inputs(std::span<DigitalInputs<Signals>> inputs);
+
+  // None: GPIO has no bus of its own. What the encoder's lines show (encoder_fault) and a chip that stopped answering
+  // reach the axis as its fault input, in the tick that sees them.
+  Fault fault(std::size_t) const { return Fault::none; }
+  QuadratureFault encoder_fault(std::size_t axis) const { return axes_[axis]->encoder.fault(); }
+  std::uint64_t lost_edges(std::size_t axis) const;
+
+  // Forgets the encoder's fault; the axis has to be homed again.
+  void restart_encoder(std::size_t axis) { axes_[axis]->encoder.restart(); }
+
+  TickClock& clock() { return clock_; }
+
+ private:
+  struct Axis {
+    Axis(Lines& lines, const GpioAxisConfig& config)
+        : encoder(lines, config.encoder, config.lines.name), bridge(config.pwm) {}
+    QuadratureInput encoder;
+    PwmBridge bridge;
+  };
+
+  TickClock clock_;
+  Lines lines_;
+  GpioInputsOutputs io_;
+  std::vector<std::unique_ptr<Axis>> axes_;
+  bool started_ = false;
+};
+
+static_assert(WiredBackend<GpioBackend>);
+
+}  // namespace stiction::hal

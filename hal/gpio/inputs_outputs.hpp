@@ -1,0 +1,45 @@
+// Enable, brake, fault and switches of every axis on digital lines: beside a power stage on another bus
+// (beside_lines.hpp), or as part of the GPIO backend.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "hal/gpio/config.hpp"
+#include "hal/gpio/lines.hpp"
+#include "stiction/drive/exchange.hpp"
+#include "stiction/number/fixed_signals.hpp"
+
+namespace stiction::hal {
+
+class GpioInputsOutputs {
+ public:
+  // Reserves the lines of every axis, outputs inactive. `lines` must outlive this. Throws GpioError.
+  GpioInputsOutputs(Lines& lines, std::span<const AxisLines> axes);
+
+  // From the last Lines::poll. Lines that are not wired leave the inputs as they are.
+  void read_inputs(std::size_t axis, DigitalInputs<FixedSignals>& inputs) const;
+  // The power stage's fault input, or a chip that failed.
+  bool fault(std::size_t axis) const;
+  bool has_index(std::size_t axis) const { return axes_[axis].index.has_value(); }
+  std::span<const Edge> index_edges(std::size_t axis) const;  // empty where none is wired
+  bool index_queue_was_full(std::size_t axis) const;
+  // Edges of the axis' lines that must have been lost, at least; none of them is a fault by itself.
+  std::uint64_t lost_edges(std::size_t axis) const;
+
+  // Power stage and brake: the brake is released while the power stage is on, and off it is engaged with it.
+  void set_enable(std::size_t axis, bool on);
+
+ private:
+  using Place = std::optional<std::size_t>;
+  struct Axis {
+    Place enable, brake, fault, limit_negative, limit_positive, home, index;
+  };
+
+  Lines& lines_;
+  std::vector<Axis> axes_;
+};
+
+}  // namespace stiction::hal

@@ -1,0 +1,91 @@
+// Lines of one gpiochip through libgpiod 1.6 (version 1 of the kernel's character device): outputs, and inputs whose
+// edges carry the kernel's time stamps.
+//
+// A tick costs one poll, a read for each line that changed, and one look at one line's level, each line in turn: an
+// edge of which the kernel dropped two shows in no sequence of edges, only in a level that stays different.
+#pragma once
+
+#include <poll.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "hal/gpio/config.hpp"
+#include "hal/gpio/edge_queue.hpp"
+
+struct gpiod_chip;
+struct gpiod_line;
+
+namespace stiction::hal {
+
+// A chip, line or channel that cannot be had; what() says which, why, and what to do.
+class GpioError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+class Lines {
+ public:
+  // `chip`: path, name, label or number. Throws GpioError.
+  Lines(const std::string& chip, Bias bias);
+  ~Lines();  // outputs go inactive first
+  Lines(const Lines&) = delete;
+  Lines& operator=(const Lines&) = delete;
+
+  // Reserve a line for this process; `name` is what the kernel shows as its user and what messages call it. Both
+  // return the line's place for the calls below. Throw GpioError.
+  std::size_t add_input(const LineConfig& line, const std::string& name);
+  std::size_t add_output(const LineConfig& line, const std::string& name);  // inactive
+
+  // Takes over what happened since the last call. Never waits, allocates nothing. `now_ns`: CLOCK_MONOTONIC.
+  void poll(std::int64_t now_ns);
+
+  // Of an input, from the last poll. Levels and edges are those of the meaning, whatever the wiring.
+  bool level(std::size_t input) const { return inputs_[input].level; }
+  bool was_active(std::size_t input) const;  // at some time since the poll before
+  std::span<const Edge> edges(std::size_t input) const;
+  bool queue_was_full(std::size_t input) const { return inputs_[input].edge_count == kernel_queue; }
+  std::uint64_t lost_edges(std::size_t input) const { return inputs_[input].lost; }  // at least, since the start
+
+  void set(std::size_t output, bool active);  // a system call only when it changes
+
+  // Whether the chip stopped answering: nothing that it said counts any more.
+  bool failed() const { return failed_; }
+
+ private:
+  struct Input {
+    gpiod_line* line = nullptr;
+    bool level = false;
+    std::array<Edge, kernel_queue> edges{};
+    std::size_t edge_count = 0;
+    std::uint64_t lost = 0;
+    std::int64_t differs_since_ns = 0;  // the level from what the edges say; 0: it does not
+  };
+  struct Output {
+    gpiod_line* line = nullptr;
+    bool active = false;
+  };
+
+  gpiod_line* line_of(const LineConfig& line, const std::string& name);
+  [[noreturn]] void refuse(gpiod_line* line, const std::string& name) const;
+  void settle_level(Input& input, int descriptor);
+  void drain(Input& input, int descriptor);
+  void look_at(Input& input, std::int64_t now_ns);
+
+  std::unique_ptr<gpiod_chip, void (*)(gpiod_chip*)> chip_;
+  Bias bias_;
+  std::string chip_name_;
+  std::vector<Input> inputs_;
+  std::vector<pollfd> descriptors_;  // of the inputs
+  std::vector<Output> outputs_;
+  std::vector<std::pair<int, std::string>> taken_;
+  std::size_t looked_at_ = 0;
+  bool failed_ = false;
+};
+
+}  // namespace stiction::hal
