@@ -9,8 +9,9 @@
 namespace stiction::hal::can {
 namespace {
 
-constexpr std::uint32_t overload_window_ticks = 16;  // fault_table: bus overload
-constexpr std::uint32_t overload_frames = 16;
+// Read of the others' frames in a tick, so that a babbling node does not hold the loop: one more than is borne in
+// sixteen.
+constexpr std::uint32_t most_watched = FrameWatch::foreign_allowed + 1;
 
 // The nodes' own identifiers.
 std::vector<Filter> own_frames(const CanBackendConfig& config) {
@@ -50,9 +51,8 @@ CanBackend::CanBackend(const CanBackendConfig& config, TickClock& clock)
       nodes_socket_(config.interface, config.format, own_frames(config), false),
       watch_socket_(config.interface, config.format, all_others(config), true) {
   const auto format = properties(format_);
-  const auto ticks_a_second = static_cast<std::uint32_t>(1'000'000'000 / clock.period_ns());
   for (const int id : config.nodes)
-    nodes_.push_back({id, FrameWatch(format.feedback_frames, format.counter_mask, ticks_a_second)});
+    nodes_.push_back({id, AnswerCheck(format.feedback_frames, format.counter_mask), FrameWatch(clock.period_ns())});
 }
 
 std::int64_t CanBackend::wait_for_tick() {
@@ -60,7 +60,7 @@ std::int64_t CanBackend::wait_for_tick() {
   // The nodes follow the number, so that a tick that was missed here passes there as well.
   tick_ += started_ ? 1 + static_cast<std::uint32_t>(clock_.missed_before()) : 0;
   started_ = true;
-  for (auto& node : nodes_) node.watch.begin(tick_, now_ns_);
+  for (auto& node : nodes_) node.check.begin(tick_, now_ns_);
   send(encode_sync(tick_));
   return now_ns_;
 }
@@ -72,11 +72,12 @@ void CanBackend::send(const Frame& frame) {
 }
 
 bool CanBackend::complete() const {
-  return std::all_of(nodes_.begin(), nodes_.end(), [](const Node& node) { return node.watch.complete(); });
+  return std::all_of(nodes_.begin(), nodes_.end(), [](const Node& node) { return node.check.complete(); });
 }
 
 void CanBackend::read(std::span<Feedback<Signals>> feedback) {
   Received received;
+  of_nobody_now_ = 0;
   // From when the tick really began: a late tick waits as long for its answers as any other.
   const std::int64_t deadline = now_ns_ + clock_.lateness_ns() + answer_ns_;
   while (!complete() && nodes_socket_.receive(received, deadline)) take(received);
@@ -85,8 +86,12 @@ void CanBackend::read(std::span<Feedback<Signals>> feedback) {
   watch_bus();
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     auto& node = nodes_[i];
-    node.watch.end();
-    if (node.watch.complete()) {
+    node.check.end();
+    node.fault = node.watch.step({.valid = node.check.complete(),
+                                  .disturbed = node.check.bad_in_tick(),
+                                  .foreign = of_nobody_now_,
+                                  .bus_off = bus_off_});
+    if (node.check.complete()) {
       node.state = node.arriving;
       node.state.feedback.position_time_ns += now_ns_;
       feedback[i] = node.state.feedback;
@@ -103,34 +108,29 @@ void CanBackend::take(const Received& received) {
       std::find_if(nodes_.begin(), nodes_.end(), [&](const Node& each) { return each.id == address.node; });
   if (node == nodes_.end() || (address.kind != Kind::position && address.kind != Kind::current)) {
     ++bus_.of_nobody;  // a node's identifier with another format's size
-    ++of_nobody_in_window_;
+    ++of_nobody_now_;
     return;
   }
   std::uint32_t counter = 0;
   NodeFeedback state = node->arriving;
   if (!decode_feedback(format_, address.kind, received.frame, counter, state))
-    node->watch.take_damaged();
-  else if (node->watch.take(address.kind == Kind::current ? 1 : 0, counter, received.received_ns))
+    node->check.take_damaged();
+  else if (node->check.take(address.kind == Kind::current ? 1 : 0, counter, received.received_ns))
     node->arriving = state;
 }
 
-// A bounded number of frames a tick: a babbling node must not hold the loop.
 void CanBackend::watch_bus() {
   Received received;
-  for (std::uint32_t i = 0; i <= overload_frames && watch_socket_.receive(received, 0); ++i) {
+  for (std::uint32_t i = 0; i < most_watched && watch_socket_.receive(received, 0); ++i) {
     if (!received.error) {
       ++bus_.of_nobody;
-      ++of_nobody_in_window_;
+      ++of_nobody_now_;
       continue;
     }
     ++bus_.error_frames;
     if ((received.frame.id & CAN_ERR_BUSOFF) != 0) bus_off_ = true;
     if ((received.frame.id & CAN_ERR_RESTARTED) != 0) bus_off_ = false;
   }
-  overloaded_ = of_nobody_in_window_ > overload_frames;
-  if (++window_ticks_ < overload_window_ticks) return;
-  window_ticks_ = 0;
-  of_nobody_in_window_ = 0;
 }
 
 void CanBackend::read_inputs(std::span<DigitalInputs<Signals>> inputs) const {
@@ -141,12 +141,6 @@ void CanBackend::write(std::span<const Command<Signals>> command) {
   for (std::size_t i = 0; i < nodes_.size(); ++i) send(encode_command(format_, nodes_[i].id, tick_, command[i]));
 }
 
-Fault CanBackend::fault(std::size_t axis) const {
-  if (bus_off_) return Fault::bus_off;
-  if (const Fault fault = nodes_[axis].watch.fault(); fault != Fault::none) return fault;
-  return overloaded_ ? Fault::bus_overload : Fault::none;
-}
-
 bool CanBackend::find_nodes(int ticks, std::vector<int>& silent) {
   std::vector<Feedback<Signals>> feedback(nodes_.size());
   for (int i = 0; i < ticks; ++i) {
@@ -154,7 +148,7 @@ bool CanBackend::find_nodes(int ticks, std::vector<int>& silent) {
     read(feedback);
     silent.clear();
     for (const auto& node : nodes_)
-      if (!node.watch.complete()) silent.push_back(node.id);
+      if (!node.check.complete()) silent.push_back(node.id);
     if (silent.empty()) return true;
   }
   return false;

@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "hal/backend.hpp"
+#include "hal/can/answer_check.hpp"
 #include "hal/can/can_socket.hpp"
-#include "hal/can/frame_watch.hpp"
+#include "hal/frame_watch.hpp"
 #include "hal/tick_clock.hpp"
 
 namespace stiction::hal::can {
@@ -40,19 +41,21 @@ class CanBackend {
   void read(std::span<Feedback<Signals>> feedback);
   void read_inputs(std::span<DigitalInputs<Signals>> inputs) const;
   void write(std::span<const Command<Signals>> command);
-  Fault fault(std::size_t axis) const;
+  Fault fault(std::size_t axis) const { return nodes_[axis].fault; }
 
   // Whether every node has answered SYNC within `ticks` ticks; to be asked before the loop starts. No voltage is sent.
   // The nodes that did not are in `silent`.
   bool find_nodes(int ticks, std::vector<int>& silent);
 
-  const FrameCounts& counts(std::size_t axis) const { return nodes_[axis].watch.counts(); }
+  const AnswerCounts& counts(std::size_t axis) const { return nodes_[axis].check.counts(); }
   BusCounts bus_counts() const;
 
  private:
   struct Node {
     int id;
+    AnswerCheck check;
     FrameWatch watch;
+    Fault fault = Fault::none;
     NodeFeedback state{};
     NodeFeedback arriving{};
   };
@@ -72,10 +75,7 @@ class CanBackend {
   bool started_ = false;
   std::int64_t now_ns_ = 0;
   bool bus_off_ = false;
-  // Frames of nobody: the count now and that of the window's start.
-  std::uint32_t window_ticks_ = 0;
-  std::uint32_t of_nobody_in_window_ = 0;
-  bool overloaded_ = false;
+  std::uint32_t of_nobody_now_ = 0;  // in this tick
   BusCounts bus_;
 };
 

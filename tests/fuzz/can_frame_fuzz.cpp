@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "hal/can/frame_watch.hpp"
+#include "hal/can/answer_check.hpp"
 #include "hal/can/frames.hpp"
 
 namespace stiction::fuzz {
@@ -28,7 +28,7 @@ void seal_like(Format format, Frame& frame) {
   }
 }
 
-void try_frame(Format format, const Frame& frame, FrameWatch& watch) {
+void try_frame(Format format, const Frame& frame, AnswerCheck& watch) {
   const auto address = address_of(frame, format);
   std::uint32_t counter = 0;
   NodeFeedback state;
@@ -53,7 +53,7 @@ void try_frame(Format format, const Frame& frame, FrameWatch& watch) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  std::array watches{FrameWatch(2, 0x0F, 16000), FrameWatch(1, 0xFF, 16000)};
+  std::array watches{AnswerCheck(2, 0x0F), AnswerCheck(1, 0xFF)};
   std::array<bool, 2> open{};
   std::uint32_t tick = 0;
   // Each frame: identifier in two bytes, what to do, size, data.
