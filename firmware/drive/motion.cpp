@@ -8,6 +8,7 @@
 #include "sim/control/axis_configuration.hpp"
 #include "sim/control/compensation_configuration.hpp"
 #include "sim/experiment/circle_path.hpp"
+#include "sim/experiment/move_sequence.hpp"
 #include "sim/experiment/set_point.hpp"
 
 namespace stiction::drive {
@@ -40,13 +41,36 @@ Motion Motion::circle(const sim::Machine& machine, double feed) {
   return motion;
 }
 
-Motion Motion::hold(const sim::Machine& machine, std::span<const double> positions, double duration) {
-  Motion motion(machine.axes.size());
-  const auto ticks = static_cast<std::size_t>(std::ceil(duration / machine.timing.fast_period));
-  for (std::size_t i = 0; i < ticks; ++i)
-    for (const double position : positions)
-      motion.sets_.push_back(sim::to_set_point<FixedSignals>({.position = position}));
+Motion Motion::approach(const sim::Machine& machine, std::span<const double> positions) const {
+  constexpr double near = 1e-6;  // m: the first tick of the motion takes that up unnoticed
+  constexpr double speed = 0.02;  // m/s
+  constexpr sim::Dynamics gentle{0.5, 5.0};
+  constexpr double rest = 0.1;  // s, for the axes to swing in
+
+  const auto wanted = start();
+  std::vector<sim::MoveSequence> moves;
+  double duration = 0.0;
+  for (std::size_t i = 0; i < axes_; ++i) {
+    auto& move = moves.emplace_back(positions[i]);
+    const double distance = wanted[i] - positions[i];
+    if (std::abs(distance) < near) continue;
+    move.move(distance, speed, gentle);
+    duration = std::max(duration, move.duration() + rest);
+  }
+  Motion motion(axes_);
+  const auto ratio = static_cast<std::size_t>(sim::slow_ratio(machine.timing));
+  const auto slow_periods = static_cast<std::size_t>(std::ceil(duration / machine.timing.slow_period));
+  for (std::size_t tick = 0; tick < slow_periods * ratio; ++tick)
+    for (const auto& move : moves)
+      motion.sets_.push_back(
+          sim::to_set_point<FixedSignals>(move.at(static_cast<double>(tick) * machine.timing.fast_period)));
   return motion;
+}
+
+std::vector<double> Motion::start() const {
+  std::vector<double> positions;
+  for (const auto& set : at(0)) positions.push_back(sim::to_si(set.position));
+  return positions;
 }
 
 }  // namespace stiction::drive

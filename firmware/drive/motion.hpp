@@ -1,4 +1,4 @@
-// Motions that the programme can run by itself, for trying an axis out: set-points computed before the loop starts, so
+// Motions that the programme can run by itself, for trying a machine out: set-points computed before the loop starts, so
 // that the loop has nothing to compute in floating point and nothing to wait for.
 #pragma once
 
@@ -23,19 +23,21 @@ class Motion {
  public:
   using Set = SetPoint<FixedSignals>;
 
-  // The circle test at `feed` (m/s), two turns at rest at the start: the same set-points as `stiction simulate circle`.
+  explicit Motion(std::size_t axes) : axes_(axes) {}
+
+  // The circle test at `feed` (m/s): a start at rest and two turns, the set-points of `stiction simulate circle`.
   // Throws MotionError.
   static Motion circle(const sim::Machine& machine, double feed);
 
-  // Every axis stays where it is at the start (m) for a time (s).
-  static Motion hold(const sim::Machine& machine, std::span<const double> positions, double duration);
+  // From `positions` (m, one an axis) to where this motion begins, all axes at once, slowly and from rest to rest; none
+  // where they stand there already. Whole slow periods, so that what comes after begins with one.
+  Motion approach(const sim::Machine& machine, std::span<const double> positions) const;
 
   std::size_t ticks() const { return sets_.size() / axes_; }
   std::span<const Set> at(std::size_t tick) const { return {sets_.data() + tick * axes_, axes_}; }
+  std::vector<double> start() const;  // m, one an axis
 
  private:
-  explicit Motion(std::size_t axes) : axes_(axes) {}
-
   std::size_t axes_;
   std::vector<Set> sets_;  // tick by tick, all axes
 };

@@ -1,0 +1,85 @@
+#include "firmware/drive/configuration.hpp"
+
+#include <fmt/format.h>
+
+#include "firmware/drive/parameter_store.hpp"
+#include "hal/can/can_socket.hpp"
+#include "sim/control/compensation_configuration.hpp"
+#include "sim/control/drive_configuration.hpp"
+#include "sim/machine/drive_file.hpp"
+#include "sim/machine/machine_file.hpp"
+
+namespace stiction::drive {
+
+DriveConfiguration read_configuration(const DriveOptions& options) {
+  const auto file = sim::find_machine(options.machine);
+  const sim::ReadOptions read{options.circle.empty() ? "" : "circle", options.set};
+  auto machine = sim::read_machine(file, read);
+  if (machine.axes.empty())
+    throw StartRefused(fmt::format("{}: found no axis; expected a table [axis.NAME]", file.string()));
+  auto setup = sim::read_drive_setup(file, machine, read);
+  const auto period_ns = sim::fast_period_ns(machine.timing);
+  DriveConfiguration configuration{
+      .machine = std::move(machine),
+      .setup = std::move(setup),
+      .names = {},
+      .axes = {},
+      .drives = {},
+      .compensations = {},
+      .period_ns = period_ns,
+      .ticker = Ticker(period_ns, 1),
+  };
+  auto& c = configuration;
+  c.ticker = Ticker(period_ns, static_cast<std::uint32_t>(sim::slow_ratio(c.machine.timing)));
+  for (const auto& axis : c.machine.axes) {
+    c.names.push_back(axis.name);
+    c.axes.push_back(sim::configure_axis<FixedSignals>(c.machine.timing, axis));
+  }
+  c.drives = sim::configure_drives<FixedSignals>(c.machine, c.setup);
+  c.compensations = sim::configure_compensations<FixedSignals>(c.machine);
+  return configuration;
+}
+
+hal::can::CanBackendConfig can_config(const DriveConfiguration& configuration) {
+  if (!configuration.setup.can)
+    throw StartRefused(fmt::format("{}: found no table [drive.can]; expected one with the interface and the bit rates",
+                                   configuration.machine.id));
+  const auto& can = *configuration.setup.can;
+  hal::can::CanBackendConfig config;
+  config.interface = can.interface;
+  config.format = can.data_bit_rate ? hal::can::Format::fd : hal::can::Format::classical;
+  for (const auto& name : configuration.names) {
+    const int node = configuration.setup.axes.at(name).node;
+    if (node == 0)
+      throw StartRefused(fmt::format("{}: found no drive.axis.{}.node; expected the axis' node on the bus, 1 to 127",
+                                     configuration.machine.id, name));
+    config.nodes.push_back(node);
+  }
+  return config;
+}
+
+std::vector<hal::can::DbcAxis> dbc_axes(const DriveConfiguration& configuration) {
+  const auto config = can_config(configuration);
+  std::vector<hal::can::DbcAxis> axes;
+  for (std::size_t i = 0; i < config.nodes.size(); ++i) axes.push_back({configuration.names[i], config.nodes[i]});
+  return axes;
+}
+
+hal::BusBudget can_bus_budget(const DriveConfiguration& configuration) {
+  const auto config = can_config(configuration);
+  const auto& can = *configuration.setup.can;
+  const bool fd = config.format == hal::can::Format::fd;
+  const auto sizes = hal::can::properties(config.format).sizes;
+  const double period = configuration.machine.timing.fast_period;
+  const auto axes = static_cast<int>(config.nodes.size());
+  const auto frame = [&](const char* name, std::size_t size, int per_cycle) {
+    return hal::CyclicFrame{.name = name, .bytes = sizes[size], .fd = fd, .per_cycle = per_cycle, .period = period};
+  };
+  std::vector<hal::CyclicFrame> frames{frame("sync", 0, 1), frame("command", 1, axes), frame("position", 2, axes)};
+  if (!fd) frames.push_back(frame("current", 3, axes));
+  if (fd) frames.back().name = "feedback";
+  return hal::can_budget(can.interface, {can.bit_rate, can.data_bit_rate}, frames,
+                         hal::can::is_virtual(can.interface));
+}
+
+}  // namespace stiction::drive

@@ -1,0 +1,48 @@
+// Everything that the loop is built from, read and checked before anything is opened.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "firmware/drive/options.hpp"
+#include "hal/bus_budget.hpp"
+#include "hal/can/can_backend.hpp"
+#include "hal/can/dbc.hpp"
+#include "sim/model/drive_setup.hpp"
+#include "sim/model/machine.hpp"
+#include "stiction/drive/friction_compensation.hpp"
+#include "stiction/drive/servo_drive.hpp"
+#include "stiction/drive/ticker.hpp"
+#include "stiction/number/fixed_signals.hpp"
+
+namespace stiction::drive {
+
+// The start is refused. what() says what was found, what was expected and what to do.
+class StartRefused : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct DriveConfiguration {
+  sim::Machine machine;
+  sim::DriveSetup setup;
+  std::vector<std::string> names;  // of the axes
+  std::vector<AxisConfig<FixedSignals>> axes;
+  std::vector<ServoDriveConfig<FixedSignals>> drives;
+  std::vector<FrictionCompensationConfig<FixedSignals>> compensations;
+  std::int64_t period_ns;
+  Ticker ticker;
+};
+
+// Reads the machine file, and over it the parameters stored on this machine. Throws StartRefused,
+// sim::MachineFileError, sim::ConfigurationError, ParametersDamaged.
+DriveConfiguration read_configuration(const DriveOptions& options);
+
+// Throw StartRefused where the machine file does not say what the bus needs.
+hal::can::CanBackendConfig can_config(const DriveConfiguration& configuration);
+std::vector<hal::can::DbcAxis> dbc_axes(const DriveConfiguration& configuration);
+
+// What the CAN bus has to carry.
+hal::BusBudget can_bus_budget(const DriveConfiguration& configuration);
+
+}  // namespace stiction::drive

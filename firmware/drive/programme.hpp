@@ -1,0 +1,161 @@
+// What the programme does with the axes, tick by tick: it enables them, finds their zero where they have to, makes its
+// motion, stops and takes the power off. A fault on the way ends in the drives' own reactions; the programme waits for
+// them to be over. Allocates nothing after construction.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "firmware/drive/log_ring.hpp"
+#include "firmware/drive/motion.hpp"
+#include "firmware/drive/trace.hpp"
+#include "hal/drive_loop.hpp"
+
+namespace stiction::drive {
+
+enum class Phase : std::uint8_t { enable, home, approach, motion, idle, stop, faulted, over };
+
+constexpr const char* name_of(Phase phase) {
+  constexpr std::array<const char*, 8> names{"enabling", "homing",   "approach", "motion",
+                                             "holding",  "stopping", "faulted",  "off"};
+  return names[static_cast<std::size_t>(phase)];
+}
+
+struct Task {
+  Motion approach, motion;      // both may be empty
+  std::uint64_t idle_ticks = 0;  // to be held enabled after the motion; none_ends: until stopped
+  static constexpr std::uint64_t none_ends = UINT64_MAX;
+};
+
+template <hal::Backend B>
+class Programme {
+ public:
+  using S = typename B::Signals;
+
+  // `trace`: of the motion; may be null. All must outlive this.
+  Programme(hal::DriveLoop<B>& loop, const Task& task, LogRing& log, Trace* trace)
+      : loop_(loop), task_(task), log_(log), trace_(trace), hold_(loop.axis_count()) {}
+
+  // One tick. `stop_wanted`: a controlled stop, then the end.
+  void tick(bool stop_wanted) {
+    if (stop_wanted && phase_ < Phase::stop) enter(Phase::stop);
+    if (loop_.faulted() && phase_ < Phase::faulted) enter(Phase::faulted);
+    choose_controlwords();
+    const auto sets = set_points();
+    const std::int64_t now_ns = loop_.now_ns();
+    loop_.tick(sets);
+    if (phase_ == Phase::motion && trace_ != nullptr) trace_->add(now_ns - motion_began_ns_, loop_.loop().signals());
+    log_events();
+    ++tick_;
+    advance();
+    progress_.store(tick_, std::memory_order_relaxed);
+  }
+
+  Phase phase() const { return phase_; }
+  bool over() const { return phase_ == Phase::over; }
+  bool faulted() const { return faulted_; }
+  std::uint64_t progress() const { return progress_.load(std::memory_order_relaxed); }  // any thread
+
+ private:
+  // Longer than any stop within the travel: the axes' own time-outs come first.
+  static constexpr std::uint64_t settling_ticks = 8000;
+
+  void enter(Phase phase) {
+    phase_ = phase;
+    in_phase_ = 0;
+  }
+
+  void choose_controlwords() {
+    const bool off = phase_ == Phase::stop || phase_ == Phase::over;
+    for (std::size_t i = 0; i < loop_.axis_count(); ++i) {
+      const bool homes = phase_ == Phase::home && !loop_.drive(i).referenced();
+      loop_.set_mode(i, homes ? OperationMode::homing : OperationMode::cyclic_position);
+      std::uint16_t word = off ? controlword::shutdown : controlword_to_enable(loop_.state(i));
+      if (phase_ == Phase::faulted) word = controlword::shutdown;
+      if (homes) word |= controlword::homing_start_bit;
+      loop_.set_controlword(i, word);
+    }
+  }
+
+  std::span<const SetPoint<S>> set_points() {
+    if (phase_ == Phase::approach) return task_.approach.at(in_phase_);
+    if (phase_ == Phase::motion) return task_.motion.at(in_phase_);
+    // Where each axis' set-point stands; behind a motion that ended moving, the drives' ramp takes over.
+    for (std::size_t i = 0; i < hold_.size(); ++i) hold_[i] = {loop_.drive(i).set_position(), {}, {}};
+    return hold_;
+  }
+
+  // After a tick: whether the phase is over.
+  void advance() {
+    ++in_phase_;
+    switch (phase_) {
+      case Phase::enable:
+        if (loop_.all_in(DriveState::operation_enabled)) enter(Phase::home);
+        break;
+      case Phase::home:
+        if (all_referenced() && loop_.loop().slow()) begin_motion();
+        break;
+      case Phase::approach:
+        if (in_phase_ == task_.approach.ticks()) begin_motion();
+        break;
+      case Phase::motion:
+        if (in_phase_ == task_.motion.ticks()) enter(task_.idle_ticks > 0 ? Phase::idle : Phase::stop);
+        break;
+      case Phase::idle:
+        if (task_.idle_ticks != Task::none_ends && in_phase_ >= task_.idle_ticks) enter(Phase::stop);
+        break;
+      case Phase::stop:
+      case Phase::faulted:
+        faulted_ |= loop_.faulted();
+        if (none_powered() && in_phase_ >= settled_after()) enter(Phase::over);
+        break;
+      case Phase::over:
+        break;
+    }
+  }
+
+  void begin_motion() {
+    if (phase_ == Phase::home && task_.approach.ticks() > 0) return enter(Phase::approach);
+    if (task_.motion.ticks() == 0) return enter(Phase::idle);
+    enter(Phase::motion);
+    motion_began_ns_ = loop_.now_ns();
+  }
+
+  // A fault takes the power at once and leaves the carriage coasting.
+  std::uint64_t settled_after() const { return phase_ == Phase::faulted ? settling_ticks : 1; }
+
+  bool all_referenced() const {
+    for (std::size_t i = 0; i < loop_.axis_count(); ++i)
+      if (!loop_.drive(i).referenced()) return false;
+    return true;
+  }
+  bool none_powered() const {
+    for (std::size_t i = 0; i < loop_.axis_count(); ++i)
+      if (loop_.drive(i).powered()) return false;
+    return true;
+  }
+
+  void log_events() {
+    hal::AxisEvent<S> event;
+    while (loop_.next_event(event))
+      log_.push(event.event.time_ns, LogLevel::error, "axis {}: fault {} '{}' while {}",
+                {event.axis, static_cast<int>(event.event.fault), stiction::name_of(event.event.fault),
+                 name_of(phase_)});
+  }
+
+  hal::DriveLoop<B>& loop_;
+  const Task& task_;
+  LogRing& log_;
+  Trace* trace_;
+  std::vector<SetPoint<S>> hold_;
+  Phase phase_ = Phase::enable;
+  std::uint64_t in_phase_ = 0;  // ticks
+  std::uint64_t tick_ = 0;
+  std::atomic<std::uint64_t> progress_ = 0;
+  std::int64_t motion_began_ns_ = 0;
+  bool faulted_ = false;
+};
+
+}  // namespace stiction::drive
