@@ -1,30 +1,117 @@
-// The clock of a loop on a real kernel: absolute sleeps on CLOCK_MONOTONIC, so that lateness does not add up.
+// The clock of a loop on a real kernel: absolute sleeps on CLOCK_MONOTONIC, so that lateness does not add up. It says
+// what the drive's programme watches of its time (faults.hpp: missed deadline, clock jump) and keeps a histogram of how
+// late ticks began.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
+
+#include "hal/time_histogram.hpp"
+#include "stiction/drive/faults.hpp"
 
 namespace stiction::hal {
 
-class TickClock {
- public:
-  explicit TickClock(std::int64_t period_ns) : period_ns_(period_ns) {}
+// The kernel's time, ns. Tests put another in its place, so that none depends on the machine's load.
+struct MonotonicTime {
+  std::int64_t now_ns() const;
+  void sleep_until(std::int64_t time_ns) const;
+};
 
-  // Sleeps until the next tick and returns its nominal time (ns, CLOCK_MONOTONIC). The first call starts the clock. A
-  // tick that begins more than a period late takes the place of those that were due meanwhile: they are missed.
-  std::int64_t wait();
+// Time: now_ns() and sleep_until(time_ns). One thread waits; missed(), jumps() and lateness() may be read by others.
+template <class Time>
+class BasicTickClock {
+ public:
+  // A clock that goes back, or on by more than this between two ticks, has jumped: 1600 ticks of 62.5 us, far beyond
+  // what a loaded kernel makes of a sleep.
+  static constexpr std::int64_t jump_ns = 100'000'000;
+  // One late tick in a row is borne, its command held; a second is a fault.
+  static constexpr std::uint64_t late_ticks_borne = 1;
+
+  // `period_ns`: up to a hundredth of a second.
+  explicit BasicTickClock(std::int64_t period_ns, Time time = {}) : period_ns_(period_ns), time_(time) {}
+
+  // Sleeps until the next tick and returns its nominal time (ns). The first call starts the clock. A tick that begins
+  // more than a period late takes the place of those that were due meanwhile: they are missed. After a jump the clock
+  // starts again at the new time, at once.
+  std::int64_t wait() {
+    std::int64_t now = time_.now_ns();
+    if (!started_) start(now);
+    bool jumped = jumped_since_last(now);
+    if (!jumped) {
+      time_.sleep_until(next_ns_);
+      now = time_.now_ns();
+      jumped = jumped_since_last(now);
+    }
+    missed_now_ = 0;
+    if (jumped) {
+      add(jumps_, 1);
+      late_in_a_row_ = 0;
+      fault_ = Fault::clock_jump;
+      next_ns_ = now;
+    } else {
+      count_missed(now - next_ns_);
+      fault_ = late_in_a_row_ > late_ticks_borne ? Fault::missed_deadline : Fault::none;
+      lateness_.add(lateness_ns_);
+    }
+    last_ns_ = now;
+    const std::int64_t tick_ns = next_ns_;
+    next_ns_ += period_ns_;
+    return tick_ns;
+  }
+
+  // The next wait() starts the clock again: after work between two ticks that may take as long as it likes.
+  void restart() { started_ = false; }
 
   std::int64_t period_ns() const { return period_ns_; }
-  std::uint64_t missed() const { return missed_; }             // ticks, since the start
+  // Of the last tick: a missed deadline where it and the one before began later than a period (or two were left out at
+  // once), a clock jump, or none. The next tick in time has none again.
+  Fault fault() const { return fault_; }
   std::int64_t lateness_ns() const { return lateness_ns_; }    // of the last tick, after its nominal time
   std::uint64_t missed_before() const { return missed_now_; }  // ticks missed right before the last one
+  std::uint64_t missed() const { return missed_.load(std::memory_order_relaxed); }  // ticks, since the start
+  std::uint64_t jumps() const { return jumps_.load(std::memory_order_relaxed); }    // of the clock
+  const TimeHistogram& lateness() const { return lateness_; }                       // of every tick, jumps left out
 
  private:
+  void start(std::int64_t now) {
+    started_ = true;
+    last_ns_ = now;
+    next_ns_ = now + period_ns_;
+    late_in_a_row_ = 0;
+  }
+
+  bool jumped_since_last(std::int64_t now) const { return now < last_ns_ || now - last_ns_ > jump_ns; }
+
+  void count_missed(std::int64_t late) {
+    lateness_ns_ = late;
+    if (late < period_ns_) {
+      late_in_a_row_ = 0;
+      return;
+    }
+    missed_now_ = static_cast<std::uint64_t>(late / period_ns_);
+    late_in_a_row_ += missed_now_;
+    add(missed_, missed_now_);
+    next_ns_ += static_cast<std::int64_t>(missed_now_) * period_ns_;
+  }
+
+  static void add(std::atomic<std::uint64_t>& counter, std::uint64_t increment) {
+    counter.store(counter.load(std::memory_order_relaxed) + increment, std::memory_order_relaxed);
+  }
+
   std::int64_t period_ns_;
-  std::int64_t next_ns_ = 0;
+  [[no_unique_address]] Time time_;
   bool started_ = false;
-  std::uint64_t missed_ = 0;
-  std::uint64_t missed_now_ = 0;
+  std::int64_t next_ns_ = 0;
+  std::int64_t last_ns_ = 0;  // when the last tick began
   std::int64_t lateness_ns_ = 0;
+  std::uint64_t missed_now_ = 0;
+  std::uint64_t late_in_a_row_ = 0;
+  Fault fault_ = Fault::none;
+  std::atomic<std::uint64_t> missed_ = 0;
+  std::atomic<std::uint64_t> jumps_ = 0;
+  TimeHistogram lateness_;
 };
+
+using TickClock = BasicTickClock<MonotonicTime>;
 
 }  // namespace stiction::hal

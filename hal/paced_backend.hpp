@@ -1,0 +1,55 @@
+// A backend in logical time made to keep the kernel's: each of its ticks waits for a tick of the clock. So the drive's
+// programme runs the simulated machine as it would run a real one, late ticks included.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "hal/backend.hpp"
+#include "hal/tick_clock.hpp"
+
+namespace stiction::hal {
+
+template <Backend B, class Time = MonotonicTime>
+class PacedBackend {
+ public:
+  using Signals = typename B::Signals;
+
+  PacedBackend(B& backend, std::int64_t period_ns, Time time = {}) : backend_(backend), clock_(period_ns, time) {}
+
+  std::size_t axis_count() const { return backend_.axis_count(); }
+
+  // Time is the backend's own. Ticks that the clock missed pass in the backend's world too, its commands held.
+  std::int64_t wait_for_tick() {
+    clock_.wait();
+    for (std::uint64_t i = 0; i < clock_.missed_before(); ++i) backend_.wait_for_tick();
+    return backend_.wait_for_tick();
+  }
+
+  void read(std::span<Feedback<Signals>> feedback) { backend_.read(feedback); }
+  void write(std::span<const Command<Signals>> command) { backend_.write(command); }
+
+  void read_inputs(std::span<DigitalInputs<Signals>> inputs) {
+    if constexpr (WiredBackend<B>)
+      backend_.read_inputs(inputs);
+    else
+      for (auto& input : inputs) input = {};
+  }
+
+  // The backend's, else the clock's.
+  Fault fault(std::size_t axis) {
+    if constexpr (WiredBackend<B>)
+      if (const Fault own = backend_.fault(axis); own != Fault::none) return own;
+    return clock_.fault();
+  }
+
+  BasicTickClock<Time>& clock() { return clock_; }
+  const BasicTickClock<Time>& clock() const { return clock_; }
+
+ private:
+  B& backend_;
+  BasicTickClock<Time> clock_;
+};
+
+}  // namespace stiction::hal
