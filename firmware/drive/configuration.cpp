@@ -78,8 +78,7 @@ hal::BusBudget can_bus_budget(const DriveConfiguration& configuration) {
   std::vector<hal::CyclicFrame> frames{frame("sync", 0, 1), frame("command", 1, axes), frame("position", 2, axes)};
   if (!fd) frames.push_back(frame("current", 3, axes));
   if (fd) frames.back().name = "feedback";
-  return hal::can_budget(can.interface, {can.bit_rate, can.data_bit_rate}, frames,
-                         hal::can::is_virtual(can.interface));
+  return hal::can_budget(can.interface, {can.bit_rate, can.data_bit_rate}, frames, hal::can::is_virtual(can.interface));
 }
 
 }  // namespace stiction::drive

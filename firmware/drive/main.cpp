@@ -1,5 +1,7 @@
 // The program `stictiond`: the drive on a Linux industrial PC.
+// Exit status: 0 the task is done, 1 a fault stopped it, 2 the start was refused.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -7,60 +9,96 @@
 #include <string>
 #include <vector>
 
-#include "firmware/drive/motion.hpp"
-#include "firmware/drive/trace.hpp"
-#include "hal/can/can_backend.hpp"
-#include "hal/control_loop.hpp"
-#include "sim/control/axis_configuration.hpp"
-#include "sim/machine/drive_file.hpp"
-#include "sim/machine/machine_file.hpp"
-#include "sim/machine/units.hpp"
+#include "firmware/drive/configuration.hpp"
+#include "firmware/drive/options.hpp"
+#include "firmware/drive/real_time_check.hpp"
+#include "firmware/drive/run.hpp"
+#include "hal/paced_backend.hpp"
+#include "hal/simulated/simulated_backend.hpp"
 
 namespace stiction::drive {
 namespace {
 
-int run(int argc, char** argv) {
-  CLI::App program("the drive", "stictiond");
-  std::string machine_name, hal = "simulated", circle, trace_file;
-  std::vector<std::string> set;
-  program.add_option("--machine", machine_name, "machine")->required();
-  program.add_option("--hal", hal, "backend");
-  program.add_option("--circle", circle, "feed");
-  program.add_option("--trace", trace_file, "log");
-  program.add_option("--set", set, "key=value")->allow_extra_args(false);
-  CLI11_PARSE(program, argc, argv);
-  const auto file = sim::find_machine(machine_name);
-  const sim::ReadOptions options{"circle", set};
-  const auto machine = sim::read_machine(file, options);
-  const auto setup = sim::read_drive_setup(file, machine, options);
-  const auto motion = Motion::circle(machine, sim::parse_quantity(circle, "m/s"));
-  Trace trace(machine.axes.size(), motion.ticks());
-  hal::TickClock clock(sim::fast_period_ns(machine.timing));
-  hal::can::CanBackendConfig can{.interface = setup.can->interface, .nodes = {}};
-  std::vector<std::string> names;
-  std::vector<AxisConfig<FixedSignals>> configs;
-  for (const auto& axis : machine.axes) {
-    can.nodes.push_back(setup.axes.at(axis.name).node);
-    names.push_back(axis.name);
-    configs.push_back(sim::configure_axis<FixedSignals>(machine.timing, axis));
+constexpr int exit_done = 0, exit_fault = 1, exit_refused = 2;
+
+int status_of(const RunResult& result) { return result.faulted ? exit_fault : exit_done; }
+
+int run_simulated(const DriveConfiguration& configuration, const DriveOptions& options) {
+  const std::vector<double> rest(configuration.machine.axes.size());
+  const auto start = options.circle.empty() ? rest : task_of(options, configuration, rest).motion.start();
+  hal::SimulatedBackend<FixedSignals> simulated(configuration.machine, start);
+  if (options.unpaced) return status_of(run(simulated, nullptr, configuration, options, "simulated, in its own time"));
+  hal::PacedBackend backend(simulated, configuration.period_ns);
+  return status_of(run(backend, &backend.clock(), configuration, options, "simulated"));
+}
+
+int run_can(const DriveConfiguration& configuration, const DriveOptions& options) {
+  hal::check(can_bus_budget(configuration));
+  const auto config = can_config(configuration);
+  hal::TickClock clock(configuration.period_ns);
+  hal::can::CanBackend backend(config, clock);
+  constexpr int patience = 1600;  // ticks
+  std::vector<int> silent;
+  if (!backend.find_nodes(patience, silent))
+    throw StartRefused(
+        fmt::format("can: {}: found no answer of node {}; expected one within {} ticks: is it powered, "
+                    "and does it speak {}?",
+                    config.interface, fmt::join(silent, ", "), patience, hal::can::properties(config.format).name));
+  const auto result = run(backend, &clock, configuration, options, "can " + config.interface);
+  for (std::size_t i = 0; i < configuration.names.size(); ++i) {
+    const auto& n = backend.counts(i);
+    fmt::print("axis {}: {} answers, {} lost, {} late, {} twice, {} out of order, {} stale, {} damaged\n",
+               configuration.names[i], n.good, n.lost, n.late, n.duplicate, n.out_of_order, n.stale, n.damaged);
   }
-  hal::can::CanBackend backend(can, clock);
-  hal::ControlLoop loop(backend, std::span<const AxisConfig<FixedSignals>>(configs),
-                        Ticker(clock.period_ns(), static_cast<std::uint32_t>(sim::slow_ratio(machine.timing))));
-  const std::int64_t start = loop.now_ns();
-  for (std::size_t i = 0; i < motion.ticks() && !loop.faulted(); ++i) {
-    const std::int64_t now = loop.now_ns();
-    loop.tick(motion.at(i));
-    trace.add(now - start, loop.signals());
+  const auto bus = backend.bus_counts();
+  fmt::print("bus: {} frames of nobody, {} error frames, {} not sent, {} lost in the kernel\n", bus.of_nobody,
+             bus.error_frames, bus.send_failed, bus.lost_in_kernel);
+  return status_of(result);
+}
+
+int serve(const DriveOptions& options) {
+  const auto configuration = read_configuration(options);
+  if (options.budget) {
+    const auto budget = can_bus_budget(configuration);
+    fmt::print("{}", hal::budget_table(budget));
+    return budget.objections.empty() ? exit_done : exit_refused;
   }
-  fmt::print("faulted {} missed {}\n", loop.faulted(), clock.missed());
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto& c = backend.counts(i);
-    fmt::print("{}: good {} lost {} bad {} fault {}\n", names[i], c.good, c.lost, c.bad(),
-               name_of(loop.axes()[i].fault()));
+  if (options.dbc) {
+    fmt::print("{}", hal::can::dbc_text(can_config(configuration).format, dbc_axes(configuration)));
+    return exit_done;
   }
-  trace.write(trace_file, names, {});
-  return loop.faulted() ? 1 : 0;
+  if (options.check_realtime) {
+    const auto& real_time = configuration.setup.real_time;
+    fmt::print("{}", text_of(check_real_time("/", real_time.cpu)));
+    constexpr std::uint64_t ticks = 160000;
+    const auto measured =
+        measure_jitter(configuration.period_ns, ticks, {.priority = real_time.priority, .cpu = real_time.cpu});
+    fmt::print("{}", text_of(measured, configuration.period_ns));
+    return exit_done;
+  }
+  catch_stop_signals();
+  return options.hal == "can" ? run_can(configuration, options) : run_simulated(configuration, options);
+}
+
+int start(int argc, char** argv) {
+  CLI::App program("the drive: closes the loops of a machine's axes over its buses", "stictiond");
+  program.set_version_flag("--version", STICTION_VERSION);
+  DriveOptions options;
+  options.add_to(program);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::Success& wanted) {
+    return program.exit(wanted);
+  } catch (const CLI::ParseError& error) {
+    fmt::print(stderr, "stictiond: {}; see stictiond --help\n", error.what());
+    return exit_refused;
+  }
+  try {
+    return serve(options);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "stictiond: {}\n", error.what());
+    return exit_refused;
+  }
 }
 
 }  // namespace
@@ -68,9 +106,8 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return stiction::drive::run(argc, argv);
-  } catch (const std::exception& e) {
-    fmt::print(stderr, "stictiond: {}\n", e.what());
-    return 2;
+    return stiction::drive::start(argc, argv);
+  } catch (...) {
+    return stiction::drive::exit_refused;  // standard error cannot be written either
   }
 }

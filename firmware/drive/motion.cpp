@@ -42,7 +42,7 @@ Motion Motion::circle(const sim::Machine& machine, double feed) {
 }
 
 Motion Motion::approach(const sim::Machine& machine, std::span<const double> positions) const {
-  constexpr double near = 1e-6;  // m: the first tick of the motion takes that up unnoticed
+  constexpr double near = 1e-6;   // m: the first tick of the motion takes that up unnoticed
   constexpr double speed = 0.02;  // m/s
   constexpr sim::Dynamics gentle{0.5, 5.0};
   constexpr double rest = 0.1;  // s, for the axes to swing in

@@ -1,5 +1,5 @@
-// Motions that the programme can run by itself, for trying a machine out: set-points computed before the loop starts, so
-// that the loop has nothing to compute in floating point and nothing to wait for.
+// Motions that the programme can run by itself, for trying a machine out: set-points computed before the loop starts,
+// so that the loop has nothing to compute in floating point and nothing to wait for.
 #pragma once
 
 #include <cstdint>

@@ -12,7 +12,7 @@ struct DriveOptions {
   std::string machine, hal = "simulated", circle, trace, parameters;
   std::vector<std::string> set;
   std::optional<double> hold;  // s
-  bool budget = false, check_realtime = false, dbc = false;
+  bool unpaced = false, budget = false, check_realtime = false, dbc = false;
 
   void add_to(CLI::App& program) {
     program.add_option("--machine", machine, "machine file, or the name of a shipped machine")
@@ -31,6 +31,7 @@ struct DriveOptions {
     program.add_option("--hold", hold, "enable the axes, hold them for so many seconds, stop and end")
         ->type_name("SECONDS")
         ->check(CLI::PositiveNumber);
+    program.add_flag("--unpaced", unpaced, "the simulated machine in its own time, as fast as it goes: no deadlines");
     program.add_option("--trace", trace, "write every signal of every tick of the motion as a log")->type_name("FILE");
     program.add_flag("--budget", budget, "print what the bus has to carry, and end");
     program.add_flag("--check-realtime", check_realtime, "print whether this machine is fit for the loop, and end");

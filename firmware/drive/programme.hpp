@@ -24,7 +24,7 @@ constexpr const char* name_of(Phase phase) {
 }
 
 struct Task {
-  Motion approach, motion;      // both may be empty
+  Motion approach, motion;       // both may be empty
   std::uint64_t idle_ticks = 0;  // to be held enabled after the motion; none_ends: until stopped
   static constexpr std::uint64_t none_ends = UINT64_MAX;
 };
@@ -140,9 +140,9 @@ class Programme {
   void log_events() {
     hal::AxisEvent<S> event;
     while (loop_.next_event(event))
-      log_.push(event.event.time_ns, LogLevel::error, "axis {}: fault {} '{}' while {}",
-                {event.axis, static_cast<int>(event.event.fault), stiction::name_of(event.event.fault),
-                 name_of(phase_)});
+      log_.push(
+          event.event.time_ns, LogLevel::error, "axis {}: fault {} '{}' while {}",
+          {event.axis, static_cast<int>(event.event.fault), stiction::name_of(event.event.fault), name_of(phase_)});
   }
 
   hal::DriveLoop<B>& loop_;

@@ -1,0 +1,78 @@
+// Runs a task over a backend: real time, the thread beside the loop, the loop, and what it has to say at its end.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <csignal>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "firmware/drive/configuration.hpp"
+#include "firmware/drive/programme.hpp"
+#include "firmware/drive/real_time.hpp"
+#include "firmware/drive/service_notify.hpp"
+#include "firmware/drive/service_thread.hpp"
+#include "hal/loop_timing.hpp"
+#include "hal/tick_clock.hpp"
+#include "sim/control/conversion.hpp"
+
+namespace stiction::drive {
+
+// Set by SIGTERM and SIGINT: a controlled stop, then the end.
+extern volatile std::sig_atomic_t stop_wanted;
+void catch_stop_signals();
+
+struct RunResult {
+  bool faulted = false;
+  bool motion_done = false;
+};
+
+// What the loop did with its time, for people.
+std::string describe_timing(const hal::LoopTiming& timing, const hal::TimeHistogram& lateness, std::uint64_t missed);
+
+// The task of the options. `positions`: where the axes stand (m). Throws MotionError.
+Task task_of(const DriveOptions& options, const DriveConfiguration& configuration, std::span<const double> positions);
+
+// `clock`: the one that the backend waits for; null: it has a time of its own.
+template <hal::Backend B>
+RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& configuration, const DriveOptions& options,
+              const std::string& title) {
+  const RealTimeRequest request{.priority = configuration.setup.real_time.priority,
+                                .cpu = configuration.setup.real_time.cpu};
+  RealTime real_time;
+  auto steps = real_time.prepare_process(request);
+
+  hal::LoopTiming timing;
+  hal::TimedBackend<B> timed(backend, timing);
+  hal::DriveLoop<hal::TimedBackend<B>> loop(timed, configuration.axes, configuration.drives, configuration.ticker,
+                                            configuration.compensations);
+  std::vector<double> positions;
+  for (const auto& feedback : loop.loop().feedback()) positions.push_back(sim::to_si(feedback.position));
+  const Task task = task_of(options, configuration, positions);
+  Trace trace(configuration.names.size(), options.trace.empty() ? 0 : task.motion.ticks());
+  LogRing log;
+  Programme programme(loop, task, log, options.trace.empty() ? nullptr : &trace);
+
+  ServiceNotify notify;
+  constexpr std::int64_t starvation_ns = 100'000'000;
+  {
+    ServiceThread service(
+        log, log_to_standard_error, notify,
+        {.progress = [&] { return programme.progress(); }, .status = [&] { return title; }, .starved = [] {}},
+        starvation_ns);
+    for (auto& step : real_time.prepare_thread(request)) steps.push_back(std::move(step));
+    if (any_refused(steps)) fmt::print(stderr, "{}", text_of(steps));
+    notify.ready(title);
+    if (clock != nullptr) clock->restart();  // what came before took its time
+    while (!programme.over()) programme.tick(stop_wanted != 0);
+    notify.stopping("the axes are off");
+  }
+  if (!options.trace.empty())
+    trace.write(options.trace, configuration.names,
+                std::vector<std::string>{"log: stictiond", "machine: " + configuration.machine.name});
+  if (clock != nullptr) fmt::print("{}", describe_timing(timing, clock->lateness(), clock->missed()));
+  return {programme.faulted(), !programme.faulted()};
+}
+
+}  // namespace stiction::drive
