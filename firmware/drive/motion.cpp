@@ -31,6 +31,7 @@ Motion Motion::circle(const sim::Machine& machine, double feed) {
   // In the loop's own clock, whole nanoseconds: a product of doubles would be another one at some ticks.
   const std::int64_t period_ns = sim::fast_period_ns(machine.timing);
   Motion motion(machine.axes.size());
+  for (const auto& axis : path.at(0.0).axes) motion.start_.push_back(axis.position);
   for (std::int64_t now_ns = 0;; now_ns += period_ns) {
     const double t = static_cast<double>(now_ns) * 1e-9;
     const auto followed = path.at(std::max(0.0, t - delay));
@@ -47,12 +48,11 @@ Motion Motion::approach(const sim::Machine& machine, std::span<const double> pos
   constexpr sim::Dynamics gentle{0.5, 5.0};
   constexpr double rest = 0.1;  // s, for the axes to swing in
 
-  const auto wanted = start();
   std::vector<sim::MoveSequence> moves;
   double duration = 0.0;
   for (std::size_t i = 0; i < axes_; ++i) {
     auto& move = moves.emplace_back(positions[i]);
-    const double distance = wanted[i] - positions[i];
+    const double distance = start_[i] - positions[i];
     if (std::abs(distance) < near) continue;
     move.move(distance, speed, gentle);
     duration = std::max(duration, move.duration() + rest);
@@ -65,12 +65,6 @@ Motion Motion::approach(const sim::Machine& machine, std::span<const double> pos
       motion.sets_.push_back(
           sim::to_set_point<FixedSignals>(move.at(static_cast<double>(tick) * machine.timing.fast_period)));
   return motion;
-}
-
-std::vector<double> Motion::start() const {
-  std::vector<double> positions;
-  for (const auto& set : at(0)) positions.push_back(sim::to_si(set.position));
-  return positions;
 }
 
 }  // namespace stiction::drive

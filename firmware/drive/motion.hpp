@@ -35,10 +35,11 @@ class Motion {
 
   std::size_t ticks() const { return sets_.size() / axes_; }
   std::span<const Set> at(std::size_t tick) const { return {sets_.data() + tick * axes_, axes_}; }
-  std::vector<double> start() const;  // m, one an axis
+  const std::vector<double>& start() const { return start_; }  // m, one an axis; not rounded to the drive's format
 
  private:
   std::size_t axes_;
+  std::vector<double> start_;
   std::vector<Set> sets_;  // tick by tick, all axes
 };
 
