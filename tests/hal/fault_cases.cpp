@@ -62,11 +62,10 @@ FaultCase disturbed_frames(FrameFault kind, const char* name) {
           .shows_at_rest = true};
 }
 
-// Ends of the travel that the circle crosses, X at -50 mm and Y at 50 mm, and switches 5 mm behind them.
-void short_travel(sim::DriveSetup& setup) {
-  setup.axes.at("X").negative_end = -0.05;
-  setup.axes.at("Y").positive_end = 0.05;
-  for (auto& [name, axis] : setup.axes) axis.line.limit_negative = axis.line.limit_positive = 0;  // wired
+// An end of the travel that the circle crosses, of X at -50 mm and of Y at 50 mm, and a switch 1 mm behind it.
+void short_travel(sim::DriveAxisSetup& setup, std::size_t axis) {
+  (axis == 0 ? setup.negative_end : setup.positive_end) = axis == 0 ? -0.05 : 0.05;
+  (axis == 0 ? setup.line.limit_negative : setup.line.limit_positive) = 0;  // wired
 }
 constexpr double end_of_travel = 0.05, switch_at = 0.051;  // m
 void place_switch(Bench& b, std::size_t axis, int) {
@@ -103,7 +102,7 @@ std::vector<FaultCase> cases_of_the_axis() {
        .violated = [](Bench&, std::size_t, const Shown& s) { return std::abs(s.v) > 0.35; },
        .recurs = true,
        .at_one_place = true,
-       .machine = {"axis.*.supervision.over_speed=0.35 m/s"}},
+       .machine = "axis.{}.supervision.over_speed=0.35 m/s"},
       {.fault = Fault::position_lost,
        .name = "open encoder",
        .inject = set_fault(&hal::AxisFaults::encoder_open, true),
@@ -138,20 +137,23 @@ std::vector<FaultCase> cases_of_the_supervision() {
       shifted_encoder(1e-3),
       shifted_encoder(-0.1),
   };
-  for (int bit = 13; bit <= 28; bit += 3) cases.push_back(flipped_bit(bit));
+  for (const int bit : {13, 20, 28}) cases.push_back(flipped_bit(bit));
   for (std::size_t phase = 0; phase < 3; ++phase) cases.push_back(offset_of_phase(phase, phase == 1 ? -0.06 : 0.06));
-  cases.push_back(
-      {.fault = Fault::runaway,
-       .name = "motor turned by half a period",
-       .inject = set_fault(&hal::AxisFaults::motor_reversed, true),
-       .violated = [](Bench&, std::size_t axis,
-                      const Shown& s) { return std::abs(s.i) > current_limit[axis] / 5.0 && s.i * s.v < 0; },
-       .recurs = true});
+  cases.push_back({.fault = Fault::runaway,
+                   .name = "motor turned by half a period",
+                   .inject = set_fault(&hal::AxisFaults::motor_reversed, true),
+                   .violated =
+                       [](Bench&, std::size_t axis, const Shown& s) {
+                         return std::abs(s.i) > current_limit[axis] / 5.0 && s.i * s.v < 0 && s.faster;
+                       },
+                   .recurs = true,
+                   .holding = true});
   cases.push_back({.fault = Fault::limit_switch,
                    .name = "reached in motion",
                    .inject = place_switch,
                    .violated = [](Bench&, std::size_t axis, const Shown& s) { return outward(axis, s) >= switch_at; },
                    .at_one_place = true,
+                   .back = sim::Direction::clockwise,
                    .setup = short_travel});
   cases.push_back({.fault = Fault::limit_switch_stuck,
                    .name = "both reached",
@@ -173,11 +175,17 @@ std::vector<FaultCase> cases_of_the_supervision() {
   cases.push_back(
       {.fault = Fault::limit_switch_stuck,
        .name = "open behind the end",
-       .inject = [](Bench&, std::size_t, int) {},
+       .inject =
+           [](Bench& b, std::size_t axis, int since) {
+             place_switch(b, axis, since);
+             auto& faults = b.backend.faults(axis);
+             (axis == 0 ? faults.negative_switch : faults.positive_switch) = SwitchFault::stuck_open;
+           },
        .violated = [](Bench&, std::size_t axis,
                       const Shown& s) { return outward(axis, s) > end_of_travel + (axis == 0 ? 3e-3 : 2.5e-3); },
        .shows_at_rest = true,
        .at_one_place = true,
+       .back = sim::Direction::clockwise,
        .setup = short_travel});
   cases.push_back({.fault = Fault::homing,
                    .name = "no index mark",
@@ -186,13 +194,11 @@ std::vector<FaultCase> cases_of_the_supervision() {
                    .within = 3,  // it begins a tick after it is asked for; what it found is seen in the next tick
                    .at_one_place = true,
                    .setup =
-                       [](sim::DriveSetup& setup) {
-                         for (auto& [name, axis] : setup.axes) {
-                           axis.homing.method = sim::HomingMethod::index_positive;
-                           axis.homing.creep_speed = 0.05;
-                           axis.negative_end = -0.01;  // 1.1 times the travel are 22 mm
-                           axis.positive_end = 0.01;
-                         }
+                       [](sim::DriveAxisSetup& setup, std::size_t) {
+                         setup.homing.method = sim::HomingMethod::index_positive;
+                         setup.homing.creep_speed = 0.05;
+                         setup.negative_end = -0.01;  // 1.1 times the travel are 22 mm
+                         setup.positive_end = 0.01;
                        }});
   return cases;
 }
@@ -246,7 +252,6 @@ std::vector<FaultCase> fault_cases() {
 
 void repair(Bench& bench, std::size_t axis) {
   bench.backend.faults(axis) = {};
-  bench.backend.marks(axis) = {};
   bench.simulated.plant(axis).set_external_force(0.0);
   bench.invalid_set_point.reset();
   bench.mode = OperationMode::cyclic_position;
