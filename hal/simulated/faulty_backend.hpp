@@ -14,6 +14,7 @@
 #include "hal/backend.hpp"
 #include "hal/frame_watch.hpp"
 #include "sim/control/conversion.hpp"
+#include "stiction/control/delay_line.hpp"
 
 namespace stiction::hal {
 
@@ -37,6 +38,7 @@ struct AxisFaults {
   std::optional<int> flipped_bit;          // of the count of increments
   bool motor_reversed = false;             // all phases turned by half a period: force and current of the other sign
   std::array<double, 3> current_offset{};  // A, of the phases
+  std::uint64_t late_commands = 0;         // ticks by which the power stage obeys late, at most 15
   bool power_stage = false;                // it reports a fault and is off
   FrameFault frame = FrameFault::none;
   std::uint64_t frame_period = 1;    // ticks from one frame with a fault to the next
@@ -67,7 +69,8 @@ class FaultyBackend {
 
   AxisFaults& faults(std::size_t axis) { return nodes_[axis].faults; }
   AxisMarks& marks(std::size_t axis) { return nodes_[axis].marks; }
-  void miss_ticks(int count) { miss_ = count; }  // before the next one
+  std::uint64_t disturbed(std::size_t axis) const { return nodes_[axis].disturbed; }  // frames since the start
+  void miss_ticks(int count) { miss_ = count; }                                       // before the next one
   void jump_clock(std::int64_t ns) { clock_shift_ns_ += ns; }
 
   std::size_t axis_count() const { return inner_.axis_count(); }
@@ -102,7 +105,9 @@ class FaultyBackend {
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       const auto& faults = nodes_[i].faults;
       sent = sent && !faults.bus_off;
-      command_[i] = faults.power_stage ? Command<S>{} : command[i];
+      auto& queue = nodes_[i].commands;
+      queue.push(command[i]);
+      command_[i] = faults.power_stage ? Command<S>{} : queue.at(static_cast<std::uint32_t>(faults.late_commands));
       if (faults.motor_reversed)
         for (auto& u : command_[i].voltage) u = opposite(u);
     }
@@ -128,6 +133,8 @@ class FaultyBackend {
     AxisMarks marks{};
     DigitalInputs<S> inputs{};
     Fault seen = Fault::none;
+    std::uint64_t disturbed = 0;
+    DelayLine<Command<S>, 16> commands{};
     bool known = false;    // a position came before
     Feedback<S> newest{};  // that came over the bus
     bool late = false;     // the frame of the tick before comes with this one
@@ -184,6 +191,7 @@ class FaultyBackend {
     counts.disturbed = (fault == FrameFault::twice || fault == FrameFault::stale || fault == FrameFault::damaged) +
                        (node.late ? 1u : 0u);
     node.late = fault == FrameFault::late || fault == FrameFault::out_of_order;
+    node.disturbed += counts.disturbed;
     node.seen = node.watch.step(counts);
     if (counts.valid) node.newest = sent;
     return node.newest;

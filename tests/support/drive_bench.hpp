@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -94,19 +96,24 @@ class DriveBench {
   }
 
   void tick() {
+    if (before_tick) before_tick();
     for (std::size_t i = 0; i < 2; ++i) {
       loop.set_controlword(i, word(i));
       loop.set_mode(i, mode);
     }
-    if (!circle_.empty()) {
-      const auto si = circle_.front().at(static_cast<double>(++motion_ticks_) * period);
-      for (std::size_t i = 0; i < 2; ++i) set_[i] = sim::to_set_point<S>(si[i]);
-    }
-    if (invalid_set_point) set_[0].valid = false;
+    set_ = next_set_points();
+    ++motion_ticks_;
+    if (invalid_set_point) set_[*invalid_set_point].valid = false;
     loop.tick(set_);
     ++ticks;
     hal::AxisEvent<S> event;
     while (loop.next_event(event)) events.push_back(event);
+  }
+  // What the coming tick is sent.
+  std::array<SetPoint<S>, 2> next_set_points() const {
+    if (circle_.empty()) return set_;
+    const auto si = circle_.front().at(static_cast<double>(motion_ticks_ + 1) * period);
+    return {sim::to_set_point<S>(si[0]), sim::to_set_point<S>(si[1])};
   }
   void run(int count) {
     for (int i = 0; i < count; ++i) tick();
@@ -133,6 +140,7 @@ class DriveBench {
   }
 
   double position(std::size_t axis) const { return sim::to_si(loop.drive(axis).position()); }  // m, measured
+  double set_position(std::size_t axis) const { return sim::to_si(set_[axis].position); }      // m, sent last
   bool powered(std::size_t axis) const { return loop.drive(axis).powered(); }
 
   double period;
@@ -141,8 +149,9 @@ class DriveBench {
   Loop loop;
   Want want = Want::off;
   OperationMode mode = OperationMode::cyclic_position;
-  std::uint16_t extra_bits = 0;  // of the controlwords
-  bool invalid_set_point = false;
+  std::uint16_t extra_bits = 0;                  // of the controlwords
+  std::optional<std::size_t> invalid_set_point;  // of this axis
+  std::function<void()> before_tick;
   std::uint64_t ticks = 0;
   std::vector<hal::AxisEvent<S>> events;
 
