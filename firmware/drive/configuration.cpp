@@ -48,6 +48,12 @@ hal::can::CanBackendConfig can_config(const DriveConfiguration& configuration) {
   hal::can::CanBackendConfig config;
   config.interface = can.interface;
   config.format = can.data_bit_rate ? hal::can::Format::fd : hal::can::Format::classical;
+  for (const auto& axis : configuration.machine.axes)
+    if (config.format == hal::can::Format::classical && axis.encoder.velocity == sim::VelocitySource::ideal)
+      throw StartRefused(
+          fmt::format("{}: found axis.{}.encoder.velocity = \"ideal\" over classical frames, which carry no "
+                      "velocity; expected \"estimated\", or drive.can.data_bit_rate for CAN FD",
+                      configuration.machine.id, axis.name));
   for (const auto& name : configuration.names) {
     const int node = configuration.setup.axes.at(name).node;
     if (node == 0)

@@ -59,8 +59,8 @@ class Programme {
   std::uint64_t progress() const { return progress_.load(std::memory_order_relaxed); }  // any thread
 
  private:
-  // Longer than any stop within the travel: the axes' own time-outs come first.
-  static constexpr std::uint64_t settling_ticks = 8000;
+  // After a fault the last frames still say that the power is off.
+  static constexpr std::uint64_t settling_ticks = 1600;
 
   void enter(Phase phase) {
     phase_ = phase;

@@ -65,6 +65,7 @@ RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& confi
     if (any_refused(steps)) fmt::print(stderr, "{}", text_of(steps));
     notify.ready(title);
     if (clock != nullptr) clock->restart();  // what came before took its time
+    log.push(loop.now_ns(), LogLevel::info, "the loop begins");
     while (!programme.over()) programme.tick(stop_wanted != 0);
     notify.stopping("the axes are off");
   }

@@ -102,8 +102,8 @@ void CanNodes::on_command(const Frame& frame, int node) {
 }
 
 bool CanNodes::faulty(FrameFaultKind kind, std::size_t axis) const {
-  return std::any_of(config_.faults.begin(), config_.faults.end(), [&](const FrameFault& fault) {
-    return fault.kind == kind && fault.axis == axis && fault.acts(tick_);
+  return std::any_of(config_.faults.begin(), config_.faults.end(), [&](const PlantFault& fault) {
+    return fault.kind->frame == kind && fault.axis == axis && fault.acts(tick_);
   });
 }
 
@@ -129,8 +129,8 @@ void CanNodes::send_feedback(std::size_t axis, std::uint32_t number) {
     }
   };
   // What was kept back in the tick before comes first.
-  if (tick_ > 0 && std::any_of(config_.faults.begin(), config_.faults.end(), [&](const FrameFault& fault) {
-        return fault.kind == late && fault.axis == axis && fault.acts(tick_ - 1);
+  if (tick_ > 0 && std::any_of(config_.faults.begin(), config_.faults.end(), [&](const PlantFault& fault) {
+        return fault.kind->frame == late && fault.axis == axis && fault.acts(tick_ - 1);
       }))
     send(held_[axis], number - 1);
   if (!faulty(lost, axis) && !faulty(late, axis) && !faulty(stale, axis))
@@ -142,7 +142,7 @@ void CanNodes::send_feedback(std::size_t axis, std::uint32_t number) {
     for (int i = 0; i < 20; ++i) socket_.send({0x7F0, 8, {}});
   // On the bus now, with the next tick's number: before its SYNC.
   for (const auto& fault : config_.faults)
-    if (fault.kind == stale && fault.axis == axis && fault.acts(tick_ + 1)) send(state_[axis], number + 1);
+    if (fault.kind->frame == stale && fault.axis == axis && fault.acts(tick_ + 1)) send(state_[axis], number + 1);
 }
 
 }  // namespace stiction::host

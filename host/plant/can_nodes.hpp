@@ -10,7 +10,7 @@
 
 #include "hal/backend.hpp"
 #include "hal/can/can_socket.hpp"
-#include "host/plant/frame_fault.hpp"
+#include "host/plant/plant_fault.hpp"
 
 namespace stiction::host {
 
@@ -18,7 +18,7 @@ struct CanNodesConfig {
   std::string interface;
   hal::can::Format format = hal::can::Format::fd;
   std::vector<int> nodes;
-  std::vector<FrameFault> faults;
+  std::vector<PlantFault> faults;
 };
 
 // What moves behind the bus, for any backend of this process.

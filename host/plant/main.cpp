@@ -8,10 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "hal/simulated/faulty_backend.hpp"
 #include "hal/simulated/simulated_backend.hpp"
 #include "host/plant/can_nodes.hpp"
 #include "host/plant/motion_record.hpp"
 #include "host/plant/plant_options.hpp"
+#include "sim/control/axis_configuration.hpp"
 #include "sim/machine/drive_file.hpp"
 #include "sim/machine/machine_file.hpp"
 
@@ -27,15 +29,28 @@ int serve(const PlantOptions& options) {
   const auto start = start_positions(machine, options.at);
 
   hal::SimulatedBackend<FixedSignals> simulated(machine, start, options.seed);
+  hal::FaultyBackend faulty(simulated, sim::fast_period_ns(machine.timing), machine.axes.front().encoder.increment);
   MotionRecord record(machine.axes.size());
+  const auto faults = faults_of(options, machine);
+  std::uint64_t tick = 0;
+  const auto break_parts = [&] {
+    for (const auto& fault : faults)
+      if (fault.kind->machine != nullptr)
+        fault.kind->machine(faulty.faults(fault.axis), fault.acts(tick + 1));  // of the sample to come
+  };
   const PlantUnderBus plant{[&](std::span<const Command<FixedSignals>> commands) {
-                              simulated.write(commands);
-                              simulated.wait_for_tick();
+                              break_parts();
+                              faulty.write(commands);
+                              faulty.wait_for_tick();
+                              ++tick;
                               for (std::size_t i = 0; i < commands.size(); ++i)
                                 record.add(i, commands[i].enable, simulated.plant(i).position());
                             },
-                            [&](auto feedback, auto) { simulated.read(feedback); }};
-  simulated.wait_for_tick();  // the start
+                            [&](auto feedback, auto inputs) {
+                              faulty.read(feedback);
+                              faulty.read_inputs(inputs);
+                            }};
+  faulty.wait_for_tick();  // the start
   CanNodes nodes(can_nodes_config(options, machine, setup), plant);
   fmt::print("stiction-plant: {} on {}, {} axes\n", machine.id, options.bus, machine.axes.size());
   std::fflush(stdout);

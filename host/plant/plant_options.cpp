@@ -32,17 +32,17 @@ double quantity(const std::string& text, const std::string& unit, const std::str
 }
 
 // "KIND,axis=X,at=1.5 s,ticks=3"
-FrameFault frame_fault(const std::string& text, const sim::Machine& machine) {
+PlantFault plant_fault(const std::string& text, const sim::Machine& machine) {
   const auto parts = CLI::detail::split(text, ',');
-  const auto named = std::find_if(frame_faults.begin(), frame_faults.end(),
+  const auto named = std::find_if(plant_faults.begin(), plant_faults.end(),
                                   [&](const auto& row) { return row.name == parts.front(); });
-  if (named == frame_faults.end()) {
+  if (named == plant_faults.end()) {
     std::vector<std::string_view> names;
-    for (const auto& row : frame_faults) names.push_back(row.name);
+    for (const auto& row : plant_faults) names.push_back(row.name);
     throw PlantOptionError(
         fmt::format("--fault: found '{}'; expected one of {}", parts.front(), fmt::join(names, ", ")));
   }
-  FrameFault fault{.kind = named->kind};
+  PlantFault fault{.kind = &*named};
   for (std::size_t i = 1; i < parts.size(); ++i) {
     const auto equals = parts[i].find('=');
     const std::string key = parts[i].substr(0, equals);
@@ -76,7 +76,7 @@ void PlantOptions::add_to(CLI::App& program) {
       ->type_name("AXIS=QUANTITY")
       ->allow_extra_args(false);
   std::string faults_help = "a fault; may be repeated: KIND,axis=X,at=1.5 s,ticks=3. KIND:";
-  for (const auto& row : frame_faults) faults_help += fmt::format(" {} ({});", row.name, row.text);
+  for (const auto& row : plant_faults) faults_help += fmt::format(" {} ({});", row.name, row.text);
   faults_help.back() = '.';
   program.add_option("--fault", faults, faults_help)->type_name("FAULT")->allow_extra_args(false);
   program.add_option("--seed", seed, "of the simulated noise")->capture_default_str();
@@ -93,6 +93,12 @@ std::vector<double> start_positions(const sim::Machine& machine, const std::vect
   return positions;
 }
 
+std::vector<PlantFault> faults_of(const PlantOptions& options, const sim::Machine& machine) {
+  std::vector<PlantFault> faults;
+  for (const auto& text : options.faults) faults.push_back(plant_fault(text, machine));
+  return faults;
+}
+
 CanNodesConfig can_nodes_config(const PlantOptions& options, const sim::Machine& machine,
                                 const sim::DriveSetup& setup) {
   const auto colon = options.bus.find(':');
@@ -102,7 +108,7 @@ CanNodesConfig can_nodes_config(const PlantOptions& options, const sim::Machine&
   config.interface = options.bus.substr(colon + 1);
   config.format = setup.can && !setup.can->data_bit_rate ? hal::can::Format::classical : hal::can::Format::fd;
   for (const auto& axis : machine.axes) config.nodes.push_back(setup.axes.at(axis.name).node);
-  for (const auto& text : options.faults) config.faults.push_back(frame_fault(text, machine));
+  config.faults = faults_of(options, machine);
   return config;
 }
 

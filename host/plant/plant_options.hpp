@@ -30,6 +30,9 @@ struct PlantOptions {
 // Where the axes stand at the start (m), from "X=90 mm"; 0 where nothing is said. Throws PlantOptionError.
 std::vector<double> start_positions(const sim::Machine& machine, const std::vector<std::string>& at);
 
+// The faults of the options. Throws PlantOptionError.
+std::vector<PlantFault> faults_of(const PlantOptions& options, const sim::Machine& machine);
+
 // The nodes as the machine file has them, on the bus and with the faults of the options. Throws PlantOptionError.
 CanNodesConfig can_nodes_config(const PlantOptions& options, const sim::Machine& machine, const sim::DriveSetup& setup);
 
