@@ -73,7 +73,7 @@ class DriveLoop {
     for (std::size_t i = 0; i < drives_.size(); ++i) {
       demands_[i].set_point = set_points[i];
       demands_[i].quick_stop = stop_all;
-      demands_[i].cause = cause(i, clock);
+      demands_[i].causes = {trips_[i], clock, backend_fault(i)};
       set_[i] = drives_[i].before(demands_[i], loop_.feedback()[i], inputs_[i], loop_.now_ns(), loop_.axes()[i]);
       note(i);
       if constexpr (BrakeBackend<B>) backend_.set_brake(i, drives_[i].brake_released());
@@ -116,22 +116,21 @@ class DriveLoop {
   std::uint64_t dropped_events() const { return dropped_; }
 
  private:
-  Fault cause(std::size_t axis, Fault clock) {
-    if (trips_[axis] != Fault::none) return trips_[axis];
-    if (clock != Fault::none) return clock;
+  Fault backend_fault(std::size_t axis) {
     if constexpr (WiredBackend<B>) return backend_.fault(axis);
     return Fault::none;
   }
 
   void note(std::size_t axis) {
-    const auto& event = drives_[axis].event();
-    if (event.fault == Fault::none) return;
-    if (waiting_ == event_capacity) {
-      ++dropped_;
-      return;
+    for (const auto& event : drives_[axis].events()) {
+      if (event.fault == Fault::none) continue;
+      if (waiting_ == event_capacity) {
+        ++dropped_;
+        continue;
+      }
+      events_[(first_ + waiting_) % event_capacity] = {axis, event};
+      ++waiting_;
     }
-    events_[(first_ + waiting_) % event_capacity] = {axis, event};
-    ++waiting_;
   }
 
   B& backend_;

@@ -149,14 +149,16 @@ class DriveBench {
   Loop loop;
   Want want = Want::off;
   OperationMode mode = OperationMode::cyclic_position;
-  std::uint16_t extra_bits = 0;                  // of the controlwords
-  std::optional<std::size_t> invalid_set_point;  // of this axis
+  std::array<std::optional<std::uint16_t>, 2> override_word;  // in place of what `want` gives
+  std::uint16_t extra_bits = 0;                               // of the controlwords
+  std::optional<std::size_t> invalid_set_point;               // of this axis
   std::function<void()> before_tick;
   std::uint64_t ticks = 0;
   std::vector<hal::AxisEvent<S>> events;
 
  private:
   std::uint16_t word(std::size_t axis) const {
+    if (override_word[axis]) return *override_word[axis];
     if (resetting_) return controlword::fault_reset;
     if (want == Want::off) return controlword::disable_voltage;
     if (want == Want::quick_stop) return controlword::quick_stop;

@@ -36,9 +36,9 @@ template <class S>
 struct DriveDemand {
   std::uint16_t controlword = 0;
   OperationMode mode = OperationMode::cyclic_position;
-  SetPoint<S> set_point{};    // csp, of the machine's coordinates
-  Fault cause = Fault::none;  // what the backend or the programme sees in this tick
-  bool quick_stop = false;    // another axis has a fault
+  SetPoint<S> set_point{};        // csp, of the machine's coordinates
+  std::array<Fault, 3> causes{};  // what programme, clock and backend see in this tick
+  bool quick_stop = false;        // another axis has a fault
 };
 
 // A fault as it was seen. `following`: it came on top of another one, or during its stop.
@@ -60,7 +60,8 @@ class ServoDrive {
 
   // Ticks of a healthy axis at rest before the drive is ready: a current sensor's offset shows in it.
   static constexpr std::uint8_t self_test_ticks = 64;
-  static constexpr std::uint8_t standstill_ticks = 16;
+  // 10 ms at 62.5 us: a loop that settles passes through zero speed on its way.
+  static constexpr std::uint8_t standstill_ticks = 160;
 
   explicit constexpr ServoDrive(const ServoDriveConfig<S>& config)
       : config_(config), machine_(config.states), supervision_(config.supervision), homing_(config.homing) {
@@ -78,16 +79,16 @@ class ServoDrive {
   // The set-point of this tick for the cascade. Its power is on or off as the drive's state says.
   constexpr SetPoint<S> before(const DriveDemand<S>& demand, const Feedback<S>& feedback,
                                const DigitalInputs<S>& inputs, std::int64_t now_ns, Axis<S>& axis) {
-    event_ = {};
+    events_ = {};
+    fault_raised_ = false;
     const Fault supervised = supervision_.step(seen(feedback, inputs, now_ns, axis));
     if (supervision_.fresh()) measured_ = feedback.position;
     const bool unfound = homing_.phase() == Homing<S>::Phase::failed;
-    const Fault found = demand.cause != Fault::none ? demand.cause
-                        : supervised != Fault::none ? supervised
-                        : unfound                   ? Fault::homing
-                                                    : Fault::none;
-    raise(found, now_ns, axis);
-    const bool present = found != Fault::none || cause_holds(demand, feedback, axis);
+    bool present = cause_holds(demand, feedback, axis);
+    // One by one: a cause that stays must not hide another one.
+    for (const Fault fault : demand.causes) present |= raise(fault, now_ns, axis);
+    present |= raise(supervised, now_ns, axis);
+    present |= raise(unfound ? Fault::homing : Fault::none, now_ns, axis);
     self_test_ = present ? 0 : self_test_ < self_test_ticks ? static_cast<std::uint8_t>(self_test_ + 1) : self_test_;
     advance_states(demand, feedback, present, axis);
     return set_point(demand, inputs);
@@ -100,7 +101,8 @@ class ServoDrive {
                                                              : standing_;
     v_ = signals.v;
     i_set_ = signals.i_set;
-    event_ = {};
+    events_ = {};
+    fault_raised_ = false;
     if (axis.fault() == fault_ || axis.fault() == Fault::none) return;
     raise(axis.fault(), axis.fault_time_ns(), axis);
     machine_.step(controlword_, {.fault = fault_raised_});
@@ -115,7 +117,8 @@ class ServoDrive {
   constexpr Position position() const { return to_machine(measured_); }
   // Where the set-point stands, machine's coordinates: where a source of set-points begins after enabling or homing.
   constexpr Position set_position() const { return to_machine(last_.position); }
-  constexpr const DriveEvent<S>& event() const { return event_; }  // of this tick; Fault::none: nothing happened
+  // Of the last call, before() or after(): the first fault and the one on top of it; Fault::none: nothing happened.
+  constexpr const std::array<DriveEvent<S>, 2>& events() const { return events_; }
   constexpr typename Homing<S>::Phase homing_phase() const { return homing_.phase(); }
 
   constexpr std::uint16_t statusword() const {
@@ -171,12 +174,12 @@ class ServoDrive {
     return holds || exceeds(v_, config.over_speed_fault);
   }
 
-  constexpr void raise(Fault fault, std::int64_t now_ns, Axis<S>& axis) {
-    fault_raised_ = fault != Fault::none && fault != fault_;
-    if (!fault_raised_) return;
+  // Whether there is one.
+  constexpr bool raise(Fault fault, std::int64_t now_ns, Axis<S>& axis) {
+    if (fault == Fault::none || fault == fault_ || following_ != Fault::none) return fault != Fault::none;
     const bool following = fault_ != Fault::none;
-    if (following_ != Fault::none) return;
-    event_ = {fault, following, now_ns, position(), last_.velocity};
+    fault_raised_ = true;
+    events_[following ? 1 : 0] = {fault, following, now_ns, position(), last_.velocity};
     (following ? following_ : fault_) = fault;
     const auto* row = description_of(fault);
     const bool stops = !following && row != nullptr && row->reaction == Reaction::quick_stop && powered_;
@@ -186,6 +189,7 @@ class ServoDrive {
       axis.trip(fault, now_ns);
       power_off(axis);
     }
+    return true;
   }
 
   constexpr void power_off(Axis<S>& axis) {
@@ -340,7 +344,7 @@ class ServoDrive {
   Velocity v_{};
   typename S::Current i_set_{};  // of the last tick
   typename Ramp::State last_{};  // the set-point of the last tick, the encoder's coordinates
-  DriveEvent<S> event_{};
+  std::array<DriveEvent<S>, 2> events_{};
   SaturationCounter saturations_;
 };
 
