@@ -119,7 +119,7 @@ Register parameter_register(const DriveParameter& parameter, unsigned address) {
   r.name = parameter.key;
   r.unit = parameter.unit;
   const std::string range = sim::describe_range(parameter.range, parameter.unit);
-  r.text = parameter.text + (range.empty() ? "" : "; " + range);
+  r.text = parameter.text + (range.empty() ? "" : "; a value " + range);
   r.low = parameter.range.low;
   r.high = parameter.range.high;
   r.low_open = parameter.range.low_open;

@@ -96,7 +96,7 @@ int listen_on(const std::string& address) {
   const int on = 1;
   if (descriptor >= 0) ::setsockopt(descriptor, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
   if (descriptor < 0 || ::bind(descriptor, found.first->ai_addr, found.first->ai_addrlen) != 0 ||
-      ::listen(descriptor, 16) != 0) {
+      ::listen(descriptor, SOMAXCONN) != 0) {
     const int error = errno;
     if (descriptor >= 0) ::close(descriptor);
     throw ModbusError(fmt::format("{}: cannot listen: {}; {}", address, std::strerror(error), advice_for(error)));

@@ -17,7 +17,7 @@ constexpr std::string_view from_experiment = "experiment.";
 constexpr std::string_view from_set = "--set ";
 
 // What overrides may change.
-const std::vector<std::string_view> changeable{"name", "timing", "axis", "feed_drive"};
+const std::vector<std::string_view> changeable{"name", "timing", "axis", "drive", "feed_drive"};
 
 void merge(toml::table& into, toml::table& changes) {
   for (auto&& [key, value] : changes) {

@@ -119,9 +119,7 @@ TEST(ModbusRegisters, ShowParametersAndWhatWasWrittenToThem) {
 
 TEST(ModbusRegisters, TellMotionFromParameters) {
   auto registers = registers_of_cross_table();
-  const auto of = [&](const char* name, double value) {
-    return registers.take({index_of(registers, name), value});
-  };
+  const auto of = [&](const char* name, double value) { return registers.take({index_of(registers, name), value}); };
   const auto move = of("Y.target_position", 0.1);
   ASSERT_TRUE(std::holds_alternative<drive::MotionWrite>(move));
   EXPECT_EQ(std::get<drive::MotionWrite>(move).axis, 1U);

@@ -1,9 +1,8 @@
 // The Modbus client against a power stage that another program plays: pymodbus, and the project's own server.
-#include "hal/modbus/client.hpp"
-
 #include <mutex>
 
 #include "hal/bus_budget.hpp"
+#include "hal/modbus/client.hpp"
 #include "tests/hal/modbus_support.hpp"
 
 namespace stiction::test {
@@ -89,7 +88,8 @@ TEST(PowerStage, SurvivesItsOwnRegisters) {
 }
 
 TEST(PowerStage, ItsExchangeIsThatOfTheBudget) {
-  const hal::ModbusExchange exchange{"power stage", hal::power_stage_written_words, hal::power_stage_read_words, 1, 0.02};
+  const hal::ModbusExchange exchange{"power stage", hal::power_stage_written_words, hal::power_stage_read_words, 1,
+                                     0.02};
   EXPECT_NO_THROW(hal::check(hal::modbus_budget("/dev/ttyS0", 115200, {exchange})));
 }
 

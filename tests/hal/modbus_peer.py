@@ -34,7 +34,7 @@ def client(transport, place, operations):
             say(peer.write_registers(address, [int(w) for w in rest[0].split(",")], slave=1))
         elif kind == "both":
             say(peer.readwrite_registers(write_address=address, write_registers=[int(w) for w in rest[0].split(",")],
-                                         read_address=int(rest[1]), read_count=int(rest[2]), slave=1))
+                                         read_address=int(rest[1]), read_count=int(rest[2]), unit=1))
         else:
             sys.exit(f"unknown operation {operation}")
     peer.close()
