@@ -89,7 +89,8 @@ std::vector<std::string> assignments_of(const ParameterSet& set, const std::stri
         fmt::format("parameters: found those of the machine {}; expected those of {}", set.machine, machine_id));
   std::vector<std::string> assignments;
   for (const auto& [key, value] : set.values) {
-    const auto found = std::find_if(parameters.begin(), parameters.end(), [&](const auto& p) { return p.key == key; });
+    const auto found =
+        std::find_if(parameters.begin(), parameters.end(), [&name = key](const auto& p) { return p.key == name; });
     if (found == parameters.end())
       throw std::runtime_error(fmt::format("parameters: found {}; expected a parameter of this machine", key));
     assignments.push_back(found->unit == "1" ? fmt::format("{}={}", key, value)

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "firmware/drive/parameter_store.hpp"
+#include "sim/machine/parameter_tables.hpp"
 #include "sim/model/drive_setup.hpp"
 #include "sim/model/machine.hpp"
-#include "sim/parameter.hpp"
 
 namespace stiction::drive {
 

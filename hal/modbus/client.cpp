@@ -1,12 +1,12 @@
 #include "hal/modbus/client.hpp"
 
 #include <fmt/format.h>
-#include <time.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <ctime>
 
 #include "hal/bus_budget.hpp"
 #include "hal/modbus/serial_line.hpp"

@@ -40,7 +40,7 @@ class ModbusResponder {
   struct Library;  // libmodbus' context and mapping
 
   std::optional<ModbusException> refusal_of(std::span<const std::uint8_t> pdu);
-  std::optional<ModbusException> take_writes(std::size_t address, std::span<const std::uint8_t> words);
+  std::optional<ModbusException> take_writes(std::size_t address, std::span<const std::uint8_t> bytes);
 
   ModbusTransport transport_;
   const RegisterMap& map_;
