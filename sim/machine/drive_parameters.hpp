@@ -57,9 +57,13 @@ inline constexpr std::array<Choice<bool>, 2> motion_permissions{{
 
 template <>
 struct Table<ModbusServerSetup> : EmptyTable<ModbusServerSetup> {
-  static constexpr std::string_view text = "what the drive publishes to a PLC or an operator panel over Modbus TCP";
+  static constexpr std::string_view text = "what the drive publishes to a PLC or an operator panel over Modbus";
   static constexpr std::array<TextParameter<ModbusServerSetup>, 1> texts{
-      {{"address", &ModbusServerSetup::address, "HOST:PORT to listen on"}}};
+      {{"address", &ModbusServerSetup::address, "HOST:PORT to listen on, or a serial device for RTU"}}};
+  static constexpr std::array<Parameter<ModbusServerSetup>, 2> parameters{{
+      {"baud_rate", "1", {1200, 1000000}, &ModbusServerSetup::baud_rate, 115200.0, "bits a second of RTU, 8E1"},
+      {"unit", "1", {1, 247}, &ModbusServerSetup::unit, 1.0, "address of the drive on RTU"},
+  }};
   static constexpr std::tuple choices{ChoiceParameter<ModbusServerSetup, bool>{
       "motion", &ModbusServerSetup::motion_allowed, motion_permissions, false, "commands that move an axis"}};
 };

@@ -31,7 +31,9 @@ struct ModbusClientSetup {
 
 // What the drive publishes to a PLC or an operator panel.
 struct ModbusServerSetup {
-  std::string address;          // "HOST:PORT" to listen on
+  std::string address;          // "HOST:PORT" to listen on, or a serial device for RTU
+  int baud_rate = 115200;       // of RTU
+  int unit = 1;                 // on RTU
   bool motion_allowed = false;  // whether commands that move an axis are taken
 };
 

@@ -1,0 +1,37 @@
+// One client of a Modbus server over TCP: bytes in as they come, answers out as they are taken. No socket, so that a
+// fuzzer can be the client.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "hal/modbus/responder.hpp"
+
+namespace stiction::hal {
+
+class ModbusConnection {
+ public:
+  explicit ModbusConnection(ModbusResponder& responder) : responder_(&responder) {}
+
+  // Answers every request that is whole now, also of those kept before; returns how many.
+  int receive(std::span<const std::uint8_t> bytes);
+
+  // What came was no request, and where the next one begins is not known: the connection is to be closed.
+  bool is_lost() const { return lost_; }
+  // Whether so much is unread that no more requests are taken.
+  bool is_full() const { return out_.size() > most_unread; }
+
+  std::span<const std::uint8_t> unsent() const { return out_; }
+  void sent(std::size_t bytes);
+
+ private:
+  static constexpr std::size_t most_unread = 16 * longest_modbus_request;
+
+  ModbusResponder* responder_;
+  std::vector<std::uint8_t> in_, out_;
+  bool lost_ = false;
+};
+
+}  // namespace stiction::hal

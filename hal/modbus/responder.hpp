@@ -1,0 +1,58 @@
+// Answers one request of a Modbus client after the other: bytes in, bytes out, no socket. Lengths and rights are
+// checked here; libmodbus makes the answers. Protocol: Modbus application protocol V1.1b3, functions 3, 4, 6, 16, 17
+// and 23.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "hal/modbus/register_map.hpp"
+#include "hal/modbus/write_queue.hpp"
+
+namespace stiction::hal {
+
+// Longest request with its framing.
+inline constexpr std::size_t longest_modbus_request = 260;
+
+enum class ModbusTransport : std::uint8_t { tcp, rtu };
+
+// Writes one value for each register of the map, in their order.
+using RegisterValues = std::function<void(std::span<double>)>;
+
+class ModbusResponder {
+ public:
+  // `unit`: that this slave has on RTU; over TCP every unit is answered. `queue` takes what clients write.
+  ModbusResponder(ModbusTransport transport, const RegisterMap& map, RegisterValues values, bool motion_allowed,
+                  int unit, WriteQueue& queue);
+  ~ModbusResponder();
+  ModbusResponder(const ModbusResponder&) = delete;
+  ModbusResponder& operator=(const ModbusResponder&) = delete;
+
+  // The answer to one whole request, framing and all; empty where a slave is silent (RTU: damaged, or for another
+  // unit).
+  std::vector<std::uint8_t> answer(std::span<const std::uint8_t> request);
+
+ private:
+  struct Library;  // libmodbus' context and mapping
+
+  std::optional<ModbusException> refusal_of(std::span<const std::uint8_t> pdu);
+  std::optional<ModbusException> take_writes(std::size_t address, std::span<const std::uint8_t> bytes);
+
+  ModbusTransport transport_;
+  const RegisterMap& map_;
+  RegisterValues refresh_;
+  bool motion_allowed_;
+  int unit_;
+  WriteQueue& queue_;
+  std::vector<double> values_;
+  std::unique_ptr<Library> library_;
+};
+
+// CRC of Modbus RTU over `bytes`, polynomial A001h, low byte first on the wire.
+std::uint16_t modbus_crc(std::span<const std::uint8_t> bytes);
+
+}  // namespace stiction::hal

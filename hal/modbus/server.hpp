@@ -1,0 +1,61 @@
+// A Modbus slave that publishes a register map to a PLC or an operator panel, over TCP to many clients or over a serial
+// line. Runs in a thread of its own, by poll(); the control loop meets it only through what `values` reads
+// (snapshot.hpp) and through take_write(), which are wait-free. No client can stop it: bytes are taken as they come, an
+// answer that is not read is kept up to a bound and its client is then not listened to, and what is no request closes
+// the connection.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "hal/modbus/error.hpp"
+#include "hal/modbus/responder.hpp"
+
+namespace stiction::hal {
+
+struct ModbusServerConfig {
+  std::string address;          // "HOST:PORT" to listen on, port 0: any free one; or a serial device for RTU
+  bool motion_allowed = false;  // whether registers that move an axis are taken
+  int unit = 1;                 // on RTU
+  int baud_rate = 115200;       // of RTU, 8E1
+  int most_clients = 32;        // a further one takes the place of the one that was silent longest
+};
+
+struct ModbusServerCounts {
+  std::uint64_t requests = 0;
+  std::uint64_t connections = 0;
+  std::uint64_t dropped = 0;  // connections closed here, and on RTU bytes that made no request
+};
+
+class ModbusServer {
+ public:
+  // Listens when this returns. `values` is called in the server's thread. Throws ModbusError.
+  ModbusServer(RegisterMap map, const ModbusServerConfig& config, RegisterValues values);
+  ~ModbusServer();
+  ModbusServer(const ModbusServer&) = delete;
+  ModbusServer& operator=(const ModbusServer&) = delete;
+
+  // What clients wrote, oldest first; for one thread. Wait-free.
+  std::optional<RegisterWrite> take_write() { return queue_.take(); }
+  const RegisterMap& map() const { return map_; }
+  int port() const { return port_; }  // of TCP
+  ModbusServerCounts counts() const;
+
+ private:
+  class Endpoint;
+  class TcpEndpoint;
+  class SerialEndpoint;
+
+  RegisterMap map_;
+  WriteQueue queue_;
+  int port_ = 0;
+  std::atomic<std::uint64_t> requests_{0}, connections_{0}, dropped_{0};
+  int stop_ = -1;  // eventfd
+  std::unique_ptr<Endpoint> endpoint_;
+  std::thread thread_;
+};
+
+}  // namespace stiction::hal
