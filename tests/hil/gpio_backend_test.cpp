@@ -3,10 +3,8 @@
 #include "hal/gpio/gpio_backend.hpp"
 
 #include <gmock/gmock.h>
-#include <unistd.h>
 
 #include <atomic>
-#include <fstream>
 #include <thread>
 
 #include "hal/gpio/beside_lines.hpp"
@@ -15,7 +13,6 @@
 namespace stiction::test {
 namespace {
 
-namespace fs = std::filesystem;
 using Signals = FixedSignals;
 
 constexpr std::int64_t period_ns = 62'500;
@@ -23,32 +20,13 @@ constexpr double increment = 5e-6;  // m
 
 class GpioBackendLoop : public GpioLoop {
  protected:
-  void SetUp() override {
-    GpioLoop::SetUp();
-    pwm_ = fs::temp_directory_path() / ("stiction_gpio_" + std::to_string(::getpid()));
-    fs::remove_all(pwm_);
-    for (const char* channel : {"pwm0", "pwm1"}) {
-      fs::create_directories(pwm_ / channel);
-      for (const char* file : {"duty_cycle", "period", "enable"}) std::ofstream(pwm_ / channel / file) << "0\n";
-    }
-    std::ofstream(pwm_ / "npwm") << "2\n";
-  }
-  void TearDown() override { fs::remove_all(pwm_); }
-
   hal::GpioBackendConfig config() const {
     return {.chip = chip,
             .axes = {{.lines = axis_lines(),
                       .encoder = {.a = {wire::a}, .b = {wire::b}, .increment = increment},
-                      .pwm = {.chip = pwm_.string(), .half_bridges = 2, .period_ns = period_ns, .dc_link = 48.0}}}};
+                      .pwm = {.chip = pwm_.path(), .half_bridges = 2, .period_ns = period_ns, .dc_link = 48.0}}}};
   }
-  std::int64_t duty_ns(int channel) const {
-    std::ifstream file(pwm_ / ("pwm" + std::to_string(channel)) / "duty_cycle");
-    std::int64_t value = -1;
-    file >> value;
-    return value;
-  }
-
-  fs::path pwm_;
+  PwmFolder pwm_;
 };
 
 // One tick of a backend with one axis, as the control loop makes it.
@@ -82,15 +60,15 @@ TEST_F(GpioBackendLoop, EnablesNothingBeforeItIsToldAndTurnsAllOffAtTheEnd) {
     EXPECT_FALSE(tick.feedback.fault);
     EXPECT_FALSE(sim_->driven(wire::enable));
     EXPECT_FALSE(sim_->driven(wire::brake));
-    EXPECT_EQ(duty_ns(0), period_ns / 2);
+    EXPECT_EQ(pwm_.duty_ns(0), period_ns / 2);
     tick.write(true, 6.0);
     EXPECT_TRUE(sim_->driven(wire::enable));
     EXPECT_TRUE(sim_->driven(wire::brake));
-    EXPECT_EQ(duty_ns(0), 35'156);
-    EXPECT_EQ(duty_ns(1), 27'344);
+    EXPECT_EQ(pwm_.duty_ns(0), 35'156);
+    EXPECT_EQ(pwm_.duty_ns(1), 27'344);
     tick.write(false, 6.0);
     EXPECT_FALSE(sim_->driven(wire::enable));
-    EXPECT_EQ(duty_ns(0), period_ns / 2);
+    EXPECT_EQ(pwm_.duty_ns(0), period_ns / 2);
     tick.write(true, 0.0);
   }
   EXPECT_FALSE(sim_->driven(wire::enable));
@@ -181,7 +159,7 @@ TEST_F(GpioBackendLoop, StopsAtALimitSwitchInTheTickThatShowsIt) {
   ASSERT_NE(reached_ns, 0);
   ASSERT_NE(off_ns, 0);
   EXPECT_FALSE(sim_->driven(wire::enable));
-  EXPECT_EQ(duty_ns(0), period_ns / 2);
+  EXPECT_EQ(pwm_.duty_ns(0), period_ns / 2);
   const std::int64_t latency = off_ns - reached_ns;
   measured("limit switch to power stage off",
            fmt::format("{:.1f} us, {} edges past it", static_cast<double>(latency) * 1e-3, encoder.count() - 300));

@@ -5,9 +5,13 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/prctl.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <cstdint>
 #include <ctime>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <string>
 
@@ -57,6 +61,33 @@ inline hal::AxisLines axis_lines() {
           .home = {wire::home},
           .index = {wire::index}};
 }
+
+// A folder of the shape of /sys/class/pwm/pwmchipN with two channels: no simulated PWM chip exists in the kernel.
+class PwmFolder {
+ public:
+  PwmFolder() : path_(std::filesystem::temp_directory_path() / ("stiction_gpio_" + std::to_string(::getpid()))) {
+    std::filesystem::remove_all(path_);
+    for (const char* channel : {"pwm0", "pwm1"}) {
+      std::filesystem::create_directories(path_ / channel);
+      for (const char* file : {"duty_cycle", "period", "enable"}) std::ofstream(path_ / channel / file) << "0\n";
+    }
+    std::ofstream(path_ / "npwm") << "2\n";
+  }
+  ~PwmFolder() { std::filesystem::remove_all(path_); }
+  PwmFolder(const PwmFolder&) = delete;
+  PwmFolder& operator=(const PwmFolder&) = delete;
+
+  std::string path() const { return path_.string(); }
+  std::int64_t duty_ns(int channel) const {
+    std::ifstream file(path_ / ("pwm" + std::to_string(channel)) / "duty_cycle");
+    std::int64_t value = -1;
+    file >> value;
+    return value;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
 
 class GpioLoop : public ::testing::Test {
  protected:
