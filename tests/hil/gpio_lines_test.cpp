@@ -1,6 +1,7 @@
 // Lines on a real kernel's gpiochip: outputs, inputs with their time stamps, what is refused at the start, and edges
 // that the kernel dropped.
 #include <gmock/gmock.h>
+#include <sched.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -21,7 +22,6 @@ bool simulated_time() {
 namespace {
 
 using hal::Bias;
-using hal::LineConfig;
 using hal::Lines;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -190,6 +190,29 @@ TEST_F(GpioLoop, NoticesEdgesThatTheKernelDropped) {
     EXPECT_FALSE(lines.queue_was_full(home));
     EXPECT_EQ(lines.lost_edges(home), toggles == 17 ? 1u : 0u) << toggles;
   }
+}
+
+// What a thread of higher priority than the interrupts' does in one go, they see afterwards.
+void before_the_interrupts_thread(auto&& act) {
+  const sched_param above{.sched_priority = 80}, ordinary{};
+  ASSERT_EQ(::sched_setscheduler(0, SCHED_FIFO, &above), 0);
+  act();
+  ASSERT_EQ(::sched_setscheduler(0, SCHED_OTHER, &ordinary), 0);
+}
+
+// The thread of the interrupt reads the level when it runs: a pulse that is over by then comes as the edge that ended
+// it, for the second time in a row.
+TEST_F(GpioLoop, NoticesAPulseThatWasOverBeforeItsInterruptWasServed) {
+  Lines lines(chip, Bias::as_is);
+  const auto home = lines.add_input({wire::home}, "home");
+  before_the_interrupts_thread([&] {
+    sim_->set(wire::home, true);
+    sim_->set(wire::home, false);
+  });
+  sleep_until(monotonic_ns() + 100'000);
+  lines.poll(monotonic_ns());
+  EXPECT_GE(lines.lost_edges(home), 1u);
+  EXPECT_FALSE(lines.level(home));
 }
 
 // The last edges before a standstill are the dropped ones: no edge follows that could tell.
