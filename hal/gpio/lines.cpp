@@ -16,33 +16,42 @@ namespace {
 constexpr std::int64_t patience_ns = 1'000'000;
 
 // Every chip of this machine, for a message.
-std::string chips_found() {
-  std::string found;
+struct ChipsFound {
+  std::string text = "there is no /dev/gpiochip*";
+  bool denied = false;  // one of them at least
+};
+
+ChipsFound chips_found() {
+  ChipsFound found;
+  std::string list;
   std::error_code none;
   for (const auto& entry : std::filesystem::directory_iterator("/dev", none)) {
     const std::string path = entry.path().string();
     if (!path.starts_with("/dev/gpiochip")) continue;
-    found += (found.empty() ? "" : ", ") + path;
+    list += (list.empty() ? "" : ", ") + path;
     if (gpiod_chip* chip = ::gpiod_chip_open(path.c_str())) {
-      found += fmt::format(" \"{}\" with {} lines", ::gpiod_chip_label(chip), ::gpiod_chip_num_lines(chip));
+      list += fmt::format(" \"{}\" with {} lines", ::gpiod_chip_label(chip), ::gpiod_chip_num_lines(chip));
       ::gpiod_chip_close(chip);
     } else {
-      found += fmt::format(" ({})", std::strerror(errno));
+      found.denied |= errno == EACCES || errno == EPERM;
+      list += fmt::format(" ({})", std::strerror(errno));
     }
   }
-  return found.empty() ? "there is no /dev/gpiochip*" : "there is " + found;
+  if (!list.empty()) found.text = "there is " + list;
+  return found;
 }
 
+// Looked for by its label, a chip that may not be opened is as one that is not there.
 gpiod_chip* open_chip(const std::string& name) {
   if (gpiod_chip* chip = ::gpiod_chip_open_lookup(name.c_str())) return chip;
-  const int error = errno;
-  if (error == EACCES || error == EPERM)
+  const char* error = std::strerror(errno);
+  const auto found = chips_found();
+  if (found.denied)
     throw GpioError(
-        fmt::format("gpiochip \"{}\": no permission; {}. Run as a member of the group that owns the device, "
-                    "or install the udev rule of the package",
-                    name, chips_found()));
-  throw GpioError(fmt::format("gpiochip \"{}\": {}; {}. Set drive.gpio.chip to one of them", name, std::strerror(error),
-                              chips_found()));
+        fmt::format("gpiochip \"{}\": no permission; {}. Run as a member of the group that owns the device, or install "
+                    "the udev rule of the package",
+                    name, found.text));
+  throw GpioError(fmt::format("gpiochip \"{}\": {}; {}. Set drive.gpio.chip to one of them", name, error, found.text));
 }
 
 int flags_of(const LineConfig& line, Bias bias) {

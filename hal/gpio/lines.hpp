@@ -39,8 +39,8 @@ class Lines {
 
   // Reserve a line for this process; `name` is what the kernel shows as its user and what messages call it. Both
   // return the line's place for the calls below. Throw GpioError.
-  std::size_t add_input(const LineConfig& line, const std::string& name);
-  std::size_t add_output(const LineConfig& line, const std::string& name);  // inactive
+  std::size_t add_input(const LineConfig& config, const std::string& name);
+  std::size_t add_output(const LineConfig& config, const std::string& name);  // inactive
 
   // Takes over what happened since the last call. Never waits, allocates nothing. `now_ns`: CLOCK_MONOTONIC.
   void poll(std::int64_t now_ns);

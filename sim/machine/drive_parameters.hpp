@@ -26,6 +26,13 @@ struct Table<CanSetup> : EmptyTable<CanSetup> {
   }};
 };
 
+inline constexpr std::array<Choice<InputBias>, 4> input_biases{{
+    {"as-is", InputBias::as_is, "as the board's firmware left it"},
+    {"pull-up", InputBias::pull_up, "to the supply"},
+    {"pull-down", InputBias::pull_down, "to ground"},
+    {"none", InputBias::none, "off"},
+}};
+
 template <>
 struct Table<GpioSetup> : EmptyTable<GpioSetup> {
   static constexpr std::string_view text = "lines of a gpiochip and the kernel's PWM class";
@@ -33,8 +40,12 @@ struct Table<GpioSetup> : EmptyTable<GpioSetup> {
       {"chip", &GpioSetup::chip, "name or path of the gpiochip"},
       {"pwm_chip", &GpioSetup::pwm_chip, "folder of the PWM class, such as /sys/class/pwm/pwmchip0"},
   }};
-  static constexpr std::array<Parameter<GpioSetup>, 1> parameters{{
+  static constexpr std::tuple choices{ChoiceParameter<GpioSetup, InputBias>{
+      "bias", &GpioSetup::bias, input_biases, InputBias::as_is, "resistor inside the chip at every input"}};
+  static constexpr std::array<Parameter<GpioSetup>, 2> parameters{{
       {"pwm_period", "s", {1e-6, 1e-2}, &GpioSetup::pwm_period, 62.5e-6, "period of the PWM"},
+      {"dc_link", "V", not_negative(1500.0), &GpioSetup::dc_link, 0.0,
+       "voltage between the rails of the half bridges behind the PWM; 0: none"},
   }};
 };
 
@@ -100,10 +111,26 @@ struct Table<HomingSetup> : EmptyTable<HomingSetup> {
 
 inline constexpr Range line_numbers{-1, 1023};
 
+inline constexpr std::array<Choice<ActiveLevel>, 2> active_levels{{
+    {"high", ActiveLevel::high, "the line is high while it says yes"},
+    {"low", ActiveLevel::low, "low, as of a contact to the supply that opens: a broken wire says yes too"},
+}};
+inline constexpr auto active_level = [](std::string_view key, ActiveLevel LineSetup::*member, std::string_view text) {
+  return ChoiceParameter<LineSetup, ActiveLevel>{key, member, active_levels, ActiveLevel::high, text};
+};
+
 template <>
 struct Table<LineSetup> : EmptyTable<LineSetup> {
   static constexpr std::string_view text = "lines of the gpiochip by their number; -1: not wired";
-  static constexpr std::array<Parameter<LineSetup>, 11> parameters{{
+  static constexpr std::tuple choices{
+      active_level("enable_active", &LineSetup::enable_active, "level of enable that turns the power stage on"),
+      active_level("brake_active", &LineSetup::brake_active, "level of brake that releases it"),
+      active_level("fault_active", &LineSetup::fault_active, "level of fault that reports one"),
+      active_level("limit_active", &LineSetup::limit_active, "level of both limit switches when they are reached"),
+      active_level("home_active", &LineSetup::home_active, "level of the home switch when it is reached"),
+      active_level("index_active", &LineSetup::index_active, "level of the index mark"),
+  };
+  static constexpr std::array<Parameter<LineSetup>, 13> parameters{{
       {"enable", "1", line_numbers, &LineSetup::enable, -1.0, "power stage on"},
       {"brake", "1", line_numbers, &LineSetup::brake, -1.0, "brake released"},
       {"fault", "1", line_numbers, &LineSetup::fault, -1.0, "fault of the power stage"},
@@ -114,7 +141,11 @@ struct Table<LineSetup> : EmptyTable<LineSetup> {
       {"quadrature_a", "1", line_numbers, &LineSetup::quadrature_a, -1.0, "track A of the encoder"},
       {"quadrature_b", "1", line_numbers, &LineSetup::quadrature_b, -1.0, "track B of the encoder"},
       {"quadrature_increment", "m", not_negative(1e-3), &LineSetup::quadrature_increment, 0.0,
-       "way from one edge of the tracks to the next"},
+       "way from one edge of the tracks to the next; 0: the increment of the machine's encoder"},
+      {"quadrature_rate", "1/s", positive(1e6), &LineSetup::quadrature_rate, 10e3,
+       "edges a second of both tracks that this machine's kernel was measured to hold; more are a fault"},
+      {"quadrature_settle", "s", not_negative(1e-2), &LineSetup::quadrature_settle, 50e-6,
+       "time by which an edge may come late out of its interrupt; the position is so old"},
       {"pwm_channel", "1", line_numbers, &LineSetup::pwm_channel, -1.0, "PWM channel of the first phase"},
   }};
 };

@@ -15,10 +15,15 @@ struct CanSetup {
   std::optional<double> data_bit_rate;  // 1/s, CAN FD; none: classical frames
 };
 
+// Of the chip's inputs, inside the chip.
+enum class InputBias { as_is, pull_up, pull_down, none };
+
 struct GpioSetup {
   std::string chip;                     // name or path of the gpiochip
   std::optional<std::string> pwm_chip;  // folder of the kernel's PWM class
   double pwm_period = 62.5e-6;          // s
+  double dc_link = 0.0;                 // V between the rails of the half bridges behind the PWM
+  InputBias bias = InputBias::as_is;
 };
 
 // Where the drive is a Modbus client: a slow power stage or remote inputs and outputs.
@@ -53,13 +58,20 @@ struct HomingSetup {
   double offset = 0.0;         // m, the position of the mark
 };
 
+// Which level of a line says yes.
+enum class ActiveLevel { high, low };
+
 // Lines of the gpiochip; -1: not wired.
 struct LineSetup {
   int enable = -1, brake = -1, fault = -1;
   int limit_negative = -1, limit_positive = -1, home = -1, index = -1;
   int quadrature_a = -1, quadrature_b = -1;
   double quadrature_increment = 0.0;  // m an edge
+  double quadrature_rate = 10e3;      // edges a second of both tracks, that the machine's kernel was measured to hold
+  double quadrature_settle = 50e-6;   // s, by which an edge may come late out of its interrupt
   int pwm_channel = -1;               // the first of the motor's
+  ActiveLevel enable_active = ActiveLevel::high, brake_active = ActiveLevel::high, fault_active = ActiveLevel::high;
+  ActiveLevel limit_active = ActiveLevel::high, home_active = ActiveLevel::high, index_active = ActiveLevel::high;
 };
 
 struct DriveAxisSetup {

@@ -1,0 +1,134 @@
+// From the keys of [drive.gpio] and [drive.axis.NAME.line] to the GPIO backend's configuration.
+#include "firmware/drive/gpio_setup.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "hal/gpio/lines.hpp"
+#include "sim/machine/drive_file.hpp"
+#include "sim/machine/machine_file.hpp"
+
+namespace stiction::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* machine_text = R"(schema = "stiction.machine/1"
+name = "small"
+[axis.B]
+mass = "95 kg"
+travel = "250 mm"
+max_velocity = "0.2 m/s"
+max_acceleration = "2 m/s^2"
+[axis.B.motor]
+model = "force"
+force_constant = "35 N/V"
+[axis.B.inverter]
+dead_time = "0 us"
+voltage_limit = "10 V"
+[axis.B.encoder]
+increment = "5 um"
+velocity = "mean-difference"
+[axis.B.position_controller]
+gain = "160 1/s"
+[axis.B.velocity_controller]
+gain = "243 V s/m"
+[axis.B.friction]
+use = "coulomb_viscous"
+[axis.B.friction.coulomb_viscous]
+coulomb = "20 N"
+viscous = "200 N s/m"
+)";
+constexpr const char* drive_text = R"([drive.gpio]
+chip = "servo-lines"
+pwm_chip = "/sys/class/pwm/pwmchip0"
+pwm_period = "50 us"
+dc_link = "48 V"
+bias = "pull-down"
+[drive.axis.B.line]
+enable = 7
+brake = 8
+limit_negative = 3
+limit_positive = 4
+limit_active = "low"
+quadrature_a = 0
+quadrature_b = 1
+quadrature_increment = "5 um"
+quadrature_rate = "8000 1/s"
+pwm_channel = 2
+)";
+
+struct Read {
+  sim::Machine machine;
+  sim::DriveSetup setup;
+};
+
+Read read(const std::string& text) {
+  const auto file = fs::temp_directory_path() / ("stiction_gpio_setup_" + std::to_string(::getpid()) + ".toml");
+  std::ofstream(file) << text;
+  Read result;
+  result.machine = sim::read_machine(file);
+  result.setup = sim::read_drive_setup(file, result.machine);
+  fs::remove(file);
+  return result;
+}
+
+std::string refusal(const Read& read) {
+  try {
+    (void)drive::gpio_configuration(read.setup, read.machine);
+  } catch (const hal::GpioError& error) {
+    return error.what();
+  }
+  return "taken";
+}
+
+TEST(GpioSetup, CarriesEveryKeyOfTheMachineFileToTheBackend) {
+  const auto [machine, setup] = read(std::string(machine_text) + drive_text);
+  ASSERT_TRUE(drive::has_gpio_lines(setup, machine));
+  const auto config = drive::gpio_configuration(setup, machine);
+  EXPECT_EQ(config.chip, "servo-lines");
+  EXPECT_EQ(config.bias, hal::Bias::pull_down);
+  ASSERT_EQ(config.axes.size(), 1u);
+  const auto& [lines, encoder, pwm] = config.axes[0];
+  EXPECT_EQ(lines.name, "B");
+  EXPECT_EQ(lines.enable.offset, 7);
+  EXPECT_FALSE(lines.enable.active_low);
+  EXPECT_EQ(lines.limit_negative.offset, 3);
+  EXPECT_TRUE(lines.limit_negative.active_low);
+  EXPECT_TRUE(lines.limit_positive.active_low);
+  EXPECT_FALSE(lines.home.wired());
+  EXPECT_EQ(encoder.b.offset, 1);
+  EXPECT_DOUBLE_EQ(encoder.increment, 5e-6);
+  EXPECT_DOUBLE_EQ(encoder.rate, 8000.0);
+  EXPECT_EQ(encoder.settle_ns, 50'000);
+  EXPECT_EQ(pwm.chip, "/sys/class/pwm/pwmchip0");
+  EXPECT_EQ(pwm.first_channel, 2);
+  EXPECT_EQ(pwm.half_bridges, 2);
+  EXPECT_EQ(pwm.period_ns, 50'000);
+  EXPECT_DOUBLE_EQ(pwm.dc_link, 48.0);
+}
+
+TEST(GpioSetup, FindsNoLinesWhereNoneAreNamed) {
+  const auto [machine, setup] = read(machine_text);
+  EXPECT_FALSE(drive::has_gpio_lines(setup, machine));
+  EXPECT_THAT(refusal({machine, setup}), ::testing::HasSubstr("no table [drive.gpio]"));
+}
+
+TEST(GpioSetup, RefusesAnAxisWhoseCurrentIsControlledInTheDrive) {
+  auto both = read(std::string(machine_text) + drive_text);
+  both.machine.axes[0].motor.model = sim::MotorModel::synchronous;
+  EXPECT_THAT(refusal(both), ::testing::HasSubstr("axis B: its current controllers need the phase currents"));
+}
+
+TEST(GpioSetup, RefusesAMachineWithoutAPwmChip) {
+  auto both = read(std::string(machine_text) + drive_text);
+  both.setup.gpio->pwm_chip.reset();
+  EXPECT_THAT(refusal(both), ::testing::HasSubstr("names no pwm_chip"));
+}
+
+}  // namespace
+}  // namespace stiction::test

@@ -1,0 +1,106 @@
+// What the tests on simulated lines share: the chip that tests/hil/gpio_guest.sh makes, who is wired where, and
+// threads that keep to the clock.
+#pragma once
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <sys/prctl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdint>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+
+#include "hal/gpio/config.hpp"
+#include "hal/gpio/lines.hpp"
+#include "host/plant/gpio_sim.hpp"
+
+namespace stiction::test {
+
+inline constexpr const char* chip = "stiction-test";
+
+// Line numbers.
+namespace wire {
+inline constexpr int a = 0, b = 1, index = 2, limit_negative = 3, limit_positive = 4, home = 5, fault = 6, enable = 7,
+                     brake = 8, spare = 9;
+}
+
+inline std::int64_t monotonic_ns() {
+  timespec now{};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  return now.tv_sec * std::int64_t{1'000'000'000} + now.tv_nsec;
+}
+
+inline void sleep_until(std::int64_t time_ns) {
+  const timespec until{time_ns / 1'000'000'000, time_ns % 1'000'000'000};
+  while (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
+  }
+}
+
+// Sleeps of this thread end on time and not up to 50 us later, as the kernel otherwise allows itself.
+inline void sleep_exactly() { ::prctl(PR_SET_TIMERSLACK, 1ul, 0ul, 0ul, 0ul); }
+
+// Whether time is simulated (time-travel=inf-cpu): then waiting costs nothing and work takes no time. Told by the
+// kernel's command line.
+bool simulated_time();
+
+// A line of the figures that toolchain/test prints; the guest's root is read-only, so that it goes to the output alone.
+inline void measured(const std::string& name, const std::string& text) { fmt::print("{:<64} {}\n", name, text); }
+
+inline hal::AxisLines axis_lines() {
+  return {.name = "X",
+          .enable = {wire::enable},
+          .brake = {wire::brake},
+          .fault = {wire::fault},
+          .limit_negative = {wire::limit_negative, true},
+          .limit_positive = {wire::limit_positive, true},
+          .home = {wire::home},
+          .index = {wire::index}};
+}
+
+// A folder of the shape of /sys/class/pwm/pwmchipN with two channels: no simulated PWM chip exists in the kernel.
+class PwmFolder {
+ public:
+  PwmFolder() : path_(std::filesystem::temp_directory_path() / ("stiction_gpio_" + std::to_string(::getpid()))) {
+    std::filesystem::remove_all(path_);
+    for (const char* channel : {"pwm0", "pwm1"}) {
+      std::filesystem::create_directories(path_ / channel);
+      for (const char* file : {"duty_cycle", "period", "enable"}) std::ofstream(path_ / channel / file) << "0\n";
+    }
+    std::ofstream(path_ / "npwm") << "2\n";
+  }
+  ~PwmFolder() { std::filesystem::remove_all(path_); }
+  PwmFolder(const PwmFolder&) = delete;
+  PwmFolder& operator=(const PwmFolder&) = delete;
+
+  std::string path() const { return path_.string(); }
+  std::int64_t duty_ns(int channel) const {
+    std::ifstream file(path_ / ("pwm" + std::to_string(channel)) / "duty_cycle");
+    std::int64_t value = -1;
+    file >> value;
+    return value;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+class GpioLoop : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto folder = plant::GpioSim::find(chip);
+    if (!folder) GTEST_SKIP() << "no simulated gpiochip; run: toolchain/hil/run tests/hil/gpio_guest.sh " << program();
+    sleep_exactly();
+    sim_ = std::make_unique<plant::GpioSim>(*folder);
+    for (int line = 0; line < 16; ++line) sim_->set(line, line == wire::limit_negative || line == wire::limit_positive);
+  }
+  static std::string program() { return ::testing::internal::GetArgvs().front(); }
+
+  std::unique_ptr<plant::GpioSim> sim_;
+};
+
+}  // namespace stiction::test
