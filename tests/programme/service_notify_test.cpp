@@ -7,6 +7,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -48,7 +49,7 @@ class Manager : public ::testing::Test {
     std::filesystem::remove_all(folder_);
   }
 
-  // What has come since the last call, a message an element.
+  // What has come since the last call, a message an element. The kernel keeps ten; who sends more waits.
   std::vector<std::string> received() const {
     std::vector<std::string> messages;
     std::array<char, 512> buffer;
@@ -80,9 +81,12 @@ TEST_F(Manager, IsFedAtMostFourTimesInItsTimeWhileTheLoopMovesOn) {
   drive::ServiceNotify notify;
   ASSERT_EQ(notify.watchdog_ns(), 200 * ms);
   int fed = 0;
-  for (std::int64_t t = 0; t < 2000; t += 20) fed += notify.feed(static_cast<std::uint64_t>(t), t * ms);
+  for (std::int64_t t = 0; t < 2000; t += 20) {
+    const bool told = notify.feed(static_cast<std::uint64_t>(t), t * ms);
+    EXPECT_EQ(received(), told ? Messages{"WATCHDOG=1"} : Messages{});
+    fed += told;
+  }
   EXPECT_EQ(fed, 34);  // every 60 ms: the first multiple of 20 ms from 50 on
-  EXPECT_EQ(received(), Messages(34, "WATCHDOG=1"));
 }
 
 TEST_F(Manager, IsNotFedWhenTheLoopStandsStill) {
@@ -127,17 +131,18 @@ TEST_F(Manager, IsToldTheStateOnceASecondAndTheStarvedLoopIsReportedOnce) {
   Service service;
   drive::ServiceThread::Round round(*service.ring, service.sink, notify, service.questions, 1000 * ms);
   constexpr std::int64_t start = 100'000 * ms;
+  Messages running;
   for (std::int64_t t = 0; t <= 1000; t += 20) {
     ++service.ticks;
     round(start + t * ms);
+    for (auto& message : received()) running.push_back(std::move(message));
   }
-  const auto running = received();
   EXPECT_EQ(std::count(running.begin(), running.end(), "STATUS=running"), 2);
   EXPECT_EQ(std::count(running.begin(), running.end(), "WATCHDOG=1"), 17);
   EXPECT_EQ(service.starved, 0);
   for (std::int64_t t = 1020; t < 1900; t += 20) round(start + t * ms);
-  EXPECT_EQ(received(), Messages{});
-  EXPECT_EQ(service.starved, 1);  // by the manager's 200 ms
+  EXPECT_EQ(received(), Messages{"WATCHDOG=1"});  // for the ticks since it was told last
+  EXPECT_EQ(service.starved, 1);                  // by the manager's 200 ms
 }
 
 TEST_F(Manager, HearsOfTheLoopFromItsThreadAndTheLastMessagesAreSaid) {
