@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "firmware/drive/parameter_store.hpp"
+#include "firmware/drive/parameters.hpp"
 #include "hal/can/can_socket.hpp"
 #include "sim/control/compensation_configuration.hpp"
 #include "sim/control/drive_configuration.hpp"
@@ -11,15 +11,33 @@
 
 namespace stiction::drive {
 
+std::filesystem::path parameter_file(const DriveOptions& options) {
+  return options.parameters.empty() ? std::filesystem::path()
+                                    : std::filesystem::path(options.parameters) / "parameters";
+}
+
 DriveConfiguration read_configuration(const DriveOptions& options) {
   const auto file = sim::find_machine(options.machine);
-  const sim::ReadOptions read{options.circle.empty() ? "" : "circle", options.set};
+  sim::ReadOptions read{options.circle.empty() ? "" : "circle", options.set};
   auto machine = sim::read_machine(file, read);
   if (machine.axes.empty())
     throw StartRefused(fmt::format("{}: found no axis; expected a table [axis.NAME]", file.string()));
   auto setup = sim::read_drive_setup(file, machine, read);
+  std::optional<ParameterSet> stored;
+  if (!options.parameters.empty()) stored = read_parameters(parameter_file(options));
+  if (stored) {
+    // What the command line says stands above what was stored.
+    auto assignments = assignments_of(*stored, machine.id, drive_parameters(machine, setup));
+    assignments.insert(assignments.end(), options.set.begin(), options.set.end());
+    read.set = assignments;
+    machine = sim::read_machine(file, read);
+    setup = sim::read_drive_setup(file, machine, read);
+  }
   const auto period_ns = sim::fast_period_ns(machine.timing);
   DriveConfiguration configuration{
+      .file = file,
+      .assignments = options.set,
+      .stored = std::move(stored),
       .machine = std::move(machine),
       .setup = std::move(setup),
       .names = {},

@@ -1,10 +1,14 @@
 // Everything that the loop is built from, read and checked before anything is opened.
 #pragma once
 
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "firmware/drive/options.hpp"
+#include "firmware/drive/parameter_store.hpp"
 #include "hal/bus_budget.hpp"
 #include "hal/can/can_backend.hpp"
 #include "hal/can/dbc.hpp"
@@ -24,6 +28,9 @@ class StartRefused : public std::runtime_error {
 };
 
 struct DriveConfiguration {
+  std::filesystem::path file;            // of the machine
+  std::vector<std::string> assignments;  // over it, from the command line
+  std::optional<ParameterSet> stored;    // over it as well: what was stored on this machine
   sim::Machine machine;
   sim::DriveSetup setup;
   std::vector<std::string> names;  // of the axes
@@ -33,6 +40,9 @@ struct DriveConfiguration {
   std::int64_t period_ns;
   Ticker ticker;
 };
+
+// Where the parameters of this machine are stored; empty without --parameters.
+std::filesystem::path parameter_file(const DriveOptions& options);
 
 // Reads the machine file, and over it the parameters stored on this machine. Throws StartRefused,
 // sim::MachineFileError, sim::ConfigurationError, ParametersDamaged.

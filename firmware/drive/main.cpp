@@ -10,9 +10,13 @@
 #include <vector>
 
 #include "firmware/drive/configuration.hpp"
+#include "firmware/drive/fault_page.hpp"
+#include "firmware/drive/gpio_setup.hpp"
 #include "firmware/drive/options.hpp"
 #include "firmware/drive/real_time_check.hpp"
 #include "firmware/drive/run.hpp"
+#include "hal/gpio/beside_lines.hpp"
+#include "hal/gpio/gpio_backend.hpp"
 #include "hal/paced_backend.hpp"
 #include "hal/simulated/simulated_backend.hpp"
 
@@ -44,7 +48,15 @@ int run_can(const DriveConfiguration& configuration, const DriveOptions& options
         fmt::format("can: {}: found no answer of node {}; expected one within {} ticks: is it powered, "
                     "and does it speak {}?",
                     config.interface, fmt::join(silent, ", "), patience, hal::can::properties(config.format).name));
-  const auto result = run(backend, &clock, configuration, options, "can " + config.interface);
+  const std::string title = "can " + config.interface;
+  RunResult result;
+  if (has_gpio_lines(configuration.setup, configuration.machine)) {
+    hal::BesideLines both(backend, configuration.setup.gpio->chip, input_bias(configuration.setup),
+                          gpio_lines(configuration.setup, configuration.machine));
+    result = run(both, &clock, configuration, options, title + " and lines of " + configuration.setup.gpio->chip);
+  } else {
+    result = run(backend, &clock, configuration, options, title);
+  }
   for (std::size_t i = 0; i < configuration.names.size(); ++i) {
     const auto& n = backend.counts(i);
     fmt::print("axis {}: {} answers, {} lost, {} late, {} twice, {} out of order, {} stale, {} damaged\n",
@@ -56,7 +68,18 @@ int run_can(const DriveConfiguration& configuration, const DriveOptions& options
   return status_of(result);
 }
 
+int run_gpio(const DriveConfiguration& configuration, const DriveOptions& options) {
+  hal::GpioBackend backend(gpio_configuration(configuration.setup, configuration.machine), configuration.period_ns);
+  return status_of(run(backend, &backend.clock(), configuration, options, "gpio " + configuration.setup.gpio->chip));
+}
+
 int serve(const DriveOptions& options) {
+  if (options.faults) {
+    fmt::print("{}", fault_page());
+    return exit_done;
+  }
+  if (options.machine.empty())
+    throw StartRefused("found no --machine; expected a machine file or a shipped machine's name");
   const auto configuration = read_configuration(options);
   if (options.budget) {
     const auto budget = can_bus_budget(configuration);
@@ -77,7 +100,9 @@ int serve(const DriveOptions& options) {
     return exit_done;
   }
   catch_stop_signals();
-  return options.hal == "can" ? run_can(configuration, options) : run_simulated(configuration, options);
+  if (options.hal == "can") return run_can(configuration, options);
+  if (options.hal == "gpio") return run_gpio(configuration, options);
+  return run_simulated(configuration, options);
 }
 
 int start(int argc, char** argv) {

@@ -12,12 +12,10 @@ struct DriveOptions {
   std::string machine, hal = "simulated", circle, trace, parameters;
   std::vector<std::string> set;
   std::optional<double> hold;  // s
-  bool unpaced = false, budget = false, check_realtime = false, dbc = false;
+  bool unpaced = false, budget = false, check_realtime = false, dbc = false, faults = false;
 
   void add_to(CLI::App& program) {
-    program.add_option("--machine", machine, "machine file, or the name of a shipped machine")
-        ->required()
-        ->type_name("MACHINE");
+    program.add_option("--machine", machine, "machine file, or the name of a shipped machine")->type_name("MACHINE");
     program.add_option("--hal", hal, "how the drive reaches its power stages and encoders")
         ->check(CLI::IsMember({"simulated", "can", "gpio"}))
         ->capture_default_str();
@@ -35,6 +33,7 @@ struct DriveOptions {
     program.add_option("--trace", trace, "write every signal of every tick of the motion as a log")->type_name("FILE");
     program.add_flag("--budget", budget, "print what the bus has to carry, and end");
     program.add_flag("--check-realtime", check_realtime, "print whether this machine is fit for the loop, and end");
+    program.add_flag("--faults", faults, "print the table of faults, and end");
     program.add_flag("--dbc", dbc, "print the frames of the CAN bus as a DBC file, and end");
   }
 };

@@ -3,6 +3,7 @@
 // them to be over. Allocates nothing after construction.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <span>
@@ -10,16 +11,17 @@
 
 #include "firmware/drive/log_ring.hpp"
 #include "firmware/drive/motion.hpp"
+#include "firmware/drive/remote_demand.hpp"
 #include "firmware/drive/trace.hpp"
 #include "hal/drive_loop.hpp"
 
 namespace stiction::drive {
 
-enum class Phase : std::uint8_t { enable, home, approach, motion, idle, stop, faulted, over };
+enum class Phase : std::uint8_t { enable, home, approach, motion, idle, remote, stop, faulted, over };
 
 constexpr const char* name_of(Phase phase) {
-  constexpr std::array<const char*, 8> names{"enabling", "homing",   "approach", "motion",
-                                             "holding",  "stopping", "faulted",  "off"};
+  constexpr std::array<const char*, 9> names{"enabling", "homing",   "approach", "motion", "holding",
+                                             "serving",  "stopping", "faulted",  "off"};
   return names[static_cast<std::size_t>(phase)];
 }
 
@@ -34,14 +36,17 @@ class Programme {
  public:
   using S = typename B::Signals;
 
-  // `trace`: of the motion; may be null. All must outlive this.
-  Programme(hal::DriveLoop<B>& loop, const Task& task, LogRing& log, Trace* trace)
-      : loop_(loop), task_(task), log_(log), trace_(trace), hold_(loop.axis_count()) {}
+  // `trace`: of the motion; may be null. `demand`: of others, may be null: then the axes stay off while it serves. All
+  // must outlive this.
+  Programme(hal::DriveLoop<B>& loop, const Task& task, LogRing& log, Trace* trace, const RemoteDemand* demand)
+      : loop_(loop), task_(task), log_(log), trace_(trace), demand_(demand), hold_(loop.axis_count()) {
+    if (task.serve) enter(Phase::remote);
+  }
 
   // One tick. `stop_wanted`: a controlled stop, then the end.
   void tick(bool stop_wanted) {
     if (stop_wanted && phase_ < Phase::stop) enter(Phase::stop);
-    if (loop_.faulted() && phase_ < Phase::faulted) enter(Phase::faulted);
+    if (loop_.faulted() && phase_ != Phase::remote && phase_ < Phase::faulted) enter(Phase::faulted);
     choose_controlwords();
     const auto sets = set_points();
     const std::int64_t now_ns = loop_.now_ns();
@@ -75,6 +80,10 @@ class Programme {
       std::uint16_t word = off ? controlword::shutdown : controlword_to_enable(loop_.state(i));
       if (phase_ == Phase::faulted) word = controlword::shutdown;
       if (homes) word |= controlword::homing_start_bit;
+      if (phase_ == Phase::remote) {
+        word = demand_ == nullptr ? controlword::disable_voltage : demand_->controlword(i);
+        if (demand_ != nullptr) loop_.set_mode(i, demand_->mode(i));
+      }
       loop_.set_controlword(i, word);
     }
   }
@@ -104,7 +113,9 @@ class Programme {
         if (in_phase_ == task_.motion.ticks()) enter(task_.idle_ticks > 0 ? Phase::idle : Phase::stop);
         break;
       case Phase::idle:
-        if (task_.idle_ticks != Task::none_ends && in_phase_ >= task_.idle_ticks) enter(Phase::stop);
+        if (in_phase_ >= task_.idle_ticks) enter(Phase::stop);
+        break;
+      case Phase::remote:
         break;
       case Phase::stop:
       case Phase::faulted:
@@ -149,6 +160,7 @@ class Programme {
   const Task& task_;
   LogRing& log_;
   Trace* trace_;
+  const RemoteDemand* demand_;
   std::vector<SetPoint<S>> hold_;
   Phase phase_ = Phase::enable;
   std::uint64_t in_phase_ = 0;  // ticks

@@ -43,9 +43,10 @@ Task task_of(const DriveOptions& options, const DriveConfiguration& configuratio
           fmt::format("--circle: found '{}' ({}); expected a feed such as \"16 m/min\"", options.circle, error.what()));
     }
     task.approach = task.motion.approach(machine, positions);
+  } else if (options.hold) {
+    task.idle_ticks = static_cast<std::uint64_t>(std::ceil(*options.hold / machine.timing.fast_period));
   } else {
-    task.idle_ticks = options.hold ? static_cast<std::uint64_t>(std::ceil(*options.hold / machine.timing.fast_period))
-                                   : Task::none_ends;
+    task.serve = true;
   }
   return task;
 }

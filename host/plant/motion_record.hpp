@@ -40,7 +40,8 @@ class MotionRecord {
   }
 
  private:
-  static constexpr double rest_step = 1e-12;  // m a tick: 16 nm/s, the creep of bristles that relax
+  // m a tick, an increment of a fine encoder: the bristles under a carriage that has stopped swing on below it.
+  static constexpr double rest_step = 1e-9;
 
   struct Axis {
     bool ever_on = false;

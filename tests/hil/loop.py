@@ -39,7 +39,7 @@ class Run:
     plant: tuple = ()
     both: tuple = ()  # options that both take
     beside: str = ""  # a command of the guest that runs beside the drive
-    afterwards: float = 1.5  # s that the machine is watched for after the drive has ended
+    afterwards: float = 2.0  # s that the machine is watched for after the drive has ended
 
     def script(self):
         common = ["--machine", "mcfv5050ln", "--set", "drive.can.interface=vcan0", *self.both]
@@ -71,12 +71,12 @@ class Result:
             for axis, tick, way, ticks in re.findall(
                 r"axis (\w+): stage off since tick (\d+), ran on by (\S+) um for (\d+) ticks", self.plant)
         }
-        begin = re.search(r"([\d.]+) s: the loop begins", self.drive)
+        begin = re.search(r"([\d.]+) s: the loop has begun", self.drive)
         self.begin = float(begin[1]) if begin else None
 
     def faults(self):
-        """(tick, axis, number) of each that the drive logged; the loop's first tick is the machine's tick 1."""
-        return [(round((float(time) - self.begin) / PERIOD) + 1, int(axis), int(number))
+        """(tick, axis, number) of each that the drive logged; at what it calls its begin comes the machine's tick 2."""
+        return [(round((float(time) - self.begin) / PERIOD) + 2, int(axis), int(number))
                 for time, axis, number in re.findall(r"([\d.]+) s: axis (\d+): fault (\d+) ", self.drive)]
 
     def counts(self, axis):

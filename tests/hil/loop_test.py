@@ -11,6 +11,7 @@ import unittest
 import loop
 
 FOLDER = pathlib.Path(os.environ.get("STICTION_HIL_DIR", tempfile.mkdtemp(prefix="stiction-hil-")))
+FEED = os.environ.get("STICTION_HIL_FEED", "48 m/min")  # the fastest circle has the fewest ticks, 28 000
 FIGURES = loop.BIN.parent / "figures"
 
 
@@ -66,11 +67,11 @@ BORNE = ["frame-lost", "frame-late", "frame-stale", "frame-damaged", "frame-dupl
 
 class Circle(unittest.TestCase):
     def test_over_can_fd_is_the_simulation_to_the_last_digit(self):
-        loop.execute(FOLDER / "fd", [loop.Run("fd", "16 m/min", drive=("--trace", "trace.csv"))])
-        found, expected = loop.rows(FOLDER / "fd/trace.csv"), simulated("16 m/min")
+        loop.execute(FOLDER / "fd", [loop.Run("fd", FEED, drive=("--trace", "trace.csv"))])
+        found, expected = loop.rows(FOLDER / "fd/trace.csv"), simulated(FEED)
         self.assertEqual(len(found), len(expected))
         differing = sum(a != b for a, b in zip(found, expected))
-        figure("circle at 16 m/min over CAN FD against the simulation",
+        figure(f"circle at {FEED} over CAN FD against the simulation",
                f"{differing} of {len(expected) - 1} rows differ (bound 0)")
         self.assertEqual(differing, 0)
 
@@ -78,14 +79,13 @@ class Circle(unittest.TestCase):
         # 62.5 us is beyond a real bus of classical frames; here only their resolution counts.
         estimated = ("--set", "axis.*.encoder.velocity=estimated")  # they carry no velocity
         both = ("--set", "drive.can.data_bit_rate=", *estimated)
-        result = loop.execute(FOLDER / "classical", [loop.Run("classical", "16 m/min", drive=("--trace", "trace.csv"),
-                                                              both=both)])["classical"]
+        result = loop.execute(FOLDER / "classical", [loop.Run("classical", FEED, drive=("--trace", "trace.csv"), both=both)])["classical"]
         self.assertEqual(result.status, 0, result.drive)
-        found, expected = loop.rows(FOLDER / "classical/trace.csv"), simulated("16 m/min", *estimated)
+        found, expected = loop.rows(FOLDER / "classical/trace.csv"), simulated(FEED, *estimated)
         columns = [expected[0].index(f"{axis}.x[m]") for axis in "XY"]
         apart = max(abs(float(a[c]) - float(b[c])) for a, b in zip(found[1:], expected[1:]) for c in columns)
         # Half of 3.9 mA on each phase is 0.4 N of 180 N: of the order of an increment of the position controller's.
-        figure("circle at 16 m/min over classical frames against the simulation",
+        figure(f"circle at {FEED} over classical frames against the simulation",
                f"{apart * 1e6:.3f} um apart at most (bound 1 um)")
         self.assertLess(apart, 1e-6)
 
@@ -110,9 +110,10 @@ class Faults(unittest.TestCase):
                 if at_once:
                     # The command of the tick with the fault is off; a stage without valid commands needs three more.
                     self.assertLessEqual(x.off_since, tick + 4, result.plant)
-                # Coasting under friction, 225 kg against 115 N and more: at 0.27 m/s half a second and 70 mm.
-                self.assertLess(abs(x.ran_on_um), 80e3, result.plant)
-                self.assertLess(x.ran_on_ticks, 12000, result.plant)
+                # Coasting under friction alone, 225 kg against 90 N and more: from 0.27 m/s 0.7 s and 90 mm, then the
+                # carriage swings out on its bristles (10 Hz, damping ratio 0.1).
+                self.assertLess(abs(x.ran_on_um), 90e3, result.plant)
+                self.assertLess(x.ran_on_ticks, 24000, result.plant)
                 figure(f"fault injected: {kind}",
                        f"fault {number} after {taken} ticks (bound {within}), ran on by {x.ran_on_um * 1e-3:.2f} mm in "
                        f"{x.ran_on_ticks * loop.PERIOD:.2f} s")
@@ -143,7 +144,7 @@ class Processes(unittest.TestCase):
         self.assertEqual(results["held"].status, 1)
         self.assertEqual(min(results["held"].faults())[2], 48, results["held"].drive)
         for name in ("held", "killed"):
-            self.assertLess(results[name].axes["X"].ran_on_um, 80e3, results[name].plant)
+            self.assertLess(results[name].axes["X"].ran_on_um, 90e3, results[name].plant)
         self.assertEqual(results["ended"].status, 0, results["ended"].drive)
         # A controlled stop from 0.27 m/s at 10 m/s^2 is over in 27 ms and the power goes when the axis stands.
         self.assertLess(abs(results["ended"].axes["X"].ran_on_um), 100)

@@ -91,8 +91,8 @@ TEST(MachineFileError, UnknownKeySuggestsTheNearestAndListsTheKnown) {
             "phase_inductance, mutual_inductance, emf_constant, phase_force_constant, force_constant, pole_pair_pitch, "
             "count; did you mean \"model\"?");
   EXPECT_EQ(error_after("name = \"small\"", "name = \"small\"\ncolour = \"red\""),
-            "FILE:3: colour: found an unknown key; expected one of schema, name, timing, feed_drive, axis, experiment, "
-            "reference");
+            "FILE:3: colour: found an unknown key; expected one of schema, name, timing, feed_drive, axis, drive, "
+            "experiment, reference");
 }
 
 TEST(MachineFileError, UnknownKeyIsFoundAtEveryLevel) {
