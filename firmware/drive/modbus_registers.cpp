@@ -193,18 +193,20 @@ void ModbusRegisters::put_values(const PublishedState& state, std::span<double> 
   for (const double value : values_) values[i++] = value;
 }
 
-DriveWrite ModbusRegisters::take(const hal::RegisterWrite& write) {
-  if (write.index >= first_parameter_) {
-    const std::size_t parameter = write.index - first_parameter_;
-    const std::lock_guard lock(mutex_);
-    values_.at(parameter) = write.value;
-    written_.values[parameters_[parameter].key] = write.value;
-    return ParameterWrite{parameters_[parameter].key, write.value};
-  }
+DriveWrite ModbusRegisters::meaning_of(const hal::RegisterWrite& write) const {
+  if (write.index >= first_parameter_)
+    return ParameterWrite{parameters_.at(write.index - first_parameter_).key, write.value};
   const std::size_t before = count_before_motion(axis_count_);
   if (write.index < before) return StoreParameters{};
   const std::size_t motion = write.index - before;
   return MotionWrite{motion / motion_rows.size(), motion_rows[motion % motion_rows.size()].what, write.value};
+}
+
+void ModbusRegisters::remember(const ParameterWrite& write) {
+  const std::lock_guard lock(mutex_);
+  for (std::size_t i = 0; i < parameters_.size(); ++i)
+    if (parameters_[i].key == write.key) values_[i] = write.value;
+  written_.values[write.key] = write.value;
 }
 
 ParameterSet ModbusRegisters::written() const {

@@ -78,8 +78,10 @@ class ModbusRegisters {
   // One value a register: the state's and the parameters', those that were written included. From the server's thread.
   void put_values(const PublishedState& state, std::span<double> values) const;
 
-  // The meaning of a client's write; a parameter is remembered. From the thread that takes the writes.
-  DriveWrite take(const hal::RegisterWrite& write);
+  // The meaning of a client's write to one of the map's registers that are for writing. Allocates for a parameter.
+  DriveWrite meaning_of(const hal::RegisterWrite& write) const;
+  // A parameter that was written: shown from now on.
+  void remember(const ParameterWrite& write);
   // All parameters that were written, or came from the store.
   ParameterSet written() const;
   // Begins with the stored set.

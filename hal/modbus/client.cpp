@@ -179,6 +179,7 @@ void ModbusClient::exchange(std::size_t axis, PowerStageCommand command) {
   std::array<std::uint16_t, power_stage_read_words> read{};
   command.cycle = cycle_;
   put_words(command, written);
+  const std::int64_t asked_ns = now_ns();
   std::string error = line_->exchange(unit, written, read);
   if (error.empty() && (read[0] != power_stage_identification || read[1] != power_stage_schema))
     error = line_->changed(unit);
@@ -186,7 +187,7 @@ void ModbusClient::exchange(std::size_t axis, PowerStageCommand command) {
   if (error.empty() && feedback.time_ns != 0 && state.cycle == feedback.state.cycle) error = line_->frozen(unit);
   if (error.empty()) {
     feedback.state = state;
-    feedback.time_ns = now_ns();
+    feedback.time_ns = asked_ns + (now_ns() - asked_ns) / 2;
     misses_[axis] = 0;
   } else {
     ++misses_[axis];

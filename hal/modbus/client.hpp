@@ -27,7 +27,7 @@ struct ModbusClientConfig {
 
 struct PowerStageFeedback {
   PowerStageState state;
-  std::int64_t time_ns = 0;    // CLOCK_MONOTONIC, when the state came; 0: none yet
+  std::int64_t time_ns = 0;    // CLOCK_MONOTONIC, the middle of the exchange; 0: none yet
   Fault fault = Fault::none;   // frames_lost: no new state for three periods; as long as that lasts
   std::uint32_t failures = 0;  // exchanges without a new state since the start
 };

@@ -108,18 +108,21 @@ TEST(ModbusRegisters, ShowParametersAndWhatWasWrittenToThem) {
   auto registers = registers_of_cross_table();
   const std::size_t gain = index_of(registers, "axis.X.velocity_controller.gain");
   EXPECT_EQ(read_all(registers, {}).values[gain], 600.0);
-  const auto meaning = registers.take({gain, 550.0});
+  const auto meaning = registers.meaning_of({gain, 550.0});
   const auto* write = std::get_if<drive::ParameterWrite>(&meaning);
   ASSERT_NE(write, nullptr);
   EXPECT_EQ(write->key, "axis.X.velocity_controller.gain");
+  registers.remember(*write);
   EXPECT_EQ(read_all(registers, {}).values[gain], 550.0);
   EXPECT_EQ(registers.written().values.size(), 1U);
   EXPECT_TRUE(std::isnan(read_all(registers, {}).values[index_of(registers, "axis.X.supervision.following_error")]));
 }
 
 TEST(ModbusRegisters, TellMotionFromParameters) {
-  auto registers = registers_of_cross_table();
-  const auto of = [&](const char* name, double value) { return registers.take({index_of(registers, name), value}); };
+  const auto registers = registers_of_cross_table();
+  const auto of = [&](const char* name, double value) {
+    return registers.meaning_of({index_of(registers, name), value});
+  };
   const auto move = of("Y.target_position", 0.1);
   ASSERT_TRUE(std::holds_alternative<drive::MotionWrite>(move));
   EXPECT_EQ(std::get<drive::MotionWrite>(move).axis, 1U);
@@ -137,7 +140,7 @@ TEST(ModbusRegisters, StoreWhatTheMachineFileTakesAndNothingElse) {
   std::filesystem::create_directories(folder);
   const auto file = folder / "parameters";
   auto registers = registers_of_cross_table();
-  registers.take({index_of(registers, "axis.X.velocity_controller.gain"), 550.0});
+  registers.remember({"axis.X.velocity_controller.gain", 550.0});
   registers.store(file, machine_file);
   const auto stored = drive::read_parameters(file);
   ASSERT_TRUE(stored);
@@ -147,7 +150,7 @@ TEST(ModbusRegisters, StoreWhatTheMachineFileTakesAndNothingElse) {
   next.set_written(*stored);
   EXPECT_EQ(read_all(next, {}).values[index_of(next, "axis.X.velocity_controller.gain")], 550.0);
   // Above half of the fast loop's rate, which no range of the register says.
-  next.take({index_of(next, "axis.X.notch.frequency"), 9000.0});
+  next.remember({"axis.X.notch.frequency", 9000.0});
   EXPECT_THROW(next.store(file, machine_file), sim::MachineFileError);
   EXPECT_EQ(drive::read_parameters(file), stored);
   std::filesystem::remove_all(folder);

@@ -3,6 +3,7 @@
 
 #include "hal/bus_budget.hpp"
 #include "hal/modbus/client.hpp"
+#include "hal/modbus/modbus_backend.hpp"
 #include "tests/hal/modbus_support.hpp"
 
 namespace stiction::test {
@@ -220,6 +221,56 @@ TEST(ModbusClient, SwitchesTheStageOffWhenTheLoopFallsSilentOrTheClientEnds) {
   EXPECT_TRUE(comes_true(switched_on));
   client.reset();
   EXPECT_FALSE(stage.command().enable);
+}
+
+// One axis over a loop of 10 ms.
+TEST(ModbusBackend, CarriesAnAxisBetweenTheLoopAndAStage) {
+  auto stage = std::make_unique<Stage>("127.0.0.1:0");
+  hal::PowerStageState state;
+  state.position = -0.25;
+  state.current = 1.5;
+  state.limit_negative = true;
+  stage->set(state);
+  hal::ModbusClient client(config_for(local(stage->port()), 0.02));
+  hal::TickClock clock(10'000'000);
+  hal::ModbusBackend backend(client, clock);
+  ASSERT_EQ(backend.axis_count(), 1U);
+  std::array<Feedback<FixedSignals>, 1> feedback{};
+  std::array<DigitalInputs<FixedSignals>, 1> inputs{};
+  std::array<Command<FixedSignals>, 1> command{};
+  command[0].enable = true;
+  command[0].voltage[0] = FixedSignals::Voltage::from_raw(-(12 << 18));  // -12 V
+  const auto tick = [&] {
+    const std::int64_t now = backend.wait_for_tick();
+    backend.read(feedback);
+    backend.read_inputs(inputs);
+    EXPECT_LE(feedback[0].position_time_ns, now);
+    backend.set_brake(0, true);
+    backend.write(command);
+  };
+  EXPECT_TRUE(comes_true([&] {
+    tick();
+    return stage->command().voltage == -12.0;
+  }));
+  EXPECT_TRUE(stage->command().enable);
+  EXPECT_TRUE(stage->command().release_brake);
+  EXPECT_TRUE(feedback[0].position_valid);
+  // Half a step of the register, 5 nm.
+  EXPECT_NEAR(std::ldexp(static_cast<double>(feedback[0].position.raw()), -40), -0.25, 5e-9);
+  EXPECT_EQ(feedback[0].current[0].raw(), 3 << 19);
+  EXPECT_TRUE(inputs[0].limit_negative);
+  EXPECT_EQ(backend.fault(0), Fault::none);
+
+  command[0].enable = false;
+  EXPECT_TRUE(comes_true([&] {
+    tick();
+    return stage->command().voltage == 0.0 && !stage->command().enable;
+  }));
+  stage.reset();
+  EXPECT_TRUE(comes_true([&] {
+    tick();
+    return backend.fault(0) == Fault::frames_lost;
+  }));
 }
 
 }  // namespace
