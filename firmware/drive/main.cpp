@@ -17,6 +17,7 @@
 #include "firmware/drive/run.hpp"
 #include "hal/gpio/beside_lines.hpp"
 #include "hal/gpio/gpio_backend.hpp"
+#include "hal/modbus/modbus_backend.hpp"
 #include "hal/paced_backend.hpp"
 #include "hal/simulated/simulated_backend.hpp"
 
@@ -73,6 +74,28 @@ int run_gpio(const DriveConfiguration& configuration, const DriveOptions& option
   return status_of(run(backend, &backend.clock(), configuration, options, "gpio " + configuration.setup.gpio->chip));
 }
 
+int run_modbus(const DriveConfiguration& configuration, const DriveOptions& options) {
+  const auto& setup = configuration.setup;
+  if (!setup.modbus_client)
+    throw StartRefused(fmt::format("{}: found no table [drive.modbus_client]; expected one with the device",
+                                   configuration.machine.id));
+  const auto& client_setup = *setup.modbus_client;
+  const double period = configuration.machine.timing.fast_period;
+  if (client_setup.period > period * 1.001)
+    throw StartRefused(
+        fmt::format("{}: found timing.fast_period = {:g} ms and drive.modbus_client.period = {:g} ms; "
+                    "expected a loop that is not faster than its bus",
+                    configuration.machine.id, period * 1e3, client_setup.period * 1e3));
+  hal::ModbusClientConfig config{
+      .device = client_setup.device, .baud_rate = client_setup.baud_rate, .units = {}, .period = client_setup.period};
+  for (std::size_t i = 0; i < configuration.names.size(); ++i)
+    config.units.push_back(client_setup.unit + static_cast<int>(i));
+  hal::TickClock clock(configuration.period_ns);
+  hal::ModbusClient client(config);
+  hal::ModbusBackend backend(client, clock);
+  return status_of(run(backend, &clock, configuration, options, "modbus " + config.device));
+}
+
 int serve(const DriveOptions& options) {
   if (options.faults) {
     fmt::print("{}", fault_page());
@@ -102,6 +125,7 @@ int serve(const DriveOptions& options) {
   catch_stop_signals();
   if (options.hal == "can") return run_can(configuration, options);
   if (options.hal == "gpio") return run_gpio(configuration, options);
+  if (options.hal == "modbus") return run_modbus(configuration, options);
   return run_simulated(configuration, options);
 }
 

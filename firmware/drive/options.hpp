@@ -17,7 +17,7 @@ struct DriveOptions {
   void add_to(CLI::App& program) {
     program.add_option("--machine", machine, "machine file, or the name of a shipped machine")->type_name("MACHINE");
     program.add_option("--hal", hal, "how the drive reaches its power stages and encoders")
-        ->check(CLI::IsMember({"simulated", "can", "gpio"}))
+        ->check(CLI::IsMember({"simulated", "can", "gpio", "modbus"}))
         ->capture_default_str();
     program.add_option("--set", set, "another value for a key of the machine file; may be repeated")
         ->type_name("KEY=VALUE")

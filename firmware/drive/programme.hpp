@@ -11,7 +11,6 @@
 
 #include "firmware/drive/log_ring.hpp"
 #include "firmware/drive/motion.hpp"
-#include "firmware/drive/remote_demand.hpp"
 #include "firmware/drive/trace.hpp"
 #include "hal/drive_loop.hpp"
 
@@ -27,8 +26,8 @@ constexpr const char* name_of(Phase phase) {
 
 struct Task {
   Motion approach, motion;       // both may be empty
-  std::uint64_t idle_ticks = 0;  // to be held enabled after the motion; none_ends: until stopped
-  static constexpr std::uint64_t none_ends = UINT64_MAX;
+  std::uint64_t idle_ticks = 0;  // to be held enabled after the motion
+  bool serve = false;            // none of these: others ask for what is done, until the programme is stopped
 };
 
 template <hal::Backend B>
@@ -36,10 +35,9 @@ class Programme {
  public:
   using S = typename B::Signals;
 
-  // `trace`: of the motion; may be null. `demand`: of others, may be null: then the axes stay off while it serves. All
-  // must outlive this.
-  Programme(hal::DriveLoop<B>& loop, const Task& task, LogRing& log, Trace* trace, const RemoteDemand* demand)
-      : loop_(loop), task_(task), log_(log), trace_(trace), demand_(demand), hold_(loop.axis_count()) {
+  // `trace`: of the motion; may be null. All must outlive this.
+  Programme(hal::DriveLoop<B>& loop, const Task& task, LogRing& log, Trace* trace)
+      : loop_(loop), task_(task), log_(log), trace_(trace), hold_(loop.axis_count()), remote_(loop.axis_count()) {
     if (task.serve) enter(Phase::remote);
   }
 
@@ -57,6 +55,10 @@ class Programme {
     advance();
     progress_.store(tick_, std::memory_order_relaxed);
   }
+
+  // What others ask of an axis while the programme serves; without it the axes stay off.
+  void ask(std::size_t axis, std::uint16_t controlword) { remote_[axis].controlword = controlword; }
+  void ask(std::size_t axis, OperationMode mode) { remote_[axis].mode = mode; }
 
   Phase phase() const { return phase_; }
   bool over() const { return phase_ == Phase::over; }
@@ -81,8 +83,8 @@ class Programme {
       if (phase_ == Phase::faulted) word = controlword::shutdown;
       if (homes) word |= controlword::homing_start_bit;
       if (phase_ == Phase::remote) {
-        word = demand_ == nullptr ? controlword::disable_voltage : demand_->controlword(i);
-        if (demand_ != nullptr) loop_.set_mode(i, demand_->mode(i));
+        word = remote_[i].controlword;
+        loop_.set_mode(i, remote_[i].mode);
       }
       loop_.set_controlword(i, word);
     }
@@ -160,8 +162,12 @@ class Programme {
   const Task& task_;
   LogRing& log_;
   Trace* trace_;
-  const RemoteDemand* demand_;
   std::vector<SetPoint<S>> hold_;
+  struct Asked {
+    std::uint16_t controlword = controlword::disable_voltage;
+    OperationMode mode = OperationMode::cyclic_position;
+  };
+  std::vector<Asked> remote_;
   Phase phase_ = Phase::enable;
   std::uint64_t in_phase_ = 0;  // ticks
   std::uint64_t tick_ = 0;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "firmware/drive/configuration.hpp"
-#include "firmware/drive/modbus_service.hpp"
+#include "firmware/drive/modbus_publisher.hpp"
 #include "firmware/drive/programme.hpp"
 #include "firmware/drive/real_time.hpp"
 #include "firmware/drive/service_notify.hpp"
@@ -36,26 +36,22 @@ std::string describe_timing(const hal::LoopTiming& timing, const hal::TimeHistog
 // The task of the options. `positions`: where the axes stand (m). Throws MotionError.
 Task task_of(const DriveOptions& options, const DriveConfiguration& configuration, std::span<const double> positions);
 
-// The state of the axes for others. Wait-free.
+// The axes for others to see, and what these ask of them. Wait-free.
 template <hal::Backend B>
-void publish(const hal::DriveLoop<B>& loop, const hal::TickClock* clock, hal::Snapshot<PublishedState>& snapshot) {
-  auto& state = snapshot.next();
-  state.seconds = static_cast<std::uint32_t>(loop.now_ns() / 1'000'000'000);
-  state.missed_deadlines = static_cast<std::uint32_t>(loop.missed_ticks());
-  state.largest_lateness =
-      clock == nullptr ? 0.0 : std::max(state.largest_lateness, static_cast<double>(clock->lateness_ns()) * 1e-9);
-  for (std::size_t i = 0; i < loop.axis_count(); ++i) {
-    auto& axis = state.axes[i];
-    const auto& signals = loop.loop().signals()[i];
+void serve_modbus(const hal::DriveLoop<B>& loop, Programme<B>& programme, ModbusPublisher& modbus) {
+  Fault fault = Fault::none;
+  for (std::size_t i = 0; i < loop.axis_count(); ++i)
+    if (loop.fault(i) != Fault::none) fault = loop.fault(i);
+  modbus.publish(loop.loop().signals(), loop.now_ns(), fault, [&](std::size_t i, PublishedAxis& axis) {
     axis.statusword = loop.statusword(i);
     axis.fault = loop.fault(i);
-    axis.position = sim::to_si(loop.drive(i).position());
-    axis.set_position = sim::to_si(loop.drive(i).set_position());
-    axis.velocity = sim::to_si(signals.v);
-    axis.current = sim::to_si(signals.i);
-    axis.following_error = sim::to_si(signals.e);
+  });
+  while (const auto asked = modbus.take_motion()) {
+    if (asked->what == MotionWrite::What::controlword)
+      programme.ask(asked->axis, static_cast<std::uint16_t>(asked->value));
+    if (asked->what == MotionWrite::What::mode)
+      programme.ask(asked->axis, static_cast<OperationMode>(static_cast<std::int8_t>(asked->value)));
   }
-  snapshot.publish();
 }
 
 // `clock`: the one that the backend waits for; null: it has a time of its own.
@@ -76,11 +72,17 @@ RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& confi
   const Task task = task_of(options, configuration, positions);
   Trace trace(configuration.names.size(), options.trace.empty() ? 0 : task.motion.ticks());
   LogRing log;
-  std::optional<ModbusService> modbus;
-  if (const auto& server = configuration.setup.modbus_server)
-    modbus.emplace(configuration, *server, parameter_file(options));
-  const bool remote = modbus && configuration.setup.modbus_server->motion_allowed;
-  Programme programme(loop, task, log, options.trace.empty() ? nullptr : &trace, remote ? &modbus->demand() : nullptr);
+  Programme programme(loop, task, log, options.trace.empty() ? nullptr : &trace);
+  std::optional<ModbusPublisher> modbus;
+  if (configuration.setup.modbus_server)
+    modbus.emplace(configuration.machine, configuration.setup,
+                   ModbusStore{.file = parameter_file(options),
+                               .machine_file = configuration.file,
+                               .options = {"", configuration.assignments},
+                               .begun = configuration.stored},
+                   [clock](PublishedState& state) {
+                     if (clock != nullptr) state.missed_deadlines = static_cast<std::uint32_t>(clock->missed());
+                   });
 
   ServiceNotify notify;
   constexpr std::int64_t starvation_ns = 100'000'000;
@@ -97,7 +99,7 @@ RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& confi
     log.push(loop.now_ns(), LogLevel::info, "the loop has begun");
     while (!programme.over()) {
       programme.tick(stop_wanted != 0);
-      if (modbus && loop.loop().slow()) publish(loop, clock, modbus->state());
+      if (modbus) serve_modbus(loop, programme, *modbus);
     }
     notify.stopping("the axes are off");
   }

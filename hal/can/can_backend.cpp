@@ -48,8 +48,8 @@ CanBackend::CanBackend(const CanBackendConfig& config, TickClock& clock)
     : format_(checked(config).format),
       clock_(clock),
       answer_ns_(static_cast<std::int64_t>(config.answer_share * static_cast<double>(clock.period_ns()))),
-      nodes_socket_(config.interface, config.format, own_frames(config), false),
-      watch_socket_(config.interface, config.format, all_others(config), true) {
+      nodes_socket_(config.interface, config.format, own_frames(config), true),
+      watch_socket_(config.interface, config.format, all_others(config), false) {
   const auto format = properties(format_);
   for (const int id : config.nodes)
     nodes_.push_back({id, AnswerCheck(format.feedback_frames, format.counter_mask), FrameWatch(clock.period_ns())});
@@ -103,6 +103,12 @@ void CanBackend::read(std::span<Feedback<Signals>> feedback) {
 }
 
 void CanBackend::take(const Received& received) {
+  if (received.error) {
+    ++bus_.error_frames;
+    if ((received.frame.id & CAN_ERR_BUSOFF) != 0) bus_off_ = true;
+    if ((received.frame.id & CAN_ERR_RESTARTED) != 0) bus_off_ = false;
+    return;
+  }
   const Address address = address_of(received.frame, format_);
   const auto node =
       std::find_if(nodes_.begin(), nodes_.end(), [&](const Node& each) { return each.id == address.node; });
@@ -122,14 +128,8 @@ void CanBackend::take(const Received& received) {
 void CanBackend::watch_bus() {
   Received received;
   for (std::uint32_t i = 0; i < most_watched && watch_socket_.receive(received, 0); ++i) {
-    if (!received.error) {
-      ++bus_.of_nobody;
-      ++of_nobody_now_;
-      continue;
-    }
-    ++bus_.error_frames;
-    if ((received.frame.id & CAN_ERR_BUSOFF) != 0) bus_off_ = true;
-    if ((received.frame.id & CAN_ERR_RESTARTED) != 0) bus_off_ = false;
+    ++bus_.of_nobody;
+    ++of_nobody_now_;
   }
 }
 

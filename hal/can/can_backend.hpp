@@ -68,8 +68,10 @@ class CanBackend {
   Format format_;
   TickClock& clock_;
   std::int64_t answer_ns_;
-  CanSocket nodes_socket_;  // the nodes' frames alone
-  CanSocket watch_socket_;  // all others, and error frames
+  CanSocket nodes_socket_;  // the nodes' frames, and error frames
+  // All others. Not error frames: a socket whose filters must all be passed gets an error frame only where it has no
+  // more than one (net/can/raw.c, raw_rcv).
+  CanSocket watch_socket_;
   std::vector<Node> nodes_;
   std::uint32_t tick_ = 0;
   bool started_ = false;
