@@ -1,8 +1,12 @@
 // From [drive] of a machine file to the drives' configuration.
 #include "sim/control/drive_configuration.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <filesystem>
+#include <fstream>
 #include <string>
 
 #include "sim/control/conversion.hpp"
@@ -15,23 +19,31 @@ namespace {
 
 using S = FixedSignals;
 
-const std::string shipped = std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/";
-
 struct Read {
   sim::Machine machine;
   sim::DriveSetup setup;
 };
-Read read(const std::string& file, std::vector<std::string> set = {}) {
-  Read r{sim::read_machine(shipped + file, {{}, set}), {}};
-  r.setup = sim::read_drive_setup(shipped + file, r.machine, {{}, set});
+
+// A shipped machine with lines of [drive] behind it.
+Read read(const std::string& file, const std::string& drive = {}) {
+  const std::string name = ::testing::UnitTest::GetInstance()->current_test_info()->name();
+  const auto path = std::filesystem::path(::testing::TempDir()) / fmt::format("{}_{}.toml", name, ::getpid());
+  std::ofstream(path) << std::ifstream(std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/" + file).rdbuf()
+                      << '\n'
+                      << drive;
+  Read r{sim::read_machine(path, {}), {}};
+  r.setup = sim::read_drive_setup(path, r.machine, {});
+  std::filesystem::remove(path);
   return r;
 }
 
 TEST(DriveConfiguration, HasTheFilesValuesInTheDrivesUnits) {
-  const auto [machine, setup] =
-      read("mcfv5050ln.toml", {"drive.axis.X.quick_stop_deceleration=8 m/s^2",
-                               "drive.axis.X.homing.method=limit-negative", "drive.axis.X.homing.offset=-0.25 m",
-                               "drive.axis.X.line.limit_negative=3", "drive.axis.X.brake_time=60 ms"});
+  const auto [machine, setup] = read("mcfv5050ln.toml", R"([drive.axis.X]
+quick_stop_deceleration = "8 m/s^2"
+brake_time = "60 ms"
+homing = { method = "limit-negative", offset = "-0.25 m" }
+line = { limit_negative = 3 }
+)");
   const auto c = sim::configure_drive<S>(machine.timing, machine.axes[0], setup.axes.at("X"));
   EXPECT_NEAR(sim::to_si(c.ramp.change), 8.0 * 62.5e-6, 4e-9);
   EXPECT_NEAR(sim::to_si(c.supervision.frozen_distance), 100e-6, 1e-9);
@@ -61,30 +73,34 @@ TEST(DriveConfiguration, OfAForceSourceAsksNoCurrentSensors) {
   EXPECT_NEAR(sim::to_si(c.supervision.runaway_current), 2.0, 1e-6);  // V, a fifth of the limit
 }
 
-TEST(DriveConfiguration, HasOneADriveInTheMachinesOrder) {
-  const auto [machine, setup] = read("mcfv5050ln.toml", {"drive.axis.Y.quick_stop_deceleration=5 m/s^2"});
+TEST(DriveConfiguration, HasTheDrivesInTheMachinesOrder) {
+  const auto [machine, setup] = read("mcfv5050ln.toml", "[drive.axis.Y]\nquick_stop_deceleration = \"5 m/s^2\"\n");
   const auto drives = sim::configure_drives<sim::DoubleSignals>(machine, setup);
   ASSERT_EQ(drives.size(), 2u);
   EXPECT_DOUBLE_EQ(drives[0].ramp.change.value, 10.0 * 62.5e-6);
   EXPECT_DOUBLE_EQ(drives[1].ramp.change.value, 5.0 * 62.5e-6);
 }
 
-void expect_refused(std::vector<std::string> set, const std::string& words) {
-  const auto [machine, setup] = read("mcfv5050ln.toml", std::move(set));
-  try {
-    sim::configure_drives<S>(machine, setup);
-    FAIL() << "taken";
-  } catch (const sim::ConfigurationError& error) {
-    EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
-  }
-}
+struct Refused {
+  const char *axis, *line, *key;
+};
 
 TEST(DriveConfiguration, RefusesWhatTheFormatsCannotHoldOrResolve) {
-  expect_refused({"drive.axis.X.quick_stop_deceleration=1e-4 m/s^2"}, "drive.axis.X.quick_stop_deceleration");
-  expect_refused({"drive.axis.X.homing.creep_speed=1e-9 m/s"}, "drive.axis.X.homing.creep_speed");
-  expect_refused({"drive.axis.Y.current_sum=3000 A"}, "drive.axis.Y.current_sum");
-  expect_refused({"drive.axis.X.negative_end=0.3 m"}, "drive.axis.X.positive_end");
-  expect_refused({"drive.axis.X.homing.creep_speed=1e-7 m/s"}, "drive.axis.X.homing.creep_speed");
+  for (const auto& [axis, line, key] :
+       {Refused{"X", "quick_stop_deceleration = \"1e-4 m/s^2\"", "quick_stop_deceleration"},
+        Refused{"X", "homing.creep_speed = \"1e-9 m/s\"", "homing.creep_speed"},
+        Refused{"X", "homing.creep_speed = \"1e-7 m/s\"", "homing.creep_speed"},
+        Refused{"Y", "current_sum = \"3000 A\"", "current_sum"},
+        Refused{"X", "negative_end = \"0.3 m\"", "positive_end"}}) {
+    const auto [machine, setup] = read("mcfv5050ln.toml", fmt::format("[drive.axis.{}]\n{}\n", axis, line));
+    try {
+      sim::configure_drives<S>(machine, setup);
+      ADD_FAILURE() << line << " was taken";
+    } catch (const sim::ConfigurationError& error) {
+      EXPECT_NE(std::string(error.what()).find(fmt::format("drive.axis.{}.{}", axis, key)), std::string::npos)
+          << error.what();
+    }
+  }
 }
 
 }  // namespace
