@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(Drive, HomingOfX,
                                            Place{"here", HomingMethod::here, 0.09}),
                          name_of_place);
 
-TEST(Homing, BeginsOnTheSwitchItself) {
+TEST(DriveHoming, BeginsOnTheSwitchItself) {
   auto bench = homing_bench(HomingMethod::limit_negative);
   bench.backend.marks(0).limit_negative = 0.0905;  // reached already
   home(bench, 100000);
@@ -100,7 +100,7 @@ TEST(Homing, BeginsOnTheSwitchItself) {
               creep * period + 30e-9);
 }
 
-TEST(Homing, IsInterruptedWithItsStartBitAndBeginsAnew) {
+TEST(DriveHoming, IsInterruptedWithItsStartBitAndBeginsAnew) {
   auto bench = homing_bench(HomingMethod::index_positive);
   bench.backend.marks(0).index = 0.0922;
   home(bench, 2000);
@@ -114,7 +114,7 @@ TEST(Homing, IsInterruptedWithItsStartBitAndBeginsAnew) {
   EXPECT_TRUE(bench.loop.drive(0).referenced());
 }
 
-TEST(Homing, OfASwitchThatIsStuckClosedEndsInAFault) {
+TEST(DriveHoming, OfASwitchThatIsStuckClosedEndsInAFault) {
   auto bench = homing_bench(HomingMethod::limit_negative);
   bench.backend.faults(0).negative_switch = hal::SwitchFault::stuck_closed;
   home(bench, 2'000'000);
@@ -124,7 +124,7 @@ TEST(Homing, OfASwitchThatIsStuckClosedEndsInAFault) {
   EXPECT_FALSE(bench.powered(0));
 }
 
-TEST(Homing, IntoTheOtherSwitchStopsThere) {
+TEST(DriveHoming, IntoTheOtherSwitchStopsThere) {
   auto bench = homing_bench(HomingMethod::index_positive);
   bench.backend.marks(0).limit_positive = 0.0905;
   home(bench, 100000);
@@ -132,7 +132,7 @@ TEST(Homing, IntoTheOtherSwitchStopsThere) {
   EXPECT_EQ(bench.events.front().event.fault, Fault::limit_switch);
 }
 
-TEST(Homing, IsLostWithTheEncodersPlace) {
+TEST(DriveHoming, IsLostWithTheEncodersPlace) {
   auto bench = homing_bench(HomingMethod::here);
   home(bench, 1000);
   ASSERT_TRUE(bench.loop.drive(0).referenced());
@@ -144,7 +144,7 @@ TEST(Homing, IsLostWithTheEncodersPlace) {
   EXPECT_FALSE(bench.loop.drive(0).referenced());
 }
 
-TEST(Homing, OfAnAbsoluteEncoderChangesNothing) {
+TEST(DriveHoming, OfAnAbsoluteEncoderChangesNothing) {
   const auto machine = cross_table({"axis.*.encoder.velocity=estimated"});
   Bench bench(machine, drive_setup(machine));
   ASSERT_TRUE(bench.enable());

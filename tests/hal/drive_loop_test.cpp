@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "sim/experiment/commissioning_path.hpp"
+#include "tests/support/allocation_counter.hpp"
 #include "tests/support/drive_bench.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/shipped_machine.hpp"
@@ -68,6 +70,48 @@ TEST(DriveLoop, MovesTheCircleToTheBitAsTheControlLoopAlone) {
               raw_words(std::vector(loop.signals().begin(), loop.signals().end())))
         << "tick " << i;
   }
+}
+
+// A ball-screw axis with another period, a force source and an encoder of 50 nm: constant speeds both ways.
+TEST(DriveLoop, GivesNoFaultOnTheBallScrewAxis) {
+  const auto machine = sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/emps.toml", {});
+  hal::SimulatedBackend<S> backend(machine, std::array{0.0});
+  const auto drives = sim::configure_drives<S>(machine, drive_setup(machine));
+  const auto configs = configurations<S>(machine);
+  hal::DriveLoop loop(backend, std::span<const AxisConfig<S>>(configs), std::span<const ServoDriveConfig<S>>(drives),
+                      ticker_of(machine));
+  std::array<SetPoint<S>, 1> set{};
+  for (int i = 0; i < 200; ++i) {
+    loop.set_controlword(0, controlword_to_enable(loop.state(0)));
+    loop.tick(set);
+  }
+  ASSERT_EQ(loop.state(0), DriveState::operation_enabled);
+  const auto motion = sim::constant_speeds({0.02, 0.1, 0.15}, 0.5, 0.01);
+  for (int i = 0; i < static_cast<int>(motion.duration / machine.timing.fast_period); ++i) {
+    set[0] = sim::to_set_point<S>(motion.at((i + 1) * machine.timing.fast_period));
+    loop.tick(set);
+    ASSERT_EQ(loop.fault(0), Fault::none) << name_of(loop.fault(0)) << " at tick " << i;
+  }
+}
+
+// No allocation in a tick, with faults, stops and events in it.
+TEST(DriveLoop, AllocatesNothingAfterItsConstruction) {
+  const auto machine = table();
+  DriveBench<> bench(machine, drive_setup(machine));
+  ASSERT_TRUE(bench.enable());
+  std::array<SetPoint<S>, 2> set{};
+  auto& loop = bench.loop;
+  for (std::size_t k = 0; k < 2; ++k) set[k].position = loop.drive(k).position();
+  const std::size_t before = allocations();
+  for (int i = 0; i < 8000; ++i) {
+    if (i == 1000) bench.backend.faults(0).foreign_frames = 3;
+    if (i == 1200) bench.backend.faults(0).encoder_open = true;
+    if (i == 6000) bench.backend.faults(0) = {};
+    for (std::size_t k = 0; k < 2; ++k) loop.set_controlword(k, controlword_to_enable(loop.state(k), i % 2 == 0));
+    loop.tick(set);
+  }
+  EXPECT_EQ(allocations(), before);
+  figure("allocations in 8000 ticks of two drives with two faults", fmt::format("{}", allocations() - before));
 }
 
 // An offset of two sensors that cancels in the sum shows before the power comes.
