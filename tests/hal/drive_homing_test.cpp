@@ -120,6 +120,7 @@ TEST(DriveHoming, OfASwitchThatIsStuckClosedEndsInAFault) {
   home(bench, 2'000'000);
   ASSERT_FALSE(bench.events.empty());
   EXPECT_EQ(bench.events.front().event.fault, Fault::homing);
+  EXPECT_NE(bench.loop.statusword(0) & statusword::homing_error_bit, 0);
   bench.run(8000);
   EXPECT_FALSE(bench.powered(0));
 }

@@ -72,6 +72,15 @@ TEST(DriveLoop, MovesTheCircleToTheBitAsTheControlLoopAlone) {
   }
 }
 
+TEST(DriveLoop, GivesNoFaultWithMotorsOfOnePhase) {
+  const auto machine = cross_table({"axis.*.encoder.velocity=estimated", "axis.*.motor.model=dc"});
+  DriveBench<> bench(machine, drive_setup(machine));
+  ASSERT_TRUE(bench.enable());
+  bench.move({.feed = 0.8});
+  bench.run(16000);
+  EXPECT_TRUE(bench.events.empty());
+}
+
 // A ball-screw axis with another period, a force source and an encoder of 50 nm: constant speeds both ways.
 TEST(DriveLoop, GivesNoFaultOnTheBallScrewAxis) {
   const auto machine = sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/emps.toml", {});

@@ -217,6 +217,13 @@ TEST(DriveStop, OfOneAxisStopsTheOtherByItsOwnRampAndKeepsItOffUntilTheReset) {
   EXPECT_TRUE(bench.enable());
 }
 
+TEST(DriveStop, IsNoneForAFaultThatTheTableDoesNotHave) {
+  auto bench = moving_bench();
+  bench.loop.trip(0, static_cast<Fault>(200));
+  bench.tick();
+  EXPECT_FALSE(bench.powered(0));
+}
+
 // The wrong force brakes first, which is no runaway yet: one of two rows sees it, whichever comes first.
 TEST(DriveStop, FollowsAMotorOfTheWrongSignInMotionBeforeItRunsAway) {
   double way = 0.0, time = 0.0;
