@@ -81,8 +81,9 @@ SupervisionConfig<S> supervision_of(const Timing& timing, const Axis& axis, cons
   c.encoder_jump = convert.template operator()<typename S::Distance>(setup.encoder_jump, "encoder_jump");
   c.phases_sum = axis.motor.model == MotorModel::synchronous;
   c.current_measured = !force_source;
-  c.current_sum = convert.template operator()<typename S::Current>(setup.current_sum.value(), "current_sum");
   // A force source has no current: its voltage command stands for it.
+  if (!force_source)
+    c.current_sum = convert.template operator()<typename S::Current>(setup.current_sum.value(), "current_sum");
   const double current = force_source ? axis.inverter.voltage_limit / 5.0 : setup.runaway_current.value();
   c.runaway_current = convert.template operator()<typename S::Current>(current, "runaway_current");
   const double acceleration = current * axis.motor.force_constant / axis.mass;

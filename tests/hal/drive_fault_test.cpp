@@ -183,7 +183,8 @@ TEST_P(FaultOfTheTable, IsSeenInTimeAnsweredAndRecordedAndNothingMovesAfterwards
       if (HasFailure()) return;
     }
   figure(fmt::format("{}: {}", name_of(c.fault), c.name),
-         fmt::format("{} ticks to detection, {:.2f} mm to rest", worst.ticks, worst.way * 1e3));
+         fmt::format("{} ticks, {:.4g} ms to detection; {:.2f} mm to rest", worst.ticks, worst.ticks * 62.5e-3,
+                     worst.way * 1e3));
 }
 
 TEST_P(FaultOfTheTable, KeepsItsCauseAndIsLeftOnlyWithoutIt) {

@@ -1,13 +1,16 @@
 // The cross table as drives over a backend with faults on command: switches on, moves circles, keeps what happened.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hal/drive_loop.hpp"
@@ -87,12 +90,25 @@ class DriveBench {
       set_[i] = {};
       set_[i].position = loop.drive(i).position();
     }
-    circle_.clear();
+    motion_ = nullptr;
   }
   void move(const sim::CircleSettings& settings) {
-    hold_here();
-    circle_.assign(1, CircleFromHere(settings, position(0), position(1)));
-    motion_ticks_ = 0;
+    follow([circle = CircleFromHere(settings, position(0), position(1))](double t) { return circle.at(t); });
+  }
+  // Straight to a place (m), jerk-limited, at rest at both ends.
+  void travel_to(const std::array<double, 2>& place, double time) {
+    const std::array from{position(0), position(1)};
+    follow([=](double t) {
+      const double part = std::min(t / time, 1.0), angle = 2.0 * std::numbers::pi * part;
+      std::array<sim::AxisSetPoint, 2> set;
+      for (std::size_t i = 0; i < 2; ++i) {
+        const double way = place[i] - from[i];
+        set[i].position = from[i] + way * (part - std::sin(angle) / (2.0 * std::numbers::pi));
+        set[i].velocity = way / time * (1.0 - std::cos(angle));
+        set[i].acceleration = way * 2.0 * std::numbers::pi / (time * time) * std::sin(angle);
+      }
+      return set;
+    });
   }
 
   void tick() {
@@ -111,8 +127,8 @@ class DriveBench {
   }
   // What the coming tick is sent.
   std::array<SetPoint<S>, 2> next_set_points() const {
-    if (circle_.empty()) return set_;
-    const auto si = circle_.front().at(static_cast<double>(motion_ticks_ + 1) * period);
+    if (!motion_) return set_;
+    const auto si = motion_(static_cast<double>(motion_ticks_ + 1) * period);
     return {sim::to_set_point<S>(si[0]), sim::to_set_point<S>(si[1])};
   }
   void run(int count) {
@@ -157,6 +173,12 @@ class DriveBench {
   std::vector<hal::AxisEvent<S>> events;
 
  private:
+  void follow(std::function<std::array<sim::AxisSetPoint, 2>(double)> motion) {
+    hold_here();
+    motion_ = std::move(motion);
+    motion_ticks_ = 0;
+  }
+
   std::uint16_t word(std::size_t axis) const {
     if (override_word[axis]) return *override_word[axis];
     if (resetting_) return controlword::fault_reset;
@@ -167,7 +189,7 @@ class DriveBench {
 
   bool resetting_ = false;
   std::array<SetPoint<S>, 2> set_{};
-  std::vector<CircleFromHere> circle_;
+  std::function<std::array<sim::AxisSetPoint, 2>(double)> motion_;  // over the time since its start
   std::uint64_t motion_ticks_ = 0;
 };
 
