@@ -9,8 +9,7 @@
 namespace stiction::drive {
 namespace {
 
-constexpr std::array<const char*, 4> motion_names{"controlword", "mode of operation", "target position",
-                                                  "profile velocity"};
+constexpr std::array<const char*, 2> motion_names{"controlword", "mode of operation"};
 
 }  // namespace
 

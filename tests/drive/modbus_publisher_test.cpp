@@ -114,6 +114,10 @@ TEST(ModbusPublisher, HandsMotionToTheLoopOnlyWhereItIsAllowed) {
     ASSERT_TRUE(motion);
     EXPECT_EQ(motion->axis, 1U);
     EXPECT_EQ(motion->value, 15.0);
+    client.send(request({6, 0, 201, 0, 7}));  // a mode that the drive does not have
+    const auto answer = client.receive();
+    ASSERT_EQ(answer.size(), 9U);
+    EXPECT_EQ(answer[8], 3);
   }
 }
 
