@@ -71,8 +71,8 @@ void object_to_burst(BusBudget& budget) {
 void object_to_load(BusBudget& budget) {
   const double load = budget.worst_load();
   if (load <= highest_bus_load) return;
-  std::string text = fmt::format("found a load of {:.0f} % at worst; expected at most {:.0f} %",
-                                 load * 100, highest_bus_load * 100);
+  std::string text =
+      fmt::format("found a load of {:.0f} % at worst; expected at most {:.0f} %", load * 100, highest_bus_load * 100);
   const double period = budget.rows.front().period;
   if (std::all_of(budget.rows.begin(), budget.rows.end(), [&](const auto& row) { return row.period == period; }))
     text += fmt::format(", which these frames have from a period of {} on, not {}",

@@ -4,21 +4,12 @@
 
 #include <exception>
 
+#include "firmware/drive/modbus_setup.hpp"
+
 namespace stiction::drive {
 namespace {
 
-hal::ModbusServerConfig config_of(const sim::DriveSetup& setup) {
-  const sim::ModbusServerSetup& server = setup.modbus_server.value();
-  hal::ModbusServerConfig config;
-  config.address = server.address;
-  config.motion_allowed = server.motion_allowed;
-  config.unit = server.unit;
-  config.baud_rate = server.baud_rate;
-  return config;
-}
-
-constexpr std::array<const char*, 4> motion_names{"controlword", "mode of operation", "target position",
-                                                  "profile velocity"};
+constexpr std::array<const char*, 2> motion_names{"controlword", "mode of operation"};
 
 }  // namespace
 
@@ -27,7 +18,7 @@ ModbusPublisher::ModbusPublisher(const sim::Machine& machine, const sim::DriveSe
     : registers_(machine, setup),
       store_(std::move(store)),
       beside_(std::move(beside)),
-      server_(registers_.map(), config_of(setup), [this](std::span<double> values) {
+      server_(registers_.map(), modbus_server_config(setup), [this](std::span<double> values) {
         PublishedState state = snapshot_.latest();
         if (beside_) beside_(state);
         registers_.put_values(state, values);

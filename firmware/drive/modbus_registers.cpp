@@ -79,12 +79,12 @@ struct MotionRow {
   const char* unit;
   const char* text;
   MotionWrite::What what;
+  std::array<double, 2> choices;  // both 0: every number
 };
-constexpr std::array<MotionRow, 4> motion_rows{{
-    {0, uint16, 1, "controlword", "1", "CiA 402, 6040h", MotionWrite::What::controlword},
-    {1, int16, 1, "mode_of_operation", "1", "6060h", MotionWrite::What::mode},
-    {2, int32, position_scale, "target_position", "m", "607Ah", MotionWrite::What::target_position},
-    {4, float32, 1, "profile_velocity", "m/s", "6081h", MotionWrite::What::profile_velocity},
+// Set-points of every tick do not come over this bus; what can be asked for is what a drive does by itself.
+constexpr std::array<MotionRow, 2> motion_rows{{
+    {0, uint16, 1, "controlword", "1", "CiA 402, 6040h", MotionWrite::What::controlword, {}},
+    {1, int16, 1, "mode_of_operation", "1", "6060h; 6: homing, 8: cyclic position", MotionWrite::What::mode, {6, 8}},
 }};
 
 template <class Row>
@@ -98,6 +98,8 @@ Register made(const Row& row, RegisterTable table, RegisterAccess access, unsign
   r.unit = row.unit;
   r.scale = row.scale;
   r.text = row.text;
+  if constexpr (requires { row.choices; })
+    if (row.choices != std::array<double, 2>{}) r.choices.assign(row.choices.begin(), row.choices.end());
   return r;
 }
 

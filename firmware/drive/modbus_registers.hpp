@@ -51,15 +51,10 @@ struct PublishedState {
 
 // What a client wrote.
 struct MotionWrite {
-  enum class What : std::uint8_t {
-    controlword,
-    mode,
-    target_position,
-    profile_velocity
-  };  // 6040h, 6060h, 607Ah, 6081h
+  enum class What : std::uint8_t { controlword, mode };  // 6040h, 6060h
   std::size_t axis = 0;
   What what = What::controlword;
-  double value = 0.0;  // SI units
+  double value = 0.0;
 };
 struct ParameterWrite {
   std::string key;

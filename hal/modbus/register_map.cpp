@@ -102,6 +102,8 @@ std::variant<std::vector<RegisterWrite>, ModbusException> RegisterMap::writes_of
     const double value = number_in(r.type, words) * r.scale;
     const bool above = r.low_open ? value > r.low : value >= r.low;
     if (!std::isfinite(value) || !above || value > r.high) return ModbusException::illegal_value;
+    if (!r.choices.empty() && std::find(r.choices.begin(), r.choices.end(), value) == r.choices.end())
+      return ModbusException::illegal_value;
     writes.push_back({index, value});
     address += length;
     words = words.subspan(length);

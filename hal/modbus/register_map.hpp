@@ -33,6 +33,7 @@ struct Register {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
   bool low_open = false;
+  std::vector<double> choices;  // empty: every value of the range
 };
 
 const char* name_of(RegisterType type);

@@ -1,6 +1,7 @@
 // The drive's Modbus server as a whole: the state of a loop on a client's screen, a client's parameters on the disk.
 #include "firmware/drive/modbus_publisher.hpp"
 
+#include "firmware/drive/modbus_setup.hpp"
 #include "sim/machine/drive_file.hpp"
 #include "stiction/number/fixed_signals.hpp"
 #include "tests/hal/modbus_support.hpp"
@@ -113,7 +114,27 @@ TEST(ModbusPublisher, HandsMotionToTheLoopOnlyWhereItIsAllowed) {
     ASSERT_TRUE(motion);
     EXPECT_EQ(motion->axis, 1U);
     EXPECT_EQ(motion->value, 15.0);
+    client.send(request({6, 0, 201, 0, 7}));  // a mode that the drive does not have
+    const auto answer = client.receive();
+    ASSERT_EQ(answer.size(), 9U);
+    EXPECT_EQ(answer[8], 3);
   }
+}
+
+TEST(ModbusSetup, TakesTheUnitsOfTheAxesFromTheirNodes) {
+  const auto machine = cross_table();
+  auto setup = setup_with(false);
+  setup.modbus_client.emplace();
+  setup.modbus_client->device = "10.0.0.2:502";
+  EXPECT_THROW(drive::modbus_client_config(machine, setup), hal::ModbusError);  // no unit
+  setup.axes.at("X").node = 3;
+  setup.axes.at("Y").node = 3;
+  EXPECT_THROW(drive::modbus_client_config(machine, setup), hal::ModbusError);  // the same twice
+  setup.axes.at("Y").node = 4;
+  const auto config = drive::modbus_client_config(machine, setup);
+  EXPECT_EQ(config.units, (std::vector<int>{3, 4}));
+  // Two units each 10 ms are 200 exchanges a second.
+  EXPECT_THROW(hal::check(drive::modbus_client_budget(config)), hal::BusBudgetError);
 }
 
 }  // namespace

@@ -123,10 +123,10 @@ TEST(ModbusRegisters, TellMotionFromParameters) {
   const auto of = [&](const char* name, double value) {
     return registers.meaning_of({index_of(registers, name), value});
   };
-  const auto move = of("Y.target_position", 0.1);
+  const auto move = of("Y.mode_of_operation", 6);
   ASSERT_TRUE(std::holds_alternative<drive::MotionWrite>(move));
   EXPECT_EQ(std::get<drive::MotionWrite>(move).axis, 1U);
-  EXPECT_EQ(std::get<drive::MotionWrite>(move).what, drive::MotionWrite::What::target_position);
+  EXPECT_EQ(std::get<drive::MotionWrite>(move).what, drive::MotionWrite::What::mode);
   EXPECT_TRUE(std::holds_alternative<drive::MotionWrite>(of("X.controlword", 15)));
   EXPECT_TRUE(std::holds_alternative<drive::StoreParameters>(of("store_parameters", 21332)));
   for (const auto& r : registers.map().registers()) {

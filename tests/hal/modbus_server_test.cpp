@@ -47,7 +47,7 @@ TEST(RegisterMap, RefusesRegistersThatOverlap) {
 
 TEST(RegisterMap, TakesWritesWholeAndWithinTheirRights) {
   const hal::RegisterMap map(small_registers());
-  const auto refusal = [&](std::size_t address, std::vector<std::uint16_t> words, bool motion = false) {
+  const auto refusal = [&](std::size_t address, const std::vector<std::uint16_t>& words, bool motion = false) {
     const auto result = map.writes_of(address, words, motion);
     const auto* exception = std::get_if<hal::ModbusException>(&result);
     return exception == nullptr ? 0 : static_cast<int>(*exception);
