@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <stdexcept>
 
+#ifndef STICTION_SANITIZED
 extern "C" {
 // The C library's own, behind the names that this program takes.
 void* __libc_malloc(std::size_t size);                           // NOLINT(bugprone-reserved-identifier)
@@ -15,32 +16,33 @@ void* __libc_calloc(std::size_t count, std::size_t size);        // NOLINT(bugpr
 void* __libc_realloc(void* block, std::size_t size);             // NOLINT(bugprone-reserved-identifier)
 void* __libc_memalign(std::size_t alignment, std::size_t size);  // NOLINT(bugprone-reserved-identifier)
 
-void* malloc(std::size_t size) {
+void* malloc(std::size_t size) noexcept {
   ++stiction::test::allocator_calls;
   return __libc_malloc(size);
 }
-void free(void* block) {
+void free(void* block) noexcept {
   ++stiction::test::allocator_calls;
   __libc_free(block);
 }
-void* calloc(std::size_t count, std::size_t size) {
+void* calloc(std::size_t count, std::size_t size) noexcept {
   ++stiction::test::allocator_calls;
   return __libc_calloc(count, size);
 }
-void* realloc(void* block, std::size_t size) {
+void* realloc(void* block, std::size_t size) noexcept {
   ++stiction::test::allocator_calls;
   return __libc_realloc(block, size);
 }
-void* memalign(std::size_t alignment, std::size_t size) {
+void* memalign(std::size_t alignment, std::size_t size) noexcept {
   ++stiction::test::allocator_calls;
   return __libc_memalign(alignment, size);
 }
-void* aligned_alloc(std::size_t alignment, std::size_t size) { return memalign(alignment, size); }
-int posix_memalign(void** block, std::size_t alignment, std::size_t size) {
+void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept { return memalign(alignment, size); }
+int posix_memalign(void** block, std::size_t alignment, std::size_t size) noexcept {
   *block = memalign(alignment, size);
   return *block == nullptr ? ENOMEM : 0;
 }
 }
+#endif
 
 namespace stiction::test {
 namespace {
