@@ -14,8 +14,6 @@
 namespace stiction::test {
 namespace {
 
-using drive::StepOutcome;
-
 long locked_kilobytes() {
   std::ifstream status("/proc/self/status");
   for (std::string key; status >> key;)

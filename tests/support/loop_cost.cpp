@@ -1,20 +1,22 @@
 #include "tests/support/loop_cost.hpp"
 
-#include <signal.h>
 #include <sys/ptrace.h>
 #include <sys/wait.h>
 
 #include <cerrno>
+#include <csignal>
 #include <stdexcept>
 
 #ifndef STICTION_SANITIZED
+// The C library's names, and the parameters' that its headers do not give.
+// NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming,readability-inconsistent-declaration-parameter-name)
 extern "C" {
-// The C library's own, behind the names that this program takes.
-void* __libc_malloc(std::size_t size);                           // NOLINT(bugprone-reserved-identifier)
-void __libc_free(void* block);                                   // NOLINT(bugprone-reserved-identifier)
-void* __libc_calloc(std::size_t count, std::size_t size);        // NOLINT(bugprone-reserved-identifier)
-void* __libc_realloc(void* block, std::size_t size);             // NOLINT(bugprone-reserved-identifier)
-void* __libc_memalign(std::size_t alignment, std::size_t size);  // NOLINT(bugprone-reserved-identifier)
+// Its own functions, behind the names that this program takes.
+void* __libc_malloc(std::size_t size);
+void __libc_free(void* block);
+void* __libc_calloc(std::size_t count, std::size_t size);
+void* __libc_realloc(void* block, std::size_t size);
+void* __libc_memalign(std::size_t alignment, std::size_t size);
 
 void* malloc(std::size_t size) noexcept {
   ++stiction::test::allocator_calls;
@@ -42,6 +44,7 @@ int posix_memalign(void** block, std::size_t alignment, std::size_t size) noexce
   return *block == nullptr ? ENOMEM : 0;
 }
 }
+// NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming,readability-inconsistent-declaration-parameter-name)
 #endif
 
 namespace stiction::test {
