@@ -1,5 +1,5 @@
 // Where the time of a tick goes: a histogram for each part of the loop, always on. Costs one reading of the clock a
-// part (vDSO, no system call; 25 ns) and is read by another thread while the loop runs.
+// part (vDSO, no system call; 30 ns) and is read by another thread while the loop runs.
 #pragma once
 
 #include <array>

@@ -11,6 +11,15 @@
 #include <functional>
 #include <map>
 
+// A sanitizer has an allocator and calls of its own: nothing is replaced then, and the counts mean nothing.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define STICTION_SANITIZED
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define STICTION_SANITIZED
+#endif
+#endif
+
 namespace stiction::test {
 
 inline thread_local std::uint64_t allocator_calls = 0;  // malloc, free and their kin, of this thread
