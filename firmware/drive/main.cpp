@@ -12,6 +12,8 @@
 #include "firmware/drive/configuration.hpp"
 #include "firmware/drive/fault_page.hpp"
 #include "firmware/drive/gpio_setup.hpp"
+#include "firmware/drive/modbus_registers.hpp"
+#include "firmware/drive/modbus_setup.hpp"
 #include "firmware/drive/options.hpp"
 #include "firmware/drive/real_time_check.hpp"
 #include "firmware/drive/run.hpp"
@@ -79,21 +81,38 @@ int run_modbus(const DriveConfiguration& configuration, const DriveOptions& opti
   if (!setup.modbus_client)
     throw StartRefused(fmt::format("{}: found no table [drive.modbus_client]; expected one with the device",
                                    configuration.machine.id));
-  const auto& client_setup = *setup.modbus_client;
+  for (const auto& axis : configuration.machine.axes)
+    if (axis.motor.model == sim::MotorModel::synchronous)
+      throw StartRefused(
+          fmt::format("{}: found axis {} with a synchronous motor; expected a motor of one voltage (\"dc\" or "
+                      "\"force\"): Modbus carries one an axis",
+                      configuration.machine.id, axis.name));
+  const auto config = modbus_client_config(configuration.machine, setup);
+  hal::check(modbus_client_budget(config));
   const double period = configuration.machine.timing.fast_period;
-  if (client_setup.period > period * 1.001)
+  if (config.period > period * 1.001)
     throw StartRefused(
         fmt::format("{}: found timing.fast_period = {:g} ms and drive.modbus_client.period = {:g} ms; "
                     "expected a loop that is not faster than its bus",
-                    configuration.machine.id, period * 1e3, client_setup.period * 1e3));
-  hal::ModbusClientConfig config{
-      .device = client_setup.device, .baud_rate = client_setup.baud_rate, .units = {}, .period = client_setup.period};
-  for (std::size_t i = 0; i < configuration.names.size(); ++i)
-    config.units.push_back(client_setup.unit + static_cast<int>(i));
+                    configuration.machine.id, period * 1e3, config.period * 1e3));
   hal::TickClock clock(configuration.period_ns);
   hal::ModbusClient client(config);
   hal::ModbusBackend backend(client, clock);
   return status_of(run(backend, &clock, configuration, options, "modbus " + config.device));
+}
+
+int print_budgets(const DriveConfiguration& configuration) {
+  std::vector<hal::BusBudget> budgets;
+  if (configuration.setup.can) budgets.push_back(can_bus_budget(configuration));
+  if (configuration.setup.modbus_client)
+    budgets.push_back(modbus_client_budget(modbus_client_config(configuration.machine, configuration.setup)));
+  if (budgets.empty()) throw StartRefused("found no bus; expected [drive.can] or [drive.modbus_client]");
+  bool refused = false;
+  for (const auto& budget : budgets) {
+    fmt::print("{}", hal::budget_table(budget));
+    refused |= !budget.objections.empty();
+  }
+  return refused ? exit_refused : exit_done;
 }
 
 int serve(const DriveOptions& options) {
@@ -101,14 +120,14 @@ int serve(const DriveOptions& options) {
     fmt::print("{}", fault_page());
     return exit_done;
   }
+  if (options.modbus_registers) {
+    fmt::print("{}", modbus_register_page());
+    return exit_done;
+  }
   if (options.machine.empty())
     throw StartRefused("found no --machine; expected a machine file or a shipped machine's name");
   const auto configuration = read_configuration(options);
-  if (options.budget) {
-    const auto budget = can_bus_budget(configuration);
-    fmt::print("{}", hal::budget_table(budget));
-    return budget.objections.empty() ? exit_done : exit_refused;
-  }
+  if (options.budget) return print_budgets(configuration);
   if (options.dbc) {
     fmt::print("{}", hal::can::dbc_text(can_config(configuration).format, dbc_axes(configuration)));
     return exit_done;

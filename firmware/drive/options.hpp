@@ -12,7 +12,7 @@ struct DriveOptions {
   std::string machine, hal = "simulated", circle, trace, parameters;
   std::vector<std::string> set;
   std::optional<double> hold;  // s
-  bool unpaced = false, budget = false, check_realtime = false, dbc = false, faults = false;
+  bool unpaced = false, budget = false, check_realtime = false, dbc = false, faults = false, modbus_registers = false;
 
   void add_to(CLI::App& program) {
     program.add_option("--machine", machine, "machine file, or the name of a shipped machine")->type_name("MACHINE");
@@ -34,6 +34,7 @@ struct DriveOptions {
     program.add_flag("--budget", budget, "print what the bus has to carry, and end");
     program.add_flag("--check-realtime", check_realtime, "print whether this machine is fit for the loop, and end");
     program.add_flag("--faults", faults, "print the table of faults, and end");
+    program.add_flag("--modbus-registers", modbus_registers, "print the Modbus registers as Markdown, and end");
     program.add_flag("--dbc", dbc, "print the frames of the CAN bus as a DBC file, and end");
   }
 };

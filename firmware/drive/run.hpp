@@ -87,10 +87,22 @@ RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& confi
   ServiceNotify notify;
   constexpr std::int64_t starvation_ns = 100'000'000;
   {
-    ServiceThread service(
-        log, log_to_standard_error, notify,
-        {.progress = [&] { return programme.progress(); }, .status = [&] { return title; }, .starved = [] {}},
-        starvation_ns);
+    ServiceThread service(log, log_to_standard_error, notify,
+                          {.progress = [&] { return programme.progress(); },
+                           .status = [&] { return title; },
+                           .round =
+                               [&] {
+                                 if (!modbus) return;
+                                 for (const auto& line : modbus->serve()) log_to_standard_error(LogLevel::notice, line);
+                               },
+                           .starved =
+                               [] {
+                                 log_to_standard_error(LogLevel::error,
+                                                       fmt::format("fault {} '{}': the loop stands still",
+                                                                   static_cast<int>(Fault::watchdog_starved),
+                                                                   stiction::name_of(Fault::watchdog_starved)));
+                               }},
+                          starvation_ns);
     for (auto& step : real_time.prepare_thread(request)) steps.push_back(std::move(step));
     if (any_refused(steps)) fmt::print(stderr, "{}", text_of(steps));
     notify.ready(title);
@@ -99,7 +111,7 @@ RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& confi
     log.push(loop.now_ns(), LogLevel::info, "the loop has begun");
     while (!programme.over()) {
       programme.tick(stop_wanted != 0);
-      if (modbus) serve_modbus(loop, programme, *modbus);
+      if (modbus && loop.loop().slow()) serve_modbus(loop, programme, *modbus);
     }
     notify.stopping("the axes are off");
   }

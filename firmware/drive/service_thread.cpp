@@ -28,6 +28,7 @@ void ServiceThread::Round::operator()(std::int64_t now_ns) {
   if (watch_.starved() && !starved_ && questions_.starved) questions_.starved();
   starved_ = watch_.starved();
   notify_.feed(progress, now_ns);
+  if (questions_.round) questions_.round();
   if (questions_.status && now_ns - status_ns_ >= status_interval_ns) {
     notify_.status(questions_.status());
     status_ns_ = now_ns;

@@ -35,9 +35,9 @@ class ModbusBackend {
       const PowerStageState& state = newest_[i].state;
       Feedback<Signals>& f = feedback[i];
       f = {};
-      f.position_valid = newest_[i].time_ns != 0 && to_signal(state.position, f.position) &
-                                                        to_signal(state.velocity, f.velocity) &
-                                                        to_signal(state.current, f.current[0]);
+      const bool represented = to_signal(state.position, f.position) && to_signal(state.velocity, f.velocity) &&
+                               to_signal(state.current, f.current[0]);
+      f.position_valid = newest_[i].time_ns != 0 && represented;
       f.position_time_ns = std::min(newest_[i].time_ns, now_ns_);
       f.fault = state.fault;
     }

@@ -33,7 +33,7 @@ wait $plant
 class Run:
     """One run of the drive: its name, its options, the plant's faults."""
     name: str
-    circle: str = "16 m/min"
+    task: tuple = ("--circle", "16 m/min")
     faults: tuple = ()
     drive: tuple = ()
     plant: tuple = ()
@@ -46,7 +46,7 @@ class Run:
         plant = [BIN / "stiction-plant", *common[:2], *self.both, "--bus", "can:vcan0", "--at", "X=90 mm", *self.plant]
         for fault in self.faults:
             plant += ["--fault", fault]
-        drive = [BIN / "stictiond", *common, "--hal", "can", "--circle", self.circle, *self.drive]
+        drive = [BIN / "stictiond", *common, "--hal", "can", *self.task, *self.drive]
         return RUN.format(name=self.name, plant=shlex.join(map(str, plant)), drive=shlex.join(map(str, drive)),
                           beside=self.beside, afterwards=self.afterwards)
 

@@ -61,13 +61,14 @@ FAULTS = [
     ("limit-negative", SHORT, {20, 21}, 1, False),
     ("limit-positive", SHORT, {20, 21}, 1, False),
 ]
+HELD = ("--hold", "0.5")
 # Two frames a second are borne.
 BORNE = ["frame-lost", "frame-late", "frame-stale", "frame-damaged", "frame-duplicate", "frame-out-of-order"]
 
 
 class Circle(unittest.TestCase):
     def test_over_can_fd_is_the_simulation_to_the_last_digit(self):
-        loop.execute(FOLDER / "fd", [loop.Run("fd", FEED, drive=("--trace", "trace.csv"))])
+        loop.execute(FOLDER / "fd", [loop.Run("fd", ("--circle", FEED), drive=("--trace", "trace.csv"))])
         found, expected = loop.rows(FOLDER / "fd/trace.csv"), simulated(FEED)
         self.assertEqual(len(found), len(expected))
         differing = sum(a != b for a, b in zip(found, expected))
@@ -79,7 +80,8 @@ class Circle(unittest.TestCase):
         # 62.5 us is beyond a real bus of classical frames; here only their resolution counts.
         estimated = ("--set", "axis.*.encoder.velocity=estimated")  # they carry no velocity
         both = ("--set", "drive.can.data_bit_rate=", *estimated)
-        result = loop.execute(FOLDER / "classical", [loop.Run("classical", FEED, drive=("--trace", "trace.csv"), both=both)])["classical"]
+        run = loop.Run("classical", ("--circle", FEED), drive=("--trace", "trace.csv"), both=both)
+        result = loop.execute(FOLDER / "classical", [run])["classical"]
         self.assertEqual(result.status, 0, result.drive)
         found, expected = loop.rows(FOLDER / "classical/trace.csv"), simulated(FEED, *estimated)
         columns = [expected[0].index(f"{axis}.x[m]") for axis in "XY"]
@@ -123,7 +125,7 @@ class Faults(unittest.TestCase):
 
 class Disturbances(unittest.TestCase):
     def test_of_two_frames_are_borne_and_counted(self):
-        runs = [loop.Run(kind, faults=(fault(kind, 2),), afterwards=0.1) for kind in BORNE]
+        runs = [loop.Run(kind, HELD, faults=(fault(kind, 2),), afterwards=0.1) for kind in BORNE]
         for kind, result in loop.execute(FOLDER / "borne", runs).items():
             with self.subTest(kind):
                 self.assertEqual(result.status, 0, result.drive)
@@ -139,8 +141,9 @@ class Processes(unittest.TestCase):
         ended = "(sleep 0.4; kill -TERM $(pidof stictiond)) &"
         clock = "(sleep 0.4; date -s '2031-01-01' >/dev/null) &"
         results = loop.execute(FOLDER / "processes", [
-            loop.Run("held", beside=held), loop.Run("killed", beside=killed), loop.Run("ended", beside=ended),
-            loop.Run("clock", beside=clock)])
+            loop.Run("held", beside=held), loop.Run("killed", beside=killed),
+            loop.Run("ended", beside=ended),
+            loop.Run("clock", HELD, beside=clock)])
         self.assertEqual(results["held"].status, 1)
         self.assertEqual(min(results["held"].faults())[2], 48, results["held"].drive)
         for name in ("held", "killed"):
