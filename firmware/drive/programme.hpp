@@ -37,7 +37,13 @@ class Programme {
 
   // `trace`: of the motion; may be null. All must outlive this.
   Programme(hal::DriveLoop<B>& loop, const Task& task, LogRing& log, Trace* trace)
-      : loop_(loop), task_(task), log_(log), trace_(trace), hold_(loop.axis_count()), remote_(loop.axis_count()) {
+      : loop_(loop),
+        task_(task),
+        log_(log),
+        trace_(trace),
+        hold_(loop.axis_count()),
+        remote_(loop.axis_count()),
+        dropped_(loop.axis_count()) {
     if (task.serve) enter(Phase::remote);
   }
 
@@ -156,6 +162,14 @@ class Programme {
       log_.push(
           event.event.time_ns, LogLevel::error, "axis {}: fault {} '{}' while {}",
           {event.axis, static_cast<int>(event.event.fault), stiction::name_of(event.event.fault), name_of(phase_)});
+    const auto compensations = loop_.loop().compensations();
+    for (std::size_t i = 0; i < compensations.size(); ++i) {
+      if (compensations[i].dropped() && !dropped_[i])
+        log_.push(loop_.now_ns(), LogLevel::warning,
+                  "axis {}: the learned table made the error grow: dropped, the friction feedforward acts without it",
+                  {i});
+      dropped_[i] = compensations[i].dropped();
+    }
   }
 
   hal::DriveLoop<B>& loop_;
@@ -168,6 +182,7 @@ class Programme {
     OperationMode mode = OperationMode::cyclic_position;
   };
   std::vector<Asked> remote_;
+  std::vector<char> dropped_;  // learned tables
   Phase phase_ = Phase::enable;
   std::uint64_t in_phase_ = 0;  // ticks
   std::uint64_t tick_ = 0;

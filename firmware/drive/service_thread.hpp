@@ -19,8 +19,8 @@ namespace stiction::drive {
 struct ServiceQuestions {
   std::function<std::uint64_t()> progress;  // a number that the loop changes every tick
   std::function<std::string()> status;      // one line for `systemctl status`, asked once a second
-  std::function<void()> round;              // called in each round, about every 20 ms; may be empty
   std::function<void()> starved;            // the loop stood still for the watchdog's time; called once each time
+  std::function<void()> round = {};         // called in each round, about every 20 ms
 };
 
 class ServiceThread {

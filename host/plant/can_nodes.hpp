@@ -11,6 +11,7 @@
 #include "hal/backend.hpp"
 #include "hal/can/can_socket.hpp"
 #include "host/plant/plant_fault.hpp"
+#include "host/plant/plant_under_bus.hpp"
 
 namespace stiction::host {
 
@@ -19,12 +20,6 @@ struct CanNodesConfig {
   hal::can::Format format = hal::can::Format::fd;
   std::vector<int> nodes;
   std::vector<PlantFault> faults;
-};
-
-// What moves behind the bus, for any backend of this process.
-struct PlantUnderBus {
-  std::function<void(std::span<const Command<FixedSignals>>)> advance;  // one tick under these voltages
-  std::function<void(std::span<Feedback<FixedSignals>>, std::span<DigitalInputs<FixedSignals>>)> sample;
 };
 
 class CanNodes {

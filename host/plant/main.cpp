@@ -11,6 +11,7 @@
 #include "hal/simulated/faulty_backend.hpp"
 #include "hal/simulated/simulated_backend.hpp"
 #include "host/plant/can_nodes.hpp"
+#include "host/plant/modbus_slave.hpp"
 #include "host/plant/motion_record.hpp"
 #include "host/plant/plant_options.hpp"
 #include "sim/control/axis_configuration.hpp"
@@ -51,11 +52,25 @@ int serve(const PlantOptions& options) {
                               faulty.read_inputs(inputs);
                             }};
   faulty.wait_for_tick();  // the start
-  CanNodes nodes(can_nodes_config(options, machine, setup), plant);
-  fmt::print("stiction-plant: {} on {}, {} axes\n", machine.id, options.bus, machine.axes.size());
-  std::fflush(stdout);
-  nodes.serve([] { return stop_wanted != 0; });
-  fmt::print("stiction-plant: {} ticks, {} damaged commands\n", nodes.ticks(), nodes.damaged_commands());
+  const auto announce = [&] {
+    fmt::print("stiction-plant: {} on {}, {} axes\n", machine.id, options.bus, machine.axes.size());
+    std::fflush(stdout);
+  };
+  const auto stop = [] { return stop_wanted != 0; };
+  if (const auto bus = bus_of(options); bus.kind == "modbus") {
+    if (machine.axes.size() != 1)
+      throw PlantOptionError(fmt::format(
+          "--bus: found a machine with {} axes; expected one: a Modbus slave is one stage", machine.axes.size()));
+    ModbusSlave slave(bus.name, sim::fast_period_ns(machine.timing), plant);
+    announce();
+    slave.serve(stop);
+    fmt::print("stiction-plant: {} ticks\n", slave.ticks());
+  } else {
+    CanNodes nodes(can_nodes_config(options, machine, setup), plant);
+    announce();
+    nodes.serve(stop);
+    fmt::print("stiction-plant: {} ticks, {} damaged commands\n", nodes.ticks(), nodes.damaged_commands());
+  }
   for (std::size_t i = 0; i < machine.axes.size(); ++i) fmt::print("{}\n", record.describe(machine.axes[i].name, i));
   return 0;
 }

@@ -67,7 +67,9 @@ PlantFault plant_fault(const std::string& text, const sim::Machine& machine) {
 
 void PlantOptions::add_to(CLI::App& program) {
   program.add_option("--machine", machine, "machine file, or the name of a shipped machine")->required();
-  program.add_option("--bus", bus, "bus to answer on, such as can:vcan0")->required()->type_name("KIND:NAME");
+  program.add_option("--bus", bus, "bus to answer on: can:INTERFACE, modbus:HOST:PORT or modbus:DEVICE")
+      ->required()
+      ->type_name("KIND:NAME");
   program.add_option("--experiment", experiment, "with the overrides of [experiment.NAME]")->type_name("NAME");
   program.add_option("--set", set, "another value for a key of the machine file; may be repeated")
       ->type_name("KEY=VALUE")
@@ -80,6 +82,15 @@ void PlantOptions::add_to(CLI::App& program) {
   faults_help.back() = '.';
   program.add_option("--fault", faults, faults_help)->type_name("FAULT")->allow_extra_args(false);
   program.add_option("--seed", seed, "of the simulated noise")->capture_default_str();
+}
+
+PlantBus bus_of(const PlantOptions& options) {
+  const auto colon = options.bus.find(':');
+  const PlantBus bus{options.bus.substr(0, colon), colon == std::string::npos ? "" : options.bus.substr(colon + 1)};
+  if ((bus.kind != "can" && bus.kind != "modbus") || bus.name.empty())
+    throw PlantOptionError(
+        fmt::format("--bus: found '{}'; expected can:INTERFACE, modbus:HOST:PORT or modbus:DEVICE", options.bus));
+  return bus;
 }
 
 std::vector<double> start_positions(const sim::Machine& machine, const std::vector<std::string>& at) {
@@ -101,11 +112,8 @@ std::vector<PlantFault> faults_of(const PlantOptions& options, const sim::Machin
 
 CanNodesConfig can_nodes_config(const PlantOptions& options, const sim::Machine& machine,
                                 const sim::DriveSetup& setup) {
-  const auto colon = options.bus.find(':');
-  if (options.bus.substr(0, colon) != "can" || colon == std::string::npos)
-    throw PlantOptionError(fmt::format("--bus: found '{}'; expected can:INTERFACE", options.bus));
   CanNodesConfig config;
-  config.interface = options.bus.substr(colon + 1);
+  config.interface = bus_of(options).name;
   config.format = setup.can && !setup.can->data_bit_rate ? hal::can::Format::classical : hal::can::Format::fd;
   for (const auto& axis : machine.axes) config.nodes.push_back(setup.axes.at(axis.name).node);
   config.faults = faults_of(options, machine);

@@ -27,6 +27,12 @@ struct PlantOptions {
   void add_to(CLI::App& program);
 };
 
+// The bus of the options: its kind, "can" or "modbus", and its name. Throws PlantOptionError.
+struct PlantBus {
+  std::string kind, name;
+};
+PlantBus bus_of(const PlantOptions& options);
+
 // Where the axes stand at the start (m), from "X=90 mm"; 0 where nothing is said. Throws PlantOptionError.
 std::vector<double> start_positions(const sim::Machine& machine, const std::vector<std::string>& at);
 

@@ -1,0 +1,17 @@
+// What moves behind a bus, for whatever speaks on it.
+#pragma once
+
+#include <functional>
+#include <span>
+
+#include "stiction/drive/exchange.hpp"
+#include "stiction/number/fixed_signals.hpp"
+
+namespace stiction::host {
+
+struct PlantUnderBus {
+  std::function<void(std::span<const Command<FixedSignals>>)> advance;  // one tick under these voltages
+  std::function<void(std::span<Feedback<FixedSignals>>, std::span<DigitalInputs<FixedSignals>>)> sample;
+};
+
+}  // namespace stiction::host
