@@ -154,5 +154,43 @@ class Processes(unittest.TestCase):
         self.assertEqual(results["clock"].status, 0, "the time of day is not the loop's\n" + results["clock"].drive)
 
 
+# A ball-screw axis whose power stage is a Modbus slave: a loop of 10 ms, gains that it bears.
+SLOW_AXIS = """
+drive() {
+  BIN/stictiond --machine emps --hal modbus --set 'timing.fast_period=10 ms' --set 'timing.slow_period=10 ms' \\
+    --set 'axis.X.max_velocity=0.04 m/s' --set 'axis.X.velocity_controller.gain=30 V s/m' \\
+    --set 'axis.X.position_controller.gain=3 1/s' --set drive.modbus_client.device=127.0.0.1:15020 \\
+    --set drive.modbus_server.address=127.0.0.1:15021 "$@"
+}
+BIN/stiction-plant --machine emps --bus modbus:127.0.0.1:15020 >plant.txt 2>&1 &
+plant=$!
+while [ ! -s plant.txt ]; do sleep 0.01; done
+drive --hold 2 >held.txt 2>&1
+echo $? >held.status
+drive --hold 3 >silent.txt 2>&1 &
+held=$!
+sleep 1
+mbpoll -m tcp -p 15021 -0 -1 -t 3 -r 0 -c 3 127.0.0.1 >peer.txt 2>&1
+kill -KILL $plant
+wait $held
+echo $? >silent.status
+drive --hold 1 >absent.txt 2>&1
+echo $? >absent.status
+"""
+
+
+class SlowBus(unittest.TestCase):
+    def test_over_modbus_holds_an_axis_and_notices_a_slave_that_is_gone(self):
+        folder = FOLDER / "modbus"
+        loop.boot(folder, SLOW_AXIS.replace("BIN", str(loop.BIN)))
+        said = {name: (folder / f"{name}.txt").read_text() for name in ("held", "silent", "absent", "peer")}
+        status = {name: int((folder / f"{name}.status").read_text()) for name in ("held", "silent", "absent")}
+        self.assertEqual(status["held"], 0, said["held"])
+        self.assertEqual(status["silent"], 1, said["silent"])
+        self.assertIn("fault 32 'frames lost'", said["silent"])
+        self.assertEqual(status["absent"], 2, said["absent"])
+        self.assertIn("[0]: \t21316", said["peer"], "what an independent master reads: a drive of stiction")
+
+
 if __name__ == "__main__":
     unittest.main(verbosity=2)
