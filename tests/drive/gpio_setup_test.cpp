@@ -11,38 +11,13 @@
 #include "hal/gpio/lines.hpp"
 #include "sim/machine/drive_file.hpp"
 #include "sim/machine/machine_file.hpp"
+#include "tests/sim/machine/machine_text.hpp"
 
 namespace stiction::test {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* machine_text = R"(schema = "stiction.machine/1"
-name = "small"
-[axis.B]
-mass = "95 kg"
-travel = "250 mm"
-max_velocity = "0.2 m/s"
-max_acceleration = "2 m/s^2"
-[axis.B.motor]
-model = "force"
-force_constant = "35 N/V"
-[axis.B.inverter]
-dead_time = "0 us"
-voltage_limit = "10 V"
-[axis.B.encoder]
-increment = "5 um"
-velocity = "mean-difference"
-[axis.B.position_controller]
-gain = "160 1/s"
-[axis.B.velocity_controller]
-gain = "243 V s/m"
-[axis.B.friction]
-use = "coulomb_viscous"
-[axis.B.friction.coulomb_viscous]
-coulomb = "20 N"
-viscous = "200 N s/m"
-)";
 constexpr const char* drive_text = R"([drive.gpio]
 chip = "servo-lines"
 pwm_chip = "/sys/class/pwm/pwmchip0"
@@ -87,7 +62,7 @@ std::string refusal(const Read& read) {
 }
 
 TEST(GpioSetup, CarriesEveryKeyOfTheMachineFileToTheBackend) {
-  const auto [machine, setup] = read(std::string(machine_text) + drive_text);
+  const auto [machine, setup] = read(std::string(sim::test::small_machine) + drive_text);
   ASSERT_TRUE(drive::has_gpio_lines(setup, machine));
   const auto config = drive::gpio_configuration(setup, machine);
   EXPECT_EQ(config.chip, "servo-lines");
@@ -113,19 +88,19 @@ TEST(GpioSetup, CarriesEveryKeyOfTheMachineFileToTheBackend) {
 }
 
 TEST(GpioSetup, FindsNoLinesWhereNoneAreNamed) {
-  const auto [machine, setup] = read(machine_text);
+  const auto [machine, setup] = read(sim::test::small_machine);
   EXPECT_FALSE(drive::has_gpio_lines(setup, machine));
   EXPECT_THAT(refusal({machine, setup}), ::testing::HasSubstr("no table [drive.gpio]"));
 }
 
 TEST(GpioSetup, RefusesAnAxisWhoseCurrentIsControlledInTheDrive) {
-  auto both = read(std::string(machine_text) + drive_text);
+  auto both = read(std::string(sim::test::small_machine) + drive_text);
   both.machine.axes[0].motor.model = sim::MotorModel::synchronous;
   EXPECT_THAT(refusal(both), ::testing::HasSubstr("axis B: its current controllers need the phase currents"));
 }
 
 TEST(GpioSetup, RefusesAMachineWithoutAPwmChip) {
-  auto both = read(std::string(machine_text) + drive_text);
+  auto both = read(std::string(sim::test::small_machine) + drive_text);
   both.setup.gpio->pwm_chip.reset();
   EXPECT_THAT(refusal(both), ::testing::HasSubstr("names no pwm_chip"));
 }
