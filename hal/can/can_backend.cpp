@@ -9,6 +9,9 @@
 namespace stiction::hal::can {
 namespace {
 
+// Read of the nodes' frames in a tick: a node that repeats itself without end does not hold the loop either.
+constexpr std::uint32_t most_taken = 64;
+
 // Read of the others' frames in a tick, so that a babbling node does not hold the loop: one more than is borne in
 // sixteen.
 constexpr std::uint32_t most_watched = FrameWatch::foreign_allowed + 1;
@@ -80,9 +83,10 @@ void CanBackend::read(std::span<Feedback<Signals>> feedback) {
   of_nobody_now_ = 0;
   // From when the tick really began: a late tick waits as long for its answers as any other.
   const std::int64_t deadline = now_ns_ + clock_.lateness_ns() + answer_ns_;
-  while (!complete() && nodes_socket_.receive(received, deadline)) take(received);
+  std::uint32_t left = most_taken;
+  while (left > 0 && !complete() && nodes_socket_.receive(received, deadline)) take(received), --left;
   // What is in the queue beyond the answers belongs to no tick to come.
-  while (nodes_socket_.receive(received, 0)) take(received);
+  while (left > 0 && nodes_socket_.receive(received, 0)) take(received), --left;
   watch_bus();
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     auto& node = nodes_[i];

@@ -61,11 +61,11 @@ class CheckRooms(unittest.TestCase):
         self.assertIn("circle", findings[1])
 
     def test_finds_a_real_backend_that_knows_the_simulation(self):
-        self.expect_finding("hal/can/can_backend.hpp", '#include "sim/model/machine.hpp"', "hal may not include sim")
+        self.expect_finding("hal/can/can_backend.hpp", '#include "sim/model/machine.hpp"', "hal/can may not include sim")
 
     def test_finds_a_real_backend_that_knows_the_simulated_one(self):
         self.expect_finding("hal/can/can_backend.hpp", '#include "hal/simulated/simulated_backend.hpp"',
-                            "hal may not include hal/simulated")
+                            "hal/can may not include hal/simulated")
 
     def test_finds_the_simulation_including_a_tool(self):
         findings = findings_in(SOUND | {"sim/model/machine.hpp": '#include "host/report/page.hpp"\n'})
