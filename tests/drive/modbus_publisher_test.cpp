@@ -126,6 +126,7 @@ TEST(ModbusSetup, TakesTheUnitsOfTheAxesFromTheirNodes) {
   auto setup = setup_with(false);
   setup.modbus_client.emplace();
   setup.modbus_client->device = "10.0.0.2:502";
+  for (auto& [name, axis] : setup.axes) axis.node = 0;
   EXPECT_THROW(drive::modbus_client_config(machine, setup), hal::ModbusError);  // no unit
   setup.axes.at("X").node = 3;
   setup.axes.at("Y").node = 3;

@@ -24,13 +24,12 @@ struct Read {
   sim::DriveSetup setup;
 };
 
-// A shipped machine with lines of [drive] behind it.
+// A shipped machine with these lines in place of its own of [drive], which stand last.
 Read read(const std::string& file, const std::string& drive = {}) {
   const std::string name = ::testing::UnitTest::GetInstance()->current_test_info()->name();
   const auto path = std::filesystem::path(::testing::TempDir()) / fmt::format("{}_{}.toml", name, ::getpid());
-  std::ofstream(path) << std::ifstream(std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/" + file).rdbuf()
-                      << '\n'
-                      << drive;
+  const auto shipped = sim::content_of(std::filesystem::path(STICTION_SOURCE_DIR) / "sim/machine/shipped" / file);
+  std::ofstream(path) << shipped.substr(0, shipped.find("[drive.")) << '\n' << drive;
   Read r{sim::read_machine(path, {}), {}};
   r.setup = sim::read_drive_setup(path, r.machine, {});
   std::filesystem::remove(path);
