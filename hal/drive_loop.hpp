@@ -65,6 +65,9 @@ class DriveLoop {
     for (auto& trip : trips_) trip = fault;
   }
 
+  // Before the first tick() of a loop in real time: what the start took is no lateness.
+  void restart_watch() { watch_.restart(); }
+
   // One tick with a set-point an axis (csp, of the machine's coordinates), then waits for the next.
   void tick(std::span<const SetPoint<S>> set_points) {
     if constexpr (WiredBackend<B>) backend_.read_inputs(inputs_);

@@ -1,5 +1,6 @@
 // What the times of the ticks tell: ticks that were missed and a clock that jumped. Rows missed_deadline and clock_jump
-// of fault_table. One missed tick is borne: the power stage holds its last command and the axis its last sample.
+// of fault_table. One missed tick is borne, two in a row or at once are not: the power stage holds its last command
+// meanwhile and the axis its last sample.
 #pragma once
 
 #include <cstdint>
@@ -24,11 +25,14 @@ class TickWatch {
       late_ = 0;
       return Fault::clock_jump;
     }
-    const bool late = gap >= 2 * period_ns_;
-    missed_ += late ? static_cast<std::uint64_t>(gap / period_ns_ - 1) : 0;
-    late_ = late ? late_ + 1 : 0;
+    const std::int64_t missed = gap / period_ns_ - 1;  // ticks that were due in the gap
+    if (missed > 0) missed_ += static_cast<std::uint64_t>(missed);
+    late_ = missed > 0 ? late_ + missed : 0;
     return late_ > late_ticks_allowed ? Fault::missed_deadline : Fault::none;
   }
+
+  // The next step is the first again: after work between two ticks that may take as long as it likes.
+  constexpr void restart() { started_ = false; }
 
   constexpr std::uint64_t missed() const { return missed_; }  // ticks since the start
 
@@ -36,7 +40,7 @@ class TickWatch {
   std::int64_t period_ns_;
   std::int64_t last_ns_ = 0;
   bool started_ = false;
-  int late_ = 0;  // ticks in a row
+  std::int64_t late_ = 0;  // ticks in a row
   std::uint64_t missed_ = 0;
 };
 

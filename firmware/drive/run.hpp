@@ -115,6 +115,7 @@ RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& confi
     }
     notify.ready(title);
     if (clock != nullptr) clock->restart();  // what came before took its time
+    loop.restart_watch();
     programme.tick(false);
     log.push(loop.now_ns(), LogLevel::info, "the loop has begun");
     while (!programme.over()) {
