@@ -7,7 +7,7 @@ mounted() { grep -q " $1 " /proc/mounts; }
 [ -e /proc/mounts ] || mount -t proc none /proc
 mounted /sys || mount -t sysfs none /sys
 mounted /sys/kernel/config || mount -t configfs none /sys/kernel/config
-mounted /tmp || mount -t tmpfs none /tmp
+[ -n "${TMPDIR:-}" ] || { mounted /tmp || mount -t tmpfs none /tmp; }
 
 # make_chip LABEL LINES
 make_chip() {
@@ -21,7 +21,7 @@ make_chip stiction-test 16
 make_chip stiction-other 4
 
 status=0
-TMPDIR=/tmp "$@" || status=$?
+TMPDIR=${TMPDIR:-/tmp} "$@" || status=$?
 for chip in stiction-test stiction-other; do
   echo 0 >/sys/kernel/config/gpio-sim/$chip/live
   rmdir /sys/kernel/config/gpio-sim/$chip/bank0 /sys/kernel/config/gpio-sim/$chip

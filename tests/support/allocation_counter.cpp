@@ -5,14 +5,24 @@
 #include <cstdlib>
 #include <new>
 
+#define STICTION_COUNTS_ALLOCATIONS 1
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#undef STICTION_COUNTS_ALLOCATIONS
+#define STICTION_COUNTS_ALLOCATIONS 0
+#endif
+#endif
+
 namespace {
 std::atomic<std::size_t> count{0};
 }
 
 namespace stiction::test {
 std::size_t allocations() { return count; }
+bool allocations_are_counted() { return STICTION_COUNTS_ALLOCATIONS != 0; }
 }  // namespace stiction::test
 
+#if STICTION_COUNTS_ALLOCATIONS
 // NOLINTBEGIN(cppcoreguidelines-no-malloc): these stand below what else would be used
 void* operator new(std::size_t size) {
   ++count;
@@ -22,3 +32,4 @@ void* operator new(std::size_t size) {
 void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 // NOLINTEND(cppcoreguidelines-no-malloc)
+#endif

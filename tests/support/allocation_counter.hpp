@@ -7,4 +7,7 @@ namespace stiction::test {
 
 std::size_t allocations();
 
+// False under a sanitizer, which has an allocator of its own: nothing is counted then.
+bool allocations_are_counted();
+
 }  // namespace stiction::test
