@@ -18,11 +18,9 @@ namespace stiction::drive {
 
 enum class Phase : std::uint8_t { enable, home, approach, motion, idle, remote, stop, faulted, over };
 
-constexpr const char* name_of(Phase phase) {
-  constexpr std::array<const char*, 9> names{"enabling", "homing",   "approach", "motion", "holding",
-                                             "serving",  "stopping", "faulted",  "off"};
-  return names[static_cast<std::size_t>(phase)];
-}
+inline constexpr std::array<const char*, 9> phase_names{"enabling", "homing",   "approach", "motion", "holding",
+                                                        "serving",  "stopping", "faulted",  "off"};
+constexpr const char* name_of(Phase phase) { return phase_names[static_cast<std::size_t>(phase)]; }
 
 struct Task {
   Motion approach, motion;       // both may be empty

@@ -26,6 +26,9 @@ Word get(const Frame& frame, std::size_t at, std::size_t bytes = sizeof(Word)) {
   return static_cast<Word>(bits);
 }
 
+// The k-th of 16 bits.
+std::int32_t short_word(const Frame& frame, std::size_t k) { return get<std::int16_t>(frame, 2 * k); }
+
 Crc16 checksum(const Frame& frame, std::size_t covered) {
   Crc16 crc;
   crc.add(static_cast<std::uint8_t>(frame.id)).add(static_cast<std::uint8_t>(frame.id >> 8));
@@ -149,8 +152,7 @@ bool decode_command(Format format, const Frame& frame, std::uint32_t& counter, C
     counter = frame.data[fd::command_counter];
   } else {
     for (std::size_t k = 0; k < 3; ++k)
-      command.voltage[k] =
-          Voltage::from_raw(std::int32_t{get<std::int16_t>(frame, 2 * k)} * (1 << classical::voltage_shift));
+      command.voltage[k] = Voltage::from_raw(short_word(frame, k) * (1 << classical::voltage_shift));
     command.enable = (frame.data[classical::flags_and_counter] & 1) != 0;
     counter = frame.data[classical::flags_and_counter] >> 4;
   }
@@ -209,8 +211,7 @@ bool decode_feedback(Format format, Kind kind, const Frame& frame, std::uint32_t
     take_low_flags(flags_and_counter, state);
   } else {
     for (std::size_t k = 0; k < 3; ++k)
-      f.current[k] =
-          S::Current::from_raw(std::int32_t{get<std::int16_t>(frame, 2 * k)} * (1 << classical::current_shift));
+      f.current[k] = S::Current::from_raw(short_word(frame, k) * (1 << classical::current_shift));
     take_high_flags(static_cast<std::uint8_t>(flags_and_counter << 4), state);
     state.inputs.index_position = f.position;  // the mark's own place has no room
   }

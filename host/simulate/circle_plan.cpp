@@ -8,8 +8,8 @@
 #include <optional>
 #include <thread>
 
-#include "sim/control/trace_writer.hpp"
 #include "sim/control/double_signals.hpp"
+#include "sim/control/trace_writer.hpp"
 #include "sim/experiment/circle_measurement.hpp"
 #include "stiction/number/fixed_signals.hpp"
 

@@ -6,22 +6,13 @@
 
 #include "hal/gpio/gpio_backend.hpp"
 #include "tests/hil/gpio_loop.hpp"
-
-// The sanitizers have an allocator of their own.
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define STICTION_OTHER_ALLOCATOR
-#endif
-#endif
-#if defined(__SANITIZE_ADDRESS__)
-#define STICTION_OTHER_ALLOCATOR
-#endif
+#include "tests/support/sanitizer.hpp"
 
 namespace {
 std::atomic<long> allocations = 0;
 }
 
-#ifndef STICTION_OTHER_ALLOCATOR
+#if !STICTION_ADDRESS_SANITIZER  // which has an allocator of its own
 // glibc's own names; what the program and its libraries call comes here first.
 extern "C" {
 void* __libc_malloc(std::size_t size);                     // NOLINT(readability-identifier-naming)
@@ -41,7 +32,7 @@ namespace stiction::test {
 namespace {
 
 TEST_F(GpioLoop, AllocatesNothingAndTouchesNoNewPageInAThousandTicks) {
-#ifdef STICTION_OTHER_ALLOCATOR
+#if STICTION_ADDRESS_SANITIZER
   GTEST_SKIP() << "the sanitizers' allocator is not counted";
 #endif
   constexpr std::int64_t period_ns = 250'000;

@@ -5,13 +5,7 @@
 #include <cstdlib>
 #include <new>
 
-#define STICTION_COUNTS_ALLOCATIONS 1
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#undef STICTION_COUNTS_ALLOCATIONS
-#define STICTION_COUNTS_ALLOCATIONS 0
-#endif
-#endif
+#include "tests/support/sanitizer.hpp"
 
 namespace {
 std::atomic<std::size_t> count{0};
@@ -19,10 +13,10 @@ std::atomic<std::size_t> count{0};
 
 namespace stiction::test {
 std::size_t allocations() { return count; }
-bool allocations_are_counted() { return STICTION_COUNTS_ALLOCATIONS != 0; }
+bool allocations_are_counted() { return !address_sanitizer; }
 }  // namespace stiction::test
 
-#if STICTION_COUNTS_ALLOCATIONS
+#if !STICTION_ADDRESS_SANITIZER
 // NOLINTBEGIN(cppcoreguidelines-no-malloc): these stand below what else would be used
 void* operator new(std::size_t size) {
   ++count;

@@ -11,13 +11,11 @@
 #include <functional>
 #include <map>
 
+#include "tests/support/sanitizer.hpp"
+
 // A sanitizer has an allocator and calls of its own: nothing is replaced then, and the counts mean nothing.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if STICTION_ADDRESS_SANITIZER || defined(__SANITIZE_THREAD__)
 #define STICTION_SANITIZED
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define STICTION_SANITIZED
-#endif
 #endif
 
 namespace stiction::test {
