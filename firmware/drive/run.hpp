@@ -27,7 +27,6 @@ void catch_stop_signals();
 
 struct RunResult {
   bool faulted = false;
-  bool motion_done = false;
 };
 
 // What the loop did with its time, for people.
@@ -128,7 +127,7 @@ RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& confi
     trace.write(options.trace, configuration.names,
                 std::vector<std::string>{"log: stictiond", "machine: " + configuration.machine.name});
   if (clock != nullptr) fmt::print("{}", describe_timing(timing, clock->lateness(), clock->missed()));
-  return {programme.faulted(), !programme.faulted()};
+  return {programme.faulted()};
 }
 
 }  // namespace stiction::drive

@@ -33,10 +33,10 @@ def simulated(feed, *options):
 
 # Begins in motion, 0.25 s after the drive's first tick; that of a frame ends again.
 ONSET = 4000
-SHORT = 1_000_000
+LASTING = 1_000_000
 
 
-def fault(kind, ticks=SHORT):
+def fault(kind, ticks=LASTING):
     return f"{kind},axis=X,at={ONSET * loop.PERIOD} s,ticks={ticks}"
 
 
@@ -51,15 +51,15 @@ FAULTS = [
     ("frame-out-of-order", 20, {33}, 11, False),
     ("bus-off", 1, {34}, 1, True),
     ("babble", 5, {35}, 1, False),
-    ("encoder-open", SHORT, {4}, 3, True),
-    ("encoder-frozen", SHORT, {16, 17}, 16, True),
-    ("encoder-jump", SHORT, {17}, 1, True),
-    ("encoder-bit", SHORT, {17}, 1, True),
-    ("motor-reversed", SHORT, {19, 1, 2, 3, 7}, 400, True),
-    ("current-offset", SHORT, {18}, 16, True),
-    ("power-stage", SHORT, {5}, 1, True),
-    ("limit-negative", SHORT, {20, 21}, 1, False),
-    ("limit-positive", SHORT, {20, 21}, 1, False),
+    ("encoder-open", LASTING, {4}, 3, True),
+    ("encoder-frozen", LASTING, {16, 17}, 16, True),
+    ("encoder-jump", LASTING, {17}, 1, True),
+    ("encoder-bit", LASTING, {17}, 1, True),
+    ("motor-reversed", LASTING, {19, 1, 2, 3, 7}, 400, True),
+    ("current-offset", LASTING, {18}, 16, True),
+    ("power-stage", LASTING, {5}, 1, True),
+    ("limit-negative", LASTING, {20, 21}, 1, False),
+    ("limit-positive", LASTING, {20, 21}, 1, False),
 ]
 HELD = ("--hold", "0.5")
 # Two frames a second are borne.
