@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -52,7 +53,7 @@ class Endurance {
     const auto ticks = static_cast<std::uint64_t>(minutes * 60.0 * second);
     while (bench_.ticks < ticks && broken_ == 0) {
       const auto& c = cases_[below(cases_.size())];
-      move(c.holding);
+      move(c);
       break_down(c, below(2));
       if (bench_.ticks > 60 * second && marks_at_minute_ == 0.0) marks_at_minute_ = memory();
       bench_.events.clear();
@@ -89,7 +90,7 @@ class Endurance {
     return sum;
   }
 
-  void move(bool holding) {
+  void move(const FaultCase& c) {
     if (!bench_.reset() || !bench_.enable()) {
       ++broken_;
       return;
@@ -97,8 +98,8 @@ class Endurance {
     const double angle = between(-3.14, 3.14);
     bench_.travel_to({0.09 * std::cos(angle), 0.09 * std::sin(angle)}, 3.0);
     bench_.run(4 * second);
-    if (holding) return;
-    bench_.move({.feed = between(3.2, 48.0) / 60.0,
+    if (c.holding) return;
+    bench_.move({.feed = std::max(between(3.2, 48.0) / 60.0, c.least_feed),
                  .direction = below(2) == 0 ? sim::Direction::clockwise : sim::Direction::counter_clockwise});
     bench_.run(static_cast<int>(between(20.0, 84.0) * second));
     if (!bench_.events.empty()) {
@@ -116,7 +117,8 @@ class Endurance {
     ++count.injected;
     int since = 0;
     bench_.before_tick = [&] { c.inject(bench_, axis, since++); };
-    for (int i = 0; i < 2 * second && bench_.loop.fault(axis) == Fault::none; ++i) bench_.tick();
+    // On a slow circle an axis needs a second or two from a turning point to where it shows.
+    for (int i = 0; i < 4 * second && bench_.loop.fault(axis) == Fault::none; ++i) bench_.tick();
     const Fault fault = bench_.loop.fault(axis);
     ++(fault == c.fault ? count.seen : fault == Fault::none ? count.unseen : count.otherwise);
     bench_.run(second);

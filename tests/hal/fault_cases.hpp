@@ -36,7 +36,9 @@ struct FaultCase {
   bool shows_at_rest = false;  // so that no reset is taken while it is there
   bool recurs = false;         // does not show at rest but comes back with the motion
   bool at_one_place = false;   // of the circle, whenever it is injected
-  bool holding = false;        // the axes hold their position when it happens
+  // m/s, of the circle: at a slower feed the drive overcomes it, which is no fault.
+  double least_feed = 0.0;
+  bool holding = false;                                     // the axes hold their position when it happens
   sim::Direction back = sim::Direction::counter_clockwise;  // of the circle that leads away from where it ends
   std::string machine{};                                    // a setting of it, {} the axis' name
   std::function<void(sim::DriveAxisSetup&, std::size_t axis)> setup{};
