@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 
+#include "host/diagnose/common_part.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
 #include "host/identify/identification.hpp"
 #include "host/simulate/replay.hpp"
@@ -16,6 +18,8 @@ namespace {
 // Of the stroke: a simulated position that is further away, rms, is another motion.
 constexpr double another_way = 0.01;
 constexpr double fine = 0.01;  // of the position controller's increment
+constexpr std::size_t most_runs = 4;
+constexpr double agreed = 0.95;  // of the mean's square that the runs have in common: more of them tell little
 
 bool same_way(const std::vector<double>& simulated, const std::vector<double>& measured) {
   double mean = 0.0, square = 0.0;
@@ -24,6 +28,11 @@ bool same_way(const std::vector<double>& simulated, const std::vector<double>& m
   for (std::size_t i = 0; i < measured.size(); ++i) square += std::pow(simulated[i] - measured[i] - mean, 2) / n;
   const auto [low, high] = std::minmax_element(measured.begin(), measured.end());
   return std::sqrt(square) < another_way * (*high - *low);
+}
+
+// The equivalent motor takes a third of the time, and moves the axis the same but for how it hunts.
+void without_windings(sim::Axis& axis) {
+  if (axis.motor.model == sim::MotorModel::synchronous) axis.motor.model = sim::MotorModel::dc;
 }
 
 }  // namespace
@@ -72,19 +81,37 @@ std::vector<Log> without_noise(const sim::Machine& machine, std::size_t axis, co
 
 EffectResponse::EffectResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
                                const SignalSettings& settings, Hunting hunting)
-    : bench_(bench_of(machine, axis, logs)), settings_(settings) {
-  auto& own = bench_.machine.axes.front();
+    : settings_(settings) {
+  auto bench = bench_of(machine, axis, logs);
+  machine_ = std::move(bench.machine);
+  for (auto& log : bench.logs) records_.push_back({{std::move(log)}, std::vector<std::vector<double>>(1)});
+  auto& own = machine_.axes.front();
   own.encoder.noise = 0.0;
-  without_.resize(bench_.logs.size());
   if (hunting == Hunting::simulated) return;
   own.position_controller.increment *= fine;
-  // The equivalent motor takes a third of the time, and without hunting moves the axis the same.
-  if (own.motor.model == sim::MotorModel::synchronous) own.motor.model = sim::MotorModel::dc;
+  without_windings(own);
 }
 
-std::vector<double> EffectResponse::residual(std::size_t log, const sim::Machine& machine) const {
-  const auto& file = bench_.machine.axes.front();
-  const auto simulated = replay<FixedSignals>(machine, bench_.logs[log], {file.name});
+EffectResponse::EffectResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
+                               const SignalSettings& settings, const Disturbance& disturbance)
+    : EffectResponse(machine, axis, logs, settings) {
+  without_windings(machine_.axes.front());
+  for (std::size_t k = 0; k < records_.size(); ++k) {
+    auto& [runs, without] = records_[k];
+    runs.resize(most_runs, runs.front());
+    without.resize(most_runs);
+    for (std::size_t r = 0; r < most_runs; ++r) {
+      auto& force = runs[r].axes.front().external_force;
+      force.resize(runs[r].t.size(), 0.0);
+      const auto drawn = disturbance.drawn(runs[r].t, k * most_runs + r);
+      std::transform(force.begin(), force.end(), drawn.begin(), force.begin(), std::plus<>());
+    }
+  }
+}
+
+std::vector<double> EffectResponse::residual(const Log& log, const sim::Machine& machine) const {
+  const auto& file = machine_.axes.front();
+  const auto simulated = replay<FixedSignals>(machine, log, {file.name});
   const auto motion = motion_of(simulated, simulated.axes.front(), file, Amperes::amplitude, settings_);
   auto force = motion.force;
   const auto expected = force_along(sim::plant_axis(file), motion);
@@ -92,21 +119,34 @@ std::vector<double> EffectResponse::residual(std::size_t log, const sim::Machine
   return force;
 }
 
+// Of runs with the effects, each less the one without.
+std::vector<double> EffectResponse::common(Record& record, const sim::Machine& machine) const {
+  const double band = 0.4 * settings_.row_rate * record.runs.front().period;  // what the rows hold, in cycles a sample
+  CommonPart part;
+  std::vector<double> force;
+  for (std::size_t r = 0; r < record.runs.size() && (r < 2 || part.share(band) < agreed); ++r) {
+    auto& without = record.without[r];
+    if (without.empty()) without = residual(record.runs[r], machine_);
+    force = residual(record.runs[r], machine);
+    for (std::size_t i = 0; i < force.size(); ++i) force[i] -= without[i];
+    if (record.runs.size() > 1) part.add(force);
+  }
+  return part.runs() > 0 ? part.estimate() : force;
+}
+
 std::vector<double> EffectResponse::operator()(const Motion& motion, const sim::Effect& effect) {
   return together(motion, {&effect, 1});
 }
 
 std::vector<double> EffectResponse::together(const Motion& motion, std::span<const sim::Effect> effects) {
-  for (std::size_t k = 0; k < bench_.logs.size(); ++k) {
-    if (bench_.logs[k].source != motion.source || bench_.logs[k].axes.front().x_set != motion.x_set) continue;
-    auto machine = bench_.machine;
+  for (auto& record : records_) {
+    const auto& log = record.runs.front();
+    if (log.source != motion.source || log.axes.front().x_set != motion.x_set) continue;
+    auto machine = machine_;
     auto& acting = machine.axes.front().effects;
     acting.insert(acting.end(), effects.begin(), effects.end());
     try {
-      if (without_[k].empty()) without_[k] = residual(k, bench_.machine);
-      auto force = residual(k, machine);
-      for (std::size_t i = 0; i < force.size(); ++i) force[i] -= without_[k][i];
-      return force;
+      return common(record, machine);
     } catch (const FaultTripped&) {
       return std::vector<double>(motion.t.size(), 0.0);
     }

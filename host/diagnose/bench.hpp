@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "host/diagnose/disturbance.hpp"
 #include "host/identify/motion.hpp"
 #include "host/log/log.hpp"
 #include "sim/model/machine.hpp"
@@ -40,6 +41,10 @@ class EffectResponse {
   // `logs`: with set-points, of that axis; `settings`: those of the motions.
   EffectResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
                  const SignalSettings& settings, Hunting hunting = Hunting::simulated);
+  // Under forces like `disturbance`: what runs under several of them have in common, at most four, fewer where they
+  // agree.
+  EffectResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
+                 const SignalSettings& settings, const Disturbance& disturbance);
 
   // N at the motion's rate: with the effect less without; zeros where the machine cannot follow with it. Throws
   // sim::EffectError, std::out_of_range for a motion of another log.
@@ -48,11 +53,16 @@ class EffectResponse {
   std::vector<double> together(const Motion& motion, std::span<const sim::Effect> effects);
 
  private:
-  std::vector<double> residual(std::size_t log, const sim::Machine& machine) const;
+  struct Record {
+    std::vector<Log> runs;                     // the log under as many disturbances; one without
+    std::vector<std::vector<double>> without;  // residuals (N) of each, where they were asked for
+  };
+  std::vector<double> residual(const Log& log, const sim::Machine& machine) const;
+  std::vector<double> common(Record& record, const sim::Machine& machine) const;
 
-  Bench bench_;
+  sim::Machine machine_;
   SignalSettings settings_;
-  std::vector<std::vector<double>> without_;  // of each log, where it was asked for
+  std::vector<Record> records_;
 };
 
 }  // namespace stiction::host

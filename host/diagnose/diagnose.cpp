@@ -266,7 +266,11 @@ Verdict diagnose(const DiagnoseInput& input) {
     all.insert(all.end(), held_out.begin(), held_out.end());
     for (const auto hunting : {Hunting::simulated, Hunting::smoothed})
       responses.emplace_back(input.machine, input.axis, all, settings, hunting);
-    scene.response = std::ref(responses.front());
+    scene.disturb = [&, all](const Eigen::VectorXd& force) {
+      scene.response =
+          EffectResponse(input.machine, input.axis, all, settings, Disturbance(force, rows.logs(), rows.period(0)));
+    };
+    scene.disturb(target);
   }
   begin(1);
   auto found = search_causes(regressors, target, scene);

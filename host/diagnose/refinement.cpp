@@ -10,6 +10,7 @@ namespace {
 
 constexpr int golden_steps = 14;  // the last two values are 0.1 % of the range apart
 constexpr int settling_steps = 4;
+constexpr double settled = 0.01;  // of the weight
 
 class Refinement {
  public:
@@ -75,7 +76,9 @@ class Refinement {
   void settle(std::size_t k) {
     for (int i = 0; i < settling_steps; ++i) {
       const double weight = weights_of(stacked())[first_weight(k)];
-      if (weight == 0.0 || !std::isfinite(weight)) break;
+      if (weight == 0.0 || !std::isfinite(weight) ||
+          std::abs(weight - terms_[k].nonlinear) < settled * std::abs(weight))
+        break;
       terms_[k].nonlinear = weight;
       white_[k] = whitened(group(terms_[k], weight));
     }

@@ -21,6 +21,7 @@ constexpr double least_share = 2e-3;  // of the residual's variance: what is les
 // would get the weight of noise.
 constexpr double dominant = 0.25;
 constexpr double strong_evidence = 6.0;  // twice the logarithm of a Bayes factor
+constexpr double less_disturbed = 0.7;
 constexpr double cluster_lengths = 6.0;  // correlation lengths of the whitened residual in a cluster
 
 struct Option {
@@ -60,7 +61,8 @@ class Search {
         scene_(scene),
         correlation_(correlation_length(target, rows.logs())),
         evidence_(target, blocks_for(rows, std::min(correlation_, 0.1 / rows.period(0)))),
-        plain_(target, evidence_.row_blocks()) {
+        plain_(target, evidence_.row_blocks()),
+        disturbance_(target.squaredNorm()) {
     add_options(false);
   }
 
@@ -96,6 +98,25 @@ class Search {
     const Whitening whitening(noise, rows_.logs());
     correlation_ = correlation_length(whitening(noise), rows_.logs());
     evidence_.whiten(whitening, static_cast<std::size_t>(std::ceil(cluster_lengths * correlation_)));
+    respond_under(noise);
+  }
+  // Replays anew where the force that disturbs them turned out to be a good deal less: causes were found in it.
+  void respond_under(const Eigen::VectorXd& noise) {
+    if (!scene_.disturb || noise.squaredNorm() > less_disturbed * disturbance_) return;
+    disturbance_ = noise.squaredNorm();
+    scene_.disturb(noise);
+    std::vector<Eigen::VectorXd> columns;
+    Eigen::Index next = evidence_.columns();
+    for (const auto& option : options_) {
+      if (!candidates()[option->candidate].replays) continue;
+      option->columns.clear();
+      for (auto& column : group_columns(rows_, scene_, candidates()[option->candidate], option->nonlinear)) {
+        option->columns.push_back(next++);
+        columns.push_back(std::move(column));
+      }
+    }
+    evidence_.add(columns);
+    plain_.add(columns);
   }
 
   // Lines in what the set leaves; those in the set stay.
@@ -193,6 +214,7 @@ class Search {
   double correlation_ = 1.0;          // rows, of the residual, whitened or not
   Evidence evidence_;                 // whitened in the second part of a run
   Evidence plain_;                    // never whitened: for what a term takes off the force
+  double disturbance_;                // square of the force under which candidates replay
   std::vector<std::size_t> settled_;  // candidates that stood before it
   std::vector<std::unique_ptr<Option>> options_;
   std::size_t rounds_ = 0;

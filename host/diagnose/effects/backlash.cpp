@@ -1,6 +1,8 @@
 // Lost motion between motor and measured position. The motor crosses the gap while the measured position stands, and
 // how fast it does is the drive's answer to what it does not see: a velocity loop of 40 Hz is about as fast as a gap of
-// 2 um. So the column is what the set-points leave in simulation with a gap, and a log without set-points has none.
+// 2 um. So the column is what the set-points leave in simulation with a gap, and a log without set-points has none. A
+// gap below the position controller's increment shows mostly in how the axis hunts, which noise makes another in every
+// run: the simulation is under forces like the record's, and what several such runs have in common is the column.
 #include <cmath>
 
 #include "host/diagnose/candidate.hpp"
