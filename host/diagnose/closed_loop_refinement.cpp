@@ -66,7 +66,8 @@ class ClosedLoopFit {
       if (gained <= settled) break;
       if (gained > far) slopes = slopes_at(at, force);
     }
-    if (left < before) write(at, evidence_of(force, slopes).covariance(all(), Eigen::VectorXd::Zero(at.size())));
+    if (left < before)
+      write(at, evidence_of(force, slopes).jackknife_covariance(all(), Eigen::VectorXd::Zero(at.size())));
     return left;
   }
   const std::vector<Finding>& findings() const { return findings_; }

@@ -19,6 +19,15 @@ ColumnIndices own_columns(const ColumnIndices& chosen) {
 // Of the noise that all clusters agree on, against what the few under a term say of their own.
 constexpr double most_freedom = 30.0;
 
+// Pseudo-inverse, in columns of one length, or newtons beside metres would hide a dependence.
+Eigen::MatrixXd inverse(const Eigen::MatrixXd& gram) {
+  const Eigen::VectorXd scale = gram.diagonal().unaryExpr([](double g) { return g > 0.0 ? 1.0 / std::sqrt(g) : 0.0; });
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
+  decomposition.setThreshold(1e-9);
+  decomposition.compute(scale.asDiagonal() * gram * scale.asDiagonal());
+  return scale.asDiagonal() * decomposition.pseudoInverse() * scale.asDiagonal();
+}
+
 }  // namespace
 
 Evidence::Evidence(Eigen::VectorXd target, std::vector<RowBlock> blocks)
@@ -143,14 +152,23 @@ Eigen::VectorXd Evidence::residual(const ColumnIndices& chosen, const Eigen::Vec
   return r;
 }
 
-Eigen::MatrixXd Evidence::inverse_gram(const ColumnIndices& chosen) const {
-  const auto all = part(total_, chosen);
-  const Eigen::VectorXd scale =
-      all.gram.diagonal().unaryExpr([](double g) { return g > 0.0 ? 1.0 / std::sqrt(g) : 0.0; });
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
-  decomposition.setThreshold(1e-9);
-  decomposition.compute(scale.asDiagonal() * all.gram * scale.asDiagonal());
-  return scale.asDiagonal() * decomposition.pseudoInverse() * scale.asDiagonal();
+Eigen::MatrixXd Evidence::inverse_gram(const ColumnIndices& chosen) const { return inverse(part(total_, chosen).gram); }
+
+Eigen::MatrixXd Evidence::jackknife_covariance(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const {
+  const auto k = static_cast<Eigen::Index>(chosen.size());
+  const Eigen::MatrixXd gram = part(total_, chosen).gram, columns = white_columns_(Eigen::all, chosen);
+  const Eigen::VectorXd left = white_target_ - columns * weights;
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(k, k);
+  for (const auto& cluster : clusters_) {
+    const auto own = columns.middleRows(static_cast<Eigen::Index>(cluster.begin),
+                                        static_cast<Eigen::Index>(cluster.end - cluster.begin));
+    const Eigen::VectorXd moved =
+        inverse(gram - own.transpose() * own) *
+        (own.transpose() * left.segment(static_cast<Eigen::Index>(cluster.begin), own.rows()));
+    sum += moved * moved.transpose();
+  }
+  const double n = static_cast<double>(clusters_.size());
+  return (n - 1.0) / n * sum;
 }
 
 Eigen::MatrixXd Evidence::covariance(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const {

@@ -48,6 +48,9 @@ class Evidence {
 
   // Sandwich covariance of the weights, by clusters of rows.
   Eigen::MatrixXd covariance(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const;
+  // Cluster jackknife (CR3: MacKinnon, Nielsen, Webb, J. Econometrics 232, 2023, eq. 14): by how much the weights move
+  // when a cluster is left out. Where a few clusters bear on a weight the sandwich calls it better known than it is.
+  Eigen::MatrixXd jackknife_covariance(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const;
   struct Test {
     double wald = 0.0;  // over the number of columns
     double p_value = 1.0;
