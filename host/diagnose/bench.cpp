@@ -45,36 +45,43 @@ Bench bench_of(const sim::Machine& machine, std::size_t axis, const std::vector<
   return bench;
 }
 
-std::vector<std::vector<double>> simulated_positions(const Bench& bench) {
-  std::vector<std::vector<double>> all;
+std::vector<Log> replays(const Bench& bench) {
+  std::vector<Log> all;
   for (const auto& log : bench.logs)
-    all.push_back(replay<FixedSignals>(bench.machine, log, {bench.machine.axes.front().name}).axes.front().x);
+    all.push_back(replay<FixedSignals>(bench.machine, log, {bench.machine.axes.front().name}));
   return all;
 }
 
-std::vector<Log> without_noise(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs) {
+std::vector<std::vector<double>> simulated_positions(const Bench& bench) {
+  std::vector<std::vector<double>> all;
+  for (auto& log : replays(bench)) all.push_back(std::move(log.axes.front().x));
+  return all;
+}
+
+WithoutNoise without_noise(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs) {
   auto bench = bench_of(machine, axis, logs);
   if (bench.logs.size() != logs.size()) return {};
   bench.machine.axes.front().encoder.noise = 0.0;
   try {
-    auto positions = simulated_positions(bench);
-    auto motion = logs;
-    for (std::size_t k = 0; k < positions.size(); ++k) {
+    WithoutNoise without{logs, replays(bench)};
+    for (std::size_t k = 0; k < logs.size(); ++k) {
       const auto& measured = channels_of(logs[k], machine.axes[axis]);
-      if (!same_way(positions[k], measured.x)) return {};
-      motion[k].axes[static_cast<std::size_t>(&measured - logs[k].axes.data())].x = std::move(positions[k]);
+      const auto& position = without.replayed[k].axes.front().x;
+      if (!same_way(position, measured.x)) return {};
+      without.motion[k].axes[static_cast<std::size_t>(&measured - logs[k].axes.data())].x = position;
     }
-    return motion;
+    return without;
   } catch (const FaultTripped&) {
     return {};
   }
 }
 
 EffectResponse::EffectResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
-                               const SignalSettings& settings, Hunting hunting)
+                               const SignalSettings& settings, Hunting hunting, const std::vector<Log>& replayed)
     : bench_(bench_of(machine, axis, logs)), settings_(settings) {
   auto& own = bench_.machine.axes.front();
   own.encoder.noise = 0.0;
+  for (const auto& log : replayed) without_.push_back(residual(log));
   without_.resize(bench_.logs.size());
   if (hunting == Hunting::simulated) return;
   own.position_controller.increment *= fine;
@@ -82,9 +89,12 @@ EffectResponse::EffectResponse(const sim::Machine& machine, std::size_t axis, co
   if (own.motor.model == sim::MotorModel::synchronous) own.motor.model = sim::MotorModel::dc;
 }
 
-std::vector<double> EffectResponse::residual(std::size_t log, const sim::Machine& machine) const {
+Log EffectResponse::replayed(std::size_t log, const sim::Machine& machine) const {
+  return replay<FixedSignals>(machine, bench_.logs[log], {bench_.machine.axes.front().name});
+}
+
+std::vector<double> EffectResponse::residual(const Log& simulated) const {
   const auto& file = bench_.machine.axes.front();
-  const auto simulated = replay<FixedSignals>(machine, bench_.logs[log], {file.name});
   const auto motion = motion_of(simulated, simulated.axes.front(), file, Amperes::amplitude, settings_);
   auto force = motion.force;
   const auto expected = force_along(sim::plant_axis(file), motion);
@@ -103,8 +113,8 @@ std::vector<double> EffectResponse::together(const Motion& motion, std::span<con
     auto& acting = machine.axes.front().effects;
     acting.insert(acting.end(), effects.begin(), effects.end());
     try {
-      if (without_[k].empty()) without_[k] = residual(k, bench_.machine);
-      auto force = residual(k, machine);
+      if (without_[k].empty()) without_[k] = residual(replayed(k, bench_.machine));
+      auto force = residual(replayed(k, machine));
       for (std::size_t i = 0; i < force.size(); ++i) force[i] -= without_[k][i];
       return force;
     } catch (const FaultTripped&) {

@@ -179,9 +179,14 @@ class ShownError {
   ShownError(const LogRows& rows, const Eigen::VectorXd& weighed, const WhitenedGain& whitened,
              const Eigen::VectorXd& x, const sim::Axis& axis, const sim::Timing& timing)
       : rows_(rows), weighed_(weighed), whitened_(whitened), x_(x) {
-    for (const auto& motion : rows.motions()) {
+    const auto& motions = rows.motions();
+    for (const auto& motion : motions) {
       responses_.emplace_back(axis, timing, motion.period);
+      const auto same =
+          std::find_if(motions.begin(), motions.end(), [&](const Motion& m) { return m.period == motion.period; });
+      table_.push_back(static_cast<std::size_t>(same - motions.begin()));
       auto& table = drive_.emplace_back();
+      if (table_.back() + 1 < drive_.size()) continue;
       for (double f = 0.0; f < highest_shown; f += frequency_step)
         table.push_back(f < 0.5 / motion.period ? 0.0 : responses_.back().drive(f));
     }
@@ -219,7 +224,8 @@ class ShownError {
   // The rows that show this order, and the response in each.
   void gather(double order) const {
     row_.clear(), wave_.clear(), turn_.clear(), gain_.clear();
-    for (std::size_t r = 0; r < rows_.logs().size(); ++r)
+    for (std::size_t r = 0; r < rows_.logs().size(); ++r) {
+      const auto& drive = drive_[table_[r]];
       for (std::size_t i = rows_.logs()[r]; i < record_end(rows_, r); ++i) {
         const auto row = static_cast<Eigen::Index>(i);
         const double v = rows_.velocity[row], frequency = std::abs(v) * order;
@@ -228,11 +234,12 @@ class ShownError {
         if (shown > band / rows_.period(r)) continue;
         const double w = 2.0 * std::numbers::pi * shown;
         const Complex response =
-            drive_[r][static_cast<std::size_t>(frequency / frequency_step)] + responses_[r].mass() * w * w;
+            drive[static_cast<std::size_t>(frequency / frequency_step)] + responses_[r].mass() * w * w;
         row_.push_back(row);
         gain_.push_back(whitened_.at(shown));
         wave_.push_back(v < 0.0 ? std::conj(response) : response);
       }
+    }
   }
 
   const LogRows& rows_;
@@ -240,7 +247,8 @@ class ShownError {
   const WhitenedGain& whitened_;
   const Eigen::VectorXd& x_;
   std::vector<ReadingResponse> responses_;
-  std::vector<std::vector<Complex>> drive_;
+  std::vector<std::vector<Complex>> drive_;  // of the motions whose period is the first of its kind
+  std::vector<std::size_t> table_;           // which of them each motion has
   mutable std::vector<Eigen::Index> row_;
   mutable std::vector<Complex> wave_, turn_;
   mutable std::vector<double> gain_;
