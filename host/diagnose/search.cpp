@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 
 #include "host/diagnose/candidate_columns.hpp"
 #include "host/diagnose/refinement.hpp"
@@ -69,21 +70,22 @@ class Search {
  private:
   // The options of all candidates that are periodic, or that are not.
   void add_options(bool periodic) {
-    std::vector<Eigen::VectorXd> columns;
-    Eigen::Index next = evidence_.columns();
+    const std::size_t first = options_.size();
+    std::vector<CandidateAt> trials;
     for (std::size_t c = 0; c < candidates().size(); ++c) {
       if (candidates()[c].periodic != periodic) continue;
       for (const double value : candidates()[c].grid(scene_)) {
-        Option option{c, value, {}};
-        for (auto& column : group_columns(rows_, scene_, candidates()[c], value)) {
-          option.columns.push_back(next++);
-          columns.push_back(std::move(column));
-        }
-        options_.push_back(std::make_unique<Option>(std::move(option)));
+        trials.push_back({&candidates()[c], value});
+        options_.push_back(std::make_unique<Option>(Option{c, value, {}}));
       }
     }
-    evidence_.add(columns);
-    plain_.add(columns);
+    const auto groups = group_columns(rows_, scene_, trials);
+    for (std::size_t k = 0; k < groups.size(); ++k) {
+      auto& columns = options_[first + k]->columns;
+      columns.resize(groups[k].size());
+      std::iota(columns.begin(), columns.end(), evidence_.add(groups[k]));
+      plain_.add(groups[k]);
+    }
   }
 
   Eigen::VectorXd residual(const Set& set) const {
