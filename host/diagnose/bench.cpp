@@ -18,7 +18,7 @@ namespace {
 // Of the stroke: a simulated position that is further away, rms, is another motion.
 constexpr double another_way = 0.01;
 constexpr double fine = 0.01;  // of the position controller's increment
-constexpr std::size_t most_runs = 4;
+constexpr std::size_t most_runs = 3;
 constexpr double agreed = 0.95;  // of the mean's square that the runs have in common: more of them tell little
 
 bool same_way(const std::vector<double>& simulated, const std::vector<double>& measured) {
@@ -54,52 +54,60 @@ Bench bench_of(const sim::Machine& machine, std::size_t axis, const std::vector<
   return bench;
 }
 
-std::vector<std::vector<double>> simulated_positions(const Bench& bench) {
-  std::vector<std::vector<double>> all;
+std::vector<Log> replays(const Bench& bench) {
+  std::vector<Log> all;
   for (const auto& log : bench.logs)
-    all.push_back(replay<FixedSignals>(bench.machine, log, {bench.machine.axes.front().name}).axes.front().x);
+    all.push_back(replay<FixedSignals>(bench.machine, log, {bench.machine.axes.front().name}));
   return all;
 }
 
-std::vector<Log> without_noise(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs) {
+std::vector<std::vector<double>> simulated_positions(const Bench& bench) {
+  std::vector<std::vector<double>> all;
+  for (auto& log : replays(bench)) all.push_back(std::move(log.axes.front().x));
+  return all;
+}
+
+WithoutNoise without_noise(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs) {
   auto bench = bench_of(machine, axis, logs);
   if (bench.logs.size() != logs.size()) return {};
   bench.machine.axes.front().encoder.noise = 0.0;
   try {
-    auto positions = simulated_positions(bench);
-    auto motion = logs;
-    for (std::size_t k = 0; k < positions.size(); ++k) {
+    WithoutNoise without{logs, replays(bench)};
+    for (std::size_t k = 0; k < logs.size(); ++k) {
       const auto& measured = channels_of(logs[k], machine.axes[axis]);
-      if (!same_way(positions[k], measured.x)) return {};
-      motion[k].axes[static_cast<std::size_t>(&measured - logs[k].axes.data())].x = std::move(positions[k]);
+      const auto& position = without.replayed[k].axes.front().x;
+      if (!same_way(position, measured.x)) return {};
+      without.motion[k].axes[static_cast<std::size_t>(&measured - logs[k].axes.data())].x = position;
     }
-    return motion;
+    return without;
   } catch (const FaultTripped&) {
     return {};
   }
 }
 
 EffectResponse::EffectResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
-                               const SignalSettings& settings, Hunting hunting)
+                               const SignalSettings& settings, Hunting hunting, const std::vector<Log>& replayed)
     : settings_(settings) {
   auto bench = bench_of(machine, axis, logs);
   machine_ = std::move(bench.machine);
-  for (auto& log : bench.logs) records_.push_back({{std::move(log)}, std::vector<std::vector<double>>(1)});
   auto& own = machine_.axes.front();
   own.encoder.noise = 0.0;
+  for (auto& log : bench.logs) records_.push_back({{std::move(log)}, {}});
+  for (std::size_t k = 0; k < replayed.size(); ++k)
+    records_[k].without = residual(replayed[k], records_[k].runs.front());
   if (hunting == Hunting::simulated) return;
   own.position_controller.increment *= fine;
   without_windings(own);
 }
 
 EffectResponse::EffectResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
-                               const SignalSettings& settings, const Disturbance& disturbance)
-    : EffectResponse(machine, axis, logs, settings) {
+                               const SignalSettings& settings, const Disturbance& disturbance,
+                               const std::vector<Log>& replayed)
+    : EffectResponse(machine, axis, logs, settings, Hunting::simulated, replayed) {
   without_windings(machine_.axes.front());
   for (std::size_t k = 0; k < records_.size(); ++k) {
-    auto& [runs, without] = records_[k];
+    auto& runs = records_[k].runs;
     runs.resize(most_runs, runs.front());
-    without.resize(most_runs);
     for (std::size_t r = 0; r < most_runs; ++r) {
       auto& force = runs[r].axes.front().external_force;
       force.resize(runs[r].t.size(), 0.0);
@@ -109,9 +117,13 @@ EffectResponse::EffectResponse(const sim::Machine& machine, std::size_t axis, co
   }
 }
 
-std::vector<double> EffectResponse::residual(const Log& log, const sim::Machine& machine) const {
+Log EffectResponse::replayed(const Log& log, const sim::Machine& machine) const {
+  return replay<FixedSignals>(machine, log, {machine_.axes.front().name});
+}
+
+std::vector<double> EffectResponse::residual(Log simulated, const Log& of) const {
   const auto& file = machine_.axes.front();
-  const auto simulated = replay<FixedSignals>(machine, log, {file.name});
+  simulated.axes.front().external_force = of.axes.front().external_force;
   const auto motion = motion_of(simulated, simulated.axes.front(), file, Amperes::amplitude, settings_);
   auto force = motion.force;
   const auto expected = force_along(sim::plant_axis(file), motion);
@@ -119,16 +131,15 @@ std::vector<double> EffectResponse::residual(const Log& log, const sim::Machine&
   return force;
 }
 
-// Of runs with the effects, each less the one without.
+// Of runs with the effects, less the one without.
 std::vector<double> EffectResponse::common(Record& record, const sim::Machine& machine) const {
+  if (record.without.empty()) record.without = residual(replayed(record.runs.front(), machine_), record.runs.front());
   const double band = 0.4 * settings_.row_rate * record.runs.front().period;  // what the rows hold, in cycles a sample
   CommonPart part;
   std::vector<double> force;
   for (std::size_t r = 0; r < record.runs.size() && (r < 2 || part.share(band) < agreed); ++r) {
-    auto& without = record.without[r];
-    if (without.empty()) without = residual(record.runs[r], machine_);
-    force = residual(record.runs[r], machine);
-    for (std::size_t i = 0; i < force.size(); ++i) force[i] -= without[i];
+    force = residual(replayed(record.runs[r], machine), record.runs[r]);
+    for (std::size_t i = 0; i < force.size(); ++i) force[i] -= record.without[i];
     if (record.runs.size() > 1) part.add(force);
   }
   return part.runs() > 0 ? part.estimate() : force;

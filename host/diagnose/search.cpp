@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 
 #include "host/diagnose/candidate_columns.hpp"
 #include "host/diagnose/refinement.hpp"
@@ -71,21 +72,23 @@ class Search {
  private:
   // The options of all candidates that are periodic, or that are not.
   void add_options(bool periodic) {
-    std::vector<Eigen::VectorXd> columns;
-    Eigen::Index next = evidence_.columns();
+    std::vector<Option*> added;
     for (std::size_t c = 0; c < candidates().size(); ++c) {
       if (candidates()[c].periodic != periodic) continue;
-      for (const double value : candidates()[c].grid(scene_)) {
-        Option option{c, value, {}};
-        for (auto& column : group_columns(rows_, scene_, candidates()[c], value)) {
-          option.columns.push_back(next++);
-          columns.push_back(std::move(column));
-        }
-        options_.push_back(std::make_unique<Option>(std::move(option)));
-      }
+      for (const double value : candidates()[c].grid(scene_))
+        added.push_back(options_.emplace_back(std::make_unique<Option>(Option{c, value, {}})).get());
     }
-    evidence_.add(columns);
-    plain_.add(columns);
+    give_columns(added);
+  }
+  void give_columns(const std::vector<Option*>& options) {
+    std::vector<CandidateAt> trials;
+    for (const auto* option : options) trials.push_back({&candidates()[option->candidate], option->nonlinear});
+    const auto groups = group_columns(rows_, scene_, trials);
+    for (std::size_t k = 0; k < groups.size(); ++k) {
+      options[k]->columns.resize(groups[k].size());
+      std::iota(options[k]->columns.begin(), options[k]->columns.end(), evidence_.add(groups[k]));
+      plain_.add(groups[k]);
+    }
   }
 
   Eigen::VectorXd residual(const Set& set) const {
@@ -105,18 +108,10 @@ class Search {
     if (!scene_.disturb || noise.squaredNorm() > less_disturbed * disturbance_) return;
     disturbance_ = noise.squaredNorm();
     scene_.disturb(noise);
-    std::vector<Eigen::VectorXd> columns;
-    Eigen::Index next = evidence_.columns();
-    for (const auto& option : options_) {
-      if (!candidates()[option->candidate].replays) continue;
-      option->columns.clear();
-      for (auto& column : group_columns(rows_, scene_, candidates()[option->candidate], option->nonlinear)) {
-        option->columns.push_back(next++);
-        columns.push_back(std::move(column));
-      }
-    }
-    evidence_.add(columns);
-    plain_.add(columns);
+    std::vector<Option*> replayed;
+    for (const auto& option : options_)
+      if (candidates()[option->candidate].replays) replayed.push_back(option.get());
+    give_columns(replayed);
   }
 
   // Lines in what the set leaves; those in the set stay.
