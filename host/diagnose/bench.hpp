@@ -1,6 +1,7 @@
 // One axis of a machine alone, with the logs that have set-points for it: what replays run on.
 #pragma once
 
+#include <deque>
 #include <span>
 #include <vector>
 
@@ -74,6 +75,13 @@ class EffectResponse {
   sim::Machine machine_;
   SignalSettings settings_;
   std::vector<Record> records_;
+  // The last answers: a search's grid begins a refinement, a refinement's end begins the one in closed loop.
+  struct Known {
+    std::size_t record;
+    std::vector<sim::Effect> effects;
+    std::vector<double> force;
+  };
+  std::deque<Known> known_;
 };
 
 }  // namespace stiction::host

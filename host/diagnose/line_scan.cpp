@@ -141,8 +141,9 @@ class ShownError {
   }
 
   // Of orders first, first + step, .., near enough to one another that the same rows show them.
-  std::vector<double> gains(double first, double step, std::size_t count) const {
-    auto waves = shown(first, first + 0.5 * step * static_cast<double>(count - 1), step);
+  std::vector<double> gains(double first, double step, std::size_t count) {
+    if (step != step_) turn_to(step);
+    auto waves = shown(first, first + 0.5 * step * static_cast<double>(count - 1));
     std::vector<double> all;
     for (std::size_t k = 0; k < count; ++k) all.push_back(waves.gain());
     return all;
@@ -155,8 +156,14 @@ class ShownError {
 
   static Complex wave_at(double turns) { return std::polar(1.0, 2.0 * std::numbers::pi * std::remainder(turns, 1.0)); }
 
+  void turn_to(double step) {
+    step_ = step;
+    turns_.clear();
+    for (const double place : x_) turns_.push_back(wave_at(place * step));
+  }
+
   // The rows that show the order `middle`, with their response to it, beginning at the order `first`.
-  TurningWaves shown(double first, double middle, double step) const {
+  TurningWaves shown(double first, double middle) const {
     TurningWaves waves;
     for (std::size_t r = 0; r < rows_.logs().size(); ++r) {
       const auto& drive = drive_[table_[r]];
@@ -170,7 +177,7 @@ class ShownError {
         const Complex response =
             drive[static_cast<std::size_t>(frequency / frequency_step)] + responses_[r].mass() * w * w;
         waves.add(weighed_[row], whitened_.at(shown),
-                  (v < 0.0 ? std::conj(response) : response) * wave_at(x_[row] * first), wave_at(x_[row] * step));
+                  (v < 0.0 ? std::conj(response) : response) * wave_at(x_[row] * first), turns_[i]);
       }
     }
     return waves;
@@ -183,6 +190,8 @@ class ShownError {
   std::vector<ReadingResponse> responses_;
   std::vector<std::vector<Complex>> drive_;  // of the motions whose period is the first of its kind
   std::vector<std::size_t> table_;           // which of them each motion has
+  double step_ = -1.0;                       // of the last orders
+  std::vector<Complex> turns_;               // of each row by that step
 };
 
 }  // namespace
@@ -291,7 +300,7 @@ LineScan scan_signal_periods(const LogRows& rows, const Eigen::VectorXd& residua
   }
   std::sort(slow.begin(), slow.end(), higher);
   slow.resize(std::min(slow.size(), count));
-  const ShownError shown(rows, weighed, whitened, x, axis, timing);
+  ShownError shown(rows, weighed, whitened, x, axis, timing);
   std::vector<Peak> peaks;
   for (const auto& peak : slow) {
     constexpr std::size_t together = 16;

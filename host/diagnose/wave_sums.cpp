@@ -59,12 +59,12 @@ void WaveSums::transform(const Eigen::VectorXd& place, const Eigen::VectorXd& on
   size_ = {std::max(one.lpNorm<1>(), 1e-300), std::max(other.lpNorm<1>(), 1e-300)};
   std::fill(grid_.begin(), grid_.end(), 0.0);
   for (Eigen::Index i = 0; i < place.size(); ++i) {
-    const Complex weight(one[i] / size_[0], other[i] / size_[1]);
-    if (weight == 0.0) continue;
+    const Eigen::Vector2d weight(one[i] / size_[0], other[i] / size_[1]);
+    if (weight.isZero(0.0)) continue;
     const auto bin = static_cast<std::size_t>(std::lround(place[i] * bins_per_metre_));
-    const auto& bell = bell_[bin % bins_per_cell];
-    Complex* const cell = &grid_[bin / bins_per_cell];  // all lie reach - 1 cells further on, where none is below 0
-    for (std::size_t m = 0; m < 2 * reach; ++m) cell[m] += bell[m] * weight;
+    // All lie reach - 1 cells further on, where none is below 0.
+    auto* const cell = reinterpret_cast<double*>(&grid_[bin / bins_per_cell]);
+    Eigen::Map<Eigen::Matrix<double, 2, 2 * reach>>(cell) += weight.lazyProduct(bell_[bin % bins_per_cell]);
   }
   plans().inv(spectrum_, grid_);  // e^(+i ..)
 }

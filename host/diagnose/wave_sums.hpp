@@ -37,7 +37,7 @@ class WaveSums {
 
   std::size_t cells_;
   double bins_per_metre_;
-  std::array<std::array<double, 2 * reach>, bins_per_cell> bell_;
+  std::array<Eigen::Matrix<double, 1, 2 * reach>, bins_per_cell> bell_;
   std::array<double, 2> size_{};
   std::vector<std::complex<double>> grid_, spectrum_;  // of the one plus i times the other
 };
