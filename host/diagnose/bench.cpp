@@ -17,10 +17,9 @@ namespace {
 
 // Of the stroke: a simulated position that is further away, rms, is another motion.
 constexpr double another_way = 0.01;
-constexpr double fine = 0.01;            // of the position controller's increment
-constexpr std::size_t answers_kept = 6;  // of each log: a grid has two of backlash
-constexpr std::size_t most_runs = 3;
-constexpr double agreed = 0.95;  // of the mean's square that the runs have in common: more of them tell little
+constexpr double fine = 0.01;              // of the position controller's increment
+constexpr std::size_t answers_kept = 6;    // of each log: a grid has two of backlash
+constexpr std::size_t disturbed_runs = 2;  // a third one is half as much work again and names no more
 
 bool same_way(const std::vector<double>& simulated, const std::vector<double>& measured) {
   double mean = 0.0, square = 0.0;
@@ -114,11 +113,11 @@ EffectResponse::EffectResponse(const sim::Machine& machine, std::size_t axis, co
   without_windings(machine_.axes.front());
   for (std::size_t k = 0; k < records_.size(); ++k) {
     auto& runs = records_[k].runs;
-    runs.resize(most_runs, runs.front());
-    for (std::size_t r = 0; r < most_runs; ++r) {
+    runs.resize(disturbed_runs, runs.front());
+    for (std::size_t r = 0; r < disturbed_runs; ++r) {
       auto& force = runs[r].axes.front().external_force;
       force.resize(runs[r].t.size(), 0.0);
-      const auto drawn = disturbance.drawn(runs[r].t, k * most_runs + r);
+      const auto drawn = disturbance.drawn(runs[r].t, k * disturbed_runs + r);
       std::transform(force.begin(), force.end(), drawn.begin(), force.begin(), std::plus<>());
     }
   }
@@ -141,15 +140,13 @@ std::vector<double> EffectResponse::residual(Log simulated, const Log& of) const
 // Of runs with the effects, less the one without.
 std::vector<double> EffectResponse::common(Record& record, const sim::Machine& machine) const {
   if (record.without.empty()) record.without = residual(replayed(record.runs.front(), machine_), record.runs.front());
-  const double band = 0.4 * settings_.row_rate * record.runs.front().period;  // what the rows hold, in cycles a sample
   CommonPart part;
-  std::vector<double> force;
-  for (std::size_t r = 0; r < record.runs.size() && (r < 2 || part.share(band) < agreed); ++r) {
-    force = residual(replayed(record.runs[r], machine), record.runs[r]);
+  for (const auto& run : record.runs) {
+    auto force = residual(replayed(run, machine), run);
     for (std::size_t i = 0; i < force.size(); ++i) force[i] -= record.without[i];
-    if (record.runs.size() > 1) part.add(force);
+    part.add(force);
   }
-  return part.runs() > 0 ? part.estimate() : force;
+  return part.estimate();
 }
 
 std::vector<double> EffectResponse::operator()(const Motion& motion, const sim::Effect& effect) {

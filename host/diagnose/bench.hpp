@@ -51,8 +51,7 @@ class EffectResponse {
   EffectResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
                  const SignalSettings& settings, Hunting hunting = Hunting::simulated,
                  const std::vector<Log>& replayed = {});
-  // Under forces like `disturbance`: what runs under several of them have in common, at most three, fewer where they
-  // agree.
+  // Under forces like `disturbance`: what two runs under them have in common.
   EffectResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
                  const SignalSettings& settings, const Disturbance& disturbance, const std::vector<Log>& replayed = {});
 

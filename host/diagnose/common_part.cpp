@@ -15,6 +15,7 @@ constexpr Eigen::Index fewest_lines = 24;
 
 void CommonPart::add(std::span<const double> run) {
   samples_ = run.size();
+  if (runs_ == 0) single_.assign(run.begin(), run.end());
   Eigen::VectorXd padded =
       Eigen::VectorXd::Zero(static_cast<Eigen::Index>(std::bit_ceil(std::max<std::size_t>(samples_, 2))));
   padded.head(static_cast<Eigen::Index>(samples_)) =
@@ -49,17 +50,8 @@ std::vector<CommonPart::Band> CommonPart::bands() const {
   return all;
 }
 
-double CommonPart::share(double cycles) const {
-  Band below{};
-  for (const auto& band : bands()) {
-    if (static_cast<double>(band.begin) > cycles * static_cast<double>(sum_.size())) break;
-    below.mean += band.mean;
-    below.own += band.own;
-  }
-  return below.share();
-}
-
 std::vector<double> CommonPart::estimate() const {
+  if (runs_ == 1) return single_;
   Eigen::VectorXcd spectrum = sum_ / static_cast<double>(runs_);
   const Eigen::Index lines = spectrum.size();
   for (const auto& band : bands())

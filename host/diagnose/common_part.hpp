@@ -15,9 +15,7 @@ class CommonPart {
   // Equally long runs, in any unit.
   void add(std::span<const double> run);
 
-  std::size_t runs() const { return runs_; }
-  // Of the mean's square, below `cycles` a sample; 1 for a single run, of which nothing is known.
-  double share(double cycles) const;
+  // Of a single run, of which nothing is known, that itself.
   std::vector<double> estimate() const;
 
  private:
@@ -29,6 +27,7 @@ class CommonPart {
   std::vector<Band> bands() const;
 
   std::size_t runs_ = 0, samples_ = 0;
+  std::vector<double> single_;  // the first run
   Eigen::VectorXcd sum_;
   Eigen::VectorXd squares_;
 };
