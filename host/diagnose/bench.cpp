@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 
+#include "host/diagnose/common_part.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
 #include "host/identify/identification.hpp"
 #include "host/simulate/replay.hpp"
@@ -15,7 +17,9 @@ namespace {
 
 // Of the stroke: a simulated position that is further away, rms, is another motion.
 constexpr double another_way = 0.01;
-constexpr double fine = 0.01;  // of the position controller's increment
+constexpr double fine = 0.01;              // of the position controller's increment
+constexpr std::size_t answers_kept = 6;    // of each log: a grid has two of backlash
+constexpr std::size_t disturbed_runs = 2;  // a third one is half as much work again and names no more
 
 bool same_way(const std::vector<double>& simulated, const std::vector<double>& measured) {
   double mean = 0.0, square = 0.0;
@@ -24,6 +28,17 @@ bool same_way(const std::vector<double>& simulated, const std::vector<double>& m
   for (std::size_t i = 0; i < measured.size(); ++i) square += std::pow(simulated[i] - measured[i] - mean, 2) / n;
   const auto [low, high] = std::minmax_element(measured.begin(), measured.end());
   return std::sqrt(square) < another_way * (*high - *low);
+}
+
+// The equivalent motor takes a third of the time, and moves the axis the same but for how it hunts.
+void without_windings(sim::Axis& axis) {
+  if (axis.motor.model == sim::MotorModel::synchronous) axis.motor.model = sim::MotorModel::dc;
+}
+
+bool same(std::span<const sim::Effect> one, std::span<const sim::Effect> other) {
+  return std::equal(one.begin(), one.end(), other.begin(), other.end(), [](const sim::Effect& a, const sim::Effect& b) {
+    return a.name == b.name && a.values == b.values;
+  });
 }
 
 }  // namespace
@@ -45,46 +60,76 @@ Bench bench_of(const sim::Machine& machine, std::size_t axis, const std::vector<
   return bench;
 }
 
-std::vector<std::vector<double>> simulated_positions(const Bench& bench) {
-  std::vector<std::vector<double>> all;
+std::vector<Log> replays(const Bench& bench) {
+  std::vector<Log> all;
   for (const auto& log : bench.logs)
-    all.push_back(replay<FixedSignals>(bench.machine, log, {bench.machine.axes.front().name}).axes.front().x);
+    all.push_back(replay<FixedSignals>(bench.machine, log, {bench.machine.axes.front().name}));
   return all;
 }
 
-std::vector<Log> without_noise(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs) {
+std::vector<std::vector<double>> simulated_positions(const Bench& bench) {
+  std::vector<std::vector<double>> all;
+  for (auto& log : replays(bench)) all.push_back(std::move(log.axes.front().x));
+  return all;
+}
+
+WithoutNoise without_noise(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs) {
   auto bench = bench_of(machine, axis, logs);
   if (bench.logs.size() != logs.size()) return {};
   bench.machine.axes.front().encoder.noise = 0.0;
   try {
-    auto positions = simulated_positions(bench);
-    auto motion = logs;
-    for (std::size_t k = 0; k < positions.size(); ++k) {
+    WithoutNoise without{logs, replays(bench)};
+    for (std::size_t k = 0; k < logs.size(); ++k) {
       const auto& measured = channels_of(logs[k], machine.axes[axis]);
-      if (!same_way(positions[k], measured.x)) return {};
-      motion[k].axes[static_cast<std::size_t>(&measured - logs[k].axes.data())].x = std::move(positions[k]);
+      const auto& position = without.replayed[k].axes.front().x;
+      if (!same_way(position, measured.x)) return {};
+      without.motion[k].axes[static_cast<std::size_t>(&measured - logs[k].axes.data())].x = position;
     }
-    return motion;
+    return without;
   } catch (const FaultTripped&) {
     return {};
   }
 }
 
 EffectResponse::EffectResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
-                               const SignalSettings& settings, Hunting hunting)
-    : bench_(bench_of(machine, axis, logs)), settings_(settings) {
-  auto& own = bench_.machine.axes.front();
+                               const SignalSettings& settings, Hunting hunting, const std::vector<Log>& replayed)
+    : settings_(settings) {
+  auto bench = bench_of(machine, axis, logs);
+  machine_ = std::move(bench.machine);
+  auto& own = machine_.axes.front();
   own.encoder.noise = 0.0;
-  without_.resize(bench_.logs.size());
+  for (auto& log : bench.logs) records_.push_back({{std::move(log)}, {}});
+  for (std::size_t k = 0; k < replayed.size(); ++k)
+    records_[k].without = residual(replayed[k], records_[k].runs.front());
   if (hunting == Hunting::simulated) return;
   own.position_controller.increment *= fine;
-  // The equivalent motor takes a third of the time, and without hunting moves the axis the same.
-  if (own.motor.model == sim::MotorModel::synchronous) own.motor.model = sim::MotorModel::dc;
+  without_windings(own);
 }
 
-std::vector<double> EffectResponse::residual(std::size_t log, const sim::Machine& machine) const {
-  const auto& file = bench_.machine.axes.front();
-  const auto simulated = replay<FixedSignals>(machine, bench_.logs[log], {file.name});
+EffectResponse::EffectResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
+                               const SignalSettings& settings, const Disturbance& disturbance,
+                               const std::vector<Log>& replayed)
+    : EffectResponse(machine, axis, logs, settings, Hunting::simulated, replayed) {
+  without_windings(machine_.axes.front());
+  for (std::size_t k = 0; k < records_.size(); ++k) {
+    auto& runs = records_[k].runs;
+    runs.resize(disturbed_runs, runs.front());
+    for (std::size_t r = 0; r < disturbed_runs; ++r) {
+      auto& force = runs[r].axes.front().external_force;
+      force.resize(runs[r].t.size(), 0.0);
+      const auto drawn = disturbance.drawn(runs[r].t, k * disturbed_runs + r);
+      std::transform(force.begin(), force.end(), drawn.begin(), force.begin(), std::plus<>());
+    }
+  }
+}
+
+Log EffectResponse::replayed(const Log& log, const sim::Machine& machine) const {
+  return replay<FixedSignals>(machine, log, {machine_.axes.front().name});
+}
+
+std::vector<double> EffectResponse::residual(Log simulated, const Log& of) const {
+  const auto& file = machine_.axes.front();
+  simulated.axes.front().external_force = of.axes.front().external_force;
   const auto motion = motion_of(simulated, simulated.axes.front(), file, Amperes::amplitude, settings_);
   auto force = motion.force;
   const auto expected = force_along(sim::plant_axis(file), motion);
@@ -92,21 +137,36 @@ std::vector<double> EffectResponse::residual(std::size_t log, const sim::Machine
   return force;
 }
 
+// Of runs with the effects, less the one without.
+std::vector<double> EffectResponse::common(Record& record, const sim::Machine& machine) const {
+  if (record.without.empty()) record.without = residual(replayed(record.runs.front(), machine_), record.runs.front());
+  CommonPart part;
+  for (const auto& run : record.runs) {
+    auto force = residual(replayed(run, machine), run);
+    for (std::size_t i = 0; i < force.size(); ++i) force[i] -= record.without[i];
+    part.add(force);
+  }
+  return part.estimate();
+}
+
 std::vector<double> EffectResponse::operator()(const Motion& motion, const sim::Effect& effect) {
   return together(motion, {&effect, 1});
 }
 
 std::vector<double> EffectResponse::together(const Motion& motion, std::span<const sim::Effect> effects) {
-  for (std::size_t k = 0; k < bench_.logs.size(); ++k) {
-    if (bench_.logs[k].source != motion.source || bench_.logs[k].axes.front().x_set != motion.x_set) continue;
-    auto machine = bench_.machine;
+  for (std::size_t k = 0; k < records_.size(); ++k) {
+    const auto& log = records_[k].runs.front();
+    if (log.source != motion.source || log.axes.front().x_set != motion.x_set) continue;
+    const auto known = std::find_if(known_.begin(), known_.end(),
+                                    [&](const Known& each) { return each.record == k && same(each.effects, effects); });
+    if (known != known_.end()) return known->force;
+    auto machine = machine_;
     auto& acting = machine.axes.front().effects;
     acting.insert(acting.end(), effects.begin(), effects.end());
     try {
-      if (without_[k].empty()) without_[k] = residual(k, bench_.machine);
-      auto force = residual(k, machine);
-      for (std::size_t i = 0; i < force.size(); ++i) force[i] -= without_[k][i];
-      return force;
+      known_.push_back({k, {effects.begin(), effects.end()}, common(records_[k], machine)});
+      if (known_.size() > answers_kept * records_.size()) known_.pop_front();
+      return known_.back().force;
     } catch (const FaultTripped&) {
       return std::vector<double>(motion.t.size(), 0.0);
     }

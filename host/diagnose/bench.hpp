@@ -1,9 +1,11 @@
 // One axis of a machine alone, with the logs that have set-points for it: what replays run on.
 #pragma once
 
+#include <deque>
 #include <span>
 #include <vector>
 
+#include "host/diagnose/disturbance.hpp"
 #include "host/identify/motion.hpp"
 #include "host/log/log.hpp"
 #include "sim/model/machine.hpp"
@@ -18,14 +20,21 @@ struct Bench {
 // Logs without set-points are left out. `coupled`: with the other axis of two, where a log has its set-points.
 Bench bench_of(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs, bool coupled = false);
 
-// The simulated position (m) for each log's set-points, at the log's samples. Throws FaultTripped, LogError.
+// What the bench's axis makes of each log's set-points. Throws FaultTripped, LogError.
+std::vector<Log> replays(const Bench& bench);
+// Its position alone (m), at the log's samples.
 std::vector<std::vector<double>> simulated_positions(const Bench& bench);
 
-// The same logs with the simulated position in place of the measured one: the motion without what noise and the effects
-// looked for did to it. A regressor of the measured motion carries the disturbance that it is regressed on, through the
-// control loop (Gilson, Garnier, Young, Van den Hof 2011); one of this motion does not. Empty when a log has no
-// set-points, when the machine cannot follow them, or when it goes another way than the measured one.
-std::vector<Log> without_noise(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs);
+// Logs as the machine's simulation without the encoder's noise goes through them.
+struct WithoutNoise {
+  std::vector<Log> motion;    // the logs, with the simulated position
+  std::vector<Log> replayed;  // the replays themselves
+};
+// The motion is the same logs with the simulated position in place of the measured one: the motion without what noise
+// and the effects looked for did to it. A regressor of the measured motion carries the disturbance that it is regressed
+// on, through the control loop (Gilson, Garnier, Young, Van den Hof 2011); one of this motion does not. Empty when a
+// log has no set-points, when the machine cannot follow them, or when it goes another way than the measured one.
+WithoutNoise without_noise(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs);
 
 // Within an increment of its position controller an axis hunts. Near reversals a replay does so as the record did, and
 // friction's contact follows it; elsewhere noise made the record hunt at other instants, and the difference is an error
@@ -37,9 +46,14 @@ enum class Hunting { simulated, smoothed };
 // source and the first time of the logs.
 class EffectResponse {
  public:
-  // `logs`: with set-points, of that axis; `settings`: those of the motions.
+  // `logs`: with set-points, of that axis; `settings`: those of the motions; `replayed`: what without_noise() has
+  // replayed of them with that hunting, in their order, so that it need not be done again.
   EffectResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
-                 const SignalSettings& settings, Hunting hunting = Hunting::simulated);
+                 const SignalSettings& settings, Hunting hunting = Hunting::simulated,
+                 const std::vector<Log>& replayed = {});
+  // Under forces like `disturbance`: what two runs under them have in common.
+  EffectResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
+                 const SignalSettings& settings, const Disturbance& disturbance, const std::vector<Log>& replayed = {});
 
   // N at the motion's rate: with the effect less without; zeros where the machine cannot follow with it. Throws
   // sim::EffectError, std::out_of_range for a motion of another log.
@@ -48,11 +62,25 @@ class EffectResponse {
   std::vector<double> together(const Motion& motion, std::span<const sim::Effect> effects);
 
  private:
-  std::vector<double> residual(std::size_t log, const sim::Machine& machine) const;
+  struct Record {
+    std::vector<Log> runs;        // the log under as many disturbances; one without
+    std::vector<double> without;  // N, the residual without effects and disturbances, once it was asked for
+  };
+  Log replayed(const Log& log, const sim::Machine& machine) const;
+  // `of`: what was replayed; its external force is known, and no residual.
+  std::vector<double> residual(Log simulated, const Log& of) const;
+  std::vector<double> common(Record& record, const sim::Machine& machine) const;
 
-  Bench bench_;
+  sim::Machine machine_;
   SignalSettings settings_;
-  std::vector<std::vector<double>> without_;  // of each log, where it was asked for
+  std::vector<Record> records_;
+  // The last answers: a search's grid begins a refinement, a refinement's end begins the one in closed loop.
+  struct Known {
+    std::size_t record;
+    std::vector<sim::Effect> effects;
+    std::vector<double> force;
+  };
+  std::deque<Known> known_;
 };
 
 }  // namespace stiction::host

@@ -35,6 +35,8 @@ struct Scene {
   // The residual force (N, at the motion's rate) that a motion's set-points leave in simulation where the machine has
   // the effect, less that where it has not: what the effect does through the control loop. Empty: no set-points.
   std::function<std::vector<double>(const Motion&, const sim::Effect&)> response;
+  // From now on under forces like this one (N, of the rows): what of the residual force no cause explains.
+  std::function<void(const Eigen::VectorXd&)> disturb;
   double stroke() const { return highest_position - lowest_position; }
 };
 

@@ -1,11 +1,38 @@
 #include "host/diagnose/candidate_columns.hpp"
 
+#include <iterator>
+#include <utility>
+
 namespace stiction::host {
 
-std::vector<Eigen::VectorXd> group_columns(const LogRows& rows, const Scene& scene, const Candidate& candidate,
-                                           double nonlinear) {
-  const auto shared = shared_columns(rows, scene, candidate, nonlinear);
-  if (!candidate.per_record) return shared;
+namespace {
+
+// Of each trial.
+std::vector<std::vector<Eigen::VectorXd>> shared(const LogRows& rows, const Scene& scene,
+                                                 const std::vector<CandidateAt>& trials) {
+  std::vector<std::size_t> counts;
+  auto all = rows.stacked_together([&](const Motion& motion) {
+    Columns columns;
+    counts.clear();
+    for (const auto& trial : trials) {
+      auto own = trial.candidate->columns(scene, motion, trial.nonlinear);
+      counts.push_back(own.size());
+      std::move(own.begin(), own.end(), std::back_inserter(columns));
+    }
+    return columns;
+  });
+  std::vector<std::vector<Eigen::VectorXd>> groups;
+  auto next = all.begin();
+  for (const std::size_t count : counts) {
+    const auto end = next + static_cast<std::ptrdiff_t>(count);
+    groups.emplace_back(std::make_move_iterator(next), std::make_move_iterator(end));
+    next = end;
+  }
+  return groups;
+}
+
+// In the rows of each record by themselves.
+std::vector<Eigen::VectorXd> by_record(const LogRows& rows, const std::vector<Eigen::VectorXd>& shared) {
   std::vector<Eigen::VectorXd> own;
   for (std::size_t r = 0; r < rows.logs().size(); ++r) {
     const auto begin = static_cast<Eigen::Index>(rows.logs()[r]);
@@ -18,17 +45,24 @@ std::vector<Eigen::VectorXd> group_columns(const LogRows& rows, const Scene& sce
   return own;
 }
 
+}  // namespace
+
 std::vector<Eigen::VectorXd> shared_columns(const LogRows& rows, const Scene& scene, const Candidate& candidate,
                                             double nonlinear) {
-  std::vector<Columns> of_motion;
-  for (const auto& motion : rows.motions()) of_motion.push_back(candidate.columns(scene, motion, nonlinear));
-  std::vector<Eigen::VectorXd> stacked;
-  for (std::size_t c = 0; c < of_motion.front().size(); ++c)
-    stacked.push_back(rows.stacked([&](const Motion& motion) {
-      const auto index = static_cast<std::size_t>(&motion - rows.motions().data());
-      return of_motion[index][c];
-    }));
-  return stacked;
+  return std::move(shared(rows, scene, {{&candidate, nonlinear}}).front());
+}
+
+std::vector<Eigen::VectorXd> group_columns(const LogRows& rows, const Scene& scene, const Candidate& candidate,
+                                           double nonlinear) {
+  return std::move(group_columns(rows, scene, {{&candidate, nonlinear}}).front());
+}
+
+std::vector<std::vector<Eigen::VectorXd>> group_columns(const LogRows& rows, const Scene& scene,
+                                                        const std::vector<CandidateAt>& trials) {
+  auto groups = shared(rows, scene, trials);
+  for (std::size_t k = 0; k < groups.size(); ++k)
+    if (trials[k].candidate->per_record) groups[k] = by_record(rows, groups[k]);
+  return groups;
 }
 
 Eigen::VectorXd weighted_columns(const LogRows& rows, const Scene& scene, const Candidate& candidate, double nonlinear,

@@ -9,12 +9,21 @@
 
 namespace stiction::host {
 
+// A candidate with a value of its nonlinear parameter.
+struct CandidateAt {
+  const Candidate* candidate;
+  double nonlinear;
+};
+
 // As one for all records (N per unit of weight).
 std::vector<Eigen::VectorXd> shared_columns(const LogRows& rows, const Scene& scene, const Candidate& candidate,
                                             double nonlinear);
 // The same, and of those that have weights of their own in each record in the rows of that one alone.
 std::vector<Eigen::VectorXd> group_columns(const LogRows& rows, const Scene& scene, const Candidate& candidate,
                                            double nonlinear);
+// Those of several trials, which takes less time together.
+std::vector<std::vector<Eigen::VectorXd>> group_columns(const LogRows& rows, const Scene& scene,
+                                                        const std::vector<CandidateAt>& trials);
 // Their sum with these weights (N).
 Eigen::VectorXd weighted_columns(const LogRows& rows, const Scene& scene, const Candidate& candidate, double nonlinear,
                                  const Eigen::VectorXd& weights);

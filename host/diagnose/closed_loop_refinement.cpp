@@ -32,8 +32,9 @@ class ClosedLoopFit {
     for (std::size_t k = 0; k < findings_.size(); ++k) {
       const auto& term = found.terms[k];
       whitened = whitened && term.whitened;
-      if (candidates()[term.candidate].per_record)
-        target_ -= weighted_columns(rows, scene, candidates()[term.candidate], term.nonlinear, term.weights);
+      // What runs in silence do not know: a phase of each record, or a response under disturbances.
+      if (const auto& candidate = candidates()[term.candidate]; candidate.per_record || candidate.replays)
+        target_ -= weighted_columns(rows, scene, candidate, term.nonlinear, term.weights);
       else
         free_parameters(k);
     }
@@ -65,7 +66,8 @@ class ClosedLoopFit {
       if (gained <= settled) break;
       if (gained > far) slopes = slopes_at(at, force);
     }
-    if (left < before) write(at, evidence_of(force, slopes).covariance(all(), Eigen::VectorXd::Zero(at.size())));
+    if (left < before)
+      write(at, evidence_of(force, slopes).jackknife_covariance(all(), Eigen::VectorXd::Zero(at.size())));
     return left;
   }
   const std::vector<Finding>& findings() const { return findings_; }

@@ -37,17 +37,21 @@ class Commands {
  public:
   Commands(const CommandRecords& records, const sim::Timing& timing, const sim::Axis& axis, double record_delay)
       : records_(records), timing_(timing), axis_(axis) {
-    std::vector<std::vector<double>> logged;
+    std::vector<std::vector<double>> logged, rates;
     for (const auto& log : records.logs) {
       const auto& channels = channels_of(log, axis);
       auto values = channels.*(recorded_command(channels, axis)->values);
       logged.push_back(earlier(values, record_delay / log.period));
+      if (record_delay != 0.0) rates.push_back(rate_of(logged.back(), log.period));
     }
     logged_ = rows_of(logged);
+    if (!rates.empty()) nuisances_.push_back(rows_of(rates));
   }
 
   const LogRows& rows() const { return records_.rows; }
   const Eigen::VectorXd& logged() const { return logged_; }
+  // What a parameter must stand beside: what is left of a record's delay, which is known to microseconds only.
+  const std::vector<Eigen::VectorXd>& nuisances() const { return nuisances_; }
   template <class S>
   Eigen::VectorXd replayed(const sim::Axis& axis) const {
     std::vector<std::vector<double>> all;
@@ -79,6 +83,11 @@ class Commands {
     }
     return moved;
   }
+  static std::vector<double> rate_of(const std::vector<double>& values, double period) {
+    std::vector<double> rate(values.size(), 0.0);
+    for (std::size_t k = 1; k + 1 < values.size(); ++k) rate[k] = (values[k + 1] - values[k - 1]) / (2.0 * period);
+    return rate;
+  }
   Eigen::VectorXd rows_of(const std::vector<std::vector<double>>& columns) const {
     const auto& rows = records_.rows;
     Eigen::VectorXd all = rows.stacked(
@@ -98,6 +107,7 @@ class Commands {
   const sim::Timing& timing_;
   const sim::Axis& axis_;
   Eigen::VectorXd logged_;
+  std::vector<Eigen::VectorXd> nuisances_;
 };
 
 struct CommandTerm {
@@ -118,10 +128,13 @@ sim::Axis with_terms(sim::Axis axis, const std::vector<CommandTerm>& terms, cons
 // Which parameters the target needs: the best that stands is added, those that stand no longer are dropped.
 class Selection {
  public:
+  // `nuisances`: columns that stay beside whatever is chosen.
   Selection(const Eigen::VectorXd& target, const LogRows& rows, Places places,
-            const std::vector<Eigen::VectorXd>& columns)
+            const std::vector<Eigen::VectorXd>& columns, const std::vector<Eigen::VectorXd>& nuisances)
       : places_(std::move(places)), evidence_(target, blocks_for(target, rows)) {
     evidence_.add(columns);
+    Eigen::Index next = evidence_.add(nuisances);
+    for (std::size_t k = 0; k < nuisances.size(); ++k) nuisances_.push_back(next++);
   }
 
   // Indices of columns.
@@ -131,18 +144,22 @@ class Selection {
       while (drop(chosen)) continue;
     return chosen;
   }
+  // With the nuisances behind the chosen columns.
+  Evidence::Fit fit(const ColumnIndices& chosen) const { return evidence_.fit(beside(chosen)); }
+  Eigen::MatrixXd covariance(const ColumnIndices& chosen) const {
+    return evidence_.covariance(beside(chosen), fit(chosen).weights);
+  }
   double p_value(const ColumnIndices& chosen, std::size_t term) const {
-    const auto fit = evidence_.fit(chosen);
+    const auto fit = this->fit(chosen);
     const auto i = static_cast<Eigen::Index>(term);
-    const double variance = evidence_.covariance(chosen, fit.weights)(i, i);
+    const double variance = covariance(chosen)(i, i);
     const double t = fit.weights[i] / std::sqrt(std::max(variance, 1e-300));
     const double freedom = std::max(evidence_.bearing_clusters({chosen[term]}, fit.weights.segment(i, 1)) - 1.0, 2.0);
     return student_tails(t, freedom);
   }
   double explains(const ColumnIndices& chosen, std::size_t term) const {
-    return (evidence_.fit(without(chosen, term)).left - evidence_.fit(chosen).left) / evidence_.total();
+    return (fit(without(chosen, term)).left - fit(chosen).left) / evidence_.total();
   }
-  const Evidence& evidence() const { return evidence_; }
   std::size_t place(Eigen::Index column) const { return places_[static_cast<std::size_t>(column)]; }
 
  private:
@@ -152,13 +169,17 @@ class Selection {
     return blocks_of(rows.velocity, rows.logs(),
                      static_cast<std::size_t>(std::clamp(6.0 * correlation, n / 100.0, n / 30.0)) + 1);
   }
+  ColumnIndices beside(ColumnIndices chosen) const {
+    chosen.insert(chosen.end(), nuisances_.begin(), nuisances_.end());
+    return chosen;
+  }
   static ColumnIndices without(ColumnIndices chosen, std::size_t term) {
     chosen.erase(chosen.begin() + static_cast<std::ptrdiff_t>(term));
     return chosen;
   }
   bool stands(const ColumnIndices& chosen, std::size_t term) const {
     if (!(p_value(chosen, term) < significance / static_cast<double>(command_parameters().size()))) return false;
-    const auto before = evidence_.held_out(without(chosen, term)), after = evidence_.held_out(chosen);
+    const auto before = evidence_.held_out(beside(without(chosen, term))), after = evidence_.held_out(beside(chosen));
     std::vector<double> gains(before.size());
     double total = 0.0, gained = 0.0;
     for (std::size_t k = 0; k < gains.size(); ++k) {
@@ -169,22 +190,22 @@ class Selection {
     const double most = *std::max_element(gains.begin(), gains.end());
     if (!(gained > least_gain * total && gained - most > 0.2 * gained)) return false;
     std::vector<bool> half(evidence_.blocks());
-    const double whole = evidence_.fit(chosen).weights[static_cast<Eigen::Index>(term)];
+    const double whole = fit(chosen).weights[static_cast<Eigen::Index>(term)];
     for (const bool first : {true, false}) {
       for (std::size_t k = 0; k < half.size(); ++k) half[k] = (k < half.size() / 2) == first;
-      if (evidence_.fit(chosen, half).weights[static_cast<Eigen::Index>(term)] * whole < 0.0) return false;
+      if (evidence_.fit(beside(chosen), half).weights[static_cast<Eigen::Index>(term)] * whole < 0.0) return false;
     }
     return true;
   }
   bool grow(ColumnIndices& chosen) const {
     Eigen::Index best = -1;
-    double least = evidence_.fit(chosen).left;
+    double least = fit(chosen).left;
     for (std::size_t k = 0; k < places_.size(); ++k) {
       auto trial = chosen;
       const auto column = static_cast<Eigen::Index>(k);
       if (std::find(chosen.begin(), chosen.end(), column) != chosen.end()) continue;
       trial.push_back(column);
-      if (const double left = evidence_.fit(trial).left; left < least && stands(trial, trial.size() - 1)) {
+      if (const double left = fit(trial).left; left < least && stands(trial, trial.size() - 1)) {
         least = left;
         best = column;
       }
@@ -204,6 +225,7 @@ class Selection {
 
   Places places_;
   Evidence evidence_;
+  ColumnIndices nuisances_;
 };
 
 ColumnIndices all_of(const Places& places) {
@@ -213,7 +235,7 @@ ColumnIndices all_of(const Places& places) {
 }
 
 Selection select(const Commands& commands, const sim::Axis& axis, const Eigen::VectorXd& target, const Places& places) {
-  return {target, commands.rows(), places, commands.slopes(axis, places)};
+  return {target, commands.rows(), places, commands.slopes(axis, places), commands.nuisances()};
 }
 
 // The chosen parameters' values by replays around them.
@@ -222,7 +244,7 @@ std::vector<CommandTerm> refined(const Commands& commands, const sim::Axis& axis
   std::vector<CommandTerm> terms;
   Places places;
   if (chosen.empty()) return terms;
-  const auto fit = selection.evidence().fit(chosen);
+  const auto fit = selection.fit(chosen);
   for (std::size_t k = 0; k < chosen.size(); ++k) {
     places.push_back(selection.place(chosen[k]));
     const double value = *command_parameters()[places[k]].value(axis);
@@ -239,8 +261,8 @@ std::vector<CommandTerm> refined(const Commands& commands, const sim::Axis& axis
     const auto at = with_terms(axis, terms);
     const auto local = select(commands, at, commands.logged() - commands.replayed<FixedSignals>(at), places);
     const auto all = all_of(places);
-    const auto step = local.evidence().fit(all).weights;
-    const auto covariance = local.evidence().covariance(all, step);
+    const auto step = local.fit(all).weights;
+    const auto covariance = local.covariance(all);
     for (std::size_t k = 0; k < terms.size(); ++k) {
       const auto i = static_cast<Eigen::Index>(k);
       terms[k].value += step[i];
@@ -313,9 +335,9 @@ void find_and_judge(Verdict& verdict, const DiagnoseInput& input, const CommandR
   const auto replayed = as_recorded.replayed<FixedSignals>(axis);
   const auto slopes = as_recorded.slopes(axis, places);
   const auto selection_of = [&](const Commands& each) {
-    return Selection(each.logged() - replayed, each.rows(), places, slopes);
+    return Selection(each.logged() - replayed, each.rows(), places, slopes, each.nuisances());
   };
-  const auto left_by = [&](const Commands& each) { return selection_of(each).evidence().fit(all_of(places)).left; };
+  const auto left_by = [&](const Commands& each) { return selection_of(each).fit(all_of(places)).left; };
   const bool late = delay.found != 0.0 && left_by(moved) < left_by(as_recorded);
   const Commands& commands = late ? moved : as_recorded;
   const Commands held(held_out, timing, axis, late ? delay.found : 0.0);

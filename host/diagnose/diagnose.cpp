@@ -252,21 +252,29 @@ Verdict diagnose(const DiagnoseInput& input) {
   auto scene = scene_of(axis, rows, settings);
   scene.timing = input.machine.timing;
   begin(0);
-  const auto motion = without_noise(input.machine, input.axis, logs);
-  const auto held_motion = motion.empty() ? motion : without_noise(input.machine, input.axis, held_out);
-  if (held_motion.empty())
+  auto simulated = without_noise(input.machine, input.axis, logs);
+  const auto held_simulated =
+      simulated.motion.empty() ? WithoutNoise{} : without_noise(input.machine, input.axis, held_out);
+  const bool known_motion = !held_simulated.motion.empty();
+  if (!known_motion)
     verdict.notes.push_back(
         "The machine's set-points could not be followed in simulation, or are not in the logs: regressors were made "
         "from the measured motion, which carries the disturbances through the control loop. Log x_set.");
-  const auto regressors = held_motion.empty() ? rows : rows_of(motion, axis, settings);
-  const auto held_regressors = held_motion.empty() ? held_rows : rows_of(held_motion, axis, settings);
+  const auto regressors = known_motion ? rows_of(simulated.motion, axis, settings) : rows;
+  const auto held_regressors = known_motion ? rows_of(held_simulated.motion, axis, settings) : held_rows;
   std::vector<EffectResponse> responses;
-  if (!held_motion.empty()) {
+  if (known_motion) {
     auto all = logs;
     all.insert(all.end(), held_out.begin(), held_out.end());
-    for (const auto hunting : {Hunting::simulated, Hunting::smoothed})
-      responses.emplace_back(input.machine, input.axis, all, settings, hunting);
-    scene.response = std::ref(responses.front());
+    auto& replayed = simulated.replayed;
+    replayed.insert(replayed.end(), held_simulated.replayed.begin(), held_simulated.replayed.end());
+    responses.emplace_back(input.machine, input.axis, all, settings, Hunting::simulated, replayed);
+    responses.emplace_back(input.machine, input.axis, all, settings, Hunting::smoothed);
+    scene.disturb = [&, all](const Eigen::VectorXd& force) {
+      scene.response = EffectResponse(input.machine, input.axis, all, settings,
+                                      Disturbance(force, rows.logs(), rows.period(0)), replayed);
+    };
+    scene.disturb(target);
   }
   begin(1);
   auto found = search_causes(regressors, target, scene);

@@ -2,47 +2,43 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "host/diagnose/fisher.hpp"
 
 namespace stiction::host {
 namespace {
 
-// Of the columns of a part() of them: all, in their order.
-ColumnIndices own_columns(const ColumnIndices& chosen) {
-  ColumnIndices own(chosen.size());
-  std::iota(own.begin(), own.end(), Eigen::Index{0});
-  return own;
-}
-
 // Of the noise that all clusters agree on, against what the few under a term say of their own.
 constexpr double most_freedom = 30.0;
+
+// Pseudo-inverse, in columns of one length, or newtons beside metres would hide a dependence.
+Eigen::MatrixXd inverse(const Eigen::MatrixXd& gram) {
+  const Eigen::VectorXd scale = gram.diagonal().unaryExpr([](double g) { return g > 0.0 ? 1.0 / std::sqrt(g) : 0.0; });
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
+  decomposition.setThreshold(1e-9);
+  decomposition.compute(scale.asDiagonal() * gram * scale.asDiagonal());
+  return scale.asDiagonal() * decomposition.pseudoInverse() * scale.asDiagonal();
+}
 
 }  // namespace
 
 Evidence::Evidence(Eigen::VectorXd target, std::vector<RowBlock> blocks)
-    : target_(std::move(target)), blocks_(std::move(blocks)), clusters_(blocks_), sums_(blocks_.size()) {
-  sum_target();
-}
-
-void Evidence::sum_target() {
-  white_target_ = whitening_(target_);
-  total_.square = 0.0;
-  for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    const auto begin = static_cast<Eigen::Index>(blocks_[b].begin);
-    const auto length = static_cast<Eigen::Index>(blocks_[b].end - blocks_[b].begin);
-    sums_[b].square = white_target_.segment(begin, length).squaredNorm();
-    total_.square += sums_[b].square;
-  }
+    : target_(std::move(target)), blocks_(std::move(blocks)), clusters_(blocks_), white_(blocks_) {
+  white_.add(target_);
 }
 
 Eigen::Index Evidence::add(const std::vector<Eigen::VectorXd>& columns) {
-  const Eigen::Index first = columns_.cols();
-  columns_.conservativeResize(target_.size(), first + static_cast<Eigen::Index>(columns.size()));
-  for (std::size_t k = 0; k < columns.size(); ++k) columns_.col(first + static_cast<Eigen::Index>(k)) = columns[k];
-  sum_columns(first);
+  const Eigen::Index first = this->columns();
+  for (const auto& column : columns) {
+    columns_.push_back(column);
+    white_.add(whitening_(column));
+  }
   return first;
+}
+
+void Evidence::truncate(Eigen::Index first) {
+  columns_.resize(static_cast<std::size_t>(first));
+  white_.truncate(place(first));
 }
 
 void Evidence::whiten(Whitening whitening, std::size_t correlated) {
@@ -54,109 +50,117 @@ void Evidence::whiten(Whitening whitening, std::size_t correlated) {
     for (std::size_t p = 0; p < pieces; ++p)
       clusters_.push_back({block.begin + length * p / pieces, block.begin + length * (p + 1) / pieces});
   }
-  sum_target();
-  sum_columns(0);
+  white_.truncate(0);
+  white_.add(whitening_(target_));
+  for (const auto& column : columns_) white_.add(whitening_(column));
 }
 
-// The sums of the columns from `first` on; those before it are there.
-void Evidence::sum_columns(Eigen::Index first) {
-  const Eigen::Index count = columns_.cols(), fresh = count - first;
-  if (fresh == 0) return;
-  white_columns_.conservativeResize(target_.size(), count);
-  for (Eigen::Index j = first; j < count; ++j) white_columns_.col(j) = whitening_(columns_.col(j));
-  const auto grow = [count](Sums& sums) {
-    sums.gram.conservativeResize(count, count);
-    sums.moment.conservativeResize(count);
-  };
-  grow(total_);
-  total_.gram.rightCols(fresh).setZero();
-  total_.gram.bottomRows(fresh).setZero();
-  total_.moment.tail(fresh).setZero();
-  for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    auto& sums = sums_[b];
-    grow(sums);
-    const auto begin = static_cast<Eigen::Index>(blocks_[b].begin);
-    const auto length = static_cast<Eigen::Index>(blocks_[b].end - blocks_[b].begin);
-    const auto rows = white_columns_.middleRows(begin, length);
-    sums.moment.tail(fresh).noalias() = rows.rightCols(fresh).transpose() * white_target_.segment(begin, length);
-    sums.gram.rightCols(fresh).noalias() = rows.transpose() * rows.rightCols(fresh);
-    sums.gram.bottomLeftCorner(fresh, first) = sums.gram.topRightCorner(first, fresh).transpose();
-    total_.gram.rightCols(fresh) += sums.gram.rightCols(fresh);
-    total_.gram.bottomLeftCorner(fresh, first) += sums.gram.bottomLeftCorner(fresh, first);
-    total_.moment.tail(fresh) += sums.moment.tail(fresh);
+Eigen::MatrixXd Evidence::white(const ColumnIndices& chosen) const {
+  Eigen::MatrixXd columns(target_.size(), static_cast<Eigen::Index>(chosen.size()));
+  for (std::size_t i = 0; i < chosen.size(); ++i)
+    columns.col(static_cast<Eigen::Index>(i)) = white_.column(place(chosen[i]));
+  return columns;
+}
+
+// `each` (row, column, place of the one, of the other) for the entries of the lower triangle of the chosen columns'
+// Gram matrix.
+template <class Each>
+void Evidence::for_pairs(const ColumnIndices& chosen, Each&& each) {
+  for (std::size_t i = 0; i < chosen.size(); ++i)
+    for (std::size_t j = 0; j <= i; ++j)
+      each(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j), place(chosen[i]), place(chosen[j]));
+}
+
+Evidence::Sums Evidence::total_of(const ColumnIndices& chosen) const {
+  const auto count = static_cast<Eigen::Index>(chosen.size());
+  Sums sums{Eigen::MatrixXd(count, count), Eigen::VectorXd(count), total()};
+  for (Eigen::Index i = 0; i < count; ++i)
+    sums.moment[i] = white_.total(of_target, place(chosen[static_cast<std::size_t>(i)]));
+  for_pairs(chosen, [&](Eigen::Index i, Eigen::Index j, std::size_t one, std::size_t other) {
+    sums.gram(i, j) = sums.gram(j, i) = white_.total(one, other);
+  });
+  return sums;
+}
+
+std::vector<Evidence::Sums> Evidence::by_block(const ColumnIndices& chosen) const {
+  const auto count = static_cast<Eigen::Index>(chosen.size());
+  std::vector<Sums> all(blocks_.size(), {Eigen::MatrixXd(count, count), Eigen::VectorXd(count), 0.0});
+  const auto square = white_.by_block(of_target, of_target);
+  for (std::size_t b = 0; b < all.size(); ++b) all[b].square = square[b];
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto moment = white_.by_block(of_target, place(chosen[static_cast<std::size_t>(i)]));
+    for (std::size_t b = 0; b < all.size(); ++b) all[b].moment[i] = moment[b];
   }
+  for_pairs(chosen, [&](Eigen::Index i, Eigen::Index j, std::size_t one, std::size_t other) {
+    const auto product = white_.by_block(one, other);
+    for (std::size_t b = 0; b < all.size(); ++b) all[b].gram(i, j) = all[b].gram(j, i) = product[b];
+  });
+  return all;
 }
 
-void Evidence::truncate(Eigen::Index first) {
-  columns_.conservativeResize(Eigen::NoChange, first);
-  white_columns_.conservativeResize(Eigen::NoChange, first);
-  const auto cut = [first](Sums& sums) {
-    sums.gram.conservativeResize(first, first);
-    sums.moment.conservativeResize(first);
-  };
-  cut(total_);
-  for (auto& sums : sums_) cut(sums);
+double Evidence::left(const Sums& sums, const Eigen::VectorXd& weights) {
+  if (weights.size() == 0) return sums.square;
+  return std::max(sums.square - 2.0 * weights.dot(sums.moment) + weights.dot(sums.gram * weights), 0.0);
 }
 
-Evidence::Sums Evidence::part(const Sums& sums, const ColumnIndices& chosen) {
-  return {sums.gram(chosen, chosen), sums.moment(chosen), sums.square};
-}
-
-double Evidence::left(const Sums& sums, const ColumnIndices& chosen, const Eigen::VectorXd& weights) {
-  if (chosen.empty()) return sums.square;
-  const auto p = part(sums, chosen);
-  return std::max(p.square - 2.0 * weights.dot(p.moment) + weights.dot(p.gram * weights), 0.0);
-}
-
-Evidence::Fit Evidence::solve(const Sums& sums, const ColumnIndices& chosen) {
-  if (chosen.empty()) return {Eigen::VectorXd(0), sums.square};
-  const auto p = part(sums, chosen);
+Evidence::Fit Evidence::solve(const Sums& sums) {
+  if (sums.moment.size() == 0) return {Eigen::VectorXd(0), sums.square};
   // Columns of one length, or newtons beside metres would hide a dependence.
   const Eigen::VectorXd scale =
-      p.gram.diagonal().unaryExpr([](double g) { return g > 0.0 ? 1.0 / std::sqrt(g) : 0.0; });
-  const Eigen::MatrixXd gram = scale.asDiagonal() * p.gram * scale.asDiagonal();
+      sums.gram.diagonal().unaryExpr([](double g) { return g > 0.0 ? 1.0 / std::sqrt(g) : 0.0; });
+  const Eigen::MatrixXd gram = scale.asDiagonal() * sums.gram * scale.asDiagonal();
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
   decomposition.setThreshold(1e-9);
   decomposition.compute(gram);
-  const Eigen::VectorXd weights = decomposition.solve(scale.cwiseProduct(p.moment)).cwiseProduct(scale);
-  return {weights, left(sums, chosen, weights)};
+  const Eigen::VectorXd weights = decomposition.solve(scale.cwiseProduct(sums.moment)).cwiseProduct(scale);
+  return {weights, left(sums, weights)};
 }
 
-Evidence::Fit Evidence::fit(const ColumnIndices& chosen) const { return solve(total_, chosen); }
+Evidence::Fit Evidence::fit(const ColumnIndices& chosen) const { return solve(total_of(chosen)); }
 
 Evidence::Fit Evidence::fit(const ColumnIndices& chosen, const std::vector<bool>& use) const {
   const auto n = static_cast<Eigen::Index>(chosen.size());
   Sums some{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), 0.0};
-  for (std::size_t b = 0; b < sums_.size(); ++b) {
+  const auto blocks = by_block(chosen);
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
     if (!use[b]) continue;
-    const auto p = part(sums_[b], chosen);
-    some.gram += p.gram;
-    some.moment += p.moment;
-    some.square += p.square;
+    some.gram += blocks[b].gram;
+    some.moment += blocks[b].moment;
+    some.square += blocks[b].square;
   }
-  return solve(some, own_columns(chosen));
+  return solve(some);
 }
 
 Eigen::VectorXd Evidence::residual(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const {
   Eigen::VectorXd r = target_;
-  for (std::size_t i = 0; i < chosen.size(); ++i) r -= weights[static_cast<Eigen::Index>(i)] * columns_.col(chosen[i]);
+  for (std::size_t i = 0; i < chosen.size(); ++i)
+    r -= weights[static_cast<Eigen::Index>(i)] * columns_[static_cast<std::size_t>(chosen[i])];
   return r;
 }
 
-Eigen::MatrixXd Evidence::inverse_gram(const ColumnIndices& chosen) const {
-  const auto all = part(total_, chosen);
-  const Eigen::VectorXd scale =
-      all.gram.diagonal().unaryExpr([](double g) { return g > 0.0 ? 1.0 / std::sqrt(g) : 0.0; });
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
-  decomposition.setThreshold(1e-9);
-  decomposition.compute(scale.asDiagonal() * all.gram * scale.asDiagonal());
-  return scale.asDiagonal() * decomposition.pseudoInverse() * scale.asDiagonal();
+Eigen::MatrixXd Evidence::inverse_gram(const ColumnIndices& chosen) const { return inverse(total_of(chosen).gram); }
+
+Eigen::MatrixXd Evidence::jackknife_covariance(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const {
+  const auto k = static_cast<Eigen::Index>(chosen.size());
+  const Eigen::MatrixXd gram = total_of(chosen).gram, columns = white(chosen);
+  const Eigen::VectorXd left = white_target() - columns * weights;
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(k, k);
+  for (const auto& cluster : clusters_) {
+    const auto own = columns.middleRows(static_cast<Eigen::Index>(cluster.begin),
+                                        static_cast<Eigen::Index>(cluster.end - cluster.begin));
+    const Eigen::VectorXd moved =
+        inverse(gram - own.transpose() * own) *
+        (own.transpose() * left.segment(static_cast<Eigen::Index>(cluster.begin), own.rows()));
+    sum += moved * moved.transpose();
+  }
+  const double n = static_cast<double>(clusters_.size());
+  return (n - 1.0) / n * sum;
 }
 
 Eigen::MatrixXd Evidence::covariance(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const {
   const auto k = static_cast<Eigen::Index>(chosen.size());
-  const Eigen::MatrixXd inverse = inverse_gram(chosen), columns = white_columns_(Eigen::all, chosen);
-  const Eigen::VectorXd left = white_target_ - columns * weights;
+  const Eigen::MatrixXd inverse = inverse_gram(chosen), columns = white(chosen);
+  const Eigen::VectorXd left = white_target() - columns * weights;
   Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(k, k);
   for (const auto& cluster : clusters_) {
     const auto begin = static_cast<Eigen::Index>(cluster.begin);
@@ -198,7 +202,7 @@ Evidence::Test Evidence::test(const ColumnIndices& chosen, const Eigen::VectorXd
   // Where few clusters bear on a term, what all clusters say of the noise stands in for what those few cannot. Rows
   // that are correlated have no such variance.
   if (whitening_) {
-    const auto all = noise(white_target_ - white_columns_(Eigen::all, chosen) * weights);
+    const auto all = noise(white_target() - white(chosen) * weights);
     const Eigen::MatrixXd even = all.variance * inverse_gram(chosen).block(first, first, count, count);
     spread = (all.freedom * even + freedom * spread) / (all.freedom + freedom);
     freedom += all.freedom;
@@ -222,7 +226,7 @@ std::vector<double> Evidence::bearing(const ColumnIndices& of, const Eigen::Vect
 
 std::vector<double> Evidence::bearing(const ColumnIndices& of, const Eigen::VectorXd& weights,
                                       std::span<const RowBlock> pieces) const {
-  const Eigen::VectorXd force = white_columns_(Eigen::all, of) * weights;
+  const Eigen::VectorXd force = white(of) * weights;
   std::vector<double> squares;
   for (const auto& piece : pieces)
     squares.push_back(
@@ -232,19 +236,18 @@ std::vector<double> Evidence::bearing(const ColumnIndices& of, const Eigen::Vect
 }
 
 std::vector<double> Evidence::held_out(const ColumnIndices& chosen, std::size_t folds) const {
-  std::vector<double> square(sums_.size());
-  const auto all = part(total_, chosen);
-  const auto own = own_columns(chosen);
+  const auto blocks = by_block(chosen);
+  const auto all = total_of(chosen);
+  std::vector<double> square(blocks.size());
   for (std::size_t fold = 0; fold < folds; ++fold) {
     auto train = all;
-    for (std::size_t b = fold; b < sums_.size(); b += folds) {
-      const auto p = part(sums_[b], chosen);
-      train.gram -= p.gram;
-      train.moment -= p.moment;
-      train.square -= p.square;
+    for (std::size_t b = fold; b < blocks.size(); b += folds) {
+      train.gram -= blocks[b].gram;
+      train.moment -= blocks[b].moment;
+      train.square -= blocks[b].square;
     }
-    const auto weights = solve(train, own).weights;
-    for (std::size_t b = fold; b < sums_.size(); b += folds) square[b] = left(sums_[b], chosen, weights);
+    const auto weights = solve(train).weights;
+    for (std::size_t b = fold; b < blocks.size(); b += folds) square[b] = left(blocks[b], weights);
   }
   return square;
 }

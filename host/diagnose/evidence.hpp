@@ -1,5 +1,5 @@
-// The regressors of all candidates over blocks of rows, and what any choice of them explains: from the blocks' Gram
-// matrices of the whitened rows, so that no choice costs a pass over the rows. A block is one piece of evidence
+// The regressors of all candidates over blocks of rows, and what any choice of them explains: from the blocks' scalar
+// products of the whitened rows, so that few choices cost a pass over the rows. A block is one piece of evidence
 // (Cameron, Gelbach, Miller 2008).
 #pragma once
 
@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "host/diagnose/block_products.hpp"
 #include "host/diagnose/whitening.hpp"
 #include "host/identify/regression.hpp"
 
@@ -19,7 +20,7 @@ class Evidence {
   // `target`: the residual force in all rows (N).
   Evidence(Eigen::VectorXd target, std::vector<RowBlock> blocks);
 
-  // Appends columns; the blocks' matrices grow by them. Returns the index of the first.
+  // Appends columns. Returns the index of the first.
   Eigen::Index add(const std::vector<Eigen::VectorXd>& columns);
   // Drops all columns from `first` on.
   void truncate(Eigen::Index first);
@@ -28,11 +29,11 @@ class Evidence {
   void whiten(Whitening whitening, std::size_t correlated = 0);
 
   std::size_t rows() const { return static_cast<std::size_t>(target_.size()); }
-  Eigen::Index columns() const { return columns_.cols(); }
+  Eigen::Index columns() const { return static_cast<Eigen::Index>(columns_.size()); }
   std::size_t blocks() const { return blocks_.size(); }
   const std::vector<RowBlock>& row_blocks() const { return blocks_; }
-  double total() const { return total_.square; }  // sum of squares of the whitened target
-  double column_square(Eigen::Index column) const { return total_.gram(column, column); }
+  double total() const { return white_.total(of_target, of_target); }  // sum of squares of the whitened target
+  double column_square(Eigen::Index column) const { return white_.total(place(column), place(column)); }
   const Eigen::VectorXd& target() const { return target_; }  // not whitened
   const Whitening& whitening() const { return whitening_; }
 
@@ -48,6 +49,9 @@ class Evidence {
 
   // Sandwich covariance of the weights, by clusters of rows.
   Eigen::MatrixXd covariance(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const;
+  // Cluster jackknife (CR3: MacKinnon, Nielsen, Webb, J. Econometrics 232, 2023, eq. 14): by how much the weights move
+  // when a cluster is left out. Where a few clusters bear on a weight the sandwich calls it better known than it is.
+  Eigen::MatrixXd jackknife_covariance(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const;
   struct Test {
     double wald = 0.0;  // over the number of columns
     double p_value = 1.0;
@@ -65,6 +69,7 @@ class Evidence {
   std::vector<double> held_out(const ColumnIndices& chosen, std::size_t folds = 5) const;
 
  private:
+  // Of some columns, over some rows.
   struct Sums {
     Eigen::MatrixXd gram;
     Eigen::VectorXd moment;
@@ -77,18 +82,23 @@ class Evidence {
                               std::span<const RowBlock> pieces) const;
   Noise noise(const Eigen::VectorXd& left) const;
   Eigen::MatrixXd inverse_gram(const ColumnIndices& chosen) const;
-  static Fit solve(const Sums& sums, const ColumnIndices& chosen);
-  static double left(const Sums& sums, const ColumnIndices& chosen, const Eigen::VectorXd& weights);
-  static Sums part(const Sums& sums, const ColumnIndices& chosen);
-  void sum_target();
-  void sum_columns(Eigen::Index first);
+  static Fit solve(const Sums& sums);
+  static double left(const Sums& sums, const Eigen::VectorXd& weights);
+  template <class Each>
+  static void for_pairs(const ColumnIndices& chosen, Each&& each);
+  Sums total_of(const ColumnIndices& chosen) const;
+  std::vector<Sums> by_block(const ColumnIndices& chosen) const;
+  Eigen::MatrixXd white(const ColumnIndices& chosen) const;
+  const Eigen::VectorXd& white_target() const { return white_.column(of_target); }
+  // Of a column in white_.
+  static std::size_t place(Eigen::Index column) { return static_cast<std::size_t>(column) + 1; }
+  static constexpr std::size_t of_target = 0;
 
-  Eigen::VectorXd target_, white_target_;
+  Eigen::VectorXd target_;
   std::vector<RowBlock> blocks_, clusters_;
   Whitening whitening_;
-  Eigen::MatrixXd columns_, white_columns_;
-  std::vector<Sums> sums_;  // of each block
-  Sums total_;
+  std::vector<Eigen::VectorXd> columns_;
+  BlockProducts white_;  // target and columns, whitened
 };
 
 }  // namespace stiction::host

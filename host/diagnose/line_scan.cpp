@@ -8,6 +8,7 @@
 #include <unsupported/Eigen/FFT>
 
 #include "host/diagnose/reading_response.hpp"
+#include "host/diagnose/wave_sums.hpp"
 
 namespace stiction::host {
 namespace {
@@ -58,46 +59,6 @@ std::size_t record_end(const LogRows& rows, std::size_t record) {
   return record + 1 < rows.logs().size() ? rows.logs()[record + 1] : static_cast<std::size_t>(rows.rows());
 }
 
-std::size_t power_of_two(std::size_t at_least) {
-  std::size_t n = 1;
-  while (n < at_least) n *= 2;
-  return n;
-}
-
-// Sum of weight times a wave over a place, for all orders 0, step, 2 step, ..: the places fall into the bins of a
-// transform, fine beside the shortest period that is looked at.
-class Binned {
- public:
-  Binned(double step, double highest_order)
-      : bins_(power_of_two(static_cast<std::size_t>(16.0 * highest_order / step) + 1)),
-        per_metre_(step * static_cast<double>(bins_)) {}
-
-  // `place` (m) from 0 on.
-  std::vector<Complex> transform(const Eigen::VectorXd& place, const Eigen::VectorXd& weight) {
-    std::vector<Complex> bins(bins_), out;
-    for (Eigen::Index i = 0; i < place.size(); ++i)
-      bins[static_cast<std::size_t>(std::lround(place[i] * per_metre_)) % bins_] += weight[i];
-    fft_.inv(out, bins);  // e^(+i ..), over the number of bins
-    for (auto& sum : out) sum *= static_cast<double>(bins_);
-    return out;
-  }
-
- private:
-  std::size_t bins_;
-  double per_metre_;
-  Eigen::FFT<double> fft_;
-};
-
-// What weight times (cosine, sine) takes off the residual's square, from the sums over residual times weight times
-// wave, weight squared times the wave of twice the order, and weight squared.
-double gain_of(Complex moment, Complex twice, double square) {
-  const double cc = 0.5 * (square + twice.real()), ss = 0.5 * (square - twice.real()), cs = 0.5 * twice.imag();
-  const double determinant = cc * ss - cs * cs;
-  if (determinant <= 1e-6 * square * square) return 0.0;
-  const double cr = moment.real(), sr = moment.imag();
-  return (ss * cr * cr - 2.0 * cs * cr * sr + cc * sr * sr) / determinant;
-}
-
 // |W|^2 of a whitening over the rows' frequencies up to the band's end, in a table.
 class WhitenedGain {
  public:
@@ -145,30 +106,17 @@ std::vector<double> gains(const LogRows& rows, const Eigen::VectorXd& weighed, c
                           std::size_t count) {
   const double middle = first + 0.5 * step * static_cast<double>(count);
   std::vector<double> all(count, 0.0);
+  TurningWaves waves;
   for (const auto& s : in) {
-    const std::size_t n = s.end - s.begin;
-    std::vector<Complex> wave(n), turn(n);
-    std::vector<double> weight(n), moment(n);
-    double square = 0.0;
-    for (std::size_t i = 0; i < n; ++i) {
-      const auto row = static_cast<Eigen::Index>(s.begin + i);
+    waves.clear();
+    for (std::size_t i = s.begin; i < s.end; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
       const double way = 2.0 * std::numbers::pi * (x[row] - x[static_cast<Eigen::Index>(s.begin)]);
-      wave[i] = std::polar(1.0, way * first);
-      turn[i] = std::polar(1.0, way * step);
-      weight[i] = rows.velocity[row] * rows.velocity[row];
-      moment[i] = weight[i] * weighed[row];
-      weight[i] *= weight[i] * whitened.at(std::abs(rows.velocity[row]) * middle);
-      square += weight[i];
+      const double weight = rows.velocity[row] * rows.velocity[row];
+      waves.add(weight * weighed[row], weight * weight * whitened.at(std::abs(rows.velocity[row]) * middle),
+                std::polar(1.0, way * first), std::polar(1.0, way * step));
     }
-    for (std::size_t k = 0; k < count; ++k) {
-      Complex sum = 0.0, twice = 0.0;
-      for (std::size_t i = 0; i < n; ++i) {
-        sum += moment[i] * wave[i];
-        twice += weight[i] * (wave[i] * wave[i]);
-        wave[i] *= turn[i];
-      }
-      all[k] += gain_of(sum, twice, square);
-    }
+    for (double& sum : all) sum += waves.gain();
   }
   return all;
 }
@@ -179,33 +127,25 @@ class ShownError {
   ShownError(const LogRows& rows, const Eigen::VectorXd& weighed, const WhitenedGain& whitened,
              const Eigen::VectorXd& x, const sim::Axis& axis, const sim::Timing& timing)
       : rows_(rows), weighed_(weighed), whitened_(whitened), x_(x) {
-    for (const auto& motion : rows.motions()) {
+    const auto& motions = rows.motions();
+    for (const auto& motion : motions) {
       responses_.emplace_back(axis, timing, motion.period);
+      const auto same =
+          std::find_if(motions.begin(), motions.end(), [&](const Motion& m) { return m.period == motion.period; });
+      table_.push_back(static_cast<std::size_t>(same - motions.begin()));
       auto& table = drive_.emplace_back();
+      if (table_.back() + 1 < drive_.size()) continue;
       for (double f = 0.0; f < highest_shown; f += frequency_step)
         table.push_back(f < 0.5 / motion.period ? 0.0 : responses_.back().drive(f));
     }
   }
 
   // Of orders first, first + step, .., near enough to one another that the same rows show them.
-  std::vector<double> gains(double first, double step, std::size_t count) const {
-    gather(first + 0.5 * step * static_cast<double>(count - 1));
-    for (std::size_t n = 0; n < row_.size(); ++n) {
-      wave_[n] *= wave_at(x_[row_[n]] * first);
-      turn_.push_back(wave_at(x_[row_[n]] * step));
-    }
+  std::vector<double> gains(double first, double step, std::size_t count) {
+    if (step != step_) turn_to(step);
+    auto waves = shown(first, first + 0.5 * step * static_cast<double>(count - 1));
     std::vector<double> all;
-    for (std::size_t k = 0; k < count; ++k) {
-      Complex moment = 0.0, twice = 0.0;
-      double square = 0.0;
-      for (std::size_t n = 0; n < row_.size(); ++n) {
-        moment += weighed_[row_[n]] * wave_[n];
-        twice += gain_[n] * (wave_[n] * wave_[n]);
-        square += gain_[n] * std::norm(wave_[n]);
-        wave_[n] *= turn_[n];
-      }
-      all.push_back(gain_of(moment, twice, square));
-    }
+    for (std::size_t k = 0; k < count; ++k) all.push_back(waves.gain());
     return all;
   }
 
@@ -216,23 +156,31 @@ class ShownError {
 
   static Complex wave_at(double turns) { return std::polar(1.0, 2.0 * std::numbers::pi * std::remainder(turns, 1.0)); }
 
-  // The rows that show this order, and the response in each.
-  void gather(double order) const {
-    row_.clear(), wave_.clear(), turn_.clear(), gain_.clear();
-    for (std::size_t r = 0; r < rows_.logs().size(); ++r)
+  void turn_to(double step) {
+    step_ = step;
+    turns_.clear();
+    for (const double place : x_) turns_.push_back(wave_at(place * step));
+  }
+
+  // The rows that show the order `middle`, with their response to it, beginning at the order `first`.
+  TurningWaves shown(double first, double middle) const {
+    TurningWaves waves;
+    for (std::size_t r = 0; r < rows_.logs().size(); ++r) {
+      const auto& drive = drive_[table_[r]];
       for (std::size_t i = rows_.logs()[r]; i < record_end(rows_, r); ++i) {
         const auto row = static_cast<Eigen::Index>(i);
-        const double v = rows_.velocity[row], frequency = std::abs(v) * order;
+        const double v = rows_.velocity[row], frequency = std::abs(v) * middle;
         if (frequency < slowest_shown || frequency >= highest_shown) continue;
         const double shown = responses_[r].shown_at(frequency);
         if (shown > band / rows_.period(r)) continue;
         const double w = 2.0 * std::numbers::pi * shown;
         const Complex response =
-            drive_[r][static_cast<std::size_t>(frequency / frequency_step)] + responses_[r].mass() * w * w;
-        row_.push_back(row);
-        gain_.push_back(whitened_.at(shown));
-        wave_.push_back(v < 0.0 ? std::conj(response) : response);
+            drive[static_cast<std::size_t>(frequency / frequency_step)] + responses_[r].mass() * w * w;
+        waves.add(weighed_[row], whitened_.at(shown),
+                  (v < 0.0 ? std::conj(response) : response) * wave_at(x_[row] * first), turns_[i]);
       }
+    }
+    return waves;
   }
 
   const LogRows& rows_;
@@ -240,10 +188,10 @@ class ShownError {
   const WhitenedGain& whitened_;
   const Eigen::VectorXd& x_;
   std::vector<ReadingResponse> responses_;
-  std::vector<std::vector<Complex>> drive_;
-  mutable std::vector<Eigen::Index> row_;
-  mutable std::vector<Complex> wave_, turn_;
-  mutable std::vector<double> gain_;
+  std::vector<std::vector<Complex>> drive_;  // of the motions whose period is the first of its kind
+  std::vector<std::size_t> table_;           // which of them each motion has
+  double step_ = -1.0;                       // of the last orders
+  std::vector<Complex> turns_;               // of each row by that step
 };
 
 }  // namespace
@@ -306,9 +254,10 @@ LineScan scan_pitches(const LogRows& rows, const Eigen::VectorXd& residual, cons
       end = from;
       break;
     }
-    Binned binned(step, 2.0 * top);
-    const auto single = binned.transform(x, moment), twice = binned.transform(x, square);
-    for (std::size_t k = from; k < to; ++k) all[k] = gain_of(single[k], twice[2 * k], square.sum());
+    WaveSums sums(step, 2.0 * top);
+    sums.transform(x, moment, square);
+    const double all_square = square.sum();
+    for (std::size_t k = from; k < to; ++k) all[k] = gain_of(sums.one(k), sums.other(2 * k), all_square);
   }
   scan.trials = end / 8 + 1;
   std::vector<std::size_t> peaks;
@@ -351,7 +300,7 @@ LineScan scan_signal_periods(const LogRows& rows, const Eigen::VectorXd& residua
   }
   std::sort(slow.begin(), slow.end(), higher);
   slow.resize(std::min(slow.size(), count));
-  const ShownError shown(rows, weighed, whitened, x, axis, timing);
+  ShownError shown(rows, weighed, whitened, x, axis, timing);
   std::vector<Peak> peaks;
   for (const auto& peak : slow) {
     constexpr std::size_t together = 16;

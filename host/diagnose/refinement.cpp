@@ -10,6 +10,7 @@ namespace {
 
 constexpr int golden_steps = 14;  // the last two values are 0.1 % of the range apart
 constexpr int settling_steps = 4;
+constexpr double settled = 0.01;  // of the weight
 
 class Refinement {
  public:
@@ -75,7 +76,9 @@ class Refinement {
   void settle(std::size_t k) {
     for (int i = 0; i < settling_steps; ++i) {
       const double weight = weights_of(stacked())[first_weight(k)];
-      if (weight == 0.0 || !std::isfinite(weight)) break;
+      if (weight == 0.0 || !std::isfinite(weight) ||
+          std::abs(weight - terms_[k].nonlinear) < settled * std::abs(weight))
+        break;
       terms_[k].nonlinear = weight;
       white_[k] = whitened(group(terms_[k], weight));
     }
@@ -137,7 +140,7 @@ class Refinement {
     }
     ColumnIndices chosen(static_cast<std::size_t>(all.size()));
     for (std::size_t i = 0; i < chosen.size(); ++i) chosen[i] = static_cast<Eigen::Index>(i);
-    const auto covariance = evidence.covariance(chosen, all);
+    const auto covariance = evidence.jackknife_covariance(chosen, all);
     for (std::size_t k = 0; k < terms_.size(); ++k) {
       const auto count = terms_[k].weights.size() + (candidate(k).nonlinear ? 1 : 0);
       terms_[k].covariance = covariance.block(first[k], first[k], count, count);

@@ -4,12 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
-#include "host/diagnose/candidate_columns.hpp"
+#include "host/diagnose/option_pool.hpp"
 #include "host/diagnose/refinement.hpp"
-#include "host/diagnose/scene_lines.hpp"
 #include "sim/plant/effects/effects.hpp"
 
 namespace stiction::host {
@@ -20,21 +18,6 @@ constexpr double least_share = 2e-3;  // of the residual's variance: what is les
 // Of the residual's variance: beside what takes more, the residual is no model of the noise, and what is whitened by it
 // would get the weight of noise.
 constexpr double dominant = 0.25;
-constexpr double strong_evidence = 6.0;  // twice the logarithm of a Bayes factor
-constexpr double cluster_lengths = 6.0;  // correlation lengths of the whitened residual in a cluster
-
-struct Option {
-  std::size_t candidate;
-  double nonlinear;
-  ColumnIndices columns;
-};
-using Set = std::vector<const Option*>;
-
-std::vector<RowBlock> blocks_for(const LogRows& rows, double correlation) {
-  const auto n = static_cast<double>(rows.rows());
-  const double shortest = std::clamp(6.0 * correlation, n / 200.0, n / 30.0);
-  return blocks_of(rows.velocity, rows.logs(), static_cast<std::size_t>(shortest) + 1);
-}
 
 // Why a refined term is no effect that a machine can have.
 std::optional<std::string> impossible(const Scene& scene, const Term& term) {
@@ -53,126 +36,15 @@ std::optional<std::string> impossible(const Scene& scene, const Term& term) {
   return {};
 }
 
-class Search {
+class Search : private OptionPool {
  public:
-  Search(const LogRows& rows, const Eigen::VectorXd& target, Scene& scene)
-      : rows_(rows),
-        scene_(scene),
-        correlation_(correlation_length(target, rows.logs())),
-        evidence_(target, blocks_for(rows, std::min(correlation_, 0.1 / rows.period(0)))),
-        plain_(target, evidence_.row_blocks()) {
-    add_options(false);
-  }
+  using OptionPool::OptionPool;
 
   SearchResult run();
 
  private:
-  // The options of all candidates that are periodic, or that are not.
-  void add_options(bool periodic) {
-    std::vector<Eigen::VectorXd> columns;
-    Eigen::Index next = evidence_.columns();
-    for (std::size_t c = 0; c < candidates().size(); ++c) {
-      if (candidates()[c].periodic != periodic) continue;
-      for (const double value : candidates()[c].grid(scene_)) {
-        Option option{c, value, {}};
-        for (auto& column : group_columns(rows_, scene_, candidates()[c], value)) {
-          option.columns.push_back(next++);
-          columns.push_back(std::move(column));
-        }
-        options_.push_back(std::make_unique<Option>(std::move(option)));
-      }
-    }
-    evidence_.add(columns);
-    plain_.add(columns);
-  }
-
-  Eigen::VectorXd residual(const Set& set) const {
-    const auto columns = columns_of(set);
-    return evidence_.residual(columns, evidence_.fit(columns).weights);
-  }
-  // The noise is what the set leaves.
-  void whiten(const Set& set) {
-    const Eigen::VectorXd noise = residual(set);
-    const Whitening whitening(noise, rows_.logs());
-    correlation_ = correlation_length(whitening(noise), rows_.logs());
-    evidence_.whiten(whitening, static_cast<std::size_t>(std::ceil(cluster_lengths * correlation_)));
-  }
-
-  // Lines in what the set leaves; those in the set stay.
-  void scan_lines(const Set& set) {
-    find_lines(rows_, residual(set), evidence_.whitening(), scene_);
-    add_options(true);
-  }
-
-  static ColumnIndices columns_of(const Set& set) {
-    ColumnIndices all;
-    for (const auto* option : set) all.insert(all.end(), option->columns.begin(), option->columns.end());
-    return all;
-  }
-  static bool has(const Set& set, std::size_t candidate) {
-    return std::any_of(set.begin(), set.end(), [&](const auto* o) { return o->candidate == candidate; });
-  }
-
   bool settled(const Option* option) const {
     return std::find(settled_.begin(), settled_.end(), option->candidate) != settled_.end();
-  }
-
-  // Number of independent values of the nonlinear parameter that were tried.
-  double trials(std::size_t candidate) const {
-    if (const auto scan = candidates()[candidate].scan)
-      return static_cast<double>(std::max<std::size_t>(scan(scene_).trials, 1));
-    return std::max(candidates()[candidate].trials, candidates()[candidate].nonlinear ? 3.0 : 1.0);
-  }
-  double effective_rows() const { return std::max(static_cast<double>(evidence_.rows()) / correlation_, 20.0); }
-  // A nonlinear parameter on a grid must show strongly (Kass, Raftery 1995): a drift that settles at once is a level.
-  // One that is looked for in a scan costs its trials. What no name fits must show strongly beside what has one.
-  double penalty(std::size_t candidate, std::size_t columns) const {
-    const bool fitted = candidates()[candidate].nonlinear && candidates()[candidate].scan == nullptr;
-    return static_cast<double>(columns) * std::log(effective_rows()) +
-           (fitted ? strong_evidence : 2.0 * std::log(trials(candidate))) +
-           (candidates()[candidate].outside() ? strong_evidence : 0.0);
-  }
-  // n_eff ln(square) and the price of the columns (extended BIC: Chen, Chen 2008).
-  double score(const Set& set) const {
-    const auto columns = columns_of(set);
-    double price = 0.0;
-    for (const auto* option : set) price += penalty(option->candidate, option->columns.size());
-    return effective_rows() * std::log(std::max(evidence_.fit(columns).left, 1e-300)) + price;
-  }
-  bool all_possible(const Set& set) const {
-    const auto weights = evidence_.fit(columns_of(set)).weights;
-    Eigen::Index at = 0;
-    for (const auto* option : set) {
-      const auto count = static_cast<Eigen::Index>(option->columns.size());
-      if (!candidates()[option->candidate].possible(scene_, option->nonlinear, weights.segment(at, count)))
-        return false;
-      at += count;
-    }
-    return true;
-  }
-
-  const Option* best_of(std::size_t candidate, const Set& beside) const {
-    const Option* best = nullptr;
-    double least = std::numeric_limits<double>::infinity();
-    for (const auto& option : options_) {
-      if (option->candidate != candidate) continue;
-      auto set = beside;
-      set.push_back(option.get());
-      const double left = score(set);  // options of one candidate may differ in columns
-      if (left >= least || !all_possible(set)) continue;
-      least = left;
-      best = option.get();
-    }
-    return best;
-  }
-  // Every term's nonlinear parameter anew, given the others.
-  void profile(Set& set) const {
-    for (int round = 0; round < 2; ++round)
-      for (std::size_t k = 0; k < set.size(); ++k) {
-        auto others = set;
-        others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
-        if (const auto* better = best_of(set[k]->candidate, others)) set[k] = better;
-      }
   }
   void improve(Set& set) {
     profile(set);
@@ -188,13 +60,7 @@ class Search {
   void note(std::size_t candidate, const Judgement& judgement);
   std::vector<std::size_t> alternatives(const Set& set, std::size_t term) const;
 
-  const LogRows& rows_;
-  Scene& scene_;
-  double correlation_ = 1.0;          // rows, of the residual, whitened or not
-  Evidence evidence_;                 // whitened in the second part of a run
-  Evidence plain_;                    // never whitened: for what a term takes off the force
-  std::vector<std::size_t> settled_;  // candidates that stood before it
-  std::vector<std::unique_ptr<Option>> options_;
+  std::vector<std::size_t> settled_;  // candidates that stood before it was whitened
   std::size_t rounds_ = 0;
   std::vector<Discarded> discarded_;
 };

@@ -74,6 +74,14 @@ Eigen::VectorXd Whitening::transposed(const Eigen::VectorXd& column) const {
   return out;
 }
 
+Eigen::VectorXd Whitening::coloured(const Eigen::VectorXd& white) const {
+  Eigen::VectorXd out = white;
+  for (Eigen::Index i = 0; i < out.size(); ++i)
+    for (std::size_t j = 0; j < predictor_.size() && static_cast<Eigen::Index>(j) < i; ++j)
+      out[i] += predictor_[j] * out[i - 1 - static_cast<Eigen::Index>(j)];
+  return out;
+}
+
 double Whitening::gain_square(double cycles) const {
   std::complex<double> sum = 1.0;
   for (std::size_t j = 0; j < predictor_.size(); ++j)

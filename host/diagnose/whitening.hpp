@@ -24,6 +24,8 @@ class Whitening {
   Eigen::VectorXd operator()(const Eigen::VectorXd& column) const;
   // The transpose of that: (W'c)'d = c'(W d).
   Eigen::VectorXd transposed(const Eigen::VectorXd& column) const;
+  // White values of one record coloured as the residual was: the inverse of whitening, from rest.
+  Eigen::VectorXd coloured(const Eigen::VectorXd& white) const;
   // Square of the gain at `cycles` a row.
   double gain_square(double cycles) const;
   // The same noise in rows of other logs at the same rate.

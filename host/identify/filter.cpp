@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -52,26 +54,43 @@ Lowpass design(int order, double edge, double gain, Prototype&& prototype) {
 }
 
 // In place, from the state that a constant input of `start` would have left. Sample by sample through all sections:
-// each waits for its own last output only, so that they work side by side.
-void filter_forward(const Lowpass& filter, std::vector<double>& values, double start) {
+// each waits for its own last output only, so that they work side by side. Value: a double, or several columns'.
+template <class Value>
+void filter_forward(const Lowpass& filter, std::vector<Value>& values, const Value& start) {
   struct State {
     FilterSection section;
-    double first, second;
+    Value first, second;
   };
   std::vector<State> states;
-  double level = start;
+  Value level = start;
   for (const auto& s : filter.sections) {
-    const double settled = level * (s.b0 + s.b1 + s.b2) / (1.0 + s.a1 + s.a2);
+    const Value settled = level * (s.b0 + s.b1 + s.b2) / (1.0 + s.a1 + s.a2);
     states.push_back({s, settled - s.b0 * level, s.b2 * level - s.a2 * settled});
     level = settled;
   }
-  for (double& value : values)
+  for (Value& value : values)
     for (auto& [s, first, second] : states) {
-      const double out = s.b0 * value + first;
+      const Value out = s.b0 * value + first;
       first = s.b1 * value - s.a1 * out + second;
       second = s.b2 * value - s.a2 * out;
       value = out;
     }
+}
+
+// `value(i)` of `size` samples, filtered with `pad` samples in front of them and behind.
+template <class Value, class At>
+std::vector<Value> both_ways(const Lowpass& filter, std::size_t size, std::size_t pad, At&& value) {
+  std::vector<Value> extended;
+  extended.reserve(size + 2 * pad);
+  const Value front = value(0), back = value(size - 1);
+  for (std::size_t i = pad; i > 0; --i) extended.push_back(2.0 * front - value(i));
+  for (std::size_t i = 0; i < size; ++i) extended.push_back(value(i));
+  for (std::size_t i = 1; i <= pad; ++i) extended.push_back(2.0 * back - value(size - 1 - i));
+  for (int way = 0; way < 2; ++way) {
+    filter_forward<Value>(filter, extended, Value(extended.front()));
+    std::reverse(extended.begin(), extended.end());
+  }
+  return extended;
 }
 
 }  // namespace
@@ -93,16 +112,33 @@ std::size_t default_padding(const Lowpass& filter) { return 3 * static_cast<std:
 std::vector<double> filter_both_ways(const Lowpass& filter, std::span<const double> values, std::size_t padding) {
   if (values.empty()) return {};
   const std::size_t pad = std::min(padding, values.size() - 1);
-  std::vector<double> extended;
-  extended.reserve(values.size() + 2 * pad);
-  for (std::size_t i = pad; i > 0; --i) extended.push_back(2.0 * values.front() - values[i]);
-  extended.insert(extended.end(), values.begin(), values.end());
-  for (std::size_t i = 1; i <= pad; ++i) extended.push_back(2.0 * values.back() - values[values.size() - 1 - i]);
-  for (int way = 0; way < 2; ++way) {
-    filter_forward(filter, extended, extended.front());
-    std::reverse(extended.begin(), extended.end());
-  }
+  const auto extended = both_ways<double>(filter, values.size(), pad, [&](std::size_t i) { return values[i]; });
   return {extended.begin() + static_cast<std::ptrdiff_t>(pad), extended.end() - static_cast<std::ptrdiff_t>(pad)};
+}
+
+std::vector<std::vector<double>> filter_both_ways(const Lowpass& filter,
+                                                  std::span<const std::span<const double>> columns,
+                                                  std::size_t padding) {
+  constexpr std::size_t lanes = 4;
+  using Lanes = Eigen::Array<double, lanes, 1>;
+  std::vector<std::vector<double>> filtered;
+  for (std::size_t first = 0; first < columns.size(); first += lanes) {
+    const std::size_t count = std::min(lanes, columns.size() - first), size = columns[first].size();
+    if (count == 1 || size == 0) {
+      for (std::size_t c = 0; c < count; ++c) filtered.push_back(filter_both_ways(filter, columns[first + c], padding));
+      continue;
+    }
+    const std::size_t pad = std::min(padding, size - 1);
+    std::array<const double*, lanes> from{};
+    for (std::size_t c = 0; c < lanes; ++c) from[c] = columns[first + std::min(c, count - 1)].data();
+    const auto extended = both_ways<Lanes>(
+        filter, size, pad, [&](std::size_t i) { return Lanes(from[0][i], from[1][i], from[2][i], from[3][i]); });
+    for (std::size_t c = 0; c < count; ++c) {
+      auto& column = filtered.emplace_back(size);
+      for (std::size_t i = 0; i < size; ++i) column[i] = extended[pad + i][static_cast<Eigen::Index>(c)];
+    }
+  }
+  return filtered;
 }
 
 std::vector<double> central_difference(std::span<const double> values, double step, int points) {

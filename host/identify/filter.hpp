@@ -31,6 +31,11 @@ std::size_t default_padding(const Lowpass& filter);
 
 // Filters forward and backward: zero phase, |G|^2. `padding` samples at both ends, fewer where `values` is shorter.
 std::vector<double> filter_both_ways(const Lowpass& filter, std::span<const double> values, std::size_t padding);
+// The same of several columns of one length, to the bit. Each sample waits for the one before it, so that four columns
+// side by side take as long as one.
+std::vector<std::vector<double>> filter_both_ways(const Lowpass& filter,
+                                                  std::span<const std::span<const double>> columns,
+                                                  std::size_t padding);
 
 // Derivative by central differences of 3 or 7 points; the ends by fewer points, the outermost one-sided. Its relative
 // error at the angular frequency w is (w step)^2/6 with 3 points and (w step)^6/140 with 7. Needs two values.

@@ -32,6 +32,19 @@ Eigen::VectorXd LogRows::stacked(const std::function<std::vector<double>(const M
   return all;
 }
 
+std::vector<Eigen::VectorXd> LogRows::stacked_together(
+    const std::function<std::vector<std::vector<double>>(const Motion&)>& columns) const {
+  std::vector<Eigen::VectorXd> all;
+  for (std::size_t k = 0; k < motions_.size(); ++k) {
+    const auto rows = filters_[k](columns(motions_[k]));
+    if (k == 0) all.assign(rows.size(), Eigen::VectorXd(force.size()));
+    for (std::size_t c = 0; c < rows.size(); ++c)
+      all[c].segment(static_cast<Eigen::Index>(logs_[k]), static_cast<Eigen::Index>(rows[c].size())) =
+          as_vector(rows[c]);
+  }
+  return all;
+}
+
 Eigen::VectorXd LogRows::sampled(const std::function<std::vector<double>(const Motion&)>& column) const {
   Eigen::VectorXd all(force.size());
   for (std::size_t k = 0; k < motions_.size(); ++k) {

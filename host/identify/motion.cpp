@@ -101,6 +101,17 @@ std::vector<double> RowFilter::operator()(std::span<const double> column) const 
   return every(filter_both_ways(*lowpass_, kept(column), padding_), ratio_);
 }
 
+std::vector<std::vector<double>> RowFilter::operator()(const std::vector<std::vector<double>>& columns) const {
+  std::vector<std::span<const double>> all;
+  for (const auto& column : columns) all.push_back(kept(column));
+  std::vector<std::vector<double>> rows;
+  if (lowpass_)
+    for (const auto& column : filter_both_ways(*lowpass_, all, padding_)) rows.push_back(every(column, ratio_));
+  else
+    for (const auto& column : all) rows.push_back(every(column, ratio_));
+  return rows;
+}
+
 std::vector<double> RowFilter::sampled(std::span<const double> column) const { return every(kept(column), ratio_); }
 
 }  // namespace stiction::host

@@ -58,6 +58,8 @@ class RowFilter {
   double period() const { return period_; }  // s, from row to row
   // The column's rows: without the skipped ends, filtered, every n-th value.
   std::vector<double> operator()(std::span<const double> column) const;
+  // Those of several columns at once, which takes less time.
+  std::vector<std::vector<double>> operator()(const std::vector<std::vector<double>>& columns) const;
   // The values at the rows, not filtered: of the time.
   std::vector<double> sampled(std::span<const double> column) const;
 

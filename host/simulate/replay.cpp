@@ -103,8 +103,9 @@ class Sampler {
   }
 
   // The values of the tick at t s; ticks come in order.
-  void add(double t, std::vector<Sample> values) {
-    before_ = std::exchange(now_, std::move(values));
+  void add(double t, const std::vector<Sample>& values) {
+    std::swap(before_, now_);
+    now_ = values;
     const double earlier = std::exchange(time_, t);
     for (std::size_t k = 0; k < places_.size(); ++k) {
       Place& p = places_[k];
@@ -216,9 +217,9 @@ Log replay(const sim::Machine& machine, const Log& log, const ReplaySettings& se
   ControlRun<S> run(machine, start);
   Sampler sampler(log, indices, machine);
   std::vector<sim::AxisSetPoint> points(machine.axes.size());
+  std::vector<Sample> values(indices.size());
   while (!sampler.done()) {
     const double t = zero + run.time();
-    std::vector<Sample> values(indices.size());
     for (std::size_t k = 0; k < indices.size(); ++k) {
       points[indices[k]] = motions[k].at(t);
       auto& plant = run.plant(indices[k]);
@@ -230,7 +231,7 @@ Log replay(const sim::Machine& machine, const Log& log, const ReplaySettings& se
       const auto& s = run.signals(indices[k]);
       values[k] = {sim::to_si(s.x), sim::to_si(s.v), sim::to_si(s.i), sim::to_si(s.i_set), values[k].force};
     }
-    sampler.add(t, std::move(values));
+    sampler.add(t, values);
   }
   auto out = sampler.finish();
   for (std::size_t k = 0; k < indices.size(); ++k) {

@@ -4,6 +4,7 @@
 // line_scan.hpp.
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 #include "host/diagnose/candidate.hpp"
@@ -20,6 +21,11 @@ Columns columns(const Scene& scene, const Motion& motion, double period) {
   const auto lowpass = butterworth(4, 2.0 * std::min(scene.signals.cutoff, 0.2 / motion.period) * motion.period);
   const ReadingResponse response(scene.axis, scene.timing, motion.period);
   const double viscous = viscous_of(scene.axis).value_or(0.0);
+  // What the drive answers where it is too fast for the log's rate.
+  std::vector<std::complex<double>> answer(motion.v.size());
+  for (std::size_t i = 0; i < answer.size(); ++i)
+    if (const double frequency = std::abs(motion.v[i]) / period; frequency >= 0.5 / motion.period)
+      answer[i] = response.drive(frequency);
   const auto column = [&](double quarter) {
     std::vector<double> phase(motion.x.size()), error(motion.x.size());
     for (std::size_t i = 0; i < error.size(); ++i) {
@@ -31,11 +37,9 @@ Columns columns(const Scene& scene, const Motion& motion, double period) {
     auto force = central_difference(speed, motion.period, scene.signals.difference_points);
     for (std::size_t i = 0; i < force.size(); ++i) {
       force[i] = -scene.axis.mass * force[i] - viscous * speed[i];
-      const double frequency = std::abs(motion.v[i]) / period;
-      if (frequency < 0.5 / motion.period) continue;
-      const auto answer = response.drive(frequency);
-      force[i] += answer.real() * std::cos(phase[i]) -
-                  (motion.v[i] < 0.0 ? -answer.imag() : answer.imag()) * std::sin(phase[i]);
+      if (answer[i] == 0.0) continue;
+      force[i] += answer[i].real() * std::cos(phase[i]) -
+                  (motion.v[i] < 0.0 ? -answer[i].imag() : answer[i].imag()) * std::sin(phase[i]);
     }
     return force;
   };

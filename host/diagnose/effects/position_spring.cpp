@@ -29,7 +29,6 @@ const Candidate position_spring{.name = "position_spring",
                                 .grid = grid,
                                 .columns = columns,
                                 .possible = any,
-                                .describe = describe,
-                                .names_constant = true};
+                                .describe = describe};
 
 }  // namespace stiction::host::effects

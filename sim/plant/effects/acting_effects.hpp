@@ -81,6 +81,7 @@ class ActingEffects {
   };
   // From position (m) and velocity (m/s) at the beginning of the step, and the motor's mean force (N) in it.
   Forces advance(double position, double velocity, double motor_force) {
+    if (forces_.empty()) return forces(motor_force);
     state_ = {position, velocity, direction_.advance(velocity, step_), start_ + step_ * static_cast<double>(steps_++),
               motor_force};
     for (ForceEffect& effect : forces_)

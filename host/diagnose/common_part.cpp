@@ -1,0 +1,68 @@
+#include "host/diagnose/common_part.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <unsupported/Eigen/FFT>
+
+namespace stiction::host {
+namespace {
+
+// Bands of a third of an octave, of at least this many lines.
+constexpr double ratio = 1.26;
+constexpr Eigen::Index fewest_lines = 24;
+
+}  // namespace
+
+void CommonPart::add(std::span<const double> run) {
+  samples_ = run.size();
+  if (runs_ == 0) single_.assign(run.begin(), run.end());
+  Eigen::VectorXd padded =
+      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(std::bit_ceil(std::max<std::size_t>(samples_, 2))));
+  padded.head(static_cast<Eigen::Index>(samples_)) =
+      Eigen::Map<const Eigen::VectorXd>(run.data(), static_cast<Eigen::Index>(samples_));
+  Eigen::FFT<double> fft;
+  Eigen::VectorXcd spectrum;
+  fft.fwd(spectrum, padded);
+  if (runs_++ == 0) {
+    sum_ = Eigen::VectorXcd::Zero(spectrum.size());
+    squares_ = Eigen::VectorXd::Zero(spectrum.size());
+  }
+  sum_ += spectrum;
+  squares_ += spectrum.cwiseAbs2();
+}
+
+double CommonPart::Band::share() const { return mean > 0.0 ? std::max(1.0 - own / mean, 0.0) : 0.0; }
+
+// Of the lines from 0 to half the rate.
+std::vector<CommonPart::Band> CommonPart::bands() const {
+  std::vector<Band> all;
+  const Eigen::Index lines = sum_.size() / 2 + 1;
+  const auto n = static_cast<double>(runs_);
+  for (Eigen::Index begin = 0; begin < lines;) {
+    auto end = std::max(begin + fewest_lines, static_cast<Eigen::Index>(ratio * static_cast<double>(begin)));
+    if (lines - end < fewest_lines) end = lines;
+    Band band{begin, end - begin};
+    band.mean = sum_.segment(begin, band.length).squaredNorm() / (n * n);
+    if (runs_ > 1) band.own = (squares_.segment(begin, band.length).sum() / n - band.mean) / (n - 1.0);
+    all.push_back(band);
+    begin = end;
+  }
+  return all;
+}
+
+std::vector<double> CommonPart::estimate() const {
+  if (runs_ == 1) return single_;
+  Eigen::VectorXcd spectrum = sum_ / static_cast<double>(runs_);
+  const Eigen::Index lines = spectrum.size();
+  for (const auto& band : bands())
+    for (Eigen::Index k = band.begin; k < band.begin + band.length; ++k) {
+      spectrum[k] *= band.share();
+      if (k > 0 && 2 * k < lines) spectrum[lines - k] = std::conj(spectrum[k]);
+    }
+  Eigen::FFT<double> fft;
+  Eigen::VectorXd signal;
+  fft.inv(signal, spectrum);
+  return {signal.data(), signal.data() + samples_};
+}
+
+}  // namespace stiction::host

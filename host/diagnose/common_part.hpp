@@ -1,0 +1,35 @@
+// What several runs of one record have in common, where each has a part of its own that is left to chance: their mean,
+// each band of frequencies times the share of its square that is common (Wiener 1949). A weight on it is then not too
+// small for what the runs do not agree on, however the frequencies are weighed: regression calibration (Carroll,
+// Ruppert, Stefanski, Crainiceanu 2006, ch. 4).
+#pragma once
+
+#include <Eigen/Dense>
+#include <span>
+#include <vector>
+
+namespace stiction::host {
+
+class CommonPart {
+ public:
+  // Equally long runs, in any unit.
+  void add(std::span<const double> run);
+
+  // Of a single run, of which nothing is known, that itself.
+  std::vector<double> estimate() const;
+
+ private:
+  struct Band {
+    Eigen::Index begin, length;
+    double mean = 0.0, own = 0.0;  // squares: of the mean, and what of it is the runs' own
+    double share() const;
+  };
+  std::vector<Band> bands() const;
+
+  std::size_t runs_ = 0, samples_ = 0;
+  std::vector<double> single_;  // the first run
+  Eigen::VectorXcd sum_;
+  Eigen::VectorXd squares_;
+};
+
+}  // namespace stiction::host

@@ -1,0 +1,72 @@
+// Sums of weights times waves over rows, at many orders (waves per unit of place) one after the other: what a line of a
+// residual is looked for with.
+#pragma once
+
+#include <Eigen/Dense>
+#include <array>
+#include <complex>
+#include <cstddef>
+#include <vector>
+
+namespace stiction::host {
+
+std::size_t power_of_two(std::size_t at_least);
+
+// What weight times (cosine, sine) takes off the residual's square, from the sums over residual times weight times
+// wave, weight squared times the wave of twice the order, and weight squared.
+double gain_of(std::complex<double> moment, std::complex<double> twice, double square);
+
+// For all orders 0, step, 2 step, .. at once (Dutt, Rokhlin 1993; Greengard, Lee 2004): the places fall into bins, fine
+// beside the shortest period that is looked at; each bin is spread over a coarser grid as a bell curve, whose transform
+// is known and divided out of the grid's. Against the sums themselves over the bins that leaves 1e-10.
+class WaveSums {
+ public:
+  WaveSums(double step, double highest_order);
+
+  // Two sets of weights at `place` (m, from 0 to an eighth of 1/step).
+  void transform(const Eigen::VectorXd& place, const Eigen::VectorXd& one, const Eigen::VectorXd& other);
+  // Their sums, at an order that counts steps.
+  std::complex<double> one(std::size_t order) const;
+  std::complex<double> other(std::size_t order) const;
+
+ private:
+  static constexpr std::size_t bins_per_cell = 4;
+  static constexpr std::size_t reach = 12;  // cells to either side
+
+  std::complex<double> mirrored(std::size_t order) const { return spectrum_[order == 0 ? 0 : cells_ - order]; }
+
+  std::size_t cells_;
+  double bins_per_metre_;
+  std::array<Eigen::Matrix<double, 1, 2 * reach>, bins_per_cell> bell_;
+  std::array<double, 2> size_{};
+  std::vector<std::complex<double>> grid_, spectrum_;  // of the one plus i times the other
+};
+
+// Waves of many rows from order to order, in packets of rows; what there is none of has weight 0.
+class TurningWaves {
+ public:
+  void clear() { packets_.clear(), rows_ = 0; }
+  // `moment`: the residual's factor of the wave, `square`: the factor of the wave's square; `turn`: to the next order.
+  void add(double moment, double square, std::complex<double> wave, std::complex<double> turn) {
+    const auto i = static_cast<Eigen::Index>(rows_++ % size);
+    if (i == 0) packets_.emplace_back();
+    auto& p = packets_.back();
+    p.moment[i] = moment, p.square[i] = square;
+    p.real[i] = wave.real(), p.imag[i] = wave.imag();
+    p.turn_real[i] = turn.real(), p.turn_imag[i] = turn.imag();
+  }
+  // Of this order; goes on to the next.
+  double gain();
+
+ private:
+  static constexpr int size = 4;
+  using Packet = Eigen::Array<double, size, 1>;
+  struct Rows {
+    Packet moment = Packet::Zero(), square = Packet::Zero(), real = Packet::Zero(), imag = Packet::Zero(),
+           turn_real = Packet::Zero(), turn_imag = Packet::Zero();
+  };
+  std::vector<Rows> packets_;
+  std::size_t rows_ = 0;
+};
+
+}  // namespace stiction::host
