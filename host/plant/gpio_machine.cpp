@@ -101,6 +101,8 @@ void GpioMachine::serve(const std::function<bool()>& stop) {
 }
 
 void GpioMachine::tick(std::int64_t time_ns) {
+  const hal::MonotonicTime clock;
+  clock.sleep_until(time_ns);
   take_commands();
   plant_.advance(commands_);
   ++tick_;
@@ -109,7 +111,6 @@ void GpioMachine::tick(std::int64_t time_ns) {
   edges_.clear();
   for (std::size_t i = 0; i < encoders_.size(); ++i) plan_edges(i, time_ns);
   std::stable_sort(edges_.begin(), edges_.end(), [](const Edge& a, const Edge& b) { return a.time_ns < b.time_ns; });
-  const hal::MonotonicTime clock;
   for (const auto& edge : edges_) {
     clock.sleep_until(edge.time_ns);
     encoders_[edge.axis].step(edge.forward);

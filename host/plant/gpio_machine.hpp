@@ -50,7 +50,7 @@ class GpioMachine {
   // Serves until `stop` is true; it is asked each tick.
   void serve(const std::function<bool()>& stop);
 
-  // One tick, which begins at `time_ns` of CLOCK_MONOTONIC; returns when its last edge was played.
+  // One tick, which begins at `time_ns` of CLOCK_MONOTONIC; returns when its last edge has been played.
   void tick(std::int64_t time_ns);
 
   std::int64_t count(std::size_t axis) const { return encoders_[axis].count(); }  // increments

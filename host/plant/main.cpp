@@ -5,6 +5,7 @@
 #include <string>
 
 #include "hal/program.hpp"
+#include "hal/tick_clock.hpp"
 #include "host/plant/can_nodes.hpp"
 #include "host/plant/gpio_machine.hpp"
 #include "host/plant/modbus_slave.hpp"
@@ -26,8 +27,9 @@ int serve(const PlantOptions& options) {
   const auto marks = marks_of(options, machine);
   SimulatedMachine simulated(machine, {start, marks, options.seed}, faults_of(options, machine),
                              [&](const PlantFault& fault, std::uint64_t tick) {
-                               fmt::print("tick {}: {} on axis {} for {} ticks\n", tick, fault.kind->name,
-                                          machine.axes[fault.axis].name, fault.ticks);
+                               fmt::print("{:.6f} s, tick {}: {} on axis {} for {} ticks\n",
+                                          static_cast<double>(hal::MonotonicTime{}.now_ns()) * 1e-9, tick,
+                                          fault.kind->name, machine.axes[fault.axis].name, fault.ticks);
                              });
   const auto announce = [&] {
     fmt::print("stiction-plant: {} on {}, {} axes\n", machine.id, options.bus, machine.axes.size());

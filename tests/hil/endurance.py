@@ -73,7 +73,7 @@ def logged_faults(text):
 
 def judge(plant, drive, status, peer):
     """Prints what became of each fault; true when all was as it must be."""
-    injected = [(int(tick), kind) for tick, kind in re.findall(r"^tick (\d+): (\S+) on axis X", plant, re.M)]
+    injected = [(int(tick), kind) for tick, kind in re.findall(r"tick (\d+): (\S+) on axis X", plant)]
     faults = logged_faults(drive)
     seen, named_otherwise = 0, 0
     for tick, kind in injected:
