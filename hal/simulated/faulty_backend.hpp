@@ -123,9 +123,7 @@ class FaultyBackend {
   void read_inputs(std::span<DigitalInputs<S>> inputs) {
     for (std::size_t i = 0; i < nodes_.size(); ++i) inputs[i] = nodes_[i].inputs;
   }
-  Fault fault(std::size_t axis) const {
-    return nodes_[axis].faults.encoder_signal ? Fault::encoder_signal : nodes_[axis].seen;
-  }
+  Fault fault(std::size_t axis) const { return nodes_[axis].seen; }
 
   void set_brake(std::size_t axis, bool released) { nodes_[axis].brake_released = released; }
   bool brake_released(std::size_t axis) const { return nodes_[axis].brake_released; }
@@ -208,6 +206,7 @@ class FaultyBackend {
     node.late = fault == FrameFault::late || fault == FrameFault::out_of_order;
     node.disturbed += counts.disturbed;
     node.seen = node.watch.step(counts);
+    if (faults.encoder_signal) node.seen = Fault::encoder_signal;
     if (counts.valid) node.newest = sent;
     return node.newest;
   }
