@@ -7,8 +7,8 @@ grew.
 usage: endurance.py [--minutes 10] [--every SECONDS] [--seed 1] [DIR]
 
 The machine is the measured EMPS at its own 1 ms, which a real CAN bus of 1 Mbit/s carries, on a long axis with an index
-mark every 100 mm. The cross table's 62.5 us would take a hundred times as long: the loop's kernel makes a thousand to
-two thousand ticks a second of its own time, whatever their period.
+mark every 100 mm. The loop's kernel makes 400 to 1500 ticks a second of the machine's own time, whatever
+their period: the cross table's 62.5 us would take more than sixteen times as long.
 """
 
 import argparse
