@@ -63,7 +63,7 @@ inline constexpr std::array<PlantFaultKind, 20> plant_faults{{
     of_frames("bus-off", FrameFaultKind::bus_off, "the controller says that it left the bus, then that it is back"),
     of_frames("babble", FrameFaultKind::babble, "a node sends 20 frames of nobody a tick"),
     of_lines("tracks-together", LineFaultKind::tracks_together, "both tracks of the encoder change at once"),
-    of_lines("track-noise", LineFaultKind::track_noise, "20 edges on track A of the encoder in a tick"),
+    of_lines("track-noise", LineFaultKind::track_noise, "20 edges in a tick, forth and back"),
     of_part("encoder-open", "no valid position; on lines: no edges", [](auto& f, bool acts) { f.encoder_open = acts; }),
     of_part("encoder-frozen", "the same position again and again", [](auto& f, bool acts) { f.encoder_frozen = acts; }),
     of_part("encoder-jump", "50 um on every position",

@@ -72,6 +72,12 @@ PlantFault plant_fault(const std::string& text, const std::string& bus, const si
   return fault;
 }
 
+// For the help: where a kind can be had.
+std::string_view bus_note(const PlantFaultKind& kind) {
+  if (!kind.possible_on("gpio")) return kind.possible_on("modbus") ? "not on gpio: " : "can: ";
+  return kind.possible_on("can") ? "" : "gpio: ";
+}
+
 struct MarkName {
   std::string_view name;
   void (*set)(hal::AxisMarks&, double);
@@ -108,7 +114,7 @@ void PlantOptions::add_to(CLI::App& program) {
       ->type_name("AXIS.MARK=QUANTITY")
       ->allow_extra_args(false);
   std::string faults_help = "a fault; may be repeated: KIND,axis=X,at=1.5 s,ticks=3. KIND:";
-  for (const auto& row : plant_faults) faults_help += fmt::format(" {} ({});", row.name, row.text);
+  for (const auto& row : plant_faults) faults_help += fmt::format(" {} ({}{});", row.name, bus_note(row), row.text);
   faults_help.back() = '.';
   program.add_option("--fault", faults, faults_help)->type_name("FAULT")->allow_extra_args(false);
   program
