@@ -2,6 +2,7 @@
 """The drive's programme against the simulated machine with nothing between them but digital lines: a chip of gpio-sim and
 a folder of the PWM class's shape, on a kernel in simulated time. Needs what loop_test.py needs."""
 
+import json
 import os
 import pathlib
 import re
@@ -37,6 +38,7 @@ RUN = """
 {plant} >{name}.plant 2>&1 &
 plant=$!
 while [ ! -s {name}.plant ]; do sleep 0.01; done
+{beside}
 {drive} >{name}.drive 2>&1
 echo $? >{name}.status
 sleep 0.5
@@ -45,13 +47,27 @@ wait $plant
 """
 
 
-def script(name, faults=()):
+# Beside the drive that serves: a Modbus master homes the axis again and again and resets what there is, for 12 s.
+PORT = 15022
+SERVED = """
+(while ! grep -q 'has begun' served.drive; do sleep 0.1; done
+python3 {peer} {port} 0.2 $plant >served.peer 2>&1
+kill -TERM $(pidof stictiond)) &
+"""
+
+
+def script(name, faults=(), task=("--hold", "4"), beside=""):
     machine = ["--machine", HERE / "gpio_axis.toml", "--set", "drive.gpio.pwm_chip=/run/pwm"]
     plant = [loop.BIN / "stiction-plant", *machine, "--bus", "gpio", "--mark", f"X.limit_negative={SWITCH} m"]
     for fault in faults:
         plant += ["--fault", fault]
-    drive = [loop.BIN / "stictiond", *machine, "--hal", "gpio", "--hold", "4"]
-    return RUN.format(name=name, plant=shlex.join(map(str, plant)), drive=shlex.join(map(str, drive)))
+    drive = [loop.BIN / "stictiond", *machine, "--hal", "gpio", *task]
+    return RUN.format(name=name, plant=shlex.join(map(str, plant)), drive=shlex.join(map(str, drive)), beside=beside)
+
+
+def served():
+    task = ["--set", f"drive.modbus_server.address=127.0.0.1:{PORT}", "--set", "drive.modbus_server.motion=allowed"]
+    return script("served", ["tracks-together,at=4 s"], task, SERVED.format(peer=HERE / "endurance_peer.py", port=PORT))
 
 
 class Run:
@@ -72,6 +88,7 @@ class Lines(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         scripts = [script("health")]
+        scripts.append(served())
         scripts += [script(kind, [f"{kind},at={at},ticks={ticks}"]) for kind, at, ticks, *_ in FAULTS]
         loop.boot(FOLDER / "lines", "".join(scripts), through=(HERE / "gpio_guest.sh",))
 
@@ -84,6 +101,14 @@ class Lines(unittest.TestCase):
         way = run.stands - SWITCH
         self.assertTrue(0 <= way < 214e-6, run.plant)
         figure("homing over lines, from the switch's edge to rest", f"{way * 1e6:.0f} um (bound 214 um)")
+
+    def test_that_lost_an_edge_are_reset_over_modbus_and_the_axis_homes_again(self):
+        run, peer = Run("served"), json.loads((FOLDER / "lines/served.peer").read_text())
+        self.assertEqual([number for _, number in run.faults], [36], run.drive + run.plant)
+        self.assertIn("last fault of the encoder's tracks: both tracks changed at once", run.drive)
+        self.assertEqual((peer["resets"], peer["enabled"], peer["state"]), (1, 2, "enabled"), peer)
+        self.assertGreater(peer["runs"], 1, peer)
+        self.assertEqual(run.status, 0, run.drive)
 
     def test_show_a_fault_in_its_time_under_its_own_name_and_nothing_moves_afterwards(self):
         for kind, _, _, numbers, within in FAULTS:
