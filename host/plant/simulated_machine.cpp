@@ -30,7 +30,7 @@ PlantUnderBus SimulatedMachine::under_bus() {
                 faulty_.read(feedback);
                 faulty_.read_inputs(inputs);
               },
-          .set_brake = [this](std::size_t axis, bool closed) { braked_[axis] = closed; }};
+          .set_brake = [this](std::size_t axis, bool closed) { braked_[axis] = closed ? 1 : 0; }};
 }
 
 void SimulatedMachine::advance(std::span<const Command<FixedSignals>> commands) {
