@@ -43,7 +43,6 @@ while [ ! -s plant.txt ]; do sleep 0.01; done
 drive=$!
 while ! grep -q 'has begun' drive.txt; do kill -0 $drive || exit 3; sleep 0.1; done
 python3 {peer} {port} {minutes} $drive $plant >peer.txt 2>&1
-sleep 1
 kill -TERM $drive
 wait $drive
 echo $? >drive.status

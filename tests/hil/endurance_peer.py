@@ -17,6 +17,7 @@ HOMING = 6
 DISABLE, SHUTDOWN, SWITCH_ON, ENABLE, START_HOMING, RESET = 0x00, 0x06, 0x07, 0x0F, 0x1F, 0x80
 HOMED = 1 << 12
 POLL = 0.1  # s
+BACK = 10.0  # s that an axis may take at the end to come back from a last fault
 
 
 def state_of(status):
@@ -50,7 +51,8 @@ def main(port, minutes, *processes):
     samples = []
     word, state = None, None
     begin = time.monotonic()
-    while (now := time.monotonic() - begin) < 60 * float(minutes):
+    end = 60 * float(minutes)
+    while (now := time.monotonic() - begin) < end or (state != "enabled" and now < end + BACK):
         if now >= 60 * len(samples):
             samples.append([memory(process) for process in processes])
         status = peer.read_input_registers(STATUSWORD, 1, slave=1).registers[0]
