@@ -58,10 +58,8 @@ std::uint64_t GpioInputsOutputs::lost_edges(std::size_t axis) const {
 
 void GpioInputsOutputs::set_enable(std::size_t axis, bool on) {
   const auto& places = axes_[axis];
-  const bool release = on && places.released;
-  if (places.brake && !release) lines_.set(*places.brake, false);
   if (places.enable) lines_.set(*places.enable, on);
-  if (places.brake && release) lines_.set(*places.brake, true);
+  if (places.brake) lines_.set(*places.brake, on && places.released);
 }
 
 }  // namespace stiction::hal
