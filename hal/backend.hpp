@@ -48,4 +48,11 @@ concept WiredBackend = Backend<B> &&
   { backend.fault(axis) } -> std::same_as<Fault>;
 };
 
+// A backend that drives holding brakes. Asked before each write(), whose command it goes with; a brake is engaged while
+// its power stage is off, whatever was asked.
+template <class B>
+concept BrakeBackend = Backend<B> && requires(B backend, std::size_t axis, bool released) {
+  { backend.set_brake(axis, released) } -> std::same_as<void>;
+};
+
 }  // namespace stiction::hal

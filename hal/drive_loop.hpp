@@ -18,12 +18,6 @@
 
 namespace stiction::hal {
 
-// A backend that drives holding brakes.
-template <class B>
-concept BrakeBackend = Backend<B> && requires(B backend, std::size_t axis, bool released) {
-  { backend.set_brake(axis, released) } -> std::same_as<void>;
-};
-
 template <class S>
 struct AxisEvent {
   std::size_t axis = 0;

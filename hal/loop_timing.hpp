@@ -85,6 +85,8 @@ class TimedBackend {
 
   Fault fault(std::size_t axis) requires WiredBackend<B> { return backend_.fault(axis); }
 
+  void set_brake(std::size_t axis, bool released) requires BrakeBackend<B> { backend_.set_brake(axis, released); }
+
  private:
   B& backend_;
   BasicLoopTiming<Time>& timing_;

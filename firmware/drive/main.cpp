@@ -3,9 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
-#include <cstdio>
-#include <exception>
 #include <string>
 #include <vector>
 
@@ -21,12 +18,14 @@
 #include "hal/gpio/gpio_backend.hpp"
 #include "hal/modbus/modbus_backend.hpp"
 #include "hal/paced_backend.hpp"
+#include "hal/program.hpp"
 #include "hal/simulated/simulated_backend.hpp"
 
 namespace stiction::drive {
 namespace {
 
-constexpr int exit_done = 0, exit_fault = 1, exit_refused = 2;
+using hal::exit_refused;
+constexpr int exit_done = 0, exit_fault = 1;
 
 int status_of(const RunResult& result) { return result.faulted ? exit_fault : exit_done; }
 
@@ -73,7 +72,11 @@ int run_can(const DriveConfiguration& configuration, const DriveOptions& options
 
 int run_gpio(const DriveConfiguration& configuration, const DriveOptions& options) {
   hal::GpioBackend backend(gpio_configuration(configuration.setup, configuration.machine), configuration.period_ns);
-  return status_of(run(backend, &backend.clock(), configuration, options, "gpio " + configuration.setup.gpio->chip));
+  const auto result = run(backend, &backend.clock(), configuration, options, "gpio " + configuration.setup.gpio->chip);
+  for (std::size_t i = 0; i < configuration.names.size(); ++i)
+    fmt::print("axis {}: at least {} edges lost; last fault of the encoder's tracks: {}\n", configuration.names[i],
+               backend.lost_edges(i), name_of(backend.last_encoder_fault(i)));
+  return status_of(result);
 }
 
 int run_modbus(const DriveConfiguration& configuration, const DriveOptions& options) {
@@ -141,41 +144,18 @@ int serve(const DriveOptions& options) {
     fmt::print("{}", text_of(measured, configuration.period_ns));
     return exit_done;
   }
-  catch_stop_signals();
+  hal::catch_stop_signals();
   if (options.hal == "can") return run_can(configuration, options);
   if (options.hal == "gpio") return run_gpio(configuration, options);
   if (options.hal == "modbus") return run_modbus(configuration, options);
   return run_simulated(configuration, options);
 }
 
-int start(int argc, char** argv) {
-  CLI::App program("the drive: closes the loops of a machine's axes over its buses", "stictiond");
-  program.set_version_flag("--version", STICTION_VERSION);
-  DriveOptions options;
-  options.add_to(program);
-  try {
-    program.parse(argc, argv);
-  } catch (const CLI::Success& wanted) {
-    return program.exit(wanted);
-  } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "stictiond: {}; see stictiond --help\n", error.what());
-    return exit_refused;
-  }
-  try {
-    return serve(options);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "stictiond: {}\n", error.what());
-    return exit_refused;
-  }
-}
-
 }  // namespace
 }  // namespace stiction::drive
 
 int main(int argc, char** argv) {
-  try {
-    return stiction::drive::start(argc, argv);
-  } catch (...) {
-    return stiction::drive::exit_refused;  // standard error cannot be written either
-  }
+  return stiction::hal::run_program<stiction::drive::DriveOptions>(
+      argc, argv, {"stictiond", "the drive: closes the loops of a machine's axes over its buses", STICTION_VERSION},
+      stiction::drive::serve);
 }

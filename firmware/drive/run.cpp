@@ -8,15 +8,6 @@
 
 namespace stiction::drive {
 
-volatile std::sig_atomic_t stop_wanted = 0;
-
-void catch_stop_signals() {
-  struct sigaction action {};
-  action.sa_handler = [](int) { stop_wanted = 1; };
-  ::sigaction(SIGTERM, &action, nullptr);
-  ::sigaction(SIGINT, &action, nullptr);
-}
-
 std::string describe_timing(const hal::LoopTiming& timing, const hal::TimeHistogram& lateness, std::uint64_t missed) {
   std::string text = fmt::format("{:<10} {:>12} {:>12} {:>12}\n", "time, us", "median", "99.9 %", "largest");
   const auto row = [&](const char* name, const hal::TimeHistogram& histogram) {

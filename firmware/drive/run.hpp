@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <csignal>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,14 +15,11 @@
 #include "firmware/drive/service_notify.hpp"
 #include "firmware/drive/service_thread.hpp"
 #include "hal/loop_timing.hpp"
+#include "hal/program.hpp"
 #include "hal/tick_clock.hpp"
 #include "sim/control/conversion.hpp"
 
 namespace stiction::drive {
-
-// Set by SIGTERM and SIGINT: a controlled stop, then the end.
-extern volatile std::sig_atomic_t stop_wanted;
-void catch_stop_signals();
 
 struct RunResult {
   bool faulted = false;
@@ -118,7 +114,7 @@ RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& confi
     programme.tick(false);
     log.push(loop.now_ns(), LogLevel::info, "the loop has begun");
     while (!programme.over()) {
-      programme.tick(stop_wanted != 0);
+      programme.tick(hal::stop_wanted != 0);  // by a signal: a controlled stop, then the end
       if (modbus && loop.loop().slow()) serve_modbus(loop, programme, *modbus);
     }
     notify.stopping("the axes are off");

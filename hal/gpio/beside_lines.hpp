@@ -59,6 +59,7 @@ class BesideLines {
   }
 
   Fault fault(std::size_t axis) { return backend_.fault(axis); }
+  void set_brake(std::size_t axis, bool released) { io_.set_brake(axis, released); }
 
   B& backend() { return backend_; }
   const GpioInputsOutputs& lines() const { return io_; }

@@ -53,7 +53,7 @@ void GpioBackend::read(std::span<Feedback<Signals>> feedback) const {
     feedback[i] = {.position = encoder.position(),
                    .position_time_ns = encoder.time_ns(),
                    .position_valid = encoder.valid(),
-                   .fault = io_.fault(i) || axes_[i]->bridge.failed() || encoder.fault() != QuadratureFault::none};
+                   .fault = io_.fault(i) || axes_[i]->bridge.failed()};
   }
 }
 

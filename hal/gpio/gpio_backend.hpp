@@ -34,14 +34,15 @@ class GpioBackend {
   void write(std::span<const Command<Signals>> command);
   void read_inputs(std::span<DigitalInputs<Signals>> inputs);
 
-  // None: GPIO has no bus of its own. What the encoder's lines show (encoder_fault) and a chip that stopped answering
-  // reach the axis as its fault input, in the tick that sees them.
-  Fault fault(std::size_t) const { return Fault::none; }
+  // What the encoder's edges show; a chip or a PWM that stopped answering reaches the axis as its fault input instead.
+  Fault fault(std::size_t axis) const {
+    return encoder_fault(axis) == QuadratureFault::none ? Fault::none : Fault::encoder_signal;
+  }
   QuadratureFault encoder_fault(std::size_t axis) const { return axes_[axis]->encoder.fault(); }
-  std::uint64_t lost_edges(std::size_t axis) const;
+  QuadratureFault last_encoder_fault(std::size_t axis) const { return axes_[axis]->encoder.last_fault(); }
+  std::uint64_t lost_edges(std::size_t axis) const;  // at least, since the start
 
-  // Forgets the encoder's fault; the axis has to be homed again.
-  void restart_encoder(std::size_t axis) { axes_[axis]->encoder.restart(); }
+  void set_brake(std::size_t axis, bool released) { io_.set_brake(axis, released); }
 
   TickClock& clock() { return clock_; }
 
@@ -60,6 +61,6 @@ class GpioBackend {
   bool started_ = false;
 };
 
-static_assert(WiredBackend<GpioBackend>);
+static_assert(WiredBackend<GpioBackend> && BrakeBackend<GpioBackend>);
 
 }  // namespace stiction::hal

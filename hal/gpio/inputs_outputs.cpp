@@ -17,7 +17,8 @@ GpioInputsOutputs::GpioInputsOutputs(Lines& lines, std::span<const AxisLines> ax
                      .limit_negative = input(wired.limit_negative, "negative limit"),
                      .limit_positive = input(wired.limit_positive, "positive limit"),
                      .home = input(wired.home, "home"),
-                     .index = input(wired.index, "index")});
+                     .index = input(wired.index, "index"),
+                     .released = true});
   }
 }
 
@@ -58,7 +59,7 @@ std::uint64_t GpioInputsOutputs::lost_edges(std::size_t axis) const {
 void GpioInputsOutputs::set_enable(std::size_t axis, bool on) {
   const auto& places = axes_[axis];
   if (places.enable) lines_.set(*places.enable, on);
-  if (places.brake) lines_.set(*places.brake, on);
+  if (places.brake) lines_.set(*places.brake, on && places.released);
 }
 
 }  // namespace stiction::hal

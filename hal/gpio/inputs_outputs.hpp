@@ -29,13 +29,16 @@ class GpioInputsOutputs {
   // Edges of the axis' lines that must have been lost, at least; none of them is a fault by itself.
   std::uint64_t lost_edges(std::size_t axis) const;
 
-  // Power stage and brake: the brake is released while the power stage is on, and off it is engaged with it.
+  // Power stage, and with it the brake: released while the power stage is on, unless set_brake() said otherwise.
   void set_enable(std::size_t axis, bool on);
+  // From the next set_enable() on. A drive engages its brake while the power still holds the axis.
+  void set_brake(std::size_t axis, bool released) { axes_[axis].released = released; }
 
  private:
   using Place = std::optional<std::size_t>;
   struct Axis {
     Place enable, brake, fault, limit_negative, limit_positive, home, index;
+    bool released = true;  // the brake, while the power is on
   };
 
   Lines& lines_;

@@ -161,6 +161,7 @@ void Lines::drain(Input& input, int descriptor) {
     if (errno != EAGAIN && errno != EINTR) failed_ = true;
     return;
   }
+  if (count > 0) input.differs_since_ns = 0;
   for (int i = 0; i < count; ++i) {
     const auto& event = events[static_cast<std::size_t>(i)];
     const bool rising = event.event_type == GPIOD_LINE_EVENT_RISING_EDGE;
@@ -170,7 +171,7 @@ void Lines::drain(Input& input, int descriptor) {
   }
 }
 
-// The level may be newer than the edges read; only one that stays different tells.
+// The level may be newer than the edges read; only one that stays different while no edge comes tells.
 void Lines::look_at(Input& input, std::int64_t now_ns) {
   const int level = ::gpiod_line_get_value(input.line);
   if (level < 0) {
@@ -179,7 +180,7 @@ void Lines::look_at(Input& input, std::int64_t now_ns) {
   }
   if ((level > 0) == input.level) {
     input.differs_since_ns = 0;
-  } else if (input.differs_since_ns == 0 || input.edge_count > 0) {
+  } else if (input.differs_since_ns == 0) {
     input.differs_since_ns = now_ns;
   } else if (now_ns - input.differs_since_ns > patience_ns) {
     ++input.lost;

@@ -133,13 +133,14 @@ void PwmBridge::open(Channel& channel, std::int64_t period_ns) {
   if (channel.duty_file < 0) throw GpioError(fmt::format("PWM {}: {}", channel.folder.string(), std::strerror(errno)));
 }
 
-// Gives back what was taken; what cannot be given back is left to whoever reads the kernel's state.
+// Gives back what was taken, also half of it; what cannot be given back is left to whoever reads the kernel's state.
+// A channel that was found running is somebody else's.
 void PwmBridge::close(Channel& channel) {
-  if (channel.duty_file < 0) return;
-  ::close(channel.duty_file);
+  const bool own = channel.duty_file >= 0;
+  if (own) ::close(channel.duty_file);
   channel.duty_file = -1;
   try {
-    set_attribute(channel.folder / "enable", 0);
+    if (own) set_attribute(channel.folder / "enable", 0);
     if (channel.exported_here) set_attribute(chip_ / "unexport", channel.number);
   } catch (const GpioError&) {
     failed_ = true;

@@ -34,20 +34,31 @@ QuadratureInput::QuadratureInput(Lines& lines, const QuadratureConfig& config, c
 void QuadratureInput::restart() {
   tracker_.start(lines_.level(a_), lines_.level(b_));
   lost_before_ = lost_edges();
+  trips_before_ = tracker_.trips();
 }
 
 void QuadratureInput::update(std::int64_t now_ns, std::span<const Edge> index, bool index_queue_was_full) {
   using Track = QuadratureTracker::Track;
   if (lost_edges() != lost_before_) tracker_.trip(QuadratureFault::lost_edge);
+  lost_before_ = lost_edges();
   if (lines_.queue_was_full(a_) || lines_.queue_was_full(b_) || index_queue_was_full)
     tracker_.trip(QuadratureFault::queue_full);
   for (const auto& edge : lines_.edges(a_)) tracker_.add(Track::a, edge);
   for (const auto& edge : lines_.edges(b_)) tracker_.add(Track::b, edge);
   for (const auto& edge : index) tracker_.add(Track::index, edge);
   time_ns_ = tracker_.advance(now_ns);
+  recover(now_ns);
   const auto position = position_of(tracker_.count());
   valid_ = position && tracker_.fault() == QuadratureFault::none && !lines_.failed();
   if (position) position_ = *position;
+}
+
+void QuadratureInput::recover(std::int64_t now_ns) {
+  if (tracker_.fault() == QuadratureFault::none) return;
+  last_fault_ = tracker_.fault();
+  if (tracker_.trips() != trips_before_) tripped_ns_ = now_ns;
+  trips_before_ = tracker_.trips();
+  if (now_ns - tripped_ns_ >= calm_ns) restart();
 }
 
 std::optional<FixedSignals::Position> QuadratureInput::position_of(std::int64_t count) const {

@@ -25,21 +25,31 @@ class QuadratureInput {
   std::int64_t time_ns() const { return time_ns_; }
   std::int64_t count() const { return tracker_.count(); }
   std::int64_t last_edge_ns() const { return tracker_.last_edge_ns(); }
+  // Holds as long as its cause and calm_ns longer; then the count begins again at 0, which is another position and
+  // wants homing.
   QuadratureFault fault() const { return tracker_.fault(); }
+  QuadratureFault last_fault() const { return last_fault_; }  // since the start; none: there was none
   std::uint64_t lost_edges() const { return lines_.lost_edges(a_) + lines_.lost_edges(b_); }
   std::optional<FixedSignals::Position> take_index();
 
-  // Forgets a fault and counts again from 0: the position is then another one and wants homing.
+  // Begins at 0 with the levels of the last poll and no fault.
   void restart();
+
+  // Without a new cause for so long: longer than a contact bounces or a burst of noise pauses.
+  static constexpr std::int64_t calm_ns = 100'000'000;
 
  private:
   std::optional<FixedSignals::Position> position_of(std::int64_t count) const;
+  void recover(std::int64_t now_ns);
 
   Lines& lines_;
   std::size_t a_, b_;
   std::int64_t increment_;  // 2^-60 m
   QuadratureTracker tracker_;
   std::uint64_t lost_before_ = 0;
+  std::uint64_t trips_before_ = 0;
+  std::int64_t tripped_ns_ = 0;  // when the last cause was seen
+  QuadratureFault last_fault_ = QuadratureFault::none;
   FixedSignals::Position position_{};
   std::int64_t time_ns_ = 0;
   bool valid_ = false;

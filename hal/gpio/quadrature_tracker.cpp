@@ -29,6 +29,7 @@ void QuadratureTracker::add(Track track, const Edge& edge) {
 }
 
 void QuadratureTracker::trip(QuadratureFault fault) {
+  ++trips_;
   if (fault_ == QuadratureFault::none) fault_ = fault;
 }
 

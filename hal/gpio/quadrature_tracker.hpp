@@ -45,6 +45,7 @@ class QuadratureTracker {
   std::int64_t count() const { return decoder_.count(); }
   std::int64_t last_edge_ns() const { return decoder_.last_edge_ns(); }
   QuadratureFault fault() const { return fault_; }
+  std::uint64_t trips() const { return trips_; }  // causes seen, since the construction
 
   // The count at the first rising edge of the index since the last call.
   std::optional<std::int64_t> take_index();
@@ -62,6 +63,7 @@ class QuadratureTracker {
   std::array<EdgeQueue, 3> queues_;
   QuadratureDecoder decoder_;
   QuadratureFault fault_ = QuadratureFault::none;
+  std::uint64_t trips_ = 0;
   std::int64_t counted_until_ns_ = 0;
   std::array<std::int64_t, window> times_{};
   std::uint64_t edges_ = 0;

@@ -44,12 +44,14 @@ struct AxisFaults {
   std::uint64_t frame_period = 1;    // ticks from one frame with a fault to the next
   std::uint32_t foreign_frames = 0;  // of nobody's, each tick
   bool bus_off = false;
+  bool encoder_signal = false;  // the backend's watch over the encoder's edges: the position is lost
   SwitchFault negative_switch = SwitchFault::none, positive_switch = SwitchFault::none;
 };
 
-// Where the switches and the mark of an axis are, m. None: not there.
+// Where the switches and the mark of an axis are, m. None: not there. The home switch is reached from there downwards.
 struct AxisMarks {
-  std::optional<double> limit_negative, limit_positive, index;
+  std::optional<double> limit_negative, limit_positive, home, index;
+  double index_every = 0.0;  // from one mark to the next, as on a scale; 0: a single one
 };
 
 template <Backend B>
@@ -148,13 +150,24 @@ class FaultyBackend {
     return fault == SwitchFault::stuck_closed || (fault == SwitchFault::none && reached);
   }
 
+  // The index mark that was passed on the way from one tick to the next; of several the last.
+  static std::optional<double> mark_between(const AxisMarks& marks, double before, double x) {
+    const double first = *marks.index, every = marks.index_every;
+    if (every <= 0.0) return (before < first) != (x < first) ? std::optional(first) : std::nullopt;
+    const double from = std::floor((before - first) / every), to = std::floor((x - first) / every);
+    if (from == to) return std::nullopt;
+    return first + every * (to > from ? to : to + 1.0);
+  }
+
   void find_marks(Node& node, const Feedback<S>& f) {
     const double x = sim::to_si(f.position), before = node.known ? sim::to_si(node.before) : x;
     const auto& marks = node.marks;
     node.inputs.limit_negative = shows(node.faults.negative_switch, marks.limit_negative && x <= *marks.limit_negative);
     node.inputs.limit_positive = shows(node.faults.positive_switch, marks.limit_positive && x >= *marks.limit_positive);
-    node.inputs.index = marks.index && (before < *marks.index) != (x < *marks.index);
-    if (node.inputs.index) sim::convert(*marks.index, node.inputs.index_position);
+    node.inputs.home = marks.home && x <= *marks.home;
+    const auto passed = marks.index ? mark_between(marks, before, x) : std::nullopt;
+    node.inputs.index = passed.has_value();
+    if (passed) sim::convert(*passed, node.inputs.index_position);
     node.before = f.position;
     node.known = true;
   }
@@ -169,7 +182,7 @@ class FaultyBackend {
     if (faults.encoder_frozen && !node.frozen) node.frozen_at = f.position;
     node.frozen = faults.encoder_frozen;
     if (node.frozen) f.position = node.frozen_at;
-    if (faults.encoder_open) f.position_valid = false;
+    if (faults.encoder_open || faults.encoder_signal) f.position_valid = false;
     SaturationCounter meant;
     for (std::size_t k = 0; k < 3; ++k) {
       if (faults.motor_reversed) f.current[k] = opposite(f.current[k]);
@@ -193,6 +206,7 @@ class FaultyBackend {
     node.late = fault == FrameFault::late || fault == FrameFault::out_of_order;
     node.disturbed += counts.disturbed;
     node.seen = node.watch.step(counts);
+    if (faults.encoder_signal) node.seen = Fault::encoder_signal;
     if (counts.valid) node.newest = sent;
     return node.newest;
   }

@@ -31,9 +31,10 @@ constexpr std::uint32_t most_ticks_missed = 16000;
 
 }  // namespace
 
-CanNodes::CanNodes(const CanNodesConfig& config, PlantUnderBus plant)
+CanNodes::CanNodes(const CanNodesConfig& config, PlantUnderBus plant, const FaultSchedule& faults)
     : config_(config),
       plant_(std::move(plant)),
+      faults_(faults),
       socket_(config.interface, config.format, filters_of(config), false),
       received_(config.nodes.size()),
       acting_(config.nodes.size()),
@@ -101,10 +102,8 @@ void CanNodes::on_command(const Frame& frame, int node) {
   command_tick_[axis] = tick_;
 }
 
-bool CanNodes::faulty(FrameFaultKind kind, std::size_t axis) const {
-  return std::any_of(config_.faults.begin(), config_.faults.end(), [&](const PlantFault& fault) {
-    return fault.kind->frame == kind && fault.axis == axis && fault.acts(tick_);
-  });
+bool CanNodes::faulty(FrameFaultKind kind, std::size_t axis, std::uint64_t tick) const {
+  return faults_.acts(&PlantFaultKind::frame, kind, axis, tick);
 }
 
 void CanNodes::answer(std::uint32_t number) {
@@ -129,20 +128,23 @@ void CanNodes::send_feedback(std::size_t axis, std::uint32_t number) {
     }
   };
   // What was kept back in the tick before comes first.
-  if (tick_ > 0 && std::any_of(config_.faults.begin(), config_.faults.end(), [&](const PlantFault& fault) {
-        return fault.kind->frame == late && fault.axis == axis && fault.acts(tick_ - 1);
-      }))
-    send(held_[axis], number - 1);
-  if (!faulty(lost, axis) && !faulty(late, axis) && !faulty(stale, axis))
-    send(state_[axis], number, faulty(damaged, axis));
-  if (faulty(duplicate, axis)) send(state_[axis], number);
-  if (faulty(out_of_order, axis)) send(held_[axis], number - 2);
-  if (faulty(bus_off, axis)) socket_.send({CAN_ERR_FLAG | CAN_ERR_BUSOFF, 8, {}});
-  if (faulty(babble, axis))
-    for (int i = 0; i < 20; ++i) socket_.send({0x7F0, 8, {}});
+  if (tick_ > 0 && faulty(late, axis, tick_ - 1)) send(held_[axis], number - 1);
+  if (!faulty(lost, axis, tick_) && !faulty(late, axis, tick_) && !faulty(stale, axis, tick_))
+    send(state_[axis], number, faulty(damaged, axis, tick_));
+  if (faulty(duplicate, axis, tick_)) send(state_[axis], number);
+  if (faulty(out_of_order, axis, tick_)) send(held_[axis], number - 2);
+  disturb_bus(axis);
   // On the bus now, with the next tick's number: before its SYNC.
-  for (const auto& fault : config_.faults)
-    if (fault.kind->frame == stale && fault.axis == axis && fault.acts(tick_ + 1)) send(state_[axis], number + 1);
+  if (faulty(stale, axis, tick_ + 1)) send(state_[axis], number + 1);
+}
+
+void CanNodes::disturb_bus(std::size_t axis) {
+  using enum FrameFaultKind;
+  if (faulty(bus_off, axis, tick_)) socket_.send({CAN_ERR_FLAG | CAN_ERR_BUSOFF, 8, {}});
+  if (tick_ > 0 && faulty(bus_off, axis, tick_ - 1) && !faulty(bus_off, axis, tick_))
+    socket_.send({CAN_ERR_FLAG | CAN_ERR_RESTARTED, 8, {}});
+  if (faulty(babble, axis, tick_))
+    for (int i = 0; i < 20; ++i) socket_.send({0x7F0, 8, {}});
 }
 
 }  // namespace stiction::host

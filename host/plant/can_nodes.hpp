@@ -10,7 +10,7 @@
 
 #include "hal/backend.hpp"
 #include "hal/can/can_socket.hpp"
-#include "host/plant/plant_fault.hpp"
+#include "host/plant/fault_schedule.hpp"
 #include "host/plant/plant_under_bus.hpp"
 
 namespace stiction::host {
@@ -19,7 +19,6 @@ struct CanNodesConfig {
   std::string interface;
   hal::can::Format format = hal::can::Format::fd;
   std::vector<int> nodes;
-  std::vector<PlantFault> faults;
 };
 
 class CanNodes {
@@ -29,8 +28,8 @@ class CanNodes {
   static constexpr std::int64_t silence_ns = 5'000'000;
   static constexpr int silent_ticks = 80;  // by which the plant moves on in that time
 
-  // Throws hal::can::CanError.
-  CanNodes(const CanNodesConfig& config, PlantUnderBus plant);
+  // `faults` must outlive this. Throws hal::can::CanError.
+  CanNodes(const CanNodesConfig& config, PlantUnderBus plant, const FaultSchedule& faults);
 
   // Serves until `stop` is true; it is asked at least every silence_ns.
   void serve(const std::function<bool()>& stop);
@@ -46,10 +45,12 @@ class CanNodes {
   void advance();
   void answer(std::uint32_t number);
   void send_feedback(std::size_t axis, std::uint32_t number);
-  bool faulty(FrameFaultKind kind, std::size_t axis) const;
+  bool faulty(FrameFaultKind kind, std::size_t axis, std::uint64_t tick) const;
+  void disturb_bus(std::size_t axis);
 
   CanNodesConfig config_;
   PlantUnderBus plant_;
+  const FaultSchedule& faults_;
   hal::can::CanSocket socket_;
   std::vector<Command<FixedSignals>> received_, acting_;
   std::vector<std::uint64_t> command_tick_;  // of the plant, at which the last valid command came

@@ -7,7 +7,6 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <stdexcept>
 #include <utility>
 
 namespace stiction::plant {
@@ -41,14 +40,13 @@ std::optional<fs::path> GpioSim::find(const std::string& chip) {
 }
 
 GpioSim::GpioSim(fs::path folder) : folder_(std::move(folder)) {
-  if (!fs::is_directory(folder_)) throw std::runtime_error("gpio-sim: there is no folder " + folder_.string());
+  if (!fs::is_directory(folder_)) throw GpioSimError("gpio-sim: there is no folder " + folder_.string());
 }
 
 GpioSim::~GpioSim() {
-  for (const auto& [line, files] : lines_) {
-    ::close(files.pull);
-    ::close(files.value);
-  }
+  for (const auto& [line, files] : lines_)
+    for (const int file : {files.pull, files.value})
+      if (file >= 0) ::close(file);
 }
 
 GpioSim::Files& GpioSim::files(int line) {
@@ -58,7 +56,7 @@ GpioSim::Files& GpioSim::files(int line) {
     found->second.pull = ::open((folder / "pull").c_str(), O_WRONLY | O_CLOEXEC);
     found->second.value = ::open((folder / "value").c_str(), O_RDONLY | O_CLOEXEC);
     if (found->second.pull < 0 || found->second.value < 0)
-      throw std::runtime_error(fmt::format("gpio-sim: {}: {}", folder.string(), std::strerror(errno)));
+      throw GpioSimError(fmt::format("gpio-sim: {}: {}", folder.string(), std::strerror(errno)));
   }
   return found->second;
 }
@@ -68,19 +66,19 @@ void GpioSim::set(int line, bool high) {
   if (file.level == int{high}) return;
   const std::string_view text = high ? "pull-up" : "pull-down";
   if (::pwrite(file.pull, text.data(), text.size(), 0) != static_cast<ssize_t>(text.size()))
-    throw std::runtime_error(fmt::format("gpio-sim: line {}: {}", line, std::strerror(errno)));
+    throw GpioSimError(fmt::format("gpio-sim: line {}: {}", line, std::strerror(errno)));
   file.level = int{high};
 }
 
 bool GpioSim::driven(int line) {
   char level = '0';
   if (::pread(files(line).value, &level, 1, 0) != 1)
-    throw std::runtime_error(fmt::format("gpio-sim: line {}: {}", line, std::strerror(errno)));
+    throw GpioSimError(fmt::format("gpio-sim: line {}: {}", line, std::strerror(errno)));
   return level == '1';
 }
 
 EncoderLines::EncoderLines(GpioSim& chip, const Wiring& wiring, std::int64_t count)
-    : chip_(chip), wiring_(wiring), count_(count) {
+    : chip_(&chip), wiring_(wiring), count_(count) {
   apply();
 }
 
@@ -93,13 +91,22 @@ void EncoderLines::move_to(std::int64_t count) {
   while (count_ != count) step(count > count_);
 }
 
+void EncoderLines::slip() { reconnect(count_ + 2); }
+
+void EncoderLines::reconnect(std::int64_t count) {
+  count_ = count;
+  apply();
+}
+
 // Gray code 00, 10, 11, 01 for AB.
 void EncoderLines::apply() {
   const auto quarter = static_cast<std::uint64_t>(count_) % 4;
-  chip_.set(wiring_.a, quarter == 1 || quarter == 2);
-  chip_.set(wiring_.b, quarter >= 2);
+  chip_->set(wiring_.a, quarter == 1 || quarter == 2);
+  chip_->set(wiring_.b, quarter >= 2);
   if (wiring_.index < 0) return;
-  chip_.set(wiring_.index, wiring_.index_every > 0 ? count_ % wiring_.index_every == 0 : count_ == 0);
+  const std::int64_t from_mark = count_ - wiring_.marks.at;
+  const bool at_mark = wiring_.marks.every > 0 ? from_mark % wiring_.marks.every == 0 : from_mark == 0;
+  chip_->set(wiring_.index, at_mark != wiring_.index_active_low);
 }
 
 }  // namespace stiction::plant

@@ -4,29 +4,34 @@
 // /sys/devices/platform/gpio-sim.0/gpiochip0/sim_gpioN, with `pull` to set and `value` to read.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <stdexcept>
 #include <string>
-#include <vector>
 
 namespace stiction::plant {
+
+// A chip, line or folder that cannot be had; what() says which and why.
+class GpioSimError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 class GpioSim {
  public:
   // The folder of the chip with this label or name, none where there is no such simulated chip.
   static std::optional<std::filesystem::path> find(const std::string& chip);
 
-  // Throws std::runtime_error.
+  // Throws GpioSimError.
   explicit GpioSim(std::filesystem::path folder);
   ~GpioSim();
   GpioSim(const GpioSim&) = delete;
   GpioSim& operator=(const GpioSim&) = delete;
 
-  void set(int line, bool high);  // the electrical level of an input; throws std::runtime_error
-  bool driven(int line);          // that of an output
+  void set(int line, bool high);  // the electrical level of an input; throws GpioSimError
+  bool driven(int line);          // that of an output; throws as well
 
  private:
   struct Files {
@@ -40,13 +45,20 @@ class GpioSim {
   std::map<int, Files> lines_;
 };
 
-// The tracks of an incremental encoder: A leads B in the positive direction, the index is high for one count.
+// Where an encoder's index is high, for one count.
+struct IndexMarks {
+  std::int64_t at = 0;
+  std::int64_t every = 0;  // counts from one mark to the next; 0: a single one
+};
+
+// The tracks of an incremental encoder: A leads B in the positive direction.
 class EncoderLines {
  public:
   struct Wiring {
     int a = -1, b = -1;
-    int index = -1;                // -1: none
-    std::int64_t index_every = 0;  // counts from one mark to the next, the first at 0; 0: a single mark at 0
+    int index = -1;  // -1: none
+    bool index_active_low = false;
+    IndexMarks marks{};
   };
 
   // Levels as at `count`.
@@ -54,12 +66,16 @@ class EncoderLines {
 
   void step(bool forward);           // one edge of A or B, and what the index does there
   void move_to(std::int64_t count);  // by steps
+  // Both tracks change, which is no step: two counts that came at once. In simulated time they have one time stamp.
+  void slip();
+  // The levels of a place that was not reached by steps.
+  void reconnect(std::int64_t count);
   std::int64_t count() const { return count_; }
 
  private:
   void apply();
 
-  GpioSim& chip_;
+  GpioSim* chip_;
   Wiring wiring_;
   std::int64_t count_;
 };

@@ -1,4 +1,5 @@
-// Faults that the simulated machine makes on command: what a bus does to an answer, what breaks in an axis.
+// Faults that the simulated machine makes on command: what a bus does to an answer, what lines show, what breaks in an
+// axis.
 #pragma once
 
 #include <array>
@@ -21,47 +22,68 @@ enum class FrameFaultKind : std::uint8_t {
   babble,
 };
 
+enum class LineFaultKind : std::uint8_t { none, tracks_together, track_noise };
+
+using BreakPart = void (*)(hal::AxisFaults&, bool acts);
+
+// Of one kind: what a CAN bus does, what digital lines do, or what breaks in the axis.
 struct PlantFaultKind {
   std::string_view name;
   std::string_view text;
   FrameFaultKind frame = FrameFaultKind::none;
-  void (*machine)(hal::AxisFaults&, bool acts) = nullptr;  // of the axis; exclusive of the frame
+  LineFaultKind line = LineFaultKind::none;
+  BreakPart machine = nullptr;
+  bool shows_on_lines = true;  // a part that breaks
+
+  // `bus`: "can", "modbus" or "gpio".
+  constexpr bool possible_on(std::string_view bus) const {
+    if (frame != FrameFaultKind::none) return bus == "can";
+    if (line != LineFaultKind::none) return bus == "gpio";
+    return bus != "gpio" || shows_on_lines;
+  }
 };
 
-inline constexpr std::array<PlantFaultKind, 18> plant_faults{{
-    {"frame-lost", "the answer is not sent", FrameFaultKind::lost},
-    {"frame-late", "the answer comes with that of the next tick", FrameFaultKind::late},
-    {"frame-duplicate", "the answer is sent twice", FrameFaultKind::duplicate},
-    {"frame-out-of-order", "an answer of two ticks ago follows the answer", FrameFaultKind::out_of_order},
-    {"frame-stale", "an old answer with this tick's number is on the bus before SYNC", FrameFaultKind::stale},
-    {"frame-damaged", "a bit of the answer is flipped", FrameFaultKind::damaged},
-    {"bus-off", "the controller says that it left the bus", FrameFaultKind::bus_off},
-    {"babble", "a node sends 20 frames of nobody a tick", FrameFaultKind::babble},
-    {"encoder-open", "no valid position", {}, [](auto& f, bool acts) { f.encoder_open = acts; }},
-    {"encoder-frozen", "the same position again and again", {}, [](auto& f, bool acts) { f.encoder_frozen = acts; }},
-    {"encoder-jump", "50 um on every position", {}, [](auto& f, bool acts) { f.encoder_shift = acts ? 50e-6 : 0.0; }},
-    {"encoder-bit",
-     "bit 14 of the count of increments is flipped",
-     {},
-     [](auto& f, bool acts) { f.flipped_bit = acts ? std::optional(14) : std::nullopt; }},
-    {"motor-reversed", "force against the current", {}, [](auto& f, bool acts) { f.motor_reversed = acts; }},
-    {"current-offset",
-     "5 A on the sensor of phase A",
-     {},
-     [](auto& f, bool acts) { f.current_offset[0] = acts ? 5.0 : 0.0; }},
-    {"power-stage", "it reports a fault and is off", {}, [](auto& f, bool acts) { f.power_stage = acts; }},
-    {"late-commands",
-     "the power stage obeys 15 ticks late",
-     {},
-     [](auto& f, bool acts) { f.late_commands = acts ? 15 : 0; }},
-    {"limit-negative",
-     "the negative limit switch is closed",
-     {},
-     [](auto& f, bool acts) { f.negative_switch = acts ? hal::SwitchFault::stuck_closed : hal::SwitchFault::none; }},
-    {"limit-positive",
-     "the positive limit switch is closed",
-     {},
-     [](auto& f, bool acts) { f.positive_switch = acts ? hal::SwitchFault::stuck_closed : hal::SwitchFault::none; }},
+constexpr PlantFaultKind of_frames(std::string_view name, FrameFaultKind frame, std::string_view text) {
+  return {.name = name, .text = text, .frame = frame};
+}
+constexpr PlantFaultKind of_lines(std::string_view name, LineFaultKind line, std::string_view text) {
+  return {.name = name, .text = text, .line = line};
+}
+constexpr PlantFaultKind of_part(std::string_view name, std::string_view text, BreakPart part, bool on_lines = true) {
+  return {.name = name, .text = text, .machine = part, .shows_on_lines = on_lines};
+}
+
+inline constexpr std::array<PlantFaultKind, 20> plant_faults{{
+    of_frames("frame-lost", FrameFaultKind::lost, "the answer is not sent"),
+    of_frames("frame-late", FrameFaultKind::late, "the answer comes with that of the next tick"),
+    of_frames("frame-duplicate", FrameFaultKind::duplicate, "the answer is sent twice"),
+    of_frames("frame-out-of-order", FrameFaultKind::out_of_order, "an answer of two ticks ago follows the answer"),
+    of_frames("frame-stale", FrameFaultKind::stale, "an old answer with this tick's number is on the bus before SYNC"),
+    of_frames("frame-damaged", FrameFaultKind::damaged, "a bit of the answer is flipped"),
+    of_frames("bus-off", FrameFaultKind::bus_off, "the controller says that it left the bus, then that it is back"),
+    of_frames("babble", FrameFaultKind::babble, "a node sends 20 frames of nobody a tick"),
+    of_lines("tracks-together", LineFaultKind::tracks_together, "both tracks of the encoder change at once"),
+    of_lines("track-noise", LineFaultKind::track_noise, "20 edges in a tick, forth and back"),
+    of_part("encoder-open", "no valid position; on lines: no edges", [](auto& f, bool acts) { f.encoder_open = acts; }),
+    of_part("encoder-frozen", "the same position again and again", [](auto& f, bool acts) { f.encoder_frozen = acts; }),
+    of_part("encoder-jump", "50 um on every position",
+            [](auto& f, bool acts) { f.encoder_shift = acts ? 50e-6 : 0.0; }),
+    of_part(
+        "encoder-bit", "bit 14 of the count of increments is flipped",
+        [](auto& f, bool acts) { f.flipped_bit = acts ? std::optional(14) : std::nullopt; }, false),
+    of_part("motor-reversed", "force against the current", [](auto& f, bool acts) { f.motor_reversed = acts; }),
+    of_part(
+        "current-offset", "5 A on the sensor of phase A",
+        [](auto& f, bool acts) { f.current_offset[0] = acts ? 5.0 : 0.0; }, false),
+    of_part("power-stage", "it reports a fault and is off", [](auto& f, bool acts) { f.power_stage = acts; }),
+    of_part("late-commands", "the power stage obeys 15 ticks late",
+            [](auto& f, bool acts) { f.late_commands = acts ? 15 : 0; }),
+    of_part(
+        "limit-negative", "the negative limit switch is closed",
+        [](auto& f, bool acts) { f.negative_switch = acts ? hal::SwitchFault::stuck_closed : hal::SwitchFault::none; }),
+    of_part(
+        "limit-positive", "the positive limit switch is closed",
+        [](auto& f, bool acts) { f.positive_switch = acts ? hal::SwitchFault::stuck_closed : hal::SwitchFault::none; }),
 }};
 
 struct PlantFault {

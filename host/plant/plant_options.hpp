@@ -20,26 +20,29 @@ class PlantOptionError : public std::runtime_error {
 };
 
 struct PlantOptions {
-  std::string machine, experiment, bus;
-  std::vector<std::string> set, at, faults;
+  std::string machine, experiment, bus, fault_every;
+  std::vector<std::string> set, at, marks, faults;
   std::uint64_t seed = 1;
 
   void add_to(CLI::App& program);
 };
 
-// The bus of the options: its kind, "can" or "modbus", and its name. Throws PlantOptionError.
+// The bus of the options: its kind, "can", "modbus" or "gpio", and its name. Throws PlantOptionError.
 struct PlantBus {
   std::string kind, name;
 };
 PlantBus bus_of(const PlantOptions& options);
 
 // Where the axes stand at the start (m), from "X=90 mm"; 0 where nothing is said. Throws PlantOptionError.
-std::vector<double> start_positions(const sim::Machine& machine, const std::vector<std::string>& at);
+std::vector<double> start_positions(const PlantOptions& options, const sim::Machine& machine);
 
-// The faults of the options. Throws PlantOptionError.
-std::vector<PlantFault> faults_of(const PlantOptions& options, const sim::Machine& machine);
+// Where switches and index marks are, from "X.index=100 mm"; one an axis. Throws PlantOptionError.
+std::vector<hal::AxisMarks> marks_of(const PlantOptions& options, const sim::Machine& machine);
 
-// The nodes as the machine file has them, on the bus and with the faults of the options. Throws PlantOptionError.
+// The faults of the options, each at its time or at random times. Throws PlantOptionError.
+FaultSchedule faults_of(const PlantOptions& options, const sim::Machine& machine);
+
+// The nodes as the machine file has them, on the bus of the options. Throws PlantOptionError.
 CanNodesConfig can_nodes_config(const PlantOptions& options, const sim::Machine& machine, const sim::DriveSetup& setup);
 
 }  // namespace stiction::host

@@ -145,6 +145,20 @@ TEST(DriveHoming, IsLostWithTheEncodersPlace) {
   EXPECT_FALSE(bench.loop.drive(0).referenced());
 }
 
+TEST(DriveHoming, IsLostWithTheSignalsOfAnEncoderThatCounts) {
+  auto bench = homing_bench(HomingMethod::here);
+  home(bench, 1000);
+  ASSERT_TRUE(bench.loop.drive(0).referenced());
+  bench.backend.faults(0).encoder_signal = true;
+  bench.run(3);
+  EXPECT_EQ(bench.loop.fault(0), Fault::encoder_signal);
+  EXPECT_FALSE(bench.reset()) << "the cause is there";
+  bench.backend.faults(0).encoder_signal = false;
+  bench.run(100);
+  EXPECT_TRUE(bench.reset());
+  EXPECT_FALSE(bench.loop.drive(0).referenced());
+}
+
 TEST(DriveHoming, OfAnAbsoluteEncoderChangesNothing) {
   const auto machine = cross_table({"axis.*.encoder.velocity=estimated"});
   Bench bench(machine, drive_setup(machine));

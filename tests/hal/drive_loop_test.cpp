@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "sim/experiment/commissioning_path.hpp"
-#include "tests/support/allocation_counter.hpp"
 #include "tests/support/drive_bench.hpp"
 #include "tests/support/figure.hpp"
+#include "tests/support/loop_cost.hpp"
 #include "tests/support/shipped_machine.hpp"
 
 namespace stiction::test {
@@ -105,23 +105,26 @@ TEST(DriveLoop, GivesNoFaultOnTheBallScrewAxis) {
 
 // No allocation in a tick, with faults, stops and events in it.
 TEST(DriveLoop, AllocatesNothingAfterItsConstruction) {
-  if (!allocations_are_counted()) GTEST_SKIP() << "a sanitizer has an allocator of its own";
+#ifdef STICTION_SANITIZED
+  GTEST_SKIP() << "the sanitizer's allocator";
+#endif
   const auto machine = table();
   DriveBench<> bench(machine, drive_setup(machine));
   ASSERT_TRUE(bench.enable());
   std::array<SetPoint<S>, 2> set{};
   auto& loop = bench.loop;
   for (std::size_t k = 0; k < 2; ++k) set[k].position = loop.drive(k).position();
-  const std::size_t before = allocations();
-  for (int i = 0; i < 8000; ++i) {
-    if (i == 1000) bench.backend.faults(0).foreign_frames = 3;
-    if (i == 1200) bench.backend.faults(0).encoder_open = true;
-    if (i == 6000) bench.backend.faults(0) = {};
-    for (std::size_t k = 0; k < 2; ++k) loop.set_controlword(k, controlword_to_enable(loop.state(k), i % 2 == 0));
-    loop.tick(set);
-  }
-  EXPECT_EQ(allocations(), before);
-  figure("allocations in 8000 ticks of two drives with two faults", fmt::format("{}", allocations() - before));
+  const auto cost = memory_cost([&] {
+    for (int i = 0; i < 8000; ++i) {
+      if (i == 1000) bench.backend.faults(0).foreign_frames = 3;
+      if (i == 1200) bench.backend.faults(0).encoder_open = true;
+      if (i == 6000) bench.backend.faults(0) = {};
+      for (std::size_t k = 0; k < 2; ++k) loop.set_controlword(k, controlword_to_enable(loop.state(k), i % 2 == 0));
+      loop.tick(set);
+    }
+  });
+  EXPECT_EQ(cost.allocator_calls, 0u);
+  figure("allocations in 8000 ticks of two drives with two faults", fmt::format("{}", cost.allocator_calls));
 }
 
 // An offset of two sensors that cancels in the sum shows before the power comes.

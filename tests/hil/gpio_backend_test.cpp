@@ -21,10 +21,11 @@ constexpr double increment = 5e-6;  // m
 class GpioBackendLoop : public GpioLoop {
  protected:
   hal::GpioBackendConfig config() const {
-    return {.chip = chip,
-            .axes = {{.lines = axis_lines(),
-                      .encoder = {.a = {wire::a}, .b = {wire::b}, .increment = increment},
-                      .pwm = {.chip = pwm_.path(), .half_bridges = 2, .period_ns = period_ns, .dc_link = 48.0}}}};
+    return {
+        .chip = chip,
+        .axes = {{.lines = axis_lines(),
+                  .encoder = {.a = {wire::a}, .b = {wire::b}, .increment = increment},
+                  .pwm = {.chip = pwm_.path().string(), .half_bridges = 2, .period_ns = period_ns, .dc_link = 48.0}}}};
   }
   PwmFolder pwm_;
 };
@@ -101,7 +102,7 @@ TEST_F(GpioBackendLoop, StaysValidAtStandstillAndStampsPositionsWithTheirAge) {
 
 TEST_F(GpioBackendLoop, LatchesTheIndexAtItsCountInBothDirections) {
   if (!simulated_time()) GTEST_SKIP() << "in user mode's real time the loop does not keep to its ticks";
-  plant::EncoderLines encoder(*sim_, {.a = wire::a, .b = wire::b, .index = wire::index, .index_every = 100}, 50);
+  plant::EncoderLines encoder(*sim_, {.a = wire::a, .b = wire::b, .index = wire::index, .marks = {.every = 100}}, 50);
   hal::GpioBackend backend(config(), period_ns);
   Tick tick(backend);
   std::vector<std::int64_t> marks;
@@ -169,7 +170,7 @@ TEST_F(GpioBackendLoop, StopsAtALimitSwitchInTheTickThatShowsIt) {
   }
 }
 
-TEST_F(GpioBackendLoop, ReportsEdgesThatTheKernelDroppedInTheTickThatReadsTheRest) {
+TEST_F(GpioBackendLoop, ReportsEdgesThatTheKernelDroppedInTheTickThatReadsTheRestAndIsWellAgainInTheCalm) {
   plant::EncoderLines encoder(*sim_, {.a = wire::a, .b = wire::b});
   hal::GpioBackend backend(config(), period_ns);
   Tick tick(backend);
@@ -180,16 +181,38 @@ TEST_F(GpioBackendLoop, ReportsEdgesThatTheKernelDroppedInTheTickThatReadsTheRes
   do {
     tick.wait();
     ++ticks;
-  } while (!tick.feedback.fault && ticks < 10);
+  } while (backend.fault(0) == Fault::none && ticks < 10);
   EXPECT_EQ(ticks, 1);
+  EXPECT_EQ(backend.fault(0), Fault::encoder_signal);
+  EXPECT_FALSE(tick.feedback.fault) << "the power stage has none";
   EXPECT_FALSE(tick.feedback.position_valid);
   EXPECT_EQ(backend.encoder_fault(0), hal::QuadratureFault::queue_full);
-  for (int i = 0; i < 10; ++i) tick.wait();
-  EXPECT_TRUE(tick.feedback.fault) << "stays";
-  backend.restart_encoder(0);
-  tick.wait();
-  EXPECT_FALSE(tick.feedback.fault);
+  constexpr int calm_ticks = hal::QuadratureInput::calm_ns / period_ns;
+  for (int i = 0; i < calm_ticks / 2; ++i) tick.wait();
+  EXPECT_EQ(backend.fault(0), Fault::encoder_signal) << "stays";
+  for (int i = 0; i < 32; ++i) encoder.step(true);
+  for (int i = 0; i < calm_ticks - 10; ++i) tick.wait();
+  EXPECT_EQ(backend.fault(0), Fault::encoder_signal) << "a new cause, a new wait";
+  for (int i = 0; i < 20; ++i) tick.wait();
+  EXPECT_EQ(backend.fault(0), Fault::none);
+  EXPECT_EQ(backend.last_encoder_fault(0), hal::QuadratureFault::queue_full) << "on record";
   EXPECT_TRUE(tick.feedback.position_valid);
+  EXPECT_EQ(tick.feedback.position.raw(), 0) << "another place";
+}
+
+// The drive closes its brake while the power still holds the axis.
+TEST_F(GpioBackendLoop, EngagesTheBrakeBeforeThePowerGoesWhereItIsAsked) {
+  hal::GpioBackend backend(config(), period_ns);
+  Tick tick(backend);
+  tick.wait();
+  backend.set_brake(0, true);
+  EXPECT_FALSE(sim_->driven(wire::brake)) << "not without power";
+  tick.write(true);
+  EXPECT_TRUE(sim_->driven(wire::brake));
+  backend.set_brake(0, false);
+  tick.write(true);
+  EXPECT_FALSE(sim_->driven(wire::brake));
+  EXPECT_TRUE(sim_->driven(wire::enable));
 }
 
 // Power stage and encoder on another bus: a carriage that moves at 0.2 m/s, sampled at each tick.

@@ -11,13 +11,13 @@
 #include <cstdint>
 #include <ctime>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <string>
 
 #include "hal/gpio/config.hpp"
 #include "hal/gpio/lines.hpp"
 #include "host/plant/gpio_sim.hpp"
+#include "host/plant/pwm_folder.hpp"
 
 namespace stiction::test {
 
@@ -62,31 +62,17 @@ inline hal::AxisLines axis_lines() {
           .index = {wire::index}};
 }
 
-// A folder of the shape of /sys/class/pwm/pwmchipN with two channels: no simulated PWM chip exists in the kernel.
-class PwmFolder {
+// The PWM of two half bridges.
+class PwmFolder : public plant::PwmFolder {
  public:
-  PwmFolder() : path_(std::filesystem::temp_directory_path() / ("stiction_gpio_" + std::to_string(::getpid()))) {
-    std::filesystem::remove_all(path_);
-    for (const char* channel : {"pwm0", "pwm1"}) {
-      std::filesystem::create_directories(path_ / channel);
-      for (const char* file : {"duty_cycle", "period", "enable"}) std::ofstream(path_ / channel / file) << "0\n";
-    }
-    std::ofstream(path_ / "npwm") << "2\n";
-  }
-  ~PwmFolder() { std::filesystem::remove_all(path_); }
-  PwmFolder(const PwmFolder&) = delete;
-  PwmFolder& operator=(const PwmFolder&) = delete;
-
-  std::string path() const { return path_.string(); }
-  std::int64_t duty_ns(int channel) const {
-    std::ifstream file(path_ / ("pwm" + std::to_string(channel)) / "duty_cycle");
-    std::int64_t value = -1;
-    file >> value;
-    return value;
-  }
+  PwmFolder() : plant::PwmFolder(fresh(), 2) {}
 
  private:
-  std::filesystem::path path_;
+  static std::filesystem::path fresh() {
+    auto path = std::filesystem::temp_directory_path() / ("stiction_gpio_" + std::to_string(::getpid()));
+    std::filesystem::remove_all(path);
+    return path;
+  }
 };
 
 class GpioLoop : public ::testing::Test {

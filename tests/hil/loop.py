@@ -85,12 +85,12 @@ class Result:
         return {what: int(number) for number, what in re.findall(r"(\d+) ([a-z ]+)", line)}
 
 
-def boot(folder, script):
-    """Runs a script of the guest's in `folder`."""
+def boot(folder, script, timeout=600, through=()):
+    """Runs a script of the guest's in `folder`, for `timeout` seconds at most; `through`: a command that runs it."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "guest.sh").write_text(script)
-    done = subprocess.run([ROOT / "toolchain/hil/run", folder, "bash", "guest.sh"], capture_output=True, text=True,
-                          check=False)
+    done = subprocess.run([ROOT / "toolchain/hil/run", folder, *through, "bash", "guest.sh"], capture_output=True, text=True,
+                          check=False, env={**os.environ, "HIL_TIMEOUT": str(round(timeout))})
     if done.returncode not in (0, 143):  # a plant that was told to end
         raise RuntimeError(f"the loop ended with {done.returncode}:\n{done.stdout[-3000:]}{done.stderr[-3000:]}")
 

@@ -158,6 +158,19 @@ TEST_F(PwmFolder, ExportsAChannelAndWaitsUntilItsFilesAreThere) {
   EXPECT_EQ(get("unexport"), "1");
 }
 
+TEST_F(PwmFolder, GivesBackAChannelThatItExportedButCannotSetUp) {
+  add_channel(0);
+  std::thread kernel([&] {
+    while (get("export") != "1") std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    fs::create_directory(chip_ / "pwm1");
+    put("pwm1/enable", "0");
+  });
+  EXPECT_THAT(refusal(config(2)), ::testing::HasSubstr("pwm1/duty_cycle: writing 0: No such file"));
+  kernel.join();
+  EXPECT_EQ(get("unexport"), "1");
+  EXPECT_EQ(get("pwm0/enable"), "0");
+}
+
 TEST_F(PwmFolder, RefusesAChannelThatRunsAlreadyAndLeavesItRunning) {
   add_channel(0);
   add_channel(1, "1");

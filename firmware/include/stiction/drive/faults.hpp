@@ -31,11 +31,13 @@ enum class Fault : std::uint8_t {
   frames_disturbed = 33,
   bus_off = 34,
   bus_overload = 35,
+  encoder_signal = 36,
   // Seen by the drive's programme and by who watches it (firmware/drive).
   missed_deadline = 48,
   clock_jump = 49,
   parameters_damaged = 50,
   watchdog_starved = 51,
+  set_points_lost = 52,
 };
 
 enum class Detector : std::uint8_t { axis, supervision, backend, programme };
@@ -56,7 +58,7 @@ struct FaultDescription {
 };
 
 // Reset of all: a fault reset, taken only when the cause has gone, then a new start of the axis.
-inline constexpr std::array<FaultDescription, 22> fault_table{{
+inline constexpr std::array<FaultDescription, 24> fault_table{{
     {Fault::following_error, "following error", "|x_set - x| above supervision.following_error", 1},
     {Fault::over_current, "over-current", "|i| above supervision.over_current", 1},
     {Fault::over_speed, "over-speed", "|v| above supervision.over_speed", 1},
@@ -89,6 +91,8 @@ inline constexpr std::array<FaultDescription, 22> fault_table{{
     {Fault::bus_off, "bus off", "the controller left the bus", 1, Detector::backend},
     {Fault::bus_overload, "bus overload", "more than 16 frames of nobody's within 16 ticks", 16, Detector::backend,
      Reaction::quick_stop},
+    {Fault::encoder_signal, "encoder signal",
+     "quadrature edges faster than quadrature_rate, an edge lost, or both tracks at once", 1, Detector::backend},
     {Fault::missed_deadline, "missed deadline", "two ticks in a row began later than a period", 2, Detector::programme,
      Reaction::quick_stop},
     {Fault::clock_jump, "clock jump", "the clock went back, or on by more than 100 ms between two ticks", 1,
@@ -97,6 +101,8 @@ inline constexpr std::array<FaultDescription, 22> fault_table{{
      Detector::programme, Reaction::refuse_start},
     {Fault::watchdog_starved, "watchdog starved", "the loop made no progress for the watchdog's time", 0,
      Detector::programme},
+    {Fault::set_points_lost, "set-points lost", "no new set-point from outside in three cycles in a row", 0,
+     Detector::programme, Reaction::quick_stop},
 }};
 
 constexpr const FaultDescription* description_of(Fault fault) {

@@ -269,7 +269,8 @@ class ServoDrive {
 
   // Whether the encoder may have lost its place.
   static constexpr bool lost_by(Fault fault) {
-    return fault == Fault::encoder_frozen || fault == Fault::encoder_jump || fault == Fault::position_lost;
+    return fault == Fault::encoder_frozen || fault == Fault::encoder_jump || fault == Fault::position_lost ||
+           fault == Fault::encoder_signal;
   }
 
   // The set-point has come to rest and the carriage stands, or the margin is over; then the brake has closed.

@@ -1,0 +1,58 @@
+#include "host/plant/simulated_machine.hpp"
+
+#include <utility>
+
+#include "sim/control/axis_configuration.hpp"
+
+namespace stiction::host {
+
+SimulatedMachine::SimulatedMachine(const sim::Machine& machine, const Settings& settings, FaultSchedule faults,
+                                   OnFault on_fault)
+    : braked_(machine.axes.size()),
+      faults_(std::move(faults)),
+      on_fault_(std::move(on_fault)),
+      simulated_(machine, settings.start, settings.seed),
+      faulty_(simulated_, sim::fast_period_ns(machine.timing), machine.axes.front().encoder.increment),
+      record_(machine.axes.size()) {
+  for (const auto& axis : machine.axes) {
+    names_.push_back(axis.name);
+    // Halves the speed in a tick: the force is that at the tick's begin.
+    brake_.push_back(axis.mass / (2.0 * machine.timing.fast_period));
+  }
+  for (std::size_t i = 0; i < settings.marks.size(); ++i) faulty_.marks(i) = settings.marks[i];
+  faulty_.wait_for_tick();  // the start
+}
+
+PlantUnderBus SimulatedMachine::under_bus() {
+  return {.advance = [this](auto commands) { advance(commands); },
+          .sample =
+              [this](auto feedback, auto inputs) {
+                faulty_.read(feedback);
+                faulty_.read_inputs(inputs);
+              },
+          .set_brake = [this](std::size_t axis, bool closed) { braked_[axis] = closed ? 1 : 0; }};
+}
+
+void SimulatedMachine::advance(std::span<const Command<FixedSignals>> commands) {
+  const std::uint64_t to_come = tick_ + 1;  // whose sample shows what is broken
+  faults_.advance(to_come);
+  faults_.break_parts(to_come, [&](std::size_t axis) -> hal::AxisFaults& { return faulty_.faults(axis); });
+  for (const auto& fault : faults_.faults())
+    if (on_fault_ && fault.acts(to_come) && (tick_ == 0 || !fault.acts(tick_))) on_fault_(fault, to_come);
+  for (std::size_t i = 0; i < braked_.size(); ++i) {
+    auto& plant = simulated_.plant(i);
+    plant.set_external_force(braked_[i] != 0 ? -brake_[i] * plant.velocity() : 0.0);
+  }
+  faulty_.write(commands);
+  faulty_.wait_for_tick();
+  tick_ = to_come;
+  for (std::size_t i = 0; i < commands.size(); ++i) record_.add(i, commands[i].enable, simulated_.plant(i).position());
+}
+
+std::vector<std::string> SimulatedMachine::describe() const {
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < names_.size(); ++i) lines.push_back(record_.describe(names_[i], i));
+  return lines;
+}
+
+}  // namespace stiction::host

@@ -1,0 +1,129 @@
+#!/usr/bin/env python3
+"""The drive's programme against the simulated machine with nothing between them but digital lines: a chip of gpio-sim and
+a folder of the PWM class's shape, on a kernel in simulated time. Needs what loop_test.py needs."""
+
+import json
+import os
+import pathlib
+import re
+import shlex
+import tempfile
+import unittest
+
+import loop
+from loop_test import figure
+
+FOLDER = pathlib.Path(os.environ.get("STICTION_HIL_DIR", tempfile.mkdtemp(prefix="stiction-hil-")))
+HERE = pathlib.Path(__file__).parent
+PERIOD = 1e-3  # s, of gpio_axis.toml
+SWITCH = -30e-3  # m
+
+# 1 s after the start the axis searches its switch at 20 mm/s, 4000 edges a second; 4 s after it, it stands homed.
+SEARCHING, HOMED = "1 s", "4 s"
+# Kind, time, ticks that it lasts, faults that may be named for it (faults.hpp), periods from its tick's begin within
+# which: a tick shows the level of a line at once, edges 50 us later, their rate at the tick's end.
+FAULTS = [
+    ("power-stage", SEARCHING, 1000, {5}, 1.0),
+    ("tracks-together", SEARCHING, 1, {36}, 1.1),
+    ("track-noise", SEARCHING, 1, {36}, 2.1),
+    # Ten increments are 50 us apart: a jump from one tick to the next, or too fast.
+    ("encoder-jump", SEARCHING, 1000, {17, 36}, 2.1),
+    # Until the set-point has moved by 1 mm, 50 ms at that speed.
+    ("encoder-open", SEARCHING, 1000, {16}, 52.0),
+    ("limit-negative", HOMED, 1000, {21}, 1.0),
+    ("limit-positive", HOMED, 1000, {21}, 1.0),
+]
+
+RUN = """
+{plant} >{name}.plant 2>&1 &
+plant=$!
+while [ ! -s {name}.plant ]; do sleep 0.01; done
+{beside}
+{drive} >{name}.drive 2>&1
+echo $? >{name}.status
+sleep 0.5
+kill $plant
+wait $plant
+"""
+
+
+# Beside the drive that serves: a Modbus master homes the axis again and again and resets what there is, for 12 s.
+PORT = 15022
+SERVED = """
+(while ! grep -q 'has begun' served.drive; do sleep 0.1; done
+python3 {peer} {port} 0.2 $plant >served.peer 2>&1
+kill -TERM $(pidof stictiond)) &
+"""
+
+
+def script(name, faults=(), task=("--hold", "4"), beside=""):
+    machine = ["--machine", HERE / "gpio_axis.toml", "--set", "drive.gpio.pwm_chip=/run/pwm"]
+    plant = [loop.BIN / "stiction-plant", *machine, "--bus", "gpio", "--mark", f"X.limit_negative={SWITCH} m"]
+    for fault in faults:
+        plant += ["--fault", fault]
+    drive = [loop.BIN / "stictiond", *machine, "--hal", "gpio", *task]
+    return RUN.format(name=name, plant=shlex.join(map(str, plant)), drive=shlex.join(map(str, drive)), beside=beside)
+
+
+def served():
+    task = ["--set", f"drive.modbus_server.address=127.0.0.1:{PORT}", "--set", "drive.modbus_server.motion=allowed"]
+    return script("served", ["tracks-together,at=4 s"], task, SERVED.format(peer=HERE / "endurance_peer.py", port=PORT))
+
+
+class Run:
+    def __init__(self, name):
+        folder = FOLDER / "lines"
+        self.drive = (folder / f"{name}.drive").read_text()
+        self.plant = (folder / f"{name}.plant").read_text()
+        self.status = int((folder / f"{name}.status").read_text())
+        begun = re.search(r"([\d.]+) s, tick \d+: ", self.plant)
+        self.broken = float(begun[1]) if begun else None  # s
+        self.faults = [(float(time), int(number))
+                       for time, number in re.findall(r"([\d.]+) s: axis 0: fault (\d+) ", self.drive)]
+        rest = re.search(r"ran on by (\S+) um for (\d+) ticks, stands at (\S+) mm", self.plant)
+        self.ran_on, self.stands = float(rest[1]) * 1e-6, float(rest[3]) * 1e-3
+
+
+class Lines(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        scripts = [script("health")]
+        scripts.append(served())
+        scripts += [script(kind, [f"{kind},at={at},ticks={ticks}"]) for kind, at, ticks, *_ in FAULTS]
+        loop.boot(FOLDER / "lines", "".join(scripts), through=(HERE / "gpio_guest.sh",))
+
+    def test_carry_an_axis_to_its_switch_and_hold_it_there(self):
+        run = Run("health")
+        self.assertEqual((run.status, run.faults), (0, []), run.drive + run.plant)
+        self.assertIn("at least 0 edges lost; last fault of the encoder's tracks: none", run.drive)
+        # Where the switch opens the set-point is ahead of the axis by v / Kv = 5 mm/s / 40 1/s = 125 um and what friction
+        # holds back, 71 um; it comes to rest behind a tick, 5 um, and the ramp, v^2 / 2a = 12.5 um. The axis follows.
+        way = run.stands - SWITCH
+        self.assertTrue(0 <= way < 214e-6, run.plant)
+        figure("homing over lines, from the switch's edge to rest", f"{way * 1e6:.0f} um (bound 214 um)")
+
+    def test_that_lost_an_edge_are_reset_over_modbus_and_the_axis_homes_again(self):
+        run, peer = Run("served"), json.loads((FOLDER / "lines/served.peer").read_text())
+        self.assertEqual([number for _, number in run.faults], [36], run.drive + run.plant)
+        self.assertIn("last fault of the encoder's tracks: both tracks changed at once", run.drive)
+        self.assertEqual((peer["resets"], peer["enabled"], peer["state"]), (1, 2, "enabled"), peer)
+        self.assertGreater(peer["runs"], 1, peer)
+        self.assertEqual(run.status, 0, run.drive)
+
+    def test_show_a_fault_in_its_time_under_its_own_name_and_nothing_moves_afterwards(self):
+        for kind, _, _, numbers, within in FAULTS:
+            with self.subTest(kind):
+                run = Run(kind)
+                self.assertEqual(run.status, 1, run.drive + run.plant)
+                time, number = run.faults[0]
+                self.assertIn(number, numbers, run.drive)
+                taken = (time - run.broken) / PERIOD
+                self.assertTrue(0 < taken <= within, f"after {taken} periods, expected within {within}\n{run.drive}")
+                # Friction of 20 N stops 95 kg from 20 mm/s within 1 mm.
+                self.assertLess(abs(run.ran_on), 1e-3, run.plant)
+                figure(f"fault on lines: {kind}", f"fault {number} after {taken:.2f} periods (bound {within:g}), ran on by "
+                                                  f"{run.ran_on * 1e6:.0f} um")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
