@@ -208,7 +208,7 @@ std::map<std::uint32_t, std::map<std::string, DbcSignal>> parse_dbc(const std::s
 TEST(Dbc, DescribesTheFramesAsTheyAre) {
   std::mt19937_64 random(4);
   for (const auto format : formats) {
-    const auto dbc = parse_dbc(dbc_text(format, std::array<DbcAxis, 2>{{{"X", 5}, {"Y", 6}}}));
+    const auto dbc = parse_dbc(dbc_text({format, {{"X", 5}, {"Y", 6}}}));
     for (int i = 0; i < 20; ++i) {
       const auto state = random_state(random, 100.0, 1.0);
       std::array<Frame, 2> frames;

@@ -41,7 +41,11 @@ class RemoteAxis {
   // What is asked for; holds until changed.
   constexpr void ask(std::uint16_t controlword) { controlword_ = controlword; }
   constexpr void ask(OperationMode mode) { asked_mode_ = mode; }
-  constexpr void ask_target(S::Position target) { asked_move_.target = target; }
+  // pp. `valid`: the bus gave a number that the formats hold; no move goes to another one.
+  constexpr void ask_target(S::Position target, bool valid = true) {
+    asked_move_.target = target;
+    has_target_ = valid;
+  }
   // Magnitudes, the last two a tick; held to the machine's limits.
   constexpr void ask_velocity(S::Velocity v) { asked_move_.velocity = within(v, config_.fastest.velocity); }
   constexpr void ask_acceleration(S::Velocity change) {
@@ -50,9 +54,11 @@ class RemoteAxis {
   constexpr void ask_deceleration(S::Velocity change) {
     asked_move_.deceleration = within(change, config_.fastest.deceleration);
   }
+  // csp: as cyclic as the targets are, forgotten after as many cycles.
   constexpr void ask_offsets(S::Velocity velocity, S::Current current) {
     velocity_offset_ = velocity;
     current_offset_ = current;
+    offset_age_ = 0;
   }
   // csp: a target of this cycle; the newest counts. `valid`: the bus gave a number that the formats hold.
   constexpr void offer(S::Position target, bool valid) {
@@ -68,6 +74,10 @@ class RemoteAxis {
     if (!came && missed_ <= cycles_bridged) ++missed_;
     if (came) missed_ = 0;
     offers_ = 0;
+    if (offset_age_ <= cycles_bridged)
+      ++offset_age_;
+    else
+      forget_offsets();
     if (!following_ || mode_ != OperationMode::cyclic_position || !config_.streamed) return;
     if (!came) return interpolator_.extrapolate();
     valid_ = offered_valid_ && reachable(offered_) && near(offered_, cycles);
@@ -100,7 +110,9 @@ class RemoteAxis {
   constexpr std::uint16_t controlword() const { return controlword_; }
   constexpr OperationMode mode() const { return mode_; }                // 6061h
   constexpr const PositionProfile::Move& move() const { return asked_move_; }  // the values asked for
-  constexpr S::Velocity velocity_offset() const { return velocity_offset_; }
+  constexpr S::Velocity velocity_offset() const {
+    return mode_ == OperationMode::cyclic_position ? velocity_offset_ : S::Velocity{};
+  }
 
   // Of the coming tick; as long as its cause does.
   constexpr Fault fault() const {
@@ -120,6 +132,10 @@ class RemoteAxis {
   }
 
  private:
+  constexpr void forget_offsets() {
+    velocity_offset_ = {};
+    current_offset_ = {};
+  }
   static constexpr S::Velocity within(S::Velocity asked, S::Velocity most) {
     return asked < S::Velocity::from_raw(1) ? S::Velocity::from_raw(1) : asked > most ? most : asked;
   }
@@ -165,7 +181,7 @@ class RemoteAxis {
       const auto& before = waits_ ? waiting_ : profile_.move();
       move.target = narrow<S::Position>(before.target + asked_move_.target, saturations_);
     }
-    refused_ = !reachable(move.target);
+    refused_ = !has_target_ || !reachable(move.target);
     if (refused_) return;
     const bool at_once = (controlword_ & controlword::at_once_bit) != 0;
     if (at_once || profile_.arrived()) return go(move);
@@ -190,10 +206,11 @@ class RemoteAxis {
   // csp
   S::Position offered_{}, received_{};
   int offers_ = 0, missed_ = 0;  // in this cycle; cycles in a row without one
+  int offset_age_ = 0;           // cycles
   bool offered_valid_ = false, valid_ = true;
   // pp
   PositionProfile::Move waiting_{};
-  bool bit_before_ = false, acknowledged_ = false, waits_ = false, refused_ = false;
+  bool has_target_ = false, bit_before_ = false, acknowledged_ = false, waits_ = false, refused_ = false;
   // The drive in the last tick.
   S::Position x_{};
   bool following_ = false, faulted_ = false;
