@@ -23,7 +23,7 @@ std::vector<hal::can::Filter> filters(const CanServerConfig& config) {
   std::vector<hal::can::Filter> wanted;
   for (const int node : config.nodes)
     for (const auto& row : hal::can::pdo_table)
-      if (row.received) wanted.push_back({row.id + static_cast<std::uint32_t>(node), CAN_SFF_MASK});
+      if (row.received && (row.positions || config.all_frames)) wanted.push_back({row.id + static_cast<std::uint32_t>(node), CAN_SFF_MASK});
   return wanted;
 }
 
@@ -119,6 +119,7 @@ void CanServer::send(std::span<const ShownAxis> axes) {
     const auto& axis = axes[i];
     const double unit = config.increment;
     send(hal::can::encode_position(config.nodes[i], axis.statusword, to_units(axis.position, unit)));
+    if (!config.all_frames) continue;
     send(hal::can::encode_motion(config.nodes[i], to_units(axis.velocity, unit * velocity_increments),
                                  to_units(axis.following_error, unit)));
   }

@@ -23,6 +23,7 @@ struct CanServerConfig {
   std::vector<double> current_limit;  // A, of each axis
   double increment = 1e-9;            // m
   std::uint32_t cycle_ticks = 1;      // slow ticks from one cycle to the next
+  bool all_frames = true;             // offsets, velocities and following errors beside what positions need
   bool motion_allowed = false;
   bool sends_sync = true;  // false: another one does on this bus
 };

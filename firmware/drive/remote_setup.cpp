@@ -102,6 +102,7 @@ CanServerConfig can_server_config(const DriveConfiguration& c) {
   config.interface = server.interface;
   config.format = server.data_bit_rate ? hal::can::Format::fd : hal::can::Format::classical;
   config.increment = server.position_increment;
+  config.all_frames = server.all_frames;
   config.cycle_ticks = cycle_ticks(c);
   config.motion_allowed = server.motion_allowed;
   config.sends_sync = !on_one_bus(c.setup);
@@ -139,7 +140,7 @@ std::vector<hal::CyclicFrame> can_server_frames(const DriveConfiguration& config
   if (config.sends_sync) frames.push_back(frame("server sync", 0, 1));
   constexpr std::array<const char*, 5> names{"mode", "target", "offsets", "state", "motion"};
   for (const auto& row : hal::can::pdo_table)
-    if (row.pdo != hal::can::Pdo::mode)  // sent when it changes
+    if (row.pdo != hal::can::Pdo::mode && (row.positions || config.all_frames))  // the mode is sent when it changes
       frames.push_back(frame(names[static_cast<std::size_t>(row.pdo)], row.size, axes));
   return frames;
 }

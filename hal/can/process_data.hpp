@@ -28,13 +28,14 @@ struct PdoDescription {
   std::uint32_t id;   // plus the node
   std::uint8_t size;  // bytes
   bool received;      // by the drive
+  bool positions;     // one of those without which no position is commanded
 };
 inline constexpr std::array<PdoDescription, 5> pdo_table{{
-    {Pdo::mode, 0x300, 3, true},
-    {Pdo::target, 0x400, 6, true},
-    {Pdo::offsets, 0x500, 6, true},
-    {Pdo::position, 0x380, 6, false},
-    {Pdo::motion, 0x480, 8, false},
+    {Pdo::mode, 0x300, 3, true, true},
+    {Pdo::target, 0x400, 6, true, true},
+    {Pdo::offsets, 0x500, 6, true, false},
+    {Pdo::position, 0x380, 6, false, true},
+    {Pdo::motion, 0x480, 8, false, false},
 }};
 constexpr const PdoDescription& description_of(Pdo pdo) { return pdo_table[static_cast<std::size_t>(pdo)]; }
 

@@ -31,6 +31,11 @@ inline constexpr std::array<Choice<bool>, 2> motion_permissions{{
     {"allowed", true, "it is taken"},
 }};
 
+inline constexpr std::array<Choice<bool>, 2> server_frames{{
+    {"positions", false, "controlwords and targets, statuswords and positions: half of the bus's load"},
+    {"all", true, "beside them offsets of velocity and torque, velocities and following errors"},
+}};
+
 template <>
 struct Table<CanServerSetup> : EmptyTable<CanServerSetup> {
   static constexpr std::string_view text = "CAN bus on which a motion controller gives the axes their set-points";
@@ -58,6 +63,8 @@ struct Table<CanServerSetup> : EmptyTable<CanServerSetup> {
        "a unit of target and actual position; a unit of velocity is 1000 of them a second"},
   }};
   static constexpr std::tuple choices{
+      ChoiceParameter<CanServerSetup, bool>{"frames", &CanServerSetup::all_frames, server_frames, true,
+                                            "what is exchanged each period beside SYNC"},
       ChoiceParameter<CanServerSetup, bool>{"motion", &CanServerSetup::motion_allowed, motion_permissions, false,
                                             "controlwords and set-points that a motion controller sends"}};
 };
