@@ -272,13 +272,15 @@ class MotionController(unittest.TestCase):
         # The first of these cycles took the last target; of those without one two are bridged.
         faulted = next(k for k, row in enumerate(silent) if int(row[2]) & 0x4F in (0x0F, 0x08))
         self.assertEqual(faulted, 3, [row[2] for row in silent[:8]])
-        stopped = [int(row[3]) for row in silent[-200:]]
-        self.assertLess(max(stopped) - min(stopped), 100, "increments of a nanometre")
-        ran_on = abs(stopped[-1] - int(silent[0][3]))
-        figure("set-points lost in motion", f"fault 52 in the third cycle (bound 3), {ran_on * 1e-6:.2f} mm to rest")
-        # 80 mm/s for four cycles and down at 10 m/s^2.
+        ran_on = abs(int(silent[-1][3]) - int(silent[0][3]))
+        x = result.axes["X"]
+        figure("set-points lost in motion",
+               f"fault 52 in the third cycle (bound 3), {ran_on * 1e-6:.2f} mm to rest, {x.ran_on_um:.0f} um without power")
+        # 80 mm/s for four cycles, and down at 10 m/s^2.
         self.assertLess(ran_on, 1.0e6)
-        self.assertLess(abs(result.axes["X"].ran_on_um), 10.0, result.plant)
+        # The stop has ended when the power goes; then the carriage swings out on its bristles (10 Hz, damping 0.1).
+        self.assertLess(abs(x.ran_on_um), 100.0, result.plant)
+        self.assertLess(x.ran_on_ticks, 16000, result.plant)
 
     def test_that_sends_too_short_a_frame_is_refused_and_said_so(self):
         self.assertIn("CAN: axis 0: found a frame 0x401 of 4 bytes; expected 6: refused", self.results["followed"].drive)
