@@ -23,7 +23,8 @@ std::vector<hal::can::Filter> filters(const CanServerConfig& config) {
   std::vector<hal::can::Filter> wanted;
   for (const int node : config.nodes)
     for (const auto& row : hal::can::pdo_table)
-      if (row.received && (row.positions || config.all_frames)) wanted.push_back({row.id + static_cast<std::uint32_t>(node), CAN_SFF_MASK});
+      if (row.received && (row.positions || config.all_frames))
+        wanted.push_back({row.id + static_cast<std::uint32_t>(node), CAN_SFF_MASK});
   return wanted;
 }
 
@@ -71,7 +72,7 @@ void ControllerFrames::take(std::int64_t now_ns, const hal::can::Frame& frame, s
 }
 
 void ControllerFrames::ask(std::int64_t now_ns, std::size_t axis, Pdo pdo, const hal::can::ControllerData& data,
-                    RemoteAxis& remote) {
+                           RemoteAxis& remote) {
   if (!config_.motion_allowed) return refuse(now_ns, axis, data.controlword);
   if (pdo == Pdo::offsets) {
     ++counts_.taken;
@@ -96,8 +97,7 @@ void ControllerFrames::ask(std::int64_t now_ns, std::size_t axis, Pdo pdo, const
 void ControllerFrames::ask_offsets(std::size_t axis, const hal::can::ControllerData& data, RemoteAxis& remote) const {
   const double limit = config_.current_limit[axis];
   const auto velocity = sim::to_signal<S::Velocity>(data.velocity_offset * velocity_increments * config_.increment);
-  const auto current =
-      sim::to_signal<S::Current>(std::clamp(data.torque_offset / torque_units, -1.0, 1.0) * limit);
+  const auto current = sim::to_signal<S::Current>(std::clamp(data.torque_offset / torque_units, -1.0, 1.0) * limit);
   // One that no format holds adds nothing.
   remote.ask_offsets(velocity.value_or(S::Velocity{}), current.value_or(S::Current{}));
 }

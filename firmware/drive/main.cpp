@@ -109,7 +109,8 @@ int print_budgets(const DriveConfiguration& configuration) {
     budgets.push_back(can_server_budget(configuration));
   if (configuration.setup.modbus_client)
     budgets.push_back(modbus_client_budget(modbus_client_config(configuration.machine, configuration.setup)));
-  if (budgets.empty()) throw StartRefused("found no bus; expected [drive.can], [drive.can_server] or [drive.modbus_client]");
+  if (budgets.empty())
+    throw StartRefused("found no bus; expected [drive.can], [drive.can_server] or [drive.modbus_client]");
   bool refused = false;
   for (const auto& budget : budgets) {
     fmt::print("{}", hal::budget_table(budget));

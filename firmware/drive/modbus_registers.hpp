@@ -37,8 +37,8 @@ struct PublishedAxis {
   double rms_current = 0.0;           // A
   // What was asked for last, by whomever.
   std::uint16_t controlword = 0;
-  double target = 0.0;                                              // m
-  double profile_velocity = 0.0;                                    // m/s
+  double target = 0.0;                                            // m
+  double profile_velocity = 0.0;                                  // m/s
   double profile_acceleration = 0.0, profile_deceleration = 0.0;  // m/s^2
 };
 

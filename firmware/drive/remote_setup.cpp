@@ -21,9 +21,10 @@ constexpr double way_tolerance = 1.01;
 template <class T>
 T held(double value, const std::string& key) {
   if (const auto signal = sim::to_signal<T>(value)) return *signal;
-  throw StartRefused(fmt::format("{}: found {:g}; expected at most {:g} in magnitude, the range of the drive's number "
-                                 "format",
-                                 key, value, sim::highest<T>()));
+  throw StartRefused(
+      fmt::format("{}: found {:g}; expected at most {:g} in magnitude, the range of the drive's number "
+                  "format",
+                  key, value, sim::highest<T>()));
 }
 
 // Slow ticks from one target to the next.
@@ -33,9 +34,10 @@ std::uint32_t cycle_ticks(const DriveConfiguration& c) {
   const double period = *c.setup.can_server->period;
   const double ticks = std::round(period / slow);
   if (ticks < 1.0 || std::abs(ticks * slow / period - 1.0) > 1e-6)
-    throw StartRefused(fmt::format("drive.can_server.period: found {:g} ms; expected a whole multiple of "
-                                   "timing.slow_period, {:g} ms",
-                                   period * 1e3, slow * 1e3));
+    throw StartRefused(
+        fmt::format("drive.can_server.period: found {:g} ms; expected a whole multiple of "
+                    "timing.slow_period, {:g} ms",
+                    period * 1e3, slow * 1e3));
   return static_cast<std::uint32_t>(ticks);
 }
 
@@ -52,9 +54,10 @@ RemoteAxisConfig remote_axis(const DriveConfiguration& c, const sim::Axis& axis,
   const double way = axis.max_velocity * cycle * way_tolerance;
   const auto most = sim::highest<SetPointInterpolator::Way>();
   if (way > most && c.setup.can_server)
-    throw StartRefused(fmt::format("drive.can_server.period: found {:g} ms with {}.max_velocity = {:g} m/s; expected "
-                                   "a way of at most {:g} mm from one set-point to the next, a period up to {:g} ms",
-                                   cycle * 1e3, of_axis, axis.max_velocity, most * 1e3, most / way * cycle * 1e3));
+    throw StartRefused(
+        fmt::format("drive.can_server.period: found {:g} ms with {}.max_velocity = {:g} m/s; expected "
+                    "a way of at most {:g} mm from one set-point to the next, a period up to {:g} ms",
+                    cycle * 1e3, of_axis, axis.max_velocity, most * 1e3, most / way * cycle * 1e3));
   RemoteAxisConfig config;
   config.interpolation = SetPointInterpolator::configure(
       c.period_ns, ticks, held<SetPointInterpolator::Way>(std::min(way, most), of_axis + ".max_velocity"));
@@ -64,10 +67,10 @@ RemoteAxisConfig remote_axis(const DriveConfiguration& c, const sim::Axis& axis,
   config.profile = {S::seconds(c.period_ns), S::rate(c.period_ns),
                     smoothing_bits(setup.profile_jerk_time, timing.fast_period)};
   const double change = axis.max_acceleration * timing.fast_period;
-  const auto fastest_change = std::max(held<S::Velocity>(change, of_axis + ".max_acceleration"),
-                                       S::Velocity::from_raw(1));
-  config.fastest = {{}, held<S::Velocity>(axis.max_velocity, of_axis + ".max_velocity"), fastest_change,
-                    fastest_change};
+  const auto fastest_change =
+      std::max(held<S::Velocity>(change, of_axis + ".max_acceleration"), S::Velocity::from_raw(1));
+  config.fastest = {
+      {}, held<S::Velocity>(axis.max_velocity, of_axis + ".max_velocity"), fastest_change, fastest_change};
   config.target_window = held<S::Position>(setup.target_window, of_drive + ".target_window");
   return config;
 }
@@ -114,17 +117,18 @@ CanServerConfig can_server_config(const DriveConfiguration& c) {
                       "[drive.can_server], 1 to 127",
                       c.machine.id, axis.name));
     if (std::find(config.nodes.begin(), config.nodes.end(), node) != config.nodes.end())
-      throw StartRefused(fmt::format("{}: found drive.axis.{}.server_node = {} a second time; expected a node of its own",
-                                     c.machine.id, axis.name, node));
+      throw StartRefused(
+          fmt::format("{}: found drive.axis.{}.server_node = {} a second time; expected a node of its own",
+                      c.machine.id, axis.name, node));
     config.nodes.push_back(node);
     config.current_limit.push_back(axis.inverter.current_limit * axis.motor.count);
   }
-  if (on_one_bus(c.setup) && (server.bit_rate != c.setup.can->bit_rate ||
-                              server.data_bit_rate != c.setup.can->data_bit_rate))
+  if (on_one_bus(c.setup) &&
+      (server.bit_rate != c.setup.can->bit_rate || server.data_bit_rate != c.setup.can->data_bit_rate))
     throw StartRefused(fmt::format(
         "{}: found {} of [drive.can_server] and {} of [drive.can] on one interface, {}; expected the same bit rates",
-        c.machine.id, rates(server.bit_rate, server.data_bit_rate), rates(c.setup.can->bit_rate, c.setup.can->data_bit_rate),
-        server.interface));
+        c.machine.id, rates(server.bit_rate, server.data_bit_rate),
+        rates(c.setup.can->bit_rate, c.setup.can->data_bit_rate), server.interface));
   return config;
 }
 
@@ -153,8 +157,7 @@ hal::BusBudget can_server_budget(const DriveConfiguration& configuration) {
 }
 
 std::vector<std::uint32_t> can_server_identifiers(const DriveConfiguration& configuration) {
-  return on_one_bus(configuration.setup) ? identifiers(can_server_config(configuration))
-                                         : std::vector<std::uint32_t>{};
+  return on_one_bus(configuration.setup) ? identifiers(can_server_config(configuration)) : std::vector<std::uint32_t>{};
 }
 
 void check_remote(const DriveConfiguration& configuration) {

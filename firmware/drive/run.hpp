@@ -138,7 +138,8 @@ RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& confi
       const bool begins = can && loop.loop().slow() && can->receive(loop.now_ns(), programme.remote());
       programme.tick(stop_wanted != 0);
       if (begins) answer_controller(loop, programme, *can, shown);
-      if (modbus && loop.loop().slow()) serve_modbus(loop, programme, configuration.machine.timing.fast_period, *modbus);
+      if (modbus && loop.loop().slow())
+        serve_modbus(loop, programme, configuration.machine.timing.fast_period, *modbus);
     }
     notify.stopping("the axes are off");
   }

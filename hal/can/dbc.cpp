@@ -117,8 +117,7 @@ std::vector<ServerMessage> server_messages(double increment) {
            {{"statusword", 0, 16, false, 0, ""}, {"actual_position", 16, 32, true, 0, "m", increment}}},
           {"motion",
            Pdo::motion,
-           {{"actual_velocity", 0, 32, true, 0, "m/s", speed},
-            {"following_error", 32, 32, true, 0, "m", increment}}}};
+           {{"actual_velocity", 0, 32, true, 0, "m/s", speed}, {"following_error", 32, 32, true, 0, "m", increment}}}};
 }
 
 // A DBC file as it grows.

@@ -1,4 +1,5 @@
-// The frames of frames.hpp and process_data.hpp for other tools, as a DBC file (Vector's format; CAN FD by the attribute VFrameFormat).
+// The frames of frames.hpp and process_data.hpp for other tools, as a DBC file (Vector's format; CAN FD by the
+// attribute VFrameFormat).
 #pragma once
 
 #include <string>

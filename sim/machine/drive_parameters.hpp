@@ -193,7 +193,11 @@ struct Table<DriveAxisSetup> : EmptyTable<DriveAxisSetup> {
   static constexpr std::string_view text = "one axis as the drive's programme runs it";
   static constexpr std::array<Parameter<DriveAxisSetup>, 12> parameters{{
       {"node", "1", {0, 127}, &DriveAxisSetup::node, 0.0, "node of its power stage and encoder on the bus; 0: none"},
-      {"server_node", "1", {0, 127}, &DriveAxisSetup::server_node, 0.0,
+      {"server_node",
+       "1",
+       {0, 127},
+       &DriveAxisSetup::server_node,
+       0.0,
        "node of the axis on the bus of [drive.can_server]; 0: none"},
       {"quick_stop_deceleration", "m/s^2", positive(500.0), &DriveAxisSetup::quick_stop_deceleration, 10.0,
        "deceleration of a controlled stop"},

@@ -7,7 +7,8 @@
 // one before than max_velocity allows is an invalid set-point (fault set_point). Two cycles in a row without a target
 // are bridged with the acceleration that the motion has; the third is the fault set_points_lost.
 // pp: a rising edge of bit 4 offers the target with the profile's values that stand beside it. Bit 5: at once, else
-// behind the move under way, one of which waits. What lies beyond the ends is not acknowledged.
+// behind the move under way, one of which waits. A move taken in motion brakes no less than the one before. What lies
+// beyond the ends is not acknowledged.
 // Another mode is taken when the set-point stands, or while the drive does not follow.
 #pragma once
 
@@ -87,8 +88,9 @@ class RemoteAxis {
     interpolator_.take(offered_);
   }
 
-  // The set-point of the coming tick. `drive`: as the last one left it.
-  constexpr SetPoint<S> tick(const ServoDrive<S>& drive) {
+  // The set-point of the coming tick. `drive`: a ServoDrive, or what tells the same of one, as the last tick left it.
+  template <class Drive>
+  constexpr SetPoint<S> tick(const Drive& drive) {
     const auto stands = drive.set_position();
     const bool follows = drive.follows();
     const bool at_rest = mode_ == OperationMode::cyclic_position ? interpolator_.at_rest() : profile_.at_rest();
@@ -108,7 +110,7 @@ class RemoteAxis {
   }
 
   constexpr std::uint16_t controlword() const { return controlword_; }
-  constexpr OperationMode mode() const { return mode_; }                // 6061h
+  constexpr OperationMode mode() const { return mode_; }                       // 6061h
   constexpr const PositionProfile::Move& move() const { return asked_move_; }  // the values asked for
   constexpr S::Velocity velocity_offset() const {
     return mode_ == OperationMode::cyclic_position ? velocity_offset_ : S::Velocity{};
@@ -184,6 +186,8 @@ class RemoteAxis {
     refused_ = !has_target_ || !reachable(move.target);
     if (refused_) return;
     const bool at_once = (controlword_ & controlword::at_once_bit) != 0;
+    if (at_once && !profile_.at_rest() && move.deceleration < profile_.move().deceleration)
+      move.deceleration = profile_.move().deceleration;  // else it might not stop before the end of the travel
     if (at_once || profile_.arrived()) return go(move);
     if (waits_) return;  // no room: not acknowledged anew
     waiting_ = move;

@@ -36,10 +36,10 @@ template <class S>
 struct DriveDemand {
   std::uint16_t controlword = 0;
   OperationMode mode = OperationMode::cyclic_position;
-  SetPoint<S> set_point{};        // csp and pp, of the machine's coordinates
+  SetPoint<S> set_point{};                 // csp and pp, of the machine's coordinates
   typename S::Velocity velocity_offset{};  // 60B1h, added to the set speed while the drive follows
-  std::array<Fault, 3> causes{};  // what programme, clock and backend see in this tick
-  bool quick_stop = false;        // another axis has a fault
+  std::array<Fault, 3> causes{};           // what programme, clock and backend see in this tick
+  bool quick_stop = false;                 // another axis has a fault
 };
 
 // A fault as it was seen. `following`: it came on top of another one, or during its stop.
@@ -114,7 +114,7 @@ class ServoDrive {
   constexpr bool powered() const { return powered_; }
   constexpr bool brake_released() const { return powered_ && !brake_closing_; }
   constexpr bool referenced() const { return referenced_; }
-  constexpr bool follows() const { return follows_; }  // the set-points from outside, in the last tick
+  constexpr bool follows() const { return follows_; }    // the set-points from outside, in the last tick
   constexpr Position origin() const { return origin_; }  // of the machine's coordinates in the encoder's
   constexpr Position position() const { return to_machine(measured_); }
   // Where the set-point stands, machine's coordinates: where a source of set-points begins after enabling or homing.

@@ -1,5 +1,5 @@
-// A move to a target position by itself (pp: CiA 402 profile position), a set-point each tick, targets and limits new at
-// any time. Two stages:
+// A move to a target position by itself (pp: CiA 402 profile position), a set-point each tick, targets and limits new
+// at any time. Two stages:
 //
 // 1. A trapezoid of velocity that looks where it is in every tick: the speed towards the target is the least of the one
 //    before plus the acceleration, the profile's velocity, and the one from which it can still brake. Braking by d a

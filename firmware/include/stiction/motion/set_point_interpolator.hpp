@@ -1,5 +1,5 @@
-// From the target positions that a motion controller sends each cycle (csp: CiA 402, 60C2h interpolation time period) to
-// a set-point each tick: position, velocity and acceleration, all three continuous.
+// From the target positions that a motion controller sends each cycle (csp: CiA 402, 60C2h interpolation time period)
+// to a set-point each tick: position, velocity and acceleration, all three continuous.
 //
 // A cycle is a polynomial of fifth degree in s = t / cycle between two targets (quintic Hermite segment, L. Biagiotti,
 // C. Melchiorri, "Trajectory Planning for Automatic Machines and Robots", 2008, 2.1.7). Its ends are the targets
@@ -46,10 +46,10 @@ class SetPointInterpolator {
   using CycleRate = Coefficient<10, 24>;               // 1/s, cycles from 61 us
 
   struct Config {
-    std::uint32_t ticks = 1;            // of a cycle
+    std::uint32_t ticks = 1;              // of a cycle
     std::uint64_t tick_share = 1u << 31;  // of a cycle, 2^52 / ticks
-    CycleRate rate{};                   // 1 / cycle
-    Way largest_way{};                  // of a cycle, to which extrapolation keeps
+    CycleRate rate{};                     // 1 / cycle
+    Way largest_way{};                    // of a cycle, to which extrapolation keeps
   };
   static constexpr Config configure(std::int64_t period_ns, std::uint32_t ticks, Way largest_way) {
     return {ticks, (std::uint64_t{1} << 52) / ticks,
@@ -104,8 +104,7 @@ class SetPointInterpolator {
     const auto c5 = a1_ - times<6>(e0_) - times<6>(e1_) - a0_;
     const auto bent = half(of(t, of(t, of(t, of(t, of(t, c5) + c4) + c3) + c2) + c1));
     const auto speed = half(of(t, of(t, of(t, of(t, times<5>(c5)) + times<4>(c4)) + times<3>(c3)) + times<2>(c2)) + c1);
-    const auto change =
-        half(of(t, of(t, of(t, times<20>(c5)) + times<12>(c4)) + times<6>(c3)) + times<2>(c2));
+    const auto change = half(of(t, of(t, of(t, times<20>(c5)) + times<12>(c4)) + times<6>(c3)) + times<2>(c2));
     const auto along = narrow<Way>(way_ * s, saturations_);
     const auto way_of_cycle = narrow<CycleWay>(way_ + speed, saturations_);
     const auto velocity_of_cycle = narrow<CycleVelocity>(change * config_.rate, saturations_);
@@ -140,8 +139,8 @@ class SetPointInterpolator {
 
   Config config_;
   S::Position from_{}, target_{};
-  Way way_{};             // D
-  Way d1_{}, d2_{};       // ways of the last cycles
+  Way way_{};              // D
+  Way d1_{}, d2_{};        // ways of the last cycles
   Deviation e0_{}, e1_{};  // of the way in a cycle at both ends from D
   Deviation a0_{}, a1_{};  // its change
   std::uint32_t tick_ = 0;
