@@ -206,6 +206,17 @@ python3 {folder}/motion_controller.py vcan1 1 >controller.csv 2>controller.txt
 kill $dump
 kill -TERM $(pidof stictiond)) &
 """
+# The lines of docs/drive.md.
+BY_HAND = """(
+sleep 0.2
+candump -L vcan1,381:7FF >by_hand.log & dump=$!
+for frame in 301#060001 301#070001 301#0F0001 401#1F0080C3C901 401#0F0080C3C901; do cansend vcan1 $frame; sleep 0.05; done
+sleep 1
+cansend vcan1 301#060001
+sleep 0.3
+kill $dump
+kill -TERM $(pidof stictiond)) &
+"""
 REFUSED = """(
 sleep 0.2
 candump -L -T 300 vcan1 >refused.log &
@@ -245,7 +256,8 @@ class MotionController(unittest.TestCase):
         cls.folder = FOLDER / "controller"
         here = pathlib.Path(__file__).parent
         runs = [loop.Run("followed", (), drive=ALLOWED, beside=CONTROLLED.format(folder=here)),
-                loop.Run("not_allowed", (), drive=SERVED, beside=REFUSED)]
+                loop.Run("not_allowed", (), drive=SERVED, beside=REFUSED),
+                loop.Run("by_hand", (), drive=ALLOWED, beside=BY_HAND)]
         loop.boot(cls.folder, loop.BUS + CONTROLLER_BUS + "".join(run.script() for run in runs))
         cls.results = {run.name: loop.Result(cls.folder, run.name) for run in runs}
         cls.rows = [line.split(",") for line in (cls.folder / "controller.csv").read_text().splitlines()]
@@ -293,6 +305,17 @@ class MotionController(unittest.TestCase):
         self.assertAlmostEqual(max(shown) - min(shown), 20e-3, delta=20e-6)
         syncs = [time for time, name, _ in recorded if name.startswith("sync")]
         self.assertAlmostEqual((syncs[-1] - syncs[0]) / (len(syncs) - 1), 1e-3, delta=1e-6)
+
+    def test_may_be_a_person_with_cansend_who_asks_for_a_profile_move(self):
+        result = self.results["by_hand"]
+        self.assertEqual(result.status, 0, result.drive)
+        states = [values for _, name, values in decoded((self.folder / "by_hand.log").read_text(), self.dbc)]
+        reached = [values for values in states if int(values["statusword"]) == 0x0637]
+        off = max(abs(values["actual_position"] - 30e-3) for values in reached)
+        figure("profile move of 60 mm by cansend over vcan: position where it is said to be reached",
+               f"{off * 1e6:.2f} um off at most (bound 10 um)")
+        self.assertLessEqual(off, 10e-6)
+        self.assertEqual(int(states[-1]["statusword"]) & 0x6F, 0x21, "off again")
 
     def test_without_permission_moves_nothing(self):
         result = self.results["not_allowed"]
