@@ -73,7 +73,11 @@ void ControllerFrames::take(std::int64_t now_ns, const hal::can::Frame& frame, s
 
 void ControllerFrames::ask(std::int64_t now_ns, std::size_t axis, Pdo pdo, const hal::can::ControllerData& data,
                            RemoteAxis& remote) {
-  if (!config_.motion_allowed) return refuse(now_ns, axis, data.controlword);
+  if (!config_.motion_allowed) {
+    ++counts_.refused;
+    if (pdo != Pdo::offsets) say_refused(now_ns, axis, data.controlword);
+    return;
+  }
   if (pdo == Pdo::offsets) {
     ++counts_.taken;
     return ask_offsets(axis, data, remote);
@@ -102,8 +106,7 @@ void ControllerFrames::ask_offsets(std::size_t axis, const hal::can::ControllerD
   remote.ask_offsets(velocity.value_or(S::Velocity{}), current.value_or(S::Current{}));
 }
 
-void ControllerFrames::refuse(std::int64_t now_ns, std::size_t axis, std::uint16_t controlword) {
-  ++counts_.refused;
+void ControllerFrames::say_refused(std::int64_t now_ns, std::size_t axis, std::uint16_t controlword) {
   if (controlword == nodes_[axis].refused_word) return;
   nodes_[axis].refused_word = controlword;
   log_.push(now_ns, LogLevel::warning,

@@ -58,7 +58,7 @@ class ControllerFrames {
     std::int64_t said_ns = INT64_MIN;  // a wrong size
   };
 
-  void refuse(std::int64_t now_ns, std::size_t axis, std::uint16_t controlword);
+  void say_refused(std::int64_t now_ns, std::size_t axis, std::uint16_t controlword);
   void ask(std::int64_t now_ns, std::size_t axis, hal::can::Pdo pdo, const hal::can::ControllerData& data,
            RemoteAxis& remote);
   void ask_offsets(std::size_t axis, const hal::can::ControllerData& data, RemoteAxis& remote) const;

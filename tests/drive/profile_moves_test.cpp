@@ -151,8 +151,7 @@ class Plc {
     publisher_.emplace(table_.configuration.machine, setup_, drive::ModbusStore{});
   }
   std::string ask(const std::string& operations) {
-    const auto said = output_of(
-        pymodbus(fmt::format("client tcp {} {}", publisher_->server().port(), operations)));
+    const auto said = output_of(pymodbus(fmt::format("client tcp {} {}", publisher_->server().port(), operations)));
     publisher_->serve();
     return said;
   }

@@ -45,7 +45,8 @@ RemoteAxisConfig axis_config(int smoothing_bits) {
   config.low = signal<S::Position>(-travel);
   config.high = signal<S::Position>(travel);
   config.profile = {S::seconds(62500), S::rate(62500), smoothing_bits};
-  config.fastest = {{}, signal<S::Velocity>(1.33), signal<S::Velocity>(20.0 * 62.5e-6), signal<S::Velocity>(20.0 * 62.5e-6)};
+  config.fastest = {
+      {}, signal<S::Velocity>(1.33), signal<S::Velocity>(20.0 * 62.5e-6), signal<S::Velocity>(20.0 * 62.5e-6)};
   config.target_window = signal<S::Position>(10e-6);
   return config;
 }

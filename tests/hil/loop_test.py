@@ -201,18 +201,19 @@ CONTROLLER_BUS = "ip link add vcan1 type vcan\nip link set vcan1 up\n"
 # Another peer records the bus; a third one sends a frame of four bytes in place of six while the axis stands enabled.
 CONTROLLED = """(
 candump -L vcan1 >session.log & dump=$!
-(sleep 1; cansend vcan1 401#0F000000) &
+(until [ $(wc -l <session.log) -gt 1000 ]; do sleep 0.01; done; cansend vcan1 401#0F000000) &
 python3 {folder}/motion_controller.py vcan1 1 >controller.csv 2>controller.txt
 kill $dump
 kill -TERM $(pidof stictiond)) &
 """
-# The lines of docs/drive.md.
+# The lines of docs/drive.md; on the nodes' own bus.
+SHARED = (*ALLOWED, "--set", "drive.can_server.interface=vcan0", "--set", "drive.can_server.data_bit_rate=8e6 bit/s")
 BY_HAND = """(
 sleep 0.2
-candump -L vcan1,381:7FF >by_hand.log & dump=$!
-for frame in 301#060001 301#070001 301#0F0001 401#1F0080C3C901 401#0F0080C3C901; do cansend vcan1 $frame; sleep 0.05; done
+candump -L vcan0,381:7FF >by_hand.log & dump=$!
+for frame in 301#060001 301#070001 301#0F0001 401#1F0080C3C901 401#0F0080C3C901; do cansend vcan0 $frame; sleep 0.05; done
 sleep 1
-cansend vcan1 301#060001
+cansend vcan0 301#060001
 sleep 0.3
 kill $dump
 kill -TERM $(pidof stictiond)) &
@@ -236,7 +237,7 @@ def decoded(log, dbc):
         elif signal := re.match(r" SG_ (\w+) : (\d+)\|(\d+)@1([+-]) \(([^,]+),0\)", line):
             signals[number].append((signal[1], int(signal[2]), int(signal[3]), signal[4] == "-", float(signal[5])))
     for line in log.splitlines():
-        time, number, data = re.match(r"\(([\d.]+)\) \w+ ([0-9A-F]+)#(.*)", line).groups()
+        time, number, data = re.match(r"\(([\d.]+)\) \w+ ([0-9A-F]+)#(?:#.)?(.*)", line).groups()
         number, data = int(number, 16), bytes.fromhex(data)
         name, size = names[number]
         if len(data) != size:
@@ -257,7 +258,7 @@ class MotionController(unittest.TestCase):
         here = pathlib.Path(__file__).parent
         runs = [loop.Run("followed", (), drive=ALLOWED, beside=CONTROLLED.format(folder=here)),
                 loop.Run("not_allowed", (), drive=SERVED, beside=REFUSED),
-                loop.Run("by_hand", (), drive=ALLOWED, beside=BY_HAND)]
+                loop.Run("by_hand", (), drive=SHARED, beside=BY_HAND)]
         loop.boot(cls.folder, loop.BUS + CONTROLLER_BUS + "".join(run.script() for run in runs))
         cls.results = {run.name: loop.Result(cls.folder, run.name) for run in runs}
         cls.rows = [line.split(",") for line in (cls.folder / "controller.csv").read_text().splitlines()]
@@ -310,12 +311,15 @@ class MotionController(unittest.TestCase):
         result = self.results["by_hand"]
         self.assertEqual(result.status, 0, result.drive)
         states = [values for _, name, values in decoded((self.folder / "by_hand.log").read_text(), self.dbc)]
-        reached = [values for values in states if int(values["statusword"]) == 0x0637]
+        taken = next(k for k, values in enumerate(states) if int(values["statusword"]) & 0x1000)
+        reached = [values for values in states[taken:] if int(values["statusword"]) == 0x0637]
+        self.assertGreater(len(reached), 100, "each millisecond")
         off = max(abs(values["actual_position"] - 30e-3) for values in reached)
         figure("profile move of 60 mm by cansend over vcan: position where it is said to be reached",
-               f"{off * 1e6:.2f} um off at most (bound 10 um)")
-        self.assertLessEqual(off, 10e-6)
+               f"{off * 1e6:.2f} um off at most (bound 10.5 um)")
+        self.assertLessEqual(off, 10.5e-6)  # target_window, and how far it goes in a tick
         self.assertEqual(int(states[-1]["statusword"]) & 0x6F, 0x21, "off again")
+        self.assertIn("bus: 0 frames of nobody, 0 error frames, 0 not sent", result.drive)
 
     def test_without_permission_moves_nothing(self):
         result = self.results["not_allowed"]
