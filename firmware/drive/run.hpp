@@ -134,6 +134,10 @@ RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& confi
     loop.restart_watch();
     programme.tick(false);
     log.push(loop.now_ns(), LogLevel::info, "the loop has begun");
+    if (task.serve && !can && !modbus)
+      log.push(loop.now_ns(), LogLevel::warning,
+               "found neither [drive.can_server] nor [drive.modbus_server]: nobody can ask for a motion, the axes stay "
+               "off");
     while (!programme.over()) {
       const bool begins = can && loop.loop().slow() && can->receive(loop.now_ns(), programme.remote());
       programme.tick(stop_wanted != 0);
@@ -146,6 +150,9 @@ RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& confi
   if (!options.trace.empty())
     trace.write(options.trace, configuration.names,
                 std::vector<std::string>{"log: stictiond", "machine: " + configuration.machine.name});
+  if (can)
+    fmt::print("controller: {} frames taken, {} refused, {} of a wrong length, {} answers not sent\n",
+               can->counts().taken, can->counts().refused, can->counts().wrong_size, can->send_failed());
   if (clock != nullptr) fmt::print("{}", describe_timing(timing, clock->lateness(), clock->missed()));
   return {programme.faulted()};
 }

@@ -174,7 +174,7 @@ class PositionProfile {
   constexpr std::int64_t shifted(std::int64_t sum) const {
     if (config_.smoothing_bits == 0) return sum;
     const std::int64_t half = std::int64_t{1} << (config_.smoothing_bits - 1);
-    return (sum + half + (sum >> 63)) >> config_.smoothing_bits;
+    return (sum + half - (sum < 0 ? 1 : 0)) >> config_.smoothing_bits;
   }
 
   struct Entry {
