@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "hal/tick_clock.hpp"
 #include "sim/control/conversion.hpp"
 
 namespace stiction::drive {
@@ -25,6 +26,7 @@ std::vector<hal::can::Filter> filters(const CanServerConfig& config) {
     for (const auto& row : hal::can::pdo_table)
       if (row.received && (row.positions || config.all_frames))
         wanted.push_back({row.id + static_cast<std::uint32_t>(node), CAN_SFF_MASK});
+  if (config.follows_sync) wanted.push_back({hal::can::sync_id, CAN_SFF_MASK});
   return wanted;
 }
 
@@ -49,8 +51,13 @@ bool CanServer::receive(std::int64_t now_ns, std::span<RemoteAxis> axes) {
   slow_ticks_ = slow_ticks_ + 1 == frames_.config().cycle_ticks ? 0 : slow_ticks_ + 1;
   if (!begins) return false;
   hal::can::Received received;
-  for (std::uint32_t i = 0; i < most_taken && socket_.receive(received, 0); ++i)
-    frames_.take(now_ns, received.frame, axes);
+  sync_age_ns_.reset();
+  for (std::uint32_t i = 0; i < most_taken && socket_.receive(received, 0); ++i) {
+    if (received.frame.id == hal::can::sync_id)
+      sync_age_ns_ = hal::MonotonicTime().now_ns() - received.received_ns;
+    else
+      frames_.take(now_ns, received.frame, axes);
+  }
   for (auto& axis : axes) axis.begin_cycle();
   return true;
 }

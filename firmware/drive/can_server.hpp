@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,7 +26,8 @@ struct CanServerConfig {
   std::uint32_t cycle_ticks = 1;      // slow ticks from one cycle to the next
   bool all_frames = true;             // offsets, velocities and following errors beside what positions need
   bool motion_allowed = false;
-  bool sends_sync = true;  // false: another one does on this bus
+  bool sends_sync = true;     // false: another one does on this bus
+  bool follows_sync = false;  // of the controller
 };
 
 struct CanServerCounts {
@@ -81,6 +83,8 @@ class CanServer {
   // Once behind each true of receive().
   void send(std::span<const ShownAxis> axes);
 
+  // How old the controller's SYNC was when the last cycle began, ns; none came, or it is not followed: nothing.
+  std::optional<std::int64_t> sync_age_ns() const { return sync_age_ns_; }
   const CanServerCounts& counts() const { return frames_.counts(); }
   std::uint64_t send_failed() const { return send_failed_; }  // frames that the kernel did not take
 
@@ -91,6 +95,7 @@ class CanServer {
   hal::can::CanSocket socket_;
   std::uint32_t slow_ticks_ = 0;
   std::uint64_t send_failed_ = 0;
+  std::optional<std::int64_t> sync_age_ns_;
 };
 
 }  // namespace stiction::drive

@@ -105,7 +105,7 @@ int run_modbus(const DriveConfiguration& configuration, const DriveOptions& opti
 int print_budgets(const DriveConfiguration& configuration) {
   std::vector<hal::BusBudget> budgets;
   if (configuration.setup.can) budgets.push_back(can_bus_budget(configuration));
-  if (configuration.setup.can_server && can_server_config(configuration).sends_sync)
+  if (configuration.setup.can_server && can_server_identifiers(configuration).empty())
     budgets.push_back(can_server_budget(configuration));
   if (configuration.setup.modbus_client)
     budgets.push_back(modbus_client_budget(modbus_client_config(configuration.machine, configuration.setup)));

@@ -108,7 +108,13 @@ CanServerConfig can_server_config(const DriveConfiguration& c) {
   config.all_frames = server.all_frames;
   config.cycle_ticks = cycle_ticks(c);
   config.motion_allowed = server.motion_allowed;
-  config.sends_sync = !on_one_bus(c.setup);
+  config.follows_sync = server.sync_followed;
+  config.sends_sync = !on_one_bus(c.setup) && !server.sync_followed;
+  if (server.sync_followed && on_one_bus(c.setup))
+    throw StartRefused(fmt::format(
+        "{}: found drive.can_server.sync = \"followed\" on the interface of [drive.can], {}, where SYNC is the "
+        "drive's own; expected \"sent\" or another interface",
+        c.machine.id, server.interface));
   for (const auto& axis : c.machine.axes) {
     const int node = c.setup.axes.at(axis.name).server_node;
     if (node == 0)
@@ -141,7 +147,7 @@ std::vector<hal::CyclicFrame> can_server_frames(const DriveConfiguration& config
   };
   std::vector<hal::CyclicFrame> frames;
   const auto axes = static_cast<int>(config.nodes.size());
-  if (config.sends_sync) frames.push_back(frame("server sync", 0, 1));
+  if (config.sends_sync || config.follows_sync) frames.push_back(frame("server sync", 0, 1));
   constexpr std::array<const char*, 5> names{"mode", "target", "offsets", "state", "motion"};
   for (const auto& row : hal::can::pdo_table)
     if (row.pdo != hal::can::Pdo::mode && (row.positions || config.all_frames))  // the mode is sent when it changes

@@ -18,6 +18,7 @@
 #include "firmware/drive/remote_setup.hpp"
 #include "firmware/drive/service_notify.hpp"
 #include "firmware/drive/service_thread.hpp"
+#include "firmware/drive/sync_follower.hpp"
 #include "hal/loop_timing.hpp"
 #include "hal/tick_clock.hpp"
 #include "sim/control/conversion.hpp"
@@ -37,6 +38,25 @@ std::string describe_timing(const hal::LoopTiming& timing, const hal::TimeHistog
 
 // The task of the options. `positions`: where the axes stand (m). Throws MotionError.
 Task task_of(const DriveOptions& options, const DriveConfiguration& configuration, std::span<const double> positions);
+
+// The loop's clock behind a controller's SYNC.
+class ControllerClock {
+ public:
+  explicit ControllerClock(const DriveConfiguration& c)
+      : follower_(c.period_ns * (c.setup.can_server ? remote_axes(c).front().interpolation.ticks : 1)) {}
+
+  // Once a cycle, with the age of its SYNC.
+  void follow(std::optional<std::int64_t> age_ns, hal::TickClock& clock, LogRing& log, std::int64_t now_ns) {
+    if (!age_ns) return;
+    clock.shift(follower_.step(*age_ns));
+    if (follower_.locked() && !said_) log.push(now_ns, LogLevel::info, "CAN: the clock follows the controller's SYNC");
+    said_ |= follower_.locked();
+  }
+
+ private:
+  SyncFollower follower_;
+  bool said_ = false;
+};
 
 // The axes for a motion controller to see.
 template <hal::Backend B>
@@ -99,6 +119,7 @@ RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& confi
   std::optional<CanServer> can;
   if (configuration.setup.can_server && task.serve) can.emplace(can_server_config(configuration), log);
   std::vector<ShownAxis> shown(configuration.names.size());
+  ControllerClock controller_clock(configuration);
 
   ServiceNotify notify;
   constexpr std::int64_t starvation_ns = 100'000'000;
@@ -141,7 +162,10 @@ RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& confi
     while (!programme.over()) {
       const bool begins = can && loop.loop().slow() && can->receive(loop.now_ns(), programme.remote());
       programme.tick(stop_wanted != 0);
-      if (begins) answer_controller(loop, programme, *can, shown);
+      if (begins) {
+        answer_controller(loop, programme, *can, shown);
+        if (clock != nullptr) controller_clock.follow(can->sync_age_ns(), *clock, log, loop.now_ns());
+      }
       if (modbus && loop.loop().slow())
         serve_modbus(loop, programme, configuration.machine.timing.fast_period, *modbus);
     }

@@ -31,6 +31,11 @@ inline constexpr std::array<Choice<bool>, 2> motion_permissions{{
     {"allowed", true, "it is taken"},
 }};
 
+inline constexpr std::array<Choice<bool>, 2> server_syncs{{
+    {"sent", false, "by the drive: the controller answers it"},
+    {"followed", true, "by the controller each period: the drive's clock follows it"},
+}};
+
 inline constexpr std::array<Choice<bool>, 2> server_frames{{
     {"positions", false, "controlwords and targets, statuswords and positions: half of the bus's load"},
     {"all", true, "beside them offsets of velocity and torque, velocities and following errors"},
@@ -63,6 +68,8 @@ struct Table<CanServerSetup> : EmptyTable<CanServerSetup> {
        "a unit of target and actual position; a unit of velocity is 1000 of them a second"},
   }};
   static constexpr std::tuple choices{
+      ChoiceParameter<CanServerSetup, bool>{"sync", &CanServerSetup::sync_followed, server_syncs, false,
+                                            "who sends SYNC, 80h, and so gives the clock"},
       ChoiceParameter<CanServerSetup, bool>{"frames", &CanServerSetup::all_frames, server_frames, true,
                                             "what is exchanged each period beside SYNC"},
       ChoiceParameter<CanServerSetup, bool>{"motion", &CanServerSetup::motion_allowed, motion_permissions, false,

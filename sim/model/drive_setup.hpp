@@ -22,6 +22,7 @@ struct CanServerSetup {
   std::optional<double> data_bit_rate;  // 1/s, CAN FD; none: classical frames
   std::optional<double> period;         // s, of the targets; none: the machine's slow period
   double position_increment = 1e-9;     // m, a unit of 607Ah and 6064h
+  bool sync_followed = false;           // the controller sends SYNC, and the drive's clock follows it
   bool all_frames = true;               // offsets, velocities and following errors too
   bool motion_allowed = false;          // whether set-points and controlwords are taken
 };

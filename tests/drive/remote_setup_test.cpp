@@ -67,6 +67,9 @@ TEST(RemoteSetup, SharesTheBusOfTheNodesWithTheSameBitRatesAndWithoutASecondSync
               HasSubstr("on one interface, can0; expected the same bit rates"));
   const auto c = configuration(with({"drive.can_server.interface=can0", "drive.can_server.data_bit_rate=8e6 bit/s"}));
   EXPECT_FALSE(drive::can_server_config(c).sends_sync);
+  EXPECT_THAT(refusal(with({"drive.can_server.interface=can0", "drive.can_server.data_bit_rate=8e6 bit/s",
+                            "drive.can_server.sync=followed"})),
+              HasSubstr("found drive.can_server.sync = \"followed\" on the interface of [drive.can], can0"));
   const auto config = drive::can_config(c);
   EXPECT_THAT(config.others, ::testing::IsSupersetOf({0x40bu, 0x38cu, 0x50bu, 0x48cu, 0x30bu}));
   EXPECT_EQ(config.others.size(), 10U);

@@ -70,26 +70,6 @@ TEST(StreamedSetPoints, TwoMissingCyclesAreBridgedWithoutAJerk) {
   }
 }
 
-// One with a clock of its own: now and then no target comes in a cycle, or two do.
-TEST(StreamedSetPoints, MayComeByAnotherClockThanTheDrives) {
-  for (const double slow : {0.98, 1.02}) {
-    SCOPED_TRACE(slow);
-    ServedTable table;
-    ASSERT_TRUE(table.enable(0));
-    const double begin = table.position(0);
-    double controller_time = 0.0;
-    int sent = 0;
-    for (int k = 0; k < 620; ++k)
-      table.cycle([&] {
-        controller_time += slow;
-        for (; sent < static_cast<int>(controller_time); ++sent) table.target(0, begin + smooth(20e-3, sent / 500.0));
-      });
-    EXPECT_EQ(table.loop.fault(0), Fault::none);
-    EXPECT_EQ(sent, static_cast<int>(620 * slow));
-    EXPECT_NEAR(table.position(0), begin + 20e-3, 5e-6);
-  }
-}
-
 TEST(StreamedSetPoints, LostOnesAreAFaultInTheThirdCycleWhereverTheMotionIs) {
   double longest = 0.0;
   for (const int from : {3, 100, 250, 400, 510}) {

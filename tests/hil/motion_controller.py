@@ -7,6 +7,7 @@ import argparse
 import math
 import struct
 import sys
+from time import monotonic as time_of_day, sleep
 
 import can
 
@@ -29,13 +30,22 @@ def main():
     options.add_argument("--cycles", type=int, default=500, help="of each move")
     options.add_argument("--moves", type=int, default=2)
     options.add_argument("--break-off", type=int, default=250, help="cycles of the last move that are sent")
+    options.add_argument("--own-clock", type=float, help="seconds from SYNC to SYNC, which are its own then")
+    options.add_argument("--warm-up", type=int, default=0, help="cycles before it enables the axis")
     options.add_argument("--listen", type=int, default=400, help="cycles after the last target")
     o = options.parse_args()
     bus = can.Bus(interface="socketcan", channel=o.interface,
                   can_filters=[{"can_id": base + o.node, "can_mask": 0x7FF} for base in (0x380, 0x480)])
 
+    next_sync = time_of_day() + 0.01
+
     def state():
-        """Of one cycle, as the drive's SYNC brings it."""
+        """Of one cycle, as SYNC brings it."""
+        nonlocal next_sync
+        if o.own_clock:
+            sleep(max(next_sync - time_of_day(), 0))
+            next_sync += o.own_clock
+            bus.send(can.Message(arbitration_id=0x80, is_extended_id=False))
         while True:
             message = bus.recv(timeout=5)
             if message is None:
@@ -50,6 +60,8 @@ def main():
         bus.send(can.Message(arbitration_id=0x400 + o.node, is_extended_id=False,
                              data=struct.pack("<Hi", controlword, target)))
 
+    for _ in range(o.warm_up):
+        state()
     time, word, position, error = state()
     while word & STATE_BITS != ENABLED:  # the target stands where the axis does
         send(NEXT.get(word & STATE_BITS, 0), position)
