@@ -22,11 +22,12 @@ python3 {folder}/motion_controller.py vcan1 1 >controller.csv 2>controller.txt
 kill $dump
 kill -TERM $(pidof stictiond)) &
 """
-# A controller whose clock is 100 ppm slow and whose SYNC the drive follows; ten moves are 5500 cycles.
+# A controller whose clock is 150 ppm slow and whose SYNC the drive follows: warming up and three moves are 6650
+# cycles, in which the clocks would drift apart by one.
 OWN_CLOCK = (*ALLOWED, "--set", "drive.can_server.sync=followed")
 FOLLOWED = """(
 sleep 0.2
-python3 {folder}/motion_controller.py vcan1 1 --own-clock 0.0010001 --warm-up 5000 --moves 10 --break-off 550 --listen 20 \
+python3 {folder}/motion_controller.py vcan1 1 --own-clock 0.00100015 --warm-up 5000 --moves 3 --break-off 550 --listen 20 \
   >own_clock.csv 2>own_clock.txt
 kill -TERM $(pidof stictiond)) &
 """
@@ -162,10 +163,10 @@ class MotionController(unittest.TestCase):
         self.assertIn("CAN: the clock follows the controller's SYNC", result.drive)
         rows = [line.split(",") for line in (self.folder / "own_clock.csv").read_text().splitlines()]
         targets = [int(target) for _, target, *_ in rows if target]
-        self.assertGreater(len(targets), 5000, result.drive + (self.folder / "own_clock.txt").read_text())
+        self.assertGreater(len(targets), 1600, result.drive + (self.folder / "own_clock.txt").read_text())
         positions = [int(row[3]) for row in rows]
         off = max(min(abs(positions[k + late] - target) for late in (1, 2, 3)) for k, target in enumerate(targets[:-4]))
-        figure("the same by a controller whose clock is 100 ppm slow, over 5.5 s",
+        figure("the same by a controller whose clock is 150 ppm slow",
                f"{off * 1e-3:.2f} um at most (bound 20 um)")
         self.assertLess(off, 20e3)
         # No target was lost or doubled: the only fault is that of its end.
