@@ -46,15 +46,18 @@ def main():
             sleep(max(next_sync - time_of_day(), 0))
             next_sync += o.own_clock
             bus.send(can.Message(arbitration_id=0x80, is_extended_id=False))
+        newest = None  # behind its own SYNC there may be several, or none yet
         while True:
-            message = bus.recv(timeout=5)
+            message = bus.recv(timeout=0 if newest else 5)
             if message is None:
-                sys.exit("no answer of the drive")
+                return newest or sys.exit("no answer of the drive")
             if message.arbitration_id == 0x380 + o.node:
                 word, position = struct.unpack("<Hi", message.data)
             else:
                 _, error = struct.unpack("<ii", message.data)
-                return message.timestamp, word, position, error
+                newest = message.timestamp, word, position, error
+                if not o.own_clock:
+                    return newest
 
     def send(controlword, target):
         bus.send(can.Message(arbitration_id=0x400 + o.node, is_extended_id=False,
