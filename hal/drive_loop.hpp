@@ -52,6 +52,7 @@ class DriveLoop {
   // Hold until changed.
   void set_controlword(std::size_t axis, std::uint16_t word) { demands_[axis].controlword = word; }
   void set_mode(std::size_t axis, OperationMode mode) { demands_[axis].mode = mode; }
+  void set_velocity_offset(std::size_t axis, typename S::Velocity offset) { demands_[axis].velocity_offset = offset; }
   // A fault that the programme sees (Detector::programme), in the coming tick. As long as its cause holds it is to be
   // repeated each tick: no reset is taken in a tick with one.
   void trip(std::size_t axis, Fault fault) { trips_[axis] = fault; }

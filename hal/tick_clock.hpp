@@ -59,6 +59,9 @@ class BasicTickClock {
     return tick_ns;
   }
 
+  // All ticks to come are so much later (ns, a small part of the period): of a loop that follows another clock.
+  void shift(std::int64_t later_ns) { next_ns_ += later_ns; }
+
   // The next wait() starts the clock again: after work between two ticks that may take as long as it likes.
   void restart() { started_ = false; }
 

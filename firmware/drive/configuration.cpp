@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "firmware/drive/parameters.hpp"
+#include "firmware/drive/remote_setup.hpp"
 #include "hal/can/can_socket.hpp"
 #include "sim/control/compensation_configuration.hpp"
 #include "sim/control/drive_configuration.hpp"
@@ -79,14 +80,28 @@ hal::can::CanBackendConfig can_config(const DriveConfiguration& configuration) {
                                      configuration.machine.id, name));
     config.nodes.push_back(node);
   }
+  config.others = can_server_identifiers(configuration);
   return config;
 }
 
-std::vector<hal::can::DbcAxis> dbc_axes(const DriveConfiguration& configuration) {
-  const auto config = can_config(configuration);
-  std::vector<hal::can::DbcAxis> axes;
-  for (std::size_t i = 0; i < config.nodes.size(); ++i) axes.push_back({configuration.names[i], config.nodes[i]});
-  return axes;
+std::string dbc_page(const DriveConfiguration& configuration) {
+  const auto& setup = configuration.setup;
+  const auto axes_of = [&](const std::vector<int>& nodes) {
+    std::vector<hal::can::DbcAxis> axes;
+    for (std::size_t i = 0; i < nodes.size(); ++i) axes.push_back({configuration.names[i], nodes[i]});
+    return axes;
+  };
+  hal::can::DbcBus bus, server;
+  if (setup.can || !setup.can_server) {
+    const auto config = can_config(configuration);
+    bus = {config.format, axes_of(config.nodes)};
+  }
+  if (setup.can_server) {
+    const auto config = can_server_config(configuration);
+    server = {config.format, axes_of(config.nodes)};
+  }
+  const double increment = setup.can_server ? setup.can_server->position_increment : 0.0;
+  return hal::can::dbc_text(bus, server, increment);
 }
 
 hal::BusBudget can_bus_budget(const DriveConfiguration& configuration) {
@@ -102,6 +117,8 @@ hal::BusBudget can_bus_budget(const DriveConfiguration& configuration) {
   std::vector<hal::CyclicFrame> frames{frame("sync", 0, 1), frame("command", 1, axes), frame("position", 2, axes)};
   if (!fd) frames.push_back(frame("current", 3, axes));
   if (fd) frames.back().name = "feedback";
+  if (!config.others.empty())
+    for (auto& of_server : can_server_frames(configuration)) frames.push_back(std::move(of_server));
   return hal::can_budget(can.interface, {can.bit_rate, can.data_bit_rate}, frames, hal::can::is_virtual(can.interface));
 }
 

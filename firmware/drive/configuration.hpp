@@ -50,7 +50,8 @@ DriveConfiguration read_configuration(const DriveOptions& options);
 
 // Throw StartRefused where the machine file does not say what the bus needs.
 hal::can::CanBackendConfig can_config(const DriveConfiguration& configuration);
-std::vector<hal::can::DbcAxis> dbc_axes(const DriveConfiguration& configuration);
+// The frames of [drive.can] and [drive.can_server] as a DBC file; throws where there is neither.
+std::string dbc_page(const DriveConfiguration& configuration);
 
 // What the CAN bus has to carry.
 hal::BusBudget can_bus_budget(const DriveConfiguration& configuration);

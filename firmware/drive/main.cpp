@@ -13,6 +13,7 @@
 #include "firmware/drive/modbus_setup.hpp"
 #include "firmware/drive/options.hpp"
 #include "firmware/drive/real_time_check.hpp"
+#include "firmware/drive/remote_setup.hpp"
 #include "firmware/drive/run.hpp"
 #include "hal/gpio/beside_lines.hpp"
 #include "hal/gpio/gpio_backend.hpp"
@@ -107,9 +108,12 @@ int run_modbus(const DriveConfiguration& configuration, const DriveOptions& opti
 int print_budgets(const DriveConfiguration& configuration) {
   std::vector<hal::BusBudget> budgets;
   if (configuration.setup.can) budgets.push_back(can_bus_budget(configuration));
+  if (configuration.setup.can_server && can_server_identifiers(configuration).empty())
+    budgets.push_back(can_server_budget(configuration));
   if (configuration.setup.modbus_client)
     budgets.push_back(modbus_client_budget(modbus_client_config(configuration.machine, configuration.setup)));
-  if (budgets.empty()) throw StartRefused("found no bus; expected [drive.can] or [drive.modbus_client]");
+  if (budgets.empty())
+    throw StartRefused("found no bus; expected [drive.can], [drive.can_server] or [drive.modbus_client]");
   bool refused = false;
   for (const auto& budget : budgets) {
     fmt::print("{}", hal::budget_table(budget));
@@ -132,7 +136,7 @@ int serve(const DriveOptions& options) {
   const auto configuration = read_configuration(options);
   if (options.budget) return print_budgets(configuration);
   if (options.dbc) {
-    fmt::print("{}", hal::can::dbc_text(can_config(configuration).format, dbc_axes(configuration)));
+    fmt::print("{}", dbc_page(configuration));
     return exit_done;
   }
   if (options.check_realtime) {
@@ -144,6 +148,7 @@ int serve(const DriveOptions& options) {
     fmt::print("{}", text_of(measured, configuration.period_ns));
     return exit_done;
   }
+  check_remote(configuration);
   hal::catch_stop_signals();
   if (options.hal == "can") return run_can(configuration, options);
   if (options.hal == "gpio") return run_gpio(configuration, options);

@@ -9,7 +9,8 @@
 namespace stiction::drive {
 namespace {
 
-constexpr std::array<const char*, 2> motion_names{"controlword", "mode of operation"};
+constexpr std::array<const char*, 6> motion_names{"controlword",      "mode of operation",    "target position",
+                                                  "profile velocity", "profile acceleration", "profile deceleration"};
 
 }  // namespace
 
@@ -35,6 +36,8 @@ std::optional<MotionWrite> ModbusPublisher::take_motion() {
 
 std::vector<std::string> ModbusPublisher::serve() {
   std::vector<std::string> lines;
+  // All at once: a target and the bit that it is taken by may come in one request.
+  std::vector<hal::RegisterWrite> motions;
   while (const auto write = server_.take_write()) {
     const DriveWrite meaning = registers_.meaning_of(*write);
     if (const auto* parameter = std::get_if<ParameterWrite>(&meaning)) {
@@ -42,12 +45,13 @@ std::vector<std::string> ModbusPublisher::serve() {
       lines.push_back(
           fmt::format("Modbus: {} = {}, from the next start on if it is stored", parameter->key, parameter->value));
     } else if (const auto* motion = std::get_if<MotionWrite>(&meaning)) {
-      const bool taken = motion_.push(std::span(&*write, 1));
-      lines.push_back(describe(*motion) + (taken ? "" : ": dropped, the loop has not taken the commands before"));
+      motions.push_back(*write);
+      lines.push_back(describe(*motion));
     } else {
       lines.push_back(describe_store());
     }
   }
+  if (!motion_.push(motions)) lines.push_back("Modbus: motion dropped: the loop has not taken the commands before");
   return lines;
 }
 

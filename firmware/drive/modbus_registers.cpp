@@ -79,12 +79,67 @@ struct MotionRow {
   const char* unit;
   const char* text;
   MotionWrite::What what;
-  std::array<double, 2> choices;  // both 0: every number
+  double (*value)(const Axis&);
+  std::array<double, 3> choices{};  // all 0: every number
+  // Limits what may be written to what the axis can; null: every number.
+  void (*limit)(const sim::Axis&, Register&) = nullptr;
 };
-// Set-points of every tick do not come over this bus; what can be asked for is what a drive does by itself.
-constexpr std::array<MotionRow, 2> motion_rows{{
-    {0, uint16, 1, "controlword", "1", "CiA 402, 6040h", MotionWrite::What::controlword, {}},
-    {1, int16, 1, "mode_of_operation", "1", "6060h; 6: homing, 8: cyclic position", MotionWrite::What::mode, {6, 8}},
+
+void up_to(double high, Register& r) {
+  r.low = 0.0;
+  r.low_open = true;
+  r.high = high;
+}
+void to_velocity(const sim::Axis& axis, Register& r) { up_to(axis.max_velocity, r); }
+void to_acceleration(const sim::Axis& axis, Register& r) { up_to(axis.max_acceleration, r); }
+// Set-points of every tick do not come over this bus; what can be asked for is what a drive does by itself. A target
+// beyond the travel is refused by the axis, as it may be relative: bit 11 of the statusword.
+using What = MotionWrite::What;
+constexpr std::array<MotionRow, 6> motion_rows{{
+    {0, uint16, 1, "controlword", "1", "CiA 402, 6040h; shown: what was taken last", What::controlword,
+     [](const Axis& a) -> double { return a.controlword; }},
+    {1,
+     int16,
+     1,
+     "mode_of_operation",
+     "1",
+     "6060h; 1: profile position, 6: homing, 8: cyclic position",
+     What::mode,
+     [](const Axis& a) -> double { return a.mode; },
+     {1, 6, 8}},
+    {2, int32, position_scale, "target_position", "m",
+     "607Ah; taken when bit 4 of the controlword rises, with bit 5 at once, with bit 6 relative", What::target,
+     [](const Axis& a) { return a.target; }},
+    {4,
+     uint32,
+     1e-6,
+     "profile_velocity",
+     "m/s",
+     "6081h; at first and at most max_velocity",
+     What::velocity,
+     [](const Axis& a) { return a.profile_velocity; },
+     {},
+     to_velocity},
+    {6,
+     uint32,
+     1e-3,
+     "profile_acceleration",
+     "m/s^2",
+     "6083h; at first and at most max_acceleration",
+     What::acceleration,
+     [](const Axis& a) { return a.profile_acceleration; },
+     {},
+     to_acceleration},
+    {8,
+     uint32,
+     1e-3,
+     "profile_deceleration",
+     "m/s^2",
+     "6084h; at first and at most max_acceleration",
+     What::deceleration,
+     [](const Axis& a) { return a.profile_deceleration; },
+     {},
+     to_acceleration},
 }};
 
 template <class Row>
@@ -99,7 +154,7 @@ Register made(const Row& row, RegisterTable table, RegisterAccess access, unsign
   r.scale = row.scale;
   r.text = row.text;
   if constexpr (requires { row.choices; })
-    if (row.choices != std::array<double, 2>{}) r.choices.assign(row.choices.begin(), row.choices.end());
+    if (row.choices != decltype(row.choices){}) r.choices.assign(row.choices.begin(), row.choices.end());
   return r;
 }
 
@@ -139,7 +194,11 @@ std::vector<Register> all_registers(const sim::Machine& machine, const std::vect
   const auto of_each_axis = [&](const auto& rows, RegisterTable table, RegisterAccess access) {
     unsigned start = first_axis;
     for (const sim::Axis& axis : machine.axes) {
-      for (const auto& row : rows) registers.push_back(made(row, table, access, start, axis.name + "."));
+      for (const auto& row : rows) {
+        registers.push_back(made(row, table, access, start, axis.name + "."));
+        if constexpr (requires { row.limit; })
+          if (row.limit != nullptr) row.limit(axis, registers.back());
+      }
       start += axis_stride;
     }
   };
@@ -189,8 +248,9 @@ void ModbusRegisters::put_values(const PublishedState& state, std::span<double> 
   for (const auto& row : drive_rows) values[i++] = row.value(state);
   for (std::size_t axis = 0; axis < axis_count_; ++axis)
     for (const auto& row : axis_rows) values[i++] = row.value(state.axes[axis]);
-  // Commands read as zero: what an axis does stands in its state.
-  while (i < first_parameter_) values[i++] = 0.0;
+  values[i++] = 0.0;  // the command to store
+  for (std::size_t axis = 0; axis < axis_count_; ++axis)
+    for (const auto& row : motion_rows) values[i++] = row.value(state.axes[axis]);
   const std::lock_guard lock(mutex_);
   for (const double value : values_) values[i++] = value;
 }

@@ -18,7 +18,7 @@
 namespace stiction::drive {
 
 inline constexpr std::uint16_t modbus_identification = 0x5344;  // "SD"
-inline constexpr std::uint16_t modbus_schema = 1;               // of the registers; changes with any address
+inline constexpr std::uint16_t modbus_schema = 2;               // of the registers; changes with any address
 inline constexpr std::size_t most_published_axes = 8;
 
 struct PublishedAxis {
@@ -35,6 +35,11 @@ struct PublishedAxis {
   double peak_following_error = 0.0;  // m
   double peak_current = 0.0;          // A
   double rms_current = 0.0;           // A
+  // What was asked for last, by whomever.
+  std::uint16_t controlword = 0;
+  double target = 0.0;                                            // m
+  double profile_velocity = 0.0;                                  // m/s
+  double profile_acceleration = 0.0, profile_deceleration = 0.0;  // m/s^2
 };
 
 // What the loop hands over, as often as it likes, through hal::Snapshot<PublishedState>.
@@ -51,10 +56,10 @@ struct PublishedState {
 
 // What a client wrote.
 struct MotionWrite {
-  enum class What : std::uint8_t { controlword, mode };  // 6040h, 6060h
+  enum class What : std::uint8_t { controlword, mode, target, velocity, acceleration, deceleration };
   std::size_t axis = 0;
   What what = What::controlword;
-  double value = 0.0;
+  double value = 0.0;  // SI units
 };
 struct ParameterWrite {
   std::string key;

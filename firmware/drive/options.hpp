@@ -26,7 +26,10 @@ struct DriveOptions {
         ->type_name("DIR");
     program.add_option("--circle", circle, "enable the axes, drive the circle test at this feed, stop and end")
         ->type_name("\"16 m/min\"");
-    program.add_option("--hold", hold, "enable the axes, hold them for so many seconds, stop and end")
+    program
+        .add_option("--hold", hold,
+                    "enable the axes, hold them for so many seconds, stop and end; without --circle and --hold the "
+                    "axes stay off until [drive.can_server] or [drive.modbus_server] is asked to move them")
         ->type_name("SECONDS")
         ->check(CLI::PositiveNumber);
     program.add_flag("--unpaced", unpaced, "the simulated machine in its own time, as fast as it goes: no deadlines");

@@ -1,6 +1,7 @@
 // What the programme does with the axes, tick by tick: it enables them, finds their zero where they have to, makes its
 // motion, stops and takes the power off. A fault on the way ends in the drives' own reactions; the programme waits for
-// them to be over. Allocates nothing after construction.
+// them to be over. While it serves, others ask: the axes then stand, follow or move by what RemoteAxis makes of it.
+// Allocates nothing after construction.
 #pragma once
 
 #include <array>
@@ -13,6 +14,7 @@
 #include "firmware/drive/motion.hpp"
 #include "firmware/drive/trace.hpp"
 #include "hal/drive_loop.hpp"
+#include "stiction/drive/remote_axis.hpp"
 
 namespace stiction::drive {
 
@@ -33,14 +35,15 @@ class Programme {
  public:
   using S = typename B::Signals;
 
-  // `trace`: of the motion; may be null. All must outlive this.
-  Programme(hal::DriveLoop<B>& loop, const Task& task, LogRing& log, Trace* trace)
+  // `remote`: one an axis. `trace`: of the motion; may be null. All must outlive this.
+  Programme(hal::DriveLoop<B>& loop, const Task& task, std::span<const RemoteAxisConfig> remote, LogRing& log,
+            Trace* trace)
       : loop_(loop),
         task_(task),
         log_(log),
         trace_(trace),
         hold_(loop.axis_count()),
-        remote_(loop.axis_count()),
+        remote_(remote.begin(), remote.end()),
         dropped_(loop.axis_count()) {
     if (task.serve) enter(Phase::remote);
   }
@@ -49,8 +52,8 @@ class Programme {
   void tick(bool stop_wanted) {
     if (stop_wanted && phase_ < Phase::stop) enter(Phase::stop);
     if (loop_.faulted() && phase_ != Phase::remote && phase_ < Phase::faulted) enter(Phase::faulted);
-    choose_controlwords();
-    const auto sets = set_points();
+    if (phase_ != Phase::remote) choose_controlwords();
+    const auto sets = phase_ == Phase::remote ? serve() : set_points();
     const std::int64_t now_ns = loop_.now_ns();
     loop_.tick(sets);
     if (phase_ == Phase::motion && trace_ != nullptr) trace_->add(now_ns - motion_began_ns_, loop_.loop().signals());
@@ -60,9 +63,12 @@ class Programme {
     progress_.store(tick_, std::memory_order_relaxed);
   }
 
-  // What others ask of an axis while the programme serves; without it the axes stay off.
-  void ask(std::size_t axis, std::uint16_t controlword) { remote_[axis].controlword = controlword; }
-  void ask(std::size_t axis, OperationMode mode) { remote_[axis].mode = mode; }
+  // Where others ask for what the axes do while the programme serves; without it they stay off.
+  std::span<RemoteAxis> remote() { return remote_; }
+  // As others see it: what serves adds its bits to the drive's.
+  std::uint16_t statusword(std::size_t axis) const {
+    return phase_ == Phase::remote ? remote_[axis].statusword(loop_.statusword(axis)) : loop_.statusword(axis);
+  }
 
   Phase phase() const { return phase_; }
   bool over() const { return phase_ == Phase::over; }
@@ -86,12 +92,21 @@ class Programme {
       std::uint16_t word = off ? controlword::shutdown : controlword_to_enable(loop_.state(i));
       if (phase_ == Phase::faulted) word = controlword::shutdown;
       if (homes) word |= controlword::homing_start_bit;
-      if (phase_ == Phase::remote) {
-        word = remote_[i].controlword;
-        loop_.set_mode(i, remote_[i].mode);
-      }
       loop_.set_controlword(i, word);
     }
+  }
+
+  // What others ask for, in this tick.
+  std::span<const SetPoint<S>> serve() {
+    for (std::size_t i = 0; i < hold_.size(); ++i) {
+      auto& remote = remote_[i];
+      hold_[i] = remote.tick(loop_.drive(i));
+      loop_.set_controlword(i, remote.controlword());
+      loop_.set_mode(i, remote.mode());
+      loop_.set_velocity_offset(i, remote.velocity_offset());
+      if (const Fault fault = remote.fault(); fault != Fault::none) loop_.trip(i, fault);
+    }
+    return hold_;
   }
 
   std::span<const SetPoint<S>> set_points() {
@@ -175,11 +190,7 @@ class Programme {
   LogRing& log_;
   Trace* trace_;
   std::vector<SetPoint<S>> hold_;
-  struct Asked {
-    std::uint16_t controlword = controlword::disable_voltage;
-    OperationMode mode = OperationMode::cyclic_position;
-  };
-  std::vector<Asked> remote_;
+  std::vector<RemoteAxis> remote_;
   std::vector<char> dropped_;  // learned tables
   Phase phase_ = Phase::enable;
   std::uint64_t in_phase_ = 0;  // ticks

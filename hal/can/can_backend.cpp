@@ -29,6 +29,7 @@ std::vector<Filter> own_frames(const CanBackendConfig& config) {
 
 std::vector<Filter> all_others(const CanBackendConfig& config) {
   auto filters = own_frames(config);
+  for (const auto id : config.others) filters.push_back({id, CAN_SFF_MASK});
   for (auto& filter : filters) filter.inverted = true;
   return filters;
 }

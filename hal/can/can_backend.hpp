@@ -18,8 +18,9 @@ namespace stiction::hal::can {
 struct CanBackendConfig {
   std::string interface;
   Format format = Format::fd;
-  std::vector<int> nodes;      // one an axis, 1 to 127, all different
-  double answer_share = 0.75;  // of the period, for which answers are waited for
+  std::vector<int> nodes;               // one an axis, 1 to 127, all different
+  std::vector<std::uint32_t> others{};  // identifiers that belong on this bus beside the nodes': no foreign frames
+  double answer_share = 0.75;           // of the period, for which answers are waited for
 };
 
 struct BusCounts {

@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <vector>
 
+#include "hal/can/process_data.hpp"
+
 namespace stiction::hal::can {
 namespace {
 
@@ -14,6 +16,7 @@ struct Signal {
   bool is_signed;
   int fraction_bits;  // the value is raw * 2^-fraction_bits
   const char* unit;
+  double scale = 1.0;  // and times this
 };
 
 struct Message {
@@ -91,36 +94,89 @@ std::vector<Message> messages(Format format) {
 std::string line_of(const Signal& s, const std::string& receiver) {
   char text[160];
   std::snprintf(text, sizeof text, " SG_ %s : %d|%d@1%c (%.17g,0) [0|0] \"%s\" %s\n", s.name, s.first_bit, s.bits,
-                s.is_signed ? '-' : '+', std::ldexp(1.0, -s.fraction_bits), s.unit, receiver.c_str());
+                s.is_signed ? '-' : '+', s.scale * std::ldexp(1.0, -s.fraction_bits), s.unit, receiver.c_str());
   return text;
 }
 
-}  // namespace
+struct ServerMessage {
+  const char* name;
+  Pdo pdo;
+  std::vector<Signal> signals;
+};
 
-std::string dbc_text(Format format, std::span<const DbcAxis> axes) {
-  std::string text = "VERSION \"\"\n\nNS_ :\n\nBS_:\n\nBU_: drive";
-  for (const auto& axis : axes) text += " " + axis.name;
-  const auto sizes = properties(format).sizes;
-  text += "\n\nBO_ " + std::to_string(sync_id) + " sync: " + std::to_string(sizes[0]) +
-          " drive\n SG_ tick : 0|32@1+ (1,0) [0|0] \"\" Vector__XXX\n"
-          " SG_ checksum : 48|16@1+ (1,0) [0|0] \"\" Vector__XXX\n";
-  std::vector<std::uint32_t> ids{sync_id};
-  for (const auto& axis : axes)
-    for (const auto& message : messages(format)) {
-      const std::uint32_t id = message.id + static_cast<std::uint32_t>(axis.node);
-      ids.push_back(id);
-      text += "\nBO_ " + std::to_string(id) + " " + axis.name + "_" + message.name + ": " +
-              std::to_string(sizes[message.size_index]) + " " + (message.of_drive ? "drive" : axis.name) + "\n";
-      for (const auto& signal : message.signals) text += line_of(signal, message.of_drive ? axis.name : "drive");
-    }
-  if (format == Format::fd) {
+std::vector<ServerMessage> server_messages(double increment) {
+  const double speed = 1000.0 * increment;
+  const Signal controlword{"controlword", 0, 16, false, 0, ""};
+  return {{"mode", Pdo::mode, {controlword, {"mode_of_operation", 16, 8, true, 0, ""}}},
+          {"target", Pdo::target, {controlword, {"target_position", 16, 32, true, 0, "m", increment}}},
+          {"offsets",
+           Pdo::offsets,
+           {{"velocity_offset", 0, 32, true, 0, "m/s", speed}, {"torque_offset", 32, 16, true, 0, "%", 0.1}}},
+          {"state",
+           Pdo::position,
+           {{"statusword", 0, 16, false, 0, ""}, {"actual_position", 16, 32, true, 0, "m", increment}}},
+          {"motion",
+           Pdo::motion,
+           {{"actual_velocity", 0, 32, true, 0, "m/s", speed}, {"following_error", 32, 32, true, 0, "m", increment}}}};
+}
+
+// A DBC file as it grows.
+struct Writer {
+  std::string text{};
+  std::vector<std::uint32_t> fd_ids{};
+
+  void message(std::uint32_t id, const std::string& name, std::size_t size, const std::string& sender, Format format) {
+    if (format == Format::fd) fd_ids.push_back(id);
+    text += "\nBO_ " + std::to_string(id) + " " + name + ": " + std::to_string(size) + " " + sender + "\n";
+  }
+
+  void add_nodes(const DbcBus& bus) {
+    const auto sizes = properties(bus.format).sizes;
+    message(sync_id, "sync", sizes[0], "drive", bus.format);
+    text +=
+        " SG_ tick : 0|32@1+ (1,0) [0|0] \"\" Vector__XXX\n"
+        " SG_ checksum : 48|16@1+ (1,0) [0|0] \"\" Vector__XXX\n";
+    for (const auto& axis : bus.axes)
+      for (const auto& m : messages(bus.format)) {
+        message(m.id + static_cast<std::uint32_t>(axis.node), axis.name + "_" + m.name, sizes[m.size_index],
+                m.of_drive ? "drive" : axis.name, bus.format);
+        for (const auto& signal : m.signals) text += line_of(signal, m.of_drive ? axis.name : "drive");
+      }
+  }
+
+  void add_server(const DbcBus& bus, double increment) {
+    for (const auto& axis : bus.axes)
+      for (const auto& m : server_messages(increment)) {
+        const auto& pdo = description_of(m.pdo);
+        message(pdo.id + static_cast<std::uint32_t>(axis.node), axis.name + "_" + m.name, pdo.size,
+                pdo.received ? "controller" : "drive", bus.format);
+        for (const auto& signal : m.signals) text += line_of(signal, pdo.received ? "drive" : "controller");
+      }
+  }
+
+  void add_formats() {
+    if (fd_ids.empty()) return;
     text +=
         "\nBA_DEF_ BO_ \"VFrameFormat\" ENUM \"StandardCAN\",\"ExtendedCAN\",\"reserved\",\"reserved\",\"reserved\","
         "\"reserved\",\"reserved\",\"reserved\",\"reserved\",\"reserved\",\"reserved\",\"reserved\",\"reserved\","
-        "\"reserved\",\"StandardCAN_FD\",\"ExtendedCAN_FD\";\nBA_DEF_DEF_ \"VFrameFormat\" \"StandardCAN_FD\";\n";
-    for (const auto id : ids) text += "BA_ \"VFrameFormat\" BO_ " + std::to_string(id) + " 14;\n";
+        "\"reserved\",\"StandardCAN_FD\",\"ExtendedCAN_FD\";\nBA_DEF_DEF_ \"VFrameFormat\" \"StandardCAN\";\n";
+    for (const auto id : fd_ids) text += "BA_ \"VFrameFormat\" BO_ " + std::to_string(id) + " 14;\n";
   }
-  return text;
+};
+
+}  // namespace
+
+std::string dbc_text(const DbcBus& nodes, const DbcBus& server, double increment) {
+  Writer writer{"VERSION \"\"\n\nNS_ :\n\nBS_:\n\nBU_: drive"};
+  for (const auto& axis : nodes.axes) writer.text += " " + axis.name;
+  writer.text += server.axes.empty() ? "\n" : " controller\n";
+  if (!nodes.axes.empty())
+    writer.add_nodes(nodes);
+  else
+    writer.message(sync_id, "sync", 0, "drive", server.format);
+  writer.add_server(server, increment);
+  writer.add_formats();
+  return writer.text;
 }
 
 }  // namespace stiction::hal::can

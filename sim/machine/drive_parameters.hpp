@@ -26,6 +26,56 @@ struct Table<CanSetup> : EmptyTable<CanSetup> {
   }};
 };
 
+inline constexpr std::array<Choice<bool>, 2> motion_permissions{{
+    {"refused", false, "what moves an axis is refused"},
+    {"allowed", true, "it is taken"},
+}};
+
+inline constexpr std::array<Choice<bool>, 2> server_syncs{{
+    {"sent", false, "by the drive: the controller answers it"},
+    {"followed", true, "by the controller each period: the drive's clock follows it"},
+}};
+
+inline constexpr std::array<Choice<bool>, 2> server_frames{{
+    {"positions", false, "controlwords and targets, statuswords and positions: half of the bus's load"},
+    {"all", true, "beside them offsets of velocity and torque, velocities and following errors"},
+}};
+
+template <>
+struct Table<CanServerSetup> : EmptyTable<CanServerSetup> {
+  static constexpr std::string_view text = "CAN bus on which a motion controller gives the axes their set-points";
+  static constexpr std::array<TextParameter<CanServerSetup>, 1> texts{
+      {{"interface", &CanServerSetup::interface, "name of the network interface; may be that of [drive.can]"}}};
+  static constexpr std::array<Parameter<CanServerSetup>, 4> parameters{{
+      {"bit_rate", "bit/s", {1e4, 1e6}, &CanServerSetup::bit_rate, 1e6, "bit rate of arbitration"},
+      {"data_bit_rate",
+       "bit/s",
+       {1e5, 8e6},
+       &CanServerSetup::data_bit_rate,
+       {},
+       "bit rate of the data of CAN FD frames; left out: classical frames"},
+      {"period",
+       "s",
+       {100e-6, 20e-3},
+       &CanServerSetup::period,
+       {},
+       "time from one set-point to the next, whole slow periods; left out: the slow period"},
+      {"position_increment",
+       "m",
+       {1e-12, 1e-6},
+       &CanServerSetup::position_increment,
+       1e-9,
+       "a unit of target and actual position; a unit of velocity is 1000 of them a second"},
+  }};
+  static constexpr std::tuple choices{
+      ChoiceParameter<CanServerSetup, bool>{"sync", &CanServerSetup::sync_followed, server_syncs, false,
+                                            "who sends SYNC, 80h, and so gives the clock"},
+      ChoiceParameter<CanServerSetup, bool>{"frames", &CanServerSetup::all_frames, server_frames, true,
+                                            "what is exchanged each period beside SYNC"},
+      ChoiceParameter<CanServerSetup, bool>{"motion", &CanServerSetup::motion_allowed, motion_permissions, false,
+                                            "controlwords and set-points that a motion controller sends"}};
+};
+
 inline constexpr std::array<Choice<InputBias>, 4> input_biases{{
     {"as-is", InputBias::as_is, "as the board's firmware left it"},
     {"pull-up", InputBias::pull_up, "to the supply"},
@@ -60,11 +110,6 @@ struct Table<ModbusClientSetup> : EmptyTable<ModbusClientSetup> {
       {"period", "s", {1e-3, 10.0}, &ModbusClientSetup::period, 10e-3, "time from one exchange to the next"},
   }};
 };
-
-inline constexpr std::array<Choice<bool>, 2> motion_permissions{{
-    {"refused", false, "registers that move an axis are refused"},
-    {"allowed", true, "they are taken"},
-}};
 
 template <>
 struct Table<ModbusServerSetup> : EmptyTable<ModbusServerSetup> {
@@ -153,8 +198,14 @@ struct Table<LineSetup> : EmptyTable<LineSetup> {
 template <>
 struct Table<DriveAxisSetup> : EmptyTable<DriveAxisSetup> {
   static constexpr std::string_view text = "one axis as the drive's programme runs it";
-  static constexpr std::array<Parameter<DriveAxisSetup>, 9> parameters{{
+  static constexpr std::array<Parameter<DriveAxisSetup>, 12> parameters{{
       {"node", "1", {0, 127}, &DriveAxisSetup::node, 0.0, "node of its power stage and encoder on the bus; 0: none"},
+      {"server_node",
+       "1",
+       {0, 127},
+       &DriveAxisSetup::server_node,
+       0.0,
+       "node of the axis on the bus of [drive.can_server]; 0: none"},
       {"quick_stop_deceleration", "m/s^2", positive(500.0), &DriveAxisSetup::quick_stop_deceleration, 10.0,
        "deceleration of a controlled stop"},
       {"brake_time", "s", not_negative(10.0), &DriveAxisSetup::brake_time, 0.0,
@@ -175,6 +226,10 @@ struct Table<DriveAxisSetup> : EmptyTable<DriveAxisSetup> {
        &DriveAxisSetup::runaway_current,
        {},
        "current from which speed must follow force; left out: a fifth of the current limit"},
+      {"target_window", "m", positive(1e-2), &DriveAxisSetup::target_window, 10e-6,
+       "distance from a profile's target at which it is reached"},
+      {"profile_jerk_time", "s", not_negative(1.0), &DriveAxisSetup::profile_jerk_time, 16e-3,
+       "time in which a profile's acceleration comes and goes; taken as a power of two of ticks, at most 1024"},
       {"negative_end", "m", any_value(), &DriveAxisSetup::negative_end, {}, "end of the travel; left out: -travel/2"},
       {"positive_end", "m", any_value(), &DriveAxisSetup::positive_end, {}, "end of the travel; left out: travel/2"},
   }};
@@ -188,6 +243,7 @@ struct Table<DriveSetup> : EmptyTable<DriveSetup> {
   static constexpr std::string_view text = "what the drive's programme needs beside the machine";
   static constexpr std::tuple subtables{
       Subtable<DriveSetup, std::optional<CanSetup>>{"can", &DriveSetup::can, Presence::optional},
+      Subtable<DriveSetup, std::optional<CanServerSetup>>{"can_server", &DriveSetup::can_server, Presence::optional},
       Subtable<DriveSetup, std::optional<GpioSetup>>{"gpio", &DriveSetup::gpio, Presence::optional},
       Subtable<DriveSetup, std::optional<ModbusClientSetup>>{"modbus_client", &DriveSetup::modbus_client,
                                                              Presence::optional},

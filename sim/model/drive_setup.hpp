@@ -15,6 +15,18 @@ struct CanSetup {
   std::optional<double> data_bit_rate;  // 1/s, CAN FD; none: classical frames
 };
 
+// Where a motion controller on a CAN bus sends target positions (CiA 402 csp and pp).
+struct CanServerSetup {
+  std::string interface;                // may be that of CanSetup
+  double bit_rate = 1e6;                // 1/s, arbitration
+  std::optional<double> data_bit_rate;  // 1/s, CAN FD; none: classical frames
+  std::optional<double> period;         // s, of the targets; none: the machine's slow period
+  double position_increment = 1e-9;     // m, a unit of 607Ah and 6064h
+  bool sync_followed = false;           // the controller sends SYNC, and the drive's clock follows it
+  bool all_frames = true;               // offsets, velocities and following errors too
+  bool motion_allowed = false;          // whether set-points and controlwords are taken
+};
+
 // Of the chip's inputs, inside the chip.
 enum class InputBias { as_is, pull_up, pull_down, none };
 
@@ -76,12 +88,15 @@ struct LineSetup {
 
 struct DriveAxisSetup {
   int node = 0;                                      // of the axis' power stage and encoder on the bus; 0: none
+  int server_node = 0;                               // of the axis where [drive.can_server] serves it; 0: none
   double quick_stop_deceleration = 10.0;             // m/s^2
   double brake_time = 0.0;                           // s, that the brake takes to open or to close
   double frozen_distance = 100e-6;                   // m
   double encoder_jump = 5e-6;                        // m
   std::optional<double> current_sum;                 // A; none: a twentieth of the current limit
   std::optional<double> runaway_current;             // A; none: a fifth of the current limit
+  double target_window = 10e-6;                      // m, about a target, within which it is reached
+  double profile_jerk_time = 16e-3;                  // s, by which a profile's acceleration comes and goes
   std::optional<double> negative_end, positive_end;  // m, of the travel, before the switches; none: half the travel
   HomingSetup homing;
   LineSetup line;
@@ -89,6 +104,7 @@ struct DriveAxisSetup {
 
 struct DriveSetup {
   std::optional<CanSetup> can;
+  std::optional<CanServerSetup> can_server;
   std::optional<GpioSetup> gpio;
   std::optional<ModbusClientSetup> modbus_client;
   std::optional<ModbusServerSetup> modbus_server;

@@ -11,6 +11,7 @@
 
 #include "hal/can/dbc.hpp"
 #include "hal/can/frames.hpp"
+#include "hal/can/process_data.hpp"
 #include "sim/control/conversion.hpp"
 #include "stiction/number/crc.hpp"
 
@@ -205,10 +206,61 @@ std::map<std::uint32_t, std::map<std::string, DbcSignal>> parse_dbc(const std::s
   return found;
 }
 
+TEST(ProcessData, IsReadAsItWasWrittenAndAsTheDbcDescribesIt) {
+  constexpr double increment = 10e-9;
+  const auto dbc = parse_dbc(dbc_text({}, {Format::classical, {{"X", 5}}}, increment));
+  std::mt19937 random(7);
+  for (int i = 0; i < 200; ++i) {
+    ControllerData sent;
+    sent.controlword = static_cast<std::uint16_t>(random());
+    sent.mode = static_cast<std::int8_t>(random());
+    sent.target = static_cast<std::int32_t>(random());
+    sent.velocity_offset = static_cast<std::int32_t>(random());
+    sent.torque_offset = static_cast<std::int16_t>(random());
+    for (const auto& row : pdo_table) {
+      if (!row.received) continue;
+      const Frame frame = encode_pdo(row.pdo, 5, sent);
+      const auto address = pdo_address_of(frame);
+      EXPECT_EQ(address.verdict, PdoVerdict::good);
+      EXPECT_EQ(address.pdo, row.pdo);
+      EXPECT_EQ(address.node, 5);
+      const auto found = decode_pdo(row.pdo, frame);
+      const auto& signals = dbc.at(frame.id);
+      if (row.pdo == Pdo::offsets) {
+        EXPECT_EQ(found.velocity_offset, sent.velocity_offset);
+        EXPECT_EQ(found.torque_offset, sent.torque_offset);
+        EXPECT_NEAR(signals.at("torque_offset").read(frame), sent.torque_offset * 0.1, 1e-9);
+        continue;
+      }
+      EXPECT_EQ(found.controlword, sent.controlword);
+      EXPECT_EQ(signals.at("controlword").read(frame), sent.controlword);
+      EXPECT_EQ(found.mode, row.pdo == Pdo::mode ? sent.mode : 0);
+      if (row.pdo != Pdo::target) continue;
+      EXPECT_EQ(found.target, sent.target);
+      EXPECT_NEAR(signals.at("target_position").read(frame), sent.target * increment, 1e-12);
+    }
+    const Frame state = encode_position(5, sent.controlword, sent.target);
+    EXPECT_NEAR(dbc.at(state.id).at("actual_position").read(state), sent.target * increment, 1e-12);
+    const Frame motion = encode_motion(5, sent.velocity_offset, sent.target);
+    EXPECT_NEAR(dbc.at(motion.id).at("actual_velocity").read(motion), sent.velocity_offset * 1e3 * increment, 1e-9);
+    EXPECT_EQ(pdo_address_of(motion).verdict, PdoVerdict::unknown) << "the drive's own";
+  }
+  for (std::uint8_t size = 0; size <= 8; ++size)
+    for (const auto& row : pdo_table) {
+      Frame frame{row.id + 5, size, {}};
+      const auto verdict = !row.received      ? PdoVerdict::unknown
+                           : size == row.size ? PdoVerdict::good
+                                              : PdoVerdict::wrong_size;
+      EXPECT_EQ(pdo_address_of(frame).verdict, verdict);
+      frame.id = row.id;
+      EXPECT_EQ(pdo_address_of(frame).verdict, PdoVerdict::unknown) << "node 0";
+    }
+}
+
 TEST(Dbc, DescribesTheFramesAsTheyAre) {
   std::mt19937_64 random(4);
   for (const auto format : formats) {
-    const auto dbc = parse_dbc(dbc_text(format, std::array<DbcAxis, 2>{{{"X", 5}, {"Y", 6}}}));
+    const auto dbc = parse_dbc(dbc_text({format, {{"X", 5}, {"Y", 6}}}));
     for (int i = 0; i < 20; ++i) {
       const auto state = random_state(random, 100.0, 1.0);
       std::array<Frame, 2> frames;

@@ -243,6 +243,7 @@ std::vector<FaultCase> cases_of_backend_and_programme() {
       {.fault = Fault::clock_jump, .name = "back by 1 ms", .inject = jump(-1'000'000), .violated = jumped},
       programme(Fault::parameters_damaged, "told by the programme"),
       programme(Fault::watchdog_starved, "told by the programme"),
+      programme(Fault::set_points_lost, "told by the programme"),
   };
 }
 

@@ -36,6 +36,15 @@ TEST(TickClock, TicksAPeriodApartHoweverLateEachBegins) {
   EXPECT_EQ(s.clock.fault(), Fault::none);
 }
 
+TEST(TickClock, IsShiftedToAnotherClockForAllTicksToCome) {
+  Started s;
+  s.clock.shift(200);
+  EXPECT_EQ(s.wait_late(0), s.first_ns + period_ns + 200);
+  s.clock.shift(-50);
+  for (int i = 2; i <= 10; ++i) EXPECT_EQ(s.wait_late(0), s.first_ns + i * period_ns + 150);
+  EXPECT_EQ(s.clock.missed(), 0u);
+}
+
 TEST(TickClock, LetsALateTickTakeThePlaceOfThoseMissed) {
   Started s;
   EXPECT_EQ(s.wait_late(5 * period_ns + 100), s.first_ns + 6 * period_ns);

@@ -6,9 +6,12 @@ import pathlib
 import re
 import shlex
 import subprocess
+import tempfile
 
 ROOT = pathlib.Path(__file__).parents[2]
 BIN = pathlib.Path(os.environ.get("STICTION_BIN", ROOT / "build/release/bin"))
+FOLDER = pathlib.Path(os.environ.get("STICTION_HIL_DIR", tempfile.mkdtemp(prefix="stiction-hil-")))
+FIGURES = BIN.parent / "figures"
 PERIOD = 62.5e-6  # s
 
 # A bus, the machine's nodes on it, the drive; what each says goes to files beside.
@@ -99,6 +102,15 @@ def execute(folder, runs):
     """All runs one after another on one boot of the kernel; their results by name."""
     boot(folder, BUS + "".join(run.script() for run in runs))
     return {run.name: Result(folder, run.name) for run in runs}
+
+
+def figure(name, text):
+    """What a test measured, with its bound: printed and kept."""
+    line = f"{name:<64} {text}\n"
+    print(line, end="")
+    FIGURES.mkdir(parents=True, exist_ok=True)
+    with open(FIGURES / "hil.txt", "a", encoding="utf-8") as file:
+        file.write(line)
 
 
 def rows(file):

@@ -3,24 +3,14 @@
 or a power stage can make there. Needs the programmes (release build) and what toolchain/setup hil installs."""
 
 import os
-import pathlib
 import subprocess
-import tempfile
 import unittest
 
 import loop
+from loop import FOLDER, figure
+from motion_test import MotionController  # noqa: F401  (unittest.main() runs it)
 
-FOLDER = pathlib.Path(os.environ.get("STICTION_HIL_DIR", tempfile.mkdtemp(prefix="stiction-hil-")))
 FEED = os.environ.get("STICTION_HIL_FEED", "48 m/min")  # the fastest circle has the fewest ticks, 28 000
-FIGURES = loop.BIN.parent / "figures"
-
-
-def figure(name, text):
-    line = f"{name:<64} {text}\n"
-    print(line, end="")
-    FIGURES.mkdir(parents=True, exist_ok=True)
-    with open(FIGURES / "hil.txt", "a", encoding="utf-8") as file:
-        file.write(line)
 
 
 def simulated(feed, *options):

@@ -36,9 +36,10 @@ template <class S>
 struct DriveDemand {
   std::uint16_t controlword = 0;
   OperationMode mode = OperationMode::cyclic_position;
-  SetPoint<S> set_point{};        // csp, of the machine's coordinates
-  std::array<Fault, 3> causes{};  // what programme, clock and backend see in this tick
-  bool quick_stop = false;        // another axis has a fault
+  SetPoint<S> set_point{};                 // csp and pp, of the machine's coordinates
+  typename S::Velocity velocity_offset{};  // 60B1h, added to the set speed while the drive follows
+  std::array<Fault, 3> causes{};           // what programme, clock and backend see in this tick
+  bool quick_stop = false;                 // another axis has a fault
 };
 
 // A fault as it was seen. `following`: it came on top of another one, or during its stop.
@@ -113,6 +114,7 @@ class ServoDrive {
   constexpr bool powered() const { return powered_; }
   constexpr bool brake_released() const { return powered_ && !brake_closing_; }
   constexpr bool referenced() const { return referenced_; }
+  constexpr bool follows() const { return follows_; }    // the set-points from outside, in the last tick
   constexpr Position origin() const { return origin_; }  // of the machine's coordinates in the encoder's
   constexpr Position position() const { return to_machine(measured_); }
   // Where the set-point stands, machine's coordinates: where a source of set-points begins after enabling or homing.
@@ -128,7 +130,7 @@ class ServoDrive {
       using Phase = typename Homing<S>::Phase;
       if (homing_.phase() == Phase::done) word |= statusword::homed_bit | statusword::target_bit;
       if (homing_.phase() == Phase::failed) word |= statusword::homing_error_bit;
-    } else if (follows_) {
+    } else if (follows_ && mode_ == OperationMode::cyclic_position) {
       word |= statusword::follows_bit;
     }
     return word;
@@ -305,6 +307,7 @@ class ServoDrive {
     SetPoint<S> set = demand.set_point;
     set.position = narrow<Position>(set.position + origin_, saturations_);
     last_ = {set.position, set.velocity};
+    set.velocity = saturated_sum(set.velocity, demand.velocity_offset, saturations_);
     return set;
   }
 

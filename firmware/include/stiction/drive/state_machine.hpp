@@ -21,6 +21,7 @@ enum class DriveState : std::uint8_t {
 
 // Modes of operation 6060h that the drive has.
 enum class OperationMode : std::int8_t {
+  profile_position = 1,  // pp: the drive moves to a target by itself (remote_axis.hpp)
   homing = 6,
   cyclic_position = 8,  // csp: a set-point each tick
 };
@@ -29,6 +30,9 @@ enum class OperationMode : std::int8_t {
 namespace controlword {
 inline constexpr std::uint16_t switch_on_bit = 1u << 0, enable_voltage_bit = 1u << 1, quick_stop_bit = 1u << 2,
                                enable_operation_bit = 1u << 3, homing_start_bit = 1u << 4, fault_reset_bit = 1u << 7;
+// pp: a new target; it takes the place of the move under way; it counts from the target before; the move halts.
+inline constexpr std::uint16_t new_set_point_bit = 1u << 4, at_once_bit = 1u << 5, relative_bit = 1u << 6,
+                               halt_bit = 1u << 8;
 inline constexpr std::uint16_t disable_voltage = 0x00, quick_stop = 0x02, shutdown = 0x06, switch_on = 0x07,
                                enable_operation = 0x0f, fault_reset = fault_reset_bit;
 }  // namespace controlword
@@ -141,6 +145,7 @@ namespace statusword {
 inline constexpr std::uint16_t fault_bit = 1u << 3, voltage_bit = 1u << 4, remote_bit = 1u << 9, target_bit = 1u << 10,
                                limit_bit = 1u << 11;
 inline constexpr std::uint16_t follows_bit = 1u << 12;       // csp: the drive follows the set-points
+inline constexpr std::uint16_t acknowledge_bit = 1u << 12;   // pp: the new target was taken
 inline constexpr std::uint16_t homed_bit = 1u << 12;         // homing: attained
 inline constexpr std::uint16_t homing_error_bit = 1u << 13;  // homing
 inline constexpr std::uint16_t state_bits = 0x6f;            // bits 0 to 3, 5, 6 tell the state

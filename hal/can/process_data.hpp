@@ -1,0 +1,77 @@
+// The process data that a motion controller and the drive exchange on CAN: PDOs as CANopen's predefined connection set
+// has them (CiA 301, 7.3.5) with objects of CiA 402, one node an axis. No checksum and no counter, so that any
+// controller can send them: identifier, length and range are what can be judged. Little-endian.
+//
+//   RPDO2 300h + node  3 B  6040h controlword, 6060h mode of operation
+//   RPDO3 400h + node  6 B  6040h controlword, 607Ah target position
+//   RPDO4 500h + node  6 B  60B1h velocity offset, 60B2h torque offset
+//   TPDO3 380h + node  6 B  6041h statusword, 6064h position actual value
+//   TPDO4 480h + node  8 B  606Ch velocity actual value, 60F4h following error
+//   SYNC  080h         0 B  begins a cycle; sent by the drive
+//
+// Units: positions and following error in increments, velocities in 1000 increments a second, torque in thousandths of
+// the current limit.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "hal/can/frames.hpp"
+
+namespace stiction::hal::can {
+
+enum class Pdo : std::uint8_t { mode, target, offsets, position, motion };
+
+struct PdoDescription {
+  Pdo pdo;
+  std::uint32_t id;   // plus the node
+  std::uint8_t size;  // bytes
+  bool received;      // by the drive
+  bool positions;     // one of those without which no position is commanded
+};
+inline constexpr std::array<PdoDescription, 5> pdo_table{{
+    {Pdo::mode, 0x300, 3, true, true},
+    {Pdo::target, 0x400, 6, true, true},
+    {Pdo::offsets, 0x500, 6, true, false},
+    {Pdo::position, 0x380, 6, false, true},
+    {Pdo::motion, 0x480, 8, false, false},
+}};
+constexpr const PdoDescription& description_of(Pdo pdo) { return pdo_table[static_cast<std::size_t>(pdo)]; }
+
+// A controller's bus may be that of the axes' own nodes (frames.hpp).
+constexpr bool apart_from_nodes() {
+  for (const auto& row : pdo_table)
+    for (const auto id : {sync_id, position_id, command_id, current_id})
+      if (row.id == id) return false;
+  return true;
+}
+static_assert(apart_from_nodes());
+
+// What a PDO to the drive asks for; the objects that its kind carries.
+struct ControllerData {
+  std::uint16_t controlword = 0;     // 6040h: mode, target
+  std::int8_t mode = 0;              // 6060h: mode
+  std::int32_t target = 0;           // 607Ah: target
+  std::int32_t velocity_offset = 0;  // 60B1h: offsets
+  std::int16_t torque_offset = 0;    // 60B2h: offsets
+};
+
+enum class PdoVerdict : std::uint8_t { good, unknown, wrong_size };
+
+struct PdoAddress {
+  PdoVerdict verdict = PdoVerdict::unknown;
+  Pdo pdo = Pdo::target;
+  int node = 0;
+};
+// What a frame to the drive is. `node` and `pdo` also of one with a wrong size.
+PdoAddress pdo_address_of(const Frame& frame);
+// Of a frame that pdo_address_of() finds good.
+ControllerData decode_pdo(Pdo pdo, const Frame& frame);
+
+Frame encode_pdo(Pdo pdo, int node, const ControllerData& data);  // as a controller sends it
+Frame encode_position(int node, std::uint16_t statusword, std::int32_t position);
+Frame encode_motion(int node, std::int32_t velocity, std::int32_t following_error);
+inline constexpr Frame plain_sync{sync_id, 0, {}};
+
+}  // namespace stiction::hal::can

@@ -1,0 +1,116 @@
+// Any bytes as frames of a motion controller, cycle by cycle, before an axis that follows or stands: what is asked for
+// never leaves the travel in a profile move, nothing is taken where motion is not allowed, and no number overflows.
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+
+#include "firmware/drive/can_server.hpp"
+#include "sim/control/conversion.hpp"
+
+namespace stiction::fuzz {
+namespace {
+
+using S = FixedSignals;
+
+[[noreturn]] void finding(const char* what) {
+  std::fprintf(stderr, "finding: %s\n", what);
+  std::abort();
+}
+
+// As much of a drive as the axis asks for; its carriage is its set-point.
+struct Drive {
+  S::Position at{};
+  bool following = false;
+  Fault seen = Fault::none;
+  S::Position set_position() const { return at; }
+  S::Position position() const { return at; }
+  bool follows() const { return following; }
+  Fault fault() const { return seen; }
+};
+
+template <class T>
+T signal(double value) {
+  return *sim::to_signal<T>(value);
+}
+
+constexpr double travel = 0.3;  // m, to both sides
+
+RemoteAxisConfig axis_config(int smoothing_bits) {
+  RemoteAxisConfig config;
+  config.interpolation = SetPointInterpolator::configure(62500, 16, signal<SetPointInterpolator::Way>(1.35e-3));
+  config.streamed = true;
+  config.low = signal<S::Position>(-travel);
+  config.high = signal<S::Position>(travel);
+  config.profile = {S::seconds(62500), S::rate(62500), smoothing_bits};
+  config.fastest = {
+      {}, signal<S::Velocity>(1.33), signal<S::Velocity>(20.0 * 62.5e-6), signal<S::Velocity>(20.0 * 62.5e-6)};
+  config.target_window = signal<S::Position>(10e-6);
+  return config;
+}
+
+void run_cycle(RemoteAxis& axis, Drive& drive) {
+  axis.begin_cycle();
+  for (int i = 0; i < 16; ++i) {
+    const auto set = axis.tick(drive);
+    const auto word = axis.statusword(0);
+    if (axis.mode() == OperationMode::cyclic_position && word != 0) finding("bits of pp in csp");
+    drive.seen = axis.fault();
+    if (drive.seen != Fault::none || !set.valid) drive.following = false;
+    if (!drive.following) continue;
+    drive.at = set.position;
+    const double x = sim::to_si(set.position);
+    const bool profile = axis.mode() == OperationMode::profile_position;
+    // Between targets of csp the polynomial may swing beyond the last one.
+    if (std::abs(x) > travel + (profile ? 1e-9 : 5e-3)) finding("a set-point beyond the travel");
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size < 1) return 0;
+  const std::uint8_t how = data[0];
+  drive::CanServerConfig config;
+  config.nodes = {5};
+  config.current_limit = {70.0};
+  config.motion_allowed = (how & 1) != 0;
+  static const auto log = std::make_unique<drive::LogRing>();
+  drive::LogRecord record;
+  while (log->pop(record)) {
+  }
+  drive::ControllerFrames frames(config, *log);
+  std::array<RemoteAxis, 1> axes{RemoteAxis(axis_config((how >> 1) % 9))};
+  Drive drive;
+  std::int64_t now_ns = 0;
+  // Each frame: which PDO, or any identifier; what the drive does; size and data. A cycle behind it.
+  for (std::size_t at = 1; at + 2 <= size;) {
+    hal::can::Frame frame;
+    const std::uint8_t what = data[at], length = data[at + 1];
+    at += 2;
+    frame.id = hal::can::pdo_table[what % hal::can::pdo_table.size()].id + ((what & 8) != 0 ? 5u : what);
+    for (std::size_t i = 0; i < 8 && at < size; ++i) frame.data[i] = data[at++];
+    const auto address = hal::can::pdo_address_of(frame);
+    frame.size = (length & 0x80) != 0 ? static_cast<std::uint8_t>(length % 9) : description_of(address.pdo).size;
+    // A controller near the axis: a fuzzer does not find it by trying.
+    if ((what & 16) != 0 && address.pdo == hal::can::Pdo::target) {
+      const auto near = static_cast<std::int32_t>(sim::to_si(drive.at) * 1e9) +
+                        static_cast<std::int16_t>(frame.data[2] | frame.data[3] << 8) * 40;
+      for (std::size_t i = 0; i < 4; ++i)
+        frame.data[2 + i] = static_cast<std::uint8_t>(static_cast<std::uint32_t>(near) >> (8 * i));
+    }
+    drive.following = (what & 32) != 0 || drive.following;
+    if ((what & 64) != 0) drive.following = false;
+    frames.take(now_ns, frame, axes);
+    const int cycles = 1 + (length & 7) * ((what & 128) != 0 ? 20 : 1);
+    for (int i = 0; i < cycles; ++i) run_cycle(axes[0], drive);
+    now_ns += 1'000'000;
+    if (!config.motion_allowed && (axes[0].controlword() != 0 || frames.counts().taken != 0))
+      finding("taken without permission");
+  }
+  return 0;
+}
+
+}  // namespace stiction::fuzz
