@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "tests/drive/served_table.hpp"
-#include "tests/support/allocation_counter.hpp"
 #include "tests/support/figure.hpp"
+#include "tests/support/loop_cost.hpp"
 
 namespace stiction::test {
 namespace {
@@ -30,7 +30,7 @@ TEST(StreamedSetPoints, AreFollowedOneCycleLateWithoutASingleAllocation) {
   ASSERT_TRUE(table.enable(0));
   const double begin = table.position(0);
   double off_set = 0.0, off = 0.0, target_before = begin;
-  const auto before = allocations();
+  const auto before = allocator_calls;
   for (int k = 0; k < 600; ++k) {
     const double target = begin + smooth(20e-3, (k + 1) / 500.0);
     table.target(0, target);
@@ -41,7 +41,7 @@ TEST(StreamedSetPoints, AreFollowedOneCycleLateWithoutASingleAllocation) {
     for (int i = 1; i < 16; ++i) table.tick();
     target_before = target;
   }
-  EXPECT_EQ(allocations(), before);
+  EXPECT_EQ(allocator_calls, before);
   EXPECT_NE(table.statusword(0) & statusword::follows_bit, 0);
   EXPECT_EQ(table.loop.fault(0), Fault::none);
   EXPECT_LT(off_set, 1e-9);  // targets are whole nanometres

@@ -25,10 +25,7 @@ void describe(const Scene& scene, double, const Eigen::VectorXd& w, const Eigen:
 
 }  // namespace
 
-const Candidate position_spring{.name = "position_spring",
-                                .grid = grid,
-                                .columns = columns,
-                                .possible = any,
-                                .describe = describe};
+const Candidate position_spring{
+    .name = "position_spring", .grid = grid, .columns = columns, .possible = any, .describe = describe};
 
 }  // namespace stiction::host::effects
