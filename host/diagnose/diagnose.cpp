@@ -157,7 +157,7 @@ RecordDelay record_delay(const LogRows& rows, const Scene& scene, const SearchRe
   return delay;
 }
 
-// Withdraws the term that does worst on held-out data, until each gains and holds.
+// Withdraws the term that does worst on held-out data, until each gains and holds, and all of them together gain.
 void keep_what_holds(const LogRows& rows, const Eigen::VectorXd& target, const Scene& scene, SearchResult& found,
                      Verdict& verdict, std::uint64_t seed) {
   for (;;) {
@@ -169,7 +169,9 @@ void keep_what_holds(const LogRows& rows, const Eigen::VectorXd& target, const S
     std::size_t worst = 0;
     for (std::size_t k = 1; k < found.terms.size(); ++k)
       if (holds(k) < holds(worst)) worst = k;
-    if (holds(worst) > 0.0) return;
+    // Each may gain beside the others and all of them together lose: wrong names that lean on each other.
+    const bool holds_alone = holds(worst) > 0.0;
+    if (holds_alone && figures.force_extended < figures.force_baseline) return;
     const double ratio = figures.gains[worst].force_rms_ratio;
     const auto& term = found.terms[worst];
     const auto& candidate = candidates()[term.candidate];
@@ -180,9 +182,12 @@ void keep_what_holds(const LogRows& rows, const Eigen::VectorXd& target, const S
       verdict.rejected.push_back(
           {candidate.name,
            fmt::format("withdrawn: found in the training data, but no gain on held-out data: {}",
-                       ratio >= 1.0 ? fmt::format("force rms {:.4f} times that without it", ratio)
-                                    : fmt::format("whitened as it was found it takes {:.0f} % of what it should there",
-                                                  100.0 * figures.confirmed[worst]))});
+                       holds_alone ? fmt::format("force rms {:.4f} times that of the file, with all causes found",
+                                                 figures.force_extended / figures.force_baseline)
+                       : ratio >= 1.0
+                           ? fmt::format("force rms {:.4f} times that without it", ratio)
+                           : fmt::format("whitened as it was found it takes {:.0f} % of what it should there",
+                                         100.0 * figures.confirmed[worst]))});
     found.terms.erase(found.terms.begin() + static_cast<std::ptrdiff_t>(worst));
   }
 }
@@ -283,6 +288,8 @@ Verdict diagnose(const DiagnoseInput& input) {
   keep_what_holds(held_regressors, held_target, scene, found, verdict, input.seed);
   const bool all_held = found.terms.size() == found_before;
   const auto outside = take_outside(regressors, scene, found);
+  // What is outside extends no machine file: the names have to gain without it, too.
+  if (outside.unexplained.signature) keep_what_holds(held_regressors, held_target, scene, found, verdict, input.seed);
   const Eigen::VectorXd inside = target - outside.force;
   const auto figures = evaluate_held_out(held_regressors, held_target, scene, found.terms, input.seed);
   verdict.baseline.force_rms = figures.force_baseline;
