@@ -138,10 +138,10 @@ std::vector<double> EffectResponse::residual(Log simulated, const Log& of) const
 }
 
 // Of runs with the effects, less the one without.
-std::vector<double> EffectResponse::common(Record& record, const sim::Machine& machine) const {
+std::vector<double> EffectResponse::common(Record& record, const sim::Machine& machine, std::size_t most_runs) const {
   if (record.without.empty()) record.without = residual(replayed(record.runs.front(), machine_), record.runs.front());
   CommonPart part;
-  for (const auto& run : record.runs) {
+  for (const auto& run : std::span(record.runs).first(std::min(most_runs, record.runs.size()))) {
     auto force = residual(replayed(run, machine), run);
     for (std::size_t i = 0; i < force.size(); ++i) force[i] -= record.without[i];
     part.add(force);
@@ -149,22 +149,24 @@ std::vector<double> EffectResponse::common(Record& record, const sim::Machine& m
   return part.estimate();
 }
 
-std::vector<double> EffectResponse::operator()(const Motion& motion, const sim::Effect& effect) {
-  return together(motion, {&effect, 1});
+std::vector<double> EffectResponse::operator()(const Motion& motion, const sim::Effect& effect, std::size_t most_runs) {
+  return together(motion, {&effect, 1}, most_runs);
 }
 
-std::vector<double> EffectResponse::together(const Motion& motion, std::span<const sim::Effect> effects) {
+std::vector<double> EffectResponse::together(const Motion& motion, std::span<const sim::Effect> effects,
+                                             std::size_t most_runs) {
   for (std::size_t k = 0; k < records_.size(); ++k) {
     const auto& log = records_[k].runs.front();
     if (log.source != motion.source || log.axes.front().x_set != motion.x_set) continue;
-    const auto known = std::find_if(known_.begin(), known_.end(),
-                                    [&](const Known& each) { return each.record == k && same(each.effects, effects); });
+    const auto known = std::find_if(known_.begin(), known_.end(), [&](const Known& each) {
+      return each.record == k && each.runs == most_runs && same(each.effects, effects);
+    });
     if (known != known_.end()) return known->force;
     auto machine = machine_;
     auto& acting = machine.axes.front().effects;
     acting.insert(acting.end(), effects.begin(), effects.end());
     try {
-      known_.push_back({k, {effects.begin(), effects.end()}, common(records_[k], machine)});
+      known_.push_back({k, most_runs, {effects.begin(), effects.end()}, common(records_[k], machine, most_runs)});
       if (known_.size() > answers_kept * records_.size()) known_.pop_front();
       return known_.back().force;
     } catch (const FaultTripped&) {

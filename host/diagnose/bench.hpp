@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deque>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -46,6 +47,8 @@ enum class Hunting { simulated, smoothed };
 // source and the first time of the logs.
 class EffectResponse {
  public:
+  static constexpr auto all_runs = std::numeric_limits<std::size_t>::max();
+
   // `logs`: with set-points, of that axis; `settings`: those of the motions; `replayed`: what without_noise() has
   // replayed of them with that hunting, in their order, so that it need not be done again.
   EffectResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
@@ -55,11 +58,12 @@ class EffectResponse {
   EffectResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
                  const SignalSettings& settings, const Disturbance& disturbance, const std::vector<Log>& replayed = {});
 
-  // N at the motion's rate: with the effect less without; zeros where the machine cannot follow with it. Throws
-  // sim::EffectError, std::out_of_range for a motion of another log.
-  std::vector<double> operator()(const Motion& motion, const sim::Effect& effect);
+  // N at the motion's rate: with the effect less without; zeros where the machine cannot follow with it. Of no more
+  // than `most_runs`. Throws sim::EffectError, std::out_of_range for a motion of another log.
+  std::vector<double> operator()(const Motion& motion, const sim::Effect& effect, std::size_t most_runs = all_runs);
   // The same of several effects that act together.
-  std::vector<double> together(const Motion& motion, std::span<const sim::Effect> effects);
+  std::vector<double> together(const Motion& motion, std::span<const sim::Effect> effects,
+                               std::size_t most_runs = all_runs);
 
  private:
   struct Record {
@@ -69,14 +73,14 @@ class EffectResponse {
   Log replayed(const Log& log, const sim::Machine& machine) const;
   // `of`: what was replayed; its external force is known, and no residual.
   std::vector<double> residual(Log simulated, const Log& of) const;
-  std::vector<double> common(Record& record, const sim::Machine& machine) const;
+  std::vector<double> common(Record& record, const sim::Machine& machine, std::size_t most_runs) const;
 
   sim::Machine machine_;
   SignalSettings settings_;
   std::vector<Record> records_;
   // The last answers: a search's grid begins a refinement, a refinement's end begins the one in closed loop.
   struct Known {
-    std::size_t record;
+    std::size_t record, runs;
     std::vector<sim::Effect> effects;
     std::vector<double> force;
   };

@@ -33,8 +33,9 @@ struct Scene {
   // time, over the encoder's signal.
   LineScan pitches{}, modulation{}, by_speed{}, times{}, signals_of_encoder{};
   // The residual force (N, at the motion's rate) that a motion's set-points leave in simulation where the machine has
-  // the effect, less that where it has not: what the effect does through the control loop. Empty: no set-points.
-  std::function<std::vector<double>(const Motion&, const sim::Effect&)> response;
+  // the effect, less that where it has not: what the effect does through the control loop. `most_runs`: of how many
+  // runs under different forces the common part is taken, at most. Empty: no set-points.
+  std::function<std::vector<double>(const Motion&, const sim::Effect&, std::size_t most_runs)> response;
   // From now on under forces like this one (N, of the rows): what of the residual force no cause explains.
   std::function<void(const Eigen::VectorXd&)> disturb;
   double stroke() const { return highest_position - lowest_position; }

@@ -110,13 +110,26 @@ class ClosedLoopFit {
       return Eigen::VectorXd::Constant(rows_.rows(), std::numeric_limits<double>::infinity());
     }
   }
+  // Of a parameter, with the others of its finding that have its unit: one of a wave's two may be near 0.
+  double size_of(Eigen::Index i, const Eigen::VectorXd& at) const {
+    const auto& own = free_[static_cast<std::size_t>(i)];
+    const auto unit = [this](const Free& free) {
+      return std::string_view(findings_[of_finding_[free.finding]].parameters[free.parameter].name)
+          .substr(free.key.size());
+    };
+    double square = 0.0;
+    for (std::size_t k = 0; k < free_.size(); ++k)
+      if (free_[k].finding == own.finding && unit(free_[k]) == unit(own))
+        square += at[static_cast<Eigen::Index>(k)] * at[static_cast<Eigen::Index>(k)];
+    return std::sqrt(square);
+  }
   // By differences over a standard error, within 1e-5 to a tenth of the value; none where the effect cannot have it.
   Eigen::MatrixXd slopes_at(const Eigen::VectorXd& at, const Eigen::VectorXd& force) {
     Eigen::MatrixXd slopes(rows_.rows(), at.size());
     for (Eigen::Index i = 0; i < at.size(); ++i) {
       const auto& free = free_[static_cast<std::size_t>(i)];
       const double error = findings_[of_finding_[free.finding]].parameters[free.parameter].standard_errors[free.index];
-      const double size = std::abs(at[i]);
+      const double size = size_of(i, at);
       double by = std::isfinite(error) && error > 0.0 ? error : 0.01 * size;
       if (size > 0.0) by = std::clamp(by, 1e-5 * size, 0.1 * size);
       Eigen::VectorXd moved = at;
@@ -140,13 +153,16 @@ class ClosedLoopFit {
     for (std::size_t i = 0; i < indices.size(); ++i) indices[i] = static_cast<Eigen::Index>(i);
     return indices;
   }
+  // Two runs hunt otherwise, which is in their difference too and makes slopes steeper than they are: errors are no
+  // smaller than those of the regressors.
   void write(const Eigen::VectorXd& at, const Eigen::MatrixXd& covariance) {
     for (std::size_t i = 0; i < free_.size(); ++i) {
       auto& finding = findings_[of_finding_[free_[i].finding]];
       auto& parameter = finding.parameters[free_[i].parameter];
       const auto k = static_cast<Eigen::Index>(i);
       finding.effect.values.at(free_[i].key)[free_[i].index] = parameter.values[free_[i].index] = at[k];
-      parameter.standard_errors[free_[i].index] = std::sqrt(std::max(covariance(k, k), 0.0));
+      auto& error = parameter.standard_errors[free_[i].index];
+      error = std::max(error, std::sqrt(std::max(covariance(k, k), 0.0)));
     }
   }
 

@@ -14,8 +14,16 @@ constexpr Eigen::Index fewest_lines = 24;
 }  // namespace
 
 void CommonPart::add(std::span<const double> run) {
-  samples_ = run.size();
-  if (runs_ == 0) single_.assign(run.begin(), run.end());
+  if (runs_++ == 0) {
+    samples_ = run.size();
+    first_.assign(run.begin(), run.end());
+    return;
+  }
+  if (runs_ == 2) transform(first_);
+  transform(run);
+}
+
+void CommonPart::transform(std::span<const double> run) {
   Eigen::VectorXd padded =
       Eigen::VectorXd::Zero(static_cast<Eigen::Index>(std::bit_ceil(std::max<std::size_t>(samples_, 2))));
   padded.head(static_cast<Eigen::Index>(samples_)) =
@@ -23,7 +31,7 @@ void CommonPart::add(std::span<const double> run) {
   Eigen::FFT<double> fft;
   Eigen::VectorXcd spectrum;
   fft.fwd(spectrum, padded);
-  if (runs_++ == 0) {
+  if (sum_.size() == 0) {
     sum_ = Eigen::VectorXcd::Zero(spectrum.size());
     squares_ = Eigen::VectorXd::Zero(spectrum.size());
   }
@@ -51,7 +59,7 @@ std::vector<CommonPart::Band> CommonPart::bands() const {
 }
 
 std::vector<double> CommonPart::estimate() const {
-  if (runs_ == 1) return single_;
+  if (runs_ == 1) return first_;
   Eigen::VectorXcd spectrum = sum_ / static_cast<double>(runs_);
   const Eigen::Index lines = spectrum.size();
   for (const auto& band : bands())

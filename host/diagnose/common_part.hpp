@@ -26,8 +26,10 @@ class CommonPart {
   };
   std::vector<Band> bands() const;
 
+  void transform(std::span<const double> run);
+
   std::size_t runs_ = 0, samples_ = 0;
-  std::vector<double> single_;  // the first run
+  std::vector<double> first_;
   Eigen::VectorXcd sum_;
   Eigen::VectorXd squares_;
 };

@@ -10,6 +10,7 @@ namespace {
 
 // Of the noise that all clusters agree on, against what the few under a term say of their own.
 constexpr double most_freedom = 30.0;
+constexpr double normal_limit = 1.959964;  // exceeded by |z| with a probability of 5 %
 
 // Pseudo-inverse, in columns of one length, or newtons beside metres would hide a dependence.
 Eigen::MatrixXd inverse(const Eigen::MatrixXd& gram) {
@@ -144,17 +145,26 @@ Eigen::MatrixXd Evidence::jackknife_covariance(const ColumnIndices& chosen, cons
   const auto k = static_cast<Eigen::Index>(chosen.size());
   const Eigen::MatrixXd gram = total_of(chosen).gram, columns = white(chosen);
   const Eigen::VectorXd left = white_target() - columns * weights;
+  const Eigen::MatrixXd all = inverse(gram);
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(k, k);
+  Eigen::ArrayXd bearing = Eigen::ArrayXd::Zero(k), squares = bearing;  // on each weight, were the noise even
   for (const auto& cluster : clusters_) {
     const auto own = columns.middleRows(static_cast<Eigen::Index>(cluster.begin),
                                         static_cast<Eigen::Index>(cluster.end - cluster.begin));
+    const Eigen::MatrixXd own_gram = own.transpose() * own;
     const Eigen::VectorXd moved =
-        inverse(gram - own.transpose() * own) *
+        inverse(gram - own_gram) *
         (own.transpose() * left.segment(static_cast<Eigen::Index>(cluster.begin), own.rows()));
     sum += moved * moved.transpose();
+    const Eigen::ArrayXd share = (all * own_gram * all).diagonal().array();
+    bearing += share;
+    squares += share.square();
   }
   const double n = static_cast<double>(clusters_.size());
-  return (n - 1.0) / n * sum;
+  const Eigen::VectorXd wider = (bearing.square() / squares.max(1e-300)).unaryExpr([](double clusters) {
+    return student_limit(std::max(clusters - 1.0, 1.0)) / normal_limit;
+  });
+  return (n - 1.0) / n * wider.asDiagonal() * sum * wider.asDiagonal();
 }
 
 Eigen::MatrixXd Evidence::covariance(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const {

@@ -50,7 +50,9 @@ class Evidence {
   // Sandwich covariance of the weights, by clusters of rows.
   Eigen::MatrixXd covariance(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const;
   // Cluster jackknife (CR3: MacKinnon, Nielsen, Webb, J. Econometrics 232, 2023, eq. 14): by how much the weights move
-  // when a cluster is left out. Where a few clusters bear on a weight the sandwich calls it better known than it is.
+  // when a cluster is left out. Where a few clusters bear on a weight the sandwich calls it better known than it is,
+  // and the normal distribution's interval is too narrow: errors are widened so that 1.96 of them are the 95 % interval
+  // of Student's t with the effective number of clusters (Carter, Schnepel, Steigerwald, Rev. Econ. Stat. 99, 2017).
   Eigen::MatrixXd jackknife_covariance(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const;
   struct Test {
     double wald = 0.0;  // over the number of columns

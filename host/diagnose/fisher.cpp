@@ -42,4 +42,13 @@ double fisher_tail(double f, double above, double below) {
   return beta(0.5 * below, 0.5 * above, below / (below + above * f));
 }
 
+double student_limit(double freedom) {
+  double low = 1.9, high = 13.0;  // of an endless number of degrees, and of one
+  while (high - low > 1e-6) {
+    const double middle = 0.5 * (low + high);
+    (student_tails(middle, freedom) > 0.05 ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
 }  // namespace stiction::host

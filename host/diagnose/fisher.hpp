@@ -8,5 +8,7 @@ namespace stiction::host {
 double fisher_tail(double f, double above, double below);
 // The same of |t| with `freedom` degrees: both tails.
 inline double student_tails(double t, double freedom) { return fisher_tail(t * t, 1.0, freedom); }
+// The |t| that is exceeded with a probability of 5 %; `freedom` at least 1.
+double student_limit(double freedom);
 
 }  // namespace stiction::host

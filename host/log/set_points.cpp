@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace stiction::host {
 namespace {
@@ -134,7 +135,9 @@ SetPoints::SetPoints(const Log& log, const AxisLog& axis)
 sim::AxisSetPoint SetPoints::at(double t) const {
   double place = (t - begin_) / period_;
   // A tick that falls on a sample takes it as it is: a millionth of a step is the rounding of the two clocks.
-  if (const double nearest = std::round(place); std::abs(place - nearest) < 1e-6) place = nearest;
+  if (const auto nearest = static_cast<double>(static_cast<std::int64_t>(place + 0.5));
+      std::abs(place - nearest) < 1e-6)
+    place = nearest;
   if (!(place > 0.0)) return {x_.front(), place < 0.0 ? 0.0 : v_.front(), place < 0.0 ? 0.0 : a_.front()};
   const auto last = x_.size() - 1;
   if (place >= static_cast<double>(last))

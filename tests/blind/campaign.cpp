@@ -82,7 +82,7 @@ ParameterScore score_profile(const sim::Effect& truth, const sim::Effect& found)
     off += (level(found, x) - true_level) * (level(found, x) - true_level);
     of += true_level * true_level;
   }
-  return {truth.name, "profile", std::sqrt(off / of), 0.0, false, false};
+  return {truth.name, "profile", std::sqrt(off / of), 0.0, false, 0.0};
 }
 
 std::vector<ParameterScore> score_parameters(const sim::Axis& file, const sim::Effect& truth,
@@ -93,12 +93,12 @@ std::vector<ParameterScore> score_parameters(const sim::Axis& file, const sim::E
     const auto found = finding.effect.values.find(key);
     if (found == finding.effect.values.end() || found->second.empty()) continue;
     const double off = found->second.front() - values.front(), base = value_of_file(file, truth.name);
-    ParameterScore each{truth.name, key, std::abs(off) / std::max(scale_of(truth, key), 1e-12), 0.0, false, false};
+    ParameterScore each{truth.name, key, std::abs(off) / std::max(scale_of(truth, key), 1e-12), 0.0, false, 0.0};
     if (base != 0.0) each.of_change = std::abs(off / (values.front() - base));
     for (const auto& parameter : finding.parameters)
       if ((parameter.name == key || parameter.name.starts_with(key + "_")) && !parameter.standard_errors.empty()) {
         each.interval = true;
-        each.covered = std::abs(off) <= 1.96 * parameter.standard_errors.front();
+        each.deviations = off / std::max(parameter.standard_errors.front(), 1e-300);
       }
     scores.push_back(each);
   }

@@ -35,10 +35,10 @@ std::vector<PlannedCase> plan(int count, std::uint64_t seed, const std::string& 
 
 struct ParameterScore {
   std::string effect, key;
-  double error = 0.0;      // relative to the true value (ripple: to its amplitude; a place: to 100 mm)
-  double of_change = 0.0;  // relative to what it is off the machine file's value; 0: the file has none
-  bool interval = false;   // whether a standard error was given
-  bool covered = false;    // by the 95 % interval
+  double error = 0.0;       // relative to the true value (ripple: to its amplitude; a place: to 100 mm)
+  double of_change = 0.0;   // relative to what it is off the machine file's value; 0: the file has none
+  bool interval = false;    // whether a standard error was given
+  double deviations = 0.0;  // that the found value is off, in standard errors
 };
 
 struct Outcome {

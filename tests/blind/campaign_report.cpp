@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "tests/blind/campaign.hpp"
@@ -118,6 +119,7 @@ std::string parameters(const std::vector<Outcome>& outcomes) {
   struct Errors {
     std::vector<double> error, of_change;
     int intervals = 0, covered = 0;
+    double squares = 0.0;  // of the errors in standard errors
   };
   std::map<std::string, Errors> all;
   int intervals = 0, covered = 0;
@@ -126,19 +128,23 @@ std::string parameters(const std::vector<Outcome>& outcomes) {
       auto& errors = all[score.effect + "." + score.key + fmt::format(" at {:.0f} %", 100.0 * each.order.share)];
       errors.error.push_back(score.error);
       if (score.of_change > 0.0) errors.of_change.push_back(score.of_change);
-      errors.intervals += score.interval, errors.covered += score.covered;
-      intervals += score.interval, covered += score.covered;
+      if (!score.interval) continue;
+      const bool inside = std::abs(score.deviations) <= 1.96;
+      ++errors.intervals, errors.covered += inside;
+      ++intervals, covered += inside;
+      errors.squares += score.deviations * score.deviations;
     }
   if (all.empty()) return "";
   std::string text =
-      fmt::format("\n{:<44} {:>5} {:>10} {:>10} {:>14} {:>10}\n", "Parameter, where its effect was named", "cases",
-                  "median", "90 %", "of the change", "covered");
+      fmt::format("\n{:<44} {:>5} {:>10} {:>10} {:>14} {:>10} {:>16}\n", "Parameter, where its effect was named",
+                  "cases", "median", "90 %", "of the change", "covered", "rms off, in s.e.");
   for (const auto& [name, errors] : all)
     text +=
-        fmt::format("{:<44} {:>5} {:>8.2f} % {:>8.2f} % {:>14} {:>10}\n", name, errors.error.size(),
+        fmt::format("{:<44} {:>5} {:>8.2f} % {:>8.2f} % {:>14} {:>10} {:>16}\n", name, errors.error.size(),
                     100.0 * quantile(errors.error, 0.5), 100.0 * quantile(errors.error, 0.9),
                     errors.of_change.empty() ? "" : fmt::format("{:.0f} %", 100.0 * quantile(errors.of_change, 0.5)),
-                    errors.intervals > 0 ? fmt::format("{}/{}", errors.covered, errors.intervals) : "");
+                    errors.intervals > 0 ? fmt::format("{}/{}", errors.covered, errors.intervals) : "",
+                    errors.intervals > 0 ? fmt::format("{:.2f}", std::sqrt(errors.squares / errors.intervals)) : "");
   if (intervals > 0)
     text += fmt::format("{:<64} {:>4} of {:<4} {:5.1f} % (wanted 90 to 98 %)\n",
                         "95 % intervals that cover the true value", covered, intervals, 100.0 * covered / intervals);
