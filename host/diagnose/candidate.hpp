@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <array>
 #include <functional>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -67,7 +68,9 @@ struct Candidate {
   // The lines among which a periodic one is looked for; null for others.
   const LineScan& (*scan)(const Scene&) = nullptr;
   bool replays = false;  // its columns cost a run of the closed loop
-  double trials = 1.0;   // independent values that a grid without a scan tries
+  // From this value on it matters little what disturbs those runs.
+  double coarse = std::numeric_limits<double>::infinity();
+  double trials = 1.0;  // independent values that a grid without a scan tries
   // Of a force outside of the vocabulary: what it looks like. It takes part in the search so that no name is forced
   // upon what none fits; found, it is no finding but the signature of what stays unexplained. Null for an effect.
   std::string (*looks_like)(const Scene&, double nonlinear, const Eigen::VectorXd& weights) = nullptr;

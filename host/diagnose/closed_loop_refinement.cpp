@@ -38,10 +38,7 @@ class ClosedLoopFit {
       else
         free_parameters(k);
     }
-    if (whitened) {
-      whitening_ = Whitening(found.residual, rows.logs());
-      cluster_ = static_cast<std::size_t>(std::ceil(6.0 * correlation_length(whitening_(found.residual), rows.logs())));
-    }
+    if (whitened) whitening_ = Whitening(found.residual, rows.logs());
   }
 
   // Returns the square that is left, infinity where nothing is free. Where no step gains, the findings stay as they
@@ -142,7 +139,7 @@ class ClosedLoopFit {
   Evidence evidence_of(const Eigen::VectorXd& force, const Eigen::MatrixXd& slopes) const {
     const auto longest = static_cast<std::size_t>(rows_.rows() / 60 + 1);
     Evidence evidence(target_ - force, blocks_of(rows_.velocity, rows_.logs(), longest));
-    evidence.whiten(whitening_, cluster_);
+    evidence.whiten(whitening_);
     std::vector<Eigen::VectorXd> columns;
     for (Eigen::Index i = 0; i < slopes.cols(); ++i) columns.emplace_back(slopes.col(i));
     evidence.add(columns);
@@ -174,7 +171,6 @@ class ClosedLoopFit {
   std::vector<std::size_t> of_finding_;
   std::vector<Free> free_;
   Whitening whitening_;
-  std::size_t cluster_ = 0;
 };
 
 }  // namespace

@@ -161,10 +161,17 @@ Eigen::MatrixXd Evidence::jackknife_covariance(const ColumnIndices& chosen, cons
     squares += share.square();
   }
   const double n = static_cast<double>(clusters_.size());
-  const Eigen::VectorXd wider = (bearing.square() / squares.max(1e-300)).unaryExpr([](double clusters) {
-    return student_limit(std::max(clusters - 1.0, 1.0)) / normal_limit;
-  });
-  return (n - 1.0) / n * wider.asDiagonal() * sum * wider.asDiagonal();
+  Eigen::MatrixXd covariance = (n - 1.0) / n * sum;
+  Eigen::VectorXd wider(k);
+  const double variance = left.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(left.size() - k, 1));
+  for (Eigen::Index i = 0; i < k; ++i) {
+    const double clusters = bearing[i] * bearing[i] / std::max(squares[i], 1e-300);
+    wider[i] = student_limit(std::max(clusters - 1.0, 1.0)) / normal_limit;
+    // Rows that are correlated have no such variance.
+    if (whitening_ && covariance(i, i) > 0.0)
+      wider[i] *= std::sqrt(std::max(variance * all(i, i) / covariance(i, i), 1.0));
+  }
+  return wider.asDiagonal() * covariance * wider.asDiagonal();
 }
 
 Eigen::MatrixXd Evidence::covariance(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const {

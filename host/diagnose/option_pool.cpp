@@ -62,7 +62,8 @@ void OptionPool::respond_under(const Eigen::VectorXd& noise) {
   scene_.disturb(noise);
   std::vector<Option*> replayed;
   for (const auto& option : options_)
-    if (candidates()[option->candidate].replays) replayed.push_back(option.get());
+    if (const auto& c = candidates()[option->candidate]; c.replays && option->nonlinear < c.coarse)
+      replayed.push_back(option.get());
   give_columns(replayed);
 }
 

@@ -94,6 +94,8 @@ class Sampler {
     out_.period = log.period;
     for (const auto& axis : log.axes) out_.axes.emplace_back().axis = axis.axis;
     for (const std::size_t axis : axes) places_.push_back({axis, sim::record_delay(machine.axes[axis])});
+    for (auto& axis : out_.axes)
+      for (auto* values : {&axis.x, &axis.v, &axis.force, &axis.i, &axis.i_set}) values->reserve(times_.size());
   }
 
   bool done() const {
@@ -102,10 +104,10 @@ class Sampler {
     });
   }
 
-  // The values of the tick at t s; ticks come in order.
-  void add(double t, const std::vector<Sample>& values) {
-    std::swap(before_, now_);
-    now_ = values;
+  // The values of the tick at t s; ticks come in order. Leaves `values` with others.
+  void add(double t, std::vector<Sample>& values) {
+    before_.swap(now_);
+    now_.swap(values);
     const double earlier = std::exchange(time_, t);
     for (std::size_t k = 0; k < places_.size(); ++k) {
       Place& p = places_[k];

@@ -43,6 +43,7 @@ const Candidate backlash{.name = "backlash",
                          .possible = possible,
                          .describe = describe,
                          .at_weight = true,
-                         .replays = true};
+                         .replays = true,
+                         .coarse = far};
 
 }  // namespace stiction::host::effects
