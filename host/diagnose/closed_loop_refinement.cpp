@@ -64,7 +64,7 @@ class ClosedLoopFit {
       if (gained > far) slopes = slopes_at(at, force);
     }
     if (left < before)
-      write(at, evidence_of(force, slopes).jackknife_covariance(all(), Eigen::VectorXd::Zero(at.size())));
+      write(at, evidence_of(force, slopes).interval_covariance(all(), Eigen::VectorXd::Zero(at.size())));
     return left;
   }
   const std::vector<Finding>& findings() const { return findings_; }

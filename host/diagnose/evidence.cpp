@@ -141,13 +141,12 @@ Eigen::VectorXd Evidence::residual(const ColumnIndices& chosen, const Eigen::Vec
 
 Eigen::MatrixXd Evidence::inverse_gram(const ColumnIndices& chosen) const { return inverse(total_of(chosen).gram); }
 
-Eigen::MatrixXd Evidence::jackknife_covariance(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const {
+Evidence::Jackknife Evidence::jackknife(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const {
   const auto k = static_cast<Eigen::Index>(chosen.size());
-  const Eigen::MatrixXd gram = total_of(chosen).gram, columns = white(chosen);
+  const Eigen::MatrixXd gram = total_of(chosen).gram, all = inverse(gram), columns = white(chosen);
   const Eigen::VectorXd left = white_target() - columns * weights;
-  const Eigen::MatrixXd all = inverse(gram);
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(k, k);
-  Eigen::ArrayXd bearing = Eigen::ArrayXd::Zero(k), squares = bearing;  // on each weight, were the noise even
+  Eigen::ArrayXd bearing = Eigen::ArrayXd::Zero(k), squares = bearing;
   for (const auto& cluster : clusters_) {
     const auto own = columns.middleRows(static_cast<Eigen::Index>(cluster.begin),
                                         static_cast<Eigen::Index>(cluster.end - cluster.begin));
@@ -161,15 +160,19 @@ Eigen::MatrixXd Evidence::jackknife_covariance(const ColumnIndices& chosen, cons
     squares += share.square();
   }
   const double n = static_cast<double>(clusters_.size());
-  Eigen::MatrixXd covariance = (n - 1.0) / n * sum;
-  Eigen::VectorXd wider(k);
-  const double variance = left.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(left.size() - k, 1));
-  for (Eigen::Index i = 0; i < k; ++i) {
-    const double clusters = bearing[i] * bearing[i] / std::max(squares[i], 1e-300);
-    wider[i] = student_limit(std::max(clusters - 1.0, 1.0)) / normal_limit;
-    // Rows that are correlated have no such variance.
-    if (whitening_ && covariance(i, i) > 0.0)
-      wider[i] *= std::sqrt(std::max(variance * all(i, i) / covariance(i, i), 1.0));
+  return {(n - 1.0) / n * sum, bearing.square() / squares.max(1e-300)};
+}
+
+Eigen::MatrixXd Evidence::interval_covariance(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const {
+  const auto [covariance, clusters] = jackknife(chosen, weights);
+  Eigen::VectorXd wider =
+      clusters.unaryExpr([](double c) { return student_limit(std::max(c - 1.0, 1.0)); }) / normal_limit;
+  if (whitening_) {
+    const double left = (white_target() - white(chosen) * weights).squaredNorm();
+    const double freedom = static_cast<double>(std::max<Eigen::Index>(target_.size() - weights.size(), 1));
+    const Eigen::MatrixXd even = left / freedom * inverse_gram(chosen);
+    for (Eigen::Index i = 0; i < wider.size(); ++i)
+      if (covariance(i, i) > 0.0) wider[i] *= std::sqrt(std::max(even(i, i) / covariance(i, i), 1.0));
   }
   return wider.asDiagonal() * covariance * wider.asDiagonal();
 }

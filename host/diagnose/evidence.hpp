@@ -50,10 +50,17 @@ class Evidence {
   // Sandwich covariance of the weights, by clusters of rows.
   Eigen::MatrixXd covariance(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const;
   // Cluster jackknife (CR3: MacKinnon, Nielsen, Webb, J. Econometrics 232, 2023, eq. 14): by how much the weights move
-  // when a cluster is left out. Where a few clusters bear on a weight the sandwich calls it better known than it is,
-  // and the normal distribution's interval is too narrow: errors are widened so that 1.96 of them are the 95 % interval
-  // of Student's t with the effective number of clusters (Carter, Schnepel, Steigerwald, Rev. Econ. Stat. 99, 2017).
-  Eigen::MatrixXd jackknife_covariance(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const;
+  // when a cluster is left out. Where a few clusters bear on a weight the sandwich calls it better known than it is.
+  struct Jackknife {
+    Eigen::MatrixXd covariance;
+    Eigen::VectorXd clusters;  // effective number that bear on each weight (Carter, Schnepel, Steigerwald, Rev. Econ.
+                               // Stat. 99, 2017), were the noise even
+  };
+  Jackknife jackknife(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const;
+  // The jackknife's, so wide that 1.96 standard errors are the 95 % interval of Student's t with those clusters. Of few
+  // clusters a spread is itself uncertain: on whitened rows no error is smaller than that of even noise (Angrist,
+  // Pischke, Mostly Harmless Econometrics, 2009, 8.1).
+  Eigen::MatrixXd interval_covariance(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const;
   struct Test {
     double wald = 0.0;  // over the number of columns
     double p_value = 1.0;

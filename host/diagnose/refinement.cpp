@@ -140,7 +140,7 @@ class Refinement {
     }
     ColumnIndices chosen(static_cast<std::size_t>(all.size()));
     for (std::size_t i = 0; i < chosen.size(); ++i) chosen[i] = static_cast<Eigen::Index>(i);
-    const auto covariance = evidence.jackknife_covariance(chosen, all);
+    const auto covariance = evidence.interval_covariance(chosen, all);
     for (std::size_t k = 0; k < terms_.size(); ++k) {
       const auto count = terms_[k].weights.size() + (candidate(k).nonlinear ? 1 : 0);
       terms_[k].covariance = covariance.block(first[k], first[k], count, count);

@@ -10,6 +10,7 @@
 
 #include "host/diagnose/common_part.hpp"
 #include "host/diagnose/evidence.hpp"
+#include "host/diagnose/fisher.hpp"
 
 namespace stiction::test {
 namespace {
@@ -132,9 +133,44 @@ TEST(Evidence, JackknifeIsTheSpreadOfWeightsWithEachClusterLeftOut) {
         (use.asDiagonal() * columns).colPivHouseholderQr().solve(use.cwiseProduct(target)) - weights;
     expected += off * off.transpose() * static_cast<double>(blocks.size() - 1) / static_cast<double>(blocks.size());
   }
-  const auto covariance = evidence.jackknife_covariance({0, 1}, weights);
+  const auto [covariance, clusters] = evidence.jackknife({0, 1}, weights);
   EXPECT_TRUE(covariance.isApprox(expected, 1e-9)) << covariance << "\n\n" << expected;
   EXPECT_GT(covariance(0, 0), evidence.covariance({0, 1}, weights)(0, 0));
+  EXPECT_NEAR(clusters[0], 2.0, 0.05);
+  EXPECT_GT(clusters[1], 8.0);
+}
+
+// A column that acts in 5 of 40 clusters, beside a record's offset, in white noise.
+TEST(Evidence, IntervalsCoverWhereFewClustersBear) {
+  constexpr Eigen::Index rows = 800, length = 20;
+  constexpr int draws = 600;
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> normal;
+  std::vector<host::RowBlock> blocks;
+  for (Eigen::Index b = 0; b < rows / length; ++b)
+    blocks.push_back({static_cast<std::size_t>(b * length), static_cast<std::size_t>((b + 1) * length)});
+  const Eigen::VectorXd acting = Eigen::VectorXd::NullaryExpr(
+      rows, [](Eigen::Index i) { return i / length % 8 == 3 ? std::cos(0.5 * static_cast<double>(i)) : 0.0; });
+  int covered = 0, by_normal = 0;
+  for (int d = 0; d < draws; ++d) {
+    const Eigen::VectorXd noise = Eigen::VectorXd::NullaryExpr(rows, [&] { return normal(random); });
+    Evidence evidence(2.0 * acting + noise, blocks);
+    evidence.add({acting, Eigen::VectorXd::Ones(rows)});
+    const auto weights = evidence.fit({0, 1}).weights;
+    const double off = std::abs(weights[0] - 2.0) / 1.959964;
+    covered += off <= std::sqrt(evidence.interval_covariance({0, 1}, weights)(0, 0));
+    by_normal += off <= std::sqrt(evidence.covariance({0, 1}, weights)(0, 0));
+  }
+  EXPECT_NEAR(covered, 0.95 * draws, 0.03 * draws);
+  EXPECT_LT(by_normal, 0.90 * draws);
+}
+
+// M. Abramowitz, I. Stegun, Handbook of Mathematical Functions, table 26.10.
+TEST(StudentLimit, IsThatOfTheTables) {
+  EXPECT_NEAR(host::student_limit(1.0), 12.706, 1e-3);
+  EXPECT_NEAR(host::student_limit(5.0), 2.571, 1e-3);
+  EXPECT_NEAR(host::student_limit(30.0), 2.042, 1e-3);
+  EXPECT_NEAR(host::student_limit(1e6), 1.960, 1e-3);
 }
 
 }  // namespace
