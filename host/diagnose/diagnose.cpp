@@ -158,11 +158,13 @@ RecordDelay record_delay(const LogRows& rows, const Scene& scene, const SearchRe
 }
 
 // Withdraws the term that does worst on held-out data, until each gains and holds, and all of them together gain.
-void keep_what_holds(const LogRows& rows, const Eigen::VectorXd& target, const Scene& scene, SearchResult& found,
-                     Verdict& verdict, std::uint64_t seed) {
+// Returns the candidates that were withdrawn.
+std::vector<std::size_t> keep_what_holds(const LogRows& rows, const Eigen::VectorXd& target, const Scene& scene,
+                                         SearchResult& found, Verdict& verdict, std::uint64_t seed) {
+  std::vector<std::size_t> withdrawn;
   for (;;) {
     const auto figures = evaluate_held_out(rows, target, scene, found.terms, seed);
-    if (found.terms.empty()) return;
+    if (found.terms.empty()) return withdrawn;
     const auto holds = [&](std::size_t k) {
       return figures.gains[k].force_rms_ratio < 1.0 ? figures.confirmed[k] : std::min(figures.confirmed[k], 0.0);
     };
@@ -171,10 +173,11 @@ void keep_what_holds(const LogRows& rows, const Eigen::VectorXd& target, const S
       if (holds(k) < holds(worst)) worst = k;
     // Each may gain beside the others and all of them together lose: wrong names that lean on each other.
     const bool holds_alone = holds(worst) > 0.0;
-    if (holds_alone && figures.force_extended < figures.force_baseline) return;
+    if (holds_alone && figures.force_extended < figures.force_baseline) return withdrawn;
     const double ratio = figures.gains[worst].force_rms_ratio;
     const auto& term = found.terms[worst];
     const auto& candidate = candidates()[term.candidate];
+    withdrawn.push_back(term.candidate);
     if (candidate.outside())
       verdict.unexplained = {term.explains, candidate.looks_like(scene, term.nonlinear, term.weights) +
                                                 " (in the training logs; the held-out ones do not confirm it)"};
@@ -190,6 +193,11 @@ void keep_what_holds(const LogRows& rows, const Eigen::VectorXd& target, const S
                                          100.0 * figures.confirmed[worst]))});
     found.terms.erase(found.terms.begin() + static_cast<std::ptrdiff_t>(worst));
   }
+}
+
+std::vector<std::size_t> outside_among(std::vector<std::size_t> of) {
+  std::erase_if(of, [](std::size_t candidate) { return !candidates()[candidate].outside(); });
+  return of;
 }
 
 // What was found outside of the vocabulary: taken out of the terms, with the force (N, of the rows) that it makes.
@@ -284,9 +292,20 @@ Verdict diagnose(const DiagnoseInput& input) {
   begin(1);
   auto found = search_causes(regressors, target, scene);
   begin(2);
-  const auto found_before = found.terms.size();
-  keep_what_holds(held_regressors, held_target, scene, found, verdict, input.seed);
-  const bool all_held = found.terms.size() == found_before;
+  const auto keep = [&](SearchResult& searched) {
+    return keep_what_holds(held_regressors, held_target, scene, searched, verdict, input.seed);
+  };
+  auto withdrawn = keep(found);
+  // A shape outside of the vocabulary that other records speak against may have stood in a cause's place.
+  if (const auto refuted = outside_among(withdrawn); found.terms.empty() && !refuted.empty()) {
+    auto again = search_causes(regressors, target, scene, refuted);
+    auto withdrawn_again = keep(again);
+    if (!again.terms.empty()) {
+      verdict.unexplained = {};
+      found = std::move(again);
+      withdrawn = std::move(withdrawn_again);
+    }
+  }
   const auto outside = take_outside(regressors, scene, found);
   // What is outside extends no machine file: the names have to gain without it, too.
   if (outside.unexplained.signature) keep_what_holds(held_regressors, held_target, scene, found, verdict, input.seed);
@@ -306,7 +325,7 @@ Verdict diagnose(const DiagnoseInput& input) {
   for (const auto& d : found.discarded) verdict.rejected.push_back({candidates()[d.candidate].name, d.why});
   if (outside.unexplained.signature)
     verdict.unexplained = outside.unexplained;
-  else if (all_held)
+  else if (withdrawn.empty())
     verdict.unexplained = signature_of(regressors, found.residual, target.squaredNorm(), found.correlation);
   add_cause_charts(verdict, regressors, scene, found.terms, found.residual);
   add_charts(verdict, rows, target, found.residual);

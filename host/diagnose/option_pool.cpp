@@ -23,12 +23,14 @@ std::vector<RowBlock> blocks_for(const LogRows& rows, double correlation) {
 
 }  // namespace
 
-OptionPool::OptionPool(const LogRows& rows, const Eigen::VectorXd& target, Scene& scene)
+OptionPool::OptionPool(const LogRows& rows, const Eigen::VectorXd& target, Scene& scene,
+                       std::span<const std::size_t> refuted)
     : rows_(rows),
       scene_(scene),
       correlation_(correlation_length(target, rows.logs())),
       evidence_(target, blocks_for(rows, std::min(correlation_, 0.1 / rows.period(0)))),
       plain_(target, evidence_.row_blocks()),
+      refuted_(refuted),
       disturbance_(target.squaredNorm()) {
   add_options(false);
 }
@@ -37,7 +39,8 @@ OptionPool::OptionPool(const LogRows& rows, const Eigen::VectorXd& target, Scene
 void OptionPool::add_options(bool periodic) {
   std::vector<Option*> added;
   for (std::size_t c = 0; c < candidates().size(); ++c) {
-    if (candidates()[c].periodic != periodic) continue;
+    if (candidates()[c].periodic != periodic || std::find(refuted_.begin(), refuted_.end(), c) != refuted_.end())
+      continue;
     for (const double value : candidates()[c].grid(scene_))
       added.push_back(options_.emplace_back(std::make_unique<Option>(Option{c, value, {}})).get());
   }

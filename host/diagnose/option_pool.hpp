@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "host/diagnose/candidate.hpp"
@@ -21,8 +22,9 @@ class OptionPool {
  public:
   using Set = std::vector<const Option*>;
 
-  // Those of the candidates that are not periodic. `target`: N, of the rows; `scene` gets the lines that are found.
-  OptionPool(const LogRows& rows, const Eigen::VectorXd& target, Scene& scene);
+  // Those of the candidates that are not periodic. `target`: N, of the rows; `scene` gets the lines that are found;
+  // `refuted`: candidates that are left out.
+  OptionPool(const LogRows& rows, const Eigen::VectorXd& target, Scene& scene, std::span<const std::size_t> refuted);
 
   static ColumnIndices columns_of(const Set& set);
   static bool has(const Set& set, std::size_t candidate);
@@ -58,6 +60,7 @@ class OptionPool {
   double effective_rows() const;
   double penalty(std::size_t candidate, std::size_t columns) const;
 
+  std::span<const std::size_t> refuted_;
   std::vector<std::unique_ptr<Option>> options_;
   double disturbance_;  // square of the force under which candidates replay
 };

@@ -288,8 +288,9 @@ SearchResult Search::run() {
 
 }  // namespace
 
-SearchResult search_causes(const LogRows& rows, const Eigen::VectorXd& target, Scene& scene) {
-  return Search(rows, target, scene).run();
+SearchResult search_causes(const LogRows& rows, const Eigen::VectorXd& target, Scene& scene,
+                           std::span<const std::size_t> refuted) {
+  return Search(rows, target, scene, refuted).run();
 }
 
 }  // namespace stiction::host

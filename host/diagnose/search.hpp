@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -41,7 +42,9 @@ struct SearchResult {
   std::size_t blocks = 0;
 };
 
-// `target`: the residual force of the rows. `scene` gets the pitches that were found.
-SearchResult search_causes(const LogRows& rows, const Eigen::VectorXd& target, Scene& scene);
+// `target`: the residual force of the rows. `scene` gets the pitches that were found. `refuted`: candidates that other
+// records spoke against, and that are no choice here.
+SearchResult search_causes(const LogRows& rows, const Eigen::VectorXd& target, Scene& scene,
+                           std::span<const std::size_t> refuted = {});
 
 }  // namespace stiction::host
