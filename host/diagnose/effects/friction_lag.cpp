@@ -37,7 +37,6 @@ const Candidate friction_lag{.name = "friction_lag",
                              .columns = columns,
                              .possible = possible,
                              .describe = describe,
-                             .at_weight = true,
-                             .trials = 5.0};
+                             .at_weight = true};
 
 }  // namespace stiction::host::effects
