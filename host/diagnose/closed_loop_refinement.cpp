@@ -120,7 +120,7 @@ class ClosedLoopFit {
         square += at[static_cast<Eigen::Index>(k)] * at[static_cast<Eigen::Index>(k)];
     return std::sqrt(square);
   }
-  // By differences over a standard error, within 1e-5 to a tenth of the value; none where the effect cannot have it.
+  // By differences over a standard error, within 1e-5 to a tenth of its size; none where the effect cannot have it.
   Eigen::MatrixXd slopes_at(const Eigen::VectorXd& at, const Eigen::VectorXd& force) {
     Eigen::MatrixXd slopes(rows_.rows(), at.size());
     for (Eigen::Index i = 0; i < at.size(); ++i) {

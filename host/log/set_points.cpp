@@ -134,7 +134,8 @@ SetPoints::SetPoints(const Log& log, const AxisLog& axis)
 
 sim::AxisSetPoint SetPoints::at(double t) const {
   double place = (t - begin_) / period_;
-  // A tick that falls on a sample takes it as it is: a millionth of a step is the rounding of the two clocks.
+  // A tick that falls on a sample takes it as it is: a millionth of a step is the rounding of the two clocks. A cast,
+  // because every tick of every replay comes here and std::round is a call.
   if (const auto nearest = static_cast<double>(static_cast<std::int64_t>(place + 0.5));
       std::abs(place - nearest) < 1e-6)
     place = nearest;
