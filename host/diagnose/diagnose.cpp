@@ -27,7 +27,8 @@
 namespace stiction::host {
 namespace {
 
-constexpr double shortest = 3.0;  // s, of the training logs together
+constexpr double strongly_against = 6.0;  // twice the logarithm of a Bayes factor (Kass, Raftery 1995)
+constexpr double shortest = 3.0;          // s, of the training logs together
 
 SignalSettings wide_band() {
   SignalSettings s;
@@ -121,16 +122,22 @@ std::vector<ConfusedWith> confused_with(const Term& term) {
   return list;
 }
 
-std::string evidence_of(const Term& term, std::size_t blocks) {
+std::string repeated(const Repetition& repetition) {
+  return fmt::format("{:.2f} +- {:.2f}", repetition.size, repetition.deviation);
+}
+
+std::string evidence_of(const Term& term, const Repetition& repetition, std::size_t blocks) {
   const auto& j = term.judgement;
   return fmt::format(
       "It takes {:.1f} % of the residual force's variance away, beside the other findings ({:.1f} % cross-validated), "
       "p = {:.2g} from {} blocks of rows; from the first half of the blocks alone it is {:.2f} times as large as from "
-      "all, from the second {:.2f} times.",
-      100.0 * term.explains, 100.0 * j.gain, j.p_value, blocks, j.first_half, j.second_half);
+      "all, from the second {:.2f} times. The held-out records show it {} times as large{}.",
+      100.0 * term.explains, 100.0 * j.gain, j.p_value, blocks, j.first_half, j.second_half, repeated(repetition),
+      repetition.against() < 0.0 ? "" : ", too little to confirm it and too little to refute it: it hardly acts there");
 }
 
-Finding finding_of(const Scene& scene, const Term& term, const HoldoutGain& gain, std::size_t blocks) {
+Finding finding_of(const Scene& scene, const Term& term, const HoldoutGain& gain, const Repetition& repetition,
+                   std::size_t blocks) {
   const auto& candidate = candidates()[term.candidate];
   Finding finding;
   finding.axis = scene.axis.name;
@@ -140,7 +147,7 @@ Finding finding_of(const Scene& scene, const Term& term, const HoldoutGain& gain
   finding.holdout = gain;
   finding.p_value = term.judgement.p_value;
   finding.confused_with = confused_with(term);
-  finding.evidence = evidence_of(term, blocks);
+  finding.evidence = evidence_of(term, repetition, blocks);
   return finding;
 }
 
@@ -157,24 +164,30 @@ RecordDelay record_delay(const LogRows& rows, const Scene& scene, const SearchRe
   return delay;
 }
 
-// Withdraws the term that does worst on held-out data, until each gains and holds, and all of them together gain.
-// Returns the candidates that were withdrawn.
+// Up to where held-out records may speak against a term (Repetition::against) that stays: what training records put
+// beyond doubt, other records on which it hardly acts do not refute by chance.
+double most_against(const Term& term) { return term.judgement.beyond_doubt ? strongly_against : 0.0; }
+
+// Withdraws the term that held-out data speak against most, until they do against none and not against all of them
+// together. Returns the candidates that were withdrawn.
 std::vector<std::size_t> keep_what_holds(const LogRows& rows, const Eigen::VectorXd& target, const Scene& scene,
                                          SearchResult& found, Verdict& verdict, std::uint64_t seed) {
   std::vector<std::size_t> withdrawn;
   for (;;) {
     const auto figures = evaluate_held_out(rows, target, scene, found.terms, seed);
     if (found.terms.empty()) return withdrawn;
-    const auto holds = [&](std::size_t k) {
-      return figures.gains[k].force_rms_ratio < 1.0 ? figures.confirmed[k] : std::min(figures.confirmed[k], 0.0);
-    };
-    std::size_t worst = 0;
-    for (std::size_t k = 1; k < found.terms.size(); ++k)
-      if (holds(k) < holds(worst)) worst = k;
+    std::vector<double> too_much;
+    double all = strongly_against;
+    for (std::size_t k = 0; k < found.terms.size(); ++k) {
+      const double most = most_against(found.terms[k]);
+      too_much.push_back(figures.repetitions[k].against() - most);
+      all = std::min(all, most);
+    }
+    const auto worst =
+        static_cast<std::size_t>(std::distance(too_much.begin(), std::max_element(too_much.begin(), too_much.end())));
     // Each may gain beside the others and all of them together lose: wrong names that lean on each other.
-    const bool holds_alone = holds(worst) > 0.0;
-    if (holds_alone && figures.force_extended < figures.force_baseline) return withdrawn;
-    const double ratio = figures.gains[worst].force_rms_ratio;
+    const bool holds_alone = too_much[worst] < 0.0;
+    if (holds_alone && figures.together.against() < all) return withdrawn;
     const auto& term = found.terms[worst];
     const auto& candidate = candidates()[term.candidate];
     withdrawn.push_back(term.candidate);
@@ -183,14 +196,12 @@ std::vector<std::size_t> keep_what_holds(const LogRows& rows, const Eigen::Vecto
                                                 " (in the training logs; the held-out ones do not confirm it)"};
     else
       verdict.rejected.push_back(
-          {candidate.name,
-           fmt::format("withdrawn: found in the training data, but no gain on held-out data: {}",
-                       holds_alone ? fmt::format("force rms {:.4f} times that of the file, with all causes found",
-                                                 figures.force_extended / figures.force_baseline)
-                       : ratio >= 1.0
-                           ? fmt::format("force rms {:.4f} times that without it", ratio)
-                           : fmt::format("whitened as it was found it takes {:.0f} % of what it should there",
-                                         100.0 * figures.confirmed[worst]))});
+          {candidate.name, fmt::format("withdrawn: found in the training data, but no gain on held-out data: {} times "
+                                       "as large there{}, force rms {:.4f} times that without it",
+                                       repeated(holds_alone ? figures.together : figures.repetitions[worst]),
+                                       holds_alone ? ", with all causes found" : "",
+                                       holds_alone ? figures.force_extended / figures.force_baseline
+                                                   : figures.gains[worst].force_rms_ratio)});
     found.terms.erase(found.terms.begin() + static_cast<std::ptrdiff_t>(worst));
   }
 }
@@ -314,7 +325,8 @@ Verdict diagnose(const DiagnoseInput& input) {
   verdict.baseline.force_rms = figures.force_baseline;
   verdict.extended.force_rms = figures.force_extended;
   for (std::size_t k = 0; k < found.terms.size(); ++k)
-    verdict.findings.push_back(finding_of(scene, found.terms[k], figures.gains[k], found.blocks));
+    verdict.findings.push_back(
+        finding_of(scene, found.terms[k], figures.gains[k], figures.repetitions[k], found.blocks));
   compare_bands(verdict, found.terms, regressors, inside, scene);
   begin(3);
   refine_in_closed_loop(verdict.findings, found, responses, regressors, inside, scene);

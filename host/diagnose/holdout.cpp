@@ -96,13 +96,17 @@ Eigen::VectorXd force_of_term(const LogRows& rows, const Scene& scene, const Ter
   return force;
 }
 
+std::vector<RowBlock> blocks_of_rows(const LogRows& rows) {
+  return blocks_of(rows.velocity, rows.logs(), static_cast<std::size_t>(rows.rows() / 60 + 1));
+}
+
 double rms(const Eigen::VectorXd& v) { return std::sqrt(v.squaredNorm() / static_cast<double>(v.size())); }
 
 }  // namespace
 
 std::array<double, 2> ratio_interval(const Eigen::VectorXd& after, const Eigen::VectorXd& before, const LogRows& rows,
                                      std::uint64_t seed) {
-  const auto blocks = blocks_of(rows.velocity, rows.logs(), static_cast<std::size_t>(rows.rows() / 60 + 1));
+  const auto blocks = blocks_of_rows(rows);
   std::vector<std::pair<double, double>> squares;
   for (const auto& b : blocks) {
     const auto begin = static_cast<Eigen::Index>(b.begin), length = static_cast<Eigen::Index>(b.end - b.begin);
@@ -140,9 +144,16 @@ HeldOutFigures evaluate_held_out(const LogRows& rows, const Eigen::VectorXd& tar
     coulomb = coulomb && !candidates()[term.candidate].names_coulomb;
   }
   const Nuisances nuisances(rows, scene, constant, coulomb);
-  const auto extended = nuisances.without(rest);
-  HeldOutFigures figures{rms(nuisances.without(target)), rms(extended), {}, {}};
+  const Eigen::VectorXd baseline = nuisances.without(target), extended = nuisances.without(rest);
+  HeldOutFigures figures{rms(baseline), rms(extended), {}, {}, {}};
   const Whitening whitening(extended, rows.logs());
+  const auto blocks = blocks_of_rows(rows);
+  const auto repetition = [&](const Eigen::VectorXd& before, const Eigen::VectorXd& after, bool whitened) {
+    const Eigen::VectorXd force = before - after;
+    return whitened ? repetition_of(whitening(force), whitening(before), rows.logs(), blocks)
+                    : repetition_of(force, before, rows.logs(), blocks);
+  };
+  bool whitened = false;
   for (std::size_t k = 0; k < terms.size(); ++k) {
     const auto& candidate = candidates()[terms[k].candidate];
     const Nuisances own(rows, scene, !candidate.names_constant && constant, !candidate.names_coulomb && coulomb);
@@ -151,11 +162,10 @@ HeldOutFigures evaluate_held_out(const LogRows& rows, const Eigen::VectorXd& tar
     gain.force_rms_ratio = rms(after) / rms(before);
     gain.ci95 = ratio_interval(after, before, rows, seed + k);
     figures.gains.push_back(gain);
-    const double whole = terms[k].whitened ? whitening(before - after).squaredNorm() : (before - after).squaredNorm();
-    const double taken = terms[k].whitened ? whitening(before).squaredNorm() - whitening(after).squaredNorm()
-                                           : before.squaredNorm() - after.squaredNorm();
-    figures.confirmed.push_back(whole > 0.0 ? taken / whole : 0.0);
+    figures.repetitions.push_back(repetition(before, after, terms[k].whitened));
+    whitened = whitened || terms[k].whitened;
   }
+  figures.together = repetition(baseline, extended, whitened);
   return figures;
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "host/diagnose/repetition.hpp"
 #include "host/diagnose/search.hpp"
 
 namespace stiction::host {
@@ -13,10 +14,10 @@ namespace stiction::host {
 struct HeldOutFigures {
   double force_baseline = 0.0, force_extended = 0.0;  // N rms, without nuisances
   std::vector<HoldoutGain> gains;                     // of each term beside the others; force only
-  // Of what each term's force would take off the rows' square if it were all true, the share that it takes: about 1 of
-  // a true one, about -1 of one that fits the training records' noise. Of terms that were found on whitened rows,
-  // whitened.
-  std::vector<double> confirmed;
+  // Of each term's force beside the others', and of all together: what these rows show of it. Of terms that were found
+  // on whitened rows, whitened.
+  std::vector<Repetition> repetitions;
+  Repetition together;
 };
 
 // `target`: residual force of the held-out rows. Intervals: bootstrap over blocks of rows, from `seed`.

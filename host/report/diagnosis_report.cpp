@@ -85,18 +85,22 @@ void add_rows(json& rows, const EffectParameter& parameter) {
 
 std::string gain_percent(double ratio) { return fmt::format("{:.1f}", 100.0 * (1.0 - ratio)); }
 
+std::string change_percent(double ratio) { return fmt::format("{:.1f}", 100.0 * std::abs(1.0 - ratio)); }
+const char* falls_or_grows(double ratio) { return ratio <= 1.0 ? "falls" : "grows"; }
+
 // The numbers of the evidence in one sentence.
 std::string figures_of(const Finding& finding) {
   auto text = fmt::format(
       "It takes away {} % of the {}'s variance, given the other causes (p {}). On data that was not used the "
-      "{} falls by {} % (95 %: {} to {})",
+      "{} {} by {} % (95 % interval of its fall: {} to {} %)",
       percent(finding.explains), finding.in_command ? "command residual" : "residual",
       finding.p_value < 1e-12 ? "< 1e-12" : fmt::format("= {:.1g}", finding.p_value),
-      finding.in_command ? "command residual" : "residual force", gain_percent(gained_ratio(finding)),
-      gain_percent(finding.holdout.ci95[1]), gain_percent(finding.holdout.ci95[0]));
+      finding.in_command ? "command residual" : "residual force", falls_or_grows(gained_ratio(finding)),
+      change_percent(gained_ratio(finding)), gain_percent(finding.holdout.ci95[1]),
+      gain_percent(finding.holdout.ci95[0]));
   if (const auto ratio = finding.holdout.position_error_rms_ratio)
-    text += fmt::format(", the position error of the simulation {} by {} %", *ratio <= 1.0 ? "falls" : "grows",
-                        fmt::format("{:.1f}", 100.0 * std::abs(1.0 - *ratio)));
+    text += fmt::format(", the position error of the simulation {} by {} %", falls_or_grows(*ratio),
+                        change_percent(*ratio));
   return text + ".";
 }
 
@@ -192,8 +196,15 @@ std::string gain_line(const Verdict& verdict) {
   if (verdict.reference) return scores_text(*verdict.reference);
   const auto& [before, after] = std::pair(verdict.baseline, verdict.extended);
   if (verdict.findings.empty() || before.force_rms <= 0.0) return "";
-  auto text = fmt::format("Extended by it, the residual force on held-out data falls from {:.3g} N to {:.3g} N rms",
-                          before.force_rms, after.force_rms);
+  // What hardly acts in them held-out records do not refute, and neither do they gain by it.
+  auto text =
+      after.force_rms < before.force_rms
+          ? fmt::format("Extended by it, the residual force on held-out data falls from {:.3g} N to {:.3g} N rms",
+                        before.force_rms, after.force_rms)
+          : fmt::format(
+                "Extended by it, the residual force on held-out data, in which it hardly acts, stays at "
+                "{:.3g} N rms",
+                after.force_rms);
   if (before.position_error_rms && after.position_error_rms)
     text += fmt::format(", the simulation's position error from {} µm to {} µm rms",
                         micrometres(*before.position_error_rms), micrometres(*after.position_error_rms));
