@@ -14,9 +14,10 @@
 namespace stiction::blind {
 namespace {
 
-constexpr std::array<Kind, 7> all_kinds{{
+constexpr std::array<Kind, 8> all_kinds{{
     {"null", "nothing hidden", 0, false, false, 0.0, 10},
     {"one10", "one effect, share 10 %", 1, false, false, 0.10, 10},
+    {"one50", "one effect, share 50 %", 1, false, false, 0.50, 0},
     {"one5", "one effect, share 5 %", 1, false, false, 0.05, 6},
     {"one2", "one effect, share 2 %", 1, false, false, 0.02, 4},
     {"two10", "two effects, 10 % each", 2, false, false, 0.10, 5},

@@ -47,7 +47,7 @@ std::string rates(const std::vector<Outcome>& outcomes) {
   const auto null = of_kind(outcomes, "null");
   text += rate("nothing hidden: some cause is named", null, names_any, "(wanted at most 5 %)");
   for (const auto& [kind, share, wanted] :
-       {std::tuple{"one10", "10 %", "(wanted at least 95 %)"}, std::tuple{"one5", "5 %", "(wanted at least 80 %)"},
+       {std::tuple{"one50", "50 %", ""}, std::tuple{"one10", "10 %", "(wanted at least 95 %)"}, std::tuple{"one5", "5 %", "(wanted at least 80 %)"},
         std::tuple{"one2", "2 %", ""}}) {
     const auto cases = of_kind(outcomes, kind);
     text += rate(fmt::format("one at {}: the first name is right (exact aliases count)", share), cases, first_right,
@@ -154,7 +154,7 @@ std::string parameters(const std::vector<Outcome>& outcomes) {
 // Over the cases in which an oracle gains something (0.1 N^2): the sums of both, and how often 80 % of it is reached.
 std::string gains(const std::vector<Outcome>& outcomes) {
   std::string text;
-  for (const char* kind : {"one10", "two10"}) {
+  for (const char* kind : {"one50", "one10", "two10"}) {
     double sum = 0.0, oracle = 0.0;
     int count = 0, reached = 0;
     for (const auto* each : of_kind(outcomes, kind)) {
@@ -192,6 +192,7 @@ std::string report(const std::vector<Outcome>& outcomes) {
   std::string text = rates(outcomes);
   const auto gain = gains(outcomes);
   text += gain;
+  text += matrix(outcomes, {"one50"}, "Share 50 %");
   text += matrix(outcomes, {"null", "one10", "outside10"}, "Share 10 %");
   text += matrix(outcomes, {"one5", "one2"}, "Share 5 % and 2 %");
   text += parameters(outcomes);
