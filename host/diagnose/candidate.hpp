@@ -26,6 +26,7 @@ struct Scene {
   int reversals = 0;
   double lowest_position = 0.0, highest_position = 0.0;
   double highest_force = 0.0;     // N, expected
+  double highest_residual = 0.0;  // N, what the file does not make of the force
   bool force_is_current = false;  // in every record: current (or voltage) times the file's force constant
   bool other_axis = false;        // its motion is in every record
   double duration = 0.0;          // s, of the longest record

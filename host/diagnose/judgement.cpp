@@ -100,11 +100,11 @@ Judgement judge_columns(const Evidence& evidence, const Evidence& plain, const C
   const double deviations = std::sqrt(test.wald * static_cast<double>(count));
 
   const double among = static_cast<double>(candidates().size()), limit = significance / among;
-  result.beyond_doubt = result.p_value < beyond_doubt * limit;
   result.nearly = result.p_value >= limit && result.p_value < nearly_significant / among;
   if (!(result.p_value < limit))
     result.objection = fmt::format("not significant: p = {:.2g}, expected below {:.2g}", result.p_value, limit);
-  else if (const double least = result.beyond_doubt ? least_sure_gain : least_gain; !(result.gain > least))
+  else if (const double least = result.p_value < beyond_doubt * limit ? least_sure_gain : least_gain;
+           !(result.gain > least))
     result.objection = fmt::format("takes {:.2g} % off the cross-validated residual; expected more than {:g} %",
                                    100.0 * result.gain, 100.0 * least);
   else if (larger.odd)

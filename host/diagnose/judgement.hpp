@@ -14,7 +14,6 @@ struct Judgement {
   double p_value = 1.0;  // that its weights are zero, times what was tried for its nonlinear parameter
   double gain = 0.0;     // share of the cross-validated residual that it takes away
   double first_half = 0.0, second_half = 0.0;  // its size found in each half of the rows, over that in all
-  bool beyond_doubt = false;                   // so significant that a small gain will do
   bool nearly = false;                         // not quite significant: better data may name it
   std::optional<std::string> objection;        // why it does not stay
 };
