@@ -19,7 +19,9 @@ namespace {
 constexpr double another_way = 0.01;
 constexpr double fine = 0.01;              // of the position controller's increment
 constexpr std::size_t answers_kept = 6;    // of each log: a grid has two of backlash
-constexpr std::size_t disturbed_runs = 2;  // a third one is half as much work again and names no more
+constexpr std::size_t usual_runs = 2;      // a third one is half as much work again and names no more of a small gap
+constexpr std::size_t most_runs_ever = 8;  // of a swing that keeps its phase for seconds two runs may agree by chance
+constexpr double much_chance = 0.25;       // of the disturbance's square
 
 bool same_way(const std::vector<double>& simulated, const std::vector<double>& measured) {
   double mean = 0.0, square = 0.0;
@@ -98,9 +100,8 @@ EffectResponse::EffectResponse(const sim::Machine& machine, std::size_t axis, co
   machine_ = std::move(bench.machine);
   auto& own = machine_.axes.front();
   own.encoder.noise = 0.0;
-  for (auto& log : bench.logs) records_.push_back({{std::move(log)}, {}});
-  for (std::size_t k = 0; k < replayed.size(); ++k)
-    records_[k].without = residual(replayed[k], records_[k].runs.front());
+  for (auto& log : bench.logs) records_.push_back({std::move(log), {}});
+  for (std::size_t k = 0; k < replayed.size(); ++k) records_[k].without = residual(replayed[k], records_[k].log);
   if (hunting == Hunting::simulated) return;
   own.position_controller.increment *= fine;
   without_windings(own);
@@ -111,16 +112,17 @@ EffectResponse::EffectResponse(const sim::Machine& machine, std::size_t axis, co
                                const std::vector<Log>& replayed)
     : EffectResponse(machine, axis, logs, settings, Hunting::simulated, replayed) {
   without_windings(machine_.axes.front());
-  for (std::size_t k = 0; k < records_.size(); ++k) {
-    auto& runs = records_[k].runs;
-    runs.resize(disturbed_runs, runs.front());
-    for (std::size_t r = 0; r < disturbed_runs; ++r) {
-      auto& force = runs[r].axes.front().external_force;
-      force.resize(runs[r].t.size(), 0.0);
-      const auto drawn = disturbance.drawn(runs[r].t, k * disturbed_runs + r);
-      std::transform(force.begin(), force.end(), drawn.begin(), force.begin(), std::plus<>());
-    }
-  }
+  disturbance_ = disturbance;
+}
+
+Log EffectResponse::disturbed(std::size_t record, std::size_t run) const {
+  auto log = records_[record].log;
+  if (!disturbance_) return log;
+  auto& force = log.axes.front().external_force;
+  force.resize(log.t.size(), 0.0);
+  const auto drawn = disturbance_.drawn(log.t, record * most_runs_ever + run);
+  std::transform(force.begin(), force.end(), drawn.begin(), force.begin(), std::plus<>());
+  return log;
 }
 
 Log EffectResponse::replayed(const Log& log, const sim::Machine& machine) const {
@@ -138,11 +140,15 @@ std::vector<double> EffectResponse::residual(Log simulated, const Log& of) const
 }
 
 // Of runs with the effects, less the one without.
-std::vector<double> EffectResponse::common(Record& record, const sim::Machine& machine, std::size_t most_runs) const {
-  if (record.without.empty()) record.without = residual(replayed(record.runs.front(), machine_), record.runs.front());
+std::vector<double> EffectResponse::common(std::size_t index, const sim::Machine& machine, std::size_t most_runs) {
+  auto& record = records_[index];
+  if (record.without.empty()) record.without = residual(replayed(record.log, machine_), record.log);
   CommonPart part;
-  for (const auto& run : std::span(record.runs).first(std::min(most_runs, record.runs.size()))) {
-    auto force = residual(replayed(run, machine), run);
+  const std::size_t most = disturbance_ ? std::min(most_runs, most_runs_ever) : 1;
+  for (std::size_t r = 0; r < most; ++r) {
+    if (r >= usual_runs && part.chance() < much_chance * disturbance_.mean_square()) break;
+    const auto log = disturbed(index, r);
+    auto force = residual(replayed(log, machine), log);
     for (std::size_t i = 0; i < force.size(); ++i) force[i] -= record.without[i];
     part.add(force);
   }
@@ -156,7 +162,7 @@ std::vector<double> EffectResponse::operator()(const Motion& motion, const sim::
 std::vector<double> EffectResponse::together(const Motion& motion, std::span<const sim::Effect> effects,
                                              std::size_t most_runs) {
   for (std::size_t k = 0; k < records_.size(); ++k) {
-    const auto& log = records_[k].runs.front();
+    const auto& log = records_[k].log;
     if (log.source != motion.source || log.axes.front().x_set != motion.x_set) continue;
     const auto known = std::find_if(known_.begin(), known_.end(), [&](const Known& each) {
       return each.record == k && each.runs == most_runs && same(each.effects, effects);
@@ -166,7 +172,7 @@ std::vector<double> EffectResponse::together(const Motion& motion, std::span<con
     auto& acting = machine.axes.front().effects;
     acting.insert(acting.end(), effects.begin(), effects.end());
     try {
-      known_.push_back({k, most_runs, {effects.begin(), effects.end()}, common(records_[k], machine, most_runs)});
+      known_.push_back({k, most_runs, {effects.begin(), effects.end()}, common(k, machine, most_runs)});
       if (known_.size() > answers_kept * records_.size()) known_.pop_front();
       return known_.back().force;
     } catch (const FaultTripped&) {

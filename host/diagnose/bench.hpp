@@ -47,36 +47,40 @@ enum class Hunting { simulated, smoothed };
 // source and the first time of the logs.
 class EffectResponse {
  public:
-  static constexpr auto all_runs = std::numeric_limits<std::size_t>::max();
+  static constexpr auto as_needed = std::numeric_limits<std::size_t>::max();
 
   // `logs`: with set-points, of that axis; `settings`: those of the motions; `replayed`: what without_noise() has
   // replayed of them with that hunting, in their order, so that it need not be done again.
   EffectResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
                  const SignalSettings& settings, Hunting hunting = Hunting::simulated,
                  const std::vector<Log>& replayed = {});
-  // Under forces like `disturbance`: what two runs under them have in common.
+  // Under forces like `disturbance`: what runs under them have in common; two, and more where they agree on so little
+  // that what is left to chance in their common part is a force like those.
   EffectResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
                  const SignalSettings& settings, const Disturbance& disturbance, const std::vector<Log>& replayed = {});
 
   // N at the motion's rate: with the effect less without; zeros where the machine cannot follow with it. Of no more
   // than `most_runs`. Throws sim::EffectError, std::out_of_range for a motion of another log.
-  std::vector<double> operator()(const Motion& motion, const sim::Effect& effect, std::size_t most_runs = all_runs);
+  std::vector<double> operator()(const Motion& motion, const sim::Effect& effect, std::size_t most_runs = as_needed);
   // The same of several effects that act together.
   std::vector<double> together(const Motion& motion, std::span<const sim::Effect> effects,
-                               std::size_t most_runs = all_runs);
+                               std::size_t most_runs = as_needed);
 
  private:
   struct Record {
-    std::vector<Log> runs;        // the log under as many disturbances; one without
+    Log log;
     std::vector<double> without;  // N, the residual without effects and disturbances, once it was asked for
   };
+  // The log of a record under one of many draws of the disturbance.
+  Log disturbed(std::size_t record, std::size_t run) const;
   Log replayed(const Log& log, const sim::Machine& machine) const;
   // `of`: what was replayed; its external force is known, and no residual.
   std::vector<double> residual(Log simulated, const Log& of) const;
-  std::vector<double> common(Record& record, const sim::Machine& machine, std::size_t most_runs) const;
+  std::vector<double> common(std::size_t record, const sim::Machine& machine, std::size_t most_runs);
 
   sim::Machine machine_;
   SignalSettings settings_;
+  Disturbance disturbance_;
   std::vector<Record> records_;
   // The last answers: a search's grid begins a refinement, a refinement's end begins the one in closed loop.
   struct Known {

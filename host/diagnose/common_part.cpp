@@ -58,6 +58,13 @@ std::vector<CommonPart::Band> CommonPart::bands() const {
   return all;
 }
 
+double CommonPart::chance() const {
+  if (runs_ < 2) return 0.0;
+  double sum = 0.0;
+  for (const auto& band : bands()) sum += 2.0 * band.own;
+  return sum / static_cast<double>(sum_.size()) / static_cast<double>(samples_);
+}
+
 std::vector<double> CommonPart::estimate() const {
   if (runs_ == 1) return first_;
   Eigen::VectorXcd spectrum = sum_ / static_cast<double>(runs_);

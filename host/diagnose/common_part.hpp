@@ -17,6 +17,8 @@ class CommonPart {
 
   // Of a single run, of which nothing is known, that itself.
   std::vector<double> estimate() const;
+  // Mean square of what chance has left in the mean of the runs; of a single one not known: 0.
+  double chance() const;
 
  private:
   struct Band {

@@ -28,9 +28,8 @@
 namespace stiction::host {
 namespace {
 
-constexpr double strongly_against = 6.0;  // twice the logarithm of a Bayes factor (Kass, Raftery 1995)
-constexpr double of_training = 0.1;       // residuals hold more than noise: a p-value claims too much
-constexpr double shortest = 3.0;          // s, of the training logs together
+constexpr double of_training = 0.1;  // residuals hold more than noise: a p-value claims too much
+constexpr double shortest = 3.0;     // s, of the training logs together
 
 SignalSettings wide_band() {
   SignalSettings s;
@@ -135,7 +134,7 @@ std::string evidence_of(const Term& term, const Repetition& repetition, std::siz
       "p = {:.2g} from {} blocks of rows; from the first half of the blocks alone it is {:.2f} times as large as from "
       "all, from the second {:.2f} times. The held-out records show it {} times as large{}.",
       100.0 * term.explains, 100.0 * j.gain, j.p_value, blocks, j.first_half, j.second_half, repeated(repetition),
-      repetition.against() < 0.0 ? "" : ", too little to confirm it and too little to refute it: it hardly acts there");
+      repetition.against() < 0.0 ? "" : ", which neither confirms nor refutes it");
 }
 
 Finding finding_of(const Scene& scene, const Term& term, const HoldoutGain& gain, const Repetition& repetition,
@@ -166,13 +165,15 @@ RecordDelay record_delay(const LogRows& rows, const Scene& scene, const SearchRe
   return delay;
 }
 
-// Up to where held-out records may speak against a term (Repetition::against) that stays: a small part of what the
-// training records say for it, by the most that its p-value can mean as a Bayes factor (Sellke, Bayarri, Berger, Am.
-// Stat. 55, 2001) among so many candidates, and never strongly. Records on which it hardly acts speak by chance.
-double most_against(const Term& term) {
+// Up to where held-out records may speak against a term (Repetition::against) that stays: not at all, where they would
+// know it; else a small part of what the training records say for it, by the most that its p-value can mean as a Bayes
+// factor (Sellke, Bayarri, Berger, Am. Stat. 55, 2001) among so many candidates: records on which it hardly acts speak
+// by chance.
+double most_against(const Term& term, const Repetition& repetition) {
+  if (!repetition.may_be_all()) return 0.0;
   const double p = std::clamp(term.judgement.p_value, 1e-300, 0.1);
   const double chance = -std::numbers::e * p * std::log(p) * static_cast<double>(candidates().size());
-  return std::clamp(-2.0 * of_training * std::log(chance), 0.0, strongly_against);
+  return std::max(-2.0 * of_training * std::log(chance), 0.0);
 }
 
 // Withdraws the term that held-out data speak against most, until they do against none and not against all of them
@@ -184,17 +185,13 @@ std::vector<std::size_t> keep_what_holds(const LogRows& rows, const Eigen::Vecto
     const auto figures = evaluate_held_out(rows, target, scene, found.terms, seed);
     if (found.terms.empty()) return withdrawn;
     std::vector<double> too_much;
-    double all = strongly_against;
-    for (std::size_t k = 0; k < found.terms.size(); ++k) {
-      const double most = most_against(found.terms[k]);
-      too_much.push_back(figures.repetitions[k].against() - most);
-      all = std::min(all, most);
-    }
+    for (std::size_t k = 0; k < found.terms.size(); ++k)
+      too_much.push_back(figures.repetitions[k].against() - most_against(found.terms[k], figures.repetitions[k]));
     const auto worst =
         static_cast<std::size_t>(std::distance(too_much.begin(), std::max_element(too_much.begin(), too_much.end())));
     // Each may gain beside the others and all of them together lose: wrong names that lean on each other.
     const bool holds_alone = too_much[worst] < 0.0;
-    if (holds_alone && figures.together.against() < all) return withdrawn;
+    if (holds_alone && (found.terms.size() == 1 || figures.together.against() < 0.0)) return withdrawn;
     const auto& term = found.terms[worst];
     const auto& candidate = candidates()[term.candidate];
     withdrawn.push_back(term.candidate);

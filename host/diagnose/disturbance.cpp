@@ -50,6 +50,7 @@ Disturbance::Disturbance(const Eigen::VectorXd& residual, std::span<const std::s
     return v.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(v.size(), 1));
   };
   if (mean_square(residual) > bursts * mean_square(quiet.residual)) noise = quiet;
+  mean_square_ = mean_square(noise.residual);
   spectrum_ = Whitening(noise.residual, noise.begins);
   const auto white = spectrum_(noise.residual);
   deviation_ = std::sqrt(white.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(white.size(), 1)));

@@ -20,11 +20,13 @@ class Disturbance {
   Disturbance(const Eigen::VectorXd& residual, std::span<const std::size_t> logs, double period);
 
   explicit operator bool() const { return deviation_ > 0.0; }
+  double mean_square() const { return mean_square_; }  // N^2
   // N at the times `t` (s, rising): one draw of many, by `seed`; linear between rows.
   std::vector<double> drawn(std::span<const double> t, std::uint64_t seed) const;
 
  private:
   Whitening spectrum_;
+  double mean_square_ = 0.0;
   double deviation_ = 0.0;  // N, of what is left of the residual once it is white
   double period_ = 0.0;     // s
 };

@@ -4,6 +4,7 @@
 // gap below the position controller's increment shows mostly in how the axis hunts, which noise makes another in every
 // run: the simulation is under forces like the record's, and what several such runs have in common is the column.
 #include <cmath>
+#include <limits>
 
 #include "host/diagnose/candidate.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
@@ -13,7 +14,7 @@ namespace {
 
 // m. By many increments a gap shows however the axis hunts: one run tells that there is one, and its width is found
 // with columns of its own.
-constexpr double far = 16e-6;
+constexpr double near = 1e-6, far = 16e-6;
 // At its far side a wide gap closes with a blow of several times Coulomb friction (circles at 8 m/min: 10 um 1.5, 40 um
 // 4 times); without one it is not tried: it costs a run.
 constexpr double widest = 64e-6, blow = 2.0;
@@ -22,12 +23,13 @@ constexpr double widest = 64e-6, blow = 2.0;
 std::vector<double> grid(const Scene& scene) {
   if (!scene.response) return {};
   if (!contact_stiffness_of(scene.axis)) return {widest};
-  if (scene.highest_residual > blow * coulomb_of(scene.axis).value_or(0.0)) return {1e-6, far, widest};
-  return {1e-6, far};
+  if (scene.highest_residual > blow * coulomb_of(scene.axis).value_or(0.0)) return {near, far, widest};
+  return {near, far};
 }
 
 Columns columns(const Scene& scene, const Motion& motion, double width) {
-  auto column = scene.response(motion, {"backlash", {{"width", {std::abs(width)}}}}, width >= far ? 1 : 2);
+  const std::size_t most_runs = width == near ? 2 : width == far ? 1 : std::numeric_limits<std::size_t>::max();
+  auto column = scene.response(motion, {"backlash", {{"width", {std::abs(width)}}}}, most_runs);
   for (double& force : column) force /= std::abs(width);
   return {column};
 }

@@ -67,6 +67,22 @@ TEST(Commissioning, finds_a_contact_in_closed_loop) {
   }
 }
 
+// From half an increment of the position controller, where a gap shows only in how the axis hunts, to one in which it
+// swings for as long as it stands. Of the small one the width is known to a few tenths.
+TEST(Commissioning, finds_gaps_small_and_large) {
+  for (const double width : {0.5e-6, 3e-6, 10e-6}) {
+    const auto verdict = verdict_of({{"backlash", {{"width", {width}}}}}, 1);
+    const auto name = fmt::format("demonstration: a gap of {:g} um", 1e6 * width);
+    ASSERT_EQ(verdict.findings.size(), 1U) << name;
+    const auto& found = verdict.findings.front();
+    ASSERT_EQ(found.effect.name, "backlash") << name;
+    const double value = found.parameters.front().values.front(),
+                 error = found.parameters.front().standard_errors.front();
+    figure(name, fmt::format("{:.2f} +- {:.2f} um", 1e6 * value, 1e6 * error));
+    EXPECT_NEAR(value, width, width < 1e-6 ? 0.5 * width : 0.1 * width) << name;
+  }
+}
+
 TEST(Commissioning, is_the_same_for_the_same_seed) {
   const auto machine = demonstration_machine();
   const auto one = host::draw_hidden_effect(machine.axes.front(), 14);

@@ -58,6 +58,21 @@ TEST(Disturbance, IsAsStrongAndAsSlowAsTheResidualAndAnotherOneForEachSeed) {
   EXPECT_EQ(first, disturbance.drawn(t, 1));
 }
 
+// What bursts is an effect that the noise goes on beside.
+TEST(Disturbance, OfBurstsIsAsStrongAsWhatIsBetweenThem) {
+  constexpr double period = 4e-3;
+  auto residual = wandering(20000, 1);
+  for (Eigen::Index i = 0; i < residual.size(); ++i)
+    if (i % 1000 < 300) residual[i] += 40.0 * std::sin(0.5 * static_cast<double>(i));
+  const std::vector<std::size_t> logs{0, 10000};
+  std::vector<double> t;
+  for (int i = 0; i < 20000; ++i) t.push_back(period * i);
+  double square = 0.0;
+  for (const double force : Disturbance(residual, logs, period).drawn(t, 1)) square += force * force;
+  // The quieter half of the pieces is less than their mean: pieces of 62 rows hold three independent ones.
+  EXPECT_NEAR(std::sqrt(square / static_cast<double>(t.size())), 1.75, 0.25);
+}
+
 TEST(Disturbance, OfNothingIsNone) {
   EXPECT_FALSE(Disturbance());
   const std::vector<double> t{0.0, 1e-3};
@@ -86,6 +101,18 @@ class WavesWithChance : public testing::Test {
     return product / square;
   }
 };
+
+// The mean of n runs with a variance of 4.5 each: two of them know it to a few percent from 4000 lines of their
+// spectrum.
+TEST_F(WavesWithChance, ChanceOfTheirMeanFallsWithTheirNumber) {
+  CommonPart part;
+  part.add(run(1));
+  EXPECT_EQ(part.chance(), 0.0);
+  for (std::uint64_t n = 2; n <= 4; ++n) {
+    part.add(run(n));
+    EXPECT_NEAR(part.chance(), 4.5 / static_cast<double>(n), 0.1 * 4.5 / static_cast<double>(n)) << n;
+  }
+}
 
 TEST_F(WavesWithChance, TheMeanAloneGivesAWeightThatIsTooSmallWhatIsCommonDoesNot) {
   CommonPart part;

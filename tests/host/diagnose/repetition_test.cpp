@@ -68,6 +68,12 @@ TEST(Repetition, speaks_against_what_is_not_there_and_for_what_is) {
   EXPECT_LT(std::abs(repetition_of(0.005 * force, left, logs, blocks_of(50)).against()), 1.0);
 }
 
+TEST(Repetition, may_be_all_within_two_standard_errors) {
+  EXPECT_TRUE((Repetition{0.4, 0.35}.may_be_all()));
+  EXPECT_FALSE((Repetition{0.4, 0.25}.may_be_all()));
+  EXPECT_TRUE((Repetition{1.5, 0.01}.may_be_all()));
+}
+
 TEST(Repetition, of_a_force_that_does_not_act_says_nothing) {
   const auto found = repetition_of(Eigen::VectorXd::Zero(rows), noise(1.0, 1), logs, blocks_of(50));
   EXPECT_EQ(found.deviation, 0.0);
