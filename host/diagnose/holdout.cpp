@@ -155,11 +155,15 @@ HeldOutFigures evaluate_held_out(const LogRows& rows, const Eigen::VectorXd& tar
     const auto white = repetition_of(whitening(force), whitening(before), rows.logs(), blocks);
     return white.against() > as_is.against() ? white : as_is;
   };
+  const Eigen::ArrayXd position = rows.stacked([](const Motion& m) { return m.x; }).array();
+  const Eigen::ArrayXd recorded =
+      (position >= scene.lowest_position && position <= scene.highest_position).cast<double>();
   bool whitened = false;
   for (std::size_t k = 0; k < terms.size(); ++k) {
     const auto& candidate = candidates()[terms[k].candidate];
     const Nuisances own(rows, scene, !candidate.names_constant && constant, !candidate.names_coulomb && coulomb);
-    const Eigen::VectorXd after = own.without(rest), before = own.without(rest + forces[k]);
+    Eigen::VectorXd after = own.without(rest), before = own.without(rest + forces[k]);
+    if (candidate.along_stroke) after.array() *= recorded, before.array() *= recorded;
     HoldoutGain gain;
     gain.force_rms_ratio = rms(after) / rms(before);
     gain.ci95 = ratio_interval(after, before, rows, seed + k);

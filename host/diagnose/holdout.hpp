@@ -1,6 +1,6 @@
 // What terms gain on data that took no part in finding them. Each record's nuisances are estimated anew, the same in
 // baseline and extension: a constant force, today's Coulomb level, and of a ripple the home position; never what a term
-// names.
+// names. What is known along the recorded stroke alone is judged in the rows within it.
 #pragma once
 
 #include <span>

@@ -63,6 +63,7 @@ const Candidate position_dependent_friction{.name = "position_dependent_friction
                                             .possible = any,
                                             .describe = describe,
                                             .names_coulomb = true,
+                                            .along_stroke = true,
                                             .trials = 3.0};
 
 }  // namespace stiction::host::effects
