@@ -47,8 +47,8 @@ std::string rates(const std::vector<Outcome>& outcomes) {
   const auto null = of_kind(outcomes, "null");
   text += rate("nothing hidden: some cause is named", null, names_any, "(wanted at most 5 %)");
   for (const auto& [kind, share, wanted] :
-       {std::tuple{"one50", "50 %", ""}, std::tuple{"one10", "10 %", "(wanted at least 95 %)"}, std::tuple{"one5", "5 %", "(wanted at least 80 %)"},
-        std::tuple{"one2", "2 %", ""}}) {
+       {std::tuple{"one50", "50 %", ""}, std::tuple{"one10", "10 %", "(wanted at least 95 %)"},
+        std::tuple{"one5", "5 %", "(wanted at least 80 %)"}, std::tuple{"one2", "2 %", ""}}) {
     const auto cases = of_kind(outcomes, kind);
     text += rate(fmt::format("one at {}: the first name is right (exact aliases count)", share), cases, first_right,
                  wanted);
