@@ -21,7 +21,7 @@ struct Kind {
   bool outside;  // one outside of it
   bool slightly_off;
   double share;
-  int weight;  // of 40 cases
+  int weight;  // of 40 cases; 0: only by name
 };
 std::span<const Kind> kinds();
 

@@ -1,7 +1,7 @@
 // Runs blind cases through the diagnosis and prints the tables; `toolchain/test --blind` calls it.
 // usage: blind_campaign MACHINE CASES SEED [KIND] [--closed-loop]
 //   MACHINE       the shipped cross table's file
-//   KIND          all cases of one kind: null, one10, one5, one2, two10, outside10, off
+//   KIND          all cases of one kind: null, one50, one10, one5, one2, two10, outside10, off
 //   --closed-loop judge in closed loop too (slower; names are chosen without it)
 // status 1: a case could not be made or judged
 #include <fmt/format.h>
