@@ -11,10 +11,6 @@ namespace {
 
 using Signal = std::vector<double>;
 
-double uniform(Random& random, double low, double high) {
-  return std::uniform_real_distribution<double>(low, high)(random);
-}
-
 double mean_square(const std::vector<Signal>& signals) {
   double sum = 0.0, count = 0.0;
   for (const auto& signal : signals) {

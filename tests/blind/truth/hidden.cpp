@@ -9,12 +9,6 @@
 namespace stiction::blind {
 namespace {
 
-double uniform(Random& random, double low, double high) {
-  return std::uniform_real_distribution<double>(low, high)(random);
-}
-double log_uniform(Random& random, double low, double high) {
-  return std::exp(uniform(random, std::log(low), std::log(high)));
-}
 double either_sign(Random& random) { return random() & 1U ? 1.0 : -1.0; }
 double coulomb_of(const Mechanics& m) { return Contact(m.contact).coulomb(); }
 // 90 % of the level is reached 2.303 lengths from rest (exponential_contact); the first element's end gives the length.

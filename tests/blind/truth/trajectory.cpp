@@ -78,13 +78,6 @@ double duration_of(const Piece& p) {
   return 0.0;
 }
 
-double uniform(Random& random, double low, double high) {
-  return std::uniform_real_distribution<double>(low, high)(random);
-}
-double log_uniform(Random& random, double low, double high) {
-  return std::exp(uniform(random, std::log(low), std::log(high)));
-}
-
 Piece rest(double seconds) { return {.rest = seconds}; }
 Piece move(double length, double speed, double acceleration) {
   return {.kind = Piece::Kind::move, .length = length, .speed = speed, .acceleration = acceleration};

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <random>
 #include <string>
 #include <vector>
 
 #include "sim/experiment/set_point.hpp"
+#include "tests/blind/truth/random.hpp"
 
 namespace stiction::blind {
 
@@ -39,8 +39,6 @@ class Trajectory {
   double duration_ = 0.0, end_ = 0.0, start_ = 0.0;
   std::vector<Placed> placed_;
 };
-
-using Random = std::mt19937_64;
 
 // What a commissioning engineer records: constant speeds both ways; swings like a circle's at several feeds with
 // positioning moves; small reversals of 5 to 200 um. Drawn at random.

@@ -14,7 +14,7 @@
 namespace stiction::sim {
 namespace {
 
-using test::figure;
+using stiction::test::figure;
 constexpr auto ideal = FeedSource::constant_speed;
 constexpr FeedEquations printed_damping{false, true}, printed_stick{true, false};
 
