@@ -8,7 +8,6 @@ import unittest
 
 import loop
 from loop import FOLDER, figure
-from motion_test import MotionController  # noqa: F401  (unittest.main() runs it)
 
 FEED = os.environ.get("STICTION_HIL_FEED", "48 m/min")  # the fastest circle has the fewest ticks, 28 000
 

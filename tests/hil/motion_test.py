@@ -1,5 +1,6 @@
+#!/usr/bin/env python3
 """Set-points from outside in the loop: a motion controller by python3-can, cansend and candump before the drive, whose
-axes are the simulated machine. Run by loop_test.py."""
+axes are the simulated machine. Needs what loop_test.py needs."""
 
 import pathlib
 import re
@@ -189,3 +190,7 @@ class MotionController(unittest.TestCase):
                   if name == "X_state"]
         self.assertEqual({int(values["statusword"]) & 0x6F for values in states}, {0x40}, "switch on disabled")
         self.assertEqual(len({values["actual_position"] for values in states}), 1)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

@@ -14,13 +14,16 @@ namespace {
 
 constexpr double noise = 6.0;  // N rms
 
-host::Verdict verdict_of(const Hidden& hidden, std::uint64_t seed, int trajectory = 0) {
+host::Verdict verdict_of(const Hidden& hidden, std::uint64_t seed, int trajectory, int held_out) {
   host::DiagnoseInput input;
   input.machine = bench_machine();
   input.next_measurement = false;
   input.logs = {synthetic_log(trajectory, hidden, noise, 2 * seed)};
-  input.held_out = {synthetic_log((trajectory + 1) % 3, hidden, noise, 2 * seed + 1)};
+  input.held_out = {synthetic_log(held_out, hidden, noise, 2 * seed + 1)};
   return host::diagnose(input);
+}
+host::Verdict verdict_of(const Hidden& hidden, std::uint64_t seed, int trajectory = 0) {
+  return verdict_of(hidden, seed, trajectory, (trajectory + 1) % 3);
 }
 
 std::string names_of(const host::Verdict& verdict) {
@@ -143,6 +146,15 @@ TEST(Diagnosis, finds_where_along_the_stroke_the_friction_is_higher) {
   figure("diagnosis of position_dependent_friction",
          fmt::format("{} knots, {:.2g} N off at most (24 N hidden)", at.size(), worst));
   EXPECT_LT(worst, 2.4);  // 10 %
+}
+
+// Trajectory 1 runs from 0 to 0.15 m, trajectory 0, held out, to 0.25 m: what lies beyond says nothing of the profile.
+TEST(Diagnosis, judges_a_friction_profile_within_the_stroke_on_which_it_was_found) {
+  const auto profile = [](double x) {
+    return x < 0.16 ? std::max(24.0 - 400.0 * std::abs(x - 0.07), 0.0) : std::max(-1200.0 * (x - 0.16), -60.0);
+  };
+  const auto verdict = verdict_of({.force = [&](const Point& p) { return profile(p.x) * p.level; }}, 7, 1, 0);
+  EXPECT_EQ(names_of(verdict), "position_dependent_friction") << rejections_of(verdict);
 }
 
 TEST(Diagnosis, says_that_a_constant_force_may_be_an_asymmetry) {
