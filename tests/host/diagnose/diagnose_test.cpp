@@ -151,7 +151,7 @@ TEST(Diagnosis, finds_where_along_the_stroke_the_friction_is_higher) {
 // Trajectory 1 runs from 0 to 0.15 m, trajectory 0, held out, to 0.25 m: what lies beyond says nothing of the profile.
 TEST(Diagnosis, judges_a_friction_profile_within_the_stroke_on_which_it_was_found) {
   const auto profile = [](double x) {
-    return x < 0.16 ? std::max(24.0 - 400.0 * std::abs(x - 0.07), 0.0) : std::max(-1200.0 * (x - 0.16), -60.0);
+    return x < 0.15 ? std::max(24.0 - 300.0 * std::abs(x - 0.14), 0.0) : std::max(24.0 - 4800.0 * (x - 0.15), -72.0);
   };
   const auto verdict = verdict_of({.force = [&](const Point& p) { return profile(p.x) * p.level; }}, 7, 1, 0);
   EXPECT_EQ(names_of(verdict), "position_dependent_friction") << rejections_of(verdict);
