@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <numeric>
 
 #include "host/diagnose/bench.hpp"
 #include "host/diagnose/candidate_columns.hpp"
@@ -30,6 +31,9 @@ namespace {
 
 constexpr double of_training = 0.1;  // residuals hold more than noise: a p-value claims too much
 constexpr double shortest = 3.0;     // s, of the training logs together
+// Of what a shape takes that other records speak against: causes in its place take nearly as much of the training data,
+// or they are no more than what they share with it.
+constexpr double as_much = 0.7;
 
 SignalSettings wide_band() {
   SignalSettings s;
@@ -215,6 +219,11 @@ std::vector<std::size_t> outside_among(std::vector<std::size_t> of) {
   return of;
 }
 
+double explained(const std::vector<Term>& terms) {
+  return std::accumulate(terms.begin(), terms.end(), 0.0,
+                         [](double sum, const Term& term) { return sum + term.explains; });
+}
+
 // What was found outside of the vocabulary: taken out of the terms, with the force (N, of the rows) that it makes.
 struct Outside {
   Eigen::VectorXd force;
@@ -315,8 +324,9 @@ Verdict diagnose(const DiagnoseInput& input) {
   // A shape outside of the vocabulary that other records speak against may have stood in a cause's place.
   if (const auto refuted = outside_among(withdrawn); found.terms.empty() && !refuted.empty()) {
     auto again = search_causes(regressors, target, scene, refuted);
+    const double taken = verdict.unexplained.share;
     auto withdrawn_again = keep(again);
-    if (!again.terms.empty()) {
+    if (!again.terms.empty() && explained(again.terms) > as_much * taken) {
       verdict.unexplained = {};
       found = std::move(again);
       withdrawn = std::move(withdrawn_again);

@@ -94,8 +94,11 @@ ColumnIndices OptionPool::columns_of(const Set& set) {
   return all;
 }
 
+// Whether the candidate is in the set, or another shape that looks alike: two of them would describe one thing twice.
 bool OptionPool::has(const Set& set, std::size_t candidate) {
-  return std::any_of(set.begin(), set.end(), [&](const auto* o) { return o->candidate == candidate; });
+  return std::any_of(set.begin(), set.end(), [&, alike = candidates()[candidate].looks_like](const auto* o) {
+    return o->candidate == candidate || (alike != nullptr && candidates()[o->candidate].looks_like == alike);
+  });
 }
 
 double OptionPool::trials(std::size_t candidate) const {

@@ -73,7 +73,7 @@ bool Search::exchange(Set& set) const {
     auto others = set;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
     for (std::size_t c = 0; c < candidates().size(); ++c) {
-      if (has(set, c)) continue;
+      if (c == set[k]->candidate || has(others, c)) continue;
       const auto* option = best_of(c, others);
       if (option == nullptr) continue;
       auto trial = others;

@@ -1,5 +1,6 @@
 // A force along the motion that begins at each reversal and dies away with time, whatever the way: friction's contact
-// does so with distance. A reversal is where the axis then goes back by more than it hunts.
+// does so with distance. A reversal is where the axis then goes back by more than it hunts: how much that is nobody
+// knows, and a slow axis takes long for it, so that several ways are tried.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -11,12 +12,13 @@ namespace stiction::host::signatures {
 namespace {
 
 constexpr int fewest_reversals = 4;
-constexpr double way_back = 2e-6;  // m
 
 std::vector<double> grid(const Scene& scene) {
   return scene.reversals < fewest_reversals ? std::vector<double>{} : effects::geometric(5e-3, 0.3, 7);
 }
+template <int way_back_nm>
 Columns columns(const Scene&, const Motion& motion, double time) {
+  constexpr double way_back = 1e-9 * way_back_nm;
   std::vector<double> column(motion.v.size(), 0.0);
   double turned_at = -std::numeric_limits<double>::infinity();  // s; none yet
   double direction = 0.0, furthest = motion.x.front();
@@ -26,7 +28,7 @@ Columns columns(const Scene&, const Motion& motion, double time) {
       if (direction != 0.0) turned_at = motion.t[i];
       direction = std::copysign(1.0, ahead);
     }
-    if (direction * ahead >= 0.0) furthest = motion.x[i];
+    if (direction * ahead > 0.0) furthest = motion.x[i];
     column[i] = direction * std::exp(-(motion.t[i] - turned_at) / time);
   }
   return {column};
@@ -36,14 +38,19 @@ std::string looks_like(const Scene&, double time, const Eigen::VectorXd& w) {
                      w[0] < 0.0 ? "along" : "against", 1e3 * time);
 }
 
+template <int way_back_nm>
+constexpr Candidate going_back{.name = "force_after_reversal",
+                               .grid = grid,
+                               .columns = columns<way_back_nm>,
+                               .possible = effects::any,
+                               .describe = nullptr,
+                               .nonlinear = true,
+                               .looks_like = looks_like};
+
 }  // namespace
 
-const Candidate force_after_reversal{.name = "force_after_reversal",
-                                     .grid = grid,
-                                     .columns = columns,
-                                     .possible = effects::any,
-                                     .describe = nullptr,
-                                     .nonlinear = true,
-                                     .looks_like = looks_like};
+const Candidate force_after_turn = going_back<30>;
+const Candidate force_after_reversal = going_back<2000>;
+const Candidate force_after_way_back = going_back<10000>;
 
 }  // namespace stiction::host::signatures

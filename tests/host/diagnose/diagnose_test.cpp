@@ -157,6 +157,22 @@ TEST(Diagnosis, judges_a_friction_profile_within_the_stroke_on_which_it_was_foun
   EXPECT_EQ(names_of(verdict), "position_dependent_friction") << rejections_of(verdict);
 }
 
+// 12 N along the motion after each reversal, gone within 60 ms: not friction's contact, which goes by distance.
+TEST(Diagnosis, gives_no_name_to_what_is_outside_of_the_vocabulary) {
+  double turned_at = -INFINITY, direction = 1.0;
+  const auto kick = [&](const Point& p) {
+    if (p.t == 0.0) turned_at = -INFINITY, direction = 1.0;
+    if (direction * p.v < 0.0) direction = -direction, turned_at = p.t;
+    return -12.0 * direction * std::exp(-(p.t - turned_at) / 0.06);
+  };
+  for (const int trajectory : {0, 1, 2}) {
+    const auto verdict = verdict_of({.force = kick}, 7, trajectory);
+    EXPECT_EQ(names_of(verdict), "") << trajectory;
+    EXPECT_TRUE(verdict.unexplained.signature.value_or("nothing").starts_with("at reversals"))
+        << trajectory << ": " << verdict.unexplained.signature.value_or("nothing");
+  }
+}
+
 TEST(Diagnosis, says_that_a_constant_force_may_be_an_asymmetry) {
   const auto verdict = verdict_of({.force = [](const Point&) { return -6.0; }}, 3);
   ASSERT_FALSE(verdict.findings.empty());
