@@ -49,6 +49,7 @@ constexpr Candidate going_back{.name = "force_after_reversal",
 
 }  // namespace
 
+// Just beyond the encoder's noise; beyond what a drive hunts at standstill; and beyond what a mount gives way.
 const Candidate force_after_turn = going_back<30>;
 const Candidate force_after_reversal = going_back<2000>;
 const Candidate force_after_way_back = going_back<10000>;
