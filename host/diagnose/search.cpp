@@ -164,6 +164,7 @@ bool Search::grow(Set& set, double least_taken) {
   std::vector<Trial> pairs;
   for (std::size_t i = 0; i < best.size(); ++i)
     for (std::size_t j = i + 1; j < best.size(); ++j) {
+      if (has({best[i]}, best[j]->candidate)) continue;  // they look alike
       auto trial = set;
       trial.push_back(best[i]);
       trial.push_back(best[j]);
