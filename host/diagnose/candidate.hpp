@@ -105,7 +105,7 @@ std::vector<double> geometric(double low, double high, int count);
 }  // namespace effects
 
 namespace signatures {
-extern const Candidate localised_force, ripple_with_speed, force_after_turn, force_after_reversal, force_after_way_back,
+extern const Candidate localised_force, ripple_with_speed, force_after_reversal, force_after_way_back,
     force_with_acceleration, drifting_force;
 }
 

@@ -33,7 +33,6 @@ std::span<const Candidate> candidates() {
       effects::periodic_disturbance,
       signatures::localised_force,
       signatures::ripple_with_speed,
-      signatures::force_after_turn,
       signatures::force_after_reversal,
       signatures::force_after_way_back,
       signatures::force_with_acceleration,

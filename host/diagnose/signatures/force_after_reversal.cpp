@@ -1,6 +1,6 @@
 // A force along the motion that begins at each reversal and dies away with time, whatever the way: friction's contact
 // does so with distance. A reversal is where the axis then goes back by more than it hunts: how much that is nobody
-// knows, and a slow axis takes long for it, so that several ways are tried.
+// knows, and a slow axis takes long for it, so that two ways are tried.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -49,8 +49,8 @@ constexpr Candidate going_back{.name = "force_after_reversal",
 
 }  // namespace
 
-// Just beyond the encoder's noise; beyond what a drive hunts at standstill; and beyond what a mount gives way.
-const Candidate force_after_turn = going_back<30>;
+// Beyond what a drive hunts at standstill, and beyond what a mount gives way. One that begins at the very turn would
+// stand for friction's contact and for a record's delay, too.
 const Candidate force_after_reversal = going_back<2000>;
 const Candidate force_after_way_back = going_back<10000>;
 

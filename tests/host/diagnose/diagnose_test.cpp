@@ -157,12 +157,14 @@ TEST(Diagnosis, judges_a_friction_profile_within_the_stroke_on_which_it_was_foun
   EXPECT_EQ(names_of(verdict), "position_dependent_friction") << rejections_of(verdict);
 }
 
-// 12 N along the motion after each reversal, gone within 60 ms: not friction's contact, which goes by distance.
+// 12 N along the motion, from 5 um after each reversal on, gone within 60 ms: not friction's contact, which goes by
+// distance.
 TEST(Diagnosis, gives_no_name_to_what_is_outside_of_the_vocabulary) {
-  double turned_at = -INFINITY, direction = 1.0;
+  double turned_at = -INFINITY, direction = 1.0, furthest = 0.0;
   const auto kick = [&](const Point& p) {
-    if (p.t == 0.0) turned_at = -INFINITY, direction = 1.0;
-    if (direction * p.v < 0.0) direction = -direction, turned_at = p.t;
+    if (p.t == 0.0) turned_at = -INFINITY, direction = 1.0, furthest = p.x;
+    if (direction * (p.x - furthest) < -5e-6) direction = -direction, turned_at = p.t;
+    if (direction * (p.x - furthest) > 0.0) furthest = p.x;
     return -12.0 * direction * std::exp(-(p.t - turned_at) / 0.06);
   };
   for (const int trajectory : {0, 1, 2}) {
