@@ -27,6 +27,9 @@ constexpr double longest_signal = 1e-3;   // m
 constexpr std::array usual_signals{2e-6,   4e-6,   8e-6,   10e-6,  16e-6,  20e-6,  40e-6,  50e-6, 80e-6,
                                    100e-6, 128e-6, 200e-6, 250e-6, 400e-6, 500e-6, 512e-6, 1e-3};
 constexpr double stretch_cycles = 48.0;  // of a stretch of rows that is looked at by itself
+// Orders that stretches of slow rows show, each then looked at over all rows. A weak error can stand out less than some
+// stretches' noise: of three that were not among the first two, two are among the first six.
+constexpr std::size_t slow_orders = 6;
 
 // The count of lines with the highest value over the median of their surroundings, apart by `apart` lines.
 std::vector<std::size_t> outstanding(const std::vector<double>& power, std::size_t count, std::size_t apart) {
@@ -142,8 +145,11 @@ class ShownError {
 
   // Of orders first, first + step, .., near enough to one another that the same rows show them.
   std::vector<double> gains(double first, double step, std::size_t count) {
-    if (step != step_) turn_to(step);
-    auto waves = shown(first, first + 0.5 * step * static_cast<double>(count - 1));
+    const double length = step * static_cast<double>(count);
+    if (step != step_ || length != length_) turn_by(step, length);
+    stand_at(first);
+    next_ = first + length;
+    auto waves = shown(first + 0.5 * step * static_cast<double>(count - 1));
     std::vector<double> all;
     for (std::size_t k = 0; k < count; ++k) all.push_back(waves.gain());
     return all;
@@ -156,14 +162,32 @@ class ShownError {
 
   static Complex wave_at(double turns) { return std::polar(1.0, 2.0 * std::numbers::pi * std::remainder(turns, 1.0)); }
 
-  void turn_to(double step) {
+  void turn_by(double step, double length) {
     step_ = step;
+    length_ = length;
     turns_.clear();
-    for (const double place : x_) turns_.push_back(wave_at(place * step));
+    long_turns_.clear();
+    for (const double place : x_) {
+      turns_.push_back(wave_at(place * step));
+      long_turns_.push_back(wave_at(place * length));
+    }
+    next_ = -1.0;
   }
 
-  // The rows that show the order `middle`, with their response to it, beginning at the order `first`.
-  TurningWaves shown(double first, double middle) const {
+  // Each row's wave at the order `first`, from the last ones where it follows on them: sine and cosine cost more.
+  void stand_at(double first) {
+    const bool follows = first == next_;
+    waves_.resize(turns_.size());
+    for (std::size_t i = 0; i < waves_.size(); ++i) {
+      const Complex w = waves_[i], turn = long_turns_[i];
+      waves_[i] = follows ? Complex(w.real() * turn.real() - w.imag() * turn.imag(),
+                                    w.real() * turn.imag() + w.imag() * turn.real())
+                          : wave_at(x_[static_cast<Eigen::Index>(i)] * first);
+    }
+  }
+
+  // The rows that show the order `middle`, with their response to it.
+  TurningWaves shown(double middle) const {
     TurningWaves waves;
     for (std::size_t r = 0; r < rows_.logs().size(); ++r) {
       const auto& drive = drive_[table_[r]];
@@ -176,8 +200,8 @@ class ShownError {
         const double w = 2.0 * std::numbers::pi * shown;
         const Complex response =
             drive[static_cast<std::size_t>(frequency / frequency_step)] + responses_[r].mass() * w * w;
-        waves.add(weighed_[row], whitened_.at(shown),
-                  (v < 0.0 ? std::conj(response) : response) * wave_at(x_[row] * first), turns_[i]);
+        waves.add(weighed_[row], whitened_.at(shown), (v < 0.0 ? std::conj(response) : response) * waves_[i],
+                  turns_[i]);
       }
     }
     return waves;
@@ -190,8 +214,10 @@ class ShownError {
   std::vector<ReadingResponse> responses_;
   std::vector<std::vector<Complex>> drive_;  // of the motions whose period is the first of its kind
   std::vector<std::size_t> table_;           // which of them each motion has
-  double step_ = -1.0;                       // of the last orders
-  std::vector<Complex> turns_;               // of each row by that step
+  double step_ = -1.0, length_ = -1.0;       // of the last orders, and from the first of them to the next first
+  double next_ = -1.0;                       // the order that follows on them
+  std::vector<Complex> turns_, long_turns_;  // of each row by the step and by the length
+  std::vector<Complex> waves_;               // of each row at the first order
 };
 
 }  // namespace
@@ -299,7 +325,7 @@ LineScan scan_signal_periods(const LogRows& rows, const Eigen::VectorXd& residua
           {order + step * static_cast<double>(k), found[k] / variance - 2.0 * static_cast<double>(in.size())});
   }
   std::sort(slow.begin(), slow.end(), higher);
-  slow.resize(std::min(slow.size(), count));
+  slow.resize(std::min(slow.size(), slow_orders));
   ShownError shown(rows, weighed, whitened, x, axis, timing);
   std::vector<Peak> peaks;
   for (const auto& peak : slow) {
@@ -315,8 +341,12 @@ LineScan scan_signal_periods(const LogRows& rows, const Eigen::VectorXd& residua
   }
   for (const double period : usual_signals) peaks.push_back({1.0 / period, shown.gains(1.0 / period, 0.0, 1).front()});
   std::sort(peaks.begin(), peaks.end(), higher);
+  const auto apart = [&](double order) {  // neighbours lead to one and the same
+    return std::all_of(scan.periods.begin(), scan.periods.end(),
+                       [&](double period) { return std::abs(order - 1.0 / period) * scan.extent > 1.0; });
+  };
   for (const auto& peak : peaks)
-    if (scan.periods.size() < count && peak.height > 0.0) scan.periods.push_back(1.0 / peak.order);
+    if (scan.periods.size() < count && peak.height > 0.0 && apart(peak.order)) scan.periods.push_back(1.0 / peak.order);
   return scan;
 }
 
