@@ -12,8 +12,8 @@ namespace stiction::host {
 namespace {
 
 constexpr double strong_evidence = 6.0;  // twice the logarithm of a Bayes factor (Kass, Raftery 1995)
-// The same, of a nonlinear parameter on a grid: positive evidence. At 6, hidden drifts were called Coulomb friction and
-// hidden bends viscous friction at five seeds thirteen times, and never the other way about.
+// The same, of a nonlinear parameter on a grid: positive evidence. At 6, a drift hidden by itself was called Coulomb
+// friction six times at seven blind seeds and a bend viscous friction five times, and never the other way about.
 constexpr double price_of_nonlinear = 4.0;
 constexpr double less_disturbed = 0.7;
 constexpr double cluster_lengths = 6.0;  // correlation lengths of the whitened residual in a cluster
