@@ -36,6 +36,7 @@ struct Parameter {
   std::optional<double> fallback;  // the default; none: the key is required, unless the member is itself optional
   std::string_view text;
   std::string_view unit_of_force_motor = {};  // the unit where the motor is a force source driven by voltage
+  std::string_view as_long_as = {};           // the key of a list that this list must be as long as; empty: any length
 };
 
 }  // namespace stiction::sim
