@@ -11,9 +11,9 @@
 #include <span>
 #include <vector>
 
+#include "firmware/machine/configuration/conversion.hpp"
 #include "hal/backend.hpp"
 #include "hal/frame_watch.hpp"
-#include "sim/control/conversion.hpp"
 #include "stiction/control/delay_line.hpp"
 
 namespace stiction::hal {
@@ -160,24 +160,24 @@ class FaultyBackend {
   }
 
   void find_marks(Node& node, const Feedback<S>& f) {
-    const double x = sim::to_si(f.position), before = node.known ? sim::to_si(node.before) : x;
+    const double x = machine::to_si(f.position), before = node.known ? machine::to_si(node.before) : x;
     const auto& marks = node.marks;
     node.inputs.limit_negative = shows(node.faults.negative_switch, marks.limit_negative && x <= *marks.limit_negative);
     node.inputs.limit_positive = shows(node.faults.positive_switch, marks.limit_positive && x >= *marks.limit_positive);
     node.inputs.home = marks.home && x <= *marks.home;
     const auto passed = marks.index ? mark_between(marks, before, x) : std::nullopt;
     node.inputs.index = passed.has_value();
-    if (passed) sim::convert(*passed, node.inputs.index_position);
+    if (passed) machine::convert(*passed, node.inputs.index_position);
     node.before = f.position;
     node.known = true;
   }
 
   void break_sensors(Node& node, Feedback<S>& f) const {
     const auto& faults = node.faults;
-    if (faults.encoder_shift != 0.0) sim::convert(sim::to_si(f.position) + faults.encoder_shift, f.position);
+    if (faults.encoder_shift != 0.0) machine::convert(machine::to_si(f.position) + faults.encoder_shift, f.position);
     if (faults.flipped_bit) {
-      const auto count = static_cast<std::int64_t>(std::llround(sim::to_si(f.position) / increment_));
-      sim::convert(static_cast<double>(count ^ (std::int64_t{1} << *faults.flipped_bit)) * increment_, f.position);
+      const auto count = static_cast<std::int64_t>(std::llround(machine::to_si(f.position) / increment_));
+      machine::convert(static_cast<double>(count ^ (std::int64_t{1} << *faults.flipped_bit)) * increment_, f.position);
     }
     if (faults.encoder_frozen && !node.frozen) node.frozen_at = f.position;
     node.frozen = faults.encoder_frozen;
@@ -187,7 +187,7 @@ class FaultyBackend {
     for (std::size_t k = 0; k < 3; ++k) {
       if (faults.motor_reversed) f.current[k] = opposite(f.current[k]);
       typename S::Current offset{};
-      if (sim::convert(faults.current_offset[k], offset)) f.current[k] = saturated_sum(f.current[k], offset, meant);
+      if (machine::convert(faults.current_offset[k], offset)) f.current[k] = saturated_sum(f.current[k], offset, meant);
     }
     f.fault |= faults.power_stage;
   }

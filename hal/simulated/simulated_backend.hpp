@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "firmware/machine/configuration/conversion.hpp"
 #include "hal/backend.hpp"
-#include "sim/control/conversion.hpp"
 #include "sim/plant/axis_plant.hpp"
 
 namespace stiction::hal {
@@ -19,7 +19,7 @@ class SimulatedBackend {
   using Signals = S;
 
   // `positions` (m): where the axes rest at the start, one an axis of the machine.
-  SimulatedBackend(const sim::Machine& machine, std::span<const double> positions, std::uint64_t seed = 1)
+  SimulatedBackend(const machine::Machine& machine, std::span<const double> positions, std::uint64_t seed = 1)
       : period_ns_(std::llround(machine.timing.fast_period * 1e9)) {
     for (std::size_t i = 0; i < machine.axes.size(); ++i)
       plants_.emplace_back(machine.timing, machine.axes[i], positions[i], seed + i);
@@ -51,7 +51,7 @@ class SimulatedBackend {
     auto c = command.begin();
     for (auto& plant : plants_) {
       const auto& u = c->voltage;
-      plant.command({sim::to_si(u[0]), sim::to_si(u[1]), sim::to_si(u[2])}, c->enable);
+      plant.command({machine::to_si(u[0]), machine::to_si(u[1]), machine::to_si(u[2])}, c->enable);
       ++c;
     }
   }
@@ -69,11 +69,11 @@ class SimulatedBackend {
   // What cannot be represented (a plant that ran away to infinity or NaN) reaches the control as a position that is
   // not valid or as a fault input, never as a number.
   void sample(sim::AxisPlant& plant, Feedback<S>& f) const {
-    f.position_valid = sim::convert({plant.read_encoder(), plant.encoder_velocity()}, f.position, f.velocity);
+    f.position_valid = machine::convert({plant.read_encoder(), plant.encoder_velocity()}, f.position, f.velocity);
     f.position_time_ns = now_ns_;
     const auto& current = plant.current();
-    f.fault = !sim::convert(current[0], f.current[0]);
-    if (plant.phases() == 3 && !sim::convert({current[1], current[2]}, f.current[1], f.current[2])) f.fault = true;
+    f.fault = !machine::convert(current[0], f.current[0]);
+    if (plant.phases() == 3 && !machine::convert({current[1], current[2]}, f.current[1], f.current[2])) f.fault = true;
   }
 
   std::int64_t period_ns_;

@@ -22,7 +22,7 @@ std::string cell(const std::optional<double>& value, double scale) {
 
 }  // namespace
 
-nlohmann::ordered_json circle_json(const sim::CircleResult& result, const sim::Machine& machine) {
+nlohmann::ordered_json circle_json(const sim::CircleResult& result, const machine::Machine& machine) {
   nlohmann::ordered_json json{
       {"schema", "stiction.circle/1"},           {"machine", machine.id},
       {"radius_m", result.runs.front().radius},  {"signals", result.signals},
@@ -55,7 +55,7 @@ nlohmann::ordered_json circle_json(const sim::CircleResult& result, const sim::M
   return json;
 }
 
-std::string circle_text(const sim::CircleResult& result, const sim::Machine& machine) {
+std::string circle_text(const sim::CircleResult& result, const machine::Machine& machine) {
   std::string text = fmt::format(
       "{}, circle R = {:g} mm, {} signals\n\n"
       "                                        peak error, um                          peak current, A\n"

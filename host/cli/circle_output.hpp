@@ -4,16 +4,16 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "firmware/machine/model/machine.hpp"
 #include "sim/experiment/circle_result.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
 // "stiction.circle/1": a row an axis, friction model, feed and direction; published and measured figures where the
 // machine file has them.
-nlohmann::ordered_json circle_json(const sim::CircleResult& result, const sim::Machine& machine);
+nlohmann::ordered_json circle_json(const sim::CircleResult& result, const machine::Machine& machine);
 
 // The same as a table for a terminal, with the circular errors of each run behind it.
-std::string circle_text(const sim::CircleResult& result, const sim::Machine& machine);
+std::string circle_text(const sim::CircleResult& result, const machine::Machine& machine);
 
 }  // namespace stiction::host

@@ -13,8 +13,7 @@
 #include "host/log/csv_log.hpp"
 #include "host/simulate/commissioning.hpp"
 #include "host/simulate/hidden_effect.hpp"
-#include "sim/machine/extended_machine.hpp"
-#include "sim/machine/machine_file.hpp"
+#include "sim/machine_file.hpp"
 
 namespace stiction::host {
 namespace {
@@ -28,7 +27,7 @@ struct CommissioningOptions {
   bool json = false;
 };
 
-std::size_t axis_of(const CommissioningOptions& options, const sim::Machine& machine) {
+std::size_t axis_of(const CommissioningOptions& options, const machine::Machine& machine) {
   for (std::size_t k = 0; k < machine.axes.size(); ++k)
     if (machine.axes[k].name == options.axis) return k;
   throw UsageError(fmt::format("--axis: found '{}'; expected an axis of {}", options.axis, machine.id));
@@ -59,7 +58,7 @@ void run(const CommissioningOptions& options, const Invocation& invocation) {
   }
   const std::vector<std::string> comment{"as its records were made by: " + invocation.command_line};
   folder.write("machine.toml",
-               sim::extended_machine(sim::find_machine(options.machine.machine), options.machine.set, {}, comment));
+               sim::extended_machine(machine::find_machine(options.machine.machine), options.machine.set, {}, comment));
   const nlohmann::ordered_json json{{"schema", "stiction.commissioning/1"},
                                     {"machine", "machine.toml"},
                                     {"axis", options.axis},

@@ -37,7 +37,7 @@ struct Agreement {
   double current_deviation = 0.0;  // mean |ours / published - 1|
 };
 
-Agreement agreement_of(const std::vector<CircleTableRow>& table, const sim::Machine& machine) {
+Agreement agreement_of(const std::vector<CircleTableRow>& table, const machine::Machine& machine) {
   Agreement a;
   for (const auto& row : table) {
     if (!row.error_quantised.published || !row.current.published) continue;

@@ -28,7 +28,7 @@ struct DiagnoseCommandOptions {
   bool json = false;
 };
 
-std::size_t axis_of_run(const std::string& name, const sim::Machine& machine, const std::vector<Log>& logs) {
+std::size_t axis_of_run(const std::string& name, const machine::Machine& machine, const std::vector<Log>& logs) {
   std::vector<std::string> names;
   for (const auto& axis : machine.axes) names.push_back(axis.name);
   std::vector<std::size_t> fitting;

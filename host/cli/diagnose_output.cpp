@@ -6,26 +6,25 @@
 #include "host/diagnose/verdict_json.hpp"
 #include "host/log/csv_log.hpp"
 #include "host/report/diagnosis_report.hpp"
-#include "sim/machine/extended_machine.hpp"
-#include "sim/machine/machine_file.hpp"
+#include "sim/machine_file.hpp"
 
 namespace stiction::host {
 
-void put_out(const Verdict& verdict, const sim::Machine& machine, const MachineOptions& options, const std::string& out,
-             bool json, const Invocation& invocation) {
+void put_out(const Verdict& verdict, const machine::Machine& machine, const MachineOptions& options,
+             const std::string& out, bool json, const Invocation& invocation) {
   const auto document = verdict_json(verdict);
   if (!out.empty()) {
     PendingFolder folder(out);
-    std::vector<sim::AxisEffects> additions;
+    std::vector<machine::AxisEffects> additions;
     for (const auto& axis : machine.axes) {
-      sim::AxisEffects effects{axis.name, {}};
+      machine::AxisEffects effects{axis.name, {}};
       for (const auto& finding : verdict.findings)
         if (finding.axis == axis.name) effects.effects.push_back(finding.effect);
       if (!effects.effects.empty()) additions.push_back(std::move(effects));
     }
     const std::vector<std::string> comment{"made by: " + invocation.command_line};
     folder.write("extended.toml",
-                 sim::extended_machine(sim::find_machine(options.machine), options.set, additions, comment));
+                 sim::extended_machine(machine::find_machine(options.machine), options.set, additions, comment));
     sim::read_machine(folder.path() / "extended.toml");  // what was written must be a machine
     folder.write("verdict.json", document.dump(2) + "\n");
     if (verdict.next && verdict.next->log) {

@@ -12,7 +12,7 @@ namespace stiction::host {
 // Writes verdict.json, extended.toml, report.html and, where something is open that a motion answers, the set-points of
 // the next measurement into `out` (empty: nothing) and prints the verdict, as JSON or for
 // readers. The extended file is read back before anything appears.
-void put_out(const Verdict& verdict, const sim::Machine& machine, const MachineOptions& options, const std::string& out,
-             bool json, const Invocation& invocation);
+void put_out(const Verdict& verdict, const machine::Machine& machine, const MachineOptions& options,
+             const std::string& out, bool json, const Invocation& invocation);
 
 }  // namespace stiction::host

@@ -13,6 +13,7 @@
 #include "host/log/csv_log.hpp"
 #include "host/report/experiment_report.hpp"
 #include "host/simulate/experiments.hpp"
+#include "sim/plant/friction/friction.hpp"
 
 namespace stiction::host {
 namespace {
@@ -29,11 +30,11 @@ struct ExperimentOptions {
 
 // Without --friction: every model that the experiment makes sense for and that the machine has.
 std::vector<std::string> models_for(const Experiment& experiment, const std::string& text,
-                                    const sim::Machine& machine) {
+                                    const machine::Machine& machine) {
   auto names = friction_models(text.empty() ? "all" : text, machine);
   if (experiment.models.empty()) {
     // The baseline D cannot stick and is not among the source's models; it runs when it is asked for.
-    if (text.empty()) std::erase(names, std::string(sim::CoulombViscous::name));
+    if (text.empty()) std::erase(names, std::string(sim::CoulombViscous<>::name));
     return names;
   }
   const auto known = [&](const std::string& name) {

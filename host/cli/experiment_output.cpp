@@ -102,7 +102,7 @@ std::string figure_key(const sim::Figure& figure) {
   return figure.unit.empty() ? figure.name : figure.name + "_" + spelled_for_key(figure.unit);
 }
 
-nlohmann::ordered_json experiment_json(const sim::ExperimentResult& result, const sim::Machine& machine) {
+nlohmann::ordered_json experiment_json(const sim::ExperimentResult& result, const machine::Machine& machine) {
   auto results = nlohmann::ordered_json::object(), expected = results, holds = results;
   for (const auto& figure : result.figures) {
     const auto key = figure_key(figure);
@@ -123,7 +123,7 @@ nlohmann::ordered_json experiment_json(const sim::ExperimentResult& result, cons
   return json;
 }
 
-std::string experiment_text(const sim::ExperimentResult& result, const sim::Machine& machine) {
+std::string experiment_text(const sim::ExperimentResult& result, const machine::Machine& machine) {
   std::string text = fmt::format("{}, {}", result.title, machine.name);
   if (!result.signals.empty()) text += fmt::format(", {} signals", result.signals);
   text += "\n\n" + paragraph("source: ", result.question);

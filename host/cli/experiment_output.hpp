@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "firmware/machine/model/machine.hpp"
 #include "sim/experiment/experiment_result.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
@@ -15,9 +15,9 @@ std::string figure_key(const sim::Figure& figure);
 
 // "stiction.EXPERIMENT/1": "results" by key, "expected" and "holds" for those of which a source says something, and
 // "findings". Throws std::invalid_argument when two figures have the same key.
-nlohmann::ordered_json experiment_json(const sim::ExperimentResult& result, const sim::Machine& machine);
+nlohmann::ordered_json experiment_json(const sim::ExperimentResult& result, const machine::Machine& machine);
 
 // The same as text for a terminal, with the question, the findings and a verdict.
-std::string experiment_text(const sim::ExperimentResult& result, const sim::Machine& machine);
+std::string experiment_text(const sim::ExperimentResult& result, const machine::Machine& machine);
 
 }  // namespace stiction::host

@@ -7,6 +7,7 @@
 #include <array>
 #include <memory>
 
+#include "firmware/machine/file/units.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/experiment_output.hpp"
 #include "host/cli/machine_options.hpp"
@@ -16,7 +17,6 @@
 #include "host/report/experiment_report.hpp"
 #include "host/response/response_result.hpp"
 #include "host/simulate/frequency_response.hpp"
-#include "sim/machine/units.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
 namespace stiction::host {
@@ -34,9 +34,9 @@ constexpr std::array<const char*, 3> loop_names{"current", "velocity", "position
 
 double quantity(const char* option, const std::string& text, const char* unit, const char* example) {
   try {
-    const double value = sim::parse_quantity(text, unit);
+    const double value = machine::parse_quantity(text, unit);
     if (value > 0.0) return value;
-  } catch (const sim::UnitError& error) {
+  } catch (const machine::UnitError& error) {
     throw UsageError(fmt::format("{}: found '{}' ({}); expected {}", option, text, error.what(), example));
   }
   throw UsageError(fmt::format("{}: found '{}'; expected a value above zero, {}", option, text, example));
@@ -53,7 +53,7 @@ std::vector<std::string> loops_of(const std::string& text) {
 }
 
 // Keeps the axes that --axis names, in the machine's order.
-void choose_axes(sim::Machine& machine, const std::string& text) {
+void choose_axes(machine::Machine& machine, const std::string& text) {
   if (text.empty()) return;
   const auto names = split_list(text);
   std::vector<std::string> known;
@@ -66,7 +66,7 @@ void choose_axes(sim::Machine& machine, const std::string& text) {
                 [&](const auto& axis) { return std::find(names.begin(), names.end(), axis.name) == names.end(); });
 }
 
-FrequencyResponsePlan plan_of(const Options& options, const sim::Machine& machine) {
+FrequencyResponsePlan plan_of(const Options& options, const machine::Machine& machine) {
   FrequencyResponsePlan plan;
   plan.machine = machine;
   const auto friction = friction_models(options.friction, machine);
@@ -80,7 +80,7 @@ FrequencyResponsePlan plan_of(const Options& options, const sim::Machine& machin
       throw UsageError(fmt::format("--speed: found '{}'; expected at most {:.3g} m/min, the limit of axis {}",
                                    options.speed, axis.max_velocity * 60.0, axis.name));
   if (!options.amplitude.empty()) {
-    const bool force = machine.axes.front().motor.model == sim::MotorModel::force;
+    const bool force = machine.axes.front().motor.model == machine::MotorModel::force;
     plan.amplitude =
         quantity("--amplitude", options.amplitude, force ? "V" : "A",
                  force ? "a voltage such as \"1 V\", as the motor is a force source" : "a current such as \"3 A\"");
@@ -102,7 +102,7 @@ struct Measurement {
   ResponseText text;
 };
 
-Measurement simulated(const Options& options, const sim::Machine& machine) {
+Measurement simulated(const Options& options, const machine::Machine& machine) {
   const auto plan = plan_of(options, machine);
   const auto log = run_frequency_response(plan);
   if (!options.log.empty()) {
@@ -124,7 +124,8 @@ Measurement simulated(const Options& options, const sim::Machine& machine) {
 }
 
 // The machine's axis to which this axis of the log belongs; none: --axis leaves it out.
-const sim::Axis* axis_for(const Log& log, const AxisLog& measured, const sim::Machine& machine, bool chosen) {
+const machine::AxisModel* axis_for(const Log& log, const AxisLog& measured, const machine::Machine& machine,
+                                   bool chosen) {
   for (const auto& axis : machine.axes)
     if (axis.name == measured.axis) return &axis;
   if (measured.axis.empty() && machine.axes.size() == 1) return &machine.axes.front();
@@ -138,7 +139,7 @@ const sim::Axis* axis_for(const Log& log, const AxisLog& measured, const sim::Ma
                                      machine.id, fmt::join(known, ", ")));
 }
 
-Measurement measured(const Options& options, const sim::Machine& machine) {
+Measurement measured(const Options& options, const machine::Machine& machine) {
   const auto log = read_log(options.from);
   Measurement m;
   bool any_test = false;

@@ -16,7 +16,8 @@
 #include "host/log/read_log.hpp"
 #include "host/log/text_file.hpp"
 #include "host/report/identification_report.hpp"
-#include "sim/machine/machine_file.hpp"
+#include "sim/machine_file.hpp"
+#include "sim/plant/friction/friction.hpp"
 
 namespace stiction::host {
 namespace {
@@ -34,7 +35,8 @@ struct IdentifyCommandOptions {
 };
 
 // The axis named, or the only one that machine and logs have in common.
-const sim::Axis& axis_to_identify(const std::string& name, const sim::Machine& machine, const std::vector<Log>& logs) {
+const machine::AxisModel& axis_to_identify(const std::string& name, const machine::Machine& machine,
+                                           const std::vector<Log>& logs) {
   std::vector<std::string> names;
   for (const auto& axis : machine.axes) names.push_back(axis.name);
   if (!name.empty()) {
@@ -44,7 +46,7 @@ const sim::Axis& axis_to_identify(const std::string& name, const sim::Machine& m
           fmt::format("--axis: found '{}'; expected an axis of {}: {}", name, machine.id, fmt::join(names, ", ")));
     return machine.axes[static_cast<std::size_t>(found - names.begin())];
   }
-  std::vector<const sim::Axis*> common;
+  std::vector<const machine::AxisModel*> common;
   for (const auto& axis : machine.axes)
     if (std::all_of(logs.begin(), logs.end(), [&](const Log& log) {
           return std::any_of(log.axes.begin(), log.axes.end(),
@@ -63,8 +65,8 @@ Amperes amperes_of(const std::string& text) {
   throw UsageError(fmt::format("--amperes: found '{}'; expected peak or rms", text));
 }
 
-std::string model_to_identify(const std::string& wanted, const sim::Axis& axis) {
-  const std::string recipe(sim::CoulombViscous::name), contact(sim::LuGre::name);
+std::string model_to_identify(const std::string& wanted, const machine::AxisModel& axis) {
+  const std::string recipe(sim::CoulombViscous<>::name), contact(sim::LuGre<>::name);
   if (wanted.empty()) return axis.friction.use == recipe ? recipe : contact;
   if (wanted != recipe && wanted != contact)
     throw UsageError(fmt::format("--friction: found '{}'; expected {} or {}", wanted, recipe, contact));
@@ -72,7 +74,7 @@ std::string model_to_identify(const std::string& wanted, const sim::Axis& axis) 
 }
 
 struct Run {
-  const sim::Axis* axis;
+  const machine::AxisModel* axis;
   Identification result;
 };
 
@@ -88,7 +90,7 @@ void take(Identification& result, const Refinement& refinement) {
       refinement.position_before * 1e6);
 }
 
-Run identify(const IdentifyCommandOptions& options, const sim::Machine& machine) {
+Run identify(const IdentifyCommandOptions& options, const machine::Machine& machine) {
   const auto amperes = amperes_of(options.amperes);
   if (options.logs.size() == 1)
     if (const auto text = read_text_file(options.logs.front()); is_steady_table(text)) {
@@ -108,7 +110,7 @@ Run identify(const IdentifyCommandOptions& options, const sim::Machine& machine)
 
 void run(const IdentifyCommandOptions& options, const Invocation& invocation) {
   const auto machine = options.machine.load(options.machine.machine, "");
-  const auto file = sim::find_machine(options.machine.machine);
+  const auto file = machine::find_machine(options.machine.machine);
   const auto [axis, result] = identify(options, machine);
   const auto json = identification_json(result);
   if (!options.out.empty()) {

@@ -29,7 +29,7 @@ std::vector<KnownAxis> known_axes(const InspectOptions& options, const Log& log)
   std::vector<KnownAxis> known;
   for (const auto index : match_axes(machine, log, options.axis)) {
     const auto& axis = machine.axes[index];
-    const bool force_motor = axis.motor.model == sim::MotorModel::force;
+    const bool force_motor = axis.motor.model == machine::MotorModel::force;
     KnownAxis k{axis.mass,
                 axis.motor.force_constant,
                 force_motor ? axis.inverter.voltage_limit : axis.inverter.current_limit * axis.motor.count,

@@ -6,8 +6,7 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/machine_options.hpp"
 #include "host/report/machine_sheet.hpp"
-#include "sim/machine/machine_file.hpp"
-#include "sim/machine/reference_page.hpp"
+#include "sim/machine_file.hpp"
 
 namespace stiction::host {
 namespace {
@@ -43,7 +42,7 @@ void add_machine(CLI::App& program, const Invocation&) {
     if (o->reference) fmt::print("{}", sim::reference_page());
     if (!o->check.empty()) check_machine(o->check);
     if (!o->reference && o->check.empty())
-      for (const auto& name : sim::shipped_machines()) fmt::print("{}\n", name);
+      for (const auto& name : machine::shipped_machines()) fmt::print("{}\n", name);
   });
 }
 

@@ -5,12 +5,14 @@
 
 #include <algorithm>
 
+#include "firmware/machine/configuration/axis_configuration.hpp"
+#include "firmware/machine/configuration/compensation_configuration.hpp"
+#include "firmware/machine/file/compensation_parameters.hpp"
+#include "firmware/machine/file/units.hpp"
 #include "host/cli/errors.hpp"
-#include "sim/control/axis_configuration.hpp"
-#include "sim/control/compensation_configuration.hpp"
-#include "sim/machine/compensation_parameters.hpp"
-#include "sim/machine/machine_file.hpp"
-#include "sim/machine/units.hpp"
+#include "sim/machine_file.hpp"
+#include "sim/plant/effects/effects.hpp"
+#include "sim/plant/friction/friction.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
 namespace stiction::host {
@@ -25,7 +27,7 @@ void MachineOptions::add_to(CLI::App& command, const std::string& machine_help) 
 
 void MachineOptions::add_compensation_to(CLI::App& command) {
   std::vector<std::string> names;
-  for (const auto& kind : sim::compensation_kinds) names.emplace_back(kind.name);
+  for (const auto& kind : machine::compensation_kinds) names.emplace_back(kind.name);
   command
       .add_option("--compensation", compensation,
                   "friction compensation of every axis, with the machine file's parameters [the machine file's]")
@@ -33,8 +35,9 @@ void MachineOptions::add_compensation_to(CLI::App& command) {
       ->type_name("KIND");
 }
 
-sim::Machine MachineOptions::load(const std::string& name, const std::string& experiment, MachinePart needed) const {
-  const auto file = sim::find_machine(name);
+machine::Machine MachineOptions::load(const std::string& name, const std::string& experiment,
+                                      MachinePart needed) const {
+  const auto file = machine::find_machine(name);
   auto assignments = set;
   if (!compensation.empty()) assignments.push_back("axis.*.friction_compensation.use=" + compensation);
   auto result = sim::read_machine(file, {experiment, assignments});
@@ -48,9 +51,9 @@ sim::Machine MachineOptions::load(const std::string& name, const std::string& ex
                     file.string()));
   // What the drive's number formats cannot hold is bad input too, found before anything runs.
   try {
-    for (const auto& axis : result.axes) sim::configure_axis<FixedSignals>(result.timing, axis);
-    sim::configure_compensations<FixedSignals>(result);
-  } catch (const sim::ConfigurationError& error) {
+    for (const auto& axis : result.axes) machine::configure_axis<FixedSignals>(result.timing, sim::drive_axis(axis));
+    machine::configure_compensations<FixedSignals>(result);
+  } catch (const machine::ConfigurationError& error) {
     throw UsageError(fmt::format("{}: {}", file.string(), error.what()));
   }
   return result;
@@ -62,7 +65,7 @@ std::vector<std::string> split_list(const std::string& text) {
   return parts;
 }
 
-std::vector<std::string> friction_models(const std::string& text, const sim::Machine& machine) {
+std::vector<std::string> friction_models(const std::string& text, const machine::Machine& machine) {
   if (text.empty()) return {machine.axes.front().friction.use};
   std::vector<std::string> everywhere;
   sim::for_each_friction_model([&]<class Model>() {
@@ -84,8 +87,8 @@ std::vector<double> feeds(const std::string& text) {
   std::vector<double> result;
   for (const auto& part : split_list(text)) {
     try {
-      result.push_back(sim::parse_quantity(part, "m/s"));
-    } catch (const sim::UnitError& error) {
+      result.push_back(machine::parse_quantity(part, "m/s"));
+    } catch (const machine::UnitError& error) {
       throw UsageError(
           fmt::format("--feed: found '{}' ({}); expected a speed such as \"16 m/min\", or a list \"8 m/min, "
                       "16 m/min\"",

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "firmware/machine/model/machine.hpp"
 #include "sim/experiment/circle_result.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
@@ -22,8 +22,8 @@ struct MachineOptions {
   // The option --compensation, of commands that drive the axes.
   void add_compensation_to(CLI::App& command);
   // The machine, checked down to the drive's number formats. Throws sim::MachineFileError, UsageError.
-  sim::Machine load(const std::string& name, const std::string& experiment,
-                    MachinePart needed = MachinePart::axes) const;
+  machine::Machine load(const std::string& name, const std::string& experiment,
+                        MachinePart needed = MachinePart::axes) const;
 };
 
 // "a,b" or "a, b": the parts without blanks around them.
@@ -31,7 +31,7 @@ std::vector<std::string> split_list(const std::string& text);
 
 // Names of friction models: empty: the one the machine file uses; "all": all that every axis has parameters for; or a
 // list of them. Throws UsageError.
-std::vector<std::string> friction_models(const std::string& text, const sim::Machine& machine);
+std::vector<std::string> friction_models(const std::string& text, const machine::Machine& machine);
 
 // Feeds in m/s from "16 m/min" or a list of such quantities. Throws UsageError.
 std::vector<double> feeds(const std::string& text);

@@ -4,12 +4,12 @@
 
 #include <exception>
 
+#include "firmware/machine/configuration/axis_configuration.hpp"
+#include "firmware/machine/file/machine_file.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
 #include "host/log/log.hpp"
 #include "host/simulate/circle.hpp"
-#include "sim/control/axis_configuration.hpp"
-#include "sim/machine/machine_file.hpp"
 
 namespace stiction::host {
 namespace {
@@ -66,9 +66,9 @@ int run(int argc, char** argv) {
     return exit_bad_input;
   } catch (const UsageError& error) {
     return bad_input(error);
-  } catch (const sim::MachineFileError& error) {
+  } catch (const machine::MachineFileError& error) {
     return bad_input(error);
-  } catch (const sim::ConfigurationError& error) {
+  } catch (const machine::ConfigurationError& error) {
     return bad_input(error);
   } catch (const LogError& error) {
     return bad_input(error);

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "firmware/machine/configuration/double_signals.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/experiment_output.hpp"
 #include "host/cli/output.hpp"
@@ -14,7 +15,6 @@
 #include "host/report/experiment_report.hpp"
 #include "host/simulate/replay.hpp"
 #include "host/simulate/replay_result.hpp"
-#include "sim/control/double_signals.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
 namespace stiction::host {
@@ -64,9 +64,10 @@ void run_replay(const ReplayOptions& options, const Invocation& invocation) {
   const bool fixed = options.signals != "double";
   for (auto& c : cases)
     c.simulated = fixed ? replay<FixedSignals>(c.machine, log, {options.axis})
-                        : replay<sim::DoubleSignals>(c.machine, log, {options.axis});
+                        : replay<machine::DoubleSignals>(c.machine, log, {options.axis});
   if (!options.log.empty()) keep(options.log, cases.front().simulated, options, cases.front());
-  const auto result = replay_result(log, cases, fixed ? FixedSignals::name : sim::DoubleSignals::name, options.axis);
+  const auto result =
+      replay_result(log, cases, fixed ? FixedSignals::name : machine::DoubleSignals::name, options.axis);
   const auto& machine = cases.front().machine;
   const auto json = experiment_json(result, machine);
   if (!options.out.empty()) {

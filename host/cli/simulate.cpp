@@ -3,13 +3,13 @@
 
 #include <memory>
 
+#include "firmware/machine/file/units.hpp"
 #include "host/cli/circle_command.hpp"
 #include "host/cli/circle_output.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/frequency_response_command.hpp"
 #include "host/cli/machine_options.hpp"
-#include "sim/machine/units.hpp"
 
 namespace stiction::host {
 namespace {
@@ -33,8 +33,8 @@ CirclePlan plan_of(const CircleOptions& options) {
   plan.feeds = feeds(options.feed);
   plan.directions = directions(options.direction);
   try {
-    plan.radius = sim::parse_quantity(options.radius, "m");
-  } catch (const sim::UnitError& error) {
+    plan.radius = machine::parse_quantity(options.radius, "m");
+  } catch (const machine::UnitError& error) {
     throw UsageError(
         fmt::format("--radius: found '{}' ({}); expected a length such as \"90 mm\"", options.radius, error.what()));
   }

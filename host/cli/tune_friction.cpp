@@ -14,7 +14,7 @@
 #include "host/log/read_log.hpp"
 #include "host/report/experiment_report.hpp"
 #include "host/tune/tuned_machine.hpp"
-#include "sim/machine/machine_file.hpp"
+#include "sim/machine_file.hpp"
 
 namespace stiction::host {
 namespace {
@@ -34,7 +34,7 @@ constexpr double timing_feed = 0.4;  // m/s, of the laps that the timing rule ju
 constexpr std::array<double, 3> feeds_without_logs{3.2 / 60.0, 16.0 / 60.0, 48.0 / 60.0};  // m/s
 
 // The axes to tune: the one named, else all that every log has channels of.
-std::vector<std::size_t> axes_to_tune(const std::string& name, const sim::Machine& machine,
+std::vector<std::size_t> axes_to_tune(const std::string& name, const machine::Machine& machine,
                                       const std::vector<Log>& logs) {
   std::vector<std::size_t> chosen;
   std::vector<std::string> names;
@@ -59,7 +59,7 @@ sim::CircleSettings circle_at(double feed) {
 }
 
 // Of an axis: those given, or circles of the machine file's simulation without compensation.
-std::vector<Log> logs_of(sim::Machine machine, std::size_t axis, const std::vector<Log>& given) {
+std::vector<Log> logs_of(machine::Machine machine, std::size_t axis, const std::vector<Log>& given) {
   if (!given.empty()) return given;
   machine.axes[axis].friction_compensation.reset();
   std::vector<Log> logs;
@@ -67,7 +67,7 @@ std::vector<Log> logs_of(sim::Machine machine, std::size_t axis, const std::vect
   return logs;
 }
 
-TunedCompensations tune(const TuneOptions& options, const sim::Machine& machine, const std::vector<Log>& logs) {
+TunedCompensations tune(const TuneOptions& options, const machine::Machine& machine, const std::vector<Log>& logs) {
   const auto shown = feeds(options.shown);
   if (shown.size() != 1) throw UsageError(fmt::format("--show: found {} feeds; expected one", shown.size()));
   ComparisonSettings comparison;
@@ -82,7 +82,9 @@ TunedCompensations tune(const TuneOptions& options, const sim::Machine& machine,
     for (const auto k : chosen) {
       CompensationSettings settings;
       if (!options.no_pulse) settings.pulse = comparison.circle;
-      const auto lap = [k](const sim::Machine& with) { return simulated_circle(with, k, circle_at(timing_feed), 2); };
+      const auto lap = [k](const machine::Machine& with) {
+        return simulated_circle(with, k, circle_at(timing_feed), 2);
+      };
       auto tuning = tune_compensation(all.machine, k, logs_of(machine, k, logs), lap, settings);
       all.machine = tuning.machine;
       all.tuned.emplace_back(k, std::move(tuning));
@@ -106,7 +108,7 @@ void run(const TuneOptions& options, const Invocation& invocation) {
     PendingFolder folder(options.out);
     auto sources = options.logs;
     if (sources.empty()) sources.emplace_back("circles of its own simulation");
-    folder.write("tuned.toml", tuned_machine(sim::find_machine(options.machine.machine), options.machine.set, all,
+    folder.write("tuned.toml", tuned_machine(machine::find_machine(options.machine.machine), options.machine.set, all,
                                              sources, invocation.command_line));
     sim::read_machine(folder.path() / "tuned.toml");  // what was written must be a machine
     folder.write("report.html",

@@ -33,19 +33,19 @@ bool same_way(const std::vector<double>& simulated, const std::vector<double>& m
 }
 
 // The equivalent motor takes a third of the time, and moves the axis the same but for how it hunts.
-void without_windings(sim::Axis& axis) {
-  if (axis.motor.model == sim::MotorModel::synchronous) axis.motor.model = sim::MotorModel::dc;
+void without_windings(machine::AxisModel& axis) {
+  if (axis.motor.model == machine::MotorModel::synchronous) axis.motor.model = machine::MotorModel::dc;
 }
 
-bool same(std::span<const sim::Effect> one, std::span<const sim::Effect> other) {
-  return std::equal(one.begin(), one.end(), other.begin(), other.end(), [](const sim::Effect& a, const sim::Effect& b) {
-    return a.name == b.name && a.values == b.values;
-  });
+bool same(std::span<const machine::Effect> one, std::span<const machine::Effect> other) {
+  return std::equal(
+      one.begin(), one.end(), other.begin(), other.end(),
+      [](const machine::Effect& a, const machine::Effect& b) { return a.name == b.name && a.values == b.values; });
 }
 
 }  // namespace
 
-Bench bench_of(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs, bool coupled) {
+Bench bench_of(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs, bool coupled) {
   Bench bench{machine, {}};
   bench.machine.axes = {machine.axes[axis]};
   coupled = coupled && machine.axes.size() == 2;
@@ -75,7 +75,7 @@ std::vector<std::vector<double>> simulated_positions(const Bench& bench) {
   return all;
 }
 
-WithoutNoise without_noise(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs) {
+WithoutNoise without_noise(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs) {
   auto bench = bench_of(machine, axis, logs);
   if (bench.logs.size() != logs.size()) return {};
   bench.machine.axes.front().encoder.noise = 0.0;
@@ -93,7 +93,7 @@ WithoutNoise without_noise(const sim::Machine& machine, std::size_t axis, const 
   }
 }
 
-EffectResponse::EffectResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
+EffectResponse::EffectResponse(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
                                const SignalSettings& settings, Hunting hunting, const std::vector<Log>& replayed)
     : settings_(settings) {
   auto bench = bench_of(machine, axis, logs);
@@ -107,7 +107,7 @@ EffectResponse::EffectResponse(const sim::Machine& machine, std::size_t axis, co
   without_windings(own);
 }
 
-EffectResponse::EffectResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
+EffectResponse::EffectResponse(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
                                const SignalSettings& settings, const Disturbance& disturbance,
                                const std::vector<Log>& replayed)
     : EffectResponse(machine, axis, logs, settings, Hunting::simulated, replayed) {
@@ -125,7 +125,7 @@ Log EffectResponse::disturbed(std::size_t record, std::size_t run) const {
   return log;
 }
 
-Log EffectResponse::replayed(const Log& log, const sim::Machine& machine) const {
+Log EffectResponse::replayed(const Log& log, const machine::Machine& machine) const {
   return replay<FixedSignals>(machine, log, {machine_.axes.front().name});
 }
 
@@ -140,7 +140,7 @@ std::vector<double> EffectResponse::residual(Log simulated, const Log& of) const
 }
 
 // Of runs with the effects, less the one without.
-std::vector<double> EffectResponse::common(std::size_t index, const sim::Machine& machine, std::size_t most_runs) {
+std::vector<double> EffectResponse::common(std::size_t index, const machine::Machine& machine, std::size_t most_runs) {
   auto& record = records_[index];
   if (record.without.empty()) record.without = residual(replayed(record.log, machine_), record.log);
   CommonPart part;
@@ -155,11 +155,12 @@ std::vector<double> EffectResponse::common(std::size_t index, const sim::Machine
   return part.estimate();
 }
 
-std::vector<double> EffectResponse::operator()(const Motion& motion, const sim::Effect& effect, std::size_t most_runs) {
+std::vector<double> EffectResponse::operator()(const Motion& motion, const machine::Effect& effect,
+                                               std::size_t most_runs) {
   return together(motion, {&effect, 1}, most_runs);
 }
 
-std::vector<double> EffectResponse::together(const Motion& motion, std::span<const sim::Effect> effects,
+std::vector<double> EffectResponse::together(const Motion& motion, std::span<const machine::Effect> effects,
                                              std::size_t most_runs) {
   for (std::size_t k = 0; k < records_.size(); ++k) {
     const auto& log = records_[k].log;

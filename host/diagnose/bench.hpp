@@ -6,20 +6,20 @@
 #include <span>
 #include <vector>
 
+#include "firmware/machine/model/machine.hpp"
 #include "host/diagnose/disturbance.hpp"
 #include "host/identify/motion.hpp"
 #include "host/log/log.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
 struct Bench {
-  sim::Machine machine;   // of one axis, or of both where they act on each other
-  std::vector<Log> logs;  // with their channels only, the axis' first
+  machine::Machine machine;  // of one axis, or of both where they act on each other
+  std::vector<Log> logs;     // with their channels only, the axis' first
 };
 
 // Logs without set-points are left out. `coupled`: with the other axis of two, where a log has its set-points.
-Bench bench_of(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs, bool coupled = false);
+Bench bench_of(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs, bool coupled = false);
 
 // What the bench's axis makes of each log's set-points. Throws FaultTripped, LogError.
 std::vector<Log> replays(const Bench& bench);
@@ -35,7 +35,7 @@ struct WithoutNoise {
 // and the effects looked for did to it. A regressor of the measured motion carries the disturbance that it is regressed
 // on, through the control loop (Gilson, Garnier, Young, Van den Hof 2011); one of this motion does not. Empty when a
 // log has no set-points, when the machine cannot follow them, or when it goes another way than the measured one.
-WithoutNoise without_noise(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs);
+WithoutNoise without_noise(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs);
 
 // Within an increment of its position controller an axis hunts. Near reversals a replay does so as the record did, and
 // friction's contact follows it; elsewhere noise made the record hunt at other instants, and the difference is an error
@@ -51,19 +51,20 @@ class EffectResponse {
 
   // `logs`: with set-points, of that axis; `settings`: those of the motions; `replayed`: what without_noise() has
   // replayed of them with that hunting, in their order, so that it need not be done again.
-  EffectResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
+  EffectResponse(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
                  const SignalSettings& settings, Hunting hunting = Hunting::simulated,
                  const std::vector<Log>& replayed = {});
   // Under forces like `disturbance`: what runs under them have in common; two, and more where they agree on so little
   // that what is left to chance in their common part is a force like those.
-  EffectResponse(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
+  EffectResponse(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
                  const SignalSettings& settings, const Disturbance& disturbance, const std::vector<Log>& replayed = {});
 
   // N at the motion's rate: with the effect less without; zeros where the machine cannot follow with it. Of no more
   // than `most_runs`. Throws sim::EffectError, std::out_of_range for a motion of another log.
-  std::vector<double> operator()(const Motion& motion, const sim::Effect& effect, std::size_t most_runs = as_needed);
+  std::vector<double> operator()(const Motion& motion, const machine::Effect& effect,
+                                 std::size_t most_runs = as_needed);
   // The same of several effects that act together.
-  std::vector<double> together(const Motion& motion, std::span<const sim::Effect> effects,
+  std::vector<double> together(const Motion& motion, std::span<const machine::Effect> effects,
                                std::size_t most_runs = as_needed);
 
  private:
@@ -73,19 +74,19 @@ class EffectResponse {
   };
   // The log of a record under one of many draws of the disturbance.
   Log disturbed(std::size_t record, std::size_t run) const;
-  Log replayed(const Log& log, const sim::Machine& machine) const;
+  Log replayed(const Log& log, const machine::Machine& machine) const;
   // `of`: what was replayed; its external force is known, and no residual.
   std::vector<double> residual(Log simulated, const Log& of) const;
-  std::vector<double> common(std::size_t record, const sim::Machine& machine, std::size_t most_runs);
+  std::vector<double> common(std::size_t record, const machine::Machine& machine, std::size_t most_runs);
 
-  sim::Machine machine_;
+  machine::Machine machine_;
   SignalSettings settings_;
   Disturbance disturbance_;
   std::vector<Record> records_;
   // The last answers: a search's grid begins a refinement, a refinement's end begins the one in closed loop.
   struct Known {
     std::size_t record, runs;
-    std::vector<sim::Effect> effects;
+    std::vector<machine::Effect> effects;
     std::vector<double> force;
   };
   std::deque<Known> known_;

@@ -11,16 +11,16 @@
 #include <string>
 #include <vector>
 
+#include "firmware/machine/model/machine.hpp"
 #include "host/diagnose/line_scan.hpp"
 #include "host/diagnose/verdict.hpp"
 #include "host/identify/motion.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
 // What the candidates may know: the axis as its file has it and what the training records cover. SI units.
 struct Scene {
-  sim::Axis axis;
+  machine::AxisModel axis;
   SignalSettings signals;
   double highest_speed = 0.0;
   int reversals = 0;
@@ -30,14 +30,14 @@ struct Scene {
   bool force_is_current = false;  // in every record: current (or voltage) times the file's force constant
   bool other_axis = false;        // its motion is in every record
   double duration = 0.0;          // s, of the longest record
-  sim::Timing timing{};           // of the drive
+  machine::Timing timing{};       // of the drive
   // Found as the search goes: lines over position, over position in proportion to the force and to the speed, over
   // time, over the encoder's signal.
   LineScan pitches{}, modulation{}, by_speed{}, times{}, signals_of_encoder{};
   // The residual force (N, at the motion's rate) that a motion's set-points leave in simulation where the machine has
   // the effect, less that where it has not: what the effect does through the control loop. `most_runs`: of how many
   // runs under different forces the common part is taken, at most. Empty: no set-points.
-  std::function<std::vector<double>(const Motion&, const sim::Effect&, std::size_t most_runs)> response;
+  std::function<std::vector<double>(const Motion&, const machine::Effect&, std::size_t most_runs)> response;
   // From now on under forces like this one (N, of the rows): what of the residual force no cause explains.
   std::function<void(const Eigen::VectorXd&)> disturb;
   double stroke() const { return highest_position - lowest_position; }

@@ -80,16 +80,16 @@ void add_pictures(Verdict& verdict, const std::vector<Log>& logs, const std::vec
 
 }  // namespace
 
-sim::Machine extended_machine(sim::Machine machine, const std::vector<Finding>& findings) {
+machine::Machine extended_machine(machine::Machine machine, const std::vector<Finding>& findings) {
   for (const auto& finding : findings)
     for (auto& axis : machine.axes)
       if (axis.name == finding.axis) axis.effects.push_back(finding.effect);
   return machine;
 }
 
-void judge_in_closed_loop(Verdict& verdict, const sim::Machine& machine, std::size_t axis,
+void judge_in_closed_loop(Verdict& verdict, const machine::Machine& machine, std::size_t axis,
                           const std::vector<Log>& held_out) {
-  const auto is_coupling = [](const sim::Effect& effect) { return effect.name == "cross_axis_coupling"; };
+  const auto is_coupling = [](const machine::Effect& effect) { return effect.name == "cross_axis_coupling"; };
   const auto& known = machine.axes[axis].effects;
   const bool coupled = std::any_of(known.begin(), known.end(), is_coupling) ||
                        std::any_of(verdict.findings.begin(), verdict.findings.end(),

@@ -4,18 +4,18 @@
 
 #include <vector>
 
+#include "firmware/machine/model/machine.hpp"
 #include "host/diagnose/verdict.hpp"
 #include "host/log/log.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
 // The machine with the findings' effects on their axis.
-sim::Machine extended_machine(sim::Machine machine, const std::vector<Finding>& findings);
+machine::Machine extended_machine(machine::Machine machine, const std::vector<Finding>& findings);
 
 // Fills in position errors, their ratios by finding and what each does to the position. Without set-points nothing is
 // changed. A machine that cannot follow the set-points is a LogError without causes and a note with them.
-void judge_in_closed_loop(Verdict& verdict, const sim::Machine& machine, std::size_t axis,
+void judge_in_closed_loop(Verdict& verdict, const machine::Machine& machine, std::size_t axis,
                           const std::vector<Log>& held_out);
 
 }  // namespace stiction::host

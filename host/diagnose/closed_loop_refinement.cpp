@@ -92,7 +92,7 @@ class ClosedLoopFit {
       at[static_cast<Eigen::Index>(i)] = effects_[free_[i].finding].values.at(free_[i].key)[free_[i].index];
     return at;
   }
-  std::vector<sim::Effect> effects_at(const Eigen::VectorXd& at) const {
+  std::vector<machine::Effect> effects_at(const Eigen::VectorXd& at) const {
     auto effects = effects_;
     for (std::size_t i = 0; i < free_.size(); ++i)
       effects[free_[i].finding].values.at(free_[i].key)[free_[i].index] = at[static_cast<Eigen::Index>(i)];
@@ -167,7 +167,7 @@ class ClosedLoopFit {
   EffectResponse& response_;
   const LogRows& rows_;
   Eigen::VectorXd target_;
-  std::vector<sim::Effect> effects_;  // of the findings that are simulated
+  std::vector<machine::Effect> effects_;  // of the findings that are simulated
   std::vector<std::size_t> of_finding_;
   std::vector<Free> free_;
   Whitening whitening_;

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <variant>
 
+#include "firmware/machine/configuration/axis_configuration.hpp"
+#include "firmware/machine/configuration/conversion.hpp"
+#include "firmware/machine/configuration/double_signals.hpp"
 #include "host/log/set_points.hpp"
 #include "host/simulate/replay.hpp"
-#include "sim/control/axis_configuration.hpp"
-#include "sim/control/conversion.hpp"
-#include "sim/control/double_signals.hpp"
 #include "sim/plant/axis_plant.hpp"
 #include "sim/plant/effects/effects.hpp"
 #include "stiction/drive/axis.hpp"
@@ -23,7 +23,7 @@ namespace {
 // The windings under the drive's voltages on a given way.
 class Windings {
  public:
-  Windings(const sim::Axis& axis, double step)
+  Windings(const machine::AxisModel& axis, double step)
       : step_(step), inverter_(axis.inverter, step, sim::plant_steps_per_tick), motor_(make(axis.motor, step)) {}
 
   sim::PhaseValues current() const {
@@ -47,9 +47,9 @@ class Windings {
 
  private:
   using Motor = std::variant<sim::DcMotor, sim::SynchronousMotor, sim::ForceSource>;
-  static Motor make(const sim::Motor& motor, double step) {
-    if (motor.model == sim::MotorModel::synchronous) return sim::SynchronousMotor(motor, step);
-    if (motor.model == sim::MotorModel::force) return sim::ForceSource(motor, step);
+  static Motor make(const machine::MotorParameters& motor, double step) {
+    if (motor.model == machine::MotorModel::synchronous) return sim::SynchronousMotor(motor, step);
+    if (motor.model == machine::MotorModel::force) return sim::ForceSource(motor, step);
     return sim::DcMotor(motor, step);
   }
 
@@ -63,7 +63,7 @@ template <class S>
 AxisConfig<S> unsupervised(AxisConfig<S> config) {
   const auto most = [](auto& limit) {
     using T = std::remove_reference_t<decltype(limit)>;
-    sim::convert(std::min(0.99 * sim::highest<T>(), 1e9), limit);
+    machine::convert(std::min(0.99 * machine::highest<T>(), 1e9), limit);
   };
   most(config.following_error_fault);
   most(config.over_current_fault);
@@ -87,8 +87,8 @@ double linear_at(const std::vector<double>& values, double place) {
 
 }  // namespace
 
-std::optional<RecordedCommand> recorded_command(const AxisLog& channels, const sim::Axis& axis) {
-  const bool force_motor = axis.motor.model == sim::MotorModel::force;
+std::optional<RecordedCommand> recorded_command(const AxisLog& channels, const machine::AxisModel& axis) {
+  const bool force_motor = axis.motor.model == machine::MotorModel::force;
   if (channels.x_set.empty() || (!force_motor && !channels.u_inject.empty())) return std::nullopt;
   if (force_motor) {
     if (channels.u.empty()) return std::nullopt;
@@ -100,19 +100,19 @@ std::optional<RecordedCommand> recorded_command(const AxisLog& channels, const s
 }
 
 template <class S>
-std::vector<double> replay_command(const sim::Timing& timing, const sim::Axis& axis, const Log& log,
+std::vector<double> replay_command(const machine::Timing& timing, const machine::AxisModel& axis, const Log& log,
                                    const AxisLog& channels) {
   const double tick = timing.fast_period, ratio = log.period / tick;
   const SetPoints set(log, channels), measured(log, measured_as_set(channels));
   const bool each_tick = std::abs(ratio - 1.0) < 1e-6;  // nothing to interpolate
   const double allowed = axis.supervision.following_error.value_or(2e-3);
   const double offset = encoder_offset(channels, allowed);
-  const bool force_motor = axis.motor.model == sim::MotorModel::force;
+  const bool force_motor = axis.motor.model == machine::MotorModel::force;
   const auto& injection = force_motor ? channels.u_inject : channels.i_inject;
   const bool wants_set_current = !force_motor && channels.i.empty();
 
-  Axis<S> drive(unsupervised(sim::configure_axis<S>(timing, axis)));
-  Ticker ticker(sim::fast_period_ns(timing), static_cast<std::uint32_t>(sim::slow_ratio(timing)));
+  Axis<S> drive(unsupervised(machine::configure_axis<S>(timing, sim::drive_axis(axis))));
+  Ticker ticker(machine::fast_period_ns(timing), static_cast<std::uint32_t>(machine::slow_ratio(timing)));
   Windings windings(sim::plant_axis(axis), tick / sim::plant_steps_per_tick);
   AxisSignals<S> signals;
   std::vector<double> command;
@@ -124,9 +124,9 @@ std::vector<double> replay_command(const sim::Timing& timing, const sim::Axis& a
     const double x =
         (each_tick ? channels.x[std::min(static_cast<std::size_t>(k), channels.x.size() - 1)] : at.position) - offset;
     Feedback<S> feedback;
-    feedback.position_valid = sim::convert({x, at.velocity}, feedback.position, feedback.velocity);
+    feedback.position_valid = machine::convert({x, at.velocity}, feedback.position, feedback.velocity);
     feedback.position_time_ns = ticker.now_ns();
-    for (std::size_t p = 0; p < 3; ++p) feedback.fault |= !sim::convert(windings.current()[p], feedback.current[p]);
+    for (std::size_t p = 0; p < 3; ++p) feedback.fault |= !machine::convert(windings.current()[p], feedback.current[p]);
     if (k == 0) drive.start(feedback);
     auto point = set.at(t);
     point.injection = linear_at(injection, place);
@@ -137,7 +137,7 @@ std::vector<double> replay_command(const sim::Timing& timing, const sim::Axis& a
                       "record of this drive",
                       log.source, t, name_of(drive.fault())));
     ticker.advance();
-    const double now = sim::to_si(wants_set_current ? signals.i_set : signals.i);
+    const double now = machine::to_si(wants_set_current ? signals.i_set : signals.i);
     // Samples between the last tick and this one.
     for (double sample = static_cast<double>(command.size()) * ratio;
          command.size() < log.t.size() && sample <= static_cast<double>(k) + 1e-6;
@@ -146,15 +146,16 @@ std::vector<double> replay_command(const sim::Timing& timing, const sim::Axis& a
       command.push_back(k == 0 ? now : before + (now - before) * share);
     }
     before = now;
-    windings.advance_tick({sim::to_si(output.voltage[0]), sim::to_si(output.voltage[1]), sim::to_si(output.voltage[2])},
-                          x, at.velocity);
+    windings.advance_tick(
+        {machine::to_si(output.voltage[0]), machine::to_si(output.voltage[1]), machine::to_si(output.voltage[2])}, x,
+        at.velocity);
   }
   return command;
 }
 
-template std::vector<double> replay_command<FixedSignals>(const sim::Timing&, const sim::Axis&, const Log&,
+template std::vector<double> replay_command<FixedSignals>(const machine::Timing&, const machine::AxisModel&, const Log&,
                                                           const AxisLog&);
-template std::vector<double> replay_command<sim::DoubleSignals>(const sim::Timing&, const sim::Axis&, const Log&,
-                                                                const AxisLog&);
+template std::vector<double> replay_command<machine::DoubleSignals>(const machine::Timing&, const machine::AxisModel&,
+                                                                    const Log&, const AxisLog&);
 
 }  // namespace stiction::host

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "firmware/machine/model/machine.hpp"
 #include "host/log/log.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
@@ -20,13 +20,13 @@ struct RecordedCommand {
 
 // The voltage of a force source, else the current, else the set current; none when the record has none of them, or no
 // set-points, or a test signal in another place of the loop.
-std::optional<RecordedCommand> recorded_command(const AxisLog& channels, const sim::Axis& axis);
+std::optional<RecordedCommand> recorded_command(const AxisLog& channels, const machine::AxisModel& axis);
 
 // The same at the record's times (A or V), from `axis` with its own effects; it begins at rest, with an integrator that
 // does not know the record's. Between the samples positions are those of a spline. S: FixedSignals, the drive's own
 // numbers, or sim::DoubleSignals. Throws sim::ConfigurationError; LogError where the control stops on these inputs.
 template <class S>
-std::vector<double> replay_command(const sim::Timing& timing, const sim::Axis& axis, const Log& log,
+std::vector<double> replay_command(const machine::Timing& timing, const machine::AxisModel& axis, const Log& log,
                                    const AxisLog& channels);
 
 }  // namespace stiction::host

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/machine/configuration/double_signals.hpp"
 #include "host/diagnose/command_replay.hpp"
 #include "host/diagnose/evidence.hpp"
 #include "host/diagnose/fisher.hpp"
 #include "host/diagnose/holdout.hpp"
 #include "host/identify/filter.hpp"
 #include "host/identify/identification.hpp"
-#include "sim/control/double_signals.hpp"
 #include "sim/plant/effects/effects.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
@@ -35,7 +35,8 @@ using Places = std::vector<std::size_t>;  // of command_parameters()
 // The records' commands in the rows of the residual force, without what is slower than `slowest`.
 class Commands {
  public:
-  Commands(const CommandRecords& records, const sim::Timing& timing, const sim::Axis& axis, double record_delay)
+  Commands(const CommandRecords& records, const machine::Timing& timing, const machine::AxisModel& axis,
+           double record_delay)
       : records_(records), timing_(timing), axis_(axis) {
     std::vector<std::vector<double>> logged, rates;
     for (const auto& log : records.logs) {
@@ -53,21 +54,21 @@ class Commands {
   // What a parameter must stand beside: what is left of a record's delay, which is known to microseconds only.
   const std::vector<Eigen::VectorXd>& nuisances() const { return nuisances_; }
   template <class S>
-  Eigen::VectorXd replayed(const sim::Axis& axis) const {
+  Eigen::VectorXd replayed(const machine::AxisModel& axis) const {
     std::vector<std::vector<double>> all;
     for (const auto& log : records_.logs) all.push_back(replay_command<S>(timing_, axis, log, channels_of(log, axis_)));
     return rows_of(all);
   }
   // What the command changes by with each parameter, per its unit. In doubles: the drive's rounding has no slope.
-  std::vector<Eigen::VectorXd> slopes(const sim::Axis& axis, const Places& places) const {
+  std::vector<Eigen::VectorXd> slopes(const machine::AxisModel& axis, const Places& places) const {
     std::vector<Eigen::VectorXd> all;
-    const auto base = replayed<sim::DoubleSignals>(axis);
+    const auto base = replayed<machine::DoubleSignals>(axis);
     for (const auto place : places) {
       const auto& parameter = command_parameters()[place];
       const double step = parameter.step(axis, timing_);
       auto changed = axis;
       parameter.set(changed, *parameter.value(axis) + step);
-      all.push_back((replayed<sim::DoubleSignals>(changed) - base) / step);
+      all.push_back((replayed<machine::DoubleSignals>(changed) - base) / step);
     }
     return all;
   }
@@ -104,8 +105,8 @@ class Commands {
   }
 
   const CommandRecords& records_;
-  const sim::Timing& timing_;
-  const sim::Axis& axis_;
+  const machine::Timing& timing_;
+  const machine::AxisModel& axis_;
   Eigen::VectorXd logged_;
   std::vector<Eigen::VectorXd> nuisances_;
 };
@@ -118,7 +119,8 @@ struct CommandTerm {
 
 double rms(const Eigen::VectorXd& v) { return std::sqrt(v.squaredNorm() / static_cast<double>(v.size())); }
 
-sim::Axis with_terms(sim::Axis axis, const std::vector<CommandTerm>& terms, const char* without = "") {
+machine::AxisModel with_terms(machine::AxisModel axis, const std::vector<CommandTerm>& terms,
+                              const char* without = "") {
   for (const auto& term : terms)
     if (const auto& p = command_parameters()[term.place]; std::string_view(p.effect) != without)
       p.set(axis, term.value);
@@ -234,12 +236,13 @@ ColumnIndices all_of(const Places& places) {
   return all;
 }
 
-Selection select(const Commands& commands, const sim::Axis& axis, const Eigen::VectorXd& target, const Places& places) {
+Selection select(const Commands& commands, const machine::AxisModel& axis, const Eigen::VectorXd& target,
+                 const Places& places) {
   return {target, commands.rows(), places, commands.slopes(axis, places), commands.nuisances()};
 }
 
 // The chosen parameters' values by replays around them.
-std::vector<CommandTerm> refined(const Commands& commands, const sim::Axis& axis, const Selection& selection,
+std::vector<CommandTerm> refined(const Commands& commands, const machine::AxisModel& axis, const Selection& selection,
                                  const ColumnIndices& chosen) {
   std::vector<CommandTerm> terms;
   Places places;
@@ -272,14 +275,14 @@ std::vector<CommandTerm> refined(const Commands& commands, const sim::Axis& axis
   return terms;
 }
 
-Finding finding_of(const sim::Axis& file, const char* effect, const std::vector<CommandTerm>& terms) {
+Finding finding_of(const machine::AxisModel& file, const char* effect, const std::vector<CommandTerm>& terms) {
   Finding finding;
   finding.axis = file.name;
   finding.in_command = true;
   finding.effect.name = effect;
   for (const auto& known : file.effects)
     if (known.name == effect) finding.effect.values = known.values;
-  const bool force_motor = file.motor.model == sim::MotorModel::force;
+  const bool force_motor = file.motor.model == machine::MotorModel::force;
   for (const auto& term : terms) {
     const auto& p = command_parameters()[term.place];
     if (std::string_view(p.effect) != effect) continue;
@@ -292,7 +295,7 @@ Finding finding_of(const sim::Axis& file, const char* effect, const std::vector<
   return finding;
 }
 
-bool usable(const CommandRecords& records, const sim::Axis& axis) {
+bool usable(const CommandRecords& records, const machine::AxisModel& axis) {
   return std::all_of(records.logs.begin(), records.logs.end(),
                      [&](const Log& log) { return recorded_command(channels_of(log, axis), axis).has_value(); });
 }
@@ -303,14 +306,14 @@ bool is_record_delay(const RecordDelay& delay, double loop_delay) {
          std::abs(delay.estimate - loop_delay) < std::abs(delay.estimate);
 }
 
-void judge_held_out(Verdict& verdict, std::vector<Finding>& findings, const Commands& held_out, const sim::Axis& axis,
-                    const std::vector<CommandTerm>& terms, std::uint64_t seed) {
-  const auto residual_with = [&](const sim::Axis& each) {
+void judge_held_out(Verdict& verdict, std::vector<Finding>& findings, const Commands& held_out,
+                    const machine::AxisModel& axis, const std::vector<CommandTerm>& terms, std::uint64_t seed) {
+  const auto residual_with = [&](const machine::AxisModel& each) {
     return Eigen::VectorXd(held_out.logged() - held_out.replayed<FixedSignals>(each));
   };
   const auto before = residual_with(axis);
   verdict.baseline.command_rms = rms(before);
-  if (axis.motor.model == sim::MotorModel::force) verdict.command_unit = "V";
+  if (axis.motor.model == machine::MotorModel::force) verdict.command_unit = "V";
   verdict.extended.command_rms = verdict.baseline.command_rms;
   if (findings.empty()) return;
   const auto after = residual_with(with_terms(axis, terms));
@@ -324,7 +327,7 @@ void judge_held_out(Verdict& verdict, std::vector<Finding>& findings, const Comm
 }
 
 void find_and_judge(Verdict& verdict, const DiagnoseInput& input, const CommandRecords& training,
-                    const CommandRecords& held_out, const RecordDelay& delay, const sim::Axis& axis) {
+                    const CommandRecords& held_out, const RecordDelay& delay, const machine::AxisModel& axis) {
   const auto& file = input.machine.axes[input.axis];
   const auto& timing = input.machine.timing;
   Places places;
@@ -402,7 +405,7 @@ void find_and_judge(Verdict& verdict, const DiagnoseInput& input, const CommandR
 void judge_command(Verdict& verdict, const DiagnoseInput& input, const CommandRecords& training,
                    const CommandRecords& held_out, const RecordDelay& delay) {
   auto axis = sim::drive_axis(input.machine.axes[input.axis]);
-  std::erase_if(axis.effects, [](const sim::Effect& effect) { return effect.name == "controller_gain_mismatch"; });
+  std::erase_if(axis.effects, [](const machine::Effect& effect) { return effect.name == "controller_gain_mismatch"; });
   if (!usable(training, axis) || !usable(held_out, axis)) return;
   try {
     find_and_judge(verdict, input, training, held_out, delay, axis);

@@ -16,11 +16,11 @@ namespace stiction::host {
 struct CommandParameter {
   const char* effect;  // the cause that it belongs to
   const char* key;
-  const char* suffix;                                // of the unit, in verdict.json
-  const char* force_motor_suffix;                    // with a motor that is a force source
-  std::optional<double> (*value)(const sim::Axis&);  // SI; none: this axis has no such parameter
-  void (*set)(sim::Axis&, double);
-  double (*step)(const sim::Axis&, const sim::Timing&);  // for the difference, SI
+  const char* suffix;                                         // of the unit, in verdict.json
+  const char* force_motor_suffix;                             // with a motor that is a force source
+  std::optional<double> (*value)(const machine::AxisModel&);  // SI; none: this axis has no such parameter
+  void (*set)(machine::AxisModel&, double);
+  double (*step)(const machine::AxisModel&, const machine::Timing&);  // for the difference, SI
 };
 std::span<const CommandParameter> command_parameters();
 

@@ -61,7 +61,7 @@ void count_from_start(Log& log) {
   for (double& t : log.t) t -= start;
 }
 
-LogRows rows_of(const std::vector<Log>& logs, const sim::Axis& axis, const SignalSettings& settings) {
+LogRows rows_of(const std::vector<Log>& logs, const machine::AxisModel& axis, const SignalSettings& settings) {
   std::vector<Motion> motions;
   for (const auto& log : logs) {
     require_samples(log);
@@ -72,11 +72,11 @@ LogRows rows_of(const std::vector<Log>& logs, const sim::Axis& axis, const Signa
   return {std::move(motions), settings};
 }
 
-Eigen::VectorXd expected_force(const LogRows& rows, const sim::Axis& axis) {
+Eigen::VectorXd expected_force(const LogRows& rows, const machine::AxisModel& axis) {
   return rows.stacked([&](const Motion& m) { return force_along(axis, m); });
 }
 
-Scene scene_of(const sim::Axis& axis, const LogRows& rows, const SignalSettings& settings) {
+Scene scene_of(const machine::AxisModel& axis, const LogRows& rows, const SignalSettings& settings) {
   Scene scene;
   scene.axis = axis;
   scene.signals = settings;

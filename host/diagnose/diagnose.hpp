@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
+#include "firmware/machine/model/machine.hpp"
 #include "host/diagnose/verdict.hpp"
 #include "host/log/log.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
@@ -19,7 +19,7 @@ inline constexpr std::array<std::string_view, 6> diagnosis_parts{
     "simulated motion", "selection", "held-out data", "refinement in closed loop", "next measurement", "closed loop"};
 
 struct DiagnoseInput {
-  sim::Machine machine;
+  machine::Machine machine;
   std::size_t axis = 0;                                 // of the machine
   std::vector<Log> logs;                                // at least one
   std::vector<Log> held_out;                            // empty: the last third of each log is held out

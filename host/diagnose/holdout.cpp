@@ -32,8 +32,7 @@ class Nuisances {
   Nuisances(const LogRows& rows, const Scene& scene, bool constant, bool coulomb) {
     std::vector<Eigen::VectorXd> columns;
     if (constant) columns.push_back(Eigen::VectorXd::Ones(rows.rows()));
-    if (coulomb && coulomb_of(scene.axis))
-      columns.push_back(rows.stacked([&](const Motion& m) { return contact_level(scene.axis, m); }));
+    if (coulomb) columns.push_back(rows.stacked([&](const Motion& m) { return contact_level(scene.axis, m); }));
     for (const auto& r : records_of(rows)) {
       Eigen::MatrixXd own(r.length, static_cast<Eigen::Index>(columns.size()));
       for (std::size_t c = 0; c < columns.size(); ++c)

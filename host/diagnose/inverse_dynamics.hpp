@@ -6,14 +6,15 @@
 #include <optional>
 #include <vector>
 
+#include "firmware/machine/model/machine.hpp"
 #include "host/identify/motion.hpp"
-#include "sim/model/machine.hpp"
+#include "sim/plant/friction/law.hpp"
 
 namespace stiction::host {
 
 // N along the motion, at the log's rate. The history begins with the motion: the first reversal's way is not known.
-std::vector<double> friction_along(const sim::Axis& axis, const Motion& motion);
-std::vector<double> force_along(const sim::Axis& axis, const Motion& motion);  // m a + friction
+std::vector<double> friction_along(const machine::AxisModel& axis, const Motion& motion);
+std::vector<double> force_along(const machine::AxisModel& axis, const Motion& motion);  // m a + friction
 
 // What bending an elastic mode between motor and load (structural_resonance) adds to the motor's force, to second order
 // in frequency over the mode's, w: (bend + 2 zeta/w damping) / w^2, where r is the load's share of the mass M and
@@ -27,23 +28,20 @@ struct ModeColumns {
 ModeColumns mode_columns(double mass, double ratio, const Motion& motion, const std::vector<double>& force);
 
 // The force with `changed` less the force with `axis`, over `by`.
-std::vector<double> force_change(const sim::Axis& axis, const sim::Axis& changed, const Motion& motion, double by);
+std::vector<double> force_change(const machine::AxisModel& axis, const machine::AxisModel& changed,
+                                 const Motion& motion, double by);
 
 // Which way the contact pushes, -1 to 1: Coulomb friction without its level. Sticking lets it be anything between.
-std::vector<double> contact_level(const sim::Axis& axis, const Motion& motion);
+std::vector<double> contact_level(const machine::AxisModel& axis, const Motion& motion);
 
-// Of the friction model in use; none where the model has no such parameter (a parabolic one).
-std::optional<double> coulomb_of(const sim::Axis& axis);  // N
-std::optional<double> viscous_of(const sim::Axis& axis);  // N s/m
-// Initial stiffness of the contact (N/m); none for a model whose friction follows the speed alone.
-std::optional<double> contact_stiffness_of(const sim::Axis& axis);
-// Displacement from rest in which the contact reaches 90 % of its level (m); 0 for friction that follows the speed
-// alone.
-double contact_distance_of(const sim::Axis& axis);
-sim::Axis with_coulomb(sim::Axis axis, double coulomb);
-sim::Axis with_viscous(sim::Axis axis, double viscous);
+// Of the friction law in use.
+double coulomb_of(const machine::AxisModel& axis);                       // N
+double viscous_of(const machine::AxisModel& axis);                       // N s/m
+std::optional<sim::Contact> contact_of(const machine::AxisModel& axis);  // none: friction follows the speed alone
+machine::AxisModel with_coulomb(machine::AxisModel axis, double coulomb);
+machine::AxisModel with_viscous(machine::AxisModel axis, double viscous);
 // The contact drawn out to that distance, its level and the shape of its curve kept; for friction without a contact, of
 // the shape that the effect presliding_hysteresis has with a curve that is exponential.
-sim::Axis with_contact_distance(sim::Axis axis, double distance);
+machine::AxisModel with_contact_distance(machine::AxisModel axis, double distance);
 
 }  // namespace stiction::host

@@ -128,7 +128,7 @@ std::vector<double> gains(const LogRows& rows, const Eigen::VectorXd& weighed, c
 class ShownError {
  public:
   ShownError(const LogRows& rows, const Eigen::VectorXd& weighed, const WhitenedGain& whitened,
-             const Eigen::VectorXd& x, const sim::Axis& axis, const sim::Timing& timing)
+             const Eigen::VectorXd& x, const machine::AxisModel& axis, const machine::Timing& timing)
       : rows_(rows), weighed_(weighed), whitened_(whitened), x_(x) {
     const auto& motions = rows.motions();
     for (const auto& motion : motions) {
@@ -301,7 +301,7 @@ LineScan scan_pitches(const LogRows& rows, const Eigen::VectorXd& residual, cons
 // usual periods, then over all rows that show the error at all, which tell periods apart as finely as their extent
 // allows.
 LineScan scan_signal_periods(const LogRows& rows, const Eigen::VectorXd& residual, const Whitening& whitening,
-                             const sim::Axis& axis, const sim::Timing& timing, std::size_t count) {
+                             const machine::AxisModel& axis, const machine::Timing& timing, std::size_t count) {
   const auto x = rows.sampled([](const Motion& m) { return m.x; });
   LineScan scan;
   scan.extent = x.maxCoeff() - x.minCoeff();

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
+#include "firmware/machine/model/machine.hpp"
 #include "host/diagnose/whitening.hpp"
 #include "host/identify/log_rows.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
@@ -33,6 +33,6 @@ LineScan scan_pitches(const LogRows& rows, const Eigen::VectorXd& residual, cons
 // Signal periods (m) of the encoder, 2 um to 1 mm: where the rows are slow enough to see them, and where the samples of
 // the log fold the drive's answer down (reading_response.hpp). The count knows the signal: one phase in all records.
 LineScan scan_signal_periods(const LogRows& rows, const Eigen::VectorXd& residual, const Whitening& whitening,
-                             const sim::Axis& axis, const sim::Timing& timing, std::size_t count);
+                             const machine::AxisModel& axis, const machine::Timing& timing, std::size_t count);
 
 }  // namespace stiction::host

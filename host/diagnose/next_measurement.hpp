@@ -3,10 +3,10 @@
 // expected to separate them best (separation.hpp) is proposed, as set-points that can be run.
 #pragma once
 
+#include "firmware/machine/model/machine.hpp"
 #include "host/diagnose/search.hpp"
 #include "host/diagnose/verdict.hpp"
 #include "host/identify/log_rows.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
@@ -15,7 +15,7 @@ inline constexpr double least_separation = 2.5;
 
 // A finished search with its records.
 struct Searched {
-  const sim::Machine& machine;
+  const machine::Machine& machine;
   std::size_t axis;  // of the machine
   const SignalSettings& settings;
   const LogRows& rows;            // of the regressors

@@ -14,7 +14,7 @@ Complex pi(double gain, const std::optional<double>& integral_time, double tick,
 }
 
 // Bilinear transform of s^2 + 2 D1 w s + w^2 over s^2 + 2 D2 w s + w^2, prewarped.
-Complex notch_of(const sim::Notch& notch, double tick, Complex back) {
+Complex notch_of(const machine::NotchParameters& notch, double tick, Complex back) {
   const double w = std::tan(std::numbers::pi * notch.frequency * tick);
   const Complex s = (1.0 - back) / (1.0 + back) / w;
   return (s * s + 2.0 * notch.numerator_damping * s + 1.0) / (s * s + 2.0 * notch.denominator_damping * s + 1.0);
@@ -22,7 +22,7 @@ Complex notch_of(const sim::Notch& notch, double tick, Complex back) {
 
 }  // namespace
 
-ReadingResponse::ReadingResponse(const sim::Axis& axis, const sim::Timing& timing, double log_period)
+ReadingResponse::ReadingResponse(const machine::AxisModel& axis, const machine::Timing& timing, double log_period)
     : axis_(axis), tick_(timing.fast_period), log_period_(log_period) {}
 
 double ReadingResponse::shown_at(double frequency) const {
@@ -39,8 +39,8 @@ Complex ReadingResponse::operator()(double frequency) const {
 // Set current to current: PI, dead time, and windings under a voltage held for a tick.
 Complex ReadingResponse::current_loop(Complex back) const {
   const auto& motor = axis_.motor;
-  if (motor.model == sim::MotorModel::force || !axis_.current_controller) return 1.0;
-  const double mutual = motor.model == sim::MotorModel::synchronous ? motor.mutual_inductance : 0.0;
+  if (motor.model == machine::MotorModel::force || !axis_.current_controller) return 1.0;
+  const double mutual = motor.model == machine::MotorModel::synchronous ? motor.mutual_inductance : 0.0;
   const double resistance = motor.phase_resistance / motor.count;
   const double inductance = (motor.phase_inductance - mutual) / motor.count;
   const double decay = std::exp(-resistance * tick_ / inductance);
@@ -56,8 +56,8 @@ Complex ReadingResponse::drive(double frequency) const {
   const Complex back = std::polar(1.0, -w * tick_);
   if (std::abs(1.0 - back) < 1e-9) return 0.0;
   Complex speed = (1.0 - back) / tick_;
-  if (axis_.encoder.velocity == sim::VelocitySource::mean_difference) speed = (1.0 - back * back) / (2.0 * tick_);
-  if (axis_.encoder.velocity == sim::VelocitySource::ideal) speed = {0.0, w};
+  if (axis_.encoder.velocity == machine::VelocitySource::mean_difference) speed = (1.0 - back * back) / (2.0 * tick_);
+  if (axis_.encoder.velocity == machine::VelocitySource::ideal) speed = {0.0, w};
   Complex answer = speed * pi(axis_.velocity_controller.gain, axis_.velocity_controller.integral_time, tick_, back) *
                    current_loop(back) * axis_.motor.force_constant;
   if (axis_.notch) answer *= notch_of(*axis_.notch, tick_, back);

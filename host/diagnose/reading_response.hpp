@@ -5,14 +5,14 @@
 
 #include <complex>
 
-#include "sim/model/machine.hpp"
+#include "firmware/machine/model/machine.hpp"
 
 namespace stiction::host {
 
 class ReadingResponse {
  public:
   // `log_period`: s, of the log's samples.
-  ReadingResponse(const sim::Axis& axis, const sim::Timing& timing, double log_period);
+  ReadingResponse(const machine::AxisModel& axis, const machine::Timing& timing, double log_period);
 
   // Residual force (N) for an error of 1 m at `frequency` (Hz, not negative), as the log's samples show it.
   std::complex<double> operator()(double frequency) const;
@@ -27,7 +27,7 @@ class ReadingResponse {
  private:
   std::complex<double> current_loop(std::complex<double> back) const;
 
-  sim::Axis axis_;
+  machine::AxisModel axis_;
   double tick_;
   double log_period_;
 };

@@ -12,7 +12,7 @@
 
 namespace stiction::host {
 
-void refuse_same_record(std::span<const Log> logs, std::span<const Log> held_out, const sim::Axis& axis) {
+void refuse_same_record(std::span<const Log> logs, std::span<const Log> held_out, const machine::AxisModel& axis) {
   for (const auto& held : held_out)
     for (const auto& log : logs) {
       const auto& a = channels_of(log, axis).x;
@@ -30,7 +30,7 @@ void refuse_same_record(std::span<const Log> logs, std::span<const Log> held_out
     }
 }
 
-void refuse_unreachable_set_points(const Log& log, const sim::Axis& axis) {
+void refuse_unreachable_set_points(const Log& log, const machine::AxisModel& axis) {
   const auto& channels = channels_of(log, axis);
   if (channels.x_set.empty()) return;
   const SetPoints points(log, channels);

@@ -3,17 +3,17 @@
 
 #include <span>
 
+#include "firmware/machine/model/machine.hpp"
 #include "host/identify/log_rows.hpp"
 #include "host/log/log.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
 // A held-out log that is one of the training logs, or overlaps one.
-void refuse_same_record(std::span<const Log> logs, std::span<const Log> held_out, const sim::Axis& axis);
+void refuse_same_record(std::span<const Log> logs, std::span<const Log> held_out, const machine::AxisModel& axis);
 
 // Set-points faster or further than the machine file allows.
-void refuse_unreachable_set_points(const Log& log, const sim::Axis& axis);
+void refuse_unreachable_set_points(const Log& log, const machine::AxisModel& axis);
 
 // `expected`: the force (N) that the machine file gives for the rows' motion. A force of the other sign, in effective
 // amperes, or of another machine.

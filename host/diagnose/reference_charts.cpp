@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sim/plant/effects/presliding_hysteresis.hpp"
+#include "sim/plant/friction/friction.hpp"
 
 namespace stiction::host {
 namespace {
@@ -74,7 +75,7 @@ sim::Chart shares(const ReferenceRows& reference, const Finding& finding, bool e
 }
 
 // Friction over speed: the rows, the file, the extended one, and the extended one without this cause.
-sim::Chart sliding(const sim::Machine& machine, const ReferenceExtension& extension, const AxisExtension& axis,
+sim::Chart sliding(const machine::Machine& machine, const ReferenceExtension& extension, const AxisExtension& axis,
                    const Finding& finding) {
   sim::Chart chart;
   chart.title = "Friction over speed";
@@ -113,7 +114,7 @@ sim::Chart sliding(const sim::Machine& machine, const ReferenceExtension& extens
   return chart;
 }
 
-sim::Chart contact(const sim::Machine& machine, const AxisExtension& axis, const Finding& finding) {
+sim::Chart contact(const machine::Machine& machine, const AxisExtension& axis, const Finding& finding) {
   sim::Chart chart;
   chart.title = "Force before sliding";
   chart.x_label = "displacement, µm";
@@ -128,7 +129,6 @@ sim::Chart contact(const sim::Machine& machine, const AxisExtension& axis, const
   const double longest = 2.0 * distance;
   const auto own =
       std::find_if(machine.axes.begin(), machine.axes.end(), [&](const auto& each) { return each.name == axis.axis; });
-  const auto& in_use = own->friction.models.at(own->friction.use);
   for (int k = 0; k <= 200; ++k) {
     const double x = longest * std::pow(k / 200.0, 2);
     double force = 0.0;
@@ -136,11 +136,12 @@ sim::Chart contact(const sim::Machine& machine, const AxisExtension& axis, const
       force += std::min(elements.stiffness[j] * x, elements.level[j]);
     extended.x.push_back(x * 1e6);
     extended.y.push_back(100.0 * force / coulomb);
-    if (const auto* lugre = std::get_if<sim::LuGre::Parameters>(&in_use)) {
-      file.x.push_back(x * 1e6);
-      file.y.push_back(-100.0 * std::expm1(-lugre->stiffness * x / lugre->coulomb));
-    }
+    file.x.push_back(x);
   }
+  file.y = sim::loading_curve(own->friction, file.x);
+  for (double& x : file.x) x *= 1e6;
+  for (double& y : file.y) y *= 100.0 / sim::coulomb_of(own->friction);
+  if (file.y.empty()) file.x.clear();
   double most = 0.0;
   for (const auto& row : machine.presliding_references)
     if (!row.same_direction) most = std::max(most, row.force);
@@ -157,7 +158,7 @@ sim::Chart contact(const sim::Machine& machine, const AxisExtension& axis, const
 
 }  // namespace
 
-void add_reference_charts(Verdict& verdict, const sim::Machine& machine, const ReferenceExtension& extension) {
+void add_reference_charts(Verdict& verdict, const machine::Machine& machine, const ReferenceExtension& extension) {
   for (const bool error : {false, true})
     for (const auto& axis : machine.axes)
       verdict.before_after.push_back(deviation(*verdict.reference, axis.name, error));

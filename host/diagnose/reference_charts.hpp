@@ -7,6 +7,6 @@
 
 namespace stiction::host {
 
-void add_reference_charts(Verdict& verdict, const sim::Machine& machine, const ReferenceExtension& extension);
+void add_reference_charts(Verdict& verdict, const machine::Machine& machine, const ReferenceExtension& extension);
 
 }  // namespace stiction::host

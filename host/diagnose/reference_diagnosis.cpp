@@ -16,7 +16,7 @@
 namespace stiction::host {
 namespace {
 
-std::vector<double> measured_feeds(const sim::Machine& machine) {
+std::vector<double> measured_feeds(const machine::Machine& machine) {
   std::vector<double> feeds;
   for (const auto& row : machine.circle_references)
     if (row.measured && std::find(feeds.begin(), feeds.end(), row.feed) == feeds.end()) feeds.push_back(row.feed);
@@ -27,7 +27,7 @@ std::vector<double> measured_feeds(const sim::Machine& machine) {
 // Largest error and current of both axes, by feed.
 using Laps = std::map<double, std::array<RowFigures, 2>>;
 
-Laps simulated(const sim::Machine& machine) {
+Laps simulated(const machine::Machine& machine) {
   Laps laps;
   for (const double feed : measured_feeds(machine)) {
     const auto run = reference_circle(machine, feed);
@@ -36,7 +36,7 @@ Laps simulated(const sim::Machine& machine) {
   return laps;
 }
 
-std::optional<RowFigures> published_row(const sim::Machine& machine, const sim::Axis& axis, double feed) {
+std::optional<RowFigures> published_row(const machine::Machine& machine, const machine::AxisModel& axis, double feed) {
   for (const auto& row : machine.circle_references)
     if (!row.measured && row.axis == axis.name && row.feed == feed && row.friction == axis.friction.use)
       return RowFigures{row.error, row.current};
@@ -44,7 +44,7 @@ std::optional<RowFigures> published_row(const sim::Machine& machine, const sim::
 }
 
 // One row of the measured ones, in the order of axes and feeds.
-std::vector<DiagnosedRow> rows_of(const sim::Machine& machine, double training_feed, const Laps& before,
+std::vector<DiagnosedRow> rows_of(const machine::Machine& machine, double training_feed, const Laps& before,
                                   const Laps& after) {
   std::vector<DiagnosedRow> rows;
   for (std::size_t k = 0; k < machine.axes.size(); ++k)
@@ -147,7 +147,7 @@ EffectParameter parameter(const char* name, double value, double error) { return
 
 // Values and standard errors under the names of verdict.json. Of an axis without rows of its own the scale's error is
 // all that is known, and the rows' own beside it.
-std::vector<EffectParameter> parameters_of(const sim::Effect& effect, const ReferenceExtension& extension,
+std::vector<EffectParameter> parameters_of(const machine::Effect& effect, const ReferenceExtension& extension,
                                            const AxisExtension& axis) {
   const auto& errors = extension.sliding.errors;
   const double scale = axis.force_error / axis.force;
@@ -183,7 +183,7 @@ void judge(Finding& finding, const ReferenceExtension& extension, const AxisExte
   finding.p_value = std::erfc(std::abs(by) / error_reading / std::sqrt(2.0));
 }
 
-void add_findings(const sim::Machine& machine, const ReferenceExtension& extension, Verdict& verdict) {
+void add_findings(const machine::Machine& machine, const ReferenceExtension& extension, Verdict& verdict) {
   for (std::size_t k = 0; k < machine.axes.size(); ++k)
     for (const auto& effect : effects_of(machine, extension, k)) {
       Finding finding;
@@ -199,7 +199,7 @@ void add_findings(const sim::Machine& machine, const ReferenceExtension& extensi
 }
 
 // All findings but those of which `leave_away` is true.
-Laps simulated_without(const sim::Machine& machine, const Verdict& verdict,
+Laps simulated_without(const machine::Machine& machine, const Verdict& verdict,
                        const std::function<bool(const Finding&)>& leave_away) {
   auto without = machine;
   for (auto& axis : without.axes)
@@ -210,7 +210,7 @@ Laps simulated_without(const sim::Machine& machine, const Verdict& verdict,
 
 // What each row loses without each finding, and what that gains. The parts of a borrowed law came from one number and
 // are judged together. Both axes' findings of a name are left away at once: no axis feels the other.
-void add_shares(const sim::Machine& machine, const ReferenceExtension& extension, Verdict& verdict,
+void add_shares(const machine::Machine& machine, const ReferenceExtension& extension, Verdict& verdict,
                 const std::function<void()>& progress) {
   auto& rows = verdict.reference->rows;
   const auto is_contact = [](const Finding& f) { return f.effect.name == "presliding_hysteresis"; };
@@ -236,7 +236,7 @@ void add_shares(const sim::Machine& machine, const ReferenceExtension& extension
   }
 }
 
-void add_figures(const sim::Machine& machine, Verdict& verdict) {
+void add_figures(const machine::Machine& machine, Verdict& verdict) {
   const auto& rows = verdict.reference->rows;
   const auto figures = [&](const RowFigures DiagnosedRow::*simulated) {
     ResidualFigures f;
@@ -257,7 +257,7 @@ void add_figures(const sim::Machine& machine, Verdict& verdict) {
 // sensitivities of all rows to a tenth of each scale.
 class LeftOut {
  public:
-  LeftOut(const sim::Machine& machine, ReferenceExtension extension, const Laps& at)
+  LeftOut(const machine::Machine& machine, ReferenceExtension extension, const Laps& at)
       : machine_(machine),
         start_(std::move(extension)),
         at_(at),
@@ -307,13 +307,13 @@ class LeftOut {
     return std::clamp(moment / slope_square, -std::log(2.0), std::log(2.0));
   }
 
-  const sim::Machine& machine_;
+  const machine::Machine& machine_;
   ReferenceExtension start_;
   const Laps& at_;
   Laps force_, displacement_;
 };
 
-void leave_each_feed_out(const sim::Machine& machine, const ReferenceExtension& extension, const Laps& after,
+void leave_each_feed_out(const machine::Machine& machine, const ReferenceExtension& extension, const Laps& after,
                          ReferenceRows& reference, const std::function<void()>& progress) {
   const LeftOut left_out(machine, extension, after);
   for (const double feed : measured_feeds(machine)) {
@@ -327,7 +327,7 @@ void leave_each_feed_out(const sim::Machine& machine, const ReferenceExtension& 
 
 }  // namespace
 
-Verdict diagnose_reference(const sim::Machine& machine, const std::function<void()>& progress) {
+Verdict diagnose_reference(const machine::Machine& machine, const std::function<void()>& progress) {
   if (machine.axes.size() != 2)
     throw MissingRows(fmt::format("found a machine with {} axes; expected 2, of a circle", machine.axes.size()));
   const auto extension = extend_by_rows(machine, calibration_feed);

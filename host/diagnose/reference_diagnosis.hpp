@@ -6,13 +6,13 @@
 
 #include <functional>
 
+#include "firmware/machine/model/machine.hpp"
 #include "host/diagnose/verdict.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
 // Throws MissingRows for a machine whose rows do not allow it, sim errors for one that cannot drive them. The training
 // feed is that of docs/friction_model.md, at which the published simulation was matched to the machine too.
-Verdict diagnose_reference(const sim::Machine& machine, const std::function<void()>& progress = {});
+Verdict diagnose_reference(const machine::Machine& machine, const std::function<void()>& progress = {});
 
 }  // namespace stiction::host

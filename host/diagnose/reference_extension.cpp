@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/machine/configuration/double_signals.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
 #include "host/simulate/circle.hpp"
-#include "sim/control/double_signals.hpp"
 #include "sim/plant/effects/effects.hpp"
+#include "sim/plant/friction/friction.hpp"
 
 namespace stiction::host {
 namespace {
@@ -16,16 +17,16 @@ namespace {
 constexpr double least_displacement = 0.05, most_displacement = 500.0;  // scales between which the contact is sought
 constexpr int halvings = 8, corrections = 3;
 
-double force_constant_of(const sim::Axis& axis) { return axis.motor.force_constant; }
+double force_constant_of(const machine::AxisModel& axis) { return axis.motor.force_constant; }
 
-std::vector<SteadyPoint> steady_points(const sim::Machine& machine, const sim::Axis& axis) {
+std::vector<SteadyPoint> steady_points(const machine::Machine& machine, const machine::AxisModel& axis) {
   std::vector<SteadyPoint> points;
   for (const auto& row : machine.steady_friction_references)
     if (row.axis == axis.name) points.push_back({row.velocity, row.current * force_constant_of(axis)});
   return points;
 }
 
-PreslidingCurve contact_of(const sim::Machine& machine) {
+PreslidingCurve contact_of(const machine::Machine& machine) {
   std::vector<PreslidingPoint> points;
   for (const auto& row : machine.presliding_references)
     points.push_back({row.same_direction, row.force, row.displacement});
@@ -45,7 +46,7 @@ double displacement_at(const PreslidingCurve& curve, double force) {
 // Scales of all axes at once, as one circle moves both.
 class Scales {
  public:
-  Scales(const sim::Machine& machine, ReferenceExtension& extension) : machine_(machine), extension_(extension) {
+  Scales(const machine::Machine& machine, ReferenceExtension& extension) : machine_(machine), extension_(extension) {
     for (const auto& axis : machine.axes) {
       const auto* row = measured_row(machine, axis.name, extension.training_feed);
       if (row == nullptr)
@@ -156,7 +157,7 @@ class Scales {
     }
   }
 
-  const sim::Machine& machine_;
+  const machine::Machine& machine_;
   ReferenceExtension& extension_;
   std::vector<Lap> wanted_;
   std::vector<double> slopes_;  // A, of the current over the scale of the friction
@@ -164,35 +165,40 @@ class Scales {
 
 }  // namespace
 
-sim::CircleRun reference_circle(const sim::Machine& machine, double feed) {
+sim::CircleRun reference_circle(const machine::Machine& machine, double feed) {
   sim::CircleSettings settings;
   settings.feed = feed;
-  return run_circle<sim::DoubleSignals>(machine, settings);
+  return run_circle<machine::DoubleSignals>(machine, settings);
 }
 
-const sim::CircleReference* measured_row(const sim::Machine& machine, const std::string& axis, double feed) {
-  const auto row = std::find_if(
-      machine.circle_references.begin(), machine.circle_references.end(), [&](const sim::CircleReference& candidate) {
-        return candidate.measured && candidate.axis == axis && std::abs(candidate.feed - feed) < 1e-6 * feed;
-      });
+const machine::CircleReference* measured_row(const machine::Machine& machine, const std::string& axis, double feed) {
+  const auto row = std::find_if(machine.circle_references.begin(), machine.circle_references.end(),
+                                [&](const machine::CircleReference& candidate) {
+                                  return candidate.measured && candidate.axis == axis &&
+                                         std::abs(candidate.feed - feed) < 1e-6 * feed;
+                                });
   return row == machine.circle_references.end() ? nullptr : &*row;
 }
 
-SlidingLaw file_law(const sim::Axis& axis) {
+SlidingLaw file_law(const machine::AxisModel& axis) {
   const auto plant = sim::plant_axis(axis);
-  const auto coulomb = coulomb_of(plant), viscous = viscous_of(plant);
-  if (!coulomb || !viscous)
-    throw MissingRows(
-        fmt::format("axis {}: found the friction model {}; expected one with Coulomb and viscous friction", axis.name,
-                    axis.friction.use));
-  return {*coulomb, *viscous, 0.0, 0.0};
+  const auto steady = sim::steady_friction(plant.friction);
+  constexpr double slow = 0.1, fast = 1.0;  // m/s, beyond presliding and Stribeck's fall
+  const double viscous = (steady(fast, 1.0) - steady(slow, 1.0)) / (fast - slow);
+  const SlidingLaw law{steady(slow, 1.0) - viscous * slow, viscous, 0.0, 0.0};
+  const double between = 0.5 * (slow + fast);
+  if (!(std::abs(law.at(between) / steady(between, 1.0) - 1.0) < 0.01))
+    throw MissingRows(fmt::format(
+        "axis {}: found the friction model {}; expected one whose friction is Coulomb and viscous in sliding",
+        axis.name, axis.friction.use));
+  return law;
 }
 
-std::vector<sim::Effect> effects_of(const sim::Machine& machine, const ReferenceExtension& extension,
-                                    std::size_t axis) {
+std::vector<machine::Effect> effects_of(const machine::Machine& machine, const ReferenceExtension& extension,
+                                        std::size_t axis) {
   const auto& own = extension.axes[axis];
   const auto& law = extension.sliding.law;
-  std::vector<sim::Effect> effects;
+  std::vector<machine::Effect> effects;
   double coulomb = file_law(machine.axes[axis]).coulomb;
   for (const auto& test : extension.sliding.tests) {
     if (!test.named) continue;
@@ -210,20 +216,21 @@ std::vector<sim::Effect> effects_of(const sim::Machine& machine, const Reference
   return effects;
 }
 
-sim::Machine extended_by(sim::Machine machine, const ReferenceExtension& extension) {
-  const sim::Machine file = machine;
+machine::Machine extended_by(machine::Machine machine, const ReferenceExtension& extension) {
+  const machine::Machine file = machine;
   for (std::size_t k = 0; k < machine.axes.size(); ++k) {
     auto& effects = machine.axes[k].effects;
     for (auto& effect : effects_of(file, extension, k)) {
       const auto* kind = sim::find_effect_kind(effect.name);
-      if (!kind->several) std::erase_if(effects, [&](const sim::Effect& other) { return other.name == effect.name; });
+      if (!kind->several)
+        std::erase_if(effects, [&](const machine::Effect& other) { return other.name == effect.name; });
       effects.push_back(std::move(effect));
     }
   }
   return machine;
 }
 
-ReferenceExtension extend_by_rows(const sim::Machine& machine, double training_feed) {
+ReferenceExtension extend_by_rows(const machine::Machine& machine, double training_feed) {
   ReferenceExtension extension;
   extension.training_feed = training_feed;
   const auto source = std::find_if(machine.axes.begin(), machine.axes.end(),

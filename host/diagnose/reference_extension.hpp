@@ -4,10 +4,10 @@
 
 #include <vector>
 
+#include "firmware/machine/model/effect.hpp"
+#include "firmware/machine/model/machine.hpp"
 #include "host/diagnose/sliding_law.hpp"
 #include "sim/experiment/circle_result.hpp"
-#include "sim/model/effect.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
@@ -38,20 +38,21 @@ struct ReferenceExtension {
 };
 
 // Measured circles of one lap; cheap enough (about 10 ms an axis-second of motion) to run for every guess.
-sim::CircleRun reference_circle(const sim::Machine& machine, double feed);
+sim::CircleRun reference_circle(const machine::Machine& machine, double feed);
 
 // The friction law that an axis of the file has, without Stribeck's fall. Throws MissingRows for a model without one.
-SlidingLaw file_law(const sim::Axis& axis);
+SlidingLaw file_law(const machine::AxisModel& axis);
 
 // Throws MissingRows where rows are missing or no scale gives the training row.
-ReferenceExtension extend_by_rows(const sim::Machine& machine, double training_feed);
+ReferenceExtension extend_by_rows(const machine::Machine& machine, double training_feed);
 
 // The effects of an axis of the extension, in the order coulomb, viscous, rise, contact; only those that are named.
-std::vector<sim::Effect> effects_of(const sim::Machine& machine, const ReferenceExtension& extension, std::size_t axis);
+std::vector<machine::Effect> effects_of(const machine::Machine& machine, const ReferenceExtension& extension,
+                                        std::size_t axis);
 
-sim::Machine extended_by(sim::Machine machine, const ReferenceExtension& extension);
+machine::Machine extended_by(machine::Machine machine, const ReferenceExtension& extension);
 
 // The measured row of an axis at a feed (m/s); nullptr without one.
-const sim::CircleReference* measured_row(const sim::Machine& machine, const std::string& axis, double feed);
+const machine::CircleReference* measured_row(const machine::Machine& machine, const std::string& axis, double feed);
 
 }  // namespace stiction::host

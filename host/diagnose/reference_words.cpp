@@ -58,7 +58,7 @@ std::string percent_off(double simulated, double measured) {
 }
 
 // The fastest circle's current is mostly acceleration: what the mass may be off, with the friction extended.
-std::string why_not_mass(const sim::Machine& machine, const Verdict& verdict) {
+std::string why_not_mass(const machine::Machine& machine, const Verdict& verdict) {
   std::string text = "not needed: ";
   for (std::size_t k = 0; k < machine.axes.size(); ++k) {
     const auto& axis = machine.axes[k];
@@ -77,7 +77,7 @@ bool named(const Verdict& verdict, std::string_view effect) {
                      [&](const Finding& f) { return f.effect.name == effect; });
 }
 
-std::string contact_evidence(const AxisExtension& axis, double feed, const sim::CircleReference& row) {
+std::string contact_evidence(const AxisExtension& axis, double feed, const machine::CircleReference& row) {
   return fmt::format(
       "With the sliding friction extended and the file's contact, the error at {:g} m/min is {:.2f} um, measured "
       "{:.1f} um. The contact has the shape of the rows of presliding (loaded against the motion before) with "
@@ -94,7 +94,7 @@ const char* name_of(SlidingPart part) {
 }
 
 std::string evidence_words(const ReferenceExtension& extension, const AxisExtension& axis, const std::string& effect,
-                           const sim::CircleReference& row) {
+                           const machine::CircleReference& row) {
   if (effect == "presliding_hysteresis") return contact_evidence(axis, extension.training_feed, row);
   const auto& fit = extension.sliding;
   if (!axis.own_rows)
@@ -125,7 +125,7 @@ std::vector<ConfusedWith> confusion_words(const ReferenceExtension& extension, c
   return list;
 }
 
-std::vector<Rejected> rejection_words(const sim::Machine& machine, const Verdict& verdict) {
+std::vector<Rejected> rejection_words(const machine::Machine& machine, const Verdict& verdict) {
   std::vector<Rejected> list;
   for (const auto& kind : sim::effect_kinds()) {
     if (named(verdict, kind.name)) continue;

@@ -13,13 +13,13 @@ namespace stiction::host {
 const char* name_of(SlidingPart part);  // in the vocabulary
 
 std::string evidence_words(const ReferenceExtension& extension, const AxisExtension& axis, const std::string& effect,
-                           const sim::CircleReference& training_row);
+                           const machine::CircleReference& training_row);
 
 std::vector<ConfusedWith> confusion_words(const ReferenceExtension& extension, const AxisExtension& axis,
                                           const std::string& effect);
 
 // Every effect of the vocabulary that is not named, and why.
-std::vector<Rejected> rejection_words(const sim::Machine& machine, const Verdict& verdict);
+std::vector<Rejected> rejection_words(const machine::Machine& machine, const Verdict& verdict);
 
 // What the extended simulation leaves of the rows that took no part, as share of the squared relative deviations of
 // their currents.

@@ -145,7 +145,7 @@ double Separation::expected(const Records& records, std::span<const Explanation>
     const auto& motion = rows.motions()[k];
     if (constant)
       beside.emplace_back(white(rows, rows.of_log(k, std::vector<double>(motion.t.size(), 1.0))).cwiseProduct(trusted));
-    if (coulomb && coulomb_of(scene.axis))
+    if (coulomb)
       beside.emplace_back(white(rows, rows.of_log(k, contact_level(scene.axis, motion))).cwiseProduct(trusted));
   }
   for (const auto& other : others) append(beside, columns_of(other, other.nonlinear));

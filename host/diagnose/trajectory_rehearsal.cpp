@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/machine/configuration/axis_configuration.hpp"
 #include "host/diagnose/bench.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
 #include "host/simulate/control_run.hpp"
 #include "host/simulate/replay.hpp"
-#include "sim/control/axis_configuration.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
 namespace stiction::host {
@@ -34,8 +34,8 @@ Covered covered_by(const LogRows& rows) {
   return covered;
 }
 
-double highest_motor_force(const sim::Axis& axis) {
-  return axis.motor.force_constant * (axis.motor.model == sim::MotorModel::force
+double highest_motor_force(const machine::AxisModel& axis) {
+  return axis.motor.force_constant * (axis.motor.model == machine::MotorModel::force
                                           ? axis.inverter.voltage_limit
                                           : axis.inverter.current_limit * axis.motor.count);
 }
@@ -73,7 +73,7 @@ Scene scene_with(Scene scene, const LogRows& rows) {
 
 }  // namespace
 
-sim::MotionRange motion_range(const sim::Axis& axis, const LogRows& rows) {
+sim::MotionRange motion_range(const machine::AxisModel& axis, const LogRows& rows) {
   auto [low, high] = covered_by(rows);
   if (const double least = least_of_travel * axis.travel; high - low < least) {
     const double middle = 0.5 * (low + high);
@@ -81,7 +81,7 @@ sim::MotionRange motion_range(const sim::Axis& axis, const LogRows& rows) {
     high = middle + 0.5 * least;
   }
   const double speed = speed_share * axis.max_velocity;
-  const double friction = coulomb_of(axis).value_or(0.0) + viscous_of(axis).value_or(0.0) * speed;
+  const double friction = coulomb_of(axis) + viscous_of(axis) * speed;
   const double by_force = (force_share * highest_motor_force(axis) - friction) / axis.mass;
   const double highest = std::min(acceleration_share * axis.max_acceleration, by_force);
   const double acceleration = std::min(beyond_the_records * rows.acceleration.cwiseAbs().maxCoeff(), highest);
@@ -107,7 +107,7 @@ std::string extent_words(const Log& proposed, const LogRows& rows) {
   return words;
 }
 
-std::vector<Rehearsal> rehearse(const sim::Machine& machine, std::size_t axis, const sim::MotionRange& range,
+std::vector<Rehearsal> rehearse(const machine::Machine& machine, std::size_t axis, const sim::MotionRange& range,
                                 const LogRows& rows, const Scene& scene, const SignalSettings& settings) {
   std::vector<Rehearsal> all;
   if (!(range.high > range.low) || !(range.speed > 0.0) || !(range.acceleration > 0.0)) return all;
@@ -127,7 +127,7 @@ std::vector<Rehearsal> rehearse(const sim::Machine& machine, std::size_t axis, c
       known.response = EffectResponse(bench, 0, {log}, settings);
       all.push_back({&kind, std::move(log), std::move(moved), std::move(known)});
     } catch (const FaultTripped&) {  // not for this machine
-    } catch (const sim::ConfigurationError&) {
+    } catch (const machine::ConfigurationError&) {
     } catch (const LogError&) {
     }
   }

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "firmware/machine/model/machine.hpp"
 #include "host/diagnose/candidate.hpp"
 #include "host/identify/log_rows.hpp"
 #include "sim/experiment/separating_trajectories.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
@@ -17,7 +17,7 @@ inline constexpr int enough_reversals = 1000;
 // Within the positions that the records cover; where these are less than a quarter of the travel, that much about their
 // middle. Nine tenths of the axis' speed. Accelerations are half as high again as in the records; where they are what
 // is looked at, 0.7 of the axis' and what half of its motor's force gives.
-sim::MotionRange motion_range(const sim::Axis& axis, const LogRows& rows);
+sim::MotionRange motion_range(const machine::AxisModel& axis, const LogRows& rows);
 // Where a proposed log begins, how far and how fast it goes, and a warning where the records did not go there.
 std::string extent_words(const Log& proposed, const LogRows& rows);
 
@@ -29,7 +29,7 @@ struct Rehearsal {
 };
 
 // Those that the machine follows in simulation, at the rate that gives rows like those of `rows`.
-std::vector<Rehearsal> rehearse(const sim::Machine& machine, std::size_t axis, const sim::MotionRange& range,
+std::vector<Rehearsal> rehearse(const machine::Machine& machine, std::size_t axis, const sim::MotionRange& range,
                                 const LogRows& rows, const Scene& scene, const SignalSettings& settings);
 
 }  // namespace stiction::host

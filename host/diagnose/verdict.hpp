@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "firmware/machine/model/effect.hpp"
 #include "host/log/log.hpp"
 #include "sim/experiment/experiment_result.hpp"
-#include "sim/model/effect.hpp"
 
 namespace stiction::host {
 
@@ -37,7 +37,7 @@ struct HoldoutGain {
 
 struct Finding {
   std::string axis;
-  sim::Effect effect;  // as it goes into the extended machine file
+  machine::Effect effect;  // as it goes into the extended machine file
   std::vector<EffectParameter> parameters;
   // Where it shows: explains, p_value and holdout speak of the command residual, not of the residual force.
   bool in_command = false;

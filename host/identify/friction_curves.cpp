@@ -110,8 +110,8 @@ PreslidingCurve presliding_curve(const std::vector<PreslidingPoint>& points) {
   return curve;
 }
 
-sim::MaxwellSlip::Parameters friction_elements(const SteadyCurve& sliding, const PreslidingCurve& presliding,
-                                               double force, double displacement) {
+sim::MaxwellSlipParameters friction_elements(const SteadyCurve& sliding, const PreslidingCurve& presliding,
+                                             double force, double displacement) {
   // Element i slips at point i; its stiffness is the fall of the curve's slope there.
   const double to_force = force * sliding.creeping / presliding.coulomb();
   const std::size_t count = presliding.force.size();
@@ -120,7 +120,7 @@ sim::MaxwellSlip::Parameters friction_elements(const SteadyCurve& sliding, const
     const double x0 = i == 0 ? 0.0 : presliding.displacement[i - 1], f0 = i == 0 ? 0.0 : presliding.force[i - 1];
     slope[i] = to_force * (presliding.force[i] - f0) / (displacement * (presliding.displacement[i] - x0));
   }
-  sim::MaxwellSlip::Parameters p;
+  sim::MaxwellSlipParameters p;
   for (std::size_t i = 0; i < count; ++i) {
     p.stiffness.push_back(slope[i] - slope[i + 1]);
     p.level.push_back(p.stiffness.back() * displacement * presliding.displacement[i]);

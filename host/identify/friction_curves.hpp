@@ -58,7 +58,7 @@ PreslidingCurve presliding_curve(const std::vector<PreslidingPoint>& points);
 
 // Elements with the shape of the presliding curve and the friction of the sliding curve; `force` scales all friction,
 // `displacement` all displacements. The creeping friction takes the place of the presliding curve's Coulomb friction.
-sim::MaxwellSlip::Parameters friction_elements(const SteadyCurve& sliding, const PreslidingCurve& presliding,
-                                               double force, double displacement);
+sim::MaxwellSlipParameters friction_elements(const SteadyCurve& sliding, const PreslidingCurve& presliding,
+                                             double force, double displacement);
 
 }  // namespace stiction::host

@@ -23,7 +23,7 @@ const FittedParameter& FrictionFit::at(std::string_view name) const {
 
 FrictionFit fit_coulomb_viscous(const LogRows& rows, const FitSettings& settings) {
   FrictionFit fit;
-  fit.model = std::string(sim::CoulombViscous::name);
+  fit.model = std::string(sim::CoulombViscous<>::name);
   fit.contact = rows.stacked([](const Motion& m) {
     std::vector<double> sign(m.v.size());
     std::transform(m.v.begin(), m.v.end(), sign.begin(), [](double v) { return v > 0.0 ? 1.0 : v < 0.0 ? -1.0 : 0.0; });

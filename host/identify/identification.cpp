@@ -180,7 +180,7 @@ void add_curve(Identification& result, const LogRows& rows, const FrictionFit& f
 
 }  // namespace
 
-const AxisLog& channels_of(const Log& log, const sim::Axis& axis) {
+const AxisLog& channels_of(const Log& log, const machine::AxisModel& axis) {
   for (const auto& channels : log.axes)
     if (channels.axis == axis.name || channels.axis.empty()) return channels;
   std::string names;
@@ -193,8 +193,9 @@ const IdentifiedParameter* Identification::find(std::string_view name) const {
   return found == parameters.end() ? nullptr : &*found;
 }
 
-Identification identify_logs(const std::vector<Log>& logs, const sim::Axis& axis, const IdentifyOptions& options) {
-  const bool recipe = options.friction == sim::CoulombViscous::name;
+Identification identify_logs(const std::vector<Log>& logs, const machine::AxisModel& axis,
+                             const IdentifyOptions& options) {
+  const bool recipe = options.friction == sim::CoulombViscous<>::name;
   const auto signals = recipe ? published_recipe() : SignalSettings{};
   Identification result;
   result.axis = axis.name;
@@ -240,7 +241,7 @@ Identification identify_logs(const std::vector<Log>& logs, const sim::Axis& axis
   return result;
 }
 
-Identification identify_table(const SteadyTable& table, const sim::Axis& axis, std::optional<Amperes> stated,
+Identification identify_table(const SteadyTable& table, const machine::AxisModel& axis, std::optional<Amperes> stated,
                               const FitSettings& settings) {
   const auto data = sliding_data(table, axis, stated);
   Identification result;

@@ -58,14 +58,15 @@ struct IdentifyOptions {
 };
 
 // The log's channels of that axis, or those without an axis' name. Throws LogError when it has neither.
-const AxisLog& channels_of(const Log& log, const sim::Axis& axis);
+const AxisLog& channels_of(const Log& log, const machine::AxisModel& axis);
 
 // `axis`: of the machine that the logs belong to; each log's channels of that axis, or those without an axis' name.
 // Throws LogError for logs that cannot be used (suitability.hpp).
-Identification identify_logs(const std::vector<Log>& logs, const sim::Axis& axis, const IdentifyOptions& options);
+Identification identify_logs(const std::vector<Log>& logs, const machine::AxisModel& axis,
+                             const IdentifyOptions& options);
 
 // Throws LogError.
-Identification identify_table(const SteadyTable& table, const sim::Axis& axis, std::optional<Amperes> stated,
+Identification identify_table(const SteadyTable& table, const machine::AxisModel& axis, std::optional<Amperes> stated,
                               const FitSettings& settings);
 
 }  // namespace stiction::host

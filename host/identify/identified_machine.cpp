@@ -7,12 +7,13 @@
 #include <array>
 #include <optional>
 
-#include "sim/machine/edited_machine.hpp"
+#include "firmware/machine/file/edited_machine.hpp"
+#include "sim/plant/friction/friction.hpp"
 
 namespace stiction::host {
 namespace {
 
-using Value = decltype(sim::MachineEdit::value);
+using Value = decltype(machine::MachineEdit::value);
 
 // Keys of friction models and the parameters they are written from.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 6> parameter_of_key{{
@@ -26,14 +27,14 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 6> parameter
 
 Value written(double value, std::string_view unit) {
   if (unit == "1") return value;
-  return sim::written_quantity(value, unit);
+  return machine::written_quantity(value, unit);
 }
 
 std::optional<Value> elements_value(const Identification& result, std::string_view key, std::string_view unit) {
   if (result.elements.empty()) return std::nullopt;
   std::vector<std::string> list;
   for (const auto& element : result.elements)
-    list.push_back(sim::written_quantity(key == "stiffness" ? element.stiffness : element.level, unit));
+    list.push_back(machine::written_quantity(key == "stiffness" ? element.stiffness : element.level, unit));
   return list;
 }
 
@@ -74,7 +75,7 @@ FrictionTable friction_table(const Identification& result) {
 
 // The model that acts: the file's own if it is complete, else the most detailed one that is.
 std::string model_in_use(const std::string& wanted, const std::vector<std::string>& complete) {
-  for (const auto& name : {wanted, std::string(sim::LuGre::name)})
+  for (const auto& name : {wanted, std::string(sim::LuGre<>::name)})
     if (std::find(complete.begin(), complete.end(), name) != complete.end()) return name;
   return complete.back();
 }
@@ -82,8 +83,9 @@ std::string model_in_use(const std::string& wanted, const std::vector<std::strin
 }  // namespace
 
 std::string identified_machine(const std::filesystem::path& file, const std::vector<std::string>& set,
-                               const sim::Axis& axis, const Identification& result, const std::string& command) {
-  std::vector<sim::MachineEdit> edits;
+                               const machine::AxisModel& axis, const Identification& result,
+                               const std::string& command) {
+  std::vector<machine::MachineEdit> edits;
   std::vector<std::string> comment{
       fmt::format("Identified from {}", fmt::join(result.sources, ", ")), fmt::format("by {}", command),
       fmt::format("on the machine file {}; axis {}:", file.filename().string(), axis.name)};
@@ -99,7 +101,7 @@ std::string identified_machine(const std::filesystem::path& file, const std::vec
     return full;
   };
   if (const auto* mass = result.find("mass_kg")) {
-    edits.push_back({path({"mass"}), sim::written_quantity(mass->value, "kg")});
+    edits.push_back({path({"mass"}), machine::written_quantity(mass->value, "kg")});
     edits.push_back({{"experiment", "*", "axis", axis.name, "mass"}, {}});
   } else {
     comment.push_back(fmt::format("  mass: kept from the machine file, {:g} kg", axis.mass));
@@ -125,7 +127,7 @@ std::string identified_machine(const std::filesystem::path& file, const std::vec
                     "to the highest, each both ways",
                     fmt::join(result.sources, ", "), axis.name, file.filename().string()));
   edits.push_back({path({"friction", "use"}), model_in_use(axis.friction.use, complete)});
-  return sim::edited_machine(file, set, edits, comment);
+  return machine::edited_machine(file, set, edits, comment);
 }
 
 }  // namespace stiction::host

@@ -14,6 +14,7 @@ namespace stiction::host {
 // what was found, what was left out and what stays as it was. `set`: assignments of the command line. Throws LogError
 // when no friction model is left, sim::MachineFileError.
 std::string identified_machine(const std::filesystem::path& file, const std::vector<std::string>& set,
-                               const sim::Axis& axis, const Identification& result, const std::string& command);
+                               const machine::AxisModel& axis, const Identification& result,
+                               const std::string& command);
 
 }  // namespace stiction::host

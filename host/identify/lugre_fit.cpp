@@ -201,7 +201,7 @@ void add_lugre_parameters(FrictionFit& fit, const LogRows& rows, const std::vect
 
 FrictionFit fit_lugre(const LogRows& rows, const FitSettings& settings) {
   FrictionFit fit;
-  fit.model = std::string(sim::LuGre::name);
+  fit.model = std::string(sim::LuGre<>::name);
   std::vector<double> p = refine(rows, {scanned_inverse_length(rows)}, false);
   take_shape(fit, rows, shape_of(p.data(), false));
   choose_blocks(fit, rows);

@@ -6,25 +6,26 @@
 #include <array>
 #include <cmath>
 
+#include "firmware/machine/configuration/double_signals.hpp"
 #include "host/simulate/circle.hpp"
-#include "sim/control/double_signals.hpp"
+#include "sim/plant/friction/friction.hpp"
 
 namespace stiction::host {
 namespace {
 
 bool at_calibration_feed(double feed) { return std::abs(feed - calibration_feed) < 1e-6 * calibration_feed; }
 
-sim::CircleRun circle(const sim::Machine& machine, double feed) {
+sim::CircleRun circle(const machine::Machine& machine, double feed) {
   sim::CircleSettings settings;
   settings.feed = feed;
-  return run_circle<sim::DoubleSignals>(machine, settings);
+  return run_circle<machine::DoubleSignals>(machine, settings);
 }
 
 // Scales of both axes at once, as one circle moves both: bisection of the displacement in its logarithm for the error,
 // which falls with it, and in each step the friction for the current, which is close to linear in it.
 class Calibration {
  public:
-  Calibration(const sim::Machine& machine, const PermittedRows& rows)
+  Calibration(const machine::Machine& machine, const PermittedRows& rows)
       : machine_(machine), rows_(rows), result_{fit_steady_curve(rows.steady), presliding_curve(rows.presliding), {}} {
     machine_.circle_references.clear();  // no row but those permitted can take part
     for (const auto& axis : machine.axes) result_.axes.push_back({axis.name, 1.0, 1.0, 0.0, 0.0, {}});
@@ -82,7 +83,7 @@ class Calibration {
     }
   }
 
-  static void check(const CalibratedAxis& axis, const sim::CircleReference& wanted) {
+  static void check(const CalibratedAxis& axis, const machine::CircleReference& wanted) {
     if (std::abs(axis.error / wanted.error - 1.0) < 0.01 && std::abs(axis.current / wanted.current - 1.0) < 0.01)
       return;
     throw MissingRows(
@@ -91,7 +92,7 @@ class Calibration {
                     axis.axis, wanted.error * 1e6, wanted.current, axis.error * 1e6, axis.current));
   }
 
-  sim::Machine machine_;
+  machine::Machine machine_;
   const PermittedRows& rows_;
   MeasuredMachine result_;
   std::array<double, 2> slope_{};  // A, of the current over the scale of the friction
@@ -99,15 +100,16 @@ class Calibration {
 
 }  // namespace
 
-PermittedRows permitted_rows(const sim::Machine& machine) {
+PermittedRows permitted_rows(const machine::Machine& machine) {
   PermittedRows rows;
   for (const auto& axis : machine.axes) {
     for (const auto& row : machine.steady_friction_references)
       if (row.axis == axis.name) rows.steady.push_back({row.velocity, row.current * axis.motor.force_constant});
-    const auto row = std::find_if(
-        machine.circle_references.begin(), machine.circle_references.end(), [&](const sim::CircleReference& candidate) {
-          return candidate.measured && candidate.axis == axis.name && at_calibration_feed(candidate.feed);
-        });
+    const auto row =
+        std::find_if(machine.circle_references.begin(), machine.circle_references.end(),
+                     [&](const machine::CircleReference& candidate) {
+                       return candidate.measured && candidate.axis == axis.name && at_calibration_feed(candidate.feed);
+                     });
     if (row == machine.circle_references.end())
       throw MissingRows(fmt::format("axis {}: found no measured [[reference.circle]] row at {:g} m/min; expected one",
                                     axis.name, calibration_feed * 60.0));
@@ -120,21 +122,21 @@ PermittedRows permitted_rows(const sim::Machine& machine) {
   return rows;
 }
 
-MeasuredMachine identify_measured_machine(const sim::Machine& machine) {
+MeasuredMachine identify_measured_machine(const machine::Machine& machine) {
   const auto rows = permitted_rows(machine);
   return Calibration(machine, rows).run();
 }
 
-sim::Machine with_friction(sim::Machine machine, const MeasuredMachine& identified) {
-  const std::string model(sim::MaxwellSlip::name);
+machine::Machine with_friction(machine::Machine machine, const MeasuredMachine& identified) {
+  const std::string model(sim::MaxwellSlip<>::name);
   for (std::size_t k = 0; k < machine.axes.size(); ++k) {
-    machine.axes[k].friction.models[model] = identified.axes[k].friction;
+    machine.axes[k].friction.models[model] = sim::values_of<sim::MaxwellSlip<>>(identified.axes[k].friction);
     machine.axes[k].friction.use = model;
   }
   return machine;
 }
 
-std::vector<PredictedRow> predict_circles(const sim::Machine& machine, const MeasuredMachine& identified) {
+std::vector<PredictedRow> predict_circles(const machine::Machine& machine, const MeasuredMachine& identified) {
   const auto simulated = with_friction(machine, identified);
   std::vector<double> feeds;
   for (const auto& row : machine.circle_references)

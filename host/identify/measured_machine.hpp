@@ -6,8 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "firmware/machine/model/machine.hpp"
 #include "host/identify/friction_curves.hpp"
-#include "sim/model/machine.hpp"
+#include "sim/plant/friction/friction.hpp"
 
 namespace stiction::host {
 
@@ -17,20 +18,20 @@ inline constexpr double calibration_feed = 16.0 / 60.0;  // m/s
 struct PermittedRows {
   std::vector<SteadyPoint> steady;
   std::vector<PreslidingPoint> presliding;
-  std::vector<sim::CircleReference> circle;  // measured at the calibration feed, one an axis in the machine's order
+  std::vector<machine::CircleReference> circle;  // measured at the calibration feed, one an axis in the machine's order
 };
 
 // Throws MissingRows when the machine has no such rows.
-PermittedRows permitted_rows(const sim::Machine& machine);
+PermittedRows permitted_rows(const machine::Machine& machine);
 
 // One axis after calibration.
 struct CalibratedAxis {
   std::string axis;
-  double force = 1.0;                     // scale of all friction
-  double displacement = 1.0;              // scale of all displacements
-  double error = 0.0;                     // m, simulated at the calibration feed
-  double current = 0.0;                   // A
-  sim::MaxwellSlip::Parameters friction;  // what comes of it
+  double force = 1.0;                   // scale of all friction
+  double displacement = 1.0;            // scale of all displacements
+  double error = 0.0;                   // m, simulated at the calibration feed
+  double current = 0.0;                 // A
+  sim::MaxwellSlipParameters friction;  // what comes of it
 };
 
 struct MeasuredMachine {
@@ -41,10 +42,10 @@ struct MeasuredMachine {
 
 // Two numbers an axis, peak error and peak current at the calibration feed, determine its two scales, by circles in
 // double precision. Throws MissingRows, FaultTripped.
-MeasuredMachine identify_measured_machine(const sim::Machine& machine);
+MeasuredMachine identify_measured_machine(const machine::Machine& machine);
 
 // The machine with the identified friction in use on every axis.
-sim::Machine with_friction(sim::Machine machine, const MeasuredMachine& identified);
+machine::Machine with_friction(machine::Machine machine, const MeasuredMachine& identified);
 
 // One measured row beside the simulation. SI units.
 struct PredictedRow {
@@ -56,7 +57,7 @@ struct PredictedRow {
 };
 
 // Every measured circle of the machine, simulated with the identified friction, in the order of the file.
-std::vector<PredictedRow> predict_circles(const sim::Machine& machine, const MeasuredMachine& identified);
+std::vector<PredictedRow> predict_circles(const machine::Machine& machine, const MeasuredMachine& identified);
 
 // Mean |simulated / measured - 1| over the held-out rows of an axis.
 struct HeldOutScore {

@@ -23,7 +23,7 @@ constexpr const char* source = "figure to reach";
 // A share in percent that is to be at most `bound`.
 std::optional<sim::Expectation> at_most(double bound) { return sim::Expectation{0.0, bound * 100.0, source}; }
 
-const sim::CircleReference* published_lugre(const sim::Machine& machine, const PredictedRow& row) {
+const machine::CircleReference* published_lugre(const machine::Machine& machine, const PredictedRow& row) {
   for (const auto& reference : machine.circle_references)
     if (!reference.measured && reference.friction == "lugre" && reference.axis == row.axis &&
         reference.feed == row.feed)
@@ -77,7 +77,7 @@ void add_scores(const MeasuredMachineStudy& study, sim::ExperimentResult& result
 }
 
 // Measured, published and simulated values over the feed, of all axes.
-sim::Chart over_feed(const sim::Machine& machine, const MeasuredMachineStudy& study, bool error) {
+sim::Chart over_feed(const machine::Machine& machine, const MeasuredMachineStudy& study, bool error) {
   sim::Chart chart{error ? "Quadrant error over feed" : "Peak current over feed",
                    "feed, m/min",
                    error ? "peak error, um" : "peak current, A",
@@ -177,7 +177,7 @@ std::vector<std::string> findings(const MeasuredMachineStudy& study) {
 
 }  // namespace
 
-MeasuredMachineStudy study_measured_machine(const sim::Machine& circle, const sim::Machine& l_shape) {
+MeasuredMachineStudy study_measured_machine(const machine::Machine& circle, const machine::Machine& l_shape) {
   MeasuredMachineStudy study{identify_measured_machine(circle), {}, {}};
   study.rows = predict_circles(circle, study.identified);
   study.l_shape = drive_l_shape(with_friction(l_shape, study.identified));
@@ -186,7 +186,7 @@ MeasuredMachineStudy study_measured_machine(const sim::Machine& circle, const si
   return study;
 }
 
-sim::ExperimentResult measured_machine_result(const sim::Machine& machine, const MeasuredMachineStudy& study) {
+sim::ExperimentResult measured_machine_result(const machine::Machine& machine, const MeasuredMachineStudy& study) {
   sim::ExperimentResult result{
       "identify-reference",
       "A friction model of the measured machine",
@@ -211,20 +211,21 @@ sim::ExperimentResult measured_machine_result(const sim::Machine& machine, const
   return result;
 }
 
-std::string prediction_text(const sim::Machine& machine, const MeasuredMachineStudy& study) {
+std::string prediction_text(const machine::Machine& machine, const MeasuredMachineStudy& study) {
   std::string text =
       "                     peak error, um                         peak current, A\n"
       "axis  m/min  measured  published  simulated      %    measured  published  simulated      %\n";
   for (const auto& row : study.rows) {
     const auto* published = published_lugre(machine, row);
-    const auto cell = [&](double sim::CircleReference::*member, double scale) {
+    const auto cell = [&](double machine::CircleReference::*member, double scale) {
       return published ? fmt::format("{:.1f}", published->*member * scale) : std::string("-");
     };
-    text += fmt::format("{:<4} {:>6.1f} {:>9.1f} {:>10} {:>10.2f} {:>+6.1f} {:>11.1f} {:>10} {:>10.2f} {:>+6.1f}{}\n",
-                        row.axis, row.feed * 60.0, row.measured_error * 1e6, cell(&sim::CircleReference::error, 1e6),
-                        row.error * 1e6, (row.error / row.measured_error - 1.0) * 100.0, row.measured_current,
-                        cell(&sim::CircleReference::current, 1.0), row.current,
-                        (row.current / row.measured_current - 1.0) * 100.0, row.held_out ? "" : "  (calibration)");
+    text +=
+        fmt::format("{:<4} {:>6.1f} {:>9.1f} {:>10} {:>10.2f} {:>+6.1f} {:>11.1f} {:>10} {:>10.2f} {:>+6.1f}{}\n",
+                    row.axis, row.feed * 60.0, row.measured_error * 1e6, cell(&machine::CircleReference::error, 1e6),
+                    row.error * 1e6, (row.error / row.measured_error - 1.0) * 100.0, row.measured_current,
+                    cell(&machine::CircleReference::current, 1.0), row.current,
+                    (row.current / row.measured_current - 1.0) * 100.0, row.held_out ? "" : "  (calibration)");
   }
   return text;
 }

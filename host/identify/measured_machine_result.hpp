@@ -22,12 +22,12 @@ struct MeasuredMachineStudy {
 };
 
 // `circle`, `l_shape`: the machine as it is in these experiments. Throws MissingRows, FaultTripped.
-MeasuredMachineStudy study_measured_machine(const sim::Machine& circle, const sim::Machine& l_shape);
+MeasuredMachineStudy study_measured_machine(const machine::Machine& circle, const machine::Machine& l_shape);
 
-sim::ExperimentResult measured_machine_result(const sim::Machine& machine, const MeasuredMachineStudy& study);
+sim::ExperimentResult measured_machine_result(const machine::Machine& machine, const MeasuredMachineStudy& study);
 
 // The rows as a table for a terminal.
-std::string prediction_text(const sim::Machine& machine, const MeasuredMachineStudy& study);
+std::string prediction_text(const machine::Machine& machine, const MeasuredMachineStudy& study);
 
 // [axis.NAME.friction.maxwell_slip] of every axis, for a machine file.
 std::string friction_toml(const MeasuredMachine& identified);

@@ -32,8 +32,8 @@ SignalSettings published_recipe() {
   return s;
 }
 
-std::vector<double> force_of(const Log& log, const AxisLog& channels, const sim::Axis& axis, Amperes amperes) {
-  const bool source = axis.motor.model == sim::MotorModel::force;
+std::vector<double> force_of(const Log& log, const AxisLog& channels, const machine::AxisModel& axis, Amperes amperes) {
+  const bool source = axis.motor.model == machine::MotorModel::force;
   const double per_unit = axis.motor.force_constant;
   std::vector<double> force;
   if (!channels.force.empty()) {
@@ -55,7 +55,7 @@ std::vector<double> force_of(const Log& log, const AxisLog& channels, const sim:
   return force;
 }
 
-Motion motion_of(const Log& log, const AxisLog& channels, const sim::Axis& axis, Amperes amperes,
+Motion motion_of(const Log& log, const AxisLog& channels, const machine::AxisModel& axis, Amperes amperes,
                  const SignalSettings& settings) {
   Motion motion{log.source, log.period, log.t, {}, {}, {}, {}, channels.i, channels.x_set};
   motion.force = force_of(log, channels, axis, amperes);

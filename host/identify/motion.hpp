@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "firmware/machine/model/machine.hpp"
 #include "host/identify/filter.hpp"
 #include "host/log/log.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
@@ -43,10 +43,10 @@ enum class Amperes { amplitude, rms };
 
 // The force (N) on the carriage by what `log` holds: F, else i times the force constant, else (of a force source) u
 // times it; and F_ext. Throws LogError when it has none of them for this motor.
-std::vector<double> force_of(const Log& log, const AxisLog& channels, const sim::Axis& axis, Amperes amperes);
+std::vector<double> force_of(const Log& log, const AxisLog& channels, const machine::AxisModel& axis, Amperes amperes);
 
 // Throws LogError.
-Motion motion_of(const Log& log, const AxisLog& channels, const sim::Axis& axis, Amperes amperes,
+Motion motion_of(const Log& log, const AxisLog& channels, const machine::AxisModel& axis, Amperes amperes,
                  const SignalSettings& settings);
 
 // Takes columns of a motion at its full rate to rows.

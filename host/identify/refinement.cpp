@@ -7,10 +7,11 @@
 #include <array>
 #include <cmath>
 
+#include "firmware/machine/configuration/double_signals.hpp"
 #include "host/identify/fit_support.hpp"
 #include "host/log/set_points.hpp"
 #include "host/simulate/control_run.hpp"
-#include "sim/control/double_signals.hpp"
+#include "sim/plant/friction/friction.hpp"
 
 namespace stiction::host {
 namespace {
@@ -25,7 +26,8 @@ struct Simulated {
 };
 
 // The axis alone, with the friction model that is refined.
-sim::Machine machine_of(const sim::Machine& machine, const sim::Axis& axis, const Identification& result) {
+machine::Machine machine_of(const machine::Machine& machine, const machine::AxisModel& axis,
+                            const Identification& result) {
   auto one = machine;
   one.axes = {axis};
   auto& friction = one.axes.front().friction;
@@ -35,36 +37,27 @@ sim::Machine machine_of(const sim::Machine& machine, const sim::Axis& axis, cons
   };
   if (result.find("stiffness_N_per_m") != nullptr) {
     const bool falls = result.find("stribeck_velocity_m_per_s") != nullptr;
-    friction.use = std::string(sim::LuGre::name);
-    friction.models[friction.use] = sim::LuGre::Parameters{0.0, falls ? value("static_ratio", 1.0) : 1.0,
-                                                           0.0, value("stribeck_velocity_m_per_s", 1e-3),
-                                                           0.0, std::max(value("damping_ratio", 0.1), 0.0)};
+    friction.use = std::string(sim::LuGre<>::name);
+    friction.models[friction.use] = sim::values_of<sim::LuGre<>>({0.0, falls ? value("static_ratio", 1.0) : 1.0, 0.0,
+                                                                  value("stribeck_velocity_m_per_s", 1e-3), 0.0,
+                                                                  std::max(value("damping_ratio", 0.1), 0.0)});
   } else {
-    friction.use = std::string(sim::Classical::name);
-    friction.models[friction.use] = sim::Classical::Parameters{0.0, 1.0, 0.0};
+    friction.use = std::string(sim::Classical<>::name);
+    friction.models[friction.use] = sim::values_of<sim::Classical<>>({0.0, 1.0, 0.0});
   }
   return one;
 }
 
-void set_parameters(sim::Axis& axis, const std::vector<double>& values) {
+void set_parameters(machine::AxisModel& axis, const std::vector<double>& values) {
   axis.mass = values[0];
-  std::visit(
-      [&]<class P>(P& p) {
-        if constexpr (requires {
-                        p.coulomb;
-                        p.viscous;
-                      }) {
-          p.coulomb = values[1];
-          p.viscous = values[2];
-        }
-        if constexpr (std::is_same_v<P, sim::LuGre::Parameters>) p.stiffness = values[3];
-      },
-      axis.friction.models.at(axis.friction.use));
+  sim::set_coulomb(axis.friction, values[1]);
+  sim::set_viscous(axis.friction, values[2]);
+  if (values.size() > 3) axis.friction.models.at(axis.friction.use)["stiffness"] = {values[3]};
 }
 
 class ClosedLoop {
  public:
-  ClosedLoop(const std::vector<Log>& logs, const sim::Machine& machine, const sim::Axis& axis,
+  ClosedLoop(const std::vector<Log>& logs, const machine::Machine& machine, const machine::AxisModel& axis,
              const Identification& result, Amperes amperes)
       : machine_(machine_of(machine, axis, result)) {
     SignalSettings settings;
@@ -133,7 +126,7 @@ class ClosedLoop {
   Simulated run(std::size_t log) {
     const auto& motion = motions_[log];
     const std::array<double, 1> start{measured_[log].front()};
-    ControlRun<sim::DoubleSignals> control(machine_, start);
+    ControlRun<machine::DoubleSignals> control(machine_, start);
     control.plant(0).set_external_force(-constant_);
     const double per_ampere = machine_.axes.front().motor.force_constant;
     Simulated result;
@@ -144,13 +137,13 @@ class ClosedLoop {
       control.tick(std::array{set_points_[log].at(t)});
       if (t + half_tick < motion.t[result.force.size()]) continue;
       const bool logged = forces_are_logged_[log];
-      result.force.push_back(logged ? force : per_ampere * sim::to_si(control.signals(0).i));
+      result.force.push_back(logged ? force : per_ampere * machine::to_si(control.signals(0).i));
       result.position.push_back(position);
     }
     return result;
   }
 
-  sim::Machine machine_;
+  machine::Machine machine_;
   std::vector<SetPoints> set_points_;
   std::vector<bool> forces_are_logged_;
   std::vector<std::vector<double>> measured_;
@@ -183,8 +176,9 @@ double rms(const Eigen::VectorXd& v) {
 
 }  // namespace
 
-Refinement refine_in_closed_loop(const std::vector<Log>& logs, const sim::Machine& machine, const sim::Axis& axis,
-                                 const Identification& result, const IdentifyOptions& options) {
+Refinement refine_in_closed_loop(const std::vector<Log>& logs, const machine::Machine& machine,
+                                 const machine::AxisModel& axis, const Identification& result,
+                                 const IdentifyOptions& options) {
   std::vector<const IdentifiedParameter*> moved;
   for (const char* name : {"mass_kg", "coulomb_N", "viscous_N_s_per_m"}) {
     moved.push_back(result.find(name));

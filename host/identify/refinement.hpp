@@ -6,8 +6,8 @@
 
 #include <vector>
 
+#include "firmware/machine/model/machine.hpp"
 #include "host/identify/identification.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
@@ -22,7 +22,8 @@ struct Refinement {
 // determined (LuGre); without it the friction is the classical model, which sticks. The logs should begin at rest and
 // hold set-points; the first quarter of a second does not count. Throws LogError for a log without set-points, or when
 // a parameter to start from is missing, or when no simulation runs through.
-Refinement refine_in_closed_loop(const std::vector<Log>& logs, const sim::Machine& machine, const sim::Axis& axis,
-                                 const Identification& result, const IdentifyOptions& options);
+Refinement refine_in_closed_loop(const std::vector<Log>& logs, const machine::Machine& machine,
+                                 const machine::AxisModel& axis, const Identification& result,
+                                 const IdentifyOptions& options);
 
 }  // namespace stiction::host

@@ -50,7 +50,7 @@ double number(const CsvRows& rows, std::string_view header, std::string_view fie
 UnitScale scale_of(const CsvRows& rows, std::string_view header, std::string_view unit, std::string_view wanted) {
   try {
     if (!unit.empty()) return {unit, wanted};
-  } catch (const sim::UnitError&) {
+  } catch (const machine::UnitError&) {
   }
   throw LogError(
       fmt::format("{}: found the column {}; expected a unit like [{}]", rows.place(), excerpt(header), wanted));
@@ -129,7 +129,7 @@ SteadyTable parse_steady_table(std::string_view text, const std::string& name) {
   return table;
 }
 
-SlidingData sliding_data(const SteadyTable& table, const sim::Axis& axis, std::optional<Amperes> stated) {
+SlidingData sliding_data(const SteadyTable& table, const machine::AxisModel& axis, std::optional<Amperes> stated) {
   std::vector<double> force = table.force;
   if (force.empty()) {
     const auto amperes = table.amperes ? table.amperes : stated;

@@ -33,6 +33,6 @@ std::optional<Amperes> parse_amperes(std::string_view text);
 
 // The rows as data for a sliding curve, each a block of its own. Throws LogError for currents of which neither the
 // table nor `stated` says how they are to be read, for too few rows, and for forces of the wrong sign.
-SlidingData sliding_data(const SteadyTable& table, const sim::Axis& axis, std::optional<Amperes> stated);
+SlidingData sliding_data(const SteadyTable& table, const machine::AxisModel& axis, std::optional<Amperes> stated);
 
 }  // namespace stiction::host

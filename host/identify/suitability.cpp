@@ -38,8 +38,8 @@ struct Signal {
   double limit;  // of the machine, in the signal's unit
 };
 
-Signal driving_signal(const AxisLog& channels, const sim::Axis& axis) {
-  const bool source = axis.motor.model == sim::MotorModel::force;
+Signal driving_signal(const AxisLog& channels, const machine::AxisModel& axis) {
+  const bool source = axis.motor.model == machine::MotorModel::force;
   const double current = axis.inverter.current_limit * axis.motor.count;
   const double none = std::numeric_limits<double>::infinity();
   if (!channels.i.empty() && !source) return {&channels.i, "current", "A", current};
@@ -92,7 +92,7 @@ void require_samples(const Log& log) {
                   log.source, log.t.size(), duration, shortest));
 }
 
-void refuse_saturation(const Log& log, const AxisLog& channels, const sim::Axis& axis) {
+void refuse_saturation(const Log& log, const AxisLog& channels, const machine::AxisModel& axis) {
   const auto signal = driving_signal(channels, axis);
   const auto& values = *signal.values;
   if (values.empty()) return;

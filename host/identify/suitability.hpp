@@ -27,7 +27,7 @@ std::string sources_of(const std::vector<Motion>& motions);
 void require_samples(const Log& log);
 
 // Refuses a current (force, voltage) that stood at the machine's limit, or whose largest value is a flat top.
-void refuse_saturation(const Log& log, const AxisLog& channels, const sim::Axis& axis);
+void refuse_saturation(const Log& log, const AxisLog& channels, const machine::AxisModel& axis);
 
 // Refuses logs that are too short, without reversals or without enough speeds.
 void require_excitation(const Excitation& excitation, const std::string& sources);

@@ -60,7 +60,7 @@ UnitScale scale_of(const CsvRows& rows, std::size_t field, std::string_view head
   if (split.unit.empty()) throw LogError(fmt::format("{}: found no unit; {}", place(), wanted));
   try {
     return {split.unit, unit};
-  } catch (const sim::UnitError& error) {
+  } catch (const machine::UnitError& error) {
     throw LogError(
         fmt::format("{}: found [{}] ({}); {}", place(), excerpt(split.unit), excerpt(error.what(), 120), wanted));
   }

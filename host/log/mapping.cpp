@@ -8,11 +8,11 @@
 #include <numbers>
 #include <optional>
 
+#include "firmware/machine/file/document.hpp"
 #include "host/log/channel_name.hpp"
 #include "host/log/message.hpp"
 #include "host/log/text_file.hpp"
 #include "host/log/unit_scale.hpp"
-#include "sim/machine/document.hpp"
 
 namespace stiction::host {
 namespace {
@@ -43,15 +43,15 @@ class Reader {
   void allow(const toml::table& table, std::string_view path, const std::vector<std::string_view>& known) const {
     for (auto&& [key, value] : table)
       if (std::ranges::find(known, key.str()) == known.end())
-        document_.fail_unknown(key.source(), sim::join_key(path, key.str()), known);
+        document_.fail_unknown(key.source(), machine::join_key(path, key.str()), known);
   }
   const toml::table& as_table(const toml::node& node, std::string_view key) const {
-    if (!node.is_table()) document_.fail(node.source(), key, sim::describe_node(node), "a table");
+    if (!node.is_table()) document_.fail(node.source(), key, machine::describe_node(node), "a table");
     return *node.as_table();
   }
   static std::string describe(const toml::table& table, std::string_view key) {
     const auto* node = table.get(key);
-    return node == nullptr ? "no such key" : sim::describe_node(*node);
+    return node == nullptr ? "no such key" : machine::describe_node(*node);
   }
   const toml::source_region& place(const toml::table& table, std::string_view key) const {
     const auto* node = table.get(key);
@@ -61,7 +61,7 @@ class Reader {
   std::string text(const toml::table& table, std::string_view key) const {
     const auto* node = table.get(key);
     if (node == nullptr) return {};
-    if (!node->is_string()) document_.fail(node->source(), key, sim::describe_node(*node), "a text");
+    if (!node->is_string()) document_.fail(node->source(), key, machine::describe_node(*node), "a text");
     return node->as_string()->get();
   }
   [[noreturn]] void fail(const toml::table& table, std::string_view key, std::string_view expected) const {
@@ -96,8 +96,8 @@ class Reader {
                      "one of them");
     if (period.empty()) return;
     try {
-      mapping_.table.period = sim::parse_quantity(period, "s");
-    } catch (const sim::UnitError& error) {
+      mapping_.table.period = machine::parse_quantity(period, "s");
+    } catch (const machine::UnitError& error) {
       fail(time, "period", fmt::format("a time like \"1 ms\" ({})", error.what()));
     }
     if (!(mapping_.table.period > 0.0)) fail(time, "period", "a time above 0");
@@ -150,7 +150,7 @@ class Reader {
   }
 
   std::string name_;
-  sim::Document document_;
+  machine::Document document_;
   Mapping mapping_;
 };
 
@@ -236,7 +236,7 @@ class Applier {
     UnitScale scale;
     try {
       scale = UnitScale(unit, mapped.to->unit);
-    } catch (const sim::UnitError& error) {
+    } catch (const machine::UnitError& error) {
       throw LogError(fmt::format("{}: '{}': found {} ({}); expected unit = \"...\" of {}, like {}", mapped.place,
                                  excerpt(mapped.from, 60),
                                  unit.empty() ? "no unit" : "the unit '" + excerpt(unit) + "'",

@@ -186,7 +186,7 @@ class Reader {
     if (found == units_.end()) return {};
     try {
       return {found->second, unit};
-    } catch (const sim::UnitError& error) {
+    } catch (const machine::UnitError& error) {
       throw LogError(fmt::format("{}: {}: found the unit '{}' ({}); expected one like {}", name_, full,
                                  excerpt(found->second), excerpt(error.what(), 120), unit));
     }

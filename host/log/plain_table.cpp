@@ -71,7 +71,7 @@ Recording read_plain_table(std::string_view text, const std::string& name, const
     const auto& unit = form.time_unit.empty() ? channel.unit : form.time_unit;
     try {
       time_scale = UnitScale(unit, "s");
-    } catch (const sim::UnitError& error) {
+    } catch (const machine::UnitError& error) {
       throw LogError(
           fmt::format("{}: column {}, {}: found the unit '{}' ({}); expected one like s in [time] of the "
                       "mapping",

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "sim/machine/units.hpp"
+#include "firmware/machine/file/units.hpp"
 
 namespace stiction::host {
 
@@ -16,8 +16,8 @@ class UnitScale {
   UnitScale(std::string_view unit, std::string_view channel_unit) {
     if (unit == channel_unit) return;
     const std::string text(unit);
-    offset_ = sim::parse_quantity("0 " + text, channel_unit);
-    factor_ = sim::parse_quantity("1 " + text, channel_unit) - offset_;
+    offset_ = machine::parse_quantity("0 " + text, channel_unit);
+    factor_ = machine::parse_quantity("1 " + text, channel_unit) - offset_;
     // 1e-3 is no double, 1000 is: dividing rounds once, and 62.5 mm is the double 62.5e-3.
     const double inverse = std::round(1.0 / factor_);
     if (offset_ == 0.0 && std::abs(factor_) < 1.0 && std::abs(inverse * factor_ - 1.0) < 1e-14) divisor_ = inverse;

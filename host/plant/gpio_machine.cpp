@@ -8,16 +8,16 @@
 #include <cstdlib>
 #include <utility>
 
+#include "firmware/machine/configuration/axis_configuration.hpp"
+#include "firmware/machine/configuration/conversion.hpp"
 #include "hal/tick_clock.hpp"
-#include "sim/control/axis_configuration.hpp"
-#include "sim/control/conversion.hpp"
 
 namespace stiction::host {
 namespace {
 
-constexpr bool high_when_active(sim::ActiveLevel level) { return level == sim::ActiveLevel::high; }
+constexpr bool high_when_active(machine::ActiveLevel level) { return level == machine::ActiveLevel::high; }
 
-void put(plant::GpioSim& chip, int line, sim::ActiveLevel level, bool active) {
+void put(plant::GpioSim& chip, int line, machine::ActiveLevel level, bool active) {
   if (line >= 0) chip.set(line, active == high_when_active(level));
 }
 
@@ -39,7 +39,7 @@ int channels_of(const GpioMachineConfig& config) {
 
 }  // namespace
 
-GpioMachineConfig gpio_machine_config(const sim::Machine& machine, const sim::DriveSetup& setup,
+GpioMachineConfig gpio_machine_config(const machine::Machine& machine, const machine::DriveSetup& setup,
                                       std::span<const double> start, std::span<const hal::AxisMarks> marks) {
   if (!setup.gpio || !setup.gpio->pwm_chip)
     throw plant::GpioSimError(
@@ -48,7 +48,7 @@ GpioMachineConfig gpio_machine_config(const sim::Machine& machine, const sim::Dr
                            .pwm = *setup.gpio->pwm_chip,
                            .pwm_period_ns = std::llround(setup.gpio->pwm_period * 1e9),
                            .dc_link = setup.gpio->dc_link,
-                           .period_ns = sim::fast_period_ns(machine.timing),
+                           .period_ns = machine::fast_period_ns(machine.timing),
                            .axes = {}};
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const auto& axis = machine.axes[i];
@@ -124,8 +124,8 @@ void GpioMachine::take_commands() {
     const auto duty_ns = pwm_.duty_ns(line.pwm_channel) - pwm_.duty_ns(line.pwm_channel + 1);
     const double voltage = config_.dc_link * static_cast<double>(duty_ns) / static_cast<double>(config_.pwm_period_ns);
     auto& command = commands_[i];
-    command.enable =
-        chip_.driven(line.enable) == high_when_active(line.enable_active) && sim::convert(voltage, command.voltage[0]);
+    command.enable = chip_.driven(line.enable) == high_when_active(line.enable_active) &&
+                     machine::convert(voltage, command.voltage[0]);
     if (line.brake >= 0) plant_.set_brake(i, chip_.driven(line.brake) != high_when_active(line.brake_active));
   }
 }
@@ -144,7 +144,7 @@ void GpioMachine::plan_edges(std::size_t axis, std::int64_t time_ns) {
   auto& encoder = encoders_[axis];
   if (faulty(LineFaultKind::tracks_together, axis)) encoder.slip();
   if (!feedback_[axis].position_valid) return;
-  const std::int64_t target = std::llround(sim::to_si(feedback_[axis].position) / config_.axes[axis].increment);
+  const std::int64_t target = std::llround(machine::to_si(feedback_[axis].position) / config_.axes[axis].increment);
   const std::int64_t way = std::abs(target - encoder.count());
   if (way > most_played) return encoder.reconnect(target);
   constexpr std::int64_t noise_edges = 20;  // forth and back

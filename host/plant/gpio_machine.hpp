@@ -9,18 +9,18 @@
 #include <string>
 #include <vector>
 
+#include "firmware/machine/model/drive_setup.hpp"
+#include "firmware/machine/model/machine.hpp"
 #include "host/plant/fault_schedule.hpp"
 #include "host/plant/gpio_sim.hpp"
 #include "host/plant/plant_under_bus.hpp"
 #include "host/plant/pwm_folder.hpp"
-#include "sim/model/drive_setup.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
 struct GpioMachineConfig {
   struct Axis {
-    sim::LineSetup line;
+    machine::LineSetup line;
     double increment = 0.0;     // m, from one edge of the tracks to the next
     double start = 0.0;         // m, where the carriage stands
     plant::IndexMarks index{};  // counts of the increment
@@ -35,7 +35,7 @@ struct GpioMachineConfig {
 
 // As the machine file has them. `marks` and `start` (m): one an axis. Throws plant::GpioSimError where [drive.gpio] or
 // a line that has to be there is missing.
-GpioMachineConfig gpio_machine_config(const sim::Machine& machine, const sim::DriveSetup& setup,
+GpioMachineConfig gpio_machine_config(const machine::Machine& machine, const machine::DriveSetup& setup,
                                       std::span<const double> start, std::span<const hal::AxisMarks> marks);
 
 class GpioMachine {

@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <string>
 
+#include "firmware/machine/configuration/axis_configuration.hpp"
+#include "firmware/machine/file/drive_file.hpp"
 #include "hal/program.hpp"
 #include "hal/tick_clock.hpp"
 #include "host/plant/can_nodes.hpp"
@@ -11,18 +13,16 @@
 #include "host/plant/modbus_slave.hpp"
 #include "host/plant/plant_options.hpp"
 #include "host/plant/simulated_machine.hpp"
-#include "sim/control/axis_configuration.hpp"
-#include "sim/machine/drive_file.hpp"
-#include "sim/machine/machine_file.hpp"
+#include "sim/machine_file.hpp"
 
 namespace stiction::host {
 namespace {
 
 int serve(const PlantOptions& options) {
   hal::catch_stop_signals();
-  const auto file = sim::find_machine(options.machine);
+  const auto file = machine::find_machine(options.machine);
   const auto machine = sim::read_machine(file, {options.experiment, options.set});
-  const auto setup = sim::read_drive_setup(file, machine, {options.experiment, options.set});
+  const auto setup = machine::read_drive_setup(file, machine, {options.experiment, options.set});
   const auto start = start_positions(options, machine);
   const auto marks = marks_of(options, machine);
   SimulatedMachine simulated(machine, {start, marks, options.seed}, faults_of(options, machine),
@@ -36,7 +36,7 @@ int serve(const PlantOptions& options) {
     std::fflush(stdout);
   };
   const auto stop = [] { return hal::stop_wanted != 0; };
-  const auto period_ns = sim::fast_period_ns(machine.timing);
+  const auto period_ns = machine::fast_period_ns(machine.timing);
   if (const auto bus = bus_of(options); bus.kind == "modbus") {
     if (machine.axes.size() != 1)
       throw PlantOptionError(fmt::format(

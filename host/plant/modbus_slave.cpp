@@ -3,8 +3,8 @@
 #include <array>
 #include <utility>
 
+#include "firmware/machine/configuration/conversion.hpp"
 #include "hal/tick_clock.hpp"
-#include "sim/control/conversion.hpp"
 
 namespace stiction::host {
 
@@ -22,7 +22,7 @@ void ModbusSlave::serve(const std::function<bool()>& stop) {
     take_writes(now_ns);
     enabled_ = command_.enable && heard_ns_ != 0 && now_ns - heard_ns_ <= silence_ns;
     std::array<Command<FixedSignals>, 1> acting{};
-    acting[0].enable = enabled_ && sim::convert(command_.voltage, acting[0].voltage[0]);
+    acting[0].enable = enabled_ && machine::convert(command_.voltage, acting[0].voltage[0]);
     // Ticks that this process missed pass in the plant too.
     for (std::uint64_t i = 0; i <= clock.missed_before(); ++i, ++ticks_) plant_.advance(acting);
     publish();
@@ -47,9 +47,9 @@ void ModbusSlave::publish() {
   state.home = inputs[0].home;
   state.enabled = enabled_;
   state.cycle = static_cast<std::uint16_t>(ticks_);
-  state.position = sim::to_si(f.position);
-  state.velocity = sim::to_si(f.velocity);
-  state.current = sim::to_si(f.current[0]);
+  state.position = machine::to_si(f.position);
+  state.velocity = machine::to_si(f.velocity);
+  state.current = machine::to_si(f.current[0]);
   state_.publish();
 }
 

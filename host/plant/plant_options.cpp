@@ -8,12 +8,12 @@
 #include <charconv>
 #include <cmath>
 
-#include "sim/machine/units.hpp"
+#include "firmware/machine/file/units.hpp"
 
 namespace stiction::host {
 namespace {
 
-std::size_t axis_named(const sim::Machine& machine, const std::string& name, const std::string& option) {
+std::size_t axis_named(const machine::Machine& machine, const std::string& name, const std::string& option) {
   std::vector<std::string> names;
   for (const auto& axis : machine.axes) names.push_back(axis.name);
   const auto place = std::find(names.begin(), names.end(), name);
@@ -25,14 +25,14 @@ std::size_t axis_named(const sim::Machine& machine, const std::string& name, con
 
 double quantity(const std::string& text, const std::string& unit, const std::string& option) {
   try {
-    return sim::parse_quantity(text, unit);
-  } catch (const sim::UnitError& error) {
+    return machine::parse_quantity(text, unit);
+  } catch (const machine::UnitError& error) {
     throw PlantOptionError(
         fmt::format("{}: found '{}' ({}); expected a quantity in {}", option, text, error.what(), unit));
   }
 }
 
-std::uint64_t ticks_of(const std::string& text, const sim::Machine& machine, const std::string& option) {
+std::uint64_t ticks_of(const std::string& text, const machine::Machine& machine, const std::string& option) {
   const double seconds = quantity(text, "s", option);
   if (seconds < 0.0) throw PlantOptionError(fmt::format("{}: found '{}'; expected a time from 0 on", option, text));
   return static_cast<std::uint64_t>(std::llround(seconds / machine.timing.fast_period));
@@ -50,7 +50,7 @@ const PlantFaultKind& kind_named(const std::string& name, const std::string& bus
 }
 
 // "KIND,axis=X,at=1.5 s,ticks=3"
-PlantFault plant_fault(const std::string& text, const std::string& bus, const sim::Machine& machine) {
+PlantFault plant_fault(const std::string& text, const std::string& bus, const machine::Machine& machine) {
   const auto parts = CLI::detail::split(text, ',');
   PlantFault fault{.kind = &kind_named(parts.front(), bus)};
   for (std::size_t i = 1; i < parts.size(); ++i) {
@@ -135,7 +135,7 @@ PlantBus bus_of(const PlantOptions& options) {
   return bus;
 }
 
-std::vector<double> start_positions(const PlantOptions& options, const sim::Machine& machine) {
+std::vector<double> start_positions(const PlantOptions& options, const machine::Machine& machine) {
   std::vector<double> positions(machine.axes.size());
   for (const auto& text : options.at) {
     const auto equals = text.find('=');
@@ -146,7 +146,7 @@ std::vector<double> start_positions(const PlantOptions& options, const sim::Mach
   return positions;
 }
 
-std::vector<hal::AxisMarks> marks_of(const PlantOptions& options, const sim::Machine& machine) {
+std::vector<hal::AxisMarks> marks_of(const PlantOptions& options, const machine::Machine& machine) {
   std::vector<hal::AxisMarks> marks(machine.axes.size());
   for (const auto& text : options.marks) {
     const auto equals = text.find('='), dot = text.substr(0, equals).rfind('.');
@@ -166,7 +166,7 @@ std::vector<hal::AxisMarks> marks_of(const PlantOptions& options, const sim::Mac
   return marks;
 }
 
-FaultSchedule faults_of(const PlantOptions& options, const sim::Machine& machine) {
+FaultSchedule faults_of(const PlantOptions& options, const machine::Machine& machine) {
   const auto bus = bus_of(options).kind;
   std::vector<PlantFault> faults;
   for (const auto& text : options.faults) faults.push_back(plant_fault(text, bus, machine));
@@ -181,8 +181,8 @@ FaultSchedule faults_of(const PlantOptions& options, const sim::Machine& machine
   return {std::move(faults), mean, options.seed};
 }
 
-CanNodesConfig can_nodes_config(const PlantOptions& options, const sim::Machine& machine,
-                                const sim::DriveSetup& setup) {
+CanNodesConfig can_nodes_config(const PlantOptions& options, const machine::Machine& machine,
+                                const machine::DriveSetup& setup) {
   CanNodesConfig config;
   config.interface = bus_of(options).name;
   config.format = setup.can && !setup.can->data_bit_rate ? hal::can::Format::classical : hal::can::Format::fd;

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "firmware/machine/model/drive_setup.hpp"
+#include "firmware/machine/model/machine.hpp"
 #include "host/plant/can_nodes.hpp"
-#include "sim/model/drive_setup.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
@@ -34,15 +34,16 @@ struct PlantBus {
 PlantBus bus_of(const PlantOptions& options);
 
 // Where the axes stand at the start (m), from "X=90 mm"; 0 where nothing is said. Throws PlantOptionError.
-std::vector<double> start_positions(const PlantOptions& options, const sim::Machine& machine);
+std::vector<double> start_positions(const PlantOptions& options, const machine::Machine& machine);
 
 // Where switches and index marks are, from "X.index=100 mm"; one an axis. Throws PlantOptionError.
-std::vector<hal::AxisMarks> marks_of(const PlantOptions& options, const sim::Machine& machine);
+std::vector<hal::AxisMarks> marks_of(const PlantOptions& options, const machine::Machine& machine);
 
 // The faults of the options, each at its time or at random times. Throws PlantOptionError.
-FaultSchedule faults_of(const PlantOptions& options, const sim::Machine& machine);
+FaultSchedule faults_of(const PlantOptions& options, const machine::Machine& machine);
 
 // The nodes as the machine file has them, on the bus of the options. Throws PlantOptionError.
-CanNodesConfig can_nodes_config(const PlantOptions& options, const sim::Machine& machine, const sim::DriveSetup& setup);
+CanNodesConfig can_nodes_config(const PlantOptions& options, const machine::Machine& machine,
+                                const machine::DriveSetup& setup);
 
 }  // namespace stiction::host

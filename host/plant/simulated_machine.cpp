@@ -2,17 +2,17 @@
 
 #include <utility>
 
-#include "sim/control/axis_configuration.hpp"
+#include "firmware/machine/configuration/axis_configuration.hpp"
 
 namespace stiction::host {
 
-SimulatedMachine::SimulatedMachine(const sim::Machine& machine, const Settings& settings, FaultSchedule faults,
+SimulatedMachine::SimulatedMachine(const machine::Machine& machine, const Settings& settings, FaultSchedule faults,
                                    OnFault on_fault)
     : braked_(machine.axes.size()),
       faults_(std::move(faults)),
       on_fault_(std::move(on_fault)),
       simulated_(machine, settings.start, settings.seed),
-      faulty_(simulated_, sim::fast_period_ns(machine.timing), machine.axes.front().encoder.increment),
+      faulty_(simulated_, machine::fast_period_ns(machine.timing), machine.axes.front().encoder.increment),
       record_(machine.axes.size()) {
   for (const auto& axis : machine.axes) {
     names_.push_back(axis.name);

@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "firmware/machine/model/machine.hpp"
 #include "hal/simulated/faulty_backend.hpp"
 #include "hal/simulated/simulated_backend.hpp"
 #include "host/plant/fault_schedule.hpp"
 #include "host/plant/motion_record.hpp"
 #include "host/plant/plant_under_bus.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
@@ -27,7 +27,8 @@ class SimulatedMachine {
   // A fault begins to act in this tick.
   using OnFault = std::function<void(const PlantFault&, std::uint64_t tick)>;
 
-  SimulatedMachine(const sim::Machine& machine, const Settings& settings, FaultSchedule faults, OnFault on_fault = {});
+  SimulatedMachine(const machine::Machine& machine, const Settings& settings, FaultSchedule faults,
+                   OnFault on_fault = {});
 
   PlantUnderBus under_bus();  // of this, which must outlive it
   const FaultSchedule& faults() const { return faults_; }

@@ -15,7 +15,7 @@
 namespace stiction::host {
 namespace {
 
-bool acts(const sim::Machine& machine, const CircleTableRow& row) {
+bool acts(const machine::Machine& machine, const CircleTableRow& row) {
   return std::any_of(machine.axes.begin(), machine.axes.end(),
                      [&](const auto& axis) { return axis.name == row.axis && axis.friction.use == row.friction; });
 }
@@ -62,7 +62,7 @@ std::string friction_label(std::string_view name) {
   return label;
 }
 
-CircleFinding circle_finding(const sim::CircleResult& result, const sim::Machine& machine) {
+CircleFinding circle_finding(const sim::CircleResult& result, const machine::Machine& machine) {
   if (result.runs.empty()) throw std::invalid_argument("a circle report needs at least one run");
   const auto all = circle_table(result, machine);
   auto rows = all;

@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "firmware/machine/model/machine.hpp"
 #include "sim/experiment/circle_result.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
@@ -18,7 +18,7 @@ struct CircleFinding {
 // Speaks of the model that acts according to the machine file (of all models when that one was not run), at the middle
 // one of the measured feeds (of all feeds when none was measured): the source matched its friction there. Throws
 // std::invalid_argument when the result has no run.
-CircleFinding circle_finding(const sim::CircleResult& result, const sim::Machine& machine);
+CircleFinding circle_finding(const sim::CircleResult& result, const machine::Machine& machine);
 
 // What people call a model, "C LuGre" for "lugre"; the name itself for a model that the table does not have.
 std::string friction_label(std::string_view name);

@@ -109,7 +109,7 @@ json means_json(const std::vector<CircleTableRow>& table) {
   return rows;
 }
 
-json references_json(const sim::Machine& machine) {
+json references_json(const machine::Machine& machine) {
   json rows = json::array();
   for (const auto& row : machine.circle_references)
     rows.push_back({{"axis", row.axis},

@@ -4,8 +4,8 @@
 
 #include <string>
 
+#include "firmware/machine/model/machine.hpp"
 #include "sim/experiment/circle_result.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
@@ -13,7 +13,7 @@ struct CircleReport {
   std::string title;         // "Circle: MCFV 5050 LN cross table"
   std::string command;       // the command line that made it
   std::string version;       // of stiction
-  sim::Machine machine;      // its parameters and reference rows
+  machine::Machine machine;  // its parameters and reference rows
   sim::CircleResult result;  // any number of friction models, feeds and directions; at least one run
 };
 

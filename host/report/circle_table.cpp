@@ -18,14 +18,14 @@ std::optional<double> relative(const std::optional<double>& measured, double sim
   return (*measured - simulated) / *measured;
 }
 
-double increment_of(const sim::Machine& machine, std::string_view axis) {
+double increment_of(const machine::Machine& machine, std::string_view axis) {
   const auto found =
       std::find_if(machine.axes.begin(), machine.axes.end(), [&](const auto& a) { return a.name == axis; });
   const double increment = found == machine.axes.end() ? 0.0 : found->position_controller.increment;
   return increment > 0.0 ? increment : increment_if_unknown;
 }
 
-CircleTableRow make_row(const sim::CircleRun& run, const sim::AxisLap& lap, const sim::Machine& machine) {
+CircleTableRow make_row(const sim::CircleRun& run, const sim::AxisLap& lap, const machine::Machine& machine) {
   CircleTableRow row{lap.axis, run.friction, run.feed, run.direction, {}, {}, {}};
   row.error.simulated = lap.peak_error;
   row.error_quantised.simulated = lap.peak_error_quantised;
@@ -66,7 +66,7 @@ std::optional<double> ComparedFigure::published_deviation() const {
   return published ? relative(measured, *published) : std::nullopt;
 }
 
-std::vector<CircleTableRow> circle_table(const sim::CircleResult& result, const sim::Machine& machine) {
+std::vector<CircleTableRow> circle_table(const sim::CircleResult& result, const machine::Machine& machine) {
   std::vector<CircleTableRow> table;
   for (std::size_t axis = 0; axis < 2; ++axis)
     for (const auto& run : result.runs) table.push_back(make_row(run, run.axes[axis], machine));

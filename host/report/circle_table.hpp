@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "firmware/machine/model/machine.hpp"
 #include "sim/experiment/circle_result.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
@@ -43,7 +43,7 @@ struct MeanDeviation {
 // Rows by axis, then model and feed in the order of the runs. A quantised error differs from the published one when it
 // is off by more than half the position controller's increment (published errors are whole increments), a current when
 // it is off by more than 5 %.
-std::vector<CircleTableRow> circle_table(const sim::CircleResult& result, const sim::Machine& machine);
+std::vector<CircleTableRow> circle_table(const sim::CircleResult& result, const machine::Machine& machine);
 
 // In the order of the table.
 std::vector<MeanDeviation> mean_deviations(const std::vector<CircleTableRow>& table);

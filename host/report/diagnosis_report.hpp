@@ -4,15 +4,15 @@
 
 #include <string>
 
+#include "firmware/machine/model/machine.hpp"
 #include "host/diagnose/verdict.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
 struct DiagnosisReport {
   std::string command;  // the command line that made it
   std::string version;  // of stiction
-  sim::Machine machine;
+  machine::Machine machine;
   Verdict verdict;
 };
 

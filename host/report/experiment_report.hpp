@@ -4,15 +4,15 @@
 
 #include <string>
 
+#include "firmware/machine/model/machine.hpp"
 #include "sim/experiment/experiment_result.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
 struct ExperimentReport {
   std::string command;  // the command line that made it
   std::string version;  // of stiction
-  sim::Machine machine;
+  machine::Machine machine;
   sim::ExperimentResult result;
 };
 

@@ -11,8 +11,9 @@
 #include <string_view>
 #include <variant>
 
+#include "firmware/machine/file/parameters.hpp"
 #include "host/report/engineering_unit.hpp"
-#include "sim/machine/parameters.hpp"
+#include "sim/plant/friction/friction.hpp"
 
 namespace stiction::host {
 namespace {
@@ -39,7 +40,7 @@ std::string meaning_of(std::string_view text, std::optional<double> value) {
 }
 
 template <class Owner>
-std::vector<double> values_of(const sim::Parameter<Owner>& parameter, const Owner& owner) {
+std::vector<double> values_of(const machine::Parameter<Owner>& parameter, const Owner& owner) {
   const auto values = std::visit(
       [&]<class M>(M Owner::*member) -> std::vector<double> {
         const M& given = owner.*member;
@@ -57,7 +58,7 @@ std::vector<double> values_of(const sim::Parameter<Owner>& parameter, const Owne
 }
 
 template <class Owner>
-Cell make_cell(const sim::Parameter<Owner>& parameter, const Owner& owner, bool force_motor) {
+Cell make_cell(const machine::Parameter<Owner>& parameter, const Owner& owner, bool force_motor) {
   Cell cell{force_motor && !parameter.unit_of_force_motor.empty() ? parameter.unit_of_force_motor : parameter.unit,
             values_of(parameter, owner),
             {}};
@@ -129,7 +130,7 @@ std::string title_of(std::string_view key) {
 }
 
 template <class Value>
-std::string name_of(std::span<const sim::Choice<Value>> choices, const Value& value) {
+std::string name_of(std::span<const machine::Choice<Value>> choices, const Value& value) {
   for (const auto& choice : choices)
     if (choice.value == value) return std::string(choice.name);
   return "?";
@@ -146,7 +147,7 @@ const T* pointer_to(const std::optional<T>& value) {
 
 // `force_motor`: of each owner.
 template <class Owner>
-void add_parameters(Sheet& sheet, std::span<const sim::Parameter<Owner>> parameters,
+void add_parameters(Sheet& sheet, std::span<const machine::Parameter<Owner>> parameters,
                     const std::vector<const Owner*>& owners, const std::vector<bool>& force_motor) {
   for (const auto& parameter : parameters) {
     std::vector<std::optional<Cell>> cells;
@@ -160,7 +161,7 @@ void add_parameters(Sheet& sheet, std::span<const sim::Parameter<Owner>> paramet
 template <class Owner>
 void add_table(Sheet& sheet, const std::string& title, const std::vector<const Owner*>& owners,
                const std::vector<bool>& force_motor) {
-  using T = sim::Table<Owner>;
+  using T = machine::Table<Owner>;
   sheet.begin_section(title);
   const auto add_words = [&](std::string_view label, const auto& word) {
     std::vector<std::string> values;
@@ -173,12 +174,12 @@ void add_table(Sheet& sheet, const std::string& title, const std::vector<const O
       },
       T::choices);
   add_parameters<Owner>(sheet, T::parameters, owners, force_motor);
-  const auto descend = [&]<class Member>(const sim::Subtable<Owner, Member>& subtable) {
+  const auto descend = [&]<class Member>(const machine::Subtable<Owner, Member>& subtable) {
     using Child = std::remove_cvref_t<decltype(*pointer_to(std::declval<const Member&>()))>;
-    if constexpr (!std::is_same_v<Child, sim::Friction>) {  // its tables are those of the models
+    if constexpr (!std::is_same_v<Child, machine::FrictionParameters>) {  // its tables are those of the models
       std::vector<const Child*> children;
       for (const Owner* owner : owners) children.push_back(owner ? pointer_to(owner->*subtable.member) : nullptr);
-      const bool top = std::is_same_v<Owner, sim::Axis> || std::is_same_v<Owner, sim::FeedDrive>;
+      const bool top = std::is_same_v<Owner, machine::AxisModel> || std::is_same_v<Owner, machine::FeedDrive>;
       add_table<Child>(sheet, top ? title_of(subtable.key) : title + " " + std::string(subtable.key), children,
                        force_motor);
     }
@@ -186,14 +187,17 @@ void add_table(Sheet& sheet, const std::string& title, const std::vector<const O
   std::apply([&](const auto&... subtable) { (descend(subtable), ...); }, T::subtables);
 }
 
-void add_friction(Sheet& sheet, std::span<const sim::Axis> axes, const std::vector<bool>& force_motor) {
+void add_friction(Sheet& sheet, std::span<const machine::AxisModel> axes, const std::vector<bool>& force_motor) {
   sim::for_each_friction_model([&]<class Model>() {
     using Parameters = typename Model::Parameters;
+    std::vector<std::optional<Parameters>> given(axes.size());
     std::vector<const Parameters*> owners;
     std::vector<std::string> acting;
-    for (const auto& axis : axes) {
+    for (std::size_t k = 0; k < axes.size(); ++k) {
+      const auto& axis = axes[k];
       const auto found = axis.friction.models.find(std::string(Model::name));
-      owners.push_back(found == axis.friction.models.end() ? nullptr : std::get_if<Parameters>(&found->second));
+      if (found != axis.friction.models.end()) given[k] = sim::parameters_of<Model>(found->second);
+      owners.push_back(given[k] ? &*given[k] : nullptr);
       acting.push_back(axis.friction.use == Model::name ? "yes" : "");
     }
     sheet.begin_section("Friction " + std::string(Model::label));
@@ -204,28 +208,30 @@ void add_friction(Sheet& sheet, std::span<const sim::Axis> axes, const std::vect
 
 }  // namespace
 
-std::string motor_model_name(sim::MotorModel model) { return name_of<sim::MotorModel>(sim::motor_models, model); }
-
-std::string velocity_source_name(sim::VelocitySource source) {
-  return name_of<sim::VelocitySource>(sim::velocity_sources, source);
+std::string motor_model_name(machine::MotorModel model) {
+  return name_of<machine::MotorModel>(machine::motor_models, model);
 }
 
-std::vector<SheetSection> machine_sheet(const sim::Machine& machine) {
+std::string velocity_source_name(machine::VelocitySource source) {
+  return name_of<machine::VelocitySource>(machine::velocity_sources, source);
+}
+
+std::vector<SheetSection> machine_sheet(const machine::Machine& machine) {
   std::vector<std::string> names;
-  std::vector<const sim::Axis*> axes;
+  std::vector<const machine::AxisModel*> axes;
   std::vector<bool> force_motor;
   for (const auto& axis : machine.axes) {
     names.push_back(axis.name);
     axes.push_back(&axis);
-    force_motor.push_back(axis.motor.model == sim::MotorModel::force);
+    force_motor.push_back(axis.motor.model == machine::MotorModel::force);
   }
   Sheet sheet(names);
-  add_table<sim::Axis>(sheet, "Axis", axes, force_motor);
+  add_table<machine::AxisModel>(sheet, "Axis", axes, force_motor);
   add_friction(sheet, machine.axes, force_motor);
   auto sections = sheet.take();
   if (machine.feed_drive) {
     Sheet feed({"feed drive"});
-    add_table<sim::FeedDrive>(feed, "Feed drive", {&*machine.feed_drive}, {false});
+    add_table<machine::FeedDrive>(feed, "Feed drive", {&*machine.feed_drive}, {false});
     for (auto& section : feed.take()) sections.push_back(std::move(section));
   }
   return sections;

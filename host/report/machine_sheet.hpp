@@ -1,11 +1,12 @@
 // A machine's parameters as a report prints them: in engineering units, one column an axis or the feed drive. Made from
-// the tables of sim/machine/parameters.hpp and of the friction models, so a new parameter appears here without a line.
+// the tables of firmware/machine/file/parameters.hpp and of the friction models, so a new parameter appears here
+// without a line.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "sim/model/machine.hpp"
+#include "firmware/machine/model/machine.hpp"
 
 namespace stiction::host {
 
@@ -21,10 +22,10 @@ struct SheetSection {
   std::vector<SheetRow> rows;        // at least one value in each
 };
 
-std::vector<SheetSection> machine_sheet(const sim::Machine& machine);
+std::vector<SheetSection> machine_sheet(const machine::Machine& machine);
 
 // As the machine file calls them: "synchronous", "mean-difference".
-std::string motor_model_name(sim::MotorModel model);
-std::string velocity_source_name(sim::VelocitySource source);
+std::string motor_model_name(machine::MotorModel model);
+std::string velocity_source_name(machine::VelocitySource source);
 
 }  // namespace stiction::host

@@ -26,7 +26,7 @@ std::string packed(std::span<const double> values, std::span<const std::size_t> 
   return base64_floats(floats);
 }
 
-json machine_json(const sim::Machine& machine) {
+json machine_json(const machine::Machine& machine) {
   json axes = json::array();
   for (const auto& axis : machine.axes) axes.push_back(axis.name);
   json sections = json::array();
@@ -50,7 +50,8 @@ std::string joined(const json& list) {
   return text;
 }
 
-std::string by_axis(const sim::Machine& machine, const std::function<std::string(const sim::Axis&)>& text) {
+std::string by_axis(const machine::Machine& machine,
+                    const std::function<std::string(const machine::AxisModel&)>& text) {
   json all = json::array(), named = json::array();
   for (const auto& axis : machine.axes) {
     add_once(all, text(axis));

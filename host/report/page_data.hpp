@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/model/machine.hpp"
+#include "firmware/machine/model/machine.hpp"
 
 namespace stiction::host {
 
@@ -25,7 +25,7 @@ void add_once(nlohmann::ordered_json& list, const nlohmann::ordered_json& value)
 std::string packed(std::span<const double> values, std::span<const std::size_t> chosen, double scale = 1.0);
 
 // Name, periods, axes and the rows of machine_sheet.hpp, for drawMachine() of machine.js.
-nlohmann::ordered_json machine_json(const sim::Machine& machine);
+nlohmann::ordered_json machine_json(const machine::Machine& machine);
 
 // Items of drawConditions() of machine.js: { label, value }.
 class Conditions {
@@ -41,7 +41,7 @@ class Conditions {
 std::string joined(const nlohmann::ordered_json& list);
 
 // "estimated" when it holds for all axes, else "X estimated, Y ideal".
-std::string by_axis(const sim::Machine& machine, const std::function<std::string(const sim::Axis&)>& text);
+std::string by_axis(const machine::Machine& machine, const std::function<std::string(const machine::AxisModel&)>& text);
 
 // "fixed" and "double" for readers.
 std::string signals_text(const std::string& signals);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "sim/model/machine.hpp"
+#include "firmware/machine/model/machine.hpp"
 
 namespace stiction::host {
 
@@ -13,7 +13,8 @@ namespace stiction::host {
 inline bool same_feed(double a, double b) { return std::abs(a - b) <= 1e-4 * std::max(std::abs(a), std::abs(b)); }
 
 // The measured row of `axis` at `feed` (m/s); null where the machine has none.
-inline const sim::CircleReference* find_measured(const sim::Machine& machine, std::string_view axis, double feed) {
+inline const machine::CircleReference* find_measured(const machine::Machine& machine, std::string_view axis,
+                                                     double feed) {
   for (const auto& row : machine.circle_references)
     if (row.measured && row.axis == axis && same_feed(row.feed, feed)) return &row;
   return nullptr;
@@ -21,8 +22,8 @@ inline const sim::CircleReference* find_measured(const sim::Machine& machine, st
 
 // The row that was published for a simulation of `axis` with the model `friction` at `feed` (m/s); null where the
 // machine has none.
-inline const sim::CircleReference* find_published(const sim::Machine& machine, std::string_view axis,
-                                                  std::string_view friction, double feed) {
+inline const machine::CircleReference* find_published(const machine::Machine& machine, std::string_view axis,
+                                                      std::string_view friction, double feed) {
   for (const auto& row : machine.circle_references)
     if (!row.measured && row.axis == axis && row.friction == friction && same_feed(row.feed, feed)) return &row;
   return nullptr;

@@ -6,9 +6,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/control/axis_configuration.hpp"
-#include "sim/control/conversion.hpp"
-#include "sim/control/double_signals.hpp"
+#include "firmware/machine/configuration/axis_configuration.hpp"
+#include "firmware/machine/configuration/conversion.hpp"
+#include "firmware/machine/configuration/double_signals.hpp"
+#include "sim/plant/effects/effects.hpp"
 
 namespace stiction::host {
 namespace {
@@ -23,10 +24,10 @@ constexpr auto index(Answer answer) { return static_cast<std::size_t>(answer); }
 // The drive's own laws at one frequency, from the very coefficients it runs with.
 class Controllers {
  public:
-  Controllers(const sim::Timing& timing, const sim::Axis& axis)
-      : config_(sim::configure_axis<sim::DoubleSignals>(timing, axis)),
+  Controllers(const machine::Timing& timing, const machine::AxisModel& axis)
+      : config_(machine::configure_axis<machine::DoubleSignals>(timing, sim::drive_axis(axis))),
         period_(timing.fast_period),
-        slow_ratio_(sim::slow_ratio(timing)) {}
+        slow_ratio_(machine::slow_ratio(timing)) {}
 
   void at(double frequency) {
     s_ = Complex(0.0, 2.0 * std::numbers::pi * frequency);
@@ -62,13 +63,13 @@ class Controllers {
   }
 
  private:
-  AxisConfig<sim::DoubleSignals> config_;
+  AxisConfig<machine::DoubleSignals> config_;
   double period_;
   int slow_ratio_;
   Complex s_, back_;
 };
 
-void check(const Log& log, const AxisLog& measured, const sim::Axis& axis) {
+void check(const Log& log, const AxisLog& measured, const machine::AxisModel& axis) {
   if (!measured.i_inject.empty() || measured.u_inject.empty() || !axis.current_controller) return;
   throw ResponseError(
       fmt::format("{}: found u_inject and no i_inject; expected i_inject[A], a test signal on the set current, as the "
@@ -93,8 +94,8 @@ void find_margins(LoopResponse& loop) {
   loop.bandwidth = bandwidth(coherent(loop.closed, loop.coherence));
 }
 
-std::size_t samples_at_limit(const AxisLog& measured, const sim::Axis& axis) {
-  const bool force = axis.motor.model == sim::MotorModel::force;
+std::size_t samples_at_limit(const AxisLog& measured, const machine::AxisModel& axis) {
+  const bool force = axis.motor.model == machine::MotorModel::force;
   const double limit = 0.999 * (force ? axis.inverter.voltage_limit : axis.inverter.current_limit * axis.motor.count);
   const auto& set = force ? measured.u : measured.i_set.empty() ? measured.i : measured.i_set;
   return static_cast<std::size_t>(
@@ -110,7 +111,8 @@ void add(LoopResponse& loop, double frequency, Complex open, Complex broken, dou
 
 }  // namespace
 
-AxisResponse axis_response(const Log& log, const AxisLog& measured, const sim::Timing& timing, const sim::Axis& axis) {
+AxisResponse axis_response(const Log& log, const AxisLog& measured, const machine::Timing& timing,
+                           const machine::AxisModel& axis) {
   check(log, measured, axis);
   AxisResponse result;
   result.axis = axis.name;

@@ -25,9 +25,9 @@
 #include <string>
 #include <vector>
 
+#include "firmware/machine/model/machine.hpp"
 #include "host/response/margins.hpp"
 #include "host/response/spectra.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
@@ -58,6 +58,7 @@ inline constexpr double least_coherence = 0.9;
 
 // `axis` gives K_v, the rates, and the controllers where the log has no set current. Throws ResponseError when the log
 // lacks what is needed.
-AxisResponse axis_response(const Log& log, const AxisLog& measured, const sim::Timing& timing, const sim::Axis& axis);
+AxisResponse axis_response(const Log& log, const AxisLog& measured, const machine::Timing& timing,
+                           const machine::AxisModel& axis);
 
 }  // namespace stiction::host

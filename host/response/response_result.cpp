@@ -46,15 +46,15 @@ constexpr std::array<KnownLimits, 4> known_limits{{{225.0, 600.0, 35.0, true, 11
                                                    {225.0, 600.0, 35.0, false, 15.7, 0.0, 0.0},
                                                    {520.0, 1200.0, 17.0, false, 17.9, 0.0, 0.0}}};
 
-bool is_of(const KnownLimits& known, const sim::Axis& axis) {
+bool is_of(const KnownLimits& known, const machine::AxisModel& axis) {
   const auto same = [](double a, double b) { return std::abs(a - b) <= 1e-4 * b; };
   return same(axis.mass, known.mass) && same(axis.velocity_controller.gain, known.velocity_gain) &&
          axis.current_controller && same(axis.current_controller->gain, known.current_gain) &&
          same(axis.position_controller.gain, 83.3333) && same(axis.inverter.dead_time, 125e-6) &&
-         axis.encoder.velocity == sim::VelocitySource::ideal && axis.notch.has_value() == known.notch;
+         axis.encoder.velocity == machine::VelocitySource::ideal && axis.notch.has_value() == known.notch;
 }
 
-std::optional<sim::Expectation> expected_limit(const sim::Axis& axis, std::string_view loop) {
+std::optional<sim::Expectation> expected_limit(const machine::AxisModel& axis, std::string_view loop) {
   for (const auto& known : known_limits) {
     if (!is_of(known, axis)) continue;
     const double value = loop == "current" ? known.current : loop == "velocity" ? known.velocity : known.position;
@@ -139,11 +139,11 @@ Bode loop_bode(const LoopName& name, const AxisResponse& response, const LoopRes
   return b;
 }
 
-Bode plant_bode(const AxisResponse& response, const sim::Axis& axis, bool wide) {
-  const char* per = axis.motor.model == sim::MotorModel::force ? "V" : "A";
+Bode plant_bode(const AxisResponse& response, const machine::AxisModel& axis, bool wide) {
+  const char* per = axis.motor.model == machine::MotorModel::force ? "V" : "A";
   auto b = bode("Plant, " + response.axis,
                 fmt::format("Speed as the controller sees it, per {} of the {}. Coherence: of the speed.", per,
-                            axis.motor.model == sim::MotorModel::force                          ? "motor's voltage"
+                            axis.motor.model == machine::MotorModel::force                      ? "motor's voltage"
                             : response.spectra.known[static_cast<std::size_t>(Answer::current)] ? "current"
                                                                                                 : "set current"),
                 fmt::format("magnitude, dB (0 dB = 1 m/s per {})", per), wide);
@@ -161,7 +161,7 @@ void add_charts(std::vector<sim::Chart>& charts, std::vector<Bode> bodes) {
 }
 
 void add_figures(std::vector<sim::Figure>& figures, const LoopName& name, const AxisResponse& response,
-                 const LoopResponse& loop, const sim::Axis& axis, bool simulated) {
+                 const LoopResponse& loop, const machine::AxisModel& axis, bool simulated) {
   const auto add = [&](const char* figure, const char* unit, const char* text, double value,
                        std::optional<sim::Expectation> expected = {}) {
     figures.push_back({fmt::format("{}_loop_{}_{}", name.name, figure, response.axis), unit,
@@ -217,7 +217,7 @@ std::string condition_sentence(const AxisResponse& response) {
 
 }  // namespace
 
-sim::ExperimentResult response_result(const std::vector<AxisResponse>& responses, const sim::Machine& machine,
+sim::ExperimentResult response_result(const std::vector<AxisResponse>& responses, const machine::Machine& machine,
                                       const std::vector<std::string>& loops, const ResponseText& text) {
   sim::ExperimentResult result;
   result.experiment = "frequency-response";
@@ -233,7 +233,7 @@ sim::ExperimentResult response_result(const std::vector<AxisResponse>& responses
   result.findings.push_back(text.condition);
   for (const auto& response : responses) result.findings.push_back(condition_sentence(response));
   const bool wide = responses.size() != 2;
-  const auto axis_of = [&](const AxisResponse& response) -> const sim::Axis& {
+  const auto axis_of = [&](const AxisResponse& response) -> const machine::AxisModel& {
     return *std::find_if(machine.axes.begin(), machine.axes.end(),
                          [&](const auto& axis) { return axis.name == response.axis; });
   };

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "firmware/machine/model/machine.hpp"
 #include "host/response/axis_response.hpp"
 #include "sim/experiment/experiment_result.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
@@ -17,7 +17,7 @@ struct ResponseText {
 };
 
 // `loops`: which of "current", "velocity", "position" are shown; empty: all, and the plant.
-sim::ExperimentResult response_result(const std::vector<AxisResponse>& responses, const sim::Machine& machine,
+sim::ExperimentResult response_result(const std::vector<AxisResponse>& responses, const machine::Machine& machine,
                                       const std::vector<std::string>& loops, const ResponseText& text);
 
 }  // namespace stiction::host

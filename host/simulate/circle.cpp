@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/control/double_signals.hpp"
+#include "firmware/machine/configuration/double_signals.hpp"
 #include "sim/experiment/circle_measurement.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
@@ -18,7 +18,7 @@ constexpr double metre_per_minute = 1.0 / 60.0;  // m/s
 
 }  // namespace
 
-void check_circle(const sim::Machine& machine, const sim::CircleSettings& settings) {
+void check_circle(const machine::Machine& machine, const sim::CircleSettings& settings) {
   if (machine.axes.size() != 2)
     throw InfeasibleMotion(fmt::format("circle: found a machine with {} axes; expected 2", machine.axes.size()));
   for (const auto& axis : machine.axes) {
@@ -43,13 +43,14 @@ void check_circle(const sim::Machine& machine, const sim::CircleSettings& settin
 }
 
 template <class S>
-sim::CircleRun run_circle(const sim::Machine& machine, const sim::CircleSettings& settings, const TraceSink<S>& trace) {
+sim::CircleRun run_circle(const machine::Machine& machine, const sim::CircleSettings& settings,
+                          const TraceSink<S>& trace) {
   check_circle(machine, settings);
   const sim::CirclePath path(settings);
   const auto start = path.at(0.0);
   const std::array<double, 2> positions{start.axes[0].position, start.axes[1].position};
   ControlRun<S> run(machine, positions);
-  const bool late = sim::set_point_delay(machine) > 0.0;
+  const bool late = machine::set_point_delay(machine) > 0.0;
   sim::CircleMeasurement measurement(settings, machine.timing.fast_period,
                                      {machine.axes[0].name, machine.axes[1].name});
   for (;;) {
@@ -62,7 +63,7 @@ sim::CircleRun run_circle(const sim::Machine& machine, const sim::CircleSettings
     std::array<sim::CircleAxisSample, 2> samples;
     for (std::size_t k = 0; k < 2; ++k) {
       const auto& s = run.signals(k);
-      samples[k] = {sim::to_si(s.x), sim::to_si(s.e), sim::to_si(s.e_held),
+      samples[k] = {machine::to_si(s.x), machine::to_si(s.e), machine::to_si(s.e_held),
                     force[k] / machine.axes[k].motor.force_constant};
     }
     measurement.add(point, samples);
@@ -72,9 +73,9 @@ sim::CircleRun run_circle(const sim::Machine& machine, const sim::CircleSettings
   return result;
 }
 
-template sim::CircleRun run_circle<FixedSignals>(const sim::Machine&, const sim::CircleSettings&,
+template sim::CircleRun run_circle<FixedSignals>(const machine::Machine&, const sim::CircleSettings&,
                                                  const TraceSink<FixedSignals>&);
-template sim::CircleRun run_circle<sim::DoubleSignals>(const sim::Machine&, const sim::CircleSettings&,
-                                                       const TraceSink<sim::DoubleSignals>&);
+template sim::CircleRun run_circle<machine::DoubleSignals>(const machine::Machine&, const sim::CircleSettings&,
+                                                           const TraceSink<machine::DoubleSignals>&);
 
 }  // namespace stiction::host

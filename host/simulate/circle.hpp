@@ -3,10 +3,10 @@
 
 #include <stdexcept>
 
+#include "firmware/machine/model/machine.hpp"
 #include "host/simulate/control_run.hpp"
 #include "sim/experiment/circle_path.hpp"
 #include "sim/experiment/circle_result.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
@@ -17,12 +17,12 @@ class InfeasibleMotion : public std::runtime_error {
 };
 
 // Throws InfeasibleMotion when v^2/R, the feed or the radius is beyond what an axis can do.
-void check_circle(const sim::Machine& machine, const sim::CircleSettings& settings);
+void check_circle(const machine::Machine& machine, const sim::CircleSettings& settings);
 
 // One circle with the friction models that the machine's axes use. S: FixedSignals or DoubleSignals. Throws
 // InfeasibleMotion, FaultTripped, sim::ConfigurationError; the trace sink has had every tick up to the fault.
 template <class S>
-sim::CircleRun run_circle(const sim::Machine& machine, const sim::CircleSettings& settings,
+sim::CircleRun run_circle(const machine::Machine& machine, const sim::CircleSettings& settings,
                           const TraceSink<S>& trace = {});
 
 }  // namespace stiction::host

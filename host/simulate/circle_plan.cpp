@@ -8,8 +8,8 @@
 #include <optional>
 #include <thread>
 
-#include "sim/control/double_signals.hpp"
-#include "sim/control/trace_writer.hpp"
+#include "firmware/machine/configuration/double_signals.hpp"
+#include "firmware/machine/configuration/trace_writer.hpp"
 #include "sim/experiment/circle_measurement.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
@@ -18,19 +18,19 @@ namespace {
 
 constexpr int learning_laps = 4;
 
-bool learns(const sim::Machine& machine) {
-  return std::any_of(machine.axes.begin(), machine.axes.end(), [](const sim::Axis& axis) {
+bool learns(const machine::Machine& machine) {
+  return std::any_of(machine.axes.begin(), machine.axes.end(), [](const machine::AxisModel& axis) {
     return axis.friction_compensation && axis.friction_compensation->use == CompensationKind::learning;
   });
 }
 
 sim::CircleRun run_case(const CircleCase& c) {
   return c.signals == SignalKind::fixed_point ? run_circle<FixedSignals>(c.machine, c.settings)
-                                              : run_circle<sim::DoubleSignals>(c.machine, c.settings);
+                                              : run_circle<machine::DoubleSignals>(c.machine, c.settings);
 }
 
 template <class S>
-sim::CircleRun run_into(const CircleCase& c, sim::TraceWriter& writer) {
+sim::CircleRun run_into(const CircleCase& c, machine::TraceWriter& writer) {
   return run_circle<S>(c.machine, c.settings,
                        [&](std::int64_t now_ns, std::span<const AxisSignals<S>> s) { writer.write(now_ns, s); });
 }
@@ -84,7 +84,7 @@ sim::CircleResult run_circles(const CirclePlan& plan, const std::function<void()
   }
 
   sim::CircleResult result;
-  result.signals = plan.signals == SignalKind::fixed_point ? FixedSignals::name : sim::DoubleSignals::name;
+  result.signals = plan.signals == SignalKind::fixed_point ? FixedSignals::name : machine::DoubleSignals::name;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     if (failures[i]) {
       try {
@@ -108,15 +108,15 @@ sim::CircleRun run_traced(const CircleCase& c, const std::filesystem::path& file
       fmt::format("feed: {:g} m/min", c.settings.feed * 60.0),
       fmt::format("radius: {:g} mm", c.settings.radius * 1e3),
       fmt::format("direction: {}", c.settings.direction == sim::Direction::clockwise ? "cw" : "ccw"),
-      fmt::format("signals: {}", fixed ? FixedSignals::name : sim::DoubleSignals::name),
+      fmt::format("signals: {}", fixed ? FixedSignals::name : machine::DoubleSignals::name),
       "current: amplitude (peak) amperes"};
   std::vector<std::string> axes;
   for (const auto& axis : c.machine.axes) axes.push_back(axis.name);
-  sim::TraceWriter writer(file, axes, comments);
+  machine::TraceWriter writer(file, axes, comments);
   std::optional<sim::CircleRun> run;
   std::exception_ptr fault;
   try {
-    run = fixed ? run_into<FixedSignals>(c, writer) : run_into<sim::DoubleSignals>(c, writer);
+    run = fixed ? run_into<FixedSignals>(c, writer) : run_into<machine::DoubleSignals>(c, writer);
   } catch (const FaultTripped&) {
     fault = std::current_exception();
   }

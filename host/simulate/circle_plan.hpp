@@ -13,7 +13,7 @@ namespace stiction::host {
 enum class SignalKind { fixed_point, double_precision };
 
 struct CirclePlan {
-  sim::Machine machine;
+  machine::Machine machine;
   SignalKind signals = SignalKind::fixed_point;
   double radius = 0.09;  // m
   std::vector<std::string> friction;
@@ -23,7 +23,7 @@ struct CirclePlan {
 
 // One combination of a plan.
 struct CircleCase {
-  sim::Machine machine;  // with its friction model in use
+  machine::Machine machine;  // with its friction model in use
   sim::CircleSettings settings;
   SignalKind signals;
 };

@@ -86,7 +86,7 @@ Log set_points(const Planned& planned, const std::string& axis) {
 }
 
 // `bench`: of that axis alone.
-Log recorded(const sim::Machine& bench, Log wanted, Normal& normal) {
+Log recorded(const machine::Machine& bench, Log wanted, Normal& normal) {
   Coloured slow(2.5, 3.0, wanted.period), fast(2.0, 40.0, wanted.period);  // N, Hz
   auto& push = wanted.axes.front().external_force;
   push.clear();
@@ -105,7 +105,7 @@ Log recorded(const sim::Machine& bench, Log wanted, Normal& normal) {
   return log;
 }
 
-sim::Machine alone(const sim::Machine& machine, std::size_t axis) {
+machine::Machine alone(const machine::Machine& machine, std::size_t axis) {
   auto bench = machine;
   bench.axes = {machine.axes.at(axis)};
   return bench;
@@ -113,13 +113,13 @@ sim::Machine alone(const sim::Machine& machine, std::size_t axis) {
 
 }  // namespace
 
-Log record_set_points(const sim::Machine& machine, std::size_t axis, const Log& set_points, std::uint64_t seed) {
+Log record_set_points(const machine::Machine& machine, std::size_t axis, const Log& set_points, std::uint64_t seed) {
   Normal normal(seed);
   return recorded(alone(machine, axis), set_points, normal);
 }
 
-std::vector<CommissioningRecord> record_commissioning(const sim::Machine& machine, std::size_t axis, std::uint64_t seed,
-                                                      const std::function<void()>& progress) {
+std::vector<CommissioningRecord> record_commissioning(const machine::Machine& machine, std::size_t axis,
+                                                      std::uint64_t seed, const std::function<void()>& progress) {
   const auto bench = alone(machine, axis);
   Normal normal(seed);
   std::vector<CommissioningRecord> records;

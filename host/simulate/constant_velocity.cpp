@@ -29,7 +29,7 @@ constexpr std::array<Measured, 10> measured{{{0.02, 0.75},
                                              {24.0, 2.62}}};
 
 // Mean current (A) over the last 0.1 s of a run at `speed` (m/s); the start has died out by then.
-double steady_current(const sim::Machine& machine, double speed, const TraceSink<FixedSignals>& trace) {
+double steady_current(const machine::Machine& machine, double speed, const TraceSink<FixedSignals>& trace) {
   constexpr double settling = 0.4, averaging = 0.1;  // s
   const sim::SpeedRamp ramp(speed, 2.0, 40.0);
   const std::array<double, 1> origin{0.0};

@@ -9,12 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "firmware/machine/configuration/axis_configuration.hpp"
+#include "firmware/machine/configuration/compensation_configuration.hpp"
 #include "hal/control_loop.hpp"
 #include "hal/simulated/simulated_backend.hpp"
 #include "host/simulate/late_current.hpp"
-#include "sim/control/axis_configuration.hpp"
-#include "sim/control/compensation_configuration.hpp"
 #include "sim/experiment/set_point.hpp"
+#include "sim/plant/effects/effects.hpp"
 
 namespace stiction::host {
 
@@ -41,14 +42,15 @@ template <class S>
 class ControlRun {
  public:
   // Rests at `positions` (m), one an axis of the machine. Throws sim::ConfigurationError.
-  ControlRun(const sim::Machine& machine, std::span<const double> positions)
+  ControlRun(const machine::Machine& machine, std::span<const double> positions)
       : machine_(machine),
-        set_point_delay_(sim::set_point_delay(machine)),
+        set_point_delay_(machine::set_point_delay(machine)),
         backend_(machine, positions),
         configs_(configure(machine)),
-        compensations_(sim::configure_compensations<S>(machine)),
+        compensations_(machine::configure_compensations<S>(machine)),
         loop_(backend_, std::span<const AxisConfig<S>>(configs_),
-              Ticker(sim::fast_period_ns(machine.timing), static_cast<std::uint32_t>(sim::slow_ratio(machine.timing))),
+              Ticker(machine::fast_period_ns(machine.timing),
+                     static_cast<std::uint32_t>(machine::slow_ratio(machine.timing))),
               std::span<const FrictionCompensationConfig<S>>(compensations_)),
         set_(machine.axes.size()),
         late_(machine) {}
@@ -78,9 +80,10 @@ class ControlRun {
   }
 
  private:
-  static std::vector<AxisConfig<S>> configure(const sim::Machine& machine) {
+  static std::vector<AxisConfig<S>> configure(const machine::Machine& machine) {
     std::vector<AxisConfig<S>> configs;
-    for (const auto& axis : machine.axes) configs.push_back(sim::configure_axis<S>(machine.timing, axis));
+    for (const auto& axis : machine.axes)
+      configs.push_back(machine::configure_axis<S>(machine.timing, sim::drive_axis(axis)));
     return configs;
   }
   [[noreturn]] void throw_fault() const {
@@ -94,7 +97,7 @@ class ControlRun {
     throw FaultTripped(machine_.axes[first].name, loop_.axes()[first].fault(), static_cast<double>(time) * 1e-9);
   }
 
-  const sim::Machine& machine_;
+  const machine::Machine& machine_;
   double set_point_delay_;
   hal::SimulatedBackend<S> backend_;
   std::vector<AxisConfig<S>> configs_;

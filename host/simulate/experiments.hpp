@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "firmware/machine/model/machine.hpp"
 #include "host/log/log.hpp"
 #include "sim/experiment/experiment_result.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
 struct ExperimentInput {
-  sim::Machine machine;                  // with the experiment's overrides
+  machine::Machine machine;              // with the experiment's overrides
   std::vector<std::string> friction;     // the models to run, at least one; none without axes
   std::vector<double> feeds{};           // m/s, at least one; none where the experiment has no --feed
   std::vector<std::string> equations{};  // at least one; none where the experiment has no --equations

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "firmware/machine/configuration/axis_configuration.hpp"
 #include "host/simulate/experiments.hpp"
-#include "sim/control/axis_configuration.hpp"
 
 namespace stiction::host {
 namespace {
@@ -27,7 +27,7 @@ Variant variant_of(const std::string& name) {
 }
 
 // Until the fifth jump begins, if it comes soon, and at least eight revolutions.
-double shown_duration(const sim::FeedDrive& drive, double feed) {
+double shown_duration(const machine::FeedDrive& drive, double feed) {
   const double winding = drive.carriage.stiffness * feed;
   const double first =
       (drive.friction.normal_load * drive.friction.static_long + drive.cutting.constant_force) / winding;
@@ -67,7 +67,8 @@ struct TimeCharts {
 };
 
 // Adds one variant of the equations; the first one shows drive, threshold and tool too.
-sim::StickSlipFeed add_over_time(TimeCharts& charts, const sim::FeedDrive& drive, double feed, const Variant& variant) {
+sim::StickSlipFeed add_over_time(TimeCharts& charts, const machine::FeedDrive& drive, double feed,
+                                 const Variant& variant) {
   const bool first = charts.travel.series.empty();
   const double revolution = drive.cutting.revolution();
   const double revolutions = std::ceil(shown_duration(drive, feed) / revolution);
@@ -112,9 +113,9 @@ sim::StickSlipFeed add_over_time(TimeCharts& charts, const sim::FeedDrive& drive
   return run;
 }
 
-double double_step(const sim::FeedDrive& drive) { return 2.0 * drive.friction.step() / drive.carriage.stiffness; }
+double double_step(const machine::FeedDrive& drive) { return 2.0 * drive.friction.step() / drive.carriage.stiffness; }
 
-void add_motion(sim::ExperimentResult& result, const ExperimentInput& input, const sim::FeedDrive& drive) {
+void add_motion(sim::ExperimentResult& result, const ExperimentInput& input, const machine::FeedDrive& drive) {
   const double feed = input.feeds.front();
   TimeCharts charts;
   const auto title = fmt::format(", {:g} mm/min", feed / mm_per_min);
@@ -143,7 +144,7 @@ void add_motion(sim::ExperimentResult& result, const ExperimentInput& input, con
 }
 
 // Jump over 2 dF/c: the machine's drive, the same without growth of static friction, and an ideal drive.
-void add_over_feed(sim::ExperimentResult& result, const ExperimentInput& input, const sim::FeedDrive& drive) {
+void add_over_feed(sim::ExperimentResult& result, const ExperimentInput& input, const machine::FeedDrive& drive) {
   sim::Chart chart{
       "Jump over feed", "feed, mm/min", "jump over 2 dF/c", "A curve ends where the drive stops jumping.", true, {}};
   auto constant = without_dwell(drive);
@@ -151,7 +152,7 @@ void add_over_feed(sim::ExperimentResult& result, const ExperimentInput& input, 
   simple.cutting.coefficient = 0.0;
   struct Row {
     const char* name;
-    const sim::FeedDrive& drive;
+    const machine::FeedDrive& drive;
     sim::FeedSource source;
     sim::FeedEquations equations;
   };
@@ -189,7 +190,7 @@ void add_over_feed(sim::ExperimentResult& result, const ExperimentInput& input, 
 }
 
 // (6) with the feed of the instant is a damper: coefficient times the revolution's time.
-void add_cutting(sim::ExperimentResult& result, const ExperimentInput& input, const sim::FeedDrive& drive) {
+void add_cutting(sim::ExperimentResult& result, const ExperimentInput& input, const machine::FeedDrive& drive) {
   const double feed = input.feeds.front();
   const auto jumps = [&](double coefficient) {
     auto each = drive;
@@ -237,7 +238,7 @@ sim::ExperimentResult run_feed_cutting(const ExperimentInput& input) {
       {}};
   const auto& drive = *input.machine.feed_drive;
   if (!sim::loops_are_stable(drive))
-    throw sim::ConfigurationError(
+    throw machine::ConfigurationError(
         "feed_drive: found gains with which the motor's loops are unstable; expected smaller "
         "gains or longer integral times");
   add_motion(result, input, drive);

@@ -15,18 +15,18 @@ constexpr double width = 1e-3;  // of the bisection, relative
 
 double in_mm_per_min(double feed) { return feed / mm_per_min; }
 
-sim::FeedDrive with(sim::FeedDrive drive, double step, double stiffness, double mass, double zeta) {
+machine::FeedDrive with(machine::FeedDrive drive, double step, double stiffness, double mass, double zeta) {
   drive.friction.static_long = drive.friction.static_short = drive.friction.sliding + step / drive.friction.normal_load;
   drive.carriage = {mass, stiffness, zeta};
   return drive;
 }
 
-double critical_beta_by_bisection(const sim::FeedDrive& drive) {
+double critical_beta_by_bisection(const machine::FeedDrive& drive) {
   return sim::critical_feed_by_bisection(drive, ideal, 1e-6) *
          std::sqrt(drive.carriage.stiffness * drive.carriage.mass) / drive.friction.step();
 }
 
-void add_collapse(sim::ExperimentResult& result, const sim::FeedDrive& drive) {
+void add_collapse(sim::ExperimentResult& result, const machine::FeedDrive& drive) {
   struct Set {
     double step, stiffness, mass;
   };
@@ -72,7 +72,7 @@ void add_point(sim::Series& series, double x, double feed) {
 
 // Formula as a line, bisection as points, over a parameter; `change` sets it.
 template <class Change>
-sim::Chart over_parameter(const sim::FeedDrive& drive, sim::Chart chart, double low, double high, Change&& change) {
+sim::Chart over_parameter(const machine::FeedDrive& drive, sim::Chart chart, double low, double high, Change&& change) {
   constexpr int points = 7, fine = 10;
   sim::Series formula = named("formula"), ideal_points = named("ideal drive, bisection", true),
               pi_points = named("PI drive, bisection", true);
@@ -88,7 +88,7 @@ sim::Chart over_parameter(const sim::FeedDrive& drive, sim::Chart chart, double 
   return chart;
 }
 
-void add_over_gain(sim::ExperimentResult& result, const sim::FeedDrive& drive) {
+void add_over_gain(sim::ExperimentResult& result, const machine::FeedDrive& drive) {
   sim::Chart chart{"Critical feed over loop gain",
                    "gain over that of the machine file",
                    "critical feed, mm/min",
@@ -98,12 +98,12 @@ void add_over_gain(sim::ExperimentResult& result, const sim::FeedDrive& drive) {
                    {}};
   struct Loop {
     const char *series, *name, *text;
-    double& (*gain)(sim::FeedDrive&);
+    double& (*gain)(machine::FeedDrive&);
   };
   const std::array<Loop, 2> loops{{{"speed loop gain", "speed_gain", "speed-loop gain",
-                                    [](sim::FeedDrive& d) -> double& { return d.speed_controller.gain; }},
+                                    [](machine::FeedDrive& d) -> double& { return d.speed_controller.gain; }},
                                    {"current loop gain", "current_gain", "current-loop gain",
-                                    [](sim::FeedDrive& d) -> double& { return d.current_controller.gain; }}}};
+                                    [](machine::FeedDrive& d) -> double& { return d.current_controller.gain; }}}};
   sim::Series formula = named("formula");
   constexpr std::array factors{0.125, 0.25, 0.5, 1.0, 1.414, 2.0, 2.828, 4.0};
   for (const double factor : {factors.front(), factors.back()})
@@ -138,7 +138,7 @@ void add_over_gain(sim::ExperimentResult& result, const sim::FeedDrive& drive) {
 
 }  // namespace
 
-void add_critical_feed(sim::ExperimentResult& result, const sim::FeedDrive& machine) {
+void add_critical_feed(sim::ExperimentResult& result, const machine::FeedDrive& machine) {
   // As the relations: a step of friction, constant cutting force.
   auto drive = without_dwell(machine);
   drive.friction.stribeck_velocity = drive.friction.viscous = drive.cutting.coefficient = 0.0;
@@ -148,13 +148,13 @@ void add_critical_feed(sim::ExperimentResult& result, const sim::FeedDrive& mach
       "the feed, just touches zero.";
   result.charts.push_back(over_parameter(
       drive, {"Critical feed over drive stiffness", "stiffness, N/m", "critical feed, mm/min", caption, true, {}}, 3e6,
-      3e8, [](sim::FeedDrive each, double stiffness) {
+      3e8, [](machine::FeedDrive each, double stiffness) {
         each.carriage.stiffness = stiffness;
         return each;
       }));
   result.charts.push_back(over_parameter(
       drive, {"Critical feed over friction step", "friction step, N", "critical feed, mm/min", caption, true, {}},
-      100.0, 4000.0, [](const sim::FeedDrive& each, double step) {
+      100.0, 4000.0, [](const machine::FeedDrive& each, double step) {
         return with(each, step, each.carriage.stiffness, each.carriage.mass, each.carriage.damping_ratio);
       }));
   const double by_formula = sim::critical_feed_of_ideal_drive(drive);

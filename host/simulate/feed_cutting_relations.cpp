@@ -16,18 +16,18 @@ constexpr sim::FeedEquations printed_damping{false, true}, printed_stick{true, f
 constexpr double slow = 0.018;  // beta of the study's relations
 
 // v sqrt(c m) / dF = beta.
-double feed_of(double beta, const sim::FeedDrive& drive) {
+double feed_of(double beta, const machine::FeedDrive& drive) {
   return beta * drive.friction.step() / std::sqrt(drive.carriage.stiffness * drive.carriage.mass);
 }
 
-double double_step(const sim::FeedDrive& drive) { return 2.0 * drive.friction.step() / drive.carriage.stiffness; }
+double double_step(const machine::FeedDrive& drive) { return 2.0 * drive.friction.step() / drive.carriage.stiffness; }
 
-sim::FeedDrive damped(sim::FeedDrive drive, double zeta) {
+machine::FeedDrive damped(machine::FeedDrive drive, double zeta) {
   drive.carriage.damping_ratio = zeta;
   return drive;
 }
 
-void add_small_feed_relations(sim::ExperimentResult& result, const sim::FeedDrive& drive) {
+void add_small_feed_relations(sim::ExperimentResult& result, const machine::FeedDrive& drive) {
   struct Row {
     double zeta, ratio;
   };
@@ -52,9 +52,9 @@ void add_small_feed_relations(sim::ExperimentResult& result, const sim::FeedDriv
   }
 }
 
-void add_first_slip(sim::ExperimentResult& result, const sim::FeedDrive& drive) {
+void add_first_slip(sim::ExperimentResult& result, const machine::FeedDrive& drive) {
   const double feed = feed_of(slow, drive);
-  const auto first_slip = [&](const sim::FeedDrive& each) {
+  const auto first_slip = [&](const machine::FeedDrive& each) {
     sim::StickSlipFeed run(each, ideal, {}, feed);
     run.advance_to_standstill(10.0 * each.friction.at_rest(1e9) / (each.carriage.stiffness * feed));
     return run.jumps().front().start;
@@ -77,7 +77,7 @@ void add_first_slip(sim::ExperimentResult& result, const sim::FeedDrive& drive) 
 }
 
 // n = 1000/min, S = 0.06 mm a revolution.
-void add_feed_over_turns(sim::ExperimentResult& result, const sim::FeedDrive& drive) {
+void add_feed_over_turns(sim::ExperimentResult& result, const machine::FeedDrive& drive) {
   constexpr double revolution = 0.06, feed = 0.06e-3 / revolution;  // s, m/s
   constexpr std::array<double, 8> study{0.0, 0.0, 0.293, 0.0, 0.0, 0.0, 0.0, 0.293};
   const bool known = is_lathe_of_the_study(drive);
@@ -102,7 +102,7 @@ void add_feed_over_turns(sim::ExperimentResult& result, const sim::FeedDrive& dr
 }
 
 // The study solved (10) with PI loops and the damping term as printed.
-void add_drive_of_the_study(sim::ExperimentResult& result, const sim::FeedDrive& drive) {
+void add_drive_of_the_study(sim::ExperimentResult& result, const machine::FeedDrive& drive) {
   const bool known = is_lathe_of_the_study(drive);
   const auto pi = [&](double mm_per_minute, sim::FeedEquations equations) {
     return sim::jumping_at(drive, sim::FeedSource::pi_drive, equations, mm_per_minute * mm_per_min);
@@ -143,14 +143,14 @@ void add_drive_of_the_study(sim::ExperimentResult& result, const sim::FeedDrive&
 
 }  // namespace
 
-bool is_lathe_of_the_study(const sim::FeedDrive& drive) {
+bool is_lathe_of_the_study(const machine::FeedDrive& drive) {
   const auto same = [](double value, double other) { return std::abs(value - other) <= 1e-9 * other; };
   return same(drive.carriage.mass, 300.0) && same(drive.carriage.stiffness, 1.33e7) &&
          same(drive.carriage.damping_ratio, 0.05) && same(drive.friction.step(), 2000.0) &&
          drive.friction.stribeck_velocity == 0.0 && drive.friction.viscous == 0.0;
 }
 
-sim::FeedDrive without_dwell(sim::FeedDrive drive) {
+machine::FeedDrive without_dwell(machine::FeedDrive drive) {
   drive.friction.static_short = drive.friction.static_long;
   return drive;
 }
@@ -159,7 +159,7 @@ sim::Expectation study_within(double expected, double percent) {
   return {expected, percent / 100.0 * std::abs(expected), feed_study};
 }
 
-void add_feed_relations(sim::ExperimentResult& result, const sim::FeedDrive& machine) {
+void add_feed_relations(sim::ExperimentResult& result, const machine::FeedDrive& machine) {
   // The relations are those of a step of friction and a constant cutting force.
   auto drive = without_dwell(machine);
   drive.friction.stribeck_velocity = drive.friction.viscous = drive.cutting.coefficient = 0.0;
@@ -168,7 +168,7 @@ void add_feed_relations(sim::ExperimentResult& result, const sim::FeedDrive& mac
   add_feed_over_turns(result, drive);
 }
 
-void add_printed_equations(sim::ExperimentResult& result, const sim::FeedDrive& machine) {
+void add_printed_equations(sim::ExperimentResult& result, const machine::FeedDrive& machine) {
   auto drive = without_dwell(machine);
   drive.friction.stribeck_velocity = drive.friction.viscous = drive.cutting.coefficient = 0.0;
   const double feed = feed_of(slow, drive);

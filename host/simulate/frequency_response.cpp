@@ -81,7 +81,7 @@ class Schedule {
 
   std::vector<Pass> passes_of(const FrequencyResponsePlan& plan) const {
     const auto& timing = plan.machine.timing;
-    const int slow = sim::slow_ratio(timing);
+    const int slow = machine::slow_ratio(timing);
     const int block = slow * std::max(1, static_cast<int>(std::lround(1.0 / (plan.lowest * timing.slow_period))));
     if (plan.signal == TestSignal::multisine)
       return std::vector<Pass>(static_cast<std::size_t>(plan.passes),
@@ -105,25 +105,27 @@ class Schedule {
   sim::ShuttlePath path_;
 };
 
-double limit_of(const sim::Axis& axis) {
-  return axis.motor.model == sim::MotorModel::force ? axis.inverter.voltage_limit
-                                                    : axis.inverter.current_limit * axis.motor.count;
+double limit_of(const machine::AxisModel& axis) {
+  return axis.motor.model == machine::MotorModel::force ? axis.inverter.voltage_limit
+                                                        : axis.inverter.current_limit * axis.motor.count;
 }
 
-const char* unit_of(const sim::Axis& axis) { return axis.motor.model == sim::MotorModel::force ? "V" : "A"; }
+const char* unit_of(const machine::AxisModel& axis) {
+  return axis.motor.model == machine::MotorModel::force ? "V" : "A";
+}
 
 // Keeps the signals of an axis as a drive's log has them.
 void record(AxisLog& log, const AxisSignals<FixedSignals>& s, double test, bool force_motor) {
-  log.x_set.push_back(sim::to_si(s.x_set));
-  log.v_set.push_back(sim::to_si(s.v_set));
-  log.x.push_back(sim::to_si(s.x));
-  log.v.push_back(sim::to_si(s.v));
+  log.x_set.push_back(machine::to_si(s.x_set));
+  log.v_set.push_back(machine::to_si(s.v_set));
+  log.x.push_back(machine::to_si(s.x));
+  log.v.push_back(machine::to_si(s.v));
   if (force_motor) {
-    log.u.push_back(sim::to_si(s.i_set));
+    log.u.push_back(machine::to_si(s.i_set));
     log.u_inject.push_back(test);
   } else {
-    log.i.push_back(sim::to_si(s.i));
-    log.i_set.push_back(sim::to_si(s.i_set));
+    log.i.push_back(machine::to_si(s.i));
+    log.i_set.push_back(machine::to_si(s.i_set));
     log.i_inject.push_back(test);
   }
 }
@@ -140,7 +142,7 @@ class Watch {
     limited_ += limiting.velocity || limiting.current || limiting.voltage;
   }
   bool saw_test() const { return slowest_ < HUGE_VAL; }
-  void check(const sim::Axis& axis, double speed, double amplitude) const {
+  void check(const machine::AxisModel& axis, double speed, double amplitude) const {
     if (limited_ > 0)
       throw InfeasibleMotion(fmt::format(
           "amplitude: found {:.4g} {}, with which axis {} is held back at a limit of velocity, current or voltage in "
@@ -209,7 +211,7 @@ class Recording {
         log_.t.push_back(t);
         for (std::size_t k = 0; k < axes.size(); ++k) {
           const double test = tests_[k][tick];
-          record(log_.axes[k], signals[k], test, axes[k].motor.model == sim::MotorModel::force);
+          record(log_.axes[k], signals[k], test, axes[k].motor.model == machine::MotorModel::force);
           if (test != 0.0) watches_[k].see(t, set[k].velocity, run.plant(k).velocity(), signals[k].limiting);
         }
       });

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "firmware/machine/model/machine.hpp"
 #include "host/log/log.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
@@ -17,7 +17,7 @@ enum class TestSignal {
 };
 
 struct FrequencyResponsePlan {
-  sim::Machine machine;  // its axes are excited, all at the same time
+  machine::Machine machine;  // its axes are excited, all at the same time
   TestSignal signal = TestSignal::multisine;
   double speed = 2.0 / 60.0;        // m/s
   std::optional<double> amplitude;  // A (V of a force motor), largest magnitude; none: 10 % of the axis' limit

@@ -2,7 +2,7 @@
 // 4.4.3).
 #pragma once
 
-#include "sim/model/machine.hpp"
+#include "firmware/machine/model/machine.hpp"
 #include "sim/plant/friction/friction.hpp"
 
 namespace stiction::host {
@@ -12,9 +12,8 @@ class FrictionBench {
   static constexpr double step = 20e-6;  // s
 
   // The X axis' mass on the friction model that its machine file uses, at rest.
-  explicit FrictionBench(const sim::Axis& axis)
-      : mass_(axis.mass),
-        friction_(sim::make_friction(axis.friction.models.at(axis.friction.use), {axis.mass, step})) {}
+  explicit FrictionBench(const machine::AxisModel& axis)
+      : mass_(axis.mass), friction_(sim::make_friction(axis.friction, {axis.mass, step})) {}
 
   // One step under `force` (N), the sum of all forces but friction.
   void advance(double force) {

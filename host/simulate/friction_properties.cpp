@@ -13,7 +13,7 @@
 namespace stiction::host {
 namespace {
 
-sim::Axis axis_with(const ExperimentInput& input, const std::string& friction) {
+machine::AxisModel axis_with(const ExperimentInput& input, const std::string& friction) {
   auto axis = input.machine.axes.front();
   axis.friction.use = friction;
   return axis;
@@ -57,7 +57,7 @@ struct PreslidingLoop {
 };
 
 // 0 to +540 N, held, to -540 N, held, to +540 N, held, at `rate` (N/s).
-PreslidingLoop presliding_loop(const sim::Axis& axis, double rate, double hold, sim::Series& series,
+PreslidingLoop presliding_loop(const machine::AxisModel& axis, double rate, double hold, sim::Series& series,
                                BenchRecorder* recorder = nullptr) {
   const double ramp = ramp_force / rate;
   const double top = ramp + hold, bottom = top + 2.0 * ramp, up = bottom + hold, end = up + 2.0 * ramp + hold;
@@ -141,7 +141,7 @@ sim::ExperimentResult run_friction_lag(const ExperimentInput& input) {
   sim::Chart chart{"Friction over speed",           "speed, mm/s", "friction force, N",
                    "Speed 2.5 + 2.4 sin(wt) mm/s.", false,         {}};
   const auto axis = axis_with(input, "lugre");
-  const auto& parameters = std::get<sim::LuGre::Parameters>(axis.friction.models.at("lugre"));
+  const auto& parameters = sim::parameters_of<sim::LuGre<>>(axis.friction);
   double slow_width = 0.0;
   for (const auto& [omega, width] : {std::pair{1.0, 11.1}, {10.0, 66.7}, {25.0, 79.9}, {100.0, 51.9}}) {
     // A whole number of steps a period, begun at the lowest speed: step i of the rise has the speed of step count - i
@@ -149,7 +149,7 @@ sim::ExperimentResult run_friction_lag(const ExperimentInput& input) {
     const double period = 2.0 * std::numbers::pi / omega;
     const auto count = static_cast<std::size_t>(std::ceil(period / FrictionBench::step));
     const double step = period / static_cast<double>(count);
-    sim::LuGre friction(parameters, {axis.mass, step});
+    sim::LuGre<> friction(parameters, {axis.mass, step});
     sim::Series series{fmt::format("{:g} rad/s", omega), {}, {}, false};
     Thinned line(series, std::max(1, static_cast<int>(count / 2000)));
     std::vector<double> force(count + 1);

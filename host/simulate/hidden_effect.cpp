@@ -3,7 +3,7 @@
 #include <array>
 #include <random>
 
-#include "sim/plant/effects/friction_level.hpp"
+#include "sim/plant/friction/friction.hpp"
 
 namespace stiction::host {
 namespace {
@@ -23,69 +23,67 @@ class Draw {
   std::mt19937_64 random_;
 };
 
-using Values = std::map<std::string, std::vector<double>>;
+using Values = machine::KeyedValues;
 
 struct Hideable {
   const char* name;
-  Values (*draw)(const sim::Axis&, Draw&);
+  Values (*draw)(const machine::AxisModel&, Draw&);
 };
-
-const sim::FrictionParameters& friction_of(const sim::Axis& axis) { return axis.friction.models.at(axis.friction.use); }
 
 constexpr std::array hideables{
     Hideable{"mass_mismatch",
-             [](const sim::Axis& axis, Draw& draw) {
+             [](const machine::AxisModel& axis, Draw& draw) {
                return Values{{"mass", {axis.mass * (1.0 + draw.sign() * draw.between(0.02, 0.06))}}};
              }},
-    Hideable{"coulomb_mismatch",
-             [](const sim::Axis& axis, Draw& draw) {
-               return Values{
-                   {"coulomb", {sim::coulomb_of(friction_of(axis)) * (1.0 + draw.sign() * draw.between(0.08, 0.2))}}};
-             }},
-    Hideable{"viscous_mismatch",
-             [](const sim::Axis& axis, Draw& draw) {
-               return Values{
-                   {"viscous", {sim::viscous_of(friction_of(axis)) * (1.0 + draw.sign() * draw.between(0.1, 0.3))}}};
-             }},
+    Hideable{
+        "coulomb_mismatch",
+        [](const machine::AxisModel& axis, Draw& draw) {
+          return Values{{"coulomb", {sim::coulomb_of(axis.friction) * (1.0 + draw.sign() * draw.between(0.08, 0.2))}}};
+        }},
+    Hideable{
+        "viscous_mismatch",
+        [](const machine::AxisModel& axis, Draw& draw) {
+          return Values{{"viscous", {sim::viscous_of(axis.friction) * (1.0 + draw.sign() * draw.between(0.1, 0.3))}}};
+        }},
     Hideable{"viscous_nonlinear",
-             [](const sim::Axis&, Draw& draw) {
+             [](const machine::AxisModel&, Draw& draw) {
                return Values{{"force", {draw.between(15.0, 30.0)}}, {"velocity", {draw.between(0.02, 0.08)}}};
              }},
     Hideable{"stribeck",
-             [](const sim::Axis&, Draw& draw) {
+             [](const machine::AxisModel&, Draw& draw) {
                return Values{{"break_away", {draw.between(20.0, 40.0)}}, {"velocity", {draw.between(4e-3, 12e-3)}}};
              }},
     Hideable{"presliding_hysteresis",
-             [](const sim::Axis& axis, Draw& draw) {
+             [](const machine::AxisModel& axis, Draw& draw) {
                const double distance = draw.between(150e-6, 500e-6);
                const double sharpness = draw.between(3.0, 8.0);
-               return Values{{"stiffness", {sharpness * sim::coulomb_of(friction_of(axis)) / distance}},
+               return Values{{"stiffness", {sharpness * sim::coulomb_of(axis.friction) / distance}},
                              {"distance", {distance}}};
              }},
     Hideable{"position_spring",
-             [](const sim::Axis&, Draw& draw) {
+             [](const machine::AxisModel&, Draw& draw) {
                return Values{{"stiffness", {draw.between(80.0, 250.0)}}, {"neutral", {draw.between(-0.05, 0.05)}}};
              }},
     Hideable{"force_ripple",
-             [](const sim::Axis&, Draw& draw) {
+             [](const machine::AxisModel&, Draw& draw) {
                constexpr std::array pitches{0.072, 0.036, 0.024, 0.0205};
                return Values{{"pitch", {pitches[draw.index(pitches.size())]}},
                              {"cosine", {draw.sign() * draw.between(4.0, 10.0)}},
                              {"sine", {draw.sign() * draw.between(2.0, 8.0)}}};
              }},
     Hideable{"constant_force",
-             [](const sim::Axis&, Draw& draw) {
+             [](const machine::AxisModel&, Draw& draw) {
                return Values{{"force", {draw.sign() * draw.between(6.0, 15.0)}}};
              }},
     Hideable{"friction_asymmetry",
-             [](const sim::Axis&, Draw& draw) {
+             [](const machine::AxisModel&, Draw& draw) {
                return Values{{"coulomb", {0.0}}, {"viscous", {draw.sign() * draw.between(40.0, 100.0)}}};
              }},
 };
 
 }  // namespace
 
-sim::Effect draw_hidden_effect(const sim::Axis& axis, std::uint64_t seed) {
+machine::Effect draw_hidden_effect(const machine::AxisModel& axis, std::uint64_t seed) {
   Draw draw(seed);
   const auto& chosen = hideables[draw.index(hideables.size())];
   return {chosen.name, chosen.draw(axis, draw)};

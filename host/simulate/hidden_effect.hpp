@@ -5,12 +5,12 @@
 
 #include <cstdint>
 
-#include "sim/model/effect.hpp"
-#include "sim/model/machine.hpp"
+#include "firmware/machine/model/effect.hpp"
+#include "firmware/machine/model/machine.hpp"
 
 namespace stiction::host {
 
 // One of the effects that the axis can have, of a strength that a careful record shows: equal chances for all.
-sim::Effect draw_hidden_effect(const sim::Axis& axis, std::uint64_t seed);
+machine::Effect draw_hidden_effect(const machine::AxisModel& axis, std::uint64_t seed);
 
 }  // namespace stiction::host

@@ -26,7 +26,7 @@ struct Response {
   double resting_friction = 0;  // N
 };
 
-Response respond(const sim::Machine& machine, const std::string& name, const TraceSink<FixedSignals>& trace = {}) {
+Response respond(const machine::Machine& machine, const std::string& name, const TraceSink<FixedSignals>& trace = {}) {
   Response r;
   r.deviation.name = r.force.name = r.friction.name = name;
   const std::array<double, 1> origin{0.0};
@@ -39,7 +39,7 @@ Response respond(const sim::Machine& machine, const std::string& name, const Tra
     const double force = plant.motor_force();
     const double friction = plant.friction_force();
     run.tick(standstill, trace);
-    const double deviation = -sim::to_si(run.signals(0).e);
+    const double deviation = -machine::to_si(run.signals(0).e);
     r.deviation.x.push_back(t * 1e3);
     r.deviation.y.push_back(deviation * 1e6);
     r.force.x.push_back(t * 1e3);
@@ -54,9 +54,9 @@ Response respond(const sim::Machine& machine, const std::string& name, const Tra
 }
 
 // The chatter that the source saw with B2: at its step, at the drive's tick, and with the implicit step of the plant.
-void add_chatter(const sim::Machine& machine, sim::ExperimentResult& result) {
+void add_chatter(const machine::Machine& machine, sim::ExperimentResult& result) {
   const auto& axis = machine.axes[0];
-  const auto& parameters = std::get<sim::Parabolic::Parameters>(axis.friction.models.at("parabolic"));
+  const auto& parameters = sim::parameters_of<sim::Parabolic<>>(axis.friction);
   sim::Chart chart{"B2 evaluated explicitly and implicitly",
                    "time since 500 ms, ms",
                    "friction force, N",

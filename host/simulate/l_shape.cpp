@@ -47,17 +47,17 @@ const std::map<std::string, Expected> prototype{{"classical", {13.6, 0.8, 2.29}}
                                                 {"lugre", {0.7, 9.0, 2.29}}};
 
 // None where friction is compensated: the prototype had no such drive.
-std::optional<sim::Expectation> expect(const sim::Machine& machine, const std::string& name, double Expected::*member,
-                                       double rounding) {
+std::optional<sim::Expectation> expect(const machine::Machine& machine, const std::string& name,
+                                       double Expected::*member, double rounding) {
   const auto row = prototype.find(name);
-  if (row == prototype.end() || sim::has_compensation(machine)) return std::nullopt;
+  if (row == prototype.end() || machine::has_compensation(machine)) return std::nullopt;
   const double value = row->second.*member;
   return sim::Expectation{value, std::max(0.02 * value, rounding), "plant study, 10: prototype"};
 }
 
 }  // namespace
 
-LShapeRun drive_l_shape(const sim::Machine& machine, const TraceSink<FixedSignals>& trace) {
+LShapeRun drive_l_shape(const machine::Machine& machine, const TraceSink<FixedSignals>& trace) {
   const auto path = l_shape();
   const double stop = path.end_of(4), opposite = path.end_of(5), same = path.end_of(7);
   const auto begin = path.at(0.0);
@@ -69,7 +69,7 @@ LShapeRun drive_l_shape(const sim::Machine& machine, const TraceSink<FixedSignal
     const double t = run.set_point_time();
     const double amperes = run.plant(1).motor_force() / machine.axes[1].motor.force_constant;
     run.tick(path.at(run.time()), trace);
-    const double deviation = sim::to_si(run.signals(1).e);
+    const double deviation = machine::to_si(run.signals(1).e);
     r.error.x.push_back(t);
     r.error.y.push_back(deviation * 1e6);
     r.current.x.push_back(t);

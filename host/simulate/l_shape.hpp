@@ -1,9 +1,9 @@
 // The irregular path (Mendricky 2006, 6.4) on one machine: what is left at standstill and the two restarts of Y.
 #pragma once
 
+#include "firmware/machine/model/machine.hpp"
 #include "host/simulate/control_run.hpp"
 #include "sim/experiment/experiment_result.hpp"
-#include "sim/model/machine.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
 namespace stiction::host {
@@ -20,6 +20,6 @@ struct LShapeRun {
 
 // With the friction models that the machine's axes use, firmware in fixed point. The machine has an X and a Y axis.
 // Throws FaultTripped.
-LShapeRun drive_l_shape(const sim::Machine& machine, const TraceSink<FixedSignals>& trace = {});
+LShapeRun drive_l_shape(const machine::Machine& machine, const TraceSink<FixedSignals>& trace = {});
 
 }  // namespace stiction::host

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "sim/control/conversion.hpp"
+#include "firmware/machine/configuration/conversion.hpp"
 #include "sim/plant/effects/effects.hpp"
 #include "stiction/drive/axis_signals.hpp"
 
@@ -21,7 +21,7 @@ class LateCurrent {
  public:
   using Sink = std::function<void(std::int64_t, std::span<const AxisSignals<S>>)>;
 
-  explicit LateCurrent(const sim::Machine& machine) {
+  explicit LateCurrent(const machine::Machine& machine) {
     for (const auto& axis : machine.axes) {
       const double ticks = sim::record_delay(axis) / machine.timing.fast_period;
       delays_.push_back(ticks);
@@ -56,7 +56,7 @@ class LateCurrent {
     const AxisSignals<S>& a = ticks_[before].signals[axis];
     const AxisSignals<S>& b = ticks_[std::min(before + 1, ticks_.size() - 1)].signals[axis];
     const auto mix = [&](const auto& p, const auto& q, auto& to) {
-      sim::convert(sim::to_si(p) + share * (sim::to_si(q) - sim::to_si(p)), to);
+      machine::convert(machine::to_si(p) + share * (machine::to_si(q) - machine::to_si(p)), to);
     };
     mix(a.i, b.i, s.i);
     mix(a.i_set, b.i_set, s.i_set);

@@ -13,7 +13,7 @@ namespace stiction::host {
 // Every tick of a control run: set-points, position, velocity, currents. It must outlive its sink.
 class LogRecorder {
  public:
-  explicit LogRecorder(const sim::Machine& machine) {
+  explicit LogRecorder(const machine::Machine& machine) {
     log_.period = machine.timing.fast_period;
     for (const auto& axis : machine.axes) log_.axes.emplace_back().axis = axis.name;
   }
@@ -27,13 +27,13 @@ class LogRecorder {
       for (std::size_t k = 0; k < signals.size(); ++k) {
         auto& axis = log_.axes[k];
         const auto& s = signals[k];
-        axis.x_set.push_back(sim::to_si(s.x_set));
-        axis.v_set.push_back(sim::to_si(s.v_set));
-        axis.a_set.push_back(sim::to_si(s.a_set));
-        axis.x.push_back(sim::to_si(s.x));
-        axis.v.push_back(sim::to_si(s.v));
-        axis.i.push_back(sim::to_si(s.i));
-        axis.i_set.push_back(sim::to_si(s.i_set));
+        axis.x_set.push_back(machine::to_si(s.x_set));
+        axis.v_set.push_back(machine::to_si(s.v_set));
+        axis.a_set.push_back(machine::to_si(s.a_set));
+        axis.x.push_back(machine::to_si(s.x));
+        axis.v.push_back(machine::to_si(s.v));
+        axis.i.push_back(machine::to_si(s.i));
+        axis.i_set.push_back(machine::to_si(s.i_set));
       }
     };
   }

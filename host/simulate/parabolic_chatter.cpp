@@ -12,25 +12,26 @@ namespace {
 
 constexpr double duration = 1.0, settled = 0.5, shown = 0.005;  // s
 
-double explicit_friction(const sim::Parabolic::Parameters& p, double velocity) {
+double explicit_friction(const sim::ParabolicParameters& p, double velocity) {
   if (velocity == 0.0) return 0.0;
   return std::copysign(p.force_at_1_m_per_s * std::pow(std::abs(velocity), 1.0 / p.order), velocity);
 }
 
 }  // namespace
 
-double chatter_amplitude(const sim::Parabolic::Parameters& friction, double mass, double step) {
+double chatter_amplitude(const sim::ParabolicParameters& friction, double mass, double step) {
   const double n = friction.order;
   return std::pow(friction.force_at_1_m_per_s, n / (n - 1.0)) * std::pow(step / (2.0 * mass), 1.0 / (n - 1.0));
 }
 
-ChatterRun impact_with_parabolic_friction(sim::Machine machine, double force, double time, std::optional<double> step) {
+ChatterRun impact_with_parabolic_friction(machine::Machine machine, double force, double time,
+                                          std::optional<double> step) {
   auto& friction = machine.axes[0].friction;
-  const auto parameters = std::get<sim::Parabolic::Parameters>(friction.models.at(std::string(sim::Parabolic::name)));
-  friction.use = sim::Parabolic::name;
+  const auto parameters = sim::parameters_of<sim::Parabolic<>>(friction);
+  friction.use = sim::Parabolic<>::name;
   if (step) {  // then it comes from outside, as a force
-    friction.use = sim::CoulombViscous::name;
-    friction.models[friction.use] = sim::CoulombViscous::Parameters{0.0, 0.0};
+    friction.use = sim::CoulombViscous<>::name;
+    friction.models[friction.use] = sim::values_of<sim::CoulombViscous<>>({0.0, 0.0});
   }
   const std::array<double, 1> origin{0.0};
   const std::array<sim::AxisSetPoint, 1> standstill{};

@@ -7,13 +7,14 @@
 
 #include <optional>
 
+#include "firmware/machine/model/machine.hpp"
 #include "sim/experiment/experiment_result.hpp"
-#include "sim/model/machine.hpp"
+#include "sim/plant/friction/friction.hpp"
 
 namespace stiction::host {
 
 // Amplitude (N) of the alternation of a free mass (kg) at steps of `step` (s). Friction of order n > 1.
-double chatter_amplitude(const sim::Parabolic::Parameters& friction, double mass, double step);
+double chatter_amplitude(const sim::ParabolicParameters& friction, double mass, double step);
 
 // The last half of a second, long after the impact.
 struct ChatterRun {
@@ -26,6 +27,7 @@ struct ChatterRun {
 // The impact of `force` (N) at `time` (s) on the machine's only axis, firmware in fixed point, with its parabolic
 // friction evaluated explicitly every `step` (s, at least a tick) and held; without a step, implicitly by the plant.
 // Throws FaultTripped.
-ChatterRun impact_with_parabolic_friction(sim::Machine machine, double force, double time, std::optional<double> step);
+ChatterRun impact_with_parabolic_friction(machine::Machine machine, double force, double time,
+                                          std::optional<double> step);
 
 }  // namespace stiction::host

@@ -10,16 +10,16 @@
 
 namespace stiction::host {
 
-sim::Machine one_axis(const sim::Machine& machine, std::size_t axis) {
-  sim::Machine one = machine;
+machine::Machine one_axis(const machine::Machine& machine, std::size_t axis) {
+  machine::Machine one = machine;
   one.axes = {machine.axes.at(axis)};
   return one;
 }
 
-QuadrantRun run_quadrants(const sim::Machine& machine, std::size_t axis, const sim::CircleSettings& settings, int laps,
-                          const TraceSink<FixedSignals>& trace, const CurrentNoise& noise) {
+QuadrantRun run_quadrants(const machine::Machine& machine, std::size_t axis, const sim::CircleSettings& settings,
+                          int laps, const TraceSink<FixedSignals>& trace, const CurrentNoise& noise) {
   check_circle(machine, settings);
-  const sim::Machine one = one_axis(machine, axis);
+  const machine::Machine one = one_axis(machine, axis);
   const sim::CirclePath path(settings);
   const std::array<double, 1> start{path.at(0.0).axes[axis].position};
   ControlRun<FixedSignals> run(one, start);
@@ -35,15 +35,15 @@ QuadrantRun run_quadrants(const sim::Machine& machine, std::size_t axis, const s
     if (noise.rms > 0.0) set[0].injection = amperes(random);
     run.tick(set, trace);
     const auto& s = run.signals(0);
-    result.peak_current = std::max(result.peak_current, std::abs(sim::to_si(s.i)));
+    result.peak_current = std::max(result.peak_current, std::abs(machine::to_si(s.i)));
     if (turned < 0.0) continue;
     auto& peak = result.peak_error[static_cast<std::size_t>(turned / turn)];
-    peak = std::max(peak, std::abs(sim::to_si(s.e)));
+    peak = std::max(peak, std::abs(machine::to_si(s.e)));
   }
   if (const auto* compensation = run.compensation(0)) {
     result.dropped = compensation->dropped();
-    for (const auto current : compensation->learned()[1]) result.learned_forward.push_back(sim::to_si(current));
-    for (const auto current : compensation->learned()[0]) result.learned_backward.push_back(sim::to_si(current));
+    for (const auto current : compensation->learned()[1]) result.learned_forward.push_back(machine::to_si(current));
+    for (const auto current : compensation->learned()[0]) result.learned_backward.push_back(machine::to_si(current));
   }
   return result;
 }

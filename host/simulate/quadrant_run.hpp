@@ -12,7 +12,7 @@
 namespace stiction::host {
 
 // The machine with this axis alone.
-sim::Machine one_axis(const sim::Machine& machine, std::size_t axis);
+machine::Machine one_axis(const machine::Machine& machine, std::size_t axis);
 
 struct QuadrantRun {
   // m, of each lap, |x_set - x| at the encoder, unquantised. Laps begin between two quadrants; the first one, with the
@@ -31,7 +31,7 @@ struct CurrentNoise {
 };
 
 // Throws InfeasibleMotion where the circle is beyond the axis, FaultTripped, sim::ConfigurationError.
-QuadrantRun run_quadrants(const sim::Machine& machine, std::size_t axis, const sim::CircleSettings& settings, int laps,
-                          const TraceSink<FixedSignals>& trace = {}, const CurrentNoise& noise = {});
+QuadrantRun run_quadrants(const machine::Machine& machine, std::size_t axis, const sim::CircleSettings& settings,
+                          int laps, const TraceSink<FixedSignals>& trace = {}, const CurrentNoise& noise = {});
 
 }  // namespace stiction::host

@@ -7,8 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "firmware/machine/configuration/double_signals.hpp"
 #include "host/log/set_points.hpp"
-#include "sim/control/double_signals.hpp"
 #include "sim/plant/effects/effects.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
@@ -58,11 +58,12 @@ class Motion {
   double length_ = 0.0;
 };
 
-double allowed_following_error(const sim::Axis& axis) {
+double allowed_following_error(const machine::AxisModel& axis) {
   return axis.supervision.following_error.value_or(default_following_error);
 }
 
-void require_within_limits(const Log& log, const AxisLog& axis, const sim::Axis& machine_axis, const Motion& motion) {
+void require_within_limits(const Log& log, const AxisLog& axis, const machine::AxisModel& machine_axis,
+                           const Motion& motion) {
   const auto& v = motion.points().velocity();
   for (std::size_t k = 0; k < v.size(); ++k)
     if (std::abs(v[k]) > machine_axis.max_velocity)
@@ -87,7 +88,7 @@ Sample between(const Sample& a, const Sample& b, double s) {
 // Collects the simulated values at the log's times; currents at the times at which the machine's record has them.
 class Sampler {
  public:
-  Sampler(const Log& log, const std::vector<std::size_t>& axes, const sim::Machine& machine)
+  Sampler(const Log& log, const std::vector<std::size_t>& axes, const machine::Machine& machine)
       : times_(log.t), machine_(machine), before_(log.axes.size()), now_(log.axes.size()) {
     out_.source = log.source;
     out_.t = log.t;
@@ -143,14 +144,14 @@ class Sampler {
   }
   void keep_current(std::size_t k, const Sample& sample) {
     auto& axis = out_.axes[k];
-    const bool force_motor = machine_.axes[places_[k].axis].motor.model == sim::MotorModel::force;
+    const bool force_motor = machine_.axes[places_[k].axis].motor.model == machine::MotorModel::force;
     axis.force.push_back(sample.force);
     (force_motor ? axis.u : axis.i).push_back(force_motor ? sample.i_set : sample.i);
     if (!force_motor) axis.i_set.push_back(sample.i_set);
   }
 
   const std::vector<double>& times_;
-  const sim::Machine& machine_;
+  const machine::Machine& machine_;
   std::vector<Place> places_;
   std::vector<Sample> before_, now_;
   double time_ = -std::numeric_limits<double>::infinity();
@@ -167,7 +168,7 @@ double at_time(const Log& log, const std::vector<double>& values, double t) {
 
 }  // namespace
 
-std::vector<std::size_t> match_axes(const sim::Machine& machine, const Log& log, const std::string& axis) {
+std::vector<std::size_t> match_axes(const machine::Machine& machine, const Log& log, const std::string& axis) {
   std::string known;
   for (const auto& each : machine.axes) known += (known.empty() ? "" : ", ") + each.name;
   const auto index_of = [&](const std::string& name) {
@@ -201,7 +202,7 @@ double encoder_offset(const AxisLog& axis, double allowed) {
 }
 
 template <class S>
-Log replay(const sim::Machine& machine, const Log& log, const ReplaySettings& settings, const TraceSink<S>& trace) {
+Log replay(const machine::Machine& machine, const Log& log, const ReplaySettings& settings, const TraceSink<S>& trace) {
   const auto indices = match_axes(machine, log, settings.axis);
   std::vector<Motion> motions;
   std::vector<double> start(machine.axes.size(), 0.0);
@@ -231,7 +232,8 @@ Log replay(const sim::Machine& machine, const Log& log, const ReplaySettings& se
     run.tick(points, trace);
     for (std::size_t k = 0; k < indices.size(); ++k) {
       const auto& s = run.signals(indices[k]);
-      values[k] = {sim::to_si(s.x), sim::to_si(s.v), sim::to_si(s.i), sim::to_si(s.i_set), values[k].force};
+      values[k] = {machine::to_si(s.x), machine::to_si(s.v), machine::to_si(s.i), machine::to_si(s.i_set),
+                   values[k].force};
     }
     sampler.add(t, values);
   }
@@ -247,9 +249,9 @@ Log replay(const sim::Machine& machine, const Log& log, const ReplaySettings& se
   return out;
 }
 
-template Log replay<FixedSignals>(const sim::Machine&, const Log&, const ReplaySettings&,
+template Log replay<FixedSignals>(const machine::Machine&, const Log&, const ReplaySettings&,
                                   const TraceSink<FixedSignals>&);
-template Log replay<sim::DoubleSignals>(const sim::Machine&, const Log&, const ReplaySettings&,
-                                        const TraceSink<sim::DoubleSignals>&);
+template Log replay<machine::DoubleSignals>(const machine::Machine&, const Log&, const ReplaySettings&,
+                                            const TraceSink<machine::DoubleSignals>&);
 
 }  // namespace stiction::host

@@ -3,9 +3,9 @@
 
 #include <string>
 
+#include "firmware/machine/model/machine.hpp"
 #include "host/log/log.hpp"
 #include "host/simulate/control_run.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
@@ -29,13 +29,13 @@ struct ReplaySettings {
 // when log and machine do not fit (axes, no x_set, beyond the machine's velocity), FaultTripped,
 // sim::ConfigurationError.
 template <class S>
-Log replay(const sim::Machine& machine, const Log& log, const ReplaySettings& settings = {},
+Log replay(const machine::Machine& machine, const Log& log, const ReplaySettings& settings = {},
            const TraceSink<S>& trace = {});
 
 inline constexpr double longest_lead_in = 0.5;  // s
 
 // The machine's axis for each of the log's, by index. Throws LogError.
-std::vector<std::size_t> match_axes(const sim::Machine& machine, const Log& log, const std::string& axis);
+std::vector<std::size_t> match_axes(const machine::Machine& machine, const Log& log, const std::string& axis);
 
 // Mean of x - x_set where it is beyond `allowed` (m), else 0.
 double encoder_offset(const AxisLog& axis, double allowed);

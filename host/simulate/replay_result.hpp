@@ -4,16 +4,16 @@
 #include <string>
 #include <vector>
 
+#include "firmware/machine/model/machine.hpp"
 #include "host/log/log.hpp"
 #include "sim/experiment/experiment_result.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
 // One replay of the log.
 struct ReplayCase {
   std::string label;  // what its curves are called: a friction model, a machine
-  sim::Machine machine;
+  machine::Machine machine;
   Log simulated;
 };
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "firmware/machine/configuration/compensation_configuration.hpp"
 #include "host/simulate/circle.hpp"
 #include "host/simulate/quadrant_run.hpp"
-#include "sim/control/compensation_configuration.hpp"
 
 namespace stiction::host {
 namespace {
@@ -29,7 +29,7 @@ const KindWords& row_of(CompensationKind kind) {
   return *std::find_if(kinds.begin(), kinds.end(), [&](const KindWords& row) { return row.kind == kind; });
 }
 
-bool has(const sim::Axis& axis, CompensationKind kind) {
+bool has(const machine::AxisModel& axis, CompensationKind kind) {
   const auto& compensation = axis.friction_compensation;
   if (!compensation) return false;
   switch (kind) {
@@ -45,11 +45,12 @@ bool has(const sim::Axis& axis, CompensationKind kind) {
   return false;
 }
 
-bool compares(const sim::Machine& machine, CompensationKind kind) {
-  return std::any_of(machine.axes.begin(), machine.axes.end(), [&](const sim::Axis& axis) { return has(axis, kind); });
+bool compares(const machine::Machine& machine, CompensationKind kind) {
+  return std::any_of(machine.axes.begin(), machine.axes.end(),
+                     [&](const machine::AxisModel& axis) { return has(axis, kind); });
 }
 
-bool can_drive(const sim::Machine& machine, sim::CircleSettings circle, double feed) {
+bool can_drive(const machine::Machine& machine, sim::CircleSettings circle, double feed) {
   circle.feed = feed;
   try {
     check_circle(machine, circle);
@@ -74,8 +75,8 @@ Lap thinned(const Lap& lap) {
   return kept;
 }
 
-ComparedCircle drive(const sim::Machine& machine, CompensationKind kind, const sim::CircleSettings& circle, int laps,
-                     bool drawn) {
+ComparedCircle drive(const machine::Machine& machine, CompensationKind kind, const sim::CircleSettings& circle,
+                     int laps, bool drawn) {
   ComparedCircle result{kind, circle.feed, {}, {}, false, {}, {}};
   const sim::CirclePath path(circle);
   const double begin = sim::CirclePath::lap_begin + turn * (laps - 2);
@@ -87,11 +88,11 @@ ComparedCircle drive(const sim::Machine& machine, CompensationKind kind, const s
     TraceSink<FixedSignals> sink;
     if (drawn)
       sink = [&](std::int64_t now_ns, std::span<const AxisSignals<FixedSignals>> signals) {
-        const double t = static_cast<double>(now_ns) * 1e-9 - sim::set_point_delay(own);
+        const double t = static_cast<double>(now_ns) * 1e-9 - machine::set_point_delay(own);
         const double turned = t > 0.0 ? path.at(t).turned : 0.0;
         if (turned < begin) return;
         lap.angle.push_back(turned);
-        lap.error.push_back(sim::to_si(signals[0].e));
+        lap.error.push_back(machine::to_si(signals[0].e));
       };
     const auto run = run_quadrants(own, k, circle, laps, sink);
     result.peak_error.push_back(run.peak_error.back());
@@ -109,7 +110,7 @@ ComparedCircle drive(const sim::Machine& machine, CompensationKind kind, const s
 const char* name_of(CompensationKind kind) { return row_of(kind).name; }
 const char* words_of(CompensationKind kind) { return row_of(kind).words; }
 
-std::size_t compared_circles(const sim::Machine& machine, const ComparisonSettings& settings) {
+std::size_t compared_circles(const machine::Machine& machine, const ComparisonSettings& settings) {
   std::size_t count = 0;
   for (const auto& row : kinds)
     for (const double feed : settings.feeds)
@@ -117,7 +118,7 @@ std::size_t compared_circles(const sim::Machine& machine, const ComparisonSettin
   return count;
 }
 
-std::vector<ComparedCircle> compare_compensations(const sim::Machine& machine, const ComparisonSettings& settings) {
+std::vector<ComparedCircle> compare_compensations(const machine::Machine& machine, const ComparisonSettings& settings) {
   std::vector<ComparedCircle> circles;
   for (const auto& row : kinds) {
     if (!compares(machine, row.kind)) continue;

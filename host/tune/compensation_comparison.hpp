@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "firmware/machine/model/machine.hpp"
 #include "sim/experiment/circle_path.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
@@ -31,8 +31,8 @@ struct ComparisonSettings {
 
 // `machine`: with the compensations of its axes; an axis without one of a kind runs without it. Axes run alone.
 // Circles that the machine cannot drive are left out. Throws FaultTripped.
-std::vector<ComparedCircle> compare_compensations(const sim::Machine& machine, const ComparisonSettings& settings);
-std::size_t compared_circles(const sim::Machine& machine, const ComparisonSettings& settings);
+std::vector<ComparedCircle> compare_compensations(const machine::Machine& machine, const ComparisonSettings& settings);
+std::size_t compared_circles(const machine::Machine& machine, const ComparisonSettings& settings);
 
 const char* name_of(CompensationKind kind);  // as a machine file has it
 const char* words_of(CompensationKind kind);

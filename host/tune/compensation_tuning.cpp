@@ -14,8 +14,8 @@ constexpr int most_laps = 2;              // that are judged by the timing rule
 constexpr double learning_share = 0.5;    // of the Coulomb current: what learning may add at most
 constexpr double least_presliding = 0.1;  // of the current without the mass' part; below it, that current counts
 
-sim::GlitchLearning learning_for(const FrictionTuning& friction) {
-  sim::GlitchLearning learning{0.6, 0.02, 0.2, 0.0, 0.3e-6, 1e-3, {}};
+machine::QuadrantLearningParameters learning_for(const FrictionTuning& friction) {
+  machine::QuadrantLearningParameters learning{0.6, 0.02, 0.2, 0.0, 0.3e-6, 1e-3, {}};
   const bool sliding_only = friction.coulomb < least_presliding * friction.current_rms;
   learning.limit = learning_share * (sliding_only ? friction.current_rms : friction.coulomb);
   return learning;
@@ -23,7 +23,7 @@ sim::GlitchLearning learning_for(const FrictionTuning& friction) {
 
 }  // namespace
 
-CompensationTuning tune_compensation(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
+CompensationTuning tune_compensation(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
                                      const DriveLap& drive_lap, const CompensationSettings& settings) {
   CompensationTuning tuning{tune_friction(logs, machine.axes[axis], settings.friction), {}, {}, machine};
   auto& timing = tuning.machine.timing;
@@ -49,7 +49,7 @@ CompensationTuning tune_compensation(const sim::Machine& machine, std::size_t ax
   return tuning;
 }
 
-Log simulated_circle(const sim::Machine& machine, std::size_t axis, const sim::CircleSettings& circle, int laps) {
+Log simulated_circle(const machine::Machine& machine, std::size_t axis, const sim::CircleSettings& circle, int laps) {
   LogRecorder recorder(one_axis(machine, axis));
   run_quadrants(machine, axis, circle, laps, recorder.sink());
   auto log = recorder.take();

@@ -20,7 +20,7 @@ struct CompensationSettings {
 };
 
 // A lap with the compensation that the machine holds: of the real machine, or of a simulation of it.
-using DriveLap = std::function<Log(const sim::Machine&)>;
+using DriveLap = std::function<Log(const machine::Machine&)>;
 
 struct JudgedLap {
   double look_ahead = 0.0;  // s, with which it was driven
@@ -31,14 +31,14 @@ struct CompensationTuning {
   FrictionTuning friction;
   std::vector<JudgedLap> laps;  // by the timing rule
   std::optional<PulseTuning> pulse;
-  sim::Machine machine;  // with the compensation on the axis, learning in use
+  machine::Machine machine;  // with the compensation on the axis, learning in use
 };
 
 // `logs`: of the machine's axis without compensation (friction_tuning.hpp). Throws LogError.
-CompensationTuning tune_compensation(const sim::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
+CompensationTuning tune_compensation(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
                                      const DriveLap& drive_lap, const CompensationSettings& settings = {});
 
 // A circle of one axis in simulation, as a log of `laps` laps at the drive's rate.
-Log simulated_circle(const sim::Machine& machine, std::size_t axis, const sim::CircleSettings& circle, int laps);
+Log simulated_circle(const machine::Machine& machine, std::size_t axis, const sim::CircleSettings& circle, int laps);
 
 }  // namespace stiction::host

@@ -178,11 +178,12 @@ void check_rows(const std::vector<Log>& logs, const LogRows& rows) {
 
 }  // namespace
 
-double expected_look_ahead(const sim::Timing& timing, const sim::Axis& axis) {
+double expected_look_ahead(const machine::Timing& timing, const machine::AxisModel& axis) {
   return 1.5 * timing.fast_period + axis.inverter.dead_time;
 }
 
-FrictionTuning tune_friction(const std::vector<Log>& logs, const sim::Axis& axis, const TuningSettings& settings) {
+FrictionTuning tune_friction(const std::vector<Log>& logs, const machine::AxisModel& axis,
+                             const TuningSettings& settings) {
   std::vector<Motion> motions;
   for (const auto& log : logs) {
     const auto& channels = channels_of(log, axis);

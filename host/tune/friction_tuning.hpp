@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "firmware/machine/model/machine.hpp"
 #include "host/identify/motion.hpp"
 #include "host/log/log.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
@@ -21,22 +21,24 @@ struct TuningSettings {
 };
 
 struct FrictionTuning {
-  sim::FrictionFeedforward friction;  // look_ahead is left at 0: expected_look_ahead(), then timing_rule.hpp
-  double coulomb = 0.0;               // A, sum of the levels
-  double mass = 0.0;                  // kg, as the logs say; the drive's feedforward keeps the machine file's
-  double constant_current = 0.0;      // A, of the first log
-  double current_rms = 0.0;           // A, without the mass' part
-  double residual_rms = 0.0;          // A, of it not explained
-  double reduction_error = 0.0;       // A, largest change of the presliding curve by drawing elements together
-  std::vector<std::string> notes;     // sentences: what the logs could not determine
+  machine::FrictionFeedforwardParameters
+      friction;                    // look_ahead is left at 0: expected_look_ahead(), then timing_rule.hpp
+  double coulomb = 0.0;            // A, sum of the levels
+  double mass = 0.0;               // kg, as the logs say; the drive's feedforward keeps the machine file's
+  double constant_current = 0.0;   // A, of the first log
+  double current_rms = 0.0;        // A, without the mass' part
+  double residual_rms = 0.0;       // A, of it not explained
+  double reduction_error = 0.0;    // A, largest change of the presliding curve by drawing elements together
+  std::vector<std::string> notes;  // sentences: what the logs could not determine
 };
 
 // `axis`: of the machine that the logs belong to. Throws LogError for logs that cannot be used: without current, or
 // which never slide further than the longest presliding element.
-FrictionTuning tune_friction(const std::vector<Log>& logs, const sim::Axis& axis, const TuningSettings& settings = {});
+FrictionTuning tune_friction(const std::vector<Log>& logs, const machine::AxisModel& axis,
+                             const TuningSettings& settings = {});
 
 // The look-ahead (s) that the drive's own delays suggest: the inverter's dead time, a tick of hold and half a tick of
 // sampling; the current loop's lag is small beside them.
-double expected_look_ahead(const sim::Timing& timing, const sim::Axis& axis);
+double expected_look_ahead(const machine::Timing& timing, const machine::AxisModel& axis);
 
 }  // namespace stiction::host

@@ -13,16 +13,16 @@ namespace stiction::host {
 namespace {
 
 struct Problem {
-  sim::Machine machine;
+  machine::Machine machine;
   std::size_t axis;
   sim::CircleSettings circle;
   int evaluations = 0;
   double best = std::numeric_limits<double>::infinity();
-  sim::PulseCompensation pulse;
+  machine::PulseCompensationParameters pulse;
 
   // Amplitude in mm/s, delay and duration in ms.
   double error(const double* x) {
-    sim::PulseCompensation candidate;
+    machine::PulseCompensationParameters candidate;
     candidate.amplitude = x[0] * 1e-3;
     candidate.final_amplitude = candidate.amplitude;
     candidate.rise_until = 1e-3;  // below every acceleration that matters
@@ -45,7 +45,7 @@ double evaluate(unsigned, const double* x, double*, void* problem) { return stat
 
 }  // namespace
 
-PulseTuning tune_pulse(const sim::Machine& machine, std::size_t axis, const sim::CircleSettings& circle,
+PulseTuning tune_pulse(const machine::Machine& machine, std::size_t axis, const sim::CircleSettings& circle,
                        int evaluations) {
   Problem problem{machine, axis, circle, 0, std::numeric_limits<double>::infinity(), {}};
   PulseTuning tuning;

@@ -3,19 +3,19 @@
 // characteristic over acceleration, so it is flat.
 #pragma once
 
+#include "firmware/machine/model/machine.hpp"
 #include "sim/experiment/circle_path.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
 struct PulseTuning {
-  sim::PulseCompensation pulse;
+  machine::PulseCompensationParameters pulse;
   double error_off = 0.0;  // m, without
   double error = 0.0;      // m, with
   int evaluations = 0;
 };
 
-PulseTuning tune_pulse(const sim::Machine& machine, std::size_t axis, const sim::CircleSettings& circle,
+PulseTuning tune_pulse(const machine::Machine& machine, std::size_t axis, const sim::CircleSettings& circle,
                        int evaluations = 250);
 
 }  // namespace stiction::host

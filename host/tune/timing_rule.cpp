@@ -6,25 +6,25 @@
 #include <cmath>
 #include <vector>
 
+#include "firmware/machine/configuration/compensation_configuration.hpp"
+#include "firmware/machine/configuration/conversion.hpp"
+#include "firmware/machine/configuration/double_signals.hpp"
 #include "host/identify/filter.hpp"
 #include "host/identify/identification.hpp"
-#include "sim/control/compensation_configuration.hpp"
-#include "sim/control/conversion.hpp"
-#include "sim/control/double_signals.hpp"
 
 namespace stiction::host {
 namespace {
 
-using S = sim::DoubleSignals;
+using S = machine::DoubleSignals;
 
 constexpr double before = 3e-3, after = 40e-3;  // s, around a reversal
 
 // The current that the feedforward gives for the set way, A.
-std::vector<double> feedforward(const AxisLog& channels, const std::vector<double>& v_set, const sim::Machine& machine,
-                                const sim::Axis& axis, double period) {
-  sim::Machine at_rate = machine;
+std::vector<double> feedforward(const AxisLog& channels, const std::vector<double>& v_set,
+                                const machine::Machine& machine, const machine::AxisModel& axis, double period) {
+  machine::Machine at_rate = machine;
   at_rate.timing.fast_period = period;  // the law counts its damping in ticks
-  const auto config = sim::configure_compensation<S>(at_rate, axis).friction;
+  const auto config = machine::configure_compensation<S>(at_rate, axis).friction;
   FrictionFeedforward<S>::State state;
   SaturationCounter none;
   std::vector<double> current;
@@ -36,7 +36,7 @@ std::vector<double> feedforward(const AxisLog& channels, const std::vector<doubl
 }
 
 // The error (m) that a lacking `force` (N) makes in the loop of PI velocity and P position control, without its delays.
-std::vector<double> response(const std::vector<double>& force, const sim::Axis& axis, double period) {
+std::vector<double> response(const std::vector<double>& force, const machine::AxisModel& axis, double period) {
   const double k = axis.velocity_controller.gain * axis.motor.force_constant, kv = axis.position_controller.gain;
   const auto& time = axis.velocity_controller.integral_time;
   const double per_time = time ? 1.0 / *time : 0.0;
@@ -65,7 +65,7 @@ std::string_view TimingError::verdict(double tick) const {
   return late > 0.0 ? "too late" : "too early";
 }
 
-TimingError timing_of(const Log& log, const sim::Machine& machine, std::size_t axis_index) {
+TimingError timing_of(const Log& log, const machine::Machine& machine, std::size_t axis_index) {
   const auto& axis = machine.axes.at(axis_index);
   const auto& channels = channels_of(log, axis);
   if (channels.x_set.empty())

@@ -6,8 +6,8 @@
 
 #include <string_view>
 
+#include "firmware/machine/model/machine.hpp"
 #include "host/log/log.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
@@ -22,6 +22,6 @@ struct TimingError {
 
 // `log`: of a motion with reversals, driven with the compensation of `machine` (friction or learning), with x_set and x
 // at the drive's rate or a few of its ticks. `axis`: index in the machine. Throws LogError when nothing can be judged.
-TimingError timing_of(const Log& log, const sim::Machine& machine, std::size_t axis);
+TimingError timing_of(const Log& log, const machine::Machine& machine, std::size_t axis);
 
 }  // namespace stiction::host

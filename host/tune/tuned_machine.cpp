@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "sim/machine/compensation_parameters.hpp"
-#include "sim/machine/edited_machine.hpp"
+#include "firmware/machine/file/compensation_parameters.hpp"
+#include "firmware/machine/file/edited_machine.hpp"
 
 namespace stiction::host {
 namespace {
@@ -19,31 +19,31 @@ class Edits {
     if (unit == "1")
       add(key, value);
     else
-      add(key, sim::written_quantity(value, unit));
+      add(key, machine::written_quantity(value, unit));
   }
   void quantities(const Path& key, const std::vector<double>& values, const std::string& unit) {
     std::vector<std::string> written;
-    for (const double value : values) written.push_back(sim::written_quantity(value, unit));
+    for (const double value : values) written.push_back(machine::written_quantity(value, unit));
     add(key, written);
   }
   void text(const Path& key, std::string value) { add(key, std::move(value)); }
   void remove(const Path& key) { add(key, std::monostate{}); }
-  const std::vector<sim::MachineEdit>& list() const { return list_; }
+  const std::vector<machine::MachineEdit>& list() const { return list_; }
 
  private:
-  void add(const Path& key, decltype(sim::MachineEdit::value) value) {
+  void add(const Path& key, decltype(machine::MachineEdit::value) value) {
     auto path = at_;
     path.insert(path.end(), key.begin(), key.end());
     list_.push_back({std::move(path), std::move(value)});
   }
   Path at_;
-  std::vector<sim::MachineEdit> list_;
+  std::vector<machine::MachineEdit> list_;
 };
 
-// Every key that the machine file's tables describe (sim/machine/compensation_parameters.hpp).
+// Every key that the machine file's tables describe (firmware/machine/file/compensation_parameters.hpp).
 template <class T>
 void write(Edits& edits, const std::string& table, const T& values) {
-  for (const auto& parameter : sim::Table<T>::parameters) {
+  for (const auto& parameter : machine::Table<T>::parameters) {
     const Path key{table, std::string(parameter.key)};
     std::visit(
         [&](auto member) {
@@ -69,8 +69,8 @@ std::string tuned_machine(const std::filesystem::path& file, const std::vector<s
   std::vector<std::string> comment{fmt::format("Friction compensation tuned from {}", fmt::join(logs, ", ")),
                                    fmt::format("by {}", command),
                                    fmt::format("on the machine file {}", file.filename().string())};
-  std::vector<sim::MachineEdit> edits{
-      {{"timing", "set_point_delay"}, sim::written_quantity(all.machine.timing.set_point_delay, "s")}};
+  std::vector<machine::MachineEdit> edits{
+      {{"timing", "set_point_delay"}, machine::written_quantity(all.machine.timing.set_point_delay, "s")}};
   for (const auto& [k, tuning] : all.tuned) {
     const auto& axis = all.machine.axes[k];
     const auto& compensation = *axis.friction_compensation;
@@ -82,7 +82,7 @@ std::string tuned_machine(const std::filesystem::path& file, const std::vector<s
     if (compensation.pulse) write(own, "pulse", *compensation.pulse);
     edits.insert(edits.end(), own.list().begin(), own.list().end());
   }
-  return sim::edited_machine(file, set, edits, comment);
+  return machine::edited_machine(file, set, edits, comment);
 }
 
 }  // namespace stiction::host

@@ -15,7 +15,7 @@ constexpr double magnification = 1000.0;
 // "16": of a feed in m/min, for names and words.
 std::string feed_text(double feed) { return fmt::format("{:g}", std::round(feed * metre_per_minute * 1e6) * 1e-6); }
 
-std::string timing_sentence(const sim::Machine& machine, const std::string& axis, const JudgedLap& lap) {
+std::string timing_sentence(const machine::Machine& machine, const std::string& axis, const JudgedLap& lap) {
   return fmt::format(
       "{}: with a look-ahead of {:.0f} us the current comes {} ({:+.0f} us, standard error {:.0f} us over {} "
       "reversals).",
@@ -127,7 +127,7 @@ sim::Chart feed_chart(const TunedCompensations& all, std::size_t axis) {
   return chart;
 }
 
-sim::Chart presliding_chart(const std::string& axis, const sim::FrictionFeedforward& friction) {
+sim::Chart presliding_chart(const std::string& axis, const machine::FrictionFeedforwardParameters& friction) {
   sim::Chart chart;
   chart.title = "Presliding of " + axis;
   chart.x_label = "way since the reversal, um";

@@ -11,7 +11,7 @@
 namespace stiction::host {
 
 struct TunedCompensations {
-  sim::Machine machine;                                           // with all of them
+  machine::Machine machine;                                       // with all of them
   std::vector<std::pair<std::size_t, CompensationTuning>> tuned;  // by axis
   std::vector<ComparedCircle> circles;
   sim::CircleSettings drawn;  // the circle of the pictures

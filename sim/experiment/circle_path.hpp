@@ -8,7 +8,7 @@
 #include "sim/experiment/circle_result.hpp"
 #include "sim/experiment/set_point.hpp"
 #include "sim/experiment/speed_ramp.hpp"
-#include "sim/sine_cosine.hpp"
+#include "sim/number/sine_cosine.hpp"
 
 namespace stiction::sim {
 

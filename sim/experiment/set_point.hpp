@@ -1,7 +1,7 @@
 // Set-points in SI units and their way over the border to the drive.
 #pragma once
 
-#include "sim/control/conversion.hpp"
+#include "firmware/machine/configuration/conversion.hpp"
 #include "stiction/drive/exchange.hpp"
 
 namespace stiction::sim {
@@ -21,8 +21,8 @@ SetPoint<S> to_set_point(const AxisSetPoint& set) {
   typename S::Velocity velocity{};
   typename S::Acceleration acceleration{};
   typename S::Current injection{};
-  bool valid = convert({set.position, set.velocity, set.acceleration}, position, velocity, acceleration);
-  if (set.injection != 0.0) valid = convert(set.injection, injection) && valid;
+  bool valid = machine::convert({set.position, set.velocity, set.acceleration}, position, velocity, acceleration);
+  if (set.injection != 0.0) valid = machine::convert(set.injection, injection) && valid;
   return {position, velocity, acceleration, valid, injection};
 }
 

@@ -7,13 +7,13 @@
 namespace stiction::sim {
 namespace {
 
-std::variant<DcMotor, SynchronousMotor, ForceSource> make_motor(const Motor& motor, double step) {
+std::variant<DcMotor, SynchronousMotor, ForceSource> make_motor(const machine::MotorParameters& motor, double step) {
   switch (motor.model) {
-    case MotorModel::dc:
+    case machine::MotorModel::dc:
       return DcMotor(motor, step);
-    case MotorModel::synchronous:
+    case machine::MotorModel::synchronous:
       return SynchronousMotor(motor, step);
-    case MotorModel::force:
+    case machine::MotorModel::force:
       return ForceSource(motor, step);
   }
   throw std::invalid_argument("motor.model: unknown model");
@@ -29,16 +29,16 @@ T& held(Variant& variant) {
 
 }  // namespace
 
-AxisPlant::AxisPlant(const Timing& timing, const Axis& axis, double position, std::uint64_t seed)
+AxisPlant::AxisPlant(const machine::Timing& timing, const machine::AxisModel& axis, double position, std::uint64_t seed)
     : AxisPlant(timing.fast_period / plant_steps_per_tick, plant_axis(axis), position, seed) {}
 
-AxisPlant::AxisPlant(double step, const Axis& axis, double position, std::uint64_t seed)
+AxisPlant::AxisPlant(double step, const machine::AxisModel& axis, double position, std::uint64_t seed)
     : half_step_(0.5 * step),
       inverter_(axis.inverter, step, plant_steps_per_tick),
       motor_(make_motor(axis.motor, step)),
       effects_(axis, step, position),
       mass_per_step_(effects_.carriage(axis).mass / step),
-      friction_(make_friction(axis.friction.models.at(axis.friction.use), effects_.carriage(axis))),
+      friction_(make_friction(axis.friction, effects_.carriage(axis))),
       tick_(tick_of(motor_, friction_, effects_.any())),
       mount_(axis.encoder.mount, step),
       encoder_increment_(axis.encoder.increment),
@@ -47,7 +47,7 @@ AxisPlant::AxisPlant(double step, const Axis& axis, double position, std::uint64
       random_(seed),
       position_(position),
       lost_position_(effects_.reading_error(position).value),
-      phases_(axis.motor.model == MotorModel::synchronous ? 3 : 1) {}
+      phases_(axis.motor.model == machine::MotorModel::synchronous ? 3 : 1) {}
 
 // The freewheeling diodes end the currents within a fraction of a millisecond: here at once.
 void AxisPlant::switch_off() {

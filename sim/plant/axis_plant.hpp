@@ -7,7 +7,7 @@
 #include <random>
 #include <variant>
 
-#include "sim/model/machine.hpp"
+#include "firmware/machine/model/machine.hpp"
 #include "sim/plant/effects/acting_effects.hpp"
 #include "sim/plant/encoder_mount.hpp"
 #include "sim/plant/friction/friction.hpp"
@@ -24,7 +24,7 @@ class AxisPlant {
  public:
   // At rest at `position` (m). `seed`: of the encoder's noise. Throws std::invalid_argument for an unknown model,
   // EffectError for effects that the axis cannot have.
-  AxisPlant(const Timing& timing, const Axis& axis, double position, std::uint64_t seed);
+  AxisPlant(const machine::Timing& timing, const machine::AxisModel& axis, double position, std::uint64_t seed);
 
   // What the drive commands from now on: voltages (V), or the power stage off.
   void command(const PhaseValues& voltage, bool enable) {
@@ -67,7 +67,7 @@ class AxisPlant {
   using MotorVariant = std::variant<DcMotor, SynchronousMotor, ForceSource>;
   using Tick = void (*)(AxisPlant&);
 
-  AxisPlant(double step, const Axis& axis, double position, std::uint64_t seed);
+  AxisPlant(double step, const machine::AxisModel& axis, double position, std::uint64_t seed);
   static Tick tick_of(const MotorVariant& motor, const FrictionModel& friction, bool effects);
   template <class MotorModel, class Friction, bool effects>
   static void tick(AxisPlant& plant);

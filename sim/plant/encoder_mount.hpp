@@ -12,14 +12,14 @@
 #include <numbers>
 #include <optional>
 
-#include "sim/model/machine.hpp"
+#include "firmware/machine/model/machine.hpp"
 
 namespace stiction::sim {
 
 class EncoderMountModel {
  public:
   // Without parameters the mount is rigid.
-  EncoderMountModel(const std::optional<EncoderMount>& mount, double step) {
+  EncoderMountModel(const std::optional<machine::EncoderMountParameters>& mount, double step) {
     if (!mount) return;
     const double w = 2.0 * std::numbers::pi * mount->natural_frequency;
     const double decay = mount->damping_ratio * w;

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/model/machine.hpp"
-#include "sim/sine_cosine.hpp"
+#include "firmware/machine/model/machine.hpp"
+#include "sim/number/sine_cosine.hpp"
 
 namespace stiction::sim {
 
@@ -35,7 +35,7 @@ class DcMotor {
  public:
   static constexpr std::size_t phases = 1;
 
-  DcMotor(const Motor& motor, double step)
+  DcMotor(const machine::MotorParameters& motor, double step)
       : winding_(motor.phase_resistance / motor.count, motor.phase_inductance / motor.count, step),
         gain_(0.5 * motor.force_constant * winding_.gain()),
         emf_gain_(gain_ * motor.emf_constant),
@@ -65,7 +65,7 @@ class SynchronousMotor {
  public:
   static constexpr std::size_t phases = 3;
 
-  SynchronousMotor(const Motor& motor, double step)
+  SynchronousMotor(const machine::MotorParameters& motor, double step)
       : winding_(motor.phase_resistance / motor.count, (motor.phase_inductance - motor.mutual_inductance) / motor.count,
                  step),
         emf_constant_(motor.emf_constant),
@@ -110,7 +110,7 @@ class ForceSource {
  public:
   static constexpr std::size_t phases = 1;
 
-  ForceSource(const Motor& motor, double) : force_constant_(motor.force_constant) {}
+  ForceSource(const machine::MotorParameters& motor, double) : force_constant_(motor.force_constant) {}
 
   double advance(const PhaseValues& voltage, double, double) {
     current_[0] = voltage[0];

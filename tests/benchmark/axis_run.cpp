@@ -3,18 +3,18 @@
 #include <array>
 #include <cmath>
 
+#include "firmware/machine/configuration/axis_configuration.hpp"
 #include "hal/control_loop.hpp"
 #include "hal/simulated/simulated_backend.hpp"
-#include "sim/control/axis_configuration.hpp"
 #include "sim/experiment/circle_path.hpp"
-#include "sim/machine/machine_file.hpp"
+#include "sim/machine_file.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
 namespace stiction::benchmark {
 namespace {
 
-const sim::Machine& machine() {
-  static const sim::Machine one_axis = [] {
+const machine::Machine& machine() {
+  static const machine::Machine one_axis = [] {
     auto m = sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/mcfv5050ln.toml",
                                {"circle", {"axis.X.motor.model=dc", "axis.X.friction.use=lugre"}});
     m.axes.resize(1);
@@ -31,9 +31,10 @@ double run(double seconds) {
   const sim::CirclePath path(settings);
   const std::array<double, 1> start{settings.radius};
   hal::SimulatedBackend<S> backend(m, start);
-  const std::array<AxisConfig<S>, 1> configs{sim::configure_axis<S>(m.timing, m.axes[0])};
-  hal::ControlLoop loop(backend, std::span<const AxisConfig<S>>(configs),
-                        Ticker(sim::fast_period_ns(m.timing), static_cast<std::uint32_t>(sim::slow_ratio(m.timing))));
+  const std::array<AxisConfig<S>, 1> configs{machine::configure_axis<S>(m.timing, m.axes[0])};
+  hal::ControlLoop loop(
+      backend, std::span<const AxisConfig<S>>(configs),
+      Ticker(machine::fast_period_ns(m.timing), static_cast<std::uint32_t>(machine::slow_ratio(m.timing))));
   const auto ticks = std::llround(seconds / m.timing.fast_period);
   for (long long i = 0; i < ticks; ++i) {
     const auto point = path.at(static_cast<double>(loop.now_ns()) * 1e-9);
@@ -46,6 +47,6 @@ double run(double seconds) {
 }  // namespace
 
 double run_axis_fixed(double seconds) { return run<FixedSignals>(seconds); }
-double run_axis_double(double seconds) { return run<sim::DoubleSignals>(seconds); }
+double run_axis_double(double seconds) { return run<machine::DoubleSignals>(seconds); }
 
 }  // namespace stiction::benchmark

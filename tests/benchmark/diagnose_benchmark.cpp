@@ -8,7 +8,7 @@
 
 #include "host/diagnose/diagnose.hpp"
 #include "host/simulate/commissioning.hpp"
-#include "sim/machine/machine_file.hpp"
+#include "sim/machine_file.hpp"
 
 namespace {
 

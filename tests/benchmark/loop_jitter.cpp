@@ -9,14 +9,14 @@
 #include <memory>
 #include <string>
 
-#include "firmware/drive/real_time.hpp"
+#include "firmware/machine/configuration/axis_configuration.hpp"
+#include "firmware/stictiond/real_time.hpp"
 #include "hal/control_loop.hpp"
 #include "hal/loop_timing.hpp"
 #include "hal/paced_backend.hpp"
 #include "hal/simulated/simulated_backend.hpp"
-#include "sim/control/axis_configuration.hpp"
 #include "sim/experiment/circle_path.hpp"
-#include "sim/machine/machine_file.hpp"
+#include "sim/machine_file.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
 namespace {
@@ -41,7 +41,7 @@ int run(std::int64_t period_ns, double seconds, const drive::RealTimeRequest& re
   constexpr std::array<double, 2> start{0.09, 0.0};
   const auto timing = std::make_unique<hal::LoopTiming>();
   std::array<AxisConfig<S>, 2> configs;
-  for (std::size_t i = 0; i < 2; ++i) configs[i] = sim::configure_axis<S>(machine.timing, machine.axes[i]);
+  for (std::size_t i = 0; i < 2; ++i) configs[i] = machine::configure_axis<S>(machine.timing, machine.axes[i]);
 
   drive::RealTime real_time;
   auto steps = real_time.prepare_process(request);
@@ -53,7 +53,7 @@ int run(std::int64_t period_ns, double seconds, const drive::RealTimeRequest& re
   hal::TimedBackend<Paced> timed(paced, *timing);
   hal::ControlLoop loop(
       timed, std::span<const AxisConfig<S>>(configs),
-      Ticker(sim::fast_period_ns(machine.timing), static_cast<std::uint32_t>(sim::slow_ratio(machine.timing))));
+      Ticker(machine::fast_period_ns(machine.timing), static_cast<std::uint32_t>(machine::slow_ratio(machine.timing))));
   const auto ticks = static_cast<std::uint64_t>(seconds * 1e9 / static_cast<double>(period_ns));
   while (paced.clock().lateness().read().total + paced.clock().missed() < ticks) {
     // A hundred at a time: reading the histogram is not the loop's work.

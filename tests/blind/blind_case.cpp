@@ -41,13 +41,13 @@ Eigen::VectorXd stacked(const std::vector<Signal>& signals) {
 
 // X of the cross table with a friction that the file can express to the end and a motor constant that is that of its
 // windings: the inverse dynamics of the machine file is exact.
-sim::Machine draw_machine(sim::Machine machine, Random& random) {
+machine::Machine draw_machine(machine::Machine machine, Random& random) {
   machine.axes.resize(1);
   auto& axis = machine.axes.front();
   axis.mass = uniform(random, 190.0, 250.0);
   axis.motor.force_constant = 1.5 * axis.motor.phase_force_constant;
-  axis.encoder.velocity = sim::VelocitySource::estimated;
-  sim::MaxwellSlip::Parameters friction;
+  axis.encoder.velocity = machine::VelocitySource::estimated;
+  sim::MaxwellSlipParameters friction;
   friction.viscous = uniform(random, 300.0, 600.0);
   for (const auto& e : exponential_contact(uniform(random, 70.0, 130.0), uniform(random, 2e-6, 6e-6))) {
     friction.stiffness.push_back(e.stiffness);
@@ -58,8 +58,8 @@ sim::Machine draw_machine(sim::Machine machine, Random& random) {
   return machine;
 }
 
-Mechanics mechanics_of(const sim::Axis& axis) {
-  const auto& friction = std::get<sim::MaxwellSlip::Parameters>(axis.friction.models.at("maxwell_slip"));
+Mechanics mechanics_of(const machine::AxisModel& axis) {
+  const auto& friction = std::get<sim::MaxwellSlipParameters>(axis.friction.models.at("maxwell_slip"));
   Mechanics m;
   m.mass = axis.mass;
   m.viscous = friction.viscous;
@@ -84,7 +84,7 @@ NoiseLevels draw_noise(Random& random) {
 // The runs of one case: the same trajectories with other mechanics.
 class Runs {
  public:
-  Runs(const sim::Machine& machine, const std::vector<Trajectory>& trajectories, double period, std::uint64_t seed)
+  Runs(const machine::Machine& machine, const std::vector<Trajectory>& trajectories, double period, std::uint64_t seed)
       : machine_(machine),
         file_(mechanics_of(machine.axes.front())),
         trajectories_(trajectories),
@@ -114,7 +114,7 @@ class Runs {
   const Mechanics& file() const { return file_; }
 
  private:
-  const sim::Machine& machine_;
+  const machine::Machine& machine_;
   Mechanics file_;
   const std::vector<Trajectory>& trajectories_;
   double period_;
@@ -129,7 +129,7 @@ double sensor_noise(const NoiseLevels& noise, double period) {
 }
 
 // The strength with the wanted mean square; most residual forces grow like it or like its root.
-sim::Effect scaled(const Hideable& row, const AtStrength& at, double wanted, Runs& runs) {
+machine::Effect scaled(const Hideable& row, const AtStrength& at, double wanted, Runs& runs) {
   double strength = 1.0;
   for (int round = 0; round < 8; ++round) {
     Mechanics m = runs.file();
@@ -153,7 +153,7 @@ double oracle(const std::vector<Signal>& signals, const Eigen::MatrixXd& held_re
 
 namespace {
 
-BlindCase make_case_of(const sim::Machine& shipped, const CaseOrder& order, std::uint64_t attempt) {
+BlindCase make_case_of(const machine::Machine& shipped, const CaseOrder& order, std::uint64_t attempt) {
   Random random(order.seed * 0x9E3779B97F4A7C15ULL + 1 + attempt);
   BlindCase blind{order, draw_machine(shipped, random), {}, {}, {}, 0.0, 0.0};
   const auto noise = draw_noise(random);
@@ -202,7 +202,7 @@ BlindCase make_case_of(const sim::Machine& shipped, const CaseOrder& order, std:
 }  // namespace
 
 // A machine whose drive trips on the way leaves no log: another one is drawn for the same order.
-BlindCase make_case(const sim::Machine& shipped, const CaseOrder& order) {
+BlindCase make_case(const machine::Machine& shipped, const CaseOrder& order) {
   constexpr std::uint64_t attempts = 8;
   for (std::uint64_t attempt = 0;; ++attempt) try {
       return make_case_of(shipped, order, attempt);

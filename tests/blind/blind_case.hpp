@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "firmware/machine/model/machine.hpp"
 #include "host/log/log.hpp"
-#include "sim/model/machine.hpp"
 #include "tests/blind/truth/hidden.hpp"
 
 namespace stiction::blind {
@@ -23,16 +23,16 @@ struct CaseOrder {
 
 struct BlindCase {
   CaseOrder order;
-  sim::Machine machine;  // one axis
+  machine::Machine machine;  // one axis
   std::vector<host::Log> training, holdout;
-  std::vector<sim::Effect> truth;  // of each hidden one, with its parameters
-  double noise_rms = 0.0;          // N, of the residual force without any effect
+  std::vector<machine::Effect> truth;  // of each hidden one, with its parameters
+  double noise_rms = 0.0;              // N, of the residual force without any effect
   // N^2: by how much the true effects' own signals, fitted on the training logs, lower the residual force's mean square
   // on the held-out logs.
   double oracle_cut = 0.0;
 };
 
 // `machine`: the shipped cross table. Throws Tripped where no drive of eight drawn gets through.
-BlindCase make_case(const sim::Machine& machine, const CaseOrder& order);
+BlindCase make_case(const machine::Machine& machine, const CaseOrder& order);
 
 }  // namespace stiction::blind

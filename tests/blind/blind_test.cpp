@@ -10,14 +10,14 @@
 
 #include "host/diagnose/diagnose.hpp"
 #include "host/diagnose/reading_response.hpp"
-#include "sim/machine/machine_file.hpp"
+#include "sim/machine_file.hpp"
 #include "tests/blind/campaign.hpp"
 #include "tests/support/figure.hpp"
 
 namespace stiction::blind {
 namespace {
 
-sim::Machine shipped() {
+machine::Machine shipped() {
   return sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/mcfv5050ln.toml");
 }
 
@@ -45,7 +45,7 @@ TEST(blind_truth, agrees_with_its_machine_file_where_nothing_is_hidden) {
   auto machine = shipped();
   machine.axes.resize(1);
   auto& axis = machine.axes.front();
-  axis.encoder.velocity = sim::VelocitySource::estimated;
+  axis.encoder.velocity = machine::VelocitySource::estimated;
   axis.motor.force_constant = 1.5 * axis.motor.phase_force_constant;
   mechanics.mass = axis.mass;
   mechanics.viscous = 500.0;
@@ -64,7 +64,7 @@ TEST(blind_truth, answers_a_subdivision_error_at_speed_as_the_diagnosis_expects)
   auto machine = shipped();
   machine.axes.resize(1);
   auto& axis = machine.axes.front();
-  axis.encoder.velocity = sim::VelocitySource::estimated;
+  axis.encoder.velocity = machine::VelocitySource::estimated;
   axis.motor.force_constant = 1.5 * axis.motor.phase_force_constant;
   Mechanics mechanics;
   mechanics.mass = axis.mass;

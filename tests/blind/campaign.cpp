@@ -49,8 +49,8 @@ bool right(const std::string& named, const CaseOrder& order) {
 }
 
 // The machine file's own value of what a *_mismatch changes; 0 for others.
-double value_of_file(const sim::Axis& axis, const std::string& effect) {
-  const auto& friction = std::get<sim::MaxwellSlip::Parameters>(axis.friction.models.at("maxwell_slip"));
+double value_of_file(const machine::AxisModel& axis, const std::string& effect) {
+  const auto& friction = std::get<sim::MaxwellSlipParameters>(axis.friction.models.at("maxwell_slip"));
   if (effect == "mass_mismatch") return axis.mass;
   if (effect == "viscous_mismatch") return friction.viscous;
   if (effect == "force_constant_mismatch") return axis.motor.force_constant;
@@ -60,7 +60,7 @@ double value_of_file(const sim::Axis& axis, const std::string& effect) {
   return sum;
 }
 
-double scale_of(const sim::Effect& truth, const std::string& key) {
+double scale_of(const machine::Effect& truth, const std::string& key) {
   if (key == "neutral") return 0.1;
   if (key == "cosine" || key == "sine")
     return std::hypot(truth.values.at("cosine").front(), truth.values.at("sine").front());
@@ -68,8 +68,8 @@ double scale_of(const sim::Effect& truth, const std::string& key) {
 }
 
 // A profile is found with other knots: the rms difference at places along those that were found.
-ParameterScore score_profile(const sim::Effect& truth, const sim::Effect& found) {
-  const auto level = [](const sim::Effect& effect, double x) {
+ParameterScore score_profile(const machine::Effect& truth, const machine::Effect& found) {
+  const auto level = [](const machine::Effect& effect, double x) {
     const auto &at = effect.values.at("position"), &of = effect.values.at("force");
     const auto k = static_cast<std::size_t>(std::upper_bound(at.begin(), at.end(), x) - at.begin());
     if (k == 0 || k == at.size()) return k == 0 ? of.front() : of.back();
@@ -86,7 +86,7 @@ ParameterScore score_profile(const sim::Effect& truth, const sim::Effect& found)
   return {truth.name, "profile", std::sqrt(off / of), 0.0, false, 0.0};
 }
 
-std::vector<ParameterScore> score_parameters(const sim::Axis& file, const sim::Effect& truth,
+std::vector<ParameterScore> score_parameters(const machine::AxisModel& file, const machine::Effect& truth,
                                              const host::Finding& finding) {
   std::vector<ParameterScore> scores;
   if (truth.name == "position_dependent_friction") return {score_profile(truth, finding.effect)};
@@ -174,7 +174,7 @@ Outcome score(const PlannedCase& planned, const BlindCase& blind, const host::Ve
   return outcome;
 }
 
-std::vector<Outcome> run(const sim::Machine& shipped, const std::vector<PlannedCase>& plan, const Judge& judge,
+std::vector<Outcome> run(const machine::Machine& shipped, const std::vector<PlannedCase>& plan, const Judge& judge,
                          int threads, const std::function<void(std::size_t)>& done) {
   std::vector<Outcome> outcomes(plan.size());
   std::atomic<std::size_t> next{0}, finished{0};

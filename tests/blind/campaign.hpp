@@ -60,7 +60,7 @@ struct Outcome {
 Outcome score(const PlannedCase& planned, const BlindCase& blind, const host::Verdict& verdict);
 
 // On `threads` threads; `done` after each case, from any of them.
-std::vector<Outcome> run(const sim::Machine& shipped, const std::vector<PlannedCase>& plan, const Judge& judge,
+std::vector<Outcome> run(const machine::Machine& shipped, const std::vector<PlannedCase>& plan, const Judge& judge,
                          int threads, const std::function<void(std::size_t)>& done);
 
 // The tables that --blind prints.

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "host/diagnose/diagnose.hpp"
-#include "sim/machine/machine_file.hpp"
+#include "sim/machine_file.hpp"
 #include "tests/blind/campaign.hpp"
 
 int main(int argc, char** argv) {

@@ -16,7 +16,7 @@ using Backend = hal::SimulatedBackend<FixedSignals>;
 constexpr std::array<double, 2> origin{0.0, 0.0};
 auto standstill = [](double) { return std::array<sim::AxisSetPoint, 2>{}; };
 
-double error_of(const AxisSignals<FixedSignals>& s) { return sim::to_si(s.e); }
+double error_of(const AxisSignals<FixedSignals>& s) { return machine::to_si(s.e); }
 
 // 150 N on X and back to standstill: the integral part takes the force over. What is left is less than the encoder's
 // and the quantizer's resolution lets the control see, half of 1 um.
@@ -31,7 +31,7 @@ TEST(Disturbance, OfAConstantForceIsTakenOverByTheIntegralPart) {
   EXPECT_GT(peak, 1e-6);
   EXPECT_LT(std::abs(error_of(trace[trace.size() - 2])), 0.6e-6);
   // Motor and friction share the force: the motor at least what is beyond the Coulomb level of 90 N.
-  EXPECT_LT(sim::to_si(trace[trace.size() - 2].i_set), -(150.0 - 90.0) / 94.0);
+  EXPECT_LT(machine::to_si(trace[trace.size() - 2].i_set), -(150.0 - 90.0) / 94.0);
 }
 
 TEST(Limits, HoldCurrentBackAndSayItWithoutAFault) {
@@ -44,7 +44,7 @@ TEST(Limits, HoldCurrentBackAndSayItWithoutAFault) {
   bool limiting = false;
   for (std::size_t i = 0; i < trace.size(); i += 2) {
     limiting = limiting || trace[i].limiting.current;
-    EXPECT_LE(std::abs(sim::to_si(trace[i].i_set)), 70.0);
+    EXPECT_LE(std::abs(machine::to_si(trace[i].i_set)), 70.0);
     EXPECT_EQ(trace[i].fault, Fault::none);
   }
   EXPECT_TRUE(limiting);

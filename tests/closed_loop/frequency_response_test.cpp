@@ -29,7 +29,7 @@ std::array<AxisResponse, 2> responses_of(const host::FrequencyResponsePlan& plan
   return result;
 }
 
-host::FrequencyResponsePlan plan_for(const sim::Machine& machine) {
+host::FrequencyResponsePlan plan_for(const machine::Machine& machine) {
   host::FrequencyResponsePlan plan;
   plan.machine = machine;
   return plan;

@@ -12,7 +12,7 @@
 namespace stiction::test {
 namespace {
 
-sim::Machine machine_for(const char* experiment) {
+machine::Machine machine_for(const char* experiment) {
   auto machine =
       sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/mcfv5050ln.toml", {experiment, {}});
   machine.axes.resize(1);
@@ -25,7 +25,7 @@ host::ChatterRun impact(std::optional<double> step) {
 
 TEST(ParabolicFriction, ChattersWhenEvaluatedExplicitlyAtACoarseStep) {
   const auto machine = machine_for("impact");
-  const auto& p = std::get<sim::Parabolic::Parameters>(machine.axes[0].friction.models.at("parabolic"));
+  const auto& p = std::get<sim::ParabolicParameters>(machine.axes[0].friction.models.at("parabolic"));
   for (const double step : {200e-6, 400e-6}) {
     const auto run = impact(step);
     const double amplitude = host::chatter_amplitude(p, machine.axes[0].mass, step);

@@ -123,7 +123,7 @@ TEST(FrictionElements, FirstLoadingIsTheMeasuredOne) {
   const auto curve = presliding_curve(permitted_rows(cross_table()).presliding);
   const auto p = friction_elements({curve.coulomb(), 0.0, 0.02, 0.0, 0.0}, curve, 1.0, 1.0);
   constexpr double nanometre = 1e-9, step = 15.625e-6;
-  sim::MaxwellSlip contact(p, {225.0, step});
+  sim::MaxwellSlip<> contact(p, {225.0, step});
   double travelled = 0.0;
   for (const double point : {0.3e-6, 2.0e-6, 6.3e-6, 20e-6, 47e-6}) {
     double force = 0.0;

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/control/axis_configuration.hpp"
-#include "sim/control/conversion.hpp"
-#include "sim/control/double_signals.hpp"
+#include "firmware/machine/configuration/axis_configuration.hpp"
+#include "firmware/machine/configuration/conversion.hpp"
+#include "firmware/machine/configuration/double_signals.hpp"
 #include "stiction/number/fixed_signals.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/shipped_machine.hpp"
@@ -19,19 +19,19 @@ namespace {
 template <class S>
 class VelocityLoop {
  public:
-  VelocityLoop(const sim::Machine& machine, std::size_t axis)
-      : axis_(sim::configure_axis<S>(machine.timing, machine.axes[axis])) {
+  VelocityLoop(const machine::Machine& machine, std::size_t axis)
+      : axis_(machine::configure_axis<S>(machine.timing, machine.axes[axis])) {
     axis_.start({});
   }
 
   double step(double e_held, double v_set, double v, double a_set) {
-    signals_.e_held = sim::to_signal<typename S::Distance>(e_held).value();
-    signals_.v_set_delayed = sim::to_signal<typename S::Velocity>(v_set).value();
-    signals_.v = sim::to_signal<typename S::Velocity>(v).value();
+    signals_.e_held = machine::to_signal<typename S::Distance>(e_held).value();
+    signals_.v_set_delayed = machine::to_signal<typename S::Velocity>(v_set).value();
+    signals_.v = machine::to_signal<typename S::Velocity>(v).value();
     SetPoint<S> set;
-    set.acceleration = sim::to_signal<typename S::Acceleration>(a_set).value();
+    set.acceleration = machine::to_signal<typename S::Acceleration>(a_set).value();
     axis_.control_velocity(set, 0, signals_);
-    return sim::to_si(signals_.i_set);
+    return machine::to_si(signals_.i_set);
   }
 
  private:
@@ -44,7 +44,7 @@ TEST(Precision, FixedPointStaysWithinATenthOfAMilliampereOfDouble) {
   double largest = 0.0;
   for (const std::size_t axis : {0u, 1u}) {
     VelocityLoop<FixedSignals> fixed(machine, axis);
-    VelocityLoop<sim::DoubleSignals> real(machine, axis);
+    VelocityLoop<machine::DoubleSignals> real(machine, axis);
     // A circle of 90 mm at 16 m/min with following errors of whole micrometres and a velocity error of friction's size.
     const double speed = 16.0 / 60.0, turn = speed / 0.09, bit = 0x1p-32;
     for (int k = 0; k < 32000; ++k) {

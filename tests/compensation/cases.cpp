@@ -27,7 +27,7 @@ void run_all(const Tasks& tasks) {
   work();
 }
 
-sim::Machine changed(const TunedAxis& tuned, CompensationKind kind, const Change* change) {
+machine::Machine changed(const TunedAxis& tuned, CompensationKind kind, const Change* change) {
   auto machine = with_compensation(tuned, kind);
   if (change != nullptr) change->apply(machine.axes[tuned.axis]);
   return machine;
@@ -73,7 +73,7 @@ LShapeRow l_shape_of(const Truth& truth, const TunedAxis& x, const TunedAxis& y)
   return row;
 }
 
-bool feasible(const sim::Machine& machine, double feed, double radius) {
+bool feasible(const machine::Machine& machine, double feed, double radius) {
   sim::CircleSettings settings;
   settings.feed = feed * metre_per_minute;
   settings.radius = radius;

@@ -25,8 +25,8 @@ TEST(Compensation, a_bad_learned_table_is_dropped_within_a_lap) {
   compensation.learning->limit = 0.5;
   compensation.learning->gain = 0.0;
   compensation.learning->smoothing = compensation.learning->forgetting = 0.0;
-  sim::LearnedTable table{tuned.machine.name, "X", std::vector<double>(learned_table_nodes, -0.45),
-                          std::vector<double>(learned_table_nodes, 0.45)};
+  machine::LearnedTable table{tuned.machine.name, "X", std::vector<double>(learned_table_nodes, -0.45),
+                              std::vector<double>(learned_table_nodes, 0.45)};
   compensation.learned = table;
   sim::CircleSettings circle;
   circle.feed = 16.0 * metre_per_minute;
@@ -51,7 +51,7 @@ TEST(Compensation, learned_table_of_a_run_serves_the_next) {
   auto machine = with_compensation(tuned, CompensationKind::learning);
   const auto first = host::run_quadrants(machine, 0, circle, 6);
   machine.axes[0].friction_compensation->learned =
-      sim::LearnedTable{machine.name, "X", first.learned_forward, first.learned_backward};
+      machine::LearnedTable{machine.name, "X", first.learned_forward, first.learned_backward};
   const auto second = host::run_quadrants(machine, 0, circle, 3);
   EXPECT_FALSE(second.dropped);
   test::figure("kept learned table: silent first lap, first lap with it",

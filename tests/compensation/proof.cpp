@@ -23,7 +23,7 @@ sim::CircleSettings circle(double feed, double r = radius) {
   return settings;
 }
 
-host::Log log_circle(const sim::Machine& machine, std::size_t axis, double feed, std::uint64_t seed) {
+host::Log log_circle(const machine::Machine& machine, std::size_t axis, double feed, std::uint64_t seed) {
   const auto one = host::one_axis(machine, axis);
   host::LogRecorder recorder(one);
   host::run_quadrants(machine, axis, circle(feed), 2, recorder.sink(), {current_noise, seed});
@@ -34,7 +34,7 @@ host::Log log_circle(const sim::Machine& machine, std::size_t axis, double feed,
 
 // Moves of one axis from the blind tests' pieces.
 template <class EachTick>
-void drive(const sim::Machine& machine, std::size_t axis, const blind::Trajectory& path, std::uint64_t seed,
+void drive(const machine::Machine& machine, std::size_t axis, const blind::Trajectory& path, std::uint64_t seed,
            EachTick&& each_tick) {
   const auto one = host::one_axis(machine, axis);
   const std::array<double, 1> start{path.at(0.0).position};
@@ -61,7 +61,7 @@ TunedAxis tune(const Truth& truth, std::size_t axis, bool with_pulse) {
   std::vector<host::Log> logs;
   for (const double feed : {3.2, 16.0, 48.0}) logs.push_back(log_circle(machine, axis, feed, 100 + logs.size()));
   std::uint64_t seed = 200;
-  const auto lap = [&](const sim::Machine& with) { return log_circle(with, axis, timing_feed, seed++); };
+  const auto lap = [&](const machine::Machine& with) { return log_circle(with, axis, timing_feed, seed++); };
   host::CompensationSettings settings;
   if (with_pulse) settings.pulse = circle(pulse_feed);
   tuned.tuning = host::tune_compensation(machine, axis, logs, lap, settings);
@@ -69,20 +69,20 @@ TunedAxis tune(const Truth& truth, std::size_t axis, bool with_pulse) {
   return tuned;
 }
 
-sim::Machine with_compensation(const TunedAxis& tuned, CompensationKind kind) {
+machine::Machine with_compensation(const TunedAxis& tuned, CompensationKind kind) {
   auto machine = tuned.machine;
   machine.axes[tuned.axis].friction_compensation->use = kind;
   return machine;
 }
 
-Outcome drive_circle(const sim::Machine& machine, std::size_t axis, double feed, double r, std::uint64_t seed) {
+Outcome drive_circle(const machine::Machine& machine, std::size_t axis, double feed, double r, std::uint64_t seed) {
   const bool learns = machine.axes[axis].friction_compensation->use == CompensationKind::learning;
   const int laps = learns ? learning_laps + 1 : 2;
   const auto run = host::run_quadrants(machine, axis, circle(feed, r), laps, {}, {current_noise, seed});
   return {run.peak_error.back(), run.peak_current, run.dropped};
 }
 
-Outcome drive_small_reversals(const sim::Machine& machine, std::size_t axis, double amplitude, std::uint64_t seed) {
+Outcome drive_small_reversals(const machine::Machine& machine, std::size_t axis, double amplitude, std::uint64_t seed) {
   using blind::Piece;
   const Piece away{.kind = Piece::Kind::move, .length = 20e-3, .speed = 0.1};
   const Piece rest{.rest = 0.2};
@@ -91,13 +91,13 @@ Outcome drive_small_reversals(const sim::Machine& machine, std::size_t axis, dou
   Outcome outcome;
   const double begin = path.duration() - 8.0 / 2.0;
   drive(machine, axis, path, seed, [&](double t, const auto& run) {
-    outcome.current = std::max(outcome.current, std::abs(sim::to_si(run.signals(0).i)));
-    if (t >= begin) outcome.error = std::max(outcome.error, std::abs(sim::to_si(run.signals(0).e)));
+    outcome.current = std::max(outcome.current, std::abs(machine::to_si(run.signals(0).i)));
+    if (t >= begin) outcome.error = std::max(outcome.error, std::abs(machine::to_si(run.signals(0).e)));
   });
   return outcome;
 }
 
-Standstill stand_still(const sim::Machine& machine, std::size_t axis, double seconds, std::uint64_t seed) {
+Standstill stand_still(const machine::Machine& machine, std::size_t axis, double seconds, std::uint64_t seed) {
   using blind::Piece;
   const Piece away{.kind = Piece::Kind::move, .length = 20e-3, .speed = 0.1};
   const Piece rest{.rest = seconds};
@@ -108,7 +108,7 @@ Standstill stand_still(const sim::Machine& machine, std::size_t axis, double sec
   int count = 0, whole = -1;
   drive(machine, axis, path, seed, [&](double t, auto& run) {
     if (t < begin) return;
-    const double x = run.plant(0).encoder_position(), e = sim::to_si(run.signals(0).e_held);
+    const double x = run.plant(0).encoder_position(), e = machine::to_si(run.signals(0).e_held);
     if (const int second = static_cast<int>(t - begin); second != whole) {
       if (count > 0) {
         const double mean = sum / count;

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "firmware/machine/model/machine.hpp"
 #include "host/tune/compensation_tuning.hpp"
-#include "sim/model/machine.hpp"
 #include "tests/compensation/truth.hpp"
 
 namespace stiction::compensation {
@@ -21,7 +21,7 @@ inline constexpr int learning_laps = 4;
 
 // One axis of a truth with all that was tuned for it.
 struct TunedAxis {
-  sim::Machine machine;  // the truth; both axes, of which `axis` is tuned
+  machine::Machine machine;  // the truth; both axes, of which `axis` is tuned
   std::size_t axis = 0;
   host::CompensationTuning tuning;
 };
@@ -30,7 +30,7 @@ struct TunedAxis {
 TunedAxis tune(const Truth& truth, std::size_t axis, bool with_pulse);
 
 // The machine of a tuned axis with that compensation in use.
-sim::Machine with_compensation(const TunedAxis& tuned, CompensationKind kind);
+machine::Machine with_compensation(const TunedAxis& tuned, CompensationKind kind);
 
 // m, the largest error of a lap, and the largest current up to then.
 struct Outcome {
@@ -38,10 +38,10 @@ struct Outcome {
   double current = 0.0;  // A
   bool dropped = false;
 };
-Outcome drive_circle(const sim::Machine& machine, std::size_t axis, double feed, double radius, std::uint64_t seed);
+Outcome drive_circle(const machine::Machine& machine, std::size_t axis, double feed, double radius, std::uint64_t seed);
 
 // The largest error while swinging by `amplitude` m, from end to end, after a longer move.
-Outcome drive_small_reversals(const sim::Machine& machine, std::size_t axis, double amplitude, std::uint64_t seed);
+Outcome drive_small_reversals(const machine::Machine& machine, std::size_t axis, double amplitude, std::uint64_t seed);
 
 // What an axis does in 60 s of standstill after a move.
 struct Standstill {
@@ -49,6 +49,6 @@ struct Standstill {
   double peak_to_peak = 0.0;      // m, of the encoder's position without its noise, largest of a second
   int changes_of_held_error = 0;  // how often the quantised error changed: a limit cycle changes it for ever
 };
-Standstill stand_still(const sim::Machine& machine, std::size_t axis, double seconds, std::uint64_t seed);
+Standstill stand_still(const machine::Machine& machine, std::size_t axis, double seconds, std::uint64_t seed);
 
 }  // namespace stiction::compensation

@@ -6,19 +6,19 @@
 #include <string>
 #include <variant>
 
-#include "sim/machine/machine_file.hpp"
-#include "sim/plant/effects/friction_level.hpp"
+#include "sim/machine_file.hpp"
+#include "sim/plant/friction/friction.hpp"
 
 namespace stiction::compensation {
 namespace {
 
-double coulomb(const sim::Axis& axis) { return sim::coulomb_of(axis.friction.models.at(axis.friction.use)); }
+double coulomb(const machine::AxisModel& axis) { return sim::coulomb_of(axis.friction); }
 
 // Eleven elements, none where the compensation's fit has a distance, with a curve between power law and exponential;
 // levels that follow the speed over 30 N of 90, and viscous friction that bends.
-void many_elements(sim::Axis& axis) {
+void many_elements(machine::AxisModel& axis) {
   const double level = axis.name == "X" ? 85.0 : 210.0;
-  sim::MaxwellSlip::Parameters p;
+  sim::MaxwellSlipParameters p;
   constexpr int count = 11;
   double sum = 0.0;
   std::vector<double> distance, share;
@@ -39,42 +39,41 @@ void many_elements(sim::Axis& axis) {
   axis.effects.push_back({"viscous_nonlinear", {{"force", {0.4 * level}}, {"velocity", {0.15}}}});
 }
 
-void lugre(sim::Axis& axis) { axis.friction.use = "lugre"; }
+void lugre(machine::AxisModel& axis) { axis.friction.use = "lugre"; }
 
-void lugre_stribeck(sim::Axis& axis) {
+void lugre_stribeck(machine::AxisModel& axis) {
   axis.friction.use = "lugre";
-  std::get<sim::LuGre::Parameters>(axis.friction.models["lugre"]).static_ratio = 1.1;
+  axis.friction.models["lugre"]["static_ratio"] = {1.1};
 }
 
-void asymmetric(sim::Axis& axis) {
+void asymmetric(machine::AxisModel& axis) {
   many_elements(axis);
   axis.effects.push_back({"friction_asymmetry",
-                          {{"coulomb", {0.1 * coulomb(axis)}},
-                           {"viscous", {0.1 * sim::viscous_of(axis.friction.models["maxwell_slip"])}}}});
+                          {{"coulomb", {0.1 * coulomb(axis)}}, {"viscous", {0.1 * sim::viscous_of(axis.friction)}}}});
 }
 
 // The level rises from one end of the circle to the other.
-void along_the_stroke(sim::Axis& axis) {
+void along_the_stroke(machine::AxisModel& axis) {
   axis.friction.use = "lugre";
   const double part = 0.12 * coulomb(axis);
   axis.effects.push_back({"position_dependent_friction",
                           {{"position", {-0.1, -0.03, 0.02, 0.1}}, {"force", {-part, 0.4 * part, -0.5 * part, part}}}});
 }
 
-void rigid(sim::Axis& axis) { axis.friction.use = "classical"; }
+void rigid(machine::AxisModel& axis) { axis.friction.use = "classical"; }
 
-void scale_friction(sim::Axis& axis, double factor) {
+void scale_friction(machine::AxisModel& axis, double factor) {
   sim::set_coulomb(axis.friction, factor * coulomb(axis));
-  sim::set_viscous(axis.friction, factor * sim::viscous_of(axis.friction.models.at(axis.friction.use)));
+  sim::set_viscous(axis.friction, factor * sim::viscous_of(axis.friction));
 }
-void change_mass(sim::Axis& axis, double factor) {
+void change_mass(machine::AxisModel& axis, double factor) {
   axis.effects.push_back({"mass_mismatch", {{"mass", {factor * axis.mass}}}});
 }
-void change_delay(sim::Axis& axis, double by) { axis.inverter.dead_time += by; }
+void change_delay(machine::AxisModel& axis, double by) { axis.inverter.dead_time += by; }
 
 }  // namespace
 
-sim::Machine cross_table() {
+machine::Machine cross_table() {
   return sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/mcfv5050ln.toml",
                            {"circle", {"axis.*.encoder.velocity=estimated", "axis.*.encoder.noise=2 nm"}});
 }
@@ -94,12 +93,12 @@ std::span<const Truth> truths() {
 
 std::span<const Change> changes() {
   static constexpr std::array<Change, 6> table{{
-      {"friction +20 %", [](sim::Axis& axis) { scale_friction(axis, 1.2); }},
-      {"friction -20 %", [](sim::Axis& axis) { scale_friction(axis, 0.8); }},
-      {"mass +10 %", [](sim::Axis& axis) { change_mass(axis, 1.1); }},
-      {"mass -10 %", [](sim::Axis& axis) { change_mass(axis, 0.9); }},
-      {"delay +62.5 us", [](sim::Axis& axis) { change_delay(axis, 62.5e-6); }},
-      {"delay -62.5 us", [](sim::Axis& axis) { change_delay(axis, -62.5e-6); }},
+      {"friction +20 %", [](machine::AxisModel& axis) { scale_friction(axis, 1.2); }},
+      {"friction -20 %", [](machine::AxisModel& axis) { scale_friction(axis, 0.8); }},
+      {"mass +10 %", [](machine::AxisModel& axis) { change_mass(axis, 1.1); }},
+      {"mass -10 %", [](machine::AxisModel& axis) { change_mass(axis, 0.9); }},
+      {"delay +62.5 us", [](machine::AxisModel& axis) { change_delay(axis, 62.5e-6); }},
+      {"delay -62.5 us", [](machine::AxisModel& axis) { change_delay(axis, -62.5e-6); }},
   }};
   return table;
 }

@@ -4,17 +4,17 @@
 #include <functional>
 #include <span>
 
-#include "sim/model/machine.hpp"
+#include "firmware/machine/model/machine.hpp"
 
 namespace stiction::compensation {
 
 // The shipped cross table with an estimated velocity and an encoder that is noisy: 2 nm rms.
-sim::Machine cross_table();
+machine::Machine cross_table();
 
 struct Truth {
   const char* name;
   const char* text;
-  void (*apply)(sim::Axis&);
+  void (*apply)(machine::AxisModel&);
   // Whether the figures asked for hold here; a contact without any presliding is no machine, but a limit.
   bool held = true;
 };
@@ -23,7 +23,7 @@ std::span<const Truth> truths();
 // On the plant alone: the drive keeps what the machine file says.
 struct Change {
   const char* name;
-  void (*apply)(sim::Axis&);
+  void (*apply)(machine::AxisModel&);
 };
 std::span<const Change> changes();
 

@@ -8,10 +8,10 @@
 #include <cstdlib>
 #include <vector>
 
+#include "firmware/machine/configuration/axis_configuration.hpp"
+#include "firmware/machine/configuration/double_signals.hpp"
 #include "hal/control_loop.hpp"
 #include "hal/simulated/simulated_backend.hpp"
-#include "sim/control/axis_configuration.hpp"
-#include "sim/control/double_signals.hpp"
 #include "sim/experiment/set_point.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
@@ -29,7 +29,7 @@ bool is_finite(const sim::AxisPlant& plant) {
          std::isfinite(plant.current()[0]) && std::isfinite(plant.current()[1]) && std::isfinite(plant.current()[2]);
 }
 
-void rest(const sim::Machine& machine) {
+void rest(const machine::Machine& machine) {
   for (const auto& axis : machine.axes) {
     // An effect may be a force that no step can follow, like a spring of 1e13 N/m; the drive must notice, below.
     if (!axis.effects.empty()) continue;
@@ -42,17 +42,18 @@ void rest(const sim::Machine& machine) {
 
 // The set-point stands beside the axes, so that every controller has an error to act on.
 template <class S>
-void control(const sim::Machine& machine) {
+void control(const machine::Machine& machine) {
   if (machine.axes.empty()) return;
   std::vector<AxisConfig<S>> configs;
   try {
-    for (const auto& axis : machine.axes) configs.push_back(sim::configure_axis<S>(machine.timing, axis));
-  } catch (const sim::ConfigurationError&) {
+    for (const auto& axis : machine.axes) configs.push_back(machine::configure_axis<S>(machine.timing, axis));
+  } catch (const machine::ConfigurationError&) {
     return;
   }
   const std::vector<double> positions(machine.axes.size(), 0.0);
   hal::SimulatedBackend<S> backend(machine, positions);
-  const Ticker ticker(sim::fast_period_ns(machine.timing), static_cast<std::uint32_t>(sim::slow_ratio(machine.timing)));
+  const Ticker ticker(machine::fast_period_ns(machine.timing),
+                      static_cast<std::uint32_t>(machine::slow_ratio(machine.timing)));
   hal::ControlLoop loop(backend, std::span<const AxisConfig<S>>(configs), ticker);
   const std::vector<SetPoint<S>> set(machine.axes.size(), sim::to_set_point<S>({1e-5, 0.0, 0.0}));
   for (int i = 0; i < ticks && !loop.faulted(); ++i) loop.tick(set);
@@ -81,19 +82,19 @@ std::filesystem::path valid_machine(const std::string& motor) {
   return std::filesystem::path(STICTION_SOURCE_DIR) / "tests" / "fuzz" / "seeds" / "machine_file" / (motor + ".toml");
 }
 
-void run_briefly(const sim::Machine& machine) {
+void run_briefly(const machine::Machine& machine) {
   rest(machine);
   control<FixedSignals>(machine);
-  control<sim::DoubleSignals>(machine);
+  control<machine::DoubleSignals>(machine);
 }
 
-void read_and_run(const std::filesystem::path& file, const sim::ReadOptions& options, const std::string& made) {
+void read_and_run(const std::filesystem::path& file, const machine::ReadOptions& options, const std::string& made) {
   current_overrides = &options.set;
   current_text = &made;
-  sim::Machine machine;
+  machine::Machine machine;
   try {
     machine = sim::read_machine(file, options);
-  } catch (const sim::MachineFileError&) {
+  } catch (const machine::MachineFileError&) {
     return;
   }
   run_briefly(machine);

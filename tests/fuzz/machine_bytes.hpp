@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "sim/machine/machine_file.hpp"
+#include "firmware/machine/file/machine_file.hpp"
 
 namespace stiction::fuzz {
 
@@ -32,11 +32,11 @@ std::filesystem::path valid_machine(const std::string& motor);
 // (sim::MachineFileError, sim::ConfigurationError) is right for any input; every other exception, and a machine that
 // breaks the promises of run_briefly, ends the program as a finding.
 // `made`: what a fuzzer made of its bytes, for the message of a finding.
-void read_and_run(const std::filesystem::path& file, const sim::ReadOptions& options, const std::string& made = {});
+void read_and_run(const std::filesystem::path& file, const machine::ReadOptions& options, const std::string& made = {});
 
 // Ten fast ticks: a plant without effects at rest without command stays finite; in closed loop, in both signal
 // policies, a plant that is no longer finite has stopped its drive with a fault.
-void run_briefly(const sim::Machine& machine);
+void run_briefly(const machine::Machine& machine);
 
 // Ends the program as a finding.
 [[noreturn]] void finding(const std::string& what);

@@ -6,7 +6,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const auto file = stiction::fuzz::valid_machine("synchronous");
-  stiction::sim::ReadOptions options;
+  stiction::machine::ReadOptions options;
   std::string_view rest(reinterpret_cast<const char*>(data), size);
   bool first = true;
   while (!rest.empty()) {

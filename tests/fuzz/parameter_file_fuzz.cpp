@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "firmware/drive/parameter_store.hpp"
+#include "firmware/stictiond/parameter_store.hpp"
 
 namespace {
 

@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "sim/machine/description.hpp"
+#include "sim/machine_file.hpp"
 #include "tests/fuzz/fuzzed_number.hpp"
 #include "tests/fuzz/machine_bytes.hpp"
 
@@ -52,7 +52,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                          Base{valid_machine("force"), keys_of(true)}};
   FuzzedDataProvider bytes(data, size);
   const Base& base = bases[bytes.ConsumeIntegralInRange<std::size_t>(0, bases.size() - 1)];
-  sim::ReadOptions options;
+  machine::ReadOptions options;
   while (bytes.remaining_bytes() > 0 && options.set.size() < 20) {
     const Key& key = base.keys[bytes.ConsumeIntegralInRange<std::size_t>(0, base.keys.size() - 1)];
     options.set.push_back(fmt::format("{}={}", key.name, value_of(bytes, key)));

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <set>
 
-#include "sim/machine/description.hpp"
-#include "sim/machine/units.hpp"
+#include "firmware/machine/file/units.hpp"
+#include "sim/machine_file.hpp"
 #include "tests/fuzz/machine_bytes.hpp"
 
 namespace stiction::fuzz {
@@ -32,19 +32,19 @@ bool has_control_character(std::string_view text) {
 void check(std::string_view text, const std::string& si_unit) {
   double value = 0.0;
   try {
-    value = sim::parse_quantity(text, si_unit);
-  } catch (const sim::UnitError&) {
+    value = machine::parse_quantity(text, si_unit);
+  } catch (const machine::UnitError&) {
     return;
   }
   if (!std::isfinite(value)) finding(fmt::format("accepted in {} as {}", si_unit, value));
   if (has_control_character(text)) finding("accepted with a control character");
   // Beyond these the 15 digits of the text may fall out of the range of numbers.
   if (value != 0.0 && !(std::abs(value) > 1e-200 && std::abs(value) < 1e200)) return;
-  const auto again_text = sim::format_quantity(value, si_unit, sim::unit_of(text));
+  const auto again_text = machine::format_quantity(value, si_unit, machine::unit_of(text));
   double again = 0.0;
   try {
-    again = sim::parse_quantity(again_text, si_unit);
-  } catch (const sim::UnitError& error) {
+    again = machine::parse_quantity(again_text, si_unit);
+  } catch (const machine::UnitError& error) {
     finding(fmt::format("written again as \"{}\" it is refused: {}", again_text, error.what()));
   }
   // 1e3: the zero of degC lies 273 K off, at whose rounding small values end.

@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "firmware/machine/file/machine_file.hpp"
 #include "host/log/mapping.hpp"
-#include "sim/machine/machine_file.hpp"
 #include "tests/fuzz/log_promises.hpp"
 
 namespace stiction::fuzz {
@@ -39,7 +39,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto mapping = host::read_mapping(mapping_file.path());
     check_promises(host::apply_mapping(mapping, host::read_recording(recording_file.path(), mapping.table)));
   } catch (const host::LogError&) {
-  } catch (const sim::MachineFileError&) {
+  } catch (const machine::MachineFileError&) {
   }
   return 0;
 }

@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <memory>
 
-#include "firmware/drive/can_server.hpp"
-#include "sim/control/conversion.hpp"
+#include "firmware/machine/configuration/conversion.hpp"
+#include "firmware/stictiond/can_server.hpp"
 
 namespace stiction::fuzz {
 namespace {
@@ -33,7 +33,7 @@ struct Drive {
 
 template <class T>
 T signal(double value) {
-  return *sim::to_signal<T>(value);
+  return *machine::to_signal<T>(value);
 }
 
 constexpr double travel = 0.3;  // m, to both sides
@@ -61,7 +61,7 @@ void run_cycle(RemoteAxis& axis, Drive& drive) {
     if (drive.seen != Fault::none || !set.valid) drive.following = false;
     if (!drive.following) continue;
     drive.at = set.position;
-    const double x = sim::to_si(set.position);
+    const double x = machine::to_si(set.position);
     const bool profile = axis.mode() == OperationMode::profile_position;
     // Between targets of csp the polynomial may swing beyond the last one.
     if (std::abs(x) > travel + (profile ? 1e-9 : 5e-3)) finding("a set-point beyond the travel");
@@ -96,7 +96,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     frame.size = (length & 0x80) != 0 ? static_cast<std::uint8_t>(length % 9) : description_of(address.pdo).size;
     // A controller near the axis: a fuzzer does not find it by trying.
     if ((what & 16) != 0 && address.pdo == hal::can::Pdo::target) {
-      const auto near = static_cast<std::int32_t>(sim::to_si(drive.at) * 1e9) +
+      const auto near = static_cast<std::int32_t>(machine::to_si(drive.at) * 1e9) +
                         static_cast<std::int16_t>(frame.data[2] | frame.data[3] << 8) * 40;
       for (std::size_t i = 0; i < 4; ++i)
         frame.data[2 + i] = static_cast<std::uint8_t>(static_cast<std::uint32_t>(near) >> (8 * i));

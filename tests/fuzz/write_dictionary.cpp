@@ -4,18 +4,23 @@
 #include <set>
 #include <string>
 
-#include "sim/machine/description.hpp"
-#include "sim/machine/parameters.hpp"
+#include "firmware/machine/file/parameters.hpp"
+#include "sim/machine_file.hpp"
 #include "sim/plant/effects/effects.hpp"
+#include "sim/plant/friction/friction.hpp"
 
 int main() {
   namespace sim = stiction::sim;
-  std::set<std::string> words{
-      std::string(sim::machine_schema), "axis.", "axis.*.", "experiment.", "[reference.circle]", "[[axis.B.effect]]"};
-  for (const auto name : sim::experiment_names) words.emplace(name);
-  for (const auto& choice : sim::motor_models) words.emplace(choice.name);
-  for (const auto& choice : sim::velocity_sources) words.emplace(choice.name);
-  for (const auto& choice : sim::reference_sources) words.emplace(choice.name);
+  std::set<std::string> words{std::string(machine::machine_schema),
+                              "axis.",
+                              "axis.*.",
+                              "experiment.",
+                              "[reference.circle]",
+                              "[[axis.B.effect]]"};
+  for (const auto name : machine::experiment_names) words.emplace(name);
+  for (const auto& choice : machine::motor_models) words.emplace(choice.name);
+  for (const auto& choice : machine::velocity_sources) words.emplace(choice.name);
+  for (const auto& choice : machine::reference_sources) words.emplace(choice.name);
   sim::for_each_friction_model([&]<class Model>() { words.emplace(Model::name); });
   for (const auto& effect : sim::effect_kinds()) words.emplace(effect.name);
   for (const auto& table : sim::machine_file_description()) {

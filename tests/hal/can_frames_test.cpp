@@ -9,10 +9,10 @@
 #include <sstream>
 #include <string>
 
+#include "firmware/machine/configuration/conversion.hpp"
 #include "hal/can/dbc.hpp"
 #include "hal/can/frames.hpp"
 #include "hal/can/process_data.hpp"
-#include "sim/control/conversion.hpp"
 #include "stiction/number/crc.hpp"
 
 namespace stiction::hal::can {
@@ -26,10 +26,10 @@ NodeFeedback random_state(std::mt19937_64& random, double largest_current, doubl
   const auto within = [&](double largest) { return std::uniform_real_distribution(-largest, largest)(random); };
   NodeFeedback state;
   auto& f = state.feedback;
-  EXPECT_TRUE(sim::convert(within(largest_position), f.position));
-  EXPECT_TRUE(sim::convert(within(7.0), f.velocity));
-  for (auto& current : f.current) EXPECT_TRUE(sim::convert(within(largest_current), current));
-  EXPECT_TRUE(sim::convert(within(largest_position), state.inputs.index_position));
+  EXPECT_TRUE(machine::convert(within(largest_position), f.position));
+  EXPECT_TRUE(machine::convert(within(7.0), f.velocity));
+  for (auto& current : f.current) EXPECT_TRUE(machine::convert(within(largest_current), current));
+  EXPECT_TRUE(machine::convert(within(largest_position), state.inputs.index_position));
   f.position_time_ns = -std::uniform_int_distribution<std::int64_t>(0, 60000)(random);
   f.position_valid = (random() & 1) != 0;
   f.fault = (random() & 1) != 0;
@@ -84,20 +84,21 @@ TEST(CanFrames, ClassicalOnesRoundToTheirResolution) {
   for (int i = 0; i < 1000; ++i) {
     const auto sent = random_state(random, 127.0, 1000.0);
     const auto found = through_the_bus(Format::classical, sent, static_cast<std::uint32_t>(random()));
-    EXPECT_NEAR(sim::to_si(found.feedback.position), sim::to_si(sent.feedback.position), std::ldexp(0.5, -32));
+    EXPECT_NEAR(machine::to_si(found.feedback.position), machine::to_si(sent.feedback.position), std::ldexp(0.5, -32));
     for (std::size_t k = 0; k < 3; ++k)
-      EXPECT_NEAR(sim::to_si(found.feedback.current[k]), sim::to_si(sent.feedback.current[k]), std::ldexp(0.5, -8));
+      EXPECT_NEAR(machine::to_si(found.feedback.current[k]), machine::to_si(sent.feedback.current[k]),
+                  std::ldexp(0.5, -8));
     expect_same_flags(found, sent);
   }
 }
 
 TEST(CanFrames, ClassicalOnesHoldWhatIsBeyondTheirRangeAtItsEnd) {
   NodeFeedback sent;
-  ASSERT_TRUE(sim::convert(1000.0, sent.feedback.current[0]));
-  ASSERT_TRUE(sim::convert(-1000.0, sent.feedback.current[1]));
+  ASSERT_TRUE(machine::convert(1000.0, sent.feedback.current[0]));
+  ASSERT_TRUE(machine::convert(-1000.0, sent.feedback.current[1]));
   const auto found = through_the_bus(Format::classical, sent, 0);
-  EXPECT_NEAR(sim::to_si(found.feedback.current[0]), 128.0, 0.01);
-  EXPECT_NEAR(sim::to_si(found.feedback.current[1]), -128.0, 0.01);
+  EXPECT_NEAR(machine::to_si(found.feedback.current[0]), 128.0, 0.01);
+  EXPECT_NEAR(machine::to_si(found.feedback.current[1]), -128.0, 0.01);
 }
 
 TEST(CanFrames, CommandsAndSyncComeThrough) {
@@ -105,7 +106,7 @@ TEST(CanFrames, CommandsAndSyncComeThrough) {
     Command<S> sent;
     sent.enable = true;
     for (std::size_t k = 0; k < 3; ++k)
-      ASSERT_TRUE(sim::convert(100.0 * static_cast<double>(k) - 90.0, sent.voltage[k]));
+      ASSERT_TRUE(machine::convert(100.0 * static_cast<double>(k) - 90.0, sent.voltage[k]));
     const Frame frame = encode_command(format, 9, 1234567, sent);
     const auto address = address_of(frame, format);
     EXPECT_EQ(address.kind, Kind::command);
@@ -269,8 +270,8 @@ TEST(Dbc, DescribesTheFramesAsTheyAre) {
       for (std::size_t k = 0; k < count; ++k)
         for (const auto& [name, signal] : dbc.at(frames[k].id)) read[name] = signal.read(frames[k]);
       const auto found = through_the_bus(format, state, 7);
-      EXPECT_EQ(read.at("position"), sim::to_si(found.feedback.position));
-      EXPECT_EQ(read.at("current_B"), sim::to_si(found.feedback.current[1]));
+      EXPECT_EQ(read.at("position"), machine::to_si(found.feedback.position));
+      EXPECT_EQ(read.at("current_B"), machine::to_si(found.feedback.current[1]));
       EXPECT_EQ(read.at("valid"), found.feedback.position_valid);
       EXPECT_EQ(read.at("limit_positive"), found.inputs.limit_positive);
       EXPECT_EQ(read.at("home"), found.inputs.home);
@@ -278,13 +279,13 @@ TEST(Dbc, DescribesTheFramesAsTheyAre) {
       EXPECT_EQ(read.at("counter"), 7);
       if (format == Format::fd) {
         EXPECT_EQ(read.at("sample_age"), static_cast<double>(-state.feedback.position_time_ns));
-        EXPECT_EQ(read.at("index_position"), sim::to_si(state.inputs.index_position));
-        EXPECT_EQ(read.at("velocity"), sim::to_si(state.feedback.velocity));
+        EXPECT_EQ(read.at("index_position"), machine::to_si(state.inputs.index_position));
+        EXPECT_EQ(read.at("velocity"), machine::to_si(state.feedback.velocity));
       }
     }
     Command<S> command;
     command.enable = true;
-    ASSERT_TRUE(sim::convert(-17.25, command.voltage[2]));
+    ASSERT_TRUE(machine::convert(-17.25, command.voltage[2]));
     const Frame frame = encode_command(format, 6, 3, command);
     EXPECT_EQ(dbc.at(frame.id).at("voltage_C").read(frame), -17.25);
     EXPECT_EQ(dbc.at(frame.id).at("enable").read(frame), 1.0);

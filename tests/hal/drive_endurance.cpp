@@ -42,7 +42,7 @@ double memory() {
 
 class Endurance {
  public:
-  Endurance(std::uint64_t seed, const sim::Machine& machine)
+  Endurance(std::uint64_t seed, const machine::Machine& machine)
       : random_(seed), bench_(machine, drive_setup(machine), seed), marks_(memory()) {
     for (auto& c : fault_cases())
       if (c.machine.empty() && !c.setup) cases_.push_back(std::move(c));  // what needs no machine of its own

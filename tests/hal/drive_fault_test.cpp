@@ -71,16 +71,16 @@ class Watch {
     const auto& loop = bench_.loop.loop();
     const auto& f = loop.feedback()[axis_];
     Shown s;
-    s.x = sim::to_si(f.position);
+    s.x = machine::to_si(f.position);
     s.v = (s.x - x_) / bench_.period;
     for (std::size_t k = 0; k < 3; ++k)
-      s.i += 2.0 / 3.0 * sim::to_si(f.current[k]) *
+      s.i += 2.0 / 3.0 * machine::to_si(f.current[k]) *
              std::sin(2.0 * std::numbers::pi * (s.x / 0.072 + static_cast<double>(k) / 3.0));
     const double speed = std::abs(bench_.simulated.plant(axis_).velocity());
     s.faster = speed > speed_;
     speed_ = speed;
     s.gap_ns = loop.now_ns() - now_ns_;
-    s.set = sim::to_si(bench_.next_set_points()[axis_].position);
+    s.set = machine::to_si(bench_.next_set_points()[axis_].position);
     s.set_before = bench_.set_position(axis_);
     x_ = s.x;
     now_ns_ = loop.now_ns();

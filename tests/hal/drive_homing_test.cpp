@@ -12,7 +12,7 @@
 namespace stiction::test {
 namespace {
 
-using sim::HomingMethod;
+using machine::HomingMethod;
 
 constexpr double search = 0.05, creep = 0.002;  // m/s
 constexpr double period = 62.5e-6;              // s
@@ -65,10 +65,10 @@ TEST_P(HomingOfX, FindsItsMarkAndThenHasTheMachinesCoordinates) {
   // A switch is sampled once a tick: it opens at most a creep step before the tick that sees it. An index mark comes
   // with its position.
   const bool index = place.method == HomingMethod::index_negative || place.method == HomingMethod::index_positive;
-  const double error = sim::to_si(bench.loop.drive(0).origin()) - (place.mark - offset_of(place.method));
+  const double error = machine::to_si(bench.loop.drive(0).origin()) - (place.mark - offset_of(place.method));
   EXPECT_LE(std::abs(error), index ? 2e-12 : creep * period + 30e-9);
   EXPECT_NEAR(bench.position(0),
-              sim::to_si(bench.loop.loop().feedback()[0].position) - (place.mark - offset_of(place.method)), 1e-6);
+              machine::to_si(bench.loop.loop().feedback()[0].position) - (place.mark - offset_of(place.method)), 1e-6);
   // It stands, and goes on from there with set-points of the machine's coordinates.
   EXPECT_LT(std::abs(bench.simulated.plant(0).velocity()), 2e-3);
   bench.mode = OperationMode::cyclic_position;
@@ -96,7 +96,7 @@ TEST(DriveHoming, BeginsOnTheSwitchItself) {
   bench.backend.marks(0).limit_negative = 0.0905;  // reached already
   home(bench, 100000);
   EXPECT_TRUE(bench.events.empty());
-  EXPECT_NEAR(sim::to_si(bench.loop.drive(0).origin()), 0.0905 - offset_of(HomingMethod::limit_negative),
+  EXPECT_NEAR(machine::to_si(bench.loop.drive(0).origin()), 0.0905 - offset_of(HomingMethod::limit_negative),
               creep * period + 30e-9);
 }
 

@@ -24,7 +24,7 @@ static_assert(hal::WiredBackend<hal::FaultyBackend<hal::SimulatedBackend<S>>>);
 static_assert(hal::BrakeBackend<hal::FaultyBackend<hal::SimulatedBackend<S>>>);
 static_assert(!hal::WiredBackend<hal::SimulatedBackend<S>>);
 
-sim::Machine table(const std::string& noise = "5 nm") {
+machine::Machine table(const std::string& noise = "5 nm") {
   return cross_table({"axis.*.encoder.velocity=estimated", "axis.*.encoder.noise=" + noise});
 }
 
@@ -85,7 +85,7 @@ TEST(DriveLoop, GivesNoFaultWithMotorsOfOnePhase) {
 TEST(DriveLoop, GivesNoFaultOnTheBallScrewAxis) {
   const auto machine = sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/emps.toml", {});
   hal::SimulatedBackend<S> backend(machine, std::array{0.0});
-  const auto drives = sim::configure_drives<S>(machine, drive_setup(machine));
+  const auto drives = machine::configure_drives<S>(machine, drive_setup(machine));
   const auto configs = configurations<S>(machine);
   hal::DriveLoop loop(backend, std::span<const AxisConfig<S>>(configs), std::span<const ServoDriveConfig<S>>(drives),
                       ticker_of(machine));
@@ -171,7 +171,7 @@ TEST(DriveLoop, SeesEachFlippedBitThatMovesTheCarriageByMoreThanAMicrometre) {
       bench.tick();
       if (bench.powered(0))
         worst = std::max(
-            worst, std::abs(sim::to_si(bench.next_set_points()[0].position) - bench.simulated.plant(0).position()));
+            worst, std::abs(machine::to_si(bench.next_set_points()[0].position) - bench.simulated.plant(0).position()));
     }
     if (!bench.events.empty()) continue;
     highest_unseen = bit;

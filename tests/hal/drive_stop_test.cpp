@@ -20,15 +20,15 @@ using hal::SwitchFault;
 constexpr double feed = 24.0 / 60.0;   // m/s
 constexpr double deceleration = 10.0;  // m/s^2
 
-sim::Machine table() { return cross_table({"axis.*.encoder.velocity=estimated", "axis.*.encoder.noise=5 nm"}); }
+machine::Machine table() { return cross_table({"axis.*.encoder.velocity=estimated", "axis.*.encoder.noise=5 nm"}); }
 
-Bench moving_bench(const std::function<void(sim::DriveAxisSetup&)>& change = {},
+Bench moving_bench(const std::function<void(machine::DriveAxisSetup&)>& change = {},
                    const std::function<void(ServoDriveConfig<FixedSignals>&)>& configure = {}) {
   const auto machine = table();
   auto setup = drive_setup(machine);
   if (change)
     for (auto& [name, axis] : setup.axes) change(axis);
-  auto drives = sim::configure_drives<FixedSignals>(machine, setup);
+  auto drives = machine::configure_drives<FixedSignals>(machine, setup);
   if (configure)
     for (auto& drive : drives) configure(drive);
   Bench bench(machine, drives);
@@ -234,7 +234,7 @@ TEST(DriveStop, FollowsAMotorOfTheWrongSignInMotionBeforeItRunsAway) {
       bench.run(moment * 1414);
       bench.backend.faults(axis).motor_reversed = true;
       const double x = bench.simulated.plant(axis).position();
-      const auto target = [&] { return sim::to_si(bench.next_set_points()[axis].position); };
+      const auto target = [&] { return machine::to_si(bench.next_set_points()[axis].position); };
       int ticks = 0;
       double apart = 0.0;
       for (; ticks < 8000 && bench.loop.fault(axis) == Fault::none; ++ticks) {

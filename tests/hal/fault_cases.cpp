@@ -63,7 +63,7 @@ FaultCase disturbed_frames(FrameFault kind, const char* name) {
 }
 
 // An end of the travel that the circle crosses, of X at -50 mm and of Y at 50 mm, and a switch 1 mm behind it.
-void short_travel(sim::DriveAxisSetup& setup, std::size_t axis) {
+void short_travel(machine::DriveAxisSetup& setup, std::size_t axis) {
   (axis == 0 ? setup.negative_end : setup.positive_end) = axis == 0 ? -0.05 : 0.05;
   (axis == 0 ? setup.line.limit_negative : setup.line.limit_positive) = 0;  // wired
 }
@@ -195,8 +195,8 @@ std::vector<FaultCase> cases_of_the_supervision() {
                    .within = 3,  // it begins a tick after it is asked for; what it found is seen in the next tick
                    .at_one_place = true,
                    .setup =
-                       [](sim::DriveAxisSetup& setup, std::size_t) {
-                         setup.homing.method = sim::HomingMethod::index_positive;
+                       [](machine::DriveAxisSetup& setup, std::size_t) {
+                         setup.homing.method = machine::HomingMethod::index_positive;
                          setup.homing.creep_speed = 0.05;
                          setup.negative_end = -0.01;  // 1.1 times the travel are 22 mm
                          setup.positive_end = 0.01;

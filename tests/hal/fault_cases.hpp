@@ -41,7 +41,7 @@ struct FaultCase {
   bool holding = false;                                     // the axes hold their position when it happens
   sim::Direction back = sim::Direction::counter_clockwise;  // of the circle that leads away from where it ends
   std::string machine{};                                    // a setting of it, {} the axis' name
-  std::function<void(sim::DriveAxisSetup&, std::size_t axis)> setup{};
+  std::function<void(machine::DriveAxisSetup&, std::size_t axis)> setup{};
 };
 
 std::vector<FaultCase> fault_cases();

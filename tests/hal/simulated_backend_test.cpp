@@ -16,7 +16,7 @@ namespace stiction::test {
 namespace {
 
 static_assert(hal::Backend<hal::SimulatedBackend<FixedSignals>>);
-static_assert(hal::Backend<hal::SimulatedBackend<sim::DoubleSignals>>);
+static_assert(hal::Backend<hal::SimulatedBackend<machine::DoubleSignals>>);
 
 constexpr std::array<double, 2> start{0.09, 0.0};
 
@@ -50,7 +50,7 @@ TEST(SimulatedBackend, LetsACommandActAfterTheInvertersDeadTime) {
   for (auto& i : current) {
     backend.wait_for_tick();
     backend.read(feedback);
-    i = sim::to_si(feedback[0].current[0]);
+    i = machine::to_si(feedback[0].current[0]);
     backend.write(command);
   }
   EXPECT_EQ(current[0], 0.0);

@@ -30,7 +30,7 @@ auto circle_set_points() {
 // A process that plays the machine at the other end of `descriptor` until the peer closes.
 class PlantProcess {
  public:
-  explicit PlantProcess(const sim::Machine& machine) {
+  explicit PlantProcess(const machine::Machine& machine) {
     std::array<int, 2> ends;
     if (::socketpair(AF_UNIX, SOCK_SEQPACKET, 0, ends.data()) != 0) throw std::runtime_error("socketpair");
     child_ = ::fork();

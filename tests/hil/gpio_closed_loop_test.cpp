@@ -6,15 +6,15 @@
 #include <numbers>
 #include <thread>
 
-#include "firmware/drive/gpio_setup.hpp"
+#include "firmware/machine/configuration/axis_configuration.hpp"
+#include "firmware/machine/file/drive_file.hpp"
+#include "firmware/stictiond/gpio_setup.hpp"
 #include "hal/control_loop.hpp"
 #include "hal/gpio/gpio_backend.hpp"
 #include "host/plant/gpio_machine.hpp"
 #include "host/plant/simulated_machine.hpp"
-#include "sim/control/axis_configuration.hpp"
 #include "sim/experiment/set_point.hpp"
-#include "sim/machine/drive_file.hpp"
-#include "sim/machine/machine_file.hpp"
+#include "sim/machine_file.hpp"
 #include "tests/hil/gpio_loop.hpp"
 
 namespace stiction::test {
@@ -36,9 +36,9 @@ TEST_F(GpioLoop, MovesACarriageOverLinesAndDutyCyclesAndStopsItAtTheFaultInput) 
   if (!simulated_time()) GTEST_SKIP() << "in user mode's real time the loop does not keep to its ticks";
   const PwmFolder pwm;
   const auto file = std::filesystem::path(STICTION_SOURCE_DIR) / "tests/hil/gpio_axis.toml";
-  const sim::ReadOptions options{"", {"drive.gpio.pwm_chip=" + pwm.path().string()}};
+  const machine::ReadOptions options{"", {"drive.gpio.pwm_chip=" + pwm.path().string()}};
   const auto machine = sim::read_machine(file, options);
-  const auto setup = sim::read_drive_setup(file, machine, options);
+  const auto setup = machine::read_drive_setup(file, machine, options);
   const std::vector start{0.0};
   const std::vector<hal::AxisMarks> marks(1);
   // Its power stage reports a fault in the middle of the second stroke.
@@ -51,7 +51,7 @@ TEST_F(GpioLoop, MovesACarriageOverLinesAndDutyCyclesAndStopsItAtTheFaultInput) 
   host::GpioMachine lines(host::gpio_machine_config(machine, setup, start, marks), carriage.under_bus(),
                           carriage.faults());
   hal::GpioBackend backend(drive::gpio_configuration(setup, machine), period_ns);
-  const std::vector configs{sim::configure_axis<Signals>(machine.timing, machine.axes[0])};
+  const std::vector configs{machine::configure_axis<Signals>(machine.timing, machine.axes[0])};
   hal::ControlLoop loop(backend, std::span<const AxisConfig<Signals>>(configs), Ticker(period_ns, 1));
   const std::int64_t start_ns = loop.now_ns();
 

@@ -16,10 +16,10 @@ SOUND = {
     "hal/backend.hpp": '#include <vector>\n#include "stiction/control/pi.hpp"\n',
     "hal/simulated/simulated_backend.hpp": '#include "hal/backend.hpp"\n#include "sim/plant/axis_plant.hpp"\n',
     "hal/can/can_backend.hpp": '#include "hal/backend.hpp"\n',
-    "sim/plant/axis_plant.hpp": '#include "sim/model/machine.hpp"\n',
-    "sim/model/machine.hpp": "#include <string>\n",
-    "host/report/page.hpp": '#include "sim/model/machine.hpp"\n',
-    "host/identify/fit.hpp": '#include "sim/model/machine.hpp"\n',
+    "sim/plant/axis_plant.hpp": '#include "firmware/machine/model/machine.hpp"\n',
+    "firmware/machine/model/machine.hpp": "#include <string>\n",
+    "host/report/page.hpp": '#include "firmware/machine/model/machine.hpp"\n',
+    "host/identify/fit.hpp": '#include "firmware/machine/model/machine.hpp"\n',
     "host/cli/main.cpp": '#include "host/report/page.hpp"\n#include "host/identify/fit.hpp"\n',
     "tests/hal/backend_test.cpp": '#include "hal/simulated/simulated_backend.hpp"\n',
 }
@@ -52,7 +52,7 @@ class CheckRooms(unittest.TestCase):
         self.expect_finding(CONTROL, "  #  include <cmath>", "<cmath>")
 
     def test_finds_the_firmware_including_the_simulation(self):
-        self.expect_finding(CONTROL, '#include "sim/model/machine.hpp"', "may not include sim/model")
+        self.expect_finding(CONTROL, '#include "firmware/machine/model/machine.hpp"', "may not include firmware/machine/model")
 
     def test_finds_numbers_that_know_the_laws(self):
         findings = findings_in(SOUND | {NUMBER: '#include "stiction/control/pi.hpp"\n'})
@@ -61,21 +61,21 @@ class CheckRooms(unittest.TestCase):
         self.assertIn("circle", findings[1])
 
     def test_finds_a_real_backend_that_knows_the_simulation(self):
-        self.expect_finding("hal/can/can_backend.hpp", '#include "sim/model/machine.hpp"', "hal/can may not include sim")
+        self.expect_finding("hal/can/can_backend.hpp", '#include "firmware/machine/model/machine.hpp"', "hal/can may not include sim")
 
     def test_finds_a_real_backend_that_knows_the_simulated_one(self):
         self.expect_finding("hal/can/can_backend.hpp", '#include "hal/simulated/simulated_backend.hpp"',
                             "hal/can may not include hal/simulated")
 
     def test_finds_the_simulation_including_a_tool(self):
-        findings = findings_in(SOUND | {"sim/model/machine.hpp": '#include "host/report/page.hpp"\n'})
-        self.assertIn("sim/model may not include host/report", findings[0])
+        findings = findings_in(SOUND | {"firmware/machine/model/machine.hpp": '#include "host/report/page.hpp"\n'})
+        self.assertIn("firmware/machine/model may not include host/report", findings[0])
 
     def test_tells_a_folder_from_what_lies_below_it(self):
-        shared = {"sim/parameter.hpp": "#include <limits>\n", "sim/control/policy.hpp": ""}
-        self.assertEqual(findings_in(SOUND | shared | {"sim/machine/a.hpp": '#include "sim/parameter.hpp"\n'}), [])
-        findings = findings_in(SOUND | shared | {"sim/machine/a.hpp": '#include "sim/control/policy.hpp"\n'})
-        self.assertIn("sim/machine may not include sim/control", findings[0])
+        shared = {"sim/parameter.hpp": "#include <limits>\n", "firmware/machine/configuration/policy.hpp": ""}
+        self.assertEqual(findings_in(SOUND | shared | {"firmware/machine/file/a.hpp": '#include "sim/parameter.hpp"\n'}), [])
+        findings = findings_in(SOUND | shared | {"firmware/machine/file/a.hpp": '#include "firmware/machine/configuration/policy.hpp"\n'})
+        self.assertIn("firmware/machine/file may not include firmware/machine/configuration", findings[0])
 
     def test_finds_a_report_that_knows_the_command_line(self):
         findings = findings_in(SOUND | {"host/report/page.hpp": '#include "host/cli/main.cpp"\n'})

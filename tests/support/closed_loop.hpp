@@ -4,26 +4,29 @@
 #include <cstring>
 #include <vector>
 
+#include "firmware/machine/configuration/axis_configuration.hpp"
 #include "hal/control_loop.hpp"
-#include "sim/control/axis_configuration.hpp"
 #include "sim/experiment/set_point.hpp"
+#include "sim/plant/effects/effects.hpp"
 
 namespace stiction::test {
 
 template <class S>
-std::vector<AxisConfig<S>> configurations(const sim::Machine& machine) {
+std::vector<AxisConfig<S>> configurations(const machine::Machine& machine) {
   std::vector<AxisConfig<S>> configs;
-  for (const auto& axis : machine.axes) configs.push_back(sim::configure_axis<S>(machine.timing, axis));
+  for (const auto& axis : machine.axes)
+    configs.push_back(machine::configure_axis<S>(machine.timing, sim::drive_axis(axis)));
   return configs;
 }
 
-inline Ticker ticker_of(const sim::Machine& machine) {
-  return Ticker(sim::fast_period_ns(machine.timing), static_cast<std::uint32_t>(sim::slow_ratio(machine.timing)));
+inline Ticker ticker_of(const machine::Machine& machine) {
+  return Ticker(machine::fast_period_ns(machine.timing),
+                static_cast<std::uint32_t>(machine::slow_ratio(machine.timing)));
 }
 
 // `set_points(t)` gives one sim::AxisSetPoint an axis at t s; `each_tick(loop, i)` sees the loop before tick i.
 template <hal::Backend B, class SetPoints, class EachTick>
-std::vector<AxisSignals<typename B::Signals>> record(B& backend, const sim::Machine& machine, int ticks,
+std::vector<AxisSignals<typename B::Signals>> record(B& backend, const machine::Machine& machine, int ticks,
                                                      SetPoints&& set_points, EachTick&& each_tick) {
   using S = typename B::Signals;
   const auto configs = configurations<S>(machine);

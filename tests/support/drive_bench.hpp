@@ -13,10 +13,10 @@
 #include <utility>
 #include <vector>
 
+#include "firmware/machine/configuration/drive_configuration.hpp"
 #include "hal/drive_loop.hpp"
 #include "hal/simulated/faulty_backend.hpp"
 #include "hal/simulated/simulated_backend.hpp"
-#include "sim/control/drive_configuration.hpp"
 #include "sim/experiment/circle_path.hpp"
 #include "stiction/number/fixed_signals.hpp"
 #include "tests/support/closed_loop.hpp"
@@ -24,8 +24,8 @@
 namespace stiction::test {
 
 // What a machine file without [drive] says.
-inline sim::DriveSetup drive_setup(const sim::Machine& machine) {
-  sim::DriveSetup setup;
+inline machine::DriveSetup drive_setup(const machine::Machine& machine) {
+  machine::DriveSetup setup;
   for (const auto& axis : machine.axes) {
     auto& of_axis = setup.axes[axis.name];
     const double limit = axis.inverter.current_limit * axis.motor.count;
@@ -74,12 +74,12 @@ class DriveBench {
 
   enum class Want { off, on, quick_stop };
 
-  DriveBench(const sim::Machine& machine, const sim::DriveSetup& setup, std::uint64_t seed = 1)
-      : DriveBench(machine, sim::configure_drives<S>(machine, setup), seed) {}
-  DriveBench(const sim::Machine& machine, const std::vector<ServoDriveConfig<S>>& drives, std::uint64_t seed = 1)
+  DriveBench(const machine::Machine& machine, const machine::DriveSetup& setup, std::uint64_t seed = 1)
+      : DriveBench(machine, machine::configure_drives<S>(machine, setup), seed) {}
+  DriveBench(const machine::Machine& machine, const std::vector<ServoDriveConfig<S>>& drives, std::uint64_t seed = 1)
       : period(machine.timing.fast_period),
         simulated(machine, std::array{0.09, 0.0}, seed),
-        backend(simulated, sim::fast_period_ns(machine.timing), machine.axes[0].encoder.increment),
+        backend(simulated, machine::fast_period_ns(machine.timing), machine.axes[0].encoder.increment),
         loop(backend, configurations<S>(machine), drives, ticker_of(machine)) {
     hold_here();
   }
@@ -155,8 +155,8 @@ class DriveBench {
     return !loop.faulted();
   }
 
-  double position(std::size_t axis) const { return sim::to_si(loop.drive(axis).position()); }  // m, measured
-  double set_position(std::size_t axis) const { return sim::to_si(set_[axis].position); }      // m, sent last
+  double position(std::size_t axis) const { return machine::to_si(loop.drive(axis).position()); }  // m, measured
+  double set_position(std::size_t axis) const { return machine::to_si(set_[axis].position); }      // m, sent last
   bool powered(std::size_t axis) const { return loop.drive(axis).powered(); }
 
   double period;

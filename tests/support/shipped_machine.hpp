@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "sim/machine/machine_file.hpp"
+#include "sim/machine_file.hpp"
 
 namespace stiction::test {
 
-inline sim::Machine cross_table(std::vector<std::string> set = {}) {
+inline machine::Machine cross_table(std::vector<std::string> set = {}) {
   return sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/mcfv5050ln.toml",
                            {"circle", std::move(set)});
 }

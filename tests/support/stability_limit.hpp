@@ -11,16 +11,16 @@
 
 namespace stiction::test {
 
-inline sim::Machine linear_axis(std::size_t axis) {
+inline machine::Machine linear_axis(std::size_t axis) {
   auto machine = cross_table({"axis.*.encoder.velocity=ideal"});
   machine.axes = {machine.axes[axis]};
   auto& a = machine.axes[0];
   // The DC equivalent with the inductance that the star point leaves of the winding's: linear at every position.
-  a.motor.model = sim::MotorModel::dc;
+  a.motor.model = machine::MotorModel::dc;
   a.motor.phase_inductance -= a.motor.mutual_inductance;
   a.encoder.increment = 0.0;
   a.position_controller.increment = 0.0;
-  a.friction.models["coulomb_viscous"] = sim::CoulombViscous::Parameters{0.0, 0.0};
+  a.friction.models["coulomb_viscous"] = sim::CoulombViscousParameters{0.0, 0.0};
   a.friction.use = "coulomb_viscous";
   a.inverter.voltage_limit = a.inverter.current_limit = 1e12;
   a.supervision = {1.0, 1e6, 1e3};  // what comes here is running away
@@ -29,9 +29,9 @@ inline sim::Machine linear_axis(std::size_t axis) {
 }
 
 // What is left of the swing a third of a second later, as a share.
-inline double remainder_of_swing(const sim::Machine& machine) {
+inline double remainder_of_swing(const machine::Machine& machine) {
   const std::array<double, 1> start{0.0};
-  hal::SimulatedBackend<sim::DoubleSignals> backend(machine, start);
+  hal::SimulatedBackend<machine::DoubleSignals> backend(machine, start);
   backend.plant(0).set_external_force(150.0);
   constexpr int per_second = 16000;
   constexpr int ticks = per_second * 6 / 10;

@@ -8,11 +8,11 @@
 #include <cstdio>
 #include <fstream>
 
+#include "firmware/machine/configuration/axis_configuration.hpp"
 #include "hal/control_loop.hpp"
 #include "hal/simulated/simulated_backend.hpp"
-#include "sim/control/axis_configuration.hpp"
 #include "sim/experiment/circle_path.hpp"
-#include "sim/machine/machine_file.hpp"
+#include "sim/machine_file.hpp"
 #include "stiction/number/fixed_signals.hpp"
 #include "tests/targets/recording.hpp"
 #include "tests/targets/trace_hash.hpp"
@@ -24,7 +24,7 @@ using S = FixedSignals;
 
 constexpr double duration = 1.0;  // s
 
-sim::Machine machine() {
+machine::Machine machine() {
   std::vector<std::string> set;
   for (const char* axis : {"X", "Y"})
     for (const char* value : {"encoder.velocity=estimated", "encoder.noise=1 nm"})
@@ -71,7 +71,7 @@ class LossyBackend {
  public:
   using Signals = S;
 
-  LossyBackend(const sim::Machine& machine, std::span<const double> positions) : machine_(machine, positions) {}
+  LossyBackend(const machine::Machine& machine, std::span<const double> positions) : machine_(machine, positions) {}
 
   std::size_t axis_count() const { return machine_.axis_count(); }
   std::int64_t wait_for_tick() { return machine_.wait_for_tick(); }
@@ -124,9 +124,9 @@ int record(const char* name) {
   LossyBackend backend(m, start);
   targets::Opening opening;
   for (std::size_t k = 0; k < targets::axis_count; ++k)
-    opening.configs[k] = sim::configure_axis<S>(m.timing, m.axes[k]);
-  opening.header.period_ns = sim::fast_period_ns(m.timing);
-  opening.header.slow_ratio = sim::slow_ratio(m.timing);
+    opening.configs[k] = machine::configure_axis<S>(m.timing, m.axes[k]);
+  opening.header.period_ns = machine::fast_period_ns(m.timing);
+  opening.header.slow_ratio = machine::slow_ratio(m.timing);
   opening.header.ticks = std::llround(duration / m.timing.fast_period);
 
   std::ofstream file(name, std::ios::binary);

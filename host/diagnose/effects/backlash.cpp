@@ -22,8 +22,8 @@ constexpr double widest = 64e-6, blow = 2.0;
 // A file whose friction has no presliding of its own leaves one in the residual, over micrometres as a small gap does.
 std::vector<double> grid(const Scene& scene) {
   if (!scene.response) return {};
-  if (!contact_stiffness_of(scene.axis)) return {widest};
-  if (scene.highest_residual > blow * coulomb_of(scene.axis).value_or(0.0)) return {near, far, widest};
+  if (!contact_of(scene.axis)) return {widest};
+  if (scene.highest_residual > blow * coulomb_of(scene.axis)) return {near, far, widest};
   return {near, far};
 }
 

@@ -11,23 +11,23 @@ constexpr const char* gains = "controller_gain_mismatch";
 constexpr double relative_step = 0.01;
 constexpr double longest_delay = 0.3e-3;  // s; longer ones no current loop of this kind survives
 
-using A = sim::Axis;
+using A = machine::AxisModel;
 using Value = std::optional<double>;
 
-double loop_delay_of(const sim::Axis& axis) {
+double loop_delay_of(const machine::AxisModel& axis) {
   for (const auto& effect : axis.effects)
     if (const auto delay = effect.values.find("loop_delay"); effect.name == "time_skew" && delay != effect.values.end())
       return delay->second.front();
   return 0.0;
 }
-void set_loop_delay(sim::Axis& axis, double delay) {
+void set_loop_delay(machine::AxisModel& axis, double delay) {
   const auto known =
       std::find_if(axis.effects.begin(), axis.effects.end(), [](const auto& e) { return e.name == "time_skew"; });
-  auto& effect = known == axis.effects.end() ? axis.effects.emplace_back(sim::Effect{"time_skew", {}}) : *known;
+  auto& effect = known == axis.effects.end() ? axis.effects.emplace_back(machine::Effect{"time_skew", {}}) : *known;
   effect.values["loop_delay"] = {std::clamp(delay, 0.0, longest_delay)};
 }
 template <Value (*value)(const A&)>
-double part(const A& axis, const sim::Timing&) {
+double part(const A& axis, const machine::Timing&) {
   return relative_step * *value(axis);
 }
 
@@ -51,7 +51,7 @@ constexpr std::array table{
     CommandParameter{gains, "current_integral_time", "_s", "_s", current_time,
                      [](A& a, double v) { a.current_controller->integral_time = v; }, part<current_time>},
     CommandParameter{"time_skew", "loop_delay", "_s", "_s", delay, set_loop_delay,
-                     [](const A&, const sim::Timing& timing) { return timing.fast_period; }},
+                     [](const A&, const machine::Timing& timing) { return timing.fast_period; }},
 };
 
 }  // namespace

@@ -20,7 +20,7 @@ std::vector<double> grid(const Scene& scene) { return scan(scene).periods; }
 Columns columns(const Scene& scene, const Motion& motion, double period) {
   const auto lowpass = butterworth(4, 2.0 * std::min(scene.signals.cutoff, 0.2 / motion.period) * motion.period);
   const ReadingResponse response(scene.axis, scene.timing, motion.period);
-  const double viscous = viscous_of(scene.axis).value_or(0.0);
+  const double viscous = viscous_of(scene.axis);
   // What the drive answers where it is too fast for the log's rate.
   std::vector<std::complex<double>> answer(motion.v.size());
   for (std::size_t i = 0; i < answer.size(); ++i)

@@ -17,7 +17,7 @@ Columns columns(const Scene& scene, const Motion& motion, double) { return {forc
 bool possible(const Scene&, double, const Eigen::VectorXd& w) { return w[0] > -0.9; }
 void describe(const Scene& scene, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
   const double constant = scene.axis.motor.force_constant / (1.0 + w[0]);
-  add_key(finding, "force_constant", scene.axis.motor.model == sim::MotorModel::force ? "_N_per_V" : "_N_per_A",
+  add_key(finding, "force_constant", scene.axis.motor.model == machine::MotorModel::force ? "_N_per_V" : "_N_per_A",
           {constant}, {std::sqrt(c(0, 0)) * constant / (1.0 + w[0])});
 }
 

@@ -38,7 +38,7 @@ bool possible(const Scene& scene, double softness, const Eigen::VectorXd& w) {
 }
 void describe(const Scene& scene, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
   const double current = 1.0 / (std::sqrt(w[0]) * scene.axis.motor.force_constant);
-  add_key(finding, "current", scene.axis.motor.model == sim::MotorModel::force ? "_V" : "_A", {current},
+  add_key(finding, "current", scene.axis.motor.model == machine::MotorModel::force ? "_V" : "_A", {current},
           {0.5 * current / w[0] * std::sqrt(c(0, 0))});
 }
 

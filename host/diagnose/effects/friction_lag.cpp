@@ -7,6 +7,7 @@
 
 #include "host/diagnose/candidate.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
+#include "sim/plant/friction/friction.hpp"
 
 namespace stiction::host::effects {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 // A slope a factor from its place fits worse than the mass that it is confused with.
 std::vector<double> grid(const Scene&) { return geometric(1e-3, 80e-3, 12); }
 Columns columns(const Scene& scene, const Motion& motion, double time) {
-  const auto friction = sim::sliding_friction(scene.axis.friction.models.at(scene.axis.friction.use));
+  const auto friction = sim::steady_friction(scene.axis.friction);
   const auto direction = contact_level(scene.axis, motion);
   std::vector<double> column(motion.v.size());
   const double share = motion.period / (2.0 * time + motion.period);  // trapezoidal rule

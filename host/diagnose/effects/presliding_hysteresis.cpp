@@ -15,14 +15,20 @@ namespace {
 constexpr int least_reversals = 10;
 constexpr double longest = 3e-3;  // m
 
+// 0 for friction that follows the speed alone.
+double distance_of(const Scene& scene) {
+  const auto contact = contact_of(scene.axis);
+  return contact ? contact->distance : 0.0;
+}
+
 double distance_with(const Scene& scene, double longer) {
-  const double file = contact_distance_of(scene.axis);
+  const double file = distance_of(scene);
   return std::max(file + longer, std::max(0.02 * file, 1e-8));
 }
 
 std::vector<double> grid(const Scene& scene) {
-  if (!coulomb_of(scene.axis) || scene.reversals < least_reversals) return {};
-  const double file = contact_distance_of(scene.axis);
+  if (!(coulomb_of(scene.axis) > 0.0) || scene.reversals < least_reversals) return {};
+  const double file = distance_of(scene);
   if (!(file > 0.0)) return geometric(1e-6, 3e-3, 14);
   std::vector<double> longer;
   for (const double share : {-0.75, -0.5, -0.25, -0.1, -0.03, 0.03, 0.08, 0.2}) longer.push_back(share * file);
@@ -39,9 +45,8 @@ bool possible(const Scene&, double longer, const Eigen::VectorXd& w) {
 void describe(const Scene& scene, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
   const double distance = distance_with(scene, w[0]), error = std::sqrt(c(0, 0));
   // Of the same shape as the file's curve; without one, exponential.
-  const auto file = contact_stiffness_of(scene.axis);
-  const double sharpness =
-      file ? *file * contact_distance_of(scene.axis) : *coulomb_of(scene.axis) * std::numbers::ln10;
+  const auto file = contact_of(scene.axis);
+  const double sharpness = file ? file->stiffness * file->distance : coulomb_of(scene.axis) * std::numbers::ln10;
   add_key(finding, "stiffness", "_N_per_m", {sharpness / distance}, {sharpness * error / (distance * distance)});
   add_key(finding, "distance", "_m", {distance}, {error});
 }

@@ -7,19 +7,16 @@
 namespace stiction::host::effects {
 namespace {
 
-std::vector<double> grid(const Scene& scene) {
-  return viscous_of(scene.axis) ? std::vector{0.0} : std::vector<double>{};
-}
 Columns columns(const Scene& scene, const Motion& motion, double) {
-  return {force_change(scene.axis, with_viscous(scene.axis, *viscous_of(scene.axis) + 1.0), motion, 1.0)};
+  return {force_change(scene.axis, with_viscous(scene.axis, viscous_of(scene.axis) + 1.0), motion, 1.0)};
 }
-bool possible(const Scene& scene, double, const Eigen::VectorXd& w) { return *viscous_of(scene.axis) + w[0] >= 0.0; }
+bool possible(const Scene& scene, double, const Eigen::VectorXd& w) { return viscous_of(scene.axis) + w[0] >= 0.0; }
 void describe(const Scene& scene, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
-  add_key(finding, "viscous", "_N_s_per_m", {*viscous_of(scene.axis) + w[0]}, {std::sqrt(c(0, 0))});
+  add_key(finding, "viscous", "_N_s_per_m", {viscous_of(scene.axis) + w[0]}, {std::sqrt(c(0, 0))});
 }
 
 }  // namespace
 
-const Candidate viscous_mismatch{"viscous_mismatch", grid, columns, possible, describe};
+const Candidate viscous_mismatch{"viscous_mismatch", no_scan, columns, possible, describe};
 
 }  // namespace stiction::host::effects

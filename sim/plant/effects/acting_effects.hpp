@@ -37,7 +37,7 @@ using ForceEffect = detail::ForcesOf<EffectTable>::type;
 class ActingEffects {
  public:
   // `axis` as plant_axis() returns it, at rest at `position` (m); its clock begins at `time` (s). Throws EffectError.
-  ActingEffects(const Axis& axis, double step, double position, double time = 0.0)
+  ActingEffects(const machine::AxisModel& axis, double step, double position, double time = 0.0)
       : step_(step), start_(time), follower_(position) {
     for (const auto& parameters : effects_of<StructuralResonance>(axis))
       mode_.emplace(parameters, Body{axis.mass, step});
@@ -55,7 +55,7 @@ class ActingEffects {
   bool any() const { return !forces_.empty() || play_ || !reading_.empty() || mode_ || saturation_ || coupled(); }
   bool coupled() const { return coupling_mass_ != 0.0; }  // with the other axis
   // What moves with the encoder: of an axis with an elastic mode the load alone.
-  Body carriage(const Axis& axis) const { return {mode_ ? mode_->load_mass() : axis.mass, step_}; }
+  Body carriage(const machine::AxisModel& axis) const { return {mode_ ? mode_->load_mass() : axis.mass, step_}; }
 
   // Of the other axis, m/s^2; held until changed.
   void set_other_acceleration(double acceleration) { coupling_force_ = coupling_mass_ * acceleration; }
@@ -131,8 +131,8 @@ class ActingEffects {
 
  private:
   template <class E>
-  static E made(const typename E::Parameters& parameters, Body body, const Axis& axis) {
-    if constexpr (std::is_constructible_v<E, const typename E::Parameters&, Body, const Axis&>)
+  static E made(const typename E::Parameters& parameters, Body body, const machine::AxisModel& axis) {
+    if constexpr (std::is_constructible_v<E, const typename E::Parameters&, Body, const machine::AxisModel&>)
       return E(parameters, body, axis);
     else
       return E(parameters, body);

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <array>
 
-#include "sim/parameter.hpp"
+#include "firmware/machine/model/parameter.hpp"
 
 namespace stiction::sim {
 
@@ -20,8 +20,8 @@ class Backlash {
   static constexpr std::string_view name = "backlash";
   static constexpr std::string_view text = "lost motion between motor and measured position";
   static constexpr bool several = false;
-  static constexpr std::array<Parameter<Parameters>, 1> parameters{{
-      {"width", "m", not_negative(), &Parameters::width, {}, "play, from contact to contact"},
+  static constexpr std::array<machine::Parameter<Parameters>, 1> parameters{{
+      {"width", "m", machine::not_negative(), &Parameters::width, {}, "play, from contact to contact"},
   }};
 
   // `position` (m): of the carriage at the start.

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/plant/friction/body.hpp"
+#include "sim/plant/friction/law.hpp"
 #include "sim/plant/friction/one_minus_exp.hpp"
 
 namespace stiction::sim {

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "sim/parameter.hpp"
+#include "firmware/machine/model/parameter.hpp"
 #include "sim/plant/effects/carriage_state.hpp"
 
 namespace stiction::sim {
@@ -17,8 +17,8 @@ class ConstantForce {
   static constexpr std::string_view name = "constant_force";
   static constexpr std::string_view text = "a constant force: gravity, unbalanced weight, offset of the current sensor";
   static constexpr bool several = true;
-  static constexpr std::array<Parameter<Parameters>, 1> parameters{{
-      {"force", "N", any_value(), &Parameters::force, {}, "force on the carriage, positive in +x"},
+  static constexpr std::array<machine::Parameter<Parameters>, 1> parameters{{
+      {"force", "N", machine::any_value(), &Parameters::force, {}, "force on the carriage, positive in +x"},
   }};
   static constexpr bool is_friction = false;
 

@@ -5,8 +5,8 @@
 #include <array>
 #include <optional>
 
-#include "sim/model/machine.hpp"
-#include "sim/parameter.hpp"
+#include "firmware/machine/model/machine.hpp"
+#include "firmware/machine/model/parameter.hpp"
 #include "sim/plant/effects/effect_values.hpp"
 
 namespace stiction::sim {
@@ -18,25 +18,35 @@ struct ControllerGainMismatch {
   static constexpr std::string_view name = "controller_gain_mismatch";
   static constexpr std::string_view text = "a loop gain or integral time of the drive";
   static constexpr bool several = false;
-  static constexpr std::array<Parameter<Parameters>, 5> parameters{{
-      {"position_gain", "1/s", positive(), &Parameters::position_gain, {}, "true gain of the position controller"},
+  static constexpr std::array<machine::Parameter<Parameters>, 5> parameters{{
+      {"position_gain",
+       "1/s",
+       machine::positive(),
+       &Parameters::position_gain,
+       {},
+       "true gain of the position controller"},
       {"velocity_gain",
        "A s/m",
-       positive(),
+       machine::positive(),
        &Parameters::velocity_gain,
        {},
        "true gain of the velocity controller",
        "V s/m"},
       {"velocity_integral_time",
        "s",
-       positive(),
+       machine::positive(),
        &Parameters::velocity_integral_time,
        {},
        "true integral time of the velocity controller"},
-      {"current_gain", "V/A", positive(), &Parameters::current_gain, {}, "true gain of the current controller"},
+      {"current_gain",
+       "V/A",
+       machine::positive(),
+       &Parameters::current_gain,
+       {},
+       "true gain of the current controller"},
       {"current_integral_time",
        "s",
-       positive(),
+       machine::positive(),
        &Parameters::current_integral_time,
        {},
        "true integral time of the current controller"},
@@ -50,7 +60,7 @@ struct ControllerGainMismatch {
   }
 
   // Throws EffectError where there is no such controller.
-  static void change_drive(const Parameters& p, Axis& drive) {
+  static void change_drive(const Parameters& p, machine::AxisModel& drive) {
     if (p.position_gain) drive.position_controller.gain = *p.position_gain;
     if (p.velocity_gain) drive.velocity_controller.gain = *p.velocity_gain;
     if (p.velocity_integral_time) drive.velocity_controller.integral_time = p.velocity_integral_time;

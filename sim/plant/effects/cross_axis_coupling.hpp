@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "sim/parameter.hpp"
+#include "firmware/machine/model/parameter.hpp"
 
 namespace stiction::sim {
 
@@ -15,8 +15,8 @@ struct CrossAxisCoupling {
   static constexpr std::string_view name = "cross_axis_coupling";
   static constexpr std::string_view text = "the other axis' acceleration leaks in as force";
   static constexpr bool several = false;
-  static constexpr std::array<Parameter<Parameters>, 1> parameters{{
-      {"mass", "kg", any_value(), &Parameters::mass, {}, "force in +x over the other axis' acceleration"},
+  static constexpr std::array<machine::Parameter<Parameters>, 1> parameters{{
+      {"mass", "kg", machine::any_value(), &Parameters::mass, {}, "force in +x over the other axis' acceleration"},
   }};
 };
 

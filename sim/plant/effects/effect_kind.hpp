@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/parameter.hpp"
+#include "firmware/machine/model/parameter.hpp"
 
 namespace stiction::sim {
 
@@ -15,7 +15,7 @@ struct EffectKey {
   std::string_view unit;                 // SI: "N s/m"; "1" for dimensionless
   std::string_view unit_of_force_motor;  // where it differs with a motor that is a force source; else empty
   std::string suffix;                    // of the name in verdict.json: "_N_s_per_m"; empty for dimensionless
-  Range range;                           // of each value
+  machine::Range range;                  // of each value
   bool list = false;
   bool required = true;   // otherwise 0 when left out
   bool optional = false;  // nothing when left out

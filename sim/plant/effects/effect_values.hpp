@@ -10,24 +10,13 @@
 #include <utility>
 #include <vector>
 
-#include "sim/model/effect.hpp"
-#include "sim/parameter.hpp"
+#include "firmware/machine/model/effect.hpp"
+#include "firmware/machine/model/parameter.hpp"
 
 namespace stiction::sim {
 
 // Values that an effect cannot have, alone or on this axis.
-class EffectError : public std::invalid_argument {
- public:
-  EffectError(std::string_view name, std::string what_found, std::string what_expected)
-      : std::invalid_argument(fmt::format("effect {}: found {}; expected {}", name, what_found, what_expected)),
-        effect(name),
-        found(std::move(what_found)),
-        expected(std::move(what_expected)) {}
-
-  std::string effect;
-  std::string found;
-  std::string expected;
-};
+using EffectError = machine::ValueError;
 
 namespace detail {
 
@@ -35,7 +24,8 @@ template <class Member>
 inline constexpr bool is_list = std::is_same_v<Member, std::vector<double>>;
 
 template <class Owner>
-void assign(std::string_view effect, const Parameter<Owner>& p, const std::vector<double>& values, Owner& owner) {
+void assign(std::string_view effect, const machine::Parameter<Owner>& p, const std::vector<double>& values,
+            Owner& owner) {
   for (const double value : values)
     if (!p.range.contains(value))
       throw EffectError(effect, fmt::format("{} = {:g} {}", p.key, value, p.unit), "a value in the range of this key");
@@ -52,7 +42,7 @@ void assign(std::string_view effect, const Parameter<Owner>& p, const std::vecto
 }
 
 template <class Owner>
-bool is_optional(const Parameter<Owner>& p) {
+bool is_optional(const machine::Parameter<Owner>& p) {
   return std::holds_alternative<std::optional<double> Owner::*>(p.member);
 }
 
@@ -65,8 +55,8 @@ bool has_key(std::string_view key) {
 
 // Every key of the effect with its value; no key for an optional one that has none.
 template <class E>
-Effect effect_of(const typename E::Parameters& parameters) {
-  Effect effect{std::string(E::name), {}};
+machine::Effect effect_of(const typename E::Parameters& parameters) {
+  machine::Effect effect{std::string(E::name), {}};
   for (const auto& p : E::parameters)
     std::visit(
         [&]<class Member>(Member E::Parameters::*member) {
@@ -86,7 +76,7 @@ Effect effect_of(const typename E::Parameters& parameters) {
 // A key that is left out takes its default. Throws EffectError for a missing or unknown key, for a value out of range
 // and where E::check() refuses the values together.
 template <class E>
-typename E::Parameters parameters_of(const Effect& effect) {
+typename E::Parameters parameters_of(const machine::Effect& effect) {
   for (const auto& [key, values] : effect.values)
     if (!detail::has_key<E>(key)) throw EffectError(E::name, fmt::format("the key {}", key), "none but its own keys");
   typename E::Parameters parameters;

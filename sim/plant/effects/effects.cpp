@@ -8,7 +8,7 @@ namespace stiction::sim {
 namespace {
 
 template <class Owner>
-EffectKey key_of(const Parameter<Owner>& p) {
+EffectKey key_of(const machine::Parameter<Owner>& p) {
   const bool list = std::holds_alternative<std::vector<double> Owner::*>(p.member);
   const bool optional = detail::is_optional(p);
   return {p.key,    p.unit, p.unit_of_force_motor, unit_suffix(p.unit), p.range, list, !p.fallback && !optional,
@@ -24,9 +24,9 @@ std::vector<EffectAlias> aliases_of(std::string_view name) {
   return aliases;
 }
 
-void check_names(const Axis& axis) {
+void check_names(const machine::AxisModel& axis) {
   std::vector<std::string_view> seen;
-  for (const Effect& effect : axis.effects) {
+  for (const machine::Effect& effect : axis.effects) {
     check_effect(effect);
     if (!find_effect_kind(effect.name)->several && std::find(seen.begin(), seen.end(), effect.name) != seen.end())
       throw EffectError(effect.name, "it twice on one axis", "it once");
@@ -49,6 +49,14 @@ std::span<const EffectKind> effect_kinds() {
   return kinds;
 }
 
+std::vector<machine::ValueTable> effect_tables() {
+  std::vector<machine::ValueTable> tables;
+  for_each_effect([&]<class E>() {
+    tables.push_back({E::name, E::text, E::several, machine::keys_of(E::parameters)});
+  });
+  return tables;
+}
+
 const EffectKind* find_effect_kind(std::string_view name) {
   const auto kinds = effect_kinds();
   const auto found =
@@ -56,7 +64,7 @@ const EffectKind* find_effect_kind(std::string_view name) {
   return found == kinds.end() ? nullptr : &*found;
 }
 
-void check_effect(const Effect& effect) {
+void check_effect(const machine::Effect& effect) {
   bool known = false;
   for_each_effect([&]<class E>() {
     if (E::name != effect.name) return;
@@ -80,8 +88,8 @@ std::string unit_suffix(std::string_view unit) {
   return suffix;
 }
 
-Axis plant_axis(const Axis& axis) {
-  Axis plant = axis;
+machine::AxisModel plant_axis(const machine::AxisModel& axis) {
+  machine::AxisModel plant = axis;
   check_names(axis);
   for_each_effect([&]<class E>() {
     if constexpr (requires(const typename E::Parameters& p) { E::change(p, plant); })
@@ -90,8 +98,8 @@ Axis plant_axis(const Axis& axis) {
   return plant;
 }
 
-Axis drive_axis(const Axis& axis) {
-  Axis drive = axis;
+machine::AxisModel drive_axis(const machine::AxisModel& axis) {
+  machine::AxisModel drive = axis;
   for_each_effect([&]<class E>() {
     if constexpr (requires(const typename E::Parameters& p) { E::change_drive(p, drive); })
       for (const auto& parameters : effects_of<E>(axis)) E::change_drive(parameters, drive);
@@ -99,7 +107,7 @@ Axis drive_axis(const Axis& axis) {
   return drive;
 }
 
-double record_delay(const Axis& axis) {
+double record_delay(const machine::AxisModel& axis) {
   double delay = 0.0;
   for (const auto& skew : effects_of<TimeSkew>(axis)) delay += skew.delay;
   return delay;

@@ -65,20 +65,23 @@ constexpr void for_each_effect(Visit&& visit) {
 // Every effect with its keys and aliases, in the order of the table.
 std::span<const EffectKind> effect_kinds();
 
+// The tables of keys, for whoever opens a machine file.
+std::vector<machine::ValueTable> effect_tables();
+
 // nullptr for a name that is none.
 const EffectKind* find_effect_kind(std::string_view name);
 
 // Throws EffectError for an unknown name and for values that parameters_of() refuses.
-void check_effect(const Effect& effect);
+void check_effect(const machine::Effect& effect);
 
 // "N s/m" as the suffix of a name in verdict.json: "_N_s_per_m"; empty for "1".
 std::string unit_suffix(std::string_view unit);
 
 // All effects of kind E that an axis has. Throws EffectError.
 template <class E>
-std::vector<typename E::Parameters> effects_of(const Axis& axis) {
+std::vector<typename E::Parameters> effects_of(const machine::AxisModel& axis) {
   std::vector<typename E::Parameters> found;
-  for (const Effect& effect : axis.effects)
+  for (const machine::Effect& effect : axis.effects)
     if (effect.name == E::name) found.push_back(parameters_of<E>(effect));
   return found;
 }
@@ -86,12 +89,12 @@ std::vector<typename E::Parameters> effects_of(const Axis& axis) {
 // The axis as its plant is: with the changes of its effects made. The drive's configuration comes from `axis` itself.
 // Throws EffectError for an unknown effect, for one too many, for values that parameters_of() refuses and for those
 // that do not go with the friction model in use.
-Axis plant_axis(const Axis& axis);
+machine::AxisModel plant_axis(const machine::AxisModel& axis);
 
 // The axis as its drive is configured: with the changes of those effects that are the drive's. Throws EffectError.
-Axis drive_axis(const Axis& axis);
+machine::AxisModel drive_axis(const machine::AxisModel& axis);
 
 // By which the current of this axis is recorded late against its position, s.
-double record_delay(const Axis& axis);
+double record_delay(const machine::AxisModel& axis);
 
 }  // namespace stiction::sim

@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include "sim/parameter.hpp"
+#include "firmware/machine/model/parameter.hpp"
 #include "sim/plant/effects/harmonics.hpp"
 
 namespace stiction::sim {
@@ -20,10 +20,15 @@ class EncoderSubdivisionError {
   static constexpr std::string_view name = "encoder_subdivision_error";
   static constexpr std::string_view text = "a position error periodic in the encoder's signal period";
   static constexpr bool several = true;
-  static constexpr std::array<Parameter<Parameters>, 3> parameters{{
-      {"period", "m", positive(), &Parameters::period, {}, "signal period of the encoder"},
-      {"cosine", "m", any_value(), &Parameters::cosine, {}, "error in cos(2 pi k x/period), k = 1, 2, .."},
-      {"sine", "m", any_value(), &Parameters::sine, {}, "error in sin(2 pi k x/period), as many as cosine has"},
+  static constexpr std::array<machine::Parameter<Parameters>, 3> parameters{{
+      {"period", "m", machine::positive(), &Parameters::period, {}, "signal period of the encoder"},
+      {"cosine", "m", machine::any_value(), &Parameters::cosine, {}, "error in cos(2 pi k x/period), k = 1, 2, .."},
+      {"sine",
+       "m",
+       machine::any_value(),
+       &Parameters::sine,
+       {},
+       "error in sin(2 pi k x/period), as many as cosine has"},
   }};
 
   // Throws EffectError.

@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include "sim/parameter.hpp"
+#include "firmware/machine/model/parameter.hpp"
 #include "sim/plant/effects/carriage_state.hpp"
 #include "sim/plant/effects/harmonics.hpp"
 
@@ -21,9 +21,9 @@ class ForceConstantRipple {
   static constexpr std::string_view name = "force_constant_ripple";
   static constexpr std::string_view text = "a force periodic in position, proportional to current";
   static constexpr bool several = true;
-  static constexpr Range share{-0.9, 0.9};
-  static constexpr std::array<Parameter<Parameters>, 3> parameters{{
-      {"pitch", "m", positive(), &Parameters::pitch, {}, "period of the first harmonic"},
+  static constexpr machine::Range share{-0.9, 0.9};
+  static constexpr std::array<machine::Parameter<Parameters>, 3> parameters{{
+      {"pitch", "m", machine::positive(), &Parameters::pitch, {}, "period of the first harmonic"},
       {"cosine", "1", share, &Parameters::cosine, {}, "share of the force in cos(2 pi k x/pitch), k = 1, 2, .."},
       {"sine", "1", share, &Parameters::sine, {}, "share of the force in sin(2 pi k x/pitch), as many as cosine has"},
   }};

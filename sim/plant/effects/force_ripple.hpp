@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include "sim/parameter.hpp"
+#include "firmware/machine/model/parameter.hpp"
 #include "sim/plant/effects/carriage_state.hpp"
 #include "sim/plant/effects/harmonics.hpp"
 
@@ -21,10 +21,15 @@ class ForceRipple {
   static constexpr std::string_view name = "force_ripple";
   static constexpr std::string_view text = "a force periodic in position, independent of current: cogging";
   static constexpr bool several = true;
-  static constexpr std::array<Parameter<Parameters>, 3> parameters{{
-      {"pitch", "m", positive(), &Parameters::pitch, {}, "period of the first harmonic"},
-      {"cosine", "N", any_value(), &Parameters::cosine, {}, "force in cos(2 pi k x/pitch) of harmonic k = 1, 2, .."},
-      {"sine", "N", any_value(), &Parameters::sine, {}, "force in sin(2 pi k x/pitch), as many as cosine has"},
+  static constexpr std::array<machine::Parameter<Parameters>, 3> parameters{{
+      {"pitch", "m", machine::positive(), &Parameters::pitch, {}, "period of the first harmonic"},
+      {"cosine",
+       "N",
+       machine::any_value(),
+       &Parameters::cosine,
+       {},
+       "force in cos(2 pi k x/pitch) of harmonic k = 1, 2, .."},
+      {"sine", "N", machine::any_value(), &Parameters::sine, {}, "force in sin(2 pi k x/pitch), as many as cosine has"},
   }};
   static constexpr bool is_friction = false;
 

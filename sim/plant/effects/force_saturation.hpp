@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
-#include "sim/model/machine.hpp"
-#include "sim/parameter.hpp"
+#include "firmware/machine/model/machine.hpp"
+#include "firmware/machine/model/parameter.hpp"
 
 namespace stiction::sim {
 
@@ -18,14 +18,14 @@ class ForceSaturation {
   static constexpr std::string_view name = "force_saturation";
   static constexpr std::string_view text = "force that grows less than the current at high current";
   static constexpr bool several = false;
-  static constexpr std::array<Parameter<Parameters>, 1> parameters{{
-      {"current", "A", positive(), &Parameters::current, {}, "I_s of F = K_F I_s tanh(I / I_s)", "V"},
+  static constexpr std::array<machine::Parameter<Parameters>, 1> parameters{{
+      {"current", "A", machine::positive(), &Parameters::current, {}, "I_s of F = K_F I_s tanh(I / I_s)", "V"},
   }};
 
   // `axis` as plant_axis() returns it.
-  ForceSaturation(const Parameters& p, const Axis& axis)
-      : limit_(p.current * (axis.motor.model == MotorModel::synchronous ? 1.5 * axis.motor.phase_force_constant
-                                                                        : axis.motor.force_constant)) {}
+  ForceSaturation(const Parameters& p, const machine::AxisModel& axis)
+      : limit_(p.current * (axis.motor.model == machine::MotorModel::synchronous ? 1.5 * axis.motor.phase_force_constant
+                                                                                 : axis.motor.force_constant)) {}
 
   // Force (N) of a motor that without saturation had `linear` (N).
   double of_linear(double linear) const { return limit_ * std::tanh(linear / limit_); }

@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "sim/parameter.hpp"
+#include "firmware/machine/model/parameter.hpp"
 #include "sim/plant/effects/carriage_state.hpp"
 
 namespace stiction::sim {
@@ -19,9 +19,10 @@ class FrictionAsymmetry {
   static constexpr std::string_view name = "friction_asymmetry";
   static constexpr std::string_view text = "friction that differs between directions";
   static constexpr bool several = false;
-  static constexpr std::array<Parameter<Parameters>, 2> parameters{{
-      {"coulomb", "N", any_value(), &Parameters::coulomb, 0.0, "half the difference of Coulomb friction, more in +x"},
-      {"viscous", "N s/m", any_value(), &Parameters::viscous, 0.0, "half the difference of the viscous slope"},
+  static constexpr std::array<machine::Parameter<Parameters>, 2> parameters{{
+      {"coulomb", "N", machine::any_value(), &Parameters::coulomb, 0.0,
+       "half the difference of Coulomb friction, more in +x"},
+      {"viscous", "N s/m", machine::any_value(), &Parameters::viscous, 0.0, "half the difference of the viscous slope"},
   }};
   static constexpr bool is_friction = true;
 

@@ -1,24 +1,19 @@
 // Friction that follows the speed with a delay in sliding: its part that depends on the speed takes not v but w,
 //   time dw/dt = v - w,
-// of first order where Hess and Soom (1990) have a pure delay. Coulomb friction and the contact do not wait. On the
-// carriage it is F = -(g(w) - g(v)), g the part of the friction model in use: viscous friction, of LuGre the fall from
-// static to Coulomb friction, of Maxwell slip its rise, of the linear ramp what lies above its break velocity, of the
-// parabolic model all of it.
+// of first order where Hess and Soom (1990) have a pure delay. On the carriage it is F = -(g(w) - g(v)), g the steady
+// friction of the law in use; what does not depend on the speed does not wait.
 #pragma once
 
+#include <algorithm>
 #include <array>
-#include <functional>
+#include <cmath>
 
-#include "sim/model/machine.hpp"
-#include "sim/parameter.hpp"
+#include "firmware/machine/model/machine.hpp"
+#include "firmware/machine/model/parameter.hpp"
 #include "sim/plant/effects/carriage_state.hpp"
+#include "sim/plant/friction/friction.hpp"
 
 namespace stiction::sim {
-
-// Friction that depends on the speed alone, N along the motion at `velocity` (m/s) with the contact pushing in
-// `direction` (-1 to 1).
-using SlidingFriction = std::function<double(double velocity, double direction)>;
-SlidingFriction sliding_friction(const FrictionParameters& parameters);
 
 class FrictionLag {
  public:
@@ -28,25 +23,32 @@ class FrictionLag {
   static constexpr std::string_view name = "friction_lag";
   static constexpr std::string_view text = "friction that follows the speed with a delay in sliding";
   static constexpr bool several = false;
-  static constexpr std::array<Parameter<Parameters>, 1> parameters{{
-      {"time", "s", positive(), &Parameters::time, {}, "time constant by which friction follows the speed"},
+  static constexpr std::array<machine::Parameter<Parameters>, 1> parameters{{
+      {"time", "s", machine::positive(), &Parameters::time, {}, "time constant by which friction follows the speed"},
   }};
   static constexpr bool is_friction = true;
 
-  FrictionLag(const Parameters& p, Body body, const Axis& axis)
+  FrictionLag(const Parameters& p, Body body, const machine::AxisModel& axis)
       : share_(one_minus_exp(body.step / p.time)),
-        friction_(sliding_friction(axis.friction.models.at(axis.friction.use))) {}
+        friction_(steady_friction(axis.friction)),
+        most_(0.5 * body.mass / body.step) {}
 
   // One step at the velocity of `state`, which is held over it.
   void advance(const CarriageState& state) { followed_ += share_ * (state.velocity - followed_); }
 
-  double force(const CarriageState& s) const {
-    return friction_(s.velocity, s.direction) - friction_(followed_, s.direction);
-  }
+  double force(const CarriageState& s) const { return part(s.velocity, s.direction) - part(followed_, s.direction); }
 
  private:
+  // The part that depends on the speed, N. Limited to half of what stops the carriage in one step, as damping_force():
+  // a law whose slope at standstill is infinite must not make it chatter.
+  double part(double velocity, double direction) const {
+    const double bound = most_ * std::abs(velocity);
+    return std::clamp(friction_(velocity, direction) - friction_(0.0, direction), -bound, bound);
+  }
+
   double share_;
-  SlidingFriction friction_;
+  SteadyFriction friction_;
+  double most_;            // N s/m
   double followed_ = 0.0;  // w, m/s
 };
 

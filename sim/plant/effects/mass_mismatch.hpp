@@ -3,8 +3,8 @@
 
 #include <array>
 
-#include "sim/model/machine.hpp"
-#include "sim/parameter.hpp"
+#include "firmware/machine/model/machine.hpp"
+#include "firmware/machine/model/parameter.hpp"
 
 namespace stiction::sim {
 
@@ -15,11 +15,11 @@ struct MassMismatch {
   static constexpr std::string_view name = "mass_mismatch";
   static constexpr std::string_view text = "the moving mass";
   static constexpr bool several = false;
-  static constexpr std::array<Parameter<Parameters>, 1> parameters{{
-      {"mass", "kg", positive(), &Parameters::mass, {}, "true moving mass"},
+  static constexpr std::array<machine::Parameter<Parameters>, 1> parameters{{
+      {"mass", "kg", machine::positive(), &Parameters::mass, {}, "true moving mass"},
   }};
 
-  static void change(const Parameters& p, Axis& plant) { plant.mass = p.mass; }
+  static void change(const Parameters& p, machine::AxisModel& plant) { plant.mass = p.mass; }
 };
 
 }  // namespace stiction::sim

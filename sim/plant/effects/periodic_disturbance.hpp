@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/parameter.hpp"
+#include "firmware/machine/model/parameter.hpp"
 #include "sim/plant/effects/carriage_state.hpp"
 
 namespace stiction::sim {
@@ -20,10 +20,10 @@ class PeriodicDisturbance {
   static constexpr std::string_view name = "periodic_disturbance";
   static constexpr std::string_view text = "a force at a fixed frequency, whatever the motion";
   static constexpr bool several = true;
-  static constexpr std::array<Parameter<Parameters>, 3> parameters{{
-      {"frequency", "Hz", positive(), &Parameters::frequency, {}, "of the force"},
-      {"cosine", "N", any_value(), &Parameters::cosine, 0.0, "force in cos(2 pi frequency t)"},
-      {"sine", "N", any_value(), &Parameters::sine, 0.0, "force in sin(2 pi frequency t)"},
+  static constexpr std::array<machine::Parameter<Parameters>, 3> parameters{{
+      {"frequency", "Hz", machine::positive(), &Parameters::frequency, {}, "of the force"},
+      {"cosine", "N", machine::any_value(), &Parameters::cosine, 0.0, "force in cos(2 pi frequency t)"},
+      {"sine", "N", machine::any_value(), &Parameters::sine, 0.0, "force in sin(2 pi frequency t)"},
   }};
   static constexpr bool is_friction = false;
 

@@ -9,7 +9,7 @@
 #include <array>
 #include <vector>
 
-#include "sim/parameter.hpp"
+#include "firmware/machine/model/parameter.hpp"
 #include "sim/plant/effects/carriage_state.hpp"
 #include "sim/plant/effects/effect_values.hpp"
 
@@ -23,9 +23,14 @@ class PositionDependentFriction {
   static constexpr std::string_view name = "position_dependent_friction";
   static constexpr std::string_view text = "a friction level that varies along the stroke";
   static constexpr bool several = false;
-  static constexpr std::array<Parameter<Parameters>, 2> parameters{{
-      {"position", "m", any_value(), &Parameters::position, {}, "rising positions, at least one"},
-      {"force", "N", any_value(), &Parameters::force, {}, "change of the level at each; linear between, else constant"},
+  static constexpr std::array<machine::Parameter<Parameters>, 2> parameters{{
+      {"position", "m", machine::any_value(), &Parameters::position, {}, "rising positions, at least one"},
+      {"force",
+       "N",
+       machine::any_value(),
+       &Parameters::force,
+       {},
+       "change of the level at each; linear between, else constant"},
   }};
   static constexpr bool is_friction = true;
 

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "sim/parameter.hpp"
+#include "firmware/machine/model/parameter.hpp"
 #include "sim/plant/effects/carriage_state.hpp"
 
 namespace stiction::sim {
@@ -17,9 +17,14 @@ class PositionSpring {
   static constexpr std::string_view name = "position_spring";
   static constexpr std::string_view text = "a force proportional to position: cable carrier, bellows, hose";
   static constexpr bool several = true;
-  static constexpr std::array<Parameter<Parameters>, 2> parameters{{
-      {"stiffness", "N/m", any_value(), &Parameters::stiffness, {}, "stiffness; positive pulls towards neutral"},
-      {"neutral", "m", any_value(), &Parameters::neutral, {}, "position without force"},
+  static constexpr std::array<machine::Parameter<Parameters>, 2> parameters{{
+      {"stiffness",
+       "N/m",
+       machine::any_value(),
+       &Parameters::stiffness,
+       {},
+       "stiffness; positive pulls towards neutral"},
+      {"neutral", "m", machine::any_value(), &Parameters::neutral, {}, "position without force"},
   }};
   static constexpr bool is_friction = false;
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "sim/plant/effects/effect_values.hpp"
-#include "sim/plant/effects/friction_level.hpp"
+#include "sim/plant/friction/friction.hpp"
 
 namespace stiction::sim {
 namespace {
@@ -30,7 +30,7 @@ double exponent_of(double sharpness) {
 
 }  // namespace
 
-MaxwellSlip::Parameters presliding_elements(double coulomb, double stiffness, double distance) {
+MaxwellSlipParameters presliding_elements(double coulomb, double stiffness, double distance) {
   const double sharpness = stiffness * distance / coulomb;
   if (!(coulomb > 0.0) || !PreslidingHysteresis::sharpness.contains(sharpness * (1.0 + 1e-12)))
     throw EffectError(PreslidingHysteresis::name,
@@ -40,7 +40,7 @@ MaxwellSlip::Parameters presliding_elements(double coulomb, double stiffness, do
                                   PreslidingHysteresis::sharpness.high));
   const double n = exponent_of(sharpness);
   constexpr std::array<double, 11> shares{0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.98};
-  MaxwellSlip::Parameters elements;
+  MaxwellSlipParameters elements;
   for (std::size_t j = 0; j < shares.size(); ++j) {
     const bool last = j + 1 == shares.size();
     const double slope = std::pow(1.0 - shares[j], n);
@@ -57,16 +57,19 @@ MaxwellSlip::Parameters presliding_elements(double coulomb, double stiffness, do
   return elements;
 }
 
-void PreslidingHysteresis::change(const Parameters& p, Axis& plant) {
-  const FrictionParameters& in_use = plant.friction.models.at(plant.friction.use);
-  MaxwellSlip::Parameters elements = presliding_elements(coulomb_of(in_use), p.stiffness, p.distance);
-  elements.viscous = viscous_of(in_use);
-  if (const auto* slip = std::get_if<MaxwellSlip::Parameters>(&in_use)) {
-    elements.rise = slip->rise;
-    elements.rise_velocity = slip->rise_velocity;
-  }
-  plant.friction.use = MaxwellSlip::name;
-  plant.friction.models[plant.friction.use] = elements;
+void PreslidingHysteresis::change(const Parameters& p, machine::AxisModel& plant) {
+  machine::FrictionParameters& friction = plant.friction;
+  MaxwellSlipParameters elements = presliding_elements(coulomb_of(friction), p.stiffness, p.distance);
+  elements.viscous = viscous_of(friction);
+  with_law_in_use(friction, [&]<class Law>(const typename Law::Parameters& law) {
+    if constexpr (requires { law.rise_velocity; }) {
+      elements.rise = law.rise;
+      elements.rise_velocity = law.rise_velocity;
+    }
+    return true;
+  });
+  friction.use = MaxwellSlip<>::name;
+  friction.models[friction.use] = values_of<MaxwellSlip<>>(elements);
 }
 
 }  // namespace stiction::sim

@@ -7,8 +7,9 @@
 
 #include <array>
 
-#include "sim/model/machine.hpp"
-#include "sim/parameter.hpp"
+#include "firmware/machine/model/machine.hpp"
+#include "firmware/machine/model/parameter.hpp"
+#include "sim/plant/friction/maxwell_slip.hpp"
 
 namespace stiction::sim {
 
@@ -20,19 +21,24 @@ struct PreslidingHysteresis {
   static constexpr std::string_view name = "presliding_hysteresis";
   static constexpr std::string_view text = "spring-like, rate-independent displacement before sliding";
   static constexpr bool several = false;
-  static constexpr std::array<Parameter<Parameters>, 2> parameters{{
-      {"stiffness", "N/m", positive(), &Parameters::stiffness, {}, "stiffness at the beginning of a displacement"},
-      {"distance", "m", positive(), &Parameters::distance, {}, "displacement to 90 % of Coulomb friction"},
+  static constexpr std::array<machine::Parameter<Parameters>, 2> parameters{{
+      {"stiffness",
+       "N/m",
+       machine::positive(),
+       &Parameters::stiffness,
+       {},
+       "stiffness at the beginning of a displacement"},
+      {"distance", "m", machine::positive(), &Parameters::distance, {}, "displacement to 90 % of Coulomb friction"},
   }};
   // stiffness * distance, in units of Coulomb friction.
-  static constexpr Range sharpness{0.9, 1000.0};
+  static constexpr machine::Range sharpness{0.9, 1000.0};
 
   // Throws EffectError where Coulomb friction does not fit (see sharpness).
-  static void change(const Parameters& p, Axis& plant);
+  static void change(const Parameters& p, machine::AxisModel& plant);
 };
 
 // The elements of that curve: its polygon of tangents at 0, 10, .. 90 and 98 % of Coulomb friction, so that initial
 // stiffness, the point at 90 % and Coulomb friction are exact. Throws EffectError beyond `sharpness`.
-MaxwellSlip::Parameters presliding_elements(double coulomb, double stiffness, double distance);
+MaxwellSlipParameters presliding_elements(double coulomb, double stiffness, double distance);
 
 }  // namespace stiction::sim

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "sim/parameter.hpp"
+#include "firmware/machine/model/parameter.hpp"
 #include "sim/plant/effects/carriage_state.hpp"
 
 namespace stiction::sim {
@@ -18,9 +18,14 @@ class Stribeck {
   static constexpr std::string_view name = "stribeck";
   static constexpr std::string_view text = "friction that falls with speed near standstill";
   static constexpr bool several = false;
-  static constexpr std::array<Parameter<Parameters>, 2> parameters{{
-      {"break_away", "N", any_value(), &Parameters::break_away, {}, "friction near standstill above Coulomb's"},
-      {"velocity", "m/s", positive(), &Parameters::velocity, {}, "speed at which 37 % of it is left"},
+  static constexpr std::array<machine::Parameter<Parameters>, 2> parameters{{
+      {"break_away",
+       "N",
+       machine::any_value(),
+       &Parameters::break_away,
+       {},
+       "friction near standstill above Coulomb's"},
+      {"velocity", "m/s", machine::positive(), &Parameters::velocity, {}, "speed at which 37 % of it is left"},
   }};
   static constexpr bool is_friction = true;
 

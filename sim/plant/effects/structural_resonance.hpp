@@ -9,8 +9,8 @@
 #include <array>
 #include <numbers>
 
-#include "sim/parameter.hpp"
-#include "sim/plant/friction/body.hpp"
+#include "firmware/machine/model/parameter.hpp"
+#include "sim/plant/friction/law.hpp"
 
 namespace stiction::sim {
 
@@ -24,10 +24,15 @@ class StructuralResonance {
   static constexpr std::string_view name = "structural_resonance";
   static constexpr std::string_view text = "an elastic mode between motor and measured position";
   static constexpr bool several = false;
-  static constexpr std::array<Parameter<Parameters>, 3> parameters{{
-      {"frequency", "Hz", positive(2000.0), &Parameters::frequency, {}, "of the mode, both masses free"},
-      {"damping_ratio", "1", not_negative(1.0), &Parameters::damping_ratio, {}, "of the mode, 1 = critical"},
-      {"mass_ratio", "1", positive(0.999), &Parameters::mass_ratio, {}, "mass on the measured side over the whole"},
+  static constexpr std::array<machine::Parameter<Parameters>, 3> parameters{{
+      {"frequency", "Hz", machine::positive(2000.0), &Parameters::frequency, {}, "of the mode, both masses free"},
+      {"damping_ratio", "1", machine::not_negative(1.0), &Parameters::damping_ratio, {}, "of the mode, 1 = critical"},
+      {"mass_ratio",
+       "1",
+       machine::positive(0.999),
+       &Parameters::mass_ratio,
+       {},
+       "mass on the measured side over the whole"},
   }};
 
   // `whole`: of both masses.

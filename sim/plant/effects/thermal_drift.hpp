@@ -6,7 +6,7 @@
 
 #include <array>
 
-#include "sim/parameter.hpp"
+#include "firmware/machine/model/parameter.hpp"
 #include "sim/plant/effects/carriage_state.hpp"
 
 namespace stiction::sim {
@@ -20,9 +20,9 @@ class ThermalDrift {
   static constexpr std::string_view name = "thermal_drift";
   static constexpr std::string_view text = "a friction level that changes with time as the machine warms up";
   static constexpr bool several = false;
-  static constexpr std::array<Parameter<Parameters>, 2> parameters{{
-      {"change", "N", any_value(), &Parameters::change, {}, "friction when warm above friction at the start"},
-      {"time_constant", "s", positive(), &Parameters::time_constant, {}, "time in which 63 % of it have come"},
+  static constexpr std::array<machine::Parameter<Parameters>, 2> parameters{{
+      {"change", "N", machine::any_value(), &Parameters::change, {}, "friction when warm above friction at the start"},
+      {"time_constant", "s", machine::positive(), &Parameters::time_constant, {}, "time in which 63 % of it have come"},
   }};
   static constexpr bool is_friction = true;
 

@@ -5,8 +5,8 @@
 
 #include <array>
 
-#include "sim/model/machine.hpp"
-#include "sim/parameter.hpp"
+#include "firmware/machine/model/machine.hpp"
+#include "firmware/machine/model/parameter.hpp"
 
 namespace stiction::sim {
 
@@ -18,13 +18,14 @@ struct TimeSkew {
   static constexpr std::string_view name = "time_skew";
   static constexpr std::string_view text = "current recorded late against position, or a delay in the loop";
   static constexpr bool several = false;
-  static constexpr std::array<Parameter<Parameters>, 2> parameters{{
+  static constexpr std::array<machine::Parameter<Parameters>, 2> parameters{{
       {"delay", "s", {-0.1, 0.1}, &Parameters::delay, 0.0, "by which the current is recorded late; negative: early"},
-      {"loop_delay", "s", not_negative(0.1), &Parameters::loop_delay, 0.0, "of the loop, beyond the dead time"},
+      {"loop_delay", "s", machine::not_negative(0.1), &Parameters::loop_delay, 0.0,
+       "of the loop, beyond the dead time"},
   }};
 
   // The dead time need not be a multiple of the plant's step, see InverterModel.
-  static void change(const Parameters& p, Axis& plant) { plant.inverter.dead_time += p.loop_delay; }
+  static void change(const Parameters& p, machine::AxisModel& plant) { plant.inverter.dead_time += p.loop_delay; }
 };
 
 }  // namespace stiction::sim

@@ -1,12 +1,12 @@
-// The slope of viscous friction differs from the file's, whichever friction model acts (friction_level.hpp); the drive
+// The slope of viscous friction differs from the file's, whichever friction law acts; the drive
 // knows nothing of it.
 #pragma once
 
 #include <array>
 
-#include "sim/model/machine.hpp"
-#include "sim/parameter.hpp"
-#include "sim/plant/effects/friction_level.hpp"
+#include "firmware/machine/model/machine.hpp"
+#include "firmware/machine/model/parameter.hpp"
+#include "sim/plant/friction/friction.hpp"
 
 namespace stiction::sim {
 
@@ -17,11 +17,11 @@ struct ViscousMismatch {
   static constexpr std::string_view name = "viscous_mismatch";
   static constexpr std::string_view text = "the slope of viscous friction";
   static constexpr bool several = false;
-  static constexpr std::array<Parameter<Parameters>, 1> parameters{{
-      {"viscous", "N s/m", not_negative(), &Parameters::viscous, {}, "true slope of viscous friction mu_v"},
+  static constexpr std::array<machine::Parameter<Parameters>, 1> parameters{{
+      {"viscous", "N s/m", machine::not_negative(), &Parameters::viscous, {}, "true slope of viscous friction mu_v"},
   }};
 
-  static void change(const Parameters& p, Axis& plant) { set_viscous(plant.friction, p.viscous); }
+  static void change(const Parameters& p, machine::AxisModel& plant) { set_viscous(plant.friction, p.viscous); }
 };
 
 }  // namespace stiction::sim

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "sim/parameter.hpp"
+#include "firmware/machine/model/parameter.hpp"
 #include "sim/plant/effects/carriage_state.hpp"
 
 namespace stiction::sim {
@@ -18,9 +18,9 @@ class ViscousNonlinear {
   static constexpr std::string_view name = "viscous_nonlinear";
   static constexpr std::string_view text = "friction that rises less, or more, than linearly with speed";
   static constexpr bool several = true;
-  static constexpr std::array<Parameter<Parameters>, 2> parameters{{
-      {"force", "N", any_value(), &Parameters::force, {}, "extra friction at high speed; negative: less"},
-      {"velocity", "m/s", positive(), &Parameters::velocity, {}, "speed at which 63 % of it is reached"},
+  static constexpr std::array<machine::Parameter<Parameters>, 2> parameters{{
+      {"force", "N", machine::any_value(), &Parameters::force, {}, "extra friction at high speed; negative: less"},
+      {"velocity", "m/s", machine::positive(), &Parameters::velocity, {}, "speed at which 63 % of it is reached"},
   }};
   static constexpr bool is_friction = true;
 

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <numbers>
 
-#include "sim/plant/feed/feed_drive.hpp"
+#include "firmware/machine/model/feed_drive.hpp"
 
 namespace stiction::sim {
 
@@ -50,7 +50,7 @@ using FeedState = std::array<double, feed_state::count>;
 class FeedSystem {
  public:
   // `feed`: speed set-point of the carriage, m/s.
-  FeedSystem(const FeedDrive& drive, FeedSource source, FeedEquations equations, double feed)
+  FeedSystem(const machine::FeedDrive& drive, FeedSource source, FeedEquations equations, double feed)
       : d_(drive),
         source_(source),
         equations_(equations),
@@ -58,7 +58,7 @@ class FeedSystem {
         damping_(drive.carriage.damping()),
         per_angle_(drive.lead / (2.0 * std::numbers::pi)) {}
 
-  const FeedDrive& drive() const { return d_; }
+  const machine::FeedDrive& drive() const { return d_; }
   const FeedEquations& equations() const { return equations_; }
 
   double drive_speed(const FeedState& s) const {
@@ -119,7 +119,7 @@ class FeedSystem {
     return (force - stiffness * deflection - 2.0 * damping_ratio * std::sqrt(stiffness * mass) * speed) / mass;
   }
 
-  FeedDrive d_;
+  machine::FeedDrive d_;
   FeedSource source_;
   FeedEquations equations_;
   double feed_;

@@ -15,7 +15,7 @@ constexpr double smallest_scale = 1e-30;   // of a state that stays zero
 constexpr double safety = 0.9, shrinks_most = 0.2, grows_most = 5.0;
 
 // How large each state becomes when the drive carries static friction at the set feed: the floor of its error's scale.
-FeedState sizes(const FeedDrive& d, double feed) {
+FeedState sizes(const machine::FeedDrive& d, double feed) {
   const double per_angle = d.lead / (2.0 * std::numbers::pi), rest = d.friction.normal_load * d.friction.static_long;
   FeedState size{};
   size[wind_up] = size[travel] = rest / d.carriage.stiffness;
@@ -36,7 +36,7 @@ FeedState sizes(const FeedDrive& d, double feed) {
 
 }  // namespace
 
-StickSlipFeed::StickSlipFeed(const FeedDrive& drive, FeedSource source, FeedEquations equations, double feed,
+StickSlipFeed::StickSlipFeed(const machine::FeedDrive& drive, FeedSource source, FeedEquations equations, double feed,
                              FeedAccuracy accuracy)
     : system_(drive, source, equations, feed), accuracy_(accuracy), scale_(sizes(drive, feed)) {
   derivative_ = system_.derivative(state_, sliding_);

@@ -33,7 +33,7 @@ struct FeedJump {
 class StickSlipFeed {
  public:
   // From standstill of all states, after a long standstill of the carriage; the set-point stands at `feed` (m/s).
-  StickSlipFeed(const FeedDrive& drive, FeedSource source, FeedEquations equations, double feed,
+  StickSlipFeed(const machine::FeedDrive& drive, FeedSource source, FeedEquations equations, double feed,
                 FeedAccuracy accuracy = {});
 
   // Goes on until `time` (s).

@@ -27,7 +27,7 @@ double greatest_rate(double beta, double zeta) {
 }
 
 // The carriage no longer stops when its oscillation has decayed by exp(-12).
-double settling_time(const FeedDrive& drive) {
+double settling_time(const machine::FeedDrive& drive) {
   const double omega = drive.carriage.natural_frequency();
   return std::min(12.0 / (std::max(drive.carriage.damping_ratio, 1e-6) * omega),
                   200.0 * 2.0 * std::numbers::pi / omega);
@@ -52,12 +52,12 @@ double critical_beta(double zeta) {
   return 0.5 * (low + high);
 }
 
-double critical_feed_of_ideal_drive(const FeedDrive& drive) {
+double critical_feed_of_ideal_drive(const machine::FeedDrive& drive) {
   const auto& c = drive.carriage;
   return critical_beta(c.damping_ratio) * drive.friction.step() / std::sqrt(c.stiffness * c.mass);
 }
 
-bool loops_are_stable(const FeedDrive& drive) {
+bool loops_are_stable(const machine::FeedDrive& drive) {
   // (7) without set-point is linear: its columns are the derivatives of the unit states.
   const FeedSystem system(drive, FeedSource::pi_drive, {}, 0.0);
   constexpr std::size_t size = feed_state::wind_up + 1;
@@ -73,7 +73,7 @@ bool loops_are_stable(const FeedDrive& drive) {
   return decays(matrix) && decays(matrix.topLeftCorner(size - 1, size - 1));
 }
 
-Jumping jumping_at(const FeedDrive& drive, FeedSource source, FeedEquations equations, double feed,
+Jumping jumping_at(const machine::FeedDrive& drive, FeedSource source, FeedEquations equations, double feed,
                    FeedAccuracy accuracy) {
   auto without_tool = drive;  // nothing acts back from it
   without_tool.tool.force_x = without_tool.tool.force_z = 0.0;
@@ -103,7 +103,7 @@ Jumping jumping_at(const FeedDrive& drive, FeedSource source, FeedEquations equa
   return result;
 }
 
-double critical_feed_by_bisection(const FeedDrive& drive, FeedSource source, double relative) {
+double critical_feed_by_bisection(const machine::FeedDrive& drive, FeedSource source, double relative) {
   // A step is accurate to 1e-8: beside the bisection's own width that is nothing.
   const auto jumps = [&](double feed) { return jumping_at(drive, source, {}, feed, {1e-8, 5e-4}).lasts; };
   const double guess = critical_feed_of_ideal_drive(drive);

@@ -16,10 +16,10 @@ double small_feed_jump_ratio(double beta, double zeta);
 double critical_beta(double zeta);
 
 // The feed, m/s, above which the drive with constant static friction, moved at constant speed, does not jump.
-double critical_feed_of_ideal_drive(const FeedDrive& drive);
+double critical_feed_of_ideal_drive(const machine::FeedDrive& drive);
 
 // Whether the motor's loops come to rest, with the carriage standing and with the spring free.
-bool loops_are_stable(const FeedDrive& drive);
+bool loops_are_stable(const machine::FeedDrive& drive);
 
 // A cycle of steady jumping.
 struct JumpCycle {
@@ -36,12 +36,12 @@ struct Jumping {
   bool lasts = false;
   JumpCycle cycle;
 };
-Jumping jumping_at(const FeedDrive& drive, FeedSource source, FeedEquations equations, double feed,
+Jumping jumping_at(const machine::FeedDrive& drive, FeedSource source, FeedEquations equations, double feed,
                    FeedAccuracy accuracy = {});
 
 // The feed, m/s, above which the simulated drive with the corrected equations stops jumping, by bisection to
 // `relative`. Zero when it does not even jump at a hundredth of the ideal drive's critical feed, infinite when it still
 // does at a hundred times that.
-double critical_feed_by_bisection(const FeedDrive& drive, FeedSource source, double relative);
+double critical_feed_by_bisection(const machine::FeedDrive& drive, FeedSource source, double relative);
 
 }  // namespace stiction::sim

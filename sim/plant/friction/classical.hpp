@@ -3,53 +3,63 @@
 // the velocity is zero to the bit while the carriage sticks.
 #pragma once
 
-#include <array>
-#include <cmath>
-
-#include "sim/parameter.hpp"
-#include "sim/plant/friction/body.hpp"
+#include "sim/number/arithmetic.hpp"
+#include "sim/plant/friction/law.hpp"
 
 namespace stiction::sim {
 
+struct ClassicalParameters {
+  double coulomb = 0.0;
+  double static_ratio = 1.0;
+  double viscous = 0.0;
+};
+
+template <class Real = double>
 class Classical {
  public:
-  struct Parameters {
-    double coulomb = 0.0;
-    double static_ratio = 1.0;
-    double viscous = 0.0;
-  };
+  using Scalar = Real;
+  using Parameters = ClassicalParameters;
   static constexpr std::string_view name = "classical";
   static constexpr std::string_view label = "A classical";
-  static constexpr std::array<Parameter<Parameters>, 3> parameters{{
-      {"coulomb", "N", not_negative(), &Parameters::coulomb, {}, "Coulomb friction F_C"},
+  static constexpr std::array<machine::Parameter<Parameters>, 3> parameters{{
+      {"coulomb", "N", machine::not_negative(), &Parameters::coulomb, {}, "Coulomb friction F_C"},
       {"static_ratio", "1", {1.0, 10.0}, &Parameters::static_ratio, 1.0, "static over Coulomb friction, F_Ts / F_C"},
-      {"viscous", "N s/m", not_negative(), &Parameters::viscous, {}, "viscous friction mu_v"},
+      {"viscous", "N s/m", machine::not_negative(), &Parameters::viscous, {}, "viscous friction mu_v"},
   }};
+  static double coulomb(const Parameters& p) { return p.coulomb; }
+  static double viscous(const Parameters& p) { return p.viscous; }
+  static void set_coulomb(Parameters& p, double coulomb) { p.coulomb = coulomb; }
+  static void set_viscous(Parameters& p, double viscous) { p.viscous = viscous; }
 
-  Classical(const Parameters& p, Body body) : p_(p), body_(body) {}
+  Classical(const Parameters& p, Body body)
+      : coulomb_(p.coulomb),
+        static_level_(p.coulomb * p.static_ratio),
+        viscous_(p.viscous),
+        mass_(body.mass),
+        step_(body.step) {}
 
-  // Velocity (m/s) one step later, under `force` (N), the sum of all forces but friction.
-  double advance(double velocity, double force) {
-    if (velocity == 0.0) return start(force, body_.step);
-    const double direction = std::copysign(1.0, velocity);
-    const double next = slide(velocity, force, direction, body_.step);
+  Real advance(Real velocity, Real force) {
+    if (velocity == 0.0) return start(force, step_);
+    const Real direction = copy_sign(Real(1.0), velocity);
+    const Real next = slide(velocity, force, direction, step_);
     if (next * direction > 0.0) return next;
-    const double until_stop = body_.step * velocity / (velocity - next);
-    return start(force, body_.step - until_stop);
+    const Real until_stop = step_ * velocity / (velocity - next);
+    return start(force, step_ - until_stop);
   }
+  Real steady_force(Real velocity, Real direction) const { return coulomb_ * direction + viscous_ * velocity; }
+  std::optional<Contact> contact() const { return {}; }
 
  private:
-  double start(double force, double duration) const {
-    if (std::abs(force) <= p_.coulomb * p_.static_ratio) return 0.0;
-    return slide(0.0, force, std::copysign(1.0, force), duration);
+  Real start(Real force, Real duration) const {
+    if (absolute(force) <= static_level_) return 0.0;
+    return slide(0.0, force, copy_sign(Real(1.0), force), duration);
   }
-  double slide(double velocity, double force, double direction, double duration) const {
-    const double gain = duration / body_.mass;
-    return (velocity + gain * (force - p_.coulomb * direction)) / (1.0 + gain * p_.viscous);
+  Real slide(Real velocity, Real force, Real direction, Real duration) const {
+    const Real gain = duration / mass_;
+    return (velocity + gain * (force - coulomb_ * direction)) / (1.0 + gain * viscous_);
   }
 
-  Parameters p_;
-  Body body_;
+  Real coulomb_, static_level_, viscous_, mass_, step_;
 };
 
 }  // namespace stiction::sim

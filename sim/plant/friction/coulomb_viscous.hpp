@@ -2,37 +2,43 @@
 // and chatters around standstill; it stays as the baseline of what a toolbox block gives.
 #pragma once
 
-#include <array>
-
-#include "sim/parameter.hpp"
-#include "sim/plant/friction/body.hpp"
+#include "sim/plant/friction/law.hpp"
 
 namespace stiction::sim {
 
+struct CoulombViscousParameters {
+  double coulomb = 0.0;
+  double viscous = 0.0;
+};
+
+template <class Real = double>
 class CoulombViscous {
  public:
-  struct Parameters {
-    double coulomb = 0.0;
-    double viscous = 0.0;
-  };
+  using Scalar = Real;
+  using Parameters = CoulombViscousParameters;
   static constexpr std::string_view name = "coulomb_viscous";
   static constexpr std::string_view label = "D Coulomb and viscous";
-  static constexpr std::array<Parameter<Parameters>, 2> parameters{{
-      {"coulomb", "N", not_negative(), &Parameters::coulomb, {}, "Coulomb friction F_C"},
-      {"viscous", "N s/m", not_negative(), &Parameters::viscous, {}, "viscous friction mu_v"},
+  static constexpr std::array<machine::Parameter<Parameters>, 2> parameters{{
+      {"coulomb", "N", machine::not_negative(), &Parameters::coulomb, {}, "Coulomb friction F_C"},
+      {"viscous", "N s/m", machine::not_negative(), &Parameters::viscous, {}, "viscous friction mu_v"},
   }};
+  static double coulomb(const Parameters& p) { return p.coulomb; }
+  static double viscous(const Parameters& p) { return p.viscous; }
+  static void set_coulomb(Parameters& p, double coulomb) { p.coulomb = coulomb; }
+  static void set_viscous(Parameters& p, double viscous) { p.viscous = viscous; }
 
-  CoulombViscous(const Parameters& p, Body body) : p_(p), gain_(body.step / body.mass) {}
+  CoulombViscous(const Parameters& p, Body body)
+      : coulomb_(p.coulomb), viscous_(p.viscous), gain_(body.step / body.mass) {}
 
-  // Velocity (m/s) one step later, under `force` (N), the sum of all forces but friction.
-  double advance(double velocity, double force) {
-    const double sign = velocity > 0.0 ? 1.0 : velocity < 0.0 ? -1.0 : 0.0;
-    return (velocity + gain_ * (force - p_.coulomb * sign)) / (1.0 + gain_ * p_.viscous);
+  Real advance(Real velocity, Real force) {
+    const Real sign = velocity > 0.0 ? 1.0 : velocity < 0.0 ? -1.0 : 0.0;
+    return (velocity + gain_ * (force - coulomb_ * sign)) / (1.0 + gain_ * viscous_);
   }
+  Real steady_force(Real velocity, Real direction) const { return coulomb_ * direction + viscous_ * velocity; }
+  std::optional<Contact> contact() const { return {}; }
 
  private:
-  Parameters p_;
-  double gain_;
+  Real coulomb_, viscous_, gain_;
 };
 
 }  // namespace stiction::sim

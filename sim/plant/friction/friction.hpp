@@ -1,13 +1,21 @@
-// The table of friction models. A new model is one header beside this one and one row here: the machine file's reader,
-// the command line and the plant take name, parameters and law from it.
+// The table of friction laws. A new law is one header beside this one and one row here: the machine file's keys, the
+// command line, the plant, identification and diagnosis take everything from it.
 #pragma once
 
-#include <string_view>
+#include <functional>
+#include <stdexcept>
+#include <string>
 #include <tuple>
 #include <variant>
+#include <vector>
 
+#include "firmware/machine/model/machine.hpp"
+#include "firmware/machine/model/value_table.hpp"
 #include "sim/plant/friction/classical.hpp"
 #include "sim/plant/friction/coulomb_viscous.hpp"
+#include "sim/plant/friction/curve.hpp"
+#include "sim/plant/friction/dahl.hpp"
+#include "sim/plant/friction/elasto_plastic.hpp"
 #include "sim/plant/friction/linear_ramp.hpp"
 #include "sim/plant/friction/lugre.hpp"
 #include "sim/plant/friction/maxwell_slip.hpp"
@@ -15,41 +23,75 @@
 
 namespace stiction::sim {
 
-// In the order in which reports show them.
-using FrictionModel = std::variant<CoulombViscous, Classical, LinearRamp, Parabolic, LuGre, MaxwellSlip>;
+// Any friction law, in the order in which reports show them.
+using FrictionModel = std::variant<CoulombViscous<>, Classical<>, LinearRamp<>, Parabolic<>, LuGre<>, Dahl<>,
+                                   ElastoPlastic<>, MaxwellSlip<>, Curve<>>;
 
-namespace detail {
-template <class Variant>
-struct ParametersOf;
-template <class... Models>
-struct ParametersOf<std::variant<Models...>> {
-  using type = std::variant<typename Models::Parameters...>;
-};
-}  // namespace detail
-
-// The parameters of any model; the alternatives stand in the order of FrictionModel.
-using FrictionParameters = detail::ParametersOf<FrictionModel>::type;
-
-// Calls visit.operator()<Model>() for each model of the table, in order.
+// Calls visit.operator()<Law>() for each law of the table, in order.
 template <class Visit, std::size_t Index = 0>
 constexpr void for_each_friction_model(Visit&& visit) {
   if constexpr (Index < std::variant_size_v<FrictionModel>) {
-    visit.template operator()<std::variant_alternative_t<Index, FrictionModel>>();
+    using Law = std::variant_alternative_t<Index, FrictionModel>;
+    static_assert(FrictionLaw<Law>);
+    visit.template operator()<Law>();
     for_each_friction_model<Visit, Index + 1>(static_cast<Visit&&>(visit));
   }
 }
 
-// The model itself, at rest, acting on `body`.
-inline FrictionModel make_friction(const FrictionParameters& parameters, Body body) {
-  return std::visit(
-      [&]<class P>(const P& p) -> FrictionModel {
-        FrictionModel model = CoulombViscous({}, body);
-        for_each_friction_model([&]<class Model>() {
-          if constexpr (std::is_same_v<typename Model::Parameters, P>) model = Model(p, body);
-        });
-        return model;
-      },
-      parameters);
+// Between a law's own parameters and those of a machine file.
+template <FrictionLaw Law>
+typename Law::Parameters parameters_of(const machine::KeyedValues& values) {
+  return machine::typed<typename Law::Parameters>(values, Law::parameters);
 }
+template <FrictionLaw Law>
+machine::KeyedValues values_of(const typename Law::Parameters& parameters) {
+  return machine::keyed(parameters, Law::parameters);
+}
+
+// The parameters of the law `Law` in an axis' file. Throws std::out_of_range where the file has no such table.
+template <FrictionLaw Law>
+typename Law::Parameters parameters_of(const machine::FrictionParameters& friction) {
+  return parameters_of<Law>(friction.models.at(std::string(Law::name)));
+}
+
+// visit.operator()<Law>(parameters) for the law in use, with its parameters. Throws std::invalid_argument where no law
+// of the table has that name.
+template <class Visit>
+auto with_law_in_use(const machine::FrictionParameters& friction, Visit&& visit) {
+  using Result = decltype(visit.template operator()<CoulombViscous<>>(CoulombViscousParameters{}));
+  std::function<Result()> chosen;
+  for_each_friction_model([&]<class Law>() {
+    if (Law::name == friction.use)
+      chosen = [&] { return visit.template operator()<Law>(parameters_of<Law>(friction)); };
+  });
+  if (!chosen) throw std::invalid_argument("friction: there is no law \"" + friction.use + "\"");
+  return chosen();
+}
+
+// The law in use, at rest, acting on `body`.
+FrictionModel make_friction(const machine::FrictionParameters& friction, Body body);
+
+// Friction of steady sliding, N, at `velocity` (m/s) with the contact pushing in `direction` (-1 to 1): see
+// FrictionLaw.
+using SteadyFriction = std::function<double(double velocity, double direction)>;
+SteadyFriction steady_friction(const machine::FrictionParameters& friction);
+
+// Of the law in use.
+std::optional<Contact> contact_of(const machine::FrictionParameters& friction);
+double coulomb_of(const machine::FrictionParameters& friction);  // N
+double viscous_of(const machine::FrictionParameters& friction);  // N s/m
+void set_coulomb(machine::FrictionParameters& friction, double coulomb);
+void set_viscous(machine::FrictionParameters& friction, double viscous);
+
+// The force (N) at each of the displacements (m, rising) of first loading from rest, rate-independent; empty for a law
+// without a contact.
+std::vector<double> loading_curve(const machine::FrictionParameters& friction,
+                                  const std::vector<double>& displacements);
+
+// The contact of the law in use drawn out by `factor`, its level kept. Does nothing for a law without a contact.
+void stretch_contact(machine::FrictionParameters& friction, double factor);
+
+// The tables of keys, for whoever opens a machine file.
+std::vector<machine::ValueTable> friction_tables();
 
 }  // namespace stiction::sim

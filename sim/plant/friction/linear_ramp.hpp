@@ -2,45 +2,58 @@
 // it F = (F_C + (|v| - v_0) mu_v) sgn(v). Solved implicitly, exactly on each of its two lines.
 #pragma once
 
-#include <array>
-#include <cmath>
-
-#include "sim/parameter.hpp"
-#include "sim/plant/friction/body.hpp"
+#include "sim/number/arithmetic.hpp"
+#include "sim/plant/friction/law.hpp"
 
 namespace stiction::sim {
 
+struct LinearRampParameters {
+  double coulomb = 0.0;
+  double slope = 0.0;
+  double viscous = 0.0;
+};
+
+template <class Real = double>
 class LinearRamp {
  public:
-  struct Parameters {
-    double coulomb = 0.0;
-    double slope = 0.0;
-    double viscous = 0.0;
-  };
+  using Scalar = Real;
+  using Parameters = LinearRampParameters;
   static constexpr std::string_view name = "linear_ramp";
   static constexpr std::string_view label = "B1 linear ramp";
-  static constexpr std::array<Parameter<Parameters>, 3> parameters{{
-      {"coulomb", "N", not_negative(), &Parameters::coulomb, {}, "Coulomb friction F_C"},
-      {"slope", "N s/m", positive(), &Parameters::slope, {}, "slope mu_0 below the break velocity"},
-      {"viscous", "N s/m", not_negative(), &Parameters::viscous, {}, "slope mu_v above the break velocity"},
+  static constexpr std::array<machine::Parameter<Parameters>, 3> parameters{{
+      {"coulomb", "N", machine::not_negative(), &Parameters::coulomb, {}, "Coulomb friction F_C"},
+      {"slope", "N s/m", machine::positive(), &Parameters::slope, {}, "slope mu_0 below the break velocity"},
+      {"viscous", "N s/m", machine::not_negative(), &Parameters::viscous, {}, "slope mu_v above the break velocity"},
   }};
+  static double coulomb(const Parameters& p) { return p.coulomb; }
+  static double viscous(const Parameters& p) { return p.viscous; }
+  // The slope below the break velocity stays, so this moves the break velocity.
+  static void set_coulomb(Parameters& p, double coulomb) { p.coulomb = coulomb; }
+  static void set_viscous(Parameters& p, double viscous) { p.viscous = viscous; }
 
   LinearRamp(const Parameters& p, Body body)
-      : p_(p), gain_(body.step / body.mass), break_velocity_(p.coulomb / p.slope) {}
+      : coulomb_(p.coulomb),
+        slope_(p.slope),
+        viscous_(p.viscous),
+        gain_(body.step / body.mass),
+        break_velocity_(p.coulomb / p.slope) {}
 
-  // Velocity (m/s) one step later, under `force` (N), the sum of all forces but friction.
-  double advance(double velocity, double force) {
-    const double free = velocity + gain_ * force;
-    const double slow = free / (1.0 + gain_ * p_.slope);
-    if (std::abs(slow) <= break_velocity_) return slow;
-    const double offset = (p_.coulomb - break_velocity_ * p_.viscous) * std::copysign(1.0, free);
-    return (free - gain_ * offset) / (1.0 + gain_ * p_.viscous);
+  Real advance(Real velocity, Real force) {
+    const Real free = velocity + gain_ * force;
+    const Real slow = free / (1.0 + gain_ * slope_);
+    if (absolute(slow) <= break_velocity_) return slow;
+    const Real offset = (coulomb_ - break_velocity_ * viscous_) * copy_sign(Real(1.0), free);
+    return (free - gain_ * offset) / (1.0 + gain_ * viscous_);
   }
+  // The direction matters nowhere: at standstill the force is zero.
+  Real steady_force(Real velocity, Real) const {
+    const Real beyond = absolute(velocity) - break_velocity_;
+    return beyond <= 0.0 ? slope_ * velocity : copy_sign(coulomb_ + viscous_ * beyond, velocity);
+  }
+  std::optional<Contact> contact() const { return {}; }
 
  private:
-  Parameters p_;
-  double gain_;
-  double break_velocity_;
+  Real coulomb_, slope_, viscous_, gain_, break_velocity_;
 };
 
 }  // namespace stiction::sim

@@ -9,88 +9,145 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <numeric>
-#include <stdexcept>
+#include <cstddef>
 #include <vector>
 
-#include "sim/parameter.hpp"
-#include "sim/plant/friction/body.hpp"
+#include "sim/number/arithmetic.hpp"
+#include "sim/plant/friction/law.hpp"
 #include "sim/plant/friction/one_minus_exp.hpp"
 
 namespace stiction::sim {
 
+struct MaxwellSlipParameters {
+  std::vector<double> stiffness;
+  std::vector<double> level;
+  double viscous = 0.0;
+  double rise = 0.0;
+  double rise_velocity = 0.01;
+};
+
+template <class Real = double>
 class MaxwellSlip {
  public:
-  struct Parameters {
-    std::vector<double> stiffness;
-    std::vector<double> level;
-    double viscous = 0.0;
-    double rise = 0.0;
-    double rise_velocity = 0.01;
-  };
+  using Scalar = Real;
+  using Parameters = MaxwellSlipParameters;
   static constexpr std::string_view name = "maxwell_slip";
   static constexpr std::string_view label = "Maxwell-slip elements";
-  static constexpr std::array<Parameter<Parameters>, 5> parameters{{
-      {"stiffness", "N/m", positive(), &Parameters::stiffness, {}, "stiffness of each element"},
-      {"level", "N", positive(), &Parameters::level, {}, "force at which each element slips; sum = Coulomb friction"},
-      {"viscous", "N s/m", not_negative(), &Parameters::viscous, {}, "viscous friction mu_v"},
-      {"rise", "N", not_negative(), &Parameters::rise, 0.0, "rise of all levels together from creeping to sliding"},
-      {"rise_velocity", "m/s", positive(), &Parameters::rise_velocity, 0.01, "speed with 63 % of the rise"},
+  static constexpr std::array<machine::Parameter<Parameters>, 5> parameters{{
+      {"stiffness", "N/m", machine::positive(), &Parameters::stiffness, {}, "stiffness of each element"},
+      {.key = "level",
+       .unit = "N",
+       .range = machine::positive(),
+       .member = &Parameters::level,
+       .fallback = {},
+       .text = "force at which each element slips; sum = Coulomb friction",
+       .as_long_as = "stiffness"},
+      {"viscous", "N s/m", machine::not_negative(), &Parameters::viscous, {}, "viscous friction mu_v"},
+      {"rise", "N", machine::not_negative(), &Parameters::rise, 0.0,
+       "rise of all levels together from creeping to sliding"},
+      {"rise_velocity", "m/s", machine::positive(), &Parameters::rise_velocity, 0.01, "speed with 63 % of the rise"},
   }};
+  static double coulomb(const Parameters& p) { return sum(p.level); }
+  static double viscous(const Parameters& p) { return p.viscous; }
+  // The elements keep their stiffness; their levels are scaled to the new sum.
+  static void set_coulomb(Parameters& p, double coulomb) {
+    const double scale = coulomb / sum(p.level);
+    for (double& level : p.level) level *= scale;
+  }
+  static void set_viscous(Parameters& p, double viscous) { p.viscous = viscous; }
+  static Parameters rate_independent(Parameters p) {
+    p.rise = p.viscous = 0.0;
+    return p;
+  }
+  static void stretch(Parameters& p, double factor) {
+    for (double& stiffness : p.stiffness) stiffness /= factor;
+  }
 
-  // Throws std::invalid_argument when the two lists differ in length.
+  // As many stiffnesses as levels.
   MaxwellSlip(const Parameters& p, Body body)
-      : p_(p),
+      : elements_(std::min(p.stiffness.size(), p.level.size())),
         step_(body.step),
         gain_(body.step / body.mass),
-        relative_rise_(p.rise / std::accumulate(p.level.begin(), p.level.end(), 0.0)),
-        rises_(p.rise > 0.0),
-        memory_(memory_of(p)),
-        level_(p.level),
-        force_(p.stiffness.size(), 0.0) {}
+        viscous_(p.viscous),
+        rise_(p.rise),
+        relative_rise_(p.rise / sum(p.level)),
+        rise_velocity_(p.rise_velocity),
+        rises_(p.rise > 0.0) {
+    for (std::size_t i = 0; i < elements_.size(); ++i) {
+      elements_[i] = {p.stiffness[i], p.level[i], p.level[i], 0.0};
+      memory_ = std::max<Real>(memory_, p.level[i] / p.stiffness[i]);
+    }
+  }
 
-  // Velocity (m/s) one step later, under `force` (N), the sum of all forces but friction.
-  double advance(double velocity, double force) {
-    const double contact = move_contact(velocity);
-    return (velocity + gain_ * (force - contact)) / (1.0 + gain_ * p_.viscous);
+  Real advance(Real velocity, Real force) {
+    const Real contact = move_contact(velocity);
+    return (velocity + gain_ * (force - contact)) / (1.0 + gain_ * viscous_);
+  }
+  Real steady_force(Real velocity, Real direction) const {
+    const Real risen = rises_ ? rise_ * one_minus_exp(absolute(velocity) / rise_velocity_) : 0.0;
+    return (level() + risen) * direction + viscous_ * velocity;
+  }
+  // The curve of first loading rises; its point at 90 % is found by halves, from 0 to its last corner.
+  std::optional<Contact> contact() const {
+    Real stiffness = 0.0;
+    for (const Element& e : elements_) stiffness += e.stiffness;
+    Real low = 0.0, high = memory_;
+    for (int i = 0; i < 60; ++i) {
+      const Real middle = 0.5 * (low + high);
+      (loaded(middle) < 0.9 * level() ? low : high) = middle;
+    }
+    return Contact{level(), stiffness, high};
   }
 
   // Moves the contact for one step of held velocity (m/s); returns the sum of the elements' forces (N) at its end.
-  double move_contact(double velocity) {
-    const double travel = velocity * step_;
-    const double sliding = rises_ ? 1.0 + relative_rise_ * one_minus_exp(std::abs(velocity) / p_.rise_velocity) : 1.0;
-    double contact = 0.0;
-    for (std::size_t i = 0; i < force_.size(); ++i) {
-      const double stretched = force_[i] + p_.stiffness[i] * travel;
-      const double excess = std::abs(stretched) - level_[i];
+  Real move_contact(Real velocity) {
+    const Real travel = velocity * step_;
+    const Real sliding = rises_ ? 1.0 + relative_rise_ * one_minus_exp(absolute(velocity) / rise_velocity_) : 1.0;
+    Real contact = 0.0;
+    for (Element& e : elements_) {
+      const Real stretched = e.force + e.stiffness * travel;
+      const Real excess = absolute(stretched) - e.level;
       if (excess > 0.0 && rises_)
-        level_[i] += (sliding * p_.level[i] - level_[i]) * one_minus_exp(excess / (p_.stiffness[i] * memory_));
-      force_[i] = std::clamp(stretched, -level_[i], level_[i]);
-      contact += force_[i];
+        e.level += (sliding * e.level_at_rest - e.level) * one_minus_exp(excess / (e.stiffness * memory_));
+      e.force = std::clamp(stretched, -e.level, e.level);
+      contact += e.force;
     }
     return contact;
   }
 
  private:
-  // m, the longest break-away displacement.
-  static double memory_of(const Parameters& p) {
-    if (p.stiffness.size() != p.level.size())
-      throw std::invalid_argument("maxwell_slip: 'stiffness' and 'level' differ in length");
-    double longest = 0.0;
-    for (std::size_t i = 0; i < p.level.size(); ++i) longest = std::max(longest, p.level[i] / p.stiffness[i]);
-    return longest;
+  struct Element {
+    Real stiffness, level_at_rest;
+    Real level;  // at which it slips now, N
+    Real force;  // N
+  };
+
+  static double sum(const std::vector<double>& values) {
+    double total = 0.0;
+    for (const double value : values) total += value;
+    return total;
+  }
+  Real level() const {
+    Real total = 0.0;
+    for (const Element& e : elements_) total += e.level_at_rest;
+    return total;
+  }
+  // N, a displacement (m) after rest.
+  Real loaded(Real displacement) const {
+    Real force = 0.0;
+    for (const Element& e : elements_) force += std::min(e.stiffness * displacement, e.level_at_rest);
+    return force;
   }
 
-  Parameters p_;
-  double step_;
-  double gain_;
-  double relative_rise_;  // rise / sum of the levels
+  std::vector<Element> elements_;
+  Real step_;
+  Real gain_;
+  Real viscous_;
+  Real rise_;
+  Real relative_rise_;  // rise / sum of the levels
+  Real rise_velocity_;
   bool rises_;
-  double memory_;              // m, of slip over which the levels follow the speed
-  std::vector<double> level_;  // at which each element slips now, N
-  std::vector<double> force_;  // of each element, N
+  Real memory_ = 0.0;  // m, the longest break-away displacement: of slip over which the levels follow the speed
 };
 
 }  // namespace stiction::sim

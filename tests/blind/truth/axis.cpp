@@ -10,8 +10,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sim/control/axis_configuration.hpp"
-#include "sim/control/conversion.hpp"
+#include "firmware/machine/configuration/axis_configuration.hpp"
+#include "firmware/machine/configuration/conversion.hpp"
 #include "stiction/drive/ticker.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
@@ -26,7 +26,7 @@ double sign_of(double v) { return v > 0.0 ? 1.0 : v < 0.0 ? -1.0 : 0.0; }
 // Three windings with a star point, trapezoidal rule.
 class Motor {
  public:
-  Motor(const sim::Motor& m, const Mechanics& hidden, double h)
+  Motor(const machine::MotorParameters& m, const Mechanics& hidden, double h)
       : resistance_(0.5 * h * m.phase_resistance / (m.phase_inductance - m.mutual_inductance)),
         gain_(h / (m.phase_inductance - m.mutual_inductance)),
         emf_(m.emf_constant),
@@ -150,7 +150,7 @@ class Carriage {
 // signal.
 class Encoder {
  public:
-  Encoder(const sim::Encoder& e, const Mechanics& m, double x)
+  Encoder(const machine::EncoderParameters& e, const Mechanics& m, double x)
       : half_(0.5 * m.backlash),
         dragged_(x),
         increment_(e.increment),
@@ -195,7 +195,7 @@ class Memory {
   std::deque<double> values_;
 };
 
-sim::Axis true_drive(sim::Axis axis, const Mechanics& m) {
+machine::AxisModel true_drive(machine::AxisModel axis, const Mechanics& m) {
   axis.position_controller.gain *= m.position_gain;
   axis.velocity_controller.gain *= m.velocity_gain;
   if (axis.velocity_controller.integral_time) *axis.velocity_controller.integral_time *= m.velocity_integral_time;
@@ -244,14 +244,14 @@ void zero_phase(std::vector<double>& values, double corner, double period) {
   }
 }
 
-host::Log record(const sim::Machine& machine, const Mechanics& mechanics, const Trajectory& trajectory,
+host::Log record(const machine::Machine& machine, const Mechanics& mechanics, const Trajectory& trajectory,
                  const Trajectory& other, const NoiseLevels& noise, double period, std::uint64_t seed) {
   using S = FixedSignals;
   const auto& axis = machine.axes.front();
   const double tick = machine.timing.fast_period, h = tick / steps_per_tick;
-  const auto config = sim::configure_axis<S>(machine.timing, true_drive(axis, mechanics));
-  const auto period_ns = sim::fast_period_ns(machine.timing);
-  Ticker ticker(period_ns, static_cast<std::uint32_t>(sim::slow_ratio(machine.timing)));
+  const auto config = machine::configure_axis<S>(machine.timing, true_drive(axis, mechanics));
+  const auto period_ns = machine::fast_period_ns(machine.timing);
+  Ticker ticker(period_ns, static_cast<std::uint32_t>(machine::slow_ratio(machine.timing)));
   Axis<S> drive(config);
 
   const double start = trajectory.at(0.0).position;
@@ -282,10 +282,10 @@ host::Log record(const sim::Machine& machine, const Mechanics& mechanics, const 
     const std::int64_t now_ns = k * period_ns;
     const double t = static_cast<double>(k) * tick;
     Feedback<S> feedback;
-    feedback.position_valid = sim::convert(encoder.read(jitter.next()), feedback.position);
+    feedback.position_valid = machine::convert(encoder.read(jitter.next()), feedback.position);
     feedback.position_time_ns = now_ns;
     for (std::size_t p = 0; p < 3; ++p)
-      feedback.fault |= !sim::convert(motor.current[p] + sensors[p].next(), feedback.current[p]);
+      feedback.fault |= !machine::convert(motor.current[p] + sensors[p].next(), feedback.current[p]);
     if (k == 0) drive.start(feedback);
     const auto set = trajectory.at(t);
     const auto command = drive.tick(sim::to_set_point<S>(set), feedback, now_ns, ticker.slow(), signals);
@@ -293,15 +293,16 @@ host::Log record(const sim::Machine& machine, const Mechanics& mechanics, const 
       throw Tripped(fmt::format("blind: fault {} at {:.4f} s of {}", name_of(drive.fault()), t, log.source));
     ticker.advance();
 
-    const double recorded = current.delayed(sim::to_si(signals.i), mechanics.current_delay / tick);
+    const double recorded = current.delayed(machine::to_si(signals.i), mechanics.current_delay / tick);
     if (k % stride == 0) {
       log.t.push_back(t);
       channels.x_set.push_back(set.position);
-      channels.x.push_back(sim::to_si(signals.x));
+      channels.x.push_back(machine::to_si(signals.x));
       channels.i.push_back(recorded);
       second.x.push_back(1e-9 * std::round(1e9 * other.at(t).position));
     }
-    inverter.command({sim::to_si(command.voltage[0]), sim::to_si(command.voltage[1]), sim::to_si(command.voltage[2])});
+    inverter.command(
+        {machine::to_si(command.voltage[0]), machine::to_si(command.voltage[1]), machine::to_si(command.voltage[2])});
     const double acceleration = other.at(t + 0.5 * tick).acceleration;
     const double disturbance = slow.next() + fast.next();
     for (int step = 0; step < steps_per_tick; ++step) {

@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "firmware/machine/model/machine.hpp"
 #include "host/log/log.hpp"
-#include "sim/model/machine.hpp"
 #include "tests/blind/truth/contact.hpp"
 #include "tests/blind/truth/noise.hpp"
 #include "tests/blind/truth/trajectory.hpp"
@@ -64,7 +64,7 @@ struct Tripped : std::runtime_error {
 // first, whose motor, encoder, inverter and control are taken from `machine`; beside it the record has the position of
 // a second one, Y, which follows `other` without any error. Throws Tripped when the drive trips. The last two
 // digits of the seed number the record: phases that differ from log to log follow them.
-host::Log record(const sim::Machine& machine, const Mechanics& mechanics, const Trajectory& trajectory,
+host::Log record(const machine::Machine& machine, const Mechanics& mechanics, const Trajectory& trajectory,
                  const Trajectory& other, const NoiseLevels& noise, double period, std::uint64_t seed);
 
 // Residual force of a record against `mechanics` (its mass, viscous friction and contact alone), N, zero-phase 0 to

@@ -47,7 +47,7 @@ class Controller {
 
 }  // namespace
 
-std::vector<double> command_effect(const host::Log& log, const sim::Axis& file, const Mechanics& truth) {
+std::vector<double> command_effect(const host::Log& log, const machine::AxisModel& file, const Mechanics& truth) {
   const auto& axis = log.axes.front();
   const double h = log.period;
   const Gains gains{file.position_controller.gain, file.velocity_controller.gain,

@@ -15,88 +15,90 @@ double coulomb_of(const Mechanics& m) { return Contact(m.contact).coulomb(); }
 double contact_length(const Mechanics& m) {
   return -m.contact.front().level / m.contact.front().stiffness / std::log(1.0 - 0.15);
 }
-double value(const sim::Effect& e, const char* key) { return e.values.at(key).front(); }
+double value(const machine::Effect& e, const char* key) { return e.values.at(key).front(); }
 
 AtStrength draw_mass(Random& random, const Mechanics& file) {
   return [s = either_sign(random), m = file.mass](double x) {
-    return sim::Effect{"mass_mismatch", {{"mass", {m * (1.0 + 0.005 * s * x)}}}};
+    return machine::Effect{"mass_mismatch", {{"mass", {m * (1.0 + 0.005 * s * x)}}}};
   };
 }
 AtStrength draw_coulomb(Random& random, const Mechanics& file) {
   return [s = either_sign(random), c = coulomb_of(file)](double x) {
-    return sim::Effect{"coulomb_mismatch", {{"coulomb", {c * (1.0 + 0.02 * s * x)}}}};
+    return machine::Effect{"coulomb_mismatch", {{"coulomb", {c * (1.0 + 0.02 * s * x)}}}};
   };
 }
 AtStrength draw_viscous(Random& random, const Mechanics& file) {
   return [s = either_sign(random), mu = file.viscous](double x) {
-    return sim::Effect{"viscous_mismatch", {{"viscous", {mu * (1.0 + 0.03 * s * x)}}}};
+    return machine::Effect{"viscous_mismatch", {{"viscous", {mu * (1.0 + 0.03 * s * x)}}}};
   };
 }
 AtStrength draw_viscous_nonlinear(Random& random, const Mechanics&) {
   return [s = either_sign(random), v = log_uniform(random, 0.02, 0.1)](double x) {
-    return sim::Effect{"viscous_nonlinear", {{"force", {3.0 * s * x}}, {"velocity", {v}}}};
+    return machine::Effect{"viscous_nonlinear", {{"force", {3.0 * s * x}}, {"velocity", {v}}}};
   };
 }
 AtStrength draw_stribeck(Random& random, const Mechanics&) {
   return [v = log_uniform(random, 0.002, 0.01)](double x) {
-    return sim::Effect{"stribeck", {{"break_away", {5.0 * x}}, {"velocity", {v}}}};
+    return machine::Effect{"stribeck", {{"break_away", {5.0 * x}}, {"velocity", {v}}}};
   };
 }
 AtStrength draw_asymmetry(Random& random, const Mechanics&) {
   return [s = either_sign(random), both = uniform(random, 0.0, 20.0)](double x) {
-    return sim::Effect{"friction_asymmetry", {{"coulomb", {2.0 * s * x}}, {"viscous", {both * s * x}}}};
+    return machine::Effect{"friction_asymmetry", {{"coulomb", {2.0 * s * x}}, {"viscous", {both * s * x}}}};
   };
 }
 AtStrength draw_presliding(Random&, const Mechanics& file) {
   return [length = contact_length(file), c = coulomb_of(file)](double x) {
     // The stiffness is that of the first chord, the distance a corner of the elements' curve.
     const double longer = length * (1.0 + x);
-    return sim::Effect{
+    return machine::Effect{
         "presliding_hysteresis",
         {{"stiffness", {0.15 * c / (-std::log(0.85) * longer)}}, {"distance", {std::log(10.0) * longer}}}};
   };
 }
 AtStrength draw_constant(Random& random, const Mechanics&) {
-  return [s = either_sign(random)](double x) { return sim::Effect{"constant_force", {{"force", {2.0 * s * x}}}}; };
+  return [s = either_sign(random)](double x) { return machine::Effect{"constant_force", {{"force", {2.0 * s * x}}}}; };
 }
 AtStrength draw_spring(Random& random, const Mechanics&) {
   return [neutral = uniform(random, -0.1, 0.1)](double x) {
-    return sim::Effect{"position_spring", {{"stiffness", {20.0 * x}}, {"neutral", {neutral}}}};
+    return machine::Effect{"position_spring", {{"stiffness", {20.0 * x}}, {"neutral", {neutral}}}};
   };
 }
 AtStrength draw_ripple(Random& random, const Mechanics&) {
   constexpr std::array pitches{0.072, 0.036, 0.024};
   const double pitch = random() % 2 == 0 ? pitches[random() % 3] : log_uniform(random, 0.008, 0.06);
   return [pitch, phase = uniform(random, 0.0, 2.0 * std::numbers::pi)](double x) {
-    return sim::Effect{
+    return machine::Effect{
         "force_ripple",
         {{"pitch", {pitch}}, {"cosine", {3.0 * x * std::cos(phase)}}, {"sine", {3.0 * x * std::sin(phase)}}}};
   };
 }
 AtStrength draw_backlash(Random&, const Mechanics&) {
-  return [](double x) { return sim::Effect{"backlash", {{"width", {2e-6 * x}}}}; };
+  return [](double x) { return machine::Effect{"backlash", {{"width", {2e-6 * x}}}}; };
 }
 AtStrength draw_skew(Random&, const Mechanics&) {
-  return [](double x) { return sim::Effect{"time_skew", {{"delay", {1e-4 * x}}}}; };
+  return [](double x) { return machine::Effect{"time_skew", {{"delay", {1e-4 * x}}}}; };
 }
 
 AtStrength draw_force_constant(Random& random, const Mechanics& file) {
   return [s = either_sign(random), k = file.force_constant](double x) {
-    return sim::Effect{"force_constant_mismatch", {{"force_constant", {k * (1.0 + 0.005 * s * x)}}}};
+    return machine::Effect{"force_constant_mismatch", {{"force_constant", {k * (1.0 + 0.005 * s * x)}}}};
   };
 }
 AtStrength draw_saturation(Random&, const Mechanics&) {
-  return [](double x) { return sim::Effect{"force_saturation", {{"current", {100.0 / std::sqrt(x)}}}}; };
+  return [](double x) { return machine::Effect{"force_saturation", {{"current", {100.0 / std::sqrt(x)}}}}; };
 }
 AtStrength draw_mode(Random& random, const Mechanics&) {
   // Well enough damped that the velocity loop of this axis does not swing it up.
   return [d = uniform(random, 0.1, 0.3), r = uniform(random, 0.3, 0.8)](double x) {
-    return sim::Effect{"structural_resonance",
-                       {{"frequency", {400.0 / std::sqrt(x)}}, {"damping_ratio", {d}}, {"mass_ratio", {r}}}};
+    return machine::Effect{"structural_resonance",
+                           {{"frequency", {400.0 / std::sqrt(x)}}, {"damping_ratio", {d}}, {"mass_ratio", {r}}}};
   };
 }
 AtStrength draw_coupling(Random& random, const Mechanics&) {
-  return [s = either_sign(random)](double x) { return sim::Effect{"cross_axis_coupling", {{"mass", {3.0 * s * x}}}}; };
+  return [s = either_sign(random)](double x) {
+    return machine::Effect{"cross_axis_coupling", {{"mass", {3.0 * s * x}}}};
+  };
 }
 AtStrength draw_gain(Random& random, const Mechanics& file) {
   const std::array<std::pair<const char*, double>, 3> gains{
@@ -104,10 +106,10 @@ AtStrength draw_gain(Random& random, const Mechanics& file) {
        {"velocity_gain", file.file_velocity_gain},
        {"velocity_integral_time", file.file_velocity_integral_time}}};
   return [s = either_sign(random), gain = gains[random() % 3]](double x) {
-    return sim::Effect{"controller_gain_mismatch", {{gain.first, {gain.second * (1.0 + 0.01 * s * x)}}}};
+    return machine::Effect{"controller_gain_mismatch", {{gain.first, {gain.second * (1.0 + 0.01 * s * x)}}}};
   };
 }
-void change_gains(const sim::Effect& e, Mechanics& m) {
+void change_gains(const machine::Effect& e, Mechanics& m) {
   for (const auto& [key, values] : e.values) {
     if (key == "position_gain") m.position_gain = values.front() / m.file_position_gain;
     if (key == "velocity_gain") m.velocity_gain = values.front() / m.file_velocity_gain;
@@ -116,7 +118,7 @@ void change_gains(const sim::Effect& e, Mechanics& m) {
 }
 
 AtStrength draw_lag(Random&, const Mechanics&) {
-  return [](double x) { return sim::Effect{"friction_lag", {{"time", {4e-3 * x}}}}; };
+  return [](double x) { return machine::Effect{"friction_lag", {{"time", {4e-3 * x}}}}; };
 }
 AtStrength draw_profile(Random& random, const Mechanics&) {
   std::vector<double> position, force;
@@ -129,14 +131,14 @@ AtStrength draw_profile(Random& random, const Mechanics&) {
   return [position, force](double x) {
     auto scaled = force;
     for (double& f : scaled) f *= x;
-    return sim::Effect{"position_dependent_friction", {{"position", position}, {"force", scaled}}};
+    return machine::Effect{"position_dependent_friction", {{"position", position}, {"force", scaled}}};
   };
 }
 AtStrength draw_constant_ripple(Random& random, const Mechanics&) {
   constexpr std::array pitches{0.072, 0.036, 0.024, 0.012};
   const double pitch = random() % 2 == 0 ? pitches[random() % 4] : log_uniform(random, 0.008, 0.06);
   return [pitch, phase = uniform(random, 0.0, 2.0 * std::numbers::pi)](double x) {
-    return sim::Effect{
+    return machine::Effect{
         "force_constant_ripple",
         {{"pitch", {pitch}}, {"cosine", {0.02 * x * std::cos(phase)}}, {"sine", {0.02 * x * std::sin(phase)}}}};
   };
@@ -145,38 +147,38 @@ AtStrength draw_subdivision(Random& random, const Mechanics&) {
   constexpr std::array periods{20e-6, 40e-6, 100e-6, 200e-6, 500e-6};
   const double drawn = random() % 2 == 0 ? periods[random() % 5] : log_uniform(random, 20e-6, 500e-6);
   return [period = drawn, phase = uniform(random, 0.0, 2.0 * std::numbers::pi)](double x) {
-    return sim::Effect{"encoder_subdivision_error",
-                       {{"period", {period}},
-                        {"cosine", {0.003 * period * x * std::cos(phase)}},
-                        {"sine", {0.003 * period * x * std::sin(phase)}}}};
+    return machine::Effect{"encoder_subdivision_error",
+                           {{"period", {period}},
+                            {"cosine", {0.003 * period * x * std::cos(phase)}},
+                            {"sine", {0.003 * period * x * std::sin(phase)}}}};
   };
 }
 AtStrength draw_tone(Random& random, const Mechanics&) {
   return [f = log_uniform(random, 6.0, 45.0), phase = uniform(random, 0.0, 2.0 * std::numbers::pi)](double x) {
-    return sim::Effect{
+    return machine::Effect{
         "periodic_disturbance",
         {{"frequency", {f}}, {"cosine", {4.0 * x * std::cos(phase)}}, {"sine", {4.0 * x * std::sin(phase)}}}};
   };
 }
 AtStrength draw_drift(Random& random, const Mechanics&) {
   return [s = either_sign(random), time = uniform(random, 4.0, 15.0)](double x) {
-    return sim::Effect{"thermal_drift", {{"change", {5.0 * s * x}}, {"time_constant", {time}}}};
+    return machine::Effect{"thermal_drift", {{"change", {5.0 * s * x}}, {"time_constant", {time}}}};
   };
 }
 
 AtStrength draw_bump(Random& random, const Mechanics&) {
   return [s = either_sign(random), x0 = uniform(random, -0.05, 0.08), w = uniform(random, 0.003, 0.008)](double x) {
-    return sim::Effect{"push_at_one_place", {{"force", {8.0 * s * x}}, {"position", {x0}}, {"width", {w}}}};
+    return machine::Effect{"push_at_one_place", {{"force", {8.0 * s * x}}, {"position", {x0}}, {"width", {w}}}};
   };
 }
 AtStrength draw_speed_ripple(Random& random, const Mechanics&) {
   return [p = log_uniform(random, 0.015, 0.05)](double x) {
-    return sim::Effect{"ripple_that_grows_with_speed", {{"per_speed", {30.0 * x}}, {"pitch", {p}}}};
+    return machine::Effect{"ripple_that_grows_with_speed", {{"per_speed", {30.0 * x}}, {"pitch", {p}}}};
   };
 }
 AtStrength draw_kick(Random& random, const Mechanics&) {
   return [time = uniform(random, 0.03, 0.08)](double x) {
-    return sim::Effect{"kick_after_reversals", {{"force", {8.0 * x}}, {"time", {time}}}};
+    return machine::Effect{"kick_after_reversals", {{"force", {8.0 * x}}, {"time", {time}}}};
   };
 }
 
@@ -187,7 +189,7 @@ void scale_contact(Mechanics& m, double ratio) {
   }
 }
 
-using E = const sim::Effect&;
+using E = const machine::Effect&;
 using M = Mechanics&;
 
 constexpr std::array<Hideable, 26> table{{

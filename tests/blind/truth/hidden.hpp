@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "sim/model/effect.hpp"
+#include "firmware/machine/model/effect.hpp"
 #include "tests/blind/truth/axis.hpp"
 #include "tests/blind/truth/trajectory.hpp"
 
@@ -14,14 +14,14 @@ namespace stiction::blind {
 
 // True parameters, SI, of one drawn effect at a strength; strength 0 is no effect, 1 a usual one, and the residual
 // force grows with it.
-using AtStrength = std::function<sim::Effect(double)>;
+using AtStrength = std::function<machine::Effect(double)>;
 
 struct Hideable {
   const char* name;
   bool in_vocabulary;  // false: `name` says what it is; a name that the vocabulary may have for it is in `accepted`
   const char* accepted;
   AtStrength (*draw)(Random&, const Mechanics& file);
-  void (*apply)(const sim::Effect&, Mechanics&);
+  void (*apply)(const machine::Effect&, Mechanics&);
   bool in_command = false;  // shows in the command residual, not in the residual force
 };
 

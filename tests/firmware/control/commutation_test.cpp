@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/control/conversion.hpp"
+#include "firmware/machine/configuration/conversion.hpp"
 #include "stiction/control/limit.hpp"
 #include "stiction/number/fixed_signals.hpp"
 #include "tests/firmware/number/exact.hpp"
@@ -16,7 +16,7 @@ namespace {
 
 using S = FixedSignals;
 using C = Commutation<S>;
-using R = Commutation<sim::DoubleSignals>;
+using R = Commutation<machine::DoubleSignals>;
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
 constexpr double third = two_pi / 3.0;
@@ -33,13 +33,13 @@ double force(const std::array<double, 3>& current, double angle) {
 
 TEST(Commutation, ForceIsThreeHalvesOfTheAmplitudeAtEveryPosition) {
   SaturationCounter saturations;
-  const auto amplitude = sim::to_signal<S::Current>(40.0).value();
+  const auto amplitude = machine::to_signal<S::Current>(40.0).value();
   for (std::uint64_t raw = 0; raw < (std::uint64_t{1} << 32); raw += 4294967) {
     const auto turn = Turn{static_cast<std::uint32_t>(raw)};
     const auto phase = C::phases(turn);
     std::array<double, 3> current;
     const auto set = C::phase_currents(amplitude, phase, saturations);
-    for (std::size_t k = 0; k < 3; ++k) current[k] = sim::to_si(set[k]);
+    for (std::size_t k = 0; k < 3; ++k) current[k] = machine::to_si(set[k]);
     // Sines within 6e-9 of 40 A (the third within twice that), half a bit for two currents, one for the third.
     ASSERT_NEAR(force(current, angle_of(turn.raw)), 1.5 * 40.0, 40.0 * 4 * 6e-9 + 2.0 * bit_i) << raw;
   }
@@ -50,7 +50,7 @@ TEST(Commutation, PhasesAreAThirdOfATurnApartAndSumToZero) {
     const auto turn = Turn{static_cast<std::uint32_t>(raw)};
     const auto phase = C::phases(turn);
     for (std::size_t k = 0; k < 3; ++k)
-      ASSERT_NEAR(sim::to_si(phase[k]), std::sin(angle_of(turn.raw) + static_cast<double>(k) * third), 2 * 6e-9);
+      ASSERT_NEAR(machine::to_si(phase[k]), std::sin(angle_of(turn.raw) + static_cast<double>(k) * third), 2 * 6e-9);
     // Exactly, but for an output clamped at 1: by the 12e-9 that the sum of two sines can be off.
     ASSERT_LE(std::abs(phase[0].raw() + phase[1].raw() + phase[2].raw()), 13);
   }
@@ -71,8 +71,8 @@ RC_GTEST_PROP(Commutation, AmplitudeInvertsThePhaseCurrents, ()) {
   const auto amplitude = S::Current::from_raw(static_cast<std::int32_t>(test::drawn_between(INT32_MIN, INT32_MAX)));
   const auto phase = C::phases(turn);
   const auto current = C::phase_currents(amplitude, phase, saturations);
-  const double back = sim::to_si(C::amplitude(current, phase, saturations));
-  const double exact = sim::to_si(amplitude);
+  const double back = machine::to_si(C::amplitude(current, phase, saturations));
+  const double exact = machine::to_si(amplitude);
   // 2/3 of: half a bit of two currents and a bit of the third weighted by |sin| (1.5 at most together) and the sum's
   // own of 2^-20 A; then the last half. The sines' 6e-9 in a^2 + b^2 + (a+b)^2 are at most 2/3 * 2 * sqrt(3) * 6e-9 of
   // the amplitude in each of a and b.
@@ -87,10 +87,10 @@ RC_GTEST_PROP(Commutation, AmplitudeOfAnyCurrentsIsTwoThirdsOfTheirForce, ()) {
   double largest = 0.0;
   for (std::size_t k = 0; k < 3; ++k) {
     current[k] = S::Current::from_raw(static_cast<std::int32_t>(test::drawn_between(-1000000000, 1000000000)));
-    si[k] = sim::to_si(current[k]);
+    si[k] = machine::to_si(current[k]);
     largest = std::max(largest, std::abs(si[k]));
   }
-  const double found = sim::to_si(C::amplitude(current, C::phases(turn), saturations));
+  const double found = machine::to_si(C::amplitude(current, C::phases(turn), saturations));
   RC_ASSERT(std::abs(found - 2.0 / 3.0 * force(si, angle_of(turn.raw))) <= 2 * bit_i + 4 * 6e-9 * largest);
 }
 
@@ -100,7 +100,7 @@ TEST(Commutation, OfTheLargestCurrentsNeitherOverflowsNorLosesItsSign) {
   const auto phase = C::phases(turn);
   const std::array<S::Current, 3> largest{Fixed<20>::from_raw(INT32_MAX), Fixed<20>::from_raw(INT32_MIN),
                                           Fixed<20>::from_raw(INT32_MIN)};
-  EXPECT_NEAR(sim::to_si(C::amplitude(largest, phase, saturations)), 2.0 / 3.0 * 2.0 * 2048.0, 700.0)
+  EXPECT_NEAR(machine::to_si(C::amplitude(largest, phase, saturations)), 2.0 / 3.0 * 2.0 * 2048.0, 700.0)
       << "2731 A, saturated to 2048 A";
   EXPECT_GE(saturations.count, 1u);
 }
@@ -109,7 +109,7 @@ TEST(Commutation, InDoubleIsExactToItsRounding) {
   SaturationCounter saturations;
   for (double angle = -20.0; angle < 20.0; angle += 0.0137) {
     const auto phase = R::phases({angle});
-    std::array<sim::Real, 3> current;
+    std::array<machine::Real, 3> current;
     std::array<double, 3> si;
     for (std::size_t k = 0; k < 3; ++k) {
       current[k] = R::phase_currents({40.0}, phase, saturations)[k];

@@ -7,16 +7,16 @@
 #include <random>
 #include <vector>
 
-#include "sim/control/conversion.hpp"
+#include "firmware/machine/configuration/conversion.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
 namespace stiction {
 namespace {
 
-using sim::to_si;
+using machine::to_si;
 template <class T>
 T signal(double value) {
-  return sim::to_signal<T>(value).value();
+  return machine::to_signal<T>(value).value();
 }
 
 constexpr double coulomb = 1.0;  // A
@@ -59,7 +59,7 @@ class Feedforward {
 
 template <class S>
 class FeedforwardOf : public ::testing::Test {};
-using Policies = ::testing::Types<FixedSignals, sim::DoubleSignals>;
+using Policies = ::testing::Types<FixedSignals, machine::DoubleSignals>;
 TYPED_TEST_SUITE(FeedforwardOf, Policies);
 
 // A stiffness is rounded by up to 1/16 A/m, and the reaches are 255 um in all; a current is rounded by 5e-7 A.
@@ -144,14 +144,14 @@ TYPED_TEST(FeedforwardOf, TheWholeStaysWithinItsLimit) {
 
 TEST(FrictionFeedforward, FixedPointFollowsDoubleOnARandomWay) {
   auto fixed = elements<FixedSignals>(20.0);
-  auto real = elements<sim::DoubleSignals>(20.0);
+  auto real = elements<machine::DoubleSignals>(20.0);
   for (std::size_t k = 1; k < fixed.forward.size(); ++k) {
     const double current = std::sqrt(static_cast<double>(k));
     fixed.forward[k] = fixed.backward[k] = signal<FixedSignals::Current>(current);
-    real.forward[k] = real.backward[k] = signal<sim::DoubleSignals::Current>(current);
+    real.forward[k] = real.backward[k] = signal<machine::DoubleSignals::Current>(current);
   }
   Feedforward<FixedSignals> a(fixed);
-  Feedforward<sim::DoubleSignals> b(real);
+  Feedforward<machine::DoubleSignals> b(real);
   std::mt19937_64 random(7);
   std::normal_distribution<double> push(0.0, 0.3e-6);
   double dx = 0.0, worst = 0.0;

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <utility>
 
-#include "sim/control/conversion.hpp"
+#include "firmware/machine/configuration/conversion.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
 namespace stiction {
@@ -17,10 +17,10 @@ namespace {
 
 using S = FixedSignals;
 using Learning = GlitchLearning<S>;
-using sim::to_si;
+using machine::to_si;
 template <class T>
 T signal(double value) {
-  return sim::to_signal<T>(value).value();
+  return machine::to_signal<T>(value).value();
 }
 
 constexpr double tick = 62.5e-6, per_metre = 1e5;  // s, A/m

@@ -1,38 +1,38 @@
 // A notch as the machine file's frequency and dampings give it to the drive, in either signal policy.
 #pragma once
 
-#include "sim/control/axis_configuration.hpp"
-#include "sim/control/conversion.hpp"
-#include "sim/control/double_signals.hpp"
+#include "firmware/machine/configuration/axis_configuration.hpp"
+#include "firmware/machine/configuration/conversion.hpp"
+#include "firmware/machine/configuration/double_signals.hpp"
 #include "stiction/control/notch.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
 namespace stiction::test {
 
 template <class S>
-typename Notch<S>::Config notch_config(const sim::Notch& notch) {
-  sim::Axis axis;
+typename Notch<S>::Config notch_config(const machine::NotchParameters& notch) {
+  machine::AxisModel axis;
   axis.name = "x";
   axis.mass = 1.0;
   axis.max_velocity = 1.0;
-  axis.motor.model = sim::MotorModel::force;
+  axis.motor.model = machine::MotorModel::force;
   axis.motor.force_constant = 1.0;
   axis.inverter.voltage_limit = 10.0;
   axis.position_controller.gain = 1.0;
   axis.velocity_controller.gain = 1.0;
   axis.notch = notch;
-  return sim::configure_axis<S>({}, axis).notch;
+  return machine::configure_axis<S>({}, axis).notch;
 }
 
 // The filter itself, ampere in and out.
 template <class S>
 class NotchFilter {
  public:
-  explicit NotchFilter(const sim::Notch& notch) : config_(notch_config<S>(notch)) {}
+  explicit NotchFilter(const machine::NotchParameters& notch) : config_(notch_config<S>(notch)) {}
 
   double step(double x) {
-    return sim::to_si(
-        stiction::Notch<S>::step(config_, state_, sim::to_signal<typename S::Current>(x).value(), saturations));
+    return machine::to_si(
+        stiction::Notch<S>::step(config_, state_, machine::to_signal<typename S::Current>(x).value(), saturations));
   }
 
   SaturationCounter saturations;

@@ -14,16 +14,16 @@ namespace stiction {
 namespace {
 
 using Fix = FixedSignals;
-using Dbl = sim::DoubleSignals;
+using Dbl = machine::DoubleSignals;
 using test::NotchFilter;
 
 constexpr double rate = 16000.0;  // Hz
 constexpr double bit = 0x1p-20;   // A
-constexpr sim::Notch cross_table{2000.0, 0.05, 0.7};
-constexpr sim::Notch low{50.0, 0.05, 0.7};
+constexpr machine::NotchParameters cross_table{2000.0, 0.05, 0.7};
+constexpr machine::NotchParameters low{50.0, 0.05, 0.7};
 
 // |G| of (3.19), Omega_1 = Omega_2, on the frequency axis that the bilinear transform stretches by its tangent.
-double expected_gain(const sim::Notch& n, double frequency) {
+double expected_gain(const machine::NotchParameters& n, double frequency) {
   const std::complex<double> s(
       0.0, std::tan(std::numbers::pi * frequency / rate) / std::tan(std::numbers::pi * n.frequency / rate));
   return std::abs((s * s + 2.0 * n.numerator_damping * s + 1.0) / (s * s + 2.0 * n.denominator_damping * s + 1.0));
@@ -31,7 +31,7 @@ double expected_gain(const sim::Notch& n, double frequency) {
 
 // Gain for a sine of `amplitude` A, by correlation over whole periods after it has swung in.
 template <class S>
-double measured_gain(const sim::Notch& n, double frequency, double amplitude) {
+double measured_gain(const machine::NotchParameters& n, double frequency, double amplitude) {
   NotchFilter<S> filter(n);
   std::complex<double> sum = 0.0;
   const int settle = 16000, whole = 16000;  // both whole periods of any whole frequency
@@ -62,7 +62,7 @@ TEST(Notch, IsDeepestAtItsOwnFrequencyByTheRatioOfItsDampings) {
 
 // The filter's output under a constant input, settled for five seconds.
 template <class S>
-double settled(const sim::Notch& n, double x) {
+double settled(const machine::NotchParameters& n, double x) {
   NotchFilter<S> filter(n);
   double y = 0.0;
   for (int k = 0; k < 80000; ++k) y = filter.step(x);
@@ -71,7 +71,7 @@ double settled(const sim::Notch& n, double x) {
 
 TEST(Notch, PassesAStandingCurrentExactly) {
   // The header: "the gain at standstill is exact".
-  for (const auto& notch : {cross_table, sim::Notch{700.0, 0.1, 0.5}})
+  for (const auto& notch : {cross_table, machine::NotchParameters{700.0, 0.1, 0.5}})
     for (const double x : {40.0, -40.0, 1.0, 3 * bit, -bit, 0.0})
       EXPECT_NEAR(settled<Fix>(notch, x), x, bit) << notch.frequency << " Hz, " << x << " A";
 }
@@ -80,7 +80,7 @@ TEST(Notch, PassesAStandingCurrentExactlyAtALowFrequencyToo) {
   // (1 + a1 + a2) is 3.8e-4 at 50 Hz and 3.8e-6 at 5 Hz: an error of the coefficients' sums shows.
   for (const double frequency : {200.0, 50.0, 20.0, 5.0})
     for (const double x : {40.0, 1.0, 3 * bit}) {
-      const sim::Notch notch{frequency, 0.05, 0.7};
+      const machine::NotchParameters notch{frequency, 0.05, 0.7};
       EXPECT_NEAR(settled<Fix>(notch, x), x, bit) << frequency << " Hz, " << x << " A";
     }
 }

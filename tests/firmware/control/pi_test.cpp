@@ -8,7 +8,7 @@
 #include <cmath>
 #include <type_traits>
 
-#include "sim/control/conversion.hpp"
+#include "firmware/machine/configuration/conversion.hpp"
 #include "stiction/drive/axis.hpp"
 #include "stiction/number/fixed_signals.hpp"
 #include "tests/firmware/number/exact.hpp"
@@ -19,19 +19,21 @@ namespace {
 using S = FixedSignals;
 using test::Int128;
 using Fixed = VelocityPi<S>;
-using Real = VelocityPi<sim::DoubleSignals>;
+using Real = VelocityPi<machine::DoubleSignals>;
 
 constexpr double tick = 62.5e-6;
 
 template <class PiOf, class P, class I, class T>
 typename PiOf::Config config(double gain, double integral_time) {
-  return {sim::to_signal<P>(gain).value(), sim::to_signal<I>(gain * tick / integral_time).value(),
-          sim::to_signal<T>(tick / integral_time).value()};
+  return {machine::to_signal<P>(gain).value(), machine::to_signal<I>(gain * tick / integral_time).value(),
+          machine::to_signal<T>(tick / integral_time).value()};
 }
 Fixed::Config fixed_config(double gain, double time) {
   return config<Fixed, S::VelocityGain, S::VelocityIntegralGain, S::VelocityTracking>(gain, time);
 }
-Real::Config real_config(double gain, double time) { return config<Real, sim::Real, sim::Real, sim::Real>(gain, time); }
+Real::Config real_config(double gain, double time) {
+  return config<Real, machine::Real, machine::Real, machine::Real>(gain, time);
+}
 
 // 600 A s/m over 5 ms: k T / T_N = 7.5 A s/m, an exact number of the format.
 RC_GTEST_PROP(Pi, FixedPointIsTheExactSumRoundedOnce, ()) {
@@ -62,7 +64,7 @@ void check_step_response(const C& c, double tolerance) {
   SaturationCounter saturations;
   const double e = 0x1p-8;  // m/s
   for (int n = 1; n <= 1600; ++n) {
-    const double y = sim::to_si(PiOf::step(c, state, sim::to_signal<Velocity>(e).value(), saturations).output);
+    const double y = machine::to_si(PiOf::step(c, state, machine::to_signal<Velocity>(e).value(), saturations).output);
     // The integrator counts the current error: the sum at tick n is that of the continuous law at n T.
     ASSERT_NEAR(y, 600.0 * e * (1.0 + n * tick / 5e-3), tolerance) << n;
   }
@@ -70,18 +72,18 @@ void check_step_response(const C& c, double tolerance) {
 
 TEST(Pi, StepResponseIsThatOfTheContinuousLawAtTheEndOfEachTick) {
   check_step_response<Fixed, S::Velocity>(fixed_config(600.0, 5e-3), 0x1p-20);  // one bit of the current
-  check_step_response<Real, sim::Real>(real_config(600.0, 5e-3), 1e-11);        // 1600 roundings of double at 50 A
+  check_step_response<Real, machine::Real>(real_config(600.0, 5e-3), 1e-11);    // 1600 roundings of double at 50 A
 }
 
 TEST(Pi, WithoutAnIntegralGainIsProportional) {
   Fixed::Config c;
-  c.proportional = sim::to_signal<S::VelocityGain>(250.0).value();
+  c.proportional = machine::to_signal<S::VelocityGain>(250.0).value();
   Fixed::State state;
   SaturationCounter saturations;
   for (int n = 0; n < 100; ++n) {
     const double e = 0x1p-10 * (n % 7 - 3);
-    const auto wanted = Fixed::step(c, state, sim::to_signal<S::Velocity>(e).value(), saturations);
-    EXPECT_EQ(sim::to_si(wanted.output), 250.0 * e);
+    const auto wanted = Fixed::step(c, state, machine::to_signal<S::Velocity>(e).value(), saturations);
+    EXPECT_EQ(machine::to_si(wanted.output), 250.0 * e);
     Fixed::track(c, state, wanted.beyond_format, wanted.output, {}, saturations);  // fully limited
     EXPECT_EQ(state.integral.raw(), 0);
   }
@@ -91,21 +93,21 @@ TEST(Pi, WithoutAnIntegralGainIsProportional) {
 template <class PiOf, class Velocity>
 double limited_step(const typename PiOf::Config& c, typename PiOf::State& state, double e, double limit) {
   SaturationCounter saturations;
-  const auto wanted = PiOf::step(c, state, sim::to_signal<Velocity>(e).value(), saturations);
+  const auto wanted = PiOf::step(c, state, machine::to_signal<Velocity>(e).value(), saturations);
   using Output = std::remove_const_t<decltype(wanted.output)>;
-  const auto given = sim::to_signal<Output>(std::clamp(sim::to_si(wanted.output), -limit, limit)).value();
+  const auto given = machine::to_signal<Output>(std::clamp(machine::to_si(wanted.output), -limit, limit)).value();
   PiOf::track(c, state, wanted.beyond_format, wanted.output, given, saturations);
-  return sim::to_si(given);
+  return machine::to_si(given);
 }
 
 TEST(Pi, WhileTheLimitHoldsTheIntegratorTendsToTheLimitWithTheTimeConstantOfTheTracking) {
   const auto c = real_config(600.0, 5e-3);
   Real::State state;
   for (int n = 1; n <= 800; ++n) {
-    limited_step<Real, sim::Real>(c, state, 0.5, 40.0);
+    limited_step<Real, machine::Real>(c, state, 0.5, 40.0);
     // I(n) = I* (1 - (1 - T/T_N)^n), I* = limit - K_i e: the recursion's closed form.
     const double rest = 40.0 - 600.0 * tick / 5e-3 * 0.5;
-    ASSERT_NEAR(sim::to_si(state.integral), rest * (1.0 - std::pow(1.0 - tick / 5e-3, n)), 1e-9) << n;
+    ASSERT_NEAR(machine::to_si(state.integral), rest * (1.0 - std::pow(1.0 - tick / 5e-3, n)), 1e-9) << n;
   }
 }
 
@@ -124,7 +126,7 @@ TEST(Pi, AnErrorThatSaturatesTheOutputsOwnFormatDoesNotWindTheIntegratorUp) {
   const auto c = fixed_config(1200.0, 4.4e-3);
   Fixed::State state;
   for (int n = 0; n < 16000; ++n) limited_step<Fixed, S::Velocity>(c, state, 2.0, 80.0);
-  EXPECT_LE(std::abs(sim::to_si(state.integral)), 80.0);
+  EXPECT_LE(std::abs(machine::to_si(state.integral)), 80.0);
   EXPECT_LT((limited_step<Fixed, S::Velocity>(c, state, -1e-2, 80.0)), 80.0);
 }
 
@@ -132,7 +134,7 @@ TEST(Pi, WithoutALimitTrackingChangesNothing) {
   const auto c = fixed_config(600.0, 5e-3);
   Fixed::State state;
   SaturationCounter saturations;
-  const auto y = Fixed::step(c, state, sim::to_signal<S::Velocity>(0.01).value(), saturations);
+  const auto y = Fixed::step(c, state, machine::to_signal<S::Velocity>(0.01).value(), saturations);
   const auto before = state.integral;
   Fixed::track(c, state, y.beyond_format, y.output, y.output, saturations);
   EXPECT_EQ(state.integral, before);
@@ -147,8 +149,8 @@ RC_GTEST_PROP(Pi, FixedPointFollowsDoubleWithinItsRounding, ()) {
   SaturationCounter saturations;
   for (int n = 0; n < 200; ++n) {
     const auto e = S::Velocity::from_raw(static_cast<std::int32_t>(test::drawn_between(-2000000, 2000000)));
-    const double y = sim::to_si(Fixed::step(fixed, a, e, saturations).output);
-    const double z = sim::to_si(Real::step(real, b, {sim::to_si(e)}, saturations).output);
+    const double y = machine::to_si(Fixed::step(fixed, a, e, saturations).output);
+    const double z = machine::to_si(Real::step(real, b, {machine::to_si(e)}, saturations).output);
     // Half a bit, and double's own rounding of sums up to 15 A.
     RC_ASSERT(std::abs(y - z) <= 0x1p-21 + 1e-11);
   }

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "sim/control/conversion.hpp"
+#include "firmware/machine/configuration/conversion.hpp"
 #include "stiction/number/fixed_signals.hpp"
 #include "tests/firmware/number/exact.hpp"
 
@@ -14,22 +14,22 @@ namespace {
 
 template <class S>
 typename Quantizer<S>::Config config(double increment) {
-  return {true, sim::to_signal<typename S::IncrementInverse>(1.0 / increment).value(),
-          sim::to_signal<typename S::Increment>(increment).value()};
+  return {true, machine::to_signal<typename S::IncrementInverse>(1.0 / increment).value(),
+          machine::to_signal<typename S::Increment>(increment).value()};
 }
 
 template <class S>
 double quantised(double x, double increment) {
   SaturationCounter saturations;
   const auto y =
-      Quantizer<S>::apply(config<S>(increment), sim::to_signal<typename S::Distance>(x).value(), saturations);
+      Quantizer<S>::apply(config<S>(increment), machine::to_signal<typename S::Distance>(x).value(), saturations);
   EXPECT_EQ(saturations.count, 0u);
-  return sim::to_si(y);
+  return machine::to_si(y);
 }
 
 template <class S>
 class QuantizerOf : public ::testing::Test {};
-using Policies = ::testing::Types<FixedSignals, sim::DoubleSignals>;
+using Policies = ::testing::Types<FixedSignals, machine::DoubleSignals>;
 TYPED_TEST_SUITE(QuantizerOf, Policies);
 
 // The output is a whole number of increments rounded to the format's last bit, 2^-32 m; double is exact to 1e-15.
@@ -58,7 +58,7 @@ TYPED_TEST(QuantizerOf, IsOdd) {
 TYPED_TEST(QuantizerOf, DisabledLetsEverythingPass) {
   using S = TypeParam;
   SaturationCounter saturations;
-  const auto x = sim::to_signal<typename S::Distance>(1.234567e-7).value();
+  const auto x = machine::to_signal<typename S::Distance>(1.234567e-7).value();
   EXPECT_EQ(Quantizer<S>::apply({}, x, saturations), x);
 }
 
@@ -84,9 +84,9 @@ RC_GTEST_PROP(Quantizer, FixedPointIsTheExactCountTimesTheIncrement, ()) {
 
 RC_GTEST_PROP(Quantizer, FixedPointAndDoubleDifferOnlyWithinARoundingOfATie, ()) {
   const auto x = test::drawn<FixedSignals::Distance>();
-  const double metres = sim::to_si(x);
+  const double metres = machine::to_si(x);
   const double fixed = quantised<FixedSignals>(metres, 1e-6);
-  const double real = quantised<sim::DoubleSignals>(metres, 1e-6);
+  const double real = quantised<machine::DoubleSignals>(metres, 1e-6);
   // The increment is held in 2^-44 m: 2.8e-8 of it, 1.4e-8 m over the largest error of 0.5 m.
   const double scale_error = 0.5 * 0x1p-44 / 1e-6 * std::abs(metres) + half_bit;
   RC_ASSERT(std::abs(fixed - real) <= scale_error);

@@ -5,16 +5,16 @@
 
 #include <cmath>
 
-#include "sim/control/conversion.hpp"
+#include "firmware/machine/configuration/conversion.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
 namespace stiction {
 namespace {
 
-using sim::to_si;
+using machine::to_si;
 template <class T>
 T signal(double value) {
-  return sim::to_signal<T>(value).value();
+  return machine::to_signal<T>(value).value();
 }
 
 // 1 mm/s from 0.5 to 2 m/s^2, 0.4 mm/s from 5 m/s^2 on; after 3 ticks for 10.
@@ -33,7 +33,7 @@ typename ReversalPulse<S>::Config config() {
 
 template <class S>
 class PulseOf : public ::testing::Test {};
-using Policies = ::testing::Types<FixedSignals, sim::DoubleSignals>;
+using Policies = ::testing::Types<FixedSignals, machine::DoubleSignals>;
 TYPED_TEST_SUITE(PulseOf, Policies);
 
 TYPED_TEST(PulseOf, AmplitudeRisesStaysAndFallsOverTheAcceleration) {

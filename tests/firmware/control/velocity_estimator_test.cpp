@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "sim/control/conversion.hpp"
+#include "firmware/machine/configuration/conversion.hpp"
 #include "stiction/number/fixed_signals.hpp"
 #include "tests/firmware/number/exact.hpp"
 
@@ -25,17 +25,17 @@ class Estimator {
   // Velocity in m/s; its time stamp in time_ns.
   double step(double x, std::int64_t t_ns, double given = 0.0) {
     const auto estimate = VelocityEstimator<S>::estimate(
-        state_, kind_, position(x), t_ns, sim::to_signal<typename S::Velocity>(given).value(), saturations);
+        state_, kind_, position(x), t_ns, machine::to_signal<typename S::Velocity>(given).value(), saturations);
     VelocityEstimator<S>::push(state_, position(x), t_ns);
     time_ns = estimate.time_ns;
-    return sim::to_si(estimate.velocity);
+    return machine::to_si(estimate.velocity);
   }
 
   std::int64_t time_ns = 0;
   SaturationCounter saturations;
 
  private:
-  static typename S::Position position(double x) { return sim::to_signal<typename S::Position>(x).value(); }
+  static typename S::Position position(double x) { return machine::to_signal<typename S::Position>(x).value(); }
 
   VelocityFeedback kind_;
   typename VelocityEstimator<S>::State state_;
@@ -44,14 +44,14 @@ class Estimator {
 // Each position is half a bit of 2^-40 m off; a relative error of the rate comes from its own rounding, 2^-11 1/s.
 template <class S>
 double tolerance(double speed, std::int64_t interval_ns) {
-  if (std::is_same_v<S, sim::DoubleSignals>) return 1e-9;  // positions of 1 m end at 1.1e-16: 4e-12 m/s per tick
+  if (std::is_same_v<S, machine::DoubleSignals>) return 1e-9;  // positions of 1 m end at 1.1e-16: 4e-12 m/s per tick
   const double interval = 1e-9 * static_cast<double>(interval_ns);
   return 0x1p-40 / interval + std::abs(speed) * (0x1p-11 * interval + 0x1p-29) + 0x1p-29;
 }
 
 template <class S>
 class VelocityEstimatorOf : public ::testing::Test {};
-using Policies = ::testing::Types<FixedSignals, sim::DoubleSignals>;
+using Policies = ::testing::Types<FixedSignals, machine::DoubleSignals>;
 TYPED_TEST_SUITE(VelocityEstimatorOf, Policies);
 
 TYPED_TEST(VelocityEstimatorOf, GivesAConstantVelocityAtTheMiddleOfTheTick) {
@@ -167,11 +167,12 @@ TEST(VelocityEstimator, AJumpBeyondItsStepSaturatesAndCounts) {
 template <class S>
 double read_ramp(double delay_ticks, int pushes = 20) {
   typename SpeedDelay<S>::State state;
-  for (int i = 0; i < pushes; ++i) SpeedDelay<S>::push(state, sim::to_signal<typename S::Velocity>(0.0625 * i).value());
+  for (int i = 0; i < pushes; ++i)
+    SpeedDelay<S>::push(state, machine::to_signal<typename S::Velocity>(0.0625 * i).value());
   SaturationCounter saturations;
-  const auto delay =
-      S::ticks(std::llround(delay_ticks * tick_ns), sim::to_signal<typename S::PeriodInverse>(1.0 / tick_ns).value());
-  return (0.0625 * (pushes - 1) - sim::to_si(SpeedDelay<S>::read(state, delay, saturations))) / 0.0625;
+  const auto delay = S::ticks(std::llround(delay_ticks * tick_ns),
+                              machine::to_signal<typename S::PeriodInverse>(1.0 / tick_ns).value());
+  return (0.0625 * (pushes - 1) - machine::to_si(SpeedDelay<S>::read(state, delay, saturations))) / 0.0625;
 }
 
 template <class S>

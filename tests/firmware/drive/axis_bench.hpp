@@ -6,8 +6,8 @@
 #include <array>
 #include <cstdint>
 
-#include "sim/control/conversion.hpp"
-#include "sim/control/double_signals.hpp"
+#include "firmware/machine/configuration/conversion.hpp"
+#include "firmware/machine/configuration/double_signals.hpp"
 #include "stiction/drive/axis.hpp"
 #include "stiction/drive/ticker.hpp"
 #include "stiction/number/fixed_signals.hpp"
@@ -20,7 +20,7 @@ inline constexpr double tick = 62.5e-6;  // s
 
 template <class T>
 T si(double value) {
-  return sim::to_signal<T>(value).value();
+  return machine::to_signal<T>(value).value();
 }
 
 // The X axis of the cross table (plant.md, 2-4) without quantizer and notch, with a DC motor and round limits.

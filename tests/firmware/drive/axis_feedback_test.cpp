@@ -55,7 +55,7 @@ TEST(AxisFeedback, WithoutItsAgeTheSameSampleWouldBeAnErrorOfSpeedTimesAge) {
     b.feedback.position_time_ns = b.ticker.now_ns();  // a drive that takes the sample for a fresh one
     b.tick_as_it_is();
   }
-  EXPECT_NEAR(sim::to_si(b.signals.e), speed * 31250e-9, 1e-9);
+  EXPECT_NEAR(machine::to_si(b.signals.e), speed * 31250e-9, 1e-9);
 }
 
 TEST(AxisFeedback, AtConstantAccelerationTheSetSpeedIsReadAtTheTimeOfTheMeasuredOne) {
@@ -75,7 +75,7 @@ TEST(AxisFeedback, AtConstantAccelerationTheSetSpeedIsReadAtTheTimeOfTheMeasured
           << "age " << age_ns << " ns, tick " << i;
       // The set-point is taken back along its tangent: a * age^2 / 2 = 39 nm at most stays.
       const double age = 1e-9 * static_cast<double>(age_ns);
-      ASSERT_NEAR(sim::to_si(b.signals.e), -0.5 * a * age * age, 5e-10) << "age " << age_ns << " ns, tick " << i;
+      ASSERT_NEAR(machine::to_si(b.signals.e), -0.5 * a * age * age, 5e-10) << "age " << age_ns << " ns, tick " << i;
     }
   }
 }
@@ -115,7 +115,7 @@ TEST(AxisFeedback, AMissingSampleAtATickOfAMillisecondIsNoErrorEither) {
     if (b.feedback.position_valid) move_sample(b, 0.5, 0);
     b.tick_as_it_is();
     if (i < 4) continue;
-    ASSERT_NEAR(sim::to_si(b.signals.e), 0.0, 1e-9) << "tick " << i;
+    ASSERT_NEAR(machine::to_si(b.signals.e), 0.0, 1e-9) << "tick " << i;
   }
 }
 
@@ -209,8 +209,8 @@ TEST(AxisFeedback, ThePositionErrorIsHeldBetweenSlowTicksAndQuantised) {
     b.set.position = si<S::Position>(e);
     b.tick();
     const double sampled = 1e-7 * (i / 16 * 16);
-    EXPECT_NEAR(sim::to_si(b.signals.e), e, 1.3e-10);  // half a bit and the set-point's
-    EXPECT_NEAR(sim::to_si(b.signals.e_held), 1e-6 * std::round(sampled * 1e6), 1.3e-10) << i;
+    EXPECT_NEAR(machine::to_si(b.signals.e), e, 1.3e-10);  // half a bit and the set-point's
+    EXPECT_NEAR(machine::to_si(b.signals.e_held), 1e-6 * std::round(sampled * 1e6), 1.3e-10) << i;
   }
 }
 

@@ -36,7 +36,7 @@ TEST(AxisLimiting, HoldsTheVelocityReferenceAtItsLimitInBothSigns) {
     b.set.position = si<S::Position>(sign * 0.1);  // 83 1/s * 0.1 m = 8.3 m/s: beyond the format even
     b.tick();
     EXPECT_TRUE(b.signals.limiting.velocity);
-    EXPECT_EQ(sim::to_si(b.signals.v_ref), sign * 1.5);
+    EXPECT_EQ(machine::to_si(b.signals.v_ref), sign * 1.5);
   }
 }
 
@@ -45,7 +45,7 @@ TEST(AxisLimiting, AReferenceExactlyAtTheVelocityLimitIsNotLimiting) {
   b.set.velocity = si<S::Velocity>(1.5);  // full feedforward
   b.tick();
   b.tick();
-  EXPECT_EQ(sim::to_si(b.signals.v_ref), 1.5);
+  EXPECT_EQ(machine::to_si(b.signals.v_ref), 1.5);
   EXPECT_FALSE(b.signals.limiting.velocity);
 }
 
@@ -55,12 +55,12 @@ TEST(AxisLimiting, HoldsTheSetCurrentBehindTheFeedforwardAtItsLimit) {
     b.set.acceleration = si<S::Acceleration>(sign * 15.9);  // 39.75 A of feedforward
     b.tick();
     EXPECT_FALSE(b.signals.limiting.current);
-    EXPECT_EQ(sim::to_si(b.signals.i_set), sign * 39.75);
+    EXPECT_EQ(machine::to_si(b.signals.i_set), sign * 39.75);
     b.set.acceleration = si<S::Acceleration>(sign * 16.1);
     b.tick();
     EXPECT_TRUE(b.signals.limiting.current);
-    EXPECT_EQ(sim::to_si(b.signals.i_set), sign * 40.0);
-    EXPECT_NEAR(sim::to_si(b.signals.i_feedforward), sign * 40.25, 1e-6) << "the trace shows what was wanted";
+    EXPECT_EQ(machine::to_si(b.signals.i_set), sign * 40.0);
+    EXPECT_NEAR(machine::to_si(b.signals.i_feedforward), sign * 40.25, 1e-6) << "the trace shows what was wanted";
   }
 }
 
@@ -69,12 +69,12 @@ TEST(AxisLimiting, ATestSignalIsPartOfTheSetCurrentAndOfWhatTheLimitHoldsBack) {
     FixedBench b(config_without_faults());
     b.set.injection = si<S::Current>(sign * 12.5);
     b.tick();
-    EXPECT_EQ(sim::to_si(b.signals.i_set), sign * 12.5);
-    EXPECT_EQ(sim::to_si(b.signals.i_notch), 0.0) << "the controllers have not answered yet";
+    EXPECT_EQ(machine::to_si(b.signals.i_set), sign * 12.5);
+    EXPECT_EQ(machine::to_si(b.signals.i_notch), 0.0) << "the controllers have not answered yet";
     b.set.injection = si<S::Current>(sign * 40.5);
     b.tick();
     EXPECT_TRUE(b.signals.limiting.current);
-    EXPECT_EQ(sim::to_si(b.signals.i_set), sign * 40.0);
+    EXPECT_EQ(machine::to_si(b.signals.i_set), sign * 40.0);
   }
 }
 
@@ -86,7 +86,7 @@ TEST(AxisLimiting, HoldsTheVoltageOfEachPhaseAtItsLimit) {
     b.feedback.current[phase] = si<S::Current>(-9.0);  // 35 V/A * 9 A = 315 V, and the integral's first step
     b.tick();
     EXPECT_TRUE(b.signals.limiting.voltage);
-    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(sim::to_si(b.command.voltage[k]), k == phase ? 300.0 : 0.0);
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(machine::to_si(b.command.voltage[k]), k == phase ? 300.0 : 0.0);
   }
 }
 
@@ -98,11 +98,11 @@ TEST(AxisLimiting, WithoutACurrentLoopTheOutputIsLimitedAsVoltage) {
   FixedBench b(config);
   b.set.acceleration = si<S::Acceleration>(3.0);  // 7.5
   b.tick();
-  EXPECT_EQ(sim::to_si(b.command.voltage[0]), 7.5);
+  EXPECT_EQ(machine::to_si(b.command.voltage[0]), 7.5);
   EXPECT_FALSE(b.signals.limiting.voltage);
   b.set.acceleration = si<S::Acceleration>(5.0);  // 12.5
   b.tick();
-  EXPECT_EQ(sim::to_si(b.command.voltage[0]), 10.0);
+  EXPECT_EQ(machine::to_si(b.command.voltage[0]), 10.0);
   EXPECT_TRUE(b.signals.limiting.voltage);
 }
 
@@ -114,12 +114,12 @@ TEST(AxisLimiting, ASecondAtTheCurrentLimitLeavesTheIntegratorBelowTheLimit) {
   for (int i = 0; i < 16000; ++i) {
     b.tick();
     ASSERT_TRUE(b.signals.limiting.current);
-    ASSERT_LE(std::abs(sim::to_si(b.signals.i_integral)), 300.0 * 0.0125 + 40.0) << "tick " << i;
+    ASSERT_LE(std::abs(machine::to_si(b.signals.i_integral)), 300.0 * 0.0125 + 40.0) << "tick " << i;
   }
   // 40 A - K_i e = 40 A - 600 A s/m * 0.0125 * 0.5 m/s. The tracking's rounding, half a bit of the 264 A of excess per
   // tick, counts as often as the tracking takes ticks: 1 / 0.0125.
   const double rounding = std::ldexp(0.5, -S::VelocityTracking::fraction_bits) * 264.0 / 0.0125;
-  EXPECT_NEAR(sim::to_si(b.signals.i_integral), 40.0 - 600.0 * 0.0125 * 0.5, rounding + 1e-5);
+  EXPECT_NEAR(machine::to_si(b.signals.i_integral), 40.0 - 600.0 * 0.0125 * 0.5, rounding + 1e-5);
 }
 
 TEST(AxisLimiting, AfterASecondAtTheLimitAReversedErrorLeavesItInTheNextTick) {
@@ -130,7 +130,7 @@ TEST(AxisLimiting, AfterASecondAtTheLimitAReversedErrorLeavesItInTheNextTick) {
     b.feedback.velocity = si<S::Velocity>(reversed);
     b.tick();
     EXPECT_FALSE(b.signals.limiting.current) << reversed << " m/s";
-    EXPECT_LT(sim::to_si(b.signals.i_set), 40.0) << reversed << " m/s";
+    EXPECT_LT(machine::to_si(b.signals.i_set), 40.0) << reversed << " m/s";
   }
 }
 
@@ -145,17 +145,17 @@ TEST(AxisLimiting, AfterASecondAtTheVoltageLimitAReversedErrorLeavesItInTheNextT
   b.tick();
   EXPECT_FALSE(b.signals.limiting.voltage);
   // 300 V less the increments of both errors: 35 V/A * (T / T_N) * 20 A, and 35 V/A * 0.01 A.
-  EXPECT_NEAR(sim::to_si(b.command.voltage[0]), 300.0 - 35.0 * 20.0 * 62.5e-6 / 2e-3 - 0.35, 0.02);
+  EXPECT_NEAR(machine::to_si(b.command.voltage[0]), 300.0 - 35.0 * 20.0 * 62.5e-6 / 2e-3 - 0.35, 0.02);
 }
 
 TEST(AxisLimiting, AFeedforwardBeyondTheLimitDrawsTheIntegratorBackByItsExcess) {
   FixedBench b(config_without_faults());
   b.set.acceleration = si<S::Acceleration>(20.0);  // 50 A wanted, 40 A given: 10 A of excess
   for (int i = 0; i < 16000; ++i) b.tick();
-  EXPECT_NEAR(sim::to_si(b.signals.i_integral), -10.0, 1e-3);
+  EXPECT_NEAR(machine::to_si(b.signals.i_integral), -10.0, 1e-3);
   b.set.acceleration = {};
   b.tick();
-  EXPECT_NEAR(sim::to_si(b.signals.i_set), -10.0, 1e-3);
+  EXPECT_NEAR(machine::to_si(b.signals.i_set), -10.0, 1e-3);
 }
 
 TEST(AxisLimiting, IsNoFault) {

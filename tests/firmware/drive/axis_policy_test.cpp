@@ -14,7 +14,7 @@ namespace stiction {
 namespace {
 
 using Fix = FixedSignals;
-using Dbl = sim::DoubleSignals;
+using Dbl = machine::DoubleSignals;
 using test::si;
 
 constexpr int ticks = 320;  // 20 ms
@@ -80,7 +80,7 @@ AxisConfig<S> config(CurrentLoop loop) {
 // A value on the fixed format's grid, given to both sides.
 template <class T>
 double on_grid(double value) {
-  return sim::to_si(si<T>(value));
+  return machine::to_si(si<T>(value));
 }
 
 struct Inputs {
@@ -126,9 +126,9 @@ void compare(CurrentLoop loop) {
     RC_ASSERT(fixed.axis.fault() == Fault::none);
     RC_ASSERT(real.axis.fault() == Fault::none);
     RC_ASSERT(!real.signals.limiting.velocity && !real.signals.limiting.current && !real.signals.limiting.voltage);
-    for_each_signal(real.signals, [&](auto name, auto, auto, auto value) { values[name] = sim::to_si(value); });
+    for_each_signal(real.signals, [&](auto name, auto, auto, auto value) { values[name] = machine::to_si(value); });
     for_each_signal(fixed.signals, [&](auto name, auto, auto, auto value) {
-      const double difference = std::abs(sim::to_si(value) - values.at(name));
+      const double difference = std::abs(machine::to_si(value) - values.at(name));
       if (difference > bounds.at(name))
         RC_FAIL(std::string(name) + " at tick " + std::to_string(n) + ": off by " +
                 std::to_string(difference / bounds.at(name)) + " times its bound");

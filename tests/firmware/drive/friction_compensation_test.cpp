@@ -6,17 +6,17 @@
 #include <cmath>
 #include <vector>
 
-#include "sim/control/conversion.hpp"
+#include "firmware/machine/configuration/conversion.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
 namespace stiction {
 namespace {
 
 using S = FixedSignals;
-using sim::to_si;
+using machine::to_si;
 template <class T>
 T signal(double value) {
-  return sim::to_signal<T>(value).value();
+  return machine::to_signal<T>(value).value();
 }
 
 FrictionCompensationConfig<S> config(CompensationKind kind, std::uint32_t delay) {

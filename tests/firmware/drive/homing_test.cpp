@@ -26,14 +26,14 @@ struct Axis {
 
   Phase run(int ticks) {
     for (int i = 0; i < ticks && homing.phase() != Phase::done && homing.phase() != Phase::failed; ++i) {
-      const double x = sim::to_si(set.position);
+      const double x = machine::to_si(set.position);
       DigitalInputs<S> in;
       in.limit_negative = x <= negative;
       in.limit_positive = x >= positive;
       in.index = (before < index) != (x < index);
       in.index_position = si<S::Position>(index);
       before = x;
-      fastest = std::max(fastest, std::abs(sim::to_si(set.velocity)));
+      fastest = std::max(fastest, std::abs(machine::to_si(set.velocity)));
       const auto target = homing.step(set, set.position, in);
       Ramp::step(ramp, set, target, saturations);
     }
@@ -53,9 +53,9 @@ TEST(Homing, FindsWhereASwitchOpensAndStandsBesideIt) {
     (down ? a.negative : a.positive) = down ? -0.06 : 0.06;
     EXPECT_EQ(a.run(160000), Phase::done);
     const double mark = down ? -0.06 : 0.06;
-    EXPECT_NEAR(sim::to_si(a.homing.origin()), mark - 0.3, creep * tick);
+    EXPECT_NEAR(machine::to_si(a.homing.origin()), mark - 0.3, creep * tick);
     EXPECT_EQ(a.set.velocity, S::Velocity{});
-    EXPECT_LT(std::abs(sim::to_si(a.set.position) - mark), 1e-6);  // 0.2 um to stop, and a tick
+    EXPECT_LT(std::abs(machine::to_si(a.set.position) - mark), 1e-6);  // 0.2 um to stop, and a tick
     EXPECT_NEAR(a.fastest, search, 1e-6);
   }
 }
@@ -65,7 +65,7 @@ TEST(Homing, FindsAnIndexAtCreepSpeed) {
     Axis a(down ? HomingMethod::index_negative : HomingMethod::index_positive);
     a.index = down ? -0.0033 : 0.0033;
     EXPECT_EQ(a.run(160000), Phase::done);
-    EXPECT_NEAR(sim::to_si(a.homing.origin()), a.index - 0.3, 2e-12);
+    EXPECT_NEAR(machine::to_si(a.homing.origin()), a.index - 0.3, 2e-12);
     EXPECT_NEAR(a.fastest, creep, 1e-8);
   }
 }
@@ -73,7 +73,7 @@ TEST(Homing, FindsAnIndexAtCreepSpeed) {
 TEST(Homing, TakesThePlaceWhereItStands) {
   Axis a(HomingMethod::here);
   EXPECT_EQ(a.run(2), Phase::done);
-  EXPECT_NEAR(sim::to_si(a.homing.origin()), -0.3, 1e-11);
+  EXPECT_NEAR(machine::to_si(a.homing.origin()), -0.3, 1e-11);
 }
 
 TEST(Homing, OfAnAbsoluteEncoderHasItsZero) {
@@ -86,7 +86,7 @@ TEST(Homing, FailsBeyondItsWayAndStops) {
   for (const auto method : {HomingMethod::limit_negative, HomingMethod::limit_positive}) {
     Axis a(method);  // no switch within 0.1 m
     EXPECT_EQ(a.run(160000), Phase::failed);
-    EXPECT_NEAR(std::abs(sim::to_si(a.set.position)), 0.1, search * tick * 2);
+    EXPECT_NEAR(std::abs(machine::to_si(a.set.position)), 0.1, search * tick * 2);
     EXPECT_EQ(a.homing.step(a.set, a.set.position, {}), S::Velocity{});
     EXPECT_EQ(a.homing.phase(), Phase::failed);
   }

@@ -74,7 +74,7 @@ class Watched {
 
 template <class S>
 class SupervisionOf : public ::testing::Test {};
-using Policies = ::testing::Types<FixedSignals, sim::DoubleSignals>;
+using Policies = ::testing::Types<FixedSignals, machine::DoubleSignals>;
 TYPED_TEST_SUITE(SupervisionOf, Policies);
 
 TYPED_TEST(SupervisionOf, SeesAJumpAboveItsThresholdAndNoneBelow) {

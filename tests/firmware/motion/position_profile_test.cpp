@@ -6,7 +6,7 @@
 #include <cmath>
 #include <memory>
 
-#include "sim/control/conversion.hpp"
+#include "firmware/machine/configuration/conversion.hpp"
 #include "tests/support/figure.hpp"
 
 namespace stiction::test {
@@ -37,7 +37,7 @@ class Mover {
   void tick(bool halted = false) {
     const auto point = profile_->step(halted);
     const double x_before = x, v_before = v, a_before = a;
-    x = sim::to_si(point.position), v = sim::to_si(point.velocity), a = sim::to_si(point.acceleration);
+    x = machine::to_si(point.position), v = machine::to_si(point.velocity), a = machine::to_si(point.acceleration);
     inconsistent = std::max(inconsistent, std::abs((x - x_before) / period_ - v));
     inconsistent_acceleration = std::max(inconsistent_acceleration, std::abs((v - v_before) / period_ - a));
     jerk = std::max(jerk, std::abs(a - a_before) / period_);
@@ -53,8 +53,8 @@ class Mover {
   double inconsistent = 0.0, inconsistent_acceleration = 0.0;
 
  private:
-  static S::Position position(double x) { return *sim::to_signal<S::Position>(x); }
-  static S::Velocity speed(double v) { return *sim::to_signal<S::Velocity>(v); }
+  static S::Position position(double x) { return *machine::to_signal<S::Position>(x); }
+  static S::Velocity speed(double v) { return *machine::to_signal<S::Velocity>(v); }
 
   double period_;
   std::unique_ptr<Profile> profile_;

@@ -7,7 +7,7 @@
 #include <functional>
 #include <numbers>
 
-#include "sim/control/conversion.hpp"
+#include "firmware/machine/configuration/conversion.hpp"
 #include "tests/support/figure.hpp"
 
 namespace stiction::test {
@@ -18,9 +18,9 @@ using S = FixedSignals;
 constexpr double tick = 62.5e-6;  // s
 
 Interpolator interpolator(std::uint32_t ticks) {
-  return Interpolator(Interpolator::configure(62500, ticks, *sim::to_signal<Interpolator::Way>(10e-3)));
+  return Interpolator(Interpolator::configure(62500, ticks, *machine::to_signal<Interpolator::Way>(10e-3)));
 }
-S::Position position(double x) { return *sim::to_signal<S::Position>(x); }
+S::Position position(double x) { return *machine::to_signal<S::Position>(x); }
 double rounded(double x, double increment) { return std::round(x / increment) * increment; }
 
 struct Largest {
@@ -41,7 +41,8 @@ Largest follow(std::uint32_t ticks, int cycles, double increment,
     for (std::uint32_t i = 0; i < ticks; ++i) {
       const auto point = in.step();
       const auto wanted = at((k - 1) * cycle + i * tick);
-      const double x = sim::to_si(point.position), v = sim::to_si(point.velocity), a = sim::to_si(point.acceleration);
+      const double x = machine::to_si(point.position), v = machine::to_si(point.velocity),
+                   a = machine::to_si(point.acceleration);
       largest.position = std::max(largest.position, std::abs(x - wanted[0]));
       largest.velocity = std::max(largest.velocity, std::abs(v - wanted[1]));
       largest.acceleration = std::max(largest.acceleration, std::abs(a - wanted[2]));
@@ -99,8 +100,8 @@ TEST(SetPointInterpolator, IsExactForAMotionOfConstantJerk) {
       const double t = (k - 1) * cycle + i * tick;
       const auto point = in.step();
       if (k <= 5) continue;  // once four targets are those of the cubic, and the beginning of the segment too
-      off = std::max(off, std::abs(sim::to_si(point.acceleration) - jerk * t));
-      EXPECT_NEAR(sim::to_si(point.position), x(t), 5e-12);
+      off = std::max(off, std::abs(machine::to_si(point.acceleration) - jerk * t));
+      EXPECT_NEAR(machine::to_si(point.position), x(t), 5e-12);
     }
   }
   EXPECT_LT(off, 1e-4);  // targets in steps of 0.9 pm
@@ -113,7 +114,7 @@ TEST(SetPointInterpolator, ReachesEveryTargetWhateverTheyAre) {
   for (int k = 0; k < 400; ++k) {
     const double next = target + 9e-3 * std::sin(k * k * 0.7);
     in.take(position(next));
-    EXPECT_NEAR(sim::to_si(in.step().position), target, 2e-12);
+    EXPECT_NEAR(machine::to_si(in.step().position), target, 2e-12);
     for (int i = 1; i < 16; ++i) in.step();
     target = next;
   }
@@ -132,7 +133,7 @@ TEST(SetPointInterpolator, GoesOnWithItsAccelerationWhereNoTargetCame) {
       else
         in.take(position(rounded(x(k * cycle), 1e-9)));
       for (int i = 0; i < 16; ++i) {
-        const double here = sim::to_si(in.step().position);
+        const double here = machine::to_si(in.step().position);
         if (k > 5) off = std::max(off, std::abs(here - x((k - 1) * cycle + i * tick)));
       }
     }
@@ -147,7 +148,7 @@ TEST(SetPointInterpolator, StandsWhereItWasStarted) {
   for (int i = 0; i < 100; ++i) {
     if (i % 16 == 0) in.take(position(-0.3));
     const auto point = in.step();
-    EXPECT_EQ(sim::to_si(point.position), sim::to_si(position(-0.3)));
+    EXPECT_EQ(machine::to_si(point.position), machine::to_si(position(-0.3)));
     EXPECT_EQ(point.velocity.raw(), 0);
     EXPECT_EQ(point.acceleration.raw(), 0);
   }

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "sim/control/conversion.hpp"
+#include "firmware/machine/configuration/conversion.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
 namespace stiction {
@@ -18,7 +18,7 @@ using Ramp = VelocityRamp<S>;
 constexpr double period = 62.5e-6;  // s
 
 Ramp::Config config(double deceleration) {
-  return {sim::to_signal<S::Velocity>(deceleration * period).value(), S::seconds(31250), S::rate(62500)};
+  return {machine::to_signal<S::Velocity>(deceleration * period).value(), S::seconds(31250), S::rate(62500)};
 }
 
 struct Stop {
@@ -28,23 +28,23 @@ struct Stop {
 
 Stop stop(double x, double v, double deceleration) {
   SaturationCounter saturations;
-  Ramp::State state{sim::to_signal<S::Position>(x).value(), sim::to_signal<S::Velocity>(v).value()};
+  Ramp::State state{machine::to_signal<S::Position>(x).value(), machine::to_signal<S::Velocity>(v).value()};
   const auto c = config(deceleration);
   Stop result{};
   int ticks = 0;
   while (state.velocity != S::Velocity{} && ticks < 10'000'000) {
     const auto before = state;
     const auto a = Ramp::step(c, state, {}, saturations);
-    const double v0 = sim::to_si(before.velocity), v1 = sim::to_si(state.velocity);
-    const double step = sim::to_si(state.position) - sim::to_si(before.position);
+    const double v0 = machine::to_si(before.velocity), v1 = machine::to_si(state.velocity);
+    const double step = machine::to_si(state.position) - machine::to_si(before.position);
     result.worst_step = std::max(result.worst_step, std::abs(step - 0.5 * (v0 + v1) * period));
-    EXPECT_NEAR(sim::to_si(a), (v1 - v0) / period, 1e-6 * deceleration + 3e-7);
+    EXPECT_NEAR(machine::to_si(a), (v1 - v0) / period, 1e-6 * deceleration + 3e-7);
     EXPECT_LE(std::abs(v1), std::abs(v0));
     EXPECT_GE(v0 * v1, 0.0);
     ++ticks;
   }
   EXPECT_EQ(saturations.count, 0u);
-  result.way = sim::to_si(state.position) - x;
+  result.way = machine::to_si(state.position) - x;
   result.time = ticks * period;
   result.end = state;
   return result;
@@ -69,7 +69,7 @@ TEST(VelocityRamp, KeepsPositionAndSpeedConsistentInEveryTick) {
 
 TEST(VelocityRamp, StaysAtRest) {
   SaturationCounter saturations;
-  Ramp::State state{sim::to_signal<S::Position>(0.25).value(), {}};
+  Ramp::State state{machine::to_signal<S::Position>(0.25).value(), {}};
   const auto before = state;
   EXPECT_EQ(Ramp::step(config(10.0), state, {}, saturations).raw(), 0);
   EXPECT_EQ(state.position, before.position);

@@ -47,7 +47,7 @@ class Cli : public ::testing::Test {
 
   // The shipped machine with one piece of text replaced; beside the working folder.
   std::string machine_with(const std::string& from, const std::string& to) {
-    auto text = content(fs::path(STICTION_SOURCE_DIR) / "sim/machine/shipped/mcfv5050ln.toml");
+    auto text = content(fs::path(STICTION_SOURCE_DIR) / "firmware/machine/shipped/mcfv5050ln.toml");
     const auto place = text.find(from);
     EXPECT_NE(place, std::string::npos) << from;
     text.replace(place, from.size(), to);

@@ -22,24 +22,24 @@ struct Gains {
 };
 
 // A force source of 10 N/V that moves 50 kg against 20 N and 100 N s/m.
-sim::Machine force_machine() {
-  sim::Machine machine;
+machine::Machine force_machine() {
+  machine::Machine machine;
   machine.name = machine.id = "bench";
-  sim::Axis axis;
+  machine::AxisModel axis;
   axis.name = "X";
   axis.mass = 50.0;
   axis.travel = 1.0;
   axis.max_velocity = 1.0;
   axis.max_acceleration = 20.0;
-  axis.motor.model = sim::MotorModel::force;
+  axis.motor.model = machine::MotorModel::force;
   axis.motor.force_constant = 10.0;
   axis.inverter.voltage_limit = 300.0;
-  axis.encoder.velocity = sim::VelocitySource::ideal;
+  axis.encoder.velocity = machine::VelocitySource::ideal;
   axis.position_controller.gain = Gains{}.position;
   axis.velocity_controller = {Gains{}.velocity, Gains{}.integral_time};
   axis.feedforward = {1.0, 1.0};
   axis.friction.use = "coulomb_viscous";
-  axis.friction.models["coulomb_viscous"] = sim::CoulombViscous::Parameters{20.0, 100.0};
+  axis.friction.models["coulomb_viscous"] = sim::CoulombViscousParameters{20.0, 100.0};
   machine.axes = {axis};
   return machine;
 }

@@ -6,20 +6,20 @@
 
 #include "host/diagnose/diagnose.hpp"
 #include "host/simulate/hidden_effect.hpp"
-#include "sim/machine/machine_file.hpp"
+#include "sim/machine_file.hpp"
 #include "tests/support/figure.hpp"
 
 namespace stiction::test {
 namespace {
 
 // As the demonstration has it.
-sim::Machine demonstration_machine() {
+machine::Machine demonstration_machine() {
   return sim::read_machine(
       std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/mcfv5050ln.toml",
       {{}, {"axis.X.encoder.velocity=estimated", "axis.X.encoder.noise=2 nm", "axis.X.motor.force_constant=94.2 N/A"}});
 }
 
-host::Verdict verdict_of(const std::vector<sim::Effect>& hidden, std::uint64_t seed) {
+host::Verdict verdict_of(const std::vector<machine::Effect>& hidden, std::uint64_t seed) {
   host::DiagnoseInput input;
   input.machine = demonstration_machine();
   input.closed_loop = input.next_measurement = false;

@@ -12,7 +12,7 @@
 #include "host/diagnose/inverse_dynamics.hpp"
 #include "host/identify/log_rows.hpp"
 #include "host/log/read_log.hpp"
-#include "sim/machine/machine_file.hpp"
+#include "sim/machine_file.hpp"
 #include "sim/plant/effects/effects.hpp"
 #include "tests/support/figure.hpp"
 
@@ -66,7 +66,7 @@ class EmpsDiagnosis : public ::testing::Test {
     return text;
   }
   host::Log log_;
-  sim::Machine machine_;
+  machine::Machine machine_;
 };
 
 TEST_F(EmpsDiagnosis, cuts_the_residual_force_in_cross_validation) {
@@ -97,7 +97,8 @@ TEST_F(EmpsDiagnosis, cuts_the_residual_force_in_cross_validation) {
 
 // Residual force (N rms) of a part of the record, with these effects in the machine file beside its own; no nuisance is
 // estimated.
-double residual_rms(const host::Log& log, const sim::Machine& machine, const std::vector<sim::Effect>& effects) {
+double residual_rms(const host::Log& log, const machine::Machine& machine,
+                    const std::vector<machine::Effect>& effects) {
   auto axis = machine.axes.front();
   axis.effects.insert(axis.effects.end(), effects.begin(), effects.end());
   const double late = sim::record_delay(axis) / log.period;
@@ -122,7 +123,7 @@ TEST_F(EmpsDiagnosis, names_what_holds_in_both_halves) {
   const auto verdict = diagnose({log_}, {}, false);
   ASSERT_FALSE(verdict.findings.empty());
   figure("EMPS, diagnosis of the record", names(verdict));
-  std::vector<sim::Effect> all;
+  std::vector<machine::Effect> all;
   for (const auto& finding : verdict.findings) all.push_back(finding.effect);
   for (int half = 0; half < 2; ++half) {
     const auto log = part(log_, 0.5 * half, 0.5 * (half + 1));

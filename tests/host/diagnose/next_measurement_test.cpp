@@ -13,7 +13,7 @@
 #include "host/simulate/commissioning.hpp"
 #include "host/simulate/replay.hpp"
 #include "sim/experiment/commissioning_path.hpp"
-#include "sim/machine/machine_file.hpp"
+#include "sim/machine_file.hpp"
 #include "stiction/number/fixed_signals.hpp"
 #include "tests/support/figure.hpp"
 
@@ -21,7 +21,7 @@ namespace stiction::test {
 namespace {
 
 // As the demonstration has it.
-sim::Machine machine() {
+machine::Machine machine() {
   return sim::read_machine(
       std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/mcfv5050ln.toml",
       {{}, {"axis.X.encoder.velocity=estimated", "axis.X.encoder.noise=2 nm", "axis.X.motor.force_constant=94.2 N/A"}});
@@ -44,7 +44,7 @@ host::Log set_points(const char* name, const sim::Trajectory& path) {
   return log;
 }
 
-host::Log recorded(const sim::Machine& real, const host::Log& wanted, std::uint64_t seed) {
+host::Log recorded(const machine::Machine& real, const host::Log& wanted, std::uint64_t seed) {
   return host::record_set_points(real, 0, wanted, seed);
 }
 
@@ -69,7 +69,7 @@ bool says(const host::Verdict& verdict, const std::string& effect, const std::st
 
 struct Case {
   const char* name;
-  sim::Effect hidden;
+  machine::Effect hidden;
   std::string rival;
   sim::Trajectory training, held_out;
 };

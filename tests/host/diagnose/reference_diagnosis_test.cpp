@@ -8,8 +8,7 @@
 #include "host/diagnose/reference_extension.hpp"
 #include "host/identify/measured_machine.hpp"
 #include "host/simulate/circle.hpp"
-#include "sim/machine/extended_machine.hpp"
-#include "sim/machine/machine_file.hpp"
+#include "sim/machine_file.hpp"
 #include "tests/support/figure.hpp"
 
 namespace stiction::test {
@@ -48,7 +47,7 @@ TEST(ReferenceDiagnosis, halves_the_current_error_on_feeds_not_used) {
                           [](const host::Rejected& r) { return r.effect == "mass_mismatch"; }));
 
   // The extended file is a machine that gives the extended rows.
-  std::vector<sim::AxisEffects> additions{{"X", {}}, {"Y", {}}};
+  std::vector<machine::AxisEffects> additions{{"X", {}}, {"Y", {}}};
   for (const auto& finding : verdict.findings) additions[finding.axis == "X" ? 0 : 1].effects.push_back(finding.effect);
   const auto extended = sim::parse_machine("extended.toml", sim::extended_machine(machine_file(), {}, additions, {}));
   const auto run = host::reference_circle(extended, 24.0 / 60.0);

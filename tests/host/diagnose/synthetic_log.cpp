@@ -48,20 +48,20 @@ double current_of(const Hidden& hidden, double force) {
 
 }  // namespace
 
-sim::Machine bench_machine() {
-  sim::Machine machine;
+machine::Machine bench_machine() {
+  machine::Machine machine;
   machine.name = machine.id = "bench";
-  sim::Axis axis;
+  machine::AxisModel axis;
   axis.name = "X";
   axis.mass = 225.0;
   axis.travel = 1.0;
   axis.max_velocity = 1.0;
   axis.max_acceleration = 20.0;
-  axis.motor.model = sim::MotorModel::dc;
+  axis.motor.model = machine::MotorModel::dc;
   axis.motor.force_constant = force_constant;
   axis.inverter.current_limit = 70.0;
   axis.friction.use = "lugre";
-  axis.friction.models["lugre"] = sim::LuGre::Parameters{90.0, 1.0, 500.0, 1e-3, 8e5, 0.0};
+  axis.friction.models["lugre"] = sim::LuGreParameters{90.0, 1.0, 500.0, 1e-3, 8e5, 0.0};
   machine.axes = {axis};
   return machine;
 }

@@ -6,13 +6,13 @@
 #include <functional>
 #include <string>
 
+#include "firmware/machine/model/machine.hpp"
 #include "host/log/log.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::test {
 
 // The machine of the tests: one axis, force from amplitude amperes, LuGre friction.
-sim::Machine bench_machine();
+machine::Machine bench_machine();
 
 struct Point {
   double t, x, v, a;  // s, m, m/s, m/s^2

@@ -23,7 +23,7 @@ class BadInput : public ::testing::Test {
   Log recorded(const test::Trajectory& trajectory) { return test::simulated(machine_, trajectory); }
   Log general() { return recorded(test::constant_speeds({0.02, 0.1, 0.2}, 0.4, 0.0)); }
 
-  sim::Machine machine_ = test::bench_machine("lugre");
+  machine::Machine machine_ = test::bench_machine("lugre");
 };
 
 void keep(Log& log, std::size_t begin, std::size_t end) {

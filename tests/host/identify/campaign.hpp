@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "firmware/machine/model/machine.hpp"
 #include "host/identify/identification.hpp"
-#include "sim/model/machine.hpp"
 #include "tests/host/identify/simulated_log.hpp"
 
 namespace stiction::test {
@@ -27,12 +27,12 @@ struct ParameterRecord {
 };
 
 // The X axis of the cross table with the friction model `friction` acting, its other settings as the file's.
-sim::Machine bench_machine(const std::string& friction);
+machine::Machine bench_machine(const std::string& friction);
 
-std::vector<Truth> truths_of(const sim::Axis& axis);
+std::vector<Truth> truths_of(const machine::AxisModel& axis);
 
 // Simulates the commissioning record once and identifies a LuGre model from `runs` records with noise of seeds
 // `first_seed` and on.
-std::vector<ParameterRecord> campaign(const sim::Machine& machine, int runs, std::uint64_t first_seed);
+std::vector<ParameterRecord> campaign(const machine::Machine& machine, int runs, std::uint64_t first_seed);
 
 }  // namespace stiction::test

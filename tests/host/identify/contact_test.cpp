@@ -31,7 +31,7 @@ TEST(Contact, level_is_that_of_the_lugre_model) {
   constexpr double coulomb = 90.0, stiffness = 8e5;
   for (const double ratio : {1.0, 1.5}) {
     const auto contact = contact_of(motion, {stiffness / coulomb, ratio, 1e-3});
-    sim::LuGre model({coulomb, ratio, 0.0, 1e-3, stiffness, 0.0}, {225.0, motion.period});
+    sim::LuGre<> model({coulomb, ratio, 0.0, 1e-3, stiffness, 0.0}, {225.0, motion.period});
     double worst = 0.0;
     for (std::size_t k = 1; k < motion.x.size(); ++k) {
       const double force = model.move_contact((motion.x[k] - motion.x[k - 1]) / motion.period);

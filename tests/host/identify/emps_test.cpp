@@ -7,7 +7,7 @@
 
 #include "host/identify/refinement.hpp"
 #include "host/log/read_log.hpp"
-#include "sim/machine/machine_file.hpp"
+#include "sim/machine_file.hpp"
 #include "tests/support/figure.hpp"
 
 namespace stiction::test {
@@ -32,7 +32,7 @@ class Emps : public ::testing::Test {
     return host::identify_logs({log_}, machine_.axes.front(), {friction, host::Amperes::amplitude, {}});
   }
   host::Log log_;
-  sim::Machine machine_;
+  machine::Machine machine_;
 };
 
 TEST_F(Emps, published_parameters_come_back) {

@@ -9,7 +9,7 @@
 namespace stiction::host {
 namespace {
 
-std::vector<Log> records(const sim::Machine& machine) {
+std::vector<Log> records(const machine::Machine& machine) {
   std::vector<Log> logs;
   for (const auto& trajectory : test::commissioning()) logs.push_back(test::simulated(machine, trajectory));
   return logs;
@@ -29,7 +29,7 @@ TEST(FrictionFit, without_noise_gives_the_parameters_of_the_simulated_axis) {
 
 TEST(FrictionFit, finds_stribecks_fall_of_the_friction) {
   auto machine = test::bench_machine("lugre");
-  auto& lugre = std::get<sim::LuGre::Parameters>(machine.axes.front().friction.models.at("lugre"));
+  auto& lugre = std::get<sim::LuGreParameters>(machine.axes.front().friction.models.at("lugre"));
   lugre.static_ratio = 1.4;
   lugre.stribeck_velocity = 5e-3;
   std::vector<Log> logs = records(machine);

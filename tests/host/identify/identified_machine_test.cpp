@@ -7,7 +7,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "sim/machine/machine_file.hpp"
+#include "sim/machine_file.hpp"
+#include "sim/plant/friction/friction.hpp"
 #include "tests/host/identify/campaign.hpp"
 
 namespace stiction::host {
@@ -16,7 +17,7 @@ namespace {
 class IdentifiedMachine : public ::testing::Test {
  protected:
   const std::filesystem::path shipped_ = std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/mcfv5050ln.toml";
-  const sim::Machine machine_ = sim::read_machine(shipped_);
+  const machine::Machine machine_ = sim::read_machine(shipped_);
 
   static Identification found(const std::vector<std::pair<std::string, double>>& values) {
     Identification result;
@@ -28,7 +29,7 @@ class IdentifiedMachine : public ::testing::Test {
   std::string text_of(const Identification& result, const std::vector<std::string>& set = {}) const {
     return identified_machine(shipped_, set, machine_.axes.front(), result, "a command");
   }
-  static sim::Machine read(const std::string& text, const std::string& experiment = "") {
+  static machine::Machine read(const std::string& text, const std::string& experiment = "") {
     const auto file =
         std::filesystem::temp_directory_path() / ("stiction-identified-" + std::to_string(::getpid()) + ".toml");
     std::ofstream(file) << text;
@@ -49,7 +50,7 @@ TEST_F(IdentifiedMachine, carries_what_was_determined_and_leaves_the_other_axis_
   const auto& axis = machine.axes.front();
   EXPECT_DOUBLE_EQ(axis.mass, 230.5);
   EXPECT_EQ(axis.friction.use, "lugre");
-  const auto& lugre = std::get<sim::LuGre::Parameters>(axis.friction.models.at("lugre"));
+  const auto& lugre = std::get<sim::LuGreParameters>(axis.friction.models.at("lugre"));
   EXPECT_DOUBLE_EQ(lugre.coulomb, 101.0);
   EXPECT_DOUBLE_EQ(lugre.static_ratio, 1.2);
   EXPECT_DOUBLE_EQ(lugre.stribeck_velocity, 2e-3);
@@ -78,7 +79,7 @@ TEST_F(IdentifiedMachine, experiments_of_the_file_do_not_override_what_was_ident
   const auto machine = read(text, "presliding");
   EXPECT_DOUBLE_EQ(machine.axes.front().mass, 230.5);
   EXPECT_DOUBLE_EQ(
-      std::get<sim::CoulombViscous::Parameters>(machine.axes.front().friction.models.at("coulomb_viscous")).coulomb,
+      std::get<sim::CoulombViscousParameters>(machine.axes.front().friction.models.at("coulomb_viscous")).coulomb,
       101.0);
 }
 
@@ -101,7 +102,7 @@ TEST_F(IdentifiedMachine, simulated_in_closed_loop_moves_like_the_axis_it_was_id
   const auto result = identify_logs(logs, truth.axes.front(), {"lugre", Amperes::amplitude, {}});
   auto identified = read(text_of(result));
   identified.axes.resize(1);
-  identified.axes.front().motor.model = sim::MotorModel::dc;
+  identified.axes.front().motor.model = machine::MotorModel::dc;
   // A circle at another feed than the recorded one.
   const auto trajectory = test::circle(8.0 / 60.0, 1.0);
   const auto a = test::simulated(truth, trajectory), b = test::simulated(identified, trajectory);

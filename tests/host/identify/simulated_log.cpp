@@ -5,8 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include "firmware/machine/configuration/double_signals.hpp"
 #include "host/simulate/control_run.hpp"
-#include "sim/control/double_signals.hpp"
 
 namespace stiction::test {
 std::vector<Trajectory> commissioning() {
@@ -16,11 +16,11 @@ std::vector<Trajectory> commissioning() {
           small_reversals({5e-6, 10e-6, 20e-6, 50e-6, 100e-6, 200e-6}, 2.0)};
 }
 
-host::Log simulated(const sim::Machine& machine, const Trajectory& trajectory, double period) {
+host::Log simulated(const machine::Machine& machine, const Trajectory& trajectory, double period) {
   auto one_axis = machine;
   one_axis.axes.resize(1);
   const std::array<double, 1> start{trajectory.at(0.0).position};
-  host::ControlRun<sim::DoubleSignals> run(one_axis, start);
+  host::ControlRun<machine::DoubleSignals> run(one_axis, start);
   const auto stride = static_cast<int>(std::lround(period / machine.timing.fast_period));
   host::Log log{trajectory.name, {}, {}, period, {{}}, {}};
   auto& axis = log.axes.front();

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "firmware/machine/model/machine.hpp"
 #include "host/log/log.hpp"
 #include "sim/experiment/commissioning_path.hpp"
-#include "sim/model/machine.hpp"
 
 namespace stiction::test {
 
@@ -23,7 +23,7 @@ std::vector<Trajectory> commissioning();
 
 // Runs the X axis of `machine` in closed loop and records t, x_set, x, i (A) at `period` (s), a multiple of the fast
 // period. Position and current are those of the plant, without noise.
-host::Log simulated(const sim::Machine& machine, const Trajectory& trajectory, double period = 1e-3);
+host::Log simulated(const machine::Machine& machine, const Trajectory& trajectory, double period = 1e-3);
 
 struct Noise {
   double position = 5e-9;  // m rms, and the encoder's increment

@@ -6,9 +6,9 @@
 
 #include <cmath>
 
+#include "firmware/machine/file/machine_file.hpp"
 #include "host/log/mapping.hpp"
 #include "host/log/text_file.hpp"
-#include "sim/machine/machine_file.hpp"
 #include "tests/host/log/temporary_file.hpp"
 
 namespace stiction::host {
@@ -100,7 +100,7 @@ std::string refusal(const std::string& recording, const std::string& mapping_tex
     mapped(recording, mapping_text);
   } catch (const LogError& error) {
     return error.what();
-  } catch (const sim::MachineFileError& error) {
+  } catch (const machine::MachineFileError& error) {
     return error.what();
   }
   return "";

@@ -15,7 +15,7 @@ namespace stiction::host {
 namespace {
 
 // A circle of the cross table at 16 m/min as a log of every `stride`-th tick.
-Log circle_log(const sim::Machine& machine, std::int64_t stride, double from = 0.0) {
+Log circle_log(const machine::Machine& machine, std::int64_t stride, double from = 0.0) {
   Log log;
   log.source = "circle";
   log.period = static_cast<double>(stride) * machine.timing.fast_period;
@@ -32,12 +32,12 @@ Log circle_log(const sim::Machine& machine, std::int64_t stride, double from = 0
     log.t.push_back(t);
     for (std::size_t k = 0; k < 2; ++k) {
       auto& axis = log.axes[k];
-      axis.x_set.push_back(sim::to_si(all[k].x_set));
-      axis.v_set.push_back(sim::to_si(all[k].v_set));
-      axis.a_set.push_back(sim::to_si(all[k].a_set));
-      axis.x.push_back(sim::to_si(all[k].x));
-      axis.v.push_back(sim::to_si(all[k].v));
-      axis.i.push_back(sim::to_si(all[k].i));
+      axis.x_set.push_back(machine::to_si(all[k].x_set));
+      axis.v_set.push_back(machine::to_si(all[k].v_set));
+      axis.a_set.push_back(machine::to_si(all[k].a_set));
+      axis.x.push_back(machine::to_si(all[k].x));
+      axis.v.push_back(machine::to_si(all[k].v));
+      axis.i.push_back(machine::to_si(all[k].i));
     }
   });
   return log;
@@ -96,7 +96,7 @@ TEST(Replay, OfALogThatBeginsInMotionIsBroughtThere) {
 TEST(Replay, InDoublePrecisionIsNearTheFixedOne) {
   const auto machine = test::cross_table();
   const auto log = circle_log(machine, 16);
-  const auto d = compare_replay(log, replay<sim::DoubleSignals>(machine, log), 0, 0.0);
+  const auto d = compare_replay(log, replay<machine::DoubleSignals>(machine, log), 0, 0.0);
   EXPECT_LT(d.position, 0.2e-6);
 }
 

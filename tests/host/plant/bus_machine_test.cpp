@@ -121,10 +121,10 @@ TEST(FaultyBackend, PassesEveryIndexMarkOfAScaleWhereItIs) {
     faulty.wait_for_tick();
     faulty.read(feedback);
     faulty.read_inputs(inputs);
-    const double x = sim::to_si(feedback[0].position);
+    const double x = machine::to_si(feedback[0].position);
     furthest = std::max(furthest, x);
     if (inputs[0].index) {
-      const double mark = sim::to_si(inputs[0].index_position);
+      const double mark = machine::to_si(inputs[0].index_position);
       passed.push_back(mark);
       EXPECT_LE(std::min(before, x) - 1e-9, mark);
       EXPECT_GE(std::max(before, x) + 1e-9, mark);

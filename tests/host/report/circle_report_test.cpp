@@ -183,7 +183,7 @@ TEST(MachineSheet, PrintsEngineeringUnitsAndLeavesOutWhatNoAxisHas) {
 TEST(MachineSheet, ShowsWhatAForceMotorHasInItsOwnUnits) {
   auto machine = synthetic_circle({.feeds_m_per_min = {48.0}}).machine;
   auto& axis = machine.axes[0];
-  axis.motor = {.model = sim::MotorModel::force, .force_constant = 35.0};
+  axis.motor = {.model = machine::MotorModel::force, .force_constant = 35.0};
   axis.current_controller.reset();
   std::vector<std::string> found;
   for (const auto& section : machine_sheet(machine))

@@ -102,33 +102,33 @@ sim::CircleRun make_run(const std::string& friction, double feed, sim::Direction
   return run;
 }
 
-sim::Axis make_machine_axis(const std::string& name) {
+machine::AxisModel make_machine_axis(const std::string& name) {
   const bool y = name == "Y";
-  sim::Axis axis;
+  machine::AxisModel axis;
   axis.name = name;
   axis.mass = y ? 520 : 225;
   axis.travel = y ? 0.4 : 0.5;
   axis.max_velocity = 80.0 / 60.0;
   axis.max_acceleration = 20.0;
-  axis.motor = {sim::MotorModel::synchronous, 1.8, 18e-3, 1.8e-3, 62.8, 62.8, 94.0, 0.072, y ? 2 : 1};
+  axis.motor = {machine::MotorModel::synchronous, 1.8, 18e-3, 1.8e-3, 62.8, 62.8, 94.0, 0.072, y ? 2 : 1};
   axis.inverter = {125e-6, 600.0, 70.0};
-  axis.encoder = {1e-9, 0.0, sim::VelocitySource::estimated, sim::EncoderMount{0.5, 2000.0, 0.05}};
+  axis.encoder = {1e-9, 0.0, machine::VelocitySource::estimated, machine::EncoderMountParameters{0.5, 2000.0, 0.05}};
   axis.position_controller = {83.3333, 1e-6};
   axis.velocity_controller = {y ? 1200.0 : 600.0, y ? 4.4e-3 : 5e-3};
-  axis.current_controller = sim::CurrentController{y ? 17.0 : 35.0, 2e-3};
-  axis.notch = sim::Notch{2000.0, 0.05, 0.7};
+  axis.current_controller = machine::CurrentControllerParameters{y ? 17.0 : 35.0, 2e-3};
+  axis.notch = machine::NotchParameters{2000.0, 0.05, 0.7};
   axis.feedforward = {1.0, 1.0};
   const double coulomb = y ? 220 : 90, viscous = y ? 1250 : 500;
   axis.friction = {"lugre",
-                   {{"coulomb_viscous", sim::CoulombViscous::Parameters{coulomb, viscous}},
-                    {"classical", sim::Classical::Parameters{coulomb, 1.0, viscous}},
-                    {"linear_ramp", sim::LinearRamp::Parameters{coulomb, y ? 29000.0 : 12000.0, viscous}},
-                    {"parabolic", sim::Parabolic::Parameters{y ? 800.0 : 300.0, 3.0}},
-                    {"lugre", sim::LuGre::Parameters{coulomb, 1.0, viscous, 1e-3, y ? 2e6 : 8e5, 0.1}}}};
+                   {{"coulomb_viscous", sim::CoulombViscousParameters{coulomb, viscous}},
+                    {"classical", sim::ClassicalParameters{coulomb, 1.0, viscous}},
+                    {"linear_ramp", sim::LinearRampParameters{coulomb, y ? 29000.0 : 12000.0, viscous}},
+                    {"parabolic", sim::ParabolicParameters{y ? 800.0 : 300.0, 3.0}},
+                    {"lugre", sim::LuGreParameters{coulomb, 1.0, viscous, 1e-3, y ? 2e6 : 8e5, 0.1}}}};
   return axis;
 }
 
-void add_references(sim::Machine& machine, const Heights& rows, std::optional<std::string> friction) {
+void add_references(machine::Machine& machine, const Heights& rows, std::optional<std::string> friction) {
   for (std::size_t i = 0; i < feeds.size(); ++i) {
     const double feed = feeds[i] / 60.0;
     machine.circle_references.push_back({"X", !friction, friction, feed, rows.x_error[i] * 1e-6, rows.x_current[i]});

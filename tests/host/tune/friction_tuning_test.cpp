@@ -5,10 +5,10 @@
 
 #include <cmath>
 
+#include "firmware/machine/configuration/compensation_configuration.hpp"
 #include "host/simulate/log_recorder.hpp"
 #include "host/simulate/quadrant_run.hpp"
 #include "host/tune/timing_rule.hpp"
-#include "sim/control/compensation_configuration.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/shipped_machine.hpp"
 
@@ -17,12 +17,12 @@ namespace {
 
 using test::figure;
 
-sim::Machine machine_with(const std::string& friction) {
+machine::Machine machine_with(const std::string& friction) {
   return test::cross_table(
       {"axis.*.friction.use=" + friction, "axis.*.encoder.velocity=estimated", "axis.*.encoder.noise=2 nm"});
 }
 
-Log log_of(const sim::Machine& machine, double feed, int laps = 2) {
+Log log_of(const machine::Machine& machine, double feed, int laps = 2) {
   const auto one = one_axis(machine, 0);
   LogRecorder recorder(one);
   sim::CircleSettings circle;
@@ -33,7 +33,7 @@ Log log_of(const sim::Machine& machine, double feed, int laps = 2) {
   return log;
 }
 
-FrictionTuning tuned(const sim::Machine& machine) {
+FrictionTuning tuned(const machine::Machine& machine) {
   return tune_friction({log_of(machine, 8.0, 1), log_of(machine, 48.0)}, machine.axes[0]);
 }
 
@@ -48,7 +48,8 @@ TEST(FrictionTuning, finds_level_mass_and_sliding_curve_of_maxwell_slip) {
   EXPECT_EQ(t.friction.contact_damping, 0.0);
   for (const double v : {0.05, 0.2, 0.7})
     for (const auto* list : {&t.friction.forward, &t.friction.backward})
-      EXPECT_NEAR(t.coulomb + sim::sliding_value(t.friction.speed, *list, v), (90.0 + 500.0 * v) / constant, 0.03) << v;
+      EXPECT_NEAR(t.coulomb + machine::sliding_value(t.friction.speed, *list, v), (90.0 + 500.0 * v) / constant, 0.03)
+          << v;
 }
 
 TEST(FrictionTuning, finds_the_damping_of_a_lugre_contact) {

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "sim/machine/machine_file.hpp"
+#include "sim/machine_file.hpp"
 #include "tests/support/figure.hpp"
 
 namespace stiction::test {

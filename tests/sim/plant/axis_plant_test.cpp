@@ -10,22 +10,22 @@
 namespace stiction::sim {
 namespace {
 
-constexpr Timing timing{62.5e-6, 1e-3};
+constexpr machine::Timing timing{62.5e-6, 1e-3};
 constexpr double tick = 62.5e-6;
 constexpr double step = tick / plant_steps_per_tick;
 
 // A force source of 10 N/V on 4 kg without friction, dead time and encoder errors.
-Axis plain_axis() {
-  Axis axis;
+machine::AxisModel plain_axis() {
+  machine::AxisModel axis;
   axis.name = "x";
   axis.mass = 4.0;
-  axis.motor.model = MotorModel::force;
+  axis.motor.model = machine::MotorModel::force;
   axis.motor.force_constant = 10.0;
   axis.inverter = {0.0, 10.0, 1.0};
-  axis.friction = {"coulomb_viscous", {{"coulomb_viscous", CoulombViscous::Parameters{}}}};
+  axis.friction = {"coulomb_viscous", {{"coulomb_viscous", CoulombViscousParameters{}}}};
   return axis;
 }
-Axis with_friction(FrictionParameters parameters) {
+machine::AxisModel with_friction(machine::FrictionParameters parameters) {
   auto axis = plain_axis();
   axis.friction = {"model", {{"model", std::move(parameters)}}};
   return axis;
@@ -112,7 +112,7 @@ TEST(AxisPlant, WithoutFrictionTheWorkOfTheForcesIsTheKineticEnergy) {
 }
 
 TEST(AxisPlant, FrictionForceIsTheRestOfTheBalanceAndOpposesTheMotion) {
-  AxisPlant plant(timing, with_friction(CoulombViscous::Parameters{6.0, 2.0}), 0.0, 1);
+  AxisPlant plant(timing, with_friction(CoulombViscousParameters{6.0, 2.0}), 0.0, 1);
   plant.command({4.0, 0.0, 0.0}, true);
   advance(plant, 100);
   const double v = plant.velocity();
@@ -125,7 +125,7 @@ TEST(AxisPlant, FrictionForceIsTheRestOfTheBalanceAndOpposesTheMotion) {
 }
 
 TEST(AxisPlant, StickingTheFrictionEqualsTheAppliedForceAndTheVelocityIsZeroToTheBit) {
-  AxisPlant plant(timing, with_friction(Classical::Parameters{20.0, 1.2, 0.0}), 0.1, 1);
+  AxisPlant plant(timing, with_friction(ClassicalParameters{20.0, 1.2, 0.0}), 0.1, 1);
   plant.command({1.5, 0.0, 0.0}, true);
   plant.set_external_force(8.0);
   advance(plant, 1000);
@@ -137,7 +137,7 @@ TEST(AxisPlant, StickingTheFrictionEqualsTheAppliedForceAndTheVelocityIsZeroToTh
 TEST(AxisPlant, SwitchedOffCoastsWithoutCurrentAndForce) {
   auto axis = plain_axis();
   axis.motor = {};
-  axis.motor.model = MotorModel::synchronous;
+  axis.motor.model = machine::MotorModel::synchronous;
   axis.motor.phase_resistance = 1.8;
   axis.motor.phase_inductance = 18e-3;
   axis.motor.mutual_inductance = 1.8e-3;
@@ -177,7 +177,7 @@ TEST(AxisPlant, UnknownFrictionModelIsRefused) {
   EXPECT_THROW(AxisPlant(timing, axis, 0.0, 1), std::out_of_range);
 }
 
-TEST(Encoder, ReadsTheNearestIncrement) {
+TEST(machine::EncoderParameters, ReadsTheNearestIncrement) {
   auto axis = plain_axis();
   axis.encoder.increment = 1e-6;
   for (const double x : {0.0, 0.4e-6, 0.6e-6, -0.4e-6, -0.6e-6, 0.1234567, -0.1234567}) {
@@ -186,13 +186,13 @@ TEST(Encoder, ReadsTheNearestIncrement) {
   }
 }
 
-TEST(Encoder, WithoutIncrementAndNoiseReadsTheRider) {
+TEST(machine::EncoderParameters, WithoutIncrementAndNoiseReadsTheRider) {
   AxisPlant plant(timing, plain_axis(), 0.1234567890123, 1);
   EXPECT_EQ(plant.read_encoder(), 0.1234567890123);
   EXPECT_EQ(plant.encoder_velocity(), 0.0);
 }
 
-TEST(Encoder, NoiseIsNormalOfTheGivenWidth) {
+TEST(machine::EncoderParameters, NoiseIsNormalOfTheGivenWidth) {
   auto axis = plain_axis();
   axis.encoder.noise = 3e-9;
   AxisPlant plant(timing, axis, 0.5, 20060);
@@ -213,7 +213,7 @@ TEST(Encoder, NoiseIsNormalOfTheGivenWidth) {
   EXPECT_NEAR(lagged / n, 0.0, 5.0 / std::sqrt(n)) << "white";
 }
 
-TEST(Encoder, NoiseRepeatsWithItsSeedAndOnlyWithIt) {
+TEST(machine::EncoderParameters, NoiseRepeatsWithItsSeedAndOnlyWithIt) {
   auto axis = plain_axis();
   axis.encoder.noise = 1e-9;
   AxisPlant a(timing, axis, 0.0, 7), b(timing, axis, 0.0, 7), c(timing, axis, 0.0, 8);
@@ -226,7 +226,7 @@ TEST(Encoder, NoiseRepeatsWithItsSeedAndOnlyWithIt) {
   EXPECT_EQ(equal, 0);
 }
 
-TEST(Encoder, NoiseIsAddedBeforeTheIncrement) {
+TEST(machine::EncoderParameters, NoiseIsAddedBeforeTheIncrement) {
   auto axis = plain_axis();
   axis.encoder.increment = 1e-8;
   axis.encoder.noise = 3e-8;
@@ -237,9 +237,9 @@ TEST(Encoder, NoiseIsAddedBeforeTheIncrement) {
   }
 }
 
-TEST(Encoder, OnItsMountLagsAnAcceleratedCarriageByItsStaticDeflection) {
+TEST(machine::EncoderParameters, OnItsMountLagsAnAcceleratedCarriageByItsStaticDeflection) {
   auto axis = plain_axis();
-  axis.encoder.mount = EncoderMount{0.5, 2000.0, 0.05};
+  axis.encoder.mount = machine::EncoderMountParameters{0.5, 2000.0, 0.05};
   AxisPlant plant(timing, axis, 0.0, 1);
   plant.command({8.0, 0.0, 0.0}, true);  // 20 m/s^2
   advance(plant, 1000);                  // 62 ms, 39 decay constants

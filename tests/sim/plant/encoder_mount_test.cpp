@@ -7,22 +7,22 @@
 #include <complex>
 #include <numbers>
 
-#include "sim/machine/parameters.hpp"
+#include "firmware/machine/file/parameters.hpp"
 
 namespace stiction::sim {
 namespace {
 
-constexpr EncoderMount cross_table{0.5, 2000.0, 0.05};
+constexpr machine::EncoderMountParameters cross_table{0.5, 2000.0, 0.05};
 constexpr double two_pi = 2.0 * std::numbers::pi;
 
-TEST(EncoderMount, WithoutParametersIsRigid) {
+TEST(machine::EncoderMountParameters, WithoutParametersIsRigid) {
   EncoderMountModel mount(std::nullopt, 1e-5);
   for (int i = 0; i < 10; ++i) mount.advance(0.1);
   EXPECT_EQ(mount.deflection(), 0.0);
   EXPECT_EQ(mount.velocity(), 0.0);
 }
 
-TEST(EncoderMount, SwingsIntoAHeldAccelerationByTheClosedFormInAnyStep) {
+TEST(machine::EncoderMountParameters, SwingsIntoAHeldAccelerationByTheClosedFormInAnyStep) {
   constexpr double a = 20.0;
   const double w = two_pi * 2000.0, decay = 0.05 * w, damped = w * std::sqrt(1.0 - 0.05 * 0.05);
   for (const double h : {1e-6, 15.625e-6, 1e-4, 3e-4}) {
@@ -38,7 +38,7 @@ TEST(EncoderMount, SwingsIntoAHeldAccelerationByTheClosedFormInAnyStep) {
   }
 }
 
-TEST(EncoderMount, InFrequencyIsTheTransferFunctionOfItsEquation) {
+TEST(machine::EncoderMountParameters, InFrequencyIsTheTransferFunctionOfItsEquation) {
   // (3.16): X_j / X = (b s + k) / (m s^2 + b s + k), k = w^2 m, b = 2 zeta sqrt(k m). The model's input is the
   // acceleration; x and x_j follow from it: X_j / X = 1 + D / X, X = A / s^2.
   constexpr double m = 0.5;
@@ -63,19 +63,19 @@ TEST(EncoderMount, InFrequencyIsTheTransferFunctionOfItsEquation) {
   }
 }
 
-TEST(EncoderMount, CriticallyAndOverdampedItStillFollows) {
+TEST(machine::EncoderMountParameters, CriticallyAndOverdampedItStillFollows) {
   // The machine file takes damping ratios up to 10: none may turn the reading into NaN.
   constexpr double a = 20.0;
   const double w = two_pi * 2000.0;
   for (const double damping : {1.0, 1.5, 10.0}) {
-    EncoderMountModel mount(EncoderMount{0.5, 2000.0, damping}, 15.625e-6);
+    EncoderMountModel mount(machine::EncoderMountParameters{0.5, 2000.0, damping}, 15.625e-6);
     for (int n = 0; n < 6400; ++n) mount.advance(a * 15.625e-6);  // 0.1 s; the slowest constant is 20 / w = 1.6 ms
     EXPECT_NEAR(mount.deflection(), -a / (w * w), 1e-9 * a / (w * w)) << damping;
   }
 }
 
-TEST(EncoderMount, UndampedKeepsItsEnergy) {
-  EncoderMountModel mount(EncoderMount{0.5, 2000.0, 0.0}, 15.625e-6);
+TEST(machine::EncoderMountParameters, UndampedKeepsItsEnergy) {
+  EncoderMountModel mount(machine::EncoderMountParameters{0.5, 2000.0, 0.0}, 15.625e-6);
   mount.advance(1e-3);
   const double w = two_pi * 2000.0;
   const auto energy = [&] { return std::pow(mount.velocity(), 2) + std::pow(w * mount.deflection(), 2); };
@@ -85,11 +85,11 @@ TEST(EncoderMount, UndampedKeepsItsEnergy) {
   EXPECT_NEAR(energy() / start, 1.0, 1e-10) << "a second of free swinging";
 }
 
-TEST(EncoderMount, DeflectsByAFiniteAmountAtBothEndsOfTheAllowedNaturalFrequencies) {
-  using Mount = Table<EncoderMount>;
+TEST(machine::EncoderMountParameters, DeflectsByAFiniteAmountAtBothEndsOfTheAllowedNaturalFrequencies) {
+  using Mount = machine::Table<machine::EncoderMountParameters>;
   EXPECT_FALSE(Mount::natural_frequencies.contains(1e-323));  // 1 / w^2 is infinite
   for (const double frequency : {Mount::natural_frequencies.low, Mount::natural_frequencies.high}) {
-    EncoderMountModel mount(EncoderMount{0.5, frequency, 0.05}, 15.625e-6);
+    EncoderMountModel mount(machine::EncoderMountParameters{0.5, frequency, 0.05}, 15.625e-6);
     for (int i = 0; i < 10; ++i) mount.advance(1e-4);
     EXPECT_TRUE(std::isfinite(mount.deflection()) && std::isfinite(mount.velocity())) << frequency << " Hz";
     EXPECT_NE(mount.deflection(), 0.0) << frequency << " Hz";

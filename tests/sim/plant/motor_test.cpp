@@ -14,9 +14,9 @@ constexpr double step = 15.625e-6;
 constexpr double two_pi = 2.0 * std::numbers::pi;
 
 // 1FN1-126-5AF71 (Tab 3.1).
-Motor linear_motor() {
-  Motor motor;
-  motor.model = MotorModel::synchronous;
+machine::MotorParameters linear_motor() {
+  machine::MotorParameters motor;
+  motor.model = machine::MotorModel::synchronous;
   motor.phase_resistance = 1.8;
   motor.phase_inductance = 18e-3;
   motor.mutual_inductance = 1.8e-3;
@@ -170,8 +170,8 @@ TEST(Motors, SwitchedOffCarryNoCurrent) {
 }
 
 TEST(ForceSource, GivesItsForceAtOnce) {
-  Motor motor;
-  motor.model = MotorModel::force;
+  machine::MotorParameters motor;
+  motor.model = machine::MotorModel::force;
   motor.force_constant = 35.15;
   ForceSource source(motor, step);
   EXPECT_EQ(source.advance({-4.0, 0.0, 0.0}, 0.1, 1.0), -4.0 * 35.15);

@@ -1,5 +1,5 @@
 // The simulation's own sine and cosine against those of long double.
-#include "sim/sine_cosine.hpp"
+#include "sim/number/sine_cosine.hpp"
 
 #include <gtest/gtest.h>
 

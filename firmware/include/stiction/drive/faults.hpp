@@ -32,7 +32,7 @@ enum class Fault : std::uint8_t {
   bus_off = 34,
   bus_overload = 35,
   encoder_signal = 36,
-  // Seen by the drive's programme and by who watches it (firmware/drive).
+  // Seen by the drive's programme and by who watches it (firmware/stictiond).
   missed_deadline = 48,
   clock_jump = 49,
   parameters_damaged = 50,

@@ -6,21 +6,21 @@
 #include <complex>
 #include <numbers>
 
+#include "firmware/machine/configuration/axis_configuration.hpp"
+#include "firmware/machine/configuration/double_signals.hpp"
 #include "hal/simulated/simulated_backend.hpp"
-#include "sim/control/axis_configuration.hpp"
-#include "sim/control/double_signals.hpp"
 #include "tests/sim/plant/effects/effect_plant.hpp"
 
 namespace stiction::sim::test {
 namespace {
 
-Axis frictionless(Axis axis) {
-  axis.friction = {"coulomb_viscous", {{"coulomb_viscous", CoulombViscous::Parameters{}}}};
+machine::AxisModel frictionless(machine::AxisModel axis) {
+  axis.friction = {"coulomb_viscous", {{"coulomb_viscous", CoulombViscousParameters{}}}};
   return axis;
 }
 
 // Motor force (N) after `volt` has been commanded for a while.
-double force_of_voltage(const Axis& axis, double volt) {
+double force_of_voltage(const machine::AxisModel& axis, double volt) {
   AxisPlant plant(timing, axis, 0.0, 1);
   for (int k = 0; k < 4; ++k) {
     plant.command({volt, 0.0, 0.0}, true);
@@ -30,14 +30,14 @@ double force_of_voltage(const Axis& axis, double volt) {
 }
 
 TEST(ForceConstantMismatch, TheMotorHasTheTrueConstantAndTheDriveKeepsTheFiles) {
-  Axis axis = with_effects({{"force_constant_mismatch", {{"force_constant", {11.0}}}}});
+  machine::AxisModel axis = with_effects({{"force_constant_mismatch", {{"force_constant", {11.0}}}}});
   EXPECT_NEAR(force_of_voltage(axis, 2.0), 22.0, 1e-12);
   EXPECT_EQ(drive_axis(axis).motor.force_constant, 10.0);
 }
 
 TEST(ForceConstantMismatch, OfThreeWindingsTheWholeMotorHasItAndTheEmfFollows) {
-  Axis axis = force_axis();
-  axis.motor.model = MotorModel::synchronous;
+  machine::AxisModel axis = force_axis();
+  axis.motor.model = machine::MotorModel::synchronous;
   axis.motor.phase_force_constant = 62.8;
   axis.motor.emf_constant = 60.0;
   axis.motor.force_constant = 94.0;
@@ -49,7 +49,7 @@ TEST(ForceConstantMismatch, OfThreeWindingsTheWholeMotorHasItAndTheEmfFollows) {
 }
 
 TEST(ForceSaturation, TheForceFollowsTheHyperbolicTangentOfTheCurrentInBothSigns) {
-  const Axis axis = with_effects({{"force_saturation", {{"current", {20.0}}}}});
+  const machine::AxisModel axis = with_effects({{"force_saturation", {{"current", {20.0}}}}});
   for (const double volt : {0.01, 3.0, 15.0, 60.0, -3.0, -60.0})
     EXPECT_NEAR(force_of_voltage(axis, volt), 10.0 * 20.0 * std::tanh(volt / 20.0), 1e-9) << volt;
   const ForceSaturation law({20.0}, axis);
@@ -60,7 +60,7 @@ TEST(ForceSaturation, TheForceFollowsTheHyperbolicTangentOfTheCurrentInBothSigns
 //   (w^2 + 2 zeta w s) / (M (s^2 + 2 zeta w s + w^2)).
 TEST(StructuralResonance, TheLoadAnswersTheMotorAsTwoMassesOnASpringDo) {
   const double f0 = 60.0, zeta = 0.05, w = 2.0 * std::numbers::pi * f0;
-  Axis axis = frictionless(with_effects(
+  machine::AxisModel axis = frictionless(with_effects(
       {{"structural_resonance", {{"frequency", {f0}}, {"damping_ratio", {zeta}}, {"mass_ratio", {0.3}}}}}));
   for (const double f : {5.0, 30.0, 60.0, 90.0}) {
     AxisPlant plant(timing, axis, 0.0, 1);
@@ -84,7 +84,7 @@ TEST(StructuralResonance, TheLoadAnswersTheMotorAsTwoMassesOnASpringDo) {
 }
 
 TEST(StructuralResonance, MotionAndFrictionOfASteadyPassAreThoseOfTheWholeAxis) {
-  const Axis axis = with_effects(
+  const machine::AxisModel axis = with_effects(
       {{"structural_resonance", {{"frequency", {80.0}}, {"damping_ratio", {0.2}}, {"mass_ratio", {0.4}}}}});
   // 50 N against 20 N and 100 N s/m: 0.3 m/s, reached within e^-10 after ten time constants M/viscous.
   AxisPlant pushed(timing, axis, 0.0, 1);
@@ -102,8 +102,8 @@ TEST(StructuralResonance, MotionAndFrictionOfASteadyPassAreThoseOfTheWholeAxis) 
   EXPECT_NEAR(plant.velocity(), 5.0 / 50.0, 1e-4);  // F t / M after 1 s, and what the decayed swing left
 }
 
-Machine two_axes(double coupling_on_first) {
-  Machine machine;
+machine::Machine two_axes(double coupling_on_first) {
+  machine::Machine machine;
   machine.axes = {frictionless(force_axis()), frictionless(force_axis())};
   machine.axes[1].name = "y";
   machine.axes[0].effects = {{"cross_axis_coupling", {{"mass", {coupling_on_first}}}}};
@@ -112,8 +112,8 @@ Machine two_axes(double coupling_on_first) {
 
 TEST(CrossAxisCoupling, TheOtherAxisAccelerationPushesTheCarriageTowardsPlusX) {
   const auto machine = two_axes(5.0);
-  hal::SimulatedBackend<DoubleSignals> backend(machine, std::array{0.0, 0.0});
-  std::array<Command<DoubleSignals>, 2> command;
+  hal::SimulatedBackend<machine::DoubleSignals> backend(machine, std::array{0.0, 0.0});
+  std::array<Command<machine::DoubleSignals>, 2> command;
   for (auto& c : command) c.enable = true;
   command[1].voltage[0].value = 8.0;  // 80 N on 50 kg
   for (int k = 0; k <= 1600; ++k) {
@@ -127,7 +127,7 @@ TEST(CrossAxisCoupling, TheOtherAxisAccelerationPushesTheCarriageTowardsPlusX) {
 }
 
 TEST(ControllerGainMismatch, ChangesTheDriveAloneAndOnlyWhatIsGiven) {
-  Axis axis = force_axis();
+  machine::AxisModel axis = force_axis();
   axis.position_controller.gain = 80.0;
   axis.velocity_controller = {600.0, 5e-3};
   axis.effects = {{"controller_gain_mismatch", {{"velocity_gain", {570.0}}, {"velocity_integral_time", {6e-3}}}}};
@@ -136,17 +136,17 @@ TEST(ControllerGainMismatch, ChangesTheDriveAloneAndOnlyWhatIsGiven) {
   EXPECT_EQ(drive.velocity_controller.gain, 570.0);
   EXPECT_EQ(drive.velocity_controller.integral_time, 6e-3);
   EXPECT_EQ(plant_axis(axis).velocity_controller.gain, 600.0);
-  axis.encoder.velocity = VelocitySource::estimated;
+  axis.encoder.velocity = machine::VelocitySource::estimated;
   axis.max_velocity = 1.0;
-  const auto with = configure_axis<DoubleSignals>(timing, axis);
+  const auto with = machine::configure_axis<machine::DoubleSignals>(timing, axis);
   axis.effects.clear();
-  const auto without = configure_axis<DoubleSignals>(timing, axis);
+  const auto without = machine::configure_axis<machine::DoubleSignals>(timing, axis);
   EXPECT_NEAR(with.velocity.proportional.value / without.velocity.proportional.value, 570.0 / 600.0, 1e-12);
   EXPECT_EQ(with.position_gain.value, without.position_gain.value);
 }
 
 TEST(ControllerGainMismatch, IsRefusedWithoutAnyGainAndForAControllerThatIsNotThere) {
-  Axis axis = force_axis();
+  machine::AxisModel axis = force_axis();
   axis.effects = {{"controller_gain_mismatch", {}}};
   EXPECT_THROW(drive_axis(axis), EffectError);
   axis.effects = {{"controller_gain_mismatch", {{"current_gain", {30.0}}}}};

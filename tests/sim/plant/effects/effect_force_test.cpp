@@ -13,25 +13,25 @@ namespace {
 
 constexpr double servo = 2e-3;  // N
 
-Effect one(const std::string& name, std::map<std::string, std::vector<double>> values) {
+machine::Effect one(const std::string& name, std::map<std::string, std::vector<double>> values) {
   return {name, std::move(values)};
 }
 
 TEST(EffectForce, AConstantForcePushesTowardsPlusXInBothDirections) {
-  const Axis axis = with_effects({one("constant_force", {{"force", {7.0}}})});
+  const machine::AxisModel axis = with_effects({one("constant_force", {{"force", {7.0}}})});
   for (const double v : {0.05, -0.05}) EXPECT_NEAR(effect_force(axis, v), 7.0, servo) << v;
 }
 
 TEST(EffectForce, AConstantForceMovesAFreeCarriageTowardsPlusX) {
-  Axis axis = with_effects({one("constant_force", {{"force", {7.0}}})});
-  axis.friction = {"coulomb_viscous", {{"coulomb_viscous", CoulombViscous::Parameters{}}}};
+  machine::AxisModel axis = with_effects({one("constant_force", {{"force", {7.0}}})});
+  axis.friction = {"coulomb_viscous", {{"coulomb_viscous", CoulombViscousParameters{}}}};
   AxisPlant plant(timing, axis, 0.0, 1);
   for (int k = 0; k < 16000; ++k) plant.advance_tick();
   EXPECT_NEAR(plant.velocity(), 7.0 / 50.0, 1e-9);  // F t / m after 1 s
 }
 
 TEST(EffectForce, ASpringPullsTowardsItsNeutralPosition) {
-  const Axis axis = with_effects({one("position_spring", {{"stiffness", {120.0}}, {"neutral", {0.1}}})});
+  const machine::AxisModel axis = with_effects({one("position_spring", {{"stiffness", {120.0}}, {"neutral", {0.1}}})});
   // At 0.3 m, moving 12.5 mm while it is measured and as much before.
   for (const double v : {0.05, -0.05}) {
     const double mean_position = 0.3 + v * 1.5 * 4000 * tick;
@@ -53,7 +53,8 @@ TEST(EffectForce, ARippleFollowsItsHarmonicsInPosition) {
 
 TEST(EffectForce, ARippleActsOnTheCarriageWithItsSign) {
   // While it is measured the carriage creeps on by 0.25 to 0.5 mm, over which the ripple is straight within 1e-3 N.
-  const Axis axis = with_effects({one("force_ripple", {{"pitch", {0.072}}, {"cosine", {3.0}}, {"sine", {2.0}}})});
+  const machine::AxisModel axis =
+      with_effects({one("force_ripple", {{"pitch", {0.072}}, {"cosine", {3.0}}, {"sine", {2.0}}})});
   for (const double start : {0.072, 0.018, -0.05}) {
     const double angle = 2.0 * std::numbers::pi * (start + 1e-3 * 1.5 * 4000 * tick) / 0.072;
     EXPECT_NEAR(effect_force(axis, 1e-3, start), 3.0 * std::cos(angle) + 2.0 * std::sin(angle), servo + 1e-3) << start;
@@ -61,7 +62,7 @@ TEST(EffectForce, ARippleActsOnTheCarriageWithItsSign) {
 }
 
 TEST(EffectForce, FrictionThatRisesLessThanLinearlyOpposesTheMotion) {
-  const Axis axis = with_effects({one("viscous_nonlinear", {{"force", {12.0}}, {"velocity", {0.05}}})});
+  const machine::AxisModel axis = with_effects({one("viscous_nonlinear", {{"force", {12.0}}, {"velocity", {0.05}}})});
   for (const double v : {0.01, 0.05, 0.2}) {
     const double friction = 12.0 * (1.0 - std::exp(-v / 0.05));
     EXPECT_NEAR(effect_force(axis, v), -friction, servo) << v;
@@ -70,7 +71,7 @@ TEST(EffectForce, FrictionThatRisesLessThanLinearlyOpposesTheMotion) {
 }
 
 TEST(EffectForce, StribeckFrictionFallsWithSpeedAndOpposesTheMotion) {
-  const Axis axis = with_effects({one("stribeck", {{"break_away", {9.0}}, {"velocity", {0.02}}})});
+  const machine::AxisModel axis = with_effects({one("stribeck", {{"break_away", {9.0}}, {"velocity", {0.02}}})});
   for (const double v : {0.002, 0.02, 0.03, 0.2}) {
     const double friction = 9.0 * std::exp(-(v / 0.02) * (v / 0.02));
     EXPECT_NEAR(effect_force(axis, v), -friction, servo) << v;
@@ -79,8 +80,8 @@ TEST(EffectForce, StribeckFrictionFallsWithSpeedAndOpposesTheMotion) {
 }
 
 TEST(EffectForce, APositiveAsymmetryIsMoreFrictionInPlusXAndLessInMinusX) {
-  const Axis axis = with_effects({one("friction_asymmetry", {{"coulomb", {4.0}}, {"viscous", {30.0}}})});
-  const Axis plain = force_axis();
+  const machine::AxisModel axis = with_effects({one("friction_asymmetry", {{"coulomb", {4.0}}, {"viscous", {30.0}}})});
+  const machine::AxisModel plain = force_axis();
   for (const double v : {0.01, 0.1}) {
     EXPECT_NEAR(force_at(axis, v), (20.0 + 4.0) + (100.0 + 30.0) * v, servo) << v;
     EXPECT_NEAR(force_at(axis, -v), -((20.0 - 4.0) + (100.0 - 30.0) * v), servo) << v;
@@ -89,7 +90,7 @@ TEST(EffectForce, APositiveAsymmetryIsMoreFrictionInPlusXAndLessInMinusX) {
 }
 
 TEST(EffectForce, TheFrictionForceOfThePlantHoldsFrictionEffectsButNoOthers) {
-  const Axis axis =
+  const machine::AxisModel axis =
       with_effects({one("friction_asymmetry", {{"coulomb", {4.0}}}), one("constant_force", {{"force", {50.0}}})});
   AxisPlant plant(timing, axis, 0.0, 1);
   for (int k = 0; k < 4000; ++k) plant.advance_tick();
@@ -99,8 +100,8 @@ TEST(EffectForce, TheFrictionForceOfThePlantHoldsFrictionEffectsButNoOthers) {
 
 class Mismatch : public testing::TestWithParam<const char*> {
  protected:
-  Axis axis_with(std::vector<Effect> effects) const {
-    Axis axis = with_effects(std::move(effects));
+  machine::AxisModel axis_with(std::vector<machine::Effect> effects) const {
+    machine::AxisModel axis = with_effects(std::move(effects));
     axis.friction.use = GetParam();
     return axis;
   }
@@ -109,7 +110,7 @@ class Mismatch : public testing::TestWithParam<const char*> {
 
 TEST_P(Mismatch, OfCoulombShiftsEverySteadyFrictionByItsDifference) {
   const double change = is_parabolic() ? 26.0 : 26.0 - 20.0;  // the root law has no Coulomb level in the file
-  const Axis axis = axis_with({one("coulomb_mismatch", {{"coulomb", {26.0}}})});
+  const machine::AxisModel axis = axis_with({one("coulomb_mismatch", {{"coulomb", {26.0}}})});
   // The break speed of the linear ramp rises with the level: mu_v (v - v_0) falls by as much.
   const double ramp = std::string(GetParam()) == "linear_ramp" ? 100.0 * 6.0 / 12000.0 : 0.0;
   for (const double v : {0.05, 0.2}) {
@@ -119,7 +120,7 @@ TEST_P(Mismatch, OfCoulombShiftsEverySteadyFrictionByItsDifference) {
 }
 
 TEST_P(Mismatch, OfViscousFrictionChangesEverySlope) {
-  const Axis axis = axis_with({one("viscous_mismatch", {{"viscous", {140.0}}})});
+  const machine::AxisModel axis = axis_with({one("viscous_mismatch", {{"viscous", {140.0}}})});
   const double before = is_parabolic() ? 0.0 : 100.0;
   const double break_velocity = std::string(GetParam()) == "linear_ramp" ? 20.0 / 12000.0 : 0.0;
   for (const double v : {0.05, 0.2})
@@ -132,8 +133,8 @@ INSTANTIATE_TEST_SUITE_P(EveryFrictionModel, Mismatch,
                          [](const auto& model) { return std::string(model.param); });
 
 TEST(MassMismatch, AcceleratesByTheTrueMass) {
-  Axis axis = with_effects({one("mass_mismatch", {{"mass", {40.0}}})});
-  axis.friction = {"coulomb_viscous", {{"coulomb_viscous", CoulombViscous::Parameters{}}}};
+  machine::AxisModel axis = with_effects({one("mass_mismatch", {{"mass", {40.0}}})});
+  axis.friction = {"coulomb_viscous", {{"coulomb_viscous", CoulombViscousParameters{}}}};
   AxisPlant plant(timing, axis, 0.0, 1);
   plant.command({1.0, 0.0, 0.0}, true);
   for (int k = 0; k < 1600; ++k) plant.advance_tick();
@@ -141,19 +142,20 @@ TEST(MassMismatch, AcceleratesByTheTrueMass) {
 }
 
 TEST(EffectForce, EffectsAddUp) {
-  const Axis axis = with_effects({one("constant_force", {{"force", {7.0}}}), one("constant_force", {{"force", {-3.0}}}),
-                                  one("stribeck", {{"break_away", {9.0}}, {"velocity", {1.0}}})});
+  const machine::AxisModel axis =
+      with_effects({one("constant_force", {{"force", {7.0}}}), one("constant_force", {{"force", {-3.0}}}),
+                    one("stribeck", {{"break_away", {9.0}}, {"velocity", {1.0}}})});
   EXPECT_NEAR(effect_force(axis, 0.05), 4.0 - 9.0 * std::exp(-0.05 * 0.05), servo);
 }
 
 // No effect may move a carriage that stands, or keep it moving: after a push it comes to rest and stays.
 TEST(EffectForce, AtStandstillNothingChatters) {
-  const std::vector<Effect> effects{one("stribeck", {{"break_away", {15.0}}, {"velocity", {1e-3}}}),
-                                    one("friction_asymmetry", {{"coulomb", {8.0}}, {"viscous", {50.0}}}),
-                                    one("viscous_nonlinear", {{"force", {30.0}}, {"velocity", {1e-9}}})};
+  const std::vector<machine::Effect> effects{one("stribeck", {{"break_away", {15.0}}, {"velocity", {1e-3}}}),
+                                             one("friction_asymmetry", {{"coulomb", {8.0}}, {"viscous", {50.0}}}),
+                                             one("viscous_nonlinear", {{"force", {30.0}}, {"velocity", {1e-9}}})};
   for (const auto& effect : effects)
     for (const char* model : {"classical", "linear_ramp", "parabolic", "lugre", "maxwell_slip"}) {
-      Axis axis = with_effects({effect});
+      machine::AxisModel axis = with_effects({effect});
       axis.friction.use = model;
       AxisPlant plant(timing, axis, 0.0, 1);
       plant.set_external_force(60.0);
@@ -205,10 +207,10 @@ TEST(EffectForce, FrictionEffectsTakeWorkOverEveryCycleOfMotion) {
 
 TEST(PlantWithoutEffects, IsToTheBitThatWithAnEffectOfNoStrength) {
   for (const char* model : {"coulomb_viscous", "classical", "linear_ramp", "parabolic", "lugre", "maxwell_slip"}) {
-    Axis plain = force_axis();
+    machine::AxisModel plain = force_axis();
     plain.friction.use = model;
-    plain.encoder.mount = EncoderMount{0.5, 2000.0, 0.05};
-    const Axis none =
+    plain.encoder.mount = machine::EncoderMountParameters{0.5, 2000.0, 0.05};
+    const machine::AxisModel none =
         with_effects({one("constant_force", {{"force", {0.0}}}), one("backlash", {{"width", {0.0}}})}, plain);
     AxisPlant a(timing, plain, 0.1, 1), b(timing, none, 0.1, 1);
     for (int k = 0; k < 3200; ++k) {

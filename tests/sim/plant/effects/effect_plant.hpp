@@ -11,36 +11,36 @@
 
 namespace stiction::sim::test {
 
-inline constexpr Timing timing{62.5e-6, 1e-3};
+inline constexpr machine::Timing timing{62.5e-6, 1e-3};
 inline constexpr double tick = 62.5e-6;
 
 // A force source of 10 N/V on 50 kg, without dead time and encoder errors; 20 N Coulomb and 100 N s/m viscous friction.
-inline Axis force_axis() {
-  Axis axis;
+inline machine::AxisModel force_axis() {
+  machine::AxisModel axis;
   axis.name = "x";
   axis.mass = 50.0;
   axis.travel = 1.0;
-  axis.motor.model = MotorModel::force;
+  axis.motor.model = machine::MotorModel::force;
   axis.motor.force_constant = 10.0;
   axis.inverter = {0.0, 1000.0, 1.0};
   axis.friction.use = "classical";
-  axis.friction.models["coulomb_viscous"] = CoulombViscous::Parameters{20.0, 100.0};
-  axis.friction.models["classical"] = Classical::Parameters{20.0, 1.0, 100.0};
-  axis.friction.models["linear_ramp"] = LinearRamp::Parameters{20.0, 12000.0, 100.0};
-  axis.friction.models["parabolic"] = Parabolic::Parameters{300.0, 3.0};
-  axis.friction.models["lugre"] = LuGre::Parameters{20.0, 1.0, 100.0, 1e-3, 1e6, 0.1};
-  axis.friction.models["maxwell_slip"] = MaxwellSlip::Parameters{{1e6, 1e6}, {5.0, 15.0}, 100.0};
+  axis.friction.models["coulomb_viscous"] = CoulombViscousParameters{20.0, 100.0};
+  axis.friction.models["classical"] = ClassicalParameters{20.0, 1.0, 100.0};
+  axis.friction.models["linear_ramp"] = LinearRampParameters{20.0, 12000.0, 100.0};
+  axis.friction.models["parabolic"] = ParabolicParameters{300.0, 3.0};
+  axis.friction.models["lugre"] = LuGreParameters{20.0, 1.0, 100.0, 1e-3, 1e6, 0.1};
+  axis.friction.models["maxwell_slip"] = MaxwellSlipParameters{{1e6, 1e6}, {5.0, 15.0}, 100.0};
   return axis;
 }
 
-inline Axis with_effects(std::vector<Effect> effects, Axis axis = force_axis()) {
+inline machine::AxisModel with_effects(std::vector<machine::Effect> effects, machine::AxisModel axis = force_axis()) {
   axis.effects = std::move(effects);
   return axis;
 }
 
 // Mean force (N) that keeps the carriage at `speed` (m/s) from `start` (m) over `ticks`, after as many to settle. The
 // servo's slow integral makes the mean of its force that of the resistance, whatever is periodic.
-inline double force_at(const Axis& axis, double speed, double start = 0.0, int ticks = 4000) {
+inline double force_at(const machine::AxisModel& axis, double speed, double start = 0.0, int ticks = 4000) {
   AxisPlant plant(timing, axis, start, 1);
   double set = start, integral = 0.0, sum = 0.0;
   for (int k = 0; k < 2 * ticks; ++k) {
@@ -56,7 +56,7 @@ inline double force_at(const Axis& axis, double speed, double start = 0.0, int t
 }
 
 // Force (N) that the effects of `axis` put on the carriage, positive in +x: what they take off the motor.
-inline double effect_force(const Axis& axis, double speed, double start = 0.0, int ticks = 4000) {
+inline double effect_force(const machine::AxisModel& axis, double speed, double start = 0.0, int ticks = 4000) {
   return force_at(with_effects({}, axis), speed, start, ticks) - force_at(axis, speed, start, ticks);
 }
 

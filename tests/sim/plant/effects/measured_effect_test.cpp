@@ -9,7 +9,7 @@
 namespace stiction::sim::test {
 namespace {
 
-Axis with_play(double width) { return with_effects({{"backlash", {{"width", {width}}}}}); }
+machine::AxisModel with_play(double width) { return with_effects({{"backlash", {{"width", {width}}}}}); }
 
 TEST(Backlash, TheEncoderFollowsHalfAWidthBehindAndLosesTheWidthAtAReversal) {
   AxisPlant plant(timing, with_play(10e-6), 0.2, 1);
@@ -52,8 +52,8 @@ TEST(Backlash, TheCarriageItselfFeelsNothingOfIt) {
 // Ticks until a force of 10 N/V, commanded at the first tick, has moved a free carriage as far as it would have from
 // the end of the delay on: x = F (t - d)^2 / 2 m.
 double delay_seen(double dead_time, double loop_delay) {
-  Axis axis = with_effects({{"time_skew", {{"loop_delay", {loop_delay}}}}});
-  axis.friction = {"coulomb_viscous", {{"coulomb_viscous", CoulombViscous::Parameters{}}}};
+  machine::AxisModel axis = with_effects({{"time_skew", {{"loop_delay", {loop_delay}}}}});
+  axis.friction = {"coulomb_viscous", {{"coulomb_viscous", CoulombViscousParameters{}}}};
   axis.inverter.dead_time = dead_time;
   AxisPlant plant(timing, axis, 0.0, 1);
   constexpr int ticks = 160;
@@ -71,7 +71,7 @@ TEST(TimeSkew, TheLoopDelayComesOnTopOfTheDeadTimeWhetherItFitsThePlantsStepOrNo
 }
 
 TEST(TimeSkew, TheDelayOfTheRecordLeavesThePlantAsItIs) {
-  const Axis axis = with_effects({{"time_skew", {{"delay", {1e-3}}}}});
+  const machine::AxisModel axis = with_effects({{"time_skew", {{"delay", {1e-3}}}}});
   AxisPlant plain(timing, force_axis(), 0.0, 1), late(timing, axis, 0.0, 1);
   for (int k = 0; k < 800; ++k) {
     for (AxisPlant* plant : {&plain, &late}) {
@@ -86,7 +86,7 @@ TEST(TimeSkew, TheDelayOfTheRecordLeavesThePlantAsItIs) {
 }
 
 // First loading of the elements: every one follows until it slips.
-double first_loading(const MaxwellSlip::Parameters& p, double way) {
+double first_loading(const MaxwellSlipParameters& p, double way) {
   double force = 0.0;
   for (std::size_t i = 0; i < p.level.size(); ++i) force += std::min(p.stiffness[i] * way, p.level[i]);
   return force;
@@ -116,7 +116,7 @@ TEST(PreslidingHysteresis, BetweenThemTheCurveIsThatOfDahl) {
 
 TEST(PreslidingHysteresis, ReplacesTheModelInUseAndKeepsItsSteadyFriction) {
   for (const char* model : {"coulomb_viscous", "classical", "linear_ramp", "lugre", "maxwell_slip"}) {
-    Axis axis = with_effects({{"presliding_hysteresis", {{"stiffness", {1e7}}, {"distance", {5e-6}}}}});
+    machine::AxisModel axis = with_effects({{"presliding_hysteresis", {{"stiffness", {1e7}}, {"distance", {5e-6}}}}});
     axis.friction.use = model;
     EXPECT_EQ(plant_axis(axis).friction.use, "maxwell_slip");
     EXPECT_NEAR(force_at(axis, 0.1), 20.0 + 100.0 * 0.1, 2e-3) << model;
@@ -124,13 +124,13 @@ TEST(PreslidingHysteresis, ReplacesTheModelInUseAndKeepsItsSteadyFriction) {
 }
 
 TEST(PreslidingHysteresis, TakesTheTrueCoulombLevelWhereverThatStandsInTheFile) {
-  Axis axis = with_effects({{"presliding_hysteresis", {{"stiffness", {1e7}}, {"distance", {5e-6}}}},
-                            {"coulomb_mismatch", {{"coulomb", {25.0}}}}});
+  machine::AxisModel axis = with_effects({{"presliding_hysteresis", {{"stiffness", {1e7}}, {"distance", {5e-6}}}},
+                                          {"coulomb_mismatch", {{"coulomb", {25.0}}}}});
   EXPECT_NEAR(force_at(axis, 0.1), 25.0 + 100.0 * 0.1, 2e-3);
 }
 
 TEST(PreslidingHysteresis, TheParabolicModelHasNoCoulombLevelForIt) {
-  Axis axis = with_effects({{"presliding_hysteresis", {{"stiffness", {1e7}}, {"distance", {5e-6}}}}});
+  machine::AxisModel axis = with_effects({{"presliding_hysteresis", {{"stiffness", {1e7}}, {"distance", {5e-6}}}}});
   axis.friction.use = "parabolic";
   EXPECT_THROW(plant_axis(axis), EffectError);
 }

@@ -14,9 +14,9 @@ namespace {
 constexpr double servo = 2e-3;  // N
 constexpr double pi = std::numbers::pi;
 
-Axis frictionless(std::vector<Effect> effects) {
-  Axis axis = with_effects(std::move(effects));
-  axis.friction = {"coulomb_viscous", {{"coulomb_viscous", CoulombViscous::Parameters{}}}};
+machine::AxisModel frictionless(std::vector<machine::Effect> effects) {
+  machine::AxisModel axis = with_effects(std::move(effects));
+  axis.friction = {"coulomb_viscous", {{"coulomb_viscous", CoulombViscousParameters{}}}};
   return axis;
 }
 
@@ -29,7 +29,7 @@ void push(AxisPlant& plant, double volt, int ticks) {
 }
 
 TEST(PositionDependentFriction, IsLinearBetweenItsPositionsConstantOutsideAndOpposesTheMotion) {
-  const Axis axis =
+  const machine::AxisModel axis =
       with_effects({{"position_dependent_friction", {{"position", {0.1, 0.2, 0.4}}, {"force", {2.0, 8.0, -4.0}}}}});
   const auto level = [](double x) {
     return x < 0.1 ? 2.0 : x < 0.2 ? 2.0 + 6.0 * (x - 0.1) / 0.1 : x < 0.4 ? 8.0 - 12.0 * (x - 0.2) / 0.2 : -4.0;
@@ -52,7 +52,7 @@ TEST(PositionDependentFriction, RefusesListsThatAreNoProfile) {
 
 TEST(ThermalDrift, ApproachesItsChangeWithItsTimeConstantAndOpposesTheMotion) {
   const double change = 6.0, time = 0.4;
-  const Axis axis = with_effects({{"thermal_drift", {{"change", {change}}, {"time_constant", {time}}}}});
+  const machine::AxisModel axis = with_effects({{"thermal_drift", {{"change", {change}}, {"time_constant", {time}}}}});
   // Mean from t1 to t2 of change (1 - e^(-t/time)).
   const double t1 = 4000 * tick, t2 = 8000 * tick;
   const double mean = change * (1.0 - time * (std::exp(-t1 / time) - std::exp(-t2 / time)) / (t2 - t1));
@@ -79,7 +79,7 @@ TEST(PeriodicDisturbance, MovesAFreeCarriageAsItsIntegral) {
 
 TEST(ForceConstantRipple, GivesTheCarriageTheWorkOfTheRippledForce) {
   const double pitch = 0.01, c = 0.2, s = -0.1, c2 = 0.05, force = 10.0;
-  const Axis axis =
+  const machine::AxisModel axis =
       frictionless({{"force_constant_ripple", {{"pitch", {pitch}}, {"cosine", {c, c2}}, {"sine", {s, 0.0}}}}});
   AxisPlant plant(timing, axis, 0.0, 1);
   for (int k = 0; k < 400; ++k) {
@@ -94,7 +94,7 @@ TEST(ForceConstantRipple, GivesTheCarriageTheWorkOfTheRippledForce) {
 
 TEST(FrictionLag, IsNothingAtConstantSpeed) {
   for (const char* model : {"coulomb_viscous", "classical", "linear_ramp", "lugre", "maxwell_slip"}) {
-    Axis axis = with_effects({{"friction_lag", {{"time", {5e-3}}}}});
+    machine::AxisModel axis = with_effects({{"friction_lag", {{"time", {5e-3}}}}});
     axis.friction.use = model;
     EXPECT_NEAR(effect_force(axis, 0.05), 0.0, servo) << model;
   }
@@ -103,8 +103,8 @@ TEST(FrictionLag, IsNothingAtConstantSpeed) {
 // m v' = F - mu w, time w' = v - w: a carriage pushed from rest overshoots F/mu as a second-order system does.
 TEST(FrictionLag, LetsViscousFrictionFollowTheSpeedAsAFirstOrderLag) {
   const double time = 0.2, mu = 800.0, force = 8.0;
-  Axis axis = frictionless({{"friction_lag", {{"time", {time}}}}});
-  std::get<CoulombViscous::Parameters>(axis.friction.models["coulomb_viscous"]).viscous = mu;
+  machine::AxisModel axis = frictionless({{"friction_lag", {{"time", {time}}}}});
+  std::get<CoulombViscousParameters>(axis.friction.models["coulomb_viscous"]).viscous = mu;
   AxisPlant plant(timing, axis, 0.0, 1);
   const double decay = 0.5 / time;
   const auto turn = std::sqrt(std::complex<double>(mu / (50.0 * time) - decay * decay)).real();
@@ -125,7 +125,7 @@ TEST(FrictionLag, ACarriageThatStandsStaysWhereItIs) {
   for (const char* model : {"classical", "linear_ramp", "parabolic", "lugre", "maxwell_slip"}) {
     // The contact springs of lugre and maxwell_slip swing at 200 rad/s, damped by the viscous friction, which a lag
     // of 1 ms lets through.
-    Axis axis = with_effects({{"friction_lag", {{"time", {1e-3}}}}});
+    machine::AxisModel axis = with_effects({{"friction_lag", {{"time", {1e-3}}}}});
     axis.friction.use = model;
     AxisPlant plant(timing, axis, 0.0, 1);
     push(plant, 6.0, 800);
@@ -138,7 +138,7 @@ TEST(FrictionLag, ACarriageThatStandsStaysWhereItIs) {
 
 TEST(EncoderSubdivisionError, IsReadOnTopOfThePositionAndItsSpeed) {
   const double period = 20e-6, c = 60e-9, s = -25e-9, c2 = 30e-9, a = 2.0 * pi / period;
-  const Axis axis =
+  const machine::AxisModel axis =
       with_effects({{"encoder_subdivision_error", {{"period", {period}}, {"cosine", {c, c2}}, {"sine", {s, 0.0}}}}});
   const auto error = [&](double x) { return c * std::cos(a * x) + s * std::sin(a * x) + c2 * std::cos(2 * a * x); };
   AxisPlant plain(timing, force_axis(), 0.2, 1), plant(timing, axis, 0.2, 1);

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "sim/experiment/feed_per_revolution.hpp"
-#include "sim/machine/machine_file.hpp"
+#include "sim/machine_file.hpp"
 #include "sim/plant/feed/stick_slip_relations.hpp"
 #include "tests/support/figure.hpp"
 
@@ -19,16 +19,17 @@ constexpr auto ideal = FeedSource::constant_speed;
 constexpr FeedEquations printed_damping{false, true}, printed_stick{true, false};
 
 // The shipped lathe with a plain step of friction.
-FeedDrive lathe(double zeta = 0.05) {
-  auto drive = *read_machine(std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/stick-slip-feed.toml").feed_drive;
+machine::FeedDrive lathe(double zeta = 0.05) {
+  auto drive =
+      *sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/stick-slip-feed.toml").feed_drive;
   drive.friction.static_short = drive.friction.static_long;
   drive.cutting.coefficient = 0.0;
   drive.carriage.damping_ratio = zeta;
   return drive;
 }
 
-double double_step(const FeedDrive& drive) { return 2.0 * drive.friction.step() / drive.carriage.stiffness; }
-double feed_of(double beta, const FeedDrive& drive) {
+double double_step(const machine::FeedDrive& drive) { return 2.0 * drive.friction.step() / drive.carriage.stiffness; }
+double feed_of(double beta, const machine::FeedDrive& drive) {
   return beta * drive.friction.step() / std::sqrt(drive.carriage.stiffness * drive.carriage.mass);
 }
 

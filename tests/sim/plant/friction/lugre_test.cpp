@@ -15,10 +15,10 @@ namespace {
 
 // Tab 4.3: m 400 kg, k_s 4e7 N/m, b_s 0.2 sqrt(1.6e10) N s/m, mu_v 200 N s/m, F_C 400 N, F_Ts 600 N, v_s 1 mm/s.
 constexpr double mass = 400.0, stiffness = 4e7, coulomb = 400.0, static_level = 600.0, stribeck = 1e-3;
-constexpr LuGre::Parameters feed_axis{coulomb, static_level / coulomb, 200.0, stribeck, stiffness, 0.1};
+constexpr LuGreParameters feed_axis{coulomb, static_level / coulomb, 200.0, stribeck, stiffness, 0.1};
 constexpr double step = 15.625e-6;
 
-double limit_of(const LuGre::Parameters& p, double v) {
+double limit_of(const LuGreParameters& p, double v) {
   const double level = p.coulomb + p.coulomb * (p.static_ratio - 1.0) * std::exp(-std::pow(v / p.stribeck_velocity, 2));
   return level / p.stiffness;
 }
@@ -29,7 +29,7 @@ double power_of_ten(double low, double high) {
 }
 double drawn_speed() { return power_of_ten(-9, 1) * static_cast<double>(2 * test::drawn_between(0, 1) - 1); }
 
-LuGre::Parameters drawn_parameters() {
+LuGreParameters drawn_parameters() {
   return {power_of_ten(0, 3),
           1.0 + 0.5 * static_cast<double>(test::drawn_between(0, 4)),
           0.0,

@@ -14,7 +14,7 @@ namespace stiction::sim {
 namespace {
 
 constexpr double mass = 225.0, step = 15.625e-6;
-const MaxwellSlip::Parameters elements{{2e7, 8e6, 2e6, 5e5}, {20.0, 30.0, 30.0, 25.0}, 0.0};
+const MaxwellSlipParameters elements{{2e7, 8e6, 2e6, 5e5}, {20.0, 30.0, 30.0, 25.0}, 0.0};
 
 // The contact force (N) after the carriage was moved by `distance` (m): what slows a free mass in that step.
 double move(MaxwellSlip& model, double distance, int steps = 100) {
@@ -105,7 +105,7 @@ TEST(MaxwellSlip, ViscousFrictionIsOnTop) {
 }
 
 // The same elements with levels that rise by 60 N in all, to 165 N.
-MaxwellSlip::Parameters rising() {
+MaxwellSlipParameters rising() {
   auto p = elements;
   p.rise = 60.0;
   p.rise_velocity = 0.02;

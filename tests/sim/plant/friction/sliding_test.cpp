@@ -17,7 +17,7 @@ constexpr Body body{225.0, 15.625e-6};
 
 struct Curve {
   const char* name;
-  FrictionParameters parameters;
+  machine::FrictionParameters parameters;
   std::function<double(double)> force;  // N at a speed v > 0
 };
 
@@ -25,14 +25,14 @@ void PrintTo(const Curve& curve, std::ostream* out) { *out << curve.name; }
 
 // X of the cross table (plant.md, Tab 6.1 and 6.3).
 const std::vector<Curve> curves{
-    {"D", CoulombViscous::Parameters{115.0, 430.0}, [](double v) { return 115.0 + 430.0 * v; }},
-    {"A", Classical::Parameters{115.0, 1.1, 430.0}, [](double v) { return 115.0 + 430.0 * v; }},
-    {"B1", LinearRamp::Parameters{110.0, 12000.0, 430.0},
+    {"D", CoulombViscousParameters{115.0, 430.0}, [](double v) { return 115.0 + 430.0 * v; }},
+    {"A", ClassicalParameters{115.0, 1.1, 430.0}, [](double v) { return 115.0 + 430.0 * v; }},
+    {"B1", LinearRampParameters{110.0, 12000.0, 430.0},
      [](double v) { return v <= 110.0 / 12000.0 ? 12000.0 * v : 110.0 + (v - 110.0 / 12000.0) * 430.0; }},
-    {"B2", Parabolic::Parameters{300.0, 4.0}, [](double v) { return 300.0 * std::pow(v, 0.25); }},
-    {"C", LuGre::Parameters{115.0, 1.5, 430.0, 1e-3, 1e7, 0.1},
+    {"B2", ParabolicParameters{300.0, 4.0}, [](double v) { return 300.0 * std::pow(v, 0.25); }},
+    {"C", LuGreParameters{115.0, 1.5, 430.0, 1e-3, 1e7, 0.1},
      [](double v) { return 115.0 * (1.0 + 0.5 * std::exp(-v * v / 1e-6)) + 430.0 * v; }},
-    {"Maxwell", MaxwellSlip::Parameters{{1e7, 1e6}, {60.0, 55.0}, 430.0}, [](double v) { return 115.0 + 430.0 * v; }},
+    {"Maxwell", MaxwellSlipParameters{{1e7, 1e6}, {60.0, 55.0}, 430.0}, [](double v) { return 115.0 + 430.0 * v; }},
 };
 
 double advance(FrictionModel& model, double velocity, double force) {
@@ -70,7 +70,7 @@ INSTANTIATE_TEST_SUITE_P(Models, Sliding, ::testing::ValuesIn(curves),
                          [](const auto& curve) { return curve.param.name; });
 
 // m (v' - v) / h = F - friction, with the friction at the speed at which each model evaluates it.
-RC_GTEST_PROP(Friction, EveryStepBalancesForces, ()) {
+RC_GTEST_PROP(machine::FrictionParameters, EveryStepBalancesForces, ()) {
   const double v = 1e-6 * static_cast<double>(test::drawn_between(-1500000, 1500000));
   const double force = 1e-2 * static_cast<double>(test::drawn_between(-600000, 600000));
   const double h = 1e-7 * static_cast<double>(test::drawn_between(1, 5000));
@@ -100,7 +100,7 @@ RC_GTEST_PROP(Friction, EveryStepBalancesForces, ()) {
 }
 
 // Without a force the passive models only slow down, and never turn around.
-RC_GTEST_PROP(Friction, WithoutForceSpeedFallsAndKeepsItsSign, ()) {
+RC_GTEST_PROP(machine::FrictionParameters, WithoutForceSpeedFallsAndKeepsItsSign, ()) {
   const double v = std::pow(10.0, 1e-3 * static_cast<double>(test::drawn_between(-9000, 1000)));
   const double sign = *rc::gen::element(1.0, -1.0);
   const double h = 1e-7 * static_cast<double>(test::drawn_between(1, 50000));
@@ -113,14 +113,14 @@ RC_GTEST_PROP(Friction, WithoutForceSpeedFallsAndKeepsItsSign, ()) {
   }
 }
 
-TEST(Friction, WithoutForceNothingStartsToMove) {
+TEST(machine::FrictionParameters, WithoutForceNothingStartsToMove) {
   for (const auto& curve : curves) {
     auto model = make_friction(curve.parameters, body);
     for (int i = 0; i < 10; ++i) EXPECT_EQ(advance(model, 0.0, 0.0), 0.0) << curve.name;
   }
 }
 
-TEST(Friction, ModelsAreOdd) {
+TEST(machine::FrictionParameters, ModelsAreOdd) {
   for (const auto& curve : curves) {
     auto up = make_friction(curve.parameters, body), down = up;
     double v = 0.0, w = 0.0;

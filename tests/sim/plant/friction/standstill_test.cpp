@@ -12,7 +12,7 @@ namespace stiction::sim {
 namespace {
 
 constexpr Body body{225.0, 15.625e-6};
-constexpr Classical::Parameters classical{100.0, 1.2, 0.0};  // F_C 100 N, F_Ts 120 N
+constexpr ClassicalParameters classical{100.0, 1.2, 0.0};  // F_C 100 N, F_Ts 120 N
 
 TEST(Classical, SticksExactlyUpToItsStaticLevel) {
   Classical model(classical, body);
@@ -116,7 +116,7 @@ TEST(LinearRamp, IsContinuousAtItsBreakVelocityAlsoWhereTheSecondSlopeIsSteeper)
   }
 }
 
-constexpr Parabolic::Parameters parabolic{300.0, 4.0};
+constexpr ParabolicParameters parabolic{300.0, 4.0};
 constexpr double long_step = 2e-4;  // s: where an explicit evaluation chatters
 
 TEST(Parabolic, ComesToRestWithoutChatterEvenInLongSteps) {

@@ -1,0 +1,241 @@
+#include "firmware/machine/file/description.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "firmware/machine/file/drive_parameters.hpp"
+#include "firmware/machine/file/parameters.hpp"
+
+namespace stiction::machine {
+namespace {
+
+std::string with_unit(double value, std::string_view unit) {
+  return unit == "1" ? fmt::format("{}", value) : fmt::format("{} {}", value, unit);
+}
+
+template <class Member>
+constexpr ValueKind kind_of() {
+  if constexpr (std::is_same_v<Member, int>) return ValueKind::whole_number;
+  if constexpr (std::is_same_v<Member, std::vector<double>>) return ValueKind::list;
+  return ValueKind::number;
+}
+
+// The motor models that need `path` (a key from the axis on).
+std::vector<std::string_view> motor_models_that_need(std::string_view path) {
+  std::vector<std::string_view> names;
+  for (const MotorRule& rule : motor_rules)
+    if (std::find(rule.needs.begin(), rule.needs.end(), path) != rule.needs.end())
+      for (const auto& choice : motor_models)
+        if (choice.value == rule.model) names.push_back(choice.name);
+  return names;
+}
+
+std::string need_of(std::string_view path) {
+  const auto models = motor_models_that_need(path);
+  return models.empty() ? std::string{} : fmt::format("required with motor model {}", quoted_list(models));
+}
+
+KeyDescription describe(const ValueKey& p, ValueKind kind, const std::string& need = {}) {
+  KeyDescription key;
+  key.key = p.key;
+  key.unit = p.unit;
+  key.unit_of_force_motor = p.unit_of_force_motor;
+  key.allowed = describe_range(p.range, p.unit);
+  key.text = p.text;
+  key.expected = describe_expectation(kind, p.range, p.unit, p.text);
+  key.list = kind == ValueKind::list;
+  if (!need.empty())
+    key.fallback = need;
+  else if (p.optional)
+    key.fallback = "left out";
+  else if (!p.fallback)
+    key.fallback = "required";
+  else
+    key.fallback = std::isfinite(*p.fallback) ? with_unit(*p.fallback, p.unit) : "none";
+  return key;
+}
+
+template <class Owner>
+KeyDescription describe(const Parameter<Owner>& p, std::string_view path) {
+  const ValueKind kind = std::visit([]<class Member>(Member Owner::*) { return kind_of<Member>(); }, p.member);
+  return describe(keys_of(std::array{p}).front(), kind, need_of(path));
+}
+
+template <class Owner, class Value>
+KeyDescription describe(const ChoiceParameter<Owner, Value>& p) {
+  KeyDescription key;
+  key.key = p.key;
+  key.fallback = "required";
+  key.text = p.text;
+  std::vector<std::string_view> names;
+  for (const Choice<Value>& choice : p.choices) {
+    names.push_back(choice.name);
+    key.allowed += fmt::format("{}\"{}\": {}", key.allowed.empty() ? "" : "; ", choice.name, choice.text);
+    if (p.fallback == choice.value) key.fallback = fmt::format("\"{}\"", choice.name);
+  }
+  key.expected = fmt::format("{} ({})", quoted_list(names), p.text);
+  return key;
+}
+
+template <class Owner>
+KeyDescription describe(const TextParameter<Owner>& p) {
+  const bool required = std::holds_alternative<std::string Owner::*>(p.member);
+  return {.key = std::string(p.key),
+          .unit = {},
+          .unit_of_force_motor = {},
+          .allowed = "a text",
+          .fallback = required ? "required" : "left out",
+          .text = std::string(p.text),
+          .expected = fmt::format("a text ({})", p.text)};
+}
+
+template <class T>
+struct Unwrapped {
+  using type = T;
+};
+template <class T>
+struct Unwrapped<std::optional<T>> {
+  using type = T;
+};
+
+// Keys of the axis' own tables are looked up in motor_rules by their path from the axis on.
+constexpr std::string_view axis_prefix = "axis.NAME.";
+
+std::string path_in_axis(std::string_view table, std::string_view key) {
+  if (!table.starts_with(axis_prefix)) return {};
+  return fmt::format("{}.{}", table.substr(axis_prefix.size()), key);
+}
+
+template <class Owner>
+void describe_table(const std::string& name, const std::string& presence, std::vector<TableDescription>& out) {
+  using T = Table<Owner>;
+  TableDescription table{name, presence, std::string(T::text), {}};
+  for (const auto& p : T::texts) table.keys.push_back(describe(p));
+  std::apply([&](const auto&... p) { (table.keys.push_back(describe(p)), ...); }, T::choices);
+  for (const auto& p : T::parameters) table.keys.push_back(describe(p, path_in_axis(name, p.key)));
+  out.push_back(std::move(table));
+  const auto describe_subtable = [&]<class Member>(const Subtable<Owner, Member>& s) {
+    const std::string child = name.empty() ? std::string(s.key) : fmt::format("{}.{}", name, s.key);
+    std::string when = s.presence == Presence::required ? "required" : "optional";
+    if (s.presence == Presence::by_motor_model) when = need_of(s.key);
+    describe_table<typename Unwrapped<Member>::type>(child, when, out);
+  };
+  std::apply([&](const auto&... s) { (describe_subtable(s), ...); }, T::subtables);
+}
+
+std::vector<KeyDescription> describe(const ValueTable& table) {
+  std::vector<KeyDescription> keys;
+  for (const ValueKey& key : table.keys) keys.push_back(describe(key, key.list ? ValueKind::list : ValueKind::number));
+  return keys;
+}
+
+void describe_friction_models(const Vocabulary& vocabulary, std::vector<TableDescription>& out) {
+  for (const ValueTable& model : vocabulary.friction_models)
+    out.push_back({fmt::format("axis.NAME.friction.{}", model.name), "optional; at least the model in use",
+                   fmt::format("friction model {}", model.text), describe(model)});
+}
+
+void describe_effects(const Vocabulary& vocabulary, std::vector<TableDescription>& out) {
+  for (const ValueTable& effect : vocabulary.effects) {
+    TableDescription table{fmt::format("[axis.NAME.{}]", effect_key),
+                           effect.several ? "any number" : "at most one an axis",
+                           fmt::format("effect {}: {}", effect.name, effect.text), describe(effect)};
+    KeyDescription name;
+    name.key = effect_name_key;
+    name.allowed = fmt::format("\"{}\"", effect.name);
+    name.fallback = "required";
+    name.text = "name of the effect";
+    name.expected = name.allowed;
+    table.keys.insert(table.keys.begin(), name);
+    out.push_back(std::move(table));
+  }
+}
+
+}  // namespace
+
+std::vector<TableDescription> machine_file_description(const Vocabulary& vocabulary) {
+  std::vector<TableDescription> out;
+  describe_table<Machine>("", "required", out);
+  describe_table<AxisModel>("axis.NAME", "at least one", out);
+  describe_friction_models(vocabulary, out);
+  describe_effects(vocabulary, out);
+  describe_table<DriveSetup>("drive", "optional", out);
+  describe_table<DriveAxisSetup>("drive.axis.NAME", "optional", out);
+  describe_table<CircleReference>("[reference.circle]", "any number", out);
+  describe_table<SteadyFrictionReference>("[reference.steady_friction]", "any number", out);
+  describe_table<PreslidingReference>("[reference.presliding]", "any number", out);
+  KeyDescription schema;
+  schema.key = "schema";
+  schema.allowed = fmt::format("\"{}\"", machine_schema);
+  schema.fallback = "required";
+  schema.text = "the format of this file";
+  schema.expected = schema.allowed;
+  out.front().keys.insert(out.front().keys.begin(), schema);
+  return out;
+}
+
+std::string describe_range(const Range& range, std::string_view unit) {
+  const bool low = std::isfinite(range.low);
+  const bool high = std::isfinite(range.high);
+  const std::string lowest = with_unit(range.low, unit);
+  const std::string highest = with_unit(range.high, unit);
+  if (low && high && !range.low_open) return fmt::format("from {} to {}", lowest, highest);
+  if (low && high) return fmt::format("greater than {} and at most {}", lowest, highest);
+  if (low) return fmt::format("{} {}", range.low_open ? "greater than" : "of at least", lowest);
+  if (high) return fmt::format("of at most {}", highest);
+  return {};
+}
+
+std::string describe_expectation(ValueKind kind, const Range& range, std::string_view unit, std::string_view text) {
+  std::string_view noun = unit == "1" ? "a number" : "a value";
+  if (kind == ValueKind::whole_number) noun = "a whole number";
+  if (kind == ValueKind::list) noun = unit == "1" ? "a list of numbers" : "a list of values";
+  std::string limits = describe_range(range, unit);
+  if (limits.empty() && unit != "1") limits = fmt::format("in {}", unit);
+  return fmt::format("{}{}{} ({})", noun, limits.empty() ? "" : " ", limits, text);
+}
+
+std::string quoted_list(const std::vector<std::string_view>& names) {
+  std::string list;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) list += i + 1 == names.size() ? " or " : ", ";
+    list += fmt::format("\"{}\"", names[i]);
+  }
+  return list;
+}
+
+namespace {
+
+// Levenshtein's distance: insertions, deletions and replacements of one character.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0]++;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, diagonal + 1, row[j] + 1});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+std::string_view nearest_name(std::string_view name, const std::vector<std::string_view>& known) {
+  std::string_view nearest;
+  std::size_t smallest = 1 + name.size() / 4;  // one slip, and one more for every four characters
+  for (const std::string_view candidate : known) {
+    const std::size_t distance = edit_distance(name, candidate);
+    if (distance > smallest || (distance == smallest && !nearest.empty())) continue;
+    smallest = distance;
+    nearest = candidate;
+  }
+  return nearest;
+}
+
+}  // namespace stiction::machine

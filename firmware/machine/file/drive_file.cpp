@@ -1,0 +1,56 @@
+#include "firmware/machine/file/drive_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "firmware/machine/file/document.hpp"
+#include "firmware/machine/file/drive_parameters.hpp"
+#include "firmware/machine/file/table_reader.hpp"
+
+namespace stiction::machine {
+namespace {
+
+DriveAxisSetup with_defaults(DriveAxisSetup setup, const AxisModel& axis) {
+  const double limit = axis.inverter.current_limit * axis.motor.count;
+  if (!setup.current_sum) setup.current_sum = limit / 20.0;
+  if (!setup.runaway_current) setup.runaway_current = limit / 5.0;
+  if (!setup.negative_end) setup.negative_end = -axis.travel / 2.0;
+  if (!setup.positive_end) setup.positive_end = axis.travel / 2.0;
+  return setup;
+}
+
+}  // namespace
+
+DriveSetup drive_setup_of(const Document& document, const Machine& machine) {
+  const TableReader reader(document, false);
+  const std::string path = "drive";
+  DriveSetup setup;
+  const toml::table* axes = nullptr;
+  if (const toml::node* node = document.root().get(path)) {
+    const toml::table& table = reader.as_table(*node, path, Table<DriveSetup>::text);
+    setup = reader.read<DriveSetup>(table, path);
+    if (const toml::node* listed = table.get("axis")) axes = &reader.as_table(*listed, "drive.axis", "axes by name");
+  }
+  std::vector<std::string_view> names;
+  for (const AxisModel& axis : machine.axes) names.push_back(axis.name);
+  if (axes != nullptr)
+    for (auto&& [name, node] : *axes) {
+      const std::string key = join_key("drive.axis", name.str());
+      if (std::find(names.begin(), names.end(), name.str()) == names.end())
+        document.fail_unknown(name.source(), key, names);
+      setup.axes[std::string(name.str())] =
+          reader.read<DriveAxisSetup>(reader.as_table(node, key, Table<DriveAxisSetup>::text), key);
+    }
+  for (const AxisModel& axis : machine.axes) setup.axes[axis.name] = with_defaults(setup.axes[axis.name], axis);
+  return setup;
+}
+
+DriveSetup read_drive_setup(const std::filesystem::path& file, const Machine& machine, const ReadOptions& options) {
+  Document document(file.string(), content_of(file));
+  document.apply_experiment(options.experiment);
+  for (const std::string& assignment : options.set) document.apply_set(assignment);
+  return drive_setup_of(document, machine);
+}
+
+}  // namespace stiction::machine

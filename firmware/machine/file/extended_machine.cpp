@@ -1,0 +1,139 @@
+#include "firmware/machine/file/extended_machine.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "firmware/machine/file/description.hpp"
+#include "firmware/machine/file/document.hpp"
+#include "firmware/machine/file/edited_machine.hpp"
+#include "firmware/machine/file/machine_file.hpp"
+#include "firmware/machine/file/parameters.hpp"
+
+namespace stiction::machine {
+namespace {
+
+const ValueTable& known_effect(const Vocabulary& vocabulary, std::string_view name) {
+  const ValueTable* known = vocabulary.find_effect(name);
+  if (known == nullptr) throw ValueError(name, "no such effect", "a known one");
+  return *known;
+}
+
+std::string value_text(double value, std::string_view unit) {
+  return unit == "1" ? fmt::format("{:.7g}", value) : fmt::format("\"{}\"", written_quantity(value, unit));
+}
+
+// Of the effects that a kind allows once: whether the file has one that an addition names again.
+bool replaces_any(const Machine& machine, const Vocabulary& vocabulary, std::span<const AxisEffects> additions) {
+  for (const AxisEffects& addition : additions)
+    for (const AxisModel& axis : machine.axes)
+      for (const Effect& effect : addition.effects) {
+        const ValueTable* kind = vocabulary.find_effect(effect.name);
+        const auto is_same = [&](const Effect& other) { return other.name == effect.name; };
+        if (axis.name == addition.axis && kind != nullptr && !kind->several &&
+            std::any_of(axis.effects.begin(), axis.effects.end(), is_same))
+          return true;
+      }
+  return false;
+}
+
+// Puts one effect into the tree of an axis, in the place of one that there may be only once.
+void put(toml::table& axis, const Vocabulary& vocabulary, const Effect& effect, bool force_motor) {
+  toml::array& list = *axis.insert(effect_key, toml::array{}).first->second.as_array();
+  if (!known_effect(vocabulary, effect.name).several)
+    for (auto it = list.begin(); it != list.end();)
+      it = it->at_path(effect_name_key).value<std::string>() == effect.name ? list.erase(it) : it + 1;
+  toml::table table = toml::parse(effect_table(vocabulary, "X", effect, force_motor));
+  list.push_back(std::move(*table["axis"]["X"][effect_key].as_array()->get(0)->as_table()));
+  for (toml::node& element : list)
+    if (element.is_table()) element.as_table()->is_inline(false);
+}
+
+bool has_force_motor(const Machine& machine, const std::string& name) {
+  return std::any_of(machine.axes.begin(), machine.axes.end(),
+                     [&](const AxisModel& axis) { return axis.name == name && axis.motor.model == MotorModel::force; });
+}
+
+std::string rewritten(const std::filesystem::path& file, const Machine& machine, const Vocabulary& vocabulary,
+                      const std::vector<std::string>& set, std::span<const AxisEffects> additions) {
+  toml::table root = toml::parse(edited_machine(file, set, {}, {}));
+  for (const AxisEffects& addition : additions) {
+    toml::table* axis = root["axis"][addition.axis].as_table();
+    if (axis == nullptr) continue;
+    axis->is_inline(false);
+    for (const Effect& effect : addition.effects)
+      put(*axis, vocabulary, effect, has_force_motor(machine, addition.axis));
+  }
+  std::ostringstream out;
+  out << root << '\n';
+  return out.str();
+}
+
+std::string continued(std::string text, const Machine& machine, const Vocabulary& vocabulary,
+                      std::span<const AxisEffects> additions) {
+  if (!text.empty() && text.back() != '\n') text += '\n';
+  for (const AxisEffects& addition : additions)
+    for (const Effect& effect : addition.effects)
+      text += "\n" + effect_table(vocabulary, addition.axis, effect, has_force_motor(machine, addition.axis));
+  return text;
+}
+
+std::string with_comment(std::string text, std::span<const std::string> comment) {
+  if (comment.empty()) return text;
+  std::string head;
+  for (const std::string& line : comment) head += "# " + line + "\n";
+  return head + text;
+}
+
+void check_axes(const std::filesystem::path& file, const Machine& machine, std::span<const AxisEffects> additions) {
+  std::vector<std::string_view> known;
+  for (const AxisModel& axis : machine.axes) known.push_back(axis.name);
+  for (const AxisEffects& addition : additions)
+    if (std::find(known.begin(), known.end(), addition.axis) == known.end())
+      throw MachineFileError(fmt::format("{}: axis: found effects for the axis \"{}\"; expected one of {}",
+                                         file.string(), addition.axis, quoted_list(known)));
+}
+
+}  // namespace
+
+std::string effect_table(const Vocabulary& vocabulary, const std::string& axis, const Effect& effect,
+                         bool force_motor) {
+  const ValueTable& kind = known_effect(vocabulary, effect.name);
+  check_values(kind, effect.values);
+  std::string text = fmt::format("[[axis.{}.{}]]\n{} = \"{}\"\n", axis, effect_key, effect_name_key, effect.name);
+  for (const ValueKey& key : kind.keys) {
+    const auto found = effect.values.find(key.key);
+    if (found == effect.values.end() && key.optional) continue;
+    const auto values = found == effect.values.end() ? std::vector{key.fallback.value_or(0.0)} : found->second;
+    std::vector<std::string> texts;
+    const auto unit = force_motor && !key.unit_of_force_motor.empty() ? key.unit_of_force_motor : key.unit;
+    for (const double value : values) texts.push_back(value_text(value, unit));
+    text += key.list ? fmt::format("{} = [{}]\n", key.key, fmt::join(texts, ", "))
+                     : fmt::format("{} = {}\n", key.key, texts.front());
+  }
+  return text;
+}
+
+std::string extended_machine(const std::filesystem::path& file, const Vocabulary& vocabulary,
+                             const std::vector<std::string>& set, std::span<const AxisEffects> additions,
+                             std::span<const std::string> comment) {
+  const std::string original = content_of(file);
+  const Machine machine = parse_machine(file.string(), original, vocabulary, {{}, set});
+  check_axes(file, machine, additions);
+  if (set.empty() && !replaces_any(machine, vocabulary, additions)) {
+    std::string text = with_comment(continued(original, machine, vocabulary, additions), comment);
+    try {
+      parse_machine(file.string(), text, vocabulary);
+      return text;
+    } catch (const MachineFileError&) {
+      // The file writes its axis or its effects in a way that no table can follow.
+    }
+  }
+  std::string text = with_comment(rewritten(file, machine, vocabulary, set, additions), comment);
+  parse_machine(file.string(), text, vocabulary);
+  return text;
+}
+
+}  // namespace stiction::machine

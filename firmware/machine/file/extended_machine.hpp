@@ -1,0 +1,33 @@
+// The text of a machine file with effects added: what diagnosis leaves behind.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "firmware/machine/model/effect.hpp"
+
+namespace stiction::machine {
+
+struct AxisEffects {
+  std::string axis;
+  std::vector<Effect> effects;  // without a key that has a default, that default is written
+};
+
+// The file's own text, comments included, with `comment` (lines without "#") and tables [[axis.NAME.effect]] after it;
+// it reads back as a machine with these effects behind those of the file. Where the text cannot simply go on, because
+// of assignments in `set` (as on the command line, ReadOptions), because the file writes its effects as a list in one
+// line, or because an effect that an axis has only once is there already and so is replaced, the tree of the file is
+// written anew, and its comments are lost. Throws MachineFileError when the result is no valid machine file,
+// ValueError for effects with names, keys or values that `vocabulary` does not have.
+std::string extended_machine(const std::filesystem::path& file, const Vocabulary& vocabulary,
+                             const std::vector<std::string>& set, std::span<const AxisEffects> additions,
+                             std::span<const std::string> comment);
+
+// One table [[axis.NAME.effect]] as text, its values in SI units. `force_motor`: the axis' motor is a force source,
+// which some keys take in volts. Throws ValueError as above.
+std::string effect_table(const Vocabulary& vocabulary, const std::string& axis, const Effect& effect,
+                         bool force_motor = false);
+
+}  // namespace stiction::machine

@@ -1,0 +1,350 @@
+// The keys of a machine file, each described once: what the reader accepts, what its messages say and what the
+// reference page shows come from these tables. The tables of the friction models stand with the models.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <tuple>
+
+#include "firmware/machine/file/compensation_parameters.hpp"
+#include "firmware/machine/file/feed_drive_parameters.hpp"
+#include "firmware/machine/file/parameter_tables.hpp"
+#include "firmware/machine/model/machine.hpp"
+
+namespace stiction::machine {
+
+inline constexpr std::string_view machine_schema = "stiction.machine/1";
+
+// Rows [[axis.NAME.effect]]; the keys of each effect stand with it (sim/plant/effects).
+inline constexpr std::string_view effect_key = "effect";
+inline constexpr std::string_view effect_name_key = "name";
+
+// The experiments a file may hold overrides for, [experiment.NAME].
+inline constexpr std::array<std::string_view, 11> experiment_names{
+    "circle",       "constant-velocity",  "impact", "l-shape", "presliding", "friction-lag", "break-away", "stick-slip",
+    "feed-cutting", "frequency-response", "replay"};
+
+template <>
+struct Table<Timing> : EmptyTable<Timing> {
+  static constexpr std::string_view text = "periods of the control loops";
+  static constexpr std::array<Parameter<Timing>, 3> parameters{{
+      {"fast_period",
+       "s",
+       {33e-6, 0.1},
+       &Timing::fast_period,
+       62.5e-6,
+       "current and velocity controllers, feedforwards"},
+      {"slow_period", "s", {1e-6, 1.0}, &Timing::slow_period, 1e-3, "position controller, a multiple of fast_period"},
+      {"set_point_delay", "s", not_negative(0.1), &Timing::set_point_delay, 0.0,
+       "time by which every axis follows its set-points late while friction compensation acts, which looks ahead by "
+       "it; a multiple of fast_period, at most 15 of them"},
+  }};
+};
+
+inline constexpr std::array<Choice<MotorModel>, 3> motor_models{{
+    {"synchronous", MotorModel::synchronous, "three phases"},
+    {"dc", MotorModel::dc, "equivalent with one winding"},
+    {"force", MotorModel::force, "ideal force source driven by voltage"},
+}};
+
+template <>
+struct Table<MotorParameters> : EmptyTable<MotorParameters> {
+  static constexpr std::string_view text = "motor";
+  static constexpr std::tuple choices{
+      ChoiceParameter<MotorParameters, MotorModel>{"model", &MotorParameters::model, motor_models, {}, "motor model"}};
+  static constexpr std::array<Parameter<MotorParameters>, 8> parameters{{
+      {"phase_resistance", "Ohm", positive(), &MotorParameters::phase_resistance, 0.0, "resistance R of one winding"},
+      {"phase_inductance", "H", positive(), &MotorParameters::phase_inductance, 0.0, "inductance L of one winding"},
+      {"mutual_inductance", "H", not_negative(), &MotorParameters::mutual_inductance, 0.0,
+       "mutual inductance M of two windings"},
+      {"emf_constant", "V s/m", positive(), &MotorParameters::emf_constant, 0.0, "induced voltage K_E of one winding"},
+      {"phase_force_constant", "N/A", positive(), &MotorParameters::phase_force_constant, 0.0,
+       "force constant K_F of one winding"},
+      {"force_constant",
+       "N/A",
+       positive(),
+       &MotorParameters::force_constant,
+       {},
+       "force constant of the whole motor, amplitude amperes",
+       "N/V"},
+      {"pole_pair_pitch", "m", positive(), &MotorParameters::pole_pair_pitch, 0.0, "pole-pair pitch tau_p"},
+      {"count", "1", {1.0, 64.0}, &MotorParameters::count, 1.0, "motors in parallel on one servo module"},
+  }};
+};
+
+template <>
+struct Table<InverterParameters> : EmptyTable<InverterParameters> {
+  static constexpr std::string_view text = "inverter";
+  static constexpr std::array<Parameter<InverterParameters>, 3> parameters{{
+      {"dead_time",
+       "s",
+       not_negative(0.1),
+       &InverterParameters::dead_time,
+       {},
+       "delay from the controller's output to the motor's voltage, a multiple of fast_period/4"},
+      {"voltage_limit", "V", positive(), &InverterParameters::voltage_limit, {}, "largest voltage"},
+      {"current_limit", "A", positive(), &InverterParameters::current_limit, std::numeric_limits<double>::infinity(),
+       "largest current per motor"},
+  }};
+};
+
+template <>
+struct Table<EncoderMountParameters> : EmptyTable<EncoderMountParameters> {
+  static constexpr std::string_view text = "elastic mount of the encoder's rider";
+  // Below 1 Hz the weights of a step lose more than half of their digits, far below they overflow; above 1 MHz the
+  // rider is rigid at any step, and a file leaves it out.
+  static constexpr Range natural_frequencies{1.0, 1e6};
+  static constexpr std::array<Parameter<EncoderMountParameters>, 3> parameters{{
+      {"mass", "kg", positive(), &EncoderMountParameters::mass, {}, "mass of the rider"},
+      {"natural_frequency",
+       "Hz",
+       natural_frequencies,
+       &EncoderMountParameters::natural_frequency,
+       {},
+       "natural frequency of the rider"},
+      {"damping_ratio",
+       "1",
+       not_negative(0.999),
+       &EncoderMountParameters::damping_ratio,
+       {},
+       "damping ratio of the rider"},
+  }};
+};
+
+inline constexpr std::array<Choice<VelocitySource>, 3> velocity_sources{{
+    {"ideal", VelocitySource::ideal, "continuous derivative, as the published simulation had it"},
+    {"estimated", VelocitySource::estimated, "what a drive can do, from time-stamped positions"},
+    {"mean-difference", VelocitySource::mean_difference, "difference of two-sample means"},
+}};
+
+template <>
+struct Table<EncoderParameters> : EmptyTable<EncoderParameters> {
+  static constexpr std::string_view text = "position encoder";
+  static constexpr std::array<Parameter<EncoderParameters>, 2> parameters{{
+      {"increment",
+       "m",
+       not_negative(),
+       &EncoderParameters::increment,
+       {},
+       "increment after interpolation; 0: continuous"},
+      {"noise", "m", not_negative(), &EncoderParameters::noise, 0.0, "noise of the position, rms"},
+  }};
+  static constexpr std::tuple choices{
+      ChoiceParameter<EncoderParameters, VelocitySource>{"velocity", &EncoderParameters::velocity, velocity_sources,
+                                                         VelocitySource::estimated, "source of the measured velocity"}};
+  static constexpr std::tuple subtables{Subtable<EncoderParameters, std::optional<EncoderMountParameters>>{
+      "mount", &EncoderParameters::mount, Presence::optional}};
+};
+
+template <>
+struct Table<PositionControllerParameters> : EmptyTable<PositionControllerParameters> {
+  static constexpr std::string_view text = "proportional position controller";
+  static constexpr std::array<Parameter<PositionControllerParameters>, 2> parameters{{
+      {"gain", "1/s", positive(), &PositionControllerParameters::gain, {}, "position gain K_v"},
+      {"increment", "m", not_negative(), &PositionControllerParameters::increment, 0.0,
+       "increment of the position error's quantizer; 0: none"},
+  }};
+};
+
+template <>
+struct Table<VelocityControllerParameters> : EmptyTable<VelocityControllerParameters> {
+  static constexpr std::string_view text = "velocity controller";
+  static constexpr std::array<Parameter<VelocityControllerParameters>, 2> parameters{{
+      {"gain", "A s/m", positive(), &VelocityControllerParameters::gain, {}, "velocity gain k_pv", "V s/m"},
+      {"integral_time",
+       "s",
+       positive(),
+       &VelocityControllerParameters::integral_time,
+       {},
+       "integral time T_Nv; left out: proportional only"},
+  }};
+};
+
+template <>
+struct Table<CurrentControllerParameters> : EmptyTable<CurrentControllerParameters> {
+  static constexpr std::string_view text = "current controller; a force motor has none";
+  static constexpr std::array<Parameter<CurrentControllerParameters>, 2> parameters{{
+      {"gain", "V/A", positive(), &CurrentControllerParameters::gain, {}, "current gain k_pi"},
+      {"integral_time",
+       "s",
+       positive(),
+       &CurrentControllerParameters::integral_time,
+       {},
+       "integral time T_Ni; left out: proportional only"},
+  }};
+};
+
+template <>
+struct Table<NotchParameters> : EmptyTable<NotchParameters> {
+  static constexpr std::string_view text = "notch behind the velocity controller; left out: none";
+  static constexpr std::array<Parameter<NotchParameters>, 3> parameters{{
+      {"frequency",
+       "Hz",
+       positive(),
+       &NotchParameters::frequency,
+       {},
+       "centre frequency, below half the fast loop's rate"},
+      {"numerator_damping",
+       "1",
+       not_negative(10.0),
+       &NotchParameters::numerator_damping,
+       {},
+       "depth zeta_F1, 0 is deepest"},
+      {"denominator_damping", "1", positive(10.0), &NotchParameters::denominator_damping, {}, "width zeta_F2"},
+  }};
+};
+
+template <>
+struct Table<FeedforwardParameters> : EmptyTable<FeedforwardParameters> {
+  static constexpr std::string_view text = "feedforward of the set-points";
+  static constexpr std::array<Parameter<FeedforwardParameters>, 2> parameters{{
+      {"velocity", "1", not_negative(10.0), &FeedforwardParameters::velocity, 0.0,
+       "velocity feedforward K_wv; 1: full"},
+      {"current", "1", not_negative(10.0), &FeedforwardParameters::current, 0.0, "current feedforward K_wi; 1: full"},
+  }};
+};
+
+template <>
+struct Table<SupervisionParameters> : EmptyTable<SupervisionParameters> {
+  static constexpr std::string_view text = "limits whose violation is a fault";
+  static constexpr std::array<Parameter<SupervisionParameters>, 3> parameters{{
+      {"following_error",
+       "m",
+       positive(),
+       &SupervisionParameters::following_error,
+       {},
+       "following error; left out: 2 mm"},
+      {"over_current",
+       "A",
+       positive(),
+       &SupervisionParameters::over_current,
+       {},
+       "current of the whole axis; left out: 1.2 times the current limit"},
+      {"over_speed",
+       "m/s",
+       positive(),
+       &SupervisionParameters::over_speed,
+       {},
+       "speed; left out: 1.2 times max_velocity"},
+  }};
+};
+
+template <>
+struct Table<FrictionParameters> : EmptyTable<FrictionParameters> {
+  static constexpr std::string_view text = "friction on the carriage: one table a model";
+  static constexpr std::array<TextParameter<FrictionParameters>, 1> texts{
+      {{"use", &FrictionParameters::use, "the model that acts unless a command names another"}}};
+};
+
+template <>
+struct Table<AxisModel> : EmptyTable<AxisModel> {
+  static constexpr std::string_view text = "one axis";
+  static constexpr std::array<Parameter<AxisModel>, 4> parameters{{
+      {"mass", "kg", positive(), &AxisModel::mass, {}, "moving mass"},
+      {"travel", "m", positive(), &AxisModel::travel, {}, "travel from end to end"},
+      {"max_velocity", "m/s", positive(), &AxisModel::max_velocity, {}, "largest velocity"},
+      {"max_acceleration", "m/s^2", positive(), &AxisModel::max_acceleration, {}, "largest acceleration"},
+  }};
+  static constexpr std::tuple subtables{
+      Subtable<AxisModel, MotorParameters>{"motor", &AxisModel::motor, Presence::required},
+      Subtable<AxisModel, InverterParameters>{"inverter", &AxisModel::inverter, Presence::required},
+      Subtable<AxisModel, EncoderParameters>{"encoder", &AxisModel::encoder, Presence::required},
+      Subtable<AxisModel, PositionControllerParameters>{"position_controller", &AxisModel::position_controller,
+                                                        Presence::required},
+      Subtable<AxisModel, VelocityControllerParameters>{"velocity_controller", &AxisModel::velocity_controller,
+                                                        Presence::required},
+      Subtable<AxisModel, std::optional<CurrentControllerParameters>>{
+          "current_controller", &AxisModel::current_controller, Presence::by_motor_model},
+      Subtable<AxisModel, std::optional<NotchParameters>>{"notch", &AxisModel::notch, Presence::optional},
+      Subtable<AxisModel, FeedforwardParameters>{"feedforward", &AxisModel::feedforward, Presence::optional},
+      Subtable<AxisModel, SupervisionParameters>{"supervision", &AxisModel::supervision, Presence::optional},
+      Subtable<AxisModel, FrictionParameters>{"friction", &AxisModel::friction, Presence::required},
+      Subtable<AxisModel, std::optional<FrictionCompensationParameters>>{
+          "friction_compensation", &AxisModel::friction_compensation, Presence::optional},
+  };
+};
+
+// Beyond the tables above: what each motor model makes necessary (keys from the axis on) and what it excludes.
+struct MotorRule {
+  MotorModel model;
+  std::span<const std::string_view> needs;
+  std::span<const std::string_view> excludes;
+};
+inline constexpr std::array<std::string_view, 8> needs_of_synchronous{
+    "motor.phase_resistance",     "motor.phase_inductance", "motor.mutual_inductance", "motor.emf_constant",
+    "motor.phase_force_constant", "motor.pole_pair_pitch",  "inverter.current_limit",  "current_controller"};
+inline constexpr std::array<std::string_view, 5> needs_of_dc{"motor.phase_resistance", "motor.phase_inductance",
+                                                             "motor.emf_constant", "inverter.current_limit",
+                                                             "current_controller"};
+inline constexpr std::array<std::string_view, 1> excluded_by_force{"current_controller"};
+inline constexpr std::array<MotorRule, 3> motor_rules{{
+    {MotorModel::synchronous, needs_of_synchronous, {}},
+    {MotorModel::dc, needs_of_dc, {}},
+    {MotorModel::force, {}, excluded_by_force},
+}};
+
+inline constexpr std::array<Choice<bool>, 2> reference_sources{{
+    {"measured", true, "a measurement"},
+    {"published simulation", false, "a simulation by others, with its friction model"},
+}};
+
+template <>
+struct Table<CircleReference> : EmptyTable<CircleReference> {
+  static constexpr std::string_view text = "a published or measured circle beside which reports stand the simulation";
+  static constexpr std::array<TextParameter<CircleReference>, 2> texts{{
+      {"axis", &CircleReference::axis, "name of the axis"},
+      {"friction", &CircleReference::friction, "friction model of a published simulation"},
+  }};
+  static constexpr std::tuple choices{ChoiceParameter<CircleReference, bool>{
+      "source", &CircleReference::measured, reference_sources, {}, "where the row comes from"}};
+  static constexpr std::array<Parameter<CircleReference>, 3> parameters{{
+      {"feed", "m/s", positive(), &CircleReference::feed, {}, "feed along the path"},
+      {"error", "m", not_negative(), &CircleReference::error, {}, "peak quadrant error"},
+      {"current", "A", not_negative(), &CircleReference::current, {}, "peak current"},
+  }};
+};
+
+template <>
+struct Table<SteadyFrictionReference> : EmptyTable<SteadyFrictionReference> {
+  static constexpr std::string_view text = "measured current of steady motion, from which friction is identified";
+  static constexpr std::array<TextParameter<SteadyFrictionReference>, 1> texts{{
+      {"axis", &SteadyFrictionReference::axis, "name of the axis"},
+  }};
+  static constexpr std::array<Parameter<SteadyFrictionReference>, 2> parameters{{
+      {"velocity", "m/s", positive(), &SteadyFrictionReference::velocity, {}, "steady velocity"},
+      {"current", "A", not_negative(), &SteadyFrictionReference::current, {}, "current of the whole axis"},
+  }};
+};
+
+inline constexpr std::array<Choice<bool>, 2> load_directions{{
+    {"same", true, "loaded in the direction of the motion before the rest"},
+    {"opposite", false, "loaded against it"},
+}};
+
+template <>
+struct Table<PreslidingReference> : EmptyTable<PreslidingReference> {
+  static constexpr std::string_view text = "measured displacement under a force too small for sliding, after coasting";
+  static constexpr std::array<TextParameter<PreslidingReference>, 1> texts{{
+      {"axis", &PreslidingReference::axis, "name of the axis, or of the one whose guides the test rig had"},
+  }};
+  static constexpr std::tuple choices{ChoiceParameter<PreslidingReference, bool>{
+      "direction", &PreslidingReference::same_direction, load_directions, {}, "direction of the force"}};
+  static constexpr std::array<Parameter<PreslidingReference>, 2> parameters{{
+      {"force", "N", positive(), &PreslidingReference::force, {}, "force on the carriage"},
+      {"displacement", "m", not_negative(), &PreslidingReference::displacement, {}, "displacement under it"},
+  }};
+};
+
+template <>
+struct Table<Machine> : EmptyTable<Machine> {
+  static constexpr std::string_view text = "the machine";
+  static constexpr std::array<TextParameter<Machine>, 1> texts{{{"name", &Machine::name, "name shown in reports"}}};
+  static constexpr std::tuple subtables{
+      Subtable<Machine, Timing>{"timing", &Machine::timing, Presence::optional},
+      Subtable<Machine, std::optional<FeedDrive>>{"feed_drive", &Machine::feed_drive, Presence::optional}};
+};
+
+}  // namespace stiction::machine

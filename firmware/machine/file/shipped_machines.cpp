@@ -1,0 +1,58 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cstdlib>
+#include <set>
+#include <sstream>
+
+#include "firmware/machine/file/description.hpp"
+#include "firmware/machine/file/machine_file.hpp"
+
+namespace stiction::machine {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> folders() {
+  std::vector<fs::path> found;
+  if (const char* variable = std::getenv("STICTION_MACHINES")) {
+    std::istringstream list(variable);
+    for (std::string folder; std::getline(list, folder, ':');)
+      if (!folder.empty()) found.emplace_back(folder);
+  }
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (!error) found.push_back(program.parent_path().parent_path() / "share" / "stiction" / "machines");
+  return found;
+}
+
+}  // namespace
+
+std::vector<std::string> shipped_machines() {
+  std::set<std::string> names;
+  for (const fs::path& folder : folders()) {
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder, error))
+      if (entry.path().extension() == ".toml") names.insert(entry.path().stem().string());
+  }
+  return {names.begin(), names.end()};
+}
+
+std::filesystem::path find_machine(const std::string& name_or_path) {
+  const fs::path path(name_or_path);
+  std::error_code error;
+  const bool exists = fs::exists(path, error) && !fs::is_directory(path, error);
+  if (exists || path.extension() == ".toml" || name_or_path.find('/') != std::string::npos) return path;
+  for (const fs::path& folder : folders()) {
+    const fs::path candidate = folder / (name_or_path + ".toml");
+    if (!name_or_path.empty() && fs::exists(candidate, error)) return candidate;
+  }
+  const std::vector<std::string> shipped = shipped_machines();
+  const std::string_view nearest = nearest_name(name_or_path, {shipped.begin(), shipped.end()});
+  throw MachineFileError(fmt::format(
+      "machine \"{}\": found no such machine; expected {}the path of a file or the name of a shipped machine: {}",
+      name_or_path, nearest.empty() ? "" : fmt::format("\"{}\"? Or ", nearest),
+      shipped.empty() ? "none found" : fmt::format("{}", fmt::join(shipped, ", "))));
+}
+
+}  // namespace stiction::machine

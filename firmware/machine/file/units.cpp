@@ -1,0 +1,181 @@
+#include "firmware/machine/file/units.hpp"
+
+#include <fmt/format.h>
+#include <udunits2.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <memory>
+#include <mutex>
+
+namespace stiction::machine {
+namespace {
+
+struct Free {
+  void operator()(ut_unit* unit) const { ut_free(unit); }
+  void operator()(cv_converter* converter) const { cv_free(converter); }
+};
+using Unit = std::unique_ptr<ut_unit, Free>;
+using Converter = std::unique_ptr<cv_converter, Free>;
+
+// UDUNITS-2 keeps its state in globals.
+std::mutex& library() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+ut_system* unit_system() {
+  static ut_system* const system = [] {
+    ut_set_error_message_handler(ut_ignore);
+    ut_system* read = ut_read_xml(nullptr);
+    if (read == nullptr) throw std::runtime_error("UDUNITS-2: the database of units (udunits2.xml) cannot be read");
+    return read;
+  }();
+  return system;
+}
+
+constexpr std::string_view blanks = " \t";
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || static_cast<unsigned char>(c) > 127;
+}
+
+// UDUNITS-2 also reads "10 m", "m @ 5" and "m 3" as units. A number may stand here only as an exponent or as the
+// "1" of "1/s", so that "72 mm 5" does not pass as 360 mm.
+bool has_stray_number(std::string_view unit) {
+  for (std::size_t i = 0; i < unit.size(); ++i) {
+    const char c = unit[i];
+    const char before = i > 0 ? unit[i - 1] : ' ';
+    const bool exponent = is_letter(before) || before == '^';
+    if (c == '@' || (c == '-' && !exponent)) return true;
+    if (!is_digit(c) || exponent || before == '-' || is_digit(before)) continue;
+    const std::string_view rest = trimmed(unit.substr(i + 1));
+    if (i > 0 || c != '1' || (!rest.empty() && rest.front() != '/')) return true;
+  }
+  return false;
+}
+
+// UDUNITS-2 reads to the first NUL, so that "A\0s/m" would pass as A.
+bool has_control_character(std::string_view text) {
+  return std::ranges::any_of(text, [](char c) { return (c >= 0 && c < ' ' && c != '\t') || c == '\x7f'; });
+}
+
+Unit parse_unit(std::string_view text) {
+  const std::string unit(trimmed(text));
+  if (has_control_character(unit)) throw UnitError("a control character in the unit");
+  Unit parsed(has_stray_number(unit) ? nullptr : ut_parse(unit_system(), unit.c_str(), UT_UTF8));
+  if (!parsed) throw UnitError(fmt::format("unknown unit \"{}\"", unit));
+  return parsed;
+}
+
+std::string definition(const ut_unit* unit) {
+  std::array<char, 256> buffer{};
+  if (ut_format(unit, buffer.data(), buffer.size(), UT_ASCII | UT_DEFINITION) < 0) return "?";
+  return buffer.data();
+}
+
+// From UDUNITS' "0.001 m.kg.s-2 @ 5" to "m kg s^-2".
+std::string dimension_text(const ut_unit* unit) {
+  std::string text = definition(unit);
+  if (const std::size_t origin = text.find(" @"); origin != std::string::npos) text.erase(origin);
+  if (is_digit(text.front()) || text.front() == '-') {
+    const std::size_t blank = text.find(' ');
+    text = blank == std::string::npos ? "1" : text.substr(blank + 1);
+  }
+  std::string readable;
+  for (const char c : text) {
+    const bool exponent = !readable.empty() && is_letter(readable.back()) && (is_digit(c) || c == '-');
+    if (exponent) readable += '^';
+    readable += c == '.' ? ' ' : c;
+  }
+  return readable;
+}
+
+// ut_are_convertible() is no test: it takes a reciprocal for convertible ("5 ms" for 1/s) and drops the radian.
+bool same_dimension(const ut_unit* a, const ut_unit* b) {
+  const Unit ratio(ut_divide(a, b));
+  return ratio && ut_is_dimensionless(ratio.get()) != 0 && dimension_text(ratio.get()) == "1";
+}
+
+Converter converter(ut_unit* from, ut_unit* to) {
+  Converter made(same_dimension(from, to) ? ut_get_converter(from, to) : nullptr);
+  if (!made) throw UnitError(fmt::format("dimension {}, not {}", dimension_text(from), dimension_text(to)));
+  return made;
+}
+
+// A factor like 1e-6 is not a double, its inverse is: dividing by that rounds once, as the compiler's 62.5e-6 does.
+double convert(const cv_converter* converter, double number) {
+  const double factor = cv_convert_double(converter, 1.0);
+  if (cv_convert_double(converter, 0.0) != 0.0) return cv_convert_double(converter, number);
+  const double inverse = std::round(1.0 / factor);
+  if (std::abs(factor) < 1.0 && std::abs(inverse * factor - 1.0) < 1e-14) return number / inverse;
+  return number * factor;
+}
+
+// Splits "NUMBER UNIT"; throws UnitError unless it begins with a finite number.
+double split(std::string_view text, std::string_view& unit) {
+  text = trimmed(text);
+  if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const std::string_view rest = text.substr(static_cast<std::size_t>(end - text.data()));
+  if (error == std::errc::result_out_of_range) throw UnitError("beyond the range of numbers");
+  if (error != std::errc{}) throw UnitError("not NUMBER UNIT");
+  if (!std::isfinite(number)) throw UnitError("not a finite number");
+  if (!rest.empty() && blanks.find(rest.front()) == std::string_view::npos && rest.front() != '%')
+    throw UnitError("not NUMBER UNIT with a blank between them");
+  unit = trimmed(rest);
+  return number;
+}
+
+}  // namespace
+
+double parse_quantity(std::string_view text, std::string_view si_unit) {
+  std::string_view unit;
+  const double number = split(text, unit);
+  const std::lock_guard lock(library());
+  if (unit.empty()) {
+    if (si_unit != "1") throw UnitError("no unit");
+    return number;
+  }
+  const Unit from = parse_unit(unit);
+  const Unit to = parse_unit(si_unit);
+  const double value = convert(converter(from.get(), to.get()).get(), number);
+  if (!std::isfinite(value)) throw UnitError("beyond the range of numbers");
+  return value;
+}
+
+std::string format_quantity(double value, std::string_view si_unit, std::string_view unit) {
+  if (unit.empty() || unit == "1") return fmt::format("{}", value);
+  const std::lock_guard lock(library());
+  const Unit from = parse_unit(si_unit);
+  const Unit to = parse_unit(unit);
+  // 15 digits: what a double keeps of a decimal number.
+  return fmt::format("{:.15g} {}", convert(converter(from.get(), to.get()).get(), value), unit);
+}
+
+std::string_view unit_of(std::string_view quantity) {
+  std::string_view unit;
+  try {
+    split(quantity, unit);
+  } catch (const UnitError&) {
+    return {};
+  }
+  return unit;
+}
+
+std::string dimension_of(std::string_view unit) {
+  const std::lock_guard lock(library());
+  return dimension_text(parse_unit(unit).get());
+}
+
+}  // namespace stiction::machine

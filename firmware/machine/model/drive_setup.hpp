@@ -1,0 +1,115 @@
+// What a machine file says to the drive's programme alone ([drive]): buses, lines, homing, plausibility. SI units. The
+// simulation knows nothing of it.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace stiction::machine {
+
+struct CanSetup {
+  std::string interface;                // of the network, such as can0 or vcan0
+  double bit_rate = 1e6;                // 1/s, arbitration
+  std::optional<double> data_bit_rate;  // 1/s, CAN FD; none: classical frames
+};
+
+// Where a motion controller on a CAN bus sends target positions (CiA 402 csp and pp).
+struct CanServerSetup {
+  std::string interface;                // may be that of CanSetup
+  double bit_rate = 1e6;                // 1/s, arbitration
+  std::optional<double> data_bit_rate;  // 1/s, CAN FD; none: classical frames
+  std::optional<double> period;         // s, of the targets; none: the machine's slow period
+  double position_increment = 1e-9;     // m, a unit of 607Ah and 6064h
+  bool sync_followed = false;           // the controller sends SYNC, and the drive's clock follows it
+  bool all_frames = true;               // offsets, velocities and following errors too
+  bool motion_allowed = false;          // whether set-points and controlwords are taken
+};
+
+// Of the chip's inputs, inside the chip.
+enum class InputBias { as_is, pull_up, pull_down, none };
+
+struct GpioSetup {
+  std::string chip;                     // name or path of the gpiochip
+  std::optional<std::string> pwm_chip;  // folder of the kernel's PWM class
+  double pwm_period = 62.5e-6;          // s
+  double dc_link = 0.0;                 // V between the rails of the half bridges behind the PWM
+  InputBias bias = InputBias::as_is;
+};
+
+// Where the drive is a Modbus client: a slow power stage or remote inputs and outputs.
+struct ModbusClientSetup {
+  std::string device;  // "/dev/ttyS0", or "HOST:PORT" for TCP
+  int baud_rate = 115200;
+  int unit = 1;
+  double period = 10e-3;  // s
+};
+
+// What the drive publishes to a PLC or an operator panel.
+struct ModbusServerSetup {
+  std::string address;          // "HOST:PORT" to listen on, or a serial device for RTU
+  int baud_rate = 115200;       // of RTU
+  int unit = 1;                 // on RTU
+  bool motion_allowed = false;  // whether commands that move an axis are taken
+};
+
+// What the loop does when it begins late.
+struct RealTimeSetup {
+  int priority = 80;  // of SCHED_FIFO; 0: none
+  int cpu = -1;       // the loop's own; -1: any
+};
+
+enum class HomingMethod { none, here, limit_negative, limit_positive, index_negative, index_positive };
+
+// CiA 402 methods 35, 17, 18, 33, 34.
+struct HomingSetup {
+  HomingMethod method = HomingMethod::none;
+  double search_speed = 0.02;  // m/s
+  double creep_speed = 0.002;  // m/s, away from the switch or to the index
+  double offset = 0.0;         // m, the position of the mark
+};
+
+// Which level of a line says yes.
+enum class ActiveLevel { high, low };
+
+// Lines of the gpiochip; -1: not wired.
+struct LineSetup {
+  int enable = -1, brake = -1, fault = -1;
+  int limit_negative = -1, limit_positive = -1, home = -1, index = -1;
+  int quadrature_a = -1, quadrature_b = -1;
+  double quadrature_increment = 0.0;  // m an edge
+  double quadrature_rate = 10e3;      // edges a second of both tracks, that the machine's kernel was measured to hold
+  double quadrature_settle = 50e-6;   // s, by which an edge may come late out of its interrupt
+  int pwm_channel = -1;               // the first of the motor's
+  ActiveLevel enable_active = ActiveLevel::high, brake_active = ActiveLevel::high, fault_active = ActiveLevel::high;
+  ActiveLevel limit_active = ActiveLevel::high, home_active = ActiveLevel::high, index_active = ActiveLevel::high;
+};
+
+struct DriveAxisSetup {
+  int node = 0;                                      // of the axis' power stage and encoder on the bus; 0: none
+  int server_node = 0;                               // of the axis where [drive.can_server] serves it; 0: none
+  double quick_stop_deceleration = 10.0;             // m/s^2
+  double brake_time = 0.0;                           // s, that the brake takes to open or to close
+  double frozen_distance = 100e-6;                   // m
+  double encoder_jump = 5e-6;                        // m
+  std::optional<double> current_sum;                 // A; none: a twentieth of the current limit
+  std::optional<double> runaway_current;             // A; none: a fifth of the current limit
+  double target_window = 10e-6;                      // m, about a target, within which it is reached
+  double profile_jerk_time = 16e-3;                  // s, by which a profile's acceleration comes and goes
+  std::optional<double> negative_end, positive_end;  // m, of the travel, before the switches; none: half the travel
+  HomingSetup homing;
+  LineSetup line;
+};
+
+struct DriveSetup {
+  std::optional<CanSetup> can;
+  std::optional<CanServerSetup> can_server;
+  std::optional<GpioSetup> gpio;
+  std::optional<ModbusClientSetup> modbus_client;
+  std::optional<ModbusServerSetup> modbus_server;
+  RealTimeSetup real_time;
+  std::map<std::string, DriveAxisSetup> axes;  // of every axis of the machine, by name
+};
+
+}  // namespace stiction::machine

@@ -1,0 +1,205 @@
+// A machine as its file describes it, in SI units: what the simulated plant is built from and what the drive's
+// configuration is computed from. Format: README, "Machine file"; the reader is machine_file.hpp.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "firmware/machine/model/effect.hpp"
+#include "firmware/machine/model/feed_drive.hpp"
+#include "firmware/machine/model/value_table.hpp"
+#include "stiction/control/compensation_kind.hpp"
+
+namespace stiction::machine {
+
+enum class MotorModel { synchronous, dc, force };
+
+// Where the velocity controller's feedback comes from.
+enum class VelocitySource {
+  ideal,            // continuous derivative of the encoder's position, as the published simulation had it
+  estimated,        // from time-stamped positions, what a drive can do
+  mean_difference,  // difference of two-sample means (the EMPS controller)
+};
+
+struct Timing {
+  double fast_period = 62.5e-6;  // s: current and velocity controllers, feedforwards
+  double slow_period = 1e-3;     // s: position controller
+  double set_point_delay = 0.0;  // s: by which the axes follow their set-points late, for compensation to look ahead
+};
+
+struct MotorParameters {
+  MotorModel model = MotorModel::dc;
+  double phase_resistance = 0.0;      // Ohm
+  double phase_inductance = 0.0;      // H
+  double mutual_inductance = 0.0;     // H
+  double emf_constant = 0.0;          // V s/m, one winding
+  double phase_force_constant = 0.0;  // N/A, one winding
+  double force_constant = 0.0;        // N/A of the whole motor, amplitude amperes; N/V for a force source
+  double pole_pair_pitch = 0.0;       // m
+  int count = 1;                      // motors in parallel on one servo module
+};
+
+struct InverterParameters {
+  double dead_time = 0.0;      // s
+  double voltage_limit = 0.0;  // V
+  double current_limit = 0.0;  // A per motor
+};
+
+struct EncoderMountParameters {
+  double mass = 0.0;               // kg
+  double natural_frequency = 0.0;  // Hz
+  double damping_ratio = 0.0;
+};
+
+struct EncoderParameters {
+  double increment = 0.0;  // m; 0: continuous
+  double noise = 0.0;      // m rms
+  VelocitySource velocity = VelocitySource::estimated;
+  std::optional<EncoderMountParameters> mount;  // none: rigid
+};
+
+struct PositionControllerParameters {
+  double gain = 0.0;       // 1/s
+  double increment = 0.0;  // m, of the position error's quantizer; 0: none
+};
+
+struct VelocityControllerParameters {
+  double gain = 0.0;                    // A s/m; V s/m with a force motor
+  std::optional<double> integral_time;  // s; none: proportional only
+};
+
+struct CurrentControllerParameters {
+  double gain = 0.0;                    // V/A
+  std::optional<double> integral_time;  // s
+};
+
+struct NotchParameters {
+  double frequency = 0.0;  // Hz
+  double numerator_damping = 0.0;
+  double denominator_damping = 0.0;
+};
+
+struct FeedforwardParameters {
+  double velocity = 0.0;  // K_wv, 1 = full
+  double current = 0.0;   // K_wi, 1 = full
+};
+
+// Limits whose violation is a fault (the motion stops), unlike the limits of inverter and axis, which only limit.
+struct SupervisionParameters {
+  std::optional<double> following_error;  // m; none: 2 mm
+  std::optional<double> over_current;     // A of the whole axis; none: 1.2 times the current limit
+  std::optional<double> over_speed;       // m/s; none: 1.2 times max_velocity
+};
+
+struct FrictionParameters {
+  std::string use;                            // name of the model that acts
+  std::map<std::string, KeyedValues> models;  // every subtable of the file, by name
+};
+
+// Speed pulse at reversals, its amplitude over the acceleration there.
+struct PulseCompensationParameters {
+  double amplitude = 0.0;        // m/s
+  double final_amplitude = 0.0;  // m/s
+  double rise_until = 0.0;       // m/s^2, a1
+  double flat_until = 0.0;       // m/s^2, a2
+  double fall_until = 0.0;       // m/s^2, a3
+  double delay = 0.0;            // s, from the reversal of the newest set-point
+  double duration = 0.0;         // s
+};
+
+// Current against friction from the set-points: presliding by distance, a sliding curve by speed.
+struct FrictionFeedforwardParameters {
+  double look_ahead = 0.0;                // s, by which the current comes before the set-point
+  std::vector<double> distance;           // m after a reversal at which each element slips again
+  std::vector<double> level;              // A of each element; their sum is the Coulomb level
+  double contact_damping = 0.0;           // s
+  std::vector<double> speed;              // m/s
+  std::vector<double> forward, backward;  // A beyond the Coulomb level at these speeds, in +v and in -v
+};
+
+// How the drive learns from the errors of earlier laps.
+struct QuadrantLearningParameters {
+  double gain = 0.0;           // of what was missing, per lap
+  double forgetting = 0.0;     // share per lap
+  double smoothing = 0.0;      // share of each neighbour per lap
+  double limit = 0.0;          // A
+  double dead_zone = 0.0;      // m
+  double filter = 0.0;         // s
+  std::optional<double> lead;  // s; none: mass / (velocity gain * force constant) - filter
+};
+
+// What a drive has learned; of one axis of one machine.
+struct LearnedTable {
+  std::string machine, axis;              // names
+  std::vector<double> forward, backward;  // A at the nodes over the way since a reversal
+};
+
+// What the drive does against friction; the plant knows nothing of it.
+struct FrictionCompensationParameters {
+  CompensationKind use = CompensationKind::off;
+  std::optional<PulseCompensationParameters> pulse;
+  std::optional<FrictionFeedforwardParameters> friction;
+  std::optional<QuadrantLearningParameters> learning;
+  std::optional<LearnedTable> learned;
+};
+
+struct AxisModel {
+  std::string name;
+  double mass = 0.0;              // kg
+  double travel = 0.0;            // m
+  double max_velocity = 0.0;      // m/s
+  double max_acceleration = 0.0;  // m/s^2
+  MotorParameters motor;
+  InverterParameters inverter;
+  EncoderParameters encoder;
+  PositionControllerParameters position_controller;
+  VelocityControllerParameters velocity_controller;
+  std::optional<CurrentControllerParameters> current_controller;  // none with a force motor
+  std::optional<NotchParameters> notch;
+  FeedforwardParameters feedforward;
+  SupervisionParameters supervision;
+  FrictionParameters friction;
+  std::optional<FrictionCompensationParameters> friction_compensation;
+  std::vector<Effect> effects;  // of the plant alone: the drive's configuration knows nothing of them
+};
+
+// A row of a published or measured circle that reports stand beside the simulation. SI units.
+struct CircleReference {
+  std::string axis;
+  bool measured = false;                // false: published simulation
+  std::optional<std::string> friction;  // the model of a published simulation
+  double feed = 0.0;                    // m/s
+  double error = 0.0;                   // m, peak quadrant error
+  double current = 0.0;                 // A, peak
+};
+
+// Friction of steady motion, measured. SI units.
+struct SteadyFrictionReference {
+  std::string axis;
+  double velocity = 0.0;  // m/s
+  double current = 0.0;   // A; friction is force constant times current
+};
+
+// Presliding displacement, measured: the axis coasted to rest and was then loaded. SI units.
+struct PreslidingReference {
+  std::string axis;
+  bool same_direction = false;  // loaded in the direction of the motion before
+  double force = 0.0;           // N
+  double displacement = 0.0;    // m
+};
+
+struct Machine {
+  std::string name;  // as in the file
+  std::string id;    // file name without extension
+  Timing timing;
+  std::vector<AxisModel> axes;          // in the order of the file; none only where there is a feed drive
+  std::optional<FeedDrive> feed_drive;  // with screw and sliding carriage; nothing connects it with the axes
+  std::vector<CircleReference> circle_references;
+  std::vector<SteadyFrictionReference> steady_friction_references;
+  std::vector<PreslidingReference> presliding_references;
+};
+
+}  // namespace stiction::machine

@@ -1,0 +1,142 @@
+#include "firmware/stictiond/can_server.hpp"
+
+#include <linux/can.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "firmware/machine/configuration/conversion.hpp"
+#include "hal/tick_clock.hpp"
+
+namespace stiction::drive {
+namespace {
+
+using hal::can::Pdo;
+using hal::can::PdoVerdict;
+using S = FixedSignals;
+
+constexpr double velocity_increments = 1000.0;  // of position a second in a unit of velocity
+constexpr double torque_units = 1000.0;         // in the current limit
+constexpr std::int64_t second_ns = 1'000'000'000;
+
+std::vector<hal::can::Filter> filters(const CanServerConfig& config) {
+  std::vector<hal::can::Filter> wanted;
+  for (const int node : config.nodes)
+    for (const auto& row : hal::can::pdo_table)
+      if (row.received && (row.positions || config.all_frames))
+        wanted.push_back({row.id + static_cast<std::uint32_t>(node), CAN_SFF_MASK});
+  if (config.follows_sync) wanted.push_back({hal::can::sync_id, CAN_SFF_MASK});
+  return wanted;
+}
+
+std::int32_t to_units(double value, double unit) {
+  constexpr double most = std::numeric_limits<std::int32_t>::max();
+  return static_cast<std::int32_t>(std::lround(std::clamp(value / unit, -most, most)));
+}
+
+bool known(std::int8_t mode) {
+  return mode == static_cast<std::int8_t>(OperationMode::profile_position) ||
+         mode == static_cast<std::int8_t>(OperationMode::homing) ||
+         mode == static_cast<std::int8_t>(OperationMode::cyclic_position);
+}
+
+}  // namespace
+
+CanServer::CanServer(const CanServerConfig& config, LogRing& log)
+    : frames_(config, log), socket_(config.interface, config.format, filters(config), false) {}
+
+bool CanServer::receive(std::int64_t now_ns, std::span<RemoteAxis> axes) {
+  const bool begins = slow_ticks_ == 0;
+  slow_ticks_ = slow_ticks_ + 1 == frames_.config().cycle_ticks ? 0 : slow_ticks_ + 1;
+  if (!begins) return false;
+  hal::can::Received received;
+  sync_age_ns_.reset();
+  for (std::uint32_t i = 0; i < most_taken && socket_.receive(received, 0); ++i) {
+    if (received.frame.id == hal::can::sync_id)
+      sync_age_ns_ = hal::MonotonicTime().now_ns() - received.received_ns;
+    else
+      frames_.take(now_ns, received.frame, axes);
+  }
+  for (auto& axis : axes) axis.begin_cycle();
+  return true;
+}
+
+void ControllerFrames::take(std::int64_t now_ns, const hal::can::Frame& frame, std::span<RemoteAxis> axes) {
+  const auto address = hal::can::pdo_address_of(frame);
+  const auto found = std::find(config_.nodes.begin(), config_.nodes.end(), address.node);
+  if (address.verdict == PdoVerdict::unknown || found == config_.nodes.end()) return;
+  const auto axis = static_cast<std::size_t>(found - config_.nodes.begin());
+  if (address.verdict == PdoVerdict::good)
+    return ask(now_ns, axis, address.pdo, decode_pdo(address.pdo, frame), axes[axis]);
+  ++counts_.wrong_size;
+  // One a second and axis: a controller repeats its mistake each cycle.
+  auto& said = nodes_[axis].said_ns;
+  if (said != INT64_MIN && now_ns - said < second_ns) return;
+  said = now_ns;
+  log_.push(now_ns, LogLevel::warning, "CAN: axis {}: found a frame {:#x} of {} bytes; expected {}: refused",
+            {axis, frame.id, frame.size, description_of(address.pdo).size});
+}
+
+void ControllerFrames::ask(std::int64_t now_ns, std::size_t axis, Pdo pdo, const hal::can::ControllerData& data,
+                           RemoteAxis& remote) {
+  if (!config_.motion_allowed) {
+    ++counts_.refused;
+    if (pdo != Pdo::offsets) say_refused(now_ns, axis, data.controlword);
+    return;
+  }
+  if (pdo == Pdo::offsets) {
+    ++counts_.taken;
+    return ask_offsets(axis, data, remote);
+  }
+  if (pdo == Pdo::mode) {
+    if (!known(data.mode)) {
+      ++counts_.refused;
+      return;
+    }
+    remote.ask(static_cast<OperationMode>(data.mode));
+  }
+  ++counts_.taken;
+  remote.ask(data.controlword);
+  if (pdo != Pdo::target) return;
+  const auto target = machine::to_signal<S::Position>(data.target * config_.increment);
+  const bool number = data.target != std::numeric_limits<std::int32_t>::min() && target.has_value();
+  remote.ask_target(target.value_or(S::Position{}), number);
+  remote.offer(target.value_or(S::Position{}), number);
+}
+
+void ControllerFrames::ask_offsets(std::size_t axis, const hal::can::ControllerData& data, RemoteAxis& remote) const {
+  const double limit = config_.current_limit[axis];
+  const auto velocity = machine::to_signal<S::Velocity>(data.velocity_offset * velocity_increments * config_.increment);
+  const auto current = machine::to_signal<S::Current>(std::clamp(data.torque_offset / torque_units, -1.0, 1.0) * limit);
+  // One that no format holds adds nothing.
+  remote.ask_offsets(velocity.value_or(S::Velocity{}), current.value_or(S::Current{}));
+}
+
+void ControllerFrames::say_refused(std::int64_t now_ns, std::size_t axis, std::uint16_t controlword) {
+  if (controlword == nodes_[axis].refused_word) return;
+  nodes_[axis].refused_word = controlword;
+  log_.push(now_ns, LogLevel::warning,
+            "CAN: axis {}: found controlword {:#06x}; expected none without drive.can_server.motion = \"allowed\": "
+            "refused",
+            {axis, controlword});
+}
+
+void CanServer::send(std::span<const ShownAxis> axes) {
+  const auto& config = frames_.config();
+  if (config.sends_sync) send(hal::can::plain_sync);
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const auto& axis = axes[i];
+    const double unit = config.increment;
+    send(hal::can::encode_position(config.nodes[i], axis.statusword, to_units(axis.position, unit)));
+    if (!config.all_frames) continue;
+    send(hal::can::encode_motion(config.nodes[i], to_units(axis.velocity, unit * velocity_increments),
+                                 to_units(axis.following_error, unit)));
+  }
+}
+
+void CanServer::send(const hal::can::Frame& frame) {
+  if (!socket_.send(frame)) ++send_failed_;
+}
+
+}  // namespace stiction::drive

@@ -1,0 +1,59 @@
+// Everything that the loop is built from, read and checked before anything is opened.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "firmware/machine/model/drive_setup.hpp"
+#include "firmware/machine/model/machine.hpp"
+#include "firmware/stictiond/options.hpp"
+#include "firmware/stictiond/parameter_store.hpp"
+#include "hal/bus_budget.hpp"
+#include "hal/can/can_backend.hpp"
+#include "hal/can/dbc.hpp"
+#include "stiction/drive/friction_compensation.hpp"
+#include "stiction/drive/servo_drive.hpp"
+#include "stiction/drive/ticker.hpp"
+#include "stiction/number/fixed_signals.hpp"
+
+namespace stiction::drive {
+
+// The start is refused. what() says what was found, what was expected and what to do.
+class StartRefused : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct DriveConfiguration {
+  std::filesystem::path file;            // of the machine
+  std::vector<std::string> assignments;  // over it, from the command line
+  std::optional<ParameterSet> stored;    // over it as well: what was stored on this machine
+  machine::Machine machine;
+  machine::DriveSetup setup;
+  std::vector<std::string> names;  // of the axes
+  std::vector<AxisConfig<FixedSignals>> axes;
+  std::vector<ServoDriveConfig<FixedSignals>> drives;
+  std::vector<FrictionCompensationConfig<FixedSignals>> compensations;
+  std::int64_t period_ns;
+  Ticker ticker;
+};
+
+// Where the parameters of this machine are stored; empty without --parameters.
+std::filesystem::path parameter_file(const DriveOptions& options);
+
+// Reads the machine file, and over it the parameters stored on this machine. Throws StartRefused,
+// machine::MachineFileError, machine::ConfigurationError, ParametersDamaged.
+DriveConfiguration read_configuration(const DriveOptions& options);
+
+// Throw StartRefused where the machine file does not say what the bus needs.
+hal::can::CanBackendConfig can_config(const DriveConfiguration& configuration);
+// The frames of [drive.can] and [drive.can_server] as a DBC file; throws where there is neither.
+std::string dbc_page(const DriveConfiguration& configuration);
+
+// What the CAN bus has to carry.
+hal::BusBudget can_bus_budget(const DriveConfiguration& configuration);
+
+}  // namespace stiction::drive

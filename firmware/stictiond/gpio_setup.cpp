@@ -1,0 +1,83 @@
+#include "firmware/stictiond/gpio_setup.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "hal/gpio/lines.hpp"
+
+namespace stiction::drive {
+namespace {
+
+hal::LineConfig line(int number, machine::ActiveLevel active = machine::ActiveLevel::high) {
+  return {.offset = number, .active_low = active == machine::ActiveLevel::low};
+}
+
+std::int64_t ns(double seconds) { return std::llround(seconds * 1e9); }
+
+hal::AxisLines lines_of(const std::string& axis, const machine::LineSetup& setup) {
+  return {.name = axis,
+          .enable = line(setup.enable, setup.enable_active),
+          .brake = line(setup.brake, setup.brake_active),
+          .fault = line(setup.fault, setup.fault_active),
+          .limit_negative = line(setup.limit_negative, setup.limit_active),
+          .limit_positive = line(setup.limit_positive, setup.limit_active),
+          .home = line(setup.home, setup.home_active),
+          .index = line(setup.index, setup.index_active)};
+}
+
+hal::GpioAxisConfig configuration_of(const machine::AxisModel& axis, const machine::LineSetup& setup,
+                                     const machine::GpioSetup& gpio) {
+  if (axis.motor.model != machine::MotorModel::force)
+    throw hal::GpioError(
+        fmt::format("axis {}: its current controllers need the phase currents, which GPIO does not carry; "
+                    "use --hal can, or a power stage that takes a voltage (motor model \"force\")",
+                    axis.name));
+  return {
+      .lines = lines_of(axis.name, setup),
+      .encoder = {.a = line(setup.quadrature_a),
+                  .b = line(setup.quadrature_b),
+                  .increment = setup.quadrature_increment > 0.0 ? setup.quadrature_increment : axis.encoder.increment,
+                  .rate = setup.quadrature_rate,
+                  .settle_ns = ns(setup.quadrature_settle)},
+      .pwm = {.chip = *gpio.pwm_chip,
+              .first_channel = setup.pwm_channel,
+              .half_bridges = 2,
+              .period_ns = ns(gpio.pwm_period),
+              .dc_link = gpio.dc_link}};
+}
+
+}  // namespace
+
+hal::Bias input_bias(const machine::DriveSetup& setup) {
+  static constexpr std::array biases{hal::Bias::as_is, hal::Bias::pull_up, hal::Bias::pull_down, hal::Bias::none};
+  return setup.gpio ? biases[static_cast<std::size_t>(setup.gpio->bias)] : hal::Bias::as_is;
+}
+
+std::vector<hal::AxisLines> gpio_lines(const machine::DriveSetup& setup, const machine::Machine& machine) {
+  std::vector<hal::AxisLines> lines;
+  for (const auto& axis : machine.axes) lines.push_back(lines_of(axis.name, setup.axes.at(axis.name).line));
+  return lines;
+}
+
+bool has_gpio_lines(const machine::DriveSetup& setup, const machine::Machine& machine) {
+  const auto lines = gpio_lines(setup, machine);
+  return setup.gpio && std::any_of(lines.begin(), lines.end(), [](const hal::AxisLines& axis) {
+           return axis.enable.wired() || axis.brake.wired() || axis.fault.wired() || axis.limit_negative.wired() ||
+                  axis.limit_positive.wired() || axis.home.wired() || axis.index.wired();
+         });
+}
+
+hal::GpioBackendConfig gpio_configuration(const machine::DriveSetup& setup, const machine::Machine& machine) {
+  if (!setup.gpio) throw hal::GpioError("the machine file has no table [drive.gpio]; name the gpiochip there");
+  if (!setup.gpio->pwm_chip)
+    throw hal::GpioError("[drive.gpio] names no pwm_chip; expected a folder of /sys/class/pwm");
+  hal::GpioBackendConfig config{.chip = setup.gpio->chip, .bias = input_bias(setup), .axes = {}};
+  for (const auto& axis : machine.axes)
+    config.axes.push_back(configuration_of(axis, setup.axes.at(axis.name).line, *setup.gpio));
+  return config;
+}
+
+}  // namespace stiction::drive

@@ -1,0 +1,24 @@
+// From the machine file's [drive] to what the GPIO backend is told.
+#pragma once
+
+#include <vector>
+
+#include "firmware/machine/model/drive_setup.hpp"
+#include "firmware/machine/model/machine.hpp"
+#include "hal/gpio/config.hpp"
+
+namespace stiction::drive {
+
+hal::Bias input_bias(const machine::DriveSetup& setup);
+
+// Enable, brake, fault and switches of every axis, in the machine's order.
+std::vector<hal::AxisLines> gpio_lines(const machine::DriveSetup& setup, const machine::Machine& machine);
+
+// Whether any of them is wired to the chip of [drive.gpio].
+bool has_gpio_lines(const machine::DriveSetup& setup, const machine::Machine& machine);
+
+// A machine on GPIO alone. Throws hal::GpioError where [drive.gpio] is missing, or where an axis has current
+// controllers: GPIO carries no current.
+hal::GpioBackendConfig gpio_configuration(const machine::DriveSetup& setup, const machine::Machine& machine);
+
+}  // namespace stiction::drive

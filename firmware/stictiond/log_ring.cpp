@@ -1,0 +1,59 @@
+#include "firmware/stictiond/log_ring.hpp"
+
+#include <fmt/args.h>
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <cstdlib>
+
+namespace stiction::drive {
+namespace {
+
+std::string text_of(const LogRecord& record) {
+  fmt::dynamic_format_arg_store<fmt::format_context> values;
+  for (const LogValue& value : record.values) {
+    if (value.name() != nullptr)
+      values.push_back(value.name());
+    else
+      values.push_back(value.number());
+  }
+  return fmt::format("{:.6f} s: ", static_cast<double>(record.time_ns) * 1e-9) +
+         fmt::vformat(record.text.text(), values);
+}
+
+const char* word_of(LogLevel level) {
+  switch (level) {
+    case LogLevel::error:
+      return "error: ";
+    case LogLevel::warning:
+      return "warning: ";
+    case LogLevel::notice:
+    case LogLevel::info:
+      break;
+  }
+  return "";
+}
+
+}  // namespace
+
+std::size_t LogReader::drain() {
+  std::size_t taken = 0;
+  LogRecord record;
+  // No more than the ring holds: a loop that writes without end must not hold its reader.
+  for (; taken < LogRing::capacity && ring_.pop(record); ++taken) sink_(record.level, text_of(record));
+  if (const std::uint64_t lost = ring_.lost(); lost != lost_said_) {
+    sink_(LogLevel::warning, fmt::format("{} messages of the loop found no room and are lost", lost - lost_said_));
+    lost_said_ = lost;
+  }
+  return taken;
+}
+
+void log_to_standard_error(LogLevel level, std::string_view text) {
+  static const bool journal = std::getenv("JOURNAL_STREAM") != nullptr;
+  if (journal)
+    fmt::print(stderr, "<{}>{}\n", static_cast<int>(level), text);
+  else
+    fmt::print(stderr, "stictiond: {}{}\n", word_of(level), text);
+}
+
+}  // namespace stiction::drive

@@ -1,0 +1,39 @@
+#include "firmware/stictiond/modbus_motion.hpp"
+
+#include "firmware/machine/configuration/conversion.hpp"
+
+namespace stiction::drive {
+
+void ask(const MotionWrite& write, double period, RemoteAxis& axis) {
+  using enum MotionWrite::What;
+  using S = FixedSignals;
+  const auto speed = [](double value) { return machine::to_signal<S::Velocity>(value).value_or(S::Velocity{}); };
+  switch (write.what) {
+    case controlword:
+      return axis.ask(static_cast<std::uint16_t>(write.value));
+    case mode:
+      return axis.ask(static_cast<OperationMode>(static_cast<std::int8_t>(write.value)));
+    case target: {
+      const auto position = machine::to_signal<S::Position>(write.value);
+      return axis.ask_target(position.value_or(S::Position{}), position.has_value());
+    }
+    case velocity:
+      return axis.ask_velocity(speed(write.value));
+    case acceleration:
+      return axis.ask_acceleration(speed(write.value * period));
+    case deceleration:
+      return axis.ask_deceleration(speed(write.value * period));
+  }
+}
+
+void show_asked(const RemoteAxis& axis, double period, PublishedAxis& shown) {
+  const auto& move = axis.move();
+  shown.controlword = axis.controlword();
+  shown.mode = static_cast<std::int16_t>(axis.mode());
+  shown.target = machine::to_si(move.target);
+  shown.profile_velocity = machine::to_si(move.velocity);
+  shown.profile_acceleration = machine::to_si(move.acceleration) / period;
+  shown.profile_deceleration = machine::to_si(move.deceleration) / period;
+}
+
+}  // namespace stiction::drive

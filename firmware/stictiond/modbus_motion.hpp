@@ -1,0 +1,13 @@
+// What a Modbus client asks of an axis, at the border to the drive's number formats, and what it is shown of it.
+#pragma once
+
+#include "firmware/stictiond/modbus_registers.hpp"
+#include "stiction/drive/remote_axis.hpp"
+
+namespace stiction::drive {
+
+// `period`: of the fast tick, s. The registers have kept values to what the axis can.
+void ask(const MotionWrite& write, double period, RemoteAxis& axis);
+void show_asked(const RemoteAxis& axis, double period, PublishedAxis& shown);
+
+}  // namespace stiction::drive

@@ -1,0 +1,91 @@
+// The drive on a plant's network: publishes the loop's state over Modbus and takes what clients write. Three threads
+// meet here and none waits for another: the loop hands over its state and takes motion commands, the server's answers
+// clients, the service thread keeps parameters and says what was written.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "firmware/machine/configuration/conversion.hpp"
+#include "firmware/stictiond/modbus_registers.hpp"
+#include "hal/modbus/server.hpp"
+#include "hal/snapshot.hpp"
+#include "stiction/drive/axis_signals.hpp"
+
+namespace stiction::drive {
+
+// Where written parameters are kept, and what checks them.
+struct ModbusStore {
+  std::filesystem::path file;  // of the parameter store; empty: nothing is kept
+  std::filesystem::path machine_file;
+  machine::ReadOptions options;       // those that the drive was started with
+  std::optional<ParameterSet> begun;  // what was stored then
+};
+
+class ModbusPublisher {
+ public:
+  // What the loop does not know itself (deadlines, the trace's rows); asked in the server's thread at each request.
+  using Beside = std::function<void(PublishedState&)>;
+
+  // Listens when this returns. Throws ModbusError.
+  ModbusPublisher(const machine::Machine& machine, const machine::DriveSetup& setup, ModbusStore store,
+                  Beside beside = {});
+
+  // The loop's side, wait-free.
+  // `signals` of the tick; the peaks and the mean square are kept here. `status` gives statusword, mode, fault and
+  // inputs of an axis: status(axis, PublishedAxis&).
+  template <class S, class Status>
+  void publish(std::span<const AxisSignals<S>> signals, std::int64_t now_ns, Fault fault, Status status) {
+    if (first_ns_ == 0) first_ns_ = now_ns;
+    ++rows_;
+    PublishedState& next = loop_state_;
+    next.seconds = static_cast<std::uint32_t>((now_ns - first_ns_) / 1'000'000'000);
+    next.fault = fault;
+    for (std::size_t i = 0; i < signals.size() && i < next.axes.size(); ++i) {
+      PublishedAxis& axis = next.axes[i];
+      const AxisSignals<S>& s = signals[i];
+      axis.position = machine::to_si(s.x);
+      axis.set_position = machine::to_si(s.x_set);
+      axis.velocity = machine::to_si(s.v);
+      axis.current = machine::to_si(s.i);
+      axis.following_error = machine::to_si(s.e);
+      axis.peak_following_error = std::max(axis.peak_following_error, std::abs(axis.following_error));
+      axis.peak_current = std::max(axis.peak_current, std::abs(axis.current));
+      square_sum_[i] += axis.current * axis.current;
+      axis.rms_current = std::sqrt(square_sum_[i] / static_cast<double>(rows_));
+      status(i, axis);
+    }
+    snapshot_.publish(next);
+  }
+  // What a client commands, oldest first; none comes where the machine file does not allow motion.
+  std::optional<MotionWrite> take_motion();
+
+  // The service thread's side: takes what was written, stores parameters, and returns a line for the log for each
+  // thing done or refused.
+  std::vector<std::string> serve();
+
+  const hal::ModbusServer& server() const { return server_; }
+
+ private:
+  std::string describe(const MotionWrite& write) const;
+  std::string describe_store();
+
+  ModbusRegisters registers_;
+  ModbusStore store_;
+  Beside beside_;
+  std::vector<std::string> axis_names_;
+  // The loop's own.
+  PublishedState loop_state_;
+  std::array<double, most_published_axes> square_sum_{};
+  std::uint64_t rows_ = 0;
+  std::int64_t first_ns_ = 0;
+  hal::Snapshot<PublishedState> snapshot_;
+  hal::WriteQueue motion_;
+  hal::ModbusServer server_;  // last: its thread uses all of the others
+};
+
+}  // namespace stiction::drive

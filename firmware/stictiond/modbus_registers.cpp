@@ -1,0 +1,322 @@
+#include "firmware/stictiond/modbus_registers.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "firmware/machine/file/description.hpp"
+#include "firmware/machine/model/shipped_vocabulary.hpp"
+
+namespace stiction::drive {
+namespace {
+
+using hal::Register;
+using hal::RegisterAccess;
+using hal::RegisterTable;
+using hal::RegisterType;
+using enum RegisterType;
+
+// Axis by axis, with room to grow; a parameter takes two registers.
+constexpr std::uint16_t first_axis = 100, axis_stride = 100;
+constexpr std::uint16_t first_parameters = 1000, parameters_stride = 200;
+constexpr double position_scale = 1e-8;  // m: 32 bits reach 21 m, in steps finer than any panel shows
+constexpr double store_password = 0x5354;
+
+template <class Owner>
+struct StateRow {
+  std::uint16_t offset;
+  RegisterType type;
+  double scale;
+  const char* name;
+  const char* unit;
+  const char* text;
+  double (*value)(const Owner&);
+};
+
+double number_of(Fault fault) { return static_cast<double>(fault); }
+
+using Drive = PublishedState;
+constexpr std::array<StateRow<Drive>, 7> drive_rows{{
+    {3, uint16, 1, "fault", "1", "number of the programme's or the bus' fault; 0: none",
+     [](const Drive& s) { return number_of(s.fault); }},
+    {4, uint32, 1, "seconds", "s", "that the loop has run", [](const Drive& s) -> double { return s.seconds; }},
+    {6, uint32, 1, "missed_deadlines", "1", "ticks that began later than a period",
+     [](const Drive& s) -> double { return s.missed_deadlines; }},
+    {8, float32, 1, "largest_lateness", "s", "of a tick's begin", [](const Drive& s) { return s.largest_lateness; }},
+    {10, float32, 1, "largest_work", "s", "of a tick", [](const Drive& s) { return s.largest_work; }},
+    {12, uint32, 1, "trace_rows", "1", "rows of the trace that were recorded",
+     [](const Drive& s) -> double { return s.trace_rows; }},
+    {14, uint32, 1, "trace_lost", "1", "rows of the trace that were lost",
+     [](const Drive& s) -> double { return s.trace_lost; }},
+}};
+
+using Axis = PublishedAxis;
+constexpr std::array<StateRow<Axis>, 12> axis_rows{{
+    {0, uint16, 1, "statusword", "1", "CiA 402, 6041h", [](const Axis& a) -> double { return a.statusword; }},
+    {1, int16, 1, "mode", "1", "mode of operation shown, 6061h", [](const Axis& a) -> double { return a.mode; }},
+    {2, uint16, 1, "fault", "1", "number of the axis' fault; 0: none",
+     [](const Axis& a) { return number_of(a.fault); }},
+    {3, uint16, 1, "inputs", "1", "bit 0: negative limit switch; bit 1: positive; bit 2: home switch",
+     [](const Axis& a) -> double {
+       return (a.limit_negative ? 1 : 0) + (a.limit_positive ? 2 : 0) + (a.home ? 4 : 0);
+     }},
+    {4, int32, position_scale, "position", "m", "measured", [](const Axis& a) { return a.position; }},
+    {6, int32, position_scale, "set_position", "m", "set", [](const Axis& a) { return a.set_position; }},
+    {8, float32, 1, "velocity", "m/s", "measured", [](const Axis& a) { return a.velocity; }},
+    {10, float32, 1, "current", "A", "amplitude that makes the force", [](const Axis& a) { return a.current; }},
+    {12, float32, 1, "following_error", "m", "set position minus measured",
+     [](const Axis& a) { return a.following_error; }},
+    {14, float32, 1, "peak_following_error", "m", "largest of the trace",
+     [](const Axis& a) { return a.peak_following_error; }},
+    {16, float32, 1, "peak_current", "A", "largest of the trace", [](const Axis& a) { return a.peak_current; }},
+    {18, float32, 1, "rms_current", "A", "of the trace", [](const Axis& a) { return a.rms_current; }},
+}};
+
+struct MotionRow {
+  std::uint16_t offset;
+  RegisterType type;
+  double scale;
+  const char* name;
+  const char* unit;
+  const char* text;
+  MotionWrite::What what;
+  double (*value)(const Axis&);
+  std::array<double, 3> choices{};  // all 0: every number
+  // Limits what may be written to what the axis can; null: every number.
+  void (*limit)(const machine::AxisModel&, Register&) = nullptr;
+};
+
+void up_to(double high, Register& r) {
+  r.low = 0.0;
+  r.low_open = true;
+  r.high = high;
+}
+void to_velocity(const machine::AxisModel& axis, Register& r) { up_to(axis.max_velocity, r); }
+void to_acceleration(const machine::AxisModel& axis, Register& r) { up_to(axis.max_acceleration, r); }
+// Set-points of every tick do not come over this bus; what can be asked for is what a drive does by itself. A target
+// beyond the travel is refused by the axis, as it may be relative: bit 11 of the statusword.
+using What = MotionWrite::What;
+constexpr std::array<MotionRow, 6> motion_rows{{
+    {0, uint16, 1, "controlword", "1", "CiA 402, 6040h; shown: what was taken last", What::controlword,
+     [](const Axis& a) -> double { return a.controlword; }},
+    {1,
+     int16,
+     1,
+     "mode_of_operation",
+     "1",
+     "6060h; 1: profile position, 6: homing, 8: cyclic position",
+     What::mode,
+     [](const Axis& a) -> double { return a.mode; },
+     {1, 6, 8}},
+    {2, int32, position_scale, "target_position", "m",
+     "607Ah; taken when bit 4 of the controlword rises, with bit 5 at once, with bit 6 relative", What::target,
+     [](const Axis& a) { return a.target; }},
+    {4,
+     uint32,
+     1e-6,
+     "profile_velocity",
+     "m/s",
+     "6081h; at first and at most max_velocity",
+     What::velocity,
+     [](const Axis& a) { return a.profile_velocity; },
+     {},
+     to_velocity},
+    {6,
+     uint32,
+     1e-3,
+     "profile_acceleration",
+     "m/s^2",
+     "6083h; at first and at most max_acceleration",
+     What::acceleration,
+     [](const Axis& a) { return a.profile_acceleration; },
+     {},
+     to_acceleration},
+    {8,
+     uint32,
+     1e-3,
+     "profile_deceleration",
+     "m/s^2",
+     "6084h; at first and at most max_acceleration",
+     What::deceleration,
+     [](const Axis& a) { return a.profile_deceleration; },
+     {},
+     to_acceleration},
+}};
+
+template <class Row>
+Register made(const Row& row, RegisterTable table, RegisterAccess access, unsigned start, const std::string& prefix) {
+  Register r;
+  r.table = table;
+  r.address = static_cast<std::uint16_t>(start + row.offset);
+  r.type = row.type;
+  r.access = access;
+  r.name = prefix + row.name;
+  r.unit = row.unit;
+  r.scale = row.scale;
+  r.text = row.text;
+  if constexpr (requires { row.choices; })
+    if (row.choices != decltype(row.choices){}) r.choices.assign(row.choices.begin(), row.choices.end());
+  return r;
+}
+
+Register constant(std::uint16_t address, const char* name, const char* text) {
+  Register r;
+  r.address = address;
+  r.name = name;
+  r.unit = "1";
+  r.text = text;
+  return r;
+}
+
+Register parameter_register(const DriveParameter& parameter, unsigned address) {
+  Register r;
+  r.table = RegisterTable::holding;
+  r.address = static_cast<std::uint16_t>(address);
+  r.type = float32;
+  r.access = RegisterAccess::write;
+  r.name = parameter.key;
+  r.unit = parameter.unit;
+  const std::string range = machine::describe_range(parameter.range, parameter.unit);
+  r.text = parameter.text + (range.empty() ? "" : "; a value " + range);
+  r.low = parameter.range.low;
+  r.high = parameter.range.high;
+  r.low_open = parameter.range.low_open;
+  return r;
+}
+
+// The order of put_values().
+std::vector<Register> all_registers(const machine::Machine& machine, const std::vector<DriveParameter>& parameters) {
+  std::vector<Register> registers{
+      constant(0, "identification", "21316: a drive of stiction"),
+      constant(1, "schema", "version of these registers"),
+      constant(2, "axes", "number of axes"),
+  };
+  for (const auto& row : drive_rows) registers.push_back(made(row, RegisterTable::input, RegisterAccess::read, 0, ""));
+  const auto of_each_axis = [&](const auto& rows, RegisterTable table, RegisterAccess access) {
+    unsigned start = first_axis;
+    for (const machine::AxisModel& axis : machine.axes) {
+      for (const auto& row : rows) {
+        registers.push_back(made(row, table, access, start, axis.name + "."));
+        if constexpr (requires { row.limit; })
+          if (row.limit != nullptr) row.limit(axis, registers.back());
+      }
+      start += axis_stride;
+    }
+  };
+  of_each_axis(axis_rows, RegisterTable::input, RegisterAccess::read);
+  Register store = constant(0, "store_parameters", "21332 keeps the written parameters for the next start");
+  store.table = RegisterTable::holding;
+  store.access = RegisterAccess::write;
+  store.low = store.high = store_password;
+  registers.push_back(store);
+  of_each_axis(motion_rows, RegisterTable::holding, RegisterAccess::motion);
+  const std::size_t per_axis = machine.axes.empty() ? 0 : parameters.size() / machine.axes.size();
+  if (2 * per_axis > parameters_stride) throw std::invalid_argument("more parameters than registers of an axis");
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    registers.push_back(parameter_register(
+        parameters[i],
+        static_cast<unsigned>(first_parameters + parameters_stride * (i / per_axis) + 2 * (i % per_axis))));
+  return registers;
+}
+
+std::size_t checked_axis_count(const machine::Machine& machine) {
+  if (machine.axes.size() > most_published_axes)
+    throw std::invalid_argument(
+        fmt::format("Modbus: found {} axes; expected at most {}", machine.axes.size(), most_published_axes));
+  return machine.axes.size();
+}
+
+// Registers before those of the motion.
+std::size_t count_before_motion(std::size_t axes) { return 3 + drive_rows.size() + axes * axis_rows.size() + 1; }
+
+}  // namespace
+
+ModbusRegisters::ModbusRegisters(const machine::Machine& machine, const machine::DriveSetup& setup)
+    : machine_id_(machine.id),
+      axis_count_(checked_axis_count(machine)),
+      parameters_(drive_parameters(machine, setup)),
+      map_(all_registers(machine, parameters_)),
+      first_parameter_(count_before_motion(axis_count_) + axis_count_ * motion_rows.size()),
+      written_{machine.id, {}} {
+  for (const auto& p : parameters_) values_.push_back(p.value.value_or(std::numeric_limits<double>::quiet_NaN()));
+}
+
+void ModbusRegisters::put_values(const PublishedState& state, std::span<double> values) const {
+  std::size_t i = 0;
+  values[i++] = modbus_identification;
+  values[i++] = modbus_schema;
+  values[i++] = static_cast<double>(axis_count_);
+  for (const auto& row : drive_rows) values[i++] = row.value(state);
+  for (std::size_t axis = 0; axis < axis_count_; ++axis)
+    for (const auto& row : axis_rows) values[i++] = row.value(state.axes[axis]);
+  values[i++] = 0.0;  // the command to store
+  for (std::size_t axis = 0; axis < axis_count_; ++axis)
+    for (const auto& row : motion_rows) values[i++] = row.value(state.axes[axis]);
+  const std::lock_guard lock(mutex_);
+  for (const double value : values_) values[i++] = value;
+}
+
+DriveWrite ModbusRegisters::meaning_of(const hal::RegisterWrite& write) const {
+  if (write.index >= first_parameter_)
+    return ParameterWrite{parameters_.at(write.index - first_parameter_).key, write.value};
+  const std::size_t before = count_before_motion(axis_count_);
+  if (write.index < before) return StoreParameters{};
+  const std::size_t motion = write.index - before;
+  return MotionWrite{motion / motion_rows.size(), motion_rows[motion % motion_rows.size()].what, write.value};
+}
+
+void ModbusRegisters::remember(const ParameterWrite& write) {
+  const std::lock_guard lock(mutex_);
+  for (std::size_t i = 0; i < parameters_.size(); ++i)
+    if (parameters_[i].key == write.key) values_[i] = write.value;
+  written_.values[write.key] = write.value;
+}
+
+ParameterSet ModbusRegisters::written() const {
+  const std::lock_guard lock(mutex_);
+  return written_;
+}
+
+void ModbusRegisters::set_written(const ParameterSet& set) {
+  const std::lock_guard lock(mutex_);
+  written_ = set;
+  for (std::size_t i = 0; i < parameters_.size(); ++i)
+    if (const auto found = set.values.find(parameters_[i].key); found != set.values.end()) values_[i] = found->second;
+}
+
+void ModbusRegisters::store(const std::filesystem::path& file, const std::filesystem::path& machine_file,
+                            machine::ReadOptions options) const {
+  const ParameterSet set = written();
+  for (auto& assignment : assignments_of(set, machine_id_, parameters_)) options.set.push_back(std::move(assignment));
+  machine::read_machine(machine_file, machine::shipped_vocabulary(), options);
+  write_parameters(file, set);
+}
+
+std::string modbus_register_page() {
+  machine::Machine machine;
+  machine.axes.emplace_back().name = "NAME";
+  const ModbusRegisters registers(machine, {});
+  std::vector<Register> input, holding;
+  for (const Register& r : registers.map().registers())
+    (r.table == RegisterTable::input ? input : holding).push_back(r);
+  return fmt::format(
+      "# Modbus: the drive's registers\n\n"
+      "Version {} (input registers 0 and 1 say so: 21316, {}). Addresses count from 0 as on the wire. Values of 32 "
+      "bits "
+      "take two registers, the high word first (ABCD), and are written whole. Listed are the registers of the drive "
+      "and "
+      "of its first axis; each further axis, in the order of the machine file, has its state and its commands {} "
+      "addresses further on, its parameters {}.\n\n"
+      "Writing is refused with exception 1 where a register moves an axis and `[drive.modbus_server] motion` is not "
+      "`\"allowed\"`, 2 where there is no such register or it is only read, 3 where a value is out of range or half of "
+      "a "
+      "32-bit value, 6 where earlier writes have not been taken yet; a refused request writes nothing.\n\n"
+      "## Input registers (function 4)\n\n{}\n"
+      "## Holding registers (functions 3, 6, 16, 23)\n\n"
+      "A parameter that the machine file leaves out reads as not-a-number. What is written is shown at once, kept with "
+      "`store_parameters`, and holds from the next start on.\n\n{}",
+      modbus_schema, modbus_schema, axis_stride, parameters_stride, hal::register_table(input),
+      hal::register_table(holding));
+}
+
+}  // namespace stiction::drive

@@ -1,0 +1,109 @@
+// What the drive publishes over Modbus and takes from there: its registers made from the parameters' descriptions, the
+// state that the loop hands over, and what a client's write means. docs/modbus_registers.md is printed from here.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <mutex>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "firmware/machine/file/machine_file.hpp"
+#include "firmware/stictiond/parameters.hpp"
+#include "hal/modbus/register_map.hpp"
+#include "stiction/drive/faults.hpp"
+
+namespace stiction::drive {
+
+inline constexpr std::uint16_t modbus_identification = 0x5344;  // "SD"
+inline constexpr std::uint16_t modbus_schema = 2;               // of the registers; changes with any address
+inline constexpr std::size_t most_published_axes = 8;
+
+struct PublishedAxis {
+  std::uint16_t statusword = 0;  // CiA 402, 6041h
+  std::int16_t mode = 0;         // 6061h
+  Fault fault = Fault::none;
+  bool limit_negative = false, limit_positive = false, home = false;
+  double position = 0.0;         // m
+  double set_position = 0.0;     // m
+  double velocity = 0.0;         // m/s
+  double current = 0.0;          // A, amplitude that makes the force
+  double following_error = 0.0;  // m
+  // Of the trace since it began.
+  double peak_following_error = 0.0;  // m
+  double peak_current = 0.0;          // A
+  double rms_current = 0.0;           // A
+  // What was asked for last, by whomever.
+  std::uint16_t controlword = 0;
+  double target = 0.0;                                            // m
+  double profile_velocity = 0.0;                                  // m/s
+  double profile_acceleration = 0.0, profile_deceleration = 0.0;  // m/s^2
+};
+
+// What the loop hands over, as often as it likes, through hal::Snapshot<PublishedState>.
+struct PublishedState {
+  std::uint32_t seconds = 0;  // that the loop has run
+  Fault fault = Fault::none;  // of the programme or the bus
+  std::uint32_t missed_deadlines = 0;
+  double largest_lateness = 0.0;  // s, of a tick's begin
+  double largest_work = 0.0;      // s, of a tick
+  std::uint32_t trace_rows = 0;   // recorded
+  std::uint32_t trace_lost = 0;   // not recorded, because the trace was full
+  std::array<PublishedAxis, most_published_axes> axes{};
+};
+
+// What a client wrote.
+struct MotionWrite {
+  enum class What : std::uint8_t { controlword, mode, target, velocity, acceleration, deceleration };
+  std::size_t axis = 0;
+  What what = What::controlword;
+  double value = 0.0;  // SI units
+};
+struct ParameterWrite {
+  std::string key;
+  double value = 0.0;  // SI units
+};
+struct StoreParameters {};  // the written parameters are to be kept, for the next start
+
+using DriveWrite = std::variant<MotionWrite, ParameterWrite, StoreParameters>;
+
+class ModbusRegisters {
+ public:
+  // Throws std::invalid_argument for more axes than most_published_axes.
+  ModbusRegisters(const machine::Machine& machine, const machine::DriveSetup& setup);
+
+  const hal::RegisterMap& map() const { return map_; }
+  // One value a register: the state's and the parameters', those that were written included. From the server's thread.
+  void put_values(const PublishedState& state, std::span<double> values) const;
+
+  // The meaning of a client's write to one of the map's registers that are for writing. Allocates for a parameter.
+  DriveWrite meaning_of(const hal::RegisterWrite& write) const;
+  // A parameter that was written: shown from now on.
+  void remember(const ParameterWrite& write);
+  // All parameters that were written, or came from the store.
+  ParameterSet written() const;
+  // Begins with the stored set.
+  void set_written(const ParameterSet& set);
+  // Keeps what was written. Reads the machine file with it first, as a check of every value; `options` are those that
+  // the drive was started with. Throws machine::MachineFileError where the reader refuses it, std::system_error where
+  // it cannot be written; what was stored before then holds.
+  void store(const std::filesystem::path& file, const std::filesystem::path& machine_file,
+             machine::ReadOptions options = {}) const;
+
+ private:
+  std::string machine_id_;
+  std::size_t axis_count_;
+  std::vector<DriveParameter> parameters_;
+  hal::RegisterMap map_;
+  std::size_t first_parameter_ = 0;  // its register
+  mutable std::mutex mutex_;         // of what follows: written in one thread, shown in the server's
+  ParameterSet written_;
+  std::vector<double> values_;
+};
+
+// The registers of a machine with one axis as a page of Markdown.
+std::string modbus_register_page();
+
+}  // namespace stiction::drive

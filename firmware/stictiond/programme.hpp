@@ -1,0 +1,203 @@
+// What the programme does with the axes, tick by tick: it enables them, finds their zero where they have to, makes its
+// motion, stops and takes the power off. A fault on the way ends in the drives' own reactions; the programme waits for
+// them to be over. While it serves, others ask: the axes then stand, follow or move by what RemoteAxis makes of it.
+// Allocates nothing after construction.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "firmware/stictiond/log_ring.hpp"
+#include "firmware/stictiond/motion.hpp"
+#include "firmware/stictiond/trace.hpp"
+#include "hal/drive_loop.hpp"
+#include "stiction/drive/remote_axis.hpp"
+
+namespace stiction::drive {
+
+enum class Phase : std::uint8_t { enable, home, approach, motion, idle, remote, stop, faulted, over };
+
+inline constexpr std::array<const char*, 9> phase_names{"enabling", "homing",   "approach", "motion", "holding",
+                                                        "serving",  "stopping", "faulted",  "off"};
+constexpr const char* name_of(Phase phase) { return phase_names[static_cast<std::size_t>(phase)]; }
+
+struct Task {
+  Motion approach, motion;       // both may be empty
+  std::uint64_t idle_ticks = 0;  // to be held enabled after the motion
+  bool serve = false;            // none of these: others ask for what is done, until the programme is stopped
+};
+
+template <hal::Backend B>
+class Programme {
+ public:
+  using S = typename B::Signals;
+
+  // `remote`: one an axis. `trace`: of the motion; may be null. All must outlive this.
+  Programme(hal::DriveLoop<B>& loop, const Task& task, std::span<const RemoteAxisConfig> remote, LogRing& log,
+            Trace* trace)
+      : loop_(loop),
+        task_(task),
+        log_(log),
+        trace_(trace),
+        hold_(loop.axis_count()),
+        remote_(remote.begin(), remote.end()),
+        dropped_(loop.axis_count()) {
+    if (task.serve) enter(Phase::remote);
+  }
+
+  // One tick. `stop_wanted`: a controlled stop, then the end.
+  void tick(bool stop_wanted) {
+    if (stop_wanted && phase_ < Phase::stop) enter(Phase::stop);
+    if (loop_.faulted() && phase_ != Phase::remote && phase_ < Phase::faulted) enter(Phase::faulted);
+    if (phase_ != Phase::remote) choose_controlwords();
+    const auto sets = phase_ == Phase::remote ? serve() : set_points();
+    const std::int64_t now_ns = loop_.now_ns();
+    loop_.tick(sets);
+    if (phase_ == Phase::motion && trace_ != nullptr) trace_->add(now_ns - motion_began_ns_, loop_.loop().signals());
+    log_events();
+    ++tick_;
+    advance();
+    progress_.store(tick_, std::memory_order_relaxed);
+  }
+
+  // Where others ask for what the axes do while the programme serves; without it they stay off.
+  std::span<RemoteAxis> remote() { return remote_; }
+  // As others see it: what serves adds its bits to the drive's.
+  std::uint16_t statusword(std::size_t axis) const {
+    return phase_ == Phase::remote ? remote_[axis].statusword(loop_.statusword(axis)) : loop_.statusword(axis);
+  }
+
+  Phase phase() const { return phase_; }
+  bool over() const { return phase_ == Phase::over; }
+  bool faulted() const { return faulted_; }
+  std::uint64_t progress() const { return progress_.load(std::memory_order_relaxed); }  // any thread
+
+ private:
+  // After a fault the last frames still say that the power is off.
+  static constexpr std::uint64_t settling_ticks = 1600;
+
+  void enter(Phase phase) {
+    phase_ = phase;
+    in_phase_ = 0;
+  }
+
+  void choose_controlwords() {
+    const bool off = phase_ == Phase::stop || phase_ == Phase::over;
+    for (std::size_t i = 0; i < loop_.axis_count(); ++i) {
+      const bool homes = phase_ == Phase::home && !loop_.drive(i).referenced();
+      loop_.set_mode(i, homes ? OperationMode::homing : OperationMode::cyclic_position);
+      std::uint16_t word = off ? controlword::shutdown : controlword_to_enable(loop_.state(i));
+      if (phase_ == Phase::faulted) word = controlword::shutdown;
+      if (homes) word |= controlword::homing_start_bit;
+      loop_.set_controlword(i, word);
+    }
+  }
+
+  // What others ask for, in this tick.
+  std::span<const SetPoint<S>> serve() {
+    for (std::size_t i = 0; i < hold_.size(); ++i) {
+      auto& remote = remote_[i];
+      hold_[i] = remote.tick(loop_.drive(i));
+      loop_.set_controlword(i, remote.controlword());
+      loop_.set_mode(i, remote.mode());
+      loop_.set_velocity_offset(i, remote.velocity_offset());
+      if (const Fault fault = remote.fault(); fault != Fault::none) loop_.trip(i, fault);
+    }
+    return hold_;
+  }
+
+  std::span<const SetPoint<S>> set_points() {
+    if (phase_ == Phase::approach) return task_.approach.at(in_phase_);
+    if (phase_ == Phase::motion) return task_.motion.at(in_phase_);
+    // Where each axis' set-point stands; behind a motion that ended moving, the drives' ramp takes over.
+    for (std::size_t i = 0; i < hold_.size(); ++i) hold_[i] = {loop_.drive(i).set_position(), {}, {}};
+    return hold_;
+  }
+
+  // After a tick: whether the phase is over.
+  void advance() {
+    ++in_phase_;
+    switch (phase_) {
+      case Phase::enable:
+        if (loop_.all_in(DriveState::operation_enabled)) enter(Phase::home);
+        break;
+      case Phase::home:
+        if (all_referenced() && loop_.loop().slow()) begin_motion();
+        break;
+      case Phase::approach:
+        if (in_phase_ == task_.approach.ticks()) begin_motion();
+        break;
+      case Phase::motion:
+        if (in_phase_ == task_.motion.ticks()) enter(task_.idle_ticks > 0 ? Phase::idle : Phase::stop);
+        break;
+      case Phase::idle:
+        if (in_phase_ >= task_.idle_ticks) enter(Phase::stop);
+        break;
+      case Phase::remote:
+        break;
+      case Phase::stop:
+      case Phase::faulted:
+        faulted_ |= loop_.faulted();
+        if (none_powered() && in_phase_ >= settled_after()) enter(Phase::over);
+        break;
+      case Phase::over:
+        break;
+    }
+  }
+
+  void begin_motion() {
+    if (phase_ == Phase::home && task_.approach.ticks() > 0) return enter(Phase::approach);
+    if (task_.motion.ticks() == 0) return enter(Phase::idle);
+    enter(Phase::motion);
+    motion_began_ns_ = loop_.now_ns();
+  }
+
+  // A fault takes the power at once and leaves the carriage coasting.
+  std::uint64_t settled_after() const { return phase_ == Phase::faulted ? settling_ticks : 1; }
+
+  bool all_referenced() const {
+    for (std::size_t i = 0; i < loop_.axis_count(); ++i)
+      if (!loop_.drive(i).referenced()) return false;
+    return true;
+  }
+  bool none_powered() const {
+    for (std::size_t i = 0; i < loop_.axis_count(); ++i)
+      if (loop_.drive(i).powered()) return false;
+    return true;
+  }
+
+  void log_events() {
+    hal::AxisEvent<S> event;
+    while (loop_.next_event(event))
+      log_.push(
+          event.event.time_ns, LogLevel::error, "axis {}: fault {} '{}' while {}",
+          {event.axis, static_cast<int>(event.event.fault), stiction::name_of(event.event.fault), name_of(phase_)});
+    const auto compensations = loop_.loop().compensations();
+    for (std::size_t i = 0; i < compensations.size(); ++i) {
+      if (compensations[i].dropped() && !dropped_[i])
+        log_.push(loop_.now_ns(), LogLevel::warning,
+                  "axis {}: the learned table made the error grow: dropped, the friction feedforward acts without it",
+                  {i});
+      dropped_[i] = compensations[i].dropped();
+    }
+  }
+
+  hal::DriveLoop<B>& loop_;
+  const Task& task_;
+  LogRing& log_;
+  Trace* trace_;
+  std::vector<SetPoint<S>> hold_;
+  std::vector<RemoteAxis> remote_;
+  std::vector<char> dropped_;  // learned tables
+  Phase phase_ = Phase::enable;
+  std::uint64_t in_phase_ = 0;  // ticks
+  std::uint64_t tick_ = 0;
+  std::atomic<std::uint64_t> progress_ = 0;
+  std::int64_t motion_began_ns_ = 0;
+  bool faulted_ = false;
+};
+
+}  // namespace stiction::drive

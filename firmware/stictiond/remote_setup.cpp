@@ -1,0 +1,175 @@
+#include "firmware/stictiond/remote_setup.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "firmware/machine/configuration/axis_configuration.hpp"
+#include "firmware/machine/configuration/conversion.hpp"
+#include "hal/can/can_socket.hpp"
+
+namespace stiction::drive {
+namespace {
+
+using S = FixedSignals;
+
+// Of the way that max_velocity allows in a cycle: targets are rounded, and clocks differ.
+constexpr double way_tolerance = 1.01;
+
+template <class T>
+T held(double value, const std::string& key) {
+  if (const auto signal = machine::to_signal<T>(value)) return *signal;
+  throw StartRefused(
+      fmt::format("{}: found {:g}; expected at most {:g} in magnitude, the range of the drive's number "
+                  "format",
+                  key, value, machine::highest<T>()));
+}
+
+// Slow ticks from one target to the next.
+std::uint32_t cycle_ticks(const DriveConfiguration& c) {
+  const double slow = c.machine.timing.slow_period;
+  if (!c.setup.can_server || !c.setup.can_server->period) return 1;
+  const double period = *c.setup.can_server->period;
+  const double ticks = std::round(period / slow);
+  if (ticks < 1.0 || std::abs(ticks * slow / period - 1.0) > 1e-6)
+    throw StartRefused(
+        fmt::format("drive.can_server.period: found {:g} ms; expected a whole multiple of "
+                    "timing.slow_period, {:g} ms",
+                    period * 1e3, slow * 1e3));
+  return static_cast<std::uint32_t>(ticks);
+}
+
+int smoothing_bits(double jerk_time, double period) {
+  const double ticks = std::max(jerk_time / period, 1.0);
+  return std::min(static_cast<int>(std::lround(std::log2(ticks))), PositionProfile::most_smoothing_bits);
+}
+
+RemoteAxisConfig remote_axis(const DriveConfiguration& c, const machine::AxisModel& axis,
+                             const machine::DriveAxisSetup& setup) {
+  const auto& timing = c.machine.timing;
+  const auto ticks = cycle_ticks(c) * static_cast<std::uint32_t>(machine::slow_ratio(timing));
+  const double cycle = ticks * timing.fast_period;
+  const std::string of_axis = "axis." + axis.name, of_drive = "drive.axis." + axis.name;
+  const double way = axis.max_velocity * cycle * way_tolerance;
+  const auto most = machine::highest<SetPointInterpolator::Way>();
+  if (way > most && c.setup.can_server)
+    throw StartRefused(
+        fmt::format("drive.can_server.period: found {:g} ms with {}.max_velocity = {:g} m/s; expected "
+                    "a way of at most {:g} mm from one set-point to the next, a period up to {:g} ms",
+                    cycle * 1e3, of_axis, axis.max_velocity, most * 1e3, most / way * cycle * 1e3));
+  RemoteAxisConfig config;
+  config.interpolation = SetPointInterpolator::configure(
+      c.period_ns, ticks, held<SetPointInterpolator::Way>(std::min(way, most), of_axis + ".max_velocity"));
+  config.streamed = c.setup.can_server.has_value();
+  config.low = held<S::Position>(setup.negative_end.value(), of_drive + ".negative_end");
+  config.high = held<S::Position>(setup.positive_end.value(), of_drive + ".positive_end");
+  config.profile = {S::seconds(c.period_ns), S::rate(c.period_ns),
+                    smoothing_bits(setup.profile_jerk_time, timing.fast_period)};
+  const double change = axis.max_acceleration * timing.fast_period;
+  const auto fastest_change =
+      std::max(held<S::Velocity>(change, of_axis + ".max_acceleration"), S::Velocity::from_raw(1));
+  config.fastest = {
+      {}, held<S::Velocity>(axis.max_velocity, of_axis + ".max_velocity"), fastest_change, fastest_change};
+  config.target_window = held<S::Position>(setup.target_window, of_drive + ".target_window");
+  return config;
+}
+
+std::vector<std::uint32_t> identifiers(const CanServerConfig& config) {
+  std::vector<std::uint32_t> ids;
+  for (const int node : config.nodes)
+    for (const auto& row : hal::can::pdo_table) ids.push_back(row.id + static_cast<std::uint32_t>(node));
+  return ids;
+}
+
+bool on_one_bus(const machine::DriveSetup& setup) {
+  return setup.can && setup.can_server && setup.can->interface == setup.can_server->interface;
+}
+
+std::string rates(double arbitration, const std::optional<double>& data) {
+  return fmt::format("{:g} bit/s{}", arbitration, data ? fmt::format(" and {:g} bit/s", *data) : "");
+}
+
+}  // namespace
+
+std::vector<RemoteAxisConfig> remote_axes(const DriveConfiguration& configuration) {
+  std::vector<RemoteAxisConfig> axes;
+  for (const auto& axis : configuration.machine.axes)
+    axes.push_back(remote_axis(configuration, axis, configuration.setup.axes.at(axis.name)));
+  return axes;
+}
+
+CanServerConfig can_server_config(const DriveConfiguration& c) {
+  const auto& server = c.setup.can_server.value();
+  CanServerConfig config;
+  config.interface = server.interface;
+  config.format = server.data_bit_rate ? hal::can::Format::fd : hal::can::Format::classical;
+  config.increment = server.position_increment;
+  config.all_frames = server.all_frames;
+  config.cycle_ticks = cycle_ticks(c);
+  config.motion_allowed = server.motion_allowed;
+  config.follows_sync = server.sync_followed;
+  config.sends_sync = !on_one_bus(c.setup) && !server.sync_followed;
+  if (server.sync_followed && on_one_bus(c.setup))
+    throw StartRefused(fmt::format(
+        "{}: found drive.can_server.sync = \"followed\" on the interface of [drive.can], {}, where SYNC is the "
+        "drive's own; expected \"sent\" or another interface",
+        c.machine.id, server.interface));
+  for (const auto& axis : c.machine.axes) {
+    const int node = c.setup.axes.at(axis.name).server_node;
+    if (node == 0)
+      throw StartRefused(
+          fmt::format("{}: found no drive.axis.{}.server_node; expected the axis' node on the bus of "
+                      "[drive.can_server], 1 to 127",
+                      c.machine.id, axis.name));
+    if (std::find(config.nodes.begin(), config.nodes.end(), node) != config.nodes.end())
+      throw StartRefused(
+          fmt::format("{}: found drive.axis.{}.server_node = {} a second time; expected a node of its own",
+                      c.machine.id, axis.name, node));
+    config.nodes.push_back(node);
+    config.current_limit.push_back(axis.inverter.current_limit * axis.motor.count);
+  }
+  if (on_one_bus(c.setup) &&
+      (server.bit_rate != c.setup.can->bit_rate || server.data_bit_rate != c.setup.can->data_bit_rate))
+    throw StartRefused(fmt::format(
+        "{}: found {} of [drive.can_server] and {} of [drive.can] on one interface, {}; expected the same bit rates",
+        c.machine.id, rates(server.bit_rate, server.data_bit_rate),
+        rates(c.setup.can->bit_rate, c.setup.can->data_bit_rate), server.interface));
+  return config;
+}
+
+std::vector<hal::CyclicFrame> can_server_frames(const DriveConfiguration& configuration) {
+  const auto config = can_server_config(configuration);
+  const bool fd = config.format == hal::can::Format::fd;
+  const double period = config.cycle_ticks * configuration.machine.timing.slow_period;
+  const auto frame = [&](const char* name, int bytes, int per_cycle) {
+    return hal::CyclicFrame{.name = name, .bytes = bytes, .fd = fd, .per_cycle = per_cycle, .period = period};
+  };
+  std::vector<hal::CyclicFrame> frames;
+  const auto axes = static_cast<int>(config.nodes.size());
+  if (config.sends_sync || config.follows_sync) frames.push_back(frame("server sync", 0, 1));
+  constexpr std::array<const char*, 5> names{"mode", "target", "offsets", "state", "motion"};
+  for (const auto& row : hal::can::pdo_table)
+    if (row.pdo != hal::can::Pdo::mode && (row.positions || config.all_frames))  // the mode is sent when it changes
+      frames.push_back(frame(names[static_cast<std::size_t>(row.pdo)], row.size, axes));
+  return frames;
+}
+
+hal::BusBudget can_server_budget(const DriveConfiguration& configuration) {
+  if (on_one_bus(configuration.setup)) return can_bus_budget(configuration);
+  const auto& server = configuration.setup.can_server.value();
+  return hal::can_budget(server.interface, {server.bit_rate, server.data_bit_rate}, can_server_frames(configuration),
+                         hal::can::is_virtual(server.interface));
+}
+
+std::vector<std::uint32_t> can_server_identifiers(const DriveConfiguration& configuration) {
+  return on_one_bus(configuration.setup) ? identifiers(can_server_config(configuration)) : std::vector<std::uint32_t>{};
+}
+
+void check_remote(const DriveConfiguration& configuration) {
+  remote_axes(configuration);
+  if (configuration.setup.can_server) hal::check(can_server_budget(configuration));
+}
+
+}  // namespace stiction::drive

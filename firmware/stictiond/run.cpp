@@ -1,0 +1,45 @@
+#include "firmware/stictiond/run.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "firmware/machine/file/units.hpp"
+
+namespace stiction::drive {
+
+std::string describe_timing(const hal::LoopTiming& timing, const hal::TimeHistogram& lateness, std::uint64_t missed) {
+  std::string text = fmt::format("{:<10} {:>12} {:>12} {:>12}\n", "time, us", "median", "99.9 %", "largest");
+  const auto row = [&](const char* name, const hal::TimeHistogram& histogram) {
+    const auto counts = histogram.read();
+    text +=
+        fmt::format("{:<10} {:>12.2f} {:>12.2f} {:>12.2f}\n", name, static_cast<double>(counts.quantile(0.5)) * 1e-3,
+                    static_cast<double>(counts.quantile(0.999)) * 1e-3, static_cast<double>(counts.maximum) * 1e-3);
+  };
+  row("lateness", lateness);
+  row("work", timing.work());
+  for (const auto part : {hal::LoopPart::read, hal::LoopPart::control, hal::LoopPart::write})
+    row(hal::loop_part_names[static_cast<std::size_t>(part)], timing.part(part));
+  return text + fmt::format("missed ticks {}\n", missed);
+}
+
+Task task_of(const DriveOptions& options, const DriveConfiguration& configuration, std::span<const double> positions) {
+  const auto& machine = configuration.machine;
+  Task task{.approach = Motion(machine.axes.size()), .motion = Motion(machine.axes.size())};
+  if (!options.circle.empty()) {
+    try {
+      task.motion = Motion::circle(machine, machine::parse_quantity(options.circle, "m/s"));
+    } catch (const machine::UnitError& error) {
+      throw MotionError(
+          fmt::format("--circle: found '{}' ({}); expected a feed such as \"16 m/min\"", options.circle, error.what()));
+    }
+    task.approach = task.motion.approach(machine, positions);
+  } else if (options.hold) {
+    task.idle_ticks = static_cast<std::uint64_t>(std::ceil(*options.hold / machine.timing.fast_period));
+  } else {
+    task.serve = true;
+  }
+  return task;
+}
+
+}  // namespace stiction::drive

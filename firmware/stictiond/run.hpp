@@ -1,0 +1,180 @@
+// Runs a task over a backend: real time, the thread beside the loop, the loop, and what it has to say at its end.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "firmware/machine/configuration/conversion.hpp"
+#include "firmware/stictiond/can_server.hpp"
+#include "firmware/stictiond/configuration.hpp"
+#include "firmware/stictiond/modbus_motion.hpp"
+#include "firmware/stictiond/modbus_publisher.hpp"
+#include "firmware/stictiond/programme.hpp"
+#include "firmware/stictiond/real_time.hpp"
+#include "firmware/stictiond/remote_setup.hpp"
+#include "firmware/stictiond/service_notify.hpp"
+#include "firmware/stictiond/service_thread.hpp"
+#include "firmware/stictiond/sync_follower.hpp"
+#include "hal/loop_timing.hpp"
+#include "hal/program.hpp"
+#include "hal/tick_clock.hpp"
+
+namespace stiction::drive {
+
+struct RunResult {
+  bool faulted = false;
+};
+
+// What the loop did with its time, for people.
+std::string describe_timing(const hal::LoopTiming& timing, const hal::TimeHistogram& lateness, std::uint64_t missed);
+
+// The task of the options. `positions`: where the axes stand (m). Throws MotionError.
+Task task_of(const DriveOptions& options, const DriveConfiguration& configuration, std::span<const double> positions);
+
+// The loop's clock behind a controller's SYNC.
+class ControllerClock {
+ public:
+  explicit ControllerClock(const DriveConfiguration& c)
+      : follower_(c.period_ns * (c.setup.can_server ? remote_axes(c).front().interpolation.ticks : 1)) {}
+
+  // Once a cycle, with the age of its SYNC.
+  void follow(std::optional<std::int64_t> age_ns, hal::TickClock& clock, LogRing& log, std::int64_t now_ns) {
+    if (!age_ns) return;
+    clock.shift(follower_.step(*age_ns));
+    if (follower_.locked() && !said_) log.push(now_ns, LogLevel::info, "CAN: the clock follows the controller's SYNC");
+    said_ |= follower_.locked();
+  }
+
+ private:
+  SyncFollower follower_;
+  bool said_ = false;
+};
+
+// The axes for a motion controller to see.
+template <hal::Backend B>
+void answer_controller(const hal::DriveLoop<B>& loop, const Programme<B>& programme, CanServer& can,
+                       std::span<ShownAxis> shown) {
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const auto& signals = loop.loop().signals()[i];
+    shown[i] = {programme.statusword(i), machine::to_si(loop.drive(i).position()), machine::to_si(signals.v),
+                machine::to_si(signals.e)};
+  }
+  can.send(shown);
+}
+
+// The axes for others to see, and what these ask of them. Wait-free.
+template <hal::Backend B>
+void serve_modbus(const hal::DriveLoop<B>& loop, Programme<B>& programme, double period, ModbusPublisher& modbus) {
+  Fault fault = Fault::none;
+  for (std::size_t i = 0; i < loop.axis_count(); ++i)
+    if (loop.fault(i) != Fault::none) fault = loop.fault(i);
+  modbus.publish(loop.loop().signals(), loop.now_ns(), fault, [&](std::size_t i, PublishedAxis& axis) {
+    axis.statusword = programme.statusword(i);
+    axis.fault = loop.fault(i);
+    show_asked(programme.remote()[i], period, axis);
+  });
+  while (const auto asked = modbus.take_motion()) ask(*asked, period, programme.remote()[asked->axis]);
+}
+
+// `clock`: the one that the backend waits for; null: it has a time of its own.
+template <hal::Backend B>
+RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& configuration, const DriveOptions& options,
+              const std::string& title) {
+  const RealTimeRequest request{.priority = configuration.setup.real_time.priority,
+                                .cpu = configuration.setup.real_time.cpu};
+  RealTime real_time;
+  auto steps = real_time.prepare_process(request);
+
+  hal::LoopTiming timing;
+  hal::TimedBackend<B> timed(backend, timing);
+  hal::DriveLoop<hal::TimedBackend<B>> loop(timed, configuration.axes, configuration.drives, configuration.ticker,
+                                            configuration.compensations);
+  std::vector<double> positions;
+  for (const auto& feedback : loop.loop().feedback()) positions.push_back(machine::to_si(feedback.position));
+  const Task task = task_of(options, configuration, positions);
+  Trace trace(configuration.names.size(), options.trace.empty() ? 0 : task.motion.ticks());
+  LogRing log;
+  const auto remote = remote_axes(configuration);
+  Programme programme(loop, task, remote, log, options.trace.empty() ? nullptr : &trace);
+  std::optional<ModbusPublisher> modbus;
+  if (configuration.setup.modbus_server)
+    modbus.emplace(configuration.machine, configuration.setup,
+                   ModbusStore{.file = parameter_file(options),
+                               .machine_file = configuration.file,
+                               .options = {"", configuration.assignments},
+                               .begun = configuration.stored},
+                   [clock](PublishedState& state) {
+                     if (clock != nullptr) state.missed_deadlines = static_cast<std::uint32_t>(clock->missed());
+                   });
+
+  // Only who serves takes set-points: a motion of its own is the programme's alone.
+  std::optional<CanServer> can;
+  if (configuration.setup.can_server && task.serve) can.emplace(can_server_config(configuration), log);
+  std::vector<ShownAxis> shown(configuration.names.size());
+  ControllerClock controller_clock(configuration);
+
+  ServiceNotify notify;
+  constexpr std::int64_t starvation_ns = 100'000'000;
+  {
+    ServiceThread service(log, log_to_standard_error, notify,
+                          {.progress = [&] { return programme.progress(); },
+                           .status = [&] { return title; },
+                           .starved =
+                               [] {
+                                 log_to_standard_error(LogLevel::error,
+                                                       fmt::format("fault {} '{}': the loop stands still",
+                                                                   static_cast<int>(Fault::watchdog_starved),
+                                                                   stiction::name_of(Fault::watchdog_starved)));
+                               },
+                           .round =
+                               [&] {
+                                 if (!modbus) return;
+                                 for (const auto& line : modbus->serve()) log_to_standard_error(LogLevel::notice, line);
+                               }},
+                          starvation_ns);
+    for (auto& step : real_time.prepare_thread(request)) steps.push_back(std::move(step));
+    if (any_refused(steps)) {
+      // The simulated machine may be late; real axes may not.
+      if (options.hal != "simulated" && request.priority > 0)
+        throw StartRefused(
+            "found no real time; expected every step below, or drive.real_time.priority = 0 for a try "
+            "without power\n" +
+            text_of(steps));
+      fmt::print(stderr, "{}", text_of(steps));
+    }
+    notify.ready(title);
+    if (clock != nullptr) clock->restart();  // what came before took its time
+    loop.restart_watch();
+    programme.tick(false);
+    log.push(loop.now_ns(), LogLevel::info, "the loop has begun");
+    if (task.serve && !can && !modbus)
+      log.push(loop.now_ns(), LogLevel::warning,
+               "found neither [drive.can_server] nor [drive.modbus_server]: nobody can ask for a motion, the axes stay "
+               "off");
+    while (!programme.over()) {
+      const bool begins = can && loop.loop().slow() && can->receive(loop.now_ns(), programme.remote());
+      programme.tick(hal::stop_wanted != 0);  // by a signal: a controlled stop, then the end
+      if (begins) {
+        answer_controller(loop, programme, *can, shown);
+        if (clock != nullptr) controller_clock.follow(can->sync_age_ns(), *clock, log, loop.now_ns());
+      }
+      if (modbus && loop.loop().slow())
+        serve_modbus(loop, programme, configuration.machine.timing.fast_period, *modbus);
+    }
+    notify.stopping("the axes are off");
+  }
+  if (!options.trace.empty())
+    trace.write(options.trace, configuration.names,
+                std::vector<std::string>{"log: stictiond", "machine: " + configuration.machine.name});
+  if (can)
+    fmt::print("controller: {} frames taken, {} refused, {} of a wrong length, {} answers not sent\n",
+               can->counts().taken, can->counts().refused, can->counts().wrong_size, can->send_failed());
+  if (clock != nullptr) fmt::print("{}", describe_timing(timing, clock->lateness(), clock->missed()));
+  return {programme.faulted()};
+}
+
+}  // namespace stiction::drive

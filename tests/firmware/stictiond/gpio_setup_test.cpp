@@ -1,0 +1,109 @@
+// From the keys of [drive.gpio] and [drive.axis.NAME.line] to the GPIO backend's configuration.
+#include "firmware/stictiond/gpio_setup.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "firmware/machine/file/drive_file.hpp"
+#include "hal/gpio/lines.hpp"
+#include "sim/machine_file.hpp"
+#include "tests/firmware/machine/machine_text.hpp"
+
+namespace stiction::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* drive_text = R"([drive.gpio]
+chip = "servo-lines"
+pwm_chip = "/sys/class/pwm/pwmchip0"
+pwm_period = "50 us"
+dc_link = "48 V"
+bias = "pull-down"
+[drive.axis.B.line]
+enable = 7
+brake = 8
+limit_negative = 3
+limit_positive = 4
+limit_active = "low"
+quadrature_a = 0
+quadrature_b = 1
+quadrature_increment = "5 um"
+quadrature_rate = "8000 1/s"
+pwm_channel = 2
+)";
+
+struct Read {
+  machine::Machine machine;
+  machine::DriveSetup setup;
+};
+
+Read read(const std::string& text) {
+  const auto file = fs::temp_directory_path() / ("stiction_gpio_setup_" + std::to_string(::getpid()) + ".toml");
+  std::ofstream(file) << text;
+  Read result;
+  result.machine = sim::read_machine(file);
+  result.setup = machine::read_drive_setup(file, result.machine);
+  fs::remove(file);
+  return result;
+}
+
+std::string refusal(const Read& read) {
+  try {
+    (void)drive::gpio_configuration(read.setup, read.machine);
+  } catch (const hal::GpioError& error) {
+    return error.what();
+  }
+  return "taken";
+}
+
+TEST(GpioSetup, CarriesEveryKeyOfTheMachineFileToTheBackend) {
+  const auto [machine, setup] = read(std::string(sim::test::small_machine) + drive_text);
+  ASSERT_TRUE(drive::has_gpio_lines(setup, machine));
+  const auto config = drive::gpio_configuration(setup, machine);
+  EXPECT_EQ(config.chip, "servo-lines");
+  EXPECT_EQ(config.bias, hal::Bias::pull_down);
+  ASSERT_EQ(config.axes.size(), 1u);
+  const auto& [lines, encoder, pwm] = config.axes[0];
+  EXPECT_EQ(lines.name, "B");
+  EXPECT_EQ(lines.enable.offset, 7);
+  EXPECT_FALSE(lines.enable.active_low);
+  EXPECT_EQ(lines.limit_negative.offset, 3);
+  EXPECT_TRUE(lines.limit_negative.active_low);
+  EXPECT_TRUE(lines.limit_positive.active_low);
+  EXPECT_FALSE(lines.home.wired());
+  EXPECT_EQ(encoder.b.offset, 1);
+  EXPECT_DOUBLE_EQ(encoder.increment, 5e-6);
+  EXPECT_DOUBLE_EQ(encoder.rate, 8000.0);
+  EXPECT_EQ(encoder.settle_ns, 50'000);
+  EXPECT_EQ(pwm.chip, "/sys/class/pwm/pwmchip0");
+  EXPECT_EQ(pwm.first_channel, 2);
+  EXPECT_EQ(pwm.half_bridges, 2);
+  EXPECT_EQ(pwm.period_ns, 50'000);
+  EXPECT_DOUBLE_EQ(pwm.dc_link, 48.0);
+}
+
+TEST(GpioSetup, FindsNoLinesWhereNoneAreNamed) {
+  const auto [machine, setup] = read(sim::test::small_machine);
+  EXPECT_FALSE(drive::has_gpio_lines(setup, machine));
+  EXPECT_THAT(refusal({machine, setup}), ::testing::HasSubstr("no table [drive.gpio]"));
+}
+
+TEST(GpioSetup, RefusesAnAxisWhoseCurrentIsControlledInTheDrive) {
+  auto both = read(std::string(sim::test::small_machine) + drive_text);
+  both.machine.axes[0].motor.model = machine::MotorModel::synchronous;
+  EXPECT_THAT(refusal(both), ::testing::HasSubstr("axis B: its current controllers need the phase currents"));
+}
+
+TEST(GpioSetup, RefusesAMachineWithoutAPwmChip) {
+  auto both = read(std::string(sim::test::small_machine) + drive_text);
+  both.setup.gpio->pwm_chip.reset();
+  EXPECT_THAT(refusal(both), ::testing::HasSubstr("names no pwm_chip"));
+}
+
+}  // namespace
+}  // namespace stiction::test

@@ -1,0 +1,142 @@
+// The drive's Modbus server as a whole: the state of a loop on a client's screen, a client's parameters on the disk.
+#include "firmware/stictiond/modbus_publisher.hpp"
+
+#include "firmware/machine/file/drive_file.hpp"
+#include "firmware/stictiond/modbus_setup.hpp"
+#include "stiction/number/fixed_signals.hpp"
+#include "tests/hal/modbus_support.hpp"
+#include "tests/support/shipped_machine.hpp"
+
+namespace stiction::test {
+namespace {
+
+const std::string machine_file = std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/mcfv5050ln.toml";
+
+machine::DriveSetup setup_with(bool motion_allowed) {
+  auto setup = machine::read_drive_setup(machine_file, cross_table());
+  setup.modbus_server.emplace();
+  setup.modbus_server->address = "127.0.0.1:0";
+  setup.modbus_server->motion_allowed = motion_allowed;
+  return setup;
+}
+
+class Folder {
+ public:
+  Folder() : path_(std::filesystem::temp_directory_path() / ("stiction-publisher-" + std::to_string(::getpid()))) {
+    std::filesystem::create_directories(path_);
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  std::filesystem::path operator/(const char* name) const { return path_ / name; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::vector<std::string> lines_of(drive::ModbusPublisher& publisher) {
+  std::vector<std::string> lines;
+  comes_true([&] {
+    lines = publisher.serve();
+    return !lines.empty();
+  });
+  return lines;
+}
+
+TEST(ModbusPublisher, ShowsTheLoopsStateToAClient) {
+  drive::ModbusPublisher publisher(cross_table(), setup_with(false), {},
+                                   [](drive::PublishedState& state) { state.missed_deadlines = 3; });
+  std::array<AxisSignals<FixedSignals>, 2> signals{};
+  const auto status = [](std::size_t axis, drive::PublishedAxis& shown) {
+    shown.statusword = axis == 0 ? 0x1237 : 0x0218;
+  };
+  signals[1].x = FixedSignals::Position::from_raw(std::int64_t{1} << 38);  // 0.25 m
+  signals[1].i = FixedSignals::Current::from_raw(-(3 << 20));              // -3 A
+  publisher.publish<FixedSignals>(signals, 5'000'000'000, Fault::none, status);
+  signals[1].i = FixedSignals::Current::from_raw(1 << 20);
+  publisher.publish<FixedSignals>(signals, 7'500'000'000, Fault::bus_off, status);
+
+  const RawClient client(publisher.server().port());
+  const auto read = [&](std::uint8_t address, int words) {
+    client.send(request({4, 0, address, 0, static_cast<std::uint8_t>(words)}));
+    const auto answer = client.receive();
+    std::vector<std::uint16_t> found;
+    for (std::size_t at = 9; at + 1 < answer.size(); at += 2)
+      found.push_back(static_cast<std::uint16_t>(answer[at] << 8 | answer[at + 1]));
+    return found;
+  };
+  EXPECT_EQ(read(0, 8), (std::vector<std::uint16_t>{0x5344, 2, 2, 34, 0, 2, 0, 3}));
+  EXPECT_EQ(read(100, 1), (std::vector<std::uint16_t>{0x1237}));
+  const auto second = read(200, 20);
+  ASSERT_EQ(second.size(), 20U);
+  EXPECT_EQ(second[0], 0x0218);
+  const auto number = [&](hal::RegisterType type, std::size_t at) {
+    return hal::number_in(type, std::span(second).subspan(at));
+  };
+  EXPECT_EQ(number(hal::RegisterType::int32, 4), 25e6);    // 10 nm each
+  EXPECT_EQ(number(hal::RegisterType::float32, 10), 1.0);  // current
+  EXPECT_EQ(number(hal::RegisterType::float32, 16), 3.0);  // its peak
+  EXPECT_NEAR(number(hal::RegisterType::float32, 18), std::sqrt(5.0), 1e-6);
+}
+
+TEST(ModbusPublisher, KeepsAParameterThatAClientWritesAndStores) {
+  const Folder folder;
+  drive::ModbusPublisher publisher(cross_table(), setup_with(false), {folder / "parameters", machine_file, {}, {}});
+  const RawClient client(publisher.server().port());
+  // 550 at 1004 (0x3ec), the velocity gain of the first axis; then "store".
+  client.send(request({16, 3, 0xec, 0, 2, 4, 0x44, 0x09, 0x80, 0}));
+  EXPECT_EQ(client.receive().size(), 12U);
+  EXPECT_EQ(lines_of(publisher),
+            (std::vector<std::string>{
+                "Modbus: axis.X.velocity_controller.gain = 550, from the next start on if it is stored"}));
+  client.send(request({6, 0, 0, 0x53, 0x54}));
+  EXPECT_EQ(client.receive().size(), 12U);
+  EXPECT_EQ(lines_of(publisher),
+            (std::vector<std::string>{"Modbus: parameters stored in " + (folder / "parameters").string()}));
+  const auto stored = drive::read_parameters(folder / "parameters");
+  ASSERT_TRUE(stored);
+  EXPECT_EQ(stored->values, (std::map<std::string, double>{{"axis.X.velocity_controller.gain", 550.0}}));
+}
+
+TEST(ModbusPublisher, HandsMotionToTheLoopOnlyWhereItIsAllowed) {
+  for (const bool allowed : {false, true}) {
+    drive::ModbusPublisher publisher(cross_table(), setup_with(allowed), {});
+    const RawClient client(publisher.server().port());
+    client.send(request({6, 0, 200, 0, 15}));  // controlword of the second axis
+    EXPECT_EQ(client.receive().size(), allowed ? 12U : 9U);
+    if (!allowed) {
+      EXPECT_TRUE(publisher.serve().empty());
+      EXPECT_FALSE(publisher.take_motion());
+      continue;
+    }
+    EXPECT_EQ(lines_of(publisher), (std::vector<std::string>{"Modbus: axis Y: controlword 15"}));
+    const auto motion = publisher.take_motion();
+    ASSERT_TRUE(motion);
+    EXPECT_EQ(motion->axis, 1U);
+    EXPECT_EQ(motion->value, 15.0);
+    client.send(request({6, 0, 201, 0, 7}));  // a mode that the drive does not have
+    const auto answer = client.receive();
+    ASSERT_EQ(answer.size(), 9U);
+    EXPECT_EQ(answer[8], 3);
+  }
+}
+
+TEST(ModbusSetup, TakesTheUnitsOfTheAxesFromTheirNodes) {
+  const auto machine = cross_table();
+  auto setup = setup_with(false);
+  setup.modbus_client.emplace();
+  setup.modbus_client->device = "10.0.0.2:502";
+  for (auto& [name, axis] : setup.axes) axis.node = 0;
+  EXPECT_THROW(drive::modbus_client_config(machine, setup), hal::ModbusError);  // no unit
+  setup.axes.at("X").node = 3;
+  setup.axes.at("Y").node = 3;
+  EXPECT_THROW(drive::modbus_client_config(machine, setup), hal::ModbusError);  // the same twice
+  setup.axes.at("Y").node = 4;
+  const auto config = drive::modbus_client_config(machine, setup);
+  EXPECT_EQ(config.units, (std::vector<int>{3, 4}));
+  // Two units each 10 ms are 200 exchanges a second.
+  EXPECT_THROW(hal::check(drive::modbus_client_budget(config)), hal::BusBudgetError);
+}
+
+}  // namespace
+}  // namespace stiction::test

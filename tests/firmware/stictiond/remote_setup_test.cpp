@@ -1,0 +1,104 @@
+// What a machine file may say of set-points from outside, and what is refused with what was found.
+#include "firmware/stictiond/remote_setup.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <string>
+
+#include "firmware/machine/configuration/conversion.hpp"
+
+namespace stiction::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+drive::DriveConfiguration configuration(std::vector<std::string> settings) {
+  drive::DriveOptions options;
+  options.machine = std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/mcfv5050ln.toml";
+  options.set = std::move(settings);
+  return drive::read_configuration(options);
+}
+const std::vector<std::string> served{"drive.can_server.interface=vcan1", "drive.axis.X.server_node=11",
+                                      "drive.axis.Y.server_node=12"};
+std::vector<std::string> with(std::vector<std::string> settings) {
+  settings.insert(settings.begin(), served.begin(), served.end());
+  return settings;
+}
+std::string refusal(const std::vector<std::string>& settings) {
+  try {
+    drive::check_remote(configuration(settings));
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(RemoteSetup, NeedsANodeOfItsOwnForEveryAxis) {
+  EXPECT_THAT(refusal({"drive.can_server.interface=vcan1", "drive.axis.X.server_node=1"}),
+              HasSubstr("found no drive.axis.Y.server_node; expected"));
+  EXPECT_THAT(refusal(with({"drive.axis.Y.server_node=11"})),
+              HasSubstr("found drive.axis.Y.server_node = 11 a second time"));
+}
+
+TEST(RemoteSetup, NeedsAPeriodOfWholeSlowTicksInWhichTheAxisDoesNotGoTooFar) {
+  const auto slow = [&](const std::string& period) {
+    return refusal(with({"drive.can_server.frames=positions", "drive.can_server.period=" + period}));
+  };
+  EXPECT_EQ(slow("1 ms"), "");
+  EXPECT_EQ(slow("4 ms"), "");
+  EXPECT_THAT(slow("1.5 ms"), HasSubstr("found 1.5 ms; expected a whole multiple of timing.slow_period, 1 ms"));
+  EXPECT_THAT(slow("15 ms"), HasSubstr("expected a way of at most 15.625 mm from one set-point to the next"));
+}
+
+TEST(RemoteSetup, NeedsABusThatCarriesItsFrames) {
+  // Two axes each millisecond: SYNC, targets and states are 52 % of 1 Mbit/s, with everything else 102 %.
+  EXPECT_EQ(refusal(with({"drive.can_server.frames=positions"})), "");
+  EXPECT_THAT(refusal(served), HasSubstr("found a load of 102 % at worst; expected at most 80 %"));
+  EXPECT_EQ(refusal(with({"drive.can_server.period=2 ms"})), "");
+  EXPECT_EQ(refusal(with({"drive.can_server.data_bit_rate=5e6 bit/s"})), "");
+  EXPECT_THAT(refusal(with({"drive.can_server.frames=positions", "drive.can_server.bit_rate=250000 bit/s"})),
+              HasSubstr("found a load of 206 % at worst"));
+}
+
+TEST(RemoteSetup, SharesTheBusOfTheNodesWithTheSameBitRatesAndWithoutASecondSync) {
+  EXPECT_THAT(refusal(with({"drive.can_server.interface=can0"})),
+              HasSubstr("on one interface, can0; expected the same bit rates"));
+  const auto c = configuration(with({"drive.can_server.interface=can0", "drive.can_server.data_bit_rate=8e6 bit/s"}));
+  EXPECT_FALSE(drive::can_server_config(c).sends_sync);
+  EXPECT_THAT(refusal(with({"drive.can_server.interface=can0", "drive.can_server.data_bit_rate=8e6 bit/s",
+                            "drive.can_server.sync=followed"})),
+              HasSubstr("found drive.can_server.sync = \"followed\" on the interface of [drive.can], can0"));
+  const auto config = drive::can_config(c);
+  EXPECT_THAT(config.others, ::testing::IsSupersetOf({0x40bu, 0x38cu, 0x50bu, 0x48cu, 0x30bu}));
+  EXPECT_EQ(config.others.size(), 10U);
+  EXPECT_EQ(drive::can_bus_budget(c).rows.size(), 3U + 4U);
+  const auto apart = configuration(served);
+  EXPECT_TRUE(drive::can_server_config(apart).sends_sync);
+  EXPECT_TRUE(drive::can_config(apart).others.empty());
+}
+
+TEST(RemoteSetup, TakesLimitsFromTheMachine) {
+  const auto axes = drive::remote_axes(configuration(with({"drive.axis.X.profile_jerk_time=20 ms"})));
+  ASSERT_EQ(axes.size(), 2U);
+  EXPECT_NEAR(machine::to_si(axes[0].fastest.velocity), 80.0 / 60.0, 1e-8);
+  EXPECT_NEAR(machine::to_si(axes[0].fastest.deceleration), 20.0 * 62.5e-6, 1e-8);
+  EXPECT_NEAR(machine::to_si(axes[0].interpolation.largest_way), 80.0 / 60.0 * 1e-3 * 1.01, 1e-11);
+  EXPECT_EQ(axes[0].profile.smoothing_bits, 8);  // 320 ticks: 256 are nearer than 512
+  EXPECT_TRUE(axes[0].streamed);
+  EXPECT_FALSE(drive::remote_axes(configuration({}))[0].streamed);
+}
+
+TEST(RemoteSetup, DescribesItsFramesInTheDbc) {
+  const std::string both = drive::dbc_page(configuration(served));
+  EXPECT_THAT(both, HasSubstr("BO_ 1035 X_target: 6 controller\n SG_ controlword : 0|16@1+ (1,0)"));
+  EXPECT_THAT(both, HasSubstr("BO_ 908 Y_state: 6 drive\n"));
+  EXPECT_THAT(both, HasSubstr("BO_ 128 sync: 8 drive\n"));
+  EXPECT_THAT(both, ::testing::Not(HasSubstr("BO_ 1035 14;")));  // classical beside the nodes' CAN FD
+  const std::string alone = drive::dbc_page(configuration(with({"drive.can="})));
+  EXPECT_THAT(alone, HasSubstr("BO_ 128 sync: 0 drive\n"));
+}
+
+}  // namespace
+}  // namespace stiction::test
