@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "sim/plant/friction/friction.hpp"
 #include "tests/blind/truth/command.hpp"
 
 namespace stiction::blind {
@@ -53,13 +54,13 @@ machine::Machine draw_machine(machine::Machine machine, Random& random) {
     friction.stiffness.push_back(e.stiffness);
     friction.level.push_back(e.level);
   }
-  axis.friction.models["maxwell_slip"] = friction;
+  sim::set_parameters<sim::MaxwellSlip<>>(axis.friction, friction);
   axis.friction.use = "maxwell_slip";
   return machine;
 }
 
 Mechanics mechanics_of(const machine::AxisModel& axis) {
-  const auto& friction = std::get<sim::MaxwellSlipParameters>(axis.friction.models.at("maxwell_slip"));
+  const auto friction = sim::parameters_of<sim::MaxwellSlip<>>(axis.friction);
   Mechanics m;
   m.mass = axis.mass;
   m.viscous = friction.viscous;

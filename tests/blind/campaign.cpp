@@ -11,6 +11,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "sim/plant/friction/friction.hpp"
+
 namespace stiction::blind {
 namespace {
 
@@ -50,7 +52,7 @@ bool right(const std::string& named, const CaseOrder& order) {
 
 // The machine file's own value of what a *_mismatch changes; 0 for others.
 double value_of_file(const machine::AxisModel& axis, const std::string& effect) {
-  const auto& friction = std::get<sim::MaxwellSlipParameters>(axis.friction.models.at("maxwell_slip"));
+  const auto& friction = sim::parameters_of<sim::MaxwellSlip<>>(axis.friction);
   if (effect == "mass_mismatch") return axis.mass;
   if (effect == "viscous_mismatch") return friction.viscous;
   if (effect == "force_constant_mismatch") return axis.motor.force_constant;

@@ -6,6 +6,7 @@
 
 #include "host/simulate/experiments.hpp"
 #include "host/simulate/parabolic_chatter.hpp"
+#include "sim/plant/friction/friction.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/shipped_machine.hpp"
 
@@ -25,7 +26,7 @@ host::ChatterRun impact(std::optional<double> step) {
 
 TEST(ParabolicFriction, ChattersWhenEvaluatedExplicitlyAtACoarseStep) {
   const auto machine = machine_for("impact");
-  const auto& p = std::get<sim::ParabolicParameters>(machine.axes[0].friction.models.at("parabolic"));
+  const auto& p = sim::parameters_of<sim::Parabolic<>>(machine.axes[0].friction);
   for (const double step : {200e-6, 400e-6}) {
     const auto run = impact(step);
     const double amplitude = host::chatter_amplitude(p, machine.axes[0].mass, step);

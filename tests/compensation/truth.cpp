@@ -34,7 +34,7 @@ void many_elements(machine::AxisModel& axis) {
   p.viscous = axis.name == "X" ? 430.0 : 1100.0;
   p.rise = 0.15 * level;
   p.rise_velocity = 0.02;
-  axis.friction.models["maxwell_slip"] = p;
+  sim::set_parameters<sim::MaxwellSlip<>>(axis.friction, p);
   axis.friction.use = "maxwell_slip";
   axis.effects.push_back({"viscous_nonlinear", {{"force", {0.4 * level}}, {"velocity", {0.15}}}});
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "hal/simulated/simulated_backend.hpp"
+#include "sim/plant/friction/friction.hpp"
 #include "tests/support/closed_loop.hpp"
 #include "tests/support/shipped_machine.hpp"
 
@@ -20,7 +21,7 @@ inline machine::Machine linear_axis(std::size_t axis) {
   a.motor.phase_inductance -= a.motor.mutual_inductance;
   a.encoder.increment = 0.0;
   a.position_controller.increment = 0.0;
-  a.friction.models["coulomb_viscous"] = sim::CoulombViscousParameters{0.0, 0.0};
+  sim::set_parameters<sim::CoulombViscous<>>(a.friction, {0.0, 0.0});
   a.friction.use = "coulomb_viscous";
   a.inverter.voltage_limit = a.inverter.current_limit = 1e12;
   a.supervision = {1.0, 1e6, 1e3};  // what comes here is running away

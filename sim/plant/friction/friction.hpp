@@ -54,6 +54,20 @@ typename Law::Parameters parameters_of(const machine::FrictionParameters& fricti
   return parameters_of<Law>(friction.models.at(std::string(Law::name)));
 }
 
+// Gives a machine the table of the law `Law` with these parameters; which law acts stays.
+template <FrictionLaw Law>
+void set_parameters(machine::FrictionParameters& friction, const typename Law::Parameters& parameters) {
+  friction.models[std::string(Law::name)] = values_of<Law>(parameters);
+}
+
+// A machine's friction whose only law, acting, is `Law`.
+template <FrictionLaw Law>
+machine::FrictionParameters acting(const typename Law::Parameters& parameters) {
+  machine::FrictionParameters friction{std::string(Law::name), {}};
+  set_parameters<Law>(friction, parameters);
+  return friction;
+}
+
 // visit.operator()<Law>(parameters) for the law in use, with its parameters. Throws std::invalid_argument where no law
 // of the table has that name.
 template <class Visit>

@@ -111,8 +111,8 @@ TEST(EffectsFile, WhatCannotBeTogetherIsRefused) {
 }
 
 TEST(EffectsFile, TheReferencePageShowsEveryKey) {
-  const std::string page = reference_page();
-  for (const EffectKind& kind : effect_kinds()) {
+  const std::string page = sim::reference_page();
+  for (const sim::EffectKind& kind : sim::effect_kinds()) {
     const std::size_t at = page.find("effect " + std::string(kind.name) + ": ");
     ASSERT_NE(at, std::string::npos) << kind.name;
     const std::string section = page.substr(at, page.find("\n## ", at) - at);
@@ -123,7 +123,7 @@ TEST(EffectsFile, TheReferencePageShowsEveryKey) {
 
 TEST(EffectKinds, HaveTheNamesKeysAndSuffixesOfTheVocabulary) {
   std::string all;
-  for (const EffectKind& kind : effect_kinds()) {
+  for (const sim::EffectKind& kind : sim::effect_kinds()) {
     all += std::string(kind.name) + ":";
     for (const EffectKey& key : kind.keys) all += " " + std::string(key.key) + key.suffix + (key.list ? "[]" : "");
     all += '\n';
@@ -153,24 +153,24 @@ TEST(EffectKinds, HaveTheNamesKeysAndSuffixesOfTheVocabulary) {
             "periodic_disturbance: frequency_Hz cosine_N sine_N\n"
             "controller_gain_mismatch: position_gain_per_s velocity_gain_A_s_per_m velocity_integral_time_s "
             "current_gain_V_per_A current_integral_time_s\n");
-  EXPECT_EQ(unit_suffix("1"), "");
-  EXPECT_EQ(unit_suffix("1/s"), "_per_s");
-  EXPECT_EQ(unit_suffix("m/s^2"), "_m_per_s2");
+  EXPECT_EQ(sim::unit_suffix("1"), "");
+  EXPECT_EQ(sim::unit_suffix("1/s"), "_per_s");
+  EXPECT_EQ(sim::unit_suffix("m/s^2"), "_m_per_s2");
 }
 
 TEST(EffectKinds, ConfuseBothWaysAndNameAnExperiment) {
-  for (const EffectKind& kind : effect_kinds())
+  for (const sim::EffectKind& kind : sim::effect_kinds())
     for (const EffectAlias& alias : kind.aliases) {
       EXPECT_NE(alias.effect, kind.name);
       EXPECT_FALSE(alias.separate_by.empty());
-      const EffectKind* other = find_effect_kind(alias.effect);
+      const sim::EffectKind* other = sim::find_effect_kind(alias.effect);
       if (other == nullptr) continue;
       EXPECT_TRUE(std::any_of(other->aliases.begin(), other->aliases.end(),
                               [&](const EffectAlias& back) { return back.effect == kind.name; }))
           << kind.name << " " << alias.effect;
     }
-  EXPECT_EQ(find_effect_kind("constant_force")->aliases.at(0).effect, "friction_asymmetry");
-  EXPECT_EQ(find_effect_kind("gravity"), nullptr);
+  EXPECT_EQ(sim::find_effect_kind("constant_force")->aliases.at(0).effect, "friction_asymmetry");
+  EXPECT_EQ(sim::find_effect_kind("gravity"), nullptr);
 }
 
 const std::vector<AxisEffects> additions{
@@ -190,9 +190,9 @@ TEST(ExtendedMachine, KeepsTheTextAndReadsBackWithTheEffects) {
   const std::string text = small_machine + "# what a user wrote";
   const MachineFileOnDisk file(text);
   const std::vector<std::string> comment{"extended"};
-  const std::string extended = extended_machine(file.path(), {}, additions, comment);
+  const std::string extended = sim::extended_machine(file.path(), {}, additions, comment);
   EXPECT_TRUE(extended.starts_with("# extended\n" + text + "\n")) << extended;
-  expect_additions(parse_machine("extended.toml", extended).axes[0].effects);
+  expect_additions(sim::parse_machine("extended.toml", extended).axes[0].effects);
 }
 
 TEST(ExtendedMachine, ContinuesTheEffectsOfTheFileWhicheverWayTheyAreWritten) {
@@ -201,7 +201,7 @@ TEST(ExtendedMachine, ContinuesTheEffectsOfTheFileWhicheverWayTheyAreWritten) {
     const bool in_one_line = before.starts_with("[axis");
     const std::string text = in_one_line ? replaced(small_machine, "[axis.B]\n", before) : small_machine + before;
     const MachineFileOnDisk file(text);
-    const Machine machine = parse_machine("e.toml", extended_machine(file.path(), {}, additions, {}));
+    const Machine machine = sim::parse_machine("e.toml", sim::extended_machine(file.path(), {}, additions, {}));
     ASSERT_EQ(machine.axes[0].effects.size(), 4u);
     EXPECT_EQ(machine.axes[0].effects[0].values.at("force"), std::vector{1.0});
     expect_additions({machine.axes[0].effects.begin() + 1, machine.axes[0].effects.end()});
@@ -210,46 +210,46 @@ TEST(ExtendedMachine, ContinuesTheEffectsOfTheFileWhicheverWayTheyAreWritten) {
 
 TEST(ExtendedMachine, ReplacesWhatAnAxisHasOnlyOnceAndTakesAssignments) {
   const MachineFileOnDisk file(small_machine + "[[axis.B.effect]]\nname = \"backlash\"\nwidth = \"9 um\"\n");
-  expect_additions(parse_machine("e.toml", extended_machine(file.path(), {}, additions, {})).axes[0].effects);
+  expect_additions(sim::parse_machine("e.toml", sim::extended_machine(file.path(), {}, additions, {})).axes[0].effects);
   const std::vector<std::string> set{"axis.B.mass=100 kg"};
-  const Machine machine = parse_machine("e.toml", extended_machine(file.path(), set, additions, {}));
+  const Machine machine = sim::parse_machine("e.toml", sim::extended_machine(file.path(), set, additions, {}));
   EXPECT_EQ(machine.axes[0].mass, 100.0);
   expect_additions(machine.axes[0].effects);
 }
 
 TEST(ExtendedMachine, AddingNothingLeavesTheText) {
   const MachineFileOnDisk file(small_machine);
-  EXPECT_EQ(extended_machine(file.path(), {}, {}, {}), small_machine);
+  EXPECT_EQ(sim::extended_machine(file.path(), {}, {}, {}), small_machine);
 }
 
 TEST(ExtendedMachine, RefusesUnknownAxesAndEffects) {
   const MachineFileOnDisk file(small_machine);
   const std::vector<AxisEffects> elsewhere{{"Q", {effect("backlash", {{"width", {1e-6}}})}}};
-  EXPECT_THROW(extended_machine(file.path(), {}, elsewhere, {}), MachineFileError);
+  EXPECT_THROW(sim::extended_machine(file.path(), {}, elsewhere, {}), MachineFileError);
   const std::vector<AxisEffects> unknown{{"B", {effect("gravity", {{"force", {1.0}}})}}};
-  EXPECT_THROW(extended_machine(file.path(), {}, unknown, {}), EffectError);
+  EXPECT_THROW(sim::extended_machine(file.path(), {}, unknown, {}), sim::EffectError);
   const std::vector<AxisEffects> negative{{"B", {effect("backlash", {{"width", {-1e-6}}})}}};
-  EXPECT_THROW(extended_machine(file.path(), {}, negative, {}), EffectError);
+  EXPECT_THROW(sim::extended_machine(file.path(), {}, negative, {}), sim::EffectError);
   const std::vector<AxisEffects> missing{{"B", {effect("backlash", {})}}};
-  EXPECT_THROW(extended_machine(file.path(), {}, missing, {}), EffectError);
+  EXPECT_THROW(sim::extended_machine(file.path(), {}, missing, {}), sim::EffectError);
   const std::vector<AxisEffects> two{{"B", {effect("backlash", {{"width", {1e-6, 2e-6}}})}}};
-  EXPECT_THROW(extended_machine(file.path(), {}, two, {}), EffectError);
+  EXPECT_THROW(sim::extended_machine(file.path(), {}, two, {}), sim::EffectError);
   const std::vector<AxisEffects> stranger{{"B", {effect("backlash", {{"width", {1e-6}}, {"force", {1.0}}})}}};
-  EXPECT_THROW(extended_machine(file.path(), {}, stranger, {}), EffectError);
+  EXPECT_THROW(sim::extended_machine(file.path(), {}, stranger, {}), sim::EffectError);
 }
 
 TEST(ExtendedMachine, WritesOnlyTheOptionalKeysThatAreGivenAndVoltsForAForceSource) {
-  const std::string text = effect_table("X", effect("controller_gain_mismatch", {{"velocity_gain", {3.0}}}), true);
+  const std::string text = sim::effect_table("X", effect("controller_gain_mismatch", {{"velocity_gain", {3.0}}}), true);
   EXPECT_NE(text.find("velocity_gain = \"3 V s/m\""), std::string::npos) << text;
   EXPECT_EQ(text.find("position_gain"), std::string::npos) << text;
 }
 
 TEST(ExtendedMachine, TheShippedMachinesTakeEveryEffect) {
-  for (const EffectKind& kind : effect_kinds()) {
+  for (const sim::EffectKind& kind : sim::effect_kinds()) {
     Effect one{std::string(kind.name), {}};
     for (const EffectKey& key : kind.keys) one.values[std::string(key.key)] = {key.unit == "N/m" ? 1e7 : 1e-3};
     const std::vector<AxisEffects> every{{"X", {one}}, {"Y", {one}}};
-    const Machine machine = parse_machine("e.toml", extended_machine(shipped_machine(), {}, every, {}));
+    const Machine machine = sim::parse_machine("e.toml", sim::extended_machine(shipped_machine(), {}, every, {}));
     for (const AxisModel& axis : machine.axes) EXPECT_EQ(axis.effects.at(0).values, one.values) << kind.name;
   }
 }
@@ -258,9 +258,9 @@ TEST(ExtendedMachine, TheShippedMachinesTakeEveryEffect) {
 TEST(ExtendedMachine, AnEffectNeedNotFitTheMachineOfAnExperimentThatDoesNotRun) {
   const std::vector<AxisEffects> contact{
       {"X", {effect("presliding_hysteresis", {{"stiffness", {7e5}}, {"distance", {300e-6}}})}}};
-  const auto text = extended_machine(shipped_machine(), {}, contact, {});
-  EXPECT_EQ(parse_machine("e.toml", text).axes[0].effects.size(), 1u);
-  EXPECT_THROW(parse_machine("e.toml", text, {"presliding", {}}), MachineFileError);
+  const auto text = sim::extended_machine(shipped_machine(), {}, contact, {});
+  EXPECT_EQ(sim::parse_machine("e.toml", text).axes[0].effects.size(), 1u);
+  EXPECT_THROW(sim::parse_machine("e.toml", text, {"presliding", {}}), MachineFileError);
 }
 
 }  // namespace

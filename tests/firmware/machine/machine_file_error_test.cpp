@@ -114,7 +114,7 @@ TEST(MachineFileError, InvalidTomlNamesTheLine) {
 
 TEST(MachineFileError, UnreadableFile) {
   try {
-    read_machine("/nowhere/machine.toml");
+    sim::read_machine("/nowhere/machine.toml");
     FAIL() << "read";
   } catch (const MachineFileError& error) {
     EXPECT_STREQ(error.what(),
@@ -312,7 +312,7 @@ TEST(MachineFileError, DamageAnywhereIsAnsweredWithAMachineFileError) {
 // Every key of the axes and of the timing, by the description the reader itself works from.
 TEST(MachineFileError, EveryDescribedQuantityRefusesAForeignUnitAndNamesItsKey) {
   int quantities = 0;
-  for (const TableDescription& table : machine_file_description()) {
+  for (const TableDescription& table : sim::machine_file_description()) {
     if (table.name.starts_with('[') || table.name.empty()) continue;
     // A drive writes this one; its messages are in compensation_file_test.
     if (table.name.ends_with(".learned")) continue;

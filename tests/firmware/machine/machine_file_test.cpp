@@ -5,6 +5,7 @@
 
 #include <limits>
 
+#include "sim/plant/friction/friction.hpp"
 #include "tests/firmware/machine/machine_text.hpp"
 
 namespace stiction::machine {
@@ -14,11 +15,11 @@ using test::read_text;
 using test::small_machine;
 
 double lugre_coulomb(const Machine& machine, std::size_t axis = 0) {
-  return std::get<LuGreParameters>(machine.axes[axis].friction.models.at("lugre")).coulomb;
+  return sim::parameters_of<sim::LuGre<>>(machine.axes[axis].friction).coulomb;
 }
 
 Machine read_shipped(std::vector<std::string> set, const std::string& experiment = {}) {
-  return read_machine(test::shipped_machine(), {.experiment = experiment, .set = std::move(set)});
+  return sim::read_machine(test::shipped_machine(), {.experiment = experiment, .set = std::move(set)});
 }
 
 TEST(MachineFile, ForceMotorTakesItsQuantitiesPerVolt) {
@@ -47,7 +48,7 @@ TEST(MachineFile, KeysLeftOutTakeTheirDefaults) {
   EXPECT_FALSE(axis.notch);
   EXPECT_EQ(axis.feedforward.velocity, 0.0);
   EXPECT_FALSE(axis.supervision.over_speed);
-  EXPECT_EQ(std::get<LuGreParameters>(axis.friction.models.at("lugre")).static_ratio, 1.0);
+  EXPECT_EQ(sim::parameters_of<sim::LuGre<>>(axis.friction).static_ratio, 1.0);
   EXPECT_TRUE(machine.circle_references.empty());
 }
 
@@ -101,7 +102,7 @@ TEST(MachineFile, SetTakesListsAndTables) {
   const Machine machine = read_shipped({"axis.X.friction.maxwell_slip.level=['1 N', '2 N']",
                                         "axis.X.friction.maxwell_slip.stiffness=['1e6 N/m', '1e5 N/m']",
                                         "axis.X.supervision={following_error = '1 mm'}"});
-  const auto& slip = std::get<MaxwellSlipParameters>(machine.axes[0].friction.models.at("maxwell_slip"));
+  const auto& slip = sim::parameters_of<sim::MaxwellSlip<>>(machine.axes[0].friction);
   EXPECT_EQ(slip.level, (std::vector<double>{1.0, 2.0}));
   EXPECT_EQ(machine.axes[0].supervision.following_error, 1e-3);
 }

@@ -78,14 +78,14 @@ class MachineFileOnDisk {
 };
 
 inline Machine read_text(const std::string& text, const ReadOptions& options = {}) {
-  return read_machine(MachineFileOnDisk(text).path(), options);
+  return sim::read_machine(MachineFileOnDisk(text).path(), options);
 }
 
 // The message with which reading fails, with "FILE" for the path; "accepted" when it does not fail.
 inline std::string error_of(const std::string& text, const ReadOptions& options = {}) {
   const MachineFileOnDisk file(text);
   try {
-    read_machine(file.path(), options);
+    sim::read_machine(file.path(), options);
     return "accepted";
   } catch (const MachineFileError& error) {
     std::string message = error.what();
@@ -103,7 +103,7 @@ inline std::string error_after(const std::string& from, const std::string& to) {
 inline std::string error_of_set(std::vector<std::string> set, const std::string& experiment = {},
                                 const std::filesystem::path& machine = shipped_machine()) {
   try {
-    read_machine(machine, {.experiment = experiment, .set = std::move(set)});
+    sim::read_machine(machine, {.experiment = experiment, .set = std::move(set)});
     return "accepted";
   } catch (const MachineFileError& error) {
     return error.what();

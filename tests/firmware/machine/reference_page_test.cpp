@@ -27,7 +27,7 @@ void expect_rows(const std::string& page, const std::string& table) {
 }
 
 TEST(ReferencePage, ListsEveryParameterOfEveryStruct) {
-  const std::string page = reference_page();
+  const std::string page = sim::reference_page();
   expect_rows<Timing>(page, "timing");
   expect_rows<AxisModel>(page, "axis.NAME");
   expect_rows<MotorParameters>(page, "axis.NAME.motor");
@@ -60,7 +60,7 @@ TEST(ReferencePage, ListsEveryParameterOfEveryStruct) {
 }
 
 TEST(ReferencePage, ShowsUnitRangeAndDefault) {
-  const std::string page = reference_page();
+  const std::string page = sim::reference_page();
   EXPECT_NE(page.find("| `mass` | `kg` | greater than 0 kg | required | moving mass |"), std::string::npos);
   EXPECT_NE(page.find("| `count` | – | from 1 to 64 | 1 | motors in parallel on one servo module |"),
             std::string::npos);
@@ -73,7 +73,7 @@ TEST(ReferencePage, ShowsUnitRangeAndDefault) {
 }
 
 TEST(ReferencePage, EveryRowHasFiveCells) {
-  const std::string page = reference_page();
+  const std::string page = sim::reference_page();
   std::size_t rows = 0;
   for (std::size_t at = page.find("\n| `"); at != std::string::npos; at = page.find("\n| `", at + 1)) {
     const std::string row = page.substr(at + 1, page.find('\n', at + 1) - at - 1);
@@ -81,7 +81,7 @@ TEST(ReferencePage, EveryRowHasFiveCells) {
     ++rows;
   }
   std::size_t keys = 0;
-  for (const TableDescription& table : machine_file_description()) keys += table.keys.size();
+  for (const TableDescription& table : sim::machine_file_description()) keys += table.keys.size();
   EXPECT_EQ(rows, keys);
 }
 

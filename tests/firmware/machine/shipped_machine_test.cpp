@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <numeric>
 
+#include "sim/machine_file.hpp"
+#include "sim/plant/friction/friction.hpp"
 #include "tests/firmware/machine/machine_text.hpp"
 
 namespace stiction::machine {
@@ -13,13 +15,13 @@ namespace {
 using test::shipped_machine;
 
 const Machine& cross_table() {
-  static const Machine machine = read_machine(shipped_machine());
+  static const Machine machine = sim::read_machine(shipped_machine());
   return machine;
 }
 
-template <class Parameters>
-const Parameters& friction(const AxisModel& axis, const std::string& model) {
-  return std::get<Parameters>(axis.friction.models.at(model));
+template <class Law>
+typename Law::Parameters friction(const AxisModel& axis) {
+  return sim::parameters_of<Law>(axis.friction);
 }
 
 TEST(ShippedCrossTable, HasTheAxesXAndYInThisOrder) {
@@ -96,19 +98,19 @@ TEST(ShippedCrossTable, CarriesTheFrictionOfTable63) {
     const AxisModel& axis = cross_table().axes[i];
     EXPECT_EQ(axis.friction.use, "lugre");
     EXPECT_EQ(axis.friction.models.size(), std::variant_size_v<FrictionModel>);
-    EXPECT_EQ(friction<CoulombViscousParameters>(axis, "coulomb_viscous").coulomb, coulomb[i]);
-    EXPECT_EQ(friction<CoulombViscousParameters>(axis, "coulomb_viscous").viscous, viscous[i]);
-    EXPECT_EQ(friction<ClassicalParameters>(axis, "classical").coulomb, coulomb[i]);
-    EXPECT_EQ(friction<ClassicalParameters>(axis, "classical").static_ratio, 1.0);
-    EXPECT_EQ(friction<ClassicalParameters>(axis, "classical").viscous, viscous[i]);
-    const auto& ramp = friction<LinearRampParameters>(axis, "linear_ramp");
+    EXPECT_EQ(friction<sim::CoulombViscous<>>(axis).coulomb, coulomb[i]);
+    EXPECT_EQ(friction<sim::CoulombViscous<>>(axis).viscous, viscous[i]);
+    EXPECT_EQ(friction<sim::Classical<>>(axis).coulomb, coulomb[i]);
+    EXPECT_EQ(friction<sim::Classical<>>(axis).static_ratio, 1.0);
+    EXPECT_EQ(friction<sim::Classical<>>(axis).viscous, viscous[i]);
+    const auto& ramp = friction<sim::LinearRamp<>>(axis);
     EXPECT_EQ(ramp.slope, slope[i]);
     EXPECT_EQ(ramp.viscous, viscous[i]);
     // The table prints the break velocity as 0.45 m/min, rounded to two digits.
     EXPECT_NEAR(ramp.coulomb / ramp.slope * 60.0, 0.45, 0.0055);
-    EXPECT_EQ(friction<ParabolicParameters>(axis, "parabolic").force_at_1_m_per_s, root[i]);
-    EXPECT_EQ(friction<ParabolicParameters>(axis, "parabolic").order, 3.0);
-    const auto& lugre = friction<LuGreParameters>(axis, "lugre");
+    EXPECT_EQ(friction<sim::Parabolic<>>(axis).force_at_1_m_per_s, root[i]);
+    EXPECT_EQ(friction<sim::Parabolic<>>(axis).order, 3.0);
+    const auto& lugre = friction<sim::LuGre<>>(axis);
     EXPECT_EQ(lugre.coulomb, coulomb[i]);
     EXPECT_EQ(lugre.static_ratio, 1.0);
     EXPECT_EQ(lugre.viscous, viscous[i]);
@@ -123,7 +125,7 @@ TEST(ShippedCrossTable, MaxwellSlipElementsFollowTheMeasuredPreslidingCurve) {
   const double displacement_um[] = {0.3, 2.0, 6.3, 20.0, 47.0}, force[] = {20.0, 40.0, 60.0, 80.0, 100.0};
   const double force_scale[] = {0.9, 2.2}, displacement_scale[] = {1.0, 220.0 / 90.0 / 2.5};
   for (std::size_t axis = 0; axis < 2; ++axis) {
-    const auto& slip = friction<MaxwellSlipParameters>(cross_table().axes[axis], "maxwell_slip");
+    const auto& slip = friction<sim::MaxwellSlip<>>(cross_table().axes[axis]);
     ASSERT_EQ(slip.level.size(), 5u);
     EXPECT_NEAR(std::accumulate(slip.level.begin(), slip.level.end(), 0.0), 100.0 * force_scale[axis], 1e-9);
     for (std::size_t point = 0; point < 5; ++point) {
@@ -137,29 +139,29 @@ TEST(ShippedCrossTable, MaxwellSlipElementsFollowTheMeasuredPreslidingCurve) {
 
 TEST(ShippedCrossTable, ConstantVelocityAndImpactUseTable61OnX) {
   for (const char* experiment : {"impact", "constant-velocity"}) {
-    const Machine machine = read_machine(shipped_machine(), {.experiment = experiment, .set = {}});
+    const Machine machine = sim::read_machine(shipped_machine(), {.experiment = experiment, .set = {}});
     const AxisModel& x = machine.axes[0];
     EXPECT_EQ(x.mass, 225.0);
-    EXPECT_EQ(friction<CoulombViscousParameters>(x, "coulomb_viscous").coulomb, 115.0);
-    EXPECT_EQ(friction<ClassicalParameters>(x, "classical").coulomb, 115.0);
-    EXPECT_EQ(friction<ClassicalParameters>(x, "classical").viscous, 430.0);
-    EXPECT_EQ(friction<LinearRampParameters>(x, "linear_ramp").coulomb, 115.0);
-    EXPECT_EQ(friction<LinearRampParameters>(x, "linear_ramp").slope, 12000.0);
-    EXPECT_EQ(friction<LinearRampParameters>(x, "linear_ramp").viscous, 430.0);
-    EXPECT_EQ(friction<ParabolicParameters>(x, "parabolic").order, 4.0);
-    EXPECT_EQ(friction<ParabolicParameters>(x, "parabolic").force_at_1_m_per_s, 300.0);
-    EXPECT_EQ(friction<LuGreParameters>(x, "lugre").stiffness, 1e7);
-    EXPECT_EQ(friction<LuGreParameters>(x, "lugre").coulomb, 115.0);
-    EXPECT_EQ(friction<LuGreParameters>(x, "lugre").stribeck_velocity, 1e-3);
-    const auto& slip = friction<MaxwellSlipParameters>(x, "maxwell_slip");
+    EXPECT_EQ(friction<sim::CoulombViscous<>>(x).coulomb, 115.0);
+    EXPECT_EQ(friction<sim::Classical<>>(x).coulomb, 115.0);
+    EXPECT_EQ(friction<sim::Classical<>>(x).viscous, 430.0);
+    EXPECT_EQ(friction<sim::LinearRamp<>>(x).coulomb, 115.0);
+    EXPECT_EQ(friction<sim::LinearRamp<>>(x).slope, 12000.0);
+    EXPECT_EQ(friction<sim::LinearRamp<>>(x).viscous, 430.0);
+    EXPECT_EQ(friction<sim::Parabolic<>>(x).order, 4.0);
+    EXPECT_EQ(friction<sim::Parabolic<>>(x).force_at_1_m_per_s, 300.0);
+    EXPECT_EQ(friction<sim::LuGre<>>(x).stiffness, 1e7);
+    EXPECT_EQ(friction<sim::LuGre<>>(x).coulomb, 115.0);
+    EXPECT_EQ(friction<sim::LuGre<>>(x).stribeck_velocity, 1e-3);
+    const auto& slip = friction<sim::MaxwellSlip<>>(x);
     EXPECT_NEAR(std::accumulate(slip.level.begin(), slip.level.end(), 0.0), 115.0, 1e-9);
-    EXPECT_EQ(friction<LuGreParameters>(machine.axes[1], "lugre").coulomb, 220.0);
+    EXPECT_EQ(friction<sim::LuGre<>>(machine.axes[1]).coulomb, 220.0);
   }
 }
 
 TEST(ShippedCrossTable, OtherExperimentsLeaveTheFileAsItStands) {
-  const Machine machine = read_machine(shipped_machine(), {.experiment = "circle", .set = {}});
-  EXPECT_EQ(friction<LuGreParameters>(machine.axes[0], "lugre").coulomb, 90.0);
+  const Machine machine = sim::read_machine(shipped_machine(), {.experiment = "circle", .set = {}});
+  EXPECT_EQ(friction<sim::LuGre<>>(machine.axes[0]).coulomb, 90.0);
 }
 
 TEST(ShippedCrossTable, HoldsAllRowsOfTable64) {

@@ -8,6 +8,7 @@
 
 #include "host/diagnose/command_replay.hpp"
 #include "host/diagnose/diagnose.hpp"
+#include "sim/plant/friction/friction.hpp"
 #include "stiction/number/fixed_signals.hpp"
 #include "tests/support/figure.hpp"
 
@@ -39,7 +40,7 @@ machine::Machine force_machine() {
   axis.velocity_controller = {Gains{}.velocity, Gains{}.integral_time};
   axis.feedforward = {1.0, 1.0};
   axis.friction.use = "coulomb_viscous";
-  axis.friction.models["coulomb_viscous"] = sim::CoulombViscousParameters{20.0, 100.0};
+  sim::set_parameters<sim::CoulombViscous<>>(axis.friction, {20.0, 100.0});
   machine.axes = {axis};
   return machine;
 }

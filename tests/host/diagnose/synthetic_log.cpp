@@ -6,6 +6,8 @@
 #include <random>
 #include <vector>
 
+#include "sim/plant/friction/friction.hpp"
+
 namespace stiction::test {
 namespace {
 
@@ -61,7 +63,7 @@ machine::Machine bench_machine() {
   axis.motor.force_constant = force_constant;
   axis.inverter.current_limit = 70.0;
   axis.friction.use = "lugre";
-  axis.friction.models["lugre"] = sim::LuGreParameters{90.0, 1.0, 500.0, 1e-3, 8e5, 0.0};
+  sim::set_parameters<sim::LuGre<>>(axis.friction, {90.0, 1.0, 500.0, 1e-3, 8e5, 0.0});
   machine.axes = {axis};
   return machine;
 }

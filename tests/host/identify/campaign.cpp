@@ -23,22 +23,15 @@ machine::Machine bench_machine(const std::string& friction) {
 std::vector<Truth> truths_of(const machine::AxisModel& axis) {
   std::vector<Truth> truths{{"mass_kg", axis.mass}, {"constant_force_N", 0.0}};
   const auto add = [&](const char* name, double value) { truths.push_back({name, value}); };
-  const auto& parameters = axis.friction.models.at(axis.friction.use);
-  if (const auto* lugre = std::get_if<sim::LuGreParameters>(&parameters)) {
-    add("coulomb_N", lugre->coulomb);
-    add("viscous_N_s_per_m", lugre->viscous);
-    add("stiffness_N_per_m", lugre->stiffness);
-    add("damping_ratio", lugre->damping_ratio);
-  } else if (const auto* slip = std::get_if<sim::MaxwellSlipParameters>(&parameters)) {
-    add("coulomb_N", std::accumulate(slip->level.begin(), slip->level.end(), 0.0));
-    add("viscous_N_s_per_m", slip->viscous);
-  } else if (const auto* ramp = std::get_if<sim::LinearRampParameters>(&parameters)) {
-    // Beyond its break velocity: the straight line taken back to standstill.
-    add("coulomb_N", ramp->coulomb - ramp->coulomb / ramp->slope * ramp->viscous);
-    add("viscous_N_s_per_m", ramp->viscous);
-  } else if (const auto* classical = std::get_if<sim::ClassicalParameters>(&parameters)) {
-    add("coulomb_N", classical->coulomb);
-    add("viscous_N_s_per_m", classical->viscous);
+  // In sliding, beyond where a law has a break velocity: the straight line taken back to standstill.
+  const auto steady = sim::steady_friction(axis.friction);
+  const double viscous = (steady(1.0, 1.0) - steady(0.5, 1.0)) / 0.5;
+  add("coulomb_N", steady(1.0, 1.0) - viscous);
+  add("viscous_N_s_per_m", viscous);
+  if (axis.friction.use == sim::LuGre<>::name) {
+    const auto lugre = sim::parameters_of<sim::LuGre<>>(axis.friction);
+    add("stiffness_N_per_m", lugre.stiffness);
+    add("damping_ratio", lugre.damping_ratio);
   }
   return truths;
 }

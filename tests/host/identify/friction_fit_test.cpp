@@ -29,9 +29,11 @@ TEST(FrictionFit, without_noise_gives_the_parameters_of_the_simulated_axis) {
 
 TEST(FrictionFit, finds_stribecks_fall_of_the_friction) {
   auto machine = test::bench_machine("lugre");
-  auto& lugre = std::get<sim::LuGreParameters>(machine.axes.front().friction.models.at("lugre"));
+  auto& friction = machine.axes.front().friction;
+  auto lugre = sim::parameters_of<sim::LuGre<>>(friction);
   lugre.static_ratio = 1.4;
   lugre.stribeck_velocity = 5e-3;
+  sim::set_parameters<sim::LuGre<>>(friction, lugre);
   std::vector<Log> logs = records(machine);
   logs.push_back(test::simulated(machine, test::constant_speeds({1e-3, 2e-3, 4e-3, 7e-3, 12e-3}, 0.3, 0.5e-3)));
   std::vector<Log> noisy;

@@ -50,7 +50,7 @@ TEST_F(IdentifiedMachine, carries_what_was_determined_and_leaves_the_other_axis_
   const auto& axis = machine.axes.front();
   EXPECT_DOUBLE_EQ(axis.mass, 230.5);
   EXPECT_EQ(axis.friction.use, "lugre");
-  const auto& lugre = std::get<sim::LuGreParameters>(axis.friction.models.at("lugre"));
+  const auto& lugre = sim::parameters_of<sim::LuGre<>>(axis.friction);
   EXPECT_DOUBLE_EQ(lugre.coulomb, 101.0);
   EXPECT_DOUBLE_EQ(lugre.static_ratio, 1.2);
   EXPECT_DOUBLE_EQ(lugre.stribeck_velocity, 2e-3);
@@ -78,9 +78,7 @@ TEST_F(IdentifiedMachine, experiments_of_the_file_do_not_override_what_was_ident
   const auto text = text_of(found({{"mass_kg", 230.5}, {"coulomb_N", 101.0}, {"viscous_N_s_per_m", 450.0}}));
   const auto machine = read(text, "presliding");
   EXPECT_DOUBLE_EQ(machine.axes.front().mass, 230.5);
-  EXPECT_DOUBLE_EQ(
-      std::get<sim::CoulombViscousParameters>(machine.axes.front().friction.models.at("coulomb_viscous")).coulomb,
-      101.0);
+  EXPECT_DOUBLE_EQ(sim::parameters_of<sim::CoulombViscous<>>(machine.axes.front().friction).coulomb, 101.0);
 }
 
 TEST_F(IdentifiedMachine, keeps_what_the_command_line_set) {

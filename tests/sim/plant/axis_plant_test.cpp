@@ -22,12 +22,12 @@ machine::AxisModel plain_axis() {
   axis.motor.model = machine::MotorModel::force;
   axis.motor.force_constant = 10.0;
   axis.inverter = {0.0, 10.0, 1.0};
-  axis.friction = {"coulomb_viscous", {{"coulomb_viscous", CoulombViscousParameters{}}}};
+  axis.friction = acting<CoulombViscous<>>({});
   return axis;
 }
-machine::AxisModel with_friction(machine::FrictionParameters parameters) {
+machine::AxisModel with_friction(machine::FrictionParameters friction) {
   auto axis = plain_axis();
-  axis.friction = {"model", {{"model", std::move(parameters)}}};
+  axis.friction = std::move(friction);
   return axis;
 }
 
@@ -112,7 +112,7 @@ TEST(AxisPlant, WithoutFrictionTheWorkOfTheForcesIsTheKineticEnergy) {
 }
 
 TEST(AxisPlant, FrictionForceIsTheRestOfTheBalanceAndOpposesTheMotion) {
-  AxisPlant plant(timing, with_friction(CoulombViscousParameters{6.0, 2.0}), 0.0, 1);
+  AxisPlant plant(timing, with_friction(acting<CoulombViscous<>>({6.0, 2.0})), 0.0, 1);
   plant.command({4.0, 0.0, 0.0}, true);
   advance(plant, 100);
   const double v = plant.velocity();
@@ -125,7 +125,7 @@ TEST(AxisPlant, FrictionForceIsTheRestOfTheBalanceAndOpposesTheMotion) {
 }
 
 TEST(AxisPlant, StickingTheFrictionEqualsTheAppliedForceAndTheVelocityIsZeroToTheBit) {
-  AxisPlant plant(timing, with_friction(ClassicalParameters{20.0, 1.2, 0.0}), 0.1, 1);
+  AxisPlant plant(timing, with_friction(acting<Classical<>>({20.0, 1.2, 0.0})), 0.1, 1);
   plant.command({1.5, 0.0, 0.0}, true);
   plant.set_external_force(8.0);
   advance(plant, 1000);
@@ -177,7 +177,7 @@ TEST(AxisPlant, UnknownFrictionModelIsRefused) {
   EXPECT_THROW(AxisPlant(timing, axis, 0.0, 1), std::out_of_range);
 }
 
-TEST(machine::EncoderParameters, ReadsTheNearestIncrement) {
+TEST(EncoderParameters, ReadsTheNearestIncrement) {
   auto axis = plain_axis();
   axis.encoder.increment = 1e-6;
   for (const double x : {0.0, 0.4e-6, 0.6e-6, -0.4e-6, -0.6e-6, 0.1234567, -0.1234567}) {
@@ -186,13 +186,13 @@ TEST(machine::EncoderParameters, ReadsTheNearestIncrement) {
   }
 }
 
-TEST(machine::EncoderParameters, WithoutIncrementAndNoiseReadsTheRider) {
+TEST(EncoderParameters, WithoutIncrementAndNoiseReadsTheRider) {
   AxisPlant plant(timing, plain_axis(), 0.1234567890123, 1);
   EXPECT_EQ(plant.read_encoder(), 0.1234567890123);
   EXPECT_EQ(plant.encoder_velocity(), 0.0);
 }
 
-TEST(machine::EncoderParameters, NoiseIsNormalOfTheGivenWidth) {
+TEST(EncoderParameters, NoiseIsNormalOfTheGivenWidth) {
   auto axis = plain_axis();
   axis.encoder.noise = 3e-9;
   AxisPlant plant(timing, axis, 0.5, 20060);
@@ -213,7 +213,7 @@ TEST(machine::EncoderParameters, NoiseIsNormalOfTheGivenWidth) {
   EXPECT_NEAR(lagged / n, 0.0, 5.0 / std::sqrt(n)) << "white";
 }
 
-TEST(machine::EncoderParameters, NoiseRepeatsWithItsSeedAndOnlyWithIt) {
+TEST(EncoderParameters, NoiseRepeatsWithItsSeedAndOnlyWithIt) {
   auto axis = plain_axis();
   axis.encoder.noise = 1e-9;
   AxisPlant a(timing, axis, 0.0, 7), b(timing, axis, 0.0, 7), c(timing, axis, 0.0, 8);
@@ -226,7 +226,7 @@ TEST(machine::EncoderParameters, NoiseRepeatsWithItsSeedAndOnlyWithIt) {
   EXPECT_EQ(equal, 0);
 }
 
-TEST(machine::EncoderParameters, NoiseIsAddedBeforeTheIncrement) {
+TEST(EncoderParameters, NoiseIsAddedBeforeTheIncrement) {
   auto axis = plain_axis();
   axis.encoder.increment = 1e-8;
   axis.encoder.noise = 3e-8;
@@ -237,7 +237,7 @@ TEST(machine::EncoderParameters, NoiseIsAddedBeforeTheIncrement) {
   }
 }
 
-TEST(machine::EncoderParameters, OnItsMountLagsAnAcceleratedCarriageByItsStaticDeflection) {
+TEST(EncoderParameters, OnItsMountLagsAnAcceleratedCarriageByItsStaticDeflection) {
   auto axis = plain_axis();
   axis.encoder.mount = machine::EncoderMountParameters{0.5, 2000.0, 0.05};
   AxisPlant plant(timing, axis, 0.0, 1);

@@ -15,14 +15,14 @@ namespace {
 constexpr machine::EncoderMountParameters cross_table{0.5, 2000.0, 0.05};
 constexpr double two_pi = 2.0 * std::numbers::pi;
 
-TEST(machine::EncoderMountParameters, WithoutParametersIsRigid) {
+TEST(EncoderMountParameters, WithoutParametersIsRigid) {
   EncoderMountModel mount(std::nullopt, 1e-5);
   for (int i = 0; i < 10; ++i) mount.advance(0.1);
   EXPECT_EQ(mount.deflection(), 0.0);
   EXPECT_EQ(mount.velocity(), 0.0);
 }
 
-TEST(machine::EncoderMountParameters, SwingsIntoAHeldAccelerationByTheClosedFormInAnyStep) {
+TEST(EncoderMountParameters, SwingsIntoAHeldAccelerationByTheClosedFormInAnyStep) {
   constexpr double a = 20.0;
   const double w = two_pi * 2000.0, decay = 0.05 * w, damped = w * std::sqrt(1.0 - 0.05 * 0.05);
   for (const double h : {1e-6, 15.625e-6, 1e-4, 3e-4}) {
@@ -38,7 +38,7 @@ TEST(machine::EncoderMountParameters, SwingsIntoAHeldAccelerationByTheClosedForm
   }
 }
 
-TEST(machine::EncoderMountParameters, InFrequencyIsTheTransferFunctionOfItsEquation) {
+TEST(EncoderMountParameters, InFrequencyIsTheTransferFunctionOfItsEquation) {
   // (3.16): X_j / X = (b s + k) / (m s^2 + b s + k), k = w^2 m, b = 2 zeta sqrt(k m). The model's input is the
   // acceleration; x and x_j follow from it: X_j / X = 1 + D / X, X = A / s^2.
   constexpr double m = 0.5;
@@ -63,7 +63,7 @@ TEST(machine::EncoderMountParameters, InFrequencyIsTheTransferFunctionOfItsEquat
   }
 }
 
-TEST(machine::EncoderMountParameters, CriticallyAndOverdampedItStillFollows) {
+TEST(EncoderMountParameters, CriticallyAndOverdampedItStillFollows) {
   // The machine file takes damping ratios up to 10: none may turn the reading into NaN.
   constexpr double a = 20.0;
   const double w = two_pi * 2000.0;
@@ -74,7 +74,7 @@ TEST(machine::EncoderMountParameters, CriticallyAndOverdampedItStillFollows) {
   }
 }
 
-TEST(machine::EncoderMountParameters, UndampedKeepsItsEnergy) {
+TEST(EncoderMountParameters, UndampedKeepsItsEnergy) {
   EncoderMountModel mount(machine::EncoderMountParameters{0.5, 2000.0, 0.0}, 15.625e-6);
   mount.advance(1e-3);
   const double w = two_pi * 2000.0;
@@ -85,7 +85,7 @@ TEST(machine::EncoderMountParameters, UndampedKeepsItsEnergy) {
   EXPECT_NEAR(energy() / start, 1.0, 1e-10) << "a second of free swinging";
 }
 
-TEST(machine::EncoderMountParameters, DeflectsByAFiniteAmountAtBothEndsOfTheAllowedNaturalFrequencies) {
+TEST(EncoderMountParameters, DeflectsByAFiniteAmountAtBothEndsOfTheAllowedNaturalFrequencies) {
   using Mount = machine::Table<machine::EncoderMountParameters>;
   EXPECT_FALSE(Mount::natural_frequencies.contains(1e-323));  // 1 / w^2 is infinite
   for (const double frequency : {Mount::natural_frequencies.low, Mount::natural_frequencies.high}) {

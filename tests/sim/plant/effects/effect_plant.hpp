@@ -24,12 +24,12 @@ inline machine::AxisModel force_axis() {
   axis.motor.force_constant = 10.0;
   axis.inverter = {0.0, 1000.0, 1.0};
   axis.friction.use = "classical";
-  axis.friction.models["coulomb_viscous"] = CoulombViscousParameters{20.0, 100.0};
-  axis.friction.models["classical"] = ClassicalParameters{20.0, 1.0, 100.0};
-  axis.friction.models["linear_ramp"] = LinearRampParameters{20.0, 12000.0, 100.0};
-  axis.friction.models["parabolic"] = ParabolicParameters{300.0, 3.0};
-  axis.friction.models["lugre"] = LuGreParameters{20.0, 1.0, 100.0, 1e-3, 1e6, 0.1};
-  axis.friction.models["maxwell_slip"] = MaxwellSlipParameters{{1e6, 1e6}, {5.0, 15.0}, 100.0};
+  set_parameters<CoulombViscous<>>(axis.friction, {20.0, 100.0});
+  set_parameters<Classical<>>(axis.friction, {20.0, 1.0, 100.0});
+  set_parameters<LinearRamp<>>(axis.friction, {20.0, 12000.0, 100.0});
+  set_parameters<Parabolic<>>(axis.friction, {300.0, 3.0});
+  set_parameters<LuGre<>>(axis.friction, {20.0, 1.0, 100.0, 1e-3, 1e6, 0.1});
+  set_parameters<MaxwellSlip<>>(axis.friction, {{1e6, 1e6}, {5.0, 15.0}, 100.0});
   return axis;
 }
 

@@ -16,7 +16,7 @@ constexpr double pi = std::numbers::pi;
 
 machine::AxisModel frictionless(std::vector<machine::Effect> effects) {
   machine::AxisModel axis = with_effects(std::move(effects));
-  axis.friction = {"coulomb_viscous", {{"coulomb_viscous", CoulombViscousParameters{}}}};
+  axis.friction = acting<CoulombViscous<>>({});
   return axis;
 }
 
@@ -104,7 +104,7 @@ TEST(FrictionLag, IsNothingAtConstantSpeed) {
 TEST(FrictionLag, LetsViscousFrictionFollowTheSpeedAsAFirstOrderLag) {
   const double time = 0.2, mu = 800.0, force = 8.0;
   machine::AxisModel axis = frictionless({{"friction_lag", {{"time", {time}}}}});
-  std::get<CoulombViscousParameters>(axis.friction.models["coulomb_viscous"]).viscous = mu;
+  set_viscous(axis.friction, mu);
   AxisPlant plant(timing, axis, 0.0, 1);
   const double decay = 0.5 / time;
   const auto turn = std::sqrt(std::complex<double>(mu / (50.0 * time) - decay * decay)).real();

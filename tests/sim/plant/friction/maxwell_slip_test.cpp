@@ -17,7 +17,7 @@ constexpr double mass = 225.0, step = 15.625e-6;
 const MaxwellSlipParameters elements{{2e7, 8e6, 2e6, 5e5}, {20.0, 30.0, 30.0, 25.0}, 0.0};
 
 // The contact force (N) after the carriage was moved by `distance` (m): what slows a free mass in that step.
-double move(MaxwellSlip& model, double distance, int steps = 100) {
+double move(MaxwellSlip<>& model, double distance, int steps = 100) {
   double force = 0.0;
   for (int i = 0; i < steps; ++i) {
     const double v = distance / (steps * step);
@@ -113,7 +113,7 @@ MaxwellSlipParameters rising() {
 }
 
 // Slides for a distance (m) at a speed (m/s, its sign apart), in steps of the plant.
-double slide(MaxwellSlip& model, double velocity, double distance) {
+double slide(MaxwellSlip<>& model, double velocity, double distance) {
   double force = 0.0;
   for (double x = 0.0; x < distance; x += std::abs(velocity) * step) force = model.move_contact(velocity);
   return force;
