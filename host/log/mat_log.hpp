@@ -3,7 +3,7 @@
 //
 //   t = (0:24999)' * 1e-3;                    % s, always
 //   x = ...; x_set = ...; i = ...;            % one axis: its channels as plain variables, names and SI units of
-//                                             % contract.md, 2
+//                                             % docs/log_format.md
 //   X.x = ...; X.i = ...; Y.x = ...;          % several axes: one struct an axis
 //   units.x = 'mm'; units.i = 'A';            % optional: other units, by channel; `units.t` for the time
 //   comments = sprintf('machine: table\n');   % optional: "key: value" lines

@@ -34,12 +34,12 @@ constexpr std::array<LoopName, 3> loop_names{{
      [](const AxisResponse& r) { return &r.position; }},
 }};
 
-// The factors of one gain at which a 150 N step on the shipped machine's axes "no longer decays" (plant study, 10), and
-// the axes of which this was found.
+// The factors of one gain at which a 150 N step on the shipped machine's axes "no longer decays"
+// (docs/prototype_figures.md, 2), and the axes of which this was found.
 struct KnownLimits {
   double mass, velocity_gain, current_gain;
   bool notch;
-  double velocity, current, position;  // 0: not studied
+  double velocity, current, position;  // 0: not found
 };
 constexpr std::array<KnownLimits, 4> known_limits{{{225.0, 600.0, 35.0, true, 11.5, 4.47, 5.40},
                                                    {520.0, 1200.0, 17.0, true, 13.0, 4.59, 4.05},
@@ -58,7 +58,8 @@ std::optional<sim::Expectation> expected_limit(const sim::Axis& axis, std::strin
   for (const auto& known : known_limits) {
     if (!is_of(known, axis)) continue;
     const double value = loop == "current" ? known.current : loop == "velocity" ? known.velocity : known.position;
-    if (value > 0.0) return sim::Expectation{value, 0.05 * value, "plant study, 10: prototype, one gain at a time"};
+    if (value > 0.0)
+      return sim::Expectation{value, 0.05 * value, "prototype (docs/prototype_figures.md, 2), one gain at a time"};
   }
   return std::nullopt;
 }
@@ -227,7 +228,7 @@ sim::ExperimentResult response_result(const std::vector<AxisResponse>& responses
       text.simulated
           ? "The measured margins must agree within 5 % with the gains at which the axis goes unstable, found by "
             "raising "
-            "one gain at a time until a step of force no longer decays (plant study, 10)."
+            "one gain at a time until a step of force no longer decays (docs/prototype_figures.md, 2)."
           : "Nothing: the margins of a measured machine are found here. They are read from frequencies at which the "
             "coherence is at least 0.9.";
   result.findings.push_back(text.condition);

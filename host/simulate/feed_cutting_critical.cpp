@@ -31,7 +31,8 @@ void add_collapse(sim::ExperimentResult& result, const sim::FeedDrive& drive) {
     double step, stiffness, mass;
   };
   // 1.105 to 1.118 in the study, and 1 % beside that.
-  const sim::Expectation range{1.1115, 0.0065 + 0.0111, "cam study, 1e: 1.105 to 1.118, and 1 %"};
+  const sim::Expectation range{1.1115, 0.0065 + 0.0111,
+                               "prototype (docs/prototype_figures.md, 7): 1.105 to 1.118, and 1 %"};
   int number = 0;
   for (const auto& [step, stiffness, mass] :
        {Set{2000.0, 1.33e7, 300.0}, Set{2000.0, 4e7, 300.0}, Set{500.0, 4e7, 300.0}, Set{100.0, 1.33e7, 150.0}})
@@ -58,7 +59,8 @@ void add_collapse(sim::ExperimentResult& result, const sim::FeedDrive& drive) {
   const double late = 1e-4 * std::sqrt(1.33e7 / 300.0), exact = sim::critical_beta(0.1);
   result.findings.push_back(fmt::format(
       "At zeta 0.1 the equations' critical feed is {:.4f} dF/sqrt(c m), by closed form and by bisection alike. The "
-      "study's 0.689 is what a break-away noticed 0.1 ms late gives ({:.4f}): it stepped, here the instant is a root.",
+      "prototype's 0.689 follows from a break-away that is noticed 0.1 ms late ({:.4f}): it stepped, here the instant "
+      "is a root.",
       exact, exact / (1.0 - exact * late)));
 }
 

@@ -19,7 +19,8 @@ sim::Axis axis_with(const ExperimentInput& input, const std::string& friction) {
   return axis;
 }
 
-sim::Expectation within_2_percent(double value, double rounding, const char* source = "plant study, 10: prototype") {
+sim::Expectation within_2_percent(double value, double rounding,
+                                  const char* source = "prototype (docs/prototype_figures.md, 4)") {
   return {value, std::max(0.02 * std::abs(value), rounding), source};
 }
 
@@ -107,10 +108,11 @@ sim::ExperimentResult run_presliding(const ExperimentInput& input) {
                               "displacement left at 0 N, " + name,
                               loop.after_unloading * 1e6,
                               {}});
-    result.figures.push_back({"loop_gap_" + name, "um", "between the two visits of +540 N, " + name,
-                              (loop.at_second_top - loop.at_first_top) * 1e6,
-                              sim::Expectation{0.0, 0.02 * std::abs(loop.at_first_top) * 1e6,
-                                               "plant study, 10: the loop closes for slow ramps"}});
+    result.figures.push_back(
+        {"loop_gap_" + name, "um", "between the two visits of +540 N, " + name,
+         (loop.at_second_top - loop.at_first_top) * 1e6,
+         sim::Expectation{0.0, 0.02 * std::abs(loop.at_first_top) * 1e6,
+                          "prototype (docs/prototype_figures.md, 4): the loop closes for slow ramps"}});
     result.findings.push_back(fmt::format("{}: {:.1f} um at 540 N, {:.1f} um left after unloading.", name,
                                           loop.at_first_top * 1e6, loop.after_unloading * 1e6));
     if (name != "lugre") continue;
@@ -122,7 +124,7 @@ sim::ExperimentResult run_presliding(const ExperimentInput& input) {
     chart.x_range = {-0.5 * shown, shown};
     result.figures.push_back({"breaks_away_at_5400_N_per_s", "", "1: the mass breaks away while 540 N is held",
                               std::abs(broken.at_second_top) > 1e-3 ? 1.0 : 0.0,
-                              sim::Expectation{1.0, 0.0, "plant study, 10: prototype"}});
+                              sim::Expectation{1.0, 0.0, "prototype (docs/prototype_figures.md, 4)"}});
   }
   result.charts.push_back(std::move(chart));
   return result;

@@ -74,7 +74,8 @@ void add_chatter(const sim::Machine& machine, sim::ExperimentResult& result) {
     auto r = impact_with_parabolic_friction(machine, step_force, step_time, c.step);
     r.friction.name = c.text;
     const bool chatters = c.step && *c.step > 100e-6;
-    const std::string source = "plant study, 10: chatter at 0.2 ms, none at 62.5 us and below, none when implicit";
+    const std::string source =
+        "prototype (docs/prototype_figures.md, 3): chatter at 0.2 ms, none at 62.5 us and below, none when implicit";
     if (chatters) {
       const double amplitude = chatter_amplitude(parameters, axis.mass, *c.step);
       result.figures.push_back({"chatter_amplitude_200_us", "N", "B2 at rest, rms of the friction, explicit, 0.2 ms",
@@ -118,7 +119,7 @@ sim::ExperimentResult run_impact(const ExperimentInput& input) {
   auto machine = input.machine;
   machine.axes.resize(1);
   auto& axis = machine.axes[0];
-  const std::string prototype = "plant study, 10: prototype at 56 400 N s/m";
+  const std::string prototype = "prototype (docs/prototype_figures.md, 3) at 56 400 N s/m";
   for (const auto& name : input.friction) {
     axis.friction.use = name;
     LogRecorder recorder(machine);
@@ -153,7 +154,8 @@ sim::ExperimentResult run_impact(const ExperimentInput& input) {
                             result.figures.front().value,
                             sim::Expectation{80.0, 4.0, "Mendricky 2006, 6.2: about 80 um"}});
   for (const auto& [label, newtons, expected] :
-       {std::tuple{"80000", 80000.0, std::optional(sim::Expectation{62.5, 1.3, "plant study, 10: 62 to 63 um"})},
+       {std::tuple{"80000", 80000.0,
+                   std::optional(sim::Expectation{62.5, 1.3, "prototype (docs/prototype_figures.md, 3): 62 to 63 um"})},
         std::tuple{"65000", 65000.0, std::optional<sim::Expectation>{}}}) {
     axis.velocity_controller.gain = newtons / axis.motor.force_constant;
     const auto r = respond(machine, input.friction.front());

@@ -37,7 +37,7 @@ sim::LineArcPath l_shape() {
   return path;
 }
 
-// What the prototype found (plant study, 10), um and A.
+// Figures of the prototype (docs/prototype_figures.md, 5), um and A.
 struct Expected {
   double same, opposite, current;
 };
@@ -52,7 +52,7 @@ std::optional<sim::Expectation> expect(const sim::Machine& machine, const std::s
   const auto row = prototype.find(name);
   if (row == prototype.end() || sim::has_compensation(machine)) return std::nullopt;
   const double value = row->second.*member;
-  return sim::Expectation{value, std::max(0.02 * value, rounding), "plant study, 10: prototype"};
+  return sim::Expectation{value, std::max(0.02 * value, rounding), "prototype (docs/prototype_figures.md, 5)"};
 }
 
 }  // namespace

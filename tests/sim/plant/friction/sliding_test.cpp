@@ -23,7 +23,7 @@ struct Curve {
 
 void PrintTo(const Curve& curve, std::ostream* out) { *out << curve.name; }
 
-// X of the cross table (plant.md, Tab 6.1 and 6.3).
+// X of the cross table (Mendricky 2006, Tab 6.1 and 6.3).
 const std::vector<Curve> curves{
     {"D", CoulombViscous::Parameters{115.0, 430.0}, [](double v) { return 115.0 + 430.0 * v; }},
     {"A", Classical::Parameters{115.0, 1.1, 430.0}, [](double v) { return 115.0 + 430.0 * v; }},
