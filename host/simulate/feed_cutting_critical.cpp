@@ -30,7 +30,7 @@ void add_collapse(sim::ExperimentResult& result, const sim::FeedDrive& drive) {
   struct Set {
     double step, stiffness, mass;
   };
-  // 1.105 to 1.118 in the study, and 1 % beside that.
+  // 1.105 to 1.118 of the prototype, and 1 % more.
   const sim::Expectation range{1.1115, 0.0065 + 0.0111,
                                "prototype (docs/prototype_figures.md, 7): 1.105 to 1.118, and 1 %"};
   int number = 0;
