@@ -26,9 +26,9 @@ std::string fault_page(std::int64_t period_ns) {
   std::string page =
       "# Faults of the drive\n\nNumbers are stable: logs, buses and the Modbus registers carry them. A fault is "
       "latched; "
-      "a reset is taken only when its cause has gone, and the axis is then started anew. The other axes of a machine "
-      "make a controlled stop. A second fault during a controlled stop takes the power off at once. Detection times "
-      "count from the first sample that violates, in ticks of the fast loop.\n\n"
+      "a reset is accepted only after its cause has gone, and the axis must then be enabled again. The other axes of a "
+      "machine make a controlled stop. A second fault during a controlled stop switches the power off at once. "
+      "Detection times count in ticks of the fast loop from the first sample that violates the condition.\n\n"
       "| number | fault | condition | seen by | within | reaction |\n| --- | --- | --- | --- | --- | --- |\n";
   for (const auto& row : fault_table)
     page += fmt::format("| {} | {} | {} | {} | {} | {} |\n", static_cast<int>(row.fault), row.name, row.condition,

@@ -178,9 +178,10 @@ class Programme {
     const auto compensations = loop_.loop().compensations();
     for (std::size_t i = 0; i < compensations.size(); ++i) {
       if (compensations[i].dropped() && !dropped_[i])
-        log_.push(loop_.now_ns(), LogLevel::warning,
-                  "axis {}: the learned table made the error grow: dropped, the friction feedforward acts without it",
-                  {i});
+        log_.push(
+            loop_.now_ns(), LogLevel::warning,
+            "axis {}: the learned table made the error grow and was dropped; the friction feedforward acts without it",
+            {i});
       dropped_[i] = compensations[i].dropped();
     }
   }

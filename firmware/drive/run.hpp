@@ -126,7 +126,7 @@ RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& confi
                            .starved =
                                [] {
                                  log_to_standard_error(LogLevel::error,
-                                                       fmt::format("fault {} '{}': the loop stands still",
+                                                       fmt::format("fault {} '{}': the loop has stopped",
                                                                    static_cast<int>(Fault::watchdog_starved),
                                                                    stiction::name_of(Fault::watchdog_starved)));
                                },
@@ -141,7 +141,7 @@ RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& confi
       // The simulated machine may be late; real axes may not.
       if (options.hal != "simulated" && request.priority > 0)
         throw StartRefused(
-            "found no real time; expected every step below, or drive.real_time.priority = 0 for a try "
+            "found no real-time conditions; expected every step below, or drive.real_time.priority = 0 for a test "
             "without power\n" +
             text_of(steps));
       fmt::print(stderr, "{}", text_of(steps));
@@ -153,8 +153,8 @@ RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& confi
     log.push(loop.now_ns(), LogLevel::info, "the loop has begun");
     if (task.serve && !can && !modbus)
       log.push(loop.now_ns(), LogLevel::warning,
-               "found neither [drive.can_server] nor [drive.modbus_server]: nobody can ask for a motion, the axes stay "
-               "off");
+               "found neither [drive.can_server] nor [drive.modbus_server]: no client can command a motion, so the "
+               "axes remain off");
     while (!programme.over()) {
       const bool begins = can && loop.loop().slow() && can->receive(loop.now_ns(), programme.remote());
       programme.tick(hal::stop_wanted != 0);  // by a signal: a controlled stop, then the end
@@ -171,7 +171,7 @@ RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& confi
     trace.write(options.trace, configuration.names,
                 std::vector<std::string>{"log: stictiond", "machine: " + configuration.machine.name});
   if (can)
-    fmt::print("controller: {} frames taken, {} refused, {} of a wrong length, {} answers not sent\n",
+    fmt::print("controller: {} frames accepted, {} refused, {} of a wrong length, {} answers not sent\n",
                can->counts().taken, can->counts().refused, can->counts().wrong_size, can->send_failed());
   if (clock != nullptr) fmt::print("{}", describe_timing(timing, clock->lateness(), clock->missed()));
   return {programme.faulted()};

@@ -88,7 +88,7 @@ TEST(ModbusPublisher, KeepsAParameterThatAClientWritesAndStores) {
   EXPECT_EQ(client.receive().size(), 12U);
   EXPECT_EQ(lines_of(publisher),
             (std::vector<std::string>{
-                "Modbus: axis.X.velocity_controller.gain = 550, from the next start on if it is stored"}));
+                "Modbus: axis.X.velocity_controller.gain = 550, which takes effect at the next start if it is stored"}));
   client.send(request({6, 0, 0, 0x53, 0x54}));
   EXPECT_EQ(client.receive().size(), 12U);
   EXPECT_EQ(lines_of(publisher),

@@ -167,7 +167,7 @@ TEST(ParameterStore, RefusesEveryCutAndWhatIsAppended) {
 
 TEST(ParameterStore, SaysWhatWasFoundAndWhatWasExpected) {
   const std::string rest =
-      "; nothing of this file is used. Remove it, or put the set before in its place: parameters.previous";
+      "; the file is not used. Remove it, or replace it by the previous set: parameters.previous";
   EXPECT_EQ(refusal_of("stiction.parameters/2\n"),
             "parameters:1: found \"stiction.parameters/2\"; expected \"stiction.parameters/1\"" + rest);
   EXPECT_EQ(refusal_of(""),

@@ -157,7 +157,7 @@ class MotionController(unittest.TestCase):
                f"{off * 1e6:.2f} um off at most (bound 10.5 um)")
         self.assertLessEqual(off, 10.5e-6)  # target_window, and how far it goes in a tick
         self.assertEqual(int(states[-1]["statusword"]) & 0x6F, 0x21, "off again")
-        self.assertIn("bus: 0 frames of nobody, 0 error frames, 0 not sent", result.drive)
+        self.assertIn("bus: 0 frames with an unknown identifier, 0 error frames, 0 not sent", result.drive)
 
     def test_with_a_clock_of_its_own_is_followed_by_the_drives(self):
         result = self.results["own_clock"]
