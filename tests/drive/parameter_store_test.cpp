@@ -133,7 +133,7 @@ TEST(ParameterStore, SaysWhichFileCannotBeWritten) {
     drive::write_parameters("/nowhere/parameters", numbered_set(1));
     FAIL() << "wrote into a folder that is not there";
   } catch (const std::system_error& error) {
-    EXPECT_STREQ(error.what(), "/nowhere/parameters.new: cannot be made: No such file or directory");
+    EXPECT_STREQ(error.what(), "/nowhere/parameters.new: cannot be created: No such file or directory");
   }
 }
 

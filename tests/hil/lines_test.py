@@ -80,7 +80,7 @@ class Run:
         self.broken = float(begun[1]) if begun else None  # s
         self.faults = [(float(time), int(number))
                        for time, number in re.findall(r"([\d.]+) s: axis 0: fault (\d+) ", self.drive)]
-        rest = re.search(r"ran on by (\S+) um for (\d+) ticks, stands at (\S+) mm", self.plant)
+        rest = re.search(r"coasted by (\S+) um for (\d+) ticks, position (\S+) mm", self.plant)
         self.ran_on, self.stands = float(rest[1]) * 1e-6, float(rest[3]) * 1e-3
 
 

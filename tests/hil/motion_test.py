@@ -178,7 +178,7 @@ class MotionController(unittest.TestCase):
         result = self.results["documented"]
         self.assertEqual((self.folder / "documented.txt").read_text(), "")
         self.assertEqual(result.status, 0, result.drive)
-        stands = float(re.search(r"axis X: .* stands at (\S+) mm", result.plant)[1])
+        stands = float(re.search(r"axis X: .* position (\S+) mm", result.plant)[1])
         self.assertAlmostEqual(stands, 110.0, delta=0.1)  # without power it swings out on its bristles
 
     def test_without_permission_moves_nothing(self):
