@@ -66,7 +66,7 @@ TEST(ExperimentText, ShowsValuesBesideExpectationsAndSources) {
   EXPECT_NE(text.find("\n[1] prototype (docs/prototype_figures.md, 3)\n[2] prototype: 62 to 63 um\n"),
             std::string::npos)
       << text;
-  EXPECT_TRUE(text.ends_with("\n12 of 13 figures as expected; different: peak deviation (B2 parabolic).\n")) << text;
+  EXPECT_TRUE(text.ends_with("\n12 of 13 figures are as expected; different: peak deviation (B2 parabolic).\n")) << text;
 }
 
 }  // namespace
