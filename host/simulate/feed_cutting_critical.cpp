@@ -57,11 +57,11 @@ void add_collapse(sim::ExperimentResult& result, const sim::FeedDrive& drive) {
          sim::Expectation{1.0, 1e-5, "closed form of the equations"}});
   // A break-away noticed at the end of a step adds the force that the spring has gained by then.
   const double late = 1e-4 * std::sqrt(1.33e7 / 300.0), exact = sim::critical_beta(0.1);
-  result.findings.push_back(fmt::format(
-      "At zeta 0.1 the equations' critical feed is {:.4f} dF/sqrt(c m), by closed form and by bisection alike. The "
-      "prototype's 0.689 follows from a break-away that is noticed 0.1 ms late ({:.4f}): it stepped, here the instant "
-      "is a root.",
-      exact, exact / (1.0 - exact * late)));
+  result.findings.push_back(
+      fmt::format("At zeta 0.1 the critical feed of the equations is {:.4f} dF/sqrt(c m), by closed form and by "
+                  "bisection alike. The prototype's 0.689 follows from a break-away that is noticed 0.1 ms late "
+                  "({:.4f}): it stepped, here the instant is a root.",
+                  exact, exact / (1.0 - exact * late)));
 }
 
 sim::Series named(const char* name, bool points = false) { return {name, {}, {}, points}; }
@@ -94,8 +94,8 @@ void add_over_gain(sim::ExperimentResult& result, const sim::FeedDrive& drive) {
   sim::Chart chart{"Critical feed over loop gain",
                    "gain over that of the machine file",
                    "critical feed, mm/min",
-                   "One gain at a time. Formula: a drive that moves at constant speed, whatever the force. A curve "
-                   "ends where the loop is unstable.",
+                   "One gain at a time. Formula: a drive that moves at constant speed, regardless of the force. A "
+                   "curve ends where the loop is unstable.",
                    true,
                    {}};
   struct Loop {
@@ -131,10 +131,9 @@ void add_over_gain(sim::ExperimentResult& result, const sim::FeedDrive& drive) {
     }
     chart.series.push_back(std::move(series));
   }
-  result.findings.push_back(
-      fmt::format("Loop gains move the critical feed of the PI drive: {}; formula for a drive that "
-                  "does not yield {:.0f} mm/min.",
-                  told, in_mm_per_min(sim::critical_feed_of_ideal_drive(drive))));
+  result.findings.push_back(fmt::format(
+      "Loop gains move the critical feed of the PI drive: {}; formula for a drive of infinite stiffness {:.0f} mm/min.",
+      told, in_mm_per_min(sim::critical_feed_of_ideal_drive(drive))));
   result.charts.push_back(std::move(chart));
 }
 
@@ -146,8 +145,8 @@ void add_critical_feed(sim::ExperimentResult& result, const sim::FeedDrive& mach
   drive.friction.stribeck_velocity = drive.friction.viscous = drive.cutting.coefficient = 0.0;
   add_collapse(result, drive);
   const char* caption =
-      "Static friction of a long standstill. Formula: the speed after break-away, an oscillation about "
-      "the feed, just touches zero.";
+      "Static friction after a long standstill. Formula: the speed after break-away, an oscillation about the feed, "
+      "just reaches zero.";
   result.charts.push_back(over_parameter(
       drive, {"Critical feed over drive stiffness", "stiffness, N/m", "critical feed, mm/min", caption, true, {}}, 3e6,
       3e8, [](sim::FeedDrive each, double stiffness) {

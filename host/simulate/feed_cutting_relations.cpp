@@ -124,7 +124,7 @@ void add_drive_of_the_study(sim::ExperimentResult& result, const sim::FeedDrive&
                             "PI drive, printed damping, 1500 mm/min: jump over 2 dF/c",
                             at_1500.cycle.travel / double_step(drive), expected(2.5, 0.025)});
   result.figures.push_back({"jumps_at_3000_mm_per_min_printed_damping", "",
-                            "PI drive, printed damping, 3000 mm/min: 1 if it goes on jumping",
+                            "PI drive, printed damping, 3000 mm/min: 1 if the jumps continue",
                             pi(3000.0, printed_damping).lasts ? 1.0 : 0.0, expected(0.0, 0.0)});
   const auto corrected = pi(60.0, {});
   result.figures.push_back({"jump_at_60_mm_per_min_corrected",
@@ -132,14 +132,12 @@ void add_drive_of_the_study(sim::ExperimentResult& result, const sim::FeedDrive&
                             "PI drive, corrected equations, 60 mm/min: jump",
                             corrected.cycle.travel * 1e6,
                             {}});
-  result.findings.push_back(fmt::format(
-      "The printed damping term is a constant force: with it the PI drive jumps {:.1f} um at 60 mm/min and "
-      "{:.2f} times "
-      "2 dF/c at 1500 mm/min; with the term on the relative speed it jumps {:.1f} um and {}. The prototype's "
-      "315 um and 1.05 "
-      "to 2.5 are those of the printed term.",
-      at_60.cycle.travel * 1e6, at_1500.cycle.travel / double_step(drive), corrected.cycle.travel * 1e6,
-      pi(1500.0, {}).lasts ? "still jumps at 1500 mm/min" : "no longer jumps at 1500 mm/min"));
+  result.findings.push_back(
+      fmt::format("The printed damping term is a constant force: with it the PI drive jumps by {:.1f} um at 60 mm/min "
+                  "and by {:.2f} times 2 dF/c at 1500 mm/min; with a term in the relative speed it jumps by {:.1f} um "
+                  "and {}. The values 315 um and 1.05 to 2.5 of the prototype belong to the printed term.",
+                  at_60.cycle.travel * 1e6, at_1500.cycle.travel / double_step(drive), corrected.cycle.travel * 1e6,
+                  pi(1500.0, {}).lasts ? "still jumps at 1500 mm/min" : "no longer jumps at 1500 mm/min"));
 }
 
 }  // namespace

@@ -10,10 +10,10 @@
 namespace stiction::sim {
 
 inline constexpr std::array<Choice<CompensationKind>, 4> compensation_kinds{{
-    {"off", CompensationKind::off, "none; set-points are held back where another axis has one"},
+    {"off", CompensationKind::off, "none; set-points are delayed if a different axis has one"},
     {"pulse", CompensationKind::pulse, "speed pulse at reversals"},
     {"friction", CompensationKind::friction, "current from presliding and sliding curve"},
-    {"learning", CompensationKind::learning, "the same, and what was learned from the errors of earlier laps"},
+    {"learning", CompensationKind::learning, "the same, and a current learned from the errors of earlier laps"},
 }};
 
 template <>
@@ -57,7 +57,7 @@ struct Table<FrictionFeedforward> : EmptyTable<FrictionFeedforward> {
        positive(1.9e-3),
        &FrictionFeedforward::distance,
        {},
-       "way after a reversal at which each presliding element slips again, increasing; at most 8"},
+       "displacement after a reversal at which each presliding element slips again, increasing; at most 8"},
       {"level",
        "A",
        not_negative(),
@@ -66,7 +66,7 @@ struct Table<FrictionFeedforward> : EmptyTable<FrictionFeedforward> {
        "current of each element; their sum is the Coulomb level",
        "V"},
       {"contact_damping", "s", not_negative(0.05), &FrictionFeedforward::contact_damping, 0.0,
-       "time by which the presliding current's rate counts beside it"},
+       "weight of the rate of the presliding current, as a time"},
       {"speed", "m/s", positive(), &FrictionFeedforward::speed, {}, "speeds of the sliding curve, increasing"},
       {"forward",
        "A",
@@ -88,7 +88,12 @@ struct Table<GlitchLearning> : EmptyTable<GlitchLearning> {
       {"smoothing", "1", {0.0, 0.33}, &GlitchLearning::smoothing, 0.2, "share that is taken from each neighbour"},
       {"limit", "A", not_negative(), &GlitchLearning::limit, {}, "largest current that can be learned", "V"},
       {"dead_zone", "m", not_negative(1e-5), &GlitchLearning::dead_zone, 0.1e-6, "error from which nothing is learned"},
-      {"filter", "s", {1e-4, 0.01}, &GlitchLearning::filter, 1e-3, "time constant of the lowpass on what is missing"},
+      {"filter",
+       "s",
+       {1e-4, 0.01},
+       &GlitchLearning::filter,
+       1e-3,
+       "time constant of the lowpass for the missing current"},
       {"lead",
        "s",
        not_negative(0.012),
@@ -100,7 +105,7 @@ struct Table<GlitchLearning> : EmptyTable<GlitchLearning> {
 
 template <>
 struct Table<LearnedTable> : EmptyTable<LearnedTable> {
-  static constexpr std::string_view text = "what the drive has learned; of this machine only";
+  static constexpr std::string_view text = "table that the drive has learned on this machine";
   static constexpr std::array<TextParameter<LearnedTable>, 2> texts{{
       {"machine", &LearnedTable::machine, "name of the machine that learned it"},
       {"axis", &LearnedTable::axis, "name of its axis"},
@@ -119,7 +124,7 @@ struct Table<LearnedTable> : EmptyTable<LearnedTable> {
 
 template <>
 struct Table<FrictionCompensation> : EmptyTable<FrictionCompensation> {
-  static constexpr std::string_view text = "what the drive does against friction";
+  static constexpr std::string_view text = "compensation of friction in the drive";
   static constexpr std::tuple choices{ChoiceParameter<FrictionCompensation, CompensationKind>{
       "use", &FrictionCompensation::use, compensation_kinds, CompensationKind::off, "the compensation that acts"}};
   static constexpr std::tuple subtables{
