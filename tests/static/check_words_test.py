@@ -152,8 +152,9 @@ class Parameters(Words):
                             "inline constexpr int x{f(1, 2, 3)};\nbool operator<(const A& a, const A& b);\n"
                             "void g(int a, int b, int c) noexcept;\n", "g()", line=7)
 
-    def test_finds_a_parameter_without_a_name(self):
-        self.expect_missing("// a, b\nvoid f(int a, int b, const std::string&);\n", "one without a name", line=2)
+    def test_wants_the_type_of_a_parameter_without_a_name(self):
+        self.expect_missing("// a, b\nvoid f(int a, int b, const std::string&);\n", "string", line=2)
+        self.expect_documented("// a, b; the Config is not used\nvoid f(int a, int b, const Config& = {});\n")
 
     def test_passes_over_sources(self):
         self.expect_none("parameters", "host/log/a.cpp", "void f(int a, int b, int c) {}\n")

@@ -3,7 +3,7 @@
 Public is what a header declares outside of anonymous and detail namespaces and of private and protected parts of a
 class. The comment is the one above the declaration, or above the group of declarations without a blank line that it is
 in, and what is written inside of it; for a constructor the comment of its class as well. A parameter is documented
-where the comment holds its name as a word.
+where the comment holds its name as a word; one without a name, where it holds the last word of its type.
 """
 
 import dataclasses
@@ -14,7 +14,6 @@ import cpp_text
 LEAST = 3  # parameters from which on each must be documented
 NO_FUNCTION = {"using", "static_assert", "typedef", "concept"}
 NO_NAME = {"if", "alignas", "decltype", "requires", "noexcept", "explicit", "sizeof", "while", "for", "switch"}
-BUILT_IN = {"int", "bool", "double", "float", "char", "long", "short", "unsigned", "signed", "auto", "void", "const"}
 ACCESS = ("public", "private", "protected")
 
 
@@ -118,7 +117,7 @@ def signature(statement):
 
 
 def parameters(tokens):
-    """Names of the parameters; None for one that has no name."""
+    """Names of the parameters; of one that has none, because it is not used, the last word of its type."""
     parts, at = [[]], 0
     while at < len(tokens):
         if tokens[at].text in "([{" or opens_template(tokens, at):
@@ -142,9 +141,7 @@ def parameter_name(part):
         part = part[:max(i for i, token in enumerate(part) if token.text == "[")]
     if part and part[-1].text == ")":  # T (&name)[N]
         part = part[:-1]
-    if len(part) < 2 or part[-1].kind != "word" or part[-2].text == "::" or part[-1].text in BUILT_IN:
-        return None
-    return part[-1].text
+    return next((token.text for token in reversed(part) if token.kind == "word" and token.text != "const"), "void")
 
 
 # ---- headers ----
@@ -211,7 +208,7 @@ class Header:
             comment = self.comment(line, last)
             if name == scope.name:
                 comment += self.comment(scope.line, scope.line)
-            missing = [each or "one without a name" for each in names if not each or not re.search(rf"\b{each}\b", comment)]
+            missing = [each for each in names if not re.search(rf"\b{each}\b", comment)]
             if missing:
                 yield line, name, missing
 

@@ -14,6 +14,7 @@ struct Quantizer {
     typename S::Increment increment{};         // m
   };
 
+  // `config`: the increment; `x`: distance, m; `saturations`: counts results that exceed the format.
   static constexpr typename S::Distance apply(const Config& config, typename S::Distance x,
                                               SaturationCounter& saturations) {
     if (!config.enabled) return x;
