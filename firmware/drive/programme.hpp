@@ -35,7 +35,8 @@ class Programme {
  public:
   using S = typename B::Signals;
 
-  // `remote`: one an axis. `trace`: of the motion; may be null. All must outlive this.
+  // `remote`: one an axis. `trace`: of the motion; may be null. All must outlive this. `loop`: of all axes; `task`:
+  // what to do with them; `log`: for messages.
   Programme(hal::DriveLoop<B>& loop, const Task& task, std::span<const RemoteAxisConfig> remote, LogRing& log,
             Trace* trace)
       : loop_(loop),

@@ -19,7 +19,8 @@ class BesideLines {
   using Signals = FixedSignals;
   static_assert(std::same_as<typename B::Signals, Signals>);
 
-  // `backend` must outlive this. `axes`: one an axis of it, in its order. Throws GpioError.
+  // `backend` must outlive this. `axes`: one an axis of it, in its order. Throws GpioError. `chip`: name or path of the
+  // gpiochip; `bias`: of its inputs.
   BesideLines(B& backend, const std::string& chip, Bias bias, std::span<const AxisLines> axes)
       : backend_(backend), lines_(chip, bias), io_(lines_, axes), latches_(axes.size()) {
     if (axes.size() != backend.axis_count())

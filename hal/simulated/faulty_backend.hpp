@@ -62,7 +62,7 @@ class FaultyBackend {
 
   static constexpr std::uint64_t silent_ticks_allowed = 2;  // of the power stage, without a command
 
-  // `increment` (m): of the encoders, whose bits can flip.
+  // `increment` (m): of the encoders, whose bits can flip. `inner`: must outlive this; `period_ns`: of the fast loop.
   FaultyBackend(B& inner, std::int64_t period_ns, double increment)
       : inner_(inner), increment_(increment), command_(inner.axis_count()) {
     for (std::size_t i = 0; i < inner.axis_count(); ++i) nodes_.push_back(Node{FrameWatch(period_ns)});

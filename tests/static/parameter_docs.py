@@ -241,7 +241,7 @@ def scope_of(statement):
         return Scope(bool(words))
     if "namespace" in words[:2]:
         name = words[words.index("namespace") + 1:]
-        return Scope(bool(name) and "detail" not in name)
+        return Scope(bool(name) and not any(word.endswith("detail") for word in name))
     if words[0] in ("class", "struct", "union"):
         name = next((token.text for token in tokens[1:] if token.kind == "word" and token.text not in NO_NAME), "")
         return Scope(True, words[0] != "class", name, statement[0].line)
