@@ -61,10 +61,11 @@ struct IdentifyOptions {
 const AxisLog& channels_of(const Log& log, const sim::Axis& axis);
 
 // `axis`: of the machine that the logs belong to; each log's channels of that axis, or those without an axis' name.
-// Throws LogError for logs that cannot be used (suitability.hpp).
+// Throws LogError for logs that cannot be used (suitability.hpp). `options`: friction model, amperes, bootstrap.
 Identification identify_logs(const std::vector<Log>& logs, const sim::Axis& axis, const IdentifyOptions& options);
 
-// Throws LogError.
+// Throws LogError. `table`: rows of steady motion; `axis`: of the machine; `stated`: convention of the currents where
+// the table has none; `settings`: of the bootstrap.
 Identification identify_table(const SteadyTable& table, const sim::Axis& axis, std::optional<Amperes> stated,
                               const FitSettings& settings);
 

@@ -29,6 +29,7 @@ bool is_mat_file(const std::filesystem::path& file, std::string_view first_bytes
 Log read_mat_log(const std::filesystem::path& file);
 
 // Throws LogError for an axis whose name no variable can have; std::runtime_error when the file cannot be written.
+// `file`: to write; `log`: its channels in SI units; `level`: of the format.
 void write_mat_log(const std::filesystem::path& file, const Log& log, MatLevel level = MatLevel::level_5);
 
 }  // namespace stiction::host

@@ -14,7 +14,8 @@ class MotionRecord {
  public:
   explicit MotionRecord(std::size_t axes) : axes_(axes) {}
 
-  // The state after a tick: whether the stage was on in it, and where the axis is then (m).
+  // The state after a tick: whether the stage was on in it, and where the axis is then (m). `axis`: its index;
+  // `enabled`: the stage was on; `position`: m.
   void add(std::size_t axis, bool enabled, double position) {
     auto& a = axes_[axis];
     ++a.ticks;

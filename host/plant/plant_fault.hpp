@@ -43,12 +43,15 @@ struct PlantFaultKind {
   }
 };
 
+// A fault of a bus. `name`: of the option --fault; `frame`: what happens to frames; `text`: explanation for users.
 constexpr PlantFaultKind of_frames(std::string_view name, FrameFaultKind frame, std::string_view text) {
   return {.name = name, .text = text, .frame = frame};
 }
+// A fault of digital lines. `name`, `text`: as above; `line`: what happens to them.
 constexpr PlantFaultKind of_lines(std::string_view name, LineFaultKind line, std::string_view text) {
   return {.name = name, .text = text, .line = line};
 }
+// A fault of a part. `name`, `text`: as above; `part`: breaks and repairs it; `on_lines`: it shows behind GPIO lines.
 constexpr PlantFaultKind of_part(std::string_view name, std::string_view text, BreakPart part, bool on_lines = true) {
   return {.name = name, .text = text, .machine = part, .shows_on_lines = on_lines};
 }

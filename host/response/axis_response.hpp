@@ -57,7 +57,8 @@ struct AxisResponse {
 inline constexpr double least_coherence = 0.9;
 
 // `axis` gives K_v, the rates, and the controllers where the log has no set current. Throws ResponseError when the log
-// lacks what is needed.
+// lacks what is needed. `log`: with the test signal; `measured`: its channels of the axis; `timing`: periods of the
+// loops.
 AxisResponse axis_response(const Log& log, const AxisLog& measured, const sim::Timing& timing, const sim::Axis& axis);
 
 }  // namespace stiction::host
