@@ -64,8 +64,8 @@ const AxisLog& channels_of(const Log& log, const sim::Axis& axis);
 // Throws LogError for logs that cannot be used (suitability.hpp). `options`: friction model, amperes, bootstrap.
 Identification identify_logs(const std::vector<Log>& logs, const sim::Axis& axis, const IdentifyOptions& options);
 
-// Throws LogError. `table`: rows of steady motion; `axis`: of the machine; `stated`: convention of the currents where
-// the table has none; `settings`: of the bootstrap.
+// The same from a table. `table`: rows of steady motion; `axis`: of the machine; `stated`: convention of the currents
+// where the table has none; `settings`: of the bootstrap. Throws LogError.
 Identification identify_table(const SteadyTable& table, const sim::Axis& axis, std::optional<Amperes> stated,
                               const FitSettings& settings);
 

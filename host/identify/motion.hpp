@@ -46,8 +46,8 @@ enum class Amperes { amplitude, rms };
 // `axis`: of the machine; `amperes`: convention of its currents.
 std::vector<double> force_of(const Log& log, const AxisLog& channels, const sim::Axis& axis, Amperes amperes);
 
-// Throws LogError. Filtered motion and force of an axis. `log`, `channels`, `axis`, `amperes`: as for force_of();
-// `settings`: of the filters.
+// Filtered motion and force of an axis. `log`, `channels`, `axis`, `amperes`: as for force_of(); `settings`: of the
+// filters. Throws LogError.
 Motion motion_of(const Log& log, const AxisLog& channels, const sim::Axis& axis, Amperes amperes,
                  const SignalSettings& settings);
 
