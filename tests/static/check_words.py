@@ -22,7 +22,7 @@ FOLDERS = {
     "parameters": ("firmware", "hal", "host", "sim", "toolchain"),
 }
 EXCEPT = {
-    "phrases": ("sim/plant/effects", "sim/plant/friction", "host/report/cause_text.cpp", "docs/effects"),
+    "phrases": ("sim/plant/effects", "sim/plant/friction", "host/report/cause_text.cpp"),
     "citations": (),
     "parameters": ("sim/machine", "sim/model", "sim/control", "sim/plant/effects", "sim/plant/friction", "host/diagnose"),
 }
