@@ -16,7 +16,7 @@ constexpr std::array<std::string_view, 3> reactions{"power off in the same tick"
 
 std::string detection(const FaultDescription& row, std::int64_t period_ns) {
   if (row.detection_ticks == 0) return "depends on the signal";
-  return fmt::format("{} tick{}, {:g} us", row.detection_ticks, row.detection_ticks == 1 ? "" : "s",
+  return fmt::format("{} tick{}, {:g} µs", row.detection_ticks, row.detection_ticks == 1 ? "" : "s",
                      static_cast<double>(row.detection_ticks * period_ns) * 1e-3);
 }
 

@@ -68,6 +68,7 @@ class Phrases(Words):
     def test_finds_ascii_signs_on_pages_only(self):
         self.expect("phrases", "docs/a.md", "It is 3 +- 1 mm.\n", "±")
         self.expect("phrases", "docs/a.md", "It is 3 um.\n", "µm")
+        self.expect("phrases", "docs/a.md", "It is 3 us.\n", "µs")
         self.expect_none("phrases", "host/cli/a.cpp", 'auto a = "{:.2f} +- {:.2f} um";\n')
 
     def test_finds_possessives_of_possessives(self):

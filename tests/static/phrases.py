@@ -40,7 +40,7 @@ EVERYWHERE = [
 # Where a page shows the text as it is written; files that are read keep their ASCII units.
 PAGES = [
     (r"(?<=[\d}] )\+-|(?<=[\d}])\+-|\+-(?=[\d{])", "±"),
-    (r"(?<=[\d}] )um\b|(?<=[\d}])um\b|, um\b", "µm"),
+    (r"(?<=[\d}] )u[ms]\b|(?<=[\d}])u[ms]\b|, u[ms]\b", "µm, µs"),
 ]
 COMPILED = {kind: [(re.compile(pattern, re.I), instead) for pattern, instead in rows]
             for kind, rows in (("everywhere", EVERYWHERE), ("pages", EVERYWHERE + PAGES))}
