@@ -42,7 +42,7 @@ struct AxisFaults {
   bool power_stage = false;                // it reports a fault and is off
   FrameFault frame = FrameFault::none;
   std::uint64_t frame_period = 1;    // ticks from one frame with a fault to the next
-  std::uint32_t foreign_frames = 0;  // of nobody's, each tick
+  std::uint32_t foreign_frames = 0;  // with an unknown identifier, each tick
   bool bus_off = false;
   bool encoder_signal = false;  // the backend's watch over the encoder's edges: the position is lost
   SwitchFault negative_switch = SwitchFault::none, positive_switch = SwitchFault::none;

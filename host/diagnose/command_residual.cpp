@@ -27,7 +27,7 @@ constexpr double slowest = 1.0;  // Hz
 constexpr double foreign = 0.3;
 constexpr int refinements = 2;
 // Of a gain: what the digits of a file and a drive's number formats leave open. On the EMPS record, whose command the
-// replay meets to 1 mV, 0.02 % of the velocity gain is significant, and nobody's concern.
+// replay meets to 1 mV, 0.02 % of the velocity gain is significant, and without any effect.
 constexpr double least_change = 1e-3;
 
 using Places = std::vector<std::size_t>;  // of command_parameters()

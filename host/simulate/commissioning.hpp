@@ -1,5 +1,5 @@
 // Records of one axis as someone who commissions a machine makes them, on the simulated machine: constant speeds both
-// ways, a circle, small reversals; and the same kinds of motion with other speeds, feeds and amplitudes, to judge on.
+// ways, a circle, small reversals; and the same kinds of motion with other speeds, feeds and amplitudes, for validation.
 #pragma once
 
 #include <cstdint>

@@ -51,7 +51,10 @@ class Phrases(Words):
     def test_reads_raw_literals(self):
         self.expect("phrases", "hal/a.hpp", 'const char* a = R"(one\nstands here)";\n', '"stands"', line=2)
 
-    def test_leaves_comments_and_code_alone(self):
+    def test_finds_the_worst_in_comments_too(self):
+        self.expect("phrases", "host/cli/a.cpp", "// Records to\n// judge on.\nint a;\n", "to judge on")
+
+    def test_leaves_other_comments_and_code_alone(self):
         self.expect_none("phrases", "host/cli/a.cpp", '// It stands beside another.\nint stands = another(beside, \'"\');\n')
 
     def test_leaves_include_lines_alone(self):

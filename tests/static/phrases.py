@@ -37,13 +37,21 @@ EVERYWHERE = [
     (r"\bspeaks? (?:of|against)\b", "mentions; prevents"),
     (r"\bto and fro\b", "back and forth"),
 ]
+# In comments as well.
+COMMENTS = [
+    (r"\bnobody's\b", "unknown, without an owner"),
+    (r"\bto judge on\b", "for validation"),
+    (r"\bwhat its maker\b", "the nominal"),
+    (r"\bbelongs? into\b", "belongs in"),
+    (r"\btak(?:es?|ing) (?:\S+ ){0,8}away,? beside\b", "explains"),
+]
 # Where a page shows the text as it is written; files that are read keep their ASCII units.
 PAGES = [
     (r"(?<=[\d}] )\+-|(?<=[\d}])\+-|\+-(?=[\d{])", "±"),
     (r"(?<=[\d}] )u[ms]\b|(?<=[\d}])u[ms]\b|, u[ms]\b", "µm, µs"),
 ]
 COMPILED = {kind: [(re.compile(pattern, re.I), instead) for pattern, instead in rows]
-            for kind, rows in (("everywhere", EVERYWHERE), ("pages", EVERYWHERE + PAGES))}
+            for kind, rows in (("everywhere", EVERYWHERE), ("pages", EVERYWHERE + PAGES), ("comments", COMMENTS))}
 
 CODE_BLOCK = re.compile(r"^(```|~~~)")
 INLINE_CODE = re.compile(r"`[^`]*`")
@@ -54,8 +62,10 @@ def passages(name, text):
     """The texts for users in a file of that name: (kind, Passage)."""
     if name.endswith((".cpp", ".hpp", ".h")):
         yield from (("everywhere", passage) for passage in cpp_text.literals(text))
+        yield from (("comments", passage) for passage in cpp_text.comments(text))
     elif name.endswith(".js"):
         yield from (("pages", passage) for passage in cpp_text.script_literals(text))
+        yield from (("comments", passage) for passage in cpp_text.comments(text, script=True))
     elif name.endswith(".html"):
         yield "pages", of_lines(TAG.sub(lambda tag: " " + "\n" * tag[0].count("\n"), text).split("\n"))
     elif name.endswith(".md"):
