@@ -158,8 +158,8 @@ BusBudget can_budget(const std::string& interface, const CanRates& rates, const 
                            rates.data ? ", data " + rate_text(*rates.data) : std::string{});
   if (is_virtual)
     budget.note = fmt::format(
-        "{} is a virtual bus: it has no bit times and is exempt; on a real one with these bit rates the load would be "
-        "as shown",
+        "{} is a virtual bus: it has no bit times and is exempt; a real bus with these bit rates would have the load "
+        "shown",
         interface);
   for (const CyclicFrame& frame : frames) {
     const std::string reason = impossible(frame, rates);
@@ -181,8 +181,8 @@ BusBudget modbus_budget(const std::string& device, double baud_rate, const std::
   const bool serial = is_serial_device(device);
   budget.bus = serial ? fmt::format("{}, Modbus RTU, {:g} bit/s, 8E1", device, baud_rate)
                       : fmt::format("{}, Modbus TCP", device);
-  budget.note = serial ? "the slave's own time comes on top"
-                       : "an exchange over TCP takes 0.5 to 5 ms and has no bound; only its rate is checked";
+  budget.note = serial ? "the processing time of the slave comes on top"
+                       : "an exchange over TCP takes 0.5 to 5 ms without an upper bound, so only the rate is checked";
   double rate = 0.0;
   for (const ModbusExchange& exchange : exchanges) {
     BudgetRow row{exchange.name,

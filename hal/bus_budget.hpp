@@ -23,11 +23,12 @@ struct FrameTime {
   double worst = 0.0;  // as many stuff bits as the format can need
 };
 
-// Of `bytes` of data, 0 to 8.
+// Of `bytes` of data, 0 to 8. `identifier`: 11 or 29 bits; `bit_rate`: bit/s.
 FrameTime can_frame_time(CanIdentifier identifier, int bytes, double bit_rate);
 
 // Of at least `bytes` of data, 0 to 64, padded to the next length that FD has. The two bits in whose middle the rate
-// changes count whole at the arbitration's rate, which is more than they take.
+// changes count whole at the arbitration's rate, which is more than they take. `identifier`: 11 or 29 bits; `bit_rate`:
+// of the arbitration, `data_bit_rate`: of the data, bit/s.
 FrameTime can_fd_frame_time(CanIdentifier identifier, int bytes, double bit_rate, double data_bit_rate);
 
 // The shortest length of an FD frame that holds `bytes`.
@@ -82,11 +83,13 @@ struct BusBudget {
   double worst_load() const;
 };
 
-// `is_virtual`: vcan. `interface` names the bus in the table and in objections.
+// `is_virtual`: vcan. `interface` names the bus in the table and in objections. `rates`: bit rates of the bus;
+// `frames`: all cyclic frames on it.
 BusBudget can_budget(const std::string& interface, const CanRates& rates, const std::vector<CyclicFrame>& frames,
                      bool is_virtual);
 
-// `device`: a serial device for RTU, HOST:PORT for TCP, where only the rate is checked.
+// `device`: a serial device for RTU, HOST:PORT for TCP, where only the rate is checked. `baud_rate`: of RTU, bit/s;
+// `exchanges`: all cyclic exchanges.
 BusBudget modbus_budget(const std::string& device, double baud_rate, const std::vector<ModbusExchange>& exchanges);
 
 // Whether the name of the device is that of a serial line: it is a path.

@@ -25,7 +25,8 @@ class ControlLoop {
 
   // One configuration per axis of the backend, in its order. The first tick happens here: it starts the axes at rest
   // where they are.
-  // `compensations`: as many, or none where no axis has friction compensation.
+  // `compensations`: as many, or none where no axis has friction compensation. `configs`: of the axes; `ticker`: period
+  // and slow ticks; `scope`: axes that a fault switches off.
   ControlLoop(B& backend, std::span<const AxisConfig<S>> configs, Ticker ticker,
               std::span<const FrictionCompensationConfig<S>> compensations = {},
               FaultScope scope = FaultScope::all_axes)

@@ -32,7 +32,9 @@ class DriveLoop {
   // Events that wait for next_event(); what comes on top is counted and dropped.
   static constexpr std::size_t event_capacity = 64;
 
-  // One of each configuration an axis. The first tick happens here, with the power off.
+  // One of each configuration an axis. The first tick happens here, with the power off. `backend`: must outlive this;
+  // `axes`, `drives`: configurations in the order of the backend; `ticker`: period and slow ticks; `compensations`: as
+  // many, or none.
   DriveLoop(B& backend, std::span<const AxisConfig<S>> axes, std::span<const ServoDriveConfig<S>> drives, Ticker ticker,
             std::span<const FrictionCompensationConfig<S>> compensations = {})
       : backend_(backend),

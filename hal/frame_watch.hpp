@@ -13,7 +13,7 @@ namespace stiction::hal {
 struct FrameCounts {
   bool valid = false;           // the node's frame of this tick came, whole and in its turn
   std::uint32_t disturbed = 0;  // frames of the node that were late, twice, out of order, stale or damaged
-  std::uint32_t foreign = 0;    // frames of nobody's
+  std::uint32_t foreign = 0;    // frames with an unknown identifier
   bool bus_off = false;         // the controller is off the bus
 };
 

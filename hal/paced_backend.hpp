@@ -16,6 +16,7 @@ class PacedBackend {
  public:
   using Signals = typename B::Signals;
 
+  // `backend`: must outlive this; `period_ns`: of the fast loop; `time`: source of time, the kernel's or one of a test.
   PacedBackend(B& backend, std::int64_t period_ns, Time time = {}) : backend_(backend), clock_(period_ns, time) {}
 
   std::size_t axis_count() const { return backend_.axis_count(); }

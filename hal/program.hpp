@@ -30,7 +30,8 @@ struct ProgramName {
 };
 
 // Reads the options and serves by them; what goes wrong before or in it is said on standard error and refuses the
-// start. Options: add_to(CLI::App&). Serve: int(const Options&), the exit status.
+// start. Options: add_to(CLI::App&). Serve: int(const Options&), the exit status. `argc`, `argv`: of main(); `program`:
+// its name and version; `serve`: called with the options.
 template <class Options, class Serve>
 int run_program(int argc, char** argv, const ProgramName& program, Serve serve) noexcept {
   try {

@@ -74,7 +74,7 @@ void ControllerFrames::take(std::int64_t now_ns, const hal::can::Frame& frame, s
   auto& said = nodes_[axis].said_ns;
   if (said != INT64_MIN && now_ns - said < second_ns) return;
   said = now_ns;
-  log_.push(now_ns, LogLevel::warning, "CAN: axis {}: found a frame {:#x} of {} bytes; expected {}: refused",
+  log_.push(now_ns, LogLevel::warning, "CAN: axis {}: found a frame {:#x} of {} bytes; expected {}; it is refused",
             {axis, frame.id, frame.size, description_of(address.pdo).size});
 }
 
@@ -117,8 +117,8 @@ void ControllerFrames::say_refused(std::int64_t now_ns, std::size_t axis, std::u
   if (controlword == nodes_[axis].refused_word) return;
   nodes_[axis].refused_word = controlword;
   log_.push(now_ns, LogLevel::warning,
-            "CAN: axis {}: found controlword {:#06x}; expected none without drive.can_server.motion = \"allowed\": "
-            "refused",
+            "CAN: axis {}: found controlword {:#06x}; expected none without drive.can_server.motion = \"allowed\"; it "
+            "is refused",
             {axis, controlword});
 }
 

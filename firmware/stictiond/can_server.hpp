@@ -48,7 +48,8 @@ class ControllerFrames {
   ControllerFrames(const CanServerConfig& config, LogRing& log)
       : config_(config), log_(log), nodes_(config.nodes.size()) {}
 
-  // Any frame; those that are of no axis are left alone.
+  // Any frame; those that are of no axis are left alone. `now_ns`: time of the tick, for the log; `axes`: those that
+  // the frames command, in the order of the configuration.
   void take(std::int64_t now_ns, const hal::can::Frame& frame, std::span<RemoteAxis> axes);
 
   const CanServerConfig& config() const { return config_; }

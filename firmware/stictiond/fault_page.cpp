@@ -16,7 +16,7 @@ constexpr std::array<std::string_view, 3> reactions{"power off in the same tick"
 
 std::string detection(const FaultDescription& row, std::int64_t period_ns) {
   if (row.detection_ticks == 0) return "depends on the signal";
-  return fmt::format("{} tick{}, {:g} us", row.detection_ticks, row.detection_ticks == 1 ? "" : "s",
+  return fmt::format("{} tick{}, {:g} µs", row.detection_ticks, row.detection_ticks == 1 ? "" : "s",
                      static_cast<double>(row.detection_ticks * period_ns) * 1e-3);
 }
 
@@ -26,9 +26,9 @@ std::string fault_page(std::int64_t period_ns) {
   std::string page =
       "# Faults of the drive\n\nNumbers are stable: logs, buses and the Modbus registers carry them. A fault is "
       "latched; "
-      "a reset is taken only when its cause has gone, and the axis is then started anew. The other axes of a machine "
-      "make a controlled stop. A second fault during a controlled stop takes the power off at once. Detection times "
-      "count from the first sample that violates, in ticks of the fast loop.\n\n"
+      "a reset is accepted only after its cause has gone, and the axis must then be enabled again. The other axes of a "
+      "machine make a controlled stop. A second fault during a controlled stop switches the power off at once. "
+      "Detection times count in ticks of the fast loop from the first sample that violates the condition.\n\n"
       "| number | fault | condition | seen by | within | reaction |\n| --- | --- | --- | --- | --- | --- |\n";
   for (const auto& row : fault_table)
     page += fmt::format("| {} | {} | {} | {} | {} | {} |\n", static_cast<int>(row.fault), row.name, row.condition,

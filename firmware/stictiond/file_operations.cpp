@@ -65,7 +65,7 @@ class SystemFiles : public FileOperations {
     return bytes;
   }
   void create(const std::filesystem::path& file) override {
-    Descriptor(file, O_WRONLY | O_CREAT | O_TRUNC).or_fail("cannot be made");
+    Descriptor(file, O_WRONLY | O_CREAT | O_TRUNC).or_fail("cannot be created");
   }
   void append(const std::filesystem::path& file, std::string_view bytes) override {
     Descriptor(file, O_WRONLY | O_APPEND).or_fail("cannot be written").write(bytes);
@@ -80,7 +80,7 @@ class SystemFiles : public FileOperations {
     if (::rename(from.c_str(), to.c_str()) != 0) fail(to, "cannot be replaced");
   }
   void link(const std::filesystem::path& file, const std::filesystem::path& name) override {
-    if (::link(file.c_str(), name.c_str()) != 0) fail(name, "cannot be made");
+    if (::link(file.c_str(), name.c_str()) != 0) fail(name, "cannot be created");
   }
   void remove(const std::filesystem::path& file) override {
     if (::unlink(file.c_str()) != 0 && errno != ENOENT) fail(file, "cannot be removed");

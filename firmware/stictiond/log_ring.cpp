@@ -42,7 +42,8 @@ std::size_t LogReader::drain() {
   // No more than the ring holds: a loop that writes without end must not hold its reader.
   for (; taken < LogRing::capacity && ring_.pop(record); ++taken) sink_(record.level, text_of(record));
   if (const std::uint64_t lost = ring_.lost(); lost != lost_said_) {
-    sink_(LogLevel::warning, fmt::format("{} messages of the loop found no room and are lost", lost - lost_said_));
+    sink_(LogLevel::warning,
+          fmt::format("{} messages of the loop were lost because the buffer was full", lost - lost_said_));
     lost_said_ = lost;
   }
   return taken;

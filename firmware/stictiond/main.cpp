@@ -47,10 +47,9 @@ int run_can(const DriveConfiguration& configuration, const DriveOptions& options
   constexpr int patience = 1600;  // ticks
   std::vector<int> silent;
   if (!backend.find_nodes(patience, silent))
-    throw StartRefused(
-        fmt::format("can: {}: found no answer of node {}; expected one within {} ticks: is it powered, "
-                    "and does it speak {}?",
-                    config.interface, fmt::join(silent, ", "), patience, hal::can::properties(config.format).name));
+    throw StartRefused(fmt::format(
+        "can: {}: found no answer of node {}; expected one within {} ticks. Check that it has power and uses {} frames",
+        config.interface, fmt::join(silent, ", "), patience, hal::can::properties(config.format).name));
   const std::string title = "can " + config.interface;
   RunResult result;
   if (has_gpio_lines(configuration.setup, configuration.machine)) {
@@ -62,12 +61,12 @@ int run_can(const DriveConfiguration& configuration, const DriveOptions& options
   }
   for (std::size_t i = 0; i < configuration.names.size(); ++i) {
     const auto& n = backend.counts(i);
-    fmt::print("axis {}: {} answers, {} lost, {} late, {} twice, {} out of order, {} stale, {} damaged\n",
+    fmt::print("axis {}: {} answers, {} lost, {} late, {} duplicated, {} out of order, {} stale, {} damaged\n",
                configuration.names[i], n.good, n.lost, n.late, n.duplicate, n.out_of_order, n.stale, n.damaged);
   }
   const auto bus = backend.bus_counts();
-  fmt::print("bus: {} frames of nobody, {} error frames, {} not sent, {} lost in the kernel\n", bus.of_nobody,
-             bus.error_frames, bus.send_failed, bus.lost_in_kernel);
+  fmt::print("bus: {} frames with an unknown identifier, {} error frames, {} not sent, {} lost in the kernel\n",
+             bus.of_nobody, bus.error_frames, bus.send_failed, bus.lost_in_kernel);
   return status_of(result);
 }
 
@@ -75,7 +74,7 @@ int run_gpio(const DriveConfiguration& configuration, const DriveOptions& option
   hal::GpioBackend backend(gpio_configuration(configuration.setup, configuration.machine), configuration.period_ns);
   const auto result = run(backend, &backend.clock(), configuration, options, "gpio " + configuration.setup.gpio->chip);
   for (std::size_t i = 0; i < configuration.names.size(); ++i)
-    fmt::print("axis {}: at least {} edges lost; last fault of the encoder's tracks: {}\n", configuration.names[i],
+    fmt::print("axis {}: at least {} edges lost; last fault of the encoder tracks: {}\n", configuration.names[i],
                backend.lost_edges(i), name_of(backend.last_encoder_fault(i)));
   return status_of(result);
 }
@@ -88,16 +87,16 @@ int run_modbus(const DriveConfiguration& configuration, const DriveOptions& opti
   for (const auto& axis : configuration.machine.axes)
     if (axis.motor.model == machine::MotorModel::synchronous)
       throw StartRefused(
-          fmt::format("{}: found axis {} with a synchronous motor; expected a motor of one voltage (\"dc\" or "
-                      "\"force\"): Modbus carries one an axis",
+          fmt::format("{}: found axis {} with a synchronous motor; expected a motor with one voltage (\"dc\" or "
+                      "\"force\"), as Modbus carries one per axis",
                       configuration.machine.id, axis.name));
   const auto config = modbus_client_config(configuration.machine, setup);
   hal::check(modbus_client_budget(config));
   const double period = configuration.machine.timing.fast_period;
   if (config.period > period * 1.001)
     throw StartRefused(
-        fmt::format("{}: found timing.fast_period = {:g} ms and drive.modbus_client.period = {:g} ms; "
-                    "expected a loop that is not faster than its bus",
+        fmt::format("{}: found timing.fast_period = {:g} ms and drive.modbus_client.period = {:g} ms; expected a "
+                    "fast_period of at least that period",
                     configuration.machine.id, period * 1e3, config.period * 1e3));
   hal::TickClock clock(configuration.period_ns);
   hal::ModbusClient client(config);

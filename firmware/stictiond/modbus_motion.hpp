@@ -6,8 +6,10 @@
 
 namespace stiction::drive {
 
-// `period`: of the fast tick, s. The registers have kept values to what the axis can.
+// `period`: of the fast tick, s. The registers have kept values to what the axis can. `write`: the commands of one
+// request; `axis`: takes them.
 void ask(const MotionWrite& write, double period, RemoteAxis& axis);
+// The state of `axis` as clients read it, written to `shown`. `period`: as above.
 void show_asked(const RemoteAxis& axis, double period, PublishedAxis& shown);
 
 }  // namespace stiction::drive

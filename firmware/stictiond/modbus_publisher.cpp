@@ -42,8 +42,8 @@ std::vector<std::string> ModbusPublisher::serve() {
     const DriveWrite meaning = registers_.meaning_of(*write);
     if (const auto* parameter = std::get_if<ParameterWrite>(&meaning)) {
       registers_.remember(*parameter);
-      lines.push_back(
-          fmt::format("Modbus: {} = {}, from the next start on if it is stored", parameter->key, parameter->value));
+      lines.push_back(fmt::format("Modbus: {} = {}, which takes effect at the next start if it is stored",
+                                  parameter->key, parameter->value));
     } else if (const auto* motion = std::get_if<MotionWrite>(&meaning)) {
       motions.push_back(*write);
       lines.push_back(describe(*motion));
@@ -51,7 +51,7 @@ std::vector<std::string> ModbusPublisher::serve() {
       lines.push_back(describe_store());
     }
   }
-  if (!motion_.push(motions)) lines.push_back("Modbus: motion dropped: the loop has not taken the commands before");
+  if (!motion_.push(motions)) lines.push_back("Modbus: command dropped: the loop has not yet taken the previous ones");
   return lines;
 }
 
@@ -61,7 +61,7 @@ std::string ModbusPublisher::describe(const MotionWrite& write) const {
 }
 
 std::string ModbusPublisher::describe_store() {
-  if (store_.file.empty()) return "Modbus: parameters are not stored: the drive was started without a place for them";
+  if (store_.file.empty()) return "Modbus: parameters are not stored: the drive was started without --parameters";
   try {
     registers_.store(store_.file, store_.machine_file, store_.options);
   } catch (const std::exception& error) {

@@ -31,13 +31,14 @@ class ModbusPublisher {
   // What the loop does not know itself (deadlines, the trace's rows); asked in the server's thread at each request.
   using Beside = std::function<void(PublishedState&)>;
 
-  // Listens when this returns. Throws ModbusError.
+  // Listens when this returns. Throws ModbusError. `machine`, `setup`: as configured; `store`: files for stored
+  // parameters, empty for none; `beside`: further registers of the caller.
   ModbusPublisher(const machine::Machine& machine, const machine::DriveSetup& setup, ModbusStore store,
                   Beside beside = {});
 
   // The loop's side, wait-free.
   // `signals` of the tick; the peaks and the mean square are kept here. `status` gives statusword, mode, fault and
-  // inputs of an axis: status(axis, PublishedAxis&).
+  // inputs of an axis: status(axis, PublishedAxis&). `now_ns`: time of the tick; `fault`: of programme or bus.
   template <class S, class Status>
   void publish(std::span<const AxisSignals<S>> signals, std::int64_t now_ns, Fault fault, Status status) {
     if (first_ns_ == 0) first_ns_ = now_ns;

@@ -37,13 +37,14 @@ double number_of(Fault fault) { return static_cast<double>(fault); }
 
 using Drive = PublishedState;
 constexpr std::array<StateRow<Drive>, 7> drive_rows{{
-    {3, uint16, 1, "fault", "1", "number of the programme's or the bus' fault; 0: none",
+    {3, uint16, 1, "fault", "1", "number of the fault of programme or bus; 0: none",
      [](const Drive& s) { return number_of(s.fault); }},
-    {4, uint32, 1, "seconds", "s", "that the loop has run", [](const Drive& s) -> double { return s.seconds; }},
+    {4, uint32, 1, "seconds", "s", "time since the loop began", [](const Drive& s) -> double { return s.seconds; }},
     {6, uint32, 1, "missed_deadlines", "1", "ticks that began later than a period",
      [](const Drive& s) -> double { return s.missed_deadlines; }},
-    {8, float32, 1, "largest_lateness", "s", "of a tick's begin", [](const Drive& s) { return s.largest_lateness; }},
-    {10, float32, 1, "largest_work", "s", "of a tick", [](const Drive& s) { return s.largest_work; }},
+    {8, float32, 1, "largest_lateness", "s", "largest delay of the beginning of a tick",
+     [](const Drive& s) { return s.largest_lateness; }},
+    {10, float32, 1, "largest_work", "s", "longest duration of a tick", [](const Drive& s) { return s.largest_work; }},
     {12, uint32, 1, "trace_rows", "1", "rows of the trace that were recorded",
      [](const Drive& s) -> double { return s.trace_rows; }},
     {14, uint32, 1, "trace_lost", "1", "rows of the trace that were lost",
@@ -63,7 +64,8 @@ constexpr std::array<StateRow<Axis>, 12> axis_rows{{
     {4, int32, position_scale, "position", "m", "measured", [](const Axis& a) { return a.position; }},
     {6, int32, position_scale, "set_position", "m", "set", [](const Axis& a) { return a.set_position; }},
     {8, float32, 1, "velocity", "m/s", "measured", [](const Axis& a) { return a.velocity; }},
-    {10, float32, 1, "current", "A", "amplitude that makes the force", [](const Axis& a) { return a.current; }},
+    {10, float32, 1, "current", "A", "amplitude of the force-producing current",
+     [](const Axis& a) { return a.current; }},
     {12, float32, 1, "following_error", "m", "set position minus measured",
      [](const Axis& a) { return a.following_error; }},
     {14, float32, 1, "peak_following_error", "m", "largest of the trace",
@@ -97,7 +99,7 @@ void to_acceleration(const machine::AxisModel& axis, Register& r) { up_to(axis.m
 // beyond the travel is refused by the axis, as it may be relative: bit 11 of the statusword.
 using What = MotionWrite::What;
 constexpr std::array<MotionRow, 6> motion_rows{{
-    {0, uint16, 1, "controlword", "1", "CiA 402, 6040h; shown: what was taken last", What::controlword,
+    {0, uint16, 1, "controlword", "1", "CiA 402, 6040h; reads as the last accepted value", What::controlword,
      [](const Axis& a) -> double { return a.controlword; }},
     {1,
      int16,
@@ -109,14 +111,14 @@ constexpr std::array<MotionRow, 6> motion_rows{{
      [](const Axis& a) -> double { return a.mode; },
      {1, 6, 8}},
     {2, int32, position_scale, "target_position", "m",
-     "607Ah; taken when bit 4 of the controlword rises, with bit 5 at once, with bit 6 relative", What::target,
+     "607Ah; accepted when bit 4 of the controlword rises; bit 5: at once, bit 6: relative", What::target,
      [](const Axis& a) { return a.target; }},
     {4,
      uint32,
      1e-6,
      "profile_velocity",
      "m/s",
-     "6081h; at first and at most max_velocity",
+     "6081h; initial value and maximum: max_velocity",
      What::velocity,
      [](const Axis& a) { return a.profile_velocity; },
      {},
@@ -126,7 +128,7 @@ constexpr std::array<MotionRow, 6> motion_rows{{
      1e-3,
      "profile_acceleration",
      "m/s^2",
-     "6083h; at first and at most max_acceleration",
+     "6083h; initial value and maximum: max_acceleration",
      What::acceleration,
      [](const Axis& a) { return a.profile_acceleration; },
      {},
@@ -136,7 +138,7 @@ constexpr std::array<MotionRow, 6> motion_rows{{
      1e-3,
      "profile_deceleration",
      "m/s^2",
-     "6084h; at first and at most max_acceleration",
+     "6084h; initial value and maximum: max_acceleration",
      What::deceleration,
      [](const Axis& a) { return a.profile_deceleration; },
      {},
@@ -187,7 +189,7 @@ Register parameter_register(const DriveParameter& parameter, unsigned address) {
 // The order of put_values().
 std::vector<Register> all_registers(const machine::Machine& machine, const std::vector<DriveParameter>& parameters) {
   std::vector<Register> registers{
-      constant(0, "identification", "21316: a drive of stiction"),
+      constant(0, "identification", "21316 identifies a stiction drive"),
       constant(1, "schema", "version of these registers"),
       constant(2, "axes", "number of axes"),
   };
@@ -204,7 +206,7 @@ std::vector<Register> all_registers(const machine::Machine& machine, const std::
     }
   };
   of_each_axis(axis_rows, RegisterTable::input, RegisterAccess::read);
-  Register store = constant(0, "store_parameters", "21332 keeps the written parameters for the next start");
+  Register store = constant(0, "store_parameters", "the value 21332 stores the written parameters for the next start");
   store.table = RegisterTable::holding;
   store.access = RegisterAccess::write;
   store.low = store.high = store_password;
@@ -301,20 +303,19 @@ std::string modbus_register_page() {
     (r.table == RegisterTable::input ? input : holding).push_back(r);
   return fmt::format(
       "# Modbus: the drive's registers\n\n"
-      "Version {} (input registers 0 and 1 say so: 21316, {}). Addresses count from 0 as on the wire. Values of 32 "
-      "bits "
-      "take two registers, the high word first (ABCD), and are written whole. Listed are the registers of the drive "
-      "and "
-      "of its first axis; each further axis, in the order of the machine file, has its state and its commands {} "
-      "addresses further on, its parameters {}.\n\n"
-      "Writing is refused with exception 1 where a register moves an axis and `[drive.modbus_server] motion` is not "
-      "`\"allowed\"`, 2 where there is no such register or it is only read, 3 where a value is out of range or half of "
-      "a "
-      "32-bit value, 6 where earlier writes have not been taken yet; a refused request writes nothing.\n\n"
-      "## Input registers (function 4)\n\n{}\n"
+      "Version {} (input registers 0 and 1 hold 21316 and {}). Addresses count from 0 as on the wire. Values of 32 "
+      "bits take two registers, the high word first (ABCD), and must be written together. The tables list the "
+      "registers of the drive and of its first axis. For each further axis, in the order of the machine file, add {} "
+      "to the addresses of state and commands and {} to those of parameters.\n\n"
+      "A write request is refused with exception 1 if a register moves an axis and `[drive.modbus_server] motion` is "
+      "not `\"allowed\"`, 2 if there is no such register or it is read-only, 3 if a value is out of range or half of a "
+      "32-bit value, 6 if earlier writes have not been processed yet. A refused request writes nothing.\n\n"
+      "## Input registers (function 4)\n\n"
+      "{}\n"
       "## Holding registers (functions 3, 6, 16, 23)\n\n"
-      "A parameter that the machine file leaves out reads as not-a-number. What is written is shown at once, kept with "
-      "`store_parameters`, and holds from the next start on.\n\n{}",
+      "A parameter that the machine file leaves out reads as not-a-number. A written value can be read back at once, "
+      "is stored by `store_parameters`, and takes effect at the next start.\n\n"
+      "{}",
       modbus_schema, modbus_schema, axis_stride, parameters_stride, hal::register_table(input),
       hal::register_table(holding));
 }

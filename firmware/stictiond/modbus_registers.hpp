@@ -88,7 +88,8 @@ class ModbusRegisters {
   void set_written(const ParameterSet& set);
   // Keeps what was written. Reads the machine file with it first, as a check of every value; `options` are those that
   // the drive was started with. Throws machine::MachineFileError where the reader refuses it, std::system_error where
-  // it cannot be written; what was stored before then holds.
+  // it cannot be written; what was stored before then holds. `file`: to write; `machine_file`: that the drive was
+  // started with.
   void store(const std::filesystem::path& file, const std::filesystem::path& machine_file,
              machine::ReadOptions options = {}) const;
 

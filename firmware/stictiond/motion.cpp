@@ -22,8 +22,8 @@ Motion Motion::circle(const machine::Machine& machine, double feed) {
     const double fastest = std::min(axis.max_velocity, std::sqrt(axis.max_acceleration * settings.radius));
     if (!(feed > 0.0) || feed > fastest)
       throw MotionError(
-          fmt::format("circle: found a feed of {:g} m/min; expected above 0 and at most {:.4g} m/min, "
-                      "what axis {} can do at R = {:g} mm",
+          fmt::format("circle: found a feed of {:g} m/min; expected above 0 and at most {:.4g} m/min, the limit of "
+                      "axis {} at R = {:g} mm",
                       feed * 60.0, fastest * 60.0, axis.name, settings.radius * 1e3));
   }
   const sim::CirclePath path(settings);

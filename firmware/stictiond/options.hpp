@@ -16,29 +16,30 @@ struct DriveOptions {
 
   void add_to(CLI::App& program) {
     program.add_option("--machine", machine, "machine file, or the name of a shipped machine")->type_name("MACHINE");
-    program.add_option("--hal", hal, "how the drive reaches its power stages and encoders")
+    program.add_option("--hal", hal, "backend that connects power stages and encoders")
         ->check(CLI::IsMember({"simulated", "can", "gpio", "modbus"}))
         ->capture_default_str();
-    program.add_option("--set", set, "another value for a key of the machine file; may be repeated")
+    program.add_option("--set", set, "override a key of the machine file; may be repeated")
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);
-    program.add_option("--parameters", parameters, "folder of the parameters that were stored on this machine")
+    program.add_option("--parameters", parameters, "folder in which parameters are stored on this machine")
         ->type_name("DIR");
-    program.add_option("--circle", circle, "enable the axes, drive the circle test at this feed, stop and end")
+    program.add_option("--circle", circle, "enable the axes, drive the circular test at this feed, stop and exit")
         ->type_name("\"16 m/min\"");
     program
         .add_option("--hold", hold,
-                    "enable the axes, hold them for so many seconds, stop and end; without --circle and --hold the "
-                    "axes stay off until [drive.can_server] or [drive.modbus_server] is asked to move them")
+                    "enable the axes, hold them for this many seconds, stop and exit; without --circle and --hold the "
+                    "axes remain off until a client of [drive.can_server] or [drive.modbus_server] enables them")
         ->type_name("SECONDS")
         ->check(CLI::PositiveNumber);
-    program.add_flag("--unpaced", unpaced, "the simulated machine in its own time, as fast as it goes: no deadlines");
+    program.add_flag("--unpaced", unpaced, "run the simulated machine as fast as possible, without deadlines");
     program.add_option("--trace", trace, "write every signal of every tick of the motion as a log")->type_name("FILE");
-    program.add_flag("--budget", budget, "print what the bus has to carry, and end");
-    program.add_flag("--check-realtime", check_realtime, "print whether this machine is fit for the loop, and end");
-    program.add_flag("--faults", faults, "print the table of faults, and end");
-    program.add_flag("--modbus-registers", modbus_registers, "print the Modbus registers as Markdown, and end");
-    program.add_flag("--dbc", dbc, "print the frames of the CAN bus as a DBC file, and end");
+    program.add_flag("--budget", budget, "print the load of the buses and exit");
+    program.add_flag("--check-realtime", check_realtime,
+                     "check whether this computer is fit for the loop, print the result and exit");
+    program.add_flag("--faults", faults, "print the table of faults and exit");
+    program.add_flag("--modbus-registers", modbus_registers, "print the Modbus registers as Markdown and exit");
+    program.add_flag("--dbc", dbc, "print the frames of the CAN bus as a DBC file and exit");
   }
 };
 

@@ -21,10 +21,9 @@ class Lines {
   Lines(std::string_view bytes, const std::string& file) : rest_(bytes), file_(file) {}
 
   [[noreturn]] void fail(std::string_view found, std::string_view expected) const {
-    throw ParametersDamaged(
-        fmt::format("{}:{}: found {}; expected {}; nothing of this file is used. Remove it, or put the set before in "
-                    "its place: {}",
-                    file_, number_, found, expected, previous_of(file_).string()));
+    throw ParametersDamaged(fmt::format(
+        "{}:{}: found {}; expected {}; the file is not used. Remove it, or replace it by the previous set: {}", file_,
+        number_, found, expected, previous_of(file_).string()));
   }
   bool empty() const { return rest_.empty(); }
   std::string_view rest() const { return rest_; }

@@ -43,6 +43,7 @@ ParameterSet decode(std::string_view bytes, const std::string& file);
 std::optional<ParameterSet> read_parameters(const std::filesystem::path& file, FileOperations& files = system_files());
 
 // Returns when the set is on the disk. One writer at a time. Throws std::system_error; the old set then still holds.
+// `file`: of the set; `set`: to write; `files`: operations of the file system, which tests interrupt.
 void write_parameters(const std::filesystem::path& file, const ParameterSet& set,
                       FileOperations& files = system_files());
 

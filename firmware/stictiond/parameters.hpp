@@ -27,7 +27,8 @@ struct DriveParameter {
 std::vector<DriveParameter> drive_parameters(const machine::Machine& machine, const machine::DriveSetup& setup);
 
 // The set as assignments of ReadOptions::set, so that the machine file's reader checks range and sense of each. Throws
-// std::runtime_error for another machine's set and for keys that are none of the parameters.
+// std::runtime_error for another machine's set and for keys that are none of the parameters. `set`: as read from the
+// store; `machine_id`: of the machine that is started; `parameters`: those it has.
 std::vector<std::string> assignments_of(const ParameterSet& set, const std::string& machine_id,
                                         const std::vector<DriveParameter>& parameters);
 

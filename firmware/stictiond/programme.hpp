@@ -35,7 +35,8 @@ class Programme {
  public:
   using S = typename B::Signals;
 
-  // `remote`: one an axis. `trace`: of the motion; may be null. All must outlive this.
+  // `remote`: one an axis. `trace`: of the motion; may be null. All must outlive this. `loop`: of all axes; `task`:
+  // what to do with them; `log`: for messages.
   Programme(hal::DriveLoop<B>& loop, const Task& task, std::span<const RemoteAxisConfig> remote, LogRing& log,
             Trace* trace)
       : loop_(loop),
@@ -178,9 +179,10 @@ class Programme {
     const auto compensations = loop_.loop().compensations();
     for (std::size_t i = 0; i < compensations.size(); ++i) {
       if (compensations[i].dropped() && !dropped_[i])
-        log_.push(loop_.now_ns(), LogLevel::warning,
-                  "axis {}: the learned table made the error grow: dropped, the friction feedforward acts without it",
-                  {i});
+        log_.push(
+            loop_.now_ns(), LogLevel::warning,
+            "axis {}: the learned table made the error grow and was dropped; the friction feedforward acts without it",
+            {i});
       dropped_[i] = compensations[i].dropped();
     }
   }

@@ -39,11 +39,12 @@ RealTimeStep keep_heap(std::size_t bytes) {
   auto* byte = static_cast<volatile char*>(block);
   for (std::size_t i = 0; i < bytes; i += page_bytes) byte[i] = 0;
   std::free(block);  // NOLINT(cppcoreguidelines-no-malloc)
-  return {"heap", StepOutcome::done, fmt::format("{} KiB touched; never trimmed, never mapped anew", bytes / 1024)};
+  return {"heap", StepOutcome::done, fmt::format("{} KiB touched; never trimmed and never mapped again", bytes / 1024)};
 }
 
 RealTimeStep lock_memory() {
-  if (::mlockall(MCL_CURRENT | MCL_FUTURE) == 0) return {"memory lock", StepOutcome::done, "all pages, now and later"};
+  if (::mlockall(MCL_CURRENT | MCL_FUTURE) == 0)
+    return {"memory lock", StepOutcome::done, "all present and future pages"};
   return refused("memory lock", errno,
                  "raise the limit: LimitMEMLOCK=infinity in the unit, or \"memlock unlimited\" in "
                  "/etc/security/limits.d");
@@ -65,7 +66,7 @@ RealTimeStep prefault_stack(std::size_t bytes) {
 
 RealTimeStep bind_processor(int cpu) {
   constexpr const char* name = "processor";
-  if (cpu < 0) return {name, StepOutcome::not_asked, "any; name one with [drive.real_time] cpu"};
+  if (cpu < 0) return {name, StepOutcome::not_asked, "any; choose one with [drive.real_time] cpu"};
   cpu_set_t set;
   CPU_ZERO(&set);
   if (cpu < CPU_SETSIZE) CPU_SET(static_cast<std::size_t>(cpu), &set);

@@ -54,17 +54,17 @@ RealTimeFinding kernel(const fs::path& root) {
   const std::string version = line_of(root / "proc/version").value_or("unknown");
   const bool full = line_of(root / "sys/kernel/realtime") == "1" || version.find("PREEMPT_RT") != std::string::npos;
   if (full) return {"kernel", Verdict::good, "PREEMPT_RT", ""};
-  return {"kernel", Verdict::poor, "without PREEMPT_RT: a driver can hold the loop up for milliseconds",
-          "install linux-image-rt-amd64 and start it"};
+  return {"kernel", Verdict::poor, "without PREEMPT_RT: a driver can delay the loop by milliseconds",
+          "install linux-image-rt-amd64 and boot it"};
 }
 
 RealTimeFinding machine(const fs::path& root) {
   std::ifstream stream(root / "proc/cpuinfo");
   for (std::string line; std::getline(stream, line);)
     if (line.starts_with("flags") && line.find(" hypervisor") != std::string::npos)
-      return {"machine", Verdict::poor, "virtual: its host can take the processor away at any time",
-              "run the drive on the bare machine"};
-  return {"machine", Verdict::good, "no hypervisor announced", ""};
+      return {"machine", Verdict::poor, "virtual: the host can interrupt it at any time",
+              "run the drive on a physical computer"};
+  return {"machine", Verdict::good, "no hypervisor detected", ""};
 }
 
 RealTimeFinding isolation(const fs::path& root, int cpu, const char* what, const char* file) {
@@ -72,8 +72,8 @@ RealTimeFinding isolation(const fs::path& root, int cpu, const char* what, const
   if (cpu >= 0 && names(list, cpu)) return {what, Verdict::good, fmt::format("processor {} is in {}", cpu, list), ""};
   const std::string found = list.empty() || list == "(null)" ? "none" : list;
   if (cpu < 0)
-    return {what, Verdict::poor, fmt::format("{}; the loop has no processor of its own", found),
-            "name one in the machine file, [drive.real_time] cpu, and boot with isolcpus=N nohz_full=N rcu_nocbs=N"};
+    return {what, Verdict::poor, fmt::format("{}; no processor is reserved for the loop", found),
+            "reserve one in the machine file, [drive.real_time] cpu, and boot with isolcpus=N nohz_full=N rcu_nocbs=N"};
   return {what, Verdict::poor, fmt::format("{}; processor {} is not in it", found, cpu),
           fmt::format("boot with {}={}", what, cpu)};
 }
@@ -81,7 +81,7 @@ RealTimeFinding isolation(const fs::path& root, int cpu, const char* what, const
 RealTimeFinding governor(const fs::path& root, int cpu) {
   const auto file = root / fmt::format("sys/devices/system/cpu/cpu{}/cpufreq/scaling_governor", std::max(cpu, 0));
   const auto found = line_of(file);
-  if (!found) return {"governor", Verdict::unknown, "no frequency scaling seen", ""};
+  if (!found) return {"governor", Verdict::unknown, "no frequency scaling found", ""};
   if (*found == "performance") return {"governor", Verdict::good, *found, ""};
   return {"governor", Verdict::poor, *found, "cpupower frequency-set -g performance (package linux-cpupower)"};
 }
@@ -96,8 +96,9 @@ RealTimeFinding sleep_states(const fs::path& root, int cpu) {
     if (number_of(state.path() / "disable").value_or(0) != 0) continue;
     if (const auto latency = number_of(state.path() / "latency")) longest = std::max(longest.value_or(0), *latency);
   }
-  if (!longest) return {"sleep states", Verdict::unknown, "none seen", ""};
-  if (*longest <= fine) return {"sleep states", Verdict::good, fmt::format("wake within {} us", *longest), ""};
+  if (!longest) return {"sleep states", Verdict::unknown, "none found", ""};
+  if (*longest <= fine)
+    return {"sleep states", Verdict::good, fmt::format("the deepest wakes within {} us", *longest), ""};
   return {"sleep states", Verdict::poor, fmt::format("the deepest wakes after {} us", *longest),
           "the drive holds /dev/cpu_dma_latency at 0; without that boot with processor.max_cstate=1 idle=poll"};
 }
@@ -105,15 +106,16 @@ RealTimeFinding sleep_states(const fs::path& root, int cpu) {
 RealTimeFinding latency_device(const fs::path& root) {
   const auto device = root / "dev/cpu_dma_latency";
   std::error_code error;
-  if (!fs::exists(device, error)) return {"cpu latency", Verdict::unknown, "/dev/cpu_dma_latency is not there", ""};
-  if (::access(device.c_str(), W_OK) == 0) return {"cpu latency", Verdict::good, "/dev/cpu_dma_latency is ours", ""};
-  return {"cpu latency", Verdict::poor, "/dev/cpu_dma_latency may not be written",
-          "run as the user of the drive, or in the group that the package's udev rule gives it to"};
+  if (!fs::exists(device, error)) return {"cpu latency", Verdict::unknown, "/dev/cpu_dma_latency does not exist", ""};
+  if (::access(device.c_str(), W_OK) == 0)
+    return {"cpu latency", Verdict::good, "/dev/cpu_dma_latency is writable", ""};
+  return {"cpu latency", Verdict::poor, "/dev/cpu_dma_latency is not writable",
+          "run as the user of the drive, or as a member of the group in the udev rule of the package"};
 }
 
 RealTimeFinding clock_source(const fs::path& root) {
   const auto found = line_of(root / "sys/devices/system/clocksource/clocksource0/current_clocksource");
-  if (!found) return {"clock", Verdict::unknown, "not seen", ""};
+  if (!found) return {"clock", Verdict::unknown, "not found", ""};
   // Read without a system call on x86-64 and on Arm.
   if (*found == "tsc" || *found == "kvm-clock" || *found == "arch_sys_counter")
     return {"clock", Verdict::good, *found, ""};
@@ -123,7 +125,7 @@ RealTimeFinding clock_source(const fs::path& root) {
 RealTimeFinding throttling(const fs::path& root) {
   const auto runtime = number_of(root / "proc/sys/kernel/sched_rt_runtime_us");
   const auto period = number_of(root / "proc/sys/kernel/sched_rt_period_us");
-  if (!runtime || !period) return {"throttling", Verdict::unknown, "not seen", ""};
+  if (!runtime || !period) return {"throttling", Verdict::unknown, "not found", ""};
   if (*runtime < 0) return {"throttling", Verdict::good, "off", ""};
   // A loop of 62.5 us works a few of them: far from the share at which the kernel stops it.
   return {"throttling", Verdict::good, fmt::format("after {} us of {}, more than the loop takes", *runtime, *period),
@@ -206,7 +208,7 @@ std::string text_of(const JitterMeasurement& measurement, std::int64_t period_ns
                         std::string(static_cast<std::size_t>(std::lround(width * share)), '#'));
     if (end > late.maximum) break;
   }
-  return text + "What counts is the histogram of a day under the machine's real load.\n";
+  return text + "Judge by a histogram over a whole day under the real load of the machine.\n";
 }
 
 }  // namespace stiction::drive

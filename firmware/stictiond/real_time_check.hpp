@@ -37,7 +37,8 @@ struct JitterMeasurement {
   std::uint64_t jumps = 0;
 };
 
-// Sleeps through so many ticks in a thread of its own, prepared as the loop's would be.
+// Sleeps through so many ticks in a thread of its own, prepared as the loop's would be. `period_ns`: from one tick to
+// the next, above 0; `ticks`: their number; `request`: priority, processor and memory as for the loop.
 JitterMeasurement measure_jitter(std::int64_t period_ns, std::uint64_t ticks, const RealTimeRequest& request);
 
 // Median to maximum, and a bar for each octave of lateness.

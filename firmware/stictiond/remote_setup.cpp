@@ -56,8 +56,8 @@ RemoteAxisConfig remote_axis(const DriveConfiguration& c, const machine::AxisMod
   const auto most = machine::highest<SetPointInterpolator::Way>();
   if (way > most && c.setup.can_server)
     throw StartRefused(
-        fmt::format("drive.can_server.period: found {:g} ms with {}.max_velocity = {:g} m/s; expected "
-                    "a way of at most {:g} mm from one set-point to the next, a period up to {:g} ms",
+        fmt::format("drive.can_server.period: found {:g} ms with {}.max_velocity = {:g} m/s; expected a displacement "
+                    "of at most {:g} mm between set-points, which means a period up to {:g} ms",
                     cycle * 1e3, of_axis, axis.max_velocity, most * 1e3, most / way * cycle * 1e3));
   RemoteAxisConfig config;
   config.interpolation = SetPointInterpolator::configure(
@@ -112,10 +112,10 @@ CanServerConfig can_server_config(const DriveConfiguration& c) {
   config.follows_sync = server.sync_followed;
   config.sends_sync = !on_one_bus(c.setup) && !server.sync_followed;
   if (server.sync_followed && on_one_bus(c.setup))
-    throw StartRefused(fmt::format(
-        "{}: found drive.can_server.sync = \"followed\" on the interface of [drive.can], {}, where SYNC is the "
-        "drive's own; expected \"sent\" or another interface",
-        c.machine.id, server.interface));
+    throw StartRefused(
+        fmt::format("{}: found drive.can_server.sync = \"followed\" on the interface of [drive.can], {}, where the "
+                    "drive itself sends SYNC; expected \"sent\" or a different interface",
+                    c.machine.id, server.interface));
   for (const auto& axis : c.machine.axes) {
     const int node = c.setup.axes.at(axis.name).server_node;
     if (node == 0)

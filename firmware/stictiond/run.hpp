@@ -29,10 +29,12 @@ struct RunResult {
   bool faulted = false;
 };
 
-// What the loop did with its time, for people.
+// What the loop did with its time, for people. `timing`: durations of reading, control and writing; `lateness`: of the
+// ticks; `missed`: number of ticks that began later than a period.
 std::string describe_timing(const hal::LoopTiming& timing, const hal::TimeHistogram& lateness, std::uint64_t missed);
 
-// The task of the options. `positions`: where the axes stand (m). Throws MotionError.
+// The task of the options. `positions`: where the axes stand (m). Throws MotionError. `options`: of the command line;
+// `configuration`: of the drive.
 Task task_of(const DriveOptions& options, const DriveConfiguration& configuration, std::span<const double> positions);
 
 // The loop's clock behind a controller's SYNC.
@@ -41,7 +43,8 @@ class ControllerClock {
   explicit ControllerClock(const DriveConfiguration& c)
       : follower_(c.period_ns * (c.setup.can_server ? remote_axes(c).front().interpolation.ticks : 1)) {}
 
-  // Once a cycle, with the age of its SYNC.
+  // Once a cycle, with the age of its SYNC. `age_ns`: none without a new SYNC; `clock`: is shifted; `log`: says when
+  // both agree; `now_ns`: time of the tick.
   void follow(std::optional<std::int64_t> age_ns, hal::TickClock& clock, LogRing& log, std::int64_t now_ns) {
     if (!age_ns) return;
     clock.shift(follower_.step(*age_ns));
@@ -54,7 +57,8 @@ class ControllerClock {
   bool said_ = false;
 };
 
-// The axes for a motion controller to see.
+// The axes for a motion controller to see. `loop`, `programme`: whose state is sent; `can`: the server; `shown`: space
+// for one entry per axis.
 template <hal::Backend B>
 void answer_controller(const hal::DriveLoop<B>& loop, const Programme<B>& programme, CanServer& can,
                        std::span<ShownAxis> shown) {
@@ -66,7 +70,8 @@ void answer_controller(const hal::DriveLoop<B>& loop, const Programme<B>& progra
   can.send(shown);
 }
 
-// The axes for others to see, and what these ask of them. Wait-free.
+// The axes for others to see, and what these ask of them. Wait-free. `loop`, `programme`: whose state is published and
+// whose axes are commanded; `period`: of the fast tick, s; `modbus`: the server.
 template <hal::Backend B>
 void serve_modbus(const hal::DriveLoop<B>& loop, Programme<B>& programme, double period, ModbusPublisher& modbus) {
   Fault fault = Fault::none;
@@ -80,7 +85,9 @@ void serve_modbus(const hal::DriveLoop<B>& loop, Programme<B>& programme, double
   while (const auto asked = modbus.take_motion()) ask(*asked, period, programme.remote()[asked->axis]);
 }
 
-// `clock`: the one that the backend waits for; null: it has a time of its own.
+// `clock`: the one that the backend waits for; null: it has a time of its own. `backend`: power stages and encoders;
+// `configuration`: of the drive; `options`: of the command line; `title`: one line for the service manager. Throws
+// StartRefused, MotionError.
 template <hal::Backend B>
 RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& configuration, const DriveOptions& options,
               const std::string& title) {
@@ -126,7 +133,7 @@ RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& confi
                            .starved =
                                [] {
                                  log_to_standard_error(LogLevel::error,
-                                                       fmt::format("fault {} '{}': the loop stands still",
+                                                       fmt::format("fault {} '{}': the loop has stopped",
                                                                    static_cast<int>(Fault::watchdog_starved),
                                                                    stiction::name_of(Fault::watchdog_starved)));
                                },
@@ -141,7 +148,7 @@ RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& confi
       // The simulated machine may be late; real axes may not.
       if (options.hal != "simulated" && request.priority > 0)
         throw StartRefused(
-            "found no real time; expected every step below, or drive.real_time.priority = 0 for a try "
+            "found no real-time conditions; expected every step below, or drive.real_time.priority = 0 for a test "
             "without power\n" +
             text_of(steps));
       fmt::print(stderr, "{}", text_of(steps));
@@ -153,8 +160,8 @@ RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& confi
     log.push(loop.now_ns(), LogLevel::info, "the loop has begun");
     if (task.serve && !can && !modbus)
       log.push(loop.now_ns(), LogLevel::warning,
-               "found neither [drive.can_server] nor [drive.modbus_server]: nobody can ask for a motion, the axes stay "
-               "off");
+               "found neither [drive.can_server] nor [drive.modbus_server]: no client can command a motion, so the "
+               "axes remain off");
     while (!programme.over()) {
       const bool begins = can && loop.loop().slow() && can->receive(loop.now_ns(), programme.remote());
       programme.tick(hal::stop_wanted != 0);  // by a signal: a controlled stop, then the end
@@ -171,7 +178,7 @@ RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& confi
     trace.write(options.trace, configuration.names,
                 std::vector<std::string>{"log: stictiond", "machine: " + configuration.machine.name});
   if (can)
-    fmt::print("controller: {} frames taken, {} refused, {} of a wrong length, {} answers not sent\n",
+    fmt::print("controller: {} frames accepted, {} refused, {} of a wrong length, {} answers not sent\n",
                can->counts().taken, can->counts().refused, can->counts().wrong_size, can->send_failed());
   if (clock != nullptr) fmt::print("{}", describe_timing(timing, clock->lateness(), clock->missed()));
   return {programme.faulted()};

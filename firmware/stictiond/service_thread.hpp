@@ -25,7 +25,8 @@ struct ServiceQuestions {
 
 class ServiceThread {
  public:
-  // `starvation_ns`: the watchdog's time where the manager watches none.
+  // `starvation_ns`: the watchdog's time where the manager watches none. `ring`: messages of the loop; `sink`: where
+  // they are written; `notify`: the service manager; `questions`: asked in each round.
   ServiceThread(LogRing& ring, LogSink sink, ServiceNotify& notify, ServiceQuestions questions,
                 std::int64_t starvation_ns);
   // Says what is left in the ring.
@@ -38,6 +39,7 @@ class ServiceThread {
   // One round, as the thread makes one every 20 ms. For tests, and for a programme without the thread.
   class Round {
    public:
+    // The same `ring`, `sink`, `notify`, `questions` and `starvation_ns` as of the thread.
     Round(LogRing& ring, LogSink sink, ServiceNotify& notify, ServiceQuestions questions, std::int64_t starvation_ns);
     void operator()(std::int64_t now_ns);
 

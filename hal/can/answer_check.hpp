@@ -31,7 +31,8 @@ class AnswerCheck {
     bad_ = 0;
   }
 
-  // A frame, `part` of the answer, with its counter. True: it is this tick's, to be used.
+  // A frame, `part` of the answer, with its counter. True: it is this tick's, to be used. `counter`: low bits of its
+  // tick; `received_ns`: its time stamp, on the clock of begin().
   bool take(unsigned part, std::uint32_t counter, std::int64_t received_ns) {
     const std::uint32_t behind = (tick_ - counter) & mask_;
     const std::uint32_t bit = 1u << part;

@@ -33,7 +33,8 @@ struct Received {
 class CanSocket {
  public:
   // Opens the interface. All filters must be passed by a frame if they are inverted, one of them otherwise. Throws
-  // CanError where the interface is not there, is down, or carries no frames of this format.
+  // CanError where the interface is not there, is down, or carries no frames of this format. `interface`: name, such as
+  // can0; `format`: of the frames; `filters`: of the kernel; `errors`: error frames are received too.
   CanSocket(const std::string& interface, Format format, std::span<const Filter> filters, bool errors);
   CanSocket(const CanSocket&) = delete;
   CanSocket& operator=(const CanSocket&) = delete;

@@ -59,16 +59,20 @@ struct Address {
 Address address_of(const Frame& frame, Format format);
 
 Frame encode_sync(std::uint32_t tick);
+// `format`: of the bus; `node`: 1 to 127; `tick`: whose low bits are the counter; `command`: voltages and enable.
 Frame encode_command(Format format, int node, std::uint32_t tick, const Command<FixedSignals>& command);
-// Fills as many frames as the format has for feedback and returns their number.
+// Fills as many frames as the format has for feedback and returns their number. `node`: 1 to 127; `tick`: of the SYNC
+// that it answers; `state`: sampled at that SYNC.
 std::size_t encode_feedback(Format format, int node, std::uint32_t tick, const NodeFeedback& state,
                             std::span<Frame, 2> frames);
 
 // False when the checksum is wrong; nothing is written then.
 bool decode_sync(const Frame& frame, std::uint32_t& tick);
-// `counter`: the low bits of the tick, as many as the format's mask has.
+// `counter`: the low bits of the tick, as many as the format's mask has. `frame`: a command by its address; `command`:
+// is written. False as for decode_sync().
 bool decode_command(Format format, const Frame& frame, std::uint32_t& counter, Command<FixedSignals>& command);
-// One of the feedback frames, `kind` as its address says: writes the part of the state that it carries.
+// One of the feedback frames, `kind` as its address says: writes the part of the state that it carries. `format`: of
+// the bus; `frame`: received; `counter`: as above.
 bool decode_feedback(Format format, Kind kind, const Frame& frame, std::uint32_t& counter, NodeFeedback& state);
 
 }  // namespace stiction::hal::can

@@ -69,6 +69,9 @@ PdoAddress pdo_address_of(const Frame& frame);
 // Of a frame that pdo_address_of() finds good.
 ControllerData decode_pdo(Pdo pdo, const Frame& frame);
 
+// Frames by their objects. `pdo`: which one; `node`: of the axis, 1 to 127; `data`: what a controller sends;
+// `statusword`: of CiA 402; `position`: in position increments; `velocity`: in 1000 of them per second;
+// `following_error`: in position increments.
 Frame encode_pdo(Pdo pdo, int node, const ControllerData& data);  // as a controller sends it
 Frame encode_position(int node, std::uint16_t statusword, std::int32_t position);
 Frame encode_motion(int node, std::int32_t velocity, std::int32_t following_error);

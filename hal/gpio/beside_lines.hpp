@@ -19,10 +19,12 @@ class BesideLines {
   using Signals = FixedSignals;
   static_assert(std::same_as<typename B::Signals, Signals>);
 
-  // `backend` must outlive this. `axes`: one an axis of it, in its order. Throws GpioError.
+  // `backend` must outlive this. `axes`: one an axis of it, in its order. Throws GpioError. `chip`: name or path of the
+  // gpiochip; `bias`: of its inputs.
   BesideLines(B& backend, const std::string& chip, Bias bias, std::span<const AxisLines> axes)
       : backend_(backend), lines_(chip, bias), io_(lines_, axes), latches_(axes.size()) {
-    if (axes.size() != backend.axis_count()) throw GpioError("lines for another number of axes than the machine has");
+    if (axes.size() != backend.axis_count())
+      throw GpioError("lines for a different number of axes than the machine has");
   }
 
   std::size_t axis_count() const { return backend_.axis_count(); }

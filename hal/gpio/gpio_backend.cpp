@@ -13,10 +13,9 @@ std::vector<AxisLines> checked_lines(const GpioBackendConfig& config) {
   std::vector<AxisLines> lines;
   for (const auto& axis : config.axes) {
     if (!axis.lines.enable.wired())
-      throw GpioError(
-          fmt::format("axis {}: no enable line; a power stage behind PWM is turned off by it alone, set "
-                      "line.enable",
-                      axis.lines.name));
+      throw GpioError(fmt::format(
+          "axis {}: no enable line; it is the only way to switch off a power stage with PWM input, so set line.enable",
+          axis.lines.name));
     lines.push_back(axis.lines);
   }
   return lines;

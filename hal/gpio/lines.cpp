@@ -94,11 +94,11 @@ void Lines::refuse(gpiod_line* line, const std::string& name) const {
   if (error == EBUSY) {
     ::gpiod_line_update(line);
     const char* user = ::gpiod_line_consumer(line);
-    throw GpioError(fmt::format("{} is in use by \"{}\"; stop that programme or name another line", where,
+    throw GpioError(fmt::format("{} is in use by \"{}\"; stop that programme or choose a different line", where,
                                 user == nullptr ? "the kernel" : user));
   }
   if (error == ENODEV || error == ENXIO || error == ENOTTY)
-    throw GpioError(where + " gives no edges: its chip has no interrupt for it; name a line of another chip");
+    throw GpioError(where + " gives no edges: its chip has no interrupt for it; choose a line of a different chip");
   if (error == EINVAL || error == ENOTSUP)
     throw GpioError(fmt::format("{}: {}; the chip may lack the bias of drive.gpio.bias", where, std::strerror(error)));
   throw GpioError(fmt::format("{}: {}", where, std::strerror(error)));

@@ -51,8 +51,8 @@ void set_attribute(const fs::path& path, std::int64_t value) {
   if (written) return;
   const char* advice = error == EACCES || error == EPERM ? "; run as a member of the group that owns the PWM class, or "
                                                            "install the udev rule of the package"
-                       : error == EBUSY                  ? "; the kernel or another programme uses the channel"
-                       : error == EINVAL                 ? "; the hardware cannot do that value"
+                       : error == EBUSY                  ? "; the kernel or a different programme uses the channel"
+                       : error == EINVAL                 ? "; the hardware does not support that value"
                                                          : "";
   throw GpioError(fmt::format("PWM {}: writing {}: {}{}", path.string(), value, std::strerror(error), advice));
 }
@@ -121,8 +121,9 @@ void PwmBridge::open(Channel& channel, std::int64_t period_ns) {
   }
   const auto enable = channel.folder / "enable";
   if (attribute(enable) != 0)
-    throw GpioError(fmt::format("PWM {}: the channel runs already; stop the programme that drives it, or write 0 to {}",
-                                channel.folder.string(), enable.string()));
+    throw GpioError(
+        fmt::format("PWM {}: the channel is already running; stop the programme that drives it, or write 0 to {}",
+                    channel.folder.string(), enable.string()));
   // A duty may not be longer than the period at any time.
   set_attribute(channel.folder / "duty_cycle", 0);
   set_attribute(channel.folder / "period", period_ns);

@@ -16,7 +16,8 @@ class QuadratureDecoder {
   constexpr QuadratureDecoder() = default;
   constexpr QuadratureDecoder(bool a, bool b) : state_(state(a, b)) {}
 
-  // The levels of the tracks from `time_ns` on. An illegal step leaves the count as it was.
+  // The levels of the tracks from `time_ns` on. An illegal step leaves the count as it was. `a`, `b`: whether each
+  // track is high.
   constexpr Step set(bool a, bool b, std::int64_t time_ns) {
     const unsigned to = state(a, b);
     const Step step = steps[4 * state_ + to];

@@ -13,10 +13,11 @@ namespace stiction::hal {
 
 class QuadratureInput {
  public:
-  // `lines` must outlive this. Throws GpioError.
+  // `lines` must outlive this. Throws GpioError. `config`: lines, increment and limits; `axis_name`: for messages.
   QuadratureInput(Lines& lines, const QuadratureConfig& config, const std::string& axis_name);
 
-  // Counts what the last Lines::poll brought. `index`: edges of the index line of the same poll.
+  // Counts what the last Lines::poll brought. `index`: edges of the index line of the same poll. `now_ns`: time of the
+  // tick; `index_queue_was_full`: edges of it may be missing.
   void update(std::int64_t now_ns, std::span<const Edge> index, bool index_queue_was_full);
 
   // Known at time_ns(), unless there is a fault or the position is beyond +-4 m.

@@ -46,8 +46,8 @@ class ModbusClient::Line {
       context_.reset(modbus_new_tcp_pi(host.c_str(), port.c_str()));
       set_timeout(start_timeout);
       if (!context_ || modbus_connect(context_.get()) != 0)
-        throw ModbusError(fmt::format("{}: cannot connect: {}; is the slave on, and the address right?", device_,
-                                      modbus_strerror(errno)));
+        throw ModbusError(fmt::format("{}: cannot connect: {}; check that the slave has power and the address is right",
+                                      device_, modbus_strerror(errno)));
     }
     set_timeout(start_timeout);
   }
@@ -63,7 +63,7 @@ class ModbusClient::Line {
     std::array<std::uint16_t, 2> words{};
     select(unit);
     if (modbus_read_registers(context_.get(), power_stage_read, words.size(), words.data()) < 0)
-      throw ModbusError(fmt::format("{}; is it on, and are rate and unit right?", failure(unit)));
+      throw ModbusError(fmt::format("{}; check that it has power and that rate and unit are right", failure(unit)));
     if (words[0] != power_stage_identification || words[1] != power_stage_schema)
       throw ModbusError(fmt::format(
           "{}, unit {}: found the registers {:#06x} version {}; expected {:#06x} version {} at addresses 0 and 1",
@@ -87,7 +87,7 @@ class ModbusClient::Line {
   }
 
   std::string changed(int unit) const {
-    return fmt::format("{}, unit {}: found other registers than at the start", device_, unit);
+    return fmt::format("{}, unit {}: found different registers than at the start", device_, unit);
   }
   std::string frozen(int unit) const {
     return fmt::format("{}, unit {}: found the same cycle again; expected a new state", device_, unit);

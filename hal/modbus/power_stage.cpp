@@ -63,19 +63,19 @@ using enum RegisterType;
 const std::array<Row<PowerStageState>, 7>& state_rows() {
   using S = PowerStageState;
   static const std::array<Row<S>, 7> rows{{
-      {0, uint16, 1, "identification", "1", "21332: a power stage of stiction",
+      {0, uint16, 1, "identification", "1", "21332 identifies a power stage for stiction",
        [](const S&) -> double { return power_stage_identification; }, [](S&, double) {}},
       {1, uint16, 1, "schema", "1", "version of these registers", [](const S&) -> double { return power_stage_schema; },
        [](S&, double) {}},
       {2, uint16, 1, "inputs", "1", text_of(input_bits), [](const S& s) { return bits_of(s, input_bits); },
        [](S& s, double v) { set_bits(s, input_bits, v); }},
-      {3, uint16, 1, "cycle", "1", "counts the slave's cycles", [](const S& s) -> double { return s.cycle; },
+      {3, uint16, 1, "cycle", "1", "counts the cycles of the slave", [](const S& s) -> double { return s.cycle; },
        [](S& s, double v) { s.cycle = static_cast<std::uint16_t>(v); }},
       {4, int32, position_scale, "position", "m", "measured position", [](const S& s) { return s.position; },
        [](S& s, double v) { s.position = v; }},
       {6, float32, 1, "velocity", "m/s", "measured velocity", [](const S& s) { return s.velocity; },
        [](S& s, double v) { s.velocity = v; }},
-      {8, float32, 1, "current", "A", "current amplitude that makes the force", [](const S& s) { return s.current; },
+      {8, float32, 1, "current", "A", "amplitude of the force-producing current", [](const S& s) { return s.current; },
        [](S& s, double v) { s.current = v; }},
   }};
   return rows;
@@ -86,7 +86,8 @@ const std::array<Row<PowerStageCommand>, 4>& command_rows() {
   static const std::array<Row<C>, 4> rows{{
       {16, uint16, 1, "control", "1", text_of(control_bits), [](const C& c) { return bits_of(c, control_bits); },
        [](C& c, double v) { set_bits(c, control_bits, v); }},
-      {17, uint16, 1, "master_cycle", "1", "counts the master's exchanges; the stage stops where it stands still",
+      {17, uint16, 1, "master_cycle", "1",
+       "counts the exchanges of the master; the stage stops when it no longer changes",
        [](const C& c) -> double { return c.cycle; }, [](C& c, double v) { c.cycle = static_cast<std::uint16_t>(v); }},
       {18, float32, 1, "velocity_command", "m/s", "followed by a stage with a velocity controller",
        [](const C& c) { return c.velocity; }, [](C& c, double v) { c.velocity = v; }},

@@ -63,10 +63,12 @@ class RegisterMap {
   std::size_t size(RegisterTable table) const { return sizes_[static_cast<std::size_t>(table)]; }
 
   // One value a register in their order, as words of both tables. What a type cannot hold becomes its nearest value; a
-  // value that is not a number becomes 0 in an integer.
+  // value that is not a number becomes 0 in an integer. `values`: as many as registers(); `input`, `holding`: of the
+  // size() of their table.
   void encode(std::span<const double> values, std::span<std::uint16_t> input, std::span<std::uint16_t> holding) const;
 
-  // All values that words written from `address` on mean, or why none of them is taken.
+  // All values that words written from `address` on mean, or why none of them is taken. `words`: as received;
+  // `motion_allowed`: registers that move an axis may be written.
   std::variant<std::vector<RegisterWrite>, ModbusException> writes_of(std::size_t address,
                                                                       std::span<const std::uint16_t> words,
                                                                       bool motion_allowed) const;
@@ -77,7 +79,8 @@ class RegisterMap {
   std::vector<std::size_t> holding_;  // by address: index of the register plus 1; 0: none
 };
 
-// Two words of a value, for other uses of the same layout.
+// Two words of a value, for other uses of the same layout. `type`: of the register; `raw`: its value in register units;
+// `words`: words_of(`type`) of them, written.
 void put_words(RegisterType type, double raw, std::span<std::uint16_t> words);
 double number_in(RegisterType type, std::span<const std::uint16_t> words);
 

@@ -25,7 +25,9 @@ using RegisterValues = std::function<void(std::span<double>)>;
 
 class ModbusResponder {
  public:
-  // `unit`: that this slave has on RTU; over TCP every unit is answered. `queue` takes what clients write.
+  // `unit`: that this slave has on RTU; over TCP every unit is answered. `queue` takes what clients write. `transport`:
+  // RTU or TCP; `map`: the registers, must outlive this; `values`: asked for each answer; `motion_allowed`: registers
+  // that move an axis may be written.
   ModbusResponder(ModbusTransport transport, const RegisterMap& map, RegisterValues values, bool motion_allowed,
                   int unit, WriteQueue& queue);
   ~ModbusResponder();

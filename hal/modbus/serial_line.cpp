@@ -24,7 +24,7 @@ const char* advice_for(int error) {
     case EACCES:
       return "add the user to the group of the device (dialout)";
     case EBUSY:
-      return "another program has it";
+      return "it is in use by a different programme";
     default:
       return "is it a serial line?";
   }
@@ -34,7 +34,7 @@ const char* advice_for(int error) {
 
 ModbusContext open_serial_line(const std::string& device, int baud_rate, int unit) {
   if (std::find(rates.begin(), rates.end() - 1, baud_rate) == rates.end() - 1)
-    throw ModbusError(fmt::format("{}: found a rate of {} bit/s; expected one that serial lines have, such as 115200",
+    throw ModbusError(fmt::format("{}: found a rate of {} bit/s; expected a rate of serial lines, such as 115200",
                                   device, baud_rate));
   ModbusContext context(modbus_new_rtu(device.c_str(), baud_rate, 'E', 8, 1));
   if (!context || modbus_set_slave(context.get(), unit) != 0 || modbus_connect(context.get()) != 0)

@@ -17,7 +17,7 @@ struct ModbusContextDeleter {
 using ModbusContext = std::unique_ptr<modbus_t, ModbusContextDeleter>;
 
 // An open serial line at 8E1. Throws ModbusError that says what to do: no such device, no right, a rate that the line
-// does not have.
+// does not have. `device`: path; `baud_rate`: bit/s; `unit`: slave that is addressed, 1 to 247.
 ModbusContext open_serial_line(const std::string& device, int baud_rate, int unit);
 
 struct HostAndPort {

@@ -73,13 +73,13 @@ struct AddressList {
 const char* advice_for(int error) {
   switch (error) {
     case EADDRINUSE:
-      return "another program listens there; choose another port";
+      return "a different programme listens there; choose a different port";
     case EACCES:
       return "ports below 1024 need CAP_NET_BIND_SERVICE; choose a higher one";
     case EADDRNOTAVAIL:
-      return "no interface of this machine has that address";
+      return "no interface of this computer has that address";
     default:
-      return "choose another address";
+      return "choose a different address";
   }
 }
 
@@ -90,7 +90,7 @@ int listen_on(const std::string& address) {
   hints.ai_flags = AI_PASSIVE | AI_NUMERICSERV;
   AddressList found;
   if (const int error = ::getaddrinfo(host.c_str(), port.c_str(), &hints, &found.first); error != 0)
-    throw ModbusError(fmt::format("{}: {}; expected an address of this machine, such as 127.0.0.1:502", address,
+    throw ModbusError(fmt::format("{}: {}; expected an address of this computer, such as 127.0.0.1:502", address,
                                   gai_strerror(error)));
   const int descriptor = ::socket(found.first->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   const int on = 1;

@@ -32,7 +32,8 @@ struct ModbusServerCounts {
 
 class ModbusServer {
  public:
-  // Listens when this returns. `values` is called in the server's thread. Throws ModbusError.
+  // Listens when this returns. `values` is called in the server's thread. Throws ModbusError. `map`: the registers;
+  // `config`: address, unit and whether motion is allowed.
   ModbusServer(RegisterMap map, const ModbusServerConfig& config, RegisterValues values);
   ~ModbusServer();
   ModbusServer(const ModbusServer&) = delete;

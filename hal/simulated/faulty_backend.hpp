@@ -42,7 +42,7 @@ struct AxisFaults {
   bool power_stage = false;                // it reports a fault and is off
   FrameFault frame = FrameFault::none;
   std::uint64_t frame_period = 1;    // ticks from one frame with a fault to the next
-  std::uint32_t foreign_frames = 0;  // of nobody's, each tick
+  std::uint32_t foreign_frames = 0;  // with an unknown identifier, each tick
   bool bus_off = false;
   bool encoder_signal = false;  // the backend's watch over the encoder's edges: the position is lost
   SwitchFault negative_switch = SwitchFault::none, positive_switch = SwitchFault::none;
@@ -62,7 +62,7 @@ class FaultyBackend {
 
   static constexpr std::uint64_t silent_ticks_allowed = 2;  // of the power stage, without a command
 
-  // `increment` (m): of the encoders, whose bits can flip.
+  // `increment` (m): of the encoders, whose bits can flip. `inner`: must outlive this; `period_ns`: of the fast loop.
   FaultyBackend(B& inner, std::int64_t period_ns, double increment)
       : inner_(inner), increment_(increment), command_(inner.axis_count()) {
     for (std::size_t i = 0; i < inner.axis_count(); ++i) nodes_.push_back(Node{FrameWatch(period_ns)});

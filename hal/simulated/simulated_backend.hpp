@@ -18,7 +18,8 @@ class SimulatedBackend {
  public:
   using Signals = S;
 
-  // `positions` (m): where the axes rest at the start, one an axis of the machine.
+  // `positions` (m): where the axes rest at the start, one an axis of the machine. `machine`: to simulate; `seed`: of
+  // the encoder noise.
   SimulatedBackend(const machine::Machine& machine, std::span<const double> positions, std::uint64_t seed = 1)
       : period_ns_(std::llround(machine.timing.fast_period * 1e9)) {
     for (std::size_t i = 0; i < machine.axes.size(); ++i)

@@ -43,7 +43,7 @@ namespace {
     file.commit();
   }
   throw std::runtime_error(
-      fmt::format("{}{}; the run was stopped, its trace is in {}", which, failure.what(), kept.string()));
+      fmt::format("{}{}; the run was stopped, and its trace is in {}", which, failure.what(), kept.string()));
 }
 
 }  // namespace
@@ -52,8 +52,8 @@ sim::CircleResult run_plan(const CirclePlan& plan, const CirclePlaces& places) {
   if (!places.log.empty()) {
     const auto cases = cases_of(plan);
     if (cases.size() != 1)
-      throw UsageError(
-          fmt::format("--log: found {} runs; expected one friction model, one feed and one direction", cases.size()));
+      throw UsageError(fmt::format(
+          "--log: found {} runs; expected one run: one friction model, one feed and one direction", cases.size()));
   }
   try {
     Progress progress("circles", plan.friction.size() * plan.feeds.size() * plan.directions.size());

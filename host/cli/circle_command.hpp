@@ -22,7 +22,8 @@ struct CirclePlaces {
 // as stiction-fault.csv in the current folder; then FaultTripped is thrown with the place in its text.
 sim::CircleResult run_plan(const CirclePlan& plan, const CirclePlaces& places);
 
-// Writes report.html and result.json.
+// Writes report.html and result.json. `folder`: new, empty or of an earlier result; `plan`, `result`: of the runs;
+// `json`: result.json; `invocation`: command line and version.
 void write_circle_folder(const std::filesystem::path& folder, const CirclePlan& plan, const sim::CircleResult& result,
                          const nlohmann::ordered_json& json, const Invocation& invocation);
 

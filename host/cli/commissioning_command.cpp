@@ -56,7 +56,7 @@ void run(const CommissioningOptions& options, const Invocation& invocation) {
     write_csv_log(folder.path() / name, record.log);
     (record.held_out ? held_out : training).push_back(name);
   }
-  const std::vector<std::string> comment{"as its records were made by: " + invocation.command_line};
+  const std::vector<std::string> comment{"the records were made by: " + invocation.command_line};
   folder.write("machine.toml",
                sim::extended_machine(machine::find_machine(options.machine.machine), options.machine.set, {}, comment));
   const nlohmann::ordered_json json{{"schema", "stiction.commissioning/1"},
@@ -73,28 +73,30 @@ void run(const CommissioningOptions& options, const Invocation& invocation) {
   }
   for (const auto& record : records)
     fmt::print("{}/{}.csv: {:.1f} s{}\n", options.out, record.name, record.log.t.back(),
-               record.held_out ? ", to judge on" : "");
-  fmt::print("{0}/machine.toml: what its maker says of the machine{1}\n", options.out,
-             options.hide
-                 ? fmt::format("\n{}/hidden.toml: what the machine has beside it; not for the diagnosis", options.out)
-                 : "");
+               record.held_out ? " (held-out data)" : "");
+  fmt::print("{0}/machine.toml: nominal machine file{1}\n", options.out,
+             options.hide ? fmt::format("\n{}/hidden.toml: the effect that was hidden; do not give it to the diagnosis",
+                                        options.out)
+                          : "");
 }
 
 }  // namespace
 
 void add_commissioning(CLI::App& simulate, const Invocation& invocation) {
   auto* command = simulate.add_subcommand(
-      "commissioning", "records of one axis to identify and diagnose from: constant speeds, circle, small reversals");
+      "commissioning",
+      "make records of one axis for identification and diagnosis: constant speeds, circle, small reversals");
   auto o = std::make_shared<CommissioningOptions>();
   o->machine.add_to(*command, "shipped machine by name, or a machine file");
   command->add_option("--axis", o->axis, "the axis that moves")->type_name("NAME")->capture_default_str();
-  command->add_option("--hide", o->hide, "hide an effect, drawn from this seed, in the machine but not in its file")
+  command
+      ->add_option("--hide", o->hide, "add an effect that is drawn with this seed to the machine, but not to its file")
       ->type_name("SEED");
-  command->add_option("--seed", o->seed, "of the noise")->type_name("N")->capture_default_str();
-  command->add_option("--out", o->out, "write the logs, the machine file and what was hidden into this folder")
+  command->add_option("--seed", o->seed, "seed of the noise")->type_name("N")->capture_default_str();
+  command->add_option("--out", o->out, "write the logs, the machine file and the hidden effect into this folder")
       ->required()
       ->type_name("DIR");
-  command->add_flag("--json", o->json, "print what was written as JSON on standard output");
+  command->add_flag("--json", o->json, "print the list of written files as JSON on standard output");
   command->callback([o, &invocation] { run(*o, invocation); });
 }
 

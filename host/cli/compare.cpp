@@ -61,8 +61,8 @@ CirclePlan plan_of(const CompareOptions& options, const std::string& machine_nam
   plan.signals = options.signals == "double" ? SignalKind::double_precision : SignalKind::fixed_point;
   plan.directions = directions("ccw");
   if (plan.machine.circle_references.empty())
-    throw UsageError(
-        fmt::format("{}: found no [[reference.circle]] row; expected at least one to compare with", plan.machine.id));
+    throw UsageError(fmt::format("{}: found no [[reference.circle]] row; expected at least one row for the comparison",
+                                 plan.machine.id));
   std::set<double> feed_set;
   std::set<std::string> published;
   for (const auto& row : plan.machine.circle_references) {
@@ -121,8 +121,10 @@ std::string compare_text(const CirclePlan& plan, const sim::CircleResult& result
   const auto a = agreement_of(table, plan.machine);
   if (a.published_cells > 0)
     text += fmt::format(
-        "\nagainst the published simulation: {} of {} quantised peak errors equal, {} within one increment;\n"
-        "currents {:.2f} % apart in the mean; velocity feedback: {}\n",
+        "\n"
+        "compared with the published simulation: {} of {} quantised peak errors are equal, {} differ by at most one "
+        "increment;\n"
+        "currents differ by {:.2f} % on average; velocity feedback: {}\n",
         a.equal, a.published_cells, a.within_increment, a.current_deviation * 100.0,
         velocity_source_name(plan.machine.axes.front().encoder.velocity));
   return text;
@@ -130,7 +132,7 @@ std::string compare_text(const CirclePlan& plan, const sim::CircleResult& result
 
 void compare(const CompareOptions& options, const Invocation& invocation) {
   if (options.reference.empty() == options.log.empty())
-    throw UsageError(fmt::format("compare: found {}; expected one of them: --reference circle, or a measured log",
+    throw UsageError(fmt::format("compare: found {}; expected either --reference circle or a measured log",
                                  options.log.empty() ? "neither --reference nor LOG" : "--reference and LOG"));
   if (!options.log.empty()) {
     run_replay(
@@ -138,7 +140,7 @@ void compare(const CompareOptions& options, const Invocation& invocation) {
         invocation);
     return;
   }
-  if (!options.axis.empty()) throw UsageError("--axis: found it without LOG; expected none with --reference");
+  if (!options.axis.empty()) throw UsageError("--axis: found it together with --reference; expected it with LOG only");
   if (options.reference != "circle")
     throw UsageError(fmt::format("--reference: found '{}'; expected circle", options.reference));
   const auto machines = split_list(options.machine.machine);
@@ -169,18 +171,21 @@ void compare(const CompareOptions& options, const Invocation& invocation) {
 }  // namespace
 
 void add_compare(CLI::App& program, const Invocation& invocation) {
-  auto* command =
-      program.add_subcommand("compare", "published and measured rows, or a measured log, beside the simulation");
+  auto* command = program.add_subcommand(
+      "compare", "compare the simulation with published and measured rows, or with a measured log");
   auto o = std::make_shared<CompareOptions>();
-  command->add_option("--reference", o->reference, "the machine file's rows: circle")->type_name("KIND");
-  command->add_option("LOG", o->log, "a measured log, whose set-points are replayed");
-  command->add_option("--axis", o->axis, "the machine's axis, for a log that names none")->type_name("AXIS");
+  command->add_option("--reference", o->reference, "rows of the machine file to compare with: circle")
+      ->type_name("KIND");
+  command->add_option("LOG", o->log, "a measured log; the simulation follows its set-points");
+  command->add_option("--axis", o->axis, "axis of the machine, for a log without axis names")->type_name("AXIS");
   o->machine.add_to(*command, "shipped machine by name, or a machine file; or a list of them");
   command
       ->add_option("--friction", o->friction,
-                   "model, list of models, or all [those of the published simulations; of the machine file]")
+                   "model, list of models, or all [those of the published simulations, or of the machine file]")
       ->type_name("MODEL");
-  command->add_option("--signals", o->signals, "fixed: the firmware; double: the same laws in double precision")
+  command
+      ->add_option("--signals", o->signals,
+                   "fixed: the firmware in fixed point; double: the same laws in double precision")
       ->check(CLI::IsMember({"fixed", "double"}))
       ->capture_default_str();
   command->add_option("--out", o->out, "write report.html and result.json into this folder")->type_name("DIR");

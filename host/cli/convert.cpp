@@ -49,19 +49,20 @@ void convert(const ConvertOptions& options) {
   file.commit();
   fmt::print("{}: {} samples at {:.6g} ms", options.out, log.t.size(), log.period * 1e3);
   for (std::size_t k = 0; k < log.ignored.size(); ++k)
-    fmt::print("{}{}", k == 0 ? "; not kept: " : ", ", log.ignored[k]);
+    fmt::print("{}{}", k == 0 ? "; not converted: " : ", ", log.ignored[k]);
   fmt::print("\n");
 }
 
 }  // namespace
 
 void add_convert(CLI::App& program) {
-  auto* command = program.add_subcommand("convert", "logs: CSV to MAT and back; recordings of drives into logs");
+  auto* command =
+      program.add_subcommand("convert", "convert logs between CSV and MAT, and recordings of drives into logs");
   auto o = std::make_shared<ConvertOptions>();
   command->add_option("IN", o->in, "a log (CSV, MAT), a TwinCAT Scope export, a recorder's JSON or zip, any table")
       ->required();
   command->add_option("OUT", o->out, "the log to write: NAME.csv or NAME.mat")->required();
-  command->add_option("--map", o->map, "what the channels of a recording are (host/log/mapping.hpp has an example)")
+  command->add_option("--map", o->map, "mapping file that names the channels of a recording (docs/log_format.md)")
       ->type_name("FILE");
   command->add_option("--mat", o->mat, "level of a MAT-file: 5 or 7.3 [5]")->type_name("LEVEL");
   command->callback([o] { convert(*o); });

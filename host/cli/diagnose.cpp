@@ -67,18 +67,19 @@ void run(const DiagnoseCommandOptions& options, const Invocation& invocation) {
 }  // namespace
 
 void add_diagnose(CLI::App& program, const Invocation& invocation) {
-  auto* command = program.add_subcommand("diagnose", "what the simulation gets wrong, from measured logs: causes");
+  auto* command =
+      program.add_subcommand("diagnose", "find causes of deviations between measured logs and the machine file");
   auto o = std::make_shared<DiagnoseCommandOptions>();
-  command->add_option("logs", o->logs, "logs of one axis in which causes are looked for")->type_name("LOG");
-  o->machine.add_to(*command, "shipped machine by name, or a machine file: what the logs are judged against");
+  command->add_option("logs", o->logs, "logs of one axis to search for causes (training data)")->type_name("LOG");
+  o->machine.add_to(*command, "shipped machine by name, or a machine file, with which the logs are compared");
   command
       ->add_option("--holdout", o->held_out,
-                   "logs of other trajectories, on which causes are judged [the last third of each LOG]")
+                   "logs of different trajectories for validation [the last third of each LOG]")
       ->type_name("LOG");
-  command->add_option("--reference", o->reference, "instead of logs the machine file's measured rows: circle")
+  command->add_option("--reference", o->reference, "use the measured rows of the machine file instead of logs: circle")
       ->type_name("KIND");
-  command->add_option("--axis", o->axis, "the axis, where logs and machine have several")->type_name("NAME");
-  command->add_option("--seed", o->seed, "of the bootstrap for held-out intervals [1]")->type_name("N");
+  command->add_option("--axis", o->axis, "axis to diagnose, if logs and machine have several")->type_name("NAME");
+  command->add_option("--seed", o->seed, "seed of the bootstrap for intervals on held-out data [1]")->type_name("N");
   command
       ->add_option("--out", o->out,
                    "write verdict.json, extended.toml, report.html and next_measurement.csv into this folder")
@@ -88,7 +89,7 @@ void add_diagnose(CLI::App& program, const Invocation& invocation) {
     try {
       if (!o->reference.empty()) {
         if (!o->logs.empty() || !o->held_out.empty() || !o->axis.empty())
-          throw UsageError("--reference: found it with LOG, --holdout or --axis; expected it without them");
+          throw UsageError("--reference: found it together with LOG, --holdout or --axis; expected it alone");
         diagnose_from_reference({o->machine, o->reference, o->out, o->json}, invocation);
         return;
       }

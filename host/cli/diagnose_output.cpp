@@ -33,7 +33,7 @@ void put_out(const Verdict& verdict, const machine::Machine& machine, const Mach
                       {"proposed", fmt::format("{}: {}", verdict.next->trajectories.front().name,
                                                verdict.next->trajectories.front().words)},
                       {"set-points", "x_set, v_set, a_set; " + verdict.next->note},
-                      {"not measured", "x and current are those of the machine file's simulation"}};
+                      {"not measured", "x and current come from the simulation of the machine file"}};
       write_csv_log(folder.path() / next_measurement_file, log);
     }
     folder.write("report.html", diagnosis_report_html({invocation.command_line, invocation.version, machine, verdict}));

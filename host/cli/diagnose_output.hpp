@@ -11,7 +11,8 @@ namespace stiction::host {
 
 // Writes verdict.json, extended.toml, report.html and, where something is open that a motion answers, the set-points of
 // the next measurement into `out` (empty: nothing) and prints the verdict, as JSON or for
-// readers. The extended file is read back before anything appears.
+// readers. The extended file is read back before anything appears. `machine`: as read; `options`: its name and
+// overrides; `invocation`: command line and version.
 void put_out(const Verdict& verdict, const machine::Machine& machine, const MachineOptions& options,
              const std::string& out, bool json, const Invocation& invocation);
 

@@ -43,12 +43,12 @@ std::vector<std::string> models_for(const Experiment& experiment, const std::str
   if (!text.empty() && text != "all")
     for (const auto& name : names)
       if (!known(name))
-        throw UsageError(fmt::format("--friction: found '{}'; expected a model that {} makes sense for: {}", name,
+        throw UsageError(fmt::format("--friction: found '{}'; expected a friction model that {} supports: {}", name,
                                      experiment.name, fmt::join(experiment.models, ", ")));
   std::erase_if(names, [&](const std::string& name) { return !known(name); });
   if (names.empty())
-    throw UsageError(fmt::format("{}: found no friction model that {} makes sense for; expected parameters of: {}",
-                                 machine.id, experiment.name, fmt::join(experiment.models, ", ")));
+    throw UsageError(fmt::format("{}: found no friction model that {} supports; expected parameters of: {}", machine.id,
+                                 experiment.name, fmt::join(experiment.models, ", ")));
   return names;
 }
 
@@ -67,7 +67,7 @@ class ExperimentLogs {
     if (options.log.empty()) return;
     if (input.friction.size() != 1)
       throw UsageError(
-          fmt::format("--log: found {} friction models; expected one: name it with --friction", input.friction.size()));
+          fmt::format("--log: found {} friction models; expected one, chosen with --friction", input.friction.size()));
     input.keep_log = [&experiment, &options, &input, this](const std::string& run, Log log) {
       log.comments = {{"log", fmt::format("stiction simulate {}", experiment.name)},
                       {"machine", input.machine.name},
@@ -147,21 +147,23 @@ void add_experiments(CLI::App& simulate, const Invocation& invocation) {
     if (experiment.compensation) o->machine.add_compensation_to(*command);
     if (experiment.machine == ExperimentMachine::axes)
       command
-          ->add_option("--friction", o->friction, "friction model, or a list of models [all that it makes sense for]")
+          ->add_option("--friction", o->friction,
+                       "friction model, or a list of models [all that the experiment supports]")
           ->type_name("MODEL");
     if (experiment.feeds != nullptr) {
       o->feed = experiment.feeds;
-      command->add_option("--feed", o->feed, "feed, or a list of feeds; the first one is shown over time")
+      command->add_option("--feed", o->feed, "feed, or a list of feeds; the charts over time show the first")
           ->type_name("\"NUMBER UNIT\"")
           ->capture_default_str();
     }
     if (!experiment.equations.empty())
       command
-          ->add_option("--equations", o->equations,
-                       fmt::format("form of the equations, or a list: {} [all]", fmt::join(experiment.equations, ", ")))
+          ->add_option(
+              "--equations", o->equations,
+              fmt::format("version of the equations, or a list: {} [all]", fmt::join(experiment.equations, ", ")))
           ->type_name("FORM");
     if (experiment.keeps_logs)
-      command->add_option("--log", o->log, "write the run as a log (CSV); one file a run where there are several")
+      command->add_option("--log", o->log, "write the run as a log (CSV); one file per run if there are several")
           ->type_name("FILE");
     command->add_option("--out", o->out, "write report.html and result.json into this folder")->type_name("DIR");
     command->add_flag("--json", o->json, "print the result as JSON on standard output");

@@ -89,8 +89,8 @@ FrequencyResponsePlan plan_of(const Options& options, const machine::Machine& ma
   if (plan.lowest > 50.0 || plan.lowest < 0.05)
     throw UsageError(fmt::format("--lowest: found '{}'; expected 0.05 Hz to 50 Hz", options.lowest));
   if (options.periods < 2)
-    throw UsageError(
-        fmt::format("--periods: found {}; expected at least 2, whose difference gives the coherence", options.periods));
+    throw UsageError(fmt::format(
+        "--periods: found {}; expected at least 2, as the coherence follows from their difference", options.periods));
   if (options.passes < 1) throw UsageError(fmt::format("--passes: found {}; expected at least 1", options.passes));
   plan.periods = options.periods;
   plan.passes = options.passes;
@@ -116,7 +116,8 @@ Measurement simulated(const Options& options, const machine::Machine& machine) {
   std::vector<std::string> friction;
   for (const auto& axis : plan.machine.axes) friction.push_back(axis.name + " " + axis.friction.use);
   m.text = {FixedSignals::name,
-            fmt::format("Simulated: {} on the set current at {:g} m/min to and fro, friction {}.",
+            fmt::format("Simulated: {} added to the set current while the axis moves back and forth at {:g} m/min; "
+                        "friction model {}.",
                         plan.signal == TestSignal::multisine ? "multisine" : "one sine after the other",
                         plan.speed * 60.0, fmt::join(friction, ", ")),
             true};
@@ -191,36 +192,40 @@ void run(const Options& options, const Invocation& invocation) {
 }  // namespace
 
 void add_frequency_response(CLI::App& simulate, const Invocation& invocation) {
-  auto* command = simulate.add_subcommand(
-      "frequency-response",
-      "current, velocity and position loop and the plant from a test signal on the set current: Bode plots, margins");
+  auto* command = simulate.add_subcommand("frequency-response",
+                                          "measure current, velocity and position loop and the plant with a test "
+                                          "signal on the set current: Bode plots and margins");
   auto o = std::make_shared<Options>();
   o->machine.add_to(*command, "shipped machine by name, or a machine file");
   command->add_option("--axis", o->axis, "axis, or a list of axes [all]")->type_name("AXIS");
-  command->add_option("--loop", o->loop, "current, velocity, position, or a list of them [all, and the plant]")
+  command->add_option("--loop", o->loop, "current, velocity, position, or a list of them [all, with the plant]")
       ->type_name("LOOP");
-  auto* from = command->add_option("--from", o->from, "measure from this log, with i_inject[A] or u_inject[V]")
-                   ->type_name("LOG");
+  auto* from =
+      command->add_option("--from", o->from, "evaluate this log instead, which must have i_inject[A] or u_inject[V]")
+          ->type_name("LOG");
   const auto simulated_only = [&](CLI::Option* option) { return option->excludes(from); };
-  simulated_only(command->add_option("--friction", o->friction, "friction model [the machine file's]"))
+  simulated_only(command->add_option("--friction", o->friction, "friction model [as in the machine file]"))
       ->type_name("MODEL");
   simulated_only(command->add_option("--signal", o->signal, "multisine: all frequencies at once; stepped-sine"))
       ->check(CLI::IsMember({"multisine", "stepped-sine"}))
       ->capture_default_str();
-  simulated_only(command->add_option("--speed", o->speed, "speed at which the axis moves to and fro meanwhile"))
+  simulated_only(
+      command->add_option("--speed", o->speed, "speed of the axis, which moves back and forth during the test"))
       ->type_name("\"NUMBER UNIT\"")
       ->capture_default_str();
-  simulated_only(command->add_option("--amplitude", o->amplitude,
-                                     "largest magnitude of the test signal [10 % of the current limit]"))
+  simulated_only(
+      command->add_option("--amplitude", o->amplitude, "peak value of the test signal [10 % of the current limit]"))
       ->type_name("\"NUMBER UNIT\"");
-  simulated_only(command->add_option("--lowest", o->lowest, "lowest frequency and distance of a multisine's lines"))
+  simulated_only(
+      command->add_option("--lowest", o->lowest, "lowest frequency, and spacing of the lines of a multisine"))
       ->type_name("\"NUMBER UNIT\"")
       ->capture_default_str();
-  simulated_only(command->add_option("--periods", o->periods, "periods that are measured, after one to settle"))
+  simulated_only(command->add_option("--periods", o->periods, "number of evaluated periods, after one for settling"))
       ->capture_default_str();
-  simulated_only(command->add_option("--passes", o->passes, "passes of a multisine, each with other phases"))
+  simulated_only(
+      command->add_option("--passes", o->passes, "number of passes of a multisine, each with different phases"))
       ->capture_default_str();
-  simulated_only(command->add_option("--log", o->log, "write what a drive would have recorded (CSV)"))
+  simulated_only(command->add_option("--log", o->log, "write the signals that a drive would record (CSV)"))
       ->type_name("FILE");
   command->add_option("--out", o->out, "write report.html and result.json into this folder")->type_name("DIR");
   command->add_flag("--json", o->json, "print the result as JSON on standard output");

@@ -54,9 +54,8 @@ const machine::AxisModel& axis_to_identify(const std::string& name, const machin
         }))
       common.push_back(&axis);
   if (common.size() == 1) return *common.front();
-  throw UsageError(
-      fmt::format("--axis: found none, and {} axes of {} that the logs have channels of; expected one of {}",
-                  common.size(), machine.id, fmt::join(names, ", ")));
+  throw UsageError(fmt::format("--axis: found none, but the logs have channels of {} axes of {}; expected one of {}",
+                               common.size(), machine.id, fmt::join(names, ", ")));
 }
 
 Amperes amperes_of(const std::string& text) {
@@ -84,8 +83,8 @@ void take(Identification& result, const Refinement& refinement) {
     for (auto& parameter : result.parameters)
       if (parameter.name == refined.name) parameter = refined;
   result.method += fmt::format(
-      " Refined in closed loop ({} simulations): against the logs the simulated force is {:.4g} N rms off, before "
-      "{:.4g}; the position {:.3g} um, before {:.3g}.",
+      " Refined in closed loop ({} simulations): the simulated force deviates from the logs by {:.4g} N rms (before: "
+      "{:.4g}), the position by {:.3g} um rms (before: {:.3g}).",
       refinement.simulations, refinement.force_after, refinement.force_before, refinement.position_after * 1e6,
       refinement.position_before * 1e6);
 }
@@ -134,30 +133,31 @@ void run(const IdentifyCommandOptions& options, const Invocation& invocation) {
 }  // namespace
 
 void add_identify(CLI::App& program, const Invocation& invocation) {
-  auto* command = program.add_subcommand("identify", "mass and friction from measured logs");
+  auto* command = program.add_subcommand("identify", "identify mass and friction from measured logs");
   auto o = std::make_shared<IdentifyCommandOptions>();
-  auto* logs = command->add_option("logs", o->logs, "logs of one axis, or one table of steady states (v[m/min],i[A])")
-                   ->type_name("LOG");
+  auto* logs =
+      command->add_option("logs", o->logs, "logs of one axis, or one table of steady states (columns v[m/min],i[A])")
+          ->type_name("LOG");
   command
       ->add_option("--reference", o->reference,
-                   "instead of logs: the machine file's measured rows of this experiment (circle)")
+                   "use the measured rows of this experiment in the machine file instead of logs (circle)")
       ->excludes(logs)
       ->type_name("KIND");
-  o->machine.add_to(*command, "shipped machine by name, or a machine file: force constant, limits, friction models");
-  command->add_option("--axis", o->axis, "the axis, where logs and machine have several")->type_name("NAME");
+  o->machine.add_to(*command,
+                    "shipped machine by name, or a machine file with force constant, limits and friction models");
+  command->add_option("--axis", o->axis, "axis to identify, if logs and machine have several")->type_name("NAME");
   command
       ->add_option("--friction", o->friction,
-                   "coulomb_viscous: sgn(v) of every sample, the published recipe; lugre: with presliding [the first "
-                   "where the machine file uses it, else the second]")
+                   "coulomb_viscous: sgn(v) of every sample, as published for EMPS; lugre: with presliding "
+                   "[coulomb_viscous if the machine file uses it, else lugre]")
       ->type_name("MODEL");
   command
-      ->add_option(
-          "--amperes", o->amperes,
-          "how currents were read, peak or rms; a log's are peak values unless told otherwise, a table must say")
+      ->add_option("--amperes", o->amperes,
+                   "convention of the currents: peak or rms [logs: peak; a table needs this option or a comment]")
       ->type_name("KIND");
   command->add_flag("--refine", o->refine,
-                    "then refine mass, friction and stiffness in closed loop with the log's set-points: takes seconds, "
-                    "gains where the position is noisy or coarse");
+                    "refine mass, friction and stiffness in closed-loop simulation with the set-points of the logs; "
+                    "takes seconds, and helps if the position is noisy or coarse");
   command->add_option("--out", o->out, "write identified.toml, report.html and result.json into this folder")
       ->type_name("DIR");
   command->add_flag("--json", o->json, "print the result as JSON on standard output");

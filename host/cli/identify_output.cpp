@@ -70,10 +70,10 @@ std::string identification_text(const Identification& result) {
                   fmt::join(result.sources, ", "), result.method, "parameter", "value", "95 % from", "to");
   for (const auto& p : result.parameters)
     text += fmt::format("{:<30} {:>12.6g}   {:>12.6g} {:>12.6g}\n", p.name, p.value, p.ci95.low, p.ci95.high);
-  text +=
-      fmt::format("\nforce {:.4g} N rms, of which the fit leaves {:.4g} N\n", result.force_rms, result.residual_rms);
+  text += fmt::format("\nThe force is {:.4g} N rms; the residual of the fit is {:.4g} N rms.\n", result.force_rms,
+                      result.residual_rms);
   if (const auto read = initial_text(result.initial); !read.empty())
-    text += fmt::format("read off the record by hand: {}\n", read);
+    text += fmt::format("direct estimates from the record, independent of the fit: {}\n", read);
   if (result.curve) {
     text += fmt::format("sliding curve: {} (held-out error", result.curve->curve);
     for (const auto& e : result.curve->errors) text += fmt::format(" {} {:.4g} N,", e.curve, e.held_out);

@@ -43,10 +43,10 @@ std::vector<KnownAxis> known_axes(const InspectOptions& options, const Log& log)
 // How the amperes are counted cannot be seen without a machine: it takes the mass and the motor's constant.
 std::string ampere_text(const AxisInspection& axis, bool machine_known) {
   if (axis.effort == nullptr || std::string_view(axis.effort->name) != "i") return "";
-  if (!machine_known)
-    return "taken as amplitude, as the format says; whether they are cannot be seen without --machine";
-  if (!axis.force_constant) return "taken as amplitude; too little acceleration to see whether they are";
-  return fmt::format("{:.4g} N/A from the accelerations and the machine's mass", *axis.force_constant);
+  if (!machine_known) return "interpreted as amplitudes, as the format requires; --machine allows a check";
+  if (!axis.force_constant) return "interpreted as amplitudes; the accelerations are too small for a check";
+  return fmt::format("{:.4g} N/A, estimated from the accelerations and the mass in the machine file",
+                     *axis.force_constant);
 }
 
 json axis_json(const Log& log, std::size_t index, const AxisInspection& axis) {
@@ -100,7 +100,7 @@ std::string axis_text(const Log& log, std::size_t index, const AxisInspection& a
     if (!speeds.empty()) speeds += ", ";
     speeds += fmt::format("{:.4g} ({:.2g} s)", p.speed * 1e3, p.duration);
   }
-  line("steady speeds", speeds.empty() ? "none (of 0.1 s and 0.1 mm within 1 %)" : speeds + " mm/s");
+  line("steady speeds", speeds.empty() ? "none (at least 0.1 s and 0.1 mm within 1 %)" : speeds + " mm/s");
   if (axis.delay) line("position", fmt::format("{:.3g} ms behind the set position", *axis.delay * 1e3));
   if (axis.fit)
     line("sign",
@@ -109,7 +109,7 @@ std::string axis_text(const Log& log, std::size_t index, const AxisInspection& a
   if (const auto amperes = ampere_text(axis, machine_known); !amperes.empty()) line("amperes", amperes);
   if (axis.force_per_current) line("F over i", fmt::format("{:.4g} N/A", *axis.force_per_current));
   for (const auto& suspicion : axis.suspicions) line("SUSPICIOUS", suspicion);
-  text += "  what it can determine\n";
+  text += "  this log can determine\n";
   for (const auto& d : axis.determinable)
     text += fmt::format("    {:<4} {:<34} {}{}\n", d.possible ? "yes" : "no", d.what, d.reason,
                         d.possible ? "" : "; record " + d.remedy);
@@ -137,7 +137,7 @@ void run(const InspectOptions& options) {
   for (const auto& [key, value] : log.comments) fmt::print("  # {}{}{}\n", key, value.empty() ? "" : ": ", value);
   std::string ignored;
   for (const auto& header : log.ignored) ignored += (ignored.empty() ? "" : ", ") + header;
-  if (!ignored.empty()) fmt::print("  no meaning here, ignored: {}\n", ignored);
+  if (!ignored.empty()) fmt::print("  ignored columns: {}\n", ignored);
   for (std::size_t k = 0; k < log.axes.size(); ++k)
     fmt::print("{}", axis_text(log, k, inspection.axes[k], !known.empty()));
 }
@@ -145,11 +145,13 @@ void run(const InspectOptions& options) {
 }  // namespace
 
 void add_inspect(CLI::App& program) {
-  auto* command = program.add_subcommand("inspect", "what a log holds, what is suspicious, what it can determine");
+  auto* command = program.add_subcommand(
+      "inspect", "describe a log: channels, suspicious signals, and quantities that it can determine");
   auto o = std::make_shared<InspectOptions>();
   command->add_option("LOG", o->log, "a log (CSV, MAT)")->required();
-  command->add_option("--machine", o->machine.machine, "its machine, which lets it say more: a name, or a file");
-  command->add_option("--axis", o->axis, "the machine's axis, for a log that names none")->type_name("AXIS");
+  command->add_option("--machine", o->machine.machine,
+                      "machine of the log, for further checks: a shipped machine by name, or a machine file");
+  command->add_option("--axis", o->axis, "axis of the machine, for a log without axis names")->type_name("AXIS");
   command->add_flag("--json", o->json, "print the result as JSON on standard output");
   command->callback([o] { run(*o); });
 }

@@ -33,9 +33,10 @@ void check_machine(const std::string& name) {
 }  // namespace
 
 void add_machine(CLI::App& program, const Invocation&) {
-  auto* command = program.add_subcommand("machine", "shipped machines, check of a machine file, reference of its keys");
+  auto* command = program.add_subcommand(
+      "machine", "list the shipped machines, check a machine file, print the reference of its keys");
   auto o = std::make_shared<MachineCommand>();
-  command->add_option("--check", o->check, "read a machine file, say what is wrong with it or print what it holds")
+  command->add_option("--check", o->check, "read a machine file and print its errors or its contents")
       ->type_name("MACHINE");
   command->add_flag("--reference", o->reference, "print the reference of all keys (Markdown)");
   command->callback([o] {

@@ -19,8 +19,7 @@ namespace stiction::host {
 
 void MachineOptions::add_to(CLI::App& command, const std::string& machine_help) {
   command.add_option("--machine", machine, machine_help)->required()->type_name("MACHINE");
-  command
-      .add_option("--set", set, "another value for a key of the machine file; may be repeated; axis.* is every axis")
+  command.add_option("--set", set, "override a key of the machine file; may be repeated; axis.* means every axis")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
 }
@@ -30,7 +29,7 @@ void MachineOptions::add_compensation_to(CLI::App& command) {
   for (const auto& kind : machine::compensation_kinds) names.emplace_back(kind.name);
   command
       .add_option("--compensation", compensation,
-                  "friction compensation of every axis, with the machine file's parameters [the machine file's]")
+                  "friction compensation of every axis, with parameters of the machine file [as in the machine file]")
       ->check(CLI::IsMember(names))
       ->type_name("KIND");
 }

@@ -21,7 +21,8 @@ struct MachineOptions {
   void add_to(CLI::App& command, const std::string& machine_help);
   // The option --compensation, of commands that drive the axes.
   void add_compensation_to(CLI::App& command);
-  // The machine, checked down to the drive's number formats. Throws sim::MachineFileError, UsageError.
+  // The machine, checked down to the drive's number formats. Throws sim::MachineFileError, UsageError. `name`: of a
+  // shipped machine, or a path; `experiment`: whose overrides apply, or empty; `needed`: axes or a feed drive.
   machine::Machine load(const std::string& name, const std::string& experiment,
                         MachinePart needed = MachinePart::axes) const;
 };

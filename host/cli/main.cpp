@@ -37,7 +37,8 @@ int run(int argc, char** argv) {
   Invocation invocation{"stiction", STICTION_VERSION};
   for (int i = 1; i < argc; ++i) invocation.command_line += " " + quoted(argv[i]);
 
-  CLI::App program("controller firmware of a servo axis against its simulated machine", "stiction");
+  CLI::App program("controller firmware of a servo axis, its simulated machine, and tools to identify and diagnose it",
+                   "stiction");
   program.set_version_flag("--version", STICTION_VERSION);
   expect_subcommand(program, "command");
   program.failure_message(CLI::FailureMessage::help);

@@ -54,11 +54,11 @@ PendingFolder::PendingFolder(fs::path place) : place_(std::move(place)), pending
     throw UsageError(place_.string() + ": found a file; expected a folder for the results");
   if (fs::exists(place_) && !fs::is_empty(place_) && !is_result(place_))
     throw UsageError(place_.string() +
-                     ": found a folder with other things in it; expected a new or an empty folder, or "
-                     "an earlier result (with result.json or verdict.json), which is replaced");
+                     ": found a folder with other files; expected a new or empty folder, or an earlier result (with "
+                     "result.json or verdict.json), which is replaced");
   std::error_code error;
   fs::create_directories(pending_, error);
-  if (error) throw UsageError(place_.string() + ": cannot be made: " + error.message());
+  if (error) throw UsageError(place_.string() + ": cannot be created: " + error.message());
 }
 PendingFolder::~PendingFolder() {
   std::error_code ignored;

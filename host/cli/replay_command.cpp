@@ -86,17 +86,20 @@ void run_replay(const ReplayOptions& options, const Invocation& invocation) {
 }
 
 void add_replay(CLI::App& simulate, const Invocation& invocation) {
-  auto* command = simulate.add_subcommand("replay", "the set-points of a log, beside what was measured");
+  auto* command =
+      simulate.add_subcommand("replay", "simulate the set-points of a log and compare with the measured signals");
   auto o = std::make_shared<ReplayOptions>();
-  command->add_option("--from", o->from, "a log with x_set")->required()->type_name("LOG");
+  command->add_option("--from", o->from, "log with the channel x_set")->required()->type_name("LOG");
   o->machine.add_to(*command, "shipped machine by name, or a machine file");
-  command->add_option("--friction", o->friction, "friction model, list of models, or all [the machine file's]")
+  command->add_option("--friction", o->friction, "friction model, list of models, or all [as in the machine file]")
       ->type_name("MODEL");
-  command->add_option("--axis", o->axis, "the machine's axis, for a log that names none")->type_name("AXIS");
-  command->add_option("--signals", o->signals, "fixed: the firmware; double: the same laws in double precision")
+  command->add_option("--axis", o->axis, "axis of the machine, for a log without axis names")->type_name("AXIS");
+  command
+      ->add_option("--signals", o->signals,
+                   "fixed: the firmware in fixed point; double: the same laws in double precision")
       ->check(CLI::IsMember({"fixed", "double"}))
       ->capture_default_str();
-  command->add_option("--log", o->log, "write the simulated channels at the log's times (NAME.csv or NAME.mat)")
+  command->add_option("--log", o->log, "write the simulated channels at the times of the log (NAME.csv or NAME.mat)")
       ->type_name("FILE");
   command->add_option("--out", o->out, "write report.html and result.json into this folder")->type_name("DIR");
   command->add_flag("--json", o->json, "print the result as JSON on standard output");

@@ -58,25 +58,27 @@ void simulate_circle(const CircleOptions& options, const Invocation& invocation)
 }  // namespace
 
 void add_simulate(CLI::App& program, const Invocation& invocation) {
-  auto* simulate = program.add_subcommand("simulate", "run an experiment: the firmware against the simulated machine");
+  auto* simulate = program.add_subcommand("simulate", "run an experiment: the firmware controls the simulated machine");
   expect_subcommand(*simulate, "experiment");
 
   auto* circle = simulate->add_subcommand(
-      "circle", "a circle of two axes with a jerk-limited start; peak errors, currents and ISO 230-4 terms of one lap");
+      "circle", "circle of two axes with a jerk-limited start: peak errors, currents and ISO 230-4 terms of one lap");
   auto o = std::make_shared<CircleOptions>();
   o->machine.add_to(*circle, "shipped machine by name, or a machine file");
   o->machine.add_compensation_to(*circle);
-  circle->add_option("--friction", o->friction, "friction model, list of models, or all [the machine file's]")
+  circle->add_option("--friction", o->friction, "friction model, list of models, or all [as in the machine file]")
       ->type_name("MODEL");
   circle->add_option("--feed", o->feed, "feed along the path, or a list of feeds")
       ->type_name("\"NUMBER UNIT\"")
       ->capture_default_str();
   circle->add_option("--direction", o->direction, "cw, ccw or both")->type_name("DIR")->capture_default_str();
   circle->add_option("--radius", o->radius, "radius")->type_name("\"NUMBER UNIT\"")->capture_default_str();
-  circle->add_option("--signals", o->signals, "fixed: the firmware; double: the same laws in double precision")
+  circle
+      ->add_option("--signals", o->signals,
+                   "fixed: the firmware in fixed point; double: the same laws in double precision")
       ->check(CLI::IsMember({"fixed", "double"}))
       ->capture_default_str();
-  circle->add_option("--log", o->places.log, "write every signal of the cascade at the full rate (CSV)")
+  circle->add_option("--log", o->places.log, "write every signal of the cascade in every tick (CSV)")
       ->type_name("FILE");
   circle->add_option("--out", o->places.out, "write report.html and result.json into this folder")->type_name("DIR");
   circle->add_flag("--json", o->json, "print the result as JSON on standard output");

@@ -107,7 +107,7 @@ void run(const TuneOptions& options, const Invocation& invocation) {
   if (!options.out.empty()) {
     PendingFolder folder(options.out);
     auto sources = options.logs;
-    if (sources.empty()) sources.emplace_back("circles of its own simulation");
+    if (sources.empty()) sources.emplace_back("circles of the simulated machine file");
     folder.write("tuned.toml", tuned_machine(machine::find_machine(options.machine.machine), options.machine.set, all,
                                              sources, invocation.command_line));
     sim::read_machine(folder.path() / "tuned.toml");  // what was written must be a machine
@@ -127,20 +127,22 @@ void run(const TuneOptions& options, const Invocation& invocation) {
 }  // namespace
 
 void add_tune_friction(CLI::App& program, const Invocation& invocation) {
-  auto* command = program.add_subcommand("tune-friction", "parameters of the friction compensation, before and after");
+  auto* command = program.add_subcommand(
+      "tune-friction", "tune the parameters of the friction compensation and compare before and after");
   auto o = std::make_shared<TuneOptions>();
   command
       ->add_option("logs", o->logs,
-                   "circles without compensation, slow and fast, with position and current [the machine file's "
-                   "simulation]")
+                   "logs of slow and fast circles without compensation, with position and current [simulations of the "
+                   "machine file]")
       ->type_name("LOG");
   o->machine.add_to(*command,
-                    "shipped machine by name, or a machine file: drive and simulation, such as identified.toml");
-  command->add_option("--axis", o->axis, "the axis [all that every log has]")->type_name("NAME");
-  command->add_option("--feed", o->feed, "feeds of the circles before and after [" + o->feed + "]")->type_name("FEEDS");
-  command->add_option("--show", o->shown, "feed of the pictures, at which the speed pulse is tuned [" + o->shown + "]")
+                    "shipped machine by name, or a machine file for drive and simulation, such as identified.toml");
+  command->add_option("--axis", o->axis, "axis [all axes that every log has]")->type_name("NAME");
+  command->add_option("--feed", o->feed, "feeds of the circles for the comparison [" + o->feed + "]")
+      ->type_name("FEEDS");
+  command->add_option("--show", o->shown, "feed of the charts, at which the speed pulse is tuned [" + o->shown + "]")
       ->type_name("FEED");
-  command->add_flag("--no-pulse", o->no_pulse, "leave out the speed pulse, which takes 250 simulated laps an axis");
+  command->add_flag("--no-pulse", o->no_pulse, "omit the speed pulse, whose tuning takes 250 simulated laps per axis");
   command->add_option("--out", o->out, "write tuned.toml, report.html and result.json into this folder")
       ->type_name("DIR");
   command->add_flag("--json", o->json, "print the figures as JSON on standard output");

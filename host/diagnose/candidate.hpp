@@ -55,7 +55,7 @@ struct Candidate {
   Columns (*columns)(const Scene&, const Motion&, double nonlinear);
   // Whether weights have a sign and size that the effect can have.
   bool (*possible)(const Scene&, double nonlinear, const Eigen::VectorXd& weights);
-  // Keys of the machine file (the contract's); `deviations`: of weights and nonlinear parameter (last), covariance.
+  // Keys of the machine file; `deviations`: of weights and nonlinear parameter (last), covariance.
   void (*describe)(const Scene&, double nonlinear, const Eigen::VectorXd& weights, const Eigen::MatrixXd& covariance,
                    Finding&);
   bool nonlinear = false;       // whether the scanned parameter is one of the effect's own
@@ -79,7 +79,7 @@ struct Candidate {
   bool outside() const { return looks_like != nullptr; }
 };
 
-// The vocabulary in the order of the contract; behind it what is outside of it.
+// The vocabulary in the order of docs/effects/README.md, then the signatures outside of it.
 std::span<const Candidate> candidates();
 
 namespace effects {

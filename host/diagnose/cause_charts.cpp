@@ -49,7 +49,7 @@ constexpr Abscissa over_position{"Along the stroke", "position, mm", position};
 constexpr Abscissa over_velocity{"Over velocity", "velocity, mm/s", velocity};
 constexpr Abscissa over_speed{"Over speed", "speed, mm/s", speed, true, true};
 constexpr Abscissa over_acceleration{"Over acceleration", "acceleration, m/s²", acceleration};
-constexpr Abscissa after_reversals{"After reversals", "way since the last reversal, µm", way, true, true};
+constexpr Abscissa after_reversals{"After reversals", "displacement since the last reversal, µm", way, true, true};
 
 struct Row {
   std::string_view effect;
@@ -81,8 +81,8 @@ sim::Chart partial(const LogRows& rows, const Abscissa& abscissa, const Eigen::V
   chart.x_label = abscissa.label;
   chart.y_label = abscissa.opposing ? "force against the motion, N" : "force, N";
   chart.caption =
-      "Means over equally many samples: the residual force with all other causes taken out, and what this "
-      "cause makes of it.";
+      "Means over equal numbers of samples: residual force without the parts of all other causes, and force of this "
+      "cause.";
   chart.logarithmic_x = abscissa.logarithmic;
   chart.levels = {0.0};
   const Eigen::VectorXd sign = abscissa.opposing ? direction(rows) : Eigen::VectorXd::Ones(rows.rows());
@@ -103,7 +103,9 @@ sim::Chart added_variable(const Eigen::VectorXd& left, const Eigen::VectorXd& by
   chart.title = "Residual against this cause";
   chart.x_label = "force of this cause, N";
   chart.y_label = "residual force without it, N";
-  chart.caption = "Means over equally many samples, all other causes taken out. On the line the cause explains it all.";
+  chart.caption =
+      "Means over equal numbers of samples, without the parts of all other causes. On the line the cause explains the "
+      "residual completely.";
   auto residual = means("residual without it", by, 1.0, left, 40);
   residual.points = true;
   sim::Series line{.name = "this cause", .x = residual.x, .y = residual.x};

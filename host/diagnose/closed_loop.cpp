@@ -51,15 +51,15 @@ void add_pictures(Verdict& verdict, const std::vector<Log>& logs, const std::vec
   sim::Chart error;
   error.title = "Position error on held-out data";
   error.x_label = "time, s";
-  error.y_label = "set less actual position, µm";
+  error.y_label = "set minus actual position, µm";
   error.caption =
-      fmt::format("{}, around the instant at which the machine file is furthest off; double-click shows all.",
+      fmt::format("{}, around the largest deviation of the machine file; double-click shows the whole record.",
                   std::filesystem::path(chosen.source).filename().string());
   const double from = std::clamp(chosen.t[at] - shown, chosen.t.front(), chosen.t.back() - 2.0 * shown);
   error.x_range = std::array{from, from + 2.0 * shown};
   auto difference = error;
   difference.title.clear();
-  difference.y_label = "simulated less measured, µm";
+  difference.y_label = "simulated minus measured, µm";
   difference.caption.clear();
   difference.levels = {0.0};
   const auto line = [&](const char* name, const auto& value) {
@@ -108,8 +108,8 @@ void judge_in_closed_loop(Verdict& verdict, const machine::Machine& machine, std
     baseline = simulated_positions(bench);
   } catch (const FaultTripped& fault) {
     throw LogError(
-        fmt::format("{}: found set-points that the simulated machine cannot follow ({}); expected a record "
-                    "of this machine file's machine",
+        fmt::format("{}: found set-points that the simulated machine cannot follow ({}); expected a record of the "
+                    "machine in this file",
                     bench.logs.front().source, fault.what()));
   }
   verdict.baseline.position_error_rms = difference_rms(measured, baseline, bench.logs);
@@ -127,8 +127,8 @@ void judge_in_closed_loop(Verdict& verdict, const machine::Machine& machine, std
       finding.part_error = largest_difference(all, without, bench.logs);
     }
   } catch (const FaultTripped& fault) {
-    verdict.notes.push_back(
-        fmt::format("The extended machine could not follow the held-out set-points ({}).", fault.what()));
+    verdict.notes.push_back(fmt::format(
+        "The simulation of the extended machine file could not follow the held-out set-points ({}).", fault.what()));
   }
 }
 

@@ -132,10 +132,9 @@ std::vector<double> replay_command(const machine::Timing& timing, const machine:
     point.injection = linear_at(injection, place);
     const auto output = drive.tick(sim::to_set_point<S>(point), feedback, ticker.now_ns(), ticker.slow(), signals);
     if (drive.fault() != Fault::none)
-      throw LogError(
-          fmt::format("{}: found inputs at {:.4f} s that the drive's control stops on ({}); expected a "
-                      "record of this drive",
-                      log.source, t, name_of(drive.fault())));
+      throw LogError(fmt::format(
+          "{}: found inputs at {:.4f} s that stop the control of the drive ({}); expected a record of this drive",
+          log.source, t, name_of(drive.fault())));
     ticker.advance();
     const double now = machine::to_si(wants_set_current ? signals.i_set : signals.i);
     // Samples between the last tick and this one.

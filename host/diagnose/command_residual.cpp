@@ -27,7 +27,7 @@ constexpr double slowest = 1.0;  // Hz
 constexpr double foreign = 0.3;
 constexpr int refinements = 2;
 // Of a gain: what the digits of a file and a drive's number formats leave open. On the EMPS record, whose command the
-// replay meets to 1 mV, 0.02 % of the velocity gain is significant, and nobody's concern.
+// replay meets to 1 mV, 0.02 % of the velocity gain is significant, and without any effect.
 constexpr double least_change = 1e-3;
 
 using Places = std::vector<std::size_t>;  // of command_parameters()
@@ -352,11 +352,11 @@ void find_and_judge(Verdict& verdict, const DiagnoseInput& input, const CommandR
   const Eigen::VectorXd left =
       terms.empty() ? target : commands.logged() - commands.replayed<FixedSignals>(with_terms(axis, terms));
   if (rms(left) > foreign * rms(commands.logged())) {
-    verdict.notes.push_back(fmt::format(
-        "The recorded command is not what this controller gives for the recorded set-points and positions, whatever "
-        "its gains: {:.0f} % of its rms above {:g} Hz remain. Controller, filters or set-points of the drive are not "
-        "those of the machine file; its gains were not judged.",
-        100.0 * rms(left) / rms(commands.logged()), slowest));
+    verdict.notes.push_back(
+        fmt::format("No gains of the controller in the machine file reproduce the recorded command from the recorded "
+                    "set-points and positions: {:.0f} % of its rms value above {:g} Hz remain. Controller, filters or "
+                    "set-points of the drive differ from the machine file; the gains were not evaluated.",
+                    100.0 * rms(left) / rms(commands.logged()), slowest));
     return;
   }
   std::erase_if(terms, [&](const CommandTerm& term) {
@@ -375,14 +375,14 @@ void find_and_judge(Verdict& verdict, const DiagnoseInput& input, const CommandR
   judge_held_out(verdict, findings, held, axis, terms, input.seed);
   for (auto& finding : findings) {
     if (*finding.holdout.command_rms_ratio >= 1.0) {
-      verdict.rejected.push_back({finding.effect.name,
-                                  "withdrawn: found in the training data's command residual, but "
-                                  "no gain on held-out data"});
+      verdict.rejected.push_back(
+          {finding.effect.name,
+           "withdrawn: found in the command residual of the training data, but without improvement on held-out data"});
       continue;
     }
     finding.evidence = fmt::format(
-        "It takes {:.1f} % of the command residual's variance away (recorded command less what the file's controller "
-        "gives for the recorded set-points and positions); in the residual force it leaves nothing.",
+        "Explains {:.1f} % of the variance of the command residual (recorded command minus that of the controller in "
+        "the machine file for the recorded set-points and positions); it has no effect on the residual force.",
         100.0 * finding.explains);
     const auto same = std::find_if(verdict.findings.begin(), verdict.findings.end(),
                                    [&](const Finding& f) { return f.effect.name == finding.effect.name; });
@@ -410,7 +410,7 @@ void judge_command(Verdict& verdict, const DiagnoseInput& input, const CommandRe
   try {
     find_and_judge(verdict, input, training, held_out, delay, axis);
   } catch (const LogError& error) {
-    verdict.notes.push_back(fmt::format("The drive's gains were not judged: {}.", error.what()));
+    verdict.notes.push_back(fmt::format("The gains of the drive were not evaluated: {}.", error.what()));
   }
 }
 

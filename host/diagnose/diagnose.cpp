@@ -121,8 +121,8 @@ std::vector<ConfusedWith> confused_with(const Term& term) {
     const auto alias = std::find_if(known.begin(), known.end(), [&](const auto& a) { return a.effect == other; });
     list.push_back({std::string(other), alias != known.end()
                                             ? std::string(alias->separate_by)
-                                            : "record longer, with other speeds, accelerations and strokes: in these "
-                                              "records the two leave residuals that cannot be told apart"});
+                                            : "record longer, with different speeds, accelerations and strokes: in "
+                                              "these records both explain the residual equally well"});
   }
   return list;
 }
@@ -134,9 +134,9 @@ std::string repeated(const Repetition& repetition) {
 std::string evidence_of(const Term& term, const Repetition& repetition, std::size_t blocks) {
   const auto& j = term.judgement;
   return fmt::format(
-      "It takes {:.1f} % of the residual force's variance away, beside the other findings ({:.1f} % cross-validated), "
-      "p = {:.2g} from {} blocks of rows; from the first half of the blocks alone it is {:.2f} times as large as from "
-      "all, from the second {:.2f} times. The held-out records show it {} times as large{}.",
+      "Explains {:.1f} % of the residual variance given the other findings ({:.1f} % cross-validated), p = {:.2g} from "
+      "{} blocks of rows. Amplitude in the first half of the blocks: {:.2f} of the fitted one, in the second half: "
+      "{:.2f}. Held-out amplitude: {} of the fitted one{}.",
       100.0 * term.explains, 100.0 * j.gain, j.p_value, blocks, j.first_half, j.second_half, repeated(repetition),
       repetition.against() < 0.0 ? "" : ", which neither confirms nor refutes it");
 }
@@ -201,15 +201,16 @@ std::vector<std::size_t> keep_what_holds(const LogRows& rows, const Eigen::Vecto
     withdrawn.push_back(term.candidate);
     if (candidate.outside())
       verdict.unexplained = {term.explains, candidate.looks_like(scene, term.nonlinear, term.weights) +
-                                                " (in the training logs; the held-out ones do not confirm it)"};
+                                                " (in the training logs; the held-out logs do not confirm it)"};
     else
       verdict.rejected.push_back(
-          {candidate.name, fmt::format("withdrawn: found in the training data, but no gain on held-out data: {} times "
-                                       "as large there{}, force rms {:.4f} times that without it",
-                                       repeated(holds_alone ? figures.together : figures.repetitions[worst]),
-                                       holds_alone ? ", with all causes found" : "",
-                                       holds_alone ? figures.force_extended / figures.force_baseline
-                                                   : figures.gains[worst].force_rms_ratio)});
+          {candidate.name,
+           fmt::format(
+               "withdrawn: found in the training data, but without improvement on held-out data: held-out amplitude {} "
+               "of the fitted one{}, residual force {:.4f} times that without it",
+               repeated(holds_alone ? figures.together : figures.repetitions[worst]),
+               holds_alone ? ", together with all other findings" : "",
+               holds_alone ? figures.force_extended / figures.force_baseline : figures.gains[worst].force_rms_ratio)});
     found.terms.erase(found.terms.begin() + static_cast<std::ptrdiff_t>(worst));
   }
 }
@@ -266,9 +267,9 @@ Verdict diagnose(const DiagnoseInput& input) {
   if (held_out.empty()) {
     verdict.holdout_is_a_part = true;
     verdict.notes.push_back(
-        "No held-out log was given: causes were looked for in the first two thirds of each log and judged on the last "
-        "third. What repeats with the motion in both can still pass as a cause; only another trajectory tells. Record "
-        "one, with other speeds, stroke and accelerations, and give it with --holdout.");
+        "No held-out log was given: the first two thirds of each log were used for the search and the last third for "
+        "validation. Effects that repeat with the motion in both can still be taken for a cause. Record a different "
+        "trajectory, with different speeds, stroke and accelerations, and give it with --holdout.");
     for (auto& log : logs) {
       const std::size_t cut = log.t.size() * 2 / 3;
       held_out.push_back(part_of(log, cut, log.t.size()));
@@ -296,8 +297,8 @@ Verdict diagnose(const DiagnoseInput& input) {
   const bool known_motion = !held_simulated.motion.empty();
   if (!known_motion)
     verdict.notes.push_back(
-        "The machine's set-points could not be followed in simulation, or are not in the logs: regressors were made "
-        "from the measured motion, which carries the disturbances through the control loop. Log x_set.");
+        "The logs have no set-points, or the simulation could not follow them. The regressors were computed from the "
+        "measured motion, which contains the response of the control loop to the disturbances. Log x_set.");
   const auto regressors = known_motion ? rows_of(simulated.motion, axis, settings) : rows;
   const auto held_regressors = known_motion ? rows_of(held_simulated.motion, axis, settings) : held_rows;
   std::vector<EffectResponse> responses;

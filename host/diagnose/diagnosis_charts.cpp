@@ -52,8 +52,8 @@ void add_charts(Verdict& verdict, const LogRows& rows, const Eigen::VectorXd& be
   sim::Chart over_time;
   over_time.title = "Residual force over time";
   over_time.x_label = "time, s";
-  over_time.y_label = "measured less expected force, N";
-  over_time.caption = "What the motor's force holds beyond what the machine file expects of the measured motion.";
+  over_time.y_label = "measured minus expected force, N";
+  over_time.caption = "Measured motor force minus the force that the machine file predicts for the measured motion.";
   over_time.series = {{.name = "machine file", .x = time, .y = thinned(before.head(first), step)},
                       {.name = "extended", .x = time, .y = thinned(after.head(first), step)}};
   over_time.shape = {true, sim::Shape::Height::usual};
@@ -71,7 +71,7 @@ void add_charts(Verdict& verdict, const LogRows& rows, const Eigen::VectorXd& be
     sim::Chart chart;
     chart.title = a.title;
     chart.x_label = a.label;
-    chart.y_label = "mean of measured less expected force, N";
+    chart.y_label = "mean of measured minus expected force, N";
     chart.series = {even_means("machine file", a.values, a.scale, before),
                     even_means("extended", a.values, a.scale, after)};
     chart.levels = {0.0};

@@ -105,14 +105,15 @@ Judgement judge_columns(const Evidence& evidence, const Evidence& plain, const C
     result.objection = fmt::format("not significant: p = {:.2g}, expected below {:.2g}", result.p_value, limit);
   else if (const double least = result.p_value < beyond_doubt * limit ? least_sure_gain : least_gain;
            !(result.gain > least))
-    result.objection = fmt::format("takes {:.2g} % off the cross-validated residual; expected more than {:g} %",
+    result.objection = fmt::format("reduces the cross-validated residual by {:.2g} %; expected more than {:g} %",
                                    100.0 * result.gain, 100.0 * least);
   else if (larger.odd)
-    result.objection = fmt::format("a fiftieth of the {} blocks of rows makes nearly all of its gain: an odd event",
-                                   evidence.blocks());
+    result.objection = fmt::format(
+        "a fiftieth of the {} blocks of rows causes nearly all of the improvement, which indicates a single event",
+        evidence.blocks());
   else if (contradicts(result.first_half, bearing, first, deviations) ||
            contradicts(result.second_half, bearing, second, deviations))
-    result.objection = "the two halves of the records contradict each other on it";
+    result.objection = "the two halves of the records contradict each other";
   return result;
 }
 

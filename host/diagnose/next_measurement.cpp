@@ -59,7 +59,7 @@ class Questions {
       const auto told_by = [&](const std::string& other) {
         const auto alias = std::find_if(known.begin(), known.end(), [&](const auto& a) { return a.effect == other; });
         return alias != known.end() ? std::string(alias->separate_by)
-                                    : "small reversals of several amplitudes, which these records lack";
+                                    : "small reversals of several amplitudes, which these records do not contain";
       };
       if (terms_.size() > 1)
         ask({{findings.front().effect.name, name, told_by(findings.front().effect.name)}, terms_, {*fit}, {}});
@@ -78,7 +78,10 @@ class Questions {
       const auto fit = separation_.best_fit(records_, searched_.target, discarded.candidate, terms_);
       if (!fit) continue;
       const Question question{
-          {candidates()[discarded.candidate].name, "", "more data, where it shows most"}, {*fit}, {}, terms_};
+          {candidates()[discarded.candidate].name, "", "more data, in motions where its force is largest"},
+          {*fit},
+          {},
+          terms_};
       // What these records should have shown and did not, more of the kind will not.
       if (separation_of(separation_, records_, question) < enough) ask(question);
     }

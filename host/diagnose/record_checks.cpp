@@ -24,8 +24,8 @@ void refuse_same_record(std::span<const Log> logs, std::span<const Log> held_out
       if (part.empty() || std::all_of(part.begin(), part.end(), [&](double x) { return x == part.front(); })) continue;
       if (std::search(a.begin(), a.end(), part.begin(), part.end()) == a.end()) continue;
       throw LogError(
-          fmt::format("{}: found the samples of {} again; expected a held-out log that took no part in finding the "
-                      "causes. Record another trajectory",
+          fmt::format("{}: found the samples of {} again; expected a held-out log that was not used for the search. "
+                      "Record a different trajectory",
                       held.source, log.source));
     }
 }
@@ -39,13 +39,13 @@ void refuse_unreachable_set_points(const Log& log, const machine::AxisModel& axi
   if (speed > 1.001 * axis.max_velocity)
     throw LogError(
         fmt::format("{}: found a set velocity of {:.4g} m/s; expected at most {:.4g} m/s, the max_velocity of axis {}: "
-                    "the machine file's machine cannot follow these set-points",
+                    "the machine in the machine file cannot follow these set-points",
                     log.source, speed, axis.max_velocity, axis.name));
   const auto [low, high] = std::minmax_element(channels.x_set.begin(), channels.x_set.end());
   if (axis.travel > 0.0 && *high - *low > 1.001 * axis.travel)
     throw LogError(
         fmt::format("{}: found set positions over {:.4g} m; expected at most {:.4g} m, the travel of axis {}: the "
-                    "machine file's machine cannot follow these set-points",
+                    "machine in the machine file cannot follow these set-points",
                     log.source, *high - *low, axis.travel, axis.name));
 }
 
@@ -60,26 +60,26 @@ void refuse_other_machine(const LogRows& rows, const Eigen::VectorXd& expected) 
   const double left = (force - scale * model).squaredNorm() / force_square;
   const double off = (force - model).squaredNorm() / force_square;
   if (scale < 0.0 && left < 0.5)
-    throw LogError(
-        fmt::format("{}: found a force {:.3g} times what the machine file expects for this motion; expected force and "
-                    "position positive in the same direction. The sign of the current (or of the encoder) is swapped",
-                    source, scale));
-  for (const auto& [ratio, text] : {std::pair{1.0 / std::numbers::sqrt2,
-                                              "the log's current is in effective (rms) amperes where amplitudes are "
-                                              "expected: multiply it by 1.414"},
-                                    std::pair{std::numbers::sqrt2,
-                                              "the machine file's force constant is for effective (rms) amperes where "
-                                              "amplitudes are expected: divide it by 1.414"}})
+    throw LogError(fmt::format(
+        "{}: found {:.3g} times the force that the machine file predicts for this motion; expected force and position "
+        "positive in the same direction. The sign of the current (or of the encoder) is swapped",
+        source, scale));
+  for (const auto& [ratio, text] :
+       {std::pair{1.0 / std::numbers::sqrt2,
+                  "the current of the log is in rms amperes instead of amplitudes: multiply it by 1.414"},
+        std::pair{
+            std::numbers::sqrt2,
+            "the force constant of the machine file refers to rms amperes instead of amplitudes: divide it by 1.414"}})
     if (std::abs(scale / ratio - 1.0) < 0.04 && left < 0.1 && left < 0.15 * off)
       throw LogError(
-          fmt::format("{}: found {:.3f} times the force that the machine file expects, over the whole "
-                      "record; expected 1. By all signs {}",
+          fmt::format("{}: found {:.3f} times the force that the machine file predicts, over the whole record; "
+                      "expected 1. Most likely {}",
                       source, scale, text));
   if (off > 0.5)
     throw LogError(
-        fmt::format("{}: found a force that leaves {:.0f} % of its variance unexplained by the machine file; expected "
-                    "less than 50 %, more than which no effect of the vocabulary makes. This is a log of another "
-                    "machine, or of another axis, or in other units",
+        fmt::format("{}: found a force of which the machine file does not explain {:.0f} % of the variance; expected "
+                    "less than 50 %, the most that a known effect causes. This log belongs to a different machine or "
+                    "axis, or has different units",
                     source, 100.0 * off));
 }
 

@@ -21,7 +21,7 @@ sim::Chart deviation(const ReferenceRows& reference, const std::string& axis, bo
   sim::Chart chart;
   chart.title = fmt::format("{}: {}", axis, error ? "error at reversals" : "largest current");
   chart.x_label = "feed, m/min";
-  chart.y_label = error ? "simulated less measured, µm" : "simulated against measured, %";
+  chart.y_label = error ? "simulated minus measured, µm" : "simulated relative to measured, %";
   chart.logarithmic_x = true;
   chart.levels = {0.0};
   sim::Series before{.name = "machine file", .x = {}, .y = {}}, after{.name = "extended", .x = {}, .y = {}},
@@ -50,11 +50,12 @@ sim::Chart deviation(const ReferenceRows& reference, const std::string& axis, bo
 sim::Chart shares(const ReferenceRows& reference, const Finding& finding, bool error) {
   const Of value = error ? error_of : current_of;
   sim::Chart chart;
-  chart.title = error ? "What it does to the error at reversals" : "What it does to the largest current";
+  chart.title = error ? "Effect on the error at reversals" : "Effect on the largest current";
   chart.x_label = "feed, m/min";
-  chart.y_label = error ? "change by it, µm" : "change by it, A";
-  chart.caption = error ? "The extended simulation with it less that without it."
-                        : "The extended simulation with it less that without it, beside what the machine file lacks.";
+  chart.y_label = error ? "change by this cause, µm" : "change by this cause, A";
+  chart.caption = error ? "Difference between the extended simulation with and without this cause."
+                        : "Difference between the extended simulation with and without this cause, and deviation of "
+                          "the machine file.";
   chart.logarithmic_x = true;
   chart.levels = {0.0};
   sim::Series by{.name = "by this cause", .x = {}, .y = {}},
@@ -69,7 +70,7 @@ sim::Chart shares(const ReferenceRows& reference, const Finding& finding, bool e
         lacks.y.push_back(value(row.measured) - value(row.machine_file));
       }
   }
-  lacks.name = "measured less machine file";
+  lacks.name = "measured minus machine file";
   chart.series = {by, lacks};
   return chart;
 }
@@ -119,7 +120,7 @@ sim::Chart contact(const machine::Machine& machine, const AxisExtension& axis, c
   chart.title = "Force before sliding";
   chart.x_label = "displacement, µm";
   chart.y_label = "share of Coulomb friction, %";
-  chart.caption = "First loading against the motion before.";
+  chart.caption = "First loading against the previous motion.";
   const double stiffness = finding.effect.values.at("stiffness").front();
   const double distance = finding.effect.values.at("distance").front();
   const double coulomb = stiffness * axis.displacement / axis.stiffness_per_force;

@@ -19,10 +19,10 @@ struct Silence {
   std::string_view effect, why;
 };
 constexpr std::string_view both_directions =
-    "cannot be told: a row has the largest value of both directions; record one lap with its directions apart";
+    "not identifiable: a row has only the largest value of both directions; record one lap with separate directions";
 constexpr std::string_view no_position =
-    "cannot be told: a row has no position; record position and current over one stroke at constant speed";
-constexpr std::string_view no_time = "cannot be told: a row has no time; record set-points, position and current";
+    "not identifiable: a row has no position; record position and current over one stroke at constant speed";
+constexpr std::string_view no_time = "not identifiable: a row has no time; record set-points, position and current";
 constexpr std::array silences{
     Silence{"friction_asymmetry", both_directions},
     Silence{"constant_force", both_directions},
@@ -37,19 +37,18 @@ constexpr std::array silences{
     Silence{"periodic_disturbance", no_time},
     Silence{"structural_resonance", no_time},
     Silence{"cross_axis_coupling", no_time},
-    Silence{
-        "backlash",
-        "cannot be told from two numbers a row: at a reversal it adds to the largest error as a softer contact does; "
-        "load the axis at standstill"},
-    Silence{
-        "force_constant_mismatch",
-        "cannot be told from two numbers a row: it scales mass and friction together; accelerate a known added mass"},
+    Silence{"backlash",
+            "not identifiable from two numbers per row: at a reversal it increases the largest error like a softer "
+            "contact; load the axis at standstill"},
+    Silence{"force_constant_mismatch",
+            "not identifiable from two numbers per row: it scales mass and friction together; accelerate a known added "
+            "mass"},
     Silence{"force_saturation",
-            "cannot be told from two numbers a row: only the fastest circle has a high current; accelerate at several "
-            "levels"},
-    Silence{
-        "controller_gain_mismatch",
-        "cannot be told from two numbers a row: it moves the error as the contact does; a frequency response tells"},
+            "not identifiable from two numbers per row: only the fastest circle has a high current; accelerate at "
+            "several levels"},
+    Silence{"controller_gain_mismatch",
+            "not identifiable from two numbers per row: it changes the error like the contact; measure a frequency "
+            "response"},
 };
 
 std::string percent_off(double simulated, double measured) {
@@ -69,7 +68,7 @@ std::string why_not_mass(const machine::Machine& machine, const Verdict& verdict
     text += fmt::format("{} at {:g} m/min, current {}", axis.name, feed_of(fastest->feed),
                         percent_off(fastest->extended.current, fastest->measured.current));
   }
-  return text + " with the friction extended, and most of that current is the mass'";
+  return text + " with the extended friction, and most of that current accelerates the mass";
 }
 
 bool named(const Verdict& verdict, std::string_view effect) {
@@ -79,9 +78,9 @@ bool named(const Verdict& verdict, std::string_view effect) {
 
 std::string contact_evidence(const AxisExtension& axis, double feed, const machine::CircleReference& row) {
   return fmt::format(
-      "With the sliding friction extended and the file's contact, the error at {:g} m/min is {:.2f} um, measured "
-      "{:.1f} um. The contact has the shape of the rows of presliding (loaded against the motion before) with "
-      "displacements {:.2g} times as long; that one scale is all that one error can tell.",
+      "With the extended sliding friction and the contact of the file, the error at {:g} m/min is {:.2f} um, measured "
+      "{:.1f} um. The contact has the shape of the presliding rows (loaded against the previous motion) with "
+      "displacements scaled by {:.2g}; one error determines this scale only.",
       feed_of(feed), axis.error_with_file_contact * 1e6, row.error * 1e6, axis.displacement);
 }
 
@@ -99,17 +98,16 @@ std::string evidence_words(const ReferenceExtension& extension, const AxisExtens
   const auto& fit = extension.sliding;
   if (!axis.own_rows)
     return fmt::format(
-        "Two numbers a row cannot tell the parts of this axis' friction apart. Its law is that of {}, times {:.2f} "
-        "from "
-        "one number, the {:.1f} A at {:g} m/min, and they are judged together; the interval is that of this scale "
-        "(with a "
-        "drift of friction of 3 % from day to day) and of the law of {}.",
+        "Two numbers per row cannot separate the parts of the friction of this axis. Its law is that of {}, scaled by "
+        "{:.2f} from one number, {:.1f} A at {:g} m/min, and the parts are evaluated together. The interval contains "
+        "that of this scale (with a drift of friction of 3 % from day to day) and that of the law of {}.",
         axis.law_from, axis.force, row.current, feed_of(extension.training_feed), axis.law_from);
   const auto test = std::find_if(fit.tests.begin(), fit.tests.end(),
                                  [&](const SlidingPartTest& each) { return effect == name_of(each.part); });
   return fmt::format(
-      "The file's friction is {:.1f} N rms off the rows of steady friction, the extended one {:.1f} N. Without this "
-      "cause, the others fitted anew, {:.0f} % of the file's square comes back (p = {:.1g}).",
+      "The friction of the file deviates by {:.1f} N rms from the rows of steady friction, the extended one by {:.1f} "
+      "N rms. Without this cause, and with the others fitted again, {:.0f} % of the squared deviation of the file "
+      "returns (p = {:.1g}).",
       fit.deviation_before, fit.deviation_after, 100.0 * test->explains, test->p_value);
 }
 
@@ -131,11 +129,13 @@ std::vector<Rejected> rejection_words(const machine::Machine& machine, const Ver
     if (named(verdict, kind.name)) continue;
     const auto silence =
         std::find_if(silences.begin(), silences.end(), [&](const Silence& each) { return each.effect == kind.name; });
-    std::string why = silence != silences.end() ? std::string(silence->why) : "cannot be told from two numbers a row";
+    std::string why =
+        silence != silences.end() ? std::string(silence->why) : "not identifiable from two numbers per row";
     if (kind.name == "mass_mismatch") why = why_not_mass(machine, verdict);
     if (kind.name == "stribeck")
       why =
-          "not seen: the rows of steady friction rise from the slowest speed on; what falls below it they cannot tell";
+          "not found: the rows of steady friction rise from the lowest speed on; they have no information about lower "
+          "speeds";
     list.push_back({std::string(kind.name), why});
   }
   return list;
@@ -155,7 +155,7 @@ Unexplained left_words(const std::vector<DiagnosedRow>& rows) {
     if (!row.training && (worst == nullptr || off(row) > off(*worst))) worst = &row;
   if (worst != nullptr && off(*worst) > 0.05)
     left.signature =
-        fmt::format("{} at {:g} m/min, where the current stays {} ({:.2f} A, measured {:.1f} A)", worst->axis,
+        fmt::format("{} at {:g} m/min, where the current remains {} ({:.2f} A, measured {:.1f} A)", worst->axis,
                     feed_of(worst->feed), percent_off(worst->extended.current, worst->measured.current),
                     worst->extended.current, worst->measured.current);
   return left;
@@ -163,19 +163,19 @@ Unexplained left_words(const std::vector<DiagnosedRow>& rows) {
 
 std::vector<std::string> note_words(const ReferenceExtension& extension) {
   std::vector<std::string> notes;
-  notes.push_back(fmt::format(
-      "Training rows: steady friction of {}, presliding, and the circle at {:g} m/min, at which the published "
-      "simulation was matched to the machine too. All other feeds are predicted.",
-      extension.axes.front().law_from, feed_of(extension.training_feed)));
+  notes.push_back(
+      fmt::format("Training rows: steady friction of {}, presliding, and the circle at {:g} m/min, for which the "
+                  "published simulation was also tuned. All other feeds are predicted.",
+                  extension.axes.front().law_from, feed_of(extension.training_feed)));
   for (const auto& axis : extension.axes)
     if (!axis.own_rows)
       notes.push_back(
-          fmt::format("Record constant speeds of {} both ways, from 0.02 m/min to its highest speed: its "
-                      "sliding law is borrowed from {}.",
+          fmt::format("Record constant speeds of {} both ways, from 0.02 m/min to its highest speed, because its "
+                      "sliding law is taken from {}.",
                       axis.axis, axis.law_from));
   notes.push_back(
-      "Record small reversals of 1 to 200 um on the machine itself: the rows of presliding come from a rig, and only a "
-      "scale of theirs could be found.");
+      "Record small reversals of 1 to 200 um on the machine itself, because the presliding rows come from a test rig "
+      "and only their scale could be determined.");
   return notes;
 }
 

@@ -23,7 +23,7 @@ constexpr double dominant = 0.25;
 std::optional<std::string> impossible(const Scene& scene, const Term& term) {
   const auto& candidate = candidates()[term.candidate];
   if (!candidate.possible(scene, term.nonlinear, term.weights))
-    return "beside the other causes it fits with a sign or a size that it cannot have";
+    return "given the other causes, the fit has an impossible sign or size";
   if (candidate.outside()) return {};
   Finding finding;
   finding.effect.name = candidate.name;
@@ -257,7 +257,7 @@ SearchResult Search::run() {
     term.explains = (plain_.fit(columns_of(others)).left - plain_.fit(columns_of(set)).left) / plain_.total();
     if (term.explains < least_share) {
       discarded_.push_back(
-          {term.candidate, fmt::format("takes {:.2g} % off the residual force's variance; expected at least {:g} %",
+          {term.candidate, fmt::format("explains {:.2g} % of the residual variance; expected at least {:g} %",
                                        100.0 * std::max(term.explains, 0.0), 100.0 * least_share)});
       continue;
     }

@@ -54,13 +54,14 @@ void compare_bands(Verdict& verdict, std::span<const Term> terms, const LogRows&
     if (!(error < least_certain)) continue;
     auto& finding = verdict.findings[k];
     finding.evidence +=
-        fmt::format(" Below {:g} Hz alone it is {:.2f} times as large, within {:.2f}.", edge, ratio, 2.0 * error);
+        fmt::format(" Amplitude below {:g} Hz: {:.2f} of the fitted one, with a 95 % interval of +- {:.2f}.", edge,
+                    ratio, 2.0 * error);
     if (std::abs(ratio - 1.0) > std::max(contradiction * error, least_difference))
-      verdict.notes.push_back(fmt::format(
-          "{} changes with the band: below {:g} Hz it is {:.2f} times as large as up to 100 Hz (within {:.2f}). What "
-          "it is said to be does not depend on frequency; something beside it does, such as a delay or an elastic "
-          "part.",
-          finding.effect.name, edge, ratio, 2.0 * error));
+      verdict.notes.push_back(
+          fmt::format("{} depends on the frequency band: its amplitude below {:g} Hz is {:.2f} of that up to 100 Hz, "
+                      "with a 95 % interval of +- {:.2f}. This cause does not depend on frequency by definition, which "
+                      "indicates an additional one that does, such as a delay or an elastic part.",
+                      finding.effect.name, edge, ratio, 2.0 * error));
   }
 }
 

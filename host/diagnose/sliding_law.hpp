@@ -22,7 +22,7 @@ struct SlidingLaw {
   double at(double velocity) const;  // N, for a speed above 0
 };
 
-// What may differ from the file, in the order of the contract's vocabulary.
+// What may differ from the file, in the order of the vocabulary.
 enum class SlidingPart { coulomb, viscous, rise };
 inline constexpr std::array sliding_parts{SlidingPart::coulomb, SlidingPart::viscous, SlidingPart::rise};
 

@@ -96,14 +96,14 @@ std::string extent_words(const Log& proposed, const LogRows& rows) {
         *std::max_element(values.begin(), values.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
   };
   auto words = fmt::format(
-      "It begins at rest at {:.3f} mm, stays between {:.3f} and {:.3f} mm and reaches {:.3g} m/s and "
-      "{:.3g} m/s^2.",
+      "It begins at rest at {:.3f} mm, remains between {:.3f} and {:.3f} mm and reaches {:.3g} m/s and {:.3g} m/s^2.",
       1e3 * axis.x_set.front(), 1e3 * *low, 1e3 * *high, largest(axis.v_set), largest(axis.a_set));
   const auto covered = covered_by(rows);
   const double slack = 1e-3 * (covered.high - covered.low);
   if (*low < covered.low - slack || *high > covered.high + slack)
-    words += fmt::format(" These records cover {:.3f} to {:.3f} mm only: make sure that the way is free.",
-                         1e3 * covered.low, 1e3 * covered.high);
+    words +=
+        fmt::format(" These records cover only {:.3f} to {:.3f} mm: make sure that the range is free of obstacles.",
+                    1e3 * covered.low, 1e3 * covered.high);
   return words;
 }
 

@@ -142,14 +142,15 @@ namespace {
 
 std::string rows_text(const ReferenceRows& reference) {
   const auto line = [](const char* what, const char* which, const RowScores& s, double RowScore::*member) {
-    return fmt::format("mean {} error {}: before {:.1f} % (published simulation; this one {:.1f} %), after {:.1f} %\n",
-                       what, which, 100.0 * s.published.*member, 100.0 * s.machine_file.*member,
-                       100.0 * s.extended.*member);
+    return fmt::format(
+        "mean deviation of {} {}: published simulation {:.1f} %, machine file {:.1f} %, extended {:.1f} %\n", what,
+        which, 100.0 * s.published.*member, 100.0 * s.machine_file.*member, 100.0 * s.extended.*member);
   };
-  std::string text = line("current", "on the feeds not used", reference.unused, &RowScore::current) +
-                     line("position", "on the feeds not used", reference.unused, &RowScore::error) +
-                     line("current", "leaving each feed out in turn", reference.left_out, &RowScore::current) +
-                     line("position", "leaving each feed out in turn", reference.left_out, &RowScore::error) + "\n";
+  std::string text =
+      line("current", "on the held-out feeds", reference.unused, &RowScore::current) +
+      line("error at reversals", "on the held-out feeds", reference.unused, &RowScore::error) +
+      line("current", "with each feed left out in turn", reference.left_out, &RowScore::current) +
+      line("error at reversals", "with each feed left out in turn", reference.left_out, &RowScore::error) + "\n";
   text +=
       "                     error at reversals, um                           largest current, A\n"
       "axis  m/min  measured  published  simulated  extended    measured  published  simulated  extended\n";
@@ -173,11 +174,10 @@ std::string next_measurement_text(const NextMeasurement& next) {
   if (!next.log) {
     const auto& q = next.questions.front();
     const bool could = !next.trajectories.empty() || !q.by_motion;
-    return text +
-           fmt::format("{}; {}",
-                       could ? fmt::format("no motion of axis {} that is known here answers what is open", next.axis)
-                             : "no trajectory could be run on the machine file's simulation",
-                       q.separate_by);
+    return text + fmt::format("{}; {}",
+                              could ? fmt::format("no known motion of axis {} answers the open questions", next.axis)
+                                    : "no trajectory could be run in the simulation of the machine file",
+                              q.separate_by);
   }
   const auto& best = next.trajectories.front();
   text += fmt::format("{}, {:.0f} s{}; expected", best.name, best.duration,
@@ -201,15 +201,15 @@ std::string verdict_text(const Verdict& verdict) {
   const auto position = [](const ResidualFigures& f) {
     return f.position_error_rms ? fmt::format(", position {:.3g} um rms", *f.position_error_rms * 1e6) : std::string();
   };
-  text += fmt::format("on held-out data, measured against simulated:\n  {:<14} force {:.4g} N rms{}\n", "machine file",
+  text += fmt::format("residual on held-out data:\n  {:<14} force {:.4g} N rms{}\n", "machine file",
                       verdict.baseline.force_rms, position(verdict.baseline));
   if (!verdict.findings.empty())
     text += fmt::format("  {:<14} force {:.4g} N rms{}\n", "extended", verdict.extended.force_rms,
                         position(verdict.extended));
   if (verdict.findings.empty())
     text +=
-        "\nno cause found: "
-        "beyond what is said below, the simulation agrees with the data within its noise\n";
+        "\n"
+        "no cause found: except for the items below, the simulation agrees with the data within their noise\n";
   for (std::size_t k = 0; k < verdict.findings.size(); ++k) {
     const auto& f = verdict.findings[k];
     text += fmt::format("\n{}. {}, axis {}\n", k + 1, f.effect.name, f.axis);
@@ -217,19 +217,19 @@ std::string verdict_text(const Verdict& verdict) {
       for (std::size_t i = 0; i < p.values.size(); ++i)
         text += fmt::format("   {} = {:.6g} +- {:.2g}\n", p.name, p.values[i],
                             i < p.standard_errors.size() ? p.standard_errors[i] : 0.0);
-    text +=
-        fmt::format("   {}\n   held-out {} rms {:.3f} times that without it (95 %: {:.3f} to {:.3f})", f.evidence,
-                    f.in_command ? "command residual" : "force", gained_ratio(f), f.holdout.ci95[0], f.holdout.ci95[1]);
+    text += fmt::format(
+        "   {}\n   held-out data: rms {} is {:.3f} times that without this cause (95 % interval {:.3f} to {:.3f})",
+        f.evidence, f.in_command ? "command residual" : "force", gained_ratio(f), f.holdout.ci95[0], f.holdout.ci95[1]);
     if (f.holdout.position_error_rms_ratio)
-      text += fmt::format(", position error {:.3f} times", *f.holdout.position_error_rms_ratio);
+      text += fmt::format(", position error {:.3f} times that without it", *f.holdout.position_error_rms_ratio);
     text += "\n";
     for (const auto& c : f.confused_with)
-      text += fmt::format("   may be {} instead; to separate: {}\n", c.effect, c.separate_by);
+      text += fmt::format("   may be {} instead; to separate them: {}\n", c.effect, c.separate_by);
   }
   if (!verdict.rejected.empty()) text += "\ntried and rejected:\n";
   for (const auto& r : verdict.rejected) text += fmt::format("  {}: {}\n", r.effect, r.why);
   if (verdict.unexplained.signature)
-    text += fmt::format("\nunexplained: {:.1f} % of the residual's variance, {}\n", 100.0 * verdict.unexplained.share,
+    text += fmt::format("\nunexplained: {:.1f} % of the residual variance, {}\n", 100.0 * verdict.unexplained.share,
                         *verdict.unexplained.signature);
   if (verdict.next) text += "\n" + next_measurement_text(*verdict.next) + "\n";
   for (const auto& note : verdict.notes) text += fmt::format("\nnote: {}\n", note);

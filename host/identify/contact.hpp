@@ -27,7 +27,8 @@ struct Contact {
 // Each step is exact for the displacement it covers, whatever its length.
 Contact contact_of(const Motion& motion, const ContactShape& shape);
 
-// exp(-(v/v_s)^2) times the level of the contact: what Stribeck's effect adds to the force for one newton.
+// exp(-(v/v_s)^2) times the level of the contact: what Stribeck's effect adds to the force for one newton. `motion`: of
+// the log; `level`: from contact_of(); `stribeck_velocity`: v_s, m/s, above 0.
 std::vector<double> stribeck_column(const Motion& motion, const std::vector<double>& level, double stribeck_velocity);
 
 // Stop operator: a spring of unit stiffness (N/m) whose slider gives way at the displacement `distance` (m).

@@ -24,15 +24,17 @@ struct Lowpass {
 // `edge`: -3 dB (Butterworth) or end of the ripple (Chebyshev), as a fraction of half the sampling rate, in (0, 1).
 // Both throw std::invalid_argument for an order or an edge that is none.
 Lowpass butterworth(int order, double edge);
+// `order`: at least 1; `ripple_db`: of the passband, above 0 dB; `edge`: as above.
 Lowpass chebyshev(int order, double ripple_db, double edge);
 
 // The samples that filter_both_ways() adds at both ends unless told otherwise, 3 * order: MATLAB's and scipy's default.
 std::size_t default_padding(const Lowpass& filter);
 
 // Filters forward and backward: zero phase, |G|^2. `padding` samples at both ends, fewer where `values` is shorter.
+// `filter`: applied once in each direction.
 std::vector<double> filter_both_ways(const Lowpass& filter, std::span<const double> values, std::size_t padding);
 // The same of several columns of one length, to the bit. Each sample waits for the one before it, so that four columns
-// side by side take as long as one.
+// side by side take as long as one. `filter`, `padding`: as above.
 std::vector<std::vector<double>> filter_both_ways(const Lowpass& filter,
                                                   std::span<const std::span<const double>> columns,
                                                   std::size_t padding);

@@ -18,11 +18,13 @@ using OfWeights = std::function<double(const Eigen::RowVectorXd&)>;
 // `of` each replicate (row).
 std::vector<double> replicate(const Eigen::MatrixXd& replicates, const OfWeights& of);
 
-// A parameter that is `of` the weights, with its replicates.
+// A parameter that is `of` the weights, with its replicates. `fit`: to which it is added; `name`: its key, with unit;
+// `centre`: weights of all rows; `replicates`: weights of each bootstrap replicate, one per row.
 void add(FrictionFit& fit, const char* name, const Eigen::RowVectorXd& centre, const Eigen::MatrixXd& replicates,
          const OfWeights& of);
 
-// Mass, Coulomb and viscous friction and the constant force, of fits with a level column.
+// Mass, Coulomb and viscous friction and the constant force, of fits with a level column. `fit`: to which they are
+// added; `centre`: weights of all rows; `replicates`: one per row.
 void add_sliding_parameters(FrictionFit& fit, const Eigen::RowVectorXd& centre, const Eigen::MatrixXd& replicates);
 
 // 1 for rows in steady sliding: faster than a twentieth of the logs' highest speed throughout 30 ms before and after,
@@ -31,7 +33,8 @@ Eigen::VectorXd steady_sliding(const LogRows& rows);
 
 // Hausman's test (1978) of the contact's model: mass, Coulomb and viscous friction from the rows in steady sliding must
 // agree with those from all rows. Where one differs by more than three standard deviations of the difference and one
-// percent, the contact's model is wrong enough to bend them, and they are replaced by those of steady sliding.
+// percent, the contact's model is wrong enough to bend them, and they are replaced by those of steady sliding. `fit`:
+// changed where they disagree; `rows`: of all logs; `settings`: of the bootstrap.
 void check_against_sliding(FrictionFit& fit, const LogRows& rows, const FitSettings& settings);
 
 // From the correlation of the fit's residual.

@@ -92,7 +92,7 @@ PreslidingCurve presliding_curve(const std::vector<PreslidingPoint>& points) {
   std::erase_if(against, [](const PreslidingPoint& point) { return point.same_direction; });
   std::sort(against.begin(), against.end(), [](const auto& a, const auto& b) { return a.force < b.force; });
   if (against.size() < 2)
-    throw MissingRows(fmt::format("presliding: found {} points loaded against the motion before; expected at least 2",
+    throw MissingRows(fmt::format("presliding: found {} points loaded against the previous motion; expected at least 2",
                                   against.size()));
   PreslidingCurve curve;
   double slope = std::numeric_limits<double>::infinity(), x = 0.0, f = 0.0;

@@ -56,7 +56,8 @@ FrictionFit fit_coulomb_viscous(const LogRows& rows, const FitSettings& settings
 FrictionFit fit_lugre(const LogRows& rows, const FitSettings& settings);
 
 // Viscous friction of each direction, a fit with both beside the other columns of `fit`:
-// viscous_positive_N_s_per_m, viscous_negative_N_s_per_m, coulomb_positive_N, coulomb_negative_N.
+// viscous_positive_N_s_per_m, viscous_negative_N_s_per_m, coulomb_positive_N, coulomb_negative_N. `rows`: of all logs;
+// `settings`: of the bootstrap.
 std::vector<FittedParameter> fit_directions(const LogRows& rows, const FrictionFit& fit, const FitSettings& settings);
 
 // Spring-slider elements (Maxwell slip): stop operators of fixed slip distances, their weights not negative.

@@ -34,15 +34,15 @@ constexpr const char* record_speeds = "constant speeds from a few mm/s up to the
 constexpr std::array<Criterion, 12> criteria{{
     {"mass_kg", Scale::value, 0.2, "force over acceleration",
      "moves with accelerations of 1 m/s^2 and more, both ways"},
-    {"coulomb_N", Scale::value, 0.3, "level of the friction in sliding, taken back to standstill", record_speeds},
+    {"coulomb_N", Scale::value, 0.3, "friction level in sliding, extrapolated to standstill", record_speeds},
     {"viscous_N_s_per_m", Scale::at_speed, 0.5, "slope of the friction over speed", record_speeds},
     {"constant_force_N", Scale::coulomb, 0.1,
-     "half the difference of both directions: also gravity, current offset, or "
-     "Coulomb friction that differs between the directions",
+     "half the difference of both directions; includes gravity, current offset, and Coulomb friction that differs "
+     "between the directions",
      record_speeds},
-    {"coulomb_positive_N", Scale::value, 0.3, "with the constant force, which no log of one axis can tell from it",
+    {"coulomb_positive_N", Scale::value, 0.3, "includes the constant force, which no log of one axis can separate",
      record_speeds},
-    {"coulomb_negative_N", Scale::value, 0.3, "with the constant force, which no log of one axis can tell from it",
+    {"coulomb_negative_N", Scale::value, 0.3, "includes the constant force, which no log of one axis can separate",
      record_speeds},
     {"viscous_positive_N_s_per_m", Scale::at_speed, 0.5, "slope of the friction over speed in +x", record_speeds},
     {"viscous_negative_N_s_per_m", Scale::at_speed, 0.5, "slope of the friction over speed in -x", record_speeds},
@@ -102,22 +102,21 @@ void judge(Identification& result, const FittedParameter& fitted, const Scales& 
   const char* record = criterion != nullptr ? criterion->record : record_speeds;
   if (blocks < least_blocks) {
     result.not_determined.push_back(
-        {fitted.name, fmt::format("{} independent pieces of data, fewer than {}", blocks, least_blocks), record});
+        {fitted.name, fmt::format("the data have {} independent blocks, fewer than {}", blocks, least_blocks), record});
     return;
   }
   if (criterion != nullptr && floor_of(fitted.name, scales) > allowed(*criterion, fitted.value, scales)) {
-    result.not_determined.push_back(
-        {fitted.name,
-         fmt::format("the data move too gently for it: at most {:.3g} mm/s and {:.3g} m/s^2", scales.data_speed * 1e3,
-                     scales.data_acceleration),
-         record});
+    result.not_determined.push_back({fitted.name,
+                                     fmt::format("the motion is too slow for it: at most {:.3g} mm/s and {:.3g} m/s^2",
+                                                 scales.data_speed * 1e3, scales.data_acceleration),
+                                     record});
     return;
   }
   if (criterion != nullptr && !(half <= allowed(*criterion, fitted.value, scales))) {
-    result.not_determined.push_back(
-        {fitted.name,
-         fmt::format("95 % interval {:.3g} to {:.3g} around {:.3g}", interval.low, interval.high, fitted.value),
-         record});
+    result.not_determined.push_back({fitted.name,
+                                     fmt::format("the 95 % interval {:.3g} to {:.3g} around {:.3g} is too wide",
+                                                 interval.low, interval.high, fitted.value),
+                                     record});
     return;
   }
   std::string text = criterion != nullptr ? criterion->how : "shape of the sliding curve";
@@ -140,12 +139,12 @@ void judge_contact(Identification& result, const FrictionFit& fit, const Scales&
     if (fitted == nullptr) continue;
     const bool damping = std::string_view(name) == "damping_ratio";
     if (damping && result.find("stiffness_N_per_m") == nullptr)
-      result.not_determined.push_back({name, "without a stiffness there is no ratio", record_reversals});
+      result.not_determined.push_back({name, "the ratio needs the contact stiffness", record_reversals});
     else
       judge(result, *fitted, scales, fit.blocks.size(), "");
   }
   if (fit.find("stribeck_velocity_m_per_s") == nullptr)
-    result.not_determined.push_back({"stribeck_velocity_m_per_s", "no fall of the friction with speed was found",
+    result.not_determined.push_back({"stribeck_velocity_m_per_s", "the friction does not fall with speed",
                                      criterion_of("stribeck_velocity_m_per_s")->record});
   bound_static_ratio(result);
 }
@@ -175,7 +174,7 @@ void add_curve(Identification& result, const LogRows& rows, const FrictionFit& f
   if (data.speed.size() >= static_cast<Eigen::Index>(least_sliding_rows) && data.blocks.size() >= least_blocks)
     result.curve = choose_sliding_curve(data, fit.correlation, settings);
   else
-    result.not_determined.push_back({"sliding_curve", "hardly any sliding in the data", record_speeds});
+    result.not_determined.push_back({"sliding_curve", "the data contain hardly any sliding", record_speeds});
 }
 
 }  // namespace
@@ -215,15 +214,14 @@ Identification identify_logs(const std::vector<Log>& logs, const machine::AxisMo
   const auto fit = recipe ? fit_coulomb_viscous(rows, options.fit) : fit_lugre(rows, options.fit);
   refuse_contradiction(fit, rows);
 
-  result.method =
-      recipe ? "Least squares with sgn(v) of every sample (published EMPS recipe), filtered at 100 Hz, rows at "
-               "100 Hz; intervals by block bootstrap."
-             : "Least squares with a LuGre contact driven by the measured position, filtered at 100 Hz, rows "
-               "at 100 Hz; intervals by block bootstrap.";
+  result.method = recipe ? "Least squares with sgn(v) of every sample, as published for EMPS; data filtered at 100 Hz, "
+                           "rows at 100 Hz, intervals by block bootstrap."
+                         : "Least squares with a LuGre contact driven by the measured position; data filtered at 100 "
+                           "Hz, rows at 100 Hz, intervals by block bootstrap.";
   if (fit.sliding_only)
     result.method +=
-        " The contact's model contradicts the rows in steady sliding: mass, Coulomb and viscous friction "
-        "come from those alone, and the contact's parameters are a compromise.";
+        " The contact model contradicts the rows in steady sliding. Mass, Coulomb and viscous friction therefore come "
+        "from those rows alone, and the contact parameters are a compromise.";
   const Scales scales{std::abs(fit.at("coulomb_N").value), axis.max_velocity, excitation.highest_speed,
                       excitation.highest_acceleration};
   const char* how = fit.sliding_only ? "rows in steady sliding only" : "";
@@ -231,7 +229,7 @@ Identification identify_logs(const std::vector<Log>& logs, const machine::AxisMo
     judge(result, fit.at(name), scales, fit.blocks.size(), how);
   for (const auto& each : fit_directions(rows, fit, options.fit)) judge(result, each, scales, fit.blocks.size(), "");
   if (recipe)
-    name_contact(result, "sgn(v) has no presliding; --friction lugre identifies it");
+    name_contact(result, "sgn(v) contains no presliding; --friction lugre identifies it");
   else
     judge_contact(result, fit, scales);
   if (result.find("stiffness_N_per_m") != nullptr) result.elements = fit_maxwell_slip(rows).elements;
@@ -248,7 +246,7 @@ Identification identify_table(const SteadyTable& table, const machine::AxisModel
   result.axis = axis.name;
   result.sources = {table.source};
   result.samples = table.speed.size();
-  result.method = "Sliding curve through the steady states of a table; intervals by bootstrap of its rows.";
+  result.method = "Sliding curve fitted to the steady states of a table; intervals by bootstrap of its rows.";
   result.curve = choose_sliding_curve(data, 1.0, settings);
   // Coulomb and viscous friction are those of a straight line, whatever curve is nearer to the points.
   Eigen::MatrixXd columns(data.speed.size(), data.others.cols() + 2);
@@ -265,7 +263,8 @@ Identification identify_table(const SteadyTable& table, const machine::AxisModel
   for (const auto& each : straight.parameters) judge(result, each, scales, data.blocks.size(), "straight line");
   if (sign == 0)
     result.not_determined.push_back(
-        {"constant_force_N", "speeds of one direction only: it is part of the Coulomb friction", record_speeds});
+        {"constant_force_N", "the table has speeds of one direction only, so it is a part of the Coulomb friction",
+         record_speeds});
   result.not_determined.push_back({"mass_kg", "a table of steady states has no acceleration", criteria[0].record});
   name_contact(result, "a table of steady states has no presliding");
   const Eigen::VectorXd left = data.force - columns * centre.transpose();

@@ -61,11 +61,12 @@ struct IdentifyOptions {
 const AxisLog& channels_of(const Log& log, const machine::AxisModel& axis);
 
 // `axis`: of the machine that the logs belong to; each log's channels of that axis, or those without an axis' name.
-// Throws LogError for logs that cannot be used (suitability.hpp).
+// Throws LogError for logs that cannot be used (suitability.hpp). `options`: friction model, amperes, bootstrap.
 Identification identify_logs(const std::vector<Log>& logs, const machine::AxisModel& axis,
                              const IdentifyOptions& options);
 
-// Throws LogError.
+// The same from a table. `table`: rows of steady motion; `axis`: of the machine; `stated`: convention of the currents
+// where the table has none; `settings`: of the bootstrap. Throws LogError.
 Identification identify_table(const SteadyTable& table, const machine::AxisModel& axis, std::optional<Amperes> stated,
                               const FitSettings& settings);
 

@@ -121,11 +121,10 @@ std::string identified_machine(const std::filesystem::path& file, const std::vec
     for (const auto& [key, value] : table.keys) edits.push_back({path({"friction", table.model, key}), value});
   });
   if (complete.empty())
-    throw LogError(
-        fmt::format("{}: found no friction model of axis {} in {} all of whose parameters these data determine; "
-                    "expected at least Coulomb and viscous friction. Record constant speeds from a few mm/s up "
-                    "to the highest, each both ways",
-                    fmt::join(result.sources, ", "), axis.name, file.filename().string()));
+    throw LogError(fmt::format(
+        "{}: found no friction model of axis {} in {} whose parameters these data determine completely; expected at "
+        "least Coulomb and viscous friction. Record constant speeds from a few mm/s up to the highest, each both ways",
+        fmt::join(result.sources, ", "), axis.name, file.filename().string()));
   edits.push_back({path({"friction", "use"}), model_in_use(axis.friction.use, complete)});
   return machine::edited_machine(file, set, edits, comment);
 }

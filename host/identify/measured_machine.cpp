@@ -88,7 +88,7 @@ class Calibration {
       return;
     throw MissingRows(
         fmt::format("axis {}: found no friction that gives {:.2f} um and {:.2f} A (nearest {:.2f} um, {:.2f} A); "
-                    "expected a row of a circle that friction can explain",
+                    "expected a row that friction can explain",
                     axis.axis, wanted.error * 1e6, wanted.current, axis.error * 1e6, axis.current));
   }
 

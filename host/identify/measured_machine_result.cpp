@@ -18,7 +18,7 @@ struct Bound {
 constexpr std::array<Bound, 2> bounds{{{"X", 0.07, 0.04}, {"Y", 0.07, 0.08}}};
 constexpr double mean_bound = 0.055, mean_bound_with_path = 0.065, kept_bound = 0.8, restart_bound = 0.2;
 constexpr double kept_room = 50.0;  // % above the least that is to be kept
-constexpr const char* source = "figure to reach";
+constexpr const char* source = "target";
 
 // A share in percent that is to be at most `bound`.
 std::optional<sim::Expectation> at_most(double bound) { return sim::Expectation{0.0, bound * 100.0, source}; }
@@ -40,8 +40,8 @@ void add_parameters(const MeasuredMachine& m, sim::ExperimentResult& result) {
   add("rise_velocity", "mm/s", "speed with 63 % of the rise", m.sliding.rise_velocity * 1e3);
   add("viscous", "N s/m", "viscous friction", m.sliding.viscous);
   add("sliding_deviation", "N", "points of Tab 5.1 about the curve, rms", m.sliding.deviation);
-  add("presliding_coulomb", "N",
-      "greatest force that the test rig's contact carried against the motion before, Tab 5.3", m.presliding.coulomb());
+  add("presliding_coulomb", "N", "greatest force of the test rig contact against the previous motion, Tab 5.3",
+      m.presliding.coulomb());
   for (const auto& axis : m.axes) {
     add("force_scale_" + axis.axis, "", "scale of the friction, " + axis.axis, axis.force);
     add("displacement_scale_" + axis.axis, "", "scale of the displacements, " + axis.axis, axis.displacement);
@@ -66,13 +66,15 @@ void add_scores(const MeasuredMachineStudy& study, sim::ExperimentResult& result
   const double mean = mean_of(scores);
   result.figures.push_back(
       {"held_out_mean", "%", "mean of all quantities, held-out feeds", mean * 100.0, at_most(mean_bound)});
-  result.figures.push_back({"held_out_mean_beside_the_path", "%", "the same, where the path \"L\" is to come out too",
-                            mean * 100.0, at_most(mean_bound_with_path)});
-  result.figures.push_back(
-      {"standstill_current_kept", "%", "path \"L\": standstill current of Y of its creeping friction, at least 80 %",
-       study.kept_share() * 100.0, sim::Expectation{kept_bound * 100.0 + kept_room, kept_room, source}});
+  result.figures.push_back({"held_out_mean_beside_the_path", "%",
+                            "the same for a model that also reproduces the L-shaped path", mean * 100.0,
+                            at_most(mean_bound_with_path)});
+  result.figures.push_back({"standstill_current_kept", "%",
+                            "L-shaped path: current of Y at standstill over its creeping friction, at least 80 %",
+                            study.kept_share() * 100.0,
+                            sim::Expectation{kept_bound * 100.0 + kept_room, kept_room, source}});
   result.figures.push_back({"same_direction_restart", "%",
-                            "path \"L\": error of the restart in the same direction, of the opposite one",
+                            "L-shaped path: error of the restart in the same direction over that in the opposite one",
                             study.restart_share() * 100.0, at_most(restart_bound)});
 }
 
@@ -128,12 +130,13 @@ sim::Chart presliding_chart(const PermittedRows& rows, const PreslidingCurve& cu
   sim::Chart chart{"Force before sliding",
                    "displacement, um",
                    "force, N",
-                   "Tab 5.3: loaded after coasting to rest. The model's first loading follows the points against the "
-                   "motion before; those in its direction it does not explain.",
+                   "Tab 5.3: loaded after coasting to rest. The first loading of the model follows the points against "
+                   "the previous motion; it does not explain those in its direction.",
                    false,
                    {}};
   for (const bool same : {true, false}) {
-    sim::Series points{same ? "in the direction of the motion before, measured" : "against it, measured", {}, {}, true};
+    sim::Series points{
+        same ? "in the direction of the previous motion, measured" : "against it, measured", {}, {}, true};
     for (const auto& point : rows.presliding) {
       if (point.same_direction != same) continue;
       points.x.push_back(point.displacement * 1e6);
@@ -153,25 +156,26 @@ sim::Chart presliding_chart(const PermittedRows& rows, const PreslidingCurve& cu
 std::vector<std::string> findings(const MeasuredMachineStudy& study) {
   const auto scores = held_out_scores(study.rows);
   std::vector<std::string> sentences;
-  sentences.push_back(fmt::format("Calibrated on 16 m/min, the model is {:.1f} % off in the mean at the other feeds.",
-                                  mean_of(scores) * 100.0));
+  sentences.push_back(
+      fmt::format("Calibrated at 16 m/min, the model deviates by {:.1f} % on average at the other feeds.",
+                  mean_of(scores) * 100.0));
   const auto worst = std::max_element(study.rows.begin(), study.rows.end(), [](const auto& a, const auto& b) {
     const auto off = [](const PredictedRow& row) { return std::abs(row.error / row.measured_error - 1.0); };
     return off(a) < off(b);
   });
   sentences.push_back(
-      fmt::format("The largest miss of a peak error is {} at {:g} m/min: {:.1f} um, measured {:.1f} um.", worst->axis,
-                  worst->feed * 60.0, worst->error * 1e6, worst->measured_error * 1e6));
-  sentences.push_back(fmt::format(
-      "On the path \"L\" Y keeps {:.2f} A at standstill, {:.0f} % of its creeping friction; it restarts with {:.1f} um "
-      "in the same direction and {:.1f} um in the opposite one.",
-      study.l_shape.kept_current(), study.kept_share() * 100.0, study.l_shape.same_error * 1e6,
-      study.l_shape.opposite_error * 1e6));
-  sentences.push_back(fmt::format(
-      "The calibration makes the contact {:.1f} (X) and {:.1f} (Y) times softer than the test rig of Tab 5.3; small "
-      "reversals of the machine itself would decide on its presliding, and a restart after standstills of several "
-      "lengths on how long it remembers.",
-      study.identified.axes[0].displacement, study.identified.axes[1].displacement));
+      fmt::format("The largest deviation of a peak error is that of {} at {:g} m/min: {:.1f} um, measured {:.1f} um.",
+                  worst->axis, worst->feed * 60.0, worst->error * 1e6, worst->measured_error * 1e6));
+  sentences.push_back(
+      fmt::format("On the L-shaped path Y keeps {:.2f} A at standstill, {:.0f} % of its creeping friction; its error "
+                  "at the restart is {:.1f} um in the same direction and {:.1f} um in the opposite one.",
+                  study.l_shape.kept_current(), study.kept_share() * 100.0, study.l_shape.same_error * 1e6,
+                  study.l_shape.opposite_error * 1e6));
+  sentences.push_back(
+      fmt::format("The calibration makes the contact {:.1f} (X) and {:.1f} (Y) times softer than the test rig of Tab "
+                  "5.3. Small reversals of the machine itself would determine its presliding, and restarts after "
+                  "standstills of several durations its memory.",
+                  study.identified.axes[0].displacement, study.identified.axes[1].displacement));
   return sentences;
 }
 
@@ -189,10 +193,10 @@ MeasuredMachineStudy study_measured_machine(const machine::Machine& circle, cons
 sim::ExperimentResult measured_machine_result(const machine::Machine& machine, const MeasuredMachineStudy& study) {
   sim::ExperimentResult result{
       "identify-reference",
-      "A friction model of the measured machine",
+      "Friction model of the measured machine",
       "double",
-      "Parameters from Tab 5.1, Tab 5.3 and two numbers an axis at 16 m/min; the other feeds of Tab 6.4 are predicted "
-      "(Mendricky 2006; structure: docs/friction_model.md).",
+      "The parameters come from Tab 5.1, Tab 5.3 and two numbers per axis at 16 m/min; the other feeds of Tab 6.4 are "
+      "predicted (Mendricky 2006; structure: docs/friction_model.md).",
       findings(study),
       {},
       {}};
@@ -206,8 +210,8 @@ sim::ExperimentResult measured_machine_result(const machine::Machine& machine, c
       over_feed(machine, study, false),
       sliding_chart(rows, study.identified.sliding),
       presliding_chart(rows, study.identified.presliding),
-      {"Path \"L\": error of Y", "time, s", "error at the encoder, um", "", false, {std::move(error)}},
-      {"Path \"L\": current of Y", "time, s", "motor force / force constant, A", "", false, {std::move(current)}}};
+      {"L-shaped path: error of Y", "time, s", "error at the encoder, um", "", false, {std::move(error)}},
+      {"L-shaped path: current of Y", "time, s", "motor force / force constant, A", "", false, {std::move(current)}}};
   return result;
 }
 

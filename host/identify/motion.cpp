@@ -46,10 +46,10 @@ std::vector<double> force_of(const Log& log, const AxisLog& channels, const mach
     force = channels.u;
     for (double& f : force) f *= per_unit;
   } else {
-    throw LogError(fmt::format(
-        "{}: found neither the motor's force nor {}; expected a column F[N]{}", log.source,
-        source ? "its voltage, of a motor that the machine file describes as a force source" : "its current",
-        source ? " or u[V]" : " or i[A]"));
+    throw LogError(
+        fmt::format("{}: found neither the motor's force nor {}; expected a column F[N]{}", log.source,
+                    source ? "its voltage, as the machine file describes the motor as a force source" : "its current",
+                    source ? " or u[V]" : " or i[A]"));
   }
   for (std::size_t k = 0; k < channels.external_force.size(); ++k) force[k] += channels.external_force[k];
   return force;

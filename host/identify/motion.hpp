@@ -42,10 +42,12 @@ struct Motion {
 enum class Amperes { amplitude, rms };
 
 // The force (N) on the carriage by what `log` holds: F, else i times the force constant, else (of a force source) u
-// times it; and F_ext. Throws LogError when it has none of them for this motor.
+// times it; and F_ext. Throws LogError when it has none of them for this motor. `channels`: of the axis in `log`;
+// `axis`: of the machine; `amperes`: convention of its currents.
 std::vector<double> force_of(const Log& log, const AxisLog& channels, const machine::AxisModel& axis, Amperes amperes);
 
-// Throws LogError.
+// Filtered motion and force of an axis. `log`, `channels`, `axis`, `amperes`: as for force_of(); `settings`: of the
+// filters. Throws LogError.
 Motion motion_of(const Log& log, const AxisLog& channels, const machine::AxisModel& axis, Amperes amperes,
                  const SignalSettings& settings);
 

@@ -65,8 +65,8 @@ class ClosedLoop {
     for (const auto& log : logs) {
       const auto& channels = channels_of(log, axis);
       if (!channels.external_force.empty())
-        throw LogError(
-            fmt::format("{}: found F_ext; expected none with --refine, which simulates the drive alone", log.source));
+        throw LogError(fmt::format(
+            "{}: found F_ext; expected none with --refine, whose simulation has no external force", log.source));
       set_points_.emplace_back(log, channels);
       forces_are_logged_.push_back(!channels.force.empty());
       measured_.push_back(channels.x);
@@ -183,10 +183,9 @@ Refinement refine_in_closed_loop(const std::vector<Log>& logs, const machine::Ma
   for (const char* name : {"mass_kg", "coulomb_N", "viscous_N_s_per_m"}) {
     moved.push_back(result.find(name));
     if (moved.back() == nullptr)
-      throw LogError(
-          fmt::format("--refine: found no {} to start from; expected logs that determine mass, Coulomb and "
-                      "viscous friction",
-                      name));
+      throw LogError(fmt::format(
+          "--refine: found no initial value of {}; expected logs that determine mass, Coulomb and viscous friction",
+          name));
   }
   if (const auto* stiffness = result.find("stiffness_N_per_m")) moved.push_back(stiffness);
   std::vector<double> start, factors(moved.size(), 1.0);

@@ -21,7 +21,8 @@ struct Refinement {
 // Starts from `result` (of the same logs): mass, Coulomb and viscous friction, and the contact's stiffness where it is
 // determined (LuGre); without it the friction is the classical model, which sticks. The logs should begin at rest and
 // hold set-points; the first quarter of a second does not count. Throws LogError for a log without set-points, or when
-// a parameter to start from is missing, or when no simulation runs through.
+// a parameter to start from is missing, or when no simulation runs through. `machine`: controllers and limits; `axis`:
+// of it; `options`: amperes and bootstrap.
 Refinement refine_in_closed_loop(const std::vector<Log>& logs, const machine::Machine& machine,
                                  const machine::AxisModel& axis, const Identification& result,
                                  const IdentifyOptions& options);

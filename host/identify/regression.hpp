@@ -21,7 +21,7 @@ struct RowBlock {
 double correlation_length(const Eigen::VectorXd& residual, std::span<const std::size_t> logs);
 
 // Blocks of at least `shortest` rows within each log, cut at reversals (changes of sign of `velocity`) where these are
-// far enough apart; pieces between reversals longer than twice that are cut evenly.
+// far enough apart; pieces between reversals longer than twice that are cut evenly. `logs`: first row of each log.
 std::vector<RowBlock> blocks_of(const Eigen::VectorXd& velocity, std::span<const std::size_t> logs,
                                 std::size_t shortest);
 
@@ -64,6 +64,7 @@ class BlockRegression {
 };
 
 // Least squares on normal equations with columns `free` unbound and the rest not negative (Lawson, Hanson 1974).
+// `columns`: one row per sample; `force`: as many rows.
 Eigen::VectorXd solve_not_negative(const Eigen::MatrixXd& columns, const Eigen::VectorXd& force, std::size_t free);
 
 // 95 % interval of a quantity from its replicates around its value.

@@ -125,7 +125,8 @@ SteadyTable parse_steady_table(std::string_view text, const std::string& name) {
         columns[k].values->push_back(columns[k].scale(number(rows, columns[k].header, fields[k])));
   }
   if (table.current.size() != table.speed.size() && table.force.size() != table.speed.size())
-    throw LogError(fmt::format("{}: found a table without forces; expected a column i[A] or F[N] beside v", name));
+    throw LogError(
+        fmt::format("{}: found a table without forces; expected a column i[A] or F[N] in addition to v", name));
   return table;
 }
 
@@ -135,8 +136,8 @@ SlidingData sliding_data(const SteadyTable& table, const machine::AxisModel& axi
     const auto amperes = table.amperes ? table.amperes : stated;
     if (!amperes)
       throw LogError(
-          fmt::format("{}: found currents without a word on how they were read; expected --amperes peak or "
-                      "--amperes rms, or a line \"# amperes: rms\" before the header",
+          fmt::format("{}: found currents without their convention; expected --amperes peak or --amperes rms, or a "
+                      "line \"# amperes: rms\" before the header",
                       table.source));
     const double scale = axis.motor.force_constant * (*amperes == Amperes::rms ? std::numbers::sqrt2 : 1.0);
     for (const double i : table.current) force.push_back(scale * i);
@@ -155,8 +156,8 @@ SlidingData sliding_data(const SteadyTable& table, const machine::AxisModel& axi
                     table.source, speeds.size(), least_speeds));
   if (dissipated <= 0.0)
     throw LogError(
-        fmt::format("{}: found forces that push where friction must brake; expected a force of the sign of "
-                    "the speed. Turn the sign of one of them",
+        fmt::format("{}: found forces with the opposite sign of the speed, although friction opposes motion; expected "
+                    "the same sign. Reverse one of them",
                     table.source));
   SlidingData data;
   const auto n = static_cast<Eigen::Index>(force.size());

@@ -32,7 +32,8 @@ SteadyTable parse_steady_table(std::string_view text, const std::string& name);
 std::optional<Amperes> parse_amperes(std::string_view text);
 
 // The rows as data for a sliding curve, each a block of its own. Throws LogError for currents of which neither the
-// table nor `stated` says how they are to be read, for too few rows, and for forces of the wrong sign.
+// table nor `stated` says how they are to be read, for too few rows, and for forces of the wrong sign. `table`: as
+// read; `axis`: of the machine, for its force constant.
 SlidingData sliding_data(const SteadyTable& table, const machine::AxisModel& axis, std::optional<Amperes> stated);
 
 }  // namespace stiction::host

@@ -99,16 +99,16 @@ void refuse_saturation(const Log& log, const AxisLog& channels, const machine::A
   double largest = 0.0;
   for (const double value : values) largest = std::max(largest, std::abs(value));
   const auto complain = [&](const Run& run, const std::string& why) {
-    throw LogError(fmt::format(
-        "{}: found the {} at {:.4g} {} for {:.3g} ms at t = {:.4g} s, {}; expected a {} that is never held back: what "
-        "the axis then needed is not in the log. Record the same motion with lower acceleration or speed, or a wider "
-        "measuring range",
-        log.source, signal.name, largest, signal.unit, 1e3 * static_cast<double>(run.length) * log.period,
-        log.t[run.begin], why, signal.name));
+    throw LogError(
+        fmt::format("{}: found the {} at {:.4g} {} for {:.3g} ms at t = {:.4g} s, {}; expected a {} that is never "
+                    "limited, because the log then lacks the force that the motion requires. Record the same motion "
+                    "with lower acceleration or speed, or a wider measuring range",
+                    log.source, signal.name, largest, signal.unit, 1e3 * static_cast<double>(run.length) * log.period,
+                    log.t[run.begin], why, signal.name));
   };
   const auto limited = longest_run(values, [&](std::size_t k) { return std::abs(values[k]) >= 0.999 * signal.limit; });
   if (limited.length >= 3)
-    complain(limited, fmt::format("the machine's limit of {:.4g} {}", signal.limit, signal.unit));
+    complain(limited, fmt::format("the limit of {:.4g} {} in the machine file", signal.limit, signal.unit));
   // A flat top: the largest value, to the digit, many times in a row, in a signal that otherwise changes.
   const auto flat = longest_run(values, [&](std::size_t k) { return std::abs(values[k]) == largest; });
   std::size_t repeats = 0;
@@ -145,14 +145,14 @@ void require_excitation(const Excitation& e, const std::string& sources) {
                     sources, e.duration, shortest));
   if (e.reversals == 0)
     throw LogError(
-        fmt::format("{}: found no reversal; expected motion in both directions, without which Coulomb "
-                    "friction cannot be told from a constant force. Record each speed there and back",
+        fmt::format("{}: found no reversal; expected motion in both directions, without which Coulomb friction cannot "
+                    "be separated from a constant force. Record each speed there and back",
                     sources));
   if (e.speeds.size() < 2)
     throw LogError(
-        fmt::format("{}: found {}; expected at least two, a factor 1.5 apart and each for 0.1 s, without "
-                    "which viscous friction cannot be told from Coulomb friction. Record constant speeds "
-                    "from a few mm/s up to the highest, each both ways",
+        fmt::format("{}: found {}; expected at least two, a factor 1.5 apart and each for 0.1 s, without which viscous "
+                    "friction cannot be separated from Coulomb friction. Record constant speeds from a few mm/s up to "
+                    "the highest, each both ways",
                     sources,
                     e.speeds.empty() ? std::string("no speed kept for 0.1 s")
                                      : fmt::format("one speed only, {:.3g} mm/s", e.speeds.front() * 1e3)));
@@ -166,9 +166,9 @@ void refuse_swapped_sign(const LogRows& rows) {
   }
   if (power >= -0.1 * either_way) return;
   throw LogError(
-      fmt::format("{}: found a force that pushes where friction must brake: the motor takes {:.3g} J out of the "
-                  "motion; expected force and position positive in the same direction. The sign of one of "
-                  "them is swapped: turn the current's (or the encoder's) sign in the record",
+      fmt::format("{}: found a force that pushes where friction must brake: the motor absorbs {:.3g} J from the "
+                  "motion; expected force and position positive in the same direction. The sign of one of them is "
+                  "swapped: reverse the current or the position in the record",
                   sources_of(rows.motions()), -power * rows.period(0)));
 }
 
@@ -176,11 +176,10 @@ void refuse_contradiction(const FrictionFit& fit, const LogRows& rows) {
   for (const char* name : {"mass_kg", "coulomb_N"}) {
     const auto interval = fit.at(name).interval();
     if (interval.high >= 0.0) continue;
-    throw LogError(
-        fmt::format("{}: found {} = {:.4g}, from {:.4g} to {:.4g}; expected a positive value. Force and "
-                    "position do not belong together: check sign, scale and time of both channels, and record "
-                    "moves with higher acceleration",
-                    sources_of(rows.motions()), name, fit.at(name).value, interval.low, interval.high));
+    throw LogError(fmt::format(
+        "{}: found {} = {:.4g}, from {:.4g} to {:.4g}; expected a positive value. Force and position are inconsistent: "
+        "check sign, scale and time of both channels, and record moves with higher acceleration",
+        sources_of(rows.motions()), name, fit.at(name).value, interval.low, interval.high));
   }
 }
 

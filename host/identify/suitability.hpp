@@ -26,7 +26,8 @@ std::string sources_of(const std::vector<Motion>& motions);
 // A log of no more than a fifth of a second cannot be filtered.
 void require_samples(const Log& log);
 
-// Refuses a current (force, voltage) that stood at the machine's limit, or whose largest value is a flat top.
+// Refuses a current (force, voltage) that stood at the machine's limit, or whose largest value is a flat top. `log`:
+// for messages; `channels`: of the axis in it; `axis`: of the machine. Throws LogError.
 void refuse_saturation(const Log& log, const AxisLog& channels, const machine::AxisModel& axis);
 
 // Refuses logs that are too short, without reversals or without enough speeds.

@@ -59,7 +59,7 @@ void require_channels(const Log& log, std::string_view place) {
   std::string ignored;
   for (const auto& header : log.ignored)
     if (ignored.size() < 60) ignored += (ignored.empty() ? "" : ", ") + excerpt(header);
-  const std::string others = ignored.empty() ? "" : fmt::format(" (found, but unknown: {})", ignored);
+  const std::string others = ignored.empty() ? "" : fmt::format(" (columns with unknown names: {})", ignored);
   if (log.axes.empty())
     throw LogError(
         fmt::format("{}: found no channel of an axis{}; expected at least t[s], x[m] and one of i[A], F[N] "
@@ -68,10 +68,10 @@ void require_channels(const Log& log, std::string_view place) {
   for (const auto& axis : log.axes) {
     const std::string prefix = axis.axis.empty() ? "" : axis.axis + ".";
     if (axis.axis.empty() && log.axes.size() > 1)
-      throw LogError(fmt::format(
-          "{}: found channels with an axis ({}.) beside channels without one; expected every channel with its axis, or "
-          "none",
-          place, log.axes[log.axes[0].axis.empty() ? 1 : 0].axis));
+      throw LogError(
+          fmt::format("{}: found channels with an axis ({}.) together with channels without one; expected the axis in "
+                      "all names or in none",
+                      place, log.axes[log.axes[0].axis.empty() ? 1 : 0].axis));
     if (axis.x.empty())
       throw LogError(
           fmt::format("{}: found no {}x[m]{}; expected the measured position of every axis", place, prefix, others));

@@ -1,4 +1,5 @@
-// A column's header, "X.x_set[mm]": axis, name, unit. The same names stand in every format of a log (contract.md, 2).
+// A column's header, "X.x_set[mm]": axis, name, unit. Every format of a log has the same names
+// (docs/log_format.md).
 #pragma once
 
 #include <string>

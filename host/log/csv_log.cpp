@@ -71,8 +71,8 @@ void refuse_other_separator(const CsvRows& rows, const std::vector<std::string_v
   for (const auto& [separator, name] : {std::pair{'\t', "tabs"}, std::pair{';', "semicolons"}})
     if (header[0].find(separator) != std::string_view::npos)
       throw LogError(
-          fmt::format("{}: found a header with {} between the columns; expected commas (`stiction convert "
-                      "--map` reads other tables)",
+          fmt::format("{}: found a header with {} between the columns; expected commas (`stiction convert --map` reads "
+                      "different tables)",
                       rows.place(), name));
 }
 
@@ -149,7 +149,7 @@ class Reader {
     for (const auto& column : columns_) {
       const auto text = trimmed(fields_[column.field]);
       const double value = column.scale(number(text, column.field, names));
-      if (!std::isfinite(value)) fail(column.field, names, text, "a number within the range of numbers");
+      if (!std::isfinite(value)) fail(column.field, names, text, "a number in the range of double precision");
       if (column.values != nullptr) {
         (log_.axes[column.axis].*column.values).push_back(value);
         continue;
@@ -169,7 +169,7 @@ class Reader {
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (error == std::errc{} && end == digits.data() + digits.size() && std::isfinite(value)) return value;
     if (text.find(',') != std::string_view::npos)
-      fail(field, names, text, "a point as decimal mark (`stiction convert --map` reads other tables)");
+      fail(field, names, text, "a point as decimal mark (`stiction convert --map` reads different tables)");
     fail(field, names, text, "a finite number");
   }
 

@@ -1,5 +1,5 @@
-// Logs as CSV (RFC 4180, UTF-8, point as decimal mark; contract.md, 2): leading "# key: value" lines, one header row
-// with a unit for every channel, uniform samples.
+// Logs as CSV (RFC 4180, UTF-8, point as decimal mark; docs/log_format.md): leading "# key: value" lines, one header
+// row with a unit for every channel, uniform samples.
 #pragma once
 
 #include <filesystem>

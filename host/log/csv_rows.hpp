@@ -10,7 +10,7 @@ namespace stiction::host {
 
 class CsvRows {
  public:
-  // `text` must outlive the fields. `name` and `first_line` are for messages.
+  // `text` must outlive the fields. `name` and `first_line` are for messages. `separator`: between the fields.
   CsvRows(std::string_view text, char separator, std::string name, std::size_t first_line = 1)
       : rest_(text), separator_(separator), name_(std::move(name)), next_line_(first_line) {}
 

@@ -27,7 +27,7 @@ Determinable rigid(const AxisInspection& out, std::size_t which, const char* wha
                    const char* remedy) {
   Determinable d{what, false, "", remedy};
   if (out.effort == nullptr || !out.fit) {
-    d.reason = "the log hardly moves";
+    d.reason = "the axis hardly moves";
     return d;
   }
   const auto& fit = *out.fit;
@@ -36,14 +36,15 @@ Determinable rigid(const AxisInspection& out, std::size_t which, const char* wha
       which == 3 ? std::max(std::abs(fit.value[3]), std::abs(fit.value[2])) : std::abs(fit.value[which]);
   const double relative = size > 0.0 ? fit.error[which] / size : 1e9;
   if (fit.inflation[which] > separable) {
-    d.reason = fmt::format("in this motion it cannot be told from {}", confused);
+    d.reason = fmt::format("this motion does not separate it from {}", confused);
   } else if (relative > well_known) {
-    d.reason =
-        fmt::format("its part of the {} is too small for the rest of it ({:.2g} {} rms): standard error {:.0f} %",
-                    out.effort->text, fit.residual, out.effort->unit, std::min(999.0, 100.0 * relative));
+    d.reason = fmt::format(
+        "its part of the {} is too small compared with the residual ({:.2g} {} rms): standard error {:.0f} %",
+        out.effort->text, fit.residual, out.effort->unit, std::min(999.0, 100.0 * relative));
   } else {
     d.possible = true;
-    d.reason = fmt::format("standard error about {:.2g} %{}", 100.0 * relative, which == 3 ? " of the friction" : "");
+    d.reason =
+        fmt::format("the standard error is about {:.2g} %{}", 100.0 * relative, which == 3 ? " of the friction" : "");
     d.remedy.clear();
   }
   return d;
@@ -54,7 +55,7 @@ Determinable asymmetry(const AxisInspection& out) {
     return {"difference between the directions", true,
             fmt::format("{:.0f} % of the motion goes in +x", 100.0 * out.forward), ""};
   return {"difference between the directions", false, "the axis moves in one direction only",
-          "the same stretch in both directions"};
+          "the same segment in both directions"};
 }
 
 // Mean number of samples in which the axis moves by no more than `presliding` behind a reversal.
@@ -81,18 +82,17 @@ double finest_step(const std::vector<double>& x) {
 }
 
 Determinable presliding_shape(const AxisLog& axis, const FittedMotion& motion, const AxisInspection& out) {
-  Determinable d{
-      "presliding stiffness and shape", false, "",
-      "slow reversals: a sine of 10 to 100 um, or a feed of some mm/s that turns, at 1 kHz or faster and with "
-      "an encoder of 0.1 um or finer"};
+  Determinable d{"presliding stiffness and shape", false, "",
+                 "slow reversals: a sine of 10 to 100 um, or a feed of some mm/s that reverses, at 1 kHz or faster and "
+                 "with an encoder of 0.1 um or finer"};
   const double samples = samples_behind_reversals(axis, motion);
   const double step = finest_step(axis.x);
   if (out.reversals < 2)
     d.reason = fmt::format("{} reversal{}", out.reversals, out.reversals == 1 ? "" : "s");
   else if (samples < 10.0)
-    d.reason = fmt::format("{:.1f} samples in the first {:.0f} um behind a reversal", samples, presliding * 1e6);
+    d.reason = fmt::format("{:.1f} samples in the first {:.0f} um after a reversal", samples, presliding * 1e6);
   else if (step > 1e-6)
-    d.reason = fmt::format("the position comes in steps of {:.2g} um", step * 1e6);
+    d.reason = fmt::format("the position has steps of {:.2g} um", step * 1e6);
   else
     d = {d.what, true,
          fmt::format("{} reversals, {:.0f} samples each in the first {:.0f} um", out.reversals, samples,
@@ -124,7 +124,7 @@ Determinable sliding_curve(const AxisInspection& out) {
     d = {d.what, true,
          fmt::format("{} constant speeds from {:.3g} to {:.3g} mm/s", count, mm_s(slowest), mm_s(fastest)), ""};
   else if (count == 0)
-    d.reason = "no stretch of constant speed";
+    d.reason = "no segment of constant speed";
   else
     d.reason = fmt::format("{} constant speed{} from {:.3g} to {:.3g} mm/s", count, count == 1 ? "" : "s",
                            mm_s(slowest), mm_s(fastest));
@@ -135,11 +135,11 @@ Determinable ripple(const KnownAxis& known, const AxisInspection& out) {
   const double wanted = known.pole_pair_pitch ? 2.0 * *known.pole_pair_pitch : 0.0;
   const bool steady = !out.plateaus.empty();
   Determinable d{"force ripple and its pitch", steady && out.stroke > std::max(wanted, 1e-3), "",
-                 "a constant speed, slow enough to be followed, over at least two pole pair pitches"};
+                 "a constant speed, slow enough to resolve the ripple, over at least two pole-pair pitches"};
   if (!steady)
-    d.reason = "no stretch of constant speed";
+    d.reason = "no segment of constant speed";
   else if (known.pole_pair_pitch)
-    d.reason = fmt::format("the stroke of {:.4g} mm holds {:.1f} pole pair pitches", out.stroke * 1e3,
+    d.reason = fmt::format("the stroke of {:.4g} mm covers {:.1f} pole-pair pitches", out.stroke * 1e3,
                            out.stroke / *known.pole_pair_pitch);
   else
     d.reason = fmt::format("pitches up to {:.3g} mm, half the stroke", out.stroke * 500.0);
@@ -160,7 +160,7 @@ Determinable drift(const Log& log, const AxisLog& axis) {
     return {"drift with temperature", true,
             fmt::format("{:.0f} s{}", duration, axis.temperature.empty() ? "" : " with the temperature"), ""};
   return {"drift with temperature", false, fmt::format("{:.3g} s", duration),
-          fmt::format("the same motion again and again over {:.0f} s or more, with the temperature", long_enough)};
+          fmt::format("the same motion repeated over {:.0f} s or more, with the temperature", long_enough)};
 }
 
 }  // namespace
@@ -168,16 +168,15 @@ Determinable drift(const Log& log, const AxisLog& axis) {
 void add_suspicions(const Log&, const AxisLog& axis, const KnownAxis& known, AxisInspection& out) {
   for (const auto& s : out.saturation)
     out.suspicions.push_back(
-        fmt::format("{} stands at its greatest value of {:.4g} for {:.2g} % of the samples: it is "
-                    "saturated there; record with less acceleration or speed",
+        fmt::format("{} is at its greatest value of {:.4g} for {:.2g} % of the samples: it is saturated there; record "
+                    "with less acceleration or speed",
                     s.channel, s.level, 100.0 * s.part));
   if (known.effort_limit && out.effort != nullptr && std::string_view(out.effort->name) != "F") {
     double most = 0.0;
     for (const double value : axis.*out.effort->values) most = std::max(most, std::abs(value));
     if (most >= 0.98 * *known.effort_limit)
       out.suspicions.push_back(
-          fmt::format("{} reaches {:.4g} {}, the machine's limit of {:.4g}: what happens there is "
-                      "the limit's doing",
+          fmt::format("{} reaches {:.4g} {}, the limit of {:.4g} in the machine file, which distorts the motion",
                       out.effort->name, most, out.effort->unit, *known.effort_limit));
   }
   if (!out.fit) return;
@@ -186,18 +185,17 @@ void add_suspicions(const Log&, const AxisLog& axis, const KnownAxis& known, Axi
   const bool mass = fit.inflation[0] < separable, friction = fit.inflation[2] < separable;
   if (mass && negative(0) && (!friction || negative(2)))
     out.suspicions.push_back(
-        fmt::format("{} falls when the axis accelerates: its sign, or that of the position, is "
-                    "swapped; turn one of them round (reverse = true in a mapping)",
+        fmt::format("{} falls when the axis accelerates: its sign, or that of the position, is swapped; reverse one of "
+                    "them (reverse = true in a mapping)",
                     out.effort->name));
   else if (mass && negative(0))
-    out.suspicions.push_back(
-        fmt::format("{} falls with the acceleration but opposes friction: it is recorded late, or "
-                    "is not the motor's",
-                    out.effort->name));
+    out.suspicions.push_back(fmt::format(
+        "{} falls with the acceleration but opposes friction: it is recorded late, or does not belong to this motor",
+        out.effort->name));
   else if (friction && negative(2))
     out.suspicions.push_back(
-        fmt::format("{} is smaller in the direction of motion than against it: friction would be "
-                    "negative; the sign may be swapped",
+        fmt::format("{} is smaller in the direction of motion than against it, which would be negative friction; the "
+                    "sign may be swapped",
                     out.effort->name));
   if (out.delay && *out.delay < -1e-3)
     out.suspicions.push_back(fmt::format(
@@ -208,13 +206,13 @@ void add_suspicions(const Log&, const AxisLog& axis, const KnownAxis& known, Axi
   const double ratio = *out.force_constant / *known.force_constant;
   if (std::abs(ratio / std::numbers::sqrt2 - 1.0) < 0.1)
     out.suspicions.push_back(
-        fmt::format("the machine's mass and force constant ask for {:.2f} times the recorded "
-                    "current: it looks like rms amperes; convert it to amplitude",
+        fmt::format("mass and force constant of the machine file require {:.2f} times the recorded current, which "
+                    "suggests rms amperes; convert it to amplitudes",
                     ratio));
   else if (std::abs(ratio - 1.0) > 0.1)
     out.suspicions.push_back(
-        fmt::format("the machine's mass and force constant ask for {:.2f} times the recorded "
-                    "current: one of the three is wrong",
+        fmt::format("mass and force constant of the machine file require {:.2f} times the recorded current: one of the "
+                    "three is wrong",
                     ratio));
 }
 
@@ -226,7 +224,7 @@ void add_determinable(const Log& log, const AxisLog& axis, const KnownAxis& know
       rigid(out, 1, "viscous friction", "Coulomb friction, because the speed hardly changes",
             "speeds over a range of 5 to 1, in both directions"),
       rigid(out, 0, "moving mass", "friction, because acceleration and speed go together",
-            "accelerations that the friction does not hide: half the machine's greatest, both signs at each speed"),
+            "accelerations well above friction: half the maximum of the machine, with both signs at each speed"),
       rigid(out, 3, "constant force", "Coulomb friction, because the axis moves in one direction",
             "the same speeds in both directions"),
       asymmetry(out),

@@ -138,14 +138,14 @@ class Reader {
   double amperes(const toml::table& table, const std::string& to, const LogChannel& channel) const {
     const auto stated = text(table, "amperes");
     if (std::string_view(channel.unit) != "A") {
-      if (!stated.empty()) fail(table, "amperes", fmt::format("none: {} is no current", to));
+      if (!stated.empty()) fail(table, "amperes", fmt::format("none, as {} is not a current", to));
       return 1.0;
     }
     if (stated == "peak") return 1.0;
     if (stated == "rms") return std::numbers::sqrt2;
     fail(table, "amperes",
-         fmt::format("amperes = \"peak\" or amperes = \"rms\" for the current {}: the drive's manual says which; a "
-                     "guess would be wrong by 41 %",
+         fmt::format("amperes = \"peak\" or amperes = \"rms\" for the current {}: the manual of the drive states "
+                     "which; a wrong choice is an error of 41 %",
                      to));
   }
 
@@ -182,8 +182,9 @@ class Applier {
 
   Log apply() {
     if (mapping_.has_table_keys && recording_.kind != "a table")
-      throw LogError(fmt::format("{}: found [table] or [time]; expected none: {} is {}, which tells them itself",
-                                 mapping_.source, recording_.source, recording_.kind));
+      throw LogError(
+          fmt::format("{}: found [table] or [time]; expected none, as {} is {}, which contains this information",
+                      mapping_.source, recording_.source, recording_.kind));
     const auto& clock = clock_channel();
     log_.source = recording_.source;
     log_.comments = recording_.comments;
@@ -257,8 +258,9 @@ class Applier {
     for (double& value : values) {
       value = scale(value) * mapped.factor;
       if (!std::isfinite(value))
-        throw LogError(fmt::format("{}: '{}': found a value beyond the range of numbers; expected less", mapped.place,
-                                   excerpt(mapped.from, 60)));
+        throw LogError(
+            fmt::format("{}: '{}': found a value beyond the range of double precision; expected a smaller one",
+                        mapped.place, excerpt(mapped.from, 60)));
     }
     return values;
   }
@@ -279,9 +281,8 @@ std::string mapping_hint(const Recording& recording) {
   for (const auto& channel : recording.channels)
     if (names.size() < 400) names += fmt::format("{}'{}'", names.empty() ? "" : ", ", excerpt(channel.name, 60));
   return fmt::format(
-      "{}: found {} with the channels {}; expected --map FILE, which says what they are: schema = "
-      "\"{}\", and for each [[channel]] from = \"NAME\", to = \"x\", unit = \"mm\" (for a current also "
-      "amperes = \"peak\" or \"rms\")",
+      "{}: found {} with the channels {}; expected --map FILE, which describes them: schema = \"{}\", and for each "
+      "[[channel]] from = \"NAME\", to = \"x\", unit = \"mm\" (for a current also amperes = \"peak\" or \"rms\")",
       recording.source, recording.kind, names, schema);
 }
 

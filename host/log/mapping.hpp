@@ -3,7 +3,7 @@
 //   schema = "stiction.mapping/1"
 //   [[channel]]
 //   from = "Axis1.ActPos"          # the channel's name in the recording
-//   to = "X.x"                     # the contract's name (contract.md, 2), with axis where there are several
+//   to = "X.x"                     # the channel of the log (docs/log_format.md), with axis where there are several
 //   unit = "mm"                    # needed where the recording states none
 //   [[channel]]
 //   from = "Axis1.ActCurrent"

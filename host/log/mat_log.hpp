@@ -3,7 +3,7 @@
 //
 //   t = (0:24999)' * 1e-3;                    % s, always
 //   x = ...; x_set = ...; i = ...;            % one axis: its channels as plain variables, names and SI units of
-//                                             % contract.md, 2
+//                                             % docs/log_format.md
 //   X.x = ...; X.i = ...; Y.x = ...;          % several axes: one struct an axis
 //   units.x = 'mm'; units.i = 'A';            % optional: other units, by channel; `units.t` for the time
 //   comments = sprintf('machine: table\n');   % optional: "key: value" lines
@@ -29,6 +29,7 @@ bool is_mat_file(const std::filesystem::path& file, std::string_view first_bytes
 Log read_mat_log(const std::filesystem::path& file);
 
 // Throws LogError for an axis whose name no variable can have; std::runtime_error when the file cannot be written.
+// `file`: to write; `log`: its channels in SI units; `level`: of the format.
 void write_mat_log(const std::filesystem::path& file, const Log& log, MatLevel level = MatLevel::level_5);
 
 }  // namespace stiction::host

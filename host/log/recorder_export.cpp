@@ -63,7 +63,7 @@ std::string unzipped(const std::string& bytes, const std::string& name) {
     throw LogError(fmt::format("{}: {} cannot be unpacked; expected a whole archive", name, excerpt(found.name)));
   if (count > 0)
     throw LogError(
-        fmt::format("{}: found more than {} bytes in {}; expected less", name, largest_entry, excerpt(found.name)));
+        fmt::format("{}: found more than {} bytes in {}; expected fewer", name, largest_entry, excerpt(found.name)));
   return content;
 }
 

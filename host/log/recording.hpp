@@ -29,11 +29,12 @@ struct Recording {
   StampDigits digits;
 };
 
-// "FILE:LINE" of a sample, or "FILE: sample N" where the format has no lines.
+// "FILE:LINE" of a sample, or "FILE: sample N" where the format has no lines. `recording`: whose file is named;
+// `channel`: of the sample; `sample`: its index.
 std::string place_of(const Recording& recording, const RecordedChannel& channel, std::size_t sample);
 
 // A decimal number with a point, or with a comma where `decimal` is ','; a plus sign and blanks around it are allowed.
-// False for anything else, infinite numbers and NaN.
+// False for anything else, infinite numbers and NaN. `text`: the whole number; `value`: is written where it is one.
 bool parse_number(std::string_view text, char decimal, double& value);
 
 // How a table of numbers is written that says nothing of it itself.
@@ -61,7 +62,8 @@ Recording read_scope_export(std::string_view text, const std::string& name);
 bool is_recorder_export(std::string_view bytes);
 Recording read_recorder_export(const std::string& bytes, const std::string& name);
 
-// Any table with one header line, separated by tabs, semicolons or commas.
+// Any table with one header line, separated by tabs, semicolons or commas. `text`: of the file; `name`: for messages;
+// `form`: separator, decimal mark, header line and time. Throws LogError.
 Recording read_plain_table(std::string_view text, const std::string& name, const TableForm& form);
 
 // The one of these that the content is. Throws LogError.

@@ -28,7 +28,8 @@ inline constexpr double step_tolerance = 0.01;
 
 // Fills log.period from log.t, whose steps are known to be positive. Throws LogError when there are fewer than 2
 // samples, or when steps differ: samples missing, jitter, a change of rate.
-// `place`: what a message names for sample k, "run.csv:17"; place(size) is the end.
+// `place`: what a message names for sample k, "run.csv:17"; place(size) is the end. `digits`: how the stamps were
+// written.
 void check_sampling(Log& log, const StampDigits& digits, const std::function<std::string(std::size_t)>& place);
 
 }  // namespace stiction::host

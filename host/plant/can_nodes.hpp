@@ -28,7 +28,8 @@ class CanNodes {
   static constexpr std::int64_t silence_ns = 5'000'000;
   static constexpr int silent_ticks = 80;  // by which the plant moves on in that time
 
-  // `faults` must outlive this. Throws hal::can::CanError.
+  // `faults` must outlive this. Throws hal::can::CanError. `config`: interface, format and nodes; `plant`: the machine
+  // behind them.
   CanNodes(const CanNodesConfig& config, PlantUnderBus plant, const FaultSchedule& faults);
 
   // Serves until `stop` is true; it is asked at least every silence_ns.

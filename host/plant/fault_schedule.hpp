@@ -18,7 +18,7 @@ class FaultSchedule {
 
   // One of `faults` at a time, whatever their from_tick; from the begin of one to that of the next it takes
   // `mean_ticks` in the mean: a quarter of it at least, in which the drive can get over it, and then as long as a
-  // Poisson process.
+  // Poisson process. `seed`: of the times and of the choice.
   FaultSchedule(std::vector<PlantFault> faults, double mean_ticks, std::uint64_t seed)
       : choice_(std::move(faults)), mean_ticks_(mean_ticks), random_(seed), faults_(1) {
     draw(0);
@@ -44,6 +44,7 @@ class FaultSchedule {
           fault.kind->machine(faults_of(fault.axis), acts);
   }
 
+  // Whether a fault whose `member` (frame or line) is `kind` acts on `axis` in `tick`.
   template <class Kind>
   bool acts(Kind PlantFaultKind::*member, Kind kind, std::size_t axis, std::uint64_t tick) const {
     return std::any_of(faults_.begin(), faults_.end(), [&](const PlantFault& fault) {

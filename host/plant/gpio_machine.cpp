@@ -25,7 +25,7 @@ std::filesystem::path chip_folder(const std::string& chip) {
   const auto folder = plant::GpioSim::find(chip);
   if (!folder)
     throw plant::GpioSimError(
-        fmt::format("gpio-sim: found no simulated gpiochip \"{}\"; expected one with this label: make it through "
+        fmt::format("gpio-sim: found no simulated gpiochip \"{}\"; expected one with this label: create it through "
                     "/sys/kernel/config/gpio-sim (kernel with CONFIG_GPIO_SIM, as root), or name it in drive.gpio.chip",
                     chip));
   return *folder;
@@ -42,8 +42,8 @@ int channels_of(const GpioMachineConfig& config) {
 GpioMachineConfig gpio_machine_config(const machine::Machine& machine, const machine::DriveSetup& setup,
                                       std::span<const double> start, std::span<const hal::AxisMarks> marks) {
   if (!setup.gpio || !setup.gpio->pwm_chip)
-    throw plant::GpioSimError(
-        fmt::format("{}: found no table [drive.gpio] with chip and pwm_chip; expected the lines to play", machine.id));
+    throw plant::GpioSimError(fmt::format(
+        "{}: found no table [drive.gpio] with chip and pwm_chip; expected the lines to simulate", machine.id));
   GpioMachineConfig config{.chip = setup.gpio->chip,
                            .pwm = *setup.gpio->pwm_chip,
                            .pwm_period_ns = std::llround(setup.gpio->pwm_period * 1e9),

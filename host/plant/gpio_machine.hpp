@@ -34,7 +34,8 @@ struct GpioMachineConfig {
 };
 
 // As the machine file has them. `marks` and `start` (m): one an axis. Throws plant::GpioSimError where [drive.gpio] or
-// a line that has to be there is missing.
+// a line that has to be there is missing. `machine`: whose increments and axes it has; `setup`: the lines of the
+// machine file.
 GpioMachineConfig gpio_machine_config(const machine::Machine& machine, const machine::DriveSetup& setup,
                                       std::span<const double> start, std::span<const hal::AxisMarks> marks);
 
@@ -44,7 +45,8 @@ class GpioMachine {
   // them, and wires that are connected again do the same.
   static constexpr std::int64_t most_played = 100;
 
-  // `faults` must outlive this. Throws plant::GpioSimError.
+  // `faults` must outlive this. Throws plant::GpioSimError. `config`: lines and PWM folder; `plant`: the machine behind
+  // them.
   GpioMachine(const GpioMachineConfig& config, PlantUnderBus plant, const FaultSchedule& faults);
 
   // Serves until `stop` is true; it is asked each tick.

@@ -61,7 +61,7 @@ class EncoderLines {
     IndexMarks marks{};
   };
 
-  // Levels as at `count`.
+  // Levels as at `count`. `chip`: must outlive this; `wiring`: numbers of the lines.
   EncoderLines(GpioSim& chip, const Wiring& wiring, std::int64_t count = 0);
 
   void step(bool forward);           // one edge of A or B, and what the index does there

@@ -39,8 +39,9 @@ int serve(const PlantOptions& options) {
   const auto period_ns = machine::fast_period_ns(machine.timing);
   if (const auto bus = bus_of(options); bus.kind == "modbus") {
     if (machine.axes.size() != 1)
-      throw PlantOptionError(fmt::format(
-          "--bus: found a machine with {} axes; expected one: a Modbus slave is one stage", machine.axes.size()));
+      throw PlantOptionError(
+          fmt::format("--bus: found a machine with {} axes; expected one, as a Modbus slave is one power stage",
+                      machine.axes.size()));
     ModbusSlave slave(bus.name, period_ns, simulated.under_bus());
     announce();
     slave.serve(stop);
@@ -66,6 +67,6 @@ int serve(const PlantOptions& options) {
 int main(int argc, char** argv) {
   return stiction::hal::run_program<stiction::host::PlantOptions>(
       argc, argv,
-      {"stiction-plant", "the simulated machine behind a real bus, for stictiond to run against", STICTION_VERSION},
+      {"stiction-plant", "the simulated machine on a real bus, as the counterpart of stictiond", STICTION_VERSION},
       stiction::host::serve);
 }

@@ -14,7 +14,8 @@ class MotionRecord {
  public:
   explicit MotionRecord(std::size_t axes) : axes_(axes) {}
 
-  // The state after a tick: whether the stage was on in it, and where the axis is then (m).
+  // The state after a tick: whether the stage was on in it, and where the axis is then (m). `axis`: its index;
+  // `enabled`: the stage was on; `position`: m.
   void add(std::size_t axis, bool enabled, double position) {
     auto& a = axes_[axis];
     ++a.ticks;
@@ -32,9 +33,9 @@ class MotionRecord {
   // "axis X: stage off since tick 16000, ran on by 12.3 um for 80 ticks, stands at 90.000 mm"
   std::string describe(const std::string& name, std::size_t axis) const {
     const auto& a = axes_[axis];
-    if (!a.ever_on) return fmt::format("axis {}: never switched on, stands at {:.6f} mm", name, a.position * 1e3);
-    if (a.on_until == a.ticks) return fmt::format("axis {}: switched on, stands at {:.6f} mm", name, a.position * 1e3);
-    return fmt::format("axis {}: stage off since tick {}, ran on by {:.3f} um for {} ticks, stands at {:.6f} mm", name,
+    if (!a.ever_on) return fmt::format("axis {}: never switched on, position {:.6f} mm", name, a.position * 1e3);
+    if (a.on_until == a.ticks) return fmt::format("axis {}: switched on, position {:.6f} mm", name, a.position * 1e3);
+    return fmt::format("axis {}: stage off since tick {}, coasted by {:.3f} um for {} ticks, position {:.6f} mm", name,
                        a.on_until, (a.position - a.position_at_off) * 1e6, a.moved_until - a.on_until,
                        a.position * 1e3);
   }

@@ -43,39 +43,46 @@ struct PlantFaultKind {
   }
 };
 
+// A fault of a bus. `name`: of the option --fault; `frame`: what happens to frames; `text`: explanation for users.
 constexpr PlantFaultKind of_frames(std::string_view name, FrameFaultKind frame, std::string_view text) {
   return {.name = name, .text = text, .frame = frame};
 }
+// A fault of digital lines. `name`, `text`: as above; `line`: what happens to them.
 constexpr PlantFaultKind of_lines(std::string_view name, LineFaultKind line, std::string_view text) {
   return {.name = name, .text = text, .line = line};
 }
+// A fault of a part. `name`, `text`: as above; `part`: breaks and repairs it; `on_lines`: it shows behind GPIO lines.
 constexpr PlantFaultKind of_part(std::string_view name, std::string_view text, BreakPart part, bool on_lines = true) {
   return {.name = name, .text = text, .machine = part, .shows_on_lines = on_lines};
 }
 
 inline constexpr std::array<PlantFaultKind, 20> plant_faults{{
     of_frames("frame-lost", FrameFaultKind::lost, "the answer is not sent"),
-    of_frames("frame-late", FrameFaultKind::late, "the answer comes with that of the next tick"),
+    of_frames("frame-late", FrameFaultKind::late, "the answer is sent together with that of the next tick"),
     of_frames("frame-duplicate", FrameFaultKind::duplicate, "the answer is sent twice"),
-    of_frames("frame-out-of-order", FrameFaultKind::out_of_order, "an answer of two ticks ago follows the answer"),
-    of_frames("frame-stale", FrameFaultKind::stale, "an old answer with this tick's number is on the bus before SYNC"),
+    of_frames("frame-out-of-order", FrameFaultKind::out_of_order, "an answer of two ticks before follows the answer"),
+    of_frames("frame-stale", FrameFaultKind::stale,
+              "an old answer with the number of this tick is on the bus before SYNC"),
     of_frames("frame-damaged", FrameFaultKind::damaged, "a bit of the answer is flipped"),
-    of_frames("bus-off", FrameFaultKind::bus_off, "the controller says that it left the bus, then that it is back"),
-    of_frames("babble", FrameFaultKind::babble, "a node sends 20 frames of nobody a tick"),
+    of_frames("bus-off", FrameFaultKind::bus_off,
+              "the CAN controller reports that it left the bus, then that it is back"),
+    of_frames("babble", FrameFaultKind::babble, "a node sends 20 frames with an unknown identifier per tick"),
     of_lines("tracks-together", LineFaultKind::tracks_together, "both tracks of the encoder change at once"),
-    of_lines("track-noise", LineFaultKind::track_noise, "20 edges in a tick, forth and back"),
+    of_lines("track-noise", LineFaultKind::track_noise, "20 edges in a tick, back and forth"),
     of_part("encoder-open", "no valid position; on lines: no edges", [](auto& f, bool acts) { f.encoder_open = acts; }),
-    of_part("encoder-frozen", "the same position again and again", [](auto& f, bool acts) { f.encoder_frozen = acts; }),
-    of_part("encoder-jump", "50 um on every position",
+    of_part("encoder-frozen", "the same position is repeated", [](auto& f, bool acts) { f.encoder_frozen = acts; }),
+    of_part("encoder-jump", "50 um are added to every position",
             [](auto& f, bool acts) { f.encoder_shift = acts ? 50e-6 : 0.0; }),
     of_part(
-        "encoder-bit", "bit 14 of the count of increments is flipped",
+        "encoder-bit", "bit 14 of the increment count is flipped",
         [](auto& f, bool acts) { f.flipped_bit = acts ? std::optional(14) : std::nullopt; }, false),
-    of_part("motor-reversed", "force against the current", [](auto& f, bool acts) { f.motor_reversed = acts; }),
+    of_part("motor-reversed", "the force acts against the current",
+            [](auto& f, bool acts) { f.motor_reversed = acts; }),
     of_part(
-        "current-offset", "5 A on the sensor of phase A",
+        "current-offset", "5 A are added to the sensor of phase A",
         [](auto& f, bool acts) { f.current_offset[0] = acts ? 5.0 : 0.0; }, false),
-    of_part("power-stage", "it reports a fault and is off", [](auto& f, bool acts) { f.power_stage = acts; }),
+    of_part("power-stage", "the power stage reports a fault and is off",
+            [](auto& f, bool acts) { f.power_stage = acts; }),
     of_part("late-commands", "the power stage obeys 15 ticks late",
             [](auto& f, bool acts) { f.late_commands = acts ? 15 : 0; }),
     of_part(

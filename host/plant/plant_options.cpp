@@ -96,21 +96,21 @@ void PlantOptions::add_to(CLI::App& program) {
   program.add_option("--machine", machine, "machine file, or the name of a shipped machine")->required();
   program
       .add_option("--bus", bus,
-                  "bus to answer on: can:INTERFACE, modbus:HOST:PORT, modbus:DEVICE, or gpio: the lines of "
-                  "the machine file's [drive], on a chip of the kernel's gpio-sim")
+                  "bus on which the machine answers: can:INTERFACE, modbus:HOST:PORT, modbus:DEVICE, or gpio for the "
+                  "lines of [drive] in the machine file on a gpio-sim chip")
       ->required()
       ->type_name("KIND:NAME");
-  program.add_option("--experiment", experiment, "with the overrides of [experiment.NAME]")->type_name("NAME");
-  program.add_option("--set", set, "another value for a key of the machine file; may be repeated")
+  program.add_option("--experiment", experiment, "apply the overrides of [experiment.NAME]")->type_name("NAME");
+  program.add_option("--set", set, "override a key of the machine file; may be repeated")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
-  program.add_option("--at", at, "where an axis stands at the start; may be repeated [0 mm]")
+  program.add_option("--at", at, "initial position of an axis; may be repeated [0 mm]")
       ->type_name("AXIS=QUANTITY")
       ->allow_extra_args(false);
   program
       .add_option("--mark", marks,
-                  "where a switch or the encoder's index is; may be repeated: X.index=100 mm. limit_negative and home "
-                  "are reached from there downwards, limit_positive upwards; index_every: way to the next index [one]")
+                  "position of a switch or index mark; may be repeated: X.index=100 mm. limit_negative and home are "
+                  "active below it, limit_positive above it; index_every: distance between index marks [one mark]")
       ->type_name("AXIS.MARK=QUANTITY")
       ->allow_extra_args(false);
   std::string faults_help = "a fault; may be repeated: KIND,axis=X,at=1.5 s,ticks=3. KIND:";
@@ -119,10 +119,10 @@ void PlantOptions::add_to(CLI::App& program) {
   program.add_option("--fault", faults, faults_help)->type_name("FAULT")->allow_extra_args(false);
   program
       .add_option("--fault-every", fault_every,
-                  "one of the faults of --fault at a time, whatever their at=, again and again at random times so far "
-                  "apart in the mean, as --seed draws them")
+                  "inject one of the faults of --fault at a time, regardless of their at=, at random times with this "
+                  "mean interval, drawn with --seed")
       ->type_name("TIME");
-  program.add_option("--seed", seed, "of the simulated noise and of --fault-every")->capture_default_str();
+  program.add_option("--seed", seed, "seed of the simulated noise and of --fault-every")->capture_default_str();
 }
 
 PlantBus bus_of(const PlantOptions& options) {
@@ -172,7 +172,7 @@ FaultSchedule faults_of(const PlantOptions& options, const machine::Machine& mac
   for (const auto& text : options.faults) faults.push_back(plant_fault(text, bus, machine));
   if (options.fault_every.empty()) return FaultSchedule(std::move(faults));
   const auto mean = static_cast<double>(ticks_of(options.fault_every, machine, "--fault-every"));
-  if (faults.empty()) throw PlantOptionError("--fault-every: found no --fault; expected those to choose from");
+  if (faults.empty()) throw PlantOptionError("--fault-every: found no --fault; expected at least one to choose from");
   for (const auto& fault : faults)
     if (static_cast<double>(fault.ticks) >= FaultSchedule::quiet_share * mean)
       throw PlantOptionError(

@@ -42,7 +42,8 @@ std::vector<hal::AxisMarks> marks_of(const PlantOptions& options, const machine:
 // The faults of the options, each at its time or at random times. Throws PlantOptionError.
 FaultSchedule faults_of(const PlantOptions& options, const machine::Machine& machine);
 
-// The nodes as the machine file has them, on the bus of the options. Throws PlantOptionError.
+// The nodes as the machine file has them, on the bus of the options. Throws PlantOptionError. `options`: with the
+// interface; `machine`: whose axes are the nodes; `setup`: node numbers and bit rates of the machine file.
 CanNodesConfig can_nodes_config(const PlantOptions& options, const machine::Machine& machine,
                                 const machine::DriveSetup& setup);
 

@@ -35,7 +35,8 @@ PwmFolder::PwmFolder(fs::path path, int channels) : path_(std::move(path)) {
     try {
       make(path_, channels);
     } catch (const fs::filesystem_error& refused) {
-      throw GpioSimError(fmt::format("PWM {}: {}; expected a folder that can be made", path_.string(), refused.what()));
+      throw GpioSimError(
+          fmt::format("PWM {}: {}; expected a folder that can be created", path_.string(), refused.what()));
     }
     made_here_ = true;
   }

@@ -27,6 +27,8 @@ class SimulatedMachine {
   // A fault begins to act in this tick.
   using OnFault = std::function<void(const PlantFault&, std::uint64_t tick)>;
 
+  // `machine`: to simulate; `settings`: positions, marks and seed; `faults`: to inject; `on_fault`: called when one
+  // begins.
   SimulatedMachine(const machine::Machine& machine, const Settings& settings, FaultSchedule faults,
                    OnFault on_fault = {});
 

@@ -32,9 +32,9 @@ double middle_feed(const std::vector<CircleTableRow>& table, bool measured_only)
 }
 
 std::string beside(const CircleTableRow& row) {
-  if (row.error.measured) return fmt::format("; the machine measured {:.1f} µm", *row.error.measured * 1e6);
-  if (row.error.published) return fmt::format("; the published simulation has {:.1f} µm", *row.error.published * 1e6);
-  return "; no measurement stands beside it";
+  if (row.error.measured) return fmt::format("; the measured value is {:.1f} µm", *row.error.measured * 1e6);
+  if (row.error.published) return fmt::format("; the published simulation gives {:.1f} µm", *row.error.published * 1e6);
+  return "; no measured or published value is available";
 }
 
 // "9 % (X) and 12 % (Y)" of the model that acts on each axis; empty when no axis has one.
@@ -82,8 +82,9 @@ CircleFinding circle_finding(const sim::CircleResult& result, const machine::Mac
   const auto model = only_model(rows);
   const auto errors = model ? mean_errors(rows) : std::string();
   if (!errors.empty())
-    finding.detail =
-        fmt::format("Over all measured feeds {} is off the measured quadrant errors by {} on average.", *model, errors);
+    finding.detail = fmt::format(
+        "Over all measured feeds, the {} model deviates from the measured quadrant errors by {} on average.", *model,
+        errors);
   return finding;
 }
 

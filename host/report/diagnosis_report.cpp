@@ -91,23 +91,23 @@ const char* falls_or_grows(double ratio) { return ratio <= 1.0 ? "falls" : "grow
 // The numbers of the evidence in one sentence.
 std::string figures_of(const Finding& finding) {
   auto text = fmt::format(
-      "It takes away {} % of the {}'s variance, given the other causes (p {}). On data that was not used the "
-      "{} {} by {} % (95 % interval of its fall: {} to {} %)",
+      "Explains {} % of the {} variance given the other findings (p {}). On held-out data the {} {} by {} % (95 % "
+      "interval of the reduction: {} to {} %)",
       percent(finding.explains), finding.in_command ? "command residual" : "residual",
       finding.p_value < 1e-12 ? "< 1e-12" : fmt::format("= {:.1g}", finding.p_value),
       finding.in_command ? "command residual" : "residual force", falls_or_grows(gained_ratio(finding)),
       change_percent(gained_ratio(finding)), gain_percent(finding.holdout.ci95[1]),
       gain_percent(finding.holdout.ci95[0]));
   if (const auto ratio = finding.holdout.position_error_rms_ratio)
-    text += fmt::format(", the position error of the simulation {} by {} %", falls_or_grows(*ratio),
+    text += fmt::format(", and the position error of the simulation {} by {} %", falls_or_grows(*ratio),
                         change_percent(*ratio));
   return text + ".";
 }
 
 std::string on_part(const Finding& finding) {
   if (!finding.part_error)
-    return "Not computed: the logs carry no set-points that the simulation could follow with and without it.";
-  return fmt::format("It changes the position error by up to {} µm.", micrometres(*finding.part_error));
+    return "Not computed: the logs have no set-points with which the simulation could run with and without this cause.";
+  return fmt::format("Changes the position error by up to {} µm.", micrometres(*finding.part_error));
 }
 
 json cause_json(const Finding& finding) {
@@ -173,23 +173,24 @@ std::string scores_text(const ReferenceRows& reference) {
                        percent(s.extended.*member));
   };
   return fmt::format(
-      "On the feeds that took no part, the mean error of the current falls {}; that of the error at reversals goes {}. "
-      "With each feed left out in turn, the current's falls {}.",
+      "On the held-out feeds the mean deviation of the current falls {}, and that of the error at reversals changes "
+      "{}. With each feed left out in turn, that of the current falls {}.",
       line(reference.unused, &RowScore::current), line(reference.unused, &RowScore::error),
       line(reference.left_out, &RowScore::current));
 }
 
 std::string headline(const Verdict& verdict) {
   if (verdict.findings.empty())
-    return verdict.unexplained.signature ? "No cause of the vocabulary, but something is left that repeats."
-                                         : "The simulation agrees with the data within its noise.";
+    return verdict.unexplained.signature
+               ? "No known cause explains the residual, but the residual has a repeatable pattern."
+               : "The simulation agrees with the data within their noise.";
   std::vector<std::string> names;
   for (const auto& finding : verdict.findings) {
     auto title = cause_text(finding.effect.name).title;
     title[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(title[0])));
     if (std::find(names.begin(), names.end(), title) == names.end()) names.push_back(title);
   }
-  return fmt::format("The simulation lacks or has wrong: {}.", fmt::join(names, ", "));
+  return fmt::format("Missing or wrong in the simulation: {}.", fmt::join(names, ", "));
 }
 
 std::string gain_line(const Verdict& verdict) {
@@ -199,25 +200,28 @@ std::string gain_line(const Verdict& verdict) {
   // A cause stands that the held-out records do not refute: one that hardly acts there, a gap that swings as it likes.
   auto text =
       after.force_rms < before.force_rms
-          ? fmt::format("Extended by it, the residual force on held-out data falls from {:.3g} N to {:.3g} N rms",
-                        before.force_rms, after.force_rms)
-          : fmt::format("Extended by it, the residual force on held-out data does not fall ({:.3g} N rms)",
-                        after.force_rms);
+          ? fmt::format(
+                "With the extended machine file, the residual force on held-out data falls from {:.3g} N to {:.3g} N "
+                "rms",
+                before.force_rms, after.force_rms)
+          : fmt::format(
+                "With the extended machine file, the residual force on held-out data does not fall ({:.3g} N rms)",
+                after.force_rms);
   if (before.position_error_rms && after.position_error_rms)
-    text += fmt::format(", the simulation's position error from {} µm to {} µm rms",
+    text += fmt::format(", the position error of the simulation from {} µm to {} µm rms",
                         micrometres(*before.position_error_rms), micrometres(*after.position_error_rms));
   if (before.command_rms && after.command_rms && *after.command_rms < *before.command_rms)
     text += fmt::format(
-        ", the command residual (what the drive commanded less what the file's controller gives) from "
-        "{:.2g} to {:.2g} {} rms",
+        ", the command residual (recorded controller output minus that of the machine file) from {:.2g} to {:.2g} {} "
+        "rms",
         *before.command_rms, *after.command_rms, verdict.command_unit);
   return text + ".";
 }
 
 std::string unexplained_text(const Unexplained& rest) {
-  const auto share = fmt::format("{} % of the residual's variance is neither explained nor noise", percent(rest.share));
-  if (rest.signature) return typeset(fmt::format("{}. It looks like this: {}.", share, *rest.signature));
-  return share + "; nothing in it repeats with position, time or speed.";
+  const auto share = fmt::format("{} % of the residual variance is neither explained nor noise", percent(rest.share));
+  if (rest.signature) return typeset(fmt::format("{}. Its pattern: {}.", share, *rest.signature));
+  return share + "; it does not repeat with position, time or speed.";
 }
 
 json residuals_json(const Verdict& verdict) {
@@ -245,11 +249,11 @@ json conditions_json(const Verdict& verdict) {
         feeds.push_back(fmt::format("{:g}", row.feed * 60.0));
     conditions.add("Measured", "rows of the machine file, " + verdict.reference->reference);
     conditions.add("Training", fmt::format("circle at {} m/min, steady friction, presliding", fmt::join(feeds, ", ")));
-    conditions.add("Held out", "the circles at all other feeds");
+    conditions.add("Held-out data", "circles at all other feeds");
     return conditions.json();
   }
   conditions.add("Logs", files(verdict.logs));
-  conditions.add("Held out", verdict.holdout_is_a_part ? "the last third of each log" : files(verdict.holdout));
+  conditions.add("Held-out data", verdict.holdout_is_a_part ? "the last third of each log" : files(verdict.holdout));
   return conditions.json();
 }
 
@@ -278,14 +282,15 @@ std::string diagnosis_report_html(const DiagnosisReport& report) {
   const json data{
       {"schema", "stiction.diagnosis-report/1"},
       {"conditions", conditions_json(verdict)},
-      {"picture", verdict.findings.empty() ? "" : "before and after the machine file was extended"},
+      {"picture", verdict.findings.empty() ? "" : "with the given and with the extended machine file"},
       {"residuals", residuals_json(verdict)},
       {"rows", verdict.reference ? rows_json(*verdict.reference) : json::array()},
-      {"holdout", verdict.reference ? "Shares of squares are of relative deviations, so that every feed counts alike."
+      {"holdout", verdict.reference
+                      ? "Shares refer to the squares of relative deviations, so that all feeds have equal weight."
                   : verdict.holdout_is_a_part
-                      ? "No held-out log was given: the last third of each log stands in for one, which cannot tell a "
-                        "cause from something else that repeats with the same motion. Record another trajectory."
-                      : "The held-out logs took no part in choosing or fitting the causes."},
+                      ? "No held-out log was given, so the last third of each log is used. This cannot separate a "
+                        "cause from other effects that repeat with the same motion. Record a different trajectory."
+                      : "The held-out logs were not used to choose or fit the causes."},
       {"causes", causes},
       {"next", next_measurement_json(verdict.next)},
       {"rejected", rejected},

@@ -44,8 +44,7 @@ json conditions_json(const ExperimentReport& report) {
   Conditions conditions;
   if (!models.empty()) conditions.add("Friction", joined(models));
   if (report.result.signals.empty()) {
-    conditions.add("Control",
-                   machine.axes.empty() ? "the feed drive's own PI loops, in continuous time" : "none takes part");
+    conditions.add("Control", machine.axes.empty() ? "PI loops of the feed drive in continuous time" : "none in use");
     return conditions.json();
   }
   conditions.add("Signals", signals_text(report.result.signals));

@@ -108,10 +108,11 @@ json initial_json(const InitialValues& initial) {
 }
 
 std::string verdict_of(const Identification& result) {
-  std::string text = fmt::format("{} of {} parameters determined", result.parameters.size(),
+  std::string text = fmt::format("{} of {} parameters are determined", result.parameters.size(),
                                  result.parameters.size() + result.not_determined.size());
   if (result.force_rms > 0.0)
-    text += fmt::format("; the fit leaves {:.3g} N of {:.3g} N rms", result.residual_rms, result.force_rms);
+    text +=
+        fmt::format("; the residual of the fit is {:.3g} N rms of {:.3g} N rms", result.residual_rms, result.force_rms);
   return text + ".";
 }
 

@@ -201,7 +201,7 @@ void add_friction(Sheet& sheet, std::span<const machine::AxisModel> axes, const 
       acting.push_back(axis.friction.use == Model::name ? "yes" : "");
     }
     sheet.begin_section("Friction " + std::string(Model::label));
-    sheet.add("acts unless a command names another", "", std::move(acting));
+    sheet.add("active unless a command names a different model", "", std::move(acting));
     add_parameters<Parameters>(sheet, Model::parameters, owners, force_motor);
   });
 }

@@ -13,18 +13,18 @@ using json = nlohmann::ordered_json;
 
 std::string title_of(const OpenQuestion& question) {
   const auto title = cause_text(question.effect).title;
-  return question.rival.empty() ? title + ": is it there?" : title + " or " + cause_text(question.rival).title;
+  return question.rival.empty() ? title + ": does it exist?" : title + " or " + cause_text(question.rival).title;
 }
 
 std::string standard_errors(double value) { return fmt::format("{:.{}f}", value, value < 9.95 ? 1 : 0); }
 
 std::string what_to_do(const NextMeasurement& next) {
-  if (next.trajectories.empty()) return "No trajectory could be run on the machine file's simulation.";
-  if (!next.log) return "No motion of this axis that was tried in simulation answers what is open.";
+  if (next.trajectories.empty()) return "No trajectory could be run in the simulation of the machine file.";
+  if (!next.log) return "None of the simulated motions of this axis answers the open questions.";
   const auto& best = next.trajectories.front();
   return typeset(
-      fmt::format("Run the set-points of {} and record it{}: {} ({:.0f} s), {}. {} Diagnose it together with "
-                  "these logs, or with them as --holdout.",
+      fmt::format("Run the set-points of {} on the machine and record a log{}: {} ({:.0f} s), {}. {} Diagnose the new "
+                  "log together with these logs, or with these as --holdout.",
                   next_measurement_file, next.times > 1 ? fmt::format(" {} times", next.times) : "", best.name,
                   best.duration, best.words, next.note));
 }

@@ -21,7 +21,8 @@ double rounded(double value);
 // Appends unless it is there already.
 void add_once(nlohmann::ordered_json& list, const nlohmann::ordered_json& value);
 
-// The chosen elements times `scale`, for decodeFloats() of page.js.
+// The chosen elements times `scale`, for decodeFloats() of page.js. `values`: of a channel; `chosen`: indices; `scale`:
+// factor.
 std::string packed(std::span<const double> values, std::span<const std::size_t> chosen, double scale = 1.0);
 
 // Name, periods, axes and the rows of machine_sheet.hpp, for drawMachine() of machine.js.
@@ -54,6 +55,7 @@ struct PageFrame {
 
 // A whole page: frame.html around `body`, which has the markers {{title}} and {{closing}} (machine and command) and
 // those of `texts`, whose values are HTML. `scripts` run in their order, behind page.js, models.js and machine.js.
+// `data`: becomes DATA of the scripts.
 std::string report_page(const PageFrame& frame, std::string_view body,
                         std::map<std::string, std::string, std::less<>> texts, const nlohmann::ordered_json& data,
                         std::initializer_list<std::string_view> scripts);

@@ -16,7 +16,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// ln 10 in a third of a second: what the stability limits of the plant study call "no longer decays".
+// ln 10 in a third of a second: what the stability limits of docs/prototype_figures.md, 2, call "no longer decays".
 constexpr double slow_decay = 3.0 * std::numbers::ln10;  // 1/s
 
 constexpr auto index(Answer answer) { return static_cast<std::size_t>(answer); }

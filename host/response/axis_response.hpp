@@ -1,7 +1,7 @@
 // The open and closed loops of an axis and its plant alone, from the answers of its signals to one test signal that is
-// added to the output of the velocity controller (contract 2, i_inject). No loop is opened, and one experiment gives
-// all of them: with O, I, V, X the answers of controller output, current, speed and position, and S = 1 + O that of the
-// set current,
+// added to the output of the velocity controller (i_inject in docs/log_format.md). No loop is opened, and one
+// experiment gives all of them: with O, I, V, X the answers of controller output, current, speed and position, and S =
+// 1 + O that of the set current,
 //
 //   current loop    open  I/(S - I)                       closed  I/S
 //   velocity loop   open  L_v = C V/S, C = -O/(K_v Z X + V)   closed  L_v/(1 + L_v)
@@ -57,7 +57,8 @@ struct AxisResponse {
 inline constexpr double least_coherence = 0.9;
 
 // `axis` gives K_v, the rates, and the controllers where the log has no set current. Throws ResponseError when the log
-// lacks what is needed.
+// lacks what is needed. `log`: with the test signal; `measured`: its channels of the axis; `timing`: periods of the
+// loops.
 AxisResponse axis_response(const Log& log, const AxisLog& measured, const machine::Timing& timing,
                            const machine::AxisModel& axis);
 

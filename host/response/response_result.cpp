@@ -25,8 +25,7 @@ constexpr std::array<LoopName, 3> loop_names{{
      "Open: current to current error. Closed: current to set current. Coherence: of the current error.",
      [](const AxisResponse& r) { return r.current ? &*r.current : nullptr; }},
     {"velocity", "Velocity loop",
-     "Open: speed to speed error, position loop open. Closed: speed to wanted speed. Coherence: of the controller's "
-     "output.",
+     "Open: speed to speed error, position loop open. Closed: speed to set speed. Coherence: of the controller output.",
      [](const AxisResponse& r) { return &r.velocity; }},
     {"position", "Position loop",
      "Open: position to following error. Closed: position to set position, without "
@@ -34,12 +33,12 @@ constexpr std::array<LoopName, 3> loop_names{{
      [](const AxisResponse& r) { return &r.position; }},
 }};
 
-// The factors of one gain at which a 150 N step on the shipped machine's axes "no longer decays" (plant study, 10), and
-// the axes of which this was found.
+// The factors of one gain at which a 150 N step on the shipped machine's axes "no longer decays"
+// (docs/prototype_figures.md, 2), and the axes of which this was found.
 struct KnownLimits {
   double mass, velocity_gain, current_gain;
   bool notch;
-  double velocity, current, position;  // 0: not studied
+  double velocity, current, position;  // 0: not found
 };
 constexpr std::array<KnownLimits, 4> known_limits{{{225.0, 600.0, 35.0, true, 11.5, 4.47, 5.40},
                                                    {520.0, 1200.0, 17.0, true, 13.0, 4.59, 4.05},
@@ -58,7 +57,8 @@ std::optional<sim::Expectation> expected_limit(const machine::AxisModel& axis, s
   for (const auto& known : known_limits) {
     if (!is_of(known, axis)) continue;
     const double value = loop == "current" ? known.current : loop == "velocity" ? known.velocity : known.position;
-    if (value > 0.0) return sim::Expectation{value, 0.05 * value, "plant study, 10: prototype, one gain at a time"};
+    if (value > 0.0)
+      return sim::Expectation{value, 0.05 * value, "prototype (docs/prototype_figures.md, 2), one gain at a time"};
   }
   return std::nullopt;
 }
@@ -142,8 +142,8 @@ Bode loop_bode(const LoopName& name, const AxisResponse& response, const LoopRes
 Bode plant_bode(const AxisResponse& response, const machine::AxisModel& axis, bool wide) {
   const char* per = axis.motor.model == machine::MotorModel::force ? "V" : "A";
   auto b = bode("Plant, " + response.axis,
-                fmt::format("Speed as the controller sees it, per {} of the {}. Coherence: of the speed.", per,
-                            axis.motor.model == machine::MotorModel::force                      ? "motor's voltage"
+                fmt::format("Speed at the input of the controller, per {} of the {}. Coherence: of the speed.", per,
+                            axis.motor.model == machine::MotorModel::force                      ? "motor voltage"
                             : response.spectra.known[static_cast<std::size_t>(Answer::current)] ? "current"
                                                                                                 : "set current"),
                 fmt::format("magnitude, dB (0 dB = 1 m/s per {})", per), wide);
@@ -179,8 +179,8 @@ void add_figures(std::vector<sim::Figure>& figures, const LoopName& name, const 
   if (loop.bandwidth) add("bandwidth", "Hz", "bandwidth of the closed loop, -3 dB", *loop.bandwidth);
   if (loop.limit) add("unstable_from", "", "factor of its gain from which the axis is unstable", loop.limit->factor);
   if (loop.decays)
-    add("decays_up_to", "", "factor of its gain up to which a swing falls to a tenth in 1/3 s", loop.decays->factor,
-        simulated ? expected_limit(axis, name.name) : std::nullopt);
+    add("decays_up_to", "", "factor of its gain up to which an oscillation falls to a tenth in 1/3 s",
+        loop.decays->factor, simulated ? expected_limit(axis, name.name) : std::nullopt);
 }
 
 std::string margin_sentence(const LoopName& name, const AxisResponse& response, const LoopResponse& loop) {
@@ -192,7 +192,8 @@ std::string margin_sentence(const LoopName& name, const AxisResponse& response, 
               ? fmt::format(", gain margin {:.1f} dB at {:.4g} Hz", decibel(loop.gain->factor), loop.gain->frequency)
               : std::string(", no gain margin within the measured band");
   if (loop.limit)
-    text += fmt::format("; with all loops closed the axis bears x{:.3g} of this gain", loop.limit->factor);
+    text +=
+        fmt::format("; with all loops closed the axis remains stable up to {:.3g} times this gain", loop.limit->factor);
   return text + ".";
 }
 
@@ -205,11 +206,12 @@ std::string condition_sentence(const AxisResponse& response) {
                           s.periodic ? "blocks of whole periods" : "windows", s.slowest * 60.0);
   if (s.slowest <= 0.0)
     text +=
-        ": the speed crosses zero while the test signal acts, so that friction is not nearly linear; record with a "
+        ": the speed crosses zero while the test signal acts, so that friction is strongly nonlinear; record with a "
         "higher speed";
   if (response.samples_at_limit > 0)
-    text += fmt::format("; {} samples are at the current limit, where the loop is open: record with less test signal",
-                        response.samples_at_limit);
+    text +=
+        fmt::format("; {} samples are at the current limit, where the loop is open: record with a smaller test signal",
+                    response.samples_at_limit);
   if (response.set_current_computed)
     text += "; the log has no i_set: it is computed with the controllers of the machine file";
   return text + ".";
@@ -227,9 +229,9 @@ sim::ExperimentResult response_result(const std::vector<AxisResponse>& responses
       text.simulated
           ? "The measured margins must agree within 5 % with the gains at which the axis goes unstable, found by "
             "raising "
-            "one gain at a time until a step of force no longer decays (plant study, 10)."
-          : "Nothing: the margins of a measured machine are found here. They are read from frequencies at which the "
-            "coherence is at least 0.9.";
+            "one gain at a time until a step of force no longer decays (docs/prototype_figures.md, 2)."
+          : "The margins of a measured machine have no expected values. They are evaluated at frequencies with a "
+            "coherence of at least 0.9.";
   result.findings.push_back(text.condition);
   for (const auto& response : responses) result.findings.push_back(condition_sentence(response));
   const bool wide = responses.size() != 2;

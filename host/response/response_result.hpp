@@ -16,7 +16,8 @@ struct ResponseText {
   bool simulated = true;  // the gains at which the simulated axis goes unstable are known
 };
 
-// `loops`: which of "current", "velocity", "position" are shown; empty: all, and the plant.
+// `loops`: which of "current", "velocity", "position" are shown; empty: all, and the plant. `responses`: of the axes;
+// `machine`: for expected figures; `text`: title and condition of the measurement.
 sim::ExperimentResult response_result(const std::vector<AxisResponse>& responses, const machine::Machine& machine,
                                       const std::vector<std::string>& loops, const ResponseText& text);
 

@@ -253,8 +253,8 @@ Spectra measure_spectra(const Log& log, const AxisLog& axis, double force_consta
   result.points = collector.points();
   if (result.points.size() < 2)
     throw ResponseError(
-        most_periods > 0 ? fmt::format("{}: found {} periods of the test signal; expected at least {} in a row: in the "
-                                       "first the answer settles, the others are compared",
+        most_periods > 0 ? fmt::format("{}: found {} periods of the test signal; expected at least {} in a row: the "
+                                       "first is for settling, the others are compared",
                                        place_of(log, axis), most_periods, fewest_periods)
                          : fmt::format("{}: found a test signal of {:.3g} s that does not repeat itself; expected {} "
                                        "periods of one, or at least {} samples ({:.3g} s)",

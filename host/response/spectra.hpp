@@ -1,4 +1,5 @@
-// How the signals of an axis answer to a test signal, from a log (contract 2): frequency by frequency, with coherence.
+// How the signals of an axis answer to a test signal, from a log (docs/log_format.md), at each frequency, with
+// its coherence.
 // The test signal is the instrument: every answer is its cross-spectrum with the test signal over the power of that, so
 // that what noise and friction feed round the loop does not bend the result, as it does the plain ratio of two signals
 // of a closed loop (Soderstrom and Stoica, System Identification, 1989, 10.5).

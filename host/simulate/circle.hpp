@@ -21,6 +21,7 @@ void check_circle(const machine::Machine& machine, const sim::CircleSettings& se
 
 // One circle with the friction models that the machine's axes use. S: FixedSignals or DoubleSignals. Throws
 // InfeasibleMotion, FaultTripped, sim::ConfigurationError; the trace sink has had every tick up to the fault.
+// `machine`: of two axes; `settings`: radius, feed and direction.
 template <class S>
 sim::CircleRun run_circle(const machine::Machine& machine, const sim::CircleSettings& settings,
                           const TraceSink<S>& trace = {});

@@ -62,7 +62,7 @@ sim::ExperimentResult run_constant_velocity(const ExperimentInput& input) {
   sim::Chart chart{"Friction characteristic",
                    "speed, m/min",
                    "current, A (amplitude)",
-                   "The measured curve bends at low speed and rises less than linearly: no model here does both.",
+                   "The measured curve has a knee at low speed and rises less than linearly; no model here shows both.",
                    true,
                    {}};
   sim::Series points{"measured", {}, {}, true};
@@ -93,7 +93,7 @@ sim::ExperimentResult run_constant_velocity(const ExperimentInput& input) {
     result.figures.push_back(
         {"mean_deviation_" + name, "%", "mean |simulated / measured - 1|, " + name, deviation * 100.0, {}});
     result.findings.push_back(
-        fmt::format("{}: {:.0f} % off the measured currents in the mean.", name, deviation * 100.0));
+        fmt::format("{}: the mean deviation from the measured currents is {:.0f} %.", name, deviation * 100.0));
     chart.series.push_back(std::move(series));
   }
   chart.series.push_back(std::move(points));

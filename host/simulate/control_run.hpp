@@ -22,6 +22,7 @@ namespace stiction::host {
 // A fault that stopped a run. what() says axis, fault and time.
 class FaultTripped : public std::runtime_error {
  public:
+  // `axis_name`: that tripped; `which`: its fault; `when`: s, since the start.
   FaultTripped(std::string axis_name, Fault which, double when)
       : std::runtime_error(fmt::format("axis {}: fault {} '{}' at {:.4f} ms", axis_name, static_cast<int>(which),
                                        name_of(which), when * 1e3)),

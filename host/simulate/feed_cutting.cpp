@@ -41,26 +41,26 @@ double shown_duration(const machine::FeedDrive& drive, double feed) {
 }
 
 struct TimeCharts {
-  sim::Chart travel{"Travel",
-                    "time, s",
-                    "travel, mm",
-                    "The drive winds up its spring; the carriage (corrected, printed: the form of its equations) "
-                    "follows in jumps.",
-                    false,
-                    {}};
+  sim::Chart travel{
+      "Travel",
+      "time, s",
+      "travel, mm",
+      "The drive winds up its spring; the carriage follows in jumps (corrected, printed: version of the equations).",
+      false,
+      {}};
   sim::Chart speed{"Sliding speed", "time, s", "speed of the carriage, mm/s", "", false, {}};
   sim::Chart force{"Drive force",
                    "time, s",
                    "force on the carriage, N",
-                   "At standstill the threshold is static friction, growing with the dwell time, and cutting force; in "
-                   "motion what friction and cutting take.",
+                   "At standstill the threshold: static friction, which grows with the dwell time, plus cutting force. "
+                   "In motion: sliding friction plus cutting force.",
                    false,
                    {}};
   sim::Chart tool{"Tool deflection",
                   "time, s",
                   "deflection of the tool, um",
-                  "Force in X as the carriage's speed to the power of 0.55, in Z of 0.75, unless the machine file says "
-                  "otherwise.",
+                  "Force proportional to the speed of the carriage to the power of 0.55 in X and 0.75 in Z, unless the "
+                  "machine file has other exponents.",
                   false,
                   {}};
   sim::Chart turns{"Feed per revolution", "revolution of the spindle, count", "feed, mm per revolution", "", false, {}};
@@ -121,7 +121,7 @@ void add_motion(sim::ExperimentResult& result, const ExperimentInput& input, con
   const auto title = fmt::format(", {:g} mm/min", feed / mm_per_min);
   for (sim::Chart* chart : {&charts.travel, &charts.speed, &charts.force, &charts.tool, &charts.turns})
     chart->title += title;
-  charts.turns.caption = fmt::format("{:g} rpm; revolutions counted from the first instant.",
+  charts.turns.caption = fmt::format("{:g} rpm; revolutions are counted from the start.",
                                      drive.cutting.spindle_speed * 30.0 / std::numbers::pi);
   for (const auto& name : input.equations) {
     const auto run = add_over_time(charts, drive, feed, variant_of(name));
@@ -145,8 +145,7 @@ void add_motion(sim::ExperimentResult& result, const ExperimentInput& input, con
 
 // Jump over 2 dF/c: the machine's drive, the same without growth of static friction, and an ideal drive.
 void add_over_feed(sim::ExperimentResult& result, const ExperimentInput& input, const machine::FeedDrive& drive) {
-  sim::Chart chart{
-      "Jump over feed", "feed, mm/min", "jump over 2 dF/c", "A curve ends where the drive stops jumping.", true, {}};
+  sim::Chart chart{"Jump over feed", "feed, mm/min", "jump over 2 dF/c", "A curve ends where the jumps end.", true, {}};
   auto constant = without_dwell(drive);
   auto simple = constant;
   simple.cutting.coefficient = 0.0;
@@ -178,8 +177,7 @@ void add_over_feed(sim::ExperimentResult& result, const ExperimentInput& input, 
       const auto jumping = sim::jumping_at(drive, sim::FeedSource::pi_drive, variant_of(name).equations, feed);
       const auto key = fmt::format("_{}_at_{:g}_mm_per_min", name, feed / mm_per_min);
       const auto of = fmt::format("{:g} mm/min, {}: ", feed / mm_per_min, name);
-      result.figures.push_back(
-          {"jumps" + key, "", of + "1 if the drive goes on jumping", jumping.lasts ? 1.0 : 0.0, {}});
+      result.figures.push_back({"jumps" + key, "", of + "1 if the jumps continue", jumping.lasts ? 1.0 : 0.0, {}});
       if (!jumping.lasts) continue;
       result.figures.push_back({"jump" + key, "um", of + "jump", jumping.cycle.travel * 1e6, {}});
       result.figures.push_back({"period" + key, "s", of + "period", jumping.cycle.period, {}});
@@ -210,13 +208,12 @@ void add_cutting(sim::ExperimentResult& result, const ExperimentInput& input, co
   result.figures.push_back(
       {"critical_cutting_coefficient",
        "N/mm",
-       fmt::format("cutting coefficient C_v0 from which {:g} mm/min no longer jumps", feed / mm_per_min),
+       fmt::format("cutting coefficient C_v0 from which on {:g} mm/min is free of jumps", feed / mm_per_min),
        0.5 * (low + high) * 1e-3,
        {}});
   result.findings.push_back(fmt::format(
-      "Cutting force linear in the feed of the instant damps like {:.0f} N s/m; from C_v0 = {:.3g} N per mm of feed "
-      "per "
-      "revolution on it alone ends the jumps at {:g} mm/min. A constant cutting force changes nothing but the first "
+      "A cutting force linear in the instantaneous feed damps like {:.0f} N s/m; from C_v0 = {:.3g} N per mm of feed "
+      "per revolution on, it alone ends the jumps at {:g} mm/min. A constant cutting force changes only the first "
       "slip.",
       drive.cutting.coefficient * drive.cutting.revolution(), 0.5 * (low + high) * 1e-3, feed / mm_per_min));
 }
@@ -228,11 +225,10 @@ sim::ExperimentResult run_feed_cutting(const ExperimentInput& input) {
       "feed-cutting",
       "Stick-slip feed with cutting",
       "",
-      "Below a critical feed the carriage of a feed drive does not slide but jumps, by about twice the step of "
-      "friction "
-      "over the drive's stiffness, and the feed of one revolution of the spindle is not that of the next (R. G. "
-      "Kudoyarov et al.). The paper prints no parameters; its damping term damps nothing and its stick condition holds "
-      "for the first stick only.",
+      "Below a critical feed the carriage of a feed drive does not slide but jumps, by about twice the friction step "
+      "over the drive stiffness, and the feed differs from one revolution of the spindle to the next (Kudoyarov, "
+      "Perevertailo, Fetsak). The paper prints no parameters; its damping term has no damping effect, and its stick "
+      "condition holds for the first stick only.",
       {},
       {},
       {}};

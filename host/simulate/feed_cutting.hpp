@@ -1,6 +1,6 @@
 // The parts of the experiment feed-cutting: each adds its figures and charts. Sources named in expectations: the paper
-// (Kudoyarov et al.), which prints no parameters, and the cam study, 1e, which solved its equations for a plausible
-// lathe.
+// (Kudoyarov, Perevertailo, Fetsak), which prints no parameters, and docs/prototype_figures.md, 7, with solutions of
+// its equations for a plausible lathe.
 #pragma once
 
 #include "sim/experiment/experiment_result.hpp"
@@ -8,11 +8,11 @@
 
 namespace stiction::host {
 
-inline constexpr const char* feed_study = "cam study, 1e: prototype";
+inline constexpr const char* feed_study = "prototype (docs/prototype_figures.md, 7)";
 constexpr double mm_per_min = 1e-3 / 60.0;  // m/s
 
-// Whether carriage and friction step are those of the study's lathe (300 kg, 1.33e7 N/m, 2000 N, 0.05): only then its
-// figures in micrometres and seconds say something of this drive.
+// Whether carriage and friction step are those of the prototype's lathe (300 kg, 1.33e7 N/m, 2000 N, 0.05): only then
+// its figures in micrometres and seconds say something of this drive.
 bool is_lathe_of_the_study(const machine::FeedDrive& drive);
 
 // The drive with the static friction of a long standstill from the first instant on, as the relations assume it.

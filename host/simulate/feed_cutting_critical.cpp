@@ -30,8 +30,9 @@ void add_collapse(sim::ExperimentResult& result, const machine::FeedDrive& drive
   struct Set {
     double step, stiffness, mass;
   };
-  // 1.105 to 1.118 in the study, and 1 % beside that.
-  const sim::Expectation range{1.1115, 0.0065 + 0.0111, "cam study, 1e: 1.105 to 1.118, and 1 %"};
+  // 1.105 to 1.118 of the prototype, and 1 % more.
+  const sim::Expectation range{1.1115, 0.0065 + 0.0111,
+                               "prototype (docs/prototype_figures.md, 7): 1.105 to 1.118, and 1 %"};
   int number = 0;
   for (const auto& [step, stiffness, mass] :
        {Set{2000.0, 1.33e7, 300.0}, Set{2000.0, 4e7, 300.0}, Set{500.0, 4e7, 300.0}, Set{100.0, 1.33e7, 150.0}})
@@ -56,10 +57,11 @@ void add_collapse(sim::ExperimentResult& result, const machine::FeedDrive& drive
          sim::Expectation{1.0, 1e-5, "closed form of the equations"}});
   // A break-away noticed at the end of a step adds the force that the spring has gained by then.
   const double late = 1e-4 * std::sqrt(1.33e7 / 300.0), exact = sim::critical_beta(0.1);
-  result.findings.push_back(fmt::format(
-      "At zeta 0.1 the equations' critical feed is {:.4f} dF/sqrt(c m), by closed form and by bisection alike. The "
-      "study's 0.689 is what a break-away noticed 0.1 ms late gives ({:.4f}): it stepped, here the instant is a root.",
-      exact, exact / (1.0 - exact * late)));
+  result.findings.push_back(
+      fmt::format("At zeta 0.1 the critical feed of the equations is {:.4f} dF/sqrt(c m), by closed form and by "
+                  "bisection alike. The prototype's 0.689 follows from a break-away that is noticed 0.1 ms late "
+                  "({:.4f}): it stepped, here the instant is a root.",
+                  exact, exact / (1.0 - exact * late)));
 }
 
 sim::Series named(const char* name, bool points = false) { return {name, {}, {}, points}; }
@@ -92,8 +94,8 @@ void add_over_gain(sim::ExperimentResult& result, const machine::FeedDrive& driv
   sim::Chart chart{"Critical feed over loop gain",
                    "gain over that of the machine file",
                    "critical feed, mm/min",
-                   "One gain at a time. Formula: a drive that moves at constant speed, whatever the force. A curve "
-                   "ends where the loop is unstable.",
+                   "One gain at a time. Formula: a drive that moves at constant speed, regardless of the force. A "
+                   "curve ends where the loop is unstable.",
                    true,
                    {}};
   struct Loop {
@@ -129,10 +131,9 @@ void add_over_gain(sim::ExperimentResult& result, const machine::FeedDrive& driv
     }
     chart.series.push_back(std::move(series));
   }
-  result.findings.push_back(
-      fmt::format("Loop gains move the critical feed of the PI drive: {}; formula for a drive that "
-                  "does not yield {:.0f} mm/min.",
-                  told, in_mm_per_min(sim::critical_feed_of_ideal_drive(drive))));
+  result.findings.push_back(fmt::format(
+      "Loop gains move the critical feed of the PI drive: {}; formula for a drive of infinite stiffness {:.0f} mm/min.",
+      told, in_mm_per_min(sim::critical_feed_of_ideal_drive(drive))));
   result.charts.push_back(std::move(chart));
 }
 
@@ -144,8 +145,8 @@ void add_critical_feed(sim::ExperimentResult& result, const machine::FeedDrive& 
   drive.friction.stribeck_velocity = drive.friction.viscous = drive.cutting.coefficient = 0.0;
   add_collapse(result, drive);
   const char* caption =
-      "Static friction of a long standstill. Formula: the speed after break-away, an oscillation about "
-      "the feed, just touches zero.";
+      "Static friction after a long standstill. Formula: the speed after break-away, an oscillation about the feed, "
+      "just reaches zero.";
   result.charts.push_back(over_parameter(
       drive, {"Critical feed over drive stiffness", "stiffness, N/m", "critical feed, mm/min", caption, true, {}}, 3e6,
       3e8, [](machine::FeedDrive each, double stiffness) {

@@ -1,4 +1,4 @@
-// What an ideal drive shows of the source's equations, beside the closed forms and the study's figures.
+// What an ideal drive shows of the source's equations, beside the closed forms and the prototype's figures.
 #include <fmt/format.h>
 
 #include <array>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr auto ideal = sim::FeedSource::constant_speed;
 constexpr sim::FeedEquations printed_damping{false, true}, printed_stick{true, false};
-constexpr double slow = 0.018;  // beta of the study's relations
+constexpr double slow = 0.018;  // beta of the prototype's relations
 
 // v sqrt(c m) / dF = beta.
 double feed_of(double beta, const machine::FeedDrive& drive) {
@@ -38,10 +38,10 @@ void add_small_feed_relations(sim::ExperimentResult& result, const machine::Feed
     result.figures.push_back({fmt::format("jump_ratio_at_zeta_{:g}", zeta), "",
                               fmt::format("ideal drive, beta 0.018: jump over 2 dF/c at zeta {:g}", zeta), simulated,
                               study_within(ratio)});
-    result.figures.push_back({fmt::format("jump_over_formula_at_zeta_{:g}", zeta), "",
-                              fmt::format("ideal drive, beta 0.018: jump over its formula at zeta {:g}", zeta),
-                              simulated / predicted,
-                              sim::Expectation{1.0, 0.006, "cam study, 1e: within 0.6 % of the formula"}});
+    result.figures.push_back(
+        {fmt::format("jump_over_formula_at_zeta_{:g}", zeta), "",
+         fmt::format("ideal drive, beta 0.018: jump over its formula at zeta {:g}", zeta), simulated / predicted,
+         sim::Expectation{1.0, 0.006, "prototype (docs/prototype_figures.md, 7): within 0.6 % of the formula"}});
     if (zeta == 0.0)
       result.figures.push_back({"slip_time_ratio", "", "ideal drive, beta 0.018: slip time over pi/omega",
                                 cycle.slip_time * each.carriage.natural_frequency() / std::numbers::pi,
@@ -65,7 +65,7 @@ void add_first_slip(sim::ExperimentResult& result, const machine::FeedDrive& dri
                             first_slip(drive) / expected, study_within(1.0)});
   result.figures.push_back({"first_slip_ratio_undamped", "", "the same without damping",
                             first_slip(damped(drive, 0.0)) / expected,
-                            sim::Expectation{1.0, 1e-6, "cam study, 1e: exactly"}});
+                            sim::Expectation{1.0, 1e-6, "prototype (docs/prototype_figures.md, 7): exactly"}});
   auto loaded = drive;
   loaded.cutting.constant_force += 1000.0;
   result.figures.push_back(
@@ -73,7 +73,8 @@ void add_first_slip(sim::ExperimentResult& result, const machine::FeedDrive& dri
        "ideal drive: jump with 1000 N more of constant cutting "
        "force over jump without",
        sim::jumping_at(loaded, ideal, {}, feed).cycle.travel / sim::jumping_at(drive, ideal, {}, feed).cycle.travel,
-       sim::Expectation{1.0, 0.01, "cam study, 1e: constant cutting force does not change it"}});
+       sim::Expectation{1.0, 0.01,
+                        "prototype (docs/prototype_figures.md, 7): constant cutting force does not change it"}});
 }
 
 // n = 1000/min, S = 0.06 mm a revolution.
@@ -90,7 +91,7 @@ void add_feed_over_turns(sim::ExperimentResult& result, const machine::FeedDrive
   result.figures.push_back({"period_at_60_mm_per_min_ideal_drive", "revolutions",
                             "ideal drive, 60 mm/min, 1000 rpm: period", cycle.period / revolution,
                             expected(4.89, 0.0489)});
-  // The study's record begins where the spring carries sliding friction and cutting force.
+  // The prototype's record begins where the spring carries sliding friction and cutting force.
   const double origin =
       (drive.friction.in_motion(0.0) + drive.cutting.constant_force) / (drive.carriage.stiffness * feed);
   sim::StickSlipFeed run(drive, ideal, {}, feed);
@@ -101,7 +102,7 @@ void add_feed_over_turns(sim::ExperimentResult& result, const machine::FeedDrive
                               feeds[i] * 1e3, expected(study[i], 0.00293)});
 }
 
-// The study solved (10) with PI loops and the damping term as printed.
+// The prototype solved (10) with PI loops and the damping term as printed.
 void add_drive_of_the_study(sim::ExperimentResult& result, const machine::FeedDrive& drive) {
   const bool known = is_lathe_of_the_study(drive);
   const auto pi = [&](double mm_per_minute, sim::FeedEquations equations) {
@@ -123,7 +124,7 @@ void add_drive_of_the_study(sim::ExperimentResult& result, const machine::FeedDr
                             "PI drive, printed damping, 1500 mm/min: jump over 2 dF/c",
                             at_1500.cycle.travel / double_step(drive), expected(2.5, 0.025)});
   result.figures.push_back({"jumps_at_3000_mm_per_min_printed_damping", "",
-                            "PI drive, printed damping, 3000 mm/min: 1 if it goes on jumping",
+                            "PI drive, printed damping, 3000 mm/min: 1 if the jumps continue",
                             pi(3000.0, printed_damping).lasts ? 1.0 : 0.0, expected(0.0, 0.0)});
   const auto corrected = pi(60.0, {});
   result.figures.push_back({"jump_at_60_mm_per_min_corrected",
@@ -132,11 +133,9 @@ void add_drive_of_the_study(sim::ExperimentResult& result, const machine::FeedDr
                             corrected.cycle.travel * 1e6,
                             {}});
   result.findings.push_back(
-      fmt::format("The printed damping term is a constant force: with it the PI drive jumps {:.1f} um at 60 mm/min and "
-                  "{:.2f} times "
-                  "2 dF/c at 1500 mm/min; with the term on the relative speed it jumps {:.1f} um and {}. The study's "
-                  "315 um and 1.05 "
-                  "to 2.5 are those of the printed term.",
+      fmt::format("The printed damping term is a constant force: with it the PI drive jumps by {:.1f} um at 60 mm/min "
+                  "and by {:.2f} times 2 dF/c at 1500 mm/min; with a term in the relative speed it jumps by {:.1f} um "
+                  "and {}. The values 315 um and 1.05 to 2.5 of the prototype belong to the printed term.",
                   at_60.cycle.travel * 1e6, at_1500.cycle.travel / double_step(drive), corrected.cycle.travel * 1e6,
                   pi(1500.0, {}).lasts ? "still jumps at 1500 mm/min" : "no longer jumps at 1500 mm/min"));
 }
@@ -173,10 +172,10 @@ void add_printed_equations(sim::ExperimentResult& result, const machine::FeedDri
   drive.friction.stribeck_velocity = drive.friction.viscous = drive.cutting.coefficient = 0.0;
   const double feed = feed_of(slow, drive);
   const double undamped = sim::jumping_at(damped(drive, 0.0), ideal, {}, feed).cycle.travel;
-  result.figures.push_back({"jump_with_printed_damping_ratio", "",
-                            "ideal drive: jump with the printed damping term over jump without any",
-                            sim::jumping_at(drive, ideal, printed_damping, feed).cycle.travel / undamped,
-                            sim::Expectation{1.0, 0.001, "cam study, 1e: identical to the undamped one"}});
+  result.figures.push_back(
+      {"jump_with_printed_damping_ratio", "", "ideal drive: jump with the printed damping term over jump without any",
+       sim::jumping_at(drive, ideal, printed_damping, feed).cycle.travel / undamped,
+       sim::Expectation{1.0, 0.001, "prototype (docs/prototype_figures.md, 7): identical to the undamped one"}});
   result.figures.push_back({"jump_with_corrected_damping_ratio",
                             "",
                             "ideal drive: jump with the corrected damping term over jump without any",
@@ -197,7 +196,8 @@ void add_printed_equations(sim::ExperimentResult& result, const machine::FeedDri
     const char* source;
   };
   const char* held = "static friction (9)";
-  const char* lost = "cam study, 1e: (8), (9) hold only for the first stick; the rest leaves sliding friction";
+  const char* lost =
+      "docs/prototype_figures.md, 7: (8), (9) hold only for the first stick; the rest leaves sliding friction";
   for (const auto& [name, text, equations, jump, expected, source] :
        {Row{"first_break_away_printed", "friction overcome at the first break-away, stick condition as printed",
             printed_stick, 0, at_rest, held},

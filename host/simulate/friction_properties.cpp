@@ -19,7 +19,8 @@ machine::AxisModel axis_with(const ExperimentInput& input, const std::string& fr
   return axis;
 }
 
-sim::Expectation within_2_percent(double value, double rounding, const char* source = "plant study, 10: prototype") {
+sim::Expectation within_2_percent(double value, double rounding,
+                                  const char* source = "prototype (docs/prototype_figures.md, 4)") {
   return {value, std::max(0.02 * std::abs(value), rounding), source};
 }
 
@@ -107,22 +108,23 @@ sim::ExperimentResult run_presliding(const ExperimentInput& input) {
                               "displacement left at 0 N, " + name,
                               loop.after_unloading * 1e6,
                               {}});
-    result.figures.push_back({"loop_gap_" + name, "um", "between the two visits of +540 N, " + name,
-                              (loop.at_second_top - loop.at_first_top) * 1e6,
-                              sim::Expectation{0.0, 0.02 * std::abs(loop.at_first_top) * 1e6,
-                                               "plant study, 10: the loop closes for slow ramps"}});
+    result.figures.push_back(
+        {"loop_gap_" + name, "um", "between the first and the second +540 N, " + name,
+         (loop.at_second_top - loop.at_first_top) * 1e6,
+         sim::Expectation{0.0, 0.02 * std::abs(loop.at_first_top) * 1e6,
+                          "prototype (docs/prototype_figures.md, 4): the loop closes for slow ramps"}});
     result.findings.push_back(fmt::format("{}: {:.1f} um at 540 N, {:.1f} um left after unloading.", name,
                                           loop.at_first_top * 1e6, loop.after_unloading * 1e6));
     if (name != "lugre") continue;
     sim::Series fast{name + ", 5400 N/s", {}, {}, false};
     const auto broken = presliding_loop(axis_with(input, name), 5400.0, 2.0, fast);
     chart.series.push_back(std::move(fast));
-    chart.caption += " At 5400 N/s the mass breaks away while 540 N is held, and leaves the drawing.";
+    chart.caption += " At 5400 N/s the mass breaks away while 540 N is held, and leaves the range of the chart.";
     const double shown = 1.5e6 * std::abs(loop.at_first_top);
     chart.x_range = {-0.5 * shown, shown};
     result.figures.push_back({"breaks_away_at_5400_N_per_s", "", "1: the mass breaks away while 540 N is held",
                               std::abs(broken.at_second_top) > 1e-3 ? 1.0 : 0.0,
-                              sim::Expectation{1.0, 0.0, "plant study, 10: prototype"}});
+                              sim::Expectation{1.0, 0.0, "prototype (docs/prototype_figures.md, 4)"}});
   }
   result.charts.push_back(std::move(chart));
   return result;
@@ -138,8 +140,8 @@ sim::ExperimentResult run_friction_lag(const ExperimentInput& input) {
                                {},
                                {},
                                {}};
-  sim::Chart chart{"Friction over speed",           "speed, mm/s", "friction force, N",
-                   "Speed 2.5 + 2.4 sin(wt) mm/s.", false,         {}};
+  sim::Chart chart{
+      "Friction over speed", "speed, mm/s", "friction force, N", "Speed: 2.5 + 2.4 sin(wt) mm/s.", false, {}};
   const auto axis = axis_with(input, "lugre");
   const auto& parameters = sim::parameters_of<sim::LuGre<>>(axis.friction);
   double slow_width = 0.0;
@@ -219,7 +221,7 @@ sim::ExperimentResult run_break_away(const ExperimentInput& input) {
                                         result.figures.back().value));
   const double beyond = break_away(10.0, sliding);
   result.figures.push_back(
-      {"greatest_friction_at_10_N_per_s", "N", "greatest friction at 10 N/s at any displacement", beyond, {}});
+      {"greatest_friction_at_10_N_per_s", "N", "largest friction at 10 N/s at any displacement", beyond, {}});
   result.findings.push_back(
       fmt::format("Break-away is counted within 50 um, the presliding range of Tab 4.2; at 10 N/s the friction reaches "
                   "{:.0f} N a little later.",

@@ -60,8 +60,8 @@ void add_chatter(const machine::Machine& machine, sim::ExperimentResult& result)
   sim::Chart chart{"B2 evaluated explicitly and implicitly",
                    "time since 500 ms, ms",
                    "friction force, N",
-                   "Half a second after the step of force: the same law on the same machine, evaluated every 0.2 ms at "
-                   "the velocity before, every 62.5 us, and solved together with the velocity.",
+                   "Half a second after the force step: the same law on the same machine, evaluated explicitly every "
+                   "0.2 ms, explicitly every 62.5 us, and implicitly.",
                    false,
                    {}};
   struct Case {
@@ -74,7 +74,8 @@ void add_chatter(const machine::Machine& machine, sim::ExperimentResult& result)
     auto r = impact_with_parabolic_friction(machine, step_force, step_time, c.step);
     r.friction.name = c.text;
     const bool chatters = c.step && *c.step > 100e-6;
-    const std::string source = "plant study, 10: chatter at 0.2 ms, none at 62.5 us and below, none when implicit";
+    const std::string source =
+        "prototype (docs/prototype_figures.md, 3): chatter at 0.2 ms, none at 62.5 us and below, none when implicit";
     if (chatters) {
       const double amplitude = chatter_amplitude(parameters, axis.mass, *c.step);
       result.figures.push_back({"chatter_amplitude_200_us", "N", "B2 at rest, rms of the friction, explicit, 0.2 ms",
@@ -84,8 +85,8 @@ void add_chatter(const machine::Machine& machine, sim::ExperimentResult& result)
       result.figures.push_back(
           {"chatter_greatest_200_us", "N", "B2 at rest, greatest friction, explicit, 0.2 ms", r.greatest, {}});
       result.findings.push_back(fmt::format(
-          "parabolic, evaluated explicitly every 0.2 ms, alternates between {:.0f} N and {:+.0f} N, {:.1f} N rms; "
-          "the step and the mass alone give {:.1f} N. It is no property of the machine: the implicit step has none.",
+          "parabolic, evaluated explicitly every 0.2 ms, alternates between {:.0f} N and {:+.0f} N, {:.1f} N rms; the "
+          "formula with step and mass gives {:.1f} N. This is an artefact of the step: the implicit step shows none.",
           r.least, r.greatest, r.rms, amplitude));
     }
     result.figures.push_back({std::string("chatter_alternations_") + c.key, "%",
@@ -112,13 +113,13 @@ sim::ExperimentResult run_impact(const ExperimentInput& input) {
       {}};
   sim::Chart deviation{
       "Deviation", "time, ms", "deviation at the encoder, um", "External force of 1500 N from 10 ms on.", false, {}};
-  sim::Chart force{"Motor force", "time, ms", "motor force, N", "At rest the motor and the friction share the 1500 N.",
+  sim::Chart force{"Motor force", "time, ms", "motor force, N", "At rest motor and friction share the 1500 N.",
                    false,         {}};
   sim::Chart friction{"Friction", "time, ms", "friction force, N", "", false, {}};
   auto machine = input.machine;
   machine.axes.resize(1);
   auto& axis = machine.axes[0];
-  const std::string prototype = "plant study, 10: prototype at 56 400 N s/m";
+  const std::string prototype = "prototype (docs/prototype_figures.md, 3) at 56 400 N s/m";
   for (const auto& name : input.friction) {
     axis.friction.use = name;
     LogRecorder recorder(machine);
@@ -149,11 +150,12 @@ sim::ExperimentResult run_impact(const ExperimentInput& input) {
   // The source prints the velocity gain also as 80 000 N s/m (RMS taken for amplitude); about 80 um lies between.
   axis.friction.use = input.friction.front();
   const double gain = axis.velocity_controller.gain;
-  result.figures.push_back({"peak_deviation_of_the_source", "um", "peak deviation at the file's velocity gain",
+  result.figures.push_back({"peak_deviation_of_the_source", "um", "peak deviation with the velocity gain of the file",
                             result.figures.front().value,
                             sim::Expectation{80.0, 4.0, "Mendricky 2006, 6.2: about 80 um"}});
   for (const auto& [label, newtons, expected] :
-       {std::tuple{"80000", 80000.0, std::optional(sim::Expectation{62.5, 1.3, "plant study, 10: 62 to 63 um"})},
+       {std::tuple{"80000", 80000.0,
+                   std::optional(sim::Expectation{62.5, 1.3, "prototype (docs/prototype_figures.md, 3): 62 to 63 um"})},
         std::tuple{"65000", 65000.0, std::optional<sim::Expectation>{}}}) {
     axis.velocity_controller.gain = newtons / axis.motor.force_constant;
     const auto r = respond(machine, input.friction.front());
@@ -162,10 +164,10 @@ sim::ExperimentResult run_impact(const ExperimentInput& input) {
          fmt::format("peak deviation with a velocity gain of {} N s/m, {}", label, input.friction.front()),
          r.peak * 1e6, expected});
   }
-  result.findings.push_back(fmt::format(
-      "With the file's velocity gain, {:.0f} N s/m, the peak is {:.1f} um. The source's \"about 80 um\" needs about "
-      "65 000 N s/m: which gain its figure was made with is unresolved, so three gains are shown.",
-      gain * axis.motor.force_constant, result.figures.front().value));
+  result.findings.push_back(
+      fmt::format("With the velocity gain of the file, {:.0f} N s/m, the peak is {:.1f} um. The \"about 80 um\" of the "
+                  "source require about 65 000 N s/m. The gain behind that value is unknown, so three gains are shown.",
+                  gain * axis.motor.force_constant, result.figures.front().value));
   result.charts = {std::move(deviation), std::move(force), std::move(friction)};
   for (auto& chart : result.charts) chart.x_range = {0.0, 150.0};
   axis.velocity_controller.gain = gain;

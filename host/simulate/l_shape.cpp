@@ -37,7 +37,7 @@ sim::LineArcPath l_shape() {
   return path;
 }
 
-// What the prototype found (plant study, 10), um and A.
+// Figures of the prototype (docs/prototype_figures.md, 5), um and A.
 struct Expected {
   double same, opposite, current;
 };
@@ -52,7 +52,7 @@ std::optional<sim::Expectation> expect(const machine::Machine& machine, const st
   const auto row = prototype.find(name);
   if (row == prototype.end() || machine::has_compensation(machine)) return std::nullopt;
   const double value = row->second.*member;
-  return sim::Expectation{value, std::max(0.02 * value, rounding), "plant study, 10: prototype"};
+  return sim::Expectation{value, std::max(0.02 * value, rounding), "prototype (docs/prototype_figures.md, 5)"};
 }
 
 }  // namespace
@@ -99,8 +99,9 @@ sim::ExperimentResult run_l_shape(const ExperimentInput& input) {
       {},
       {}};
   const auto path = l_shape();
-  sim::Chart error{"Error of Y", "time, s", "error at the encoder, um", "Y stands from F to G and from I to J.",
-                   false,        {}};
+  sim::Chart error{
+      "Error of Y", "time, s", "error at the encoder, um", "Y is at standstill from F to G and from I to J.",
+      false,        {}};
   sim::Chart current{"Current of Y", "time, s", "motor force / force constant, A", "", false, {}};
   const double stop = path.end_of(4), opposite = path.end_of(5), stop_again = path.end_of(6), same = path.end_of(7);
   for (const auto& name : input.friction) {
@@ -111,7 +112,7 @@ sim::ExperimentResult run_l_shape(const ExperimentInput& input) {
     if (input.keep_log) input.keep_log("", recorder.take());
     run.error.name = run.current.name = name;
     result.figures.push_back({"standing_current_" + name, "A",
-                              "current of Y while it stands from F to G (its sign against the last motion: +), " + name,
+                              "current of Y at standstill from F to G (positive against the last motion), " + name,
                               std::abs(run.standing_current), expect(machine, name, &Expected::current, 0.05)});
     result.figures.push_back({"same_direction_error_" + name, "um",
                               "peak error of Y, restart in the same direction, " + name, run.same_error * 1e6,
@@ -130,8 +131,8 @@ sim::ExperimentResult run_l_shape(const ExperimentInput& input) {
     current.series.push_back(std::move(run.current));
   }
   error.caption = fmt::format(
-      "Y stands from {:.2f} s to {:.2f} s and restarts in the opposite direction; it stands again from "
-      "{:.2f} s to {:.2f} s and restarts in the same.",
+      "Y is at standstill from {:.2f} s to {:.2f} s and restarts in the opposite direction; it is at standstill again "
+      "from {:.2f} s to {:.2f} s and restarts in the same direction.",
       stop, opposite, stop_again, same);
   result.charts = {std::move(error), std::move(current)};
   return result;

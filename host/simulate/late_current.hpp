@@ -31,7 +31,8 @@ class LateCurrent {
   }
 
   // Passes on the tick of `now_ns`, or, where the current is early, the tick as long ago as that: the record ends as
-  // much sooner. Before the first tick the current is that of the first.
+  // much sooner. Before the first tick the current is that of the first. `signals`: of the axes in this tick; `sink`:
+  // takes the record.
   void record(std::int64_t now_ns, std::span<const AxisSignals<S>> signals, const Sink& sink) {
     if (longest_ == 0 && ahead_ == 0) return sink(now_ns, signals);
     ticks_.push_back({now_ns, {signals.begin(), signals.end()}});

@@ -1,4 +1,4 @@
-// Runs as logs in memory, in the contract's channels.
+// Runs as logs in memory, in the channels of docs/log_format.md.
 #pragma once
 
 #include <utility>

@@ -13,7 +13,8 @@
 
 namespace stiction::host {
 
-// Amplitude (N) of the alternation of a free mass (kg) at steps of `step` (s). Friction of order n > 1.
+// Amplitude (N) of the alternation of a free mass (kg) at steps of `step` (s). Friction of order n > 1. `friction`: its
+// a and n.
 double chatter_amplitude(const sim::ParabolicParameters& friction, double mass, double step);
 
 // The last half of a second, long after the impact.

@@ -30,7 +30,9 @@ struct CurrentNoise {
   std::uint64_t seed = 1;
 };
 
-// Throws InfeasibleMotion where the circle is beyond the axis, FaultTripped, sim::ConfigurationError.
+// Throws InfeasibleMotion where the circle is beyond the axis, FaultTripped, sim::ConfigurationError. `machine`: of
+// which the `axis` (index) runs alone; `settings`: the circle; `laps`: at least 1; `trace`: sees every tick; `noise`:
+// on the current.
 QuadrantRun run_quadrants(const machine::Machine& machine, std::size_t axis, const sim::CircleSettings& settings,
                           int laps, const TraceSink<FixedSignals>& trace = {}, const CurrentNoise& noise = {});
 

@@ -28,6 +28,7 @@ struct ReplaySettings {
 // time_skew), so are i, u, i_set and force. S: FixedSignals or sim::DoubleSignals. Throws LogError
 // when log and machine do not fit (axes, no x_set, beyond the machine's velocity), FaultTripped,
 // sim::ConfigurationError.
+// `settings`: the axis of a log without axis names.
 template <class S>
 Log replay(const machine::Machine& machine, const Log& log, const ReplaySettings& settings = {},
            const TraceSink<S>& trace = {});

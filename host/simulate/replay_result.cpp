@@ -65,7 +65,7 @@ class Result {
     result_.title = "Replay of a log";
     result_.signals = signals;
     result_.question = fmt::format(
-        "The set-points of {} ({} samples at {:.4g} ms) through the simulated machine, beside what was measured.",
+        "Simulation with the set-points of {} ({} samples at {:.4g} ms), compared with the measured signals.",
         log_.source, log_.t.size(), log_.period * 1e3);
     for (std::size_t axis = 0; axis < log_.axes.size(); ++axis) add_axis(axis);
     return std::move(result_);
@@ -77,8 +77,8 @@ class Result {
     const auto& name = measured.axis;
     const std::string of = name.empty() ? "" : " of " + name;
     const auto* effort = effort_of(measured, cases_.front().simulated.axes[axis]);
-    sim::Chart error{"Following error" + of, "time, s", "set - actual position, um", "", false, {}};
-    sim::Chart position{"Simulated - measured position" + of, "time, s", "difference, um", "", false, {}};
+    sim::Chart error{"Following error" + of, "time, s", "set minus actual position, um", "", false, {}};
+    sim::Chart position{"Simulated minus measured position" + of, "time, s", "difference, um", "", false, {}};
     sim::Chart current, rest;
     if (effort != nullptr) {
       const std::string unit = effort->unit;
@@ -88,10 +88,10 @@ class Result {
                  "",
                  false,
                  {}};
-      rest = {fmt::format("Measured - simulated {}{}", effort->name, of),
+      rest = {fmt::format("Measured minus simulated {}{}", effort->name, of),
               "set velocity, m/min",
               fmt::format("difference, {}", unit),
-              "Over the velocity: what friction, motor constant and mass of the machine file leave unexplained.",
+              "Residual that friction, force constant and mass of the machine file do not explain, over the velocity.",
               false,
               {}};
     }
@@ -114,19 +114,19 @@ class Result {
       rest.series.push_back(std::move(over_velocity));
     }
     if (offset != 0.0)
-      result_.findings.push_back(fmt::format(
-          "The measured position{} stands {:.6g} mm off its set-point in the mean, more than the machine allows: the "
-          "encoder has another zero; it is taken off.",
-          of, offset * 1e3));
+      result_.findings.push_back(
+          fmt::format("The measured position{} differs from its set-point by {:.6g} mm on average, more than the "
+                      "machine allows: the zero of the encoder differs. The offset is subtracted.",
+                      of, offset * 1e3));
     if (!measured.i_inject.empty() || !measured.u_inject.empty())
-      result_.findings.push_back("The log's injected signal" + of + " is not injected into the simulation.");
+      result_.findings.push_back("The test signal of the log" + of + " is not applied in the simulation.");
     result_.charts.push_back(std::move(error));
     result_.charts.push_back(std::move(position));
     if (effort == nullptr) {
-      result_.findings.push_back(fmt::format(
-          "The measured effort{} has no counterpart in the simulation: record the current, or the voltage of a force "
-          "motor.",
-          of));
+      result_.findings.push_back(
+          fmt::format("The measured actuating signal{} has no counterpart in the simulation: record the current, or "
+                      "the voltage of a force motor.",
+                      of));
       return;
     }
     result_.charts.push_back(std::move(current));
@@ -167,8 +167,8 @@ class Result {
     };
     add("position_difference_rms", "um", "simulated - measured position, rms", d.position * micro);
     add("following_error_rms", "um", "simulated following error, rms", d.following_error * micro);
-    std::string sentence =
-        fmt::format("{}{}: position {:.3g} um rms off the measured one", label, of, d.position * micro);
+    std::string sentence = fmt::format("{}{}: the position deviates by {:.3g} um rms from the measured one", label, of,
+                                       d.position * micro);
     if (*d.effort_unit != '\0') {
       const auto what = effort_name(d);
       result_.figures.push_back({what + "_difference_rms_" + key,
@@ -181,7 +181,7 @@ class Result {
                                  "simulated - measured " + what + ", part of the measured" + of + ", " + label,
                                  d.measured_effort > 0.0 ? 100.0 * d.effort / d.measured_effort : 0.0,
                                  {}});
-      sentence += fmt::format(", {} {:.4f} {} rms, {:.2f} % of the measured one", what, d.effort, d.effort_unit,
+      sentence += fmt::format(", the {} by {:.4f} {} rms, {:.2f} % of the measured one", what, d.effort, d.effort_unit,
                               result_.figures.back().value);
     }
     result_.findings.push_back(sentence + ".");

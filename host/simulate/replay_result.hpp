@@ -28,9 +28,12 @@ struct ReplayDifference {
   const char* effort_unit = "";           // "A", "V", "N"; empty: the log has none that the simulation has
 };
 inline constexpr double settling = 0.1;  // s
+// `measured`, `simulated`: logs with the same times; `axis`: index in both; `offset`: m, encoder_offset() of the
+// measured one.
 ReplayDifference compare_replay(const Log& measured, const Log& simulated, std::size_t axis, double offset);
 
-// The experiment "replay" of all cases, which share the log's time. `cases`: at least one.
+// The experiment "replay" of all cases, which share the log's time. `cases`: at least one. `measured`: the log;
+// `signals`: "fixed" or "double"; `axis`: of the machine, for a log without axis names.
 sim::ExperimentResult replay_result(const Log& measured, const std::vector<ReplayCase>& cases,
                                     const std::string& signals, const std::string& axis);
 

@@ -34,11 +34,13 @@ struct CompensationTuning {
   machine::Machine machine;  // with the compensation on the axis, learning in use
 };
 
-// `logs`: of the machine's axis without compensation (friction_tuning.hpp). Throws LogError.
+// `logs`: of the machine's axis without compensation (friction_tuning.hpp). Throws LogError. `machine`: with the index
+// `axis` to tune; `drive_lap`: drives a lap with a compensation; `settings`: look-ahead and pulse.
 CompensationTuning tune_compensation(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
                                      const DriveLap& drive_lap, const CompensationSettings& settings = {});
 
-// A circle of one axis in simulation, as a log of `laps` laps at the drive's rate.
+// A circle of one axis in simulation, as a log of `laps` laps at the drive's rate. `machine`: with the index `axis`
+// that moves; `circle`: radius, feed and direction.
 Log simulated_circle(const machine::Machine& machine, std::size_t axis, const sim::CircleSettings& circle, int laps);
 
 }  // namespace stiction::host

@@ -169,9 +169,8 @@ void check_rows(const std::vector<Log>& logs, const LogRows& rows) {
     const auto mask = settled(rows.motions()[k]);
     if (mask.back() > 0.0) continue;
     throw LogError(
-        fmt::format("{}: found a motion over less than {:g} mm; expected one that slides further than presliding "
-                    "reaches, such as a "
-                    "circle",
+        fmt::format("{}: found a motion over less than {:g} mm; expected one that slides beyond the presliding range, "
+                    "such as a circle",
                     logs[k].source, longest * 1e3));
   }
 }
@@ -225,10 +224,11 @@ FrictionTuning tune_friction(const std::vector<Log>& logs, const machine::AxisMo
   const Index a = q.right.size() - 1 - q.logs;
   t.current_rms = std::sqrt(std::max(0.0, q.square - 2.0 * of_mass * q.right[a] + of_mass * of_mass * q.normal(a, a)));
   if (t.coulomb < 0.05 * t.current_rms)
-    t.notes.push_back("hardly any presliding was found: friction passes zero with speed, not with distance");
+    t.notes.push_back("hardly any presliding was found: friction changes its sign with speed, not with displacement");
   if (fastest < 0.5 * axis.max_velocity)
-    t.notes.push_back(
-        fmt::format("the sliding curve ends at {:.3g} m/s, where the logs end; beyond it goes on straight", fastest));
+    t.notes.push_back(fmt::format(
+        "the sliding curve ends at {:.3g} m/s, the highest speed of the logs; beyond it is extrapolated linearly",
+        fastest));
   return t;
 }
 

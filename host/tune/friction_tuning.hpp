@@ -33,7 +33,7 @@ struct FrictionTuning {
 };
 
 // `axis`: of the machine that the logs belong to. Throws LogError for logs that cannot be used: without current, or
-// which never slide further than the longest presliding element.
+// which never slide further than the longest presliding element. `settings`: elements, nodes and limits.
 FrictionTuning tune_friction(const std::vector<Log>& logs, const machine::AxisModel& axis,
                              const TuningSettings& settings = {});
 

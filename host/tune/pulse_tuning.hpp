@@ -15,6 +15,7 @@ struct PulseTuning {
   int evaluations = 0;
 };
 
+// `machine`: with the index `axis` to tune; `circle`: on which the error is measured; `evaluations`: laps at most.
 PulseTuning tune_pulse(const machine::Machine& machine, std::size_t axis, const sim::CircleSettings& circle,
                        int evaluations = 250);
 

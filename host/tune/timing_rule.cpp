@@ -69,8 +69,8 @@ TimingError timing_of(const Log& log, const machine::Machine& machine, std::size
   const auto& axis = machine.axes.at(axis_index);
   const auto& channels = channels_of(log, axis);
   if (channels.x_set.empty())
-    throw LogError(fmt::format("{}: found no x_set[m]; expected the set position, which the timing is judged against",
-                               log.source));
+    throw LogError(
+        fmt::format("{}: found no x_set[m]; expected the set position, with which the timing is compared", log.source));
   const double period = log.period;
   const auto v_set = central_difference(channels.x_set, period);
   auto force = central_difference(feedforward(channels, v_set, machine, axis, period), period);

@@ -29,16 +29,15 @@ std::vector<std::string> findings(const TunedCompensations& all) {
     const auto& axis = all.machine.axes[k].name;
     const auto& friction = tuning.friction;
     sentences.push_back(fmt::format(
-        "{}: {} presliding elements hold {:.3g} A of Coulomb friction; of {:.3g} A rms beside the mass they and the "
-        "sliding curve leave {:.2g} A.",
+        "{}: {} presliding elements sum up to {:.3g} A of Coulomb friction. Of {:.3g} A rms without the part of the "
+        "mass, elements and sliding curve leave a residual of {:.2g} A rms.",
         axis, friction.friction.level.size(), friction.coulomb, friction.current_rms, friction.residual_rms));
     for (const auto& lap : tuning.laps) sentences.push_back(timing_sentence(all.machine, axis, lap));
     for (const auto& note : friction.notes) sentences.push_back(fmt::format("{}: {}.", axis, note));
     if (tuning.pulse)
       sentences.push_back(
-          fmt::format("{}: the best speed pulse of {} tried leaves {:.2g} of {:.2g} um at {} m/min: {:.3g} mm/s, "
-                      "{:.2g} ms long, {:.2g} "
-                      "ms after the reversal.",
+          fmt::format("{}: with the best of {} speed pulses the error is {:.2g} um instead of {:.2g} um at {} m/min: "
+                      "{:.3g} mm/s, {:.2g} ms long, {:.2g} ms after the reversal.",
                       axis, tuning.pulse->evaluations, 1e6 * tuning.pulse->error, 1e6 * tuning.pulse->error_off,
                       feed_text(all.drawn.feed), 1e3 * tuning.pulse->pulse.amplitude,
                       1e3 * tuning.pulse->pulse.duration, 1e3 * tuning.pulse->pulse.delay));
@@ -46,7 +45,7 @@ std::vector<std::string> findings(const TunedCompensations& all) {
   for (const auto& circle : all.circles)
     if (circle.dropped)
       sentences.push_back(
-          fmt::format("At {} m/min what was learned made the error grow and was dropped.", feed_text(circle.feed)));
+          fmt::format("At {} m/min the learned table made the error grow and was dropped.", feed_text(circle.feed)));
   return sentences;
 }
 
@@ -68,11 +67,11 @@ sim::Chart circle_chart(const TunedCompensations& all) {
   sim::Chart chart;
   const double radius = all.drawn.radius;
   chart.title =
-      fmt::format("Circle at {} m/min, deviations {:g} times as large", feed_text(all.drawn.feed), magnification);
+      fmt::format("Circle at {} m/min, deviations magnified {:g} times", feed_text(all.drawn.feed), magnification);
   chart.x_label = all.machine.axes[0].name + ", mm";
   chart.y_label = all.machine.axes[1].name + ", mm";
   chart.caption =
-      "At the encoder (ISO 230-4, Annex E): what servo and friction do. Glitches stand at the four quadrants.";
+      "Errors of servo and friction at the encoder (ISO 230-4, Annex E). Quadrant errors appear at the four reversals.";
   chart.same_scale = true;
   const double turn = all.drawn.direction == sim::Direction::counter_clockwise ? 1.0 : -1.0;
   for (const auto& circle : all.circles) {
@@ -96,7 +95,7 @@ sim::Chart error_chart(const TunedCompensations& all, std::size_t axis) {
   chart.title =
       fmt::format("Error of {} over a lap at {} m/min", all.machine.axes[axis].name, feed_text(all.drawn.feed));
   chart.x_label = "angle along the circle, deg";
-  chart.y_label = "set less actual position, um";
+  chart.y_label = "set minus actual position, um";
   chart.shape = {.wide = true, .height = sim::Shape::Height::low};
   for (const auto& circle : all.circles) {
     if (circle.angle.empty()) continue;
@@ -130,9 +129,9 @@ sim::Chart feed_chart(const TunedCompensations& all, std::size_t axis) {
 sim::Chart presliding_chart(const std::string& axis, const machine::FrictionFeedforwardParameters& friction) {
   sim::Chart chart;
   chart.title = "Presliding of " + axis;
-  chart.x_label = "way since the reversal, um";
+  chart.x_label = "displacement since the reversal, um";
   chart.y_label = "current, A";
-  chart.caption = "From one side of friction to the other: stop elements, found from the logs.";
+  chart.caption = "Stop elements found from the logs, from sliding in one direction to sliding in the other.";
   chart.logarithmic_x = true;
   sim::Series series{.name = "found", .x = {}, .y = {}};
   for (double way = 0.1e-6; way < 1.2 * friction.distance.back(); way *= 1.1) {
@@ -169,7 +168,7 @@ sim::ExperimentResult tuning_result(const TunedCompensations& all) {
   result.experiment = "tune-friction";
   result.title = "Friction compensation";
   result.signals = "fixed";
-  result.question = "How much of the error at reversals each compensation takes away, with one set of parameters.";
+  result.question = "By how much does each compensation reduce the error at reversals, with one set of parameters?";
   result.findings = findings(all);
   result.figures = figures(all);
   if (all.machine.axes.size() == 2) result.charts.push_back(circle_chart(all));

@@ -18,6 +18,7 @@ struct CircleAxisSample {
 
 class CircleMeasurement {
  public:
+  // `settings`: the circle that is driven; `sample_period`: s, between calls of add(); `axes`: names of both axes.
   CircleMeasurement(const CircleSettings& settings, double sample_period, const std::array<std::string, 2>& axes);
 
   // Takes a tick; those outside of the evaluated lap are passed over.

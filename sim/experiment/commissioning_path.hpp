@@ -17,6 +17,7 @@ struct Trajectory {
 };
 
 // Jerk-limited moves there and back at each speed (m/s), `cruise` (s) long at least and at least `shortest` m.
+// `speeds`: above 0, in the order of the moves.
 Trajectory constant_speeds(const std::vector<double>& speeds, double cruise, double shortest);
 // X of a circle of radius 90 mm at the feed (m/s), begun with the standard jerk-limited start.
 Trajectory circle(double feed, double turns);

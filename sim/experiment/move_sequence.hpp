@@ -20,9 +20,11 @@ class MoveSequence {
 
   // Rests for `duration` s.
   void rest(double duration) { time_ += duration; }
-  // Moves with the full `speed` (m/s) for `cruise` s; towards -x where the speed is negative.
+  // Moves with the full `speed` (m/s) for `cruise` s; towards -x where the speed is negative. `dynamics`: acceleration
+  // and jerk.
   void pass(double speed, double cruise, const Dynamics& dynamics);
-  // Moves by `distance` (m, signed) at `speed` (m/s, positive), or as fast as the distance allows.
+  // Moves by `distance` (m, signed) at `speed` (m/s, positive), or as fast as the distance allows. `dynamics`:
+  // acceleration and jerk.
   void move(double distance, double speed, const Dynamics& dynamics);
 
   double duration() const { return time_; }  // s
@@ -46,7 +48,8 @@ class MoveSequence {
   std::vector<Move> moves_;
 };
 
-// The highest speed, at most `speed` (m/s), that a move over `distance` (m) holds for at least `cruise` s.
+// The highest speed, at most `speed` (m/s), that a move over `distance` (m) holds for at least `cruise` s. `dynamics`:
+// acceleration and jerk of the move.
 double speed_within(double distance, double speed, double cruise, const Dynamics& dynamics);
 
 }  // namespace stiction::sim

@@ -218,36 +218,33 @@ Trajectory warm_up(const MotionRange& r) {
 constexpr std::array table{
     SeparatingTrajectory{
         "constant speeds",
-        "ten constant speeds from a crawl to the fastest, each both ways: friction over speed, by direction",
+        "ten constant speeds from creeping to the highest, each both ways: friction over speed, by direction",
         constant_speeds},
-    SeparatingTrajectory{"slow speeds",
-                         "nine speeds from 0.2 to 40 mm/s, each both ways: what friction does near standstill", crawls},
-    SeparatingTrajectory{
-        "small reversals",
-        "reversals with amplitudes of 5 um to 2 mm: way that the axis gives before it slides, and play", reversals},
+    SeparatingTrajectory{"slow speeds", "nine speeds from 0.2 to 40 mm/s, each both ways: friction near standstill",
+                         crawls},
+    SeparatingTrajectory{"small reversals", "reversals with amplitudes of 5 um to 2 mm: presliding and backlash",
+                         reversals},
     SeparatingTrajectory{"accelerations",
                          "short moves both ways at seven levels of acceleration: mass, force per ampere",
                          accelerations},
-    SeparatingTrajectory{"slow sweep",
-                         "the stroke both ways, slowly and at twice the speed: what depends on the position", sweep},
+    SeparatingTrajectory{"slow sweep", "the stroke both ways, slowly and at twice the speed: dependence on position",
+                         sweep},
     SeparatingTrajectory{"stroke at several speeds",
-                         "the stroke both ways at five speeds: what repeats with the position, with time, with the "
-                         "encoder's signal",
+                         "the stroke both ways at five speeds: ripple over position, over time and over the signal "
+                         "period of the encoder",
                          stroke_at_speeds},
     SeparatingTrajectory{"stroke at several accelerations",
-                         "the stroke both ways with four accelerations: what grows with the current along the way",
+                         "the stroke both ways with four accelerations: ripple that grows with the current",
                          stroke_at_accelerations},
-    SeparatingTrajectory{
-        "swings about a constant speed",
-        "waves of 0.4 to 26 Hz on a constant speed, without a reversal: what lags, and what has inertia",
-        swings_at_speed},
-    SeparatingTrajectory{"swings about standstill",
-                         "waves of 0.4 to 26 Hz with many reversals: delays, inertia and friction together",
+    SeparatingTrajectory{"oscillation about a constant speed",
+                         "oscillation of 0.4 to 26 Hz about a constant speed, without a reversal: lags and inertia",
+                         swings_at_speed},
+    SeparatingTrajectory{"oscillation about standstill",
+                         "oscillation of 0.4 to 26 Hz with many reversals: delays, inertia and friction together",
                          swings_about_standstill},
     SeparatingTrajectory{"stations", "rests of one second at seven positions: forces at standstill", stations},
-    SeparatingTrajectory{"warm-up",
-                         "three speeds both ways, again and again between fast runs: what changes with time or warmth",
-                         warm_up},
+    SeparatingTrajectory{
+        "warm-up", "three speeds both ways, repeated between fast runs: dependence on time or temperature", warm_up},
 };
 
 }  // namespace

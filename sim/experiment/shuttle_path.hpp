@@ -12,7 +12,8 @@ namespace stiction::sim {
 
 class ShuttlePath {
  public:
-  // `cruise` (s): how long a pass has its full `speed` (m/s).
+  // `cruise` (s): how long a pass has its full `speed` (m/s). `acceleration`, `jerk`: of each turn, m/s^2 and m/s^3,
+  // above 0.
   ShuttlePath(double speed, double acceleration, double jerk, double cruise)
       : ramp_(speed, acceleration, jerk), cruise_(cruise), stroke_(speed * (ramp_.duration() + cruise)) {}
 

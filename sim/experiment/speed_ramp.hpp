@@ -15,7 +15,8 @@ class SpeedRamp {
     double acceleration;  // m/s^2
   };
 
-  // From rest to `speed`. Where the speed is reached before the full acceleration, the peak is lower.
+  // From rest to `speed`. Where the speed is reached before the full acceleration, the peak is lower. `speed`: m/s,
+  // `acceleration`: m/s^2, `jerk`: m/s^3, all above 0.
   SpeedRamp(double speed, double acceleration, double jerk)
       : speed_(speed),
         jerk_(jerk),

@@ -16,6 +16,7 @@ namespace stiction::sim {
 std::vector<int> test_lines(int period, int slow_ratio, double per_decade);
 
 // One period of the sum of these lines, all of the same amplitude, with its largest magnitude equal to `peak`.
+// `period`: samples; `lines`: multiples of 1/period, below half of it; `seed`: of the phases.
 std::vector<double> multisine(int period, std::span<const int> lines, double peak, std::uint64_t seed);
 
 }  // namespace stiction::sim

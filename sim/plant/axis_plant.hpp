@@ -23,7 +23,8 @@ inline constexpr int plant_steps_per_tick = 4;
 class AxisPlant {
  public:
   // At rest at `position` (m). `seed`: of the encoder's noise. Throws std::invalid_argument for an unknown model,
-  // EffectError for effects that the axis cannot have.
+  // EffectError for effects that the axis cannot have. `timing`: periods of the loops; `axis`: motor, mechanics,
+  // friction, encoder and effects.
   AxisPlant(const machine::Timing& timing, const machine::AxisModel& axis, double position, std::uint64_t seed);
 
   // What the drive commands from now on: voltages (V), or the power stage off.

@@ -13,7 +13,7 @@ namespace stiction::sim {
 class InverterModel {
  public:
   // A tick has `steps_per_tick` steps of the plant of `step` s. In the step in which a dead time ends that is no whole
-  // number of steps, the mean of the two voltages acts.
+  // number of steps, the mean of the two voltages acts. `inverter`: dead time and limits.
   InverterModel(const machine::InverterParameters& inverter, double step, int steps_per_tick)
       : voltage_limit_(inverter.voltage_limit) {
     const double exact = inverter.dead_time / step;

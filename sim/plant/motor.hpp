@@ -16,6 +16,7 @@ using PhaseValues = std::array<double, 3>;
 // Exact step of L di/dt = u - R i.
 class Winding {
  public:
+  // `resistance`: Ohm, `inductance`: H, `step`: s, all above 0.
   Winding(double resistance, double inductance, double step)
       : decay_(std::exp(-resistance * step / inductance)), gain_((1.0 - decay_) / resistance) {}
 
@@ -42,7 +43,8 @@ class DcMotor {
         amperes_(2.0 / motor.force_constant) {}
 
   // Moves the current on by one step at velocity v (m/s); returns the mean force (N) over the step. What the voltage
-  // adds is a term of its own, the same in every step that it is held.
+  // adds is a term of its own, the same in every step that it is held. `voltage`: of the phases, of which the first is
+  // used. The position, the double without a name, has no effect.
   double advance(const PhaseValues& voltage, double, double v) {
     const double before = half_force_;
     half_force_ = winding_.decay() * before + gain_ * voltage[0] - emf_gain_ * v;
@@ -73,7 +75,8 @@ class SynchronousMotor {
         angle_per_metre_(2.0 * std::numbers::pi / motor.pole_pair_pitch),
         half_step_(0.5 * step) {}
 
-  // Moves the currents on by one step from position x (m) at velocity v (m/s); returns the mean force (N).
+  // Moves the currents on by one step from position x (m) at velocity v (m/s); returns the mean force (N). `voltage`:
+  // of the three phases, V.
   double advance(const PhaseValues& voltage, double x, double v) {
     const double angle = angle_per_metre_ * (x + half_step_ * v);
     const auto [s, c] = sine_cosine(angle);
@@ -102,6 +105,7 @@ class SynchronousMotor {
 
 // A motor whose power stage is off.
 struct OpenWindings {
+  // Neither the PhaseValues nor position and velocity, both double, have an effect.
   double advance(const PhaseValues&, double, double) { return 0.0; }
 };
 
@@ -112,6 +116,7 @@ class ForceSource {
 
   ForceSource(const machine::MotorParameters& motor, double) : force_constant_(motor.force_constant) {}
 
+  // Returns the force, N, of a `voltage`; position and velocity, both double, have no effect.
   double advance(const PhaseValues& voltage, double, double) {
     current_[0] = voltage[0];
     return force_constant_ * voltage[0];

@@ -34,7 +34,7 @@ std::vector<std::string> names_of(bool in_vocabulary) {
   return names;
 }
 
-// Exact aliases (diagnosis.md): a half difference of Coulomb friction is a constant force. That a force constant is
+// Exact aliases (docs/effects): a half difference of Coulomb friction is a constant force. That a force constant is
 // mass, Coulomb and viscous friction together is an alias that a finding must name itself.
 bool same_class(const std::string& a, const std::string& b) {
   const std::set<std::string> offset{"constant_force", "friction_asymmetry"};

@@ -44,7 +44,7 @@ const std::array<AxisResponse, 2>& shipped() {
   return responses;
 }
 
-// Holds both predictions of one loop's margins to what raising the gain finds; `study`: plant study, section 10.
+// Holds both predictions of one loop's margins to what raising the gain finds; `study`: docs/prototype_figures.md, 2.
 void expect_agreement(const char* what, const std::array<const LoopResponse*, 2>& loops, std::array<double, 2> study,
                       auto&& scale) {
   std::array<double, 2> unstable{}, decaying{};

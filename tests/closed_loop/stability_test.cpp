@@ -1,8 +1,8 @@
 // How far each gain is from instability, on the linear machine: no friction, no quantizer, no limits. After a 150 N
-// step on one axis the swing must decay. Expected values: an independent prototype's (plant study, section 10), one
-// gain at a time. Its words "no longer decays" leave open how fast; a swing that takes longer than a third of a second
-// for a factor of ten is what agrees with all ten of its figures. The margin at which the swing grows for ever is
-// measured beside it.
+// step on one axis the swing must decay. Expected values: an independent prototype's (docs/prototype_figures.md, 2),
+// one gain at a time. Its words "no longer decays" leave open how fast; a swing that takes longer than a third of a
+// second for a factor of ten is what agrees with all ten of its figures. The margin at which the swing grows for ever
+// is measured beside it.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -166,13 +166,15 @@ std::string refusal_of(const hal::ModbusClientConfig& config) {
 
 TEST(ModbusClient, RefusesToStartWithoutItsSlave) {
   const int port = free_port();
-  EXPECT_EQ(refusal_of(config_for(local(port))),
-            local(port) + ": cannot connect: Connection refused; is the slave on, and the address right?");
+  EXPECT_EQ(
+      refusal_of(config_for(local(port))),
+      local(port) + ": cannot connect: Connection refused; check that the slave has power and the address is right");
   EXPECT_EQ(refusal_of(config_for("/dev/nowhere")),
             "/dev/nowhere: cannot be opened: No such file or directory; is it plugged in, and is the name right?");
   const SerialPair line;
-  EXPECT_EQ(refusal_of(config_for(line.name(0))),
-            line.name(0) + ", unit 1: no answer within 1000 ms; is it on, and are rate and unit right?");
+  EXPECT_EQ(
+      refusal_of(config_for(line.name(0))),
+      line.name(0) + ", unit 1: no answer within 1000 ms; check that it has power and that rate and unit are right");
 }
 
 TEST(ModbusClient, RefusesToStartWithOtherRegisters) {

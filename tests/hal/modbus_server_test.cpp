@@ -283,18 +283,18 @@ std::string refusal_of(const std::string& address, int baud_rate = 115200) {
 TEST(ModbusServer, SaysWhyItCannotStart) {
   const auto first = small_server();
   const std::string taken = "127.0.0.1:" + std::to_string(first->port());
-  EXPECT_EQ(refusal_of(taken), taken +
-                                   ": cannot listen: Address already in use; another program listens there; choose "
-                                   "another port");
-  EXPECT_EQ(refusal_of("192.0.2.1:1502"),
-            "192.0.2.1:1502: cannot listen: Cannot assign requested address; no interface "
-            "of this machine has that address");
+  EXPECT_EQ(
+      refusal_of(taken),
+      taken + ": cannot listen: Address already in use; a different programme listens there; choose a different port");
+  EXPECT_EQ(
+      refusal_of("192.0.2.1:1502"),
+      "192.0.2.1:1502: cannot listen: Cannot assign requested address; no interface of this computer has that address");
   EXPECT_EQ(refusal_of("nowhere"), "found \"nowhere\"; expected HOST:PORT, such as 127.0.0.1:502");
   EXPECT_EQ(refusal_of("/dev/nowhere"),
             "/dev/nowhere: cannot be opened: No such file or directory; is it plugged in, "
             "and is the name right?");
   EXPECT_EQ(refusal_of("/dev/null", 123456),
-            "/dev/null: found a rate of 123456 bit/s; expected one that serial lines have, such as 115200");
+            "/dev/null: found a rate of 123456 bit/s; expected a rate of serial lines, such as 115200");
 }
 
 }  // namespace

@@ -77,7 +77,7 @@ TEST_F(GpioLoop, RefusesALineInUseAndSaysByWhom) {
                 hal::GpioInputsOutputs io(lines, axes);
               }),
               AllOf(HasSubstr("axis X enable: line 7 of gpiochip0 \"stiction-test\" is in use by \"another drive\""),
-                    HasSubstr("stop that programme or name another line")));
+                    HasSubstr("stop that programme or choose a different line")));
   Lines lines(chip, Bias::as_is);
   EXPECT_THAT(refusal([&] { lines.add_input({wire::home}, "home"); }), HasSubstr("in use by \"probe 3\""));
 }

@@ -80,7 +80,7 @@ class Run:
         self.broken = float(begun[1]) if begun else None  # s
         self.faults = [(float(time), int(number))
                        for time, number in re.findall(r"([\d.]+) s: axis 0: fault (\d+) ", self.drive)]
-        rest = re.search(r"ran on by (\S+) um for (\d+) ticks, stands at (\S+) mm", self.plant)
+        rest = re.search(r"coasted by (\S+) um for (\d+) ticks, position (\S+) mm", self.plant)
         self.ran_on, self.stands = float(rest[1]) * 1e-6, float(rest[3]) * 1e-3
 
 
@@ -95,7 +95,7 @@ class Lines(unittest.TestCase):
     def test_carry_an_axis_to_its_switch_and_hold_it_there(self):
         run = Run("health")
         self.assertEqual((run.status, run.faults), (0, []), run.drive + run.plant)
-        self.assertIn("at least 0 edges lost; last fault of the encoder's tracks: none", run.drive)
+        self.assertIn("at least 0 edges lost; last fault of the encoder tracks: none", run.drive)
         # Where the switch opens the set-point is ahead of the axis by v / Kv = 5 mm/s / 40 1/s = 125 um and what friction
         # holds back, 71 um; it comes to rest behind a tick, 5 um, and the ramp, v^2 / 2a = 12.5 um. The axis follows.
         way = run.stands - SWITCH
@@ -105,7 +105,7 @@ class Lines(unittest.TestCase):
     def test_that_lost_an_edge_are_reset_over_modbus_and_the_axis_homes_again(self):
         run, peer = Run("served"), json.loads((FOLDER / "lines/served.peer").read_text())
         self.assertEqual([number for _, number in run.faults], [36], run.drive + run.plant)
-        self.assertIn("last fault of the encoder's tracks: both tracks changed at once", run.drive)
+        self.assertIn("last fault of the encoder tracks: both tracks changed at once", run.drive)
         self.assertEqual((peer["resets"], peer["enabled"], peer["state"]), (1, 2, "enabled"), peer)
         self.assertGreater(peer["runs"], 1, peer)
         self.assertEqual(run.status, 0, run.drive)

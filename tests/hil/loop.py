@@ -72,7 +72,7 @@ class Result:
         self.axes = {
             axis: Axis(int(tick), float(way), int(ticks))
             for axis, tick, way, ticks in re.findall(
-                r"axis (\w+): stage off since tick (\d+), ran on by (\S+) um for (\d+) ticks", self.plant)
+                r"axis (\w+): stage off since tick (\d+), coasted by (\S+) um for (\d+) ticks", self.plant)
         }
         begin = re.search(r"([\d.]+) s: the loop has begun", self.drive)
         self.begin = float(begin[1]) if begin else None

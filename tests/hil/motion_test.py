@@ -157,7 +157,7 @@ class MotionController(unittest.TestCase):
                f"{off * 1e6:.2f} um off at most (bound 10.5 um)")
         self.assertLessEqual(off, 10.5e-6)  # target_window, and how far it goes in a tick
         self.assertEqual(int(states[-1]["statusword"]) & 0x6F, 0x21, "off again")
-        self.assertIn("bus: 0 frames of nobody, 0 error frames, 0 not sent", result.drive)
+        self.assertIn("bus: 0 frames with an unknown identifier, 0 error frames, 0 not sent", result.drive)
 
     def test_with_a_clock_of_its_own_is_followed_by_the_drives(self):
         result = self.results["own_clock"]
@@ -178,7 +178,7 @@ class MotionController(unittest.TestCase):
         result = self.results["documented"]
         self.assertEqual((self.folder / "documented.txt").read_text(), "")
         self.assertEqual(result.status, 0, result.drive)
-        stands = float(re.search(r"axis X: .* stands at (\S+) mm", result.plant)[1])
+        stands = float(re.search(r"axis X: .* position (\S+) mm", result.plant)[1])
         self.assertAlmostEqual(stands, 110.0, delta=0.1)  # without power it swings out on its bristles
 
     def test_without_permission_moves_nothing(self):

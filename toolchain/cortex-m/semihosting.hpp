@@ -31,7 +31,7 @@ inline std::intptr_t open_to_read(const char* path, std::size_t length) {
   return call(Operation::open, block.data());
 }
 
-// How many bytes were read.
+// How many bytes were read. `handle`: from open_to_read(); `to`: at least `bytes` of space.
 inline std::size_t read(std::intptr_t handle, void* to, std::size_t bytes) {
   const std::array<std::uintptr_t, 3> block{static_cast<std::uintptr_t>(handle), reinterpret_cast<std::uintptr_t>(to),
                                             bytes};

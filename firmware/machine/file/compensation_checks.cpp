@@ -130,8 +130,7 @@ class Checker {
            fmt::format("at most {}, the axis' {} limit", format_quantity(current_limit(), unit(), unit()),
                        what_limits()));
     if (learning.forgetting + 2.0 * learning.smoothing > 1.0)
-      fail("learning.smoothing",
-           fmt::format("{:g} beside a forgetting of {:g}", learning.smoothing, learning.forgetting),
+      fail("learning.smoothing", fmt::format("{:g} with a forgetting of {:g}", learning.smoothing, learning.forgetting),
            "twice the smoothing and the forgetting at most 1 together");
   }
 

@@ -10,10 +10,10 @@
 namespace stiction::machine {
 
 inline constexpr std::array<Choice<CompensationKind>, 4> compensation_kinds{{
-    {"off", CompensationKind::off, "none; set-points are held back where another axis has one"},
+    {"off", CompensationKind::off, "none; set-points are delayed if a different axis has one"},
     {"pulse", CompensationKind::pulse, "speed pulse at reversals"},
     {"friction", CompensationKind::friction, "current from presliding and sliding curve"},
-    {"learning", CompensationKind::learning, "the same, and what was learned from the errors of earlier laps"},
+    {"learning", CompensationKind::learning, "the same, and a current learned from the errors of earlier laps"},
 }};
 
 template <>
@@ -67,7 +67,7 @@ struct Table<FrictionFeedforwardParameters> : EmptyTable<FrictionFeedforwardPara
        positive(1.9e-3),
        &FrictionFeedforwardParameters::distance,
        {},
-       "way after a reversal at which each presliding element slips again, increasing; at most 8"},
+       "displacement after a reversal at which each presliding element slips again, increasing; at most 8"},
       {"level",
        "A",
        not_negative(),
@@ -76,7 +76,7 @@ struct Table<FrictionFeedforwardParameters> : EmptyTable<FrictionFeedforwardPara
        "current of each element; their sum is the Coulomb level",
        "V"},
       {"contact_damping", "s", not_negative(0.05), &FrictionFeedforwardParameters::contact_damping, 0.0,
-       "time by which the presliding current's rate counts beside it"},
+       "weight of the rate of the presliding current, as a time"},
       {"speed",
        "m/s",
        positive(),
@@ -136,7 +136,7 @@ struct Table<QuadrantLearningParameters> : EmptyTable<QuadrantLearningParameters
        {1e-4, 0.01},
        &QuadrantLearningParameters::filter,
        1e-3,
-       "time constant of the lowpass on what is missing"},
+       "time constant of the lowpass for the missing current"},
       {"lead",
        "s",
        not_negative(0.012),
@@ -148,7 +148,7 @@ struct Table<QuadrantLearningParameters> : EmptyTable<QuadrantLearningParameters
 
 template <>
 struct Table<LearnedTable> : EmptyTable<LearnedTable> {
-  static constexpr std::string_view text = "what the drive has learned; of this machine only";
+  static constexpr std::string_view text = "table that the drive has learned on this machine";
   static constexpr std::array<TextParameter<LearnedTable>, 2> texts{{
       {"machine", &LearnedTable::machine, "name of the machine that learned it"},
       {"axis", &LearnedTable::axis, "name of its axis"},
@@ -167,7 +167,7 @@ struct Table<LearnedTable> : EmptyTable<LearnedTable> {
 
 template <>
 struct Table<FrictionCompensationParameters> : EmptyTable<FrictionCompensationParameters> {
-  static constexpr std::string_view text = "what the drive does against friction";
+  static constexpr std::string_view text = "compensation of friction in the drive";
   static constexpr std::tuple choices{ChoiceParameter<FrictionCompensationParameters, CompensationKind>{
       "use", &FrictionCompensationParameters::use, compensation_kinds, CompensationKind::off,
       "the compensation that acts"}};

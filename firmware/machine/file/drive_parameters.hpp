@@ -27,8 +27,8 @@ struct Table<CanSetup> : EmptyTable<CanSetup> {
 };
 
 inline constexpr std::array<Choice<bool>, 2> motion_permissions{{
-    {"refused", false, "what moves an axis is refused"},
-    {"allowed", true, "it is taken"},
+    {"refused", false, "commands that move an axis are refused"},
+    {"allowed", true, "they are accepted"},
 }};
 
 inline constexpr std::array<Choice<bool>, 2> server_syncs{{
@@ -38,7 +38,7 @@ inline constexpr std::array<Choice<bool>, 2> server_syncs{{
 
 inline constexpr std::array<Choice<bool>, 2> server_frames{{
     {"positions", false, "controlwords and targets, statuswords and positions: half of the bus's load"},
-    {"all", true, "beside them offsets of velocity and torque, velocities and following errors"},
+    {"all", true, "in addition offsets of velocity and torque, velocities and following errors"},
 }};
 
 template <>
@@ -69,9 +69,9 @@ struct Table<CanServerSetup> : EmptyTable<CanServerSetup> {
   }};
   static constexpr std::tuple choices{
       ChoiceParameter<CanServerSetup, bool>{"sync", &CanServerSetup::sync_followed, server_syncs, false,
-                                            "who sends SYNC, 80h, and so gives the clock"},
+                                            "sender of SYNC, 80h, which gives the clock"},
       ChoiceParameter<CanServerSetup, bool>{"frames", &CanServerSetup::all_frames, server_frames, true,
-                                            "what is exchanged each period beside SYNC"},
+                                            "frames that are exchanged in each period in addition to SYNC"},
       ChoiceParameter<CanServerSetup, bool>{"motion", &CanServerSetup::motion_allowed, motion_permissions, false,
                                             "controlwords and set-points that a motion controller sends"}};
 };
@@ -113,7 +113,7 @@ struct Table<ModbusClientSetup> : EmptyTable<ModbusClientSetup> {
 
 template <>
 struct Table<ModbusServerSetup> : EmptyTable<ModbusServerSetup> {
-  static constexpr std::string_view text = "what the drive publishes to a PLC or an operator panel over Modbus";
+  static constexpr std::string_view text = "data that the drive publishes to a PLC or an operator panel over Modbus";
   static constexpr std::array<TextParameter<ModbusServerSetup>, 1> texts{
       {{"address", &ModbusServerSetup::address, "HOST:PORT to listen on, or a serial device for RTU"}}};
   static constexpr std::array<Parameter<ModbusServerSetup>, 2> parameters{{
@@ -135,7 +135,7 @@ struct Table<RealTimeSetup> : EmptyTable<RealTimeSetup> {
 
 inline constexpr std::array<Choice<HomingMethod>, 6> homing_methods{{
     {"none", HomingMethod::none, "the encoder is absolute"},
-    {"here", HomingMethod::here, "where the axis stands (CiA 402 method 35)"},
+    {"here", HomingMethod::here, "the present position (CiA 402 method 35)"},
     {"limit-negative", HomingMethod::limit_negative, "the negative limit switch (17)"},
     {"limit-positive", HomingMethod::limit_positive, "the positive limit switch (18)"},
     {"index-negative", HomingMethod::index_negative, "the next index in -x (33)"},
@@ -146,7 +146,7 @@ template <>
 struct Table<HomingSetup> : EmptyTable<HomingSetup> {
   static constexpr std::string_view text = "how the axis finds its zero";
   static constexpr std::tuple choices{ChoiceParameter<HomingSetup, HomingMethod>{
-      "method", &HomingSetup::method, homing_methods, HomingMethod::none, "what it looks for"}};
+      "method", &HomingSetup::method, homing_methods, HomingMethod::none, "mark that it searches for"}};
   static constexpr std::array<Parameter<HomingSetup>, 3> parameters{{
       {"search_speed", "m/s", positive(1.0), &HomingSetup::search_speed, 0.02, "speed towards the switch"},
       {"creep_speed", "m/s", positive(0.1), &HomingSetup::creep_speed, 0.002, "speed off the switch or to the index"},
@@ -157,8 +157,8 @@ struct Table<HomingSetup> : EmptyTable<HomingSetup> {
 inline constexpr Range line_numbers{-1, 1023};
 
 inline constexpr std::array<Choice<ActiveLevel>, 2> active_levels{{
-    {"high", ActiveLevel::high, "the line is high while it says yes"},
-    {"low", ActiveLevel::low, "low, as of a contact to the supply that opens: a broken wire says yes too"},
+    {"high", ActiveLevel::high, "the line is high while the signal is active"},
+    {"low", ActiveLevel::low, "low, as of an opening contact to the supply; a broken wire is active too"},
 }};
 inline constexpr auto active_level = [](std::string_view key, ActiveLevel LineSetup::*member, std::string_view text) {
   return ChoiceParameter<LineSetup, ActiveLevel>{key, member, active_levels, ActiveLevel::high, text};
@@ -186,9 +186,9 @@ struct Table<LineSetup> : EmptyTable<LineSetup> {
       {"quadrature_a", "1", line_numbers, &LineSetup::quadrature_a, -1.0, "track A of the encoder"},
       {"quadrature_b", "1", line_numbers, &LineSetup::quadrature_b, -1.0, "track B of the encoder"},
       {"quadrature_increment", "m", not_negative(1e-3), &LineSetup::quadrature_increment, 0.0,
-       "way from one edge of the tracks to the next; 0: the increment of the machine's encoder"},
+       "distance from one edge of the tracks to the next; 0: the increment of the encoder"},
       {"quadrature_rate", "1/s", positive(1e6), &LineSetup::quadrature_rate, 10e3,
-       "edges a second of both tracks that this machine's kernel was measured to hold; more are a fault"},
+       "edges per second of both tracks that the kernel of this machine processes in a measurement; more are a fault"},
       {"quadrature_settle", "s", not_negative(1e-2), &LineSetup::quadrature_settle, 50e-6,
        "time by which an edge may come late out of its interrupt; the position is so old"},
       {"pwm_channel", "1", line_numbers, &LineSetup::pwm_channel, -1.0, "PWM channel of the first phase"},
@@ -211,9 +211,9 @@ struct Table<DriveAxisSetup> : EmptyTable<DriveAxisSetup> {
       {"brake_time", "s", not_negative(10.0), &DriveAxisSetup::brake_time, 0.0,
        "time that the brake takes to open or to close"},
       {"frozen_distance", "m", positive(0.1), &DriveAxisSetup::frozen_distance, 100e-6,
-       "way of the set-point during which the encoder must show another position"},
+       "displacement of the set-point within which the encoder must show a different position"},
       {"encoder_jump", "m", positive(0.1), &DriveAxisSetup::encoder_jump, 5e-6,
-       "distance of a position from where the speed leads"},
+       "deviation of a position from the one that the speed predicts"},
       {"current_sum",
        "A",
        positive(),
@@ -240,7 +240,7 @@ struct Table<DriveAxisSetup> : EmptyTable<DriveAxisSetup> {
 
 template <>
 struct Table<DriveSetup> : EmptyTable<DriveSetup> {
-  static constexpr std::string_view text = "what the drive's programme needs beside the machine";
+  static constexpr std::string_view text = "settings of the drive programme in addition to the machine";
   static constexpr std::tuple subtables{
       Subtable<DriveSetup, std::optional<CanSetup>>{"can", &DriveSetup::can, Presence::optional},
       Subtable<DriveSetup, std::optional<CanServerSetup>>{"can_server", &DriveSetup::can_server, Presence::optional},

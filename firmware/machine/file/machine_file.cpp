@@ -277,7 +277,7 @@ class MachineReader {
     const toml::node* friction = table.get("friction");
     const std::string key = join_key(path, "friction");
     if (row.measured && friction != nullptr)
-      document_.fail(friction->source(), key, describe_node(*friction), "none beside source \"measured\"");
+      document_.fail(friction->source(), key, describe_node(*friction), "none with source \"measured\"");
     if (row.measured) return;
     const auto models = friction_model_names(vocabulary_);
     if (friction == nullptr)

@@ -39,8 +39,8 @@ struct Table<Timing> : EmptyTable<Timing> {
        "current and velocity controllers, feedforwards"},
       {"slow_period", "s", {1e-6, 1.0}, &Timing::slow_period, 1e-3, "position controller, a multiple of fast_period"},
       {"set_point_delay", "s", not_negative(0.1), &Timing::set_point_delay, 0.0,
-       "time by which every axis follows its set-points late while friction compensation acts, which looks ahead by "
-       "it; a multiple of fast_period, at most 15 of them"},
+       "delay of every axis behind its set-points while friction compensation acts, which looks ahead by it; a "
+       "multiple of fast_period, at most 15 of them"},
   }};
 };
 
@@ -116,7 +116,7 @@ struct Table<EncoderMountParameters> : EmptyTable<EncoderMountParameters> {
 
 inline constexpr std::array<Choice<VelocitySource>, 3> velocity_sources{{
     {"ideal", VelocitySource::ideal, "continuous derivative, as the published simulation had it"},
-    {"estimated", VelocitySource::estimated, "what a drive can do, from time-stamped positions"},
+    {"estimated", VelocitySource::estimated, "estimate of a drive from time-stamped positions"},
     {"mean-difference", VelocitySource::mean_difference, "difference of two-sample means"},
 }};
 
@@ -236,7 +236,7 @@ template <>
 struct Table<FrictionParameters> : EmptyTable<FrictionParameters> {
   static constexpr std::string_view text = "friction on the carriage: one table a model";
   static constexpr std::array<TextParameter<FrictionParameters>, 1> texts{
-      {{"use", &FrictionParameters::use, "the model that acts unless a command names another"}}};
+      {{"use", &FrictionParameters::use, "the active model, unless a command names a different one"}}};
 };
 
 template <>
@@ -293,7 +293,7 @@ inline constexpr std::array<Choice<bool>, 2> reference_sources{{
 
 template <>
 struct Table<CircleReference> : EmptyTable<CircleReference> {
-  static constexpr std::string_view text = "a published or measured circle beside which reports stand the simulation";
+  static constexpr std::string_view text = "a published or measured circle that reports compare with the simulation";
   static constexpr std::array<TextParameter<CircleReference>, 2> texts{{
       {"axis", &CircleReference::axis, "name of the axis"},
       {"friction", &CircleReference::friction, "friction model of a published simulation"},

@@ -25,11 +25,10 @@ std::string heading(const TableDescription& table) {
 std::string reference_page(const Vocabulary& vocabulary) {
   std::string page = fmt::format(
       "# Machine file: all keys\n\n"
-      "Format `{}`. A quantity is a text \"NUMBER UNIT\"; any unit of the same dimension as the one shown will do. A "
-      "plain number stands only for a quantity without unit (–). A key that is not listed here is an error. "
+      "Format `{}`. A quantity is a text \"NUMBER UNIT\"; any unit of the same dimension as the one shown is accepted. "
+      "A plain number is accepted only for a quantity without unit (–). A key that is not listed here is an error. "
       "`[experiment.EXPERIMENT.…]` repeats any key of `timing`, `axis` and `feed_drive` with the value it has in that "
-      "experiment; "
-      "experiments: {}.\n",
+      "experiment; experiments: {}.\n",
       machine_schema, fmt::join(experiment_names, ", "));
   for (const TableDescription& table : machine_file_description(vocabulary)) {
     page += fmt::format("\n## {}\n\n{} ({}).\n\n", heading(table), table.text, table.presence);

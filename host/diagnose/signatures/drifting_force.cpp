@@ -12,7 +12,7 @@ Columns columns(const Scene& scene, const Motion& motion, double) {
   return {column};
 }
 std::string looks_like(const Scene& scene, double, const Eigen::VectorXd& w) {
-  return fmt::format("drifting with time, the same both ways: {:.2g} N after {:.3g} s", w[0], scene.duration);
+  return fmt::format("drifting with time, equal in both directions: {:.2g} N after {:.3g} s", w[0], scene.duration);
 }
 
 }  // namespace

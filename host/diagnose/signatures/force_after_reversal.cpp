@@ -34,7 +34,7 @@ Columns columns(const Scene&, const Motion& motion, double time) {
   return {column};
 }
 std::string looks_like(const Scene&, double time, const Eigen::VectorXd& w) {
-  return fmt::format("at reversals: a force of {:.2g} N {} the motion that dies away within {:.2g} ms", std::abs(w[0]),
+  return fmt::format("at reversals: a force of {:.2g} N {} the motion that decays within {:.2g} ms", std::abs(w[0]),
                      w[0] < 0.0 ? "along" : "against", 1e3 * time);
 }
 

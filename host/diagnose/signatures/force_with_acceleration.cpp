@@ -15,7 +15,7 @@ Columns columns(const Scene&, const Motion& motion, double) {
   return {column};
 }
 std::string looks_like(const Scene&, double, const Eigen::VectorXd& w) {
-  return fmt::format("growing with acceleration, the same way for both signs of it: {:.2g} N at 1 m/s^2", w[0]);
+  return fmt::format("growing with acceleration, with equal sign for both directions of it: {:.2g} N at 1 m/s^2", w[0]);
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ Columns columns(const Scene& scene, const Motion& motion, double number) {
 }
 std::string looks_like(const Scene& scene, double number, const Eigen::VectorXd& w) {
   const auto place = place_of(scene, number);
-  return fmt::format("localised at {:.4g} mm: a push of {:.2g} N, the same both ways, over about {:.2g} mm",
+  return fmt::format("localised at {:.4g} mm: a force of {:.2g} N, equal in both directions, over about {:.2g} mm",
                      1e3 * place.at, w[0], 2e3 * place.width);
 }
 

@@ -28,7 +28,7 @@ function drawMagnifications() {
   const runs = chosenRuns(state);
   const options = MAGNIFICATIONS.map(value => ({ value, label: String(value), disabled: !magnificationFits(value, runs) }));
   for (const option of options)
-    if (option.disabled) option.title = 'the deviation would be drawn beyond the centre';
+    if (option.disabled) option.title = 'the drawn deviation would reach beyond the centre';
   segments('choose-magnification', options, state.magnification, value => change({ magnification: value }));
 }
 

@@ -54,8 +54,8 @@ function comparisonTable(axis) {
 function drawComparison() {
   show('table', ...DATA.axes.map(comparisonTable));
   const published = DATA.references.some(row => !row.measured);
-  show('table-caption', 'simul.: unquantised; quant.: as the position controller sees it, in its increments; publ.: published simulation; ' +
-       'dev.: (measured − simulated) / measured, of the unquantised peak. ',
+  show('table-caption', 'simul.: unquantised; quant.: rounded to increments of the position controller; publ.: published simulation; ' +
+       'dev.: (measured − simulated) / measured for the unquantised peak. ',
        ...(published ? [element('mark', {}, 'Marked'), ': differs from the published simulation (quantised error by more than half an increment, current by more than 5 %).'] : []));
   const columns = DATA.axes.flatMap(axis => [['error', 'simul.'], ['quantised', 'quant.'], ['error_published', 'publ.']].map(([key, name]) => ({ axis, key, name, group: 'error' })))
     .concat(DATA.axes.flatMap(axis => [['current', 'simul.'], ['current_published', 'publ.']].map(([key, name]) => ({ axis, key, name, group: 'current' }))));
@@ -72,10 +72,10 @@ function drawComparison() {
 // ---- ISO 230-4 ----
 
 const ISO_TERMS = [
-  { key: ['G'], letter: 'G', words: ['circular deviation', 'circular deviation', 'circular error'], meaning: 'width of the annulus that holds one lap' },
-  { key: ['F_max', 'F_min'], letter: 'F_max, F_min', words: ['radial deviation', 'radial deviation', 'radial error'], meaning: 'from the programmed radius, largest and smallest' },
-  { key: ['G_b'], letter: 'G(b)', words: ['–', 'bi-directional circular deviation', 'bi-directional circular error'], meaning: 'width of the annulus that holds both directions' },
-  { key: ['D'], letter: 'D', words: ['–', 'mean bi-directional radial deviation', 'mean bi-directional radial error'], meaning: 'mean radius of both directions less the programmed radius' },
+  { key: ['G'], letter: 'G', words: ['circular deviation', 'circular deviation', 'circular error'], meaning: 'width of the annulus that contains one lap' },
+  { key: ['F_max', 'F_min'], letter: 'F_max, F_min', words: ['radial deviation', 'radial deviation', 'radial error'], meaning: 'largest and smallest deviation from the programmed radius' },
+  { key: ['G_b'], letter: 'G(b)', words: ['–', 'bi-directional circular deviation', 'bi-directional circular error'], meaning: 'width of the annulus that contains both directions' },
+  { key: ['D'], letter: 'D', words: ['–', 'mean bi-directional radial deviation', 'mean bi-directional radial error'], meaning: 'mean radius of both directions minus the programmed radius' },
 ];
 
 function drawIso() {

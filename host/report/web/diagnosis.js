@@ -1,4 +1,4 @@
-// The page of a diagnosis: measured against simulated, each cause with its evidence, what was rejected, what is left.
+// The page of a diagnosis: measured and simulated signals, each cause with its evidence, rejected causes, the residual.
 'use strict';
 
 const minus = words => words.replace(/-(?=\d|x\b)/g, '−');  // of numbers and of the direction -x
@@ -12,16 +12,16 @@ function bare(drawn) {
 
 function drawSummary() {
   const { baseline, extended } = DATA.residuals;
-  document.getElementById('summary-what').textContent = DATA.causes.length ? 'by what each explains' : 'nothing that the data show';
+  document.getElementById('summary-what').textContent = DATA.causes.length ? 'sorted by explained variance' : 'none found';
   const rows = DATA.causes.map((cause, i) => classed('first', [
     { text: element('a', { href: `#cause-${i}` }, `${i + 1}  ${cause.title}`), head: true, class: 'figure' }, text(cause.axis, { class: 'text' }),
     text(cause.explains, { class: 'value' }), text(minus(cause.gain)), text(minus(cause.gain_interval), { class: 'text unit' }),
     text(cause.part || '–')]));
-  const head = [text('Cause', { class: 'text' }), text('Axis', { class: 'text' }), text('Explains, %'), text('Less residual force, %'),
-                text('95 % interval', { class: 'text unit' }), text('On the part, µm')];
+  const head = [text('Cause', { class: 'text' }), text('Axis', { class: 'text' }), text('Explains, %'), text('Residual force reduced by, %'),
+                text('95 % interval', { class: 'text unit' }), text('Position error, µm')];
   if (rows.length) show('summary', bare(table([head], rows)));
-  const figures = [`Residual force on the held-out data: ${baseline.force} N rms with the machine file as it is, ${extended.force} N extended`];
-  if (baseline.position) figures.push(`position error of the simulation: ${baseline.position} µm rms, ${extended.position} µm extended`);
+  const figures = [`Residual force on the held-out data: ${baseline.force} N rms with the given machine file, ${extended.force} N rms with the extended one`];
+  if (baseline.position) figures.push(`position error of the simulation: ${baseline.position} µm rms with the given machine file, ${extended.position} µm rms with the extended one`);
   show('summary-caption', `${figures.join('; ')}. ${DATA.holdout}`);
 }
 
@@ -57,8 +57,8 @@ function parameters(cause) {
 }
 
 function confusions(cause) {
-  if (!cause.confused_with.length) return element('p', {}, 'Nothing in the vocabulary looks like it in these data.');
-  return bare(table([[text('Looks the same', { class: 'text' }), text('Told apart by', { class: 'text' })]],
+  if (!cause.confused_with.length) return element('p', {}, 'These data separate it from all other known causes.');
+  return bare(table([[text('Similar cause', { class: 'text' }), text('Separated by', { class: 'text' })]],
     cause.confused_with.map(row => classed('first', [{ text: row.title, head: true, class: 'figure' }, text(row.separate_by, { class: 'text wrap' })]))));
 }
 
@@ -70,7 +70,7 @@ function causeSection(cause, i) {
     element('div', { class: 'pair facts' },
       element('div', {}, minor('Value'), element('div', { class: 'scroll' }, parameters(cause)), minor('Evidence'),
               element('p', {}, minus(cause.evidence)), element('p', {}, minus(cause.figures))),
-      element('div', {}, minor('What it does to the part'), element('p', {}, cause.on_part), minor('May be confused with'), confusions(cause),
+      element('div', {}, minor('Effect on the part'), element('p', {}, cause.on_part), minor('May be confused with'), confusions(cause),
               minor('What to do'), element('p', {}, cause.advice), element('p', { class: 'caption' }, `More: ${cause.page}`))),
     element('div', { id: `cause-charts-${i}`, class: 'pair charts' }));
 }
@@ -98,7 +98,7 @@ function drawNext() {
         ...row.standard_errors.map(value => text(value, { class: proposed(i) ? 'value' : null }))])))));
   }
   if (next.elsewhere.length) show('next-elsewhere', bare(table(
-    [[text('No motion of this axis tells apart', { class: 'text' }), text('What does', { class: 'text' })]],
+    [[text('Not separable by any motion of this axis', { class: 'text' }), text('Separating experiment', { class: 'text' })]],
     next.elsewhere.map(row => classed('first', [{ text: row.title, head: true, class: 'figure' }, text(row.separate_by, { class: 'text wrap' })])))));
 }
 

@@ -27,7 +27,7 @@ const minus = number => number.replace('-', '−');
 const DIFFERS = '#b3400a';
 
 function markCell(row) {
-  if (row.holds === null) return text('—', { class: 'text none', title: 'nothing is expected of this figure' });
+  if (row.holds === null) return text('—', { class: 'text none', title: 'the machine file states no expected value' });
   return row.holds ? text('✓ as expected', { class: 'text' }) : text('✗ differs', { class: 'text differs' });
 }
 
@@ -82,7 +82,7 @@ function drawFigures() {
   if (!columns.expected) drawn.className = 'bare';
   show('results', drawn);
   if (columns.expected)
-    show('results-caption', 'Band: expected value and tolerance; dot: the value, an arrow where it lies further off. ',
+    show('results-caption', 'Band: expected value and tolerance; dot: value; arrow: value outside of the drawing. ',
          ...(expected.every(row => row.holds) ? [] : [element('mark', {}, 'Marked'), ': outside the tolerance.']));
 }
 

@@ -23,7 +23,7 @@ function parameterTable(rows, withHow) {
 function drawTables() {
   show('parameters', parameterTable(DATA.parameters, true));
   if (DATA.initial.length)
-    show('initial', `Read off the record by hand, as a check that shares nothing with the fit but the signals: ${
+    show('initial', `Direct estimates from the record, as a check that is independent of the fit: ${
       DATA.initial.map(row => `${row.label}, ${minus(row.value)} ${row.unit}`).join('; ')}.`);
   if (!DATA.open.length) return document.getElementById('open-section').remove();
   const drawn = table([[text('Parameter', { class: 'text' }), text('Why', { class: 'text' }), text('Record instead', { class: 'text' })]],
@@ -56,9 +56,9 @@ function drawCharacteristic() {
     xaxis: axisStyle('speed, mm/s', { type: 'log', tickformat: '~g', dtick: curve.speed.at(-1) / curve.speed[0] > 3000 ? 1 : 'D2' }),
     yaxis: axisStyle('friction force, N', { rangemode: 'tozero', nticks: 7 }),
   });
-  show('characteristic-caption', 'Points: the force without mass and constant force, means over an eighth of a decade of the speed, with two standard errors; ',
+  show('characteristic-caption', 'Points: force without the parts of mass and constant force, means over an eighth of a decade of the speed, with two standard errors; ',
        swatch({ colour: POSITIVE }), ' motion in +x, ', swatch({ colour: NEGATIVE }), ' in −x. Line: the ', element('strong', {}, curve.curve),
-       ' curve with its 95 % band, the one with the least error on data that was held out (another than the linear one must explain at least 1 % more).');
+       ' curve with its 95 % band, the one with the least error on held-out data (a curve other than the linear one must explain at least 1 % more).');
   const errors = table([[text('Curve', { class: 'text' }), text('Held-out error'), text('Unit', { class: 'text unit' })]],
     curve.errors.map(row => classed('first', [{ text: row.curve, head: true, class: 'figure' },
                                               text(row.rms, { class: row.curve === curve.curve ? 'value' : null }), text('N rms', { class: 'text unit' })])));

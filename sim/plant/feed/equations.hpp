@@ -49,7 +49,8 @@ using FeedState = std::array<double, feed_state::count>;
 
 class FeedSystem {
  public:
-  // `feed`: speed set-point of the carriage, m/s.
+  // `feed`: speed set-point of the carriage, m/s. `drive`: parameters; `source`: ideal or controlled motor;
+  // `equations`: as printed or corrected.
   FeedSystem(const machine::FeedDrive& drive, FeedSource source, FeedEquations equations, double feed)
       : d_(drive),
         source_(source),

@@ -33,6 +33,8 @@ struct FeedJump {
 class StickSlipFeed {
  public:
   // From standstill of all states, after a long standstill of the carriage; the set-point stands at `feed` (m/s).
+  // `drive`: parameters; `source`: ideal or controlled motor; `equations`: as printed or corrected; `accuracy`:
+  // tolerance and largest step.
   StickSlipFeed(const machine::FeedDrive& drive, FeedSource source, FeedEquations equations, double feed,
                 FeedAccuracy accuracy = {});
 

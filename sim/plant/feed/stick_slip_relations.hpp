@@ -36,12 +36,15 @@ struct Jumping {
   bool lasts = false;
   JumpCycle cycle;
 };
+// `drive`: parameters; `source`: ideal or controlled motor; `equations`: as printed or corrected; `feed`: m/s, above 0;
+// `accuracy`: tolerance and largest step.
 Jumping jumping_at(const machine::FeedDrive& drive, FeedSource source, FeedEquations equations, double feed,
                    FeedAccuracy accuracy = {});
 
 // The feed, m/s, above which the simulated drive with the corrected equations stops jumping, by bisection to
 // `relative`. Zero when it does not even jump at a hundredth of the ideal drive's critical feed, infinite when it still
-// does at a hundred times that.
+// does at a hundred times that. `drive`: parameters; `source`: ideal or controlled motor; `relative`: accuracy of the
+// result, 1e-4 for instance.
 double critical_feed_by_bisection(const machine::FeedDrive& drive, FeedSource source, double relative);
 
 }  // namespace stiction::sim

@@ -23,7 +23,8 @@ T si(double value) {
   return machine::to_signal<T>(value).value();
 }
 
-// The X axis of the cross table (plant.md, 2-4) without quantizer and notch, with a DC motor and round limits.
+// The X axis of the cross table (Mendricky 2006, Tab 3.1 to 3.3) without quantizer and notch, with a DC motor and round
+// limits.
 template <class S>
 AxisConfig<S> bench_config() {
   AxisConfig<S> c;

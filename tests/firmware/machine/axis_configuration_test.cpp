@@ -19,7 +19,7 @@ using Fix = FixedSignals;
 
 constexpr Timing timing{62.5e-6, 1e-3};
 
-// The Y axis of the cross table (plant.md, 2-4): two motors on one servo module.
+// The Y axis of the cross table (Mendricky 2006, Tab 3.1 to 3.3): two motors on one servo module.
 AxisModel y_axis() {
   AxisModel axis;
   axis.name = "y";

@@ -266,7 +266,7 @@ TEST(MachineFileError, ReferenceRowsAreChecked) {
   EXPECT_TRUE(error_of(published + "friction = \"dahl\"\n" + values)
                   .starts_with("FILE:32: reference.circle[0].friction: found \"dahl\"; expected a friction model: "));
   EXPECT_EQ(error_of(start + "axis = \"B\"\nsource = \"measured\"\nfriction = \"lugre\"\n" + values),
-            "FILE:32: reference.circle[0].friction: found \"lugre\"; expected none beside source \"measured\"");
+            "FILE:32: reference.circle[0].friction: found \"lugre\"; expected none with source \"measured\"");
   EXPECT_EQ(error_of(start + "axis = \"B\"\nsource = \"measured\"\n" + replaced(values, "16 m/min", "16 mm")),
             "FILE:32: reference.circle[0].feed: found \"16 mm\" (dimension m, not m s^-1); expected a value greater "
             "than 0 m/s (feed along the path)");

@@ -41,7 +41,7 @@ TEST(LogRing, LosesWhatFindsNoRoomCountsItAndSaysSoOnce) {
   ASSERT_EQ(lines.said.size(), drive::LogRing::capacity + 1);
   EXPECT_EQ(lines.said.front().second, "0.000000 s: 0");  // the oldest are kept
   EXPECT_EQ(lines.said.back().first, drive::LogLevel::warning);
-  EXPECT_EQ(lines.said.back().second, "7 messages of the loop found no room and are lost");
+  EXPECT_EQ(lines.said.back().second, "7 messages of the loop were lost because the buffer was full");
   EXPECT_TRUE(lines.ring->push(0, drive::LogLevel::info, "again"));
   lines.said.clear();
   lines.reader.drain();

@@ -86,9 +86,10 @@ TEST(ModbusPublisher, KeepsAParameterThatAClientWritesAndStores) {
   // 550 at 1004 (0x3ec), the velocity gain of the first axis; then "store".
   client.send(request({16, 3, 0xec, 0, 2, 4, 0x44, 0x09, 0x80, 0}));
   EXPECT_EQ(client.receive().size(), 12U);
-  EXPECT_EQ(lines_of(publisher),
-            (std::vector<std::string>{
-                "Modbus: axis.X.velocity_controller.gain = 550, from the next start on if it is stored"}));
+  EXPECT_EQ(
+      lines_of(publisher),
+      (std::vector<std::string>{
+          "Modbus: axis.X.velocity_controller.gain = 550, which takes effect at the next start if it is stored"}));
   client.send(request({6, 0, 0, 0x53, 0x54}));
   EXPECT_EQ(client.receive().size(), 12U);
   EXPECT_EQ(lines_of(publisher),

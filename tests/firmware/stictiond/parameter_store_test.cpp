@@ -133,7 +133,7 @@ TEST(ParameterStore, SaysWhichFileCannotBeWritten) {
     drive::write_parameters("/nowhere/parameters", numbered_set(1));
     FAIL() << "wrote into a folder that is not there";
   } catch (const std::system_error& error) {
-    EXPECT_STREQ(error.what(), "/nowhere/parameters.new: cannot be made: No such file or directory");
+    EXPECT_STREQ(error.what(), "/nowhere/parameters.new: cannot be created: No such file or directory");
   }
 }
 
@@ -166,8 +166,7 @@ TEST(ParameterStore, RefusesEveryCutAndWhatIsAppended) {
 }
 
 TEST(ParameterStore, SaysWhatWasFoundAndWhatWasExpected) {
-  const std::string rest =
-      "; nothing of this file is used. Remove it, or put the set before in its place: parameters.previous";
+  const std::string rest = "; the file is not used. Remove it, or replace it by the previous set: parameters.previous";
   EXPECT_EQ(refusal_of("stiction.parameters/2\n"),
             "parameters:1: found \"stiction.parameters/2\"; expected \"stiction.parameters/1\"" + rest);
   EXPECT_EQ(refusal_of(""),

@@ -49,7 +49,7 @@ TEST(RemoteSetup, NeedsAPeriodOfWholeSlowTicksInWhichTheAxisDoesNotGoTooFar) {
   EXPECT_EQ(slow("1 ms"), "");
   EXPECT_EQ(slow("4 ms"), "");
   EXPECT_THAT(slow("1.5 ms"), HasSubstr("found 1.5 ms; expected a whole multiple of timing.slow_period, 1 ms"));
-  EXPECT_THAT(slow("15 ms"), HasSubstr("expected a way of at most 15.625 mm from one set-point to the next"));
+  EXPECT_THAT(slow("15 ms"), HasSubstr("expected a displacement of at most 15.625 mm between set-points"));
 }
 
 TEST(RemoteSetup, NeedsABusThatCarriesItsFrames) {

@@ -174,7 +174,7 @@ TEST_F(PwmFolder, GivesBackAChannelThatItExportedButCannotSetUp) {
 TEST_F(PwmFolder, RefusesAChannelThatRunsAlreadyAndLeavesItRunning) {
   add_channel(0);
   add_channel(1, "1");
-  EXPECT_THAT(refusal(config(2)), ::testing::HasSubstr("pwm1: the channel runs already; stop the programme"));
+  EXPECT_THAT(refusal(config(2)), ::testing::HasSubstr("pwm1: the channel is already running; stop the programme"));
   EXPECT_EQ(get("pwm0/enable"), "0");
   EXPECT_EQ(get("pwm1/enable"), "1");
 }

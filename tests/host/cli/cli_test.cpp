@@ -136,7 +136,7 @@ TEST_F(Cli, FeedCuttingPrintsItsFiguresByTheContract) {
   EXPECT_EQ(json["machine"], "stick-slip-feed");
   EXPECT_NEAR(json["results"]["jump_corrected_at_60_mm_per_min_um"].get<double>(), 281.0, 3.0);
   EXPECT_FALSE(json["results"].contains("jumps_printed_at_60_mm_per_min"));
-  // Of what the study found only the critical feed at zeta 0.1 differs: see its finding.
+  // Of the prototype's figures only the critical feed at zeta 0.1 differs: see its finding.
   for (const auto& [key, holds] : json["holds"].items())
     EXPECT_EQ(holds.get<bool>(), key != "critical_beta_at_zeta_0.1") << key;
 }

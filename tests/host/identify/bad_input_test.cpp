@@ -65,8 +65,8 @@ TEST_F(BadInput, a_log_of_one_speed) {
 TEST_F(BadInput, a_current_at_the_machines_limit) {
   auto log = general();
   for (std::size_t k = 2000; k < 2010; ++k) log.axes.front().i[k] = machine_.axes.front().inverter.current_limit;
-  expect_refused(
-      {log}, {"found the current at 70 A for 10 ms at t = 2 s", "the machine's limit of 70 A", "lower acceleration"});
+  expect_refused({log}, {"found the current at 70 A for 10 ms at t = 2 s", "the limit of 70 A in the machine file",
+                         "lower acceleration"});
 }
 
 TEST_F(BadInput, a_current_whose_tops_are_cut_off) {

@@ -63,7 +63,7 @@ class IdentifyCommand : public ::testing::Test {
   fs::path folder_;
 };
 
-TEST_F(IdentifyCommand, json_is_that_of_the_contract) {
+TEST_F(IdentifyCommand, json_has_the_documented_schema) {
   const auto outcome = identify("../run.csv --machine mcfv5050ln --json --out result");
   ASSERT_EQ(outcome.code, 0) << outcome.error;
   const auto json = nlohmann::json::parse(outcome.out);

@@ -164,8 +164,9 @@ TEST(CsvLog, RefusesMissingChannelsByName) {
   expect_refused("t[s],i[A]\n0,2\n1,2\n", "run.csv:1", "no x[m]");
   expect_refused("# a: b\nt[s],x[m]\n0,2\n1,2\n", "run.csv:2", "neither i[A] nor F[N] nor u[V]");
   expect_refused("t[s],X.x[m],X.i[A],Y.x[m]\n0,2,1,1\n1,2,1,1\n", "run.csv:1", "neither Y.i[A]");
-  expect_refused("t[s],pos[m],cur[A]\n0,2,1\n1,2,1\n", "run.csv:1", "found, but unknown: pos[m], cur[A]");
-  expect_refused("t[s],x[m],i[A],Y.x[m],Y.i[A]\n0,2,1,1,1\n1,2,1,1,1\n", "run.csv:1", "beside channels without one");
+  expect_refused("t[s],pos[m],cur[A]\n0,2,1\n1,2,1\n", "run.csv:1", "columns with unknown names: pos[m], cur[A]");
+  expect_refused("t[s],x[m],i[A],Y.x[m],Y.i[A]\n0,2,1,1,1\n1,2,1,1,1\n", "run.csv:1",
+                 "together with channels without one");
 }
 
 TEST(CsvLog, RefusesWrongMissingAndRepeatedHeaders) {

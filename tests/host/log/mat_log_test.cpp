@@ -113,7 +113,7 @@ TEST(MatLog, RefusesWithTheVariableAndSample) {
            Case{"d['t'] = np.delete(t, 40)\nd['x'] = t[1:]\nd['i'] = t[1:]", ": t(41): found a gap of 2 ms"},
            Case{"d['x'] = t\nd['i'] = t", ": found no variable t;"},
            Case{"d['log'] = {'t': t, 'x': t, 'i': t}", "save(file, '-struct', 'log')"},
-           Case{"d['t'] = t\nd['pos'] = t", "found, but unknown: pos"},
+           Case{"d['t'] = t\nd['pos'] = t", "columns with unknown names: pos"},
            Case{"d['t'] = t\nd['x'] = t", "neither i[A] nor F[N] nor u[V]"},
        }) {
     const TemporaryFile file(".mat");

@@ -231,7 +231,7 @@ TEST(Mapping, AsksForPeakOrRmsOfEveryCurrent) {
   EXPECT_NE(message.find(".toml:5"), std::string::npos) << message;
   EXPECT_NE(refusal(own_times, replaced(scope_map, "rms", "effective")).find("amperes = \"peak\""), std::string::npos);
   EXPECT_NE(
-      refusal(own_times, replaced(scope_map, "\"X.x\"\n", "\"X.x\"\namperes = \"rms\"\n")).find("X.x is no current"),
+      refusal(own_times, replaced(scope_map, "\"X.x\"\n", "\"X.x\"\namperes = \"rms\"\n")).find("X.x is not a current"),
       std::string::npos);
 }
 

@@ -64,7 +64,7 @@ TEST(Replay, OfTheFullRateRepeatsTheRunToAnIncrementOfTheEncoder) {
   }
 }
 
-// diagnosis.md, 12: set-points interpolated between samples of 1 ms left 0.2 to 0.6 N.
+// Set-points interpolated between samples of 1 ms left 0.2 to 0.6 N.
 TEST(Replay, OfOneKilohertzFollowsTheRun) {
   const auto machine = test::cross_table();
   auto log = circle_log(machine, 16);

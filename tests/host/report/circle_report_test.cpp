@@ -105,21 +105,21 @@ TEST(CircleFinding, NamesTheActingModelsLargestErrorBesideTheMeasurement) {
   const auto finding = circle_finding(report.result, report.machine);
   EXPECT_NEAR(finding.feed, feed_16, 1e-9);
   EXPECT_TRUE(finding.headline.starts_with("At 16 m/min the largest quadrant error is 8.")) << finding.headline;
-  EXPECT_TRUE(finding.headline.ends_with(" µm (Y, C LuGre); the machine measured 8.5 µm.")) << finding.headline;
+  EXPECT_TRUE(finding.headline.ends_with(" µm (Y, C LuGre); the measured value is 8.5 µm.")) << finding.headline;
   EXPECT_NE(finding.detail.find("(X) and"), std::string::npos) << finding.detail;
 }
 
 TEST(CircleFinding, ComparesWithThePublicationWhereNothingWasMeasured) {
   const auto report = synthetic_circle({.measured = false});
   const auto finding = circle_finding(report.result, report.machine);
-  EXPECT_TRUE(finding.headline.ends_with("; the published simulation has 9.0 µm.")) << finding.headline;
+  EXPECT_TRUE(finding.headline.ends_with("; the published simulation gives 9.0 µm.")) << finding.headline;
   EXPECT_EQ(finding.detail, "");
 }
 
 TEST(CircleFinding, SaysThatNothingStandsBesideIt) {
   const auto report = synthetic_circle({.measured = false, .published = false});
   const auto finding = circle_finding(report.result, report.machine);
-  EXPECT_TRUE(finding.headline.ends_with("; no measurement stands beside it.")) << finding.headline;
+  EXPECT_TRUE(finding.headline.ends_with("; no measured or published value is available.")) << finding.headline;
 }
 
 // ---- table ----

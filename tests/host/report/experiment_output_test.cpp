@@ -33,7 +33,8 @@ TEST(ExperimentJson, HasTheFormOfTheContract) {
   EXPECT_EQ(json["results"]["peak_deviation_lugre_um"], 92.8);
   EXPECT_EQ(json["results"]["settling_speed_m_per_min"], 0.8142);
   EXPECT_EQ(json["expected"]["peak_deviation_lugre_um"],
-            (nlohmann::ordered_json{{"value", 93.0}, {"tolerance", 1.9}, {"source", "plant study, 10: prototype"}}));
+            (nlohmann::ordered_json{
+                {"value", 93.0}, {"tolerance", 1.9}, {"source", "prototype (docs/prototype_figures.md, 3)"}}));
   EXPECT_FALSE(json["expected"].contains("settling_speed_m_per_min"));
   EXPECT_EQ(json["holds"].size(), 13u);
   EXPECT_EQ(json["holds"]["peak_deviation_lugre_um"], true);
@@ -62,9 +63,11 @@ TEST(ExperimentText, ShowsValuesBesideExpectationsAndSources) {
   const auto text = experiment_text(report.result, report.machine);
   EXPECT_TRUE(text.starts_with("Impact compliance, MCFV 5050 LN cross table, fixed signals\n")) << text;
   EXPECT_NE(text.find("parabolic      96.2 um         93.0 +- 1.9 [1]      DIFFERS"), std::string::npos) << text;
-  EXPECT_NE(text.find("\n[1] plant study, 10: prototype\n[2] plant study, 10: 62 to 63 um\n"), std::string::npos)
+  EXPECT_NE(text.find("\n[1] prototype (docs/prototype_figures.md, 3)\n[2] prototype: 62 to 63 um\n"),
+            std::string::npos)
       << text;
-  EXPECT_TRUE(text.ends_with("\n12 of 13 figures as expected; different: peak deviation (B2 parabolic).\n")) << text;
+  EXPECT_TRUE(text.ends_with("\n12 of 13 figures are as expected; different: peak deviation (B2 parabolic).\n"))
+      << text;
 }
 
 }  // namespace

@@ -151,13 +151,13 @@ TEST(FigureRows, ShowFourDigitsWhereNothingIsExpected) {
 
 TEST(Verdict, CountsAndNamesWhatDiffers) {
   auto result = synthetic_experiment().result;
-  EXPECT_EQ(verdict(result), "12 of 13 figures as expected; different: peak deviation (B2 parabolic).");
+  EXPECT_EQ(verdict(result), "12 of 13 figures are as expected; different: peak deviation (B2 parabolic).");
   for (auto& figure : result.figures) figure.value = figure.expected ? figure.expected->value : figure.value;
-  EXPECT_EQ(verdict(result), "13 of 13 figures as expected.");
+  EXPECT_EQ(verdict(result), "13 of 13 figures are as expected.");
   for (auto& figure : result.figures) figure.value = std::nan("");
-  EXPECT_EQ(verdict(result), "0 of 13 figures as expected.");
+  EXPECT_EQ(verdict(result), "0 of 13 figures are as expected.");
   for (auto& figure : result.figures) figure.expected.reset();
-  EXPECT_EQ(verdict(result), "Figures of this machine: none was expected beforehand.");
+  EXPECT_EQ(verdict(result), "The machine file states no expected figures for this experiment.");
 }
 
 // ---- text ----

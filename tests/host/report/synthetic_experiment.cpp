@@ -32,7 +32,9 @@ double pulse(double after_step, double back) {
   return after_step < 8.0 ? shape : std::min(1.0, tail) * (1.0 - 0.12 * std::sin(0.11 * (after_step - 8.0)));
 }
 
-sim::Expectation prototype(double value, double tolerance) { return {value, tolerance, "plant study, 10: prototype"}; }
+sim::Expectation prototype(double value, double tolerance) {
+  return {value, tolerance, "prototype (docs/prototype_figures.md, 3)"};
+}
 
 void add_response(sim::ExperimentResult& result, const Response& r, std::mt19937& random) {
   std::normal_distribution<double> noise;
@@ -86,7 +88,7 @@ ExperimentReport synthetic_experiment() {
   for (const auto& response : responses) add_response(result, response, random);
   result.figures.push_back({"peak_deviation_at_80000_N_s_per_m", "um",
                             "peak deviation with a velocity gain of 80000 N s/m, lugre", 62.9,
-                            sim::Expectation{62.5, 1.3, "plant study, 10: 62 to 63 um"}});
+                            sim::Expectation{62.5, 1.3, "prototype: 62 to 63 um"}});
   result.figures.push_back({"settling_speed", "m/min", "largest speed of the axis", 0.8142, {}});
   return report;
 }

@@ -21,7 +21,8 @@ struct Commutation {
     return {a, b, narrow<Sine>(-(a + b), none)};
   }
 
-  // The set currents of the phases; their sum is zero.
+  // The set currents of the phases; their sum is zero. `amplitude`: of the current, A; `phase`: sines of the three
+  // phases, from phases(); `saturations`: counts currents that exceed the format.
   static constexpr std::array<Current, 3> phase_currents(Current amplitude, const std::array<Sine, 3>& phase,
                                                          SaturationCounter& saturations) {
     const auto a = narrow<Current>(amplitude * phase[0], saturations);
@@ -29,7 +30,8 @@ struct Commutation {
     return {a, b, saturated_difference(opposite(a), b, saturations)};
   }
 
-  // The amplitude that makes the same force: 2/3 of the sum of i_k sin(phi + k 2 pi / 3).
+  // The amplitude that makes the same force: 2/3 of the sum of i_k sin(phi + k 2 pi / 3). `current`: of the three
+  // phases, A; `phase`: their sines, from phases(); `saturations`: counts results that exceed the format.
   static constexpr Current amplitude(const std::array<Current, 3>& current, const std::array<Sine, 3>& phase,
                                      SaturationCounter& saturations) {
     const auto sum = narrow<typename S::CurrentSum>(

@@ -36,6 +36,7 @@ constexpr Signal between(Signal from, Signal to, typename S::TickFraction fracti
 }
 
 // The signal at `ticks` and a fraction of a tick before the newest; reads two values, the older one at ticks + 1.
+// `line`: the signal's past; `ticks`: 0 to longest - 1; `fraction`: 0 to 1.
 template <class S, class Signal, std::uint32_t Length>
 constexpr Signal read_between(const DelayLine<Signal, Length>& line, std::uint32_t ticks,
                               typename S::TickFraction fraction) {

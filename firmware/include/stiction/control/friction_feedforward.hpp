@@ -45,7 +45,9 @@ struct FrictionFeedforward {
     typename S::Current sum{};  // behind the limit
   };
 
-  // `dx`: how much further the set-point is than the one before.
+  // `dx`: how much further the set-point is than the one before. `config`: elements and sliding curves; `state`:
+  // deflection of each element, changed by the step; `v`: set velocity, m/s; `saturations`: counts results that exceed
+  // the format.
   [[gnu::always_inline]] static constexpr Terms step(const Config& config, State& state, typename S::Step dx,
                                                      typename S::Velocity v, SaturationCounter& saturations) {
     Terms terms;

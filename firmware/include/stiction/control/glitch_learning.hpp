@@ -84,7 +84,9 @@ struct GlitchLearning {
     return state;
   }
 
-  // The current for the newest set-point, `dx` further than the one before. `v`, `a`: its speed and acceleration.
+  // The current for the newest set-point, `dx` further than the one before. `v`, `a`: its speed and acceleration. The
+  // Config is not used here; `state`: tables and the segment since the last reversal, changed by the call;
+  // `saturations`: counts results that exceed the format.
   [[gnu::always_inline]] static constexpr Current play(const Config&, State& state, typename S::Step dx,
                                                        typename S::Velocity v, typename S::Acceleration a,
                                                        SaturationCounter& saturations) {
@@ -109,7 +111,9 @@ struct GlitchLearning {
 
   // Takes the following error of the tick that the axis has just controlled. A tick does one of three things, so that
   // it never costs all of them: after a reversal it judges the stretch that ended, where the set-point came to another
-  // node it teaches the table, else it filters the error; what changes meanwhile is in the next difference.
+  // node it teaches the table, else it filters the error; what changes meanwhile is in the next difference. `config`:
+  // gains, limits and dead zone; `state`: changed by the call; `e`: following error, m; `saturations`: counts results
+  // that exceed the format.
   [[gnu::always_inline]] static constexpr void learn(const Config& config, State& state, Distance e,
                                                      SaturationCounter& saturations) {
     const Distance magnitude = e < Distance{} ? opposite(e) : e;

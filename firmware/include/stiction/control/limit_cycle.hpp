@@ -17,7 +17,8 @@ struct LimitCycle {
   static constexpr std::uint32_t changes_allowed = 12;
 
   // One tick of the window in which the changes of several outputs are counted; begins the next one after
-  // `window_ticks`.
+  // `window_ticks`. `ticks_left`: of the window, changed by the call; `window_ticks`: its length, above 0; `states`:
+  // the watches, whose counts are cleared at the end of the window.
   template <class... States>
   static constexpr void advance_window(std::int32_t& ticks_left, std::uint32_t window_ticks, States&... states) {
     if (--ticks_left < 0) {

@@ -26,6 +26,8 @@ struct Notch {
     Memory2 s2{};
   };
 
+  // One tick of the filter. `config`: its coefficients; `state`: the last inputs and outputs, changed by the step; `x`:
+  // input, in the unit of the signal; `saturations`: counts outputs that exceed the format.
   static constexpr Signal step(const Config& config, State& state, Signal x, SaturationCounter& saturations) {
     if (!config.enabled) return x;
     const auto exact = config.b0 * x + state.s1;

@@ -33,7 +33,8 @@ struct Pi {
   };
 
   // Where the sum leaves the output's own format, track() cannot see by how much, so the integrator stands still
-  // instead of winding up.
+  // instead of winding up. `config`: gains; `state`: the integrator, changed by the step; `error`: set minus actual
+  // value; `saturations`: counts results that exceed the format.
   static constexpr Wanted step(const Config& config, State& state, typename Types::Error error,
                                SaturationCounter& saturations) {
     SaturationCounter here;
@@ -48,7 +49,8 @@ struct Pi {
   }
 
   // Tells the integrator what became of the controller's output behind all limits: of `total`, the output and what was
-  // added to it, `limited` was left.
+  // added to it, `limited` was left. `config`: gains; `state`: the integrator, changed by the call; `beyond_format`: as
+  // step() returned it; `saturations`: counts results that exceed the format.
   static constexpr void track(const Config& config, State& state, bool beyond_format, typename Types::Output total,
                               typename Types::Output limited, SaturationCounter& saturations) {
     if (beyond_format) return;

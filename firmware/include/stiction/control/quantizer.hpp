@@ -1,5 +1,5 @@
 // Quantizer of the position error: the nearest whole number of increments, ties away from zero
-// (Mendricky 2006, Fig. 3.10). plant.md of the sources' study: floor instead of nearest is 0.5 um off.
+// (Mendricky 2006, Fig. 3.10). Rounding down instead of to the nearest multiple would move it by 0.5 um.
 #pragma once
 
 #include "stiction/number/fixed.hpp"
@@ -14,6 +14,7 @@ struct Quantizer {
     typename S::Increment increment{};         // m
   };
 
+  // `config`: the increment; `x`: distance, m; `saturations`: counts results that exceed the format.
   static constexpr typename S::Distance apply(const Config& config, typename S::Distance x,
                                               SaturationCounter& saturations) {
     if (!config.enabled) return x;

@@ -37,7 +37,9 @@ struct ReversalPulse {
     return state;
   }
 
-  // The speed to add to the set speed in this tick. `v`, `a`: set speed and acceleration.
+  // The speed to add to the set speed in this tick. `v`, `a`: set speed, m/s, and acceleration, m/s^2. `config`:
+  // amplitude, delay and duration; `state`: the pulse under way, changed by the step; `saturations`: counts results
+  // that exceed the format.
   static constexpr Velocity step(const Config& config, State& state, Velocity v, Acceleration a,
                                  SaturationCounter& saturations) {
     const bool forward = v > Velocity{};
@@ -53,7 +55,8 @@ struct ReversalPulse {
     return state.ticks >= config.delay_ticks && state.ticks < end ? state.height : Velocity{};
   }
 
-  // The characteristic; `a` is not negative.
+  // The characteristic; `a` is not negative. `config`: the characteristic over the acceleration, m/s^2; `saturations`:
+  // counts results that exceed the format.
   static constexpr Velocity amplitude(const Config& config, Acceleration a, SaturationCounter& saturations) {
     const auto beyond = saturated_difference(a, config.flat_until, saturations);
     const auto excess = beyond > Acceleration{} ? beyond : Acceleration{};

@@ -28,12 +28,15 @@ struct VelocityEstimator {
     std::int64_t time_ns;  // the time at which the carriage had it, in the mean
   };
 
-  // A start at rest: as if the samples before had been the same.
+  // A start at rest: as if the samples before had been the same. `x`: position, m; `t_ns`: its time stamp; `period_ns`:
+  // of the samples, above 0.
   static constexpr State start(typename S::Position x, std::int64_t t_ns, std::int64_t period_ns) {
     return {x, x, t_ns - period_ns, t_ns - 2 * period_ns};
   }
 
-  // The velocity that a sample newer than the state gives. The sample becomes part of the state by push().
+  // The velocity that a sample newer than the state gives. The sample becomes part of the state by push(). `state`: the
+  // samples before; `kind`: the method; `x`: the sample, m, and `t_ns`, its time stamp; `given`: velocity that came
+  // with it, m/s, which the kind given returns; `saturations`: counts results that exceed the format.
   static constexpr Estimate estimate(const State& state, VelocityFeedback kind, typename S::Position x,
                                      std::int64_t t_ns, typename S::Velocity given, SaturationCounter& saturations) {
     if (kind == VelocityFeedback::given) return {given, t_ns};
@@ -45,6 +48,7 @@ struct VelocityEstimator {
     return {velocity, base_ns + ((t_ns - base_ns) >> 1)};
   }
 
+  // Makes a sample part of the `state`. `x`: position, m; `t_ns`: its time stamp, later than that of the sample before.
   static constexpr void push(State& state, typename S::Position x, std::int64_t t_ns) {
     state = {x, state.x1, t_ns, state.t1_ns};
   }
@@ -64,7 +68,8 @@ struct SpeedDelay {
     state.past[0] = v;
   }
 
-  // Delays below 0 and beyond the line's length read its ends.
+  // Delays below 0 and beyond the line's length read its ends. `state`: the delay line; `delay`: age of the velocity
+  // in ticks; `saturations`: counts results that exceed the format.
   static constexpr typename S::Velocity read(const State& state, typename S::Ticks delay,
                                              SaturationCounter& saturations) {
     const auto [whole, fraction] = S::split(delay, length - 2);

@@ -114,7 +114,8 @@ class Axis {
   }
 
   // One fast tick at logical time `now_ns`; `slow` on the ticks of the position controller. Writes every signal of
-  // the cascade to `s`.
+  // the cascade to `s`. `set`: set-point of this tick; `feedback`: newest position, currents and fault inputs. Returns
+  // voltages and enable, which is off after a fault.
   constexpr Command<S> tick(const SetPoint<S>& set, const Feedback<S>& feedback, std::int64_t now_ns, bool slow,
                             AxisSignals<S>& s) {
     auto& saturations = state_.saturations;
@@ -169,7 +170,8 @@ class Axis {
   // Parts of a tick, public so that their work can be counted.
 
   // P, velocity feedforward, PI, notch, current feedforward, with both limits, anti-windup and the watch over limit
-  // cycles: from e_held, v_set_delayed and v to i_set.
+  // cycles: from e_held, v_set_delayed and v to i_set. `set`: set-point of this tick; `now_ns`: its time; `s`: signals
+  // of the tick, read and written.
   [[gnu::always_inline]] constexpr void control_velocity(const SetPoint<S>& set, std::int64_t now_ns,
                                                          AxisSignals<S>& s) {
     auto& saturations = state_.saturations;
@@ -193,7 +195,8 @@ class Axis {
     watch_cycle(state_.current_cycle, i_set.side, now_ns);
   }
 
-  // Every threshold that stops the axis.
+  // Every threshold that stops the axis. `feedback`: of this tick; `s`: its signals; `now_ns`: its time. Latches the
+  // first fault.
   [[gnu::always_inline]] constexpr void supervise(const Feedback<S>& feedback, const AxisSignals<S>& s,
                                                   std::int64_t now_ns) {
     if (feedback.fault) trip(Fault::drive_input, now_ns);

@@ -71,7 +71,8 @@ class Homing {
 
   constexpr void stop() { state_.phase = Phase::idle; }
 
-  // The speed to which the set-point is to go in this tick. `set`: the set-point of the last tick.
+  // The speed to which the set-point is to go in this tick. `set`: the set-point of the last tick. `measured`:
+  // position, m; `inputs`: switches and index of this tick. Returns m/s.
   constexpr Velocity step(const typename Ramp::State& set, Position measured, const DigitalInputs<S>& inputs) {
     const bool negative_end = config_.method == HomingMethod::limit_negative;
     const bool to_index =

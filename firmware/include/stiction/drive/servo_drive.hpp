@@ -77,7 +77,9 @@ class ServoDrive {
     axis.stop();
   }
 
-  // The set-point of this tick for the cascade. Its power is on or off as the drive's state says.
+  // The set-point of this tick for the cascade. Its power is on or off as the drive's state says. `demand`:
+  // controlword, mode and set-point from outside; `feedback`: newest position, currents and fault inputs; `inputs`:
+  // switches and index; `now_ns`: time of the tick; `axis`: the cascade, which is started and stopped here.
   constexpr SetPoint<S> before(const DriveDemand<S>& demand, const Feedback<S>& feedback,
                                const DigitalInputs<S>& inputs, std::int64_t now_ns, Axis<S>& axis) {
     events_ = {};

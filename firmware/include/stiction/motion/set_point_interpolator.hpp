@@ -51,6 +51,8 @@ class SetPointInterpolator {
     CycleRate rate{};                     // 1 / cycle
     Way largest_way{};                    // of a cycle, to which extrapolation keeps
   };
+  // `period_ns`: of a tick; `ticks`: of a cycle, above 0; `largest_way`: displacement in a cycle to which extrapolation
+  // is limited.
   static constexpr Config configure(std::int64_t period_ns, std::uint32_t ticks, Way largest_way) {
     return {ticks, (std::uint64_t{1} << 52) / ticks,
             CycleRate::from_raw(static_cast<std::int32_t>(S::rate(period_ns * ticks).raw())), largest_way};

@@ -23,7 +23,9 @@ struct VelocityRamp {
     Velocity velocity{};
   };
 
-  // One tick. Returns the acceleration of the tick that ends in the new state.
+  // One tick. Returns the acceleration of the tick that ends in the new state. `config`: change of the speed in a tick;
+  // `state`: set-point, changed by the step; `target`: speed, m/s; `saturations`: counts results that exceed the
+  // format.
   static constexpr typename S::Acceleration step(const Config& config, State& state, Velocity target,
                                                  SaturationCounter& saturations) {
     const auto missing = saturated_difference(target, state.velocity, saturations);

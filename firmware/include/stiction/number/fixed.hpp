@@ -259,6 +259,7 @@ constexpr Fixed<FractionBits> negative(Fixed<FractionBits> x) {
 }
 
 // narrow(a + b) and narrow(a - b) of one format, in the two instructions that a word's overflow flag allows.
+// `saturations`: counts results that exceed the format.
 template <int FractionBits>
 constexpr Fixed<FractionBits> saturated_sum(Fixed<FractionBits> a, Fixed<FractionBits> b,
                                             SaturationCounter& saturations) {
@@ -270,6 +271,7 @@ constexpr Fixed<FractionBits> saturated_sum(Fixed<FractionBits> a, Fixed<Fractio
   return Fixed<FractionBits>::from_raw(raw);
 }
 
+// As saturated_sum(), of `a` minus `b`; `saturations`: counts results that exceed the format.
 template <int FractionBits>
 constexpr Fixed<FractionBits> saturated_difference(Fixed<FractionBits> a, Fixed<FractionBits> b,
                                                    SaturationCounter& saturations) {

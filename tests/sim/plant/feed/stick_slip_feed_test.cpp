@@ -1,4 +1,4 @@
-// The stick-slip feed in time and its closed forms, beside the figures of the cam study (1e).
+// The stick-slip feed in time and its closed forms, beside the figures of docs/prototype_figures.md, 7.
 #include "sim/plant/feed/stick_slip_feed.hpp"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ TEST(StickSlipFeed, JumpsAsTheStudyAndTheFormulaSay) {
     const auto drive = lathe(zeta);
     const double ratio = jumping_at(drive, ideal, {}, feed_of(0.018, drive)).cycle.travel / double_step(drive);
     EXPECT_NEAR(ratio, study, 0.01 * study);
-    EXPECT_NEAR(ratio, small_feed_jump_ratio(0.018, zeta), 0.006 * ratio);  // the study's own agreement
+    EXPECT_NEAR(ratio, small_feed_jump_ratio(0.018, zeta), 0.006 * ratio);  // the prototype's own agreement
     figure(fmt::format("stick-slip feed: jump over 2 dF/c, zeta {:g}", zeta),
            fmt::format("{:.4f} ({:g} within 1 %)", ratio, study));
   }
@@ -106,7 +106,7 @@ TEST(StickSlipFeed, FeedPerRevolutionIsThatOfTheStudy) {
   figure("stick-slip feed: feed of revolutions 1 to 8, mm", printed.substr(1));
 }
 
-// The critical feed has a closed form; the study stepped and found 0.6 to 1.8 % more.
+// The critical feed has a closed form; the prototype stepped and found 0.6 to 1.8 % more.
 TEST(StickSlipFeed, CriticalFeedCollapsesAndIsThatOfTheClosedForm) {
   struct Set {
     double step, stiffness, mass;
@@ -153,7 +153,7 @@ TEST(StickSlipFeed, BreakAwayNoticedLateGivesTheStudysCriticalFeed) {
          fmt::format("{:.4f} (0.689 within 1 %)", beta));
 }
 
-// The study's figures of (7), (10) with PI loops are those of the printed damping term.
+// The prototype's figures of (7), (10) with PI loops are those of the printed damping term.
 TEST(StickSlipFeed, WithPiLoopsAndThePrintedDampingItIsTheStudysDrive) {
   const auto drive = lathe();
   const auto at = [&](double mm_per_min) {

@@ -149,8 +149,8 @@ TEST(LuGre, HoldsAForceBelowItsStaticLevelAndSlidesAboveIt) {
 }
 
 TEST(LuGre, FrictionIsLowerForFallingThanForRisingSpeed) {
-  // Frictional lag (4.4.3): v = 2.5 + 2.4 sin(w t) mm/s at 10 rad/s; plant.md: the loop is 66.7 N wide. Both branches
-  // are compared at equal speed, the largest difference.
+  // Frictional lag (4.4.3): v = 2.5 + 2.4 sin(w t) mm/s at 10 rad/s; docs/prototype_figures.md, 4: the loop is 66.7 N
+  // wide. Both branches are compared at equal speed, the largest difference.
   LuGre model(feed_axis, {mass, step});
   constexpr double omega = 10.0;
   const auto speed = [&](double t) { return 1e-3 * (2.5 + 2.4 * std::sin(omega * t)); };

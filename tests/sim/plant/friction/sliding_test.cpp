@@ -23,7 +23,7 @@ struct Case {
 
 void PrintTo(const Case& curve, std::ostream* out) { *out << curve.name; }
 
-// X of the cross table (plant.md, Tab 6.1 and 6.3).
+// X of the cross table (Mendricky 2006, Tab 6.1 and 6.3).
 const std::vector<Case> curves{
     {"D", acting<CoulombViscous<>>({115.0, 430.0}), [](double v) { return 115.0 + 430.0 * v; }},
     {"A", acting<Classical<>>({115.0, 1.1, 430.0}), [](double v) { return 115.0 + 430.0 * v; }},

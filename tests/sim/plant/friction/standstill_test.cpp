@@ -132,7 +132,7 @@ TEST(Parabolic, ComesToRestWithoutChatterEvenInLongSteps) {
 }
 
 TEST(Parabolic, ExplicitEvaluationWouldChatterByTheForceOfTheStudy) {
-  // plant.md, 10: F = a^(n/(n-1)) (h/2m)^(1/(n-1)) = 15 N: what the implicit step avoids.
+  // docs/prototype_figures.md, 3: F = a^(n/(n-1)) (h/2m)^(1/(n-1)) = 15 N: what the implicit step avoids.
   double v = 0.01, force = 0.0;
   for (int i = 0; i < 100000; ++i) {
     force = std::copysign(300.0 * std::pow(std::abs(v), 0.25), v);
