@@ -13,6 +13,7 @@
 #include "host/cli/output.hpp"
 #include "host/identify/identified_machine.hpp"
 #include "host/identify/refinement.hpp"
+#include "host/identify/standstill.hpp"
 #include "host/log/read_log.hpp"
 #include "host/log/text_file.hpp"
 #include "host/report/identification_report.hpp"
@@ -66,7 +67,7 @@ Amperes amperes_of(const std::string& text) {
 
 std::string model_to_identify(const std::string& wanted, const machine::AxisModel& axis) {
   const std::string recipe(sim::CoulombViscous<>::name), contact(sim::LuGre<>::name);
-  if (wanted.empty()) return axis.friction.use == recipe ? recipe : contact;
+  if (wanted.empty()) return sticks_rigidly(axis) ? recipe : contact;
   if (wanted != recipe && wanted != contact)
     throw UsageError(fmt::format("--friction: found '{}'; expected {} or {}", wanted, recipe, contact));
   return wanted;

@@ -30,7 +30,7 @@ FrictionFit fit_coulomb_viscous(const LogRows& rows, const FitSettings& settings
     return sign;
   });
   fit.columns.resize(rows.rows(), 4);
-  fit.columns << rows.acceleration, rows.velocity, Eigen::VectorXd::Ones(rows.rows()), fit.contact;
+  fit.columns << rows.acceleration, rows.velocity, rows.counts(), fit.contact;
   fit.weights = weights_of(fit.columns, rows.force);
   fit.residual = rows.force - fit.columns * fit.weights;
   choose_blocks(fit, rows);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "host/identify/fit_support.hpp"
+#include "host/identify/standstill.hpp"
 #include "host/identify/suitability.hpp"
 #include "sim/plant/friction/coulomb_viscous.hpp"
 
@@ -207,17 +208,19 @@ Identification identify_logs(const std::vector<Log>& logs, const machine::AxisMo
     result.sources.push_back(log.source);
     result.samples += log.t.size();
   }
-  const LogRows rows(std::move(motions), signals);
+  LogRows rows(std::move(motions), signals);
   const auto excitation = excitation_of(rows);
   require_excitation(excitation, sources_of(rows.motions()));
   refuse_swapped_sign(rows);
+  rows.weigh(moving_rows(rows, axis, signals.cutoff));
   const auto fit = recipe ? fit_coulomb_viscous(rows, options.fit) : fit_lugre(rows, options.fit);
   refuse_contradiction(fit, rows);
 
-  result.method = recipe ? "Least squares with sgn(v) of every sample, as published for EMPS; data filtered at 100 Hz, "
-                           "rows at 100 Hz, intervals by block bootstrap."
-                         : "Least squares with a LuGre contact driven by the measured position; data filtered at 100 "
-                           "Hz, rows at 100 Hz, intervals by block bootstrap.";
+  result.method = recipe
+                      ? "Least squares with sgn(v), as published for EMPS, over the rows that move; data filtered at "
+                        "100 Hz, rows at 100 Hz, intervals by block bootstrap."
+                      : "Least squares with a LuGre contact driven by the measured position; data filtered at 100 "
+                        "Hz, rows at 100 Hz, intervals by block bootstrap.";
   if (fit.sliding_only)
     result.method +=
         " The contact model contradicts the rows in steady sliding. Mass, Coulomb and viscous friction therefore come "

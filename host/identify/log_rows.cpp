@@ -17,10 +17,16 @@ LogRows::LogRows(std::vector<Motion> motions, const SignalSettings& settings) : 
     count += filters_.back().rows();
   }
   force.resize(static_cast<Eigen::Index>(count));  // stacked() takes the number of rows from it
+  counts_ = Eigen::VectorXd::Ones(force.size());
   force = stacked([](const Motion& m) { return m.force; });
   acceleration = stacked([](const Motion& m) { return m.a; });
   velocity = stacked([](const Motion& m) { return m.v; });
   time = sampled([](const Motion& m) { return m.t; });
+}
+
+void LogRows::weigh(Eigen::VectorXd counts) {
+  counts_ = std::move(counts);
+  for (auto* row : {&force, &acceleration, &velocity}) *row = row->cwiseProduct(counts_);
 }
 
 Eigen::VectorXd LogRows::stacked(const std::function<std::vector<double>(const Motion&)>& column) const {
@@ -29,7 +35,7 @@ Eigen::VectorXd LogRows::stacked(const std::function<std::vector<double>(const M
     const auto rows = filters_[k](column(motions_[k]));
     all.segment(static_cast<Eigen::Index>(logs_[k]), static_cast<Eigen::Index>(rows.size())) = as_vector(rows);
   }
-  return all;
+  return all.cwiseProduct(counts_);
 }
 
 std::vector<Eigen::VectorXd> LogRows::stacked_together(
@@ -42,6 +48,7 @@ std::vector<Eigen::VectorXd> LogRows::stacked_together(
       all[c].segment(static_cast<Eigen::Index>(logs_[k]), static_cast<Eigen::Index>(rows[c].size())) =
           as_vector(rows[c]);
   }
+  for (auto& column : all) column = column.cwiseProduct(counts_);
   return all;
 }
 
@@ -58,7 +65,7 @@ Eigen::VectorXd LogRows::of_log(std::size_t log, const std::vector<double>& colu
   Eigen::VectorXd all = Eigen::VectorXd::Zero(force.size());
   const auto rows = filters_[log](column);
   all.segment(static_cast<Eigen::Index>(logs_[log]), static_cast<Eigen::Index>(rows.size())) = as_vector(rows);
-  return all;
+  return all.cwiseProduct(counts_);
 }
 
 }  // namespace stiction::host

@@ -25,6 +25,12 @@ class LogRows {
       const std::function<std::vector<std::vector<double>>(const Motion&)>& columns) const;
   // The same without the filter: for what is no regressor, a mask or the time.
   Eigen::VectorXd sampled(const std::function<std::vector<double>(const Motion&)>& column) const;
+  // Leaves rows without weight: from now on force and regressors are zero where `counts` is 0 (one value a row, 0 or
+  // 1).
+  void weigh(Eigen::VectorXd counts);
+  // The weight of each row.
+  const Eigen::VectorXd& counts() const { return counts_; }
+
   // A regressor of one log, zero in the rows of the others.
   Eigen::VectorXd of_log(std::size_t log, const std::vector<double>& column) const;
 
@@ -34,6 +40,7 @@ class LogRows {
   std::vector<Motion> motions_;
   std::vector<RowFilter> filters_;
   std::vector<std::size_t> logs_;
+  Eigen::VectorXd counts_;
 };
 
 }  // namespace stiction::host

@@ -1,0 +1,29 @@
+#include "host/identify/standstill.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "sim/plant/friction/friction.hpp"
+
+namespace stiction::host {
+namespace {
+
+double jump_of(const machine::AxisModel& axis) { return sim::steady_friction(axis.friction)(0.0, 1.0); }
+
+}  // namespace
+
+bool sticks_rigidly(const machine::AxisModel& axis) { return !sim::contact_of(axis.friction) && jump_of(axis) != 0.0; }
+
+Eigen::VectorXd moving_rows(const LogRows& rows, const machine::AxisModel& axis, double cutoff) {
+  Eigen::VectorXd moves = Eigen::VectorXd::Ones(rows.rows());
+  if (!sticks_rigidly(axis)) return moves;
+  const double slow = jump_of(axis) / axis.mass / (2.0 * std::numbers::pi * cutoff);
+  for (Eigen::Index i = 0; i < rows.rows(); ++i)
+    if (std::abs(rows.velocity[i]) < slow)
+      for (Eigen::Index k = std::max<Eigen::Index>(i - 1, 0); k <= std::min(i + 1, rows.rows() - 1); ++k)
+        moves[k] = 0.0;
+  return moves;
+}
+
+}  // namespace stiction::host
