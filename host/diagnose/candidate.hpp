@@ -19,7 +19,7 @@
 namespace stiction::host {
 
 // What the candidates may know: the axis as its file has it and what the training records cover. SI units.
-struct Scene {
+struct SearchContext {
   machine::AxisModel axis;
   SignalSettings signals;
   double highest_speed = 0.0;
@@ -51,14 +51,14 @@ struct Candidate {
   const char* name;
   // Values of the nonlinear parameter to try; one value, not looked at, for an effect that has none. Empty: this axis
   // or these records cannot have the effect.
-  std::vector<double> (*grid)(const Scene&);
-  Columns (*columns)(const Scene&, const Motion&, double nonlinear);
+  std::vector<double> (*grid)(const SearchContext&);
+  Columns (*columns)(const SearchContext&, const Motion&, double shape);
   // Whether weights have a sign and size that the effect can have.
-  bool (*possible)(const Scene&, double nonlinear, const Eigen::VectorXd& weights);
+  bool (*possible)(const SearchContext&, double shape, const Eigen::VectorXd& coefficients);
   // Keys of the machine file; `deviations`: of weights and nonlinear parameter (last), covariance.
-  void (*describe)(const Scene&, double nonlinear, const Eigen::VectorXd& weights, const Eigen::MatrixXd& covariance,
-                   Finding&);
-  bool nonlinear = false;       // whether the scanned parameter is one of the effect's own
+  void (*describe)(const SearchContext&, double shape, const Eigen::VectorXd& coefficients,
+                   const Eigen::MatrixXd& covariance, Finding&);
+  bool shape = false;           // whether the scanned parameter is one of the effect's own
   bool at_weight = false;       // the scanned value is where the law is linearised: at best the weight itself
   bool names_constant = false;  // what it names is not a nuisance of its own evaluation
   bool names_coulomb = false;
@@ -68,14 +68,14 @@ struct Candidate {
   // record.
   bool per_record = false;
   // The lines among which a periodic one is looked for; null for others.
-  const LineScan& (*scan)(const Scene&) = nullptr;
+  const LineScan& (*scan)(const SearchContext&) = nullptr;
   bool replays = false;  // its columns cost a run of the closed loop
   // From this value on it matters little what disturbs those runs.
   double coarse = std::numeric_limits<double>::infinity();
   double trials = 1.0;  // independent values that a grid without a scan tries
   // Of a force outside of the vocabulary: what it looks like. It takes part in the search so that no name is forced
   // upon what none fits; found, it is no finding but the signature of what stays unexplained. Null for an effect.
-  std::string (*looks_like)(const Scene&, double nonlinear, const Eigen::VectorXd& weights) = nullptr;
+  std::string (*looks_like)(const SearchContext&, double shape, const Eigen::VectorXd& coefficients) = nullptr;
   bool outside() const { return looks_like != nullptr; }
 };
 
@@ -95,11 +95,11 @@ void add_key(Finding& finding, const char* key, const char* suffix, std::vector<
 // Cosine and sine of a wave over position, as force on the carriage of `size` (of each sample) times it.
 Columns waves_over_position(const Motion& motion, double pitch, const std::vector<double>& size);
 
-inline std::vector<double> no_scan(const Scene&) { return {0.0}; }
-inline bool any(const Scene&, double, const Eigen::VectorXd&) { return true; }
+inline std::vector<double> no_scan(const SearchContext&) { return {0.0}; }
+inline bool any(const SearchContext&, double, const Eigen::VectorXd&) { return true; }
 // Of the weights of a wave that has a pair in each record: the amplitude that they have in common (their root mean
 // square) with the first record's phase, as cosine and sine.
-std::array<double, 2> first_wave(const Eigen::VectorXd& weights);
+std::array<double, 2> first_wave(const Eigen::VectorXd& coefficients);
 // `count` values from `low` to `high`, each the same factor above the one before.
 std::vector<double> geometric(double low, double high, int count);
 }  // namespace effects

@@ -8,14 +8,14 @@ namespace stiction::host {
 namespace {
 
 // Of each trial.
-std::vector<std::vector<Eigen::VectorXd>> shared(const LogRows& rows, const Scene& scene,
+std::vector<std::vector<Eigen::VectorXd>> shared(const LogRows& rows, const SearchContext& context,
                                                  const std::vector<CandidateAt>& trials) {
   std::vector<std::size_t> counts;
   auto all = rows.stacked_together([&](const Motion& motion) {
     Columns columns;
     counts.clear();
     for (const auto& trial : trials) {
-      auto own = trial.candidate->columns(scene, motion, trial.nonlinear);
+      auto own = trial.candidate->columns(context, motion, trial.shape);
       counts.push_back(own.size());
       std::move(own.begin(), own.end(), std::back_inserter(columns));
     }
@@ -47,29 +47,29 @@ std::vector<Eigen::VectorXd> by_record(const LogRows& rows, const std::vector<Ei
 
 }  // namespace
 
-std::vector<Eigen::VectorXd> shared_columns(const LogRows& rows, const Scene& scene, const Candidate& candidate,
-                                            double nonlinear) {
-  return std::move(shared(rows, scene, {{&candidate, nonlinear}}).front());
+std::vector<Eigen::VectorXd> shared_columns(const LogRows& rows, const SearchContext& context,
+                                            const Candidate& candidate, double shape) {
+  return std::move(shared(rows, context, {{&candidate, shape}}).front());
 }
 
-std::vector<Eigen::VectorXd> group_columns(const LogRows& rows, const Scene& scene, const Candidate& candidate,
-                                           double nonlinear) {
-  return std::move(group_columns(rows, scene, {{&candidate, nonlinear}}).front());
+std::vector<Eigen::VectorXd> group_columns(const LogRows& rows, const SearchContext& context,
+                                           const Candidate& candidate, double shape) {
+  return std::move(group_columns(rows, context, {{&candidate, shape}}).front());
 }
 
-std::vector<std::vector<Eigen::VectorXd>> group_columns(const LogRows& rows, const Scene& scene,
+std::vector<std::vector<Eigen::VectorXd>> group_columns(const LogRows& rows, const SearchContext& context,
                                                         const std::vector<CandidateAt>& trials) {
-  auto groups = shared(rows, scene, trials);
+  auto groups = shared(rows, context, trials);
   for (std::size_t k = 0; k < groups.size(); ++k)
     if (trials[k].candidate->per_record) groups[k] = by_record(rows, groups[k]);
   return groups;
 }
 
-Eigen::VectorXd weighted_columns(const LogRows& rows, const Scene& scene, const Candidate& candidate, double nonlinear,
-                                 const Eigen::VectorXd& weights) {
-  const auto columns = group_columns(rows, scene, candidate, nonlinear);
+Eigen::VectorXd weighted_columns(const LogRows& rows, const SearchContext& context, const Candidate& candidate,
+                                 double shape, const Eigen::VectorXd& coefficients) {
+  const auto columns = group_columns(rows, context, candidate, shape);
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(rows.rows());
-  for (std::size_t c = 0; c < columns.size(); ++c) sum += weights[static_cast<Eigen::Index>(c)] * columns[c];
+  for (std::size_t c = 0; c < columns.size(); ++c) sum += coefficients[static_cast<Eigen::Index>(c)] * columns[c];
   return sum;
 }
 

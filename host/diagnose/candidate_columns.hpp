@@ -12,20 +12,20 @@ namespace stiction::host {
 // A candidate with a value of its nonlinear parameter.
 struct CandidateAt {
   const Candidate* candidate;
-  double nonlinear;
+  double shape;
 };
 
 // As one for all records (N per unit of weight).
-std::vector<Eigen::VectorXd> shared_columns(const LogRows& rows, const Scene& scene, const Candidate& candidate,
-                                            double nonlinear);
+std::vector<Eigen::VectorXd> shared_columns(const LogRows& rows, const SearchContext& context,
+                                            const Candidate& candidate, double shape);
 // The same, and of those that have weights of their own in each record in the rows of that one alone.
-std::vector<Eigen::VectorXd> group_columns(const LogRows& rows, const Scene& scene, const Candidate& candidate,
-                                           double nonlinear);
+std::vector<Eigen::VectorXd> group_columns(const LogRows& rows, const SearchContext& context,
+                                           const Candidate& candidate, double shape);
 // Those of several trials, which takes less time together.
-std::vector<std::vector<Eigen::VectorXd>> group_columns(const LogRows& rows, const Scene& scene,
+std::vector<std::vector<Eigen::VectorXd>> group_columns(const LogRows& rows, const SearchContext& context,
                                                         const std::vector<CandidateAt>& trials);
 // Their sum with these weights (N).
-Eigen::VectorXd weighted_columns(const LogRows& rows, const Scene& scene, const Candidate& candidate, double nonlinear,
-                                 const Eigen::VectorXd& weights);
+Eigen::VectorXd weighted_columns(const LogRows& rows, const SearchContext& context, const Candidate& candidate,
+                                 double shape, const Eigen::VectorXd& coefficients);
 
 }  // namespace stiction::host

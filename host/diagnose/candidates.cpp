@@ -59,10 +59,10 @@ Columns waves_over_position(const Motion& motion, double pitch, const std::vecto
   return pair;
 }
 
-std::array<double, 2> first_wave(const Eigen::VectorXd& weights) {
-  const double amplitude = std::sqrt(weights.squaredNorm() / (0.5 * static_cast<double>(weights.size())));
-  const double turn = amplitude / std::max(std::hypot(weights[0], weights[1]), 1e-300);
-  return {turn * weights[0], turn * weights[1]};
+std::array<double, 2> first_wave(const Eigen::VectorXd& coefficients) {
+  const double amplitude = std::sqrt(coefficients.squaredNorm() / (0.5 * static_cast<double>(coefficients.size())));
+  const double turn = amplitude / std::max(std::hypot(coefficients[0], coefficients[1]), 1e-300);
+  return {turn * coefficients[0], turn * coefficients[1]};
 }
 
 std::vector<double> geometric(double low, double high, int count) {

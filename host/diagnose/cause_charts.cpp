@@ -115,11 +115,11 @@ sim::Chart added_variable(const Eigen::VectorXd& left, const Eigen::VectorXd& by
 
 }  // namespace
 
-void add_cause_charts(Verdict& verdict, const LogRows& rows, const Scene& scene, const std::vector<Term>& terms,
-                      const Eigen::VectorXd& after) {
+void add_cause_charts(Verdict& verdict, const LogRows& rows, const SearchContext& context,
+                      const std::vector<Term>& terms, const Eigen::VectorXd& after) {
   for (std::size_t k = 0; k < terms.size() && k < verdict.findings.size(); ++k) {
     const auto by =
-        weighted_columns(rows, scene, candidates()[terms[k].candidate], terms[k].nonlinear, terms[k].weights);
+        weighted_columns(rows, context, candidates()[terms[k].candidate], terms[k].shape, terms[k].coefficients);
     const Eigen::VectorXd left = after + by;
     auto& finding = verdict.findings[k];
     for (const auto& row : abscissae)

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "host/diagnose/bench.hpp"
+#include "host/diagnose/replay_setup.hpp"
 #include "host/simulate/control_run.hpp"
 
 namespace stiction::host {
@@ -94,37 +94,37 @@ void judge_in_closed_loop(Verdict& verdict, const machine::Machine& machine, std
   const bool coupled = std::any_of(known.begin(), known.end(), is_coupling) ||
                        std::any_of(verdict.findings.begin(), verdict.findings.end(),
                                    [&](const Finding& finding) { return is_coupling(finding.effect); });
-  auto bench = bench_of(machine, axis, held_out, coupled);
-  if (bench.logs.empty()) return;
+  auto setup = replay_setup_of(machine, axis, held_out, coupled);
+  if (setup.logs.empty()) return;
   std::vector<std::vector<double>> measured;
-  for (const auto& log : bench.logs) measured.push_back(log.axes.front().x);
+  for (const auto& log : setup.logs) measured.push_back(log.axes.front().x);
   const auto with = [&](const std::vector<Finding>& findings) {
-    auto extended = bench;
-    extended.machine = extended_machine(bench.machine, findings);
+    auto extended = setup;
+    extended.machine = extended_machine(setup.machine, findings);
     return simulated_positions(extended);
   };
   std::vector<std::vector<double>> baseline;
   try {
-    baseline = simulated_positions(bench);
+    baseline = simulated_positions(setup);
   } catch (const FaultTripped& fault) {
     throw LogError(
         fmt::format("{}: found set-points that the simulated machine cannot follow ({}); expected a record of the "
                     "machine in this file",
-                    bench.logs.front().source, fault.what()));
+                    setup.logs.front().source, fault.what()));
   }
-  verdict.baseline.position_error_rms = difference_rms(measured, baseline, bench.logs);
+  verdict.baseline.position_error_rms = difference_rms(measured, baseline, setup.logs);
   try {
     const auto all = verdict.findings.empty() ? baseline : with(verdict.findings);
-    verdict.extended.position_error_rms = difference_rms(measured, all, bench.logs);
-    add_pictures(verdict, bench.logs, measured, baseline, all);
+    verdict.extended.position_error_rms = difference_rms(measured, all, setup.logs);
+    add_pictures(verdict, setup.logs, measured, baseline, all);
     for (std::size_t k = 0; k < verdict.findings.size(); ++k) {
       auto others = verdict.findings;
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
       const auto without = with(others);
       auto& finding = verdict.findings[k];
       finding.holdout.position_error_rms_ratio =
-          *verdict.extended.position_error_rms / std::max(difference_rms(measured, without, bench.logs), 1e-15);
-      finding.part_error = largest_difference(all, without, bench.logs);
+          *verdict.extended.position_error_rms / std::max(difference_rms(measured, without, setup.logs), 1e-15);
+      finding.part_error = largest_difference(all, without, setup.logs);
     }
   } catch (const FaultTripped& fault) {
     verdict.notes.push_back(fmt::format(

@@ -26,7 +26,7 @@ struct Free {
 class ClosedLoopFit {
  public:
   ClosedLoopFit(std::vector<Finding> findings, const SearchResult& found, EffectResponse& response, const LogRows& rows,
-                const Eigen::VectorXd& target, const Scene& scene)
+                const Eigen::VectorXd& target, const SearchContext& context)
       : findings_(std::move(findings)), response_(response), rows_(rows), target_(target) {
     bool whitened = true;
     for (std::size_t k = 0; k < findings_.size(); ++k) {
@@ -34,7 +34,7 @@ class ClosedLoopFit {
       whitened = whitened && term.whitened;
       // What runs in silence do not know: a phase of each record, or a response under disturbances.
       if (const auto& candidate = candidates()[term.candidate]; candidate.per_record || candidate.replays)
-        target_ -= weighted_columns(rows, scene, candidate, term.nonlinear, term.weights);
+        target_ -= weighted_columns(rows, context, candidate, term.shape, term.coefficients);
       else
         free_parameters(k);
     }
@@ -51,7 +51,7 @@ class ClosedLoopFit {
     Eigen::VectorXd at = start();
     Eigen::MatrixXd slopes = slopes_at(at, force);
     for (int step = 0; step < most_steps; ++step) {
-      Eigen::VectorXd way = evidence_of(force, slopes).fit(all()).weights;
+      Eigen::VectorXd way = evidence_of(force, slopes).fit(all()).coefficients;
       double gained = 0.0;
       for (int half = 0; half <= halvings && gained <= 0.0; ++half, way *= 0.5) {
         const Eigen::VectorXd next = at + way, next_force = simulated(next);
@@ -177,11 +177,11 @@ class ClosedLoopFit {
 
 void refine_in_closed_loop(std::vector<Finding>& findings, const SearchResult& found,
                            std::span<EffectResponse> responses, const LogRows& rows, const Eigen::VectorXd& target,
-                           const Scene& scene) {
+                           const SearchContext& context) {
   const auto start = findings;
   double least = std::numeric_limits<double>::infinity();
   for (auto& response : responses) {
-    ClosedLoopFit fit(start, found, response, rows, target, scene);
+    ClosedLoopFit fit(start, found, response, rows, target, context);
     least = std::min(least, fit.square(found.residual));
     if (const double left = fit.run(); left < least) {
       least = left;

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "host/diagnose/bench.hpp"
+#include "host/diagnose/replay_setup.hpp"
 #include "host/diagnose/search.hpp"
 #include "host/diagnose/verdict.hpp"
 
@@ -19,6 +19,6 @@ namespace stiction::host {
 // and one that replays under disturbances, stays as it is.
 void refine_in_closed_loop(std::vector<Finding>& findings, const SearchResult& found,
                            std::span<EffectResponse> responses, const LogRows& rows, const Eigen::VectorXd& target,
-                           const Scene& scene);
+                           const SearchContext& context);
 
 }  // namespace stiction::host

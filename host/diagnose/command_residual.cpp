@@ -149,14 +149,15 @@ class Selection {
   // With the nuisances behind the chosen columns.
   Evidence::Fit fit(const ColumnIndices& chosen) const { return evidence_.fit(beside(chosen)); }
   Eigen::MatrixXd covariance(const ColumnIndices& chosen) const {
-    return evidence_.covariance(beside(chosen), fit(chosen).weights);
+    return evidence_.covariance(beside(chosen), fit(chosen).coefficients);
   }
   double p_value(const ColumnIndices& chosen, std::size_t term) const {
     const auto fit = this->fit(chosen);
     const auto i = static_cast<Eigen::Index>(term);
     const double variance = covariance(chosen)(i, i);
-    const double t = fit.weights[i] / std::sqrt(std::max(variance, 1e-300));
-    const double freedom = std::max(evidence_.bearing_clusters({chosen[term]}, fit.weights.segment(i, 1)) - 1.0, 2.0);
+    const double t = fit.coefficients[i] / std::sqrt(std::max(variance, 1e-300));
+    const double freedom =
+        std::max(evidence_.bearing_clusters({chosen[term]}, fit.coefficients.segment(i, 1)) - 1.0, 2.0);
     return student_tails(t, freedom);
   }
   double explains(const ColumnIndices& chosen, std::size_t term) const {
@@ -192,10 +193,10 @@ class Selection {
     const double most = *std::max_element(gains.begin(), gains.end());
     if (!(gained > least_gain * total && gained - most > 0.2 * gained)) return false;
     std::vector<bool> half(evidence_.blocks());
-    const double whole = fit(chosen).weights[static_cast<Eigen::Index>(term)];
+    const double whole = fit(chosen).coefficients[static_cast<Eigen::Index>(term)];
     for (const bool first : {true, false}) {
       for (std::size_t k = 0; k < half.size(); ++k) half[k] = (k < half.size() / 2) == first;
-      if (evidence_.fit(beside(chosen), half).weights[static_cast<Eigen::Index>(term)] * whole < 0.0) return false;
+      if (evidence_.fit(beside(chosen), half).coefficients[static_cast<Eigen::Index>(term)] * whole < 0.0) return false;
     }
     return true;
   }
@@ -251,8 +252,8 @@ std::vector<CommandTerm> refined(const Commands& commands, const machine::AxisMo
   for (std::size_t k = 0; k < chosen.size(); ++k) {
     places.push_back(selection.place(chosen[k]));
     const double value = *command_parameters()[places[k]].value(axis);
-    terms.push_back({places[k], value + fit.weights[static_cast<Eigen::Index>(k)], 0.0, selection.explains(chosen, k),
-                     selection.p_value(chosen, k)});
+    terms.push_back({places[k], value + fit.coefficients[static_cast<Eigen::Index>(k)], 0.0,
+                     selection.explains(chosen, k), selection.p_value(chosen, k)});
   }
   for (int round = 0; round < refinements; ++round) {
     for (auto& term : terms) {
@@ -264,7 +265,7 @@ std::vector<CommandTerm> refined(const Commands& commands, const machine::AxisMo
     const auto at = with_terms(axis, terms);
     const auto local = select(commands, at, commands.logged() - commands.replayed<FixedSignals>(at), places);
     const auto all = all_of(places);
-    const auto step = local.fit(all).weights;
+    const auto step = local.fit(all).coefficients;
     const auto covariance = local.covariance(all);
     for (std::size_t k = 0; k < terms.size(); ++k) {
       const auto i = static_cast<Eigen::Index>(k);

@@ -9,7 +9,6 @@
 #include <numbers>
 #include <numeric>
 
-#include "host/diagnose/bench.hpp"
 #include "host/diagnose/candidate_columns.hpp"
 #include "host/diagnose/closed_loop.hpp"
 #include "host/diagnose/closed_loop_refinement.hpp"
@@ -17,9 +16,10 @@
 #include "host/diagnose/diagnosis_charts.hpp"
 #include "host/diagnose/holdout.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
-#include "host/diagnose/leftover.hpp"
 #include "host/diagnose/next_measurement.hpp"
 #include "host/diagnose/record_checks.hpp"
+#include "host/diagnose/replay_setup.hpp"
+#include "host/diagnose/residual_diagnostics.hpp"
 #include "host/diagnose/search.hpp"
 #include "host/diagnose/second_band.hpp"
 #include "host/identify/identification.hpp"
@@ -93,26 +93,26 @@ Eigen::VectorXd own_residual(const std::vector<Log>& replayed, const std::vector
 
 double rms(const Eigen::VectorXd& v) { return std::sqrt(v.squaredNorm() / static_cast<double>(v.size())); }
 
-Scene scene_of(const machine::AxisModel& axis, const LogRows& rows, const SignalSettings& settings) {
-  Scene scene;
-  scene.axis = axis;
-  scene.signals = settings;
-  scene.reversals = excitation_of(rows).reversals;
-  scene.force_is_current = scene.other_axis = true;
-  scene.lowest_position = scene.highest_position = rows.motions().front().x.front();
+SearchContext context_of(const machine::AxisModel& axis, const LogRows& rows, const SignalSettings& settings) {
+  SearchContext context;
+  context.axis = axis;
+  context.signals = settings;
+  context.reversals = excitation_of(rows).reversals;
+  context.force_is_current = context.other_axis = true;
+  context.lowest_position = context.highest_position = rows.motions().front().x.front();
   for (const auto& motion : rows.motions()) {
-    scene.force_is_current = scene.force_is_current && motion.force_is_current;
-    scene.other_axis = scene.other_axis && !motion.other_a.empty();
+    context.force_is_current = context.force_is_current && motion.force_is_current;
+    context.other_axis = context.other_axis && !motion.other_a.empty();
     for (const double force : force_along(axis, motion))
-      scene.highest_force = std::max(scene.highest_force, std::abs(force));
-    scene.duration = std::max(scene.duration, motion.t.back() - motion.t.front());
+      context.highest_force = std::max(context.highest_force, std::abs(force));
+    context.duration = std::max(context.duration, motion.t.back() - motion.t.front());
     for (std::size_t i = 0; i < motion.x.size(); ++i) {
-      scene.highest_speed = std::max(scene.highest_speed, std::abs(motion.v[i]));
-      scene.lowest_position = std::min(scene.lowest_position, motion.x[i]);
-      scene.highest_position = std::max(scene.highest_position, motion.x[i]);
+      context.highest_speed = std::max(context.highest_speed, std::abs(motion.v[i]));
+      context.lowest_position = std::min(context.lowest_position, motion.x[i]);
+      context.highest_position = std::max(context.highest_position, motion.x[i]);
     }
   }
-  return scene;
+  return context;
 }
 
 // Exact aliases: half a difference of Coulomb friction is a constant force, and a force constant scales mass, Coulomb
@@ -144,45 +144,46 @@ std::vector<ConfusedWith> confused_with(const Term& term) {
   return list;
 }
 
-std::string repeated(const Repetition& repetition) {
-  return fmt::format("{:.2f} +- {:.2f}", repetition.size, repetition.deviation);
+std::string repeated(const HeldOutAmplitude& held_out_amplitude) {
+  return fmt::format("{:.2f} +- {:.2f}", held_out_amplitude.size, held_out_amplitude.deviation);
 }
 
-std::string evidence_of(const Term& term, const Repetition& repetition, std::size_t blocks) {
+std::string evidence_of(const Term& term, const HeldOutAmplitude& held_out_amplitude, std::size_t blocks) {
   const auto& j = term.judgement;
   return fmt::format(
       "Explains {:.1f} % of the residual variance given the other findings ({:.1f} % cross-validated), p = {:.2g} from "
       "{} blocks of rows. Amplitude in the first half of the blocks: {:.2f} of the fitted one, in the second half: "
       "{:.2f}. Held-out amplitude: {} of the fitted one{}.",
-      100.0 * term.explains, 100.0 * j.gain, j.p_value, blocks, j.first_half, j.second_half, repeated(repetition),
-      repetition.against() < 0.0 ? "" : ", which neither confirms nor refutes it");
+      100.0 * term.explains, 100.0 * j.gain, j.p_value, blocks, j.first_half, j.second_half,
+      repeated(held_out_amplitude),
+      held_out_amplitude.against() < 0.0 ? "" : ", which neither confirms nor refutes it");
 }
 
-Finding finding_of(const Scene& scene, const Term& term, const HoldoutGain& gain, const Repetition& repetition,
-                   std::size_t blocks) {
+Finding finding_of(const SearchContext& context, const Term& term, const HoldoutGain& gain,
+                   const HeldOutAmplitude& held_out_amplitude, std::size_t blocks) {
   const auto& candidate = candidates()[term.candidate];
   Finding finding;
-  finding.axis = scene.axis.name;
+  finding.axis = context.axis.name;
   finding.effect.name = candidate.name;
-  candidate.describe(scene, term.nonlinear, term.weights, term.covariance, finding);
+  candidate.describe(context, term.shape, term.coefficients, term.covariance, finding);
   finding.explains = term.explains;
   finding.holdout = gain;
   finding.p_value = term.judgement.p_value;
   finding.confused_with = confused_with(term);
-  finding.evidence = evidence_of(term, repetition, blocks);
+  finding.evidence = evidence_of(term, held_out_amplitude, blocks);
   return finding;
 }
 
 // What the residual force says of a current that is recorded late: by its time_skew, and in what is left.
-RecordDelay record_delay(const LogRows& rows, const Scene& scene, const SearchResult& found) {
+RecordDelay record_delay(const LogRows& rows, const SearchContext& context, const SearchResult& found) {
   RecordDelay delay;
   for (const auto& term : found.terms)
-    if (std::string_view(candidates()[term.candidate].name) == "time_skew") delay.found = term.weights[0];
+    if (std::string_view(candidates()[term.candidate].name) == "time_skew") delay.found = term.coefficients[0];
   Evidence evidence(found.residual,
                     blocks_of(rows.velocity, rows.logs(), static_cast<std::size_t>(rows.rows() / 60 + 1)));
-  evidence.add(group_columns(rows, scene, effects::time_skew, 1e-4));
-  delay.estimate = evidence.fit({0}).weights[0];
-  delay.deviation = std::sqrt(evidence.covariance({0}, evidence.fit({0}).weights)(0, 0));
+  evidence.add(group_columns(rows, context, effects::time_skew, 1e-4));
+  delay.estimate = evidence.fit({0}).coefficients[0];
+  delay.deviation = std::sqrt(evidence.covariance({0}, evidence.fit({0}).coefficients)(0, 0));
   return delay;
 }
 
@@ -190,8 +191,8 @@ RecordDelay record_delay(const LogRows& rows, const Scene& scene, const SearchRe
 // know it; else a small part of what the training records say for it, by the most that its p-value can mean as a Bayes
 // factor (Sellke, Bayarri, Berger, Am. Stat. 55, 2001) among so many candidates: records on which it hardly acts speak
 // by chance.
-double most_against(const Term& term, const Repetition& repetition) {
-  if (!repetition.may_be_all()) return 0.0;
+double most_against(const Term& term, const HeldOutAmplitude& held_out_amplitude) {
+  if (!held_out_amplitude.may_be_all()) return 0.0;
   const double p = std::clamp(term.judgement.p_value, 1e-300, 0.1);
   const double chance = -std::numbers::e * p * std::log(p) * static_cast<double>(candidates().size());
   return std::max(-2.0 * of_training * std::log(chance), 0.0);
@@ -199,15 +200,17 @@ double most_against(const Term& term, const Repetition& repetition) {
 
 // Withdraws the term that held-out data speak against most, until they do against none and not against all of them
 // together. Returns the candidates that were withdrawn.
-std::vector<std::size_t> keep_what_holds(const LogRows& rows, const Eigen::VectorXd& target, const Scene& scene,
-                                         SearchResult& found, Verdict& verdict, std::uint64_t seed) {
+std::vector<std::size_t> keep_what_holds(const LogRows& rows, const Eigen::VectorXd& target,
+                                         const SearchContext& context, SearchResult& found, Verdict& verdict,
+                                         std::uint64_t seed) {
   std::vector<std::size_t> withdrawn;
   for (;;) {
-    const auto figures = evaluate_held_out(rows, target, scene, found.terms, seed);
+    const auto figures = evaluate_held_out(rows, target, context, found.terms, seed);
     if (found.terms.empty()) return withdrawn;
     std::vector<double> too_much;
     for (std::size_t k = 0; k < found.terms.size(); ++k)
-      too_much.push_back(figures.repetitions[k].against() - most_against(found.terms[k], figures.repetitions[k]));
+      too_much.push_back(figures.held_out_amplitudes[k].against() -
+                         most_against(found.terms[k], figures.held_out_amplitudes[k]));
     const auto worst =
         static_cast<std::size_t>(std::distance(too_much.begin(), std::max_element(too_much.begin(), too_much.end())));
     // Each may gain beside the others and all of them together lose: wrong names that lean on each other.
@@ -217,7 +220,7 @@ std::vector<std::size_t> keep_what_holds(const LogRows& rows, const Eigen::Vecto
     const auto& candidate = candidates()[term.candidate];
     withdrawn.push_back(term.candidate);
     if (candidate.outside())
-      verdict.unexplained = {term.explains, candidate.looks_like(scene, term.nonlinear, term.weights) +
+      verdict.unexplained = {term.explains, candidate.looks_like(context, term.shape, term.coefficients) +
                                                 " (in the training logs; the held-out logs do not confirm it)"};
     else
       verdict.rejected.push_back(
@@ -225,7 +228,7 @@ std::vector<std::size_t> keep_what_holds(const LogRows& rows, const Eigen::Vecto
            fmt::format(
                "withdrawn: found in the training data, but without improvement on held-out data: held-out amplitude {} "
                "of the fitted one{}, residual force {:.4f} times that without it",
-               repeated(holds_alone ? figures.together : figures.repetitions[worst]),
+               repeated(holds_alone ? figures.together : figures.held_out_amplitudes[worst]),
                holds_alone ? ", together with all other findings" : "",
                holds_alone ? figures.force_extended / figures.force_baseline : figures.gains[worst].force_rms_ratio)});
     found.terms.erase(found.terms.begin() + static_cast<std::ptrdiff_t>(worst));
@@ -247,15 +250,15 @@ struct Outside {
   Eigen::VectorXd force;
   Unexplained unexplained;
 };
-Outside take_outside(const LogRows& rows, const Scene& scene, SearchResult& found) {
+Outside take_outside(const LogRows& rows, const SearchContext& context, SearchResult& found) {
   Outside outside{Eigen::VectorXd::Zero(rows.rows()), {}};
   std::vector<std::string> words;
   std::erase_if(found.terms, [&](const Term& term) {
     const auto& candidate = candidates()[term.candidate];
     if (!candidate.outside()) return false;
-    outside.force += weighted_columns(rows, scene, candidate, term.nonlinear, term.weights);
+    outside.force += weighted_columns(rows, context, candidate, term.shape, term.coefficients);
     outside.unexplained.share += term.explains;
-    words.push_back(candidate.looks_like(scene, term.nonlinear, term.weights));
+    words.push_back(candidate.looks_like(context, term.shape, term.coefficients));
     return true;
   });
   if (!words.empty()) outside.unexplained.signature = fmt::format("{}", fmt::join(words, "; and "));
@@ -304,8 +307,8 @@ Verdict diagnose(const DiagnoseInput& input) {
 
   Eigen::VectorXd target = rows.force - expected;
   Eigen::VectorXd held_target = held_rows.force - expected_force(held_rows, axis);
-  auto scene = scene_of(axis, rows, settings);
-  scene.timing = input.machine.timing;
+  auto context = context_of(axis, rows, settings);
+  context.timing = input.machine.timing;
   begin(0);
   auto simulated = without_noise(input.machine, input.axis, logs);
   const auto held_simulated =
@@ -325,33 +328,33 @@ Verdict diagnose(const DiagnoseInput& input) {
   held_regressors.weigh(moving_rows(held_regressors, axis, settings.cutoff));
   target = target.cwiseProduct(regressors.counts());
   held_target = held_target.cwiseProduct(held_regressors.counts());
-  scene.highest_residual = target.cwiseAbs().maxCoeff();
+  context.highest_residual = target.cwiseAbs().maxCoeff();
   std::vector<EffectResponse> responses;
   if (known_motion) {
     auto all = logs;
     all.insert(all.end(), held_out.begin(), held_out.end());
     auto& replayed = simulated.replayed;
     replayed.insert(replayed.end(), held_simulated.replayed.begin(), held_simulated.replayed.end());
-    responses.emplace_back(input.machine, input.axis, all, settings, Hunting::simulated, replayed);
-    responses.emplace_back(input.machine, input.axis, all, settings, Hunting::smoothed);
-    scene.disturb = [&, all](const Eigen::VectorXd& force) {
-      scene.response = EffectResponse(input.machine, input.axis, all, settings,
-                                      Disturbance(force, rows.logs(), rows.period(0)), replayed);
+    responses.emplace_back(input.machine, input.axis, all, settings, QuantizerLimitCycle::simulated, replayed);
+    responses.emplace_back(input.machine, input.axis, all, settings, QuantizerLimitCycle::smoothed);
+    context.disturb = [&, all](const Eigen::VectorXd& force) {
+      context.response = EffectResponse(input.machine, input.axis, all, settings,
+                                        Disturbance(force, rows.logs(), rows.period(0)), replayed);
     };
-    scene.disturb(target);
+    context.disturb(target);
   }
   begin(1);
   // A record that is the simulation itself but for the numerics of the inverse dynamics has no cause in it.
   auto found = rms(target) < numerics * rms(expected) ? SearchResult{.residual = target, .blocks = 1}
-                                                      : search_causes(regressors, target, scene);
+                                                      : search_causes(regressors, target, context);
   begin(2);
   const auto keep = [&](SearchResult& searched) {
-    return keep_what_holds(held_regressors, held_target, scene, searched, verdict, input.seed);
+    return keep_what_holds(held_regressors, held_target, context, searched, verdict, input.seed);
   };
   auto withdrawn = keep(found);
   // A shape outside of the vocabulary that other records speak against may have stood in a cause's place.
   if (const auto refuted = outside_among(withdrawn); found.terms.empty() && !refuted.empty()) {
-    auto again = search_causes(regressors, target, scene, refuted);
+    auto again = search_causes(regressors, target, context, refuted);
     const double taken = verdict.unexplained.share;
     auto withdrawn_again = keep(again);
     if (!again.terms.empty() && explained(again.terms) > as_much * taken) {
@@ -360,29 +363,29 @@ Verdict diagnose(const DiagnoseInput& input) {
       withdrawn = std::move(withdrawn_again);
     }
   }
-  const auto outside = take_outside(regressors, scene, found);
+  const auto outside = take_outside(regressors, context, found);
   // What is outside extends no machine file: the names have to gain without it, too.
-  if (outside.unexplained.signature) keep_what_holds(held_regressors, held_target, scene, found, verdict, input.seed);
+  if (outside.unexplained.signature) keep_what_holds(held_regressors, held_target, context, found, verdict, input.seed);
   const Eigen::VectorXd inside = target - outside.force;
-  const auto figures = evaluate_held_out(held_regressors, held_target, scene, found.terms, input.seed);
+  const auto figures = evaluate_held_out(held_regressors, held_target, context, found.terms, input.seed);
   verdict.baseline.force_rms = figures.force_baseline;
   verdict.extended.force_rms = figures.force_extended;
   for (std::size_t k = 0; k < found.terms.size(); ++k)
     verdict.findings.push_back(
-        finding_of(scene, found.terms[k], figures.gains[k], figures.repetitions[k], found.blocks));
-  compare_bands(verdict, found.terms, regressors, inside, scene);
+        finding_of(context, found.terms[k], figures.gains[k], figures.held_out_amplitudes[k], found.blocks));
+  compare_bands(verdict, found.terms, regressors, inside, context);
   begin(3);
-  refine_in_closed_loop(verdict.findings, found, responses, regressors, inside, scene);
+  refine_in_closed_loop(verdict.findings, found, responses, regressors, inside, context);
   begin(4);
-  propose_next_measurement(verdict, {input.machine, input.axis, settings, regressors, inside, scene, found},
+  propose_next_measurement(verdict, {input.machine, input.axis, settings, regressors, inside, context, found},
                            input.next_measurement);
-  judge_command(verdict, input, {logs, rows}, {held_out, held_rows}, record_delay(regressors, scene, found));
+  judge_command(verdict, input, {logs, rows}, {held_out, held_rows}, record_delay(regressors, context, found));
   for (const auto& d : found.discarded) verdict.rejected.push_back({candidates()[d.candidate].name, d.why});
   if (outside.unexplained.signature)
     verdict.unexplained = outside.unexplained;
   else if (withdrawn.empty())
     verdict.unexplained = signature_of(regressors, found.residual, target.squaredNorm(), found.correlation);
-  add_cause_charts(verdict, regressors, scene, found.terms, found.residual);
+  add_cause_charts(verdict, regressors, context, found.terms, found.residual);
   add_charts(verdict, rows, target, found.residual);
   begin(5);
   if (input.closed_loop) judge_in_closed_loop(verdict, input.machine, input.axis, held_out);

@@ -16,7 +16,7 @@ void add_charts(Verdict& verdict, const LogRows& rows, const Eigen::VectorXd& be
 // To each finding: the residual with all other causes taken out, beside what the cause makes of it (a partial residual
 // plot: Larsen and McCleary 1972), over position, speed, way since the last reversal, or whatever the cause depends on.
 // `terms` in the order of the findings, of the rows whose residual is `after`.
-void add_cause_charts(Verdict& verdict, const LogRows& rows, const Scene& scene, const std::vector<Term>& terms,
-                      const Eigen::VectorXd& after);
+void add_cause_charts(Verdict& verdict, const LogRows& rows, const SearchContext& context,
+                      const std::vector<Term>& terms, const Eigen::VectorXd& after);
 
 }  // namespace stiction::host

@@ -99,9 +99,9 @@ std::vector<Evidence::Sums> Evidence::by_block(const ColumnIndices& chosen) cons
   return all;
 }
 
-double Evidence::left(const Sums& sums, const Eigen::VectorXd& weights) {
-  if (weights.size() == 0) return sums.square;
-  return std::max(sums.square - 2.0 * weights.dot(sums.moment) + weights.dot(sums.gram * weights), 0.0);
+double Evidence::left(const Sums& sums, const Eigen::VectorXd& coefficients) {
+  if (coefficients.size() == 0) return sums.square;
+  return std::max(sums.square - 2.0 * coefficients.dot(sums.moment) + coefficients.dot(sums.gram * coefficients), 0.0);
 }
 
 Evidence::Fit Evidence::solve(const Sums& sums) {
@@ -113,8 +113,8 @@ Evidence::Fit Evidence::solve(const Sums& sums) {
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
   decomposition.setThreshold(1e-9);
   decomposition.compute(gram);
-  const Eigen::VectorXd weights = decomposition.solve(scale.cwiseProduct(sums.moment)).cwiseProduct(scale);
-  return {weights, left(sums, weights)};
+  const Eigen::VectorXd coefficients = decomposition.solve(scale.cwiseProduct(sums.moment)).cwiseProduct(scale);
+  return {coefficients, left(sums, coefficients)};
 }
 
 Evidence::Fit Evidence::fit(const ColumnIndices& chosen) const { return solve(total_of(chosen)); }
@@ -132,19 +132,19 @@ Evidence::Fit Evidence::fit(const ColumnIndices& chosen, const std::vector<bool>
   return solve(some);
 }
 
-Eigen::VectorXd Evidence::residual(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const {
+Eigen::VectorXd Evidence::residual(const ColumnIndices& chosen, const Eigen::VectorXd& coefficients) const {
   Eigen::VectorXd r = target_;
   for (std::size_t i = 0; i < chosen.size(); ++i)
-    r -= weights[static_cast<Eigen::Index>(i)] * columns_[static_cast<std::size_t>(chosen[i])];
+    r -= coefficients[static_cast<Eigen::Index>(i)] * columns_[static_cast<std::size_t>(chosen[i])];
   return r;
 }
 
 Eigen::MatrixXd Evidence::inverse_gram(const ColumnIndices& chosen) const { return inverse(total_of(chosen).gram); }
 
-Evidence::Jackknife Evidence::jackknife(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const {
+Evidence::Jackknife Evidence::jackknife(const ColumnIndices& chosen, const Eigen::VectorXd& coefficients) const {
   const auto k = static_cast<Eigen::Index>(chosen.size());
   const Eigen::MatrixXd gram = total_of(chosen).gram, all = inverse(gram), columns = white(chosen);
-  const Eigen::VectorXd left = white_target() - columns * weights;
+  const Eigen::VectorXd left = white_target() - columns * coefficients;
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(k, k);
   Eigen::ArrayXd bearing = Eigen::ArrayXd::Zero(k), squares = bearing;
   for (const auto& cluster : clusters_) {
@@ -163,13 +163,13 @@ Evidence::Jackknife Evidence::jackknife(const ColumnIndices& chosen, const Eigen
   return {(n - 1.0) / n * sum, bearing.square() / squares.max(1e-300)};
 }
 
-Eigen::MatrixXd Evidence::interval_covariance(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const {
-  const auto [covariance, clusters] = jackknife(chosen, weights);
+Eigen::MatrixXd Evidence::interval_covariance(const ColumnIndices& chosen, const Eigen::VectorXd& coefficients) const {
+  const auto [covariance, clusters] = jackknife(chosen, coefficients);
   Eigen::VectorXd wider =
       clusters.unaryExpr([](double c) { return student_limit(std::max(c - 1.0, 1.0)); }) / normal_limit;
   if (whitening_) {
-    const double left = (white_target() - white(chosen) * weights).squaredNorm();
-    const double freedom = static_cast<double>(std::max<Eigen::Index>(target_.size() - weights.size(), 1));
+    const double left = (white_target() - white(chosen) * coefficients).squaredNorm();
+    const double freedom = static_cast<double>(std::max<Eigen::Index>(target_.size() - coefficients.size(), 1));
     const Eigen::MatrixXd even = left / freedom * inverse_gram(chosen);
     for (Eigen::Index i = 0; i < wider.size(); ++i)
       if (covariance(i, i) > 0.0) wider[i] *= std::sqrt(std::max(even(i, i) / covariance(i, i), 1.0));
@@ -177,10 +177,10 @@ Eigen::MatrixXd Evidence::interval_covariance(const ColumnIndices& chosen, const
   return wider.asDiagonal() * covariance * wider.asDiagonal();
 }
 
-Eigen::MatrixXd Evidence::covariance(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const {
+Eigen::MatrixXd Evidence::covariance(const ColumnIndices& chosen, const Eigen::VectorXd& coefficients) const {
   const auto k = static_cast<Eigen::Index>(chosen.size());
   const Eigen::MatrixXd inverse = inverse_gram(chosen), columns = white(chosen);
-  const Eigen::VectorXd left = white_target() - columns * weights;
+  const Eigen::VectorXd left = white_target() - columns * coefficients;
   Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(k, k);
   for (const auto& cluster : clusters_) {
     const auto begin = static_cast<Eigen::Index>(cluster.begin);
@@ -213,16 +213,16 @@ Evidence::Noise Evidence::noise(const Eigen::VectorXd& left) const {
           spread > 2.0 ? std::min((4.0 * spread + 2.0 * rows - 4.0) / (spread - 2.0), most_freedom) : most_freedom};
 }
 
-Evidence::Test Evidence::test(const ColumnIndices& chosen, const Eigen::VectorXd& weights, Eigen::Index first,
+Evidence::Test Evidence::test(const ColumnIndices& chosen, const Eigen::VectorXd& coefficients, Eigen::Index first,
                               Eigen::Index count) const {
-  const Eigen::VectorXd own = weights.segment(first, count);
+  const Eigen::VectorXd own = coefficients.segment(first, count);
   const ColumnIndices of(chosen.begin() + first, chosen.begin() + first + count);
-  Eigen::MatrixXd spread = covariance(chosen, weights).block(first, first, count, count);
+  Eigen::MatrixXd spread = covariance(chosen, coefficients).block(first, first, count, count);
   double freedom = std::max(bearing_clusters(of, own) - static_cast<double>(count), 2.0);
   // Where few clusters bear on a term, what all clusters say of the noise stands in for what those few cannot. Rows
   // that are correlated have no such variance.
   if (whitening_) {
-    const auto all = noise(white_target() - white(chosen) * weights);
+    const auto all = noise(white_target() - white(chosen) * coefficients);
     const Eigen::MatrixXd even = all.variance * inverse_gram(chosen).block(first, first, count, count);
     spread = (all.freedom * even + freedom * spread) / (all.freedom + freedom);
     freedom += all.freedom;
@@ -231,22 +231,22 @@ Evidence::Test Evidence::test(const ColumnIndices& chosen, const Eigen::VectorXd
   return {wald, fisher_tail(wald, static_cast<double>(count), freedom)};
 }
 
-double Evidence::bearing_clusters(const ColumnIndices& of, const Eigen::VectorXd& weights) const {
+double Evidence::bearing_clusters(const ColumnIndices& of, const Eigen::VectorXd& coefficients) const {
   double sum = 0.0, squares = 0.0;
-  for (const double h : bearing(of, weights, clusters_)) {
+  for (const double h : bearing(of, coefficients, clusters_)) {
     sum += h;
     squares += h * h;
   }
   return squares > 0.0 ? sum * sum / squares : 0.0;
 }
 
-std::vector<double> Evidence::bearing(const ColumnIndices& of, const Eigen::VectorXd& weights) const {
-  return bearing(of, weights, blocks_);
+std::vector<double> Evidence::bearing(const ColumnIndices& of, const Eigen::VectorXd& coefficients) const {
+  return bearing(of, coefficients, blocks_);
 }
 
-std::vector<double> Evidence::bearing(const ColumnIndices& of, const Eigen::VectorXd& weights,
+std::vector<double> Evidence::bearing(const ColumnIndices& of, const Eigen::VectorXd& coefficients,
                                       std::span<const RowBlock> pieces) const {
-  const Eigen::VectorXd force = white(of) * weights;
+  const Eigen::VectorXd force = white(of) * coefficients;
   std::vector<double> squares;
   for (const auto& piece : pieces)
     squares.push_back(
@@ -266,8 +266,8 @@ std::vector<double> Evidence::held_out(const ColumnIndices& chosen, std::size_t 
       train.moment -= blocks[b].moment;
       train.square -= blocks[b].square;
     }
-    const auto weights = solve(train).weights;
-    for (std::size_t b = fold; b < blocks.size(); b += folds) square[b] = left(blocks[b], weights);
+    const auto coefficients = solve(train).coefficients;
+    for (std::size_t b = fold; b < blocks.size(); b += folds) square[b] = left(blocks[b], coefficients);
   }
   return square;
 }

@@ -38,17 +38,17 @@ class Evidence {
   const Whitening& whitening() const { return whitening_; }
 
   struct Fit {
-    Eigen::VectorXd weights;
+    Eigen::VectorXd coefficients;
     double left = 0.0;  // sum of squared residuals, whitened
   };
   Fit fit(const ColumnIndices& chosen) const;
   // Over the blocks for which use[b] is true.
   Fit fit(const ColumnIndices& chosen, const std::vector<bool>& use) const;
   // N, not whitened.
-  Eigen::VectorXd residual(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const;
+  Eigen::VectorXd residual(const ColumnIndices& chosen, const Eigen::VectorXd& coefficients) const;
 
   // Sandwich covariance of the weights, by clusters of rows.
-  Eigen::MatrixXd covariance(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const;
+  Eigen::MatrixXd covariance(const ColumnIndices& chosen, const Eigen::VectorXd& coefficients) const;
   // Cluster jackknife (CR3: MacKinnon, Nielsen, Webb, J. Econometrics 232, 2023, eq. 14): by how much the weights move
   // when a cluster is left out. Where a few clusters bear on a weight the sandwich calls it better known than it is.
   struct Jackknife {
@@ -56,23 +56,24 @@ class Evidence {
     Eigen::VectorXd clusters;  // effective number that bear on each weight (Carter, Schnepel, Steigerwald, Rev. Econ.
                                // Stat. 99, 2017), were the noise even
   };
-  Jackknife jackknife(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const;
+  Jackknife jackknife(const ColumnIndices& chosen, const Eigen::VectorXd& coefficients) const;
   // The jackknife's, so wide that 1.96 standard errors are the 95 % interval of Student's t with those clusters. Of few
   // clusters a spread is itself uncertain: on whitened rows no error is smaller than that of even noise (Angrist,
   // Pischke, Mostly Harmless Econometrics, 2009, 8.1).
-  Eigen::MatrixXd interval_covariance(const ColumnIndices& chosen, const Eigen::VectorXd& weights) const;
+  Eigen::MatrixXd interval_covariance(const ColumnIndices& chosen, const Eigen::VectorXd& coefficients) const;
   struct Test {
     double wald = 0.0;  // over the number of columns
     double p_value = 1.0;
   };
   // That the weights first .. first + count - 1 are zero. Of whitened rows the covariance by clusters is drawn to that
   // of even noise by as much as the noise is even (moderated F: Smyth, Stat. Appl. Genet. Mol. Biol. 3, 2004).
-  Test test(const ColumnIndices& chosen, const Eigen::VectorXd& weights, Eigen::Index first, Eigen::Index count) const;
+  Test test(const ColumnIndices& chosen, const Eigen::VectorXd& coefficients, Eigen::Index first,
+            Eigen::Index count) const;
   // Number of clusters that bear on the columns `of` with these weights: (sum h)^2 / sum h^2 of their squared lengths.
-  double bearing_clusters(const ColumnIndices& of, const Eigen::VectorXd& weights) const;
+  double bearing_clusters(const ColumnIndices& of, const Eigen::VectorXd& coefficients) const;
 
   // Square of the columns' force with these weights in each block.
-  std::vector<double> bearing(const ColumnIndices& of, const Eigen::VectorXd& weights) const;
+  std::vector<double> bearing(const ColumnIndices& of, const Eigen::VectorXd& coefficients) const;
 
   // Sum of squared residuals of each block with weights from the other folds; block i is in fold i mod `folds`.
   std::vector<double> held_out(const ColumnIndices& chosen, std::size_t folds = 5) const;
@@ -87,12 +88,12 @@ class Evidence {
   struct Noise {
     double variance, freedom;
   };
-  std::vector<double> bearing(const ColumnIndices& of, const Eigen::VectorXd& weights,
+  std::vector<double> bearing(const ColumnIndices& of, const Eigen::VectorXd& coefficients,
                               std::span<const RowBlock> pieces) const;
   Noise noise(const Eigen::VectorXd& left) const;
   Eigen::MatrixXd inverse_gram(const ColumnIndices& chosen) const;
   static Fit solve(const Sums& sums);
-  static double left(const Sums& sums, const Eigen::VectorXd& weights);
+  static double left(const Sums& sums, const Eigen::VectorXd& coefficients);
   template <class Each>
   static void for_pairs(const ColumnIndices& chosen, Each&& each);
   Sums total_of(const ColumnIndices& chosen) const;

@@ -29,10 +29,10 @@ std::vector<Rows> records_of(const LogRows& rows) {
 // Takes the nuisances of each record out of a column of all rows.
 class Nuisances {
  public:
-  Nuisances(const LogRows& rows, const Scene& scene, bool constant, bool coulomb) {
+  Nuisances(const LogRows& rows, const SearchContext& context, bool constant, bool coulomb) {
     std::vector<Eigen::VectorXd> columns;
     if (constant) columns.push_back(Eigen::VectorXd::Ones(rows.rows()));
-    if (coulomb) columns.push_back(rows.stacked([&](const Motion& m) { return contact_level(scene.axis, m); }));
+    if (coulomb) columns.push_back(rows.stacked([&](const Motion& m) { return contact_level(context.axis, m); }));
     for (const auto& r : records_of(rows)) {
       Eigen::MatrixXd own(r.length, static_cast<Eigen::Index>(columns.size()));
       for (std::size_t c = 0; c < columns.size(); ++c)
@@ -59,18 +59,18 @@ class Nuisances {
 };
 
 // A term's force in the rows; of a periodic one with the phase that fits each record best.
-Eigen::VectorXd force_of_term(const LogRows& rows, const Scene& scene, const Term& term,
+Eigen::VectorXd force_of_term(const LogRows& rows, const SearchContext& context, const Term& term,
                               const Eigen::VectorXd& target) {
   const auto& candidate = candidates()[term.candidate];
-  const auto columns = shared_columns(rows, scene, candidate, term.nonlinear);
+  const auto columns = shared_columns(rows, context, candidate, term.shape);
   // The training records' phases are not those of these.
-  const Eigen::VectorXd weights =
+  const Eigen::VectorXd coefficients =
       candidate.per_record
-          ? Eigen::VectorXd(Eigen::Map<const Eigen::Vector2d>(effects::first_wave(term.weights).data()))
-          : term.weights;
+          ? Eigen::VectorXd(Eigen::Map<const Eigen::Vector2d>(effects::first_wave(term.coefficients).data()))
+          : term.coefficients;
   Eigen::VectorXd force = Eigen::VectorXd::Zero(rows.rows());
   if (!candidate.periodic) {
-    for (std::size_t c = 0; c < columns.size(); ++c) force += weights[static_cast<Eigen::Index>(c)] * columns[c];
+    for (std::size_t c = 0; c < columns.size(); ++c) force += coefficients[static_cast<Eigen::Index>(c)] * columns[c];
     return force;
   }
   constexpr int phases = 72;
@@ -81,8 +81,8 @@ Eigen::VectorXd force_of_term(const LogRows& rows, const Scene& scene, const Ter
       for (std::size_t c = 0; c + 1 < columns.size(); c += 2) {
         const auto i = static_cast<Eigen::Index>(c);
         const double harmonic = static_cast<double>(c / 2 + 1);
-        const auto turned =
-            std::complex(weights[i], weights[i + 1]) * std::polar(1.0, 2.0 * std::numbers::pi * harmonic * p / phases);
+        const auto turned = std::complex(coefficients[i], coefficients[i + 1]) *
+                            std::polar(1.0, 2.0 * std::numbers::pi * harmonic * p / phases);
         part += turned.real() * columns[c].segment(r.begin, r.length) +
                 turned.imag() * columns[c + 1].segment(r.begin, r.length);
       }
@@ -126,7 +126,7 @@ std::array<double, 2> ratio_interval(const Eigen::VectorXd& after, const Eigen::
   return {interval.low, interval.high};
 }
 
-HeldOutFigures evaluate_held_out(const LogRows& rows, const Eigen::VectorXd& target, const Scene& scene,
+HeldOutFigures evaluate_held_out(const LogRows& rows, const Eigen::VectorXd& target, const SearchContext& context,
                                  std::span<const Term> terms, std::uint64_t seed) {
   // Phases of ripples are found with all other terms in place.
   std::vector<Eigen::VectorXd> forces(terms.size());
@@ -134,7 +134,7 @@ HeldOutFigures evaluate_held_out(const LogRows& rows, const Eigen::VectorXd& tar
   for (const bool periodic : {false, true})
     for (std::size_t k = 0; k < terms.size(); ++k) {
       if (candidates()[terms[k].candidate].periodic != periodic) continue;
-      forces[k] = force_of_term(rows, scene, terms[k], rest);
+      forces[k] = force_of_term(rows, context, terms[k], rest);
       rest -= forces[k];
     }
   bool constant = true, coulomb = true;
@@ -142,12 +142,12 @@ HeldOutFigures evaluate_held_out(const LogRows& rows, const Eigen::VectorXd& tar
     constant = constant && !candidates()[term.candidate].names_constant;
     coulomb = coulomb && !candidates()[term.candidate].names_coulomb;
   }
-  const Nuisances nuisances(rows, scene, constant, coulomb);
+  const Nuisances nuisances(rows, context, constant, coulomb);
   const Eigen::VectorXd baseline = nuisances.without(target), extended = nuisances.without(rest);
   HeldOutFigures figures{rms(baseline), rms(extended), {}, {}, {}};
   const Whitening whitening(extended, rows.logs());
   const auto blocks = blocks_of_rows(rows);
-  const auto repetition = [&](const Eigen::VectorXd& before, const Eigen::VectorXd& after, bool whitened) {
+  const auto held_out_amplitude = [&](const Eigen::VectorXd& before, const Eigen::VectorXd& after, bool whitened) {
     const Eigen::VectorXd force = before - after;
     const auto as_is = repetition_of(force, before, rows.logs(), blocks);
     if (!whitened) return as_is;
@@ -156,21 +156,21 @@ HeldOutFigures evaluate_held_out(const LogRows& rows, const Eigen::VectorXd& tar
   };
   const Eigen::ArrayXd position = rows.stacked([](const Motion& m) { return m.x; }).array();
   const Eigen::ArrayXd recorded =
-      (position >= scene.lowest_position && position <= scene.highest_position).cast<double>();
+      (position >= context.lowest_position && position <= context.highest_position).cast<double>();
   bool whitened = false;
   for (std::size_t k = 0; k < terms.size(); ++k) {
     const auto& candidate = candidates()[terms[k].candidate];
-    const Nuisances own(rows, scene, !candidate.names_constant && constant, !candidate.names_coulomb && coulomb);
+    const Nuisances own(rows, context, !candidate.names_constant && constant, !candidate.names_coulomb && coulomb);
     Eigen::VectorXd after = own.without(rest), before = own.without(rest + forces[k]);
     if (candidate.along_stroke) after.array() *= recorded, before.array() *= recorded;
     HoldoutGain gain;
     gain.force_rms_ratio = rms(after) / rms(before);
     gain.ci95 = ratio_interval(after, before, rows, seed + k);
     figures.gains.push_back(gain);
-    figures.repetitions.push_back(repetition(before, after, terms[k].whitened));
+    figures.held_out_amplitudes.push_back(held_out_amplitude(before, after, terms[k].whitened));
     whitened = whitened || terms[k].whitened;
   }
-  figures.together = repetition(baseline, extended, whitened);
+  figures.together = held_out_amplitude(baseline, extended, whitened);
   return figures;
 }
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "host/diagnose/repetition.hpp"
+#include "host/diagnose/held_out_amplitude.hpp"
 #include "host/diagnose/search.hpp"
 
 namespace stiction::host {
@@ -16,12 +16,12 @@ struct HeldOutFigures {
   std::vector<HoldoutGain> gains;                     // of each term beside the others; force only
   // Of each term's force beside the others', and of all together: what these rows show of it. Of terms that were found
   // on whitened rows the less favourable of that as they are and whitened.
-  std::vector<Repetition> repetitions;
-  Repetition together;
+  std::vector<HeldOutAmplitude> held_out_amplitudes;
+  HeldOutAmplitude together;
 };
 
 // `target`: residual force of the held-out rows. Intervals: bootstrap over blocks of rows, from `seed`.
-HeldOutFigures evaluate_held_out(const LogRows& rows, const Eigen::VectorXd& target, const Scene& scene,
+HeldOutFigures evaluate_held_out(const LogRows& rows, const Eigen::VectorXd& target, const SearchContext& context,
                                  std::span<const Term> terms, std::uint64_t seed);
 
 // 95 % interval of the ratio of two residuals' rms, from a bootstrap over blocks of rows.

@@ -34,7 +34,8 @@ CrossValidated cross_validate(const Evidence& evidence, const ColumnIndices& wit
   const double before = std::accumulate(gains.begin(), gains.end(), 0.0);
   for (std::size_t k = 0; k < gains.size(); ++k) gains[k] -= left[k];
   const double gained = std::accumulate(gains.begin(), gains.end(), 0.0);
-  const auto expected = evidence.bearing(own, evidence.fit(with).weights.tail(static_cast<Eigen::Index>(own.size())));
+  const auto expected =
+      evidence.bearing(own, evidence.fit(with).coefficients.tail(static_cast<Eigen::Index>(own.size())));
   std::vector<std::size_t> order(gains.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return gains[a] < gains[b]; });
@@ -47,16 +48,16 @@ CrossValidated cross_validate(const Evidence& evidence, const ColumnIndices& wit
 
 // The columns' size along their weights of all rows, over that, from the blocks in use; `own` are the last of `with`.
 double size_in(const Evidence& evidence, const std::vector<bool>& use, const ColumnIndices& with,
-               const ColumnIndices& own, const Eigen::VectorXd& weights) {
-  const auto part = evidence.fit(with, use).weights;
+               const ColumnIndices& own, const Eigen::VectorXd& coefficients) {
+  const auto part = evidence.fit(with, use).coefficients;
   // In the metric of the columns' lengths.
   double product = 0.0, square = 0.0;
   for (std::size_t k = 0; k < own.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(with.size() - own.size() + k);
     if (part[i] == 0.0) continue;  // weights of a record that has no rows in use
     const double length = evidence.column_square(own[k]);
-    product += length * part[i] * weights[i];
-    square += length * weights[i] * weights[i];
+    product += length * part[i] * coefficients[i];
+    square += length * coefficients[i] * coefficients[i];
   }
   return square > 0.0 ? product / square : 0.0;
 }
@@ -80,9 +81,9 @@ Judgement judge_columns(const Evidence& evidence, const Evidence& plain, const C
   Judgement result;
   auto with = others;
   with.insert(with.end(), own.begin(), own.end());
-  const auto weights = evidence.fit(with).weights;
+  const auto coefficients = evidence.fit(with).coefficients;
   const auto count = static_cast<Eigen::Index>(own.size()), first_own = static_cast<Eigen::Index>(others.size());
-  const auto test = evidence.test(with, weights, first_own, count);
+  const auto test = evidence.test(with, coefficients, first_own, count);
   result.p_value = std::min(1.0, trials * test.p_value);
 
   // Off the force itself, or off what whitening leaves of it: a wave of minutes is much of the first and little of the
@@ -93,27 +94,27 @@ Judgement judge_columns(const Evidence& evidence, const Evidence& plain, const C
 
   std::vector<bool> first(evidence.blocks()), second(evidence.blocks());
   for (std::size_t k = 0; k < first.size(); ++k) second[k] = !(first[k] = k < first.size() / 2);
-  result.first_half = size_in(evidence, first, with, own, weights);
-  result.second_half = size_in(evidence, second, with, own, weights);
+  result.first_half = size_in(evidence, first, with, own, coefficients);
+  result.second_half = size_in(evidence, second, with, own, coefficients);
 
-  const auto bearing = evidence.bearing(own, weights.tail(count));
+  const auto bearing = evidence.bearing(own, coefficients.tail(count));
   const double deviations = std::sqrt(test.wald * static_cast<double>(count));
 
   const double among = static_cast<double>(candidates().size()), limit = significance / among;
   result.nearly = result.p_value >= limit && result.p_value < nearly_significant / among;
   if (!(result.p_value < limit))
-    result.objection = fmt::format("not significant: p = {:.2g}, expected below {:.2g}", result.p_value, limit);
+    result.rejection_reason = fmt::format("not significant: p = {:.2g}, expected below {:.2g}", result.p_value, limit);
   else if (const double least = result.p_value < beyond_doubt * limit ? least_sure_gain : least_gain;
            !(result.gain > least))
-    result.objection = fmt::format("reduces the cross-validated residual by {:.2g} %; expected more than {:g} %",
-                                   100.0 * result.gain, 100.0 * least);
+    result.rejection_reason = fmt::format("reduces the cross-validated residual by {:.2g} %; expected more than {:g} %",
+                                          100.0 * result.gain, 100.0 * least);
   else if (larger.odd)
-    result.objection = fmt::format(
+    result.rejection_reason = fmt::format(
         "a fiftieth of the {} blocks of rows causes nearly all of the improvement, which indicates a single event",
         evidence.blocks());
   else if (contradicts(result.first_half, bearing, first, deviations) ||
            contradicts(result.second_half, bearing, second, deviations))
-    result.objection = "the two halves of the records contradict each other";
+    result.rejection_reason = "the two halves of the records contradict each other";
   return result;
 }
 

@@ -13,9 +13,9 @@ namespace stiction::host {
 struct Judgement {
   double p_value = 1.0;  // that its weights are zero, times what was tried for its nonlinear parameter
   double gain = 0.0;     // share of the cross-validated residual that it takes away
-  double first_half = 0.0, second_half = 0.0;  // its size found in each half of the rows, over that in all
-  bool nearly = false;                         // not quite significant: better data may name it
-  std::optional<std::string> objection;        // why it does not stay
+  double first_half = 0.0, second_half = 0.0;   // its size found in each half of the rows, over that in all
+  bool nearly = false;                          // not quite significant: better data may name it
+  std::optional<std::string> rejection_reason;  // why it does not stay
 };
 
 // Of the columns `own` beside the columns `others`. `evidence`: as it is looked at, `plain`: the same columns, not

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <unsupported/Eigen/FFT>
 
-#include "host/diagnose/reading_response.hpp"
+#include "host/diagnose/encoder_error_response.hpp"
 #include "host/diagnose/wave_sums.hpp"
 
 namespace stiction::host {
@@ -109,7 +109,7 @@ std::vector<double> gains(const LogRows& rows, const Eigen::VectorXd& weighed, c
                           std::size_t count) {
   const double middle = first + 0.5 * step * static_cast<double>(count);
   std::vector<double> all(count, 0.0);
-  TurningWaves waves;
+  PhasorBank waves;
   for (const auto& s : in) {
     waves.clear();
     for (std::size_t i = s.begin; i < s.end; ++i) {
@@ -187,8 +187,8 @@ class ShownError {
   }
 
   // The rows that show the order `middle`, with their response to it.
-  TurningWaves shown(double middle) const {
-    TurningWaves waves;
+  PhasorBank shown(double middle) const {
+    PhasorBank waves;
     for (std::size_t r = 0; r < rows_.logs().size(); ++r) {
       const auto& drive = drive_[table_[r]];
       for (std::size_t i = rows_.logs()[r]; i < record_end(rows_, r); ++i) {
@@ -211,7 +211,7 @@ class ShownError {
   const Eigen::VectorXd& weighed_;
   const WhitenedGain& whitened_;
   const Eigen::VectorXd& x_;
-  std::vector<ReadingResponse> responses_;
+  std::vector<EncoderErrorResponse> responses_;
   std::vector<std::vector<Complex>> drive_;  // of the motions whose period is the first of its kind
   std::vector<std::size_t> table_;           // which of them each motion has
   double step_ = -1.0, length_ = -1.0;       // of the last orders, and from the first of them to the next first

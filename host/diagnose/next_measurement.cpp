@@ -40,7 +40,7 @@ double separation_of(const Separation& separation, const Records& records, const
 class Questions {
  public:
   Questions(const Searched& searched, const Separation& separation)
-      : searched_(searched), separation_(separation), scene_(searched.scene) {
+      : searched_(searched), separation_(separation), scene_(searched.context) {
     // Few reversals keep the search from trying a contact, but not these records from holding one.
     scene_.reversals = enough_reversals;
     for (const auto& term : searched.found.terms) terms_.push_back(explanation_of(term));
@@ -51,7 +51,7 @@ class Questions {
     if (terms_.empty()) return;
     const double by_all = separation_.explained(records_, searched_.target, terms_);
     for (std::size_t c = 0; c < candidates().size(); ++c) {
-      if (!candidates()[c].grid(searched_.scene).empty() || candidates()[c].grid(scene_).empty()) continue;
+      if (!candidates()[c].grid(searched_.context).empty() || candidates()[c].grid(scene_).empty()) continue;
       const auto fit = separation_.best_fit(records_, searched_.target, c, {});
       if (!fit || separation_.explained(records_, searched_.target, {&*fit, 1}) < as_good * by_all) continue;
       const std::string name = candidates()[c].name;
@@ -122,7 +122,7 @@ class Questions {
 
   const Searched& searched_;
   const Separation& separation_;
-  Scene scene_;
+  SearchContext scene_;
   Records records_{searched_.rows, scene_};
   std::vector<Explanation> terms_;
   std::vector<Question> questions_;
@@ -191,16 +191,16 @@ void propose_next_measurement(Verdict& verdict, const Searched& searched, bool p
   const auto questions = collected.take();
   if (questions.empty()) return;
   NextMeasurement next;
-  next.axis = searched.scene.axis.name;
+  next.axis = searched.context.axis.name;
   for (const auto& question : questions) next.questions.push_back(question.shown);
   if (std::any_of(questions.begin(), questions.end(), [](const Question& q) { return q.shown.by_motion; })) {
     const auto range = motion_range(searched.machine.axes[searched.axis], searched.rows);
     auto rehearsals =
-        rehearse(searched.machine, searched.axis, range, searched.rows, searched.scene, searched.settings);
+        rehearse(searched.machine, searched.axis, range, searched.rows, searched.context, searched.settings);
     std::vector<RehearsedTrajectory> judged;
     for (const auto& rehearsal : rehearsals) {
       judged.push_back({rehearsal.trajectory->name, rehearsal.trajectory->words, rehearsal.log.t.back(), {}});
-      const Records records{rehearsal.rows, rehearsal.scene};
+      const Records records{rehearsal.rows, rehearsal.context};
       for (const auto& question : questions)
         judged.back().separations.push_back(question.shown.by_motion ? separation_of(separation, records, question)
                                                                      : 0.0);

@@ -20,7 +20,7 @@ struct Searched {
   const SignalSettings& settings;
   const LogRows& rows;            // of the regressors
   const Eigen::VectorXd& target;  // N, residual force with the machine file
-  const Scene& scene;
+  const SearchContext& context;
   const SearchResult& found;
 };
 

@@ -8,6 +8,7 @@ namespace stiction::host {
 
 // Sets nonlinear parameter, weights and covariance of each term by the whitened rows of `searched`; returns the
 // residual force that the terms leave (N, of the rows, not whitened).
-Eigen::VectorXd refine(const LogRows& rows, const Evidence& searched, const Scene& scene, std::vector<Term>& terms);
+Eigen::VectorXd refine(const LogRows& rows, const Evidence& searched, const SearchContext& context,
+                       std::vector<Term>& terms);
 
 }  // namespace stiction::host

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "host/diagnose/option_pool.hpp"
+#include "host/diagnose/dictionary.hpp"
 #include "host/diagnose/refinement.hpp"
 #include "sim/plant/effects/effects.hpp"
 
@@ -20,14 +20,14 @@ constexpr double least_share = 2e-3;  // of the residual's variance: what is les
 constexpr double dominant = 0.25;
 
 // Why a refined term is no effect that a machine can have.
-std::optional<std::string> impossible(const Scene& scene, const Term& term) {
+std::optional<std::string> impossible(const SearchContext& context, const Term& term) {
   const auto& candidate = candidates()[term.candidate];
-  if (!candidate.possible(scene, term.nonlinear, term.weights))
+  if (!candidate.possible(context, term.shape, term.coefficients))
     return "given the other causes, the fit has an impossible sign or size";
   if (candidate.outside()) return {};
   Finding finding;
   finding.effect.name = candidate.name;
-  candidate.describe(scene, term.nonlinear, term.weights, term.covariance, finding);
+  candidate.describe(context, term.shape, term.coefficients, term.covariance, finding);
   try {
     sim::check_effect(finding.effect);
   } catch (const sim::EffectError& error) {
@@ -36,29 +36,29 @@ std::optional<std::string> impossible(const Scene& scene, const Term& term) {
   return {};
 }
 
-class Search : private OptionPool {
+class Search : private Dictionary {
  public:
-  using OptionPool::OptionPool;
+  using Dictionary::Dictionary;
 
   SearchResult run();
 
  private:
-  bool settled(const Option* option) const {
+  bool settled(const Atom* option) const {
     return std::find(settled_.begin(), settled_.end(), option->candidate) != settled_.end();
   }
-  void improve(Set& set) {
+  void improve(ActiveSet& set) {
     profile(set);
     exchange(set);
     while (merge(set)) profile(set);
     while (drop(set)) profile(set);
   }
-  bool exchange(Set& set) const;
-  bool merge(Set& set) const;
-  bool grow(Set& set, double least_taken = 0.0);
-  bool drop(Set& set);
-  Judgement judge(const Set& set, std::size_t term) const;
+  bool exchange(ActiveSet& set) const;
+  bool merge(ActiveSet& set) const;
+  bool grow(ActiveSet& set, double least_taken = 0.0);
+  bool drop(ActiveSet& set);
+  Judgement judge(const ActiveSet& set, std::size_t term) const;
   void note(std::size_t candidate, const Judgement& judgement);
-  std::vector<std::size_t> alternatives(const Set& set, std::size_t term) const;
+  std::vector<std::size_t> alternatives(const ActiveSet& set, std::size_t term) const;
 
   std::vector<std::size_t> settled_;  // candidates that stood before it was whitened
   std::size_t rounds_ = 0;
@@ -66,7 +66,7 @@ class Search : private OptionPool {
 };
 
 // A term for another candidate, where that scores better and would stay.
-bool Search::exchange(Set& set) const {
+bool Search::exchange(ActiveSet& set) const {
   double least = score(set);
   for (std::size_t k = 0; k < set.size(); ++k) {
     if (settled(set[k])) continue;
@@ -79,7 +79,7 @@ bool Search::exchange(Set& set) const {
       auto trial = others;
       trial.push_back(option);
       profile(trial);
-      if (const double s = score(trial); s < least - 1.0 && !judge(trial, trial.size() - 1).objection) {
+      if (const double s = score(trial); s < least - 1.0 && !judge(trial, trial.size() - 1).rejection_reason) {
         set = trial;
         exchange(set);
         return true;
@@ -90,7 +90,7 @@ bool Search::exchange(Set& set) const {
 }
 
 // Two terms for one other, where that scores better: a force constant is mass, Coulomb and viscous friction together.
-bool Search::merge(Set& set) const {
+bool Search::merge(ActiveSet& set) const {
   for (std::size_t i = 0; i < set.size(); ++i)
     for (std::size_t j = i + 1; j < set.size(); ++j) {
       if (settled(set[i]) || settled(set[j])) continue;
@@ -103,7 +103,7 @@ bool Search::merge(Set& set) const {
         if (option == nullptr) continue;
         auto trial = others;
         trial.push_back(option);
-        if (score(trial) > score(set) - 1.0 || judge(trial, trial.size() - 1).objection) continue;
+        if (score(trial) > score(set) - 1.0 || judge(trial, trial.size() - 1).rejection_reason) continue;
         set = trial;
         return true;
       }
@@ -111,7 +111,7 @@ bool Search::merge(Set& set) const {
   return false;
 }
 
-Judgement Search::judge(const Set& set, std::size_t term) const {
+Judgement Search::judge(const ActiveSet& set, std::size_t term) const {
   auto others = set;
   others.erase(others.begin() + static_cast<std::ptrdiff_t>(term));
   return judge_columns(evidence_, plain_, columns_of(others), set[term]->columns, trials(set[term]->candidate));
@@ -120,7 +120,7 @@ Judgement Search::judge(const Set& set, std::size_t term) const {
 void Search::note(std::size_t candidate, const Judgement& judgement) {
   const auto known =
       std::find_if(discarded_.begin(), discarded_.end(), [&](const Discarded& d) { return d.candidate == candidate; });
-  const Discarded now{candidate, *judgement.objection, judgement.nearly};
+  const Discarded now{candidate, *judgement.rejection_reason, judgement.nearly};
   if (known == discarded_.end())
     discarded_.push_back(now);
   else
@@ -129,13 +129,13 @@ void Search::note(std::size_t candidate, const Judgement& judgement) {
 
 // Adds the best term that stands, or the best two that stand together: terms can mask one another. `least_taken`: share
 // of the residual's square that they must take.
-bool Search::grow(Set& set, double least_taken) {
+bool Search::grow(ActiveSet& set, double least_taken) {
   struct Trial {
-    Set set;
+    ActiveSet set;
     double score;
   };
   std::vector<Trial> trials;
-  std::vector<const Option*> best;
+  std::vector<const Atom*> best;
   for (std::size_t c = 0; c < candidates().size(); ++c) {
     if (has(set, c)) continue;
     const auto* option = best_of(c, set);
@@ -148,14 +148,14 @@ bool Search::grow(Set& set, double least_taken) {
   const auto by_score = [](const Trial& a, const Trial& b) { return a.score < b.score; };
   std::sort(trials.begin(), trials.end(), by_score);
   const double before = evidence_.fit(columns_of(set)).left;
-  const auto takes_enough = [&](const Set& with) {
+  const auto takes_enough = [&](const ActiveSet& with) {
     return 1.0 - evidence_.fit(columns_of(with)).left / before >= least_taken;
   };
   for (auto& trial : trials) {
     if (!takes_enough(trial.set)) continue;
     if (trial.score > score(set)) break;
     const auto judgement = judge(trial.set, trial.set.size() - 1);
-    if (!judgement.objection) {
+    if (!judgement.rejection_reason) {
       set = trial.set;
       return true;
     }
@@ -174,16 +174,16 @@ bool Search::grow(Set& set, double least_taken) {
   if (pairs.empty() || pairs.front().score > score(set) || !takes_enough(pairs.front().set)) return false;
   auto& pair = pairs.front().set;
   for (std::size_t k = set.size(); k < pair.size(); ++k)
-    if (judge(pair, k).objection) return false;
+    if (judge(pair, k).rejection_reason) return false;
   set = pair;
   return true;
 }
 
-bool Search::drop(Set& set) {
+bool Search::drop(ActiveSet& set) {
   for (std::size_t k = 0; k < set.size(); ++k) {
     if (settled(set[k])) continue;
     const auto judgement = judge(set, k);
-    if (!judgement.objection) continue;
+    if (!judgement.rejection_reason) continue;
     note(set[k]->candidate, judgement);
     set.erase(set.begin() + static_cast<std::ptrdiff_t>(k));
     return true;
@@ -192,7 +192,7 @@ bool Search::drop(Set& set) {
 }
 
 // Candidates that in the term's place leave a residual that the blocks cannot tell from its own.
-std::vector<std::size_t> Search::alternatives(const Set& set, std::size_t term) const {
+std::vector<std::size_t> Search::alternatives(const ActiveSet& set, std::size_t term) const {
   std::vector<std::size_t> as_good;
   auto others = set;
   others.erase(others.begin() + static_cast<std::ptrdiff_t>(term));
@@ -220,12 +220,12 @@ std::vector<std::size_t> Search::alternatives(const Set& set, std::size_t term) 
 
 SearchResult Search::run() {
   std::map<std::size_t, Judgement> judged;
-  const auto judge_new = [&](const Set& set) {
+  const auto judge_new = [&](const ActiveSet& set) {
     for (std::size_t k = 0; k < set.size(); ++k)
       if (!judged.contains(set[k]->candidate)) judged[set[k]->candidate] = judge(set, k);
   };
   // What dominates, on the rows as they are.
-  Set set;
+  ActiveSet set;
   scan_lines(set);
   while (set.size() < most_terms && grow(set, dominant)) {
     scan_lines(set);
@@ -250,7 +250,7 @@ SearchResult Search::run() {
   if (!settled_.empty()) evidence_.whiten({});
   SearchResult result;
   for (std::size_t k = 0; k < set.size(); ++k) {
-    Term term{set[k]->candidate, set[k]->nonlinear,   {}, {}, 0.0, judged.at(set[k]->candidate),
+    Term term{set[k]->candidate, set[k]->shape,       {}, {}, 0.0, judged.at(set[k]->candidate),
               !settled(set[k]),  alternatives(set, k)};
     auto others = set;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
@@ -289,9 +289,9 @@ SearchResult Search::run() {
 
 }  // namespace
 
-SearchResult search_causes(const LogRows& rows, const Eigen::VectorXd& target, Scene& scene,
+SearchResult search_causes(const LogRows& rows, const Eigen::VectorXd& target, SearchContext& context,
                            std::span<const std::size_t> refuted) {
-  return Search(rows, target, scene, refuted).run();
+  return Search(rows, target, context, refuted).run();
 }
 
 }  // namespace stiction::host

@@ -19,8 +19,8 @@ namespace stiction::host {
 
 struct Term {
   std::size_t candidate;  // of candidates()
-  double nonlinear;
-  Eigen::VectorXd weights;
+  double shape;
+  Eigen::VectorXd coefficients;
   Eigen::MatrixXd covariance;  // of the weights, and of the nonlinear parameter behind them
   double explains = 0.0;       // share of the target's square, given the others
   Judgement judgement;
@@ -42,9 +42,9 @@ struct SearchResult {
   std::size_t blocks = 0;
 };
 
-// `target`: the residual force of the rows. `scene` gets the pitches that were found. `refuted`: candidates that other
-// records spoke against, and that are no choice here.
-SearchResult search_causes(const LogRows& rows, const Eigen::VectorXd& target, Scene& scene,
+// `target`: the residual force of the rows. `context` gets the pitches that were found. `refuted`: candidates that
+// other records spoke against, and that are no choice here.
+SearchResult search_causes(const LogRows& rows, const Eigen::VectorXd& target, SearchContext& context,
                            std::span<const std::size_t> refuted = {});
 
 }  // namespace stiction::host

@@ -33,20 +33,20 @@ Eigen::VectorXd below_edge(const LogRows& rows, const Eigen::VectorXd& column) {
 }  // namespace
 
 void compare_bands(Verdict& verdict, std::span<const Term> terms, const LogRows& rows, const Eigen::VectorXd& target,
-                   const Scene& scene) {
+                   const SearchContext& context) {
   if (terms.empty()) return;
   for (std::size_t k = 0; k < rows.logs().size(); ++k)
     if (2.0 * edge * rows.period(k) >= 0.9) return;  // the rows hold no more than this band
   std::vector<Eigen::VectorXd> forces;
   for (const auto& term : terms)
     forces.push_back(
-        below_edge(rows, weighted_columns(rows, scene, candidates()[term.candidate], term.nonlinear, term.weights)));
+        below_edge(rows, weighted_columns(rows, context, candidates()[term.candidate], term.shape, term.coefficients)));
   Evidence evidence(below_edge(rows, target),
                     blocks_of(rows.velocity, rows.logs(), static_cast<std::size_t>(rows.rows() / 60 + 1)));
   evidence.add(forces);
   ColumnIndices all(terms.size());
   std::iota(all.begin(), all.end(), 0);
-  const auto ratios = evidence.fit(all).weights;
+  const auto ratios = evidence.fit(all).coefficients;
   const auto covariance = evidence.covariance(all, ratios);
   for (std::size_t k = 0; k < terms.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(k);

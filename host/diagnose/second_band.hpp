@@ -16,6 +16,6 @@ namespace stiction::host {
 // the verdict's notes where the two contradict each other. `terms`: of the findings, in the same order, found on
 // `target` (N).
 void compare_bands(Verdict& verdict, std::span<const Term> terms, const LogRows& rows, const Eigen::VectorXd& target,
-                   const Scene& scene);
+                   const SearchContext& context);
 
 }  // namespace stiction::host

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "host/diagnose/candidate_columns.hpp"
+#include "host/diagnose/context_lines.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
-#include "host/diagnose/scene_lines.hpp"
 
 namespace stiction::host {
 namespace {
@@ -25,11 +25,11 @@ class Basis {
     solver_.setThreshold(1e-9);
     solver_.compute(matrix_ * scale_.asDiagonal());
   }
-  Eigen::VectorXd weights(const Eigen::VectorXd& force) const {
+  Eigen::VectorXd coefficients(const Eigen::VectorXd& force) const {
     return scale_.cwiseProduct(Eigen::VectorXd(solver_.solve(force)));
   }
   Eigen::VectorXd without(const Eigen::VectorXd& force) const {
-    return matrix_.cols() == 0 ? force : Eigen::VectorXd(force - matrix_ * weights(force));
+    return matrix_.cols() == 0 ? force : Eigen::VectorXd(force - matrix_ * coefficients(force));
   }
 
  private:
@@ -44,11 +44,12 @@ void append(std::vector<Eigen::VectorXd>& all, const std::vector<Eigen::VectorXd
 
 Eigen::VectorXd force_of(const Records& records, const Explanation& cause) {
   const auto& candidate = candidates()[cause.candidate];
-  const auto columns = shared_columns(records.rows, records.scene, candidate, cause.nonlinear);
-  Eigen::VectorXd weights = cause.weights;
-  if (candidate.per_record) weights = Eigen::Map<const Eigen::Vector2d>(effects::first_wave(cause.weights).data());
+  const auto columns = shared_columns(records.rows, records.context, candidate, cause.shape);
+  Eigen::VectorXd coefficients = cause.coefficients;
+  if (candidate.per_record)
+    coefficients = Eigen::Map<const Eigen::Vector2d>(effects::first_wave(cause.coefficients).data());
   Eigen::VectorXd force = Eigen::VectorXd::Zero(records.rows.rows());
-  for (std::size_t c = 0; c < columns.size(); ++c) force += weights[static_cast<Eigen::Index>(c)] * columns[c];
+  for (std::size_t c = 0; c < columns.size(); ++c) force += coefficients[static_cast<Eigen::Index>(c)] * columns[c];
   return force;
 }
 
@@ -68,37 +69,37 @@ Eigen::VectorXd Separation::white(const LogRows& rows, const Eigen::VectorXd& co
 // Of each row: its noise over that and the model's error together.
 const Eigen::VectorXd& Separation::trust(const Records& records) const {
   if (records.trust.size() > 0) return records.trust;
-  const auto force = records.rows.stacked([&](const Motion& m) { return force_along(records.scene.axis, m); });
+  const auto force = records.rows.stacked([&](const Motion& m) { return force_along(records.context.axis, m); });
   records.trust = force.unaryExpr([this](double f) { return noise_ / std::hypot(noise_, model_error * f); });
   return records.trust;
 }
 
 const std::vector<Eigen::VectorXd>& Separation::white_columns(const Records& records, std::size_t candidate,
-                                                              double nonlinear) const {
-  const auto [place, unknown] = records.columns.try_emplace({candidate, nonlinear});
+                                                              double shape) const {
+  const auto [place, unknown] = records.columns.try_emplace({candidate, shape});
   if (unknown)
-    for (const auto& column : group_columns(records.rows, records.scene, candidates()[candidate], nonlinear))
+    for (const auto& column : group_columns(records.rows, records.context, candidates()[candidate], shape))
       place->second.push_back(white(records.rows, column));
   return place->second;
 }
 
 // The lines that a periodic candidate would be looked for at, were `force` what these records leave.
-Scene Separation::scanned(const Records& records, const Eigen::VectorXd& force) const {
-  auto scene = records.scene;
-  find_lines(records.rows, force, whitening_.over(records.rows.logs()), scene);
-  return scene;
+SearchContext Separation::scanned(const Records& records, const Eigen::VectorXd& force) const {
+  auto context = records.context;
+  find_lines(records.rows, force, whitening_.over(records.rows.logs()), context);
+  return context;
 }
 
 std::vector<double> Separation::values_of(const Records& records, std::size_t candidate,
                                           const Eigen::VectorXd& force) const {
   const auto& c = candidates()[candidate];
-  return c.grid(c.periodic ? scanned(records, force) : records.scene);
+  return c.grid(c.periodic ? scanned(records, force) : records.context);
 }
 
 std::optional<Explanation> Separation::best_fit(const Records& records, const Eigen::VectorXd& target,
                                                 std::size_t candidate, std::span<const Explanation> others) const {
   std::vector<Eigen::VectorXd> beside;
-  for (const auto& other : others) append(beside, white_columns(records, other.candidate, other.nonlinear));
+  for (const auto& other : others) append(beside, white_columns(records, other.candidate, other.shape));
   const Basis rest(beside);
   const Eigen::VectorXd force = rest.without(white(records.rows, target));
   std::optional<Explanation> best;
@@ -107,11 +108,11 @@ std::optional<Explanation> Separation::best_fit(const Records& records, const Ei
     auto own = white_columns(records, candidate, value);
     for (auto& column : own) column = rest.without(column);
     const Basis basis(own);
-    const auto weights = basis.weights(force);
+    const auto coefficients = basis.coefficients(force);
     const double left = basis.without(force).squaredNorm();
-    if (left >= least || !candidates()[candidate].possible(records.scene, value, weights)) continue;
+    if (left >= least || !candidates()[candidate].possible(records.context, value, coefficients)) continue;
     least = left;
-    best = Explanation{candidate, value, weights};
+    best = Explanation{candidate, value, coefficients};
   }
   return best;
 }
@@ -119,7 +120,7 @@ std::optional<Explanation> Separation::best_fit(const Records& records, const Ei
 double Separation::explained(const Records& records, const Eigen::VectorXd& target,
                              std::span<const Explanation> causes) const {
   std::vector<Eigen::VectorXd> columns;
-  for (const auto& cause : causes) append(columns, white_columns(records, cause.candidate, cause.nonlinear));
+  for (const auto& cause : causes) append(columns, white_columns(records, cause.candidate, cause.shape));
   const auto force = white(records.rows, target);
   return 1.0 - Basis(columns).without(force).squaredNorm() / force.squaredNorm();
 }
@@ -127,7 +128,7 @@ double Separation::explained(const Records& records, const Eigen::VectorXd& targ
 double Separation::expected(const Records& records, std::span<const Explanation> truth,
                             std::span<const Explanation> rival, std::span<const Explanation> others) const {
   const auto& rows = records.rows;
-  const auto& scene = records.scene;
+  const auto& context = records.context;
   const auto& trusted = trust(records);
   const auto columns_of = [&](const Explanation& cause, double value) {
     auto columns = white_columns(records, cause.candidate, value);
@@ -146,18 +147,18 @@ double Separation::expected(const Records& records, std::span<const Explanation>
     if (constant)
       beside.emplace_back(white(rows, rows.of_log(k, std::vector<double>(motion.t.size(), 1.0))).cwiseProduct(trusted));
     if (coulomb)
-      beside.emplace_back(white(rows, rows.of_log(k, contact_level(scene.axis, motion))).cwiseProduct(trusted));
+      beside.emplace_back(white(rows, rows.of_log(k, contact_level(context.axis, motion))).cwiseProduct(trusted));
   }
-  for (const auto& other : others) append(beside, columns_of(other, other.nonlinear));
+  for (const auto& other : others) append(beside, columns_of(other, other.shape));
   if (rival.size() > 1)
-    for (const auto& each : rival) append(beside, columns_of(each, each.nonlinear));
+    for (const auto& each : rival) append(beside, columns_of(each, each.shape));
   Eigen::VectorXd acting = Eigen::VectorXd::Zero(rows.rows());
   for (const auto& cause : truth) acting += force_of(records, cause);
   const Basis rest(beside);
   const Eigen::VectorXd force = rest.without(white(rows, acting).cwiseProduct(trusted));
   double least = force.norm();
   if (rival.size() != 1) return least / deviation_;
-  auto values = std::vector{rival.front().nonlinear};
+  auto values = std::vector{rival.front().shape};
   if (!candidates()[rival.front().candidate].replays) {
     const auto more = values_of(records, rival.front().candidate, acting);
     values.insert(values.end(), more.begin(), more.end());
@@ -166,7 +167,7 @@ double Separation::expected(const Records& records, std::span<const Explanation>
     auto own = columns_of(rival.front(), value);
     for (auto& column : own) column = rest.without(column);
     const Basis basis(own);
-    if (candidates()[rival.front().candidate].possible(scene, value, basis.weights(force)))
+    if (candidates()[rival.front().candidate].possible(context, value, basis.coefficients(force)))
       least = std::min(least, basis.without(force).norm());
   }
   return least / deviation_;

@@ -16,15 +16,15 @@ namespace stiction::host {
 // A cause with its values.
 struct Explanation {
   std::size_t candidate;  // of candidates()
-  double nonlinear;
-  Eigen::VectorXd weights;
+  double shape;
+  Eigen::VectorXd coefficients;
 };
-inline Explanation explanation_of(const Term& term) { return {term.candidate, term.nonlinear, term.weights}; }
+inline Explanation explanation_of(const Term& term) { return {term.candidate, term.shape, term.coefficients}; }
 
 // Records, real or simulated, with what candidates may know of them. Keeps what one Separation has made of them.
 struct Records {
   const LogRows& rows;
-  const Scene& scene;
+  const SearchContext& context;
   mutable std::map<std::pair<std::size_t, double>, std::vector<Eigen::VectorXd>> columns{};  // whitened
   mutable Eigen::VectorXd trust{};
 };
@@ -49,12 +49,11 @@ class Separation {
   double explained(const Records& records, const Eigen::VectorXd& target, std::span<const Explanation> causes) const;
 
  private:
-  Scene scanned(const Records& records, const Eigen::VectorXd& force) const;
+  SearchContext scanned(const Records& records, const Eigen::VectorXd& force) const;
   std::vector<double> values_of(const Records& records, std::size_t candidate, const Eigen::VectorXd& force) const;
   Eigen::VectorXd white(const LogRows& rows, const Eigen::VectorXd& column) const;
   const Eigen::VectorXd& trust(const Records& records) const;
-  const std::vector<Eigen::VectorXd>& white_columns(const Records& records, std::size_t candidate,
-                                                    double nonlinear) const;
+  const std::vector<Eigen::VectorXd>& white_columns(const Records& records, std::size_t candidate, double shape) const;
 
   Whitening whitening_;
   double noise_ = 0.0;      // N rms

@@ -115,11 +115,11 @@ class Fitter {
     Solution solution{file_, 0.0};
     solution.law.rise_velocity = rise_velocity;
     if (count > 0) {
-      const Eigen::VectorXd weights = columns.colPivHouseholderQr().solve(target);
+      const Eigen::VectorXd coefficients = columns.colPivHouseholderQr().solve(target);
       Eigen::Index c = 0;
       for (const auto part : sliding_parts)
-        if (chosen[static_cast<std::size_t>(part)]) value_of(solution.law, part) = weights[c++];
-      target -= columns * weights;
+        if (chosen[static_cast<std::size_t>(part)]) value_of(solution.law, part) = coefficients[c++];
+      target -= columns * coefficients;
     }
     solution.left = target.squaredNorm();
     return solution;

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "firmware/machine/configuration/axis_configuration.hpp"
-#include "host/diagnose/bench.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
+#include "host/diagnose/replay_setup.hpp"
 #include "host/simulate/control_run.hpp"
 #include "host/simulate/replay.hpp"
 #include "stiction/number/fixed_signals.hpp"
@@ -60,15 +60,15 @@ Log set_points(const sim::SeparatingTrajectory& kind, const sim::MotionRange& ra
   return log;
 }
 
-Scene scene_with(Scene scene, const LogRows& rows) {
+SearchContext scene_with(SearchContext context, const LogRows& rows) {
   const auto& motion = rows.motions().front();
-  for (const double v : motion.v) scene.highest_speed = std::max(scene.highest_speed, std::abs(v));
-  for (const double f : force_along(scene.axis, motion))
-    scene.highest_force = std::max(scene.highest_force, std::abs(f));
-  scene.reversals = enough_reversals;
-  scene.force_is_current = true;
-  scene.other_axis = false;
-  return scene;
+  for (const double v : motion.v) context.highest_speed = std::max(context.highest_speed, std::abs(v));
+  for (const double f : force_along(context.axis, motion))
+    context.highest_force = std::max(context.highest_force, std::abs(f));
+  context.reversals = enough_reversals;
+  context.force_is_current = true;
+  context.other_axis = false;
+  return context;
 }
 
 }  // namespace
@@ -108,23 +108,23 @@ std::string extent_words(const Log& proposed, const LogRows& rows) {
 }
 
 std::vector<Rehearsal> rehearse(const machine::Machine& machine, std::size_t axis, const sim::MotionRange& range,
-                                const LogRows& rows, const Scene& scene, const SignalSettings& settings) {
+                                const LogRows& rows, const SearchContext& context, const SignalSettings& settings) {
   std::vector<Rehearsal> all;
   if (!(range.high > range.low) || !(range.speed > 0.0) || !(range.acceleration > 0.0)) return all;
-  auto bench = machine;
-  bench.axes = {machine.axes.at(axis)};
-  bench.axes.front().encoder.noise = 0.0;
-  const auto& own = bench.axes.front();
+  auto setup = machine;
+  setup.axes = {machine.axes.at(axis)};
+  setup.axes.front().encoder.noise = 0.0;
+  const auto& own = setup.axes.front();
   const double row_period = rows.period(0), period = row_period / std::max(1.0, std::round(row_period / usual_period));
   for (const auto& kind : sim::separating_trajectories()) {
     try {
-      auto log = replay<FixedSignals>(bench, set_points(kind, range, own.name, period));
+      auto log = replay<FixedSignals>(setup, set_points(kind, range, own.name, period));
       log.axes.front().i_set.clear();
       LogRows moved({motion_of(log, log.axes.front(), own, Amperes::amplitude, settings)}, settings);
       log.axes.front().force.clear();
       log.axes.front().v.clear();
-      auto known = scene_with(scene, moved);
-      known.response = EffectResponse(bench, 0, {log}, settings);
+      auto known = scene_with(context, moved);
+      known.response = EffectResponse(setup, 0, {log}, settings);
       all.push_back({&kind, std::move(log), std::move(moved), std::move(known)});
     } catch (const FaultTripped&) {  // not for this machine
     } catch (const machine::ConfigurationError&) {

@@ -23,13 +23,13 @@ std::string extent_words(const Log& proposed, const LogRows& rows);
 
 struct Rehearsal {
   const sim::SeparatingTrajectory* trajectory;
-  Log log;       // x_set, v_set, a_set, x and the motor's current or voltage, as simulated
-  LogRows rows;  // of its motion
-  Scene scene;   // of the present records, with this one's extent
+  Log log;                // x_set, v_set, a_set, x and the motor's current or voltage, as simulated
+  LogRows rows;           // of its motion
+  SearchContext context;  // of the present records, with this one's extent
 };
 
 // Those that the machine follows in simulation, at the rate that gives rows like those of `rows`.
 std::vector<Rehearsal> rehearse(const machine::Machine& machine, std::size_t axis, const sim::MotionRange& range,
-                                const LogRows& rows, const Scene& scene, const SignalSettings& settings);
+                                const LogRows& rows, const SearchContext& context, const SignalSettings& settings);
 
 }  // namespace stiction::host

@@ -79,7 +79,7 @@ Complex WaveSums::other(std::size_t order) const {
          spread(narrowness(reach), static_cast<double>(order), static_cast<double>(cells_));
 }
 
-double TurningWaves::gain() {
+double PhasorBank::gain() {
   Packet moment_real = Packet::Zero(), moment_imag = Packet::Zero(), twice_real = Packet::Zero(),
          twice_imag = Packet::Zero(), square = Packet::Zero();
   for (auto& p : packets_) {

@@ -43,7 +43,7 @@ class WaveSums {
 };
 
 // Waves of many rows from order to order, in packets of rows; what there is none of has weight 0.
-class TurningWaves {
+class PhasorBank {
  public:
   void clear() { packets_.clear(), rows_ = 0; }
   // `moment`: the residual's factor of the wave, `square`: the factor of the wave's square; `turn`: to the next order.

@@ -144,9 +144,9 @@ machine::Effect scaled(const Hideable& row, const AtStrength& at, double wanted,
 
 double oracle(const std::vector<Signal>& signals, const Eigen::MatrixXd& held_regressors,
               const std::vector<Signal>& held, const Eigen::MatrixXd& regressors) {
-  const Eigen::VectorXd weights = regressors.colPivHouseholderQr().solve(stacked(signals));
+  const Eigen::VectorXd coefficients = regressors.colPivHouseholderQr().solve(stacked(signals));
   const Eigen::VectorXd before = stacked(held);
-  return (before.squaredNorm() - (before - held_regressors * weights).squaredNorm()) /
+  return (before.squaredNorm() - (before - held_regressors * coefficients).squaredNorm()) /
          static_cast<double>(before.size());
 }
 

@@ -20,24 +20,24 @@ constexpr double near = 1e-6, far = 16e-6;
 constexpr double widest = 64e-6, blow = 2.0;
 
 // A file whose friction has no presliding of its own leaves one in the residual, over micrometres as a small gap does.
-std::vector<double> grid(const Scene& scene) {
-  if (!scene.response) return {};
-  if (!contact_of(scene.axis)) return {widest};
-  if (scene.highest_residual > blow * coulomb_of(scene.axis)) return {near, far, widest};
+std::vector<double> grid(const SearchContext& context) {
+  if (!context.response) return {};
+  if (!contact_of(context.axis)) return {widest};
+  if (context.highest_residual > blow * coulomb_of(context.axis)) return {near, far, widest};
   return {near, far};
 }
 
-Columns columns(const Scene& scene, const Motion& motion, double width) {
+Columns columns(const SearchContext& context, const Motion& motion, double width) {
   const std::size_t most_runs = width == near ? 2 : width == far ? 1 : std::numeric_limits<std::size_t>::max();
-  auto column = scene.response(motion, {"backlash", {{"width", {std::abs(width)}}}}, most_runs);
+  auto column = context.response(motion, {"backlash", {{"width", {std::abs(width)}}}}, most_runs);
   for (double& force : column) force /= std::abs(width);
   return {column};
 }
 // A width beyond the next value of the grid is described by that one.
-bool possible(const Scene&, double width, const Eigen::VectorXd& w) {
+bool possible(const SearchContext&, double width, const Eigen::VectorXd& w) {
   return w[0] > width / 16.0 && w[0] < 16.0 * width;
 }
-void describe(const Scene&, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
+void describe(const SearchContext&, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
   add_key(finding, "width", "_m", {w[0]}, {std::sqrt(c(0, 0))});
 }
 

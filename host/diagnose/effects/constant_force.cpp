@@ -6,8 +6,10 @@
 namespace stiction::host::effects {
 namespace {
 
-Columns columns(const Scene&, const Motion& motion, double) { return {std::vector<double>(motion.x.size(), -1.0)}; }
-void describe(const Scene&, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
+Columns columns(const SearchContext&, const Motion& motion, double) {
+  return {std::vector<double>(motion.x.size(), -1.0)};
+}
+void describe(const SearchContext&, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
   add_key(finding, "force", "_N", {w[0]}, {std::sqrt(c(0, 0))});
 }
 

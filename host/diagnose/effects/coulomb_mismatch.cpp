@@ -12,19 +12,22 @@ namespace {
 
 constexpr double stiffness_stays = 0.0, distance_stays = 1.0;
 
-std::vector<double> grid(const Scene& scene) {
-  if (!contact_of(scene.axis)) return {stiffness_stays};
+std::vector<double> grid(const SearchContext& context) {
+  if (!contact_of(context.axis)) return {stiffness_stays};
   return {stiffness_stays, distance_stays};
 }
-Columns columns(const Scene& scene, const Motion& motion, double contact) {
-  const double coulomb = coulomb_of(scene.axis), step = std::max(0.02 * coulomb, 0.01);
-  auto changed = with_coulomb(scene.axis, coulomb + step);
-  if (contact == distance_stays) changed = with_contact_distance(changed, contact_of(scene.axis)->distance);
-  return {force_change(scene.axis, changed, motion, step)};
+Columns columns(const SearchContext& context, const Motion& motion, double contact) {
+  const double coulomb = coulomb_of(context.axis), step = std::max(0.02 * coulomb, 0.01);
+  auto changed = with_coulomb(context.axis, coulomb + step);
+  if (contact == distance_stays) changed = with_contact_distance(changed, contact_of(context.axis)->distance);
+  return {force_change(context.axis, changed, motion, step)};
 }
-bool possible(const Scene& scene, double, const Eigen::VectorXd& w) { return coulomb_of(scene.axis) + w[0] > 0.0; }
-void describe(const Scene& scene, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
-  add_key(finding, "coulomb", "_N", {coulomb_of(scene.axis) + w[0]}, {std::sqrt(c(0, 0))});
+bool possible(const SearchContext& context, double, const Eigen::VectorXd& w) {
+  return coulomb_of(context.axis) + w[0] > 0.0;
+}
+void describe(const SearchContext& context, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
+              Finding& finding) {
+  add_key(finding, "coulomb", "_N", {coulomb_of(context.axis) + w[0]}, {std::sqrt(c(0, 0))});
 }
 
 }  // namespace

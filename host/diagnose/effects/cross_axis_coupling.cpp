@@ -6,13 +6,15 @@
 namespace stiction::host::effects {
 namespace {
 
-std::vector<double> grid(const Scene& scene) { return scene.other_axis ? std::vector{0.0} : std::vector<double>{}; }
-Columns columns(const Scene&, const Motion& motion, double) {
+std::vector<double> grid(const SearchContext& context) {
+  return context.other_axis ? std::vector{0.0} : std::vector<double>{};
+}
+Columns columns(const SearchContext&, const Motion& motion, double) {
   std::vector<double> column(motion.x.size());  // zero for a held-out log without the other axis
   for (std::size_t i = 0; i < motion.other_a.size(); ++i) column[i] = -motion.other_a[i];
   return {column};
 }
-void describe(const Scene&, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
+void describe(const SearchContext&, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
   add_key(finding, "mass", "_kg", {w[0]}, {std::sqrt(c(0, 0))});
 }
 

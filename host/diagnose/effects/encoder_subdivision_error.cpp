@@ -1,6 +1,6 @@
 // The encoder reads x + e(x), e periodic in its signal period. The acceleration and viscous friction of e are in what
 // was read but needed no force: in crawls the column is - mass d2e/dt2. At higher speed the drive answers the error
-// with currents that the log's samples fold down (reading_response.hpp). The signal periods to try come from
+// with currents that the log's samples fold down (encoder_error_response.hpp). The signal periods to try come from
 // line_scan.hpp.
 #include <algorithm>
 #include <cmath>
@@ -8,19 +8,19 @@
 #include <numbers>
 
 #include "host/diagnose/candidate.hpp"
+#include "host/diagnose/encoder_error_response.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
-#include "host/diagnose/reading_response.hpp"
 
 namespace stiction::host::effects {
 namespace {
 
-const LineScan& scan(const Scene& scene) { return scene.signals_of_encoder; }
-std::vector<double> grid(const Scene& scene) { return scan(scene).periods; }
+const LineScan& scan(const SearchContext& context) { return context.signals_of_encoder; }
+std::vector<double> grid(const SearchContext& context) { return scan(context).periods; }
 
-Columns columns(const Scene& scene, const Motion& motion, double period) {
-  const auto lowpass = butterworth(4, 2.0 * std::min(scene.signals.cutoff, 0.2 / motion.period) * motion.period);
-  const ReadingResponse response(scene.axis, scene.timing, motion.period);
-  const double viscous = viscous_of(scene.axis);
+Columns columns(const SearchContext& context, const Motion& motion, double period) {
+  const auto lowpass = butterworth(4, 2.0 * std::min(context.signals.cutoff, 0.2 / motion.period) * motion.period);
+  const EncoderErrorResponse response(context.axis, context.timing, motion.period);
+  const double viscous = viscous_of(context.axis);
   // What the drive answers where it is too fast for the log's rate.
   std::vector<std::complex<double>> answer(motion.v.size());
   for (std::size_t i = 0; i < answer.size(); ++i)
@@ -33,10 +33,10 @@ Columns columns(const Scene& scene, const Motion& motion, double period) {
       error[i] = std::cos(phase[i]);
     }
     error = filter_both_ways(lowpass, error, default_padding(lowpass));
-    const auto speed = central_difference(error, motion.period, scene.signals.difference_points);
-    auto force = central_difference(speed, motion.period, scene.signals.difference_points);
+    const auto speed = central_difference(error, motion.period, context.signals.difference_points);
+    auto force = central_difference(speed, motion.period, context.signals.difference_points);
     for (std::size_t i = 0; i < force.size(); ++i) {
-      force[i] = -scene.axis.mass * force[i] - viscous * speed[i];
+      force[i] = -context.axis.mass * force[i] - viscous * speed[i];
       if (answer[i] == 0.0) continue;
       force[i] += answer[i].real() * std::cos(phase[i]) -
                   (motion.v[i] < 0.0 ? -answer[i].imag() : answer[i].imag()) * std::sin(phase[i]);
@@ -45,7 +45,8 @@ Columns columns(const Scene& scene, const Motion& motion, double period) {
   };
   return {column(0.0), column(0.5 * std::numbers::pi)};
 }
-void describe(const Scene&, double period, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
+void describe(const SearchContext&, double period, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
+              Finding& finding) {
   add_key(finding, "period", "_m", {period}, {std::sqrt(c(2, 2))});
   add_key(finding, "cosine", "_m", {w[0]}, {std::sqrt(c(0, 0))});
   add_key(finding, "sine", "_m", {w[1]}, {std::sqrt(c(1, 1))});
@@ -58,7 +59,7 @@ const Candidate encoder_subdivision_error{.name = "encoder_subdivision_error",
                                           .columns = columns,
                                           .possible = any,
                                           .describe = describe,
-                                          .nonlinear = true,
+                                          .shape = true,
                                           .periodic = true,
                                           .scan = scan};
 

@@ -10,14 +10,17 @@ namespace stiction::host::effects {
 namespace {
 
 // A logged force says nothing of the current.
-std::vector<double> grid(const Scene& scene) {
-  return scene.force_is_current ? std::vector{0.0} : std::vector<double>{};
+std::vector<double> grid(const SearchContext& context) {
+  return context.force_is_current ? std::vector{0.0} : std::vector<double>{};
 }
-Columns columns(const Scene& scene, const Motion& motion, double) { return {force_along(scene.axis, motion)}; }
-bool possible(const Scene&, double, const Eigen::VectorXd& w) { return w[0] > -0.9; }
-void describe(const Scene& scene, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
-  const double constant = scene.axis.motor.force_constant / (1.0 + w[0]);
-  add_key(finding, "force_constant", scene.axis.motor.model == machine::MotorModel::force ? "_N_per_V" : "_N_per_A",
+Columns columns(const SearchContext& context, const Motion& motion, double) {
+  return {force_along(context.axis, motion)};
+}
+bool possible(const SearchContext&, double, const Eigen::VectorXd& w) { return w[0] > -0.9; }
+void describe(const SearchContext& context, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
+              Finding& finding) {
+  const double constant = context.axis.motor.force_constant / (1.0 + w[0]);
+  add_key(finding, "force_constant", context.axis.motor.model == machine::MotorModel::force ? "_N_per_V" : "_N_per_A",
           {constant}, {std::sqrt(c(0, 0)) * constant / (1.0 + w[0])});
 }
 

@@ -10,10 +10,10 @@
 namespace stiction::host::effects {
 namespace {
 
-const LineScan& scan(const Scene& scene) { return scene.modulation; }
-std::vector<double> grid(const Scene& scene) { return scan(scene).periods; }
-Columns columns(const Scene& scene, const Motion& motion, double pitch) {
-  const auto force = force_along(scene.axis, motion);
+const LineScan& scan(const SearchContext& context) { return context.modulation; }
+std::vector<double> grid(const SearchContext& context) { return scan(context).periods; }
+Columns columns(const SearchContext& context, const Motion& motion, double pitch) {
+  const auto force = force_along(context.axis, motion);
   Columns pair(2, std::vector<double>(force.size()));
   for (std::size_t i = 0; i < force.size(); ++i) {
     const double phase = 2.0 * std::numbers::pi * motion.x[i] / pitch;
@@ -22,8 +22,9 @@ Columns columns(const Scene& scene, const Motion& motion, double pitch) {
   }
   return pair;
 }
-bool possible(const Scene&, double, const Eigen::VectorXd& w) { return std::hypot(w[0], w[1]) < 0.5; }
-void describe(const Scene&, double pitch, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
+bool possible(const SearchContext&, double, const Eigen::VectorXd& w) { return std::hypot(w[0], w[1]) < 0.5; }
+void describe(const SearchContext&, double pitch, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
+              Finding& finding) {
   add_key(finding, "pitch", "_m", {pitch}, {std::sqrt(c(2, 2))});
   add_key(finding, "cosine", "", {w[0]}, {std::sqrt(c(0, 0))});
   add_key(finding, "sine", "", {w[1]}, {std::sqrt(c(1, 1))});
@@ -36,7 +37,7 @@ const Candidate force_constant_ripple{.name = "force_constant_ripple",
                                       .columns = columns,
                                       .possible = possible,
                                       .describe = describe,
-                                      .nonlinear = true,
+                                      .shape = true,
                                       .periodic = true,
                                       .scan = scan};
 

@@ -7,12 +7,13 @@
 namespace stiction::host::effects {
 namespace {
 
-const LineScan& scan(const Scene& scene) { return scene.pitches; }
-std::vector<double> grid(const Scene& scene) { return scan(scene).periods; }
-Columns columns(const Scene&, const Motion& motion, double pitch) {
+const LineScan& scan(const SearchContext& context) { return context.pitches; }
+std::vector<double> grid(const SearchContext& context) { return scan(context).periods; }
+Columns columns(const SearchContext&, const Motion& motion, double pitch) {
   return waves_over_position(motion, pitch, std::vector<double>(motion.x.size(), 1.0));
 }
-void describe(const Scene&, double pitch, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
+void describe(const SearchContext&, double pitch, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
+              Finding& finding) {
   add_key(finding, "pitch", "_m", {pitch}, {std::sqrt(c(2, 2))});
   add_key(finding, "cosine", "_N", {w[0]}, {std::sqrt(c(0, 0))});
   add_key(finding, "sine", "_N", {w[1]}, {std::sqrt(c(1, 1))});
@@ -25,7 +26,7 @@ const Candidate force_ripple{.name = "force_ripple",
                              .columns = columns,
                              .possible = any,
                              .describe = describe,
-                             .nonlinear = true,
+                             .shape = true,
                              .periodic = true,
                              .scan = scan};
 

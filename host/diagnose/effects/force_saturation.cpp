@@ -14,15 +14,15 @@ namespace {
 // By the highest expected force over K I_s; more is a motor that has no force left.
 constexpr std::array reached{0.15, 0.5, 0.75, 0.9, 0.97};
 
-std::vector<double> grid(const Scene& scene) {
+std::vector<double> grid(const SearchContext& context) {
   std::vector<double> values;
-  if (!scene.force_is_current || scene.highest_force <= 0.0) return values;
-  for (const double part : reached) values.push_back(std::pow(part / scene.highest_force, 2));
+  if (!context.force_is_current || context.highest_force <= 0.0) return values;
+  for (const double part : reached) values.push_back(std::pow(part / context.highest_force, 2));
   return values;
 }
-Columns columns(const Scene& scene, const Motion& motion, double softness) {
+Columns columns(const SearchContext& context, const Motion& motion, double softness) {
   const double limit = 1.0 / std::sqrt(std::max(softness, 1e-20));
-  auto column = force_along(scene.axis, motion);
+  auto column = force_along(context.axis, motion);
   for (double& f : column) {
     const double part = std::clamp(f / limit, -0.99, 0.99);
     f = limit * limit * limit * (std::atanh(part) - part);
@@ -30,15 +30,16 @@ Columns columns(const Scene& scene, const Motion& motion, double softness) {
   return {column};
 }
 // A curve of another bend than the weight's does not describe it; a weak bend is the cube whatever its size.
-bool possible(const Scene& scene, double softness, const Eigen::VectorXd& w) {
+bool possible(const SearchContext& context, double softness, const Eigen::VectorXd& w) {
   if (w[0] <= 0.0) return false;
-  const double part = std::sqrt(w[0]) * scene.highest_force;
-  const bool weak = std::sqrt(softness) * scene.highest_force < 0.2;
+  const double part = std::sqrt(w[0]) * context.highest_force;
+  const bool weak = std::sqrt(softness) * context.highest_force < 0.2;
   return part < 1.0 && (weak ? part < 0.4 : w[0] / softness > 0.4 && w[0] / softness < 2.5);
 }
-void describe(const Scene& scene, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
-  const double current = 1.0 / (std::sqrt(w[0]) * scene.axis.motor.force_constant);
-  add_key(finding, "current", scene.axis.motor.model == machine::MotorModel::force ? "_V" : "_A", {current},
+void describe(const SearchContext& context, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
+              Finding& finding) {
+  const double current = 1.0 / (std::sqrt(w[0]) * context.axis.motor.force_constant);
+  add_key(finding, "current", context.axis.motor.model == machine::MotorModel::force ? "_V" : "_A", {current},
           {0.5 * current / w[0] * std::sqrt(c(0, 0))});
 }
 

@@ -8,8 +8,8 @@
 namespace stiction::host::effects {
 namespace {
 
-Columns columns(const Scene& scene, const Motion& motion, double) {
-  auto moving = contact_level(scene.axis, motion);
+Columns columns(const SearchContext& context, const Motion& motion, double) {
+  auto moving = contact_level(context.axis, motion);
   std::vector<double> speed(motion.v.size());
   for (std::size_t i = 0; i < speed.size(); ++i) {
     moving[i] = std::abs(moving[i]);
@@ -17,7 +17,7 @@ Columns columns(const Scene& scene, const Motion& motion, double) {
   }
   return {moving, speed};
 }
-void describe(const Scene&, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
+void describe(const SearchContext&, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
   add_key(finding, "coulomb", "_N", {w[0]}, {std::sqrt(c(0, 0))});
   add_key(finding, "viscous", "_N_s_per_m", {w[1]}, {std::sqrt(c(1, 1))});
 }

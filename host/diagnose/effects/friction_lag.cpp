@@ -13,10 +13,10 @@ namespace stiction::host::effects {
 namespace {
 
 // A slope a factor from its place fits worse than the mass that it is confused with.
-std::vector<double> grid(const Scene&) { return geometric(1e-3, 80e-3, 12); }
-Columns columns(const Scene& scene, const Motion& motion, double time) {
-  const auto friction = sim::steady_friction(scene.axis.friction);
-  const auto direction = contact_level(scene.axis, motion);
+std::vector<double> grid(const SearchContext&) { return geometric(1e-3, 80e-3, 12); }
+Columns columns(const SearchContext& context, const Motion& motion, double time) {
+  const auto friction = sim::steady_friction(context.axis.friction);
+  const auto direction = contact_level(context.axis, motion);
   std::vector<double> column(motion.v.size());
   const double share = motion.period / (2.0 * time + motion.period);  // trapezoidal rule
   double followed = motion.v.front();
@@ -27,8 +27,10 @@ Columns columns(const Scene& scene, const Motion& motion, double time) {
   return {column};
 }
 // Slopes far from the weight do not describe it.
-bool possible(const Scene&, double time, const Eigen::VectorXd& w) { return w[0] > 0.4 * time && w[0] < 2.5 * time; }
-void describe(const Scene&, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
+bool possible(const SearchContext&, double time, const Eigen::VectorXd& w) {
+  return w[0] > 0.4 * time && w[0] < 2.5 * time;
+}
+void describe(const SearchContext&, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
   add_key(finding, "time", "_s", {w[0]}, {std::sqrt(c(0, 0))});
 }
 

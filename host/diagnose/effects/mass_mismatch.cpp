@@ -6,10 +6,11 @@
 namespace stiction::host::effects {
 namespace {
 
-Columns columns(const Scene&, const Motion& motion, double) { return {motion.a}; }
-bool possible(const Scene& scene, double, const Eigen::VectorXd& w) { return scene.axis.mass + w[0] > 0.0; }
-void describe(const Scene& scene, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
-  add_key(finding, "mass", "_kg", {scene.axis.mass + w[0]}, {std::sqrt(c(0, 0))});
+Columns columns(const SearchContext&, const Motion& motion, double) { return {motion.a}; }
+bool possible(const SearchContext& context, double, const Eigen::VectorXd& w) { return context.axis.mass + w[0] > 0.0; }
+void describe(const SearchContext& context, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
+              Finding& finding) {
+  add_key(finding, "mass", "_kg", {context.axis.mass + w[0]}, {std::sqrt(c(0, 0))});
 }
 
 }  // namespace

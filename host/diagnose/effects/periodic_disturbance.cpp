@@ -8,9 +8,9 @@
 namespace stiction::host::effects {
 namespace {
 
-const LineScan& scan(const Scene& scene) { return scene.times; }
-std::vector<double> grid(const Scene& scene) { return scan(scene).periods; }
-Columns columns(const Scene&, const Motion& motion, double period) {
+const LineScan& scan(const SearchContext& context) { return context.times; }
+std::vector<double> grid(const SearchContext& context) { return scan(context).periods; }
+Columns columns(const SearchContext&, const Motion& motion, double period) {
   Columns pair(2, std::vector<double>(motion.t.size()));
   for (std::size_t i = 0; i < motion.t.size(); ++i) {
     const double phase = 2.0 * std::numbers::pi * motion.t[i] / period;
@@ -20,7 +20,8 @@ Columns columns(const Scene&, const Motion& motion, double period) {
   return pair;
 }
 // The phase is that of the first record.
-void describe(const Scene&, double period, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
+void describe(const SearchContext&, double period, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
+              Finding& finding) {
   const auto wave = first_wave(w);
   const auto last = c.rows() - 1;
   add_key(finding, "frequency", "_Hz", {1.0 / period}, {std::sqrt(c(last, last)) / (period * period)});
@@ -35,7 +36,7 @@ const Candidate periodic_disturbance{.name = "periodic_disturbance",
                                      .columns = columns,
                                      .possible = any,
                                      .describe = describe,
-                                     .nonlinear = true,
+                                     .shape = true,
                                      .periodic = true,
                                      .per_record = true,
                                      .scan = scan};

@@ -21,23 +21,23 @@ constexpr std::array<Shape, 9> shapes{
     {{2, 1.0}, {3, 1.0}, {3, 0.55}, {3, 1.7}, {4, 1.0}, {4, 0.7}, {4, 1.4}, {6, 1.0}, {9, 1.0}}};
 
 // The scanned value is the index of a shape.
-std::vector<double> grid(const Scene& scene) {
+std::vector<double> grid(const SearchContext& context) {
   std::vector<double> indices;
-  if (scene.stroke() > 0.0)
+  if (context.stroke() > 0.0)
     for (std::size_t i = 0; i < shapes.size(); ++i) indices.push_back(static_cast<double>(i));
   return indices;
 }
-std::vector<double> knots_of(const Scene& scene, double index) {
+std::vector<double> knots_of(const SearchContext& context, double index) {
   const auto [count, warp] = shapes[static_cast<std::size_t>(index)];
   std::vector<double> places;
   for (int k = 0; k < count; ++k)
-    places.push_back(scene.lowest_position + scene.stroke() * std::pow(static_cast<double>(k) / (count - 1), warp));
+    places.push_back(context.lowest_position + context.stroke() * std::pow(static_cast<double>(k) / (count - 1), warp));
   return places;
 }
 
-Columns columns(const Scene& scene, const Motion& motion, double index) {
-  const auto level = contact_level(scene.axis, motion);
-  const auto at = knots_of(scene, index);
+Columns columns(const SearchContext& context, const Motion& motion, double index) {
+  const auto level = contact_level(context.axis, motion);
+  const auto at = knots_of(context, index);
   Columns hats(at.size(), std::vector<double>(level.size(), 0.0));
   for (std::size_t i = 0; i < level.size(); ++i) {
     const auto next = static_cast<std::size_t>(std::upper_bound(at.begin(), at.end(), motion.x[i]) - at.begin());
@@ -48,10 +48,11 @@ Columns columns(const Scene& scene, const Motion& motion, double index) {
   }
   return hats;
 }
-void describe(const Scene& scene, double index, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
+void describe(const SearchContext& context, double index, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
+              Finding& finding) {
   std::vector<double> error;
   for (Eigen::Index k = 0; k < w.size(); ++k) error.push_back(std::sqrt(c(k, k)));
-  add_key(finding, "position", "_m", knots_of(scene, index), {});
+  add_key(finding, "position", "_m", knots_of(context, index), {});
   add_key(finding, "force", "_N", {w.data(), w.data() + w.size()}, error);
 }
 

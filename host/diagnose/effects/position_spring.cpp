@@ -6,21 +6,24 @@
 namespace stiction::host::effects {
 namespace {
 
-double middle(const Scene& scene) { return 0.5 * (scene.lowest_position + scene.highest_position); }
+double middle(const SearchContext& context) { return 0.5 * (context.lowest_position + context.highest_position); }
 
-std::vector<double> grid(const Scene& scene) { return scene.stroke() > 0.0 ? std::vector{0.0} : std::vector<double>{}; }
-Columns columns(const Scene& scene, const Motion& motion, double) {
+std::vector<double> grid(const SearchContext& context) {
+  return context.stroke() > 0.0 ? std::vector{0.0} : std::vector<double>{};
+}
+Columns columns(const SearchContext& context, const Motion& motion, double) {
   auto way = motion.x;
-  for (double& x : way) x -= middle(scene);
+  for (double& x : way) x -= middle(context);
   return {way, std::vector<double>(motion.x.size(), -1.0)};
 }
-void describe(const Scene& scene, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
+void describe(const SearchContext& context, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
+              Finding& finding) {
   // k (x - neutral) = w0 (x - middle) - w1
   const double shift = w[1] / w[0];
   const double error =
       std::sqrt(std::max(c(1, 1) + shift * shift * c(0, 0) - 2.0 * shift * c(0, 1), 0.0)) / std::abs(w[0]);
   add_key(finding, "stiffness", "_N_per_m", {w[0]}, {std::sqrt(c(0, 0))});
-  add_key(finding, "neutral", "_m", {middle(scene) + shift}, {error});
+  add_key(finding, "neutral", "_m", {middle(context) + shift}, {error});
 }
 
 }  // namespace

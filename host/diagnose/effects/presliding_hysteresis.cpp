@@ -16,37 +16,39 @@ constexpr int least_reversals = 10;
 constexpr double longest = 3e-3;  // m
 
 // 0 for friction that follows the speed alone.
-double distance_of(const Scene& scene) {
-  const auto contact = contact_of(scene.axis);
+double distance_of(const SearchContext& context) {
+  const auto contact = contact_of(context.axis);
   return contact ? contact->distance : 0.0;
 }
 
-double distance_with(const Scene& scene, double longer) {
-  const double file = distance_of(scene);
+double distance_with(const SearchContext& context, double longer) {
+  const double file = distance_of(context);
   return std::max(file + longer, std::max(0.02 * file, 1e-8));
 }
 
-std::vector<double> grid(const Scene& scene) {
-  if (!(coulomb_of(scene.axis) > 0.0) || scene.reversals < least_reversals) return {};
-  const double file = distance_of(scene);
+std::vector<double> grid(const SearchContext& context) {
+  if (!(coulomb_of(context.axis) > 0.0) || context.reversals < least_reversals) return {};
+  const double file = distance_of(context);
   if (!(file > 0.0)) return geometric(1e-6, 3e-3, 14);
   std::vector<double> longer;
   for (const double share : {-0.75, -0.5, -0.25, -0.1, -0.03, 0.03, 0.08, 0.2}) longer.push_back(share * file);
   for (double more = 0.4 * file; more < longest; more *= 1.6) longer.push_back(more);
   return longer;
 }
-Columns columns(const Scene& scene, const Motion& motion, double longer) {
-  return {force_change(scene.axis, with_contact_distance(scene.axis, distance_with(scene, longer)), motion, longer)};
+Columns columns(const SearchContext& context, const Motion& motion, double longer) {
+  return {
+      force_change(context.axis, with_contact_distance(context.axis, distance_with(context, longer)), motion, longer)};
 }
 // The column holds near the distance for which it was made.
-bool possible(const Scene&, double longer, const Eigen::VectorXd& w) {
+bool possible(const SearchContext&, double longer, const Eigen::VectorXd& w) {
   return w[0] / longer > 0.4 && w[0] / longer < 2.5;
 }
-void describe(const Scene& scene, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
-  const double distance = distance_with(scene, w[0]), error = std::sqrt(c(0, 0));
+void describe(const SearchContext& context, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
+              Finding& finding) {
+  const double distance = distance_with(context, w[0]), error = std::sqrt(c(0, 0));
   // Of the same shape as the file's curve; without one, exponential.
-  const auto file = contact_of(scene.axis);
-  const double sharpness = file ? file->stiffness * file->distance : coulomb_of(scene.axis) * std::numbers::ln10;
+  const auto file = contact_of(context.axis);
+  const double sharpness = file ? file->stiffness * file->distance : coulomb_of(context.axis) * std::numbers::ln10;
   add_key(finding, "stiffness", "_N_per_m", {sharpness / distance}, {sharpness * error / (distance * distance)});
   add_key(finding, "distance", "_m", {distance}, {error});
 }

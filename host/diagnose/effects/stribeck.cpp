@@ -8,25 +8,22 @@
 namespace stiction::host::effects {
 namespace {
 
-std::vector<double> grid(const Scene& scene) {
-  return geometric(0.003 * scene.highest_speed, 0.3 * scene.highest_speed, 14);
+std::vector<double> grid(const SearchContext& context) {
+  return geometric(0.003 * context.highest_speed, 0.3 * context.highest_speed, 14);
 }
-Columns columns(const Scene& scene, const Motion& motion, double velocity) {
-  return {stribeck_column(motion, contact_level(scene.axis, motion), velocity)};
+Columns columns(const SearchContext& context, const Motion& motion, double velocity) {
+  return {stribeck_column(motion, contact_level(context.axis, motion), velocity)};
 }
-bool possible(const Scene&, double, const Eigen::VectorXd& w) { return w[0] > 0.0; }
-void describe(const Scene&, double velocity, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
+bool possible(const SearchContext&, double, const Eigen::VectorXd& w) { return w[0] > 0.0; }
+void describe(const SearchContext&, double velocity, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
+              Finding& finding) {
   add_key(finding, "break_away", "_N", {w[0]}, {std::sqrt(c(0, 0))});
   add_key(finding, "velocity", "_m_per_s", {velocity}, {std::sqrt(c(1, 1))});
 }
 
 }  // namespace
 
-const Candidate stribeck{.name = "stribeck",
-                         .grid = grid,
-                         .columns = columns,
-                         .possible = possible,
-                         .describe = describe,
-                         .nonlinear = true};
+const Candidate stribeck{
+    .name = "stribeck", .grid = grid, .columns = columns, .possible = possible, .describe = describe, .shape = true};
 
 }  // namespace stiction::host::effects

@@ -15,17 +15,18 @@ constexpr double largest_ratio = 0.99;
 // Of the estimated damping ratio: far outside of what a mode has, the fifth derivative follows something else.
 constexpr double least_damping = -0.5, largest_damping = 1.5;
 
-std::vector<double> grid(const Scene&) { return {0.2, 0.35, 0.55, 0.85}; }
-Columns columns(const Scene& scene, const Motion& motion, double ratio) {
+std::vector<double> grid(const SearchContext&) { return {0.2, 0.35, 0.55, 0.85}; }
+Columns columns(const SearchContext& context, const Motion& motion, double ratio) {
   const auto mode =
-      mode_columns(scene.axis.mass, std::min(ratio, largest_ratio), motion, force_along(scene.axis, motion));
+      mode_columns(context.axis.mass, std::min(ratio, largest_ratio), motion, force_along(context.axis, motion));
   return {mode.bend, mode.damping};
 }
 double damping_of(const Eigen::VectorXd& w) { return 0.5 * w[1] / (w[0] * std::sqrt(w[0])); }
-bool possible(const Scene&, double, const Eigen::VectorXd& w) {
+bool possible(const SearchContext&, double, const Eigen::VectorXd& w) {
   return w[0] > 0.0 && damping_of(w) > least_damping && damping_of(w) < largest_damping;
 }
-void describe(const Scene&, double ratio, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
+void describe(const SearchContext&, double ratio, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
+              Finding& finding) {
   const double frequency = 0.5 / (std::numbers::pi * std::sqrt(w[0]));
   const Eigen::Vector2d slope(-1.5 * damping_of(w) / w[0], 0.5 / (w[0] * std::sqrt(w[0])));
   add_key(finding, "frequency", "_Hz", {frequency}, {0.5 * frequency / w[0] * std::sqrt(c(0, 0))});
@@ -41,6 +42,6 @@ const Candidate structural_resonance{.name = "structural_resonance",
                                      .columns = columns,
                                      .possible = possible,
                                      .describe = describe,
-                                     .nonlinear = true};
+                                     .shape = true};
 
 }  // namespace stiction::host::effects

@@ -9,13 +9,15 @@ namespace stiction::host::effects {
 namespace {
 
 // Shorter than a twentieth of a record it is an event at its start, longer than twice it is a straight line.
-std::vector<double> grid(const Scene& scene) { return geometric(0.05 * scene.duration, 2.0 * scene.duration, 9); }
-Columns columns(const Scene& scene, const Motion& motion, double time_constant) {
-  auto column = contact_level(scene.axis, motion);
+std::vector<double> grid(const SearchContext& context) {
+  return geometric(0.05 * context.duration, 2.0 * context.duration, 9);
+}
+Columns columns(const SearchContext& context, const Motion& motion, double time_constant) {
+  auto column = contact_level(context.axis, motion);
   for (std::size_t i = 0; i < column.size(); ++i) column[i] *= -std::expm1(-motion.t[i] / time_constant);
   return {column};
 }
-void describe(const Scene&, double time_constant, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
+void describe(const SearchContext&, double time_constant, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
               Finding& finding) {
   add_key(finding, "change", "_N", {w[0]}, {std::sqrt(c(0, 0))});
   add_key(finding, "time_constant", "_s", {time_constant}, {std::sqrt(c(1, 1))});
@@ -28,7 +30,7 @@ const Candidate thermal_drift{.name = "thermal_drift",
                               .columns = columns,
                               .possible = any,
                               .describe = describe,
-                              .nonlinear = true,
+                              .shape = true,
                               .names_coulomb = true};
 
 }  // namespace stiction::host::effects

@@ -9,7 +9,7 @@
 namespace stiction::host::effects {
 namespace {
 
-std::vector<double> grid(const Scene&) { return {1e-4, 1e-3, 3e-3, -1e-3, -3e-3}; }
+std::vector<double> grid(const SearchContext&) { return {1e-4, 1e-3, 3e-3, -1e-3, -3e-3}; }
 
 // `values` at a time `delay` (s) earlier; cubic through four samples, the ends held.
 std::vector<double> delayed(const std::vector<double>& values, double delay, double period) {
@@ -30,17 +30,17 @@ std::vector<double> delayed(const std::vector<double>& values, double delay, dou
   return out;
 }
 
-Columns columns(const Scene& scene, const Motion& motion, double delay) {
-  const auto force = force_along(scene.axis, motion);
+Columns columns(const SearchContext& context, const Motion& motion, double delay) {
+  const auto force = force_along(context.axis, motion);
   auto column = delayed(force, delay, motion.period);
   for (std::size_t i = 0; i < column.size(); ++i) column[i] = (column[i] - force[i]) / delay;
   return {column};
 }
 // Slopes far from the weight do not describe it.
-bool possible(const Scene&, double delay, const Eigen::VectorXd& w) {
+bool possible(const SearchContext&, double delay, const Eigen::VectorXd& w) {
   return std::abs(delay) < 2e-4 || (w[0] * delay > 0.0 && w[0] / delay > 0.3 && w[0] / delay < 3.0);
 }
-void describe(const Scene&, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
+void describe(const SearchContext&, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
   add_key(finding, "delay", "_s", {w[0]}, {std::sqrt(c(0, 0))});
 }
 

@@ -7,12 +7,15 @@
 namespace stiction::host::effects {
 namespace {
 
-Columns columns(const Scene& scene, const Motion& motion, double) {
-  return {force_change(scene.axis, with_viscous(scene.axis, viscous_of(scene.axis) + 1.0), motion, 1.0)};
+Columns columns(const SearchContext& context, const Motion& motion, double) {
+  return {force_change(context.axis, with_viscous(context.axis, viscous_of(context.axis) + 1.0), motion, 1.0)};
 }
-bool possible(const Scene& scene, double, const Eigen::VectorXd& w) { return viscous_of(scene.axis) + w[0] >= 0.0; }
-void describe(const Scene& scene, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
-  add_key(finding, "viscous", "_N_s_per_m", {viscous_of(scene.axis) + w[0]}, {std::sqrt(c(0, 0))});
+bool possible(const SearchContext& context, double, const Eigen::VectorXd& w) {
+  return viscous_of(context.axis) + w[0] >= 0.0;
+}
+void describe(const SearchContext& context, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
+              Finding& finding) {
+  add_key(finding, "viscous", "_N_s_per_m", {viscous_of(context.axis) + w[0]}, {std::sqrt(c(0, 0))});
 }
 
 }  // namespace

@@ -6,16 +6,17 @@
 namespace stiction::host::effects {
 namespace {
 
-std::vector<double> grid(const Scene& scene) {
-  return geometric(0.02 * scene.highest_speed, 0.7 * scene.highest_speed, 12);
+std::vector<double> grid(const SearchContext& context) {
+  return geometric(0.02 * context.highest_speed, 0.7 * context.highest_speed, 12);
 }
-Columns columns(const Scene&, const Motion& motion, double velocity) {
+Columns columns(const SearchContext&, const Motion& motion, double velocity) {
   std::vector<double> column(motion.v.size());
   for (std::size_t i = 0; i < column.size(); ++i)
     column[i] = std::copysign(-std::expm1(-std::abs(motion.v[i]) / velocity), motion.v[i]);
   return {column};
 }
-void describe(const Scene&, double velocity, const Eigen::VectorXd& w, const Eigen::MatrixXd& c, Finding& finding) {
+void describe(const SearchContext&, double velocity, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
+              Finding& finding) {
   add_key(finding, "force", "_N", {w[0]}, {std::sqrt(c(0, 0))});
   add_key(finding, "velocity", "_m_per_s", {velocity}, {std::sqrt(c(1, 1))});
 }
@@ -27,6 +28,6 @@ const Candidate viscous_nonlinear{.name = "viscous_nonlinear",
                                   .columns = columns,
                                   .possible = any,
                                   .describe = describe,
-                                  .nonlinear = true};
+                                  .shape = true};
 
 }  // namespace stiction::host::effects

@@ -6,13 +6,13 @@
 namespace stiction::host::signatures {
 namespace {
 
-Columns columns(const Scene& scene, const Motion& motion, double) {
+Columns columns(const SearchContext& context, const Motion& motion, double) {
   std::vector<double> column(motion.t.size());
-  for (std::size_t i = 0; i < column.size(); ++i) column[i] = -motion.t[i] / scene.duration;
+  for (std::size_t i = 0; i < column.size(); ++i) column[i] = -motion.t[i] / context.duration;
   return {column};
 }
-std::string looks_like(const Scene& scene, double, const Eigen::VectorXd& w) {
-  return fmt::format("drifting with time, equal in both directions: {:.2g} N after {:.3g} s", w[0], scene.duration);
+std::string looks_like(const SearchContext& context, double, const Eigen::VectorXd& w) {
+  return fmt::format("drifting with time, equal in both directions: {:.2g} N after {:.3g} s", w[0], context.duration);
 }
 
 }  // namespace

@@ -13,11 +13,11 @@ namespace {
 
 constexpr int fewest_reversals = 4;
 
-std::vector<double> grid(const Scene& scene) {
-  return scene.reversals < fewest_reversals ? std::vector<double>{} : effects::geometric(5e-3, 0.3, 7);
+std::vector<double> grid(const SearchContext& context) {
+  return context.reversals < fewest_reversals ? std::vector<double>{} : effects::geometric(5e-3, 0.3, 7);
 }
 template <int way_back_nm>
-Columns columns(const Scene&, const Motion& motion, double time) {
+Columns columns(const SearchContext&, const Motion& motion, double time) {
   constexpr double way_back = 1e-9 * way_back_nm;
   std::vector<double> column(motion.v.size(), 0.0);
   double turned_at = -std::numeric_limits<double>::infinity();  // s; none yet
@@ -33,7 +33,7 @@ Columns columns(const Scene&, const Motion& motion, double time) {
   }
   return {column};
 }
-std::string looks_like(const Scene&, double time, const Eigen::VectorXd& w) {
+std::string looks_like(const SearchContext&, double time, const Eigen::VectorXd& w) {
   return fmt::format("at reversals: a force of {:.2g} N {} the motion that decays within {:.2g} ms", std::abs(w[0]),
                      w[0] < 0.0 ? "along" : "against", 1e3 * time);
 }
@@ -44,7 +44,7 @@ constexpr Candidate going_back{.name = "force_after_reversal",
                                .columns = columns<way_back_nm>,
                                .possible = effects::any,
                                .describe = nullptr,
-                               .nonlinear = true,
+                               .shape = true,
                                .looks_like = looks_like};
 
 }  // namespace

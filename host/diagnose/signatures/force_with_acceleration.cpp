@@ -9,12 +9,12 @@
 namespace stiction::host::signatures {
 namespace {
 
-Columns columns(const Scene&, const Motion& motion, double) {
+Columns columns(const SearchContext&, const Motion& motion, double) {
   std::vector<double> column(motion.a.size());
   for (std::size_t i = 0; i < column.size(); ++i) column[i] = -std::abs(motion.a[i]);
   return {column};
 }
-std::string looks_like(const Scene&, double, const Eigen::VectorXd& w) {
+std::string looks_like(const SearchContext&, double, const Eigen::VectorXd& w) {
   return fmt::format("growing with acceleration, with equal sign for both directions of it: {:.2g} N at 1 m/s^2", w[0]);
 }
 

@@ -15,19 +15,19 @@ constexpr int narrow = 40, wide = 12;
 struct Place {
   double at, width;  // m; width: standard deviation
 };
-Place place_of(const Scene& scene, double number) {
+Place place_of(const SearchContext& context, double number) {
   const bool is_wide = number >= narrow;
-  const double step = scene.stroke() / (is_wide ? wide : narrow);
-  return {scene.lowest_position + (number - (is_wide ? narrow : 0) + 0.5) * step, step};
+  const double step = context.stroke() / (is_wide ? wide : narrow);
+  return {context.lowest_position + (number - (is_wide ? narrow : 0) + 0.5) * step, step};
 }
-std::vector<double> grid(const Scene& scene) {
+std::vector<double> grid(const SearchContext& context) {
   std::vector<double> numbers;
-  if (scene.stroke() > 0.0)
+  if (context.stroke() > 0.0)
     for (int k = 0; k < narrow + wide; ++k) numbers.push_back(k);
   return numbers;
 }
-Columns columns(const Scene& scene, const Motion& motion, double number) {
-  const auto place = place_of(scene, number);
+Columns columns(const SearchContext& context, const Motion& motion, double number) {
+  const auto place = place_of(context, number);
   std::vector<double> column(motion.x.size());
   for (std::size_t i = 0; i < column.size(); ++i) {
     const double off = (motion.x[i] - place.at) / place.width;
@@ -35,8 +35,8 @@ Columns columns(const Scene& scene, const Motion& motion, double number) {
   }
   return {column};
 }
-std::string looks_like(const Scene& scene, double number, const Eigen::VectorXd& w) {
-  const auto place = place_of(scene, number);
+std::string looks_like(const SearchContext& context, double number, const Eigen::VectorXd& w) {
+  const auto place = place_of(context, number);
   return fmt::format("localised at {:.4g} mm: a force of {:.2g} N, equal in both directions, over about {:.2g} mm",
                      1e3 * place.at, w[0], 2e3 * place.width);
 }

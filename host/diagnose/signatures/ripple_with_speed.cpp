@@ -8,16 +8,16 @@
 namespace stiction::host::signatures {
 namespace {
 
-const LineScan& scan(const Scene& scene) { return scene.by_speed; }
-std::vector<double> grid(const Scene& scene) { return scan(scene).periods; }
-Columns columns(const Scene& scene, const Motion& motion, double pitch) {
+const LineScan& scan(const SearchContext& context) { return context.by_speed; }
+std::vector<double> grid(const SearchContext& context) { return scan(context).periods; }
+Columns columns(const SearchContext& context, const Motion& motion, double pitch) {
   std::vector<double> size(motion.v.size());
-  for (std::size_t i = 0; i < size.size(); ++i) size[i] = std::abs(motion.v[i]) / scene.highest_speed;
+  for (std::size_t i = 0; i < size.size(); ++i) size[i] = std::abs(motion.v[i]) / context.highest_speed;
   return effects::waves_over_position(motion, pitch, size);
 }
-std::string looks_like(const Scene& scene, double pitch, const Eigen::VectorXd& w) {
+std::string looks_like(const SearchContext& context, double pitch, const Eigen::VectorXd& w) {
   return fmt::format("periodic in position with pitch {:.4g} mm, growing with speed: {:.2g} N at {:.3g} m/min",
-                     1e3 * pitch, w.head<2>().norm(), 60.0 * scene.highest_speed);
+                     1e3 * pitch, w.head<2>().norm(), 60.0 * context.highest_speed);
 }
 
 }  // namespace
@@ -27,7 +27,7 @@ const Candidate ripple_with_speed{.name = "ripple_with_speed",
                                   .columns = columns,
                                   .possible = effects::any,
                                   .describe = nullptr,
-                                  .nonlinear = true,
+                                  .shape = true,
                                   .periodic = true,
                                   .scan = scan,
                                   .looks_like = looks_like};

@@ -11,10 +11,10 @@ constexpr double lowest = 1.0, highest = 100.0;  // Hz
 
 // Central differences of sixth order.
 std::vector<double> rate_of(const std::vector<double>& x, double period) {
-  constexpr std::array<double, 4> weights{0.0, 0.75, -0.15, 1.0 / 60.0};
+  constexpr std::array<double, 4> coefficients{0.0, 0.75, -0.15, 1.0 / 60.0};
   std::vector<double> rate(x.size());
   for (std::size_t k = 3; k + 3 < x.size(); ++k)
-    for (std::size_t j = 1; j < 4; ++j) rate[k] += weights[j] * (x[k + j] - x[k - j]) / period;
+    for (std::size_t j = 1; j < 4; ++j) rate[k] += coefficients[j] * (x[k + j] - x[k - j]) / period;
   return rate;
 }
 

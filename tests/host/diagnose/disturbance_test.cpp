@@ -8,14 +8,14 @@
 #include <numbers>
 #include <random>
 
-#include "host/diagnose/common_part.hpp"
+#include "host/diagnose/coherent_mean.hpp"
 #include "host/diagnose/evidence.hpp"
 #include "host/diagnose/fisher.hpp"
 
 namespace stiction::test {
 namespace {
 
-using host::CommonPart;
+using host::CoherentMean;
 using host::Disturbance;
 using host::Evidence;
 
@@ -105,7 +105,7 @@ class WavesWithChance : public testing::Test {
 // The mean of n runs with a variance of 4.5 each: two of them know it to a few percent from 4000 lines of their
 // spectrum.
 TEST_F(WavesWithChance, ChanceOfTheirMeanFallsWithTheirNumber) {
-  CommonPart part;
+  CoherentMean part;
   part.add(run(1));
   EXPECT_EQ(part.chance(), 0.0);
   for (std::uint64_t n = 2; n <= 4; ++n) {
@@ -115,7 +115,7 @@ TEST_F(WavesWithChance, ChanceOfTheirMeanFallsWithTheirNumber) {
 }
 
 TEST_F(WavesWithChance, TheMeanAloneGivesAWeightThatIsTooSmallWhatIsCommonDoesNot) {
-  CommonPart part;
+  CoherentMean part;
   std::vector<double> mean(samples, 0.0);
   for (std::uint64_t r = 0; r < 3; ++r) {
     const auto each = run(r);
@@ -129,7 +129,7 @@ TEST_F(WavesWithChance, TheMeanAloneGivesAWeightThatIsTooSmallWhatIsCommonDoesNo
 }
 
 TEST_F(WavesWithChance, OneRunIsTakenAsItIs) {
-  CommonPart part;
+  CoherentMean part;
   const auto only = run(1);
   part.add(only);
   EXPECT_EQ(part.estimate(), only);
@@ -151,18 +151,18 @@ TEST(Evidence, JackknifeIsTheSpreadOfWeightsWithEachClusterLeftOut) {
     blocks.push_back({static_cast<std::size_t>(b * length), static_cast<std::size_t>((b + 1) * length)});
   Evidence evidence(target, blocks);
   evidence.add({columns.col(0), columns.col(1)});
-  const auto weights = evidence.fit({0, 1}).weights;
+  const auto coefficients = evidence.fit({0, 1}).coefficients;
   Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(2, 2);
   for (const auto& block : blocks) {
     Eigen::VectorXd use = Eigen::VectorXd::Ones(rows);
     use.segment(static_cast<Eigen::Index>(block.begin), length).setZero();
     const Eigen::VectorXd off =
-        (use.asDiagonal() * columns).colPivHouseholderQr().solve(use.cwiseProduct(target)) - weights;
+        (use.asDiagonal() * columns).colPivHouseholderQr().solve(use.cwiseProduct(target)) - coefficients;
     expected += off * off.transpose() * static_cast<double>(blocks.size() - 1) / static_cast<double>(blocks.size());
   }
-  const auto [covariance, clusters] = evidence.jackknife({0, 1}, weights);
+  const auto [covariance, clusters] = evidence.jackknife({0, 1}, coefficients);
   EXPECT_TRUE(covariance.isApprox(expected, 1e-9)) << covariance << "\n\n" << expected;
-  EXPECT_GT(covariance(0, 0), evidence.covariance({0, 1}, weights)(0, 0));
+  EXPECT_GT(covariance(0, 0), evidence.covariance({0, 1}, coefficients)(0, 0));
   EXPECT_NEAR(clusters[0], 2.0, 0.05);
   EXPECT_GT(clusters[1], 8.0);
 }
@@ -183,10 +183,10 @@ TEST(Evidence, IntervalsCoverWhereFewClustersBear) {
     const Eigen::VectorXd noise = Eigen::VectorXd::NullaryExpr(rows, [&] { return normal(random); });
     Evidence evidence(2.0 * acting + noise, blocks);
     evidence.add({acting, Eigen::VectorXd::Ones(rows)});
-    const auto weights = evidence.fit({0, 1}).weights;
-    const double off = std::abs(weights[0] - 2.0) / 1.959964;
-    covered += off <= std::sqrt(evidence.interval_covariance({0, 1}, weights)(0, 0));
-    by_normal += off <= std::sqrt(evidence.covariance({0, 1}, weights)(0, 0));
+    const auto coefficients = evidence.fit({0, 1}).coefficients;
+    const double off = std::abs(coefficients[0] - 2.0) / 1.959964;
+    covered += off <= std::sqrt(evidence.interval_covariance({0, 1}, coefficients)(0, 0));
+    by_normal += off <= std::sqrt(evidence.covariance({0, 1}, coefficients)(0, 0));
   }
   EXPECT_NEAR(covered, 0.95 * draws, 0.03 * draws);
   EXPECT_LT(by_normal, 0.90 * draws);

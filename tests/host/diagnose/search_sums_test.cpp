@@ -59,7 +59,7 @@ TEST(SearchSums, turning_waves_take_what_a_fit_takes) {
   const Eigen::Index rows = 333;  // no whole number of packets
   const auto residual = drawn(rows, 3), place = drawn(rows, 4);
   const double first = 0.7, step = 0.01;
-  TurningWaves waves;
+  PhasorBank waves;
   for (Eigen::Index i = 0; i < rows; ++i) waves.add(residual[i], 1.0, wave(first * place[i]), wave(step * place[i]));
   for (int k = 0; k < 40; ++k) {
     Eigen::MatrixXd columns(rows, 2);
@@ -67,8 +67,8 @@ TEST(SearchSums, turning_waves_take_what_a_fit_takes) {
       const auto w = wave((first + step * k) * place[i]);
       columns.row(i) << w.real(), w.imag();
     }
-    const Eigen::VectorXd weights = columns.householderQr().solve(residual);
-    const double taken = residual.squaredNorm() - (residual - columns * weights).squaredNorm();
+    const Eigen::VectorXd coefficients = columns.householderQr().solve(residual);
+    const double taken = residual.squaredNorm() - (residual - columns * coefficients).squaredNorm();
     EXPECT_NEAR(waves.gain(), taken, 1e-10 * residual.squaredNorm());  // rounding of 40 turns
   }
 }

@@ -9,10 +9,10 @@
 
 namespace stiction::host {
 
-class ReadingResponse {
+class EncoderErrorResponse {
  public:
   // `log_period`: s, of the log's samples.
-  ReadingResponse(const machine::AxisModel& axis, const machine::Timing& timing, double log_period);
+  EncoderErrorResponse(const machine::AxisModel& axis, const machine::Timing& timing, double log_period);
 
   // Residual force (N) for an error of 1 m at `frequency` (Hz, not negative), as the log's samples show it.
   std::complex<double> operator()(double frequency) const;

@@ -8,7 +8,7 @@
 
 namespace stiction::host {
 
-struct Repetition {
+struct HeldOutAmplitude {
   double size = 0.0;       // 1: as large again; about 0 of what fitted the first records' noise alone
   double deviation = 0.0;  // standard error of that; 0: the force does not act in these records
   // Twice the logarithm of how much better the records agree with none of the force than with all of it (Kass, Raftery,
@@ -22,7 +22,7 @@ struct Repetition {
 // pieces of evidence. The standard error is the larger of two: by blocks, which knows where the noise is large; and by
 // what the force finds in the rest of each log when that is turned round by a part of its length (time-shifted
 // surrogates: Andrzejak et al., Phys. Rev. E 68, 2003), which knows how long a slow noise keeps its sign.
-Repetition repetition_of(const Eigen::VectorXd& force, const Eigen::VectorXd& residual,
-                         std::span<const std::size_t> logs, std::span<const RowBlock> blocks);
+HeldOutAmplitude repetition_of(const Eigen::VectorXd& force, const Eigen::VectorXd& residual,
+                               std::span<const std::size_t> logs, std::span<const RowBlock> blocks);
 
 }  // namespace stiction::host

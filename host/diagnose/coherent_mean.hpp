@@ -10,7 +10,7 @@
 
 namespace stiction::host {
 
-class CommonPart {
+class CoherentMean {
  public:
   // Equally long runs, in any unit.
   void add(std::span<const double> run);

@@ -1,11 +1,11 @@
-#include "host/diagnose/bench.hpp"
+#include "host/diagnose/replay_setup.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <stdexcept>
 
-#include "host/diagnose/common_part.hpp"
+#include "host/diagnose/coherent_mean.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
 #include "host/identify/identification.hpp"
 #include "host/simulate/replay.hpp"
@@ -45,11 +45,12 @@ bool same(std::span<const machine::Effect> one, std::span<const machine::Effect>
 
 }  // namespace
 
-Bench bench_of(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs, bool coupled) {
-  Bench bench{machine, {}};
-  bench.machine.axes = {machine.axes[axis]};
+ReplaySetup replay_setup_of(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
+                            bool coupled) {
+  ReplaySetup setup{machine, {}};
+  setup.machine.axes = {machine.axes[axis]};
   coupled = coupled && machine.axes.size() == 2;
-  if (coupled) bench.machine.axes.push_back(machine.axes[1 - axis]);
+  if (coupled) setup.machine.axes.push_back(machine.axes[1 - axis]);
   for (const auto& log : logs) {
     const auto& channels = channels_of(log, machine.axes[axis]);
     if (channels.x_set.empty()) continue;
@@ -57,30 +58,30 @@ Bench bench_of(const machine::Machine& machine, std::size_t axis, const std::vec
     own.axes = {channels};
     if (coupled && !channels_of(log, machine.axes[1 - axis]).x_set.empty())
       own.axes.push_back(channels_of(log, machine.axes[1 - axis]));
-    bench.logs.push_back(std::move(own));
+    setup.logs.push_back(std::move(own));
   }
-  return bench;
+  return setup;
 }
 
-std::vector<Log> replays(const Bench& bench) {
+std::vector<Log> replays(const ReplaySetup& setup) {
   std::vector<Log> all;
-  for (const auto& log : bench.logs)
-    all.push_back(replay<FixedSignals>(bench.machine, log, {bench.machine.axes.front().name}));
+  for (const auto& log : setup.logs)
+    all.push_back(replay<FixedSignals>(setup.machine, log, {setup.machine.axes.front().name}));
   return all;
 }
 
-std::vector<std::vector<double>> simulated_positions(const Bench& bench) {
+std::vector<std::vector<double>> simulated_positions(const ReplaySetup& setup) {
   std::vector<std::vector<double>> all;
-  for (auto& log : replays(bench)) all.push_back(std::move(log.axes.front().x));
+  for (auto& log : replays(setup)) all.push_back(std::move(log.axes.front().x));
   return all;
 }
 
 WithoutNoise without_noise(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs) {
-  auto bench = bench_of(machine, axis, logs);
-  if (bench.logs.size() != logs.size()) return {};
-  bench.machine.axes.front().encoder.noise = 0.0;
+  auto setup = replay_setup_of(machine, axis, logs);
+  if (setup.logs.size() != logs.size()) return {};
+  setup.machine.axes.front().encoder.noise = 0.0;
   try {
-    WithoutNoise without{logs, replays(bench)};
+    WithoutNoise without{logs, replays(setup)};
     for (std::size_t k = 0; k < logs.size(); ++k) {
       const auto& measured = channels_of(logs[k], machine.axes[axis]);
       const auto& position = without.replayed[k].axes.front().x;
@@ -94,15 +95,16 @@ WithoutNoise without_noise(const machine::Machine& machine, std::size_t axis, co
 }
 
 EffectResponse::EffectResponse(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
-                               const SignalSettings& settings, Hunting hunting, const std::vector<Log>& replayed)
+                               const SignalSettings& settings, QuantizerLimitCycle limit_cycle,
+                               const std::vector<Log>& replayed)
     : settings_(settings) {
-  auto bench = bench_of(machine, axis, logs);
-  machine_ = std::move(bench.machine);
+  auto setup = replay_setup_of(machine, axis, logs);
+  machine_ = std::move(setup.machine);
   auto& own = machine_.axes.front();
   own.encoder.noise = 0.0;
-  for (auto& log : bench.logs) records_.push_back({std::move(log), {}});
+  for (auto& log : setup.logs) records_.push_back({std::move(log), {}});
   for (std::size_t k = 0; k < replayed.size(); ++k) records_[k].without = residual(replayed[k], records_[k].log);
-  if (hunting == Hunting::simulated) return;
+  if (limit_cycle == QuantizerLimitCycle::simulated) return;
   own.position_controller.increment *= fine;
   without_windings(own);
 }
@@ -110,7 +112,7 @@ EffectResponse::EffectResponse(const machine::Machine& machine, std::size_t axis
 EffectResponse::EffectResponse(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
                                const SignalSettings& settings, const Disturbance& disturbance,
                                const std::vector<Log>& replayed)
-    : EffectResponse(machine, axis, logs, settings, Hunting::simulated, replayed) {
+    : EffectResponse(machine, axis, logs, settings, QuantizerLimitCycle::simulated, replayed) {
   without_windings(machine_.axes.front());
   disturbance_ = disturbance;
 }
@@ -143,7 +145,7 @@ std::vector<double> EffectResponse::residual(Log simulated, const Log& of) const
 std::vector<double> EffectResponse::common(std::size_t index, const machine::Machine& machine, std::size_t most_runs) {
   auto& record = records_[index];
   if (record.without.empty()) record.without = residual(replayed(record.log, machine_), record.log);
-  CommonPart part;
+  CoherentMean part;
   const std::size_t most = disturbance_ ? std::min(most_runs, most_runs_ever) : 1;
   for (std::size_t r = 0; r < most; ++r) {
     if (r >= usual_runs && part.chance() < much_chance * disturbance_.mean_square()) break;

@@ -1,5 +1,5 @@
 // What held-out rows say of a force that other rows showed.
-#include "host/diagnose/repetition.hpp"
+#include "host/diagnose/held_out_amplitude.hpp"
 
 #include <gtest/gtest.h>
 
@@ -44,7 +44,7 @@ Eigen::VectorXd noise(double length, std::uint64_t seed) {
 }  // namespace
 
 // 400 draws: a mean of squares of 1 is known to 7 %; blocks shorter than the noise is slow would call it less.
-TEST(Repetition, standard_error_knows_how_slow_the_noise_is) {
+TEST(HeldOutAmplitude, standard_error_knows_how_slow_the_noise_is) {
   const auto force = slow_force();
   for (const double length : {1.0, 20.0, 100.0}) {
     constexpr int draws = 400;
@@ -60,7 +60,7 @@ TEST(Repetition, standard_error_knows_how_slow_the_noise_is) {
   }
 }
 
-TEST(Repetition, speaks_against_what_is_not_there_and_for_what_is) {
+TEST(HeldOutAmplitude, speaks_against_what_is_not_there_and_for_what_is) {
   const auto force = slow_force(), left = Eigen::VectorXd(noise(20.0, 1));
   EXPECT_GT(repetition_of(force, left, logs, blocks_of(50)).against(), 6.0);
   EXPECT_LT(repetition_of(force, force + left, logs, blocks_of(50)).against(), -6.0);
@@ -68,13 +68,13 @@ TEST(Repetition, speaks_against_what_is_not_there_and_for_what_is) {
   EXPECT_LT(std::abs(repetition_of(0.005 * force, left, logs, blocks_of(50)).against()), 1.0);
 }
 
-TEST(Repetition, may_be_all_within_two_standard_errors) {
-  EXPECT_TRUE((Repetition{0.4, 0.35}.may_be_all()));
-  EXPECT_FALSE((Repetition{0.4, 0.25}.may_be_all()));
-  EXPECT_TRUE((Repetition{1.5, 0.01}.may_be_all()));
+TEST(HeldOutAmplitude, may_be_all_within_two_standard_errors) {
+  EXPECT_TRUE((HeldOutAmplitude{0.4, 0.35}.may_be_all()));
+  EXPECT_FALSE((HeldOutAmplitude{0.4, 0.25}.may_be_all()));
+  EXPECT_TRUE((HeldOutAmplitude{1.5, 0.01}.may_be_all()));
 }
 
-TEST(Repetition, of_a_force_that_does_not_act_says_nothing) {
+TEST(HeldOutAmplitude, of_a_force_that_does_not_act_says_nothing) {
   const auto found = repetition_of(Eigen::VectorXd::Zero(rows), noise(1.0, 1), logs, blocks_of(50));
   EXPECT_EQ(found.deviation, 0.0);
   EXPECT_EQ(found.against(), 0.0);

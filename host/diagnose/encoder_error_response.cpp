@@ -1,4 +1,4 @@
-#include "host/diagnose/reading_response.hpp"
+#include "host/diagnose/encoder_error_response.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -22,22 +22,23 @@ Complex notch_of(const machine::NotchParameters& notch, double tick, Complex bac
 
 }  // namespace
 
-ReadingResponse::ReadingResponse(const machine::AxisModel& axis, const machine::Timing& timing, double log_period)
+EncoderErrorResponse::EncoderErrorResponse(const machine::AxisModel& axis, const machine::Timing& timing,
+                                           double log_period)
     : axis_(axis), tick_(timing.fast_period), log_period_(log_period) {}
 
-double ReadingResponse::shown_at(double frequency) const {
+double EncoderErrorResponse::shown_at(double frequency) const {
   const double rate = 1.0 / log_period_;
   return std::abs(frequency - rate * std::round(frequency / rate));
 }
 
-Complex ReadingResponse::operator()(double frequency) const {
+Complex EncoderErrorResponse::operator()(double frequency) const {
   const double w = 2.0 * std::numbers::pi * shown_at(frequency);
   const Complex acceleration = axis_.mass * w * w;
   return frequency < 0.5 / log_period_ ? acceleration : acceleration + drive(frequency);
 }
 
 // Set current to current: PI, dead time, and windings under a voltage held for a tick.
-Complex ReadingResponse::current_loop(Complex back) const {
+Complex EncoderErrorResponse::current_loop(Complex back) const {
   const auto& motor = axis_.motor;
   if (motor.model == machine::MotorModel::force || !axis_.current_controller) return 1.0;
   const double mutual = motor.model == machine::MotorModel::synchronous ? motor.mutual_inductance : 0.0;
@@ -50,7 +51,7 @@ Complex ReadingResponse::current_loop(Complex back) const {
   return open / (1.0 + open);
 }
 
-Complex ReadingResponse::drive(double frequency) const {
+Complex EncoderErrorResponse::drive(double frequency) const {
   if (!(tick_ > 0.0) || axis_.velocity_controller.gain == 0.0) return 0.0;
   const double w = 2.0 * std::numbers::pi * frequency;
   const Complex back = std::polar(1.0, -w * tick_);

@@ -13,18 +13,19 @@
 
 namespace stiction::host {
 
-struct Bench {
+struct ReplaySetup {
   machine::Machine machine;  // of one axis, or of both where they act on each other
   std::vector<Log> logs;     // with their channels only, the axis' first
 };
 
 // Logs without set-points are left out. `coupled`: with the other axis of two, where a log has its set-points.
-Bench bench_of(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs, bool coupled = false);
+ReplaySetup replay_setup_of(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
+                            bool coupled = false);
 
 // What the bench's axis makes of each log's set-points. Throws FaultTripped, LogError.
-std::vector<Log> replays(const Bench& bench);
+std::vector<Log> replays(const ReplaySetup& setup);
 // Its position alone (m), at the log's samples.
-std::vector<std::vector<double>> simulated_positions(const Bench& bench);
+std::vector<std::vector<double>> simulated_positions(const ReplaySetup& setup);
 
 // Logs as the machine's simulation without the encoder's noise goes through them.
 struct WithoutNoise {
@@ -41,7 +42,7 @@ WithoutNoise without_noise(const machine::Machine& machine, std::size_t axis, co
 // friction's contact follows it; elsewhere noise made the record hunt at other instants, and the difference is an error
 // of the regressor that takes up to two thirds off the weight of an elastic mode. A finer increment leaves the motion
 // that all records have in common.
-enum class Hunting { simulated, smoothed };
+enum class QuantizerLimitCycle { simulated, smoothed };
 
 // What an effect does to the residual force of a replayed log, through the control loop. Motions are known by the
 // source and the first time of the logs.
@@ -52,7 +53,7 @@ class EffectResponse {
   // `logs`: with set-points, of that axis; `settings`: those of the motions; `replayed`: what without_noise() has
   // replayed of them with that hunting, in their order, so that it need not be done again.
   EffectResponse(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
-                 const SignalSettings& settings, Hunting hunting = Hunting::simulated,
+                 const SignalSettings& settings, QuantizerLimitCycle limit_cycle = QuantizerLimitCycle::simulated,
                  const std::vector<Log>& replayed = {});
   // Under forces like `disturbance`: what runs under them have in common; two, and more where they agree on so little
   // that what is left to chance in their common part is a force like those.

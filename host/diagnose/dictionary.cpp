@@ -1,4 +1,4 @@
-#include "host/diagnose/option_pool.hpp"
+#include "host/diagnose/dictionary.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "host/diagnose/candidate_columns.hpp"
-#include "host/diagnose/scene_lines.hpp"
+#include "host/diagnose/context_lines.hpp"
 
 namespace stiction::host {
 namespace {
@@ -26,10 +26,10 @@ std::vector<RowBlock> blocks_for(const LogRows& rows, double correlation) {
 
 }  // namespace
 
-OptionPool::OptionPool(const LogRows& rows, const Eigen::VectorXd& target, Scene& scene,
+Dictionary::Dictionary(const LogRows& rows, const Eigen::VectorXd& target, SearchContext& context,
                        std::span<const std::size_t> refuted)
     : rows_(rows),
-      scene_(scene),
+      scene_(context),
       correlation_(correlation_length(target, rows.logs())),
       evidence_(target, blocks_for(rows, std::min(correlation_, 0.1 / rows.period(0)))),
       plain_(target, evidence_.row_blocks()),
@@ -39,20 +39,20 @@ OptionPool::OptionPool(const LogRows& rows, const Eigen::VectorXd& target, Scene
 }
 
 // The options of all candidates that are periodic, or that are not.
-void OptionPool::add_options(bool periodic) {
-  std::vector<Option*> added;
+void Dictionary::add_options(bool periodic) {
+  std::vector<Atom*> added;
   for (std::size_t c = 0; c < candidates().size(); ++c) {
     if (candidates()[c].periodic != periodic || std::find(refuted_.begin(), refuted_.end(), c) != refuted_.end())
       continue;
     for (const double value : candidates()[c].grid(scene_))
-      added.push_back(options_.emplace_back(std::make_unique<Option>(Option{c, value, {}})).get());
+      added.push_back(options_.emplace_back(std::make_unique<Atom>(Atom{c, value, {}})).get());
   }
   give_columns(added);
 }
 
-void OptionPool::give_columns(const std::vector<Option*>& options) {
+void Dictionary::give_columns(const std::vector<Atom*>& options) {
   std::vector<CandidateAt> trials;
-  for (const auto* option : options) trials.push_back({&candidates()[option->candidate], option->nonlinear});
+  for (const auto* option : options) trials.push_back({&candidates()[option->candidate], option->shape});
   const auto groups = group_columns(rows_, scene_, trials);
   for (std::size_t k = 0; k < groups.size(); ++k) {
     options[k]->columns.resize(groups[k].size());
@@ -62,23 +62,23 @@ void OptionPool::give_columns(const std::vector<Option*>& options) {
 }
 
 // Replays anew where the force that disturbs them turned out to be a good deal less: causes were found in it.
-void OptionPool::respond_under(const Eigen::VectorXd& noise) {
+void Dictionary::respond_under(const Eigen::VectorXd& noise) {
   if (!scene_.disturb || noise.squaredNorm() > less_disturbed * disturbance_) return;
   disturbance_ = noise.squaredNorm();
   scene_.disturb(noise);
-  std::vector<Option*> replayed;
+  std::vector<Atom*> replayed;
   for (const auto& option : options_)
-    if (const auto& c = candidates()[option->candidate]; c.replays && option->nonlinear < c.coarse)
+    if (const auto& c = candidates()[option->candidate]; c.replays && option->shape < c.coarse)
       replayed.push_back(option.get());
   give_columns(replayed);
 }
 
-Eigen::VectorXd OptionPool::residual(const Set& set) const {
+Eigen::VectorXd Dictionary::residual(const ActiveSet& set) const {
   const auto columns = columns_of(set);
-  return evidence_.residual(columns, evidence_.fit(columns).weights);
+  return evidence_.residual(columns, evidence_.fit(columns).coefficients);
 }
 
-void OptionPool::whiten(const Set& set) {
+void Dictionary::whiten(const ActiveSet& set) {
   const Eigen::VectorXd noise = residual(set);
   const Whitening whitening(noise, rows_.logs());
   correlation_ = correlation_length(whitening(noise), rows_.logs());
@@ -86,63 +86,63 @@ void OptionPool::whiten(const Set& set) {
   respond_under(noise);
 }
 
-void OptionPool::scan_lines(const Set& set) {
+void Dictionary::scan_lines(const ActiveSet& set) {
   find_lines(rows_, residual(set), evidence_.whitening(), scene_);
   add_options(true);
 }
 
-ColumnIndices OptionPool::columns_of(const Set& set) {
+ColumnIndices Dictionary::columns_of(const ActiveSet& set) {
   ColumnIndices all;
   for (const auto* option : set) all.insert(all.end(), option->columns.begin(), option->columns.end());
   return all;
 }
 
 // Whether the candidate is in the set, or another shape that looks alike: two of them would describe one thing twice.
-bool OptionPool::has(const Set& set, std::size_t candidate) {
+bool Dictionary::has(const ActiveSet& set, std::size_t candidate) {
   return std::any_of(set.begin(), set.end(), [&, alike = candidates()[candidate].looks_like](const auto* o) {
     return o->candidate == candidate || (alike != nullptr && candidates()[o->candidate].looks_like == alike);
   });
 }
 
-double OptionPool::trials(std::size_t candidate) const {
+double Dictionary::trials(std::size_t candidate) const {
   if (const auto scan = candidates()[candidate].scan)
     return static_cast<double>(std::max<std::size_t>(scan(scene_).trials, 1));
-  return std::max(candidates()[candidate].trials, candidates()[candidate].nonlinear ? 3.0 : 1.0);
+  return std::max(candidates()[candidate].trials, candidates()[candidate].shape ? 3.0 : 1.0);
 }
 
-double OptionPool::effective_rows() const {
+double Dictionary::effective_rows() const {
   return std::max(static_cast<double>(evidence_.rows()) / correlation_, 20.0);
 }
 
 // A nonlinear parameter on a grid must show: a drift that settles at once is a level. One that is looked for in a scan
 // costs its trials. What no name fits must show strongly beside what has one.
-double OptionPool::penalty(std::size_t candidate, std::size_t columns) const {
-  const bool fitted = candidates()[candidate].nonlinear && candidates()[candidate].scan == nullptr;
+double Dictionary::penalty(std::size_t candidate, std::size_t columns) const {
+  const bool fitted = candidates()[candidate].shape && candidates()[candidate].scan == nullptr;
   return static_cast<double>(columns) * std::log(effective_rows()) +
          (fitted ? price_of_nonlinear : 2.0 * std::log(trials(candidate))) +
          (candidates()[candidate].outside() ? strong_evidence : 0.0);
 }
 
-double OptionPool::score(const Set& set) const {
+double Dictionary::score(const ActiveSet& set) const {
   const auto columns = columns_of(set);
   double price = 0.0;
   for (const auto* option : set) price += penalty(option->candidate, option->columns.size());
   return effective_rows() * std::log(std::max(evidence_.fit(columns).left, 1e-300)) + price;
 }
 
-bool OptionPool::all_possible(const Set& set) const {
-  const auto weights = evidence_.fit(columns_of(set)).weights;
+bool Dictionary::all_possible(const ActiveSet& set) const {
+  const auto coefficients = evidence_.fit(columns_of(set)).coefficients;
   Eigen::Index at = 0;
   for (const auto* option : set) {
     const auto count = static_cast<Eigen::Index>(option->columns.size());
-    if (!candidates()[option->candidate].possible(scene_, option->nonlinear, weights.segment(at, count))) return false;
+    if (!candidates()[option->candidate].possible(scene_, option->shape, coefficients.segment(at, count))) return false;
     at += count;
   }
   return true;
 }
 
-const Option* OptionPool::best_of(std::size_t candidate, const Set& beside) const {
-  const Option* best = nullptr;
+const Atom* Dictionary::best_of(std::size_t candidate, const ActiveSet& beside) const {
+  const Atom* best = nullptr;
   double least = std::numeric_limits<double>::infinity();
   for (const auto& option : options_) {
     if (option->candidate != candidate) continue;
@@ -156,7 +156,7 @@ const Option* OptionPool::best_of(std::size_t candidate, const Set& beside) cons
   return best;
 }
 
-void OptionPool::profile(Set& set) const {
+void Dictionary::profile(ActiveSet& set) const {
   for (int round = 0; round < 2; ++round)
     for (std::size_t k = 0; k < set.size(); ++k) {
       auto others = set;

@@ -1,4 +1,4 @@
-#include "host/diagnose/common_part.hpp"
+#include "host/diagnose/coherent_mean.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -13,7 +13,7 @@ constexpr Eigen::Index fewest_lines = 24;
 
 }  // namespace
 
-void CommonPart::add(std::span<const double> run) {
+void CoherentMean::add(std::span<const double> run) {
   if (runs_++ == 0) {
     samples_ = run.size();
     first_.assign(run.begin(), run.end());
@@ -23,7 +23,7 @@ void CommonPart::add(std::span<const double> run) {
   transform(run);
 }
 
-void CommonPart::transform(std::span<const double> run) {
+void CoherentMean::transform(std::span<const double> run) {
   Eigen::VectorXd padded =
       Eigen::VectorXd::Zero(static_cast<Eigen::Index>(std::bit_ceil(std::max<std::size_t>(samples_, 2))));
   padded.head(static_cast<Eigen::Index>(samples_)) =
@@ -39,10 +39,10 @@ void CommonPart::transform(std::span<const double> run) {
   squares_ += spectrum.cwiseAbs2();
 }
 
-double CommonPart::Band::share() const { return mean > 0.0 ? std::max(1.0 - own / mean, 0.0) : 0.0; }
+double CoherentMean::Band::share() const { return mean > 0.0 ? std::max(1.0 - own / mean, 0.0) : 0.0; }
 
 // Of the lines from 0 to half the rate.
-std::vector<CommonPart::Band> CommonPart::bands() const {
+std::vector<CoherentMean::Band> CoherentMean::bands() const {
   std::vector<Band> all;
   const Eigen::Index lines = sum_.size() / 2 + 1;
   const auto n = static_cast<double>(runs_);
@@ -58,14 +58,14 @@ std::vector<CommonPart::Band> CommonPart::bands() const {
   return all;
 }
 
-double CommonPart::chance() const {
+double CoherentMean::chance() const {
   if (runs_ < 2) return 0.0;
   double sum = 0.0;
   for (const auto& band : bands()) sum += 2.0 * band.own;
   return sum / static_cast<double>(sum_.size()) / static_cast<double>(samples_);
 }
 
-std::vector<double> CommonPart::estimate() const {
+std::vector<double> CoherentMean::estimate() const {
   if (runs_ == 1) return first_;
   Eigen::VectorXcd spectrum = sum_ / static_cast<double>(runs_);
   const Eigen::Index lines = spectrum.size();

@@ -12,6 +12,7 @@ namespace stiction::host {
 
 // Sets the scene's lines from `residual` (N, of the rows), looked at through `whitening`; the motor's pole pitches are
 // always among them.
-void find_lines(const LogRows& rows, const Eigen::VectorXd& residual, const Whitening& whitening, Scene& scene);
+void find_lines(const LogRows& rows, const Eigen::VectorXd& residual, const Whitening& whitening,
+                SearchContext& context);
 
 }  // namespace stiction::host

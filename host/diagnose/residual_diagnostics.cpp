@@ -1,4 +1,4 @@
-#include "host/diagnose/leftover.hpp"
+#include "host/diagnose/residual_diagnostics.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "host/diagnose/repetition.hpp"
+#include "host/diagnose/held_out_amplitude.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,8 +21,8 @@ double turned_variance(const Eigen::VectorXd& force, const Eigen::VectorXd& rest
 
 }  // namespace
 
-Repetition repetition_of(const Eigen::VectorXd& force, const Eigen::VectorXd& residual,
-                         std::span<const std::size_t> logs, std::span<const RowBlock> blocks) {
+HeldOutAmplitude repetition_of(const Eigen::VectorXd& force, const Eigen::VectorXd& residual,
+                               std::span<const std::size_t> logs, std::span<const RowBlock> blocks) {
   const double square = force.squaredNorm();
   if (!(square > 0.0)) return {};
   const double size = force.dot(residual) / square;
