@@ -91,8 +91,6 @@ Eigen::VectorXd own_residual(const std::vector<Log>& replayed, const std::vector
   return rows.force - expected_force(rows, axis);
 }
 
-double rms(const Eigen::VectorXd& v) { return std::sqrt(v.squaredNorm() / static_cast<double>(v.size())); }
-
 SearchContext context_of(const machine::AxisModel& axis, const LogRows& rows, const SignalSettings& settings) {
   SearchContext context;
   context.axis = axis;
@@ -345,8 +343,13 @@ Verdict diagnose(const DiagnoseInput& input) {
   }
   begin(1);
   // A record that is the simulation itself but for the numerics of the inverse dynamics has no cause in it.
-  auto found = rms(target) < numerics * rms(expected) ? SearchResult{.residual = target, .blocks = 1}
-                                                      : search_causes(regressors, target, context);
+  SearchResult found;
+  if (target.norm() < numerics * expected.norm()) {
+    found.residual = target;
+    found.blocks = 1;
+  } else {
+    found = search_causes(regressors, target, context);
+  }
   begin(2);
   const auto keep = [&](SearchResult& searched) {
     return keep_what_holds(held_regressors, held_target, context, searched, verdict, input.seed);
