@@ -16,6 +16,7 @@
 #include "host/report/experiment_report.hpp"
 #include "host/response/response_result.hpp"
 #include "host/simulate/frequency_response.hpp"
+#include "sim/machine/machine_file.hpp"
 #include "sim/machine/units.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
@@ -162,6 +163,8 @@ void run(const Options& options, const Invocation& invocation) {
   auto machine = options.machine.load(options.machine.machine, "frequency-response");
   choose_axes(machine, options.axis);
   const auto loops = loops_of(options.loop);
+  for (const auto& loop : loops)
+    require_needs(machine, needs_of("frequency-response --loop " + loop), sim::find_machine(options.machine.machine));
   sim::ExperimentResult result;
   try {
     const auto m = options.from.empty() ? simulated(options, machine) : measured(options, machine);

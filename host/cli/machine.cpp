@@ -19,7 +19,7 @@ struct MachineCommand {
 
 // Reads and checks a file, down to the drive's number formats, and prints what was understood.
 void check_machine(const std::string& name) {
-  const auto machine = MachineOptions{name, {}}.load(name, "", MachinePart::any);
+  const auto machine = MachineOptions{name, {}}.load(name, "", needs_of("machine"));
   fmt::print("{}: {}\n", machine.id, machine.name);
   for (const auto& section : machine_sheet(machine)) {
     fmt::print("\n{}\n", section.title);

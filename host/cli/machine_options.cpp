@@ -14,6 +14,18 @@
 #include "stiction/number/fixed_signals.hpp"
 
 namespace stiction::host {
+namespace {
+
+void keep_axis(sim::Machine& machine, const std::string& name) {
+  std::vector<std::string> names;
+  for (const auto& axis : machine.axes) names.push_back(axis.name);
+  if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end())
+    throw UsageError(
+        fmt::format("--axis: found '{}'; expected an axis of {}: {}", name, machine.id, fmt::join(names, ", ")));
+  std::erase_if(machine.axes, [&](const auto& axis) { return axis.name != (name.empty() ? names.front() : name); });
+}
+
+}  // namespace
 
 void MachineOptions::add_to(CLI::App& command, const std::string& machine_help) {
   command.add_option("--machine", machine, machine_help)->required()->type_name("MACHINE");
@@ -33,22 +45,30 @@ void MachineOptions::add_compensation_to(CLI::App& command) {
       ->type_name("KIND");
 }
 
-sim::Machine MachineOptions::load(const std::string& name, const std::string& experiment, MachinePart needed) const {
+void MachineOptions::add_axis_to(CLI::App& command) {
+  command.add_option("--axis", axis, "the axis that the experiment runs on [the machine's first]")->type_name("AXIS");
+}
+
+void require_needs(const sim::Machine& machine, const MachineNeeds& needs, const std::filesystem::path& file) {
+  if (const auto missing = what_is_missing(machine, needs))
+    throw UsageError(fmt::format("{}: {}", file.string(), *missing));
+}
+
+sim::Machine MachineOptions::load(const std::string& name, const std::string& experiment) const {
+  return load(name, experiment, needs_of(experiment));
+}
+
+sim::Machine MachineOptions::load(const std::string& name, const std::string& experiment,
+                                  const MachineNeeds& needs) const {
   const auto file = sim::find_machine(name);
   auto assignments = set;
   if (!compensation.empty()) assignments.push_back("axis.*.friction_compensation.use=" + compensation);
   auto result = sim::read_machine(file, {experiment, assignments});
-  if (needed == MachinePart::axes && result.axes.empty())
-    throw UsageError(
-        fmt::format("{}: found a feed drive and no axis; expected a machine with a table [axis.NAME]", file.string()));
-  if (needed == MachinePart::feed_drive && !result.feed_drive)
-    throw UsageError(
-        fmt::format("{}: found axes and no feed drive; expected a machine with a table [feed_drive], such "
-                    "as stick-slip-feed",
-                    file.string()));
+  if (needs.one_axis && !result.axes.empty()) keep_axis(result, axis);
+  require_needs(result, needs, file);
   // What the drive's number formats cannot hold is bad input too, found before anything runs.
   try {
-    for (const auto& axis : result.axes) sim::configure_axis<FixedSignals>(result.timing, axis);
+    for (const auto& each : result.axes) sim::configure_axis<FixedSignals>(result.timing, each);
     sim::configure_compensations<FixedSignals>(result);
   } catch (const sim::ConfigurationError& error) {
     throw UsageError(fmt::format("{}: {}", file.string(), error.what()));
@@ -63,7 +83,6 @@ std::vector<std::string> split_list(const std::string& text) {
 }
 
 std::vector<std::string> friction_models(const std::string& text, const sim::Machine& machine) {
-  if (text.empty()) return {machine.axes.front().friction.use};
   std::vector<std::string> everywhere;
   sim::for_each_friction_model([&]<class Model>() {
     const std::string name(Model::name);
@@ -72,6 +91,14 @@ std::vector<std::string> friction_models(const std::string& text, const sim::Mac
       everywhere.push_back(name);
   });
   if (text == "all") return everywhere;
+  if (text.empty() && !machine.axes.empty()) {
+    const auto& use = machine.axes.front().friction.use;
+    if (std::find(everywhere.begin(), everywhere.end(), use) != everywhere.end()) return {use};
+    throw UsageError(fmt::format(
+        "{}: found the friction model {} on axis {} and not on every axis; expected --friction "
+        "with a model that every axis has{}{}",
+        machine.id, use, machine.axes.front().name, everywhere.empty() ? "" : ": ", fmt::join(everywhere, ", ")));
+  }
   const auto names = split_list(text);
   for (const auto& name : names)
     if (std::find(everywhere.begin(), everywhere.end(), name) == everywhere.end())

@@ -2,29 +2,35 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "host/simulate/machine_needs.hpp"
 #include "sim/experiment/circle_result.hpp"
 #include "sim/model/machine.hpp"
 
 namespace stiction::host {
 
-// What a command works on: without it, a machine is bad input.
-enum class MachinePart { axes, feed_drive, any };
-
 struct MachineOptions {
   std::string machine;           // names or paths, separated by commas where a command takes several
   std::vector<std::string> set;  // KEY=VALUE
   std::string compensation{};    // kind of friction compensation for every axis; empty: the machine file's
+  std::string axis{};            // of a command that runs on one axis alone; empty: the first
 
   void add_to(CLI::App& command, const std::string& machine_help);
   // The option --compensation, of commands that drive the axes.
   void add_compensation_to(CLI::App& command);
-  // The machine, checked down to the drive's number formats. Throws sim::MachineFileError, UsageError.
-  sim::Machine load(const std::string& name, const std::string& experiment,
-                    MachinePart needed = MachinePart::axes) const;
+  // The option --axis, of commands that run on one axis alone.
+  void add_axis_to(CLI::App& command);
+  // The machine as it is in `experiment`, checked down to the drive's number formats and to what that command needs
+  // (machine_needs.hpp); with one axis alone where the command runs on one. Throws sim::MachineFileError, UsageError.
+  sim::Machine load(const std::string& name, const std::string& experiment) const;
+  sim::Machine load(const std::string& name, const std::string& experiment, const MachineNeeds& needs) const;
 };
+
+// Throws UsageError "FILE: found ...; expected ..." for a machine that lacks what the command needs.
+void require_needs(const sim::Machine& machine, const MachineNeeds& needs, const std::filesystem::path& file);
 
 // "a,b" or "a, b": the parts without blanks around them.
 std::vector<std::string> split_list(const std::string& text);

@@ -25,7 +25,7 @@ double chatter_amplitude(const sim::Parabolic::Parameters& friction, double mass
 }
 
 ChatterRun impact_with_parabolic_friction(sim::Machine machine, double force, double time, std::optional<double> step) {
-  auto& friction = machine.axes[0].friction;
+  auto& friction = machine.axes.at(0).friction;
   const auto parameters = std::get<sim::Parabolic::Parameters>(friction.models.at(std::string(sim::Parabolic::name)));
   friction.use = sim::Parabolic::name;
   if (step) {  // then it comes from outside, as a force
