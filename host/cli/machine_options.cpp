@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "host/cli/errors.hpp"
+#include "host/simulate/friction_choice.hpp"
 #include "sim/control/axis_configuration.hpp"
 #include "sim/control/compensation_configuration.hpp"
 #include "sim/machine/compensation_parameters.hpp"
@@ -91,14 +92,7 @@ std::vector<std::string> friction_models(const std::string& text, const sim::Mac
       everywhere.push_back(name);
   });
   if (text == "all") return everywhere;
-  if (text.empty() && !machine.axes.empty()) {
-    const auto& use = machine.axes.front().friction.use;
-    if (std::find(everywhere.begin(), everywhere.end(), use) != everywhere.end()) return {use};
-    throw UsageError(fmt::format(
-        "{}: found the friction model {} on axis {} and not on every axis; expected --friction "
-        "with a model that every axis has{}{}",
-        machine.id, use, machine.axes.front().name, everywhere.empty() ? "" : ": ", fmt::join(everywhere, ", ")));
-  }
+  if (text.empty()) return {friction_in_use(machine)};
   const auto names = split_list(text);
   for (const auto& name : names)
     if (std::find(everywhere.begin(), everywhere.end(), name) == everywhere.end())

@@ -35,7 +35,7 @@ void require_needs(const sim::Machine& machine, const MachineNeeds& needs, const
 // "a,b" or "a, b": the parts without blanks around them.
 std::vector<std::string> split_list(const std::string& text);
 
-// Names of friction models: empty: the one the machine file uses; "all": all that every axis has parameters for; or a
+// Names of friction models: empty: what the machine file uses, each axis its own (friction_choice.hpp); "all": all that every axis has parameters for; or a
 // list of them. Throws UsageError.
 std::vector<std::string> friction_models(const std::string& text, const sim::Machine& machine);
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "host/simulate/friction_choice.hpp"
 #include "sim/control/double_signals.hpp"
 #include "sim/experiment/circle_measurement.hpp"
 #include "stiction/number/fixed_signals.hpp"
@@ -68,7 +69,8 @@ sim::CircleRun run_circle(const sim::Machine& machine, const sim::CircleSettings
     measurement.add(point, samples);
   }
   auto result = measurement.finish();
-  result.friction = machine.axes[0].friction.use;
+  result.friction = friction_in_use(machine);
+  for (std::size_t k = 0; k < 2; ++k) result.axes[k].friction = machine.axes[k].friction.use;
   return result;
 }
 

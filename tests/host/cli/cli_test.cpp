@@ -356,6 +356,22 @@ TEST_F(Cli, DiagnosesALogOfOneLap) {
   }
 }
 
+TEST_F(Cli, EachAxisKeepsItsOwnFrictionModelUnlessOneIsNamed) {
+  const auto run = [&](const std::string& more) {
+    const auto result =
+        stiction("simulate circle --machine mcfv5050ln --json --set axis.Y.friction.use=classical " + more);
+    EXPECT_EQ(result.code, 0) << result.error;
+    return nlohmann::json::parse(result.out)["rows"];
+  };
+  const auto own = run(""), lugre = run("--friction lugre"), classical = run("--friction classical");
+  EXPECT_EQ(own[0]["friction"], "X lugre, Y classical");
+  EXPECT_EQ(own[0]["peak_error_um"], lugre[0]["peak_error_um"]);
+  EXPECT_EQ(own[1]["peak_error_um"], classical[1]["peak_error_um"]);
+  EXPECT_NE(own[1]["peak_error_um"], lugre[1]["peak_error_um"]);
+  // The published simulation beside an axis is that of its own model.
+  EXPECT_EQ(own[1]["published_simulation"], classical[1]["published_simulation"]);
+}
+
 TEST_F(Cli, ShowsTheShippedMachinesAndTheirReference) {
   for (const char* name : {"mcfv5050ln\n", "stick-slip-feed\n"})
     EXPECT_NE(stiction("machine").out.find(name), std::string::npos) << name;
