@@ -11,6 +11,7 @@
 #include "host/log/inspection.hpp"
 #include "host/log/read_log.hpp"
 #include "host/simulate/replay.hpp"
+#include "sim/model/motor_force.hpp"
 
 namespace stiction::host {
 namespace {
@@ -31,7 +32,7 @@ std::vector<KnownAxis> known_axes(const InspectOptions& options, const Log& log)
     const auto& axis = machine.axes[index];
     const bool force_motor = axis.motor.model == sim::MotorModel::force;
     KnownAxis k{axis.mass,
-                axis.motor.force_constant,
+                sim::acting_force_constant(axis.motor),
                 force_motor ? axis.inverter.voltage_limit : axis.inverter.current_limit * axis.motor.count,
                 {}};
     if (axis.motor.pole_pair_pitch > 0.0) k.pole_pair_pitch = axis.motor.pole_pair_pitch;

@@ -7,6 +7,7 @@
 #include "host/cli/machine_options.hpp"
 #include "host/report/machine_sheet.hpp"
 #include "sim/machine/machine_file.hpp"
+#include "sim/machine/machine_notes.hpp"
 #include "sim/machine/reference_page.hpp"
 
 namespace stiction::host {
@@ -29,6 +30,9 @@ void check_machine(const std::string& name) {
       fmt::print("\n");
     }
   }
+  const auto notes = sim::machine_notes(machine);
+  if (!notes.empty()) fmt::print("\nNotes\n");
+  for (const auto& note : notes) fmt::print("  {}\n", note);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "host/simulate/control_run.hpp"
 #include "host/simulate/replay.hpp"
 #include "sim/control/axis_configuration.hpp"
+#include "sim/model/motor_force.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
 namespace stiction::host {
@@ -32,12 +33,6 @@ Covered covered_by(const LogRows& rows) {
     covered = {std::min(covered.low, *low), std::max(covered.high, *high)};
   }
   return covered;
-}
-
-double highest_motor_force(const sim::Axis& axis) {
-  return axis.motor.force_constant * (axis.motor.model == sim::MotorModel::force
-                                          ? axis.inverter.voltage_limit
-                                          : axis.inverter.current_limit * axis.motor.count);
 }
 
 Log set_points(const sim::SeparatingTrajectory& kind, const sim::MotionRange& range, const std::string& axis,
@@ -82,7 +77,7 @@ sim::MotionRange motion_range(const sim::Axis& axis, const LogRows& rows) {
   }
   const double speed = speed_share * axis.max_velocity;
   const double friction = coulomb_of(axis).value_or(0.0) + viscous_of(axis).value_or(0.0) * speed;
-  const double by_force = (force_share * highest_motor_force(axis) - friction) / axis.mass;
+  const double by_force = (force_share * sim::largest_force(axis) - friction) / axis.mass;
   const double highest = std::min(acceleration_share * axis.max_acceleration, by_force);
   const double acceleration = std::min(beyond_the_records * rows.acceleration.cwiseAbs().maxCoeff(), highest);
   return {low, high, speed, acceleration, acceleration / rise, highest};

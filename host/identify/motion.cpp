@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/model/motor_force.hpp"
 namespace stiction::host {
 namespace {
 
@@ -34,7 +35,7 @@ SignalSettings published_recipe() {
 
 std::vector<double> force_of(const Log& log, const AxisLog& channels, const sim::Axis& axis, Amperes amperes) {
   const bool source = axis.motor.model == sim::MotorModel::force;
-  const double per_unit = axis.motor.force_constant;
+  const double per_unit = sim::acting_force_constant(axis.motor);
   std::vector<double> force;
   if (!channels.force.empty()) {
     force = channels.force;

@@ -11,6 +11,7 @@
 #include "host/log/set_points.hpp"
 #include "host/simulate/control_run.hpp"
 #include "sim/control/double_signals.hpp"
+#include "sim/model/motor_force.hpp"
 
 namespace stiction::host {
 namespace {
@@ -135,7 +136,7 @@ class ClosedLoop {
     const std::array<double, 1> start{measured_[log].front()};
     ControlRun<sim::DoubleSignals> control(machine_, start);
     control.plant(0).set_external_force(-constant_);
-    const double per_ampere = machine_.axes.front().motor.force_constant;
+    const double per_ampere = sim::acting_force_constant(machine_.axes.front().motor);
     Simulated result;
     const double half_tick = 0.5 * machine_.timing.fast_period;
     while (result.force.size() < motion.t.size()) {

@@ -11,6 +11,7 @@
 #include "host/log/csv_rows.hpp"
 #include "host/log/message.hpp"
 #include "host/log/unit_scale.hpp"
+#include "sim/model/motor_force.hpp"
 
 namespace stiction::host {
 namespace {
@@ -138,7 +139,8 @@ SlidingData sliding_data(const SteadyTable& table, const sim::Axis& axis, std::o
           fmt::format("{}: found currents without a word on how they were read; expected --amperes peak or "
                       "--amperes rms, or a line \"# amperes: rms\" before the header",
                       table.source));
-    const double scale = axis.motor.force_constant * (*amperes == Amperes::rms ? std::numbers::sqrt2 : 1.0);
+    const double scale =
+        sim::acting_force_constant(axis.motor) * (*amperes == Amperes::rms ? std::numbers::sqrt2 : 1.0);
     for (const double i : table.current) force.push_back(scale * i);
   }
   std::set<double> speeds;

@@ -9,6 +9,7 @@
 #include "sim/control/axis_configuration.hpp"
 #include "sim/control/conversion.hpp"
 #include "sim/control/double_signals.hpp"
+#include "sim/model/motor_force.hpp"
 
 namespace stiction::host {
 namespace {
@@ -115,7 +116,7 @@ AxisResponse axis_response(const Log& log, const AxisLog& measured, const sim::T
   AxisResponse result;
   result.axis = axis.name;
   result.samples_at_limit = samples_at_limit(measured, axis);
-  result.spectra = measure_spectra(log, measured, axis.motor.force_constant);
+  result.spectra = measure_spectra(log, measured, sim::acting_force_constant(axis.motor));
   const auto known = [&](Answer answer) { return result.spectra.known[index(answer)]; };
   const bool has_current_loop = axis.current_controller.has_value();
   const bool has_current = known(Answer::current);

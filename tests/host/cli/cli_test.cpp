@@ -356,6 +356,37 @@ TEST_F(Cli, DiagnosesALogOfOneLap) {
   }
 }
 
+// The order of commands in README: the shipped file agrees with the log of its own simulation.
+TEST_F(Cli, NamesNothingInTheLogOfTheFilesOwnCircle) {
+  ASSERT_EQ(stiction("simulate circle --machine mcfv5050ln --feed '16 m/min' --log run.csv").code, 0);
+  for (const char* axis : {"X", "Y"}) {
+    const auto result = stiction(fmt::format("diagnose run.csv --machine mcfv5050ln --axis {} --json", axis));
+    ASSERT_EQ(result.code, 0) << result.error;
+    const auto verdict = nlohmann::json::parse(result.out);
+    EXPECT_TRUE(verdict["findings"].empty()) << axis << ": " << verdict["findings"].dump(2);
+    EXPECT_LT(verdict["baseline"]["force_rms_N"], 0.1) << axis;  // of forces of 150 and 400 N rms
+  }
+  // The mass too is that of the file: 224.5 kg, were the current read with the drive's 94 N/A.
+  const auto result = stiction("identify run.csv --machine mcfv5050ln --axis X --json");
+  ASSERT_EQ(result.code, 0) << result.error;
+  const auto identified = nlohmann::json::parse(result.out);
+  EXPECT_NEAR(identified["parameters"]["mass_kg"]["value"], 225.0, 0.1);
+}
+
+// What is too small to be told in an exact log is not what a machine has.
+TEST_F(Cli, NamesWhatTheFileLacksInALogWithoutNoise) {
+  ASSERT_EQ(stiction("simulate circle --machine mcfv5050ln --feed '16 m/min' --log run.csv "
+                     "--set axis.X.friction.lugre.coulomb='95 N'")
+                .code,
+            0);
+  const auto result = stiction("diagnose run.csv --machine mcfv5050ln --axis X --json");
+  ASSERT_EQ(result.code, 0) << result.error;
+  const auto verdict = nlohmann::json::parse(result.out);
+  ASSERT_FALSE(verdict["findings"].empty());
+  EXPECT_EQ(verdict["findings"][0]["effect"], "coulomb_mismatch") << verdict["findings"].dump(2);
+  EXPECT_NEAR(verdict["findings"][0]["parameters"]["coulomb_N"], 95.0, 0.5);
+}
+
 TEST_F(Cli, EachAxisKeepsItsOwnFrictionModelUnlessOneIsNamed) {
   const auto run = [&](const std::string& more) {
     const auto result =

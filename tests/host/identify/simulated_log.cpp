@@ -7,6 +7,7 @@
 
 #include "host/simulate/control_run.hpp"
 #include "sim/control/double_signals.hpp"
+#include "sim/model/motor_force.hpp"
 
 namespace stiction::test {
 std::vector<Trajectory> commissioning() {
@@ -31,7 +32,7 @@ host::Log simulated(const sim::Machine& machine, const Trajectory& trajectory, d
       log.t.push_back(run.time());
       axis.x_set.push_back(set.position);
       axis.x.push_back(run.plant(0).encoder_position());
-      axis.i.push_back(run.plant(0).motor_force() / machine.axes.front().motor.force_constant);
+      axis.i.push_back(run.plant(0).motor_force() / sim::acting_force_constant(machine.axes.front().motor));
     }
     run.tick(std::array{set});
   }
