@@ -6,6 +6,7 @@
 #include "host/cli/output.hpp"
 #include "host/cli/progress.hpp"
 #include "host/report/circle_report.hpp"
+#include "host/simulate/friction_choice.hpp"
 
 namespace stiction::host {
 namespace {
@@ -13,8 +14,7 @@ namespace {
 // Runs the failed case again, which repeats it to the bit, and keeps its trace.
 [[noreturn]] void keep_trace_and_fail(const CaseFailed& failure, const CirclePlaces& places) {
   const auto& c = failure.circle_case;
-  const std::string which =
-      fmt::format("{} at {:g} m/min: ", c.machine.axes.front().friction.use, c.settings.feed * 60.0);
+  const std::string which = fmt::format("{} at {:g} m/min: ", friction_in_use(c.machine), c.settings.feed * 60.0);
   const auto record = [&](const std::filesystem::path& file) {
     try {
       run_traced(c, file);

@@ -1,6 +1,7 @@
 // `stiction simulate commissioning`: records of a simulated machine to identify and diagnose from, on request with an
 // effect hidden in it that its file does not have.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -20,7 +21,7 @@ namespace {
 
 struct CommissioningOptions {
   MachineOptions machine;
-  std::string axis = "X";
+  std::string axis;
   std::uint64_t seed = 1;
   std::optional<std::uint64_t> hide;
   std::string out;
@@ -28,9 +29,13 @@ struct CommissioningOptions {
 };
 
 std::size_t axis_of(const CommissioningOptions& options, const machine::Machine& machine) {
-  for (std::size_t k = 0; k < machine.axes.size(); ++k)
-    if (machine.axes[k].name == options.axis) return k;
-  throw UsageError(fmt::format("--axis: found '{}'; expected an axis of {}", options.axis, machine.id));
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < machine.axes.size(); ++k) {
+    names.push_back(machine.axes[k].name);
+    if (options.axis.empty() || names.back() == options.axis) return k;
+  }
+  throw UsageError(
+      fmt::format("--axis: found '{}'; expected an axis of {}: {}", options.axis, machine.id, fmt::join(names, ", ")));
 }
 
 void run(const CommissioningOptions& options, const Invocation& invocation) {
@@ -41,7 +46,8 @@ void run(const CommissioningOptions& options, const Invocation& invocation) {
   if (options.hide) {
     const auto effect = draw_hidden_effect(file.axes[axis], *options.hide);
     machine.axes[axis].effects.push_back(effect);
-    folder.write("hidden.toml", sim::effect_table(options.axis, effect));
+    folder.write("hidden.toml", sim::effect_table(file.axes[axis].name, effect,
+                                                  file.axes[axis].motor.model == machine::MotorModel::force));
   }
   std::vector<CommissioningRecord> records;
   {
@@ -61,7 +67,7 @@ void run(const CommissioningOptions& options, const Invocation& invocation) {
                sim::extended_machine(machine::find_machine(options.machine.machine), options.machine.set, {}, comment));
   const nlohmann::ordered_json json{{"schema", "stiction.commissioning/1"},
                                     {"machine", "machine.toml"},
-                                    {"axis", options.axis},
+                                    {"axis", file.axes[axis].name},
                                     {"logs", training},
                                     {"holdout", held_out},
                                     {"hidden", options.hide ? nlohmann::ordered_json("hidden.toml") : nullptr}};
@@ -88,7 +94,7 @@ void add_commissioning(CLI::App& simulate, const Invocation& invocation) {
       "make records of one axis for identification and diagnosis: constant speeds, circle, small reversals");
   auto o = std::make_shared<CommissioningOptions>();
   o->machine.add_to(*command, "shipped machine by name, or a machine file");
-  command->add_option("--axis", o->axis, "the axis that moves")->type_name("NAME")->capture_default_str();
+  command->add_option("--axis", o->axis, "the axis that moves [the machine's first]")->type_name("NAME");
   command
       ->add_option("--hide", o->hide, "add an effect that is drawn with this seed to the machine, but not to its file")
       ->type_name("SEED");

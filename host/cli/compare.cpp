@@ -57,12 +57,9 @@ Agreement agreement_of(const std::vector<CircleTableRow>& table, const machine::
 // What the references speak of: their feeds, and the models of the published simulations.
 CirclePlan plan_of(const CompareOptions& options, const std::string& machine_name) {
   CirclePlan plan;
-  plan.machine = options.machine.load(machine_name, "circle");
+  plan.machine = options.machine.load(machine_name, "circle", needs_of("compare --reference circle"));
   plan.signals = options.signals == "double" ? SignalKind::double_precision : SignalKind::fixed_point;
   plan.directions = directions("ccw");
-  if (plan.machine.circle_references.empty())
-    throw UsageError(fmt::format("{}: found no [[reference.circle]] row; expected at least one row for the comparison",
-                                 plan.machine.id));
   std::set<double> feed_set;
   std::set<std::string> published;
   for (const auto& row : plan.machine.circle_references) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "firmware/machine/file/machine_file.hpp"
 #include "host/cli/diagnose_output.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/progress.hpp"
@@ -13,7 +14,7 @@ namespace stiction::host {
 void diagnose_from_reference(const DiagnoseReferenceOptions& options, const Invocation& invocation) try {
   if (options.reference != "circle")
     throw UsageError(fmt::format("--reference: found '{}'; expected circle", options.reference));
-  const auto machine = options.machine.load(options.machine.machine, "circle");
+  const auto machine = options.machine.load(options.machine.machine, "circle", needs_of("diagnose --reference circle"));
   Verdict verdict;
   {
     Progress progress("diagnosis", 10);  // the extension, four causes an axis, five feeds left out
@@ -21,7 +22,7 @@ void diagnose_from_reference(const DiagnoseReferenceOptions& options, const Invo
   }
   put_out(verdict, machine, options.machine, options.out, options.json, invocation);
 } catch (const MissingRows& error) {
-  throw UsageError(fmt::format("{}: {}", options.machine.machine, error.what()));
+  throw UsageError(fmt::format("{}: {}", machine::find_machine(options.machine.machine).string(), error.what()));
 }
 
 }  // namespace stiction::host

@@ -32,23 +32,22 @@ struct ExperimentOptions {
 std::vector<std::string> models_for(const Experiment& experiment, const std::string& text,
                                     const machine::Machine& machine) {
   auto names = friction_models(text.empty() ? "all" : text, machine);
-  if (experiment.models.empty()) {
-    // The baseline D cannot stick and is not among the source's models; it runs when it is asked for.
-    if (text.empty()) std::erase(names, std::string(sim::CoulombViscous<>::name));
+  const auto models = needs_of(experiment.name).friction;
+  if (models.empty()) {
+    // The baseline D cannot stick and is not among the source's models; it runs where it is asked for, or alone.
+    if (text.empty() && names.size() > 1) std::erase(names, std::string(sim::CoulombViscous<>::name));
+    if (names.empty())
+      throw UsageError(fmt::format("{}: found no friction model that all axes have; expected one, such as {}",
+                                   machine.id, machine.axes.front().friction.use));
     return names;
   }
-  const auto known = [&](const std::string& name) {
-    return std::find(experiment.models.begin(), experiment.models.end(), name) != experiment.models.end();
-  };
+  const auto known = [&](const std::string& name) { return std::ranges::find(models, name) != models.end(); };
   if (!text.empty() && text != "all")
     for (const auto& name : names)
       if (!known(name))
         throw UsageError(fmt::format("--friction: found '{}'; expected a friction model that {} supports: {}", name,
-                                     experiment.name, fmt::join(experiment.models, ", ")));
+                                     experiment.name, fmt::join(models, ", ")));
   std::erase_if(names, [&](const std::string& name) { return !known(name); });
-  if (names.empty())
-    throw UsageError(fmt::format("{}: found no friction model that {} supports; expected parameters of: {}", machine.id,
-                                 experiment.name, fmt::join(experiment.models, ", ")));
   return names;
 }
 
@@ -102,11 +101,8 @@ std::vector<std::string> equations_for(const Experiment& experiment, const std::
 }
 
 ExperimentInput input_of(const Experiment& experiment, const ExperimentOptions& options) {
-  const bool axes = experiment.machine == ExperimentMachine::axes;
-  ExperimentInput input{options.machine.load(options.machine.machine, experiment.name,
-                                             axes ? MachinePart::axes : MachinePart::feed_drive),
-                        {}};
-  if (axes) input.friction = models_for(experiment, options.friction, input.machine);
+  ExperimentInput input{options.machine.load(options.machine.machine, experiment.name), {}};
+  if (!needs_of(experiment.name).feed_drive) input.friction = models_for(experiment, options.friction, input.machine);
   if (experiment.feeds != nullptr) input.feeds = feeds(options.feed);
   for (const double feed : input.feeds)
     if (!(feed > 0.0)) throw UsageError(fmt::format("--feed: found '{}'; expected feeds above zero", options.feed));
@@ -145,7 +141,9 @@ void add_experiments(CLI::App& simulate, const Invocation& invocation) {
     auto o = std::make_shared<ExperimentOptions>();
     o->machine.add_to(*command, "shipped machine by name, or a machine file");
     if (experiment.compensation) o->machine.add_compensation_to(*command);
-    if (experiment.machine == ExperimentMachine::axes)
+    const auto& needs = needs_of(experiment.name);
+    if (needs.one_axis) o->machine.add_axis_to(*command);
+    if (!needs.feed_drive)
       command
           ->add_option("--friction", o->friction,
                        "friction model, or a list of models [all that the experiment supports]")

@@ -7,6 +7,7 @@
 #include <array>
 #include <memory>
 
+#include "firmware/machine/file/machine_file.hpp"
 #include "firmware/machine/file/units.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/experiment_output.hpp"
@@ -164,6 +165,9 @@ void run(const Options& options, const Invocation& invocation) {
   auto machine = options.machine.load(options.machine.machine, "frequency-response");
   choose_axes(machine, options.axis);
   const auto loops = loops_of(options.loop);
+  for (const auto& loop : loops)
+    require_needs(machine, needs_of("frequency-response --loop " + loop),
+                  machine::find_machine(options.machine.machine));
   sim::ExperimentResult result;
   try {
     const auto m = options.from.empty() ? simulated(options, machine) : measured(options, machine);

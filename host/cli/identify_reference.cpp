@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "firmware/machine/file/machine_file.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/experiment_output.hpp"
 #include "host/cli/output.hpp"
@@ -13,7 +14,7 @@ namespace stiction::host {
 void identify_reference(const IdentifyReferenceOptions& options, const Invocation& invocation) try {
   if (options.reference != "circle")
     throw UsageError(fmt::format("--reference: found '{}'; expected circle", options.reference));
-  const auto machine = options.machine.load(options.machine.machine, "circle");
+  const auto machine = options.machine.load(options.machine.machine, "circle", needs_of("identify --reference circle"));
   permitted_rows(machine);  // says what is missing before anything runs
   const auto study = study_measured_machine(machine, options.machine.load(options.machine.machine, "l-shape"));
   const auto result = measured_machine_result(machine, study);
@@ -33,7 +34,7 @@ void identify_reference(const IdentifyReferenceOptions& options, const Invocatio
   fmt::print("{}\n{}", experiment_text(result, machine), prediction_text(machine, study));
   if (!options.out.empty()) fmt::print("\nreport: {}/report.html\n", options.out);
 } catch (const MissingRows& error) {
-  throw UsageError(error.what());
+  throw UsageError(fmt::format("{}: {}", machine::find_machine(options.machine.machine).string(), error.what()));
 }
 
 }  // namespace stiction::host

@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "firmware/machine/model/motor_force.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/machine_options.hpp"
@@ -31,7 +32,7 @@ std::vector<KnownAxis> known_axes(const InspectOptions& options, const Log& log)
     const auto& axis = machine.axes[index];
     const bool force_motor = axis.motor.model == machine::MotorModel::force;
     KnownAxis k{axis.mass,
-                axis.motor.force_constant,
+                machine::acting_force_constant(axis.motor),
                 force_motor ? axis.inverter.voltage_limit : axis.inverter.current_limit * axis.motor.count,
                 {}};
     if (axis.motor.pole_pair_pitch > 0.0) k.pole_pair_pitch = axis.motor.pole_pair_pitch;

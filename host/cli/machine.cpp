@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "firmware/machine/file/machine_notes.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/machine_options.hpp"
 #include "host/report/machine_sheet.hpp"
@@ -18,7 +19,7 @@ struct MachineCommand {
 
 // Reads and checks a file, down to the drive's number formats, and prints what was understood.
 void check_machine(const std::string& name) {
-  const auto machine = MachineOptions{name, {}}.load(name, "", MachinePart::any);
+  const auto machine = MachineOptions{name, {}}.load(name, "", needs_of("machine"));
   fmt::print("{}: {}\n", machine.id, machine.name);
   for (const auto& section : machine_sheet(machine)) {
     fmt::print("\n{}\n", section.title);
@@ -28,6 +29,9 @@ void check_machine(const std::string& name) {
       fmt::print("\n");
     }
   }
+  const auto notes = machine::machine_notes(machine);
+  if (!notes.empty()) fmt::print("\nNotes\n");
+  for (const auto& note : notes) fmt::print("  {}\n", note);
 }
 
 }  // namespace

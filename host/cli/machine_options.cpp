@@ -10,12 +10,25 @@
 #include "firmware/machine/file/compensation_parameters.hpp"
 #include "firmware/machine/file/units.hpp"
 #include "host/cli/errors.hpp"
+#include "host/simulate/friction_choice.hpp"
 #include "sim/machine_file.hpp"
 #include "sim/plant/effects/effects.hpp"
 #include "sim/plant/friction/friction.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
 namespace stiction::host {
+namespace {
+
+void keep_axis(machine::Machine& machine, const std::string& name) {
+  std::vector<std::string> names;
+  for (const auto& axis : machine.axes) names.push_back(axis.name);
+  if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end())
+    throw UsageError(
+        fmt::format("--axis: found '{}'; expected an axis of {}: {}", name, machine.id, fmt::join(names, ", ")));
+  std::erase_if(machine.axes, [&](const auto& axis) { return axis.name != (name.empty() ? names.front() : name); });
+}
+
+}  // namespace
 
 void MachineOptions::add_to(CLI::App& command, const std::string& machine_help) {
   command.add_option("--machine", machine, machine_help)->required()->type_name("MACHINE");
@@ -34,23 +47,30 @@ void MachineOptions::add_compensation_to(CLI::App& command) {
       ->type_name("KIND");
 }
 
+void MachineOptions::add_axis_to(CLI::App& command) {
+  command.add_option("--axis", axis, "the axis that the experiment runs on [the machine's first]")->type_name("AXIS");
+}
+
+void require_needs(const machine::Machine& machine, const MachineNeeds& needs, const std::filesystem::path& file) {
+  if (const auto missing = what_is_missing(machine, needs))
+    throw UsageError(fmt::format("{}: {}", file.string(), *missing));
+}
+
+machine::Machine MachineOptions::load(const std::string& name, const std::string& experiment) const {
+  return load(name, experiment, needs_of(experiment));
+}
+
 machine::Machine MachineOptions::load(const std::string& name, const std::string& experiment,
-                                      MachinePart needed) const {
+                                      const MachineNeeds& needs) const {
   const auto file = machine::find_machine(name);
   auto assignments = set;
   if (!compensation.empty()) assignments.push_back("axis.*.friction_compensation.use=" + compensation);
   auto result = sim::read_machine(file, {experiment, assignments});
-  if (needed == MachinePart::axes && result.axes.empty())
-    throw UsageError(
-        fmt::format("{}: found a feed drive and no axis; expected a machine with a table [axis.NAME]", file.string()));
-  if (needed == MachinePart::feed_drive && !result.feed_drive)
-    throw UsageError(
-        fmt::format("{}: found axes and no feed drive; expected a machine with a table [feed_drive], such "
-                    "as stick-slip-feed",
-                    file.string()));
+  if (needs.one_axis && !result.axes.empty()) keep_axis(result, axis);
+  require_needs(result, needs, file);
   // What the drive's number formats cannot hold is bad input too, found before anything runs.
   try {
-    for (const auto& axis : result.axes) machine::configure_axis<FixedSignals>(result.timing, sim::drive_axis(axis));
+    for (const auto& each : result.axes) machine::configure_axis<FixedSignals>(result.timing, sim::drive_axis(each));
     machine::configure_compensations<FixedSignals>(result);
   } catch (const machine::ConfigurationError& error) {
     throw UsageError(fmt::format("{}: {}", file.string(), error.what()));
@@ -65,7 +85,6 @@ std::vector<std::string> split_list(const std::string& text) {
 }
 
 std::vector<std::string> friction_models(const std::string& text, const machine::Machine& machine) {
-  if (text.empty()) return {machine.axes.front().friction.use};
   std::vector<std::string> everywhere;
   sim::for_each_friction_model([&]<class Model>() {
     const std::string name(Model::name);
@@ -74,6 +93,7 @@ std::vector<std::string> friction_models(const std::string& text, const machine:
       everywhere.push_back(name);
   });
   if (text == "all") return everywhere;
+  if (text.empty()) return {friction_in_use(machine)};
   const auto names = split_list(text);
   for (const auto& name : names)
     if (std::find(everywhere.begin(), everywhere.end(), name) == everywhere.end())

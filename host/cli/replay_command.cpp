@@ -13,6 +13,7 @@
 #include "host/log/mat_log.hpp"
 #include "host/log/read_log.hpp"
 #include "host/report/experiment_report.hpp"
+#include "host/simulate/friction_choice.hpp"
 #include "host/simulate/replay.hpp"
 #include "host/simulate/replay_result.hpp"
 #include "stiction/number/fixed_signals.hpp"
@@ -35,7 +36,7 @@ std::vector<ReplayCase> cases_of(const ReplayOptions& options) {
         if (other.label == label)
           throw UsageError(fmt::format("--machine, --friction: found {} twice; expected different names", label));
       auto& c = cases.emplace_back(ReplayCase{label, machine, {}});
-      for (auto& axis : c.machine.axes) axis.friction.use = friction;
+      use_friction(c.machine, friction);
     }
   }
   return cases;
@@ -44,7 +45,7 @@ std::vector<ReplayCase> cases_of(const ReplayOptions& options) {
 void keep(const std::filesystem::path& file, Log simulated, const ReplayOptions& options, const ReplayCase& c) {
   simulated.comments = {{"made by", "stiction simulate replay"},
                         {"machine", c.machine.id},
-                        {"friction", c.machine.axes.front().friction.use},
+                        {"friction", friction_in_use(c.machine)},
                         {"from", options.from}};
   PendingFile pending(file);
   if (file.extension() == ".mat")

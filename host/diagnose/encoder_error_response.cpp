@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "firmware/machine/model/motor_force.hpp"
+
 namespace stiction::host {
 namespace {
 
@@ -60,7 +62,7 @@ Complex EncoderErrorResponse::drive(double frequency) const {
   if (axis_.encoder.velocity == machine::VelocitySource::mean_difference) speed = (1.0 - back * back) / (2.0 * tick_);
   if (axis_.encoder.velocity == machine::VelocitySource::ideal) speed = {0.0, w};
   Complex answer = speed * pi(axis_.velocity_controller.gain, axis_.velocity_controller.integral_time, tick_, back) *
-                   current_loop(back) * axis_.motor.force_constant;
+                   current_loop(back) * machine::acting_force_constant(axis_.motor);
   if (axis_.notch) answer *= notch_of(*axis_.notch, tick_, back);
   // x = F / (m s^2) is read with the error.
   return -answer / (1.0 - answer / (axis_.mass * w * w));

@@ -51,6 +51,8 @@ class Questions {
     if (terms_.empty()) return;
     const double by_all = separation_.explained(records_, searched_.target, terms_);
     for (std::size_t c = 0; c < candidates().size(); ++c) {
+      // What is outside of the vocabulary is no finding, and nothing may be confused with it.
+      if (candidates()[c].outside()) continue;
       if (!candidates()[c].grid(searched_.context).empty() || candidates()[c].grid(scene_).empty()) continue;
       const auto fit = separation_.best_fit(records_, searched_.target, c, {});
       if (!fit || separation_.explained(records_, searched_.target, {&*fit, 1}) < as_good * by_all) continue;
@@ -74,7 +76,7 @@ class Questions {
   // Whether there is what was not quite significant.
   void add_nearly_found() {
     for (const auto& discarded : searched_.found.discarded) {
-      if (!discarded.nearly) continue;
+      if (!discarded.nearly || candidates()[discarded.candidate].outside()) continue;
       const auto fit = separation_.best_fit(records_, searched_.target, discarded.candidate, terms_);
       if (!fit) continue;
       const Question question{

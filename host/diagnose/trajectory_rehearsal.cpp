@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "firmware/machine/configuration/axis_configuration.hpp"
+#include "firmware/machine/model/motor_force.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
 #include "host/diagnose/replay_setup.hpp"
 #include "host/simulate/control_run.hpp"
@@ -32,12 +33,6 @@ Covered covered_by(const LogRows& rows) {
     covered = {std::min(covered.low, *low), std::max(covered.high, *high)};
   }
   return covered;
-}
-
-double highest_motor_force(const machine::AxisModel& axis) {
-  return axis.motor.force_constant * (axis.motor.model == machine::MotorModel::force
-                                          ? axis.inverter.voltage_limit
-                                          : axis.inverter.current_limit * axis.motor.count);
 }
 
 Log set_points(const sim::SeparatingTrajectory& kind, const sim::MotionRange& range, const std::string& axis,
@@ -82,7 +77,7 @@ sim::MotionRange motion_range(const machine::AxisModel& axis, const LogRows& row
   }
   const double speed = speed_share * axis.max_velocity;
   const double friction = coulomb_of(axis) + viscous_of(axis) * speed;
-  const double by_force = (force_share * highest_motor_force(axis) - friction) / axis.mass;
+  const double by_force = (force_share * machine::largest_force(axis) - friction) / axis.mass;
   const double highest = std::min(acceleration_share * axis.max_acceleration, by_force);
   const double acceleration = std::min(beyond_the_records * rows.acceleration.cwiseAbs().maxCoeff(), highest);
   return {low, high, speed, acceleration, acceleration / rise, highest};

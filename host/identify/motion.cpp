@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "firmware/machine/model/motor_force.hpp"
 namespace stiction::host {
 namespace {
 
@@ -34,7 +35,7 @@ SignalSettings published_recipe() {
 
 std::vector<double> force_of(const Log& log, const AxisLog& channels, const machine::AxisModel& axis, Amperes amperes) {
   const bool source = axis.motor.model == machine::MotorModel::force;
-  const double per_unit = axis.motor.force_constant;
+  const double per_unit = machine::acting_force_constant(axis.motor);
   std::vector<double> force;
   if (!channels.force.empty()) {
     force = channels.force;

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "firmware/machine/configuration/double_signals.hpp"
+#include "firmware/machine/model/motor_force.hpp"
 #include "host/identify/fit_support.hpp"
 #include "host/log/set_points.hpp"
 #include "host/simulate/control_run.hpp"
@@ -128,7 +129,7 @@ class ClosedLoop {
     const std::array<double, 1> start{measured_[log].front()};
     ControlRun<machine::DoubleSignals> control(machine_, start);
     control.plant(0).set_external_force(-constant_);
-    const double per_ampere = machine_.axes.front().motor.force_constant;
+    const double per_ampere = machine::acting_force_constant(machine_.axes.front().motor);
     Simulated result;
     const double half_tick = 0.5 * machine_.timing.fast_period;
     while (result.force.size() < motion.t.size()) {

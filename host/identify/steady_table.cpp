@@ -7,6 +7,7 @@
 #include <numbers>
 #include <set>
 
+#include "firmware/machine/model/motor_force.hpp"
 #include "host/log/channel_name.hpp"
 #include "host/log/csv_rows.hpp"
 #include "host/log/message.hpp"
@@ -139,7 +140,8 @@ SlidingData sliding_data(const SteadyTable& table, const machine::AxisModel& axi
           fmt::format("{}: found currents without their convention; expected --amperes peak or --amperes rms, or a "
                       "line \"# amperes: rms\" before the header",
                       table.source));
-    const double scale = axis.motor.force_constant * (*amperes == Amperes::rms ? std::numbers::sqrt2 : 1.0);
+    const double scale =
+        machine::acting_force_constant(axis.motor) * (*amperes == Amperes::rms ? std::numbers::sqrt2 : 1.0);
     for (const double i : table.current) force.push_back(scale * i);
   }
   std::set<double> speeds;

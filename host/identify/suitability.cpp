@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "firmware/machine/model/motor_force.hpp"
 #include "host/identify/fit_support.hpp"
 
 namespace stiction::host {
@@ -44,7 +45,7 @@ Signal driving_signal(const AxisLog& channels, const machine::AxisModel& axis) {
   const double none = std::numeric_limits<double>::infinity();
   if (!channels.i.empty() && !source) return {&channels.i, "current", "A", current};
   if (!channels.u.empty() && source) return {&channels.u, "voltage", "V", axis.inverter.voltage_limit};
-  return {&channels.force, "force", "N", source ? none : current * axis.motor.force_constant};
+  return {&channels.force, "force", "N", source ? none : machine::largest_force(axis)};
 }
 
 // The speeds at which the axis was kept, sorted: rows of steady sliding, a bin each factor of 1.5, at least 0.1 s in a

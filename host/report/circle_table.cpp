@@ -34,7 +34,8 @@ CircleTableRow make_row(const sim::CircleRun& run, const sim::AxisLap& lap, cons
     row.error.measured = row.error_quantised.measured = measured->error;
     row.current.measured = measured->current;
   }
-  if (const auto* published = find_published(machine, lap.axis, run.friction, run.feed)) {
+  const auto& model = lap.friction.empty() ? run.friction : lap.friction;
+  if (const auto* published = find_published(machine, lap.axis, model, run.feed)) {
     row.error.published = row.error_quantised.published = published->error;
     row.current.published = published->current;
     row.error_quantised.differs =

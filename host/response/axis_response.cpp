@@ -9,6 +9,7 @@
 #include "firmware/machine/configuration/axis_configuration.hpp"
 #include "firmware/machine/configuration/conversion.hpp"
 #include "firmware/machine/configuration/double_signals.hpp"
+#include "firmware/machine/model/motor_force.hpp"
 #include "sim/plant/effects/effects.hpp"
 
 namespace stiction::host {
@@ -117,7 +118,7 @@ AxisResponse axis_response(const Log& log, const AxisLog& measured, const machin
   AxisResponse result;
   result.axis = axis.name;
   result.samples_at_limit = samples_at_limit(measured, axis);
-  result.spectra = measure_spectra(log, measured, axis.motor.force_constant);
+  result.spectra = measure_spectra(log, measured, machine::acting_force_constant(axis.motor));
   const auto known = [&](Answer answer) { return result.spectra.known[index(answer)]; };
   const bool has_current_loop = axis.current_controller.has_value();
   const bool has_current = known(Answer::current);

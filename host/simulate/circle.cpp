@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "firmware/machine/configuration/double_signals.hpp"
+#include "host/simulate/friction_choice.hpp"
 #include "sim/experiment/circle_measurement.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
@@ -69,7 +70,8 @@ sim::CircleRun run_circle(const machine::Machine& machine, const sim::CircleSett
     measurement.add(point, samples);
   }
   auto result = measurement.finish();
-  result.friction = machine.axes[0].friction.use;
+  result.friction = friction_in_use(machine);
+  for (std::size_t k = 0; k < 2; ++k) result.axes[k].friction = machine.axes[k].friction.use;
   return result;
 }
 

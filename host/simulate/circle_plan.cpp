@@ -10,6 +10,7 @@
 
 #include "firmware/machine/configuration/double_signals.hpp"
 #include "firmware/machine/configuration/trace_writer.hpp"
+#include "host/simulate/friction_choice.hpp"
 #include "sim/experiment/circle_measurement.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
@@ -51,7 +52,7 @@ std::vector<CircleCase> cases_of(const CirclePlan& plan) {
     for (const double feed : plan.feeds)
       for (const auto direction : plan.directions) {
         CircleCase c{plan.machine, {}, plan.signals};
-        for (auto& axis : c.machine.axes) axis.friction.use = friction;
+        use_friction(c.machine, friction);
         c.settings.feed = feed;
         c.settings.radius = plan.radius;
         c.settings.direction = direction;
@@ -104,7 +105,7 @@ sim::CircleRun run_traced(const CircleCase& c, const std::filesystem::path& file
   const std::vector<std::string> comments{
       "log: stiction simulate circle",
       fmt::format("machine: {}", c.machine.name),
-      fmt::format("friction: {}", c.machine.axes.front().friction.use),
+      fmt::format("friction: {}", friction_in_use(c.machine)),
       fmt::format("feed: {:g} m/min", c.settings.feed * 60.0),
       fmt::format("radius: {:g} mm", c.settings.radius * 1e3),
       fmt::format("direction: {}", c.settings.direction == sim::Direction::clockwise ? "cw" : "ccw"),

@@ -1,5 +1,6 @@
 #include "host/simulate/commissioning.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -15,9 +16,44 @@ namespace {
 constexpr double period = 1e-3;         // s, of the log
 constexpr double current_noise = 0.03;  // A rms
 
+constexpr double speed_share = 0.9;  // of what the axis can do at most
+constexpr double acceleration_share = 0.9;
+constexpr double stroke_share = 0.9;  // of the travel
+
 std::vector<double> per_second(std::vector<double> metres_per_minute) {
   for (double& v : metres_per_minute) v /= 60.0;
   return metres_per_minute;
+}
+
+// The start of a motion as far as the axis can.
+sim::Dynamics start_on(const machine::AxisModel& axis) {
+  auto start = sim::standard_start;
+  const double highest = acceleration_share * axis.max_acceleration;
+  if (start.acceleration > highest) start = {highest, start.jerk * highest / start.acceleration};
+  return start;
+}
+
+// The speeds (m/s), all of them slower by one factor where the axis cannot do the highest.
+sim::Trajectory speeds_on(const machine::AxisModel& axis, std::vector<double> speeds, double cruise, double shortest) {
+  const auto start = start_on(axis);
+  const double highest = *std::max_element(speeds.begin(), speeds.end());
+  const double allowed =
+      std::min(highest, sim::speed_within(stroke_share * axis.travel, speed_share * axis.max_velocity, cruise, start));
+  if (allowed < highest)
+    for (double& v : speeds) v *= allowed / highest;
+  return sim::constant_speeds(speeds, cruise, shortest, start);
+}
+
+// The circle at `feed` (m/s), smaller and slower where the axis needs it.
+sim::Trajectory circle_on(const machine::AxisModel& axis, double feed, double turns) {
+  sim::CircleSettings settings;
+  const auto start = start_on(axis);
+  settings.acceleration = start.acceleration;
+  settings.jerk = start.jerk;
+  settings.radius = std::min(settings.radius, 0.5 * stroke_share * axis.travel);
+  settings.feed = std::min(
+      {feed, speed_share * axis.max_velocity, std::sqrt(acceleration_share * axis.max_acceleration * settings.radius)});
+  return sim::circle(settings, turns);
 }
 
 struct Planned {
@@ -26,15 +62,14 @@ struct Planned {
   sim::Trajectory trajectory;
 };
 
-std::vector<Planned> plan() {
+std::vector<Planned> plan(const machine::AxisModel& axis) {
   std::vector<Planned> all;
   all.push_back(
-      {"speeds", false, sim::constant_speeds(per_second({0.05, 0.2, 0.5, 1.0, 3.2, 8.0, 16.0, 24.0}), 0.3, 0.4e-3)});
-  all.push_back({"circle", false, sim::circle(16.0 / 60.0, 2.0)});
+      {"speeds", false, speeds_on(axis, per_second({0.05, 0.2, 0.5, 1.0, 3.2, 8.0, 16.0, 24.0}), 0.3, 0.4e-3)});
+  all.push_back({"circle", false, circle_on(axis, 16.0 / 60.0, 2.0)});
   all.push_back({"reversals", false, sim::small_reversals({5e-6, 10e-6, 20e-6, 50e-6, 100e-6, 200e-6}, 2.0)});
-  all.push_back(
-      {"other-speeds", true, sim::constant_speeds(per_second({0.1, 0.35, 1.5, 5.0, 12.0, 20.0}), 0.4, 0.6e-3)});
-  all.push_back({"other-circle", true, sim::circle(10.0 / 60.0, 2.0)});
+  all.push_back({"other-speeds", true, speeds_on(axis, per_second({0.1, 0.35, 1.5, 5.0, 12.0, 20.0}), 0.4, 0.6e-3)});
+  all.push_back({"other-circle", true, circle_on(axis, 10.0 / 60.0, 2.0)});
   all.push_back({"other-reversals", true, sim::small_reversals({8e-6, 30e-6, 80e-6, 150e-6, 400e-6}, 1.5)});
   return all;
 }
@@ -101,6 +136,7 @@ Log recorded(const machine::Machine& bench, Log wanted, Normal& normal) {
   kept.x = std::move(channels.x);
   kept.i = std::move(channels.i);
   for (double& i : kept.i) i += current_noise * normal();
+  kept.u = std::move(channels.u);  // of a force source; the drive knows what it commands
   channels = std::move(kept);
   return log;
 }
@@ -123,7 +159,7 @@ std::vector<CommissioningRecord> record_commissioning(const machine::Machine& ma
   const auto bench = alone(machine, axis);
   Normal normal(seed);
   std::vector<CommissioningRecord> records;
-  for (const auto& planned : plan()) {
+  for (const auto& planned : plan(bench.axes.front())) {
     records.push_back(
         {planned.name, planned.held_out, recorded(bench, set_points(planned, bench.axes.front().name), normal)});
     if (progress) progress();

@@ -16,13 +16,14 @@ namespace stiction::host {
 struct CommissioningRecord {
   std::string name;  // of its file: "speeds"
   bool held_out = false;
-  Log log;  // 1 kHz: x_set, x, i
+  Log log;  // 1 kHz: x_set, x, i or u
 };
 
 // Runs the axis in closed loop (the firmware). Noise, drawn from `seed`: a coloured force on the carriage that the log
 // does not have (2.5 N rms below 3 Hz and 2 N rms below 40 Hz, as guides and wipers give), 0.03 A rms on the recorded
-// current, and what the machine's encoder adds. Throws FaultTripped. `machine`: with its effects; `axis`: index of the
-// one that moves; `progress`: called after each record.
+// current, and what the machine's encoder adds. Speeds, strokes and accelerations are those of the axis where they are
+// less. Throws FaultTripped. `machine`: with its effects; `axis`: index of the one that moves; `progress`: called after
+// each record.
 std::vector<CommissioningRecord> record_commissioning(const machine::Machine& machine, std::size_t axis,
                                                       std::uint64_t seed, const std::function<void()>& progress = {});
 inline constexpr int commissioning_records = 6;

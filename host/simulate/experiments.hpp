@@ -14,7 +14,7 @@
 namespace stiction::host {
 
 struct ExperimentInput {
-  machine::Machine machine;              // with the experiment's overrides
+  machine::Machine machine;              // with the experiment's overrides, and what needs_of() asks for
   std::vector<std::string> friction;     // the models to run, at least one; none without axes
   std::vector<double> feeds{};           // m/s, at least one; none where the experiment has no --feed
   std::vector<std::string> equations{};  // at least one; none where the experiment has no --equations
@@ -23,20 +23,16 @@ struct ExperimentInput {
   std::function<void(const std::string& run, Log)> keep_log = {};
 };
 
-// What an experiment runs on.
-enum class ExperimentMachine { axes, feed_drive };
-
 // Forms of the feed drive's equations.
 inline constexpr const char* equations_corrected = "corrected";
 inline constexpr const char* equations_printed = "printed";
 
+// What an experiment needs of the machine stands in machine_needs.cpp.
 struct Experiment {
-  const char* name;                 // "impact"
-  const char* text;                 // for --help
-  std::vector<std::string> models;  // the friction models it makes sense for; empty: all
+  const char* name;  // "impact"
+  const char* text;  // for --help
   sim::ExperimentResult (*run)(const ExperimentInput&);
-  bool keeps_logs = false;  // calls keep_log
-  ExperimentMachine machine = ExperimentMachine::axes;
+  bool keeps_logs = false;               // calls keep_log
   const char* feeds = nullptr;           // what --feed is unless it is given; null: the experiment has no --feed
   std::vector<std::string> equations{};  // what --equations chooses from, all unless it is given
   bool compensation = false;             // whether it shows what friction compensation does: it has --compensation

@@ -11,7 +11,7 @@ class FrictionBench {
  public:
   static constexpr double step = 20e-6;  // s
 
-  // The X axis' mass on the friction model that its machine file uses, at rest.
+  // The axis' mass on the friction model that its machine file uses, at rest.
   explicit FrictionBench(const machine::AxisModel& axis)
       : mass_(axis.mass), friction_(sim::make_friction(axis.friction, {axis.mass, step})) {}
 

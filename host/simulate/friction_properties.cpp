@@ -19,6 +19,12 @@ machine::AxisModel axis_with(const ExperimentInput& input, const std::string& fr
   return axis;
 }
 
+sim::LuGreParameters lugre_of(const machine::AxisModel& axis) {
+  return sim::parameters_of<sim::LuGre<>>(axis.friction);
+}
+
+double static_friction(const sim::LuGreParameters& friction) { return friction.coulomb * friction.static_ratio; }
+
 sim::Expectation within_2_percent(double value, double rounding,
                                   const char* source = "prototype (docs/prototype_figures.md, 4)") {
   return {value, std::max(0.02 * std::abs(value), rounding), source};
@@ -51,20 +57,21 @@ double polyline(const std::vector<std::pair<double, double>>& corners, double t)
   return corners.back().second;
 }
 
-constexpr double ramp_force = 540.0;  // N, 90 % of the static friction of Tab 4.3
+constexpr double ramp_share = 0.9;         // of the static friction: the top of a ramp
+constexpr double slow = 0.1, fast = 10.0;  // 1/s, ramps of that many tops in a second
 
 struct PreslidingLoop {
   double at_first_top, at_second_top, after_unloading;  // m
 };
 
-// 0 to +540 N, held, to -540 N, held, to +540 N, held, at `rate` (N/s).
-PreslidingLoop presliding_loop(const machine::AxisModel& axis, double rate, double hold, sim::Series& series,
-                               BenchRecorder* recorder = nullptr) {
-  const double ramp = ramp_force / rate;
+// 0 to +`top_force` (N), held, to the same in the other direction, held, and back, held, at `rate` (N/s).
+PreslidingLoop presliding_loop(const machine::AxisModel& axis, double top_force, double rate, double hold,
+                               sim::Series& series, BenchRecorder* recorder = nullptr) {
+  const double ramp = top_force / rate;
   const double top = ramp + hold, bottom = top + 2.0 * ramp, up = bottom + hold, end = up + 2.0 * ramp + hold;
-  const std::vector<std::pair<double, double>> corners{
-      {0.0, 0.0},        {ramp, ramp_force},       {top, ramp_force}, {bottom, -ramp_force},
-      {up, -ramp_force}, {end - hold, ramp_force}, {end, ramp_force}};
+  const std::vector<std::pair<double, double>> corners{{0.0, 0.0},           {ramp, top_force}, {top, top_force},
+                                                       {bottom, -top_force}, {up, -top_force},  {end - hold, top_force},
+                                                       {end, top_force}};
   FrictionBench bench(axis);
   PreslidingLoop loop{};
   Thinned line(series, std::max(1, static_cast<int>(end / FrictionBench::step / 4000.0)));
@@ -84,46 +91,60 @@ PreslidingLoop presliding_loop(const machine::AxisModel& axis, double rate, doub
 }  // namespace
 
 sim::ExperimentResult run_presliding(const ExperimentInput& input) {
+  const double force = ramp_share * static_friction(lugre_of(input.machine.axes.front()));
   sim::ExperimentResult result{
       "presliding",
       "Presliding displacement",
       "",
-      "A force below break-away (ramps to +-540 N, 90 % of the static friction) moves the mass by micrometres, and "
-      "unloading does not bring it back to the origin (Mendricky 2006, 4.4.3.1).",
+      fmt::format("A force below break-away (ramps to +-{:g} N, 90 % of the static friction) moves the mass by "
+                  "micrometres, and unloading does not bring it back to the origin (Mendricky 2006, 4.4.3.1).",
+                  force),
       {},
       {},
       {}};
-  sim::Chart chart{
-      "Friction over displacement", "displacement, um", "friction force, N", "Ramps of 54 N/s.", false, {}};
+  sim::Chart chart{"Friction over displacement",
+                   "displacement, um",
+                   "friction force, N",
+                   fmt::format("Ramps of {:g} N/s.", slow * force),
+                   false,
+                   {}};
   for (const auto& name : input.friction) {
-    sim::Series slow{name, {}, {}, false};
+    sim::Series line{name, {}, {}, false};
     BenchRecorder recorder;
-    const auto loop = presliding_loop(axis_with(input, name), 54.0, 2.0, slow, input.keep_log ? &recorder : nullptr);
+    const auto loop =
+        presliding_loop(axis_with(input, name), force, slow * force, 2.0, line, input.keep_log ? &recorder : nullptr);
     if (input.keep_log) input.keep_log("", recorder.take());
-    chart.series.push_back(std::move(slow));
-    result.figures.push_back(
-        {"displacement_at_540_N_" + name, "um", "displacement at 540 N, " + name, loop.at_first_top * 1e6, {}});
+    chart.series.push_back(std::move(line));
+    result.figures.push_back({fmt::format("displacement_at_{:g}_N_{}", force, name),
+                              "um",
+                              fmt::format("displacement at {:g} N, {}", force, name),
+                              loop.at_first_top * 1e6,
+                              {}});
     result.figures.push_back({"displacement_after_unloading_" + name,
                               "um",
                               "displacement left at 0 N, " + name,
                               loop.after_unloading * 1e6,
                               {}});
     result.figures.push_back(
-        {"loop_gap_" + name, "um", "between the first and the second +540 N, " + name,
+        {"loop_gap_" + name, "um", fmt::format("between the two visits of +{:g} N, {}", force, name),
          (loop.at_second_top - loop.at_first_top) * 1e6,
          sim::Expectation{0.0, 0.02 * std::abs(loop.at_first_top) * 1e6,
                           "prototype (docs/prototype_figures.md, 4): the loop closes for slow ramps"}});
-    result.findings.push_back(fmt::format("{}: {:.1f} um at 540 N, {:.1f} um left after unloading.", name,
-                                          loop.at_first_top * 1e6, loop.after_unloading * 1e6));
-    if (name != "lugre") continue;
-    sim::Series fast{name + ", 5400 N/s", {}, {}, false};
-    const auto broken = presliding_loop(axis_with(input, name), 5400.0, 2.0, fast);
-    chart.series.push_back(std::move(fast));
-    chart.caption += " At 5400 N/s the mass breaks away while 540 N is held, and leaves the range of the chart.";
+    result.findings.push_back(fmt::format("{}: {:.1f} um at {:g} N, {:.1f} um left after unloading.", name,
+                                          loop.at_first_top * 1e6, force, loop.after_unloading * 1e6));
+    if (name != sim::LuGre<>::name) continue;
+    sim::Series quick{fmt::format("{}, {:g} N/s", name, fast * force), {}, {}, false};
+    const auto broken = presliding_loop(axis_with(input, name), force, fast * force, 2.0, quick);
+    chart.series.push_back(std::move(quick));
+    const bool breaks_away = std::abs(broken.at_second_top) > 1e-3;
+    chart.caption += fmt::format(" At {:g} N/s the mass {} while {:g} N is held{}.", fast * force,
+                                 breaks_away ? "breaks away" : "does not break away", force,
+                                 breaks_away ? ", and leaves the range of the chart" : "");
     const double shown = 1.5e6 * std::abs(loop.at_first_top);
     chart.x_range = {-0.5 * shown, shown};
-    result.figures.push_back({"breaks_away_at_5400_N_per_s", "", "1: the mass breaks away while 540 N is held",
-                              std::abs(broken.at_second_top) > 1e-3 ? 1.0 : 0.0,
+    result.figures.push_back({fmt::format("breaks_away_at_{:g}_N_per_s", fast * force), "",
+                              fmt::format("1: the mass breaks away while {:g} N is held", force),
+                              breaks_away ? 1.0 : 0.0,
                               sim::Expectation{1.0, 0.0, "prototype (docs/prototype_figures.md, 4)"}});
   }
   result.charts.push_back(std::move(chart));
@@ -140,10 +161,16 @@ sim::ExperimentResult run_friction_lag(const ExperimentInput& input) {
                                {},
                                {},
                                {}};
-  sim::Chart chart{
-      "Friction over speed", "speed, mm/s", "friction force, N", "Speed: 2.5 + 2.4 sin(wt) mm/s.", false, {}};
   const auto axis = axis_with(input, "lugre");
-  const auto& parameters = sim::parameters_of<sim::LuGre<>>(axis.friction);
+  const auto parameters = lugre_of(axis);
+  // About the Stribeck velocity, where friction falls with the speed.
+  const double middle = 2.5 * parameters.stribeck_velocity, swing = 2.4 * parameters.stribeck_velocity;
+  sim::Chart chart{"Friction over speed",
+                   "speed, mm/s",
+                   "friction force, N",
+                   fmt::format("Speed: {:g} + {:g} sin(wt) mm/s.", middle * 1e3, swing * 1e3),
+                   false,
+                   {}};
   double slow_width = 0.0;
   for (const auto& [omega, width] : {std::pair{1.0, 11.1}, {10.0, 66.7}, {25.0, 79.9}, {100.0, 51.9}}) {
     // A whole number of steps a period, begun at the lowest speed: step i of the rise has the speed of step count - i
@@ -159,7 +186,7 @@ sim::ExperimentResult run_friction_lag(const ExperimentInput& input) {
     for (int p = 0; p < periods; ++p)
       for (std::size_t i = 0; i <= count; ++i) {
         const double phase = 2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(count);
-        const double v = 2.5e-3 - 2.4e-3 * std::cos(phase);
+        const double v = middle - swing * std::cos(phase);
         force[i] = friction.move_contact(v) + parameters.viscous * v;
         if (p + 1 == periods) line.add(v * 1e3, force[i]);
       }
@@ -223,7 +250,7 @@ sim::ExperimentResult run_break_away(const ExperimentInput& input) {
   result.figures.push_back(
       {"greatest_friction_at_10_N_per_s", "N", "largest friction at 10 N/s at any displacement", beyond, {}});
   result.findings.push_back(
-      fmt::format("Break-away is counted within 50 um, the presliding range of Tab 4.2; at 10 N/s the friction reaches "
+      fmt::format("Break-away is counted within 50 um of presliding; at 10 N/s the friction reaches "
                   "{:.0f} N a little later.",
                   beyond));
   chart.series.push_back(std::move(series));
@@ -236,8 +263,9 @@ sim::ExperimentResult run_stick_slip(const ExperimentInput& input) {
       "stick-slip",
       "Stick-slip",
       "",
-      "A mass of 400 kg on a spring of 5000 N/m whose end is pulled at 0.1 m/s sticks until about k_s g(0), slips, and "
-      "repeats (Mendricky 2006, 4.4.3.4).",
+      fmt::format("A mass of {:g} kg on a spring of 5000 N/m whose end is pulled at 0.1 m/s sticks until about its "
+                  "static friction, slips, and repeats (Mendricky 2006, 4.4.3.4).",
+                  input.machine.axes.front().mass),
       {},
       {},
       {}};

@@ -9,6 +9,8 @@
 #include <map>
 #include <numbers>
 
+#include "firmware/machine/model/motor_force.hpp"
+#include "host/simulate/circle.hpp"
 #include "host/simulate/control_run.hpp"
 #include "host/simulate/experiments.hpp"
 #include "host/simulate/log_recorder.hpp"
@@ -55,9 +57,48 @@ std::optional<sim::Expectation> expect(const machine::Machine& machine, const st
   return sim::Expectation{value, std::max(0.02 * value, rounding), "prototype (docs/prototype_figures.md, 5)"};
 }
 
+// What the path asks of one axis.
+struct Extent {
+  double low = 0.0, high = 0.0;  // m
+  double speed = 0.0, acceleration = 0.0;
+  void add(const sim::AxisSetPoint& point) {
+    low = std::min(low, point.position);
+    high = std::max(high, point.position);
+    speed = std::max(speed, std::abs(point.velocity));
+    acceleration = std::max(acceleration, std::abs(point.acceleration));
+  }
+};
+
+void check_limit(const machine::AxisModel& axis, const char* what, double asked, double allowed, const char* unit,
+                 const char* key) {
+  if (asked > allowed * (1.0 + 1e-9))
+    throw InfeasibleMotion(
+        fmt::format("l-shape: found a path with {} of {:.4g} {} on axis {}; expected at most "
+                    "{:.4g} {}, its {}",
+                    what, asked, unit, axis.name, allowed, unit, key));
+}
+
 }  // namespace
 
+void check_l_shape(const machine::Machine& machine) {
+  if (machine.axes.size() != 2)
+    throw InfeasibleMotion(fmt::format("l-shape: found a machine with {} axes; expected 2", machine.axes.size()));
+  const auto path = l_shape();
+  std::array<Extent, 2> extents;
+  for (double t = 0.0; t < path.duration(); t += machine.timing.slow_period) {
+    const auto points = path.at(t);
+    for (std::size_t k = 0; k < 2; ++k) extents[k].add(points[k]);
+  }
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto& axis = machine.axes[k];
+    check_limit(axis, "a way", (extents[k].high - extents[k].low) * 1e3, axis.travel * 1e3, "mm", "travel");
+    check_limit(axis, "a speed", extents[k].speed * 60.0, axis.max_velocity * 60.0, "m/min", "max_velocity");
+    check_limit(axis, "an acceleration", extents[k].acceleration, axis.max_acceleration, "m/s^2", "max_acceleration");
+  }
+}
+
 LShapeRun drive_l_shape(const machine::Machine& machine, const TraceSink<FixedSignals>& trace) {
+  check_l_shape(machine);
   const auto path = l_shape();
   const double stop = path.end_of(4), opposite = path.end_of(5), same = path.end_of(7);
   const auto begin = path.at(0.0);
@@ -99,10 +140,21 @@ sim::ExperimentResult run_l_shape(const ExperimentInput& input) {
       {},
       {}};
   const auto path = l_shape();
-  sim::Chart error{
-      "Error of Y", "time, s", "error at the encoder, um", "Y is at standstill from F to G and from I to J.",
-      false,        {}};
-  sim::Chart current{"Current of Y", "time, s", "motor force / force constant, A", "", false, {}};
+  check_l_shape(input.machine);
+  const auto& y = input.machine.axes[1].name;
+  const auto effort = machine::effort_of(input.machine.axes[1].motor);
+  sim::Chart error{"Error of " + y,
+                   "time, s",
+                   "error at the encoder, um",
+                   fmt::format("{} is at standstill from F to G and from I to J.", y),
+                   false,
+                   {}};
+  sim::Chart current{fmt::format("{} of {}", effort.unit == "A" ? "Current" : "Voltage", y),
+                     "time, s",
+                     fmt::format("motor force / force constant, {}", effort.unit),
+                     "",
+                     false,
+                     {}};
   const double stop = path.end_of(4), opposite = path.end_of(5), stop_again = path.end_of(6), same = path.end_of(7);
   for (const auto& name : input.friction) {
     auto machine = input.machine;
@@ -111,18 +163,19 @@ sim::ExperimentResult run_l_shape(const ExperimentInput& input) {
     auto run = drive_l_shape(machine, input.keep_log ? recorder.sink() : TraceSink<FixedSignals>{});
     if (input.keep_log) input.keep_log("", recorder.take());
     run.error.name = run.current.name = name;
-    result.figures.push_back({"standing_current_" + name, "A",
-                              "current of Y at standstill from F to G (positive against the last motion), " + name,
-                              std::abs(run.standing_current), expect(machine, name, &Expected::current, 0.05)});
+    result.figures.push_back(
+        {fmt::format("standing_{}_{}", effort.name, name), std::string(effort.unit),
+         fmt::format("{} of {} at standstill from F to G (positive against the last motion), {}", effort.name, y, name),
+         std::abs(run.standing_current), expect(machine, name, &Expected::current, 0.05)});
     result.figures.push_back({"same_direction_error_" + name, "um",
-                              "peak error of Y, restart in the same direction, " + name, run.same_error * 1e6,
-                              expect(machine, name, &Expected::same, 0.05)});
+                              fmt::format("peak error of {}, restart in the same direction, {}", y, name),
+                              run.same_error * 1e6, expect(machine, name, &Expected::same, 0.05)});
     result.figures.push_back({"opposite_direction_error_" + name, "um",
-                              "peak error of Y, restart in the opposite direction, " + name, run.opposite_error * 1e6,
-                              expect(machine, name, &Expected::opposite, 0.05)});
+                              fmt::format("peak error of {}, restart in the opposite direction, {}", y, name),
+                              run.opposite_error * 1e6, expect(machine, name, &Expected::opposite, 0.05)});
     result.findings.push_back(fmt::format(
-        "{}: {:.2f} A {} at standstill; restart {:.1f} um in the same direction, {:.1f} um in the opposite one.", name,
-        std::abs(run.standing_current),
+        "{}: {:.2f} {} {} at standstill; restart {:.1f} um in the same direction, {:.1f} um in the opposite one.", name,
+        std::abs(run.standing_current), effort.unit,
         std::abs(run.standing_current) < 0.02 ? "left"
         : run.kept_current() > 0.0            ? "kept in the direction of the last motion"
                                               : "turned against the last motion",
@@ -131,9 +184,9 @@ sim::ExperimentResult run_l_shape(const ExperimentInput& input) {
     current.series.push_back(std::move(run.current));
   }
   error.caption = fmt::format(
-      "Y is at standstill from {:.2f} s to {:.2f} s and restarts in the opposite direction; it is at standstill again "
+      "{} is at standstill from {:.2f} s to {:.2f} s and restarts in the opposite direction; it is at standstill again "
       "from {:.2f} s to {:.2f} s and restarts in the same direction.",
-      stop, opposite, stop_again, same);
+      y, stop, opposite, stop_again, same);
   result.charts = {std::move(error), std::move(current)};
   return result;
 }

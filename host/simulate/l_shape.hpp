@@ -18,8 +18,11 @@ struct LShapeRun {
   double kept_current() const { return -standing_current; }
 };
 
-// With the friction models that the machine's axes use, firmware in fixed point. The machine has an X and a Y axis.
-// Throws FaultTripped.
+// Throws InfeasibleMotion for a machine without two axes, or with one that cannot drive the path.
+void check_l_shape(const machine::Machine& machine);
+
+// With the friction models that the machine's axes use, firmware in fixed point. The first axis of the machine is X,
+// the second Y. Throws InfeasibleMotion, FaultTripped.
 LShapeRun drive_l_shape(const machine::Machine& machine, const TraceSink<FixedSignals>& trace = {});
 
 }  // namespace stiction::host

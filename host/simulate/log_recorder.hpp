@@ -2,6 +2,7 @@
 #pragma once
 
 #include <utility>
+#include <vector>
 
 #include "host/log/log.hpp"
 #include "host/simulate/control_run.hpp"
@@ -10,12 +11,16 @@
 
 namespace stiction::host {
 
-// Every tick of a control run: set-points, position, velocity, currents. It must outlive its sink.
+// Every tick of a control run: set-points, position, velocity, currents; of a force source its voltage. It must outlive
+// its sink.
 class LogRecorder {
  public:
   explicit LogRecorder(const machine::Machine& machine) {
     log_.period = machine.timing.fast_period;
-    for (const auto& axis : machine.axes) log_.axes.emplace_back().axis = axis.name;
+    for (const auto& axis : machine.axes) {
+      log_.axes.emplace_back().axis = axis.name;
+      force_source_.push_back(axis.motor.model == machine::MotorModel::force);
+    }
   }
   LogRecorder(const LogRecorder&) = delete;
   LogRecorder& operator=(const LogRecorder&) = delete;
@@ -32,6 +37,10 @@ class LogRecorder {
         axis.a_set.push_back(machine::to_si(s.a_set));
         axis.x.push_back(machine::to_si(s.x));
         axis.v.push_back(machine::to_si(s.v));
+        if (force_source_[k]) {
+          axis.u.push_back(machine::to_si(s.i_set));
+          continue;
+        }
         axis.i.push_back(machine::to_si(s.i));
         axis.i_set.push_back(machine::to_si(s.i_set));
       }
@@ -41,6 +50,7 @@ class LogRecorder {
 
  private:
   Log log_;
+  std::vector<bool> force_source_;
 };
 
 // Every `stride`-th step of a mass on a bench: position, velocity, and the force on it as F. No axis has a name.

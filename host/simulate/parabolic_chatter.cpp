@@ -26,7 +26,7 @@ double chatter_amplitude(const sim::ParabolicParameters& friction, double mass, 
 
 ChatterRun impact_with_parabolic_friction(machine::Machine machine, double force, double time,
                                           std::optional<double> step) {
-  auto& friction = machine.axes[0].friction;
+  auto& friction = machine.axes.at(0).friction;
   const auto parameters = sim::parameters_of<sim::Parabolic<>>(friction);
   friction.use = sim::Parabolic<>::name;
   if (step) {  // then it comes from outside, as a force

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/machine/model/motor_force.hpp"
 #include "host/identify/contact.hpp"
 #include "host/identify/identification.hpp"
 #include "host/identify/log_rows.hpp"
@@ -198,7 +199,7 @@ FrictionTuning tune_friction(const std::vector<Log>& logs, const machine::AxisMo
 
   const auto d = distances(settings.per_decade);
   const auto v = node_speeds(fastest);
-  const Equations q = equations(rows, d, v, axis.motor.force_constant);
+  const Equations q = equations(rows, d, v, machine::acting_force_constant(axis.motor));
   const auto best = best_damping(q);
   const Fit& fit = best.first;  // no structured binding: clang captures none
 
@@ -217,7 +218,7 @@ FrictionTuning tune_friction(const std::vector<Log>& logs, const machine::AxisMo
   t.friction.backward = curve(q.operators + q.nodes);
   for (const double level : t.friction.level) t.coulomb += level;
   const Index mass = q.operators + 2 * q.nodes;
-  t.mass = fit.w[mass] * axis.motor.force_constant;
+  t.mass = fit.w[mass] * machine::acting_force_constant(axis.motor);
   t.constant_current = fit.w[mass + 1];
   t.residual_rms = std::sqrt(fit.square);
   const double of_mass = fit.w[mass];

@@ -13,6 +13,7 @@ enum class Direction { counter_clockwise, clockwise };
 // One axis over the evaluated lap, one sample a tick of the fast loop. Its arrays have the length of CircleRun::angle.
 struct AxisLap {
   std::string axis;
+  std::string friction{};             // its model; empty: that of the run
   std::vector<double> error;          // m, x_set - x at the encoder, unquantised
   std::vector<double> current;        // A, motor force / force constant
   double peak_error = 0.0;            // m, largest |error|
@@ -36,7 +37,7 @@ struct BidirectionalErrors {
 };
 
 struct CircleRun {
-  std::string friction;  // the model's name in the machine file
+  std::string friction;  // the model's name in the machine file, or those of the axes: "X lugre, Y classical"
   double feed = 0.0;     // m/s
   double radius = 0.0;   // m
   Direction direction = Direction::counter_clockwise;

@@ -4,32 +4,29 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/experiment/circle_path.hpp"
-#include "sim/experiment/move_sequence.hpp"
-
 namespace stiction::sim {
-namespace {
 
-constexpr double acceleration = 2.0, jerk = 40.0;  // m/s^2, m/s^3: those of the circle's start
-
-}  // namespace
-
-Trajectory constant_speeds(const std::vector<double>& speeds, double cruise, double shortest) {
+Trajectory constant_speeds(const std::vector<double>& speeds, double cruise, double shortest,
+                           const Dynamics& dynamics) {
   MoveSequence moves;
   moves.rest(0.05);
   for (const double speed : speeds)
     for (const double sign : {1.0, -1.0}) {
-      moves.pass(sign * speed, std::max(cruise, shortest / speed), {acceleration, jerk});
+      moves.pass(sign * speed, std::max(cruise, shortest / speed), dynamics);
       moves.rest(0.05);
     }
   return {"constant speeds", moves.duration(), [moves](double t) { return moves.at(t); }};
 }
 
+Trajectory circle(const CircleSettings& settings, double turns) {
+  const double duration = 2.0 * std::numbers::pi * settings.radius * turns / settings.feed + 0.3;
+  return {"circle", duration, [path = CirclePath(settings)](double t) { return path.at(t).axes[0]; }};
+}
+
 Trajectory circle(double feed, double turns) {
   CircleSettings settings;
   settings.feed = feed;
-  const double duration = 2.0 * std::numbers::pi * settings.radius * turns / feed + 0.3;
-  return {"circle", duration, [path = CirclePath(settings)](double t) { return path.at(t).axes[0]; }};
+  return circle(settings, turns);
 }
 
 Trajectory small_reversals(const std::vector<double>& amplitudes, double frequency) {

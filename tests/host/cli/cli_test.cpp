@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -54,6 +55,14 @@ class Cli : public ::testing::Test {
     const auto file = folder_ / "m.toml";
     std::ofstream(file) << text;
     return "'" + file.string() + "'";
+  }
+
+  // The shipped machine without the text from `begin` up to `end`, which stays.
+  std::string machine_without(const std::string& begin, const std::string& end) {
+    const auto text = content(fs::path(STICTION_SOURCE_DIR) / "firmware/machine/shipped/mcfv5050ln.toml");
+    const auto from = text.find(begin), to = text.find(end, from);
+    EXPECT_NE(to, std::string::npos) << begin << ", " << end;
+    return machine_with(text.substr(from, to - from), "");
   }
 
   // Bad input: exit 2, the message on standard error only, nothing written.
@@ -261,6 +270,137 @@ TEST_F(Cli, RefusesALogWithoutATestSignal) {
       std::string::npos)
       << result.error;
   EXPECT_FALSE(fs::exists(work() / "result"));
+}
+
+// Whatever a machine cannot serve is bad input with one sentence, never a failure or a signal.
+TEST_F(Cli, EveryExperimentRunsOnEachShippedMachineOrSaysWhatItNeeds) {
+  const std::map<std::string, std::map<std::string, std::string>> refused{
+      {"mcfv5050ln", {{"feed-cutting", "found axes and no feed drive; expected a machine with a table [feed_drive]"}}},
+      {"emps",
+       {{"circle", "found axis X alone; expected a machine with exactly two axes"},
+        {"l-shape", "found axis X alone; expected a machine with exactly two axes: one stands while the other moves"},
+        {"presliding", "found axis X with parameters of coulomb_viscous; expected parameters of a friction model"},
+        {"friction-lag", "makes sense for: lugre"},
+        {"break-away", "makes sense for: lugre"},
+        {"stick-slip", "makes sense for: lugre, classical"},
+        {"feed-cutting", "found axes and no feed drive"}}},
+      {"stick-slip-feed", {}}};
+  for (const auto& [machine, sentences] : refused)
+    for (const std::string experiment :
+         {"circle", "constant-velocity", "impact", "l-shape", "presliding", "friction-lag", "break-away", "stick-slip",
+          "feed-cutting", "frequency-response", "commissioning --out ../logs"}) {
+      const auto command = fmt::format("simulate {} --machine {}", experiment, machine);
+      const bool feed_drive = machine == "stick-slip-feed";
+      if (feed_drive && experiment != "feed-cutting") {
+        expect_refused(command, machine + ".toml: found a feed drive and no axis; expected a machine with");
+      } else if (const auto sentence = sentences.find(experiment); sentence != sentences.end()) {
+        expect_refused(command, sentence->second);
+        expect_refused(command, machine + ".toml: found ");
+      } else {
+        const auto result = stiction(command);
+        EXPECT_EQ(result.code, 0) << command << "\n" << result.error;
+      }
+    }
+}
+
+TEST_F(Cli, EveryOtherCommandSaysWhatItNeedsOfAMachine) {
+  ASSERT_EQ(stiction("simulate commissioning --machine emps --out ../logs").code, 0);
+  for (const char* command : {"compare --reference circle", "identify --reference circle --out result",
+                              "diagnose --reference circle --out result"}) {
+    expect_refused(fmt::format("{} --machine emps", command),
+                   "emps.toml: found axis X alone; expected a machine with exactly two axes");
+    expect_refused(fmt::format("{} --machine {}", command, machine_without("circle = [", "# Tab 5.1")),
+                   "m.toml: found no row [[reference.circle]]; expected at least one");
+  }
+  for (const char* command : {"compare", "inspect", "identify", "diagnose", "tune-friction", "simulate replay --from"})
+    expect_refused(fmt::format("{} ../logs/circle.csv --machine stick-slip-feed", command),
+                   "stick-slip-feed.toml: found a feed drive and no axis; expected a machine with a table [axis.NAME]");
+  expect_refused("simulate frequency-response --machine emps --loop current --out result",
+                 "emps.toml: found no current controller on axis X alone; expected an axis with");
+  expect_refused("simulate impact --machine mcfv5050ln --axis Z", "--axis: found 'Z'; expected an axis of mcfv5050ln");
+  expect_refused("simulate commissioning --machine emps --axis Y --out result", "expected an axis of emps: X");
+}
+
+// Axes with motors of their own kind: what each experiment measures is its motor's.
+TEST_F(Cli, ExperimentsStayWithinWhatTheAxisCanDo) {
+  const auto json = [&](const std::string& command) {
+    const auto result = stiction(command + " --json");
+    EXPECT_EQ(result.code, 0) << result.error;
+    return nlohmann::json::parse(result.out);
+  };
+  // 12 m/min at most.
+  const auto speeds = json("simulate constant-velocity --machine emps");
+  for (const auto& [key, value] : speeds["results"].items()) EXPECT_EQ(key.find("_16_m"), std::string::npos) << key;
+  // A step of a quarter of 10 V times 35.15 N/V; its proportional velocity loop does not take it back.
+  const auto impact = json("simulate impact --machine emps");
+  EXPECT_GT(impact["results"]["peak_deviation_coulomb_viscous_um"], 10.0);
+  EXPECT_FALSE(impact["results"].contains("return_time_coulomb_viscous_ms"));
+  EXPECT_NE(impact["findings"].dump().find("no integral part"), std::string::npos);
+  // The other axis of the cross table.
+  const auto y = json("simulate impact --machine mcfv5050ln --axis Y --friction lugre");
+  const auto x = json("simulate impact --machine mcfv5050ln --friction lugre");
+  EXPECT_LT(y["results"]["peak_deviation_lugre_um"], 0.8 * x["results"]["peak_deviation_lugre_um"].get<double>());
+  expect_refused("simulate l-shape --machine mcfv5050ln --set axis.Y.travel='100 mm'",
+                 "l-shape: found a path with a way of 1");
+}
+
+// Few reversals: what the search does not try on such a record may be a shape outside of the vocabulary.
+TEST_F(Cli, DiagnosesALogOfOneLap) {
+  for (const char* friction : {"maxwell_slip", "classical"}) {
+    ASSERT_EQ(stiction(fmt::format("simulate circle --machine mcfv5050ln --friction {} --log lap.csv "
+                                   "--set axis.X.friction.lugre.viscous='700 N s/m'",
+                                   friction))
+                  .code,
+              0);
+    EXPECT_EQ(stiction("diagnose lap.csv --machine mcfv5050ln --axis X").code, 0) << friction;
+  }
+}
+
+// The order of commands in README: the shipped file agrees with the log of its own simulation.
+TEST_F(Cli, NamesNothingInTheLogOfTheFilesOwnCircle) {
+  ASSERT_EQ(stiction("simulate circle --machine mcfv5050ln --feed '16 m/min' --log run.csv").code, 0);
+  for (const char* axis : {"X", "Y"}) {
+    const auto result = stiction(fmt::format("diagnose run.csv --machine mcfv5050ln --axis {} --json", axis));
+    ASSERT_EQ(result.code, 0) << result.error;
+    const auto verdict = nlohmann::json::parse(result.out);
+    EXPECT_TRUE(verdict["findings"].empty()) << axis << ": " << verdict["findings"].dump(2);
+    EXPECT_LT(verdict["baseline"]["force_rms_N"], 0.1) << axis;  // of forces of 150 and 400 N rms
+  }
+  // The mass too is that of the file: 224.5 kg, were the current read with the drive's 94 N/A.
+  const auto result = stiction("identify run.csv --machine mcfv5050ln --axis X --json");
+  ASSERT_EQ(result.code, 0) << result.error;
+  const auto identified = nlohmann::json::parse(result.out);
+  EXPECT_NEAR(identified["parameters"]["mass_kg"]["value"], 225.0, 0.1);
+}
+
+// What is too small to be told in an exact log is not what a machine has.
+TEST_F(Cli, NamesWhatTheFileLacksInALogWithoutNoise) {
+  ASSERT_EQ(stiction("simulate circle --machine mcfv5050ln --feed '16 m/min' --log run.csv "
+                     "--set axis.X.friction.lugre.coulomb='95 N'")
+                .code,
+            0);
+  const auto result = stiction("diagnose run.csv --machine mcfv5050ln --axis X --json");
+  ASSERT_EQ(result.code, 0) << result.error;
+  const auto verdict = nlohmann::json::parse(result.out);
+  ASSERT_FALSE(verdict["findings"].empty());
+  EXPECT_EQ(verdict["findings"][0]["effect"], "coulomb_mismatch") << verdict["findings"].dump(2);
+  EXPECT_NEAR(verdict["findings"][0]["parameters"]["coulomb_N"], 95.0, 0.5);
+}
+
+TEST_F(Cli, EachAxisKeepsItsOwnFrictionModelUnlessOneIsNamed) {
+  const auto run = [&](const std::string& more) {
+    const auto result =
+        stiction("simulate circle --machine mcfv5050ln --json --set axis.Y.friction.use=classical " + more);
+    EXPECT_EQ(result.code, 0) << result.error;
+    return nlohmann::json::parse(result.out)["rows"];
+  };
+  const auto own = run(""), lugre = run("--friction lugre"), classical = run("--friction classical");
+  EXPECT_EQ(own[0]["friction"], "X lugre, Y classical");
+  EXPECT_EQ(own[0]["peak_error_um"], lugre[0]["peak_error_um"]);
+  EXPECT_EQ(own[1]["peak_error_um"], classical[1]["peak_error_um"]);
+  EXPECT_NE(own[1]["peak_error_um"], lugre[1]["peak_error_um"]);
+  // The published simulation beside an axis is that of its own model.
+  EXPECT_EQ(own[1]["published_simulation"], classical[1]["published_simulation"]);
 }
 
 TEST_F(Cli, ShowsTheShippedMachinesAndTheirReference) {

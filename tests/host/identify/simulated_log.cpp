@@ -6,6 +6,7 @@
 #include <random>
 
 #include "firmware/machine/configuration/double_signals.hpp"
+#include "firmware/machine/model/motor_force.hpp"
 #include "host/simulate/control_run.hpp"
 
 namespace stiction::test {
@@ -31,7 +32,7 @@ host::Log simulated(const machine::Machine& machine, const Trajectory& trajector
       log.t.push_back(run.time());
       axis.x_set.push_back(set.position);
       axis.x.push_back(run.plant(0).encoder_position());
-      axis.i.push_back(run.plant(0).motor_force() / machine.axes.front().motor.force_constant);
+      axis.i.push_back(run.plant(0).motor_force() / machine::acting_force_constant(machine.axes.front().motor));
     }
     run.tick(std::array{set});
   }

@@ -1,0 +1,54 @@
+#include "firmware/machine/file/machine_notes.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "firmware/machine/model/motor_force.hpp"
+
+namespace stiction::machine {
+namespace {
+
+constexpr double equal = 1e-6;     // of numbers that a file gives with a few digits
+constexpr double rounding = 0.01;  // what data sheets round away
+
+std::string beyond_rounding(double ratio) {
+  if (std::abs(ratio - 1.0) <= rounding) return "";
+  return "; so much is no rounding: check whether one of them is in rms amperes, or of a line in place of a winding";
+}
+
+// The drive's force constant beside that of the windings.
+void note_force_constant(const AxisModel& axis, std::vector<std::string>& notes) {
+  const double windings = acting_force_constant(axis.motor), ratio = windings / axis.motor.force_constant;
+  if (std::abs(ratio - 1.0) <= equal) return;
+  notes.push_back(
+      fmt::format("Axis {}: force_constant is {:.5g} N/A, and the windings make {:.5g} N/A, 3/2 of {:.5g} ({:+.2f} %). "
+                  "The drive reckons with the first; the simulated motor has the second, and logs are read with it{}.",
+                  axis.name, axis.motor.force_constant, windings, axis.motor.phase_force_constant,
+                  100.0 * (ratio - 1.0), beyond_rounding(ratio)));
+}
+
+// A winding's voltage per speed and force per ampere are one constant, by the energy that it converts.
+void note_emf_constant(const AxisModel& axis, std::vector<std::string>& notes) {
+  const double ratio = axis.motor.emf_constant / axis.motor.phase_force_constant;
+  if (std::abs(ratio - 1.0) <= rounding) return;
+  notes.push_back(fmt::format(
+      "Axis {}: emf_constant is {:.5g} V s/m and phase_force_constant {:.5g} N/A ({:+.2f} %). Of one winding "
+      "they are the same number{}.",
+      axis.name, axis.motor.emf_constant, axis.motor.phase_force_constant, 100.0 * (ratio - 1.0),
+      beyond_rounding(ratio)));
+}
+
+}  // namespace
+
+std::vector<std::string> machine_notes(const Machine& machine) {
+  std::vector<std::string> notes;
+  for (const AxisModel& axis : machine.axes) {
+    if (axis.motor.model != MotorModel::synchronous) continue;
+    note_force_constant(axis, notes);
+    note_emf_constant(axis, notes);
+  }
+  return notes;
+}
+
+}  // namespace stiction::machine
