@@ -1,0 +1,90 @@
+"""What is counted over the cells: failures, of which some are known, and rates with the interval of Wilson (1927)."""
+
+import dataclasses
+import math
+import tomllib
+
+
+def wilson(hits, cases):
+    """The 95 % interval of a rate."""
+    if cases == 0:
+        return 0.0, 1.0
+    z = 1.959964
+    rate = hits / cases
+    middle = (rate + z * z / (2.0 * cases)) / (1.0 + z * z / cases)
+    half = z / (1.0 + z * z / cases) * math.sqrt(rate * (1.0 - rate) / cases + z * z / (4.0 * cases * cases))
+    return max(middle - half, 0.0), min(middle + half, 1.0)
+
+
+@dataclasses.dataclass(frozen=True)
+class Failure:
+    """`what` is a few words that do not change from run to run; the detail is for the reader."""
+    cell: str
+    step: str
+    what: str
+    detail: str = ""
+
+
+@dataclasses.dataclass(frozen=True)
+class Known:
+    """A failure that is known, with the reason that somebody found for it."""
+    cell: str
+    step: str
+    what: str
+    reason: str
+
+    def covers(self, failure):
+        return (self.cell, self.step, self.what) == (failure.cell, failure.step, failure.what)
+
+
+class BadList(Exception):
+    """The list of known failures is not one."""
+
+
+def read_known(place):
+    rows = tomllib.loads(place.read_text(encoding="utf-8")).get("known", [])
+    known = []
+    for row in rows:
+        if set(row) != {"cell", "step", "what", "reason"} or not all(str(value).strip() for value in row.values()):
+            raise BadList(f"{place}: found {row}; expected cell, step, what and reason, each with a text")
+        if row["cell"].count("/") != 3:
+            raise BadList(f"{place}: found the cell '{row['cell']}'; expected MACHINE/AXIS/MODEL/SEED")
+        known.append(Known(**row))
+    if len(set(known)) != len(known):
+        raise BadList(f"{place}: found the same row twice")
+    return known
+
+
+def sort_out(failures, known, ran):
+    """Failures that nobody knows, those that are known, and known ones that passed although their cell ran."""
+    unknown = [failure for failure in failures if not any(row.covers(failure) for row in known)]
+    expected = [failure for failure in failures if any(row.covers(failure) for row in known)]
+    healed = [row for row in known if row.cell in ran and not any(row.covers(failure) for failure in failures)]
+    return unknown, expected, healed
+
+
+@dataclasses.dataclass
+class Rate:
+    """Cases counted over all cells, with what is wanted of them. `judge`: whether the rate decides, and not each case."""
+    name: str
+    least: float = 0.0
+    most: float = 1.0
+    hits: int = 0
+    cases: int = 0
+
+    def add(self, hit):
+        self.hits += bool(hit)
+        self.cases += 1
+
+    def holds(self, exactly):
+        """Whether the rate lies in what is wanted: its point where there are many cases, else its interval overlaps."""
+        if self.cases == 0:
+            return True
+        low, high = (self.hits / self.cases,) * 2 if exactly else wilson(self.hits, self.cases)
+        return low <= self.most and high >= self.least
+
+    def text(self):
+        low, high = wilson(self.hits, self.cases)
+        rate = f"{100.0 * self.hits / self.cases:.1f} %" if self.cases else "no case"
+        return (f"{self.name}: {self.hits} of {self.cases}, {rate} (95 % interval {100.0 * low:.1f} to "
+                f"{100.0 * high:.1f} %)")
