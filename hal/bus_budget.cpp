@@ -63,7 +63,7 @@ void object_to_burst(BusBudget& budget) {
       longest_other = std::max(longest_other, row.time.worst);
   }
   if (longest_other == 0.0 || burst + longest_other <= shortest) return;
-  budget.objections.push_back(
+  budget.rejection_reasons.push_back(
       fmt::format("found frames of the period {} that take {} behind one of {} that has begun; expected at most {}",
                   time_text(shortest), time_text(burst), time_text(longest_other), time_text(shortest)));
 }
@@ -77,7 +77,7 @@ void object_to_load(BusBudget& budget) {
   if (std::all_of(budget.rows.begin(), budget.rows.end(), [&](const auto& row) { return row.period == period; }))
     text += fmt::format(", which these frames have from a period of {} on, not {}",
                         time_text(period * load / highest_bus_load), time_text(period));
-  budget.objections.push_back(text);
+  budget.rejection_reasons.push_back(text);
 }
 
 // Why a frame cannot be on the bus at all; empty: it can.
@@ -166,7 +166,7 @@ BusBudget can_budget(const std::string& interface, const CanRates& rates, const 
     if (reason.empty())
       budget.rows.push_back(row_of(frame, rates));
     else  // not even a virtual bus takes it
-      budget.objections.push_back(fmt::format("{}: found {}", frame.name, reason));
+      budget.rejection_reasons.push_back(fmt::format("{}: found {}", frame.name, reason));
   }
   if (is_virtual || budget.rows.empty()) return budget;
   object_to_load(budget);
@@ -198,7 +198,7 @@ BusBudget modbus_budget(const std::string& device, double baud_rate, const std::
     budget.rows.push_back(row);
   }
   if (rate > modbus_highest_rate * (1.0 + 1e-9))
-    budget.objections.push_back(
+    budget.rejection_reasons.push_back(
         fmt::format("found {:.0f} exchanges a second; expected at most {:.0f}, a period of {} each", rate,
                     modbus_highest_rate, time_text(period_limit())));
   if (serial && !budget.rows.empty()) object_to_load(budget);
@@ -218,15 +218,15 @@ std::string budget_table(const BusBudget& budget) {
   table += fmt::format("{:<82} {:>15}\n", fmt::format("all (allowed: {:.0f} %)", highest_bus_load * 100),
                        fmt::format("{:.1f} to {:.1f} %", budget.best_load() * 100, budget.worst_load() * 100));
   if (!budget.note.empty()) table += budget.note + "\n";
-  for (const auto& objection : budget.objections) table += "refused: " + objection + "\n";
-  if (budget.objections.empty()) table += budget.exempt ? "exempt\n" : "carried\n";
+  for (const auto& objection : budget.rejection_reasons) table += "refused: " + objection + "\n";
+  if (budget.rejection_reasons.empty()) table += budget.exempt ? "exempt\n" : "carried\n";
   return table;
 }
 
 void check(const BusBudget& budget) {
-  if (budget.objections.empty()) return;
+  if (budget.rejection_reasons.empty()) return;
   std::string text = fmt::format("bus {}", budget.bus);
-  for (const auto& objection : budget.objections) text += ": " + objection;
+  for (const auto& objection : budget.rejection_reasons) text += ": " + objection;
   throw BusBudgetError(text);
 }
 

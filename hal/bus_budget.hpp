@@ -76,8 +76,8 @@ struct BusBudget {
   std::string bus;      // "can0, 1 Mbit/s, data 8 Mbit/s"
   bool exempt = false;  // a virtual bus has no bit times
   std::vector<BudgetRow> rows;
-  std::string note;                     // what the table does not tell; empty: nothing
-  std::vector<std::string> objections;  // why the bus cannot carry it, each a sentence with its numbers
+  std::string note;                            // what the table does not tell; empty: nothing
+  std::vector<std::string> rejection_reasons;  // why the bus cannot carry it, each a sentence with its numbers
 
   double best_load() const;
   double worst_load() const;

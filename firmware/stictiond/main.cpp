@@ -66,7 +66,7 @@ int run_can(const DriveConfiguration& configuration, const DriveOptions& options
   }
   const auto bus = backend.bus_counts();
   fmt::print("bus: {} frames with an unknown identifier, {} error frames, {} not sent, {} lost in the kernel\n",
-             bus.of_nobody, bus.error_frames, bus.send_failed, bus.lost_in_kernel);
+             bus.unknown_id, bus.error_frames, bus.send_failed, bus.lost_in_kernel);
   return status_of(result);
 }
 
@@ -116,7 +116,7 @@ int print_budgets(const DriveConfiguration& configuration) {
   bool refused = false;
   for (const auto& budget : budgets) {
     fmt::print("{}", hal::budget_table(budget));
-    refused |= !budget.objections.empty();
+    refused |= !budget.rejection_reasons.empty();
   }
   return refused ? exit_refused : exit_done;
 }

@@ -81,7 +81,7 @@ bool CanBackend::complete() const {
 
 void CanBackend::read(std::span<Feedback<Signals>> feedback) {
   Received received;
-  of_nobody_now_ = 0;
+  unknown_id_now_ = 0;
   // From when the tick really began: a late tick waits as long for its answers as any other.
   const std::int64_t deadline = now_ns_ + clock_.lateness_ns() + answer_ns_;
   std::uint32_t left = most_taken;
@@ -94,7 +94,7 @@ void CanBackend::read(std::span<Feedback<Signals>> feedback) {
     node.check.end();
     node.fault = node.watch.step({.valid = node.check.complete(),
                                   .disturbed = node.check.bad_in_tick(),
-                                  .foreign = of_nobody_now_,
+                                  .foreign = unknown_id_now_,
                                   .bus_off = bus_off_});
     if (node.check.complete()) {
       node.state = node.arriving;
@@ -118,8 +118,8 @@ void CanBackend::take(const Received& received) {
   const auto node =
       std::find_if(nodes_.begin(), nodes_.end(), [&](const Node& each) { return each.id == address.node; });
   if (node == nodes_.end() || (address.kind != Kind::position && address.kind != Kind::current)) {
-    ++bus_.of_nobody;  // a node's identifier with another format's size
-    ++of_nobody_now_;
+    ++bus_.unknown_id;  // a node's identifier with another format's size
+    ++unknown_id_now_;
     return;
   }
   std::uint32_t counter = 0;
@@ -133,8 +133,8 @@ void CanBackend::take(const Received& received) {
 void CanBackend::watch_bus() {
   Received received;
   for (std::uint32_t i = 0; i < most_watched && watch_socket_.receive(received, 0); ++i) {
-    ++bus_.of_nobody;
-    ++of_nobody_now_;
+    ++bus_.unknown_id;
+    ++unknown_id_now_;
   }
 }
 

@@ -25,7 +25,7 @@ struct CanBackendConfig {
 
 struct BusCounts {
   std::uint64_t send_failed = 0;   // frames that the kernel did not take
-  std::uint64_t of_nobody = 0;     // frames with an identifier that the drive does not use
+  std::uint64_t unknown_id = 0;    // frames with an identifier that the drive does not use
   std::uint64_t error_frames = 0;  // of the controller
   std::uint64_t lost_in_kernel = 0;
 };
@@ -78,7 +78,7 @@ class CanBackend {
   bool started_ = false;
   std::int64_t now_ns_ = 0;
   bool bus_off_ = false;
-  std::uint32_t of_nobody_now_ = 0;  // in this tick
+  std::uint32_t unknown_id_now_ = 0;  // in this tick
   BusCounts bus_;
 };
 

@@ -30,7 +30,7 @@ struct MachineOptions {
   machine::Machine load(const std::string& name, const std::string& experiment, const MachineNeeds& needs) const;
 };
 
-// Throws UsageError "FILE: found ...; expected ..." for a machine that lacks what the command needs.
+// Throws UsageError "FILE: found ...; expected ..." for a `machine`, of `file`, that lacks what the command `needs`.
 void require_needs(const machine::Machine& machine, const MachineNeeds& needs, const std::filesystem::path& file);
 
 // "a,b" or "a, b": the parts without blanks around them.

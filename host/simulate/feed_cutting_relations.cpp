@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "host/simulate/feed_cutting.hpp"
-#include "sim/experiment/feed_per_revolution.hpp"
+#include "sim/plant/feed/feed_per_revolution.hpp"
 
 namespace stiction::host {
 namespace {

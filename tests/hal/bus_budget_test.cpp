@@ -75,7 +75,7 @@ int axes_carried(const AxesRow& row, double period) {
     frames.push_back({"feedback", CanIdentifier::standard, row.feedback, fd, axes, period});
     hal::CanRates rates;
     if (fd) rates.data = row.data_rate * 1e6;
-    if (!hal::can_budget("can0", rates, frames, false).objections.empty()) return axes - 1;
+    if (!hal::can_budget("can0", rates, frames, false).rejection_reasons.empty()) return axes - 1;
   }
 }
 

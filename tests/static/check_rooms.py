@@ -79,7 +79,6 @@ ROOMS = {
     "sim/experiment": {
         "sim/number": "the mathematics of paths",
         "firmware/machine/*": "set-points cross the border to the drive's formats within the limits of a machine",
-        "sim/plant/feed": "the feed of a revolution is measured on the feed drive",
         f"{FIRMWARE}/*": "and end in the cascade's types",
     },
     "host/log": {

@@ -83,9 +83,9 @@ typename stiction::FrictionFeedforward<S>::Config friction_of(const FrictionFeed
 }
 
 template <class S>
-typename stiction::GlitchLearning<S>::Table table_of(const std::vector<double>& currents, const char* key,
-                                                     const Converter& convert) {
-  typename stiction::GlitchLearning<S>::Table table;
+typename stiction::QuadrantLearning<S>::Table table_of(const std::vector<double>& currents, const char* key,
+                                                       const Converter& convert) {
+  typename stiction::QuadrantLearning<S>::Table table;
   for (std::size_t k = 0; k < std::min(table.size(), currents.size()); ++k)
     table[k] = convert.template operator()<typename S::Current>(currents[k], key);
   return table;
@@ -97,8 +97,8 @@ constexpr double teaching_error = 50e-6;  // m
 // The missing current from the error of a PI velocity loop under a P position loop, k (e' + (K_v + 1/T_N) e), the first
 // two terms of the loop's inverse; what is left of it, mass and a slow integral, is the lead.
 template <class S>
-typename stiction::GlitchLearning<S>::Config learning_of(const Machine& machine, const AxisModel& axis,
-                                                         std::uint32_t set_point_delay, const Converter& convert) {
+typename stiction::QuadrantLearning<S>::Config learning_of(const Machine& machine, const AxisModel& axis,
+                                                           std::uint32_t set_point_delay, const Converter& convert) {
   using Weight = typename S::FilterCoefficient;
   using Gain = typename S::ContactStiffness;
   const auto& learning = *axis.friction_compensation->learning;
@@ -106,7 +106,7 @@ typename stiction::GlitchLearning<S>::Config learning_of(const Machine& machine,
   const auto& integral_time = axis.velocity_controller.integral_time;
   const double per_metre = gain * (axis.position_controller.gain + (integral_time ? 1.0 / *integral_time : 0.0));
   const double newest = 1.0 - std::exp(-period / learning.filter);
-  typename stiction::GlitchLearning<S>::Config c;
+  typename stiction::QuadrantLearning<S>::Config c;
   c.rate_gain = convert.template operator()<Gain>(gain / period, "learning");
   c.error_gain = convert.template operator()<Gain>(per_metre, "learning");
   c.dead_zone = convert.template operator()<typename S::Distance>(learning.dead_zone, "learning.dead_zone");
@@ -119,7 +119,7 @@ typename stiction::GlitchLearning<S>::Config learning_of(const Machine& machine,
   c.smoothing = convert.template operator()<Weight>(learning.smoothing, "learning.smoothing");
   c.limit = convert.template operator()<typename S::Current>(learning.limit, "learning.limit");
   c.credit_ticks = set_point_delay + whole_ticks(learning_lead(axis), period);
-  constexpr auto most = stiction::GlitchLearning<S>::credit_buffer - 1;
+  constexpr auto most = stiction::QuadrantLearning<S>::credit_buffer - 1;
   if (c.credit_ticks > most)
     throw ConfigurationError(
         fmt::format("axis.{}.friction_compensation.learning.lead: found {:g} ms, with set_point_delay {} ticks of "

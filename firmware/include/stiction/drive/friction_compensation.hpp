@@ -10,7 +10,7 @@
 #include "stiction/control/compensation_kind.hpp"
 #include "stiction/control/delay_line.hpp"
 #include "stiction/control/friction_feedforward.hpp"
-#include "stiction/control/glitch_learning.hpp"
+#include "stiction/control/quadrant_learning.hpp"
 #include "stiction/control/reversal_pulse.hpp"
 #include "stiction/drive/axis_signals.hpp"
 #include "stiction/drive/exchange.hpp"
@@ -29,7 +29,7 @@ struct FrictionCompensationConfig {
   typename S::TickFraction lag_fraction{};
   typename ReversalPulse<S>::Config pulse{};
   typename FrictionFeedforward<S>::Config friction{};
-  typename GlitchLearning<S>::Config learning{};
+  typename QuadrantLearning<S>::Config learning{};
 };
 
 // What it added in a tick, as it enters the axis but for `friction`, whose terms are those of the newest set-point.
@@ -73,7 +73,7 @@ class FrictionCompensation {
     current_.fill({});
     pulse_ = ReversalPulse<S>::start(config_.pulse);
     friction_ = {};
-    learning_ = GlitchLearning<S>::start(config_.learning);
+    learning_ = QuadrantLearning<S>::start(config_.learning);
     newest_ = x;
   }
 
@@ -98,8 +98,8 @@ class FrictionCompensation {
         break;
       case CompensationKind::learning: {
         const auto dx = step_to(newest.position);
-        terms.learned = GlitchLearning<S>::play(config_.learning, learning_, dx, newest.velocity, newest.acceleration,
-                                                saturations_);
+        terms.learned = QuadrantLearning<S>::play(config_.learning, learning_, dx, newest.velocity, newest.acceleration,
+                                                  saturations_);
         add(set, saturated_sum(oppose_friction(dx, newest.velocity, terms), terms.learned, saturations_), terms);
         break;
       }
@@ -109,13 +109,13 @@ class FrictionCompensation {
   // After the axis' tick: what its error teaches.
   constexpr void observe(const AxisSignals<S>& axis, Signals& terms) {
     if (config_.kind != CompensationKind::learning) return;
-    GlitchLearning<S>::learn(config_.learning, learning_, axis.e, saturations_);
+    QuadrantLearning<S>::learn(config_.learning, learning_, axis.e, saturations_);
     terms.missing = learning_.missing;
     terms.dropped = learning_.dropped;
   }
 
   // What was learned so far, to be kept for the next start.
-  constexpr const typename GlitchLearning<S>::Tables& learned() const { return learning_.tables; }
+  constexpr const typename QuadrantLearning<S>::Tables& learned() const { return learning_.tables; }
   constexpr bool dropped() const { return learning_.dropped; }
 
  private:
@@ -146,7 +146,7 @@ class FrictionCompensation {
   DelayLine<typename S::Current, Config::buffer_ticks> current_{};
   typename ReversalPulse<S>::State pulse_{};
   typename FrictionFeedforward<S>::State friction_{};
-  typename GlitchLearning<S>::State learning_{};
+  typename QuadrantLearning<S>::State learning_{};
   SaturationCounter saturations_{};
 };
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/experiment/feed_per_revolution.hpp"
+#include "sim/plant/feed/feed_per_revolution.hpp"
 #include "sim/machine_file.hpp"
 #include "sim/plant/feed/stick_slip_relations.hpp"
 #include "tests/support/figure.hpp"

@@ -20,7 +20,7 @@
 namespace stiction {
 
 template <class S>
-struct GlitchLearning {
+struct QuadrantLearning {
   using Current = typename S::Current;
   using Distance = typename S::Distance;
   using Weight = typename S::FilterCoefficient;

@@ -1,5 +1,5 @@
 // Learning over laps, on a loop that is a plain lag: what it learns, what it must not.
-#include "stiction/control/glitch_learning.hpp"
+#include "stiction/control/quadrant_learning.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace stiction {
 namespace {
 
 using S = FixedSignals;
-using Learning = GlitchLearning<S>;
+using Learning = QuadrantLearning<S>;
 using machine::to_si;
 template <class T>
 T signal(double value) {
@@ -91,13 +91,13 @@ double largest_of(const Learning::Tables& tables) {
   return largest;
 }
 
-TEST(GlitchLearning, NothingIsPlayedBeforeAReferenceIsTaken) {
+TEST(QuadrantLearning, NothingIsPlayedBeforeAReferenceIsTaken) {
   Swings s(config());
   s.swing();
   EXPECT_EQ(s.largest(), 0.0);
 }
 
-TEST(GlitchLearning, LearnsWhatIsMissingAfterAReversal) {
+TEST(QuadrantLearning, LearnsWhatIsMissingAfterAReversal) {
   Swings s(config());
   for (int k = 0; k < 8; ++k) s.swing();
   // Table nodes at 2 to 90 um hold most of the 0.2 A; both directions with their sign.
@@ -107,7 +107,7 @@ TEST(GlitchLearning, LearnsWhatIsMissingAfterAReversal) {
   EXPECT_FALSE(s.state().dropped);
 }
 
-TEST(GlitchLearning, IsBounded) {
+TEST(QuadrantLearning, IsBounded) {
   auto c = config();
   c.limit = signal<S::Current>(0.05);
   Swings s(c);
@@ -116,7 +116,7 @@ TEST(GlitchLearning, IsBounded) {
   EXPECT_LE(s.largest(), 0.05 + 1e-5);
 }
 
-TEST(GlitchLearning, ForgetsWhatIsNoLongerMissing) {
+TEST(QuadrantLearning, ForgetsWhatIsNoLongerMissing) {
   Swings s(config());
   for (int k = 0; k < 6; ++k) s.swing();
   const double before = largest_of(s.state().tables);
@@ -128,7 +128,7 @@ TEST(GlitchLearning, ForgetsWhatIsNoLongerMissing) {
   EXPECT_LT(largest_of(state.tables), 0.5 * before);
 }
 
-TEST(GlitchLearning, CurrentHasNoJumpOnceItHasLearned) {
+TEST(QuadrantLearning, CurrentHasNoJumpOnceItHasLearned) {
   Swings s(config());
   for (int k = 0; k < 12; ++k) s.swing();
   // Before, what is taught to a node near the set-point is a step of its own.
@@ -138,7 +138,7 @@ TEST(GlitchLearning, CurrentHasNoJumpOnceItHasLearned) {
   EXPECT_LT(s.largest_step(), 0.02);
 }
 
-TEST(GlitchLearning, AShortReversalHoldsTheCurrentAndTeachesNothing) {
+TEST(QuadrantLearning, AShortReversalHoldsTheCurrentAndTeachesNothing) {
   Swings s(config());
   for (int k = 0; k < 6; ++k) s.swing();
   const auto tables = s.state().tables;
@@ -153,7 +153,7 @@ TEST(GlitchLearning, AShortReversalHoldsTheCurrentAndTeachesNothing) {
   EXPECT_NE(largest_of(tables), 0.0);
 }
 
-TEST(GlitchLearning, ATableThatMakesTheErrorGrowIsDroppedAndStaysSo) {
+TEST(QuadrantLearning, ATableThatMakesTheErrorGrowIsDroppedAndStaysSo) {
   auto c = config();
   for (std::size_t k = 0; k < Learning::nodes; ++k) {
     c.tables[1][k] = signal<S::Current>(-0.4);  // against what is missing
@@ -171,7 +171,7 @@ TEST(GlitchLearning, ATableThatMakesTheErrorGrowIsDroppedAndStaysSo) {
   EXPECT_TRUE(s.state().dropped);
 }
 
-TEST(GlitchLearning, ATableOfAnotherMachineIsNotTaken) {
+TEST(QuadrantLearning, ATableOfAnotherMachineIsNotTaken) {
   auto c = config();
   c.tables[1].fill(signal<S::Current>(0.3));
   c.tables_machine = 2;
@@ -181,7 +181,7 @@ TEST(GlitchLearning, ATableOfAnotherMachineIsNotTaken) {
   EXPECT_NEAR(largest_of(Learning::start(c).tables), 0.3, 1e-6);
 }
 
-TEST(GlitchLearning, CanBeStoppedAtAnyTime) {
+TEST(QuadrantLearning, CanBeStoppedAtAnyTime) {
   auto c = config();
   Swings learned(c);
   for (int k = 0; k < 5; ++k) learned.swing();
@@ -193,7 +193,7 @@ TEST(GlitchLearning, CanBeStoppedAtAnyTime) {
   EXPECT_GT(frozen.largest(), 0.0);
 }
 
-TEST(GlitchLearning, LearnsNothingMoreOnceItIsDropped) {
+TEST(QuadrantLearning, LearnsNothingMoreOnceItIsDropped) {
   Swings swings(config());
   for (int lap = 0; lap < 3; ++lap) swings.swing();
   swings.state().dropped = true;
@@ -202,7 +202,7 @@ TEST(GlitchLearning, LearnsNothingMoreOnceItIsDropped) {
   EXPECT_TRUE(swings.state().tables == before);
 }
 
-TEST(GlitchLearning, OctavesOfAccelerationEndAtBothEnds) {
+TEST(QuadrantLearning, OctavesOfAccelerationEndAtBothEnds) {
   constexpr int highest = 5;
   const std::array<std::pair<double, int>, 5> wanted{{{0.0, 0}, {0.01, 0}, {0.04, 1}, {-0.04, 1}, {40.0, highest}}};
   for (const auto& [acceleration, place] : wanted)  // m/s^2; the first octave begins at 1/32
