@@ -29,9 +29,9 @@ void check_length(const ValueTable& table, const ValueKey& key, const KeyedValue
 }  // namespace
 
 void check_values(const ValueTable& table, const KeyedValues& values) {
-  for (const auto& [name, list] : values)
-    if (std::none_of(table.keys.begin(), table.keys.end(), [&](const ValueKey& key) { return key.key == name; }))
-      throw ValueError(table.name, fmt::format("the key {}", name), "none but its own keys");
+  for (const auto& given : values)
+    if (std::none_of(table.keys.begin(), table.keys.end(), [&](const ValueKey& key) { return key.key == given.first; }))
+      throw ValueError(table.name, fmt::format("the key {}", given.first), "none but its own keys");
   for (const ValueKey& key : table.keys) {
     const auto found = values.find(key.key);
     if (found != values.end())
