@@ -15,7 +15,7 @@ namespace {
 
 const machine::Machine& machine() {
   static const machine::Machine one_axis = [] {
-    auto m = sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/mcfv5050ln.toml",
+    auto m = sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/firmware/machine/shipped/mcfv5050ln.toml",
                                {"circle", {"axis.X.motor.model=dc", "axis.X.friction.use=lugre"}});
     m.axes.resize(1);
     return m;

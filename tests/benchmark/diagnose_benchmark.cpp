@@ -20,7 +20,7 @@ constexpr std::size_t samples = 25'000;  // of the training logs, 1 kHz
 // samples: the last one cut.
 host::DiagnoseInput input() {
   host::DiagnoseInput input;
-  input.machine = sim::read_machine(STICTION_SOURCE_DIR "/sim/machine/shipped/mcfv5050ln.toml",
+  input.machine = sim::read_machine(STICTION_SOURCE_DIR "/firmware/machine/shipped/mcfv5050ln.toml",
                                     {{}, {"axis.X.encoder.velocity=estimated"}});
   auto machine = input.machine;
   machine.axes.front().effects = {{"force_ripple", {{"pitch", {0.024}}, {"cosine", {3.0}}, {"sine", {0.0}}}}};

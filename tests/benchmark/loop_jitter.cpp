@@ -36,7 +36,7 @@ std::string row(const hal::TimeCounts& t) {
 
 int run(std::int64_t period_ns, double seconds, const drive::RealTimeRequest& request) {
   const auto machine =
-      sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/mcfv5050ln.toml", {"circle", {}});
+      sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/firmware/machine/shipped/mcfv5050ln.toml", {"circle", {}});
   const sim::CirclePath path({.feed = 16.0 / 60.0});
   constexpr std::array<double, 2> start{0.09, 0.0};
   const auto timing = std::make_unique<hal::LoopTiming>();

@@ -18,7 +18,7 @@ namespace stiction::blind {
 namespace {
 
 machine::Machine shipped() {
-  return sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/mcfv5050ln.toml");
+  return sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/firmware/machine/shipped/mcfv5050ln.toml");
 }
 
 host::Verdict diagnosed(const BlindCase& blind) {

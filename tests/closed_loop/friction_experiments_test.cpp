@@ -15,7 +15,7 @@ namespace {
 
 machine::Machine machine_for(const char* experiment) {
   auto machine =
-      sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/mcfv5050ln.toml", {experiment, {}});
+      sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/firmware/machine/shipped/mcfv5050ln.toml", {experiment, {}});
   machine.axes.resize(1);
   return machine;
 }

@@ -74,7 +74,7 @@ void change_delay(machine::AxisModel& axis, double by) { axis.inverter.dead_time
 }  // namespace
 
 machine::Machine cross_table() {
-  return sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/mcfv5050ln.toml",
+  return sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/firmware/machine/shipped/mcfv5050ln.toml",
                            {"circle", {"axis.*.encoder.velocity=estimated", "axis.*.encoder.noise=2 nm"}});
 }
 

@@ -13,6 +13,7 @@
 #include "hal/control_loop.hpp"
 #include "hal/simulated/simulated_backend.hpp"
 #include "sim/experiment/set_point.hpp"
+#include "sim/machine_file.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
 namespace stiction::fuzz {

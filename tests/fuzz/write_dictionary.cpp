@@ -10,6 +10,7 @@
 #include "sim/plant/friction/friction.hpp"
 
 int main() {
+  namespace machine = stiction::machine;
   namespace sim = stiction::sim;
   std::set<std::string> words{std::string(machine::machine_schema),
                               "axis.",

@@ -83,7 +83,7 @@ TEST(DriveLoop, GivesNoFaultWithMotorsOfOnePhase) {
 
 // A ball-screw axis with another period, a force source and an encoder of 50 nm: constant speeds both ways.
 TEST(DriveLoop, GivesNoFaultOnTheBallScrewAxis) {
-  const auto machine = sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/emps.toml", {});
+  const auto machine = sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/firmware/machine/shipped/emps.toml", {});
   hal::SimulatedBackend<S> backend(machine, std::array{0.0});
   const auto drives = machine::configure_drives<S>(machine, drive_setup(machine));
   const auto configs = configurations<S>(machine);

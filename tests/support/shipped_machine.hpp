@@ -9,7 +9,7 @@
 namespace stiction::test {
 
 inline machine::Machine cross_table(std::vector<std::string> set = {}) {
-  return sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/mcfv5050ln.toml",
+  return sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/firmware/machine/shipped/mcfv5050ln.toml",
                            {"circle", std::move(set)});
 }
 

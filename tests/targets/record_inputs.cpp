@@ -29,7 +29,7 @@ machine::Machine machine() {
   for (const char* axis : {"X", "Y"})
     for (const char* value : {"encoder.velocity=estimated", "encoder.noise=1 nm"})
       set.push_back(fmt::format("axis.{}.{}", axis, value));
-  return sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/mcfv5050ln.toml",
+  return sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/firmware/machine/shipped/mcfv5050ln.toml",
                            {"circle", std::move(set)});
 }
 

@@ -98,17 +98,18 @@ TEST(Conversion, OfADoubleSignalOnlyRefusesWhatIsNotFinite) {
 
 TEST(SetPointConversion, MarksASetPointThatCannotBeRepresented) {
   const double nan = std::nan(""), inf = INFINITY;
-  EXPECT_TRUE(to_set_point<F>({1.0, 0.5, 2.0}).valid);
-  for (const AxisSetPoint& bad : {AxisSetPoint{nan, 0.0, 0.0}, AxisSetPoint{0.0, nan, 0.0}, AxisSetPoint{0.0, 0.0, nan},
-                                  AxisSetPoint{inf, 0.0, 0.0}, AxisSetPoint{0.0, 8.0, 0.0},
-                                  AxisSetPoint{0.0, 0.0, 512.0}, AxisSetPoint{3e6, 0.0, 0.0}}) {
-    const auto set = to_set_point<F>(bad);
+  EXPECT_TRUE(sim::to_set_point<F>({1.0, 0.5, 2.0}).valid);
+  for (const sim::AxisSetPoint& bad :
+       {sim::AxisSetPoint{nan, 0.0, 0.0}, sim::AxisSetPoint{0.0, nan, 0.0}, sim::AxisSetPoint{0.0, 0.0, nan},
+        sim::AxisSetPoint{inf, 0.0, 0.0}, sim::AxisSetPoint{0.0, 8.0, 0.0}, sim::AxisSetPoint{0.0, 0.0, 512.0},
+        sim::AxisSetPoint{3e6, 0.0, 0.0}}) {
+    const auto set = sim::to_set_point<F>(bad);
     EXPECT_FALSE(set.valid);
     EXPECT_EQ(set.position.raw(), 0) << "and carries nothing of it over";
     EXPECT_EQ(set.velocity.raw(), 0);
     EXPECT_EQ(set.acceleration.raw(), 0);
   }
-  EXPECT_FALSE(to_set_point<DoubleSignals>({0.0, nan, 0.0}).valid);
+  EXPECT_FALSE(sim::to_set_point<DoubleSignals>({0.0, nan, 0.0}).valid);
 }
 
 }  // namespace

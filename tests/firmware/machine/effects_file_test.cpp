@@ -15,9 +15,7 @@ std::string error_of_effect(const std::string& lines) {
   return error_of(small_machine + "[[axis.B.effect]]\n" + lines);
 }
 
-Effect effect(const std::string& name, std::map<std::string, std::vector<double>> values) {
-  return {name, std::move(values)};
-}
+Effect effect(const std::string& name, KeyedValues values) { return {name, std::move(values)}; }
 
 TEST(EffectsFile, IsReadInTheFilesOrderWithUnitsListsAndDefaults) {
   const Machine machine = read_text(small_machine + R"([[axis.B.effect]]
@@ -116,7 +114,7 @@ TEST(EffectsFile, TheReferencePageShowsEveryKey) {
     const std::size_t at = page.find("effect " + std::string(kind.name) + ": ");
     ASSERT_NE(at, std::string::npos) << kind.name;
     const std::string section = page.substr(at, page.find("\n## ", at) - at);
-    for (const EffectKey& key : kind.keys)
+    for (const sim::EffectKey& key : kind.keys)
       EXPECT_NE(section.find("| `" + std::string(key.key) + "` | "), std::string::npos) << kind.name << key.key;
   }
 }
@@ -125,7 +123,7 @@ TEST(EffectKinds, HaveTheNamesKeysAndSuffixesOfTheVocabulary) {
   std::string all;
   for (const sim::EffectKind& kind : sim::effect_kinds()) {
     all += std::string(kind.name) + ":";
-    for (const EffectKey& key : kind.keys) all += " " + std::string(key.key) + key.suffix + (key.list ? "[]" : "");
+    for (const sim::EffectKey& key : kind.keys) all += " " + std::string(key.key) + key.suffix + (key.list ? "[]" : "");
     all += '\n';
   }
   EXPECT_EQ(all,
@@ -160,13 +158,13 @@ TEST(EffectKinds, HaveTheNamesKeysAndSuffixesOfTheVocabulary) {
 
 TEST(EffectKinds, ConfuseBothWaysAndNameAnExperiment) {
   for (const sim::EffectKind& kind : sim::effect_kinds())
-    for (const EffectAlias& alias : kind.aliases) {
+    for (const sim::EffectAlias& alias : kind.aliases) {
       EXPECT_NE(alias.effect, kind.name);
       EXPECT_FALSE(alias.separate_by.empty());
       const sim::EffectKind* other = sim::find_effect_kind(alias.effect);
       if (other == nullptr) continue;
       EXPECT_TRUE(std::any_of(other->aliases.begin(), other->aliases.end(),
-                              [&](const EffectAlias& back) { return back.effect == kind.name; }))
+                              [&](const sim::EffectAlias& back) { return back.effect == kind.name; }))
           << kind.name << " " << alias.effect;
     }
   EXPECT_EQ(sim::find_effect_kind("constant_force")->aliases.at(0).effect, "friction_asymmetry");
@@ -247,7 +245,7 @@ TEST(ExtendedMachine, WritesOnlyTheOptionalKeysThatAreGivenAndVoltsForAForceSour
 TEST(ExtendedMachine, TheShippedMachinesTakeEveryEffect) {
   for (const sim::EffectKind& kind : sim::effect_kinds()) {
     Effect one{std::string(kind.name), {}};
-    for (const EffectKey& key : kind.keys) one.values[std::string(key.key)] = {key.unit == "N/m" ? 1e7 : 1e-3};
+    for (const sim::EffectKey& key : kind.keys) one.values[std::string(key.key)] = {key.unit == "N/m" ? 1e7 : 1e-3};
     const std::vector<AxisEffects> every{{"X", {one}}, {"Y", {one}}};
     const Machine machine = sim::parse_machine("e.toml", sim::extended_machine(shipped_machine(), {}, every, {}));
     for (const AxisModel& axis : machine.axes) EXPECT_EQ(axis.effects.at(0).values, one.values) << kind.name;

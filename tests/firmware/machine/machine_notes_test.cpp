@@ -3,14 +3,14 @@
 
 #include <gtest/gtest.h>
 
-#include "firmware/machine/file/machine_file.hpp"
 #include "firmware/machine/model/motor_force.hpp"
+#include "sim/machine_file.hpp"
 
 namespace stiction::machine::test {
 namespace {
 
 Machine shipped(const std::string& name, const std::vector<std::string>& set = {}) {
-  return read_machine(std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/" + name + ".toml", {{}, set});
+  return sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/firmware/machine/shipped/" + name + ".toml", {{}, set});
 }
 
 TEST(MachineNotes, TellTheDrivesForceConstantFromThatOfTheWindings) {

@@ -6,6 +6,7 @@
 
 #include "firmware/machine/file/parameters.hpp"
 #include "sim/machine_file.hpp"
+#include "sim/plant/friction/friction.hpp"
 
 namespace stiction::machine {
 namespace {
@@ -52,7 +53,7 @@ TEST(ReferencePage, ListsEveryParameterOfEveryStruct) {
   expect_rows<FeedTool>(page, "feed_drive.tool");
   expect_rows<SteadyFrictionReference>(page, "[reference.steady_friction]");
   expect_rows<PreslidingReference>(page, "[reference.presliding]");
-  for_each_friction_model([&]<class Model>() {
+  sim::for_each_friction_model([&]<class Model>() {
     const std::string table = "axis.NAME.friction." + std::string(Model::name);
     for (const auto& p : Model::parameters)
       EXPECT_NE(section(page, table).find("| `" + std::string(p.key) + "` | "), std::string::npos) << table;

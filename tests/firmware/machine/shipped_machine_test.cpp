@@ -97,7 +97,7 @@ TEST(ShippedCrossTable, CarriesTheFrictionOfTable63) {
   for (std::size_t i = 0; i < 2; ++i) {
     const AxisModel& axis = cross_table().axes[i];
     EXPECT_EQ(axis.friction.use, "lugre");
-    EXPECT_EQ(axis.friction.models.size(), std::variant_size_v<FrictionModel>);
+    EXPECT_EQ(axis.friction.models.size(), std::variant_size_v<sim::FrictionModel>);
     EXPECT_EQ(friction<sim::CoulombViscous<>>(axis).coulomb, coulomb[i]);
     EXPECT_EQ(friction<sim::CoulombViscous<>>(axis).viscous, viscous[i]);
     EXPECT_EQ(friction<sim::Classical<>>(axis).coulomb, coulomb[i]);

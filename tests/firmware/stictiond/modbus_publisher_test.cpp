@@ -10,7 +10,7 @@
 namespace stiction::test {
 namespace {
 
-const std::string machine_file = std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/mcfv5050ln.toml";
+const std::string machine_file = std::string(STICTION_SOURCE_DIR) + "/firmware/machine/shipped/mcfv5050ln.toml";
 
 machine::DriveSetup setup_with(bool motion_allowed) {
   auto setup = machine::read_drive_setup(machine_file, cross_table());

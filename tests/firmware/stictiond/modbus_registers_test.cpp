@@ -15,7 +15,7 @@
 namespace stiction::test {
 namespace {
 
-const std::string machine_file = std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/mcfv5050ln.toml";
+const std::string machine_file = std::string(STICTION_SOURCE_DIR) + "/firmware/machine/shipped/mcfv5050ln.toml";
 
 drive::ModbusRegisters registers_of_cross_table() {
   const auto machine = cross_table();

@@ -16,7 +16,7 @@ using ::testing::HasSubstr;
 
 drive::DriveConfiguration configuration(std::vector<std::string> settings) {
   drive::DriveOptions options;
-  options.machine = std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/mcfv5050ln.toml";
+  options.machine = std::string(STICTION_SOURCE_DIR) + "/firmware/machine/shipped/mcfv5050ln.toml";
   options.set = std::move(settings);
   return drive::read_configuration(options);
 }

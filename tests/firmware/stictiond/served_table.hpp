@@ -84,7 +84,7 @@ class ServedTable {
  private:
   static drive::DriveConfiguration read(std::vector<std::string> settings, bool allowed) {
     drive::DriveOptions options;
-    options.machine = std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/mcfv5050ln.toml";
+    options.machine = std::string(STICTION_SOURCE_DIR) + "/firmware/machine/shipped/mcfv5050ln.toml";
     options.set = std::move(settings);
     for (const char* setting : {"drive.can_server.interface=vcan1", "drive.axis.X.server_node=1",
                                 "drive.axis.Y.server_node=2", "axis.*.encoder.velocity=estimated"})

@@ -45,7 +45,7 @@ class EmpsDiagnosis : public ::testing::Test {
                    << " is not there: fetch the EMPS record from the benchmark's site "
                       "(nonlinearbenchmark.org) and name it in $STICTION_EMPS";
     log_ = host::read_log(record());
-    machine_ = sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/emps.toml");
+    machine_ = sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/firmware/machine/shipped/emps.toml");
   }
   host::Verdict diagnose(const std::vector<host::Log>& logs, const std::vector<host::Log>& held_out,
                          bool closed_loop) const {

@@ -15,7 +15,7 @@ namespace stiction::test {
 namespace {
 
 std::filesystem::path machine_file() {
-  return std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/mcfv5050ln.toml";
+  return std::string(STICTION_SOURCE_DIR) + "/firmware/machine/shipped/mcfv5050ln.toml";
 }
 
 TEST(ReferenceDiagnosis, halves_the_current_error_on_feeds_not_used) {

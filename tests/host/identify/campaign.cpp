@@ -10,7 +10,7 @@
 namespace stiction::test {
 
 machine::Machine bench_machine(const std::string& friction) {
-  auto machine = sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/mcfv5050ln.toml", {});
+  auto machine = sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/firmware/machine/shipped/mcfv5050ln.toml", {});
   machine.axes.resize(1);
   auto& axis = machine.axes.front();
   axis.friction.use = friction;

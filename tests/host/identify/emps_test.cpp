@@ -26,7 +26,7 @@ class Emps : public ::testing::Test {
                    << " is not there: fetch the EMPS record from the benchmark's site "
                       "(nonlinearbenchmark.org) and name it in $STICTION_EMPS";
     log_ = host::read_log(record());
-    machine_ = sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/emps.toml");
+    machine_ = sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/firmware/machine/shipped/emps.toml");
   }
   host::Identification identify(const std::string& friction) {
     return host::identify_logs({log_}, machine_.axes.front(), {friction, host::Amperes::amplitude, {}});

@@ -16,7 +16,7 @@ namespace {
 
 class IdentifiedMachine : public ::testing::Test {
  protected:
-  const std::filesystem::path shipped_ = std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/mcfv5050ln.toml";
+  const std::filesystem::path shipped_ = std::string(STICTION_SOURCE_DIR) + "/firmware/machine/shipped/mcfv5050ln.toml";
   const machine::Machine machine_ = sim::read_machine(shipped_);
 
   static Identification found(const std::vector<std::pair<std::string, double>>& values) {

@@ -15,7 +15,7 @@ namespace stiction::sim::test {
 namespace {
 
 machine::AxisModel frictionless(machine::AxisModel axis) {
-  axis.friction = {"coulomb_viscous", {{"coulomb_viscous", CoulombViscousParameters{}}}};
+  axis.friction = acting<CoulombViscous<>>({});
   return axis;
 }
 

@@ -13,9 +13,7 @@ namespace {
 
 constexpr double servo = 2e-3;  // N
 
-machine::Effect one(const std::string& name, std::map<std::string, std::vector<double>> values) {
-  return {name, std::move(values)};
-}
+machine::Effect one(const std::string& name, machine::KeyedValues values) { return {name, std::move(values)}; }
 
 TEST(EffectForce, AConstantForcePushesTowardsPlusXInBothDirections) {
   const machine::AxisModel axis = with_effects({one("constant_force", {{"force", {7.0}}})});
@@ -24,7 +22,7 @@ TEST(EffectForce, AConstantForcePushesTowardsPlusXInBothDirections) {
 
 TEST(EffectForce, AConstantForceMovesAFreeCarriageTowardsPlusX) {
   machine::AxisModel axis = with_effects({one("constant_force", {{"force", {7.0}}})});
-  axis.friction = {"coulomb_viscous", {{"coulomb_viscous", CoulombViscousParameters{}}}};
+  axis.friction = acting<CoulombViscous<>>({});
   AxisPlant plant(timing, axis, 0.0, 1);
   for (int k = 0; k < 16000; ++k) plant.advance_tick();
   EXPECT_NEAR(plant.velocity(), 7.0 / 50.0, 1e-9);  // F t / m after 1 s
@@ -134,7 +132,7 @@ INSTANTIATE_TEST_SUITE_P(EveryFrictionModel, Mismatch,
 
 TEST(MassMismatch, AcceleratesByTheTrueMass) {
   machine::AxisModel axis = with_effects({one("mass_mismatch", {{"mass", {40.0}}})});
-  axis.friction = {"coulomb_viscous", {{"coulomb_viscous", CoulombViscousParameters{}}}};
+  axis.friction = acting<CoulombViscous<>>({});
   AxisPlant plant(timing, axis, 0.0, 1);
   plant.command({1.0, 0.0, 0.0}, true);
   for (int k = 0; k < 1600; ++k) plant.advance_tick();

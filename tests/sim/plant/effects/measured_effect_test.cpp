@@ -53,7 +53,7 @@ TEST(Backlash, TheCarriageItselfFeelsNothingOfIt) {
 // the end of the delay on: x = F (t - d)^2 / 2 m.
 double delay_seen(double dead_time, double loop_delay) {
   machine::AxisModel axis = with_effects({{"time_skew", {{"loop_delay", {loop_delay}}}}});
-  axis.friction = {"coulomb_viscous", {{"coulomb_viscous", CoulombViscousParameters{}}}};
+  axis.friction = acting<CoulombViscous<>>({});
   axis.inverter.dead_time = dead_time;
   AxisPlant plant(timing, axis, 0.0, 1);
   constexpr int ticks = 160;

@@ -9,7 +9,6 @@
 
 #include "sim/machine_file.hpp"
 #include "sim/plant/friction/friction.hpp"
-#include "tests/support/shipped_machine.hpp"
 
 namespace stiction::sim {
 namespace {
@@ -17,7 +16,8 @@ namespace {
 constexpr double step = 15.625e-6;  // s
 
 const machine::AxisModel& axis_x() {
-  static const machine::Machine machine = read_machine(test::shipped_machine());
+  static const machine::Machine machine =
+      read_machine(std::string(STICTION_SOURCE_DIR) + "/firmware/machine/shipped/mcfv5050ln.toml");
   return machine.axes.front();
 }
 
