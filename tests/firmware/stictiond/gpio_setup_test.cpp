@@ -62,7 +62,7 @@ std::string refusal(const Read& read) {
 }
 
 TEST(GpioSetup, CarriesEveryKeyOfTheMachineFileToTheBackend) {
-  const auto [machine, setup] = read(std::string(sim::test::small_machine) + drive_text);
+  const auto [machine, setup] = read(std::string(machine::test::small_machine) + drive_text);
   ASSERT_TRUE(drive::has_gpio_lines(setup, machine));
   const auto config = drive::gpio_configuration(setup, machine);
   EXPECT_EQ(config.chip, "servo-lines");
@@ -88,19 +88,19 @@ TEST(GpioSetup, CarriesEveryKeyOfTheMachineFileToTheBackend) {
 }
 
 TEST(GpioSetup, FindsNoLinesWhereNoneAreNamed) {
-  const auto [machine, setup] = read(sim::test::small_machine);
+  const auto [machine, setup] = read(machine::test::small_machine);
   EXPECT_FALSE(drive::has_gpio_lines(setup, machine));
   EXPECT_THAT(refusal({machine, setup}), ::testing::HasSubstr("no table [drive.gpio]"));
 }
 
 TEST(GpioSetup, RefusesAnAxisWhoseCurrentIsControlledInTheDrive) {
-  auto both = read(std::string(sim::test::small_machine) + drive_text);
+  auto both = read(std::string(machine::test::small_machine) + drive_text);
   both.machine.axes[0].motor.model = machine::MotorModel::synchronous;
   EXPECT_THAT(refusal(both), ::testing::HasSubstr("axis B: its current controllers need the phase currents"));
 }
 
 TEST(GpioSetup, RefusesAMachineWithoutAPwmChip) {
-  auto both = read(std::string(sim::test::small_machine) + drive_text);
+  auto both = read(std::string(machine::test::small_machine) + drive_text);
   both.setup.gpio->pwm_chip.reset();
   EXPECT_THAT(refusal(both), ::testing::HasSubstr("names no pwm_chip"));
 }

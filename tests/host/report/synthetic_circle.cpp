@@ -9,6 +9,8 @@
 #include <random>
 #include <string>
 
+#include "sim/plant/friction/friction.hpp"
+
 namespace stiction::host {
 namespace {
 
@@ -119,12 +121,13 @@ machine::AxisModel make_machine_axis(const std::string& name) {
   axis.notch = machine::NotchParameters{2000.0, 0.05, 0.7};
   axis.feedforward = {1.0, 1.0};
   const double coulomb = y ? 220 : 90, viscous = y ? 1250 : 500;
-  axis.friction = {"lugre",
-                   {{"coulomb_viscous", sim::CoulombViscousParameters{coulomb, viscous}},
-                    {"classical", sim::ClassicalParameters{coulomb, 1.0, viscous}},
-                    {"linear_ramp", sim::LinearRampParameters{coulomb, y ? 29000.0 : 12000.0, viscous}},
-                    {"parabolic", sim::ParabolicParameters{y ? 800.0 : 300.0, 3.0}},
-                    {"lugre", sim::LuGreParameters{coulomb, 1.0, viscous, 1e-3, y ? 2e6 : 8e5, 0.1}}}};
+  auto& friction = axis.friction;
+  friction.use = "lugre";
+  sim::set_parameters<sim::CoulombViscous<>>(friction, {coulomb, viscous});
+  sim::set_parameters<sim::Classical<>>(friction, {coulomb, 1.0, viscous});
+  sim::set_parameters<sim::LinearRamp<>>(friction, {coulomb, y ? 29000.0 : 12000.0, viscous});
+  sim::set_parameters<sim::Parabolic<>>(friction, {y ? 800.0 : 300.0, 3.0});
+  sim::set_parameters<sim::LuGre<>>(friction, {coulomb, 1.0, viscous, 1e-3, y ? 2e6 : 8e5, 0.1});
   return axis;
 }
 
