@@ -102,7 +102,8 @@ Run identify(const IdentifyCommandOptions& options, const machine::Machine& mach
   std::vector<Log> logs;
   for (const auto& file : options.logs) logs.push_back(read_log(file));
   const auto& axis = axis_to_identify(options.axis, machine, logs);
-  const IdentifyOptions settings{model_to_identify(options.friction, axis), amperes, FitSettings{}};
+  const IdentifyOptions settings{model_to_identify(options.friction, axis), amperes, FitSettings{},
+                                 options.friction.empty()};
   Run run{&axis, identify_logs(logs, axis, settings)};
   if (options.refine) take(run.result, refine_in_closed_loop(logs, machine, axis, run.result, settings));
   return run;
@@ -150,7 +151,7 @@ void add_identify(CLI::App& program, const Invocation& invocation) {
   command
       ->add_option("--friction", o->friction,
                    "coulomb_viscous: sgn(v) of every sample, as published for EMPS; lugre: with presliding "
-                   "[coulomb_viscous if the machine file uses it, else lugre]")
+                   "[for a law of the file that sticks rigidly sgn(v) of the moving rows, else lugre]")
       ->type_name("MODEL");
   command
       ->add_option("--amperes", o->amperes,

@@ -116,13 +116,13 @@ std::array<double, 2> ratio_interval(const std::vector<DiagnosedRow>& rows, cons
   std::mt19937_64 random(1);
   std::vector<double> ratios;
   for (int r = 0; r < 400; ++r) {
-    double with = 0.0, without = 0.0;
+    double with = 0.0, left_out = 0.0;
     for (std::size_t i = 0; i < squares.size(); ++i) {
       const auto& drawn = squares[random() % squares.size()];
       with += drawn.first;
-      without += drawn.second;
+      left_out += drawn.second;
     }
-    ratios.push_back(std::sqrt(with / without));
+    ratios.push_back(std::sqrt(with / left_out));
   }
   std::sort(ratios.begin(), ratios.end());
   return {ratios[9], ratios[389]};

@@ -59,6 +59,8 @@ class Search : private Dictionary {
   Judgement judge(const ActiveSet& set, std::size_t term) const;
   void note(std::size_t candidate, const Judgement& judgement);
   std::vector<std::size_t> alternatives(const ActiveSet& set, std::size_t term) const;
+  double explained_by(const ActiveSet& set, std::size_t term) const;
+  void drop_small(ActiveSet& set);
 
   std::vector<std::size_t> settled_;  // candidates that stood before it was whitened
   std::size_t rounds_ = 0;
@@ -191,6 +193,29 @@ bool Search::drop(ActiveSet& set) {
   return false;
 }
 
+// Share of the residual's square that a term explains, given the others of the set.
+double Search::explained_by(const ActiveSet& set, std::size_t term) const {
+  auto others = set;
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(term));
+  return (plain_.fit(columns_of(others)).left - plain_.fit(columns_of(set)).left) / plain_.total();
+}
+
+// Discards terms that explain too little, the least of them first: of two that can do each other's work neither
+// explains anything given the other, and only one may go.
+void Search::drop_small(ActiveSet& set) {
+  while (!set.empty()) {
+    std::size_t least = 0;
+    for (std::size_t k = 1; k < set.size(); ++k)
+      if (explained_by(set, k) < explained_by(set, least)) least = k;
+    const double explains = explained_by(set, least);
+    if (explains >= least_share) return;
+    discarded_.push_back(
+        {set[least]->candidate, fmt::format("explains {:.2g} % of the residual variance; expected at least {:g} %",
+                                            100.0 * std::max(explains, 0.0), 100.0 * least_share)});
+    set.erase(set.begin() + static_cast<std::ptrdiff_t>(least));
+  }
+}
+
 // Candidates that in the term's place leave a residual that the blocks cannot tell from its own.
 std::vector<std::size_t> Search::alternatives(const ActiveSet& set, std::size_t term) const {
   std::vector<std::size_t> as_good;
@@ -248,19 +273,12 @@ SearchResult Search::run() {
   // Where causes were found without it, what is left may be more physics rather than noise, and would get the weight
   // of noise: weights are then those of least squares as it is.
   if (!settled_.empty()) evidence_.whiten({});
+  drop_small(set);
   SearchResult result;
   for (std::size_t k = 0; k < set.size(); ++k) {
     Term term{set[k]->candidate, set[k]->shape,       {}, {}, 0.0, judged.at(set[k]->candidate),
               !settled(set[k]),  alternatives(set, k)};
-    auto others = set;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
-    term.explains = (plain_.fit(columns_of(others)).left - plain_.fit(columns_of(set)).left) / plain_.total();
-    if (term.explains < least_share) {
-      discarded_.push_back(
-          {term.candidate, fmt::format("explains {:.2g} % of the residual variance; expected at least {:g} %",
-                                       100.0 * std::max(term.explains, 0.0), 100.0 * least_share)});
-      continue;
-    }
+    term.explains = explained_by(set, k);
     result.terms.push_back(std::move(term));
   }
   result.residual = refine(rows_, evidence_, scene_, result.terms);

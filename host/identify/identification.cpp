@@ -212,15 +212,19 @@ Identification identify_logs(const std::vector<Log>& logs, const machine::AxisMo
   const auto excitation = excitation_of(rows);
   require_excitation(excitation, sources_of(rows.motions()));
   refuse_swapped_sign(rows);
-  rows.weigh(moving_rows(rows, axis, signals.cutoff));
+  if (options.moving_rows_only) rows.weigh(moving_rows(rows, axis, signals.cutoff));
   const auto fit = recipe ? fit_coulomb_viscous(rows, options.fit) : fit_lugre(rows, options.fit);
   refuse_contradiction(fit, rows);
 
-  result.method = recipe
-                      ? "Least squares with sgn(v), as published for EMPS, over the rows that move; data filtered at "
-                        "100 Hz, rows at 100 Hz, intervals by block bootstrap."
-                      : "Least squares with a LuGre contact driven by the measured position; data filtered at 100 "
-                        "Hz, rows at 100 Hz, intervals by block bootstrap.";
+  result.method = recipe ? "Least squares with sgn(v) of every sample, as published for EMPS; data filtered at 100 Hz, "
+                           "rows at 100 Hz, intervals by block bootstrap."
+                         : "Least squares with a LuGre contact driven by the measured position; data filtered at 100 "
+                           "Hz, rows at 100 Hz, intervals by block bootstrap.";
+  if (options.moving_rows_only && rows.counts().minCoeff() < 1.0)
+    result.method += fmt::format(
+        " Rows at standstill, {:.0f} % of all, have no weight: there the friction of {} is a reaction, which no motion "
+        "tells.",
+        100.0 * (1.0 - rows.counts().mean()), axis.friction.use);
   if (fit.sliding_only)
     result.method +=
         " The contact model contradicts the rows in steady sliding. Mass, Coulomb and viscous friction therefore come "

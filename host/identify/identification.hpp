@@ -55,6 +55,7 @@ struct IdentifyOptions {
       friction;  // model to identify by its name in a machine file; "coulomb_viscous" means the published recipe
   Amperes amperes = Amperes::amplitude;
   FitSettings fit;
+  bool moving_rows_only = false;  // leaves rows out in which friction is a reaction (standstill.hpp)
 };
 
 // The log's channels of that axis, or those without an axis' name. Throws LogError when it has neither.

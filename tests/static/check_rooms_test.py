@@ -61,7 +61,7 @@ class CheckRooms(unittest.TestCase):
         self.assertIn("circle", findings[1])
 
     def test_finds_a_real_backend_that_knows_the_simulation(self):
-        self.expect_finding("hal/can/can_backend.hpp", '#include "firmware/machine/model/machine.hpp"', "hal/can may not include sim")
+        self.expect_finding("hal/can/can_backend.hpp", '#include "firmware/machine/model/machine.hpp"', "hal/can may not include firmware/machine/model")
 
     def test_finds_a_real_backend_that_knows_the_simulated_one(self):
         self.expect_finding("hal/can/can_backend.hpp", '#include "hal/simulated/simulated_backend.hpp"',
@@ -72,10 +72,10 @@ class CheckRooms(unittest.TestCase):
         self.assertIn("firmware/machine/model may not include host/report", findings[0])
 
     def test_tells_a_folder_from_what_lies_below_it(self):
-        shared = {"sim/parameter.hpp": "#include <limits>\n", "firmware/machine/configuration/policy.hpp": ""}
-        self.assertEqual(findings_in(SOUND | shared | {"firmware/machine/file/a.hpp": '#include "sim/parameter.hpp"\n'}), [])
-        findings = findings_in(SOUND | shared | {"firmware/machine/file/a.hpp": '#include "firmware/machine/configuration/policy.hpp"\n'})
-        self.assertIn("firmware/machine/file may not include firmware/machine/configuration", findings[0])
+        shared = {"sim/files.hpp": "#include <limits>\n", "sim/plant/plant.hpp": ""}
+        self.assertEqual(findings_in(SOUND | shared | {"sim/vocabulary/a.cpp": '#include "sim/files.hpp"\n'}), [])
+        findings = findings_in(SOUND | shared | {"sim/vocabulary/a.cpp": '#include "sim/plant/plant.hpp"\n'})
+        self.assertIn("sim/vocabulary may not include sim/plant", findings[0])
 
     def test_finds_a_report_that_knows_the_command_line(self):
         findings = findings_in(SOUND | {"host/report/page.hpp": '#include "host/cli/main.cpp"\n'})

@@ -163,9 +163,10 @@ TEST(MachineFileError, FrictionInUseNeedsItsTable) {
   EXPECT_EQ(error_after("use = \"lugre\"", "use = \"classical\""),
             "FILE:22: axis.B.friction.use: found \"classical\", of which there is no table; expected the table "
             "[axis.B.friction.classical] too, or a model that has one");
-  EXPECT_EQ(error_after("use = \"lugre\"", "use = \"dahl\""),
-            "FILE:22: axis.B.friction.use: found \"dahl\"; expected a friction model: \"coulomb_viscous\", "
-            "\"classical\", \"linear_ramp\", \"parabolic\", \"lugre\" or \"maxwell_slip\"");
+  EXPECT_EQ(error_after("use = \"lugre\"", "use = \"bristle\""),
+            "FILE:22: axis.B.friction.use: found \"bristle\"; expected a friction model: \"coulomb_viscous\", "
+            "\"classical\", \"linear_ramp\", \"parabolic\", \"lugre\", \"dahl\", \"elasto_plastic\", \"maxwell_slip\" "
+            "or \"curve\"");
 }
 
 TEST(MachineFileError, FrictionModelNotInUseIsCheckedToo) {
@@ -263,8 +264,9 @@ TEST(MachineFileError, ReferenceRowsAreChecked) {
   EXPECT_TRUE(error_of(published + values)
                   .starts_with("FILE:29: reference.circle[0].friction: found no such key; expected the friction model "
                                "of the published simulation: \"coulomb_viscous\""));
-  EXPECT_TRUE(error_of(published + "friction = \"dahl\"\n" + values)
-                  .starts_with("FILE:32: reference.circle[0].friction: found \"dahl\"; expected a friction model: "));
+  EXPECT_TRUE(
+      error_of(published + "friction = \"bristle\"\n" + values)
+          .starts_with("FILE:32: reference.circle[0].friction: found \"bristle\"; expected a friction model: "));
   EXPECT_EQ(error_of(start + "axis = \"B\"\nsource = \"measured\"\nfriction = \"lugre\"\n" + values),
             "FILE:32: reference.circle[0].friction: found \"lugre\"; expected none with source \"measured\"");
   EXPECT_EQ(error_of(start + "axis = \"B\"\nsource = \"measured\"\n" + replaced(values, "16 m/min", "16 mm")),

@@ -45,7 +45,7 @@ damping_ratio = 0.1
 )";
 
 inline std::filesystem::path shipped_machine() {
-  return std::filesystem::path(STICTION_SOURCE_DIR) / "sim" / "machine" / "shipped" / "mcfv5050ln.toml";
+  return std::filesystem::path(STICTION_SOURCE_DIR) / "firmware" / "machine" / "shipped" / "mcfv5050ln.toml";
 }
 
 inline std::filesystem::path shipped_feed_drive() { return shipped_machine().parent_path() / "stick-slip-feed.toml"; }

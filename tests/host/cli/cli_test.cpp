@@ -109,12 +109,14 @@ TEST_F(Cli, RefusesBadUsage) {
   expect_refused("simulate circle --machine mcfv5050ln --friction stribeck", "--friction: found 'stribeck'");
   expect_refused("simulate circle --machine mcfv5050ln --direction left", "--direction: found 'left'");
   expect_refused("simulate circle --machine mcfv5050ln --signals float", "float");
-  expect_refused("simulate circle --machine mcfv5050ln --log x.csv --friction all", "--log: found 6 runs");
+  expect_refused("simulate circle --machine mcfv5050ln --log x.csv --friction all",
+                 "expected one run: one friction model, one feed and one direction");
   expect_refused("simulate circle --machine mcfv5050ln --set axis.X.mas='1 kg'", "--set axis.X.mas");
   expect_refused("simulate circle --machine mcfv5050ln --radios '90 mm'", "--radios");
   expect_refused("simulate impact --machine mcfv5050ln --bogus", "--bogus");
   expect_refused("compare --reference square --machine mcfv5050ln", "--reference: found 'square'; expected circle");
-  expect_refused("compare --machine mcfv5050ln", "found neither --reference nor LOG; expected one of them");
+  expect_refused("compare --machine mcfv5050ln",
+                 "found neither --reference nor LOG; expected either --reference circle or a measured log");
 }
 
 TEST_F(Cli, RefusesAMachineWithoutThePartThatAnExperimentNeeds) {
@@ -278,7 +280,8 @@ TEST_F(Cli, EveryExperimentRunsOnEachShippedMachineOrSaysWhatItNeeds) {
       {"mcfv5050ln", {{"feed-cutting", "found axes and no feed drive; expected a machine with a table [feed_drive]"}}},
       {"emps",
        {{"circle", "found axis X alone; expected a machine with exactly two axes"},
-        {"l-shape", "found axis X alone; expected a machine with exactly two axes: one stands while the other moves"},
+        {"l-shape",
+         "found axis X alone; expected a machine with exactly two axes: one is at standstill while the other moves"},
         {"presliding", "found axis X with parameters of coulomb_viscous; expected parameters of a friction model"},
         {"friction-lag", "makes sense for: lugre"},
         {"break-away", "makes sense for: lugre"},

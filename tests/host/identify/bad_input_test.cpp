@@ -124,7 +124,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(BadTable{"v[m/min],i[A]\n1,1\n2,1.1\n3,1.2\n", "--amperes peak or --amperes rms"},
                       BadTable{"# amperes: mean\nv[m/min],i[A]\n1,1\n", "expected peak, amplitude or rms"},
                       BadTable{"v[m/min],F[N]\n1,90\n1,91\n2,93\n", "found 2 different speeds"},
-                      BadTable{"v[m/min],F[N]\n1,-90\n2,-91\n3,-93\n", "push where friction must brake"},
+                      BadTable{"v[m/min],F[N]\n1,-90\n2,-91\n3,-93\n", "found forces with the opposite sign of the speed"},
                       BadTable{"v[m/min],F[N]\n1,90\n2\n", "tab.csv:3: found 1 fields; expected 2"},
                       BadTable{"v[m/min],F[N]\n1,x\n", "tab.csv:2: column F[N]: found 'x'; expected a number"},
                       BadTable{"v[kg],F[N]\n1,1\n", "tab.csv:1: found the column v[kg]; expected a unit like [m/s]"},

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "host/identify/identification.hpp"
+#include "sim/plant/friction/friction.hpp"
 #include "tests/host/identify/campaign.hpp"
 
 namespace stiction::host {

@@ -110,7 +110,7 @@ TEST(Inspection, SuspectsASwappedSign) {
 
 TEST(Inspection, SuspectsRmsAmperesWhereTheMachineIsKnown) {
   const auto log = rigid_log(10.0, sine, 1.0 / std::numbers::sqrt2);
-  EXPECT_TRUE(suspects(inspect(log, {{mass, constant, {}, {}}}).axes[0], "looks like rms"));
+  EXPECT_TRUE(suspects(inspect(log, {{mass, constant, {}, {}}}).axes[0], "suggests rms amperes"));
   EXPECT_FALSE(suspects(inspect(log).axes[0], "rms"));
 }
 
@@ -122,7 +122,7 @@ TEST(Inspection, SuspectsACurrentThatStandsAtItsEnd) {
   EXPECT_EQ(axis.saturation[0].channel, "i");
   EXPECT_DOUBLE_EQ(axis.saturation[0].level, 2.5);
   EXPECT_TRUE(suspects(axis, "saturated"));
-  EXPECT_TRUE(suspects(axis, "the machine's limit"));
+  EXPECT_TRUE(suspects(axis, "in the machine file, which distorts the motion"));
   EXPECT_TRUE(inspect(rigid_log(10.0, sine)).axes[0].saturation.empty());
 }
 

@@ -72,8 +72,8 @@ TEST(FrictionTuning, says_what_is_missing_in_a_log) {
     FAIL() << "accepted";
   } catch (const LogError& error) {
     EXPECT_STREQ(error.what(),
-                 "circle.csv: found a motion over less than 1.8 mm; expected one that slides further than presliding "
-                 "reaches, such as a circle");
+                 "circle.csv: found a motion over less than 1.8 mm; expected one that slides beyond the presliding "
+                 "range, such as a circle");
   }
 }
 

@@ -174,7 +174,7 @@ TEST(AxisPlant, SwitchedOnAgainItDoesNotReplayVoltagesFromBefore) {
 TEST(AxisPlant, UnknownFrictionModelIsRefused) {
   auto axis = plain_axis();
   axis.friction.use = "none_such";
-  EXPECT_THROW(AxisPlant(timing, axis, 0.0, 1), std::out_of_range);
+  EXPECT_THROW(AxisPlant(timing, axis, 0.0, 1), std::invalid_argument);
 }
 
 TEST(EncoderParameters, ReadsTheNearestIncrement) {

@@ -138,7 +138,7 @@ TEST(ControllerGainMismatch, ChangesTheDriveAloneAndOnlyWhatIsGiven) {
   EXPECT_EQ(plant_axis(axis).velocity_controller.gain, 600.0);
   axis.encoder.velocity = machine::VelocitySource::estimated;
   axis.max_velocity = 1.0;
-  const auto with = machine::configure_axis<machine::DoubleSignals>(timing, axis);
+  const auto with = machine::configure_axis<machine::DoubleSignals>(timing, drive_axis(axis));
   axis.effects.clear();
   const auto without = machine::configure_axis<machine::DoubleSignals>(timing, axis);
   EXPECT_NEAR(with.velocity.proportional.value / without.velocity.proportional.value, 570.0 / 600.0, 1e-12);

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "sim/machine_file.hpp"
+#include "sim/plant/friction/friction.hpp"
 #include "tests/firmware/number/exact.hpp"
 
 namespace stiction::sim {
@@ -182,7 +184,8 @@ RC_GTEST_PROP(RateAndState, DoesNotDriftUnderSmallVibration, ()) {
 }
 
 TEST(MaxwellSlip, RefusesListsOfDifferentLength) {
-  EXPECT_THROW(MaxwellSlip({{1e6, 2e6}, {10.0}, 0.0}, {mass, step}), std::invalid_argument);
+  const auto values = values_of<MaxwellSlip<>>({{1e6, 2e6}, {10.0}, 0.0});
+  EXPECT_THROW(machine::check_values(*vocabulary().find_friction_model("maxwell_slip"), values), machine::ValueError);
 }
 
 }  // namespace
