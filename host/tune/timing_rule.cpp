@@ -9,7 +9,6 @@
 #include "firmware/machine/configuration/compensation_configuration.hpp"
 #include "firmware/machine/configuration/conversion.hpp"
 #include "firmware/machine/configuration/double_signals.hpp"
-#include "firmware/machine/model/motor_force.hpp"
 #include "host/identify/filter.hpp"
 #include "host/identify/identification.hpp"
 
@@ -38,8 +37,7 @@ std::vector<double> feedforward(const AxisLog& channels, const std::vector<doubl
 
 // The error (m) that a lacking `force` (N) makes in the loop of PI velocity and P position control, without its delays.
 std::vector<double> response(const std::vector<double>& force, const machine::AxisModel& axis, double period) {
-  const double k = axis.velocity_controller.gain * machine::acting_force_constant(axis.motor),
-               kv = axis.position_controller.gain;
+  const double k = axis.velocity_controller.gain * axis.motor.force_constant, kv = axis.position_controller.gain;
   const auto& time = axis.velocity_controller.integral_time;
   const double per_time = time ? 1.0 / *time : 0.0;
   double e = 0.0, rate = 0.0, sum = 0.0;
@@ -76,7 +74,7 @@ TimingError timing_of(const Log& log, const machine::Machine& machine, std::size
   const double period = log.period;
   const auto v_set = central_difference(channels.x_set, period);
   auto force = central_difference(feedforward(channels, v_set, machine, axis, period), period);
-  for (double& f : force) f *= machine::acting_force_constant(axis.motor);
+  for (double& f : force) f *= axis.motor.force_constant;
   const auto shape = response(force, axis, period);
 
   const auto window_before = static_cast<std::size_t>(before / period);

@@ -53,6 +53,7 @@ async function checkMagnifying(page, data) {
     ids.every(id => (document.getElementById(id).layout.xaxis.range.map(each => each.toPrecision(6)).join() === range) === equal);
   const range = id => page.evaluate(id => document.getElementById(id).layout.xaxis.range.map(each => each.toPrecision(6)).join(), id);
   const before = await range(ids[0]);
+  await page.locator('#chart-0').scrollIntoViewIfNeeded();  // the findings above it may fill the window
   const box = await page.locator('#chart-0 .nsewdrag').boundingBox();
   await page.mouse.move(box.x + 0.3 * box.width, box.y + 0.5 * box.height);
   await page.mouse.down();
