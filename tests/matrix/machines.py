@@ -71,8 +71,8 @@ class Machine:
         return factor * coulomb
 
     def truths(self, axis, model, factor=1.0):
-        """What identification has to find, by the names of its result: the file's own values. The contact of a model
-        is no truth of another model's fit, so only what all laws share is asked for. `factor`: of the Coulomb friction."""
+        """What identification has to find, by the names of its result: the file's own values, the Coulomb friction times
+        `factor`. The contact of a model is no truth of another model's fit, so only what all laws share is asked for."""
         values = self.axis(axis)
         rotary = values.get("kind") == "rotary"
         truths = {"inertia_kg_m2" if rotary else "mass_kg": si(values["inertia" if rotary else "mass"])}

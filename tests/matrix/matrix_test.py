@@ -53,7 +53,8 @@ class MachineFiles(unittest.TestCase):
                          ["table/-/-/1"] + [f"table/{model}/{seed}" for seed in (1, 2) for model in models])
 
     def test_give_the_values_that_identification_has_to_find(self):
-        self.assertEqual(MACHINE.truths("X", "lugre"), {"mass_kg": 225.0, "coulomb_N": 90.0, "viscous_N_s_per_m": 500.0})
+        self.assertEqual(MACHINE.truths("X", "lugre"),
+                         {"mass_kg": 225.0, "coulomb_N": 90.0, "viscous_N_s_per_m": 500.0})
         self.assertEqual(MACHINE.truths("X", "maxwell_slip")["coulomb_N"], 30.0)
         self.assertEqual(MACHINE.truths("X", "parabolic"), {"mass_kg": 225.0})
         self.assertEqual(MACHINE.truths("X", "lugre", 1.2)["coulomb_N"], 108.0)
@@ -138,7 +139,8 @@ class Programmes(unittest.TestCase):
         self.assertEqual(self.failures("mkdir -p there", out="there"), ["no report.html"])
 
     def test_name_their_commands_in_their_help(self):
-        help_text = "Usage: x\\nOptions:\\n  --machine M  x\\n\\nSubcommands:\\n  circle    a circle\\n  l-shape   a path\\n"
+        help_text = ("Usage: x\\nOptions:\\n  --machine M  x\\n\\n"
+                     "Subcommands:\\n  circle    a circle\\n  l-shape   a path\\n")
         walked = self.walk_with(f"printf '{help_text}'")
         self.assertEqual(walked.program.experiments, ["circle", "l-shape"])
         self.assertEqual(walked.program.options["circle"], {"--machine"})

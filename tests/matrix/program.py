@@ -16,7 +16,7 @@ PATIENCE = 600.0  # s
 
 @dataclasses.dataclass
 class Outcome:
-    """How a command ended: `code` as a shell reports it, below zero for a signal, None where it was ended for its time."""
+    """How a command ended: its exit code, below zero for a signal, None where it was ended because of its time."""
     command: list
     code: int | None
     out: str
