@@ -168,7 +168,7 @@ def run(options, folder, known, begin):
         options.figures.write_text("".join(f"matrix, {line}\n" for line in lines), encoding="utf-8")
     passed = not unknown and not healed and holds
     print(f"\nmatrix: {'passed' if passed else 'FAILED'}: {len(reports)} cells, "
-          f"{sum(report.commands for report in reports)} commands, {len(unknown)} failures, {len(expected)} known ones, "
+          f"{sum(report.commands for report in reports)} commands, {len(unknown)} failures, {len(expected)} known, "
           f"{time.monotonic() - begin:.0f} s")
     return 0 if passed else 1
 
@@ -226,7 +226,7 @@ def rates(matrix, reports, failures):
         if not rate.holds(exactly=many):
             lines.append(f"NOT MET: {rate.name}: wanted {100.0 * rate.least:.0f} to {100.0 * rate.most:.0f} %")
     if len(false_cells) > MOST_FALSE:
-        lines.append(f"NOT MET: {len(false_cells)} cells with a false name on an exact file, wanted: at most {MOST_FALSE}")
+        lines.append(f"NOT MET: {false.name}: {len(false_cells)}")
     return lines, holds
 
 

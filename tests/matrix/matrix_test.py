@@ -41,6 +41,10 @@ mass = "520 kg"
   use = "dahl"
     [axis.Y.friction.dahl]
     coulomb = "200 N"
+    [axis.Y.friction.curve]
+    speed = ["1 mm/s", "1 m/s"]
+    forward = ["80 N", "100 N"]
+    backward = ["90 N", "100 N"]
 """
 MACHINE = machines.Machine("table", FILE)
 
@@ -48,7 +52,7 @@ MACHINE = machines.Machine("table", FILE)
 class MachineFiles(unittest.TestCase):
     def test_give_every_axis_with_every_model_that_its_own_file_has(self):
         cells = machines.table_of_cells([MACHINE], [1, 2])
-        models = ["X/lugre", "X/maxwell_slip", "X/parabolic", "X/linear_ramp", "Y/dahl"]
+        models = ["X/lugre", "X/maxwell_slip", "X/parabolic", "X/linear_ramp", "Y/dahl", "Y/curve"]
         self.assertEqual([str(cell) for cell in cells],
                          ["table/-/-/1"] + [f"table/{model}/{seed}" for seed in (1, 2) for model in models])
 
@@ -60,11 +64,13 @@ class MachineFiles(unittest.TestCase):
         self.assertEqual(MACHINE.truths("X", "lugre", 1.2)["coulomb_N"], 108.0)
         # 90 N at the break velocity of 7.5 mm/s, by when 3.75 N are viscous.
         self.assertAlmostEqual(MACHINE.truths("X", "linear_ramp")["coulomb_N"], 86.25)
+        self.assertEqual(MACHINE.truths("Y", "curve"), {"mass_kg": 520.0})
 
     def test_of_other_friction_differ_by_an_effect_alone(self):
         changed = machines.Machine("other", MACHINE.with_coulomb("X", "lugre", 1.2)).tables
         self.assertEqual(changed["axis"]["X"].pop("effect"), [{"name": "coulomb_mismatch", "coulomb": "108 N"}])
         self.assertEqual(changed, MACHINE.tables)
+        self.assertIn('coulomb = "102 N"', MACHINE.with_coulomb("Y", "curve", 1.2))
 
     def test_without_a_coulomb_level_take_part_of_that_of_the_axis_other_models(self):
         self.assertIn('coulomb = "18 N"', MACHINE.with_coulomb("X", "parabolic", 1.2))

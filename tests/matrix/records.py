@@ -92,7 +92,7 @@ def small_reversals(amplitudes, cycles=2.0, rate=4.0):
 
 
 def commissioning(limits):
-    """Records like those of `stiction simulate commissioning`, to learn from and to judge on: name, held out, points."""
+    """Those like those of `stiction simulate commissioning`, to learn from and to judge on: name, held out, points."""
     top = limits.speed
     learn = [top * share for share in (0.004, 0.012, 0.03, 0.08, 0.2, 0.45, 1.0)]
     judge = [top * share for share in (0.008, 0.02, 0.055, 0.14, 0.3, 0.7)]

@@ -70,8 +70,8 @@ class Walk:
         self.report.failures.append(tally.Failure(str(self.cell), step, what, detail))
 
     def command(self, step, *arguments, may_refuse=False, out=None):
-        """Runs a command, with --out OUT where given. Returns its outcome where it ended with 0, else None. A refusal is
-        a failure; where it may be one, it has to be a sentence."""
+        """Runs a command, with --out OUT where given. Returns its outcome where it ended with 0, else None. A refusal
+        is a failure; where it may be one, it has to be a sentence."""
         arguments = list(arguments) + (["--out", out] if out else [])
         outcome = self.program.run(*arguments, folder=self.folder)
         self.report.commands += 1
