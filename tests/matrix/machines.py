@@ -75,7 +75,7 @@ class Machine:
 
     def truths(self, axis, model, factor=1.0):
         """What identification has to find, by the names of its result: the file's values, Coulomb friction times
-        `factor`. The contact of a model is no truth of another model's fit, so only what all laws share is asked for."""
+        `factor`. The contact of a model is no truth of another model's fit, so only what laws share is asked for."""
         values = self.axis(axis)
         rotary = values.get("kind") == "rotary"
         truths = {"inertia_kg_m2" if rotary else "mass_kg": si(values["inertia" if rotary else "mass"])}
