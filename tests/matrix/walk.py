@@ -130,10 +130,10 @@ class Walk:
         if not self.command(step, "simulate", experiment, "--machine", self.file, *more, may_refuse=True, out=out):
             return
         result = json.loads((self.folder / out / "result.json").read_text(encoding="utf-8"))
-        if any(result.get(key) for key in ("results", "rows", "loops")):
+        if any(result.get(key) for key in ("results", "rows", "findings")):
             self.report.served.add(experiment)
         else:
-            self.fail(step, "a result without a figure", f"{step} --machine {self.file}\n{result}")
+            self.fail(step, "a result without a figure or a finding", f"{step} --machine {self.file}\n{result}")
 
     # -- an axis with a model -----------------------------------------------------------------------------------------
 
