@@ -4,6 +4,8 @@ have learned, and each of them with a few changes."""
 import math
 import pathlib
 import re
+import resource
+import signal
 import subprocess
 
 # What a reader of numbers must bear.
@@ -11,12 +13,22 @@ NUMBERS = ["0", "-1", "1", "1e-9", "1e9", "1e308", "-1e308", "1e400", "nan", "in
            "0x10", "1,5", " ", "-0", "9223372036854775808"]
 HEADERS = ["t[s]", "X.x[mm]", "Y.x_set[m]", "i[A]", "x[N]", "Q.u[V]", "X.F_ext[N]", "", "[m]"]
 SUFFIXES = {"machine_file": ".toml", "csv_log": ".csv", "recording": ".txt", "quantity": ".txt"}
+LARGEST_FILE = 500_000_000  # bytes that a command may write
+WAITING = 20  # times its own time that a command may take on a busy machine
 LONGEST = 300_000  # bytes of a file that is changed: a run then takes tenths of a second
+
+
+def limit(seconds):
+    """In the programme's process: its own time counts, and a full disk is an error to be told, not a signal."""
+    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 5))
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (LARGEST_FILE, LARGEST_FILE))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
 def collect(program, root, corpora, folder, patience):
     """Files by kind: "machine", "run" (logs that a command can work with), "log", "other". Runs are made in `folder`,
-    each in at most `patience` seconds."""
+    each in at most `patience` seconds of its own."""
     files = {"machine": sorted((program.parents[1] / "share/stiction/machines").glob("*.toml")), "log": [], "other": []}
     for base in [root / "tests/fuzz/seeds", corpora]:
         for kind, suffix in SUFFIXES.items():
@@ -54,7 +66,8 @@ def made_runs(program, folder, patience):
     def makes(name, *arguments):
         """Whether the command has written the file."""
         try:
-            subprocess.run([program, *map(str, arguments)], cwd=folder, check=False, timeout=patience,
+            subprocess.run([program, *map(str, arguments)], cwd=folder, check=False,
+                           timeout=WAITING * patience, preexec_fn=lambda: limit(patience),
                            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         except subprocess.TimeoutExpired:
             return False

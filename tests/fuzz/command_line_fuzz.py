@@ -13,7 +13,6 @@ import os
 import pathlib
 import random
 import re
-import resource
 import shlex
 import shutil
 import signal
@@ -35,7 +34,6 @@ WORDS = ["", " ", "X", "Y", "Z", "*", "x", "all", "none", "circle", "lugre", "ma
 MODELS = ["lugre", "maxwell_slip", "coulomb_viscous", "classical", "linear_ramp", "parabolic", "all", "lugre,classical"]
 SENSIBLE = {"m/min": ["2", "8", "16", "48"], "mm": ["20", "90"], "Hz": ["2", "10"], "A": ["0.5", "3"]}
 FAULT = 99  # the sanitizers' exit code
-LARGEST_FILE = 500_000_000  # bytes
 
 
 @dataclasses.dataclass
@@ -156,13 +154,6 @@ class Drawer:
         return [part.replace("\0", "") for part in line]
 
 
-def limited():
-    """In the programme's process: a full disk is an error to be told, not a signal."""
-    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (LARGEST_FILE, LARGEST_FILE))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-
-
 class Fuzzer:
     def __init__(self, options, work):
         self.options, self.work = options, work
@@ -184,9 +175,9 @@ class Fuzzer:
         begin = time.monotonic()
         process = subprocess.Popen([self.program, *run.line], cwd=folder, env=self.environment,
                                    stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                   start_new_session=True, preexec_fn=limited)
+                                   start_new_session=True, preexec_fn=lambda: command_files.limit(self.options.patience))
         try:
-            out, error = process.communicate(timeout=self.options.patience)
+            out, error = process.communicate(timeout=command_files.WAITING * self.options.patience)
             run.code = process.returncode
         except subprocess.TimeoutExpired:
             os.killpg(process.pid, signal.SIGKILL)
@@ -217,7 +208,8 @@ class Fuzzer:
 
 def judge(run, out, written):
     """Puts what is wrong with a run, or worth telling, into it."""
-    if run.code is None:
+    if run.code is None or run.code == -signal.SIGXCPU:
+        run.code = None
         run.note = "no end in its time"
     elif run.code < 0:
         run.finding = signal.Signals(-run.code).name
@@ -280,7 +272,7 @@ def arguments():
     parser.add_argument("--seed", type=int, default=1, help="of all that is drawn [1]")
     parser.add_argument("--run", type=int, help="this run alone")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="runs at a time [cores]")
-    parser.add_argument("--patience", type=float, default=30.0, help="seconds for one run, which is then ended [30]")
+    parser.add_argument("--patience", type=int, default=30, help="processor seconds of a run, then it is ended [30]")
     parser.add_argument("--corpora", type=pathlib.Path, default=ROOT / "build/fuzz/corpus",
                         help="what other fuzzers have learned")
     parser.add_argument("--findings", type=pathlib.Path, help="keep the files of findings in this folder")

@@ -124,8 +124,10 @@ class Programmes(unittest.TestCase):
                          ["uncaught exception"])
 
     def test_that_hang_are_ended_and_found(self):
-        outcome = self.walk_with("[ $2 = --help ] || sleep 60").program.run("x", patience=0.2)
-        self.assertEqual(outcome.broke(), "no end")
+        waits = self.walk_with("[ $2 = --help ] || sleep 60").program.run("x", waiting=0.2)
+        self.assertEqual(waits.broke(), "no end")
+        works = self.walk_with("[ $2 = --help ] || while :; do :; done").program.run("x", patience=1)
+        self.assertEqual(works.broke(), "no end")
 
     def test_may_refuse_with_one_sentence_where_the_machine_lacks_something(self):
         says = "echo 'm.toml: found one axis; expected two' >&2; exit 2"
