@@ -175,7 +175,8 @@ class Fuzzer:
         begin = time.monotonic()
         process = subprocess.Popen([self.program, *run.line], cwd=folder, env=self.environment,
                                    stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                   start_new_session=True, preexec_fn=lambda: command_files.limit(self.options.patience))
+                                   start_new_session=True,
+                                   preexec_fn=lambda: command_files.limit(self.options.patience))
         try:
             out, error = process.communicate(timeout=command_files.WAITING * self.options.patience)
             run.code = process.returncode
