@@ -57,22 +57,25 @@ class Machine:
             return si(parameters["coulomb"])
         if "level" in parameters:
             return sum(map(si, parameters["level"]))
+        if "forward" in parameters:  # a measured curve: both directions at the lowest speed
+            return 0.5 * (si(parameters["forward"][0]) + si(parameters["backward"][0]))
         return None
 
     def straight_level(self, axis, model, factor=1.0):
-        """What the straight line of sliding has at standstill, with `factor` times the Coulomb friction. A ramp reaches
-        its Coulomb friction at the break velocity, from where on viscous friction grows."""
+        """What the straight line of sliding has at standstill, with `factor` times the Coulomb friction; None where
+        sliding is no straight line. A ramp reaches its Coulomb friction at the break velocity, from where on viscous
+        friction grows."""
         coulomb = self.coulomb(axis, model)
-        if coulomb is None:
-            return None
         parameters = self.parameters(axis, model)
+        if coulomb is None or "forward" in parameters:
+            return None
         if "slope" in parameters:
             return factor * coulomb * (1.0 - si(parameters["viscous"]) / si(parameters["slope"]))
         return factor * coulomb
 
     def truths(self, axis, model, factor=1.0):
-        """What identification has to find, by the names of its result: the file's own values. The contact of a model
-        is no truth of another model's fit, so only what all laws share is asked for. `factor`: of the Coulomb friction."""
+        """What identification has to find, by the names of its result: the file's values, Coulomb friction times
+        `factor`. The contact of a model is no truth of another model's fit, so only what laws share is asked for."""
         values = self.axis(axis)
         rotary = values.get("kind") == "rotary"
         truths = {"inertia_kg_m2" if rotary else "mass_kg": si(values["inertia" if rotary else "mass"])}

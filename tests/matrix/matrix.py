@@ -3,8 +3,8 @@
 order, and prints what failed, cell by cell, and the rates over all cells.
 
 Machines, axes and models are found in the machine files, experiments in the programme's help: a new one takes part by
-itself. known.toml lists the failures that are known, each with its cell, seed and reason; any other fails, and so does a
-known one that no longer does. Exit 0: as listed; 1: not; 2: bad usage."""
+itself. known.toml lists the failures that are known, each with its cell, seed and reason; any other fails, and so does
+one of the list that passes. Exit 0: as listed; 1: not; 2: bad usage."""
 
 import argparse
 import concurrent.futures
@@ -27,7 +27,7 @@ MOST_FALSE = 3  # cells with a false name on an exact file
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("--program", required=True, help="the programme stiction; its machines lie in ../share beside it")
+    parser.add_argument("--program", required=True, help="stiction; its machines lie in ../share")
     parser.add_argument("--aliases", required=True, help="programme that prints an effect's aliases, one a line")
     parser.add_argument("--seeds", type=int, default=1, help="seeds of each cell [1]")
     parser.add_argument("--jobs", type=int, default=2, help="cells at a time [2]")
@@ -156,7 +156,7 @@ def run(options, folder, known, begin):
     print_failures("Known failures", expected)
     print_failures("FAILED", unknown)
     for row in healed:
-        print(f"\nFAILED: {row.cell}, {row.step}: '{row.what}' is listed as known and did not happen; take it off the list")
+        print(f"\nFAILED: {row.cell}, {row.step}: '{row.what}' is listed as known and passed; take it off the list")
     print_refusals(reports)
     print_seconds(reports)
     lines, holds = rates(matrix, reports, failures)
@@ -167,8 +167,9 @@ def run(options, folder, known, begin):
         options.figures.parent.mkdir(parents=True, exist_ok=True)
         options.figures.write_text("".join(f"matrix, {line}\n" for line in lines), encoding="utf-8")
     passed = not unknown and not healed and holds
-    print(f"\nmatrix: {'passed' if passed else 'FAILED'}: {len(reports)} cells, {sum(r.commands for r in reports)} commands, "
-          f"{len(unknown)} failures, {len(expected)} known ones, {time.monotonic() - begin:.0f} s")
+    print(f"\nmatrix: {'passed' if passed else 'FAILED'}: {len(reports)} cells, "
+          f"{sum(report.commands for report in reports)} commands, {len(unknown)} failures, {len(expected)} known, "
+          f"{time.monotonic() - begin:.0f} s")
     return 0 if passed else 1
 
 
@@ -195,7 +196,7 @@ def print_seconds(reports):
 
 
 def rates(matrix, reports, failures):
-    """The rates in words, and whether those with a wish hold. With one seed a rate's interval has to meet what is wanted,
+    """The rates in words, and whether those with a bound hold: with one seed the rate's interval has to meet the bound,
     with several its value."""
     crashes = tally.Rate("commands that died by a signal, an uncaught exception or without end")
     exits = tally.Rate("commands that ended in another way than they had to")
@@ -225,7 +226,7 @@ def rates(matrix, reports, failures):
         if not rate.holds(exactly=many):
             lines.append(f"NOT MET: {rate.name}: wanted {100.0 * rate.least:.0f} to {100.0 * rate.most:.0f} %")
     if len(false_cells) > MOST_FALSE:
-        lines.append(f"NOT MET: {len(false_cells)} cells with a false name on an exact file, wanted at most {MOST_FALSE}")
+        lines.append(f"NOT MET: {false.name}: {len(false_cells)}")
     return lines, holds
 
 

@@ -41,6 +41,10 @@ mass = "520 kg"
   use = "dahl"
     [axis.Y.friction.dahl]
     coulomb = "200 N"
+    [axis.Y.friction.curve]
+    speed = ["1 mm/s", "1 m/s"]
+    forward = ["80 N", "100 N"]
+    backward = ["90 N", "100 N"]
 """
 MACHINE = machines.Machine("table", FILE)
 
@@ -48,22 +52,25 @@ MACHINE = machines.Machine("table", FILE)
 class MachineFiles(unittest.TestCase):
     def test_give_every_axis_with_every_model_that_its_own_file_has(self):
         cells = machines.table_of_cells([MACHINE], [1, 2])
-        models = ["X/lugre", "X/maxwell_slip", "X/parabolic", "X/linear_ramp", "Y/dahl"]
+        models = ["X/lugre", "X/maxwell_slip", "X/parabolic", "X/linear_ramp", "Y/dahl", "Y/curve"]
         self.assertEqual([str(cell) for cell in cells],
                          ["table/-/-/1"] + [f"table/{model}/{seed}" for seed in (1, 2) for model in models])
 
     def test_give_the_values_that_identification_has_to_find(self):
-        self.assertEqual(MACHINE.truths("X", "lugre"), {"mass_kg": 225.0, "coulomb_N": 90.0, "viscous_N_s_per_m": 500.0})
+        self.assertEqual(MACHINE.truths("X", "lugre"),
+                         {"mass_kg": 225.0, "coulomb_N": 90.0, "viscous_N_s_per_m": 500.0})
         self.assertEqual(MACHINE.truths("X", "maxwell_slip")["coulomb_N"], 30.0)
         self.assertEqual(MACHINE.truths("X", "parabolic"), {"mass_kg": 225.0})
         self.assertEqual(MACHINE.truths("X", "lugre", 1.2)["coulomb_N"], 108.0)
         # 90 N at the break velocity of 7.5 mm/s, by when 3.75 N are viscous.
         self.assertAlmostEqual(MACHINE.truths("X", "linear_ramp")["coulomb_N"], 86.25)
+        self.assertEqual(MACHINE.truths("Y", "curve"), {"mass_kg": 520.0})
 
     def test_of_other_friction_differ_by_an_effect_alone(self):
         changed = machines.Machine("other", MACHINE.with_coulomb("X", "lugre", 1.2)).tables
         self.assertEqual(changed["axis"]["X"].pop("effect"), [{"name": "coulomb_mismatch", "coulomb": "108 N"}])
         self.assertEqual(changed, MACHINE.tables)
+        self.assertIn('coulomb = "102 N"', MACHINE.with_coulomb("Y", "curve", 1.2))
 
     def test_without_a_coulomb_level_take_part_of_that_of_the_axis_other_models(self):
         self.assertIn('coulomb = "18 N"', MACHINE.with_coulomb("X", "parabolic", 1.2))
@@ -117,8 +124,10 @@ class Programmes(unittest.TestCase):
                          ["uncaught exception"])
 
     def test_that_hang_are_ended_and_found(self):
-        outcome = self.walk_with("[ $2 = --help ] || sleep 60").program.run("x", patience=0.2)
-        self.assertEqual(outcome.broke(), "no end")
+        waits = self.walk_with("[ $2 = --help ] || sleep 60").program.run("x", waiting=0.2)
+        self.assertEqual(waits.broke(), "no end")
+        works = self.walk_with("[ $2 = --help ] || while :; do :; done").program.run("x", patience=1)
+        self.assertEqual(works.broke(), "no end")
 
     def test_may_refuse_with_one_sentence_where_the_machine_lacks_something(self):
         says = "echo 'm.toml: found one axis; expected two' >&2; exit 2"
@@ -138,7 +147,8 @@ class Programmes(unittest.TestCase):
         self.assertEqual(self.failures("mkdir -p there", out="there"), ["no report.html"])
 
     def test_name_their_commands_in_their_help(self):
-        help_text = "Usage: x\\nOptions:\\n  --machine M  x\\n\\nSubcommands:\\n  circle    a circle\\n  l-shape   a path\\n"
+        help_text = ("Usage: x\\nOptions:\\n  --machine M  x\\n\\n"
+                     "Subcommands:\\n  circle    a circle\\n  l-shape   a path\\n")
         walked = self.walk_with(f"printf '{help_text}'")
         self.assertEqual(walked.program.experiments, ["circle", "l-shape"])
         self.assertEqual(walked.program.options["circle"], {"--machine"})

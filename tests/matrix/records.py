@@ -1,5 +1,6 @@
 """Set-points for an axis that the programme's own experiments are not made for, within the limits of its machine file,
-and records of them: `stiction simulate replay` runs them, the noise of guides and of the current's sensor is added here."""
+and records of them. `stiction simulate replay` runs them; the noise of guides and of the current's sensor is added
+here."""
 
 import csv
 import math
@@ -91,7 +92,7 @@ def small_reversals(amplitudes, cycles=2.0, rate=4.0):
 
 
 def commissioning(limits):
-    """Records of the kinds of `stiction simulate commissioning`, to learn from and to judge on: name, held out, points."""
+    """Those like those of `stiction simulate commissioning`, to learn from and to judge on: name, held out, points."""
     top = limits.speed
     learn = [top * share for share in (0.004, 0.012, 0.03, 0.08, 0.2, 0.45, 1.0)]
     judge = [top * share for share in (0.008, 0.02, 0.055, 0.14, 0.3, 0.7)]
@@ -135,7 +136,8 @@ def strip(simulated, place, axis, noise, draw):
     with open(simulated, newline="", encoding="utf-8") as file:
         lines = [line for line in file if not line.startswith("#")]
     rows = list(csv.reader(lines))
-    wanted = ["t[s]"] + [f"{axis}.{name}" for name in ("x_set[m]", "v_set[m/s]", "a_set[m/s^2]", "x[m]", "i[A]", "u[V]")]
+    channels = ("x_set[m]", "v_set[m/s]", "a_set[m/s^2]", "x[m]", "i[A]", "u[V]")
+    wanted = ["t[s]"] + [f"{axis}.{channel}" for channel in channels]
     kept = [rows[0].index(name) for name in wanted if name in rows[0]]
     motor = [rows[0].index(name) for name in wanted[-2:] if name in rows[0]]
     with open(place, "w", newline="", encoding="utf-8") as file:

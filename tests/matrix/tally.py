@@ -65,7 +65,7 @@ def sort_out(failures, known, ran):
 
 @dataclasses.dataclass
 class Rate:
-    """Cases counted over all cells, with what is wanted of them. `judge`: whether the rate decides, and not each case."""
+    """Cases counted over all cells, with the least and the most that is wanted of them."""
     name: str
     least: float = 0.0
     most: float = 1.0

@@ -1,4 +1,4 @@
-"""One cell of the matrix: every command in README's order on one axis with one friction model, with the checks of each."""
+"""One cell of the matrix: every command in README's order on one axis with one friction model, and its checks."""
 
 import dataclasses
 import json
@@ -70,8 +70,8 @@ class Walk:
         self.report.failures.append(tally.Failure(str(self.cell), step, what, detail))
 
     def command(self, step, *arguments, may_refuse=False, out=None):
-        """Runs a command, with --out OUT where given. Returns its outcome where it ended with 0, else None; a refusal is
-        a failure unless it may be one, and then has to be a sentence."""
+        """Runs a command, with --out OUT where given. Returns its outcome where it ended with 0, else None. A refusal
+        is a failure; where it may be one, it has to be a sentence."""
         arguments = list(arguments) + (["--out", out] if out else [])
         outcome = self.program.run(*arguments, folder=self.folder)
         self.report.commands += 1
@@ -130,10 +130,10 @@ class Walk:
         if not self.command(step, "simulate", experiment, "--machine", self.file, *more, may_refuse=True, out=out):
             return
         result = json.loads((self.folder / out / "result.json").read_text(encoding="utf-8"))
-        if any(result.get(key) for key in ("results", "rows", "loops")):
+        if any(result.get(key) for key in ("results", "rows", "findings")):
             self.report.served.add(experiment)
         else:
-            self.fail(step, "a result without a figure", f"{step} --machine {self.file}\n{result}")
+            self.fail(step, "a result without a figure or a finding", f"{step} --machine {self.file}\n{result}")
 
     # -- an axis with a model -----------------------------------------------------------------------------------------
 
@@ -169,13 +169,13 @@ class Walk:
         self.inspect(logs[0], "inspect the circle")
         self.expect_nothing(logs[:1], logs[1:], "diagnose the circle")
         self.command("compare", "compare", logs[0], "--machine", self.file, *self.using, out="compare")
-        self.command("tune-friction", "tune-friction", *logs, "--machine", self.file, *self.using, "--axis", self.cell.axis,
-                     *(["--no-pulse"] if self.quick else []), out="tune-friction")
+        self.command("tune-friction", "tune-friction", *logs, "--machine", self.file, *self.using, "--axis",
+                     self.cell.axis, *(["--no-pulse"] if self.quick else []), out="tune-friction")
 
     def circle_logs(self):
         for name, feed, direction in (("run", FEED, "ccw"), ("other", OTHER_FEED, "cw")):
-            if not self.command("simulate circle --log", "simulate", "circle", "--machine", self.file, *self.using, "--feed",
-                                feed, "--direction", direction, "--log", f"{name}.csv"):
+            if not self.command("simulate circle --log", "simulate", "circle", "--machine", self.file, *self.using,
+                                "--feed", feed, "--direction", direction, "--log", f"{name}.csv"):
                 return []
         return ["run.csv", "other.csv"]
 
@@ -190,8 +190,8 @@ class Walk:
 
     def commissioned(self, name, file, suffix):
         """Records with noise to learn from and to judge on, of the machine of `file`."""
-        made = self.command(f"commissioning{suffix}", "simulate", "commissioning", "--machine", file, *self.using, "--axis",
-                            self.cell.axis, "--seed", self.cell.seed, "--json", out=name)
+        made = self.command(f"commissioning{suffix}", "simulate", "commissioning", "--machine", file, *self.using,
+                            "--axis", self.cell.axis, "--seed", self.cell.seed, "--json", out=name)
         if made:
             listed = made.json()
             return ([f"{name}/{log}" for log in listed["logs"]], [f"{name}/{log}" for log in listed["holdout"]])
@@ -208,10 +208,11 @@ class Walk:
             draw = records.drawing(self.cell.seed, axis, record)
             place = f"{name}/{record}.csv"
             records.write_set_points(self.folder / "set-points.csv", axis, points, draw)
-            if not self.command(f"simulate replay{suffix}", "simulate", "replay", "--from", "set-points.csv", "--machine",
-                                file, *self.using, "--log", "simulated.csv"):
+            if not self.command(f"simulate replay{suffix}", "simulate", "replay", "--from", "set-points.csv",
+                                "--machine", file, *self.using, "--log", "simulated.csv"):
                 return [], []
-            records.strip(self.folder / "simulated.csv", self.folder / place, axis, records.SENSOR_FORCE / constant, draw)
+            noise = records.SENSOR_FORCE / constant
+            records.strip(self.folder / "simulated.csv", self.folder / place, axis, noise, draw)
             (judge if held_out else learn).append(place)
         return learn, judge
 
