@@ -91,7 +91,7 @@ sim::Chart partial(const LogRows& rows, const Abscissa& abscissa, const Eigen::V
     const Eigen::VectorXd signed_force = sign.cwiseProduct(force);
     return abscissa.logarithmic ? means(name, over, 1.0, signed_force) : even_means(name, over, 1.0, signed_force);
   };
-  auto residual = mean("residual without it", left);
+  auto residual = mean("residual without this cause", left);
   residual.points = true;
   chart.series = {std::move(residual), mean("this cause", by)};
   return chart;
@@ -106,7 +106,7 @@ sim::Chart added_variable(const Eigen::VectorXd& left, const Eigen::VectorXd& by
   chart.caption =
       "Means over equal numbers of samples, without the parts of all other causes. On the line the cause explains the "
       "residual completely.";
-  auto residual = means("residual without it", by, 1.0, left, 40);
+  auto residual = means("residual without this cause", by, 1.0, left, 40);
   residual.points = true;
   sim::Series line{.name = "this cause", .x = residual.x, .y = residual.x};
   chart.series = {std::move(residual), std::move(line)};

@@ -190,7 +190,7 @@ std::string headline(const Verdict& verdict) {
     title[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(title[0])));
     if (std::find(names.begin(), names.end(), title) == names.end()) names.push_back(title);
   }
-  return fmt::format("Missing or wrong in the simulation: {}.", fmt::join(names, ", "));
+  return fmt::format("The machine file lacks or misstates: {}.", fmt::join(names, ", "));
 }
 
 std::string gain_line(const Verdict& verdict) {
