@@ -31,7 +31,8 @@ LineScan scan_pitches(const LogRows& rows, const Eigen::VectorXd& residual, cons
                       const Eigen::VectorXd& carrier, std::span<const double> known, std::size_t count);
 
 // Signal periods (m) of the encoder, 2 um to 1 mm: where the rows are slow enough to see them, and where the samples of
-// the log fold the drive's answer down (encoder_error_response.hpp). The count knows the signal: one phase in all records.
+// the log fold the drive's answer down (encoder_error_response.hpp). The count knows the signal: one phase in all
+// records.
 LineScan scan_signal_periods(const LogRows& rows, const Eigen::VectorXd& residual, const Whitening& whitening,
                              const machine::AxisModel& axis, const machine::Timing& timing, std::size_t count);
 

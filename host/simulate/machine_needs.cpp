@@ -20,7 +20,8 @@ constexpr std::array table{
     MachineNeeds{.command = "circle", .least_axes = 2, .most_axes = 2, .why = for_a_circle},
     MachineNeeds{.command = "constant-velocity", .one_axis = true},
     MachineNeeds{.command = "impact", .one_axis = true},
-    MachineNeeds{.command = "l-shape", .least_axes = 2, .most_axes = 2, .why = "one is at standstill while the other moves"},
+    MachineNeeds{
+        .command = "l-shape", .least_axes = 2, .most_axes = 2, .why = "one is at standstill while the other moves"},
     MachineNeeds{.command = "presliding", .friction = with_bristles, .one_axis = true},
     MachineNeeds{.command = "friction-lag", .friction = with_bristles, .one_axis = true},
     MachineNeeds{.command = "break-away", .friction = with_bristles, .one_axis = true},
