@@ -14,8 +14,8 @@ namespace stiction::test {
 namespace {
 
 machine::Machine machine_for(const char* experiment) {
-  auto machine =
-      sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/firmware/machine/shipped/mcfv5050ln.toml", {experiment, {}});
+  auto machine = sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/firmware/machine/shipped/mcfv5050ln.toml",
+                                   {experiment, {}});
   machine.axes.resize(1);
   return machine;
 }

@@ -134,7 +134,7 @@ class MotionController(unittest.TestCase):
         self.assertLess(x.ran_on_ticks, 16000, result.plant)
 
     def test_that_sends_too_short_a_frame_is_refused_and_said_so(self):
-        self.assertIn("CAN: axis 0: found a frame 0x401 of 4 bytes; expected 6: refused", self.results["followed"].drive)
+        self.assertIn("CAN: axis 0: found a frame 0x401 of 4 bytes; expected 6; it is refused", self.results["followed"].drive)
 
     def test_is_seen_by_an_independent_recorder_as_the_dbc_describes_it(self):
         recorded = list(decoded((self.folder / "session.log").read_text(), self.dbc))
