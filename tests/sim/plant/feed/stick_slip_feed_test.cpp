@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/plant/feed/feed_per_revolution.hpp"
 #include "sim/machine_file.hpp"
+#include "sim/plant/feed/feed_per_revolution.hpp"
 #include "sim/plant/feed/stick_slip_relations.hpp"
 #include "tests/support/figure.hpp"
 
@@ -20,8 +20,8 @@ constexpr FeedEquations printed_damping{false, true}, printed_stick{true, false}
 
 // The shipped lathe with a plain step of friction.
 machine::FeedDrive lathe(double zeta = 0.05) {
-  auto drive =
-      *sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/firmware/machine/shipped/stick-slip-feed.toml").feed_drive;
+  auto drive = *sim::read_machine(std::string(STICTION_SOURCE_DIR) + "/firmware/machine/shipped/stick-slip-feed.toml")
+                    .feed_drive;
   drive.friction.static_short = drive.friction.static_long;
   drive.cutting.coefficient = 0.0;
   drive.carriage.damping_ratio = zeta;
