@@ -1,6 +1,6 @@
 #include "sim/machine_file.hpp"
 
-#include "sim/plant/effects/effects.hpp"
+#include "sim/effects/effects.hpp"
 #include "sim/plant/friction/friction.hpp"
 
 namespace stiction::sim {

@@ -19,7 +19,7 @@ void put_out(const Verdict& verdict, const machine::Machine& machine, const Mach
     for (const auto& axis : machine.axes) {
       machine::AxisEffects effects{axis.name, {}};
       for (const auto& finding : verdict.findings)
-        if (finding.axis == axis.name) effects.effects.push_back(finding.effect);
+        if (finding.axis == axis.name) effects.effects.push_back(finding.row());
       if (!effects.effects.empty()) additions.push_back(std::move(effects));
     }
     const std::vector<std::string> comment{"made by: " + invocation.command_line};

@@ -112,7 +112,7 @@ std::string axis_text(const Log& log, std::size_t index, const AxisInspection& a
   for (const auto& suspicion : axis.suspicions) line("SUSPICIOUS", suspicion);
   text += "  this log can determine\n";
   for (const auto& d : axis.determinable)
-    text += fmt::format("    {:<4} {:<34} {}{}\n", d.possible ? "yes" : "no", d.what, d.reason,
+    text += fmt::format("    {:<4} {:<45} {}{}\n", d.possible ? "yes" : "no", d.what, d.reason,
                         d.possible ? "" : "; record " + d.remedy);
   return text;
 }

@@ -11,8 +11,8 @@
 #include "firmware/machine/file/units.hpp"
 #include "host/cli/errors.hpp"
 #include "host/simulate/friction_choice.hpp"
+#include "sim/effects/effects.hpp"
 #include "sim/machine_file.hpp"
-#include "sim/plant/effects/effects.hpp"
 #include "sim/plant/friction/friction.hpp"
 #include "stiction/number/fixed_signals.hpp"
 

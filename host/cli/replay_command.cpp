@@ -28,7 +28,6 @@ std::vector<ReplayCase> cases_of(const ReplayOptions& options) {
     const auto machine = options.machine.load(name, "replay");
     const auto models = friction_models(options.friction, machine);
     for (const auto& friction : models) {
-      // A label that names a model takes its colour; machines are told apart by theirs.
       const auto label = names.size() == 1    ? friction
                          : models.size() == 1 ? machine.id
                                               : fmt::format("{}, {}", machine.id, friction);
@@ -37,6 +36,9 @@ std::vector<ReplayCase> cases_of(const ReplayOptions& options) {
           throw UsageError(fmt::format("--machine, --friction: found {} twice; expected different names", label));
       auto& c = cases.emplace_back(ReplayCase{label, machine, {}});
       use_friction(c.machine, friction);
+      // Machines are told apart by colours of their own.
+      if (label != machine.id) c.friction = friction;
+      for (auto& axis : c.machine.axes) axis.friction.use = friction;
     }
   }
   return cases;

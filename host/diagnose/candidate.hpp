@@ -1,12 +1,13 @@
 // What the engine knows of one effect: the regressors by which it shows in the residual force, the nonlinear parameters
-// to scan, and what fitted weights mean in a machine file's keys. One file an effect in effects/, one row in
-// candidates().
+// to scan, and what fitted weights mean in a machine file's keys. One in the folder of each effect
+// (effect_regressor.hpp), one in signatures/ for each shape outside of the vocabulary.
 #pragma once
 
 #include <Eigen/Dense>
 #include <array>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "host/diagnose/line_scan.hpp"
 #include "host/diagnose/verdict.hpp"
 #include "host/identify/motion.hpp"
+#include "sim/effects/effect_descriptor.hpp"
 
 namespace stiction::host {
 
@@ -48,16 +50,15 @@ struct SearchContext {
 using Columns = std::vector<std::vector<double>>;
 
 struct Candidate {
-  const char* name;
   // Values of the nonlinear parameter to try; one value, not looked at, for an effect that has none. Empty: this axis
   // or these records cannot have the effect.
-  std::vector<double> (*grid)(const SearchContext&);
-  Columns (*columns)(const SearchContext&, const Motion&, double shape);
+  std::vector<double> (*grid)(const SearchContext&) = nullptr;
+  Columns (*columns)(const SearchContext&, const Motion&, double shape) = nullptr;
   // Whether weights have a sign and size that the effect can have.
   bool (*possible)(const SearchContext&, double shape, const Eigen::VectorXd& coefficients);
   // Keys of the machine file; `deviations`: of weights and nonlinear parameter (last), covariance.
   void (*describe)(const SearchContext&, double shape, const Eigen::VectorXd& coefficients,
-                   const Eigen::MatrixXd& covariance, Finding&);
+                   const Eigen::MatrixXd& covariance, Finding&) = nullptr;
   bool shape = false;           // whether the scanned parameter is one of the effect's own
   bool at_weight = false;       // the scanned value is where the law is linearised: at best the weight itself
   bool names_constant = false;  // what it names is not a nuisance of its own evaluation
@@ -76,20 +77,20 @@ struct Candidate {
   // Of a force outside of the vocabulary: what it looks like. It takes part in the search so that no name is forced
   // upon what none fits; found, it is no finding but the signature of what stays unexplained. Null for an effect.
   std::string (*looks_like)(const SearchContext&, double shape, const Eigen::VectorXd& coefficients) = nullptr;
-  bool outside() const { return looks_like != nullptr; }
+  // By whose folder it is; set by candidates(). None: a shape outside of the vocabulary.
+  std::optional<sim::EffectId> effect{};
+  bool outside() const { return !effect; }
 };
 
-// The vocabulary in the order of docs/effects/README.md, then the signatures outside of it.
+// The vocabulary in its order; behind it what is outside of it.
 std::span<const Candidate> candidates();
+// Its place there; none where the effect does not show in the residual force.
+std::optional<std::size_t> candidate_index(sim::EffectId effect);
 
 namespace effects {
-extern const Candidate mass_mismatch, coulomb_mismatch, viscous_mismatch, viscous_nonlinear, stribeck,
-    friction_asymmetry, presliding_hysteresis, friction_lag, position_dependent_friction, thermal_drift, constant_force,
-    position_spring, force_ripple, force_constant_ripple, force_constant_mismatch, force_saturation, backlash,
-    structural_resonance, encoder_subdivision_error, time_skew, cross_axis_coupling, periodic_disturbance;
-
-// Adds a key with its value and standard error under the unit's suffix ("_N_s_per_m").
-void add_key(Finding& finding, const char* key, const char* suffix, std::vector<double> values,
+// Adds a key of the finding's effect with its values and their standard errors. Throws std::logic_error for a key that
+// the effect has not.
+void add_key(const SearchContext& context, Finding& finding, std::string_view key, std::vector<double> values,
              std::vector<double> errors);
 
 // Cosine and sine of a wave over position, as force on the carriage of `size` (of each sample) times it.

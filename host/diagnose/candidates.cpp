@@ -1,52 +1,74 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
-#include "host/diagnose/candidate.hpp"
+#include "host/diagnose/effect_regressor.hpp"
+#include "sim/effects/effects.hpp"
 
 namespace stiction::host {
 
+const EffectRegressor* regressor_of(sim::EffectId effect) {
+  const auto folders = regressor_folders();
+  const auto found = std::find_if(folders.begin(), folders.end(),
+                                  [&](const RegressorFolder& folder) { return folder.effect == effect->name; });
+  return found == folders.end() ? nullptr : found->regressor;
+}
+
 std::span<const Candidate> candidates() {
-  static const std::array table{
-      effects::mass_mismatch,
-      effects::coulomb_mismatch,
-      effects::viscous_mismatch,
-      effects::viscous_nonlinear,
-      effects::stribeck,
-      effects::friction_asymmetry,
-      effects::presliding_hysteresis,
-      effects::friction_lag,
-      effects::position_dependent_friction,
-      effects::thermal_drift,
-      effects::constant_force,
-      effects::position_spring,
-      effects::force_ripple,
-      effects::force_constant_ripple,
-      effects::force_constant_mismatch,
-      effects::force_saturation,
-      effects::backlash,
-      effects::structural_resonance,
-      effects::encoder_subdivision_error,
-      effects::time_skew,
-      effects::cross_axis_coupling,
-      effects::periodic_disturbance,
-      signatures::localised_force,
-      signatures::ripple_with_speed,
-      signatures::force_after_reversal,
-      signatures::force_after_way_back,
-      signatures::force_with_acceleration,
-      signatures::drifting_force,
-  };
+  static const std::vector<Candidate> table = [] {
+    std::vector<Candidate> made;
+    for (const sim::EffectId effect : sim::all_effects())
+      if (const auto* regressor = regressor_of(effect); regressor != nullptr && regressor->force.columns != nullptr)
+        made.emplace_back(regressor->force).effect = effect;
+    for (const Candidate& shape :
+         {signatures::localised_force, signatures::ripple_with_speed, signatures::force_after_reversal,
+          signatures::force_after_way_back, signatures::force_with_acceleration, signatures::drifting_force})
+      made.push_back(shape);
+    return made;
+  }();
   return table;
+}
+
+std::optional<std::size_t> candidate_index(sim::EffectId effect) {
+  const auto all = candidates();
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Candidate& each) { return each.effect == effect; });
+  if (found == all.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - all.begin());
+}
+
+std::span<const CommandParameter> command_parameters() {
+  static const std::vector<CommandParameter> table = [] {
+    std::vector<CommandParameter> made;
+    for (const sim::EffectId effect : sim::all_effects())
+      if (const auto* regressor = regressor_of(effect))
+        for (const CommandParameter& parameter : regressor->command) made.emplace_back(parameter).effect = effect;
+    std::stable_partition(made.begin(), made.end(), [](const CommandParameter& each) { return !each.is_delay; });
+    return made;
+  }();
+  return table;
+}
+
+EffectParameter effect_parameter(const machine::AxisModel& axis, sim::EffectId effect, std::string_view key,
+                                 std::vector<double> values, std::vector<double> errors) {
+  const auto known = std::find_if(effect->keys.begin(), effect->keys.end(),
+                                  [&](const machine::ValueKey& each) { return each.key == key; });
+  if (known == effect->keys.end())
+    throw std::logic_error(fmt::format("effect {}: found no key {}", effect.name(), key));
+  return {std::string(key), std::string(sim::key_unit(*known, axis)), known->list, std::move(values),
+          std::move(errors)};
 }
 
 namespace effects {
 
-void add_key(Finding& finding, const char* key, const char* suffix, std::vector<double> values,
+void add_key(const SearchContext& context, Finding& finding, std::string_view key, std::vector<double> values,
              std::vector<double> errors) {
-  finding.effect.values[key] = values;
-  finding.parameters.push_back({std::string(key) + suffix, std::move(values), std::move(errors)});
+  finding.values[std::string(key)] = values;
+  finding.parameters.push_back(
+      effect_parameter(context.axis, finding.effect, key, std::move(values), std::move(errors)));
 }
 
 Columns waves_over_position(const Motion& motion, double pitch, const std::vector<double>& size) {

@@ -1,4 +1,3 @@
-#include <array>
 #include <cmath>
 #include <string_view>
 
@@ -43,36 +42,39 @@ Eigen::VectorXd position(const LogRows& rows) {
 Eigen::VectorXd velocity(const LogRows& rows) { return 1e3 * rows.velocity; }
 Eigen::VectorXd speed(const LogRows& rows) { return 1e3 * rows.velocity.cwiseAbs().cwiseMax(creeping); }
 Eigen::VectorXd acceleration(const LogRows& rows) { return rows.acceleration; }
+Eigen::VectorXd time(const LogRows& rows) {
+  return rows.sampled([](const Motion& m) { return m.t; });
+}
 Eigen::VectorXd way(const LogRows& rows) { return 1e6 * rows.sampled(since_reversal).cwiseMax(1e-8); }
 
 constexpr Abscissa over_position{"Along the stroke", "position, mm", position};
 constexpr Abscissa over_velocity{"Over velocity", "velocity, mm/s", velocity};
 constexpr Abscissa over_speed{"Over speed", "speed, mm/s", speed, true, true};
 constexpr Abscissa over_acceleration{"Over acceleration", "acceleration, m/s²", acceleration};
+constexpr Abscissa over_time{"Over time", "time since the start of the record, s", time, true};
 constexpr Abscissa after_reversals{"After reversals", "displacement since the last reversal, µm", way, true, true};
 
-struct Row {
-  std::string_view effect;
-  Abscissa abscissa;
-};
-constexpr std::array abscissae{
-    Row{"mass_mismatch", over_acceleration},
-    Row{"cross_axis_coupling", over_acceleration},
-    Row{"coulomb_mismatch", over_speed},
-    Row{"viscous_mismatch", over_speed},
-    Row{"viscous_nonlinear", over_speed},
-    Row{"stribeck", over_speed},
-    Row{"friction_lag", over_speed},
-    Row{"friction_asymmetry", over_velocity},
-    Row{"constant_force", over_velocity},
-    Row{"presliding_hysteresis", after_reversals},
-    Row{"backlash", after_reversals},
-    Row{"position_spring", over_position},
-    Row{"force_ripple", over_position},
-    Row{"force_constant_ripple", over_position},
-    Row{"position_dependent_friction", over_position},
-    Row{"encoder_subdivision_error", over_position},
-};
+// Null where nothing but the effect's own force is worth it.
+const Abscissa* abscissa_of(sim::Abscissa abscissa) {
+  switch (abscissa) {
+    case sim::Abscissa::position:
+      return &over_position;
+    case sim::Abscissa::velocity:
+      return &over_velocity;
+    case sim::Abscissa::speed:
+      return &over_speed;
+    case sim::Abscissa::acceleration:
+      return &over_acceleration;
+    case sim::Abscissa::since_reversal:
+      return &after_reversals;
+    case sim::Abscissa::time:
+      return &over_time;
+    case sim::Abscissa::own_force:
+    case sim::Abscissa::none:
+      return nullptr;
+  }
+  return nullptr;
+}
 
 sim::Chart partial(const LogRows& rows, const Abscissa& abscissa, const Eigen::VectorXd& left,
                    const Eigen::VectorXd& by) {
@@ -122,8 +124,8 @@ void add_cause_charts(Verdict& verdict, const LogRows& rows, const SearchContext
         weighted_columns(rows, context, candidates()[terms[k].candidate], terms[k].shape, terms[k].coefficients);
     const Eigen::VectorXd left = after + by;
     auto& finding = verdict.findings[k];
-    for (const auto& row : abscissae)
-      if (row.effect == finding.effect.name) finding.charts.push_back(partial(rows, row.abscissa, left, by));
+    if (const auto* abscissa = abscissa_of(finding.effect->abscissa))
+      finding.charts.push_back(partial(rows, *abscissa, left, by));
     finding.charts.push_back(added_variable(left, by));
   }
 }

@@ -51,4 +51,16 @@ inline sim::Series even_means(std::string name, const Eigen::VectorXd& over, dou
   return series;
 }
 
+// The simulations of a diagnosis, in every chart by the same name and colour: of the machine file, and of the extended.
+inline sim::Series of_machine_file(sim::Series series) {
+  series.name = "machine file";
+  series.role = sim::SeriesRole::before;
+  return series;
+}
+inline sim::Series of_extended(sim::Series series) {
+  series.name = "extended";
+  series.role = sim::SeriesRole::after;
+  return series;
+}
+
 }  // namespace stiction::host

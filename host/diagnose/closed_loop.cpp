@@ -6,8 +6,11 @@
 #include <cmath>
 #include <filesystem>
 
+#include "host/diagnose/chart_means.hpp"
 #include "host/diagnose/replay_setup.hpp"
 #include "host/simulate/control_run.hpp"
+#include "sim/effects/cross_axis_coupling/cross_axis_coupling.hpp"
+#include "sim/effects/effects.hpp"
 
 namespace stiction::host {
 namespace {
@@ -62,18 +65,21 @@ void add_pictures(Verdict& verdict, const std::vector<Log>& logs, const std::vec
   difference.y_label = "simulated minus measured, µm";
   difference.caption.clear();
   difference.levels = {0.0};
-  const auto line = [&](const char* name, const auto& value) {
-    sim::Series series{.name = name, .x = chosen.t, .y = {}};
+  const auto line = [&](sim::Series series, const auto& value) {
+    series.x = chosen.t;
     for (std::size_t i = 0; i < chosen.t.size(); ++i) series.y.push_back(1e6 * value(i));
     return series;
   };
-  for (const auto& [name, x] :
-       {std::pair{"measured", &measured[log]}, {"machine file", &baseline[log]}, {"extended", &extended[log]}}) {
-    if (name == std::string_view("extended") && verdict.findings.empty()) continue;
+  sim::Series of_machine{.name = "measured", .x = {}, .y = {}};
+  of_machine.role = sim::SeriesRole::measured;
+  for (const auto& [series, x] : {std::pair{of_machine, &measured[log]},
+                                  {of_machine_file({}), &baseline[log]},
+                                  {of_extended({}), &extended[log]}}) {
+    if (x == &extended[log] && verdict.findings.empty()) continue;
     const auto& position = *x;
-    error.series.push_back(line(name, [&](std::size_t i) { return set[i] - position[i]; }));
+    error.series.push_back(line(series, [&](std::size_t i) { return set[i] - position[i]; }));
     if (x != &measured[log])
-      difference.series.push_back(line(name, [&](std::size_t i) { return position[i] - measured[log][i]; }));
+      difference.series.push_back(line(series, [&](std::size_t i) { return position[i] - measured[log][i]; }));
   }
   verdict.before_after.insert(verdict.before_after.begin(), {std::move(error), std::move(difference)});
 }
@@ -83,17 +89,18 @@ void add_pictures(Verdict& verdict, const std::vector<Log>& logs, const std::vec
 machine::Machine extended_machine(machine::Machine machine, const std::vector<Finding>& findings) {
   for (const auto& finding : findings)
     for (auto& axis : machine.axes)
-      if (axis.name == finding.axis) axis.effects.push_back(finding.effect);
+      if (axis.name == finding.axis) axis.effects.push_back(finding.row());
   return machine;
 }
 
 void judge_in_closed_loop(Verdict& verdict, const machine::Machine& machine, std::size_t axis,
                           const std::vector<Log>& held_out) {
-  const auto is_coupling = [](const machine::Effect& effect) { return effect.name == "cross_axis_coupling"; };
   const auto& known = machine.axes[axis].effects;
-  const bool coupled = std::any_of(known.begin(), known.end(), is_coupling) ||
-                       std::any_of(verdict.findings.begin(), verdict.findings.end(),
-                                   [&](const Finding& finding) { return is_coupling(finding.effect); });
+  const bool coupled =
+      std::any_of(known.begin(), known.end(),
+                  [](const machine::Effect& effect) { return sim::is_a<sim::CrossAxisCoupling>(effect); }) ||
+      std::any_of(verdict.findings.begin(), verdict.findings.end(),
+                  [](const Finding& finding) { return sim::is_a<sim::CrossAxisCoupling>(finding.effect); });
   auto setup = replay_setup_of(machine, axis, held_out, coupled);
   if (setup.logs.empty()) return;
   std::vector<std::vector<double>> measured;

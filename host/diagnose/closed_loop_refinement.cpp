@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "host/diagnose/candidate_columns.hpp"
-#include "sim/plant/effects/effects.hpp"
+#include "sim/effects/effects.hpp"
 
 namespace stiction::host {
 namespace {
@@ -76,14 +76,12 @@ class ClosedLoopFit {
 
  private:
   void free_parameters(std::size_t finding) {
-    effects_.push_back(findings_[finding].effect);
+    effects_.push_back(findings_[finding].row());
     of_finding_.push_back(finding);
     const auto& parameters = findings_[finding].parameters;
     for (std::size_t p = 0; p < parameters.size(); ++p)
-      for (const auto& [key, values] : findings_[finding].effect.values)
-        if (parameters[p].name == key || parameters[p].name.starts_with(key + "_"))
-          for (std::size_t i = 0; i < parameters[p].standard_errors.size(); ++i)
-            free_.push_back({effects_.size() - 1, p, key, i});
+      for (std::size_t i = 0; i < parameters[p].standard_errors.size(); ++i)
+        free_.push_back({effects_.size() - 1, p, parameters[p].key, i});
   }
 
   Eigen::VectorXd start() const {
@@ -111,8 +109,7 @@ class ClosedLoopFit {
   double size_of(Eigen::Index i, const Eigen::VectorXd& at) const {
     const auto& own = free_[static_cast<std::size_t>(i)];
     const auto unit = [this](const Free& free) {
-      return std::string_view(findings_[of_finding_[free.finding]].parameters[free.parameter].name)
-          .substr(free.key.size());
+      return std::string_view(findings_[of_finding_[free.finding]].parameters[free.parameter].unit);
     };
     double square = 0.0;
     for (std::size_t k = 0; k < free_.size(); ++k)
@@ -157,7 +154,7 @@ class ClosedLoopFit {
       auto& finding = findings_[of_finding_[free_[i].finding]];
       auto& parameter = finding.parameters[free_[i].parameter];
       const auto k = static_cast<Eigen::Index>(i);
-      finding.effect.values.at(free_[i].key)[free_[i].index] = parameter.values[free_[i].index] = at[k];
+      finding.values.at(free_[i].key)[free_[i].index] = parameter.values[free_[i].index] = at[k];
       auto& error = parameter.standard_errors[free_[i].index];
       error = std::max(error, std::sqrt(std::max(covariance(k, k), 0.0)));
     }

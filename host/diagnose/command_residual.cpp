@@ -6,13 +6,14 @@
 #include <cmath>
 
 #include "firmware/machine/configuration/double_signals.hpp"
+#include "host/diagnose/command_parameter.hpp"
 #include "host/diagnose/command_replay.hpp"
 #include "host/diagnose/evidence.hpp"
 #include "host/diagnose/fisher.hpp"
 #include "host/diagnose/holdout.hpp"
 #include "host/identify/filter.hpp"
 #include "host/identify/identification.hpp"
-#include "sim/plant/effects/effects.hpp"
+#include "sim/effects/effects.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
 namespace stiction::host {
@@ -120,10 +121,9 @@ struct CommandTerm {
 double rms(const Eigen::VectorXd& v) { return std::sqrt(v.squaredNorm() / static_cast<double>(v.size())); }
 
 machine::AxisModel with_terms(machine::AxisModel axis, const std::vector<CommandTerm>& terms,
-                              const char* without = "") {
+                              std::optional<sim::EffectId> without = {}) {
   for (const auto& term : terms)
-    if (const auto& p = command_parameters()[term.place]; std::string_view(p.effect) != without)
-      p.set(axis, term.value);
+    if (const auto& p = command_parameters()[term.place]; !without || p.effect != without) p.set(axis, term.value);
   return axis;
 }
 
@@ -276,20 +276,17 @@ std::vector<CommandTerm> refined(const Commands& commands, const machine::AxisMo
   return terms;
 }
 
-Finding finding_of(const machine::AxisModel& file, const char* effect, const std::vector<CommandTerm>& terms) {
-  Finding finding;
+Finding finding_of(const machine::AxisModel& file, sim::EffectId effect, const std::vector<CommandTerm>& terms) {
+  Finding finding(effect);
   finding.axis = file.name;
   finding.in_command = true;
-  finding.effect.name = effect;
   for (const auto& known : file.effects)
-    if (known.name == effect) finding.effect.values = known.values;
-  const bool force_motor = file.motor.model == machine::MotorModel::force;
+    if (sim::find_effect(known.name) == effect) finding.values = known.values;
   for (const auto& term : terms) {
     const auto& p = command_parameters()[term.place];
-    if (std::string_view(p.effect) != effect) continue;
-    finding.effect.values[p.key] = {term.value};
-    finding.parameters.push_back(
-        {std::string(p.key) + (force_motor ? p.force_motor_suffix : p.suffix), {term.value}, {term.deviation}});
+    if (p.effect != effect) continue;
+    finding.values[p.key] = {term.value};
+    finding.parameters.push_back(effect_parameter(file, effect, p.key, {term.value}, {term.deviation}));
     finding.explains += term.explains;
     finding.p_value = std::min(finding.p_value, term.p_value);
   }
@@ -314,14 +311,13 @@ void judge_held_out(Verdict& verdict, std::vector<Finding>& findings, const Comm
   };
   const auto before = residual_with(axis);
   verdict.baseline.command_rms = rms(before);
-  if (axis.motor.model == machine::MotorModel::force) verdict.command_unit = "V";
+  if (axis.motor.model == machine::MotorModel::force) verdict.command_unit = std::string("V");
   verdict.extended.command_rms = verdict.baseline.command_rms;
   if (findings.empty()) return;
   const auto after = residual_with(with_terms(axis, terms));
   verdict.extended.command_rms = rms(after);
   for (auto& finding : findings) {
-    const auto other =
-        findings.size() == 1 ? before : residual_with(with_terms(axis, terms, finding.effect.name.c_str()));
+    const auto other = findings.size() == 1 ? before : residual_with(with_terms(axis, terms, finding.effect));
     finding.holdout.command_rms_ratio = rms(after) / rms(other);
     finding.holdout.ci95 = ratio_interval(after, other, held_out.rows(), seed);
   }
@@ -363,21 +359,22 @@ void find_and_judge(Verdict& verdict, const DiagnoseInput& input, const CommandR
   std::erase_if(terms, [&](const CommandTerm& term) {
     const auto& p = command_parameters()[term.place];
     const double change = term.value - *p.value(axis);
-    if (std::string_view(p.key) == "loop_delay") return change <= 0.0 || is_record_delay(delay, change);
+    if (p.is_delay) return change <= 0.0 || is_record_delay(delay, change);
     return std::abs(change) < least_change * *p.value(axis);
   });
 
   std::vector<Finding> findings;
-  for (const char* effect : {"controller_gain_mismatch", "time_skew"})
-    if (std::any_of(terms.begin(), terms.end(), [&](const CommandTerm& t) {
-          return std::string_view(command_parameters()[t.place].effect) == effect;
-        }))
-      findings.push_back(finding_of(file, effect, terms));
+  for (const auto& parameter : command_parameters())
+    if (std::none_of(findings.begin(), findings.end(),
+                     [&](const Finding& f) { return f.effect == parameter.effect; }) &&
+        std::any_of(terms.begin(), terms.end(),
+                    [&](const CommandTerm& t) { return command_parameters()[t.place].effect == parameter.effect; }))
+      findings.push_back(finding_of(file, *parameter.effect, terms));
   judge_held_out(verdict, findings, held, axis, terms, input.seed);
   for (auto& finding : findings) {
     if (*finding.holdout.command_rms_ratio >= 1.0) {
       verdict.rejected.push_back(
-          {finding.effect.name,
+          {finding.effect,
            "withdrawn: found in the command residual of the training data, but without improvement on held-out data"});
       continue;
     }
@@ -386,14 +383,14 @@ void find_and_judge(Verdict& verdict, const DiagnoseInput& input, const CommandR
         "the machine file for the recorded set-points and positions); it has no effect on the residual force.",
         100.0 * finding.explains);
     const auto same = std::find_if(verdict.findings.begin(), verdict.findings.end(),
-                                   [&](const Finding& f) { return f.effect.name == finding.effect.name; });
+                                   [&](const Finding& f) { return f.effect == finding.effect; });
     if (same == verdict.findings.end()) {
       verdict.findings.push_back(std::move(finding));
       continue;
     }
     // A delay of the record and one of the loop are keys of one effect.
-    same->effect.values.merge(finding.effect.values);
-    same->effect.values["loop_delay"] = {finding.parameters.front().values};
+    same->values.merge(finding.values);
+    for (const auto& parameter : finding.parameters) same->values[parameter.key] = parameter.values;
     same->parameters.insert(same->parameters.end(), finding.parameters.begin(), finding.parameters.end());
     same->evidence += " " + finding.evidence;
   }
@@ -406,7 +403,11 @@ void find_and_judge(Verdict& verdict, const DiagnoseInput& input, const CommandR
 void judge_command(Verdict& verdict, const DiagnoseInput& input, const CommandRecords& training,
                    const CommandRecords& held_out, const RecordDelay& delay) {
   auto axis = sim::drive_axis(input.machine.axes[input.axis]);
-  std::erase_if(axis.effects, [](const machine::Effect& effect) { return effect.name == "controller_gain_mismatch"; });
+  // What the drive has of them is in its parameters now.
+  std::erase_if(axis.effects, [](const machine::Effect& effect) {
+    const auto known = sim::find_effect(effect.name);
+    return known && (*known)->law.change_drive != nullptr;
+  });
   if (!usable(training, axis) || !usable(held_out, axis)) return;
   try {
     find_and_judge(verdict, input, training, held_out, delay, axis);

@@ -4,25 +4,12 @@
 // search.hpp, then Gauss-Newton on the replay itself.
 #pragma once
 
-#include <optional>
 #include <span>
 
 #include "host/diagnose/diagnose.hpp"
 #include "host/identify/log_rows.hpp"
 
 namespace stiction::host {
-
-// A parameter of the drive or its loop that may differ. One row each in effects/controller_gain_mismatch.cpp.
-struct CommandParameter {
-  const char* effect;  // the cause that it belongs to
-  const char* key;
-  const char* suffix;                                         // of the unit, in verdict.json
-  const char* force_motor_suffix;                             // with a motor that is a force source
-  std::optional<double> (*value)(const machine::AxisModel&);  // SI; none: this axis has no such parameter
-  void (*set)(machine::AxisModel&, double);
-  double (*step)(const machine::AxisModel&, const machine::Timing&);  // for the difference, SI
-};
-std::span<const CommandParameter> command_parameters();
 
 // Records of one kind with their rows.
 struct CommandRecords {

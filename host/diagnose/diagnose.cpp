@@ -26,7 +26,8 @@
 #include "host/identify/identification.hpp"
 #include "host/identify/standstill.hpp"
 #include "host/identify/suitability.hpp"
-#include "sim/plant/effects/effects.hpp"
+#include "sim/effects/effects.hpp"
+#include "sim/effects/time_skew/time_skew.hpp"
 
 namespace stiction::host {
 namespace {
@@ -114,31 +115,19 @@ SearchContext context_of(const machine::AxisModel& axis, const LogRows& rows, co
   return context;
 }
 
-// Exact aliases: half a difference of Coulomb friction is a constant force, and a force constant scales mass, Coulomb
-// and viscous friction together.
-bool always_confused(std::string_view one, std::string_view other) {
-  constexpr std::string_view constant = "constant_force", asymmetry = "friction_asymmetry";
-  const bool scaled = other == "mass_mismatch" || other == "coulomb_mismatch" || other == "viscous_mismatch";
-  return (one == constant && other == asymmetry) || (one == asymmetry && other == constant) ||
-         (one == "force_constant_mismatch" && scaled);
-}
-
 // The pair that no motion of this axis alone separates; else of the alias table and beside it what the data show.
 std::vector<ConfusedWith> confused_with(const Term& term) {
   std::vector<ConfusedWith> list;
-  const std::string_view name = candidates()[term.candidate].name;
-  const auto& known = sim::find_effect_kind(name)->aliases;
-  for (const auto& alias : known)
-    if (always_confused(name, alias.effect))
-      list.push_back({std::string(alias.effect), std::string(alias.separate_by), true});
+  const auto known = sim::confusions_of(*candidates()[term.candidate].effect);
+  for (const auto& confusion : known)
+    if (confusion.always) list.push_back({confusion.other, std::string(confusion.separate_by), true});
   for (const auto c : term.alternatives) {
-    const std::string_view other = candidates()[c].name;
+    const sim::EffectId other = *candidates()[c].effect;
     if (std::any_of(list.begin(), list.end(), [&](const ConfusedWith& l) { return l.effect == other; })) continue;
-    const auto alias = std::find_if(known.begin(), known.end(), [&](const auto& a) { return a.effect == other; });
-    list.push_back({std::string(other), alias != known.end()
-                                            ? std::string(alias->separate_by)
-                                            : "record longer, with different speeds, accelerations and strokes: in "
-                                              "these records both explain the residual equally well"});
+    const auto alias = std::find_if(known.begin(), known.end(), [&](const auto& a) { return a.other == other; });
+    list.push_back({other, alias != known.end() ? std::string(alias->separate_by)
+                                                : "record longer, with different speeds, accelerations and strokes: in "
+                                                  "these records both explain the residual equally well"});
   }
   return list;
 }
@@ -161,9 +150,8 @@ std::string evidence_of(const Term& term, const HeldOutAmplitude& held_out_ampli
 Finding finding_of(const SearchContext& context, const Term& term, const HoldoutGain& gain,
                    const HeldOutAmplitude& held_out_amplitude, std::size_t blocks) {
   const auto& candidate = candidates()[term.candidate];
-  Finding finding;
+  Finding finding(*candidate.effect);
   finding.axis = context.axis.name;
-  finding.effect.name = candidate.name;
   candidate.describe(context, term.shape, term.coefficients, term.covariance, finding);
   finding.explains = term.explains;
   finding.holdout = gain;
@@ -173,14 +161,15 @@ Finding finding_of(const SearchContext& context, const Term& term, const Holdout
   return finding;
 }
 
-// What the residual force says of a current that is recorded late: by its time_skew, and in what is left.
+// What the residual force says of a current that is recorded late: by a cause found, and in what is left.
 RecordDelay record_delay(const LogRows& rows, const SearchContext& context, const SearchResult& found) {
   RecordDelay delay;
+  const auto skew = *candidate_index(sim::id_of<sim::TimeSkew>());
   for (const auto& term : found.terms)
-    if (std::string_view(candidates()[term.candidate].name) == "time_skew") delay.found = term.coefficients[0];
+    if (term.candidate == skew) delay.found = term.coefficients[0];
   Evidence evidence(found.residual,
                     blocks_of(rows.velocity, rows.logs(), static_cast<std::size_t>(rows.rows() / 60 + 1)));
-  evidence.add(group_columns(rows, context, effects::time_skew, 1e-4));
+  evidence.add(group_columns(rows, context, candidates()[skew], 1e-4));
   delay.estimate = evidence.fit({0}).coefficients[0];
   delay.deviation = std::sqrt(evidence.covariance({0}, evidence.fit({0}).coefficients)(0, 0));
   return delay;
@@ -223,7 +212,7 @@ std::vector<std::size_t> keep_what_holds(const LogRows& rows, const Eigen::Vecto
                                                 " (in the training logs; the held-out logs do not confirm it)"};
     else
       verdict.rejected.push_back(
-          {candidate.name,
+          {*candidate.effect,
            fmt::format(
                "withdrawn: found in the training data, but without improvement on held-out data: held-out amplitude {} "
                "of the fitted one{}, residual force {:.4f} times that without it",
@@ -384,7 +373,7 @@ Verdict diagnose(const DiagnoseInput& input) {
   propose_next_measurement(verdict, {input.machine, input.axis, settings, regressors, inside, context, found},
                            input.next_measurement);
   judge_command(verdict, input, {logs, rows}, {held_out, held_rows}, record_delay(regressors, context, found));
-  for (const auto& d : found.discarded) verdict.rejected.push_back({candidates()[d.candidate].name, d.why});
+  for (const auto& d : found.discarded) verdict.rejected.push_back({*candidates()[d.candidate].effect, d.why});
   if (outside.unexplained.signature)
     verdict.unexplained = outside.unexplained;
   else if (resolved && withdrawn.empty())

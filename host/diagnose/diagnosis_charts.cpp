@@ -19,8 +19,8 @@ std::vector<double> thinned(const Eigen::VectorXd& values, std::size_t step) {
 }
 
 // Root of the power density of the first log's rows, N/sqrt(Hz): Welch's mean over windows of 4 s, half overlapping.
-sim::Series spectrum(const char* name, const Eigen::VectorXd& values, double period) {
-  sim::Series series{.name = name, .x = {}, .y = {}};
+sim::Series spectrum(const Eigen::VectorXd& values, double period) {
+  sim::Series series;
   const auto length = std::min<Eigen::Index>(values.size(), static_cast<Eigen::Index>(4.0 / period));
   const auto hop = std::max<Eigen::Index>(length / 2, 1);
   const double pi = std::numbers::pi;
@@ -54,8 +54,8 @@ void add_charts(Verdict& verdict, const LogRows& rows, const Eigen::VectorXd& be
   over_time.x_label = "time, s";
   over_time.y_label = "measured minus expected force, N";
   over_time.caption = "Measured motor force minus the force that the machine file predicts for the measured motion.";
-  over_time.series = {{.name = "machine file", .x = time, .y = thinned(before.head(first), step)},
-                      {.name = "extended", .x = time, .y = thinned(after.head(first), step)}};
+  over_time.series = {of_machine_file({.name = {}, .x = time, .y = thinned(before.head(first), step)}),
+                      of_extended({.name = {}, .x = time, .y = thinned(after.head(first), step)})};
   over_time.shape = {true, sim::Shape::Height::usual};
   verdict.before_after.push_back(std::move(over_time));
 
@@ -72,8 +72,8 @@ void add_charts(Verdict& verdict, const LogRows& rows, const Eigen::VectorXd& be
     chart.title = a.title;
     chart.x_label = a.label;
     chart.y_label = "mean of measured minus expected force, N";
-    chart.series = {even_means("machine file", a.values, a.scale, before),
-                    even_means("extended", a.values, a.scale, after)};
+    chart.series = {of_machine_file(even_means("", a.values, a.scale, before)),
+                    of_extended(even_means("", a.values, a.scale, after))};
     chart.levels = {0.0};
     verdict.before_after.push_back(std::move(chart));
   }
@@ -82,8 +82,8 @@ void add_charts(Verdict& verdict, const LogRows& rows, const Eigen::VectorXd& be
   frequencies.x_label = "frequency, Hz";
   frequencies.y_label = "residual force, N/√Hz";
   frequencies.logarithmic_x = true;
-  frequencies.series = {spectrum("machine file", before.head(first), rows.period(0)),
-                        spectrum("extended", after.head(first), rows.period(0))};
+  frequencies.series = {of_machine_file(spectrum(before.head(first), rows.period(0))),
+                        of_extended(spectrum(after.head(first), rows.period(0)))};
   verdict.before_after.push_back(std::move(frequencies));
 }
 

@@ -5,7 +5,9 @@
 #include <numbers>
 
 #include "host/identify/filter.hpp"
-#include "sim/plant/effects/acting_effects.hpp"
+#include "sim/effects/presliding_hysteresis/presliding_hysteresis.hpp"
+#include "sim/effects/structural_resonance/structural_resonance.hpp"
+#include "sim/plant/acting_effects.hpp"
 #include "sim/plant/friction/friction.hpp"
 
 namespace stiction::host {

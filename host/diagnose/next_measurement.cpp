@@ -8,7 +8,7 @@
 
 #include "host/diagnose/separation.hpp"
 #include "host/diagnose/trajectory_rehearsal.hpp"
-#include "sim/plant/effects/effects.hpp"
+#include "sim/effects/effects.hpp"
 
 namespace stiction::host {
 namespace {
@@ -51,21 +51,19 @@ class Questions {
     if (terms_.empty()) return;
     const double by_all = separation_.explained(records_, searched_.target, terms_);
     for (std::size_t c = 0; c < candidates().size(); ++c) {
-      // What is outside of the vocabulary is no finding, and nothing may be confused with it.
-      if (candidates()[c].outside()) continue;
-      if (!candidates()[c].grid(searched_.context).empty() || candidates()[c].grid(scene_).empty()) continue;
+      const auto rival = candidates()[c].effect;
+      if (!rival || !candidates()[c].grid(searched_.context).empty() || candidates()[c].grid(scene_).empty()) continue;
       const auto fit = separation_.best_fit(records_, searched_.target, c, {});
       if (!fit || separation_.explained(records_, searched_.target, {&*fit, 1}) < as_good * by_all) continue;
-      const std::string name = candidates()[c].name;
-      const auto& known = sim::find_effect_kind(name)->aliases;
-      const auto told_by = [&](const std::string& other) {
-        const auto alias = std::find_if(known.begin(), known.end(), [&](const auto& a) { return a.effect == other; });
+      const auto known = sim::confusions_of(*rival);
+      const auto told_by = [&](sim::EffectId other) {
+        const auto alias = std::find_if(known.begin(), known.end(), [&](const auto& a) { return a.other == other; });
         return alias != known.end() ? std::string(alias->separate_by)
                                     : "small reversals of several amplitudes, which these records do not contain";
       };
       if (terms_.size() > 1)
-        ask({{findings.front().effect.name, name, told_by(findings.front().effect.name)}, terms_, {*fit}, {}});
-      for (auto& finding : findings) finding.confused_with.push_back({name, told_by(finding.effect.name)});
+        ask({{findings.front().effect, *rival, told_by(findings.front().effect)}, terms_, {*fit}, {}});
+      for (auto& finding : findings) finding.confused_with.push_back({*rival, told_by(finding.effect)});
     }
   }
   // Which of a finding and what it may be confused with, the largest finding first.
@@ -80,7 +78,7 @@ class Questions {
       const auto fit = separation_.best_fit(records_, searched_.target, discarded.candidate, terms_);
       if (!fit) continue;
       const Question question{
-          {candidates()[discarded.candidate].name, "", "more data, in motions where its force is largest"},
+          {*candidates()[discarded.candidate].effect, {}, "more data, in motions where its force is largest"},
           {*fit},
           {},
           terms_};
@@ -102,15 +100,10 @@ class Questions {
       if (k != term) others.push_back(terms_[k]);
     return others;
   }
-  static std::optional<std::size_t> index_of(const std::string& effect) {
-    for (std::size_t c = 0; c < candidates().size(); ++c)
-      if (effect == candidates()[c].name) return c;
-    return std::nullopt;
-  }
   void add(const Finding& finding, std::size_t k, const ConfusedWith& other) {
-    const OpenQuestion shown{finding.effect.name, other.effect, other.separate_by, !other.always};
+    const OpenQuestion shown{finding.effect, other.effect, other.separate_by, !other.always};
     if (other.always) return ask({shown, {}, {}, {}});
-    const auto rival = index_of(other.effect);
+    const auto rival = candidate_index(other.effect);
     if (!rival || asked(*rival)) return;
     auto others = others_than(k);
     if (auto fit = separation_.best_fit(records_, searched_.target, *rival, others))
@@ -211,7 +204,7 @@ void propose_next_measurement(Verdict& verdict, const Searched& searched, bool p
     if (next.log) next.note = extent_words(*next.log, searched.rows);
   }
   // What was nearly found and no trajectory shows is no news.
-  if (next.log || !next.questions.front().rival.empty()) verdict.next = std::move(next);
+  if (next.log || next.questions.front().rival) verdict.next = std::move(next);
 }
 
 }  // namespace stiction::host

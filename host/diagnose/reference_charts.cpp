@@ -5,7 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/plant/effects/presliding_hysteresis.hpp"
+#include "host/diagnose/chart_means.hpp"
+#include "sim/effects/coulomb_mismatch/coulomb_mismatch.hpp"
+#include "sim/effects/effects.hpp"
+#include "sim/effects/presliding_hysteresis/presliding_hysteresis.hpp"
+#include "sim/effects/viscous_mismatch/viscous_mismatch.hpp"
+#include "sim/effects/viscous_nonlinear/viscous_nonlinear.hpp"
 #include "sim/plant/friction/friction.hpp"
 
 namespace stiction::host {
@@ -24,8 +29,8 @@ sim::Chart deviation(const ReferenceRows& reference, const std::string& axis, bo
   chart.y_label = error ? "simulated minus measured, µm" : "simulated relative to measured, %";
   chart.logarithmic_x = true;
   chart.levels = {0.0};
-  sim::Series before{.name = "machine file", .x = {}, .y = {}}, after{.name = "extended", .x = {}, .y = {}},
-      published{.name = "published", .x = {}, .y = {}, .points = true};
+  sim::Series before = of_machine_file({}), after = of_extended({}),
+              published{.name = "published", .x = {}, .y = {}, .points = true};
   const auto off = [&](const RowFigures& simulated, const RowFigures& measured) {
     return error ? error_of(simulated) - error_of(measured) : 100.0 * (simulated.current / measured.current - 1.0);
   };
@@ -59,18 +64,17 @@ sim::Chart shares(const ReferenceRows& reference, const Finding& finding, bool e
   chart.logarithmic_x = true;
   chart.levels = {0.0};
   sim::Series by{.name = "by this cause", .x = {}, .y = {}},
-      lacks{.name = "measured", .x = {}, .y = {}, .points = true};
+      lacks{.name = "measured less machine file", .x = {}, .y = {}, .points = true};
   for (const auto& row : reference.rows) {
     if (row.axis != finding.axis) continue;
     for (const auto& share : row.shares)
-      if (share.effect == finding.effect.name) {
+      if (share.effect == finding.effect) {
         by.x.push_back(row.feed * 60.0);
         by.y.push_back(value(share.by));
         lacks.x.push_back(row.feed * 60.0);
         lacks.y.push_back(value(row.measured) - value(row.machine_file));
       }
   }
-  lacks.name = "measured minus machine file";
   chart.series = {by, lacks};
   return chart;
 }
@@ -90,22 +94,23 @@ sim::Chart sliding(const machine::Machine& machine, const ReferenceExtension& ex
   const SlidingLaw extended{axis.force * law.coulomb, axis.force * law.viscous, axis.force * law.rise,
                             law.rise_velocity};
   auto without = extended;
-  if (finding.effect.name == "coulomb_mismatch") without.coulomb = file.coulomb;
-  if (finding.effect.name == "viscous_mismatch") without.viscous = file.viscous;
-  if (finding.effect.name == "viscous_nonlinear") without.rise = 0.0;
+  if (sim::is_a<sim::CoulombMismatch>(finding.effect)) without.coulomb = file.coulomb;
+  if (sim::is_a<sim::ViscousMismatch>(finding.effect)) without.viscous = file.viscous;
+  if (sim::is_a<sim::ViscousNonlinear>(finding.effect)) without.rise = 0.0;
   sim::Series rows{.name = axis.own_rows ? "measured" : "measured on " + axis.law_from + ", scaled",
                    .x = {},
                    .y = {},
                    .points = true};
+  if (axis.own_rows) rows.role = sim::SeriesRole::measured;
   for (const auto& row : machine.steady_friction_references)
     if (row.axis == axis.law_from) {
       rows.x.push_back(row.velocity * 60.0);
       rows.y.push_back(axis.force * row.current * own->motor.force_constant);
     }
   chart.series = {std::move(rows)};
-  for (const auto& [name, each] :
-       {std::pair{"machine file", file}, {"extended", extended}, {"without this cause", without}}) {
-    sim::Series line{.name = name, .x = {}, .y = {}};
+  for (auto [line, each] : {std::pair{of_machine_file({}), file},
+                            {of_extended({}), extended},
+                            {sim::Series{.name = "without this cause", .x = {}, .y = {}}, without}}) {
     for (double v = 3e-4; v < 0.42; v *= 1.05) {
       line.x.push_back(v * 60.0);
       line.y.push_back(each.at(v));
@@ -121,11 +126,10 @@ sim::Chart contact(const machine::Machine& machine, const AxisExtension& axis, c
   chart.x_label = "displacement, µm";
   chart.y_label = "share of Coulomb friction, %";
   chart.caption = "First loading against the previous motion.";
-  const double stiffness = finding.effect.values.at("stiffness").front();
-  const double distance = finding.effect.values.at("distance").front();
+  const auto [stiffness, distance] = sim::parameters_of<sim::PreslidingHysteresis>(finding.values);
   const double coulomb = stiffness * axis.displacement / axis.stiffness_per_force;
-  sim::Series extended{.name = "extended", .x = {}, .y = {}}, file{.name = "machine file", .x = {}, .y = {}},
-      rows{.name = "rows of presliding, scaled", .x = {}, .y = {}, .points = true};
+  sim::Series extended = of_extended({}), file = of_machine_file({}),
+              rows{.name = "rows of presliding, scaled", .x = {}, .y = {}, .points = true};
   const auto elements = sim::presliding_elements(coulomb, stiffness, distance);
   const double longest = 2.0 * distance;
   const auto own =
@@ -166,7 +170,7 @@ void add_reference_charts(Verdict& verdict, const machine::Machine& machine, con
   for (auto& finding : verdict.findings) {
     const auto axis = std::find_if(extension.axes.begin(), extension.axes.end(),
                                    [&](const auto& each) { return each.axis == finding.axis; });
-    const bool of_contact = finding.effect.name == "presliding_hysteresis";
+    const bool of_contact = sim::is_a<sim::PreslidingHysteresis>(finding.effect);
     finding.charts.push_back(of_contact ? contact(machine, *axis, finding)
                                         : sliding(machine, extension, *axis, finding));
     finding.charts.push_back(shares(*verdict.reference, finding, of_contact));

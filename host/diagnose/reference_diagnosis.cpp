@@ -12,6 +12,11 @@
 #include "host/diagnose/reference_extension.hpp"
 #include "host/diagnose/reference_words.hpp"
 #include "host/identify/measured_machine.hpp"
+#include "sim/effects/coulomb_mismatch/coulomb_mismatch.hpp"
+#include "sim/effects/effects.hpp"
+#include "sim/effects/presliding_hysteresis/presliding_hysteresis.hpp"
+#include "sim/effects/viscous_mismatch/viscous_mismatch.hpp"
+#include "sim/effects/viscous_nonlinear/viscous_nonlinear.hpp"
 
 namespace stiction::host {
 namespace {
@@ -143,28 +148,28 @@ HoldoutGain gain_of(const std::vector<DiagnosedRow>& rows, const std::string& ax
   return gain;
 }
 
-EffectParameter parameter(const char* name, double value, double error) { return {name, {value}, {error}}; }
-
-// Values and standard errors under the names of verdict.json. Of an axis without rows of its own the scale's error is
+// Values and standard errors. Of an axis without rows of its own the scale's error is
 // all that is known, and the rows' own beside it.
-std::vector<EffectParameter> parameters_of(const machine::Effect& effect, const ReferenceExtension& extension,
-                                           const AxisExtension& axis) {
+std::vector<EffectParameter> parameters_of(const Finding& finding, const machine::AxisModel& file,
+                                           const ReferenceExtension& extension, const AxisExtension& axis) {
   const auto& errors = extension.sliding.errors;
   const double scale = axis.force_error / axis.force;
-  const auto value = [&](const char* key) { return effect.values.at(key).front(); };
+  const auto value = [&](const char* key) { return finding.values.at(key).front(); };
+  const auto parameter = [&](const char* key, double error) {
+    return effect_parameter(file, finding.effect, key, {value(key)}, {error});
+  };
   const auto scaled = [&](double of_law, double result) {
     return std::hypot(axis.force * of_law, axis.own_rows ? 0.0 : scale * result);
   };
-  if (effect.name == "coulomb_mismatch")
-    return {parameter("coulomb_N", value("coulomb"), scaled(errors.coulomb, value("coulomb")))};
-  if (effect.name == "viscous_mismatch")
-    return {parameter("viscous_N_s_per_m", value("viscous"), scaled(errors.viscous, value("viscous")))};
-  if (effect.name == "viscous_nonlinear")
-    return {parameter("force_N", value("force"), scaled(errors.rise, value("force"))),
-            parameter("velocity_m_per_s", value("velocity"), errors.rise_velocity)};
+  if (sim::is_a<sim::CoulombMismatch>(finding.effect))
+    return {parameter("coulomb", scaled(errors.coulomb, value("coulomb")))};
+  if (sim::is_a<sim::ViscousMismatch>(finding.effect))
+    return {parameter("viscous", scaled(errors.viscous, value("viscous")))};
+  if (sim::is_a<sim::ViscousNonlinear>(finding.effect))
+    return {parameter("force", scaled(errors.rise, value("force"))), parameter("velocity", errors.rise_velocity)};
   const double displacement = axis.displacement_error / axis.displacement;
-  return {parameter("stiffness_N_per_m", value("stiffness"), displacement * value("stiffness")),
-          parameter("distance_m", value("distance"), displacement * value("distance"))};
+  return {parameter("stiffness", displacement * value("stiffness")),
+          parameter("distance", displacement * value("distance"))};
 }
 
 // How much each cause takes of the training rows' squares, given the others: a part of the sliding law of the rows of
@@ -172,7 +177,7 @@ std::vector<EffectParameter> parameters_of(const machine::Effect& effect, const 
 void judge(Finding& finding, const ReferenceExtension& extension, const AxisExtension& axis, double measured_error) {
   for (const auto part : sliding_parts) {
     const auto& test = extension.sliding.tests[static_cast<std::size_t>(part)];
-    if (finding.effect.name != name_of(part)) continue;
+    if (finding.effect != effect_of(part)) continue;
     finding.explains = test.explains;
     finding.p_value = test.p_value;
     return;
@@ -186,14 +191,14 @@ void judge(Finding& finding, const ReferenceExtension& extension, const AxisExte
 void add_findings(const machine::Machine& machine, const ReferenceExtension& extension, Verdict& verdict) {
   for (std::size_t k = 0; k < machine.axes.size(); ++k)
     for (const auto& effect : effects_of(machine, extension, k)) {
-      Finding finding;
+      Finding finding(*sim::find_effect(effect.name));
       finding.axis = machine.axes[k].name;
-      finding.effect = effect;
-      finding.parameters = parameters_of(effect, extension, extension.axes[k]);
+      finding.values = effect.values;
+      finding.parameters = parameters_of(finding, machine.axes[k], extension, extension.axes[k]);
       const auto* row = measured_row(machine, finding.axis, extension.training_feed);
       judge(finding, extension, extension.axes[k], row->error);
-      finding.evidence = evidence_words(extension, extension.axes[k], effect.name, *row);
-      finding.confused_with = confusion_words(extension, extension.axes[k], effect.name);
+      finding.evidence = evidence_words(extension, extension.axes[k], finding.effect, *row);
+      finding.confused_with = confusion_words(extension, extension.axes[k], finding.effect);
       verdict.findings.push_back(std::move(finding));
     }
 }
@@ -204,34 +209,34 @@ Laps simulated_without(const machine::Machine& machine, const Verdict& verdict,
   auto without = machine;
   for (auto& axis : without.axes)
     for (const auto& finding : verdict.findings)
-      if (finding.axis == axis.name && !leave_away(finding)) axis.effects.push_back(finding.effect);
+      if (finding.axis == axis.name && !leave_away(finding)) axis.effects.push_back(finding.row());
   return simulated(without);
 }
 
 // What each row loses without each finding, and what that gains. The parts of a borrowed law came from one number and
-// are judged together. Both axes' findings of a name are left away at once: no axis feels the other.
+// are judged together. Both axes' findings of an effect are left away at once: no axis feels the other.
 void add_shares(const machine::Machine& machine, const ReferenceExtension& extension, Verdict& verdict,
                 const std::function<void()>& progress) {
   auto& rows = verdict.reference->rows;
-  const auto is_contact = [](const Finding& f) { return f.effect.name == "presliding_hysteresis"; };
+  const auto is_contact = [](const Finding& f) { return sim::is_a<sim::PreslidingHysteresis>(f.effect); };
   const auto without_law = simulated_without(machine, verdict, std::not_fn(is_contact));
-  std::map<std::string, Laps> without;
+  std::map<sim::EffectId, Laps> without;
   for (auto& finding : verdict.findings) {
-    const auto& name = finding.effect.name;
-    if (!without.contains(name)) {
-      without[name] = simulated_without(machine, verdict, [&](const Finding& f) { return f.effect.name == name; });
+    const auto effect = finding.effect;
+    if (!without.contains(effect)) {
+      without[effect] = simulated_without(machine, verdict, [&](const Finding& f) { return f.effect == effect; });
       if (progress) progress();
     }
     const auto k = static_cast<std::size_t>(finding.axis == machine.axes[0].name ? 0 : 1);
     double largest = 0.0;
     for (auto& row : rows) {
       if (row.axis != finding.axis) continue;
-      const auto& lap = without.at(name).at(row.feed)[k];
-      row.shares.push_back({name, {row.extended.error - lap.error, row.extended.current - lap.current}});
+      const auto& lap = without.at(effect).at(row.feed)[k];
+      row.shares.push_back({effect, {row.extended.error - lap.error, row.extended.current - lap.current}});
       largest = std::max(largest, std::abs(row.shares.back().by.error));
     }
     const bool together = !extension.axes[k].own_rows && !is_contact(finding);
-    finding.holdout = gain_of(rows, finding.axis, together ? without_law : without.at(name), k);
+    finding.holdout = gain_of(rows, finding.axis, together ? without_law : without.at(effect), k);
     finding.part_error = largest;
   }
 }

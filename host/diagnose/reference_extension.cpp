@@ -8,7 +8,11 @@
 #include "firmware/machine/configuration/double_signals.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
 #include "host/simulate/circle.hpp"
-#include "sim/plant/effects/effects.hpp"
+#include "sim/effects/coulomb_mismatch/coulomb_mismatch.hpp"
+#include "sim/effects/effects.hpp"
+#include "sim/effects/presliding_hysteresis/presliding_hysteresis.hpp"
+#include "sim/effects/viscous_mismatch/viscous_mismatch.hpp"
+#include "sim/effects/viscous_nonlinear/viscous_nonlinear.hpp"
 #include "sim/plant/friction/friction.hpp"
 
 namespace stiction::host {
@@ -203,16 +207,15 @@ std::vector<machine::Effect> effects_of(const machine::Machine& machine, const R
   for (const auto& test : extension.sliding.tests) {
     if (!test.named) continue;
     if (test.part == SlidingPart::coulomb)
-      effects.push_back({"coulomb_mismatch", {{"coulomb", {coulomb = own.force * law.coulomb}}}});
+      effects.push_back(sim::effect_of<sim::CoulombMismatch>({coulomb = own.force * law.coulomb}));
     else if (test.part == SlidingPart::viscous)
-      effects.push_back({"viscous_mismatch", {{"viscous", {own.force * law.viscous}}}});
+      effects.push_back(sim::effect_of<sim::ViscousMismatch>({own.force * law.viscous}));
     else
-      effects.push_back({"viscous_nonlinear", {{"force", {own.force * law.rise}}, {"velocity", {law.rise_velocity}}}});
+      effects.push_back(sim::effect_of<sim::ViscousNonlinear>({own.force * law.rise, law.rise_velocity}));
   }
   if (own.contact)
-    effects.push_back({"presliding_hysteresis",
-                       {{"stiffness", {own.stiffness_per_force * coulomb / own.displacement}},
-                        {"distance", {own.distance * own.displacement}}}});
+    effects.push_back(sim::effect_of<sim::PreslidingHysteresis>(
+        {own.stiffness_per_force * coulomb / own.displacement, own.distance * own.displacement}));
   return effects;
 }
 
@@ -221,8 +224,7 @@ machine::Machine extended_by(machine::Machine machine, const ReferenceExtension&
   for (std::size_t k = 0; k < machine.axes.size(); ++k) {
     auto& effects = machine.axes[k].effects;
     for (auto& effect : effects_of(file, extension, k)) {
-      const auto* kind = sim::find_effect_kind(effect.name);
-      if (!kind->several)
+      if (!(*sim::find_effect(effect.name))->several)
         std::erase_if(effects, [&](const machine::Effect& other) { return other.name == effect.name; });
       effects.push_back(std::move(effect));
     }

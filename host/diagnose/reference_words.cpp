@@ -7,49 +7,18 @@
 #include <cmath>
 #include <string_view>
 
-#include "sim/plant/effects/effects.hpp"
+#include "sim/effects/backlash/backlash.hpp"
+#include "sim/effects/coulomb_mismatch/coulomb_mismatch.hpp"
+#include "sim/effects/effects.hpp"
+#include "sim/effects/mass_mismatch/mass_mismatch.hpp"
+#include "sim/effects/presliding_hysteresis/presliding_hysteresis.hpp"
+#include "sim/effects/viscous_mismatch/viscous_mismatch.hpp"
+#include "sim/effects/viscous_nonlinear/viscous_nonlinear.hpp"
 
 namespace stiction::host {
 namespace {
 
 double feed_of(double metres_per_second) { return metres_per_second * 60.0; }  // m/min
-
-// Why rows of two numbers say nothing of an effect.
-struct Silence {
-  std::string_view effect, why;
-};
-constexpr std::string_view both_directions =
-    "not identifiable: a row has only the largest value of both directions; record one lap with separate directions";
-constexpr std::string_view no_position =
-    "not identifiable: a row has no position; record position and current over one stroke at constant speed";
-constexpr std::string_view no_time = "not identifiable: a row has no time; record set-points, position and current";
-constexpr std::array silences{
-    Silence{"friction_asymmetry", both_directions},
-    Silence{"constant_force", both_directions},
-    Silence{"position_spring", no_position},
-    Silence{"force_ripple", no_position},
-    Silence{"force_constant_ripple", no_position},
-    Silence{"position_dependent_friction", no_position},
-    Silence{"encoder_subdivision_error", no_position},
-    Silence{"time_skew", no_time},
-    Silence{"friction_lag", no_time},
-    Silence{"thermal_drift", no_time},
-    Silence{"periodic_disturbance", no_time},
-    Silence{"structural_resonance", no_time},
-    Silence{"cross_axis_coupling", no_time},
-    Silence{"backlash",
-            "not identifiable from two numbers per row: at a reversal it increases the largest error like a softer "
-            "contact; load the axis at standstill"},
-    Silence{"force_constant_mismatch",
-            "not identifiable from two numbers per row: it scales mass and friction together; accelerate a known added "
-            "mass"},
-    Silence{"force_saturation",
-            "not identifiable from two numbers per row: only the fastest circle has a high current; accelerate at "
-            "several levels"},
-    Silence{"controller_gain_mismatch",
-            "not identifiable from two numbers per row: it changes the error like the contact; measure a frequency "
-            "response"},
-};
 
 std::string percent_off(double simulated, double measured) {
   const double off = 100.0 * (simulated / measured - 1.0);
@@ -71,9 +40,9 @@ std::string why_not_mass(const machine::Machine& machine, const Verdict& verdict
   return text + " with the extended friction, and most of that current accelerates the mass";
 }
 
-bool named(const Verdict& verdict, std::string_view effect) {
+bool named(const Verdict& verdict, sim::EffectId effect) {
   return std::any_of(verdict.findings.begin(), verdict.findings.end(),
-                     [&](const Finding& f) { return f.effect.name == effect; });
+                     [&](const Finding& f) { return f.effect == effect; });
 }
 
 std::string contact_evidence(const AxisExtension& axis, double feed, const machine::CircleReference& row) {
@@ -86,15 +55,15 @@ std::string contact_evidence(const AxisExtension& axis, double feed, const machi
 
 }  // namespace
 
-const char* name_of(SlidingPart part) {
-  return part == SlidingPart::coulomb   ? "coulomb_mismatch"
-         : part == SlidingPart::viscous ? "viscous_mismatch"
-                                        : "viscous_nonlinear";
+sim::EffectId effect_of(SlidingPart part) {
+  return part == SlidingPart::coulomb   ? sim::id_of<sim::CoulombMismatch>()
+         : part == SlidingPart::viscous ? sim::id_of<sim::ViscousMismatch>()
+                                        : sim::id_of<sim::ViscousNonlinear>();
 }
 
-std::string evidence_words(const ReferenceExtension& extension, const AxisExtension& axis, const std::string& effect,
+std::string evidence_words(const ReferenceExtension& extension, const AxisExtension& axis, sim::EffectId effect,
                            const machine::CircleReference& row) {
-  if (effect == "presliding_hysteresis") return contact_evidence(axis, extension.training_feed, row);
+  if (sim::is_a<sim::PreslidingHysteresis>(effect)) return contact_evidence(axis, extension.training_feed, row);
   const auto& fit = extension.sliding;
   if (!axis.own_rows)
     return fmt::format(
@@ -103,7 +72,7 @@ std::string evidence_words(const ReferenceExtension& extension, const AxisExtens
         "that of this scale (with a drift of friction of 3 % from day to day) and that of the law of {}.",
         axis.law_from, axis.force, row.current, feed_of(extension.training_feed), axis.law_from);
   const auto test = std::find_if(fit.tests.begin(), fit.tests.end(),
-                                 [&](const SlidingPartTest& each) { return effect == name_of(each.part); });
+                                 [&](const SlidingPartTest& each) { return effect == effect_of(each.part); });
   return fmt::format(
       "The friction of the file deviates by {:.1f} N rms from the rows of steady friction, the extended one by {:.1f} "
       "N rms. Without this cause, and with the others fitted again, {:.0f} % of the squared deviation of the file "
@@ -112,31 +81,28 @@ std::string evidence_words(const ReferenceExtension& extension, const AxisExtens
 }
 
 std::vector<ConfusedWith> confusion_words(const ReferenceExtension& extension, const AxisExtension& axis,
-                                          const std::string& effect) {
-  if (effect == "presliding_hysteresis")
-    return {{"backlash", "load at standstill: presliding has an elastic slope, play has none; a second encoder"}};
+                                          sim::EffectId effect) {
   std::vector<ConfusedWith> list;
+  if (sim::is_a<sim::PreslidingHysteresis>(effect)) {
+    for (const auto& confusion : sim::confusions_of(effect))
+      if (sim::is_a<sim::Backlash>(confusion.other))
+        list.push_back({confusion.other, std::string(confusion.separate_by)});
+    return list;
+  }
   const auto record = fmt::format("constant speeds of {} itself, from 0.02 m/min up, both ways", axis.axis);
   if (!axis.own_rows)
     for (const auto& test : extension.sliding.tests)
-      if (test.named && effect != name_of(test.part)) list.push_back({name_of(test.part), record});
+      if (test.named && effect != effect_of(test.part)) list.push_back({effect_of(test.part), record});
   return list;
 }
 
 std::vector<Rejected> rejection_words(const machine::Machine& machine, const Verdict& verdict) {
   std::vector<Rejected> list;
-  for (const auto& kind : sim::effect_kinds()) {
-    if (named(verdict, kind.name)) continue;
-    const auto silence =
-        std::find_if(silences.begin(), silences.end(), [&](const Silence& each) { return each.effect == kind.name; });
-    std::string why =
-        silence != silences.end() ? std::string(silence->why) : "not identifiable from two numbers per row";
-    if (kind.name == "mass_mismatch") why = why_not_mass(machine, verdict);
-    if (kind.name == "stribeck")
-      why =
-          "not found: the rows of steady friction rise from the lowest speed on; they have no information about lower "
-          "speeds";
-    list.push_back({std::string(kind.name), why});
+  for (const sim::EffectId effect : sim::all_effects()) {
+    if (named(verdict, effect)) continue;
+    std::string why(effect->not_in_rows.empty() ? "not identifiable from two numbers per row" : effect->not_in_rows);
+    if (sim::is_a<sim::MassMismatch>(effect)) why = why_not_mass(machine, verdict);
+    list.push_back({effect, why});
   }
   return list;
 }

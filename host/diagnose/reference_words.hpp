@@ -10,13 +10,13 @@
 
 namespace stiction::host {
 
-const char* name_of(SlidingPart part);  // in the vocabulary
+sim::EffectId effect_of(SlidingPart part);
 
-std::string evidence_words(const ReferenceExtension& extension, const AxisExtension& axis, const std::string& effect,
+std::string evidence_words(const ReferenceExtension& extension, const AxisExtension& axis, sim::EffectId effect,
                            const machine::CircleReference& training_row);
 
 std::vector<ConfusedWith> confusion_words(const ReferenceExtension& extension, const AxisExtension& axis,
-                                          const std::string& effect);
+                                          sim::EffectId effect);
 
 // Every effect of the vocabulary that is not named, and why.
 std::vector<Rejected> rejection_words(const machine::Machine& machine, const Verdict& verdict);

@@ -9,7 +9,7 @@
 #include "host/diagnose/inverse_dynamics.hpp"
 #include "host/identify/identification.hpp"
 #include "host/simulate/replay.hpp"
-#include "sim/plant/effects/effects.hpp"
+#include "sim/effects/effects.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
 namespace stiction::host {

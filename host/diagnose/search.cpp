@@ -8,7 +8,7 @@
 
 #include "host/diagnose/dictionary.hpp"
 #include "host/diagnose/refinement.hpp"
-#include "sim/plant/effects/effects.hpp"
+#include "sim/effects/effects.hpp"
 
 namespace stiction::host {
 namespace {
@@ -25,11 +25,10 @@ std::optional<std::string> impossible(const SearchContext& context, const Term& 
   if (!candidate.possible(context, term.shape, term.coefficients))
     return "given the other causes, the fit has an impossible sign or size";
   if (candidate.outside()) return {};
-  Finding finding;
-  finding.effect.name = candidate.name;
+  Finding finding(*candidate.effect);
   candidate.describe(context, term.shape, term.coefficients, term.covariance, finding);
   try {
-    sim::check_effect(finding.effect);
+    sim::check_effect(finding.row());
   } catch (const sim::EffectError& error) {
     return error.what();
   }

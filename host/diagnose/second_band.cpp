@@ -61,7 +61,7 @@ void compare_bands(Verdict& verdict, std::span<const Term> terms, const LogRows&
           fmt::format("{} depends on the frequency band: its amplitude below {:g} Hz is {:.2f} of that up to 100 Hz, "
                       "with a 95 % interval of +- {:.2f}. This cause does not depend on frequency by definition, which "
                       "indicates an additional one that does, such as a delay or an elastic part.",
-                      finding.effect.name, edge, ratio, 2.0 * error));
+                      finding.effect.name(), edge, ratio, 2.0 * error));
   }
 }
 

@@ -9,20 +9,28 @@
 
 #include "firmware/machine/model/effect.hpp"
 #include "host/log/log.hpp"
+#include "sim/effects/effects.hpp"
 #include "sim/experiment/experiment_result.hpp"
 
 namespace stiction::host {
 
-// A parameter of an effect under its name in verdict.json, with its SI unit as suffix ("pitch_m"). Lists have several
-// values.
+// A key of an effect with what was found.
 struct EffectParameter {
-  std::string name;
-  std::vector<double> values;
+  std::string key;   // "pitch"
+  std::string unit;  // SI
+  bool list = false;
+  std::vector<double> values;           // one, or those of a list
   std::vector<double> standard_errors;  // one a value; empty: not known
+
+  // In verdict.json: "pitch_m".
+  std::string name() const { return key + sim::unit_suffix(unit); }
 };
+// Of an axis' effect. Throws std::logic_error for a key that the effect has not.
+EffectParameter effect_parameter(const machine::AxisModel& axis, sim::EffectId effect, std::string_view key,
+                                 std::vector<double> values, std::vector<double> errors);
 
 struct ConfusedWith {
-  std::string effect;
+  sim::EffectId effect;
   std::string separate_by;  // the experiment that tells them apart
   bool always = false;      // no motion of this axis alone does
 };
@@ -36,8 +44,11 @@ struct HoldoutGain {
 };
 
 struct Finding {
+  explicit Finding(sim::EffectId found) : effect(found) {}
+
+  sim::EffectId effect;
   std::string axis;
-  machine::Effect effect;  // as it goes into the extended machine file
+  machine::KeyedValues values;  // as they go into the extended machine file
   std::vector<EffectParameter> parameters;
   // Where it shows: explains, p_value and holdout speak of the command residual, not of the residual force.
   bool in_command = false;
@@ -48,6 +59,8 @@ struct Finding {
   std::string evidence;              // sentences for readers
   std::optional<double> part_error;  // m, what it does to the part: peak change of the position error by it
   std::vector<sim::Chart> charts;
+
+  machine::Effect row() const { return sim::effect_with(effect, values); }  // of the extended machine file
 };
 
 // Of the residual in which it shows, on held-out data: with it over without it, rms.
@@ -56,7 +69,7 @@ inline double gained_ratio(const Finding& finding) {
 }
 
 struct Rejected {
-  std::string effect;
+  sim::EffectId effect;
   std::string why;
 };
 
@@ -68,10 +81,10 @@ struct Unexplained {
 
 // What the records leave open: which of two causes it is, or whether it is there at all.
 struct OpenQuestion {
-  std::string effect;
-  std::string rival;        // empty: whether the effect is there
-  std::string separate_by;  // the experiment in words
-  bool by_motion = true;    // false: no motion of this axis alone answers it
+  sim::EffectId effect;
+  std::optional<sim::EffectId> rival;  // none: whether the effect is there
+  std::string separate_by;             // the experiment in words
+  bool by_motion = true;               // false: no motion of this axis alone answers it
   double these_logs = 0.0;  // standard errors between the two answers that these records were to be expected to give
 };
 
@@ -106,7 +119,7 @@ struct RowFigures {
   double current = 0.0;
 };
 struct RowShare {
-  std::string effect;
+  sim::EffectId effect;
   RowFigures by;  // what the extended simulation loses without it
 };
 struct DiagnosedRow {

@@ -4,20 +4,11 @@
 #include <fmt/ranges.h>
 
 #include "host/diagnose/next_measurement.hpp"
-#include "sim/plant/effects/effects.hpp"
 
 namespace stiction::host {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-bool is_list(const std::string& effect, const std::string& parameter) {
-  const auto* kind = sim::find_effect_kind(effect);
-  if (kind == nullptr) return false;
-  for (const auto& key : kind->keys)
-    if (std::string(key.key) + key.suffix == parameter) return key.list;
-  return false;
-}
 
 Json number_or_list(const std::vector<double>& values, bool list) {
   return list || values.size() != 1 ? Json(values) : Json(values.front());
@@ -33,18 +24,19 @@ Json figures(const ResidualFigures& f, const std::string& command_unit) {
 Json finding_json(const Finding& f) {
   Json parameters = Json::object(), errors = Json::object();
   for (const auto& p : f.parameters) {
-    const bool list = is_list(f.effect.name, p.name);
-    parameters[p.name] = number_or_list(p.values, list);
-    if (!p.standard_errors.empty()) errors[p.name] = number_or_list(p.standard_errors, list);
+    parameters[p.name()] = number_or_list(p.values, p.list);
+    if (!p.standard_errors.empty()) errors[p.name()] = number_or_list(p.standard_errors, p.list);
   }
   Json gain{{"force_rms_ratio", f.holdout.force_rms_ratio}};
   if (f.holdout.position_error_rms_ratio) gain["position_error_rms_ratio"] = *f.holdout.position_error_rms_ratio;
   if (f.holdout.command_rms_ratio) gain["command_rms_ratio"] = *f.holdout.command_rms_ratio;
   gain["ci95"] = f.holdout.ci95;
   Json confused = Json::array();
-  for (const auto& c : f.confused_with) confused.push_back({{"effect", c.effect}, {"separate_by", c.separate_by}});
-  Json out{{"effect", f.effect.name}, {"axis", f.axis},       {"parameters", parameters}, {"standard_errors", errors},
-           {"explains", f.explains},  {"holdout_gain", gain}, {"p_value", f.p_value},     {"confused_with", confused}};
+  for (const auto& c : f.confused_with)
+    confused.push_back({{"effect", c.effect.name()}, {"separate_by", c.separate_by}});
+  Json out{{"effect", f.effect.name()}, {"axis", f.axis},           {"parameters", parameters},
+           {"standard_errors", errors}, {"explains", f.explains},   {"holdout_gain", gain},
+           {"p_value", f.p_value},      {"confused_with", confused}};
   if (f.in_command) out["residual"] = "command";
   if (f.part_error) out["part_error_um"] = *f.part_error * 1e6;
   return out;
@@ -56,8 +48,8 @@ Json next_json(const NextMeasurement& next) {
   };
   Json questions = Json::array(), trajectories = Json::array();
   for (const auto& q : next.questions)
-    questions.push_back({{"effect", q.effect},
-                         {"or", q.rival.empty() ? Json(nullptr) : Json(q.rival)},
+    questions.push_back({{"effect", q.effect.name()},
+                         {"or", q.rival ? Json(q.rival->name()) : Json(nullptr)},
                          {"separate_by", q.separate_by},
                          {"by_motion", q.by_motion},
                          {"standard_errors_of_these_logs", separation(q, q.these_logs)}});
@@ -95,7 +87,8 @@ void add_reference(Json& out, const ReferenceRows& reference) {
   for (const auto& row : reference.rows) {
     Json shares = Json::array();
     for (const auto& share : row.shares)
-      shares.push_back({{"effect", share.effect}, {"error_um", share.by.error * 1e6}, {"current_A", share.by.current}});
+      shares.push_back(
+          {{"effect", share.effect.name()}, {"error_um", share.by.error * 1e6}, {"current_A", share.by.current}});
     rows.push_back({{"axis", row.axis},
                     {"feed_m_per_min", row.feed * 60.0},
                     {"used", row.training ? "training" : "held out"},
@@ -118,7 +111,7 @@ void add_reference(Json& out, const ReferenceRows& reference) {
 Json verdict_json(const Verdict& verdict) {
   Json findings = Json::array(), rejected = Json::array();
   for (const auto& f : verdict.findings) findings.push_back(finding_json(f));
-  for (const auto& r : verdict.rejected) rejected.push_back({{"effect", r.effect}, {"why", r.why}});
+  for (const auto& r : verdict.rejected) rejected.push_back({{"effect", r.effect.name()}, {"why", r.why}});
   Json out{{"schema", "stiction.verdict/1"},
            {"machine", verdict.machine},
            {"logs", verdict.logs},
@@ -185,7 +178,8 @@ std::string next_measurement_text(const NextMeasurement& next) {
   std::vector<std::string> settled, open;
   for (std::size_t k = 0; k < next.questions.size(); ++k) {
     const auto& q = next.questions[k];
-    const auto what = q.rival.empty() ? q.effect : fmt::format("{} or {}", q.effect, q.rival);
+    const auto what =
+        q.rival ? fmt::format("{} or {}", q.effect.name(), q.rival->name()) : std::string(q.effect.name());
     if (q.by_motion && best.separations[k] >= least_separation)
       settled.push_back(
           fmt::format("{:.1f} standard errors for {} (these logs: {:.1f})", best.separations[k], what, q.these_logs));
@@ -212,10 +206,10 @@ std::string verdict_text(const Verdict& verdict) {
         "no cause found: except for the items below, the simulation agrees with the data within their noise\n";
   for (std::size_t k = 0; k < verdict.findings.size(); ++k) {
     const auto& f = verdict.findings[k];
-    text += fmt::format("\n{}. {}, axis {}\n", k + 1, f.effect.name, f.axis);
+    text += fmt::format("\n{}. {}, axis {}\n", k + 1, f.effect.name(), f.axis);
     for (const auto& p : f.parameters)
       for (std::size_t i = 0; i < p.values.size(); ++i)
-        text += fmt::format("   {} = {:.6g} +- {:.2g}\n", p.name, p.values[i],
+        text += fmt::format("   {} = {:.6g} +- {:.2g}\n", p.name(), p.values[i],
                             i < p.standard_errors.size() ? p.standard_errors[i] : 0.0);
     text += fmt::format(
         "   {}\n   held-out data: rms {} is {:.3f} times that without this cause (95 % interval {:.3f} to {:.3f})",
@@ -224,10 +218,10 @@ std::string verdict_text(const Verdict& verdict) {
       text += fmt::format(", position error {:.3f} times that without it", *f.holdout.position_error_rms_ratio);
     text += "\n";
     for (const auto& c : f.confused_with)
-      text += fmt::format("   may be {} instead; to separate them: {}\n", c.effect, c.separate_by);
+      text += fmt::format("   may be {} instead; to separate them: {}\n", c.effect.name(), c.separate_by);
   }
   if (!verdict.rejected.empty()) text += "\ntried and rejected:\n";
-  for (const auto& r : verdict.rejected) text += fmt::format("  {}: {}\n", r.effect, r.why);
+  for (const auto& r : verdict.rejected) text += fmt::format("  {}: {}\n", r.effect.name(), r.why);
   if (verdict.unexplained.signature)
     text += fmt::format("\nunexplained: {:.1f} % of the residual variance, {}\n", 100.0 * verdict.unexplained.share,
                         *verdict.unexplained.signature);

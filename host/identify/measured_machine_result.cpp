@@ -114,6 +114,7 @@ sim::Chart sliding_chart(const PermittedRows& rows, const SteadyCurve& curve) {
       true,
       {}};
   sim::Series points{"measured", {}, {}, true}, line{"fitted", {}, {}, false};
+  points.role = sim::SeriesRole::measured;
   for (const auto& point : rows.steady) {
     points.x.push_back(point.velocity * 1e3);
     points.y.push_back(point.force);

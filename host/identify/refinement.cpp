@@ -12,6 +12,8 @@
 #include "host/identify/fit_support.hpp"
 #include "host/log/set_points.hpp"
 #include "host/simulate/control_run.hpp"
+#include "sim/effects/constant_force/constant_force.hpp"
+#include "sim/effects/effects.hpp"
 #include "sim/plant/friction/friction.hpp"
 
 namespace stiction::host {
@@ -78,7 +80,8 @@ class ClosedLoop {
     }
     if (const auto* constant = result.find("constant_force_N")) {
       constant_ = constant->value;  // takes the place of the file's
-      std::erase_if(machine_.axes.front().effects, [](const auto& effect) { return effect.name == "constant_force"; });
+      std::erase_if(machine_.axes.front().effects,
+                    [](const machine::Effect& each) { return sim::is_a<sim::ConstantForce>(each); });
     }
   }
 

@@ -1,10 +1,15 @@
 #include "host/log/determinable.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
+#include <vector>
+
+#include "sim/effects/effects.hpp"
 
 namespace stiction::host {
 namespace {
@@ -15,6 +20,8 @@ constexpr double one_direction = 0.05;  // part of the moving samples that count
 constexpr double slow = 5e-3;           // m/s: a Stribeck velocity is of this size or below
 constexpr double presliding = 20e-6;    // m behind a reversal in which friction builds up again
 constexpr double long_enough = 300.0;   // s, for a drift with temperature
+constexpr double some_seconds = 3.0;    // s, of which a spectrum has lines
+constexpr double some_way = 1e-3;       // m
 
 double mm_s(double speed) { return speed * 1e3; }
 
@@ -22,10 +29,16 @@ bool both_directions(const AxisInspection& out) {
   return out.forward > one_direction && out.forward < 1.0 - one_direction;
 }
 
+// Whether a log has what something needs.
+struct Had {
+  bool possible = false;
+  std::string reason;  // in this log's numbers
+  std::string remedy;  // what to record instead; empty when it is possible
+};
+
 // A parameter of the rigid fit.
-Determinable rigid(const AxisInspection& out, std::size_t which, const char* what, const char* confused,
-                   const char* remedy) {
-  Determinable d{what, false, "", remedy};
+Had rigid(const AxisInspection& out, std::size_t which, const char* confused, const char* remedy) {
+  Had d{false, "", remedy};
   if (out.effort == nullptr || !out.fit) {
     d.reason = "the axis hardly moves";
     return d;
@@ -50,12 +63,9 @@ Determinable rigid(const AxisInspection& out, std::size_t which, const char* wha
   return d;
 }
 
-Determinable asymmetry(const AxisInspection& out) {
-  if (both_directions(out))
-    return {"difference between the directions", true,
-            fmt::format("{:.0f} % of the motion goes in +x", 100.0 * out.forward), ""};
-  return {"difference between the directions", false, "the axis moves in one direction only",
-          "the same segment in both directions"};
+Had directions(const AxisInspection& out) {
+  if (both_directions(out)) return {true, fmt::format("{:.0f} % of the motion goes in +x", 100.0 * out.forward), ""};
+  return {false, "the axis moves in one direction only", "the same segment in both directions"};
 }
 
 // Mean number of samples in which the axis moves by no more than `presliding` behind a reversal.
@@ -81,10 +91,10 @@ double finest_step(const std::vector<double>& x) {
   return least;
 }
 
-Determinable presliding_shape(const AxisLog& axis, const FittedMotion& motion, const AxisInspection& out) {
-  Determinable d{"presliding stiffness and shape", false, "",
-                 "slow reversals: a sine of 10 to 100 um, or a feed of some mm/s that reverses, at 1 kHz or faster and "
-                 "with an encoder of 0.1 um or finer"};
+Had small_reversals(const AxisLog& axis, const FittedMotion& motion, const AxisInspection& out) {
+  Had d{false, "",
+        "slow reversals: a sine of 10 to 100 um, or a feed of some mm/s that reverses, at 1 kHz or faster and with "
+        "an encoder of 0.1 um or finer"};
   const double samples = samples_behind_reversals(axis, motion);
   const double step = finest_step(axis.x);
   if (out.reversals < 2)
@@ -94,23 +104,21 @@ Determinable presliding_shape(const AxisLog& axis, const FittedMotion& motion, c
   else if (step > 1e-6)
     d.reason = fmt::format("the position has steps of {:.2g} um", step * 1e6);
   else
-    d = {d.what, true,
+    d = {true,
          fmt::format("{} reversals, {:.0f} samples each in the first {:.0f} um", out.reversals, samples,
                      presliding * 1e6),
          ""};
   return d;
 }
 
-Determinable stribeck(const AxisInspection& out) {
+Had slow_speeds(const AxisInspection& out) {
   const auto slow_ones = std::ranges::count_if(out.plateaus, [](const auto& p) { return std::abs(p.speed) <= slow; });
-  if (slow_ones >= 2)
-    return {"Stribeck velocity", true, fmt::format("{} constant speeds up to {:.0f} mm/s", slow_ones, mm_s(slow)), ""};
-  return {"Stribeck velocity", false,
-          fmt::format("{} constant speed{} up to {:.0f} mm/s", slow_ones, slow_ones == 1 ? "" : "s", mm_s(slow)),
+  if (slow_ones >= 2) return {true, fmt::format("{} constant speeds up to {:.0f} mm/s", slow_ones, mm_s(slow)), ""};
+  return {false, fmt::format("{} constant speed{} up to {:.0f} mm/s", slow_ones, slow_ones == 1 ? "" : "s", mm_s(slow)),
           "constant speeds of 0.1, 0.3, 1 and 3 mm/s in both directions, a second each"};
 }
 
-Determinable sliding_curve(const AxisInspection& out) {
+Had many_speeds(const AxisInspection& out) {
   double slowest = 0.0, fastest = 0.0;
   for (const auto& p : out.plateaus) {
     const double speed = std::abs(p.speed);
@@ -118,11 +126,9 @@ Determinable sliding_curve(const AxisInspection& out) {
     fastest = std::max(fastest, speed);
   }
   const auto count = out.plateaus.size();
-  Determinable d{"shape of friction over speed", false, "",
-                 "at least five constant speeds over a range of 10 to 1, in both directions"};
+  Had d{false, "", "at least five constant speeds over a range of 10 to 1, in both directions"};
   if (count >= 8 && fastest > 5.0 * slowest)
-    d = {d.what, true,
-         fmt::format("{} constant speeds from {:.3g} to {:.3g} mm/s", count, mm_s(slowest), mm_s(fastest)), ""};
+    d = {true, fmt::format("{} constant speeds from {:.3g} to {:.3g} mm/s", count, mm_s(slowest), mm_s(fastest)), ""};
   else if (count == 0)
     d.reason = "no segment of constant speed";
   else
@@ -131,11 +137,11 @@ Determinable sliding_curve(const AxisInspection& out) {
   return d;
 }
 
-Determinable ripple(const KnownAxis& known, const AxisInspection& out) {
+Had steady_stroke(const KnownAxis& known, const AxisInspection& out) {
   const double wanted = known.pole_pair_pitch ? 2.0 * *known.pole_pair_pitch : 0.0;
   const bool steady = !out.plateaus.empty();
-  Determinable d{"force ripple and its pitch", steady && out.stroke > std::max(wanted, 1e-3), "",
-                 "a constant speed, slow enough to resolve the ripple, over at least two pole-pair pitches"};
+  Had d{steady && out.stroke > std::max(wanted, some_way), "",
+        "a constant speed, slow enough to resolve the ripple, over at least two pole-pair pitches"};
   if (!steady)
     d.reason = "no segment of constant speed";
   else if (known.pole_pair_pitch)
@@ -149,18 +155,107 @@ Determinable ripple(const KnownAxis& known, const AxisInspection& out) {
 
 Determinable frequency_response(const AxisLog& axis) {
   if (!axis.i_inject.empty() || !axis.u_inject.empty())
-    return {"frequency response, resonance", true, "a test signal is recorded", ""};
-  return {"frequency response, resonance", false, "no test signal is recorded",
+    return {"Frequency response", true, "a test signal is recorded", ""};
+  return {"Frequency response", false, "no test signal is recorded",
           "i_inject or u_inject: a multisine or stepped sine at a speed that does not cross zero"};
 }
 
-Determinable drift(const Log& log, const AxisLog& axis) {
+Had long_record(const Log& log, const AxisLog& axis) {
   const double duration = log.t.back() - log.t.front();
   if (duration >= long_enough)
-    return {"drift with temperature", true,
-            fmt::format("{:.0f} s{}", duration, axis.temperature.empty() ? "" : " with the temperature"), ""};
-  return {"drift with temperature", false, fmt::format("{:.3g} s", duration),
+    return {true, fmt::format("{:.0f} s{}", duration, axis.temperature.empty() ? "" : " with the temperature"), ""};
+  return {false, fmt::format("{:.3g} s", duration),
           fmt::format("the same motion repeated over {:.0f} s or more, with the temperature", long_enough)};
+}
+
+Had recorded_seconds(const Log& log) {
+  const double duration = log.t.back() - log.t.front();
+  return {duration >= some_seconds, fmt::format("{:.3g} s", duration), "more seconds, some of them at standstill"};
+}
+
+Had stroke(const AxisInspection& out) {
+  return {out.stroke > some_way, fmt::format("a stroke of {:.4g} mm", 1e3 * out.stroke),
+          "the whole travel at a constant speed, both ways"};
+}
+
+Had current(const AxisLog& axis) {
+  if (!axis.i.empty()) return {true, "the motor's current is recorded", ""};
+  if (!axis.u.empty()) return {true, "the motor's voltage is recorded", ""};
+  return {false, "the motor's current is not recorded", "i, the motor's current"};
+}
+
+Had set_points(const AxisLog& axis) {
+  return {!axis.x_set.empty(), axis.x_set.empty() ? "no set-points are recorded" : "set-points are recorded",
+          "x_set, the set position"};
+}
+
+Had other_axis(const Log& log) {
+  const bool there = log.axes.size() > 1;
+  return {there, there ? "the other axis is recorded" : "one axis alone is recorded", "the other axis in the same log"};
+}
+
+struct Inspected {
+  const Log& log;
+  const AxisLog& axis;
+  const KnownAxis& known;
+  const FittedMotion& motion;
+  const AxisInspection& out;
+};
+
+Had judged(sim::Need need, const Inspected& in) {
+  switch (need) {
+    case sim::Need::friction_level:
+      return rigid(in.out, 2, "a constant force, or from viscous friction", "both directions, and at least two speeds");
+    case sim::Need::speeds:
+      return rigid(in.out, 1, "Coulomb friction, because the speed hardly changes",
+                   "speeds over a range of 5 to 1, in both directions");
+    case sim::Need::acceleration:
+      return rigid(in.out, 0, "friction, because acceleration and speed go together",
+                   "accelerations well above friction: half the maximum of the machine, with both signs at each "
+                   "speed");
+    case sim::Need::offset:
+      return rigid(in.out, 3, "Coulomb friction, because the axis moves in one direction",
+                   "the same speeds in both directions");
+    case sim::Need::both_directions:
+      return directions(in.out);
+    case sim::Need::many_speeds:
+      return many_speeds(in.out);
+    case sim::Need::slow_speeds:
+      return slow_speeds(in.out);
+    case sim::Need::small_reversals:
+      return small_reversals(in.axis, in.motion, in.out);
+    case sim::Need::reversals:
+      return {in.out.reversals >= 2, fmt::format("{} reversal{}", in.out.reversals, in.out.reversals == 1 ? "" : "s"),
+              "several reversals"};
+    case sim::Need::steady_stroke:
+      return steady_stroke(in.known, in.out);
+    case sim::Need::stroke:
+      return stroke(in.out);
+    case sim::Need::seconds:
+      return recorded_seconds(in.log);
+    case sim::Need::current:
+      return current(in.axis);
+    case sim::Need::set_points:
+      return set_points(in.axis);
+    case sim::Need::other_axis:
+      return other_axis(in.log);
+    case sim::Need::long_record:
+      return long_record(in.log, in.axis);
+  }
+  return {};
+}
+
+// What is missing, or where nothing is, what is there.
+Determinable determinable(const sim::EffectDescriptor& effect, const Inspected& in) {
+  std::vector<std::string> had, missing, remedies;
+  for (const sim::Need need : effect.needs) {
+    const Had each = judged(need, in);
+    (each.possible ? had : missing).push_back(each.reason);
+    if (!each.possible) remedies.push_back(each.remedy);
+  }
+  return {std::string(effect.title), missing.empty(),
+          fmt::format("{}", fmt::join(missing.empty() ? had : missing, "; ")),
+          fmt::format("{}", fmt::join(remedies, "; and "))};
 }
 
 }  // namespace
@@ -218,23 +313,11 @@ void add_suspicions(const Log&, const AxisLog& axis, const KnownAxis& known, Axi
 
 void add_determinable(const Log& log, const AxisLog& axis, const KnownAxis& known, const FittedMotion& motion,
                       AxisInspection& out) {
-  out.determinable = {
-      rigid(out, 2, "Coulomb friction", "a constant force, or from viscous friction",
-            "both directions, and at least two speeds"),
-      rigid(out, 1, "viscous friction", "Coulomb friction, because the speed hardly changes",
-            "speeds over a range of 5 to 1, in both directions"),
-      rigid(out, 0, "moving mass", "friction, because acceleration and speed go together",
-            "accelerations well above friction: half the maximum of the machine, with both signs at each speed"),
-      rigid(out, 3, "constant force", "Coulomb friction, because the axis moves in one direction",
-            "the same speeds in both directions"),
-      asymmetry(out),
-      sliding_curve(out),
-      stribeck(out),
-      presliding_shape(axis, motion, out),
-      ripple(known, out),
-      frequency_response(axis),
-      drift(log, axis),
-  };
+  const Inspected in{log, axis, known, motion, out};
+  std::vector<Determinable> judgements;
+  for (const sim::EffectId effect : sim::all_effects()) judgements.push_back(determinable(*effect, in));
+  judgements.push_back(frequency_response(axis));
+  out.determinable = std::move(judgements);
 }
 
 }  // namespace stiction::host

@@ -33,7 +33,7 @@ struct Saturation {
 
 // Whether the motion lets something be determined.
 struct Determinable {
-  std::string what;  // "Coulomb friction"
+  std::string what;  // the title of an effect
   bool possible = false;
   std::string reason;  // in this log's numbers
   std::string remedy;  // what to record instead; empty when it is possible

@@ -26,6 +26,20 @@ void add_shape(json& out, const sim::Chart& chart) {
   out["height"] = chart.shape.height == Height::usual ? "" : chart.shape.height == Height::low ? "low" : "flat";
 }
 
+const char* role_name(sim::SeriesRole role) {
+  switch (role) {
+    case sim::SeriesRole::measured:
+      return "measured";
+    case sim::SeriesRole::before:
+      return "before";
+    case sim::SeriesRole::after:
+      return "after";
+    case sim::SeriesRole::other:
+      break;
+  }
+  return "";
+}
+
 }  // namespace
 
 json series_json(const std::vector<sim::Chart>& charts) {
@@ -38,10 +52,10 @@ json series_json(const std::vector<sim::Chart>& charts) {
         if (!series.points) (*known)["points"] = false;
         continue;
       }
-      const auto model = split_model(series.name).friction;
       list.push_back({{"name", series.name},
                       {"label", typeset(series.name)},
-                      {"model", model.empty() ? json(nullptr) : json(model)},
+                      {"model", series.friction.empty() ? json(nullptr) : json(series.friction)},
+                      {"role", role_name(series.role)},
                       {"points", series.points}});
     }
   return list;

@@ -9,7 +9,8 @@
 
 namespace stiction::host {
 
-// Each name of a series once, with the friction model whose colour it takes. `points`: it is nowhere a line.
+// Each name of a series once, with the role or the friction model whose colour it takes. `points`: it is nowhere a
+// line.
 nlohmann::ordered_json series_json(const std::vector<sim::Chart>& charts);
 
 // `place`: the id of the page's element that it goes into. A series is drawn from at most 3000 of its points

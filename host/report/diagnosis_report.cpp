@@ -4,13 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "host/report/assets.hpp"
-#include "host/report/cause_text.hpp"
 #include "host/report/chart_json.hpp"
 #include "host/report/engineering_unit.hpp"
 #include "host/report/next_measurement_section.hpp"
@@ -23,38 +21,9 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-// Suffixes of verdict.json's names; a longer one stands before its own end.
-struct Suffix {
-  std::string_view text, unit;  // SI
-};
-constexpr std::array suffixes{Suffix{"_N_s_per_m", "N s/m"},
-                              Suffix{"_N_per_m", "N/m"},
-                              Suffix{"_m_per_s", "m/s"},
-                              Suffix{"_kg", "kg"},
-                              Suffix{"_Hz", "Hz"},
-                              Suffix{"_N_per_A", "N/A"},
-                              Suffix{"_N_per_V", "N/V"},
-                              Suffix{"_A_s_per_m", "A s/m"},
-                              Suffix{"_V_s_per_m", "V s/m"},
-                              Suffix{"_V_per_A", "V/A"},
-                              Suffix{"_per_s", "1/s"},
-                              Suffix{"_N", "N"},
-                              Suffix{"_m", "m"},
-                              Suffix{"_s", "s"},
-                              Suffix{"_A", "A"}};
-
-struct Quantity {
-  std::string label, unit;
-};
-Quantity quantity_of(const std::string& name) {
-  Quantity quantity{name, "1"};
-  for (const auto& suffix : suffixes)
-    if (name.ends_with(suffix.text)) {
-      quantity = {name.substr(0, name.size() - suffix.text.size()), std::string(suffix.unit)};
-      break;
-    }
-  std::replace(quantity.label.begin(), quantity.label.end(), '_', ' ');
-  return quantity;
+std::string spaced(std::string key) {
+  std::replace(key.begin(), key.end(), '_', ' ');
+  return key;
 }
 
 std::string percent(double share) { return fmt::format("{:.{}f}", 100.0 * share, std::abs(share) < 0.1 ? 1 : 0); }
@@ -63,23 +32,22 @@ std::string micrometres(double metres) { return fmt::format("{:.2g}", metres * 1
 // One row a value; a list's values are its harmonics or points, counted from 1. As many digits as the interval leaves:
 // two of its half width.
 void add_rows(json& rows, const EffectParameter& parameter) {
-  const auto quantity = quantity_of(parameter.name);
+  const auto label = spaced(parameter.key);
   for (std::size_t k = 0; k < parameter.values.size(); ++k) {
     const double value = parameter.values[k];
     const bool known = k < parameter.standard_errors.size() && parameter.standard_errors[k] > 0.0;
     const double half = known ? 1.96 * parameter.standard_errors[k] : 0.0;
-    const auto unit = engineering_unit(quantity.unit, std::max(std::abs(value), half));
+    const auto unit = engineering_unit(parameter.unit, std::max(std::abs(value), half));
     const auto number = [&](double v) {
       if (!known) return fmt::format("{:.4g}", v * unit.factor);
       const int digits = std::clamp(1 - static_cast<int>(std::floor(std::log10(half * unit.factor))), 0, 9);
       return fmt::format("{:.{}f}", v * unit.factor, digits);
     };
-    rows.push_back(
-        {{"label", parameter.values.size() > 1 ? fmt::format("{} {}", quantity.label, k + 1) : quantity.label},
-         {"unit", typeset(unit.unit)},
-         {"value", number(value)},
-         {"low", known ? json(number(value - half)) : json(nullptr)},
-         {"high", known ? json(number(value + half)) : json(nullptr)}});
+    rows.push_back({{"label", parameter.values.size() > 1 ? fmt::format("{} {}", label, k + 1) : label},
+                    {"unit", typeset(unit.unit)},
+                    {"value", number(value)},
+                    {"low", known ? json(number(value - half)) : json(nullptr)},
+                    {"high", known ? json(number(value + half)) : json(nullptr)}});
   }
 }
 
@@ -111,17 +79,17 @@ std::string on_part(const Finding& finding) {
 }
 
 json cause_json(const Finding& finding) {
-  const auto words = cause_text(finding.effect.name);
+  const auto& effect = *finding.effect;
   json parameters = json::array(), confused = json::array();
   for (const auto& parameter : finding.parameters) add_rows(parameters, parameter);
   for (const auto& each : finding.confused_with)
-    confused.push_back({{"title", cause_text(each.effect).title}, {"separate_by", typeset(each.separate_by)}});
-  return {{"name", finding.effect.name},
-          {"title", words.title},
+    confused.push_back({{"title", each.effect->title}, {"separate_by", typeset(each.separate_by)}});
+  return {{"name", effect.name},
+          {"title", effect.title},
           {"axis", finding.axis},
-          {"meaning", words.meaning},
-          {"advice", words.advice},
-          {"page", fmt::format("docs/effects/{}.md", finding.effect.name)},
+          {"meaning", effect.meaning},
+          {"advice", effect.advice},
+          {"page", fmt::format("{}/page.md", effect.folder)},
           {"explains", percent(finding.explains)},
           {"gain", gain_percent(gained_ratio(finding))},
           {"gain_interval",
@@ -160,7 +128,7 @@ json rows_json(const ReferenceRows& reference) {
     std::sort(shares.begin(), shares.end(),
               [](const RowShare& a, const RowShare& b) { return std::abs(a.by.current) > std::abs(b.by.current); });
     for (std::size_t k = 0; k < std::min<std::size_t>(shares.size(), 2); ++k)
-      causes.push_back(fmt::format("{} {:+.2f} A", cause_text(shares[k].effect).title, shares[k].by.current));
+      causes.push_back(fmt::format("{} {:+.2f} A", shares[k].effect->title, shares[k].by.current));
     out["causes"] = fmt::format("{}", fmt::join(causes, ", "));
     rows.push_back(out);
   }
@@ -186,7 +154,7 @@ std::string headline(const Verdict& verdict) {
                : "The simulation agrees with the data within their noise.";
   std::vector<std::string> names;
   for (const auto& finding : verdict.findings) {
-    auto title = cause_text(finding.effect.name).title;
+    std::string title(finding.effect->title);
     title[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(title[0])));
     if (std::find(names.begin(), names.end(), title) == names.end()) names.push_back(title);
   }
@@ -277,7 +245,7 @@ std::string diagnosis_report_html(const DiagnosisReport& report) {
       all.push_back(chart);
     }
   for (const auto& each : verdict.rejected)
-    rejected.push_back({{"title", cause_text(each.effect).title}, {"why", typeset(each.why)}});
+    rejected.push_back({{"title", each.effect->title}, {"why", typeset(each.why)}});
   for (const auto& note : verdict.notes) notes.push_back(typeset(note));
   const json data{
       {"schema", "stiction.diagnosis-report/1"},

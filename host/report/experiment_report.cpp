@@ -40,7 +40,7 @@ json conditions_json(const ExperimentReport& report) {
   json models = json::array();
   for (const auto& chart : report.result.charts)
     for (const auto& series : chart.series)
-      if (const auto model = split_model(series.name).friction; !model.empty()) add_once(models, friction_label(model));
+      if (!series.friction.empty()) add_once(models, friction_label(series.friction));
   Conditions conditions;
   if (!models.empty()) conditions.add("Friction", joined(models));
   if (report.result.signals.empty()) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "host/diagnose/verdict_json.hpp"
-#include "host/report/cause_text.hpp"
 #include "host/report/typeset.hpp"
 
 namespace stiction::host {
@@ -12,8 +11,9 @@ namespace {
 using json = nlohmann::ordered_json;
 
 std::string title_of(const OpenQuestion& question) {
-  const auto title = cause_text(question.effect).title;
-  return question.rival.empty() ? title + ": does it exist?" : title + " or " + cause_text(question.rival).title;
+  const auto title = question.effect->title;
+  return question.rival ? fmt::format("{} or {}", title, (*question.rival)->title)
+                        : fmt::format("{}: is it there?", title);
 }
 
 std::string standard_errors(double value) { return fmt::format("{:.{}f}", value, value < 9.95 ? 1 : 0); }

@@ -10,7 +10,7 @@
 #include "firmware/machine/configuration/conversion.hpp"
 #include "firmware/machine/configuration/double_signals.hpp"
 #include "firmware/machine/model/motor_force.hpp"
-#include "sim/plant/effects/effects.hpp"
+#include "sim/effects/effects.hpp"
 
 namespace stiction::host {
 namespace {

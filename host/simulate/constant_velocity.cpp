@@ -80,6 +80,7 @@ sim::ExperimentResult run_constant_velocity(const ExperimentInput& input) {
                    true,
                    {}};
   sim::Series points{"measured", {}, {}, true};
+  points.role = sim::SeriesRole::measured;
   for (const auto& row : measured) {
     points.x.push_back(row.speed_m_per_min);
     points.y.push_back(row.current);
@@ -88,6 +89,7 @@ sim::ExperimentResult run_constant_velocity(const ExperimentInput& input) {
     auto machine = input.machine;
     machine.axes.front().friction.use = name;
     sim::Series series{name, {}, {}, false};
+    series.friction = name;
     double deviation = 0.0;
     for (const auto& row : measured) {
       if (!can_drive(machine.axes.front(), row.speed_m_per_min / 60.0)) continue;

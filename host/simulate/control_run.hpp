@@ -14,8 +14,8 @@
 #include "hal/control_loop.hpp"
 #include "hal/simulated/simulated_backend.hpp"
 #include "host/simulate/late_current.hpp"
+#include "sim/effects/effects.hpp"
 #include "sim/experiment/set_point.hpp"
-#include "sim/plant/effects/effects.hpp"
 
 namespace stiction::host {
 

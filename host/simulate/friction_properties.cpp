@@ -110,6 +110,7 @@ sim::ExperimentResult run_presliding(const ExperimentInput& input) {
                    {}};
   for (const auto& name : input.friction) {
     sim::Series line{name, {}, {}, false};
+    line.friction = name;
     BenchRecorder recorder;
     const auto loop =
         presliding_loop(axis_with(input, name), force, slow * force, 2.0, line, input.keep_log ? &recorder : nullptr);
@@ -134,6 +135,7 @@ sim::ExperimentResult run_presliding(const ExperimentInput& input) {
                                           loop.at_first_top * 1e6, force, loop.after_unloading * 1e6));
     if (name != sim::LuGre<>::name) continue;
     sim::Series quick{fmt::format("{}, {:g} N/s", name, fast * force), {}, {}, false};
+    quick.friction = name;
     const auto broken = presliding_loop(axis_with(input, name), force, fast * force, 2.0, quick);
     chart.series.push_back(std::move(quick));
     const bool breaks_away = std::abs(broken.at_second_top) > 1e-3;
@@ -218,6 +220,7 @@ sim::ExperimentResult run_break_away(const ExperimentInput& input) {
       {}};
   sim::Chart chart{"Break-away force over the rate of the force", "rate, N/s", "break-away force, N", "", true, {}};
   sim::Series series{"lugre", {}, {}, false};
+  series.friction = series.name;
   const auto axis = axis_with(input, "lugre");
   // The friction force at its greatest within presliding: from there on the mass is faster than its contact. Tab 4.2
   // lets presliding reach 50 um. At slow rates the friction still grows a little beyond, as the bristles' approach to
@@ -277,6 +280,7 @@ sim::ExperimentResult run_stick_slip(const ExperimentInput& input) {
   for (const auto& name : input.friction) {
     FrictionBench bench(axis_with(input, name));
     sim::Series x{name, {}, {}, false}, f{name, {}, {}, false};
+    x.friction = f.friction = name;
     Thinned x_line(x, 200), f_line(f, 200);
     std::vector<double> starts, stops, start_positions, stop_positions;
     double first_force = 0.0;

@@ -38,6 +38,7 @@ Response respond(const machine::Machine& machine, const std::string& name, doubl
                  const TraceSink<FixedSignals>& trace = {}) {
   Response r;
   r.deviation.name = r.force.name = r.friction.name = name;
+  r.deviation.friction = r.force.friction = r.friction.friction = name;
   const std::array<double, 1> origin{0.0};
   ControlRun<FixedSignals> run(machine, origin);
   const std::array<sim::AxisSetPoint, 1> standstill{};

@@ -163,6 +163,7 @@ sim::ExperimentResult run_l_shape(const ExperimentInput& input) {
     auto run = drive_l_shape(machine, input.keep_log ? recorder.sink() : TraceSink<FixedSignals>{});
     if (input.keep_log) input.keep_log("", recorder.take());
     run.error.name = run.current.name = name;
+    run.error.friction = run.current.friction = name;
     result.figures.push_back(
         {fmt::format("standing_{}_{}", effort.name, name), std::string(effort.unit),
          fmt::format("{} of {} at standstill from F to G (positive against the last motion), {}", effort.name, y, name),

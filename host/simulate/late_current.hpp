@@ -11,7 +11,8 @@
 #include <vector>
 
 #include "firmware/machine/configuration/conversion.hpp"
-#include "sim/plant/effects/effects.hpp"
+#include "sim/effects/effects.hpp"
+#include "sim/effects/time_skew/time_skew.hpp"
 #include "stiction/drive/axis_signals.hpp"
 
 namespace stiction::host {

@@ -9,7 +9,8 @@
 
 #include "firmware/machine/configuration/double_signals.hpp"
 #include "host/log/set_points.hpp"
-#include "sim/plant/effects/effects.hpp"
+#include "sim/effects/effects.hpp"
+#include "sim/effects/time_skew/time_skew.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
 namespace stiction::host {

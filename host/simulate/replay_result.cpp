@@ -96,20 +96,21 @@ class Result {
               {}};
     }
     const double offset = offset_of(log_, cases_.front(), axis, axis_);
-    error.series.push_back(line("measured", scaled(difference(measured.x_set, measured.x, 0, -offset), micro)));
-    if (effort != nullptr) current.series.push_back(line("measured", measured.*effort->values));
+    error.series.push_back(measured_line(scaled(difference(measured.x_set, measured.x, 0, -offset), micro)));
+    if (effort != nullptr) current.series.push_back(measured_line(measured.*effort->values));
     for (const auto& c : cases_) {
       const auto& simulated = c.simulated.axes[axis];
       const auto d = compare_replay(log_, c.simulated, axis, offset);
       if (&c == &cases_.front()) add_measured(name, d);
       add_figures(c.label, name, d);
-      error.series.push_back(line(c.label, scaled(difference(simulated.x_set, simulated.x, 0, -offset), micro)));
-      position.series.push_back(line(c.label, scaled(difference(simulated.x, measured.x, 0), micro)));
+      error.series.push_back(line(c, scaled(difference(simulated.x_set, simulated.x, 0, -offset), micro)));
+      position.series.push_back(line(c, scaled(difference(simulated.x, measured.x, 0), micro)));
       if (effort == nullptr) continue;
-      current.series.push_back(line(c.label, simulated.*effort->values));
+      current.series.push_back(line(c, simulated.*effort->values));
       const auto from = first_compared(log_);
       sim::Series over_velocity{
           c.label, {}, difference(measured.*effort->values, simulated.*effort->values, from), true};
+      over_velocity.friction = c.friction;
       for (std::size_t k = from; k < log_.t.size(); ++k) over_velocity.x.push_back(simulated.v_set[k] * 60.0);
       rest.series.push_back(std::move(over_velocity));
     }
@@ -187,8 +188,15 @@ class Result {
     result_.findings.push_back(sentence + ".");
   }
 
-  sim::Series line(const std::string& name, std::vector<double> values) const {
-    return {name, log_.t, std::move(values), false};
+  sim::Series line(const ReplayCase& of, std::vector<double> values) const {
+    sim::Series series{of.label, log_.t, std::move(values), false};
+    series.friction = of.friction;
+    return series;
+  }
+  sim::Series measured_line(std::vector<double> values) const {
+    sim::Series series{"measured", log_.t, std::move(values), false};
+    series.role = sim::SeriesRole::measured;
+    return series;
   }
 
   const Log& log_;

@@ -15,6 +15,7 @@ struct ReplayCase {
   std::string label;  // what its curves are called: a friction model, a machine
   machine::Machine machine;
   Log simulated;
+  std::string friction{};  // the friction model whose colour its curves take; empty: one of its own
 };
 
 // How a simulated axis differs from the measured one. Without the log's first `settling` seconds, in which the

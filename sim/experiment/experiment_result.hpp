@@ -30,11 +30,21 @@ struct Figure {
   }
 };
 
+// What a series shows of two simulations and a machine, wherever it is drawn: its colour.
+enum class SeriesRole {
+  other,     // the colour of its friction model, or the next free one
+  measured,  // on the machine
+  before,    // simulated, before the machine file was extended
+  after,     // and extended
+};
+
 struct Series {
-  std::string name;  // a friction model's name takes its colour; anything else the next free one
+  std::string name;
   std::vector<double> x, y;
   bool points = false;  // markers instead of a line: measured or published values
   bool bars = false;    // bars from zero instead of a line: one value a count
+  SeriesRole role = SeriesRole::other;
+  std::string friction{};  // the name of the friction model that it shows; empty: of none
 };
 
 // A vertical distance at one abscissa, such as a margin.

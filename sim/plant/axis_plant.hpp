@@ -8,7 +8,7 @@
 #include <variant>
 
 #include "firmware/machine/model/machine.hpp"
-#include "sim/plant/effects/acting_effects.hpp"
+#include "sim/plant/acting_effects.hpp"
 #include "sim/plant/encoder_mount.hpp"
 #include "sim/plant/friction/friction.hpp"
 #include "sim/plant/inverter.hpp"

@@ -91,15 +91,15 @@ ParameterScore score_profile(const machine::Effect& truth, const machine::Effect
 std::vector<ParameterScore> score_parameters(const machine::AxisModel& file, const machine::Effect& truth,
                                              const host::Finding& finding) {
   std::vector<ParameterScore> scores;
-  if (truth.name == "position_dependent_friction") return {score_profile(truth, finding.effect)};
+  if (truth.name == "position_dependent_friction") return {score_profile(truth, finding.row())};
   for (const auto& [key, values] : truth.values) {
-    const auto found = finding.effect.values.find(key);
-    if (found == finding.effect.values.end() || found->second.empty()) continue;
+    const auto found = finding.values.find(key);
+    if (found == finding.values.end() || found->second.empty()) continue;
     const double off = found->second.front() - values.front(), base = value_of_file(file, truth.name);
     ParameterScore each{truth.name, key, std::abs(off) / std::max(scale_of(truth, key), 1e-12), 0.0, false, 0.0};
     if (base != 0.0) each.of_change = std::abs(off / (values.front() - base));
     for (const auto& parameter : finding.parameters)
-      if ((parameter.name == key || parameter.name.starts_with(key + "_")) && !parameter.standard_errors.empty()) {
+      if (parameter.key == key && !parameter.standard_errors.empty()) {
         each.interval = true;
         each.deviations = off / std::max(parameter.standard_errors.front(), 1e-300);
       }
@@ -150,10 +150,10 @@ Outcome score(const PlannedCase& planned, const BlindCase& blind, const host::Ve
   const auto& order = planned.order;
   std::set<std::string> explained;
   for (const auto& finding : verdict.findings) {
-    const auto& name = finding.effect.name;
+    const auto name = finding.effect.name();
     const bool hit = right(name, order);
     const bool alias = !hit && std::any_of(finding.confused_with.begin(), finding.confused_with.end(),
-                                           [&](const auto& c) { return right(c.effect, order); });
+                                           [&](const auto& c) { return right(c.effect.name(), order); });
     if (outcome.named.empty()) outcome.first_right = hit, outcome.first_aliased = alias;
     outcome.wrong += !hit && !alias;
     outcome.named.push_back(name);
@@ -168,8 +168,8 @@ Outcome score(const PlannedCase& planned, const BlindCase& blind, const host::Ve
   outcome.exact_set = explained.size() == order.hidden.size() && verdict.findings.size() == order.hidden.size();
   outcome.signature = verdict.unexplained.signature.value_or("");
   for (const auto& rejected : verdict.rejected)
-    if (right(rejected.effect, order) && !explained.contains(rejected.effect))
-      outcome.why += fmt::format("{}{}: {}", outcome.why.empty() ? "" : "; ", rejected.effect, rejected.why);
+    if (right(rejected.effect.name(), order) && !explained.contains(rejected.effect.name()))
+      outcome.why += fmt::format("{}{}: {}", outcome.why.empty() ? "" : "; ", rejected.effect.name(), rejected.why);
   const auto square = [](double x) { return x * x; };
   outcome.gain = square(verdict.baseline.force_rms) - square(verdict.extended.force_rms);
   outcome.oracle_gain = blind.oracle_cut;

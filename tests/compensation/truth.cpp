@@ -6,6 +6,7 @@
 #include <string>
 #include <variant>
 
+#include "firmware/machine/file/machine_file.hpp"
 #include "sim/machine_file.hpp"
 #include "sim/plant/friction/friction.hpp"
 

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "sim/plant/effects/effects.hpp"
+#include "sim/effects/effects.hpp"
 #include "tests/fuzz/fuzzed_number.hpp"
 #include "tests/fuzz/machine_bytes.hpp"
 
@@ -19,7 +19,7 @@ std::string text_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
-std::string value_of(FuzzedDataProvider& bytes, const sim::EffectKey& key) {
+std::string value_of(FuzzedDataProvider& bytes, const machine::ValueKey& key) {
   const auto quantity = [&] {
     const auto number = fuzzed_number(bytes);
     return key.unit == "1" ? number : fmt::format("\"{} {}\"", number, key.unit);
@@ -31,11 +31,12 @@ std::string value_of(FuzzedDataProvider& bytes, const sim::EffectKey& key) {
 }
 
 std::string effect_of(FuzzedDataProvider& bytes) {
-  const auto kinds = sim::effect_kinds();
-  const auto& kind = kinds[bytes.ConsumeIntegralInRange<std::size_t>(0, kinds.size() - 1)];
-  std::string text = fmt::format("[[axis.X.effect]]\nname = \"{}\"\n", kind.name);
-  for (const auto& key : kind.keys)
-    if (key.required || bytes.ConsumeBool()) text += fmt::format("{} = {}\n", key.key, value_of(bytes, key));
+  const auto kinds = sim::all_effects();
+  const auto kind = kinds[bytes.ConsumeIntegralInRange<std::size_t>(0, kinds.size() - 1)];
+  std::string text = fmt::format("[[axis.X.effect]]\nname = \"{}\"\n", kind.name());
+  for (const auto& key : kind->keys)
+    if ((!key.fallback && !key.optional) || bytes.ConsumeBool())
+      text += fmt::format("{} = {}\n", key.key, value_of(bytes, key));
   return text;
 }
 

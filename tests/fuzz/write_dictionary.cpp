@@ -5,8 +5,8 @@
 #include <string>
 
 #include "firmware/machine/file/parameters.hpp"
+#include "sim/effects/effects.hpp"
 #include "sim/machine_file.hpp"
-#include "sim/plant/effects/effects.hpp"
 #include "sim/plant/friction/friction.hpp"
 
 int main() {
@@ -23,7 +23,7 @@ int main() {
   for (const auto& choice : machine::velocity_sources) words.emplace(choice.name);
   for (const auto& choice : machine::reference_sources) words.emplace(choice.name);
   sim::for_each_friction_model([&]<class Model>() { words.emplace(Model::name); });
-  for (const auto& effect : sim::effect_kinds()) words.emplace(effect.name);
+  for (const auto effect : sim::all_effects()) words.insert(effect.name());
   for (const auto& table : sim::machine_file_description()) {
     words.insert(table.name);
     for (const auto& key : table.keys) {

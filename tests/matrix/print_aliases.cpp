@@ -1,7 +1,7 @@
 // Prints the declared aliases of an effect, one a line: a diagnosis that names one of them is as good.
 #include <cstdio>
 
-#include "sim/plant/effects/effects.hpp"
+#include "sim/effects/effects.hpp"
 
 int main(int argc, char** argv) {
   if (argc != 2) {

@@ -3,8 +3,8 @@
 
 usage: check_rooms.py [ROOT]      status 1: findings
 
-A room is a folder; a file belongs to the innermost room around it. ROOMS below is the only table of arrows: what is not
-in it is an error, and whoever adds a row gives its reason. Folders must not include each other in a circle.
+A room is a folder; a file belongs to the innermost room around it, or to the row with "*" that its path matches. ROOMS
+below is the only table of arrows: what is not in it is an error, and whoever adds a row gives its reason. Folders must not include each other in a circle.
 """
 
 import pathlib
@@ -53,7 +53,7 @@ ROOMS = {
     "sim/number": {},
     "sim": {
         "firmware/machine/*": "machine files are read",
-        "sim/plant/effects": "with the keys of all effects",
+        "sim/effects": "with the keys of all effects",
         "sim/plant/friction": "and friction laws",
     },
     "sim/vocabulary": {
@@ -65,15 +65,22 @@ ROOMS = {
         "sim/number": "and is written in arithmetic that is the same everywhere",
     },
     "sim/plant/feed": {"firmware/machine/model": "the parameters of a feed drive are a machine's"},
-    "sim/plant/effects": {
+    "sim/effects": {
         "sim/number": "waves need sines",
         "firmware/machine/model": "an effect describes its parameters, and changes what a machine has or adds to it",
         "sim/plant/friction": "on every friction law",
     },
+    # One folder an effect: its law belongs to the simulation, its regressor to the diagnosis.
+    "sim/effects/*/regressor.cpp": {
+        "sim/*": "an effect is looked for by the law that the simulation has of it",
+        "firmware/machine/*": "on an axis as its file describes it",
+        "host/diagnose": "in the residual of a diagnosis",
+        "host/identify": "with the columns of the fits",
+    },
     "sim/plant": {
         "sim/number": "the mathematics that its parts share",
         "firmware/machine/model": "the plant is built from a machine",
-        "sim/plant/effects": "with what diagnosis added",
+        "sim/effects": "with what diagnosis added",
         "sim/plant/friction": "with one of the friction laws",
     },
     "sim/experiment": {
@@ -181,6 +188,10 @@ def sources(root):
                 yield file.relative_to(root)
 
 
+def room_of_file(path):
+    return next((room for room in ROOMS if "*" in room and path.match(room)), None)
+
+
 def room_of(folder):
     inside = [room for room in ROOMS if folder == room or folder.startswith(room + "/")]
     return max(inside, key=len, default=None)
@@ -196,7 +207,7 @@ def resolve(root, name):
 def check_file(root, file, arrows):
     """Yields findings; adds to `arrows` the folders that this file's folder includes, with the place."""
     folder = file.parent.as_posix()
-    room = room_of(folder)
+    room = room_of_file(file) or room_of(folder)
     if room is None:
         yield f"{file}: {folder} is not a room; add it to ROOMS with the reasons for its arrows"
         return
@@ -217,8 +228,9 @@ def check_file(root, file, arrows):
                 yield f'{place}: there is no "{quoted}" (paths start at the repository\'s root or firmware/include)'
                 continue
             to = target.parent.as_posix()
-            if to != folder:
-                arrows.setdefault(folder, {}).setdefault(to, place)
+            start = room_of_file(file) or folder
+            if to != start:
+                arrows.setdefault(start, {}).setdefault(to, place)
             if not allowed(room, to):
                 targets = ", ".join(ROOMS[room]) or "nothing else"
                 yield f"{place}: {room} may not include {to}; it may include {targets}"

@@ -18,6 +18,9 @@ SOUND = {
     "hal/can/can_backend.hpp": '#include "hal/backend.hpp"\n',
     "sim/plant/axis_plant.hpp": '#include "firmware/machine/model/machine.hpp"\n',
     "firmware/machine/model/machine.hpp": "#include <string>\n",
+    "sim/effects/drag/drag.hpp": '#include "firmware/machine/model/machine.hpp"\n',
+    "sim/effects/drag/regressor.cpp": '#include "host/diagnose/candidate.hpp"\n#include "sim/effects/drag/drag.hpp"\n',
+    "host/diagnose/candidate.hpp": '#include "firmware/machine/model/machine.hpp"\n',
     "host/report/page.hpp": '#include "firmware/machine/model/machine.hpp"\n',
     "host/identify/fit.hpp": '#include "firmware/machine/model/machine.hpp"\n',
     "host/cli/main.cpp": '#include "host/report/page.hpp"\n#include "host/identify/fit.hpp"\n',
@@ -76,6 +79,12 @@ class CheckRooms(unittest.TestCase):
         self.assertEqual(findings_in(SOUND | shared | {"sim/vocabulary/a.cpp": '#include "sim/files.hpp"\n'}), [])
         findings = findings_in(SOUND | shared | {"sim/vocabulary/a.cpp": '#include "sim/plant/plant.hpp"\n'})
         self.assertIn("sim/vocabulary may not include sim/plant", findings[0])
+
+    def test_lets_a_regressor_know_the_diagnosis_but_not_the_law_beside_it(self):
+        self.expect_finding("sim/effects/drag/drag.hpp", '#include "host/identify/fit.hpp"',
+                            "sim/effects may not include host/identify")
+        self.expect_finding("sim/effects/drag/regressor.cpp", '#include "host/report/page.hpp"',
+                            "regressor.cpp may not include host/report")
 
     def test_finds_a_report_that_knows_the_command_line(self):
         findings = findings_in(SOUND | {"host/report/page.hpp": '#include "host/cli/main.cpp"\n'})

@@ -22,9 +22,9 @@ FOLDERS = {
     "parameters": ("firmware", "hal", "host", "sim", "toolchain"),
 }
 EXCEPT = {
-    "phrases": ("sim/plant/effects", "sim/plant/friction", "host/report/cause_text.cpp"),
+    "phrases": ("sim/effects"),
     "citations": (),
-    "parameters": ("firmware/machine/file", "firmware/machine/model", "firmware/machine/configuration", "sim/plant/effects", "sim/plant/friction", "host/diagnose"),
+    "parameters": ("firmware/machine/file", "firmware/machine/model", "firmware/machine/configuration", "sim/effects", "sim/plant/friction", "host/diagnose"),
 }
 SUFFIXES = {
     "phrases": {".cpp", ".hpp", ".h", ".js", ".html", ".md"},

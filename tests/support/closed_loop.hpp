@@ -6,8 +6,8 @@
 
 #include "firmware/machine/configuration/axis_configuration.hpp"
 #include "hal/control_loop.hpp"
+#include "sim/effects/effects.hpp"
 #include "sim/experiment/set_point.hpp"
-#include "sim/plant/effects/effects.hpp"
 
 namespace stiction::test {
 

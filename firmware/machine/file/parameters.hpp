@@ -18,7 +18,7 @@ namespace stiction::machine {
 
 inline constexpr std::string_view machine_schema = "stiction.machine/1";
 
-// Rows [[axis.NAME.effect]]; the keys of each effect stand with it (sim/plant/effects).
+// Rows [[axis.NAME.effect]]; the keys of each effect stand with it (sim/effects).
 inline constexpr std::string_view effect_key = "effect";
 inline constexpr std::string_view effect_name_key = "name";
 

@@ -101,7 +101,9 @@ Owner typed(const KeyedValues& values, const std::array<Parameter<Owner>, Count>
     std::visit(
         [&]<class Member>(Member Owner::*member) {
           const auto found = values.find(p.key);
-          if constexpr (std::is_same_v<Member, std::vector<double>>) {
+          // What is larger than its owner is no member of it; without this gcc warns of writing beyond the owner.
+          if constexpr (sizeof(Member) > sizeof(Owner)) {
+          } else if constexpr (std::is_same_v<Member, std::vector<double>>) {
             if (found != values.end()) owner.*member = found->second;
           } else {
             if (found != values.end() && !found->second.empty())
@@ -121,7 +123,8 @@ KeyedValues keyed(const Owner& owner, const std::array<Parameter<Owner>, Count>&
   for (const auto& p : parameters)
     std::visit(
         [&]<class Member>(Member Owner::*member) {
-          if constexpr (std::is_same_v<Member, std::vector<double>>) {
+          if constexpr (sizeof(Member) > sizeof(Owner)) {  // no member of it, see typed()
+          } else if constexpr (std::is_same_v<Member, std::vector<double>>) {
             values[std::string(p.key)] = owner.*member;
           } else if constexpr (std::is_same_v<Member, std::optional<double>>) {
             if (owner.*member) values[std::string(p.key)] = {*(owner.*member)};

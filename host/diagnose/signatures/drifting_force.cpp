@@ -17,8 +17,7 @@ std::string looks_like(const SearchContext& context, double, const Eigen::Vector
 
 }  // namespace
 
-const Candidate drifting_force{.name = "drifting_force",
-                               .grid = effects::no_scan,
+const Candidate drifting_force{.grid = effects::no_scan,
                                .columns = columns,
                                .possible = effects::any,
                                .describe = nullptr,

@@ -39,8 +39,7 @@ std::string looks_like(const SearchContext&, double time, const Eigen::VectorXd&
 }
 
 template <int way_back_nm>
-constexpr Candidate going_back{.name = "force_after_reversal",
-                               .grid = grid,
+constexpr Candidate going_back{.grid = grid,
                                .columns = columns<way_back_nm>,
                                .possible = effects::any,
                                .describe = nullptr,

@@ -20,8 +20,7 @@ std::string looks_like(const SearchContext&, double, const Eigen::VectorXd& w) {
 
 }  // namespace
 
-const Candidate force_with_acceleration{.name = "force_with_acceleration",
-                                        .grid = effects::no_scan,
+const Candidate force_with_acceleration{.grid = effects::no_scan,
                                         .columns = columns,
                                         .possible = effects::any,
                                         .describe = nullptr,

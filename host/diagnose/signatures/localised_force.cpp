@@ -43,8 +43,7 @@ std::string looks_like(const SearchContext& context, double number, const Eigen:
 
 }  // namespace
 
-const Candidate localised_force{.name = "localised_force",
-                                .grid = grid,
+const Candidate localised_force{.grid = grid,
                                 .columns = columns,
                                 .possible = effects::any,
                                 .describe = nullptr,

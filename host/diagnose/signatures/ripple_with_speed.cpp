@@ -22,8 +22,7 @@ std::string looks_like(const SearchContext& context, double pitch, const Eigen::
 
 }  // namespace
 
-const Candidate ripple_with_speed{.name = "ripple_with_speed",
-                                  .grid = grid,
+const Candidate ripple_with_speed{.grid = grid,
                                   .columns = columns,
                                   .possible = effects::any,
                                   .describe = nullptr,

@@ -2,20 +2,19 @@
 'use strict';
 
 const hidden = new Set();  // names of series
-// A simulation before and after its machine file was extended, by what the names of its series begin with.
-const ROLES = { before: { colour: '#d9771a' }, 'machine file': { colour: '#d9771a' }, after: { colour: '#0b5fa5' }, extended: { colour: '#0b5fa5' } };
+// A simulation before and after its machine file was extended; black for what was measured.
+const ROLES = { before: { colour: '#d9771a', symbol: 'circle' }, after: { colour: '#0b5fa5', symbol: 'circle' },
+                measured: { colour: MEASURED.color, symbol: MEASURED.symbol } };
 const VARIANT_DASHES = ['6px 3px', '2px 3px', '9px 3px 2px 3px'];
 
 // ---- series ----
 
-// A model's own colour for the model and, dashed, for its variants ("lugre, 5400 N/s"); black for what was measured.
+// A role's colour; a model's own for the model and, dashed, for its variants ("lugre, 5400 N/s"); else the next free one.
 const seriesStyles = (() => {
-  const styles = stylesOf(DATA.series.map(series => series.model || series.name).filter(name => name !== 'measured'));
+  const styles = stylesOf(DATA.series.filter(series => !series.role).map(series => series.model || series.name));
   const variants = {};
-  return Object.fromEntries(DATA.series.map(({ name, model }) => {
-    const role = Object.keys(ROLES).find(each => name.startsWith(each));
-    if (role) return [name, { ...ROLES[role], symbol: 'circle' }];
-    if (name === 'measured') return [name, { colour: MEASURED.color, symbol: MEASURED.symbol }];
+  return Object.fromEntries(DATA.series.map(({ name, model, role }) => {
+    if (role) return [name, ROLES[role]];
     if (!model || model === name) return [name, styles[name]];
     const count = variants[model] = (variants[model] || 0) + 1;
     return [name, { ...styles[model], symbol: styles[model].symbol + '-open', dash: VARIANT_DASHES[(count - 1) % VARIANT_DASHES.length] }];
@@ -27,15 +26,15 @@ for (const chart of DATA.charts)
   for (const series of chart.series)
     for (const axis of ['x', 'y']) series[axis] = decodeFloats(series[axis]);
 
-function seriesSwatch({ name, points }) {
+function seriesSwatch({ name, points, role }) {
   const { colour, symbol } = seriesStyles[name];
   if (!points) return swatch(seriesStyles[name]);
   const open = symbol.endsWith('-open');
-  return element('span', { class: name === 'measured' ? 'dot diamond' : 'dot', style: `border-color:${colour};background:${open ? '#fff' : colour}` });
+  return element('span', { class: role === 'measured' ? 'dot diamond' : 'dot', style: `border-color:${colour};background:${open ? '#fff' : colour}` });
 }
 
 function drawSeriesChoice() {
-  const models = DATA.series.every(series => series.model || series.name === 'measured');
+  const models = DATA.series.every(series => series.model || series.role === 'measured');
   document.getElementById('choose-name').textContent = models ? 'Friction model' : 'Shown';
   toggles('choose-series', DATA.series.map(series => ({ name: series.name, label: series.label, swatch: seriesSwatch(series) })), hidden, drawCharts);
 }

@@ -3,8 +3,10 @@
 
 #include <string>
 
+#include "firmware/machine/file/extended_machine.hpp"
+#include "firmware/machine/file/reference_page.hpp"
+#include "sim/effects/effects.hpp"
 #include "sim/machine_file.hpp"
-#include "sim/plant/effects/effects.hpp"
 #include "tests/firmware/machine/machine_text.hpp"
 
 namespace stiction::machine::test {
@@ -109,21 +111,22 @@ TEST(EffectsFile, WhatCannotBeTogetherIsRefused) {
 }
 
 TEST(EffectsFile, TheReferencePageShowsEveryKey) {
-  const std::string page = sim::reference_page();
-  for (const sim::EffectKind& kind : sim::effect_kinds()) {
-    const std::size_t at = page.find("effect " + std::string(kind.name) + ": ");
-    ASSERT_NE(at, std::string::npos) << kind.name;
+  const std::string page = reference_page();
+  for (const EffectId kind : all_effects()) {
+    const std::size_t at = page.find("effect " + kind.name() + ": ");
+    ASSERT_NE(at, std::string::npos) << kind.name();
     const std::string section = page.substr(at, page.find("\n## ", at) - at);
-    for (const sim::EffectKey& key : kind.keys)
-      EXPECT_NE(section.find("| `" + std::string(key.key) + "` | "), std::string::npos) << kind.name << key.key;
+    for (const ValueKey& key : kind->keys)
+      EXPECT_NE(section.find("| `" + std::string(key.key) + "` | "), std::string::npos) << kind.name() << key.key;
   }
 }
 
-TEST(EffectKinds, HaveTheNamesKeysAndSuffixesOfTheVocabulary) {
+TEST(Effects, HaveTheNamesKeysAndSuffixesOfTheVocabulary) {
   std::string all;
-  for (const sim::EffectKind& kind : sim::effect_kinds()) {
-    all += std::string(kind.name) + ":";
-    for (const sim::EffectKey& key : kind.keys) all += " " + std::string(key.key) + key.suffix + (key.list ? "[]" : "");
+  for (const EffectId kind : all_effects()) {
+    all += kind.name() + ":";
+    for (const ValueKey& key : kind->keys)
+      all += " " + std::string(key.key) + unit_suffix(key.unit) + (key.list ? "[]" : "");
     all += '\n';
   }
   EXPECT_EQ(all,
@@ -156,19 +159,17 @@ TEST(EffectKinds, HaveTheNamesKeysAndSuffixesOfTheVocabulary) {
   EXPECT_EQ(sim::unit_suffix("m/s^2"), "_m_per_s2");
 }
 
-TEST(EffectKinds, ConfuseBothWaysAndNameAnExperiment) {
-  for (const sim::EffectKind& kind : sim::effect_kinds())
-    for (const sim::EffectAlias& alias : kind.aliases) {
-      EXPECT_NE(alias.effect, kind.name);
-      EXPECT_FALSE(alias.separate_by.empty());
-      const sim::EffectKind* other = sim::find_effect_kind(alias.effect);
-      if (other == nullptr) continue;
-      EXPECT_TRUE(std::any_of(other->aliases.begin(), other->aliases.end(),
-                              [&](const sim::EffectAlias& back) { return back.effect == kind.name; }))
-          << kind.name << " " << alias.effect;
+TEST(Effects, ConfuseBothWaysAndNameAnExperiment) {
+  for (const EffectId kind : all_effects())
+    for (const Confusion& confusion : confusions_of(kind)) {
+      EXPECT_NE(confusion.other, kind);
+      EXPECT_FALSE(confusion.separate_by.empty());
+      const auto back = confusions_of(confusion.other);
+      EXPECT_TRUE(std::any_of(back.begin(), back.end(), [&](const Confusion& each) { return each.other == kind; }))
+          << kind.name() << " " << confusion.other.name();
     }
-  EXPECT_EQ(sim::find_effect_kind("constant_force")->aliases.at(0).effect, "friction_asymmetry");
-  EXPECT_EQ(sim::find_effect_kind("gravity"), nullptr);
+  EXPECT_EQ(confusions_of(*find_effect("constant_force")).at(0).other, *find_effect("friction_asymmetry"));
+  EXPECT_FALSE(find_effect("gravity"));
 }
 
 const std::vector<AxisEffects> additions{
@@ -243,12 +244,12 @@ TEST(ExtendedMachine, WritesOnlyTheOptionalKeysThatAreGivenAndVoltsForAForceSour
 }
 
 TEST(ExtendedMachine, TheShippedMachinesTakeEveryEffect) {
-  for (const sim::EffectKind& kind : sim::effect_kinds()) {
-    Effect one{std::string(kind.name), {}};
-    for (const sim::EffectKey& key : kind.keys) one.values[std::string(key.key)] = {key.unit == "N/m" ? 1e7 : 1e-3};
+  for (const EffectId kind : all_effects()) {
+    Effect one{kind.name(), {}};
+    for (const ValueKey& key : kind->keys) one.values[std::string(key.key)] = {key.unit == "N/m" ? 1e7 : 1e-3};
     const std::vector<AxisEffects> every{{"X", {one}}, {"Y", {one}}};
-    const Machine machine = sim::parse_machine("e.toml", sim::extended_machine(shipped_machine(), {}, every, {}));
-    for (const AxisModel& axis : machine.axes) EXPECT_EQ(axis.effects.at(0).values, one.values) << kind.name;
+    const Machine machine = parse_machine("e.toml", extended_machine(shipped_machine(), {}, every, {}));
+    for (const AxisModel& axis : machine.axes) EXPECT_EQ(axis.effects.at(0).values, one.values) << kind.name();
   }
 }
 

@@ -104,7 +104,7 @@ host::Verdict verdict_of(const Gains& gains, std::uint64_t seed) {
 
 const host::Finding* gains_in(const host::Verdict& verdict) {
   for (const auto& finding : verdict.findings)
-    if (finding.effect.name == "controller_gain_mismatch") return &finding;
+    if (finding.effect.name() == "controller_gain_mismatch") return &finding;
   return nullptr;
 }
 

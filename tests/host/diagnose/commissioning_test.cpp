@@ -39,7 +39,7 @@ TEST(Commissioning, names_what_is_hidden) {
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
     const auto hidden = host::draw_hidden_effect(demonstration_machine().axes.front(), seed);
     const auto verdict = verdict_of({hidden}, seed);
-    const auto found = verdict.findings.empty() ? "nothing" : verdict.findings.front().effect.name;
+    const auto found = verdict.findings.empty() ? "nothing" : verdict.findings.front().effect.name();
     if (found == hidden.name)
       ++right;
     else
@@ -57,7 +57,7 @@ TEST(Commissioning, finds_a_contact_in_closed_loop) {
   ASSERT_EQ(hidden.name, "presliding_hysteresis");
   const auto verdict = verdict_of({hidden}, seed);
   ASSERT_EQ(verdict.findings.size(), 1U);
-  const auto& found = verdict.findings.front().effect;
+  const auto found = verdict.findings.front().row();
   ASSERT_EQ(found.name, hidden.name);
   for (const auto* key : {"stiffness", "distance"}) {
     const double value = found.values.at(key).front(), truth = hidden.values.at(key).front();
@@ -75,7 +75,7 @@ TEST(Commissioning, finds_gaps_small_and_large) {
     const auto name = fmt::format("demonstration: a gap of {:g} um", 1e6 * width);
     ASSERT_EQ(verdict.findings.size(), 1U) << name;
     const auto& found = verdict.findings.front();
-    ASSERT_EQ(found.effect.name, "backlash") << name;
+    ASSERT_EQ(found.effect.name(), "backlash") << name;
     const double value = found.parameters.front().values.front(),
                  error = found.parameters.front().standard_errors.front();
     figure(name, fmt::format("{:.2f} +- {:.2f} um", 1e6 * value, 1e6 * error));

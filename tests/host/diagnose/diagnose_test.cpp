@@ -28,12 +28,12 @@ host::Verdict verdict_of(const Hidden& hidden, std::uint64_t seed, int trajector
 
 std::string names_of(const host::Verdict& verdict) {
   std::string names;
-  for (const auto& f : verdict.findings) names += (names.empty() ? "" : " ") + f.effect.name;
+  for (const auto& f : verdict.findings) names += (names.empty() ? "" : " ") + f.effect.name();
   return names;
 }
 
 double value_of(const host::Verdict& verdict, const char* key) {
-  return verdict.findings.empty() ? NAN : verdict.findings.front().effect.values.at(key).front();
+  return verdict.findings.empty() ? NAN : verdict.findings.front().values.at(key).front();
 }
 
 TEST(Diagnosis, names_nothing_where_nothing_is_missing) {
@@ -114,7 +114,7 @@ std::vector<Case> cases() {
 
 std::string rejections_of(const host::Verdict& verdict) {
   std::string text;
-  for (const auto& rejected : verdict.rejected) text += fmt::format("{}: {}\n", rejected.effect, rejected.why);
+  for (const auto& rejected : verdict.rejected) text += fmt::format("{}: {}\n", rejected.effect.name(), rejected.why);
   return text;
 }
 
@@ -139,7 +139,7 @@ TEST(Diagnosis, finds_where_along_the_stroke_the_friction_is_higher) {
   const auto tent = [](double x) { return std::max(24.0 - 192.0 * std::abs(x - 0.125), 0.0); };
   const auto verdict = verdict_of({.force = [&](const Point& p) { return tent(p.x) * p.level; }}, 7);
   ASSERT_EQ(names_of(verdict), "position_dependent_friction");
-  const auto& found = verdict.findings.front().effect.values;
+  const auto& found = verdict.findings.front().values;
   const auto &at = found.at("position"), &level = found.at("force");
   double worst = 0.0;
   for (std::size_t k = 0; k < at.size(); ++k) worst = std::max(worst, std::abs(level[k] - tent(at[k])));
@@ -180,7 +180,7 @@ TEST(Diagnosis, says_that_a_constant_force_may_be_an_asymmetry) {
   ASSERT_FALSE(verdict.findings.empty());
   const auto& others = verdict.findings.front().confused_with;
   EXPECT_TRUE(
-      std::any_of(others.begin(), others.end(), [](const auto& c) { return c.effect == "friction_asymmetry"; }));
+      std::any_of(others.begin(), others.end(), [](const auto& c) { return c.effect.name() == "friction_asymmetry"; }));
 }
 
 TEST(Diagnosis, says_that_a_force_constant_may_be_mass_and_friction_together) {
@@ -188,7 +188,8 @@ TEST(Diagnosis, says_that_a_force_constant_may_be_mass_and_friction_together) {
   ASSERT_FALSE(verdict.findings.empty());
   const auto& others = verdict.findings.front().confused_with;
   for (const char* part : {"mass_mismatch", "coulomb_mismatch", "viscous_mismatch"})
-    EXPECT_TRUE(std::any_of(others.begin(), others.end(), [&](const auto& c) { return c.effect == part; })) << part;
+    EXPECT_TRUE(std::any_of(others.begin(), others.end(), [&](const auto& c) { return c.effect.name() == part; }))
+        << part;
 }
 
 std::string refusal(const host::DiagnoseInput& input) {

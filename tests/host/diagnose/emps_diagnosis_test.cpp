@@ -12,8 +12,9 @@
 #include "host/diagnose/inverse_dynamics.hpp"
 #include "host/identify/log_rows.hpp"
 #include "host/log/read_log.hpp"
+#include "sim/effects/effects.hpp"
+#include "sim/effects/time_skew/time_skew.hpp"
 #include "sim/machine_file.hpp"
-#include "sim/plant/effects/effects.hpp"
 #include "tests/support/figure.hpp"
 
 namespace stiction::test {
@@ -59,8 +60,8 @@ class EmpsDiagnosis : public ::testing::Test {
   static std::string names(const host::Verdict& verdict) {
     std::string text;
     for (const auto& f : verdict.findings) {
-      text += fmt::format("{}{}(", text.empty() ? "" : " ", f.effect.name);
-      for (const auto& p : f.parameters) text += fmt::format("{} {:.4g} ", p.name, p.values.front());
+      text += fmt::format("{}{}(", text.empty() ? "" : " ", f.effect.name());
+      for (const auto& p : f.parameters) text += fmt::format("{} {:.4g} ", p.name(), p.values.front());
       text.back() = ')';
     }
     return text;
@@ -124,7 +125,7 @@ TEST_F(EmpsDiagnosis, names_what_holds_in_both_halves) {
   ASSERT_FALSE(verdict.findings.empty());
   figure("EMPS, diagnosis of the record", names(verdict));
   std::vector<machine::Effect> all;
-  for (const auto& finding : verdict.findings) all.push_back(finding.effect);
+  for (const auto& finding : verdict.findings) all.push_back(finding.row());
   for (int half = 0; half < 2; ++half) {
     const auto log = part(log_, 0.5 * half, 0.5 * (half + 1));
     const double with = residual_rms(log, machine_, all);

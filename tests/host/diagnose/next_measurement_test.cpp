@@ -51,8 +51,8 @@ host::Log recorded(const machine::Machine& real, const host::Log& wanted, std::u
 std::string findings_of(const host::Verdict& verdict) {
   std::string all;
   for (const auto& finding : verdict.findings) {
-    all += (all.empty() ? "" : ", ") + finding.effect.name;
-    for (const auto& other : finding.confused_with) all += " or " + other.effect;
+    all += (all.empty() ? "" : ", ") + finding.effect.name();
+    for (const auto& other : finding.confused_with) all += " or " + other.effect.name();
   }
   return all.empty() ? "nothing" : all;
 }
@@ -61,9 +61,9 @@ bool says(const host::Verdict& verdict, const std::string& effect, const std::st
   return std::any_of(verdict.findings.begin(), verdict.findings.end(), [&](const host::Finding& f) {
     const auto confused = [&](const std::string& with) {
       return std::any_of(f.confused_with.begin(), f.confused_with.end(),
-                         [&](const auto& c) { return c.effect == with; });
+                         [&](const auto& c) { return c.effect.name() == with; });
     };
-    return (f.effect.name == effect && confused(rival)) || (f.effect.name == rival && confused(effect));
+    return (f.effect.name() == effect && confused(rival)) || (f.effect.name() == rival && confused(effect));
   });
 }
 
@@ -125,7 +125,7 @@ TEST_P(EachAmbiguity, is_settled_by_the_proposed_record) {
                      findings_of(before), best.name, best.separations.front(),
                      before.next->questions.front().these_logs, findings_of(after)));
   ASSERT_FALSE(after.findings.empty());
-  EXPECT_EQ(after.findings.front().effect.name, c.hidden.name);
+  EXPECT_EQ(after.findings.front().effect.name(), c.hidden.name);
   EXPECT_FALSE(says(after, c.hidden.name, c.rival)) << findings_of(after);
 }
 
@@ -148,8 +148,8 @@ TEST(NextMeasurement, proposes_no_motion_where_none_can_tell) {
   const auto verdict = host::diagnose(input);
   ASSERT_TRUE(verdict.next.has_value()) << findings_of(verdict);
   const auto& question = verdict.next->questions.front();
-  EXPECT_EQ(question.effect, "constant_force");
-  EXPECT_EQ(question.rival, "friction_asymmetry");
+  EXPECT_EQ(question.effect.name(), "constant_force");
+  EXPECT_EQ(question.rival, sim::find_effect("friction_asymmetry"));
   EXPECT_FALSE(question.by_motion);
   EXPECT_NE(question.separate_by.find("turn the axis"), std::string::npos);
   EXPECT_TRUE(host::verdict_json(verdict)["next_measurement"]["log"].is_null() || verdict.next->questions.size() > 1);

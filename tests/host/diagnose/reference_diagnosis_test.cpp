@@ -41,14 +41,14 @@ TEST(ReferenceDiagnosis, halves_the_current_error_on_feeds_not_used) {
   for (const char* axis : {"X", "Y"})
     for (const char* effect : {"viscous_nonlinear", "presliding_hysteresis"})
       EXPECT_TRUE(std::any_of(verdict.findings.begin(), verdict.findings.end(),
-                              [&](const host::Finding& f) { return f.axis == axis && f.effect.name == effect; }))
+                              [&](const host::Finding& f) { return f.axis == axis && f.effect.name() == effect; }))
           << axis << effect;
   EXPECT_TRUE(std::any_of(verdict.rejected.begin(), verdict.rejected.end(),
-                          [](const host::Rejected& r) { return r.effect == "mass_mismatch"; }));
+                          [](const host::Rejected& r) { return r.effect.name() == "mass_mismatch"; }));
 
   // The extended file is a machine that gives the extended rows.
   std::vector<machine::AxisEffects> additions{{"X", {}}, {"Y", {}}};
-  for (const auto& finding : verdict.findings) additions[finding.axis == "X" ? 0 : 1].effects.push_back(finding.effect);
+  for (const auto& finding : verdict.findings) additions[finding.axis == "X" ? 0 : 1].effects.push_back(finding.row());
   const auto extended = sim::parse_machine("extended.toml", sim::extended_machine(machine_file(), {}, additions, {}));
   const auto run = host::reference_circle(extended, 24.0 / 60.0);
   for (const auto& row : verdict.reference->rows) {

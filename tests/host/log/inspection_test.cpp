@@ -80,7 +80,7 @@ TEST(Inspection, FindsConstantSpeeds) {
 // A motion with everything in it: the rigid parameters are all there, within the noise.
 TEST(Inspection, FindsTheRigidParametersOfASine) {
   const auto axis = inspect(rigid_log(20.0, sine), {{mass, constant, 70.0, 0.072}}).axes[0];
-  for (const auto* what : {"Coulomb friction", "viscous friction", "moving mass", "constant force"})
+  for (const auto* what : {"Level of Coulomb friction", "Slope of viscous friction", "Moving mass", "Constant force"})
     EXPECT_TRUE(judgement(axis, what).possible) << what << ": " << judgement(axis, what).reason;
   EXPECT_NEAR(axis.force_constant.value(), constant, 0.01 * constant);
   EXPECT_TRUE(axis.suspicions.empty()) << axis.suspicions.front();
@@ -89,7 +89,7 @@ TEST(Inspection, FindsTheRigidParametersOfASine) {
 TEST(Inspection, SaysWhatOneSpeedInOneDirectionCannotTell) {
   const auto axis = inspect(rigid_log(2.0, steady)).axes[0];
   for (const auto& d : axis.determinable) {
-    if (d.what == "force ripple and its pitch") continue;
+    if (d.what == "Force ripple (cogging)") continue;
     EXPECT_FALSE(d.possible) << d.what;
     EXPECT_FALSE(d.reason.empty()) << d.what;
     EXPECT_FALSE(d.remedy.empty()) << d.what;
@@ -137,14 +137,14 @@ TEST(Inspection, SeesSlowReversalsAsPresliding) {
     return Point{40e-6 * std::sin(2.0 * t), 80e-6 * std::cos(2.0 * t), -160e-6 * std::sin(2.0 * t)};
   };
   const auto axis = inspect(rigid_log(10.0, slow)).axes[0];
-  EXPECT_TRUE(judgement(axis, "presliding stiffness and shape").possible);
-  EXPECT_FALSE(judgement(axis, "Stribeck velocity").possible);  // creep under a spring is no speed of sliding
-  EXPECT_FALSE(judgement(axis, "Coulomb friction").possible);
+  EXPECT_TRUE(judgement(axis, "Presliding displacement").possible);
+  EXPECT_FALSE(judgement(axis, "Stribeck effect").possible);  // creep under a spring is no speed of sliding
+  EXPECT_FALSE(judgement(axis, "Level of Coulomb friction").possible);
 }
 
 TEST(Inspection, StandsALogOfTwoSamplesAndOneAtRest) {
   auto log = rigid_log(0.002, sine);
-  EXPECT_FALSE(judgement(inspect(log).axes[0], "Coulomb friction").possible);
+  EXPECT_FALSE(judgement(inspect(log).axes[0], "Level of Coulomb friction").possible);
   const auto rest = inspect(rigid_log(1.0, [](double) { return Point{0.3, 0.0, 0.0}; })).axes[0];
   EXPECT_EQ(rest.reversals, 0);
   EXPECT_EQ(judgement(rest, "Coulomb friction").reason, "the axis hardly moves");

@@ -14,10 +14,22 @@ constexpr double pitch = 72.0;  // mm
 
 double ripple(double x) { return 3.1 * std::cos(2.0 * pi * x / pitch) + 0.4 * std::sin(2.0 * pi * x / pitch); }
 
+sim::Series simulated_before() {
+  sim::Series series{"before", {}, {}};
+  series.role = sim::SeriesRole::before;
+  return series;
+}
+sim::Series simulated_after() {
+  sim::Series series{"after", {}, {}};
+  series.role = sim::SeriesRole::after;
+  return series;
+}
+
 sim::Chart over_time() {
   std::mt19937 random(1);
   std::normal_distribution<double> noise;
-  sim::Series measured{"measured", {}, {}}, before{"before", {}, {}}, after{"after", {}, {}};
+  sim::Series measured{"measured", {}, {}}, before = simulated_before(), after = simulated_after();
+  measured.role = sim::SeriesRole::measured;
   for (double t = 0.0; t < 3.0; t += 1e-3) {
     const double glitch = 6.0 * std::exp(-std::fmod(t, 0.75) / 0.03) * (std::fmod(t, 1.5) < 0.75 ? 1.0 : -1.0);
     const double wave = 0.5 * std::sin(4.0 * pi * t);
@@ -37,7 +49,8 @@ sim::Chart over_time() {
 sim::Chart over_position() {
   std::mt19937 random(2);
   std::normal_distribution<double> noise;
-  sim::Series before{"before", {}, {}, true}, after{"after", {}, {}, true};
+  sim::Series before = simulated_before(), after = simulated_after();
+  before.points = after.points = true;
   for (int k = 0; k < 1500; ++k) {
     const double x = -100.0 + 200.0 * k / 1500.0;
     before.x.push_back(x), after.x.push_back(x);
@@ -52,7 +65,7 @@ sim::Chart over_position() {
 }
 
 sim::Chart spectrum() {
-  sim::Series before{"before", {}, {}}, after{"after", {}, {}};
+  sim::Series before = simulated_before(), after = simulated_after();
   for (double f = 0.5; f < 100.0; f *= 1.05) {
     before.x.push_back(f), after.x.push_back(f);
     after.y.push_back(0.8 / (1.0 + f / 20.0));
@@ -84,9 +97,11 @@ sim::Chart fitted() {
 NextMeasurement next_measurement() {
   NextMeasurement next;
   next.axis = "X";
-  next.questions = {
-      {"force_ripple", "position_dependent_friction", "traverse the same stretch in both directions", true, 0.7},
-      {"constant_force", "friction_asymmetry", "turn the axis, another payload, a reading at standstill", false, 0.0}};
+  const auto effect = [](const char* name) { return *sim::find_effect(name); };
+  next.questions = {{effect("force_ripple"), effect("position_dependent_friction"),
+                     "traverse the same stretch in both directions", true, 0.7},
+                    {effect("constant_force"), effect("friction_asymmetry"),
+                     "turn the axis, another payload, a reading at standstill", false, 0.0}};
   next.trajectories = {{"slow sweep", "the stroke both ways, slowly and at twice the speed", 25.0, {14.2, 0.0}},
                        {"constant speeds", "ten constant speeds", 12.3, {6.1, 0.0}}};
   next.log.emplace();
@@ -118,29 +133,31 @@ DiagnosisReport synthetic_diagnosis() {
   v.holdout = {"logs/run3.csv"};
   v.baseline = {3.42, 0.61e-6, {}};
   v.extended = {1.18, 0.22e-6, {}};
-  Finding cogging;
+  const auto effect = [](const char* name) { return *sim::find_effect(name); };
+  Finding cogging(effect("force_ripple"));
   cogging.axis = "X";
-  cogging.effect = {"force_ripple", {{"pitch", {0.072}}, {"cosine", {3.1}}, {"sine", {0.4}}}};
-  cogging.parameters = {
-      {"pitch_m", {0.07201}, {1e-5}}, {"cosine_N", {3.1, 0.21}, {0.08, 0.07}}, {"sine_N", {0.4, -0.02}, {0.08, 0.07}}};
+  cogging.values = {{"pitch", {0.072}}, {"cosine", {3.1}}, {"sine", {0.4}}};
+  cogging.parameters = {{"pitch", "m", false, {0.07201}, {1e-5}},
+                        {"cosine", "N", true, {3.1, 0.21}, {0.08, 0.07}},
+                        {"sine", "N", true, {0.4, -0.02}, {0.08, 0.07}}};
   cogging.explains = 0.63;
   cogging.holdout = {0.41, 0.44, {}, {0.38, 0.45}};
   cogging.p_value = 1e-9;
-  cogging.confused_with = {{"position_dependent_friction", "traverse the same stretch in both directions"}};
+  cogging.confused_with = {{effect("position_dependent_friction"), "traverse the same stretch in both directions"}};
   cogging.evidence = "The residual repeats every 72.0 mm with 3.1 N, in both directions and at all six speeds.";
   cogging.part_error = 0.31e-6;
   cogging.charts = {fitted(), spectrum()};
-  Finding constant;
+  Finding constant(effect("constant_force"));
   constant.axis = "X";
-  constant.effect = {"constant_force", {{"force", {-1.4}}}};
-  constant.parameters = {{"force_N", {-1.4}, {}}};
+  constant.values = {{"force", {-1.4}}};
+  constant.parameters = {{"force", "N", false, {-1.4}, {}}};
   constant.explains = 0.08;
   constant.holdout = {0.95, {}, {}, {0.93, 0.98}};
   constant.p_value = 1e-14;
-  constant.confused_with = {{"friction_asymmetry", "turn the axis, another payload, a reading at standstill"}};
+  constant.confused_with = {{effect("friction_asymmetry"), "turn the axis, another payload, a reading at standstill"}};
   constant.evidence = "The residual's mean is -1.4 N in every block.";
   v.findings = {cogging, constant};
-  v.rejected = {{"backlash", "no gain on held-out data (-0.2 %)"}, {"stribeck", "p 0.21 over blocks"}};
+  v.rejected = {{effect("backlash"), "no gain on held-out data (-0.2 %)"}, {effect("stribeck"), "p 0.21 over blocks"}};
   v.unexplained = {0.04, "grows with acceleration"};
   v.notes = {"Record small reversals of 5 to 200 um: presliding cannot be judged without them."};
   v.before_after = {over_time(), over_position(), spectrum()};

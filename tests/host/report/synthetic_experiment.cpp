@@ -38,7 +38,9 @@ sim::Expectation prototype(double value, double tolerance) {
 
 void add_response(sim::ExperimentResult& result, const Response& r, std::mt19937& random) {
   std::normal_distribution<double> noise;
-  sim::Series deviation{r.friction, {}, {}, false}, force = deviation, friction = deviation;
+  sim::Series deviation{r.friction, {}, {}, false};
+  deviation.friction = r.friction;
+  auto force = deviation, friction = deviation;
   for (double t = 0.0; t < 200.0; t += sample_ms) {
     const double p = pulse(t - step_ms, r.back), settled = t > step_ms ? 1.0 - std::exp(-(t - step_ms) / 6.0) : 0.0;
     deviation.x.push_back(t);
@@ -106,6 +108,7 @@ ExperimentReport synthetic_friction_bench() {
   for (const char* name : {"lugre", "lugre, 5400 N/s"}) {
     const double width = std::string_view(name) == "lugre" ? 4.0 : 6.5;
     sim::Series line{name, {}, {}, false};
+    line.friction = "lugre";
     for (int i = 0; i < 9000; ++i) {
       const double phase = 2.0 * std::numbers::pi * i / 9000.0;
       line.x.push_back(14.0 * std::sin(phase) + width * std::cos(phase));
@@ -114,6 +117,8 @@ ExperimentReport synthetic_friction_bench() {
     loop.series.push_back(std::move(line));
   }
   sim::Series simulated{"lugre", {}, {}, false}, measured{"measured", {}, {}, true};
+  simulated.friction = "lugre";
+  measured.role = sim::SeriesRole::measured;
   for (const double rate : {10.0, 30.0, 100.0, 300.0, 1e3, 2e3, 3e3, 5e3, 1e4, 3e4, 1e5}) {
     simulated.x.push_back(rate);
     simulated.y.push_back(400.0 + 180.0 / (1.0 + std::pow(rate / 3000.0, 1.5)));

@@ -1,0 +1,25 @@
+#include "sim/effects/cross_axis_coupling/cross_axis_coupling.hpp"
+#include "sim/effects/describe.hpp"
+#include "sim/effects/shared_sentences.hpp"
+
+namespace stiction::sim::effects {
+
+EffectDescriptor cross_axis_coupling() {
+  return described<CrossAxisCoupling>({
+      .order = 210,
+      .title = "Coupling with the other axis",
+      .meaning = "The other axis' acceleration pushes this one.",
+      .advice = "Check squareness and where the centre of mass of what is mounted lies; feed the other axis' set "
+                "acceleration forward.",
+      .aliases = {},
+      .abscissa = Abscissa::acceleration,
+      .needs = {Need::other_axis},
+      .not_in_rows = rows::no_time,
+      .hidden = {[](const machine::AxisModel&, Draw& draw) -> machine::KeyedValues {
+                   return {{"mass", {draw.sign() * draw.between(3.0, 8.0)}}};
+                 },
+                 {}},
+  });
+}
+
+}  // namespace stiction::sim::effects

@@ -1,0 +1,32 @@
+// Cogging: force on the carriage periodic in position, cosine_h cos(2 pi h x / pitch) + sine_h sin(2 pi h x / pitch).
+// The pitches to try come from the residual's spectrum over position (line_scan.hpp).
+#include <cmath>
+
+#include "host/diagnose/effect_regressor.hpp"
+
+namespace stiction::host::effects {
+namespace {
+
+const LineScan& scan(const SearchContext& context) { return context.pitches; }
+std::vector<double> grid(const SearchContext& context) { return scan(context).periods; }
+Columns columns(const SearchContext&, const Motion& motion, double pitch) {
+  return waves_over_position(motion, pitch, std::vector<double>(motion.x.size(), 1.0));
+}
+void describe(const SearchContext& context, double pitch, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
+              Finding& finding) {
+  add_key(context, finding, "pitch", {pitch}, {std::sqrt(c(2, 2))});
+  add_key(context, finding, "cosine", {w[0]}, {std::sqrt(c(0, 0))});
+  add_key(context, finding, "sine", {w[1]}, {std::sqrt(c(1, 1))});
+}
+
+}  // namespace
+
+extern const EffectRegressor force_ripple{.force = {.grid = grid,
+                                                    .columns = columns,
+                                                    .possible = any,
+                                                    .describe = describe,
+                                                    .shape = true,
+                                                    .periodic = true,
+                                                    .scan = scan}};
+
+}  // namespace stiction::host::effects

@@ -1,0 +1,25 @@
+#include "sim/effects/describe.hpp"
+#include "sim/effects/stribeck/stribeck.hpp"
+
+namespace stiction::sim::effects {
+
+EffectDescriptor stribeck() {
+  return described<Stribeck>({
+      .order = 50,
+      .title = "Stribeck effect",
+      .meaning = "Friction falls with speed near standstill.",
+      .advice = "Take the extended file's curve. Against stick-slip: lubricant with friction modifier, lower preload, "
+                "a stiffer velocity loop.",
+      .aliases = {},
+      .abscissa = Abscissa::speed,
+      .needs = {Need::slow_speeds},
+      .not_in_rows =
+          "not seen: the rows of steady friction rise from the slowest speed on; what falls below it they cannot tell",
+      .hidden = {[](const machine::AxisModel&, Draw& draw) -> machine::KeyedValues {
+                   return {{"break_away", {draw.between(20.0, 40.0)}}, {"velocity", {draw.between(4e-3, 12e-3)}}};
+                 },
+                 4},
+  });
+}
+
+}  // namespace stiction::sim::effects

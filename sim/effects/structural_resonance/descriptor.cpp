@@ -1,0 +1,27 @@
+#include "sim/effects/describe.hpp"
+#include "sim/effects/shared_sentences.hpp"
+#include "sim/effects/structural_resonance/structural_resonance.hpp"
+
+namespace stiction::sim::effects {
+
+EffectDescriptor structural_resonance() {
+  return described<StructuralResonance>({
+      .order = 180,
+      .title = "Elastic mode",
+      .meaning = "Something between motor and encoder swings: coupling, screw, mount.",
+      .advice = "Set a notch at its frequency or lower the velocity gain; make jerk times multiples of its period; "
+                "stiffen the joint, or measure nearer to the motor.",
+      .aliases = {},
+      .abscissa = Abscissa::own_force,
+      .needs = {Need::acceleration},
+      .not_in_rows = rows::no_time,
+      .hidden = {[](const machine::AxisModel&, Draw& draw) -> machine::KeyedValues {
+                   return {{"frequency", {draw.between(120.0, 300.0)}},
+                           {"damping_ratio", {draw.between(0.1, 0.3)}},
+                           {"mass_ratio", {draw.between(0.3, 0.8)}}};
+                 },
+                 {}},
+  });
+}
+
+}  // namespace stiction::sim::effects

@@ -1,0 +1,43 @@
+// An elastic mode between motor and measured position: the force that bends it, ModeColumns. The load's share r of the
+// mass is scanned: it shows in the friction at reversals alone, where a weight of its own would take up whatever else a
+// reversal leaves. The weights are 1/w^2 and 2 zeta/w^3.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "host/diagnose/effect_regressor.hpp"
+#include "host/diagnose/inverse_dynamics.hpp"
+
+namespace stiction::host::effects {
+namespace {
+
+constexpr double largest_ratio = 0.99;
+// Of the estimated damping ratio: far outside of what a mode has, the fifth derivative follows something else.
+constexpr double least_damping = -0.5, largest_damping = 1.5;
+
+std::vector<double> grid(const SearchContext&) { return {0.2, 0.35, 0.55, 0.85}; }
+Columns columns(const SearchContext& context, const Motion& motion, double ratio) {
+  const auto mode =
+      mode_columns(context.axis.mass, std::min(ratio, largest_ratio), motion, force_along(context.axis, motion));
+  return {mode.bend, mode.damping};
+}
+double damping_of(const Eigen::VectorXd& w) { return 0.5 * w[1] / (w[0] * std::sqrt(w[0])); }
+bool possible(const SearchContext&, double, const Eigen::VectorXd& w) {
+  return w[0] > 0.0 && damping_of(w) > least_damping && damping_of(w) < largest_damping;
+}
+void describe(const SearchContext& context, double ratio, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
+              Finding& finding) {
+  const double frequency = 0.5 / (std::numbers::pi * std::sqrt(w[0]));
+  const Eigen::Vector2d slope(-1.5 * damping_of(w) / w[0], 0.5 / (w[0] * std::sqrt(w[0])));
+  add_key(context, finding, "frequency", {frequency}, {0.5 * frequency / w[0] * std::sqrt(c(0, 0))});
+  add_key(context, finding, "damping_ratio", {std::clamp(damping_of(w), 0.0, 1.0)},
+          {std::sqrt(slope.dot(c.topLeftCorner(2, 2) * slope))});
+  add_key(context, finding, "mass_ratio", {std::min(ratio, largest_ratio)}, {std::sqrt(c(2, 2))});
+}
+
+}  // namespace
+
+extern const EffectRegressor structural_resonance{
+    .force = {.grid = grid, .columns = columns, .possible = possible, .describe = describe, .shape = true}};
+
+}  // namespace stiction::host::effects

@@ -1,0 +1,32 @@
+// Friction level that changes with the time since the record's start: change (1 - exp(-t / time_constant)) times the
+// contact's direction.
+#include <cmath>
+
+#include "host/diagnose/effect_regressor.hpp"
+#include "host/diagnose/inverse_dynamics.hpp"
+
+namespace stiction::host::effects {
+namespace {
+
+// Shorter than a twentieth of a record it is an event at its start, longer than twice it is a straight line.
+std::vector<double> grid(const SearchContext& context) {
+  return geometric(0.05 * context.duration, 2.0 * context.duration, 9);
+}
+Columns columns(const SearchContext& context, const Motion& motion, double time_constant) {
+  auto column = contact_level(context.axis, motion);
+  for (std::size_t i = 0; i < column.size(); ++i) column[i] *= -std::expm1(-motion.t[i] / time_constant);
+  return {column};
+}
+void describe(const SearchContext& context, double time_constant, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
+              Finding& finding) {
+  add_key(context, finding, "change", {w[0]}, {std::sqrt(c(0, 0))});
+  add_key(context, finding, "time_constant", {time_constant}, {std::sqrt(c(1, 1))});
+}
+
+}  // namespace
+
+extern const EffectRegressor thermal_drift{
+    .force = {
+        .grid = grid, .columns = columns, .possible = any, .describe = describe, .shape = true, .names_coulomb = true}};
+
+}  // namespace stiction::host::effects

@@ -1,0 +1,27 @@
+#include "sim/effects/describe.hpp"
+#include "sim/effects/shared_sentences.hpp"
+#include "sim/effects/viscous_mismatch/viscous_mismatch.hpp"
+#include "sim/plant/friction/friction.hpp"
+
+namespace stiction::sim::effects {
+
+EffectDescriptor viscous_mismatch() {
+  return described<ViscousMismatch>({
+      .order = 30,
+      .title = "Slope of viscous friction",
+      .meaning = "Friction grows with speed at another rate.",
+      .advice = "Take the extended file's slope. Compare a cold and a warm machine: lubricant is its usual cause.",
+      .aliases = {{"structural_resonance", experiments::frequency_response},
+                  {"thermal_drift", "several speeds at each temperature"}},
+      .abscissa = Abscissa::speed,
+      .needs = {Need::speeds},
+      .not_in_rows = "",
+      .hidden = {[](const machine::AxisModel& axis, Draw& draw) -> machine::KeyedValues {
+                   const double slope = viscous_of(axis.friction);
+                   return {{"viscous", {slope * (1.0 + draw.sign() * draw.between(0.1, 0.3))}}};
+                 },
+                 2},
+  });
+}
+
+}  // namespace stiction::sim::effects

@@ -1,0 +1,26 @@
+// Slope of viscous friction.
+#include <cmath>
+
+#include "host/diagnose/effect_regressor.hpp"
+#include "host/diagnose/inverse_dynamics.hpp"
+
+namespace stiction::host::effects {
+namespace {
+
+Columns columns(const SearchContext& context, const Motion& motion, double) {
+  return {force_change(context.axis, with_viscous(context.axis, viscous_of(context.axis) + 1.0), motion, 1.0)};
+}
+bool possible(const SearchContext& context, double, const Eigen::VectorXd& w) {
+  return viscous_of(context.axis) + w[0] >= 0.0;
+}
+void describe(const SearchContext& context, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
+              Finding& finding) {
+  add_key(context, finding, "viscous", {viscous_of(context.axis) + w[0]}, {std::sqrt(c(0, 0))});
+}
+
+}  // namespace
+
+extern const EffectRegressor viscous_mismatch{
+    .force = {.grid = no_scan, .columns = columns, .possible = possible, .describe = describe}};
+
+}  // namespace stiction::host::effects

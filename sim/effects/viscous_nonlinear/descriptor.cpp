@@ -1,0 +1,24 @@
+#include "sim/effects/describe.hpp"
+#include "sim/effects/viscous_nonlinear/viscous_nonlinear.hpp"
+
+namespace stiction::sim::effects {
+
+EffectDescriptor viscous_nonlinear() {
+  return described<ViscousNonlinear>({
+      .order = 40,
+      .title = "Viscous friction that bends",
+      .meaning = "Friction does not grow in proportion to speed.",
+      .advice =
+          "Take the extended file's curve, or choose a friction model with one; record more speeds where it bends.",
+      .aliases = {{"stribeck", "more speeds below 10 mm/s"}},
+      .abscissa = Abscissa::speed,
+      .needs = {Need::many_speeds},
+      .not_in_rows = "",
+      .hidden = {[](const machine::AxisModel&, Draw& draw) -> machine::KeyedValues {
+                   return {{"force", {draw.between(15.0, 30.0)}}, {"velocity", {draw.between(0.02, 0.08)}}};
+                 },
+                 3},
+  });
+}
+
+}  // namespace stiction::sim::effects

@@ -1,0 +1,133 @@
+// What the effects of one axis do in the steps of its plant: between motor and carriage, forces on the carriage, the
+// play in front of the encoder, and the errors of what it reads. What they change in the plant's parameters is done
+// before, by plant_axis().
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "sim/effects/backlash/backlash.hpp"
+#include "sim/effects/cross_axis_coupling/cross_axis_coupling.hpp"
+#include "sim/effects/effects.hpp"
+#include "sim/effects/encoder_subdivision_error/encoder_subdivision_error.hpp"
+#include "sim/effects/force_saturation/force_saturation.hpp"
+#include "sim/effects/structural_resonance/structural_resonance.hpp"
+
+namespace stiction::sim {
+
+class ActingEffects {
+ public:
+  // `axis` as plant_axis() returns it, at rest at `position` (m); its clock begins at `time` (s). Throws EffectError.
+  ActingEffects(const machine::AxisModel& axis, double step, double position, double time = 0.0)
+      : step_(step), start_(time), follower_(position) {
+    for (const auto& parameters : effects_of<StructuralResonance>(axis))
+      mode_.emplace(parameters, Body{axis.mass, step});
+    for (const auto& parameters : effects_of<ForceSaturation>(axis)) saturation_.emplace(parameters, axis);
+    for (const auto& parameters : effects_of<CrossAxisCoupling>(axis)) coupling_mass_ += parameters.mass;
+    for (const EffectId id : all_effects())
+      if (id->law.make_force != nullptr)
+        for (const machine::Effect& effect : axis.effects)
+          if (effect.name == id->name)
+            forces_.push_back({id->law.make_force(effect.values, carriage(axis), axis), id->law.is_friction});
+    for (const auto& parameters : effects_of<Backlash>(axis)) play_.emplace(parameters, position);
+    for (const auto& parameters : effects_of<EncoderSubdivisionError>(axis)) reading_.emplace_back(parameters);
+  }
+
+  bool any() const { return !forces_.empty() || play_ || !reading_.empty() || mode_ || saturation_ || coupled(); }
+  bool coupled() const { return coupling_mass_ != 0.0; }  // with the other axis
+  // What moves with the encoder: of an axis with an elastic mode the load alone.
+  Body carriage(const machine::AxisModel& axis) const { return {mode_ ? mode_->load_mass() : axis.mass, step_}; }
+
+  // Of the other axis, m/s^2; held until changed.
+  void set_other_acceleration(double acceleration) { coupling_force_ = coupling_mass_ * acceleration; }
+
+  // Of the motor against the carriage: m, m/s.
+  double motor_lead() const { return mode_ ? mode_->motor_lead() : 0.0; }
+  double motor_lead_rate() const { return mode_ ? mode_->motor_lead_rate() : 0.0; }
+  // Force (N) of a motor whose force is proportional to its current but for the effects.
+  double motor_force(double linear) const { return saturation_ ? saturation_->of_linear(linear) : linear; }
+  // The same the other way about.
+  double linear_force(double force) const { return saturation_ ? saturation_->linear_for(force) : force; }
+  // What of the motor's force (N) reaches the carriage during one step; ends with follow().
+  double transmitted(double motor_force) {
+    if (!mode_) return motor_force;
+    motor_force_ = motor_force;
+    return transmitted_ = mode_->force();
+  }
+
+  // Forces on the carriage during one step, N, positive in +x: those that are friction, and the others.
+  struct Forces {
+    double applied = 0.0;
+    double friction = 0.0;
+  };
+  // From position (m) and velocity (m/s) at the beginning of the step, and the motor's mean force (N) in it.
+  Forces advance(double position, double velocity, double motor_force) {
+    if (forces_.empty()) return forces(motor_force);
+    state_ = {position, velocity, direction_.advance(velocity, step_), start_ + step_ * static_cast<double>(steps_++),
+              motor_force};
+    for (const Acting& effect : forces_) effect.force->advance(state_);
+    return forces(motor_force);
+  }
+  // In the same step with another motor's force.
+  Forces forces(double motor_force) const {
+    auto state = state_;
+    state.motor_force = motor_force;
+    Forces sum{coupling_force_, 0.0};
+    for (const Acting& effect : forces_)
+      (effect.is_friction ? sum.friction : sum.applied) += effect.force->force(state);
+    return sum;
+  }
+
+  // The carriage is at `position` (m) with `velocity` (m/s) at the end of a step that changed it by `change`. Returns
+  // by how much the velocity behind the play changed: what the encoder's mount stands on.
+  double follow(double position, double velocity, double change) {
+    if (mode_) mode_->advance(motor_force_, transmitted_, change);
+    if (!play_) {
+      follower_ = position;
+      return change;
+    }
+    closed_ = play_->advance(position);
+    follower_ = play_->follower();
+    const double before = std::exchange(follower_velocity_, closed_ ? velocity : 0.0);
+    return follower_velocity_ - before;
+  }
+  double follower() const { return follower_; }  // m, the position behind the play
+  bool closed() const { return closed_; }        // whether it moved with the carriage in the last step
+
+  // What the encoder reads at `position` (m) less the position, m, and its slope.
+  Harmonics::Point reading_error(double position) const {
+    Harmonics::Point sum;
+    for (const auto& error : reading_) {
+      const auto one = error.at(position);
+      sum.value += one.value;
+      sum.slope += one.slope;
+    }
+    return sum;
+  }
+
+ private:
+  struct Acting {
+    std::unique_ptr<CarriageForce> force;
+    bool is_friction;
+  };
+
+  double step_;
+  std::optional<StructuralResonance> mode_;
+  std::optional<ForceSaturation> saturation_;
+  double coupling_mass_ = 0.0, coupling_force_ = 0.0;
+  double motor_force_ = 0.0, transmitted_ = 0.0;
+  double start_;
+  std::int64_t steps_ = 0;
+  CarriageState state_{};
+  std::vector<Acting> forces_;
+  SlidingDirection direction_;
+  std::optional<Backlash> play_;
+  std::vector<EncoderSubdivisionError> reading_;
+  double follower_, follower_velocity_ = 0.0;  // m, m/s
+  bool closed_ = true;
+};
+
+}  // namespace stiction::sim

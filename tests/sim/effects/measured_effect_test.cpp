@@ -1,0 +1,141 @@
+// Effects in what is measured: play in front of the encoder, delays in the loop. And the presliding curve.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/effects/presliding_hysteresis/presliding_hysteresis.hpp"
+#include "sim/effects/time_skew/time_skew.hpp"
+#include "tests/sim/effects/effect_plant.hpp"
+
+namespace stiction::sim::test {
+namespace {
+
+machine::AxisModel with_play(double width) { return with_effects({{"backlash", {{"width", {width}}}}}); }
+
+TEST(Backlash, TheEncoderFollowsHalfAWidthBehindAndLosesTheWidthAtAReversal) {
+  AxisPlant plant(timing, with_play(10e-6), 0.2, 1);
+  EXPECT_EQ(plant.encoder_position(), 0.2);
+  const auto push = [&](double volt, int ticks) {
+    for (int k = 0; k < ticks; ++k) {
+      plant.command({volt, 0.0, 0.0}, true);
+      plant.advance_tick();
+    }
+  };
+  push(4.0, 800);
+  EXPECT_GT(plant.position(), 0.2 + 10e-6);
+  EXPECT_NEAR(plant.encoder_position(), plant.position() - 5e-6, 1e-15);
+  EXPECT_NEAR(plant.encoder_velocity(), plant.velocity(), 1e-15);
+  push(0.0, 8000);  // to rest
+  ASSERT_EQ(plant.velocity(), 0.0);
+  const double turn = plant.position(), seen = plant.encoder_position();
+  while (plant.position() > turn - 9.9e-6) {
+    push(-4.0, 1);
+    if (plant.position() <= turn - 9.9e-6) break;
+    ASSERT_NEAR(plant.encoder_position(), seen, 1e-15);
+    ASSERT_NEAR(plant.encoder_velocity(), 0.0, 1e-15);
+  }
+  push(-4.0, 100);
+  EXPECT_NEAR(plant.encoder_position(), plant.position() + 5e-6, 1e-15);
+  EXPECT_NEAR(plant.encoder_velocity(), plant.velocity(), 1e-15);
+}
+
+TEST(Backlash, TheCarriageItselfFeelsNothingOfIt) {
+  AxisPlant plain(timing, force_axis(), 0.0, 1), loose(timing, with_play(10e-6), 0.0, 1);
+  for (int k = 0; k < 3200; ++k) {
+    for (AxisPlant* plant : {&plain, &loose}) {
+      plant->command({6.0 * std::sin(0.004 * k), 0.0, 0.0}, true);
+      plant->advance_tick();
+    }
+    ASSERT_EQ(plain.position(), loose.position());
+  }
+}
+
+// Ticks until a force of 10 N/V, commanded at the first tick, has moved a free carriage as far as it would have from
+// the end of the delay on: x = F (t - d)^2 / 2 m.
+double delay_seen(double dead_time, double loop_delay) {
+  machine::AxisModel axis = with_effects({{"time_skew", {{"loop_delay", {loop_delay}}}}});
+  axis.friction = acting<CoulombViscous<>>({});
+  axis.inverter.dead_time = dead_time;
+  AxisPlant plant(timing, axis, 0.0, 1);
+  constexpr int ticks = 160;
+  for (int k = 0; k < ticks; ++k) {
+    plant.command({1.0, 0.0, 0.0}, true);
+    plant.advance_tick();
+  }
+  return ticks * tick - plant.velocity() * axis.mass / 10.0;
+}
+
+TEST(TimeSkew, TheLoopDelayComesOnTopOfTheDeadTimeWhetherItFitsThePlantsStepOrNot) {
+  for (const double dead_time : {0.0, 125e-6, 15.625e-6})
+    for (const double loop_delay : {0.0, 15.625e-6, 20e-6, 60e-6, 62.5e-6, 0.3e-3, 1.01e-3})
+      EXPECT_NEAR(delay_seen(dead_time, loop_delay), dead_time + loop_delay, 1e-12) << dead_time << " " << loop_delay;
+}
+
+TEST(TimeSkew, TheDelayOfTheRecordLeavesThePlantAsItIs) {
+  const machine::AxisModel axis = with_effects({{"time_skew", {{"delay", {1e-3}}}}});
+  AxisPlant plain(timing, force_axis(), 0.0, 1), late(timing, axis, 0.0, 1);
+  for (int k = 0; k < 800; ++k) {
+    for (AxisPlant* plant : {&plain, &late}) {
+      plant->command({6.0, 0.0, 0.0}, true);
+      plant->advance_tick();
+    }
+    ASSERT_EQ(plain.position(), late.position());
+    ASSERT_EQ(plain.current()[0], late.current()[0]);
+  }
+  EXPECT_EQ(record_delay(axis), 1e-3);
+  EXPECT_EQ(record_delay(force_axis()), 0.0);
+}
+
+// First loading of the elements: every one follows until it slips.
+double first_loading(const MaxwellSlipParameters& p, double way) {
+  double force = 0.0;
+  for (std::size_t i = 0; i < p.level.size(); ++i) force += std::min(p.stiffness[i] * way, p.level[i]);
+  return force;
+}
+
+TEST(PreslidingHysteresis, TheElementsHaveTheStiffnessTheDistanceAndTheLevelAsked) {
+  for (const double sharpness : {0.9, 0.95, 1.2, 2.302585092994046, 5.0, 20.0, 300.0}) {
+    const double coulomb = 20.0, stiffness = 2e7, distance = sharpness * coulomb / stiffness;
+    const auto p = presliding_elements(coulomb, stiffness, distance);
+    EXPECT_NEAR(first_loading(p, 1e-6 * distance) / (1e-6 * distance), stiffness, 1e-6 * stiffness) << sharpness;
+    EXPECT_NEAR(first_loading(p, distance), 0.9 * coulomb, 1e-6 * coulomb) << sharpness;
+    EXPECT_NEAR(first_loading(p, 1.0), coulomb, 1e-9 * coulomb) << sharpness;
+  }
+}
+
+TEST(PreslidingHysteresis, BetweenThemTheCurveIsThatOfDahl) {
+  // Exponent 1 has a closed form: F = F_C (1 - exp(-k s / F_C)), at 90 % where k s = ln(10) F_C. The polygon of
+  // tangents lies at most 2 % of F_C outside it, beyond 90 %.
+  const double coulomb = 20.0, stiffness = 2e7;
+  const auto p = presliding_elements(coulomb, stiffness, std::log(10.0) * coulomb / stiffness);
+  for (double s = 0.0; s < 8e-6; s += 1e-8) {
+    const double curve = coulomb * (1.0 - std::exp(-stiffness * s / coulomb));
+    EXPECT_GE(first_loading(p, s), curve - 1e-6);
+    EXPECT_LE(first_loading(p, s), curve + 0.02 * coulomb) << s;
+  }
+}
+
+TEST(PreslidingHysteresis, ReplacesTheModelInUseAndKeepsItsSteadyFriction) {
+  for (const char* model : {"coulomb_viscous", "classical", "linear_ramp", "lugre", "maxwell_slip"}) {
+    machine::AxisModel axis = with_effects({{"presliding_hysteresis", {{"stiffness", {1e7}}, {"distance", {5e-6}}}}});
+    axis.friction.use = model;
+    EXPECT_EQ(plant_axis(axis).friction.use, "maxwell_slip");
+    EXPECT_NEAR(force_at(axis, 0.1), 20.0 + 100.0 * 0.1, 2e-3) << model;
+  }
+}
+
+TEST(PreslidingHysteresis, TakesTheTrueCoulombLevelWhereverThatStandsInTheFile) {
+  machine::AxisModel axis = with_effects({{"presliding_hysteresis", {{"stiffness", {1e7}}, {"distance", {5e-6}}}},
+                                          {"coulomb_mismatch", {{"coulomb", {25.0}}}}});
+  EXPECT_NEAR(force_at(axis, 0.1), 25.0 + 100.0 * 0.1, 2e-3);
+}
+
+TEST(PreslidingHysteresis, TheParabolicModelHasNoCoulombLevelForIt) {
+  machine::AxisModel axis = with_effects({{"presliding_hysteresis", {{"stiffness", {1e7}}, {"distance", {5e-6}}}}});
+  axis.friction.use = "parabolic";
+  EXPECT_THROW(plant_axis(axis), EffectError);
+}
+
+}  // namespace
+}  // namespace stiction::sim::test
