@@ -1,4 +1,4 @@
-// Sentences that several effects say of themselves.
+// Texts that several descriptors have in common.
 #pragma once
 
 #include <string_view>
@@ -15,11 +15,11 @@ inline constexpr std::string_view known_mass = "accelerations at several levels,
 // Why rows of two numbers, the largest error and current of a circle, do not show an effect.
 namespace rows {
 inline constexpr std::string_view both_directions =
-    "cannot be told: a row has the largest value of both directions; record one lap with its directions apart";
+    "not identifiable: a row has only the largest value of both directions; record one lap with separate directions";
 inline constexpr std::string_view no_position =
-    "cannot be told: a row has no position; record position and current over one stroke at constant speed";
+    "not identifiable: a row has no position; record position and current over one stroke at constant speed";
 inline constexpr std::string_view no_time =
-    "cannot be told: a row has no time; record set-points, position and current";
+    "not identifiable: a row has no time; record set-points, position and current";
 }  // namespace rows
 
 }  // namespace stiction::sim::effects

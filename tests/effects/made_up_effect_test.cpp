@@ -15,6 +15,7 @@
 #include "host/report/diagnosis_report.hpp"
 #include "host/simulate/commissioning.hpp"
 #include "sim/effects/effects_markdown.hpp"
+#include "sim/machine_file.hpp"
 #include "sim/plant/axis_plant.hpp"
 #include "tests/effects/made_up/end_cushion/end_cushion.hpp"
 #include "tests/support/figure.hpp"
@@ -25,7 +26,7 @@ namespace {
 constexpr double begin = 0.03, stiffness = 4000.0;  // m, N/m^2
 
 std::string shipped_text() {
-  std::ifstream stream(std::string(STICTION_SOURCE_DIR) + "/sim/machine/shipped/mcfv5050ln.toml");
+  std::ifstream stream(std::string(STICTION_SOURCE_DIR) + "/firmware/machine/shipped/mcfv5050ln.toml");
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 std::string with_cushion(const std::string& keys) {

@@ -8,12 +8,12 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: print_aliases EFFECT\n");
     return 2;
   }
-  const auto* kind = stiction::sim::find_effect_kind(argv[1]);
-  if (kind == nullptr) {
+  const auto effect = stiction::sim::find_effect(argv[1]);
+  if (!effect) {
     std::fprintf(stderr, "print_aliases: found no effect '%s'\n", argv[1]);
     return 2;
   }
-  for (const auto& alias : kind->aliases)
-    std::printf("%.*s\n", static_cast<int>(alias.effect.size()), alias.effect.data());
+  for (const auto& confusion : stiction::sim::confusions_of(*effect))
+    std::printf("%s\n", confusion.other.name().c_str());
   return 0;
 }

@@ -7,15 +7,15 @@ EffectDescriptor backlash() {
   return described<Backlash>({
       .order = 170,
       .title = "Lost motion (backlash)",
-      .meaning = "The measured position stands while the motor moves on at a reversal.",
-      .advice =
-          "Check couplings, nut preload and the scale's mounting; a backlash compensation hides it at low speed only.",
+      .meaning = "At a reversal the motor moves while the measured position stays constant.",
+      .advice = "Check the couplings, the preload of the nut and the mounting of the scale; backlash compensation "
+                "hides it at low speed only.",
       .aliases = {{"presliding_hysteresis",
-                   "load at standstill: presliding has an elastic slope, play has none; a second encoder"}},
+                   "a load at standstill: presliding has an elastic slope, backlash has none; a second encoder"}},
       .abscissa = Abscissa::since_reversal,
       .needs = {Need::set_points, Need::reversals},
-      .not_in_rows = "cannot be told from two numbers a row: at a reversal it adds to the largest error as a softer "
-                     "contact does; load the axis at standstill",
+      .not_in_rows = "not identifiable from two numbers per row: at a reversal it increases the largest error like a "
+                     "softer contact; load the axis at standstill",
       .hidden = {[](const machine::AxisModel&, Draw& draw) -> machine::KeyedValues {
                    return {{"width", {draw.between(2e-6, 10e-6)}}};
                  },

@@ -8,10 +8,10 @@ EffectDescriptor constant_force() {
   return described<ConstantForce>({
       .order = 110,
       .title = "Constant force",
-      .meaning = "A force that is always there: weight, counterbalance, current offset.",
-      .advice = "Read the current at standstill with the drive off: what remains is the sensor's offset. The rest is "
+      .meaning = "A constant force acts on the axis: weight, counterbalance or an offset of the current sensor.",
+      .advice = "Read the current at standstill with the drive off: that is the offset of the sensor. The remainder is "
                 "weight: check the counterbalance.",
-      .aliases = {{"friction_asymmetry", "turn the axis, another payload, or a reading at standstill",
+      .aliases = {{"friction_asymmetry", "the axis turned over, a different payload, or a reading at standstill",
                    Separable::not_by_motion}},
       .abscissa = Abscissa::velocity,
       .needs = {Need::offset},

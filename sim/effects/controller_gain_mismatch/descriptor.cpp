@@ -7,15 +7,15 @@ EffectDescriptor controller_gain_mismatch() {
   return described<ControllerGainMismatch>({
       .order = 230,
       .title = "Gains of the drive",
-      .meaning =
-          "The drive commands something else than the file's controller would for the same set-points and positions.",
-      .advice = "Read the gains out of the drive and put them into the machine file; look for units (RMS or peak "
-                "amperes, 1/s or m/min/mm) before a new tuning.",
+      .meaning = "For the same set-points and positions the drive gives a different command than the controller in the "
+                 "machine file.",
+      .advice = "Read the gains from the drive and enter them in the machine file; check units (RMS or peak amperes, "
+                "1/s or m/min/mm) before you tune again.",
       .aliases = {},
       .abscissa = Abscissa::own_force,
       .needs = {Need::set_points, Need::current, Need::acceleration},
-      .not_in_rows =
-          "cannot be told from two numbers a row: it moves the error as the contact does; a frequency response tells",
+      .not_in_rows = "not identifiable from two numbers per row: it changes the error like the contact; measure a "
+                     "frequency response",
       .hidden = {[](const machine::AxisModel& axis, Draw& draw) -> machine::KeyedValues {
                    return {{"position_gain",
                             {axis.position_controller.gain * (1.0 + draw.sign() * draw.between(0.05, 0.1))}}};

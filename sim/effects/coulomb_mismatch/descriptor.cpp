@@ -8,12 +8,12 @@ EffectDescriptor coulomb_mismatch() {
   return described<CoulombMismatch>({
       .order = 20,
       .title = "Level of Coulomb friction",
-      .meaning = "The friction that does not depend on speed is another one.",
-      .advice = "Take the extended file's level. It moves by 2 to 4 % from day to day; more points to preload, "
-                "lubrication or wipers.",
+      .meaning = "The level of friction that does not depend on speed differs from that of the machine file.",
+      .advice = "Use the level of the extended file. It varies by 2 to 4 % from day to day; a larger change indicates "
+                "preload, lubrication or wipers.",
       .aliases = {{"thermal_drift", "several speeds at each temperature"},
                   {"presliding_hysteresis", "small reversals of several amplitudes"},
-                  {"position_dependent_friction", "the whole travel at a constant speed, both ways"}},
+                  {"position_dependent_friction", "the whole travel at a constant speed in both directions"}},
       .abscissa = Abscissa::speed,
       .needs = {Need::friction_level},
       .not_in_rows = "",

@@ -8,9 +8,9 @@ EffectDescriptor cross_axis_coupling() {
   return described<CrossAxisCoupling>({
       .order = 210,
       .title = "Coupling with the other axis",
-      .meaning = "The other axis' acceleration pushes this one.",
-      .advice = "Check squareness and where the centre of mass of what is mounted lies; feed the other axis' set "
-                "acceleration forward.",
+      .meaning = "The acceleration of the other axis exerts a force on this one.",
+      .advice = "Check squareness and the position of the centre of mass of the load; use the set acceleration of the "
+                "other axis as feedforward.",
       .aliases = {},
       .abscissa = Abscissa::acceleration,
       .needs = {Need::other_axis},

@@ -10,7 +10,7 @@ EffectDescriptor encoder_subdivision_error() {
   return described<EncoderSubdivisionError>({
       .order = 190,
       .title = "Subdivision error of the encoder",
-      .meaning = "The measured position swings about the true one with each signal period of the encoder.",
+      .meaning = "The measured position has a periodic error over the signal period of the encoder.",
       .advice =
           "Clean and adjust the reading head; correct offset, amplitude and phase of its signals in the interpolator.",
       .aliases = {},

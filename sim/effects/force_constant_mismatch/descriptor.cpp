@@ -8,18 +8,19 @@ EffectDescriptor force_constant_mismatch() {
   return described<ForceConstantMismatch>({
       .order = 150,
       .title = "Force constant or current scale",
-      .meaning = "The motor gives another force per ampere, or the current is recorded on another scale.",
-      .advice = "Check peak against RMS amperes and the recorder's scale first, then the motor's data sheet and "
-                "temperature; weigh a known mass to tell it from mass and friction.",
+      .meaning = "The force of the motor per ampere differs from that of the machine file, or the current is recorded "
+                 "on a different scale.",
+      .advice = "First check peak against RMS amperes and the scale of the recorder, then the data sheet and the "
+                "temperature of the motor; a known added mass separates it from mass and friction.",
       .aliases = {{"mass_mismatch", experiments::known_mass, Separable::not_as_this_one},
-                  {"coulomb_mismatch", "a known added mass: a wrong force constant scales its force too",
+                  {"coulomb_mismatch", "a known added mass: a wrong force constant scales its force as well",
                    Separable::not_as_this_one},
-                  {"viscous_mismatch", "a known added mass: a wrong force constant scales its force too",
+                  {"viscous_mismatch", "a known added mass: a wrong force constant scales its force as well",
                    Separable::not_as_this_one}},
       .abscissa = Abscissa::own_force,
       .needs = {Need::current, Need::acceleration},
-      .not_in_rows =
-          "cannot be told from two numbers a row: it scales mass and friction together; accelerate a known added mass",
+      .not_in_rows = "not identifiable from two numbers per row: it scales mass and friction together; accelerate a "
+                     "known added mass",
       .hidden =
           {[](const machine::AxisModel& axis, Draw& draw) -> machine::KeyedValues {
              return {{"force_constant", {axis.motor.force_constant * (1.0 + draw.sign() * draw.between(0.03, 0.06))}}};

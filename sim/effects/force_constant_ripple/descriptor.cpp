@@ -10,9 +10,9 @@ EffectDescriptor force_constant_ripple() {
   return described<ForceConstantRipple>({
       .order = 140,
       .title = "Ripple of the force constant",
-      .meaning = "The force per ampere changes periodically with the position.",
-      .advice = "Compare the pitch with the magnets' pole-pair pitch: half of it points to current sensors of unequal "
-                "gain, a sixth to an EMF that is no sine, the whole or more to unequal magnets.",
+      .meaning = "The force per ampere varies periodically with position.",
+      .advice = "Compare the pitch with the pole-pair pitch of the magnets: half of it indicates current sensors of "
+                "unequal gain, a sixth an EMF that is not sinusoidal, the whole or more unequal magnets.",
       .aliases = {},
       .abscissa = Abscissa::position,
       .needs = {Need::current, Need::acceleration, Need::steady_stroke},

@@ -10,14 +10,15 @@ EffectDescriptor force_ripple() {
   return described<ForceRipple>({
       .order = 130,
       .title = "Force ripple (cogging)",
-      .meaning = "A force that repeats with the position and does not depend on current.",
-      .advice = "Compare the pitch with the magnets' pole pitch and the screw's lead. Most drives have a cogging "
-                "compensation: pitch, amplitudes and phases are its parameters.",
-      .aliases = {{"encoder_subdivision_error",
-                   "several speeds: the force of a subdivision error grows with the speed squared, cogging does not"},
-                  {"position_dependent_friction", "traverse the same stretch in both directions"},
-                  {"force_constant_ripple", "the same stretch with several accelerations and in both directions"},
-                  {"periodic_disturbance", "a second speed, and a record at standstill"}},
+      .meaning = "A force varies periodically with position and does not depend on current.",
+      .advice = "Compare the pitch with the pole pitch of the magnets and the lead of the screw. Most drives have a "
+                "cogging compensation: pitch, amplitudes and phases are its parameters.",
+      .aliases =
+          {{"encoder_subdivision_error",
+            "several speeds: the force of a subdivision error increases with the speed squared, cogging does not"},
+           {"position_dependent_friction", "the same segment in both directions"},
+           {"force_constant_ripple", "the same segment with several accelerations and in both directions"},
+           {"periodic_disturbance", "a second speed, and a record at standstill"}},
       .abscissa = Abscissa::position,
       .needs = {Need::steady_stroke},
       .not_in_rows = rows::no_position,

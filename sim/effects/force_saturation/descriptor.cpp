@@ -8,13 +8,13 @@ EffectDescriptor force_saturation() {
   return described<ForceSaturation>({
       .order = 160,
       .title = "Saturation of the motor",
-      .meaning = "At high current the force grows less than the current.",
-      .advice = "Keep accelerations below where it bends, or enter the motor's force curve in the drive.",
+      .meaning = "At high current the force increases less than the current.",
+      .advice = "Keep accelerations below the bend of the curve, or enter the force curve of the motor in the drive.",
       .aliases = {{"force_constant_mismatch", experiments::known_mass}, {"mass_mismatch", experiments::known_mass}},
       .abscissa = Abscissa::own_force,
       .needs = {Need::current, Need::acceleration},
-      .not_in_rows = "cannot be told from two numbers a row: only the fastest circle has a high current; accelerate at "
-                     "several levels",
+      .not_in_rows = "not identifiable from two numbers per row: only the fastest circle has a high current; "
+                     "accelerate at several levels",
       .hidden = {[](const machine::AxisModel& axis, Draw& draw) -> machine::KeyedValues {
                    const double limit = axis.motor.model == machine::MotorModel::force ? axis.inverter.voltage_limit
                                                                                        : axis.inverter.current_limit;

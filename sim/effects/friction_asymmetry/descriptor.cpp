@@ -8,9 +8,9 @@ EffectDescriptor friction_asymmetry() {
   return described<FrictionAsymmetry>({
       .order = 60,
       .title = "Friction differs between directions",
-      .meaning = "The axis runs heavier in one direction.",
-      .advice = "Turn the axis or take a reading at standstill to tell it from a constant force; then look for a "
-                "wiper, a cover or a misalignment that acts in one direction.",
+      .meaning = "Friction is higher in one direction than in the other.",
+      .advice = "Turn the axis over or read the current at standstill to separate it from a constant force; then look "
+                "for a wiper, a cover or a misalignment that acts in one direction.",
       .aliases = {},
       .abscissa = Abscissa::velocity,
       .needs = {Need::both_directions},

@@ -8,9 +8,9 @@ EffectDescriptor friction_lag() {
   return described<FrictionLag>({
       .order = 80,
       .title = "Friction that lags behind the speed",
-      .meaning = "Friction is lower while the speed rises than while it falls.",
-      .advice = "Confirm it with swings about a constant speed; then let friction feedforward follow the speed with "
-                "this time.",
+      .meaning = "Friction is lower while the speed increases than while it decreases.",
+      .advice = "Confirm it with oscillations about a constant speed; then filter the speed of the friction "
+                "feedforward with this time constant.",
       .aliases = {},
       .abscissa = Abscissa::speed,
       .needs = {Need::speeds, Need::acceleration},

@@ -7,11 +7,12 @@ EffectDescriptor mass_mismatch() {
   return described<MassMismatch>({
       .order = 10,
       .title = "Moving mass",
-      .meaning = "The axis accelerates another mass than the machine file says.",
-      .advice = "Take the extended file's mass; set it in the drive too, where the current feedforward uses it. Look "
-                "for a workpiece, a fixture or a second carriage that the file does not know.",
+      .meaning = "The accelerated mass differs from that of the machine file.",
+      .advice = "Use the mass of the extended file, also in the drive if its current feedforward depends on it. Look "
+                "for a workpiece, a fixture or a second carriage that the file does not contain.",
       .aliases = {{"friction_lag",
-                   "swings about a constant speed up to high frequencies: the force of a mass grows with the frequency "
+                   "oscillations about a constant speed up to high frequencies: the force of a mass increases with the "
+                   "frequency "
                    "squared, that of a lag levels off"}},
       .abscissa = Abscissa::acceleration,
       .needs = {Need::acceleration},

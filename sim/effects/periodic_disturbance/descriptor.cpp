@@ -8,9 +8,9 @@ EffectDescriptor periodic_disturbance() {
   return described<PeriodicDisturbance>({
       .order = 220,
       .title = "Disturbance at a fixed frequency",
-      .meaning = "A force swings at a frequency that does not depend on the motion.",
-      .advice = "Switch pumps, fans and the spindle off one after another at standstill and watch the line go. Balance "
-                "or decouple what it is.",
+      .meaning = "A force oscillates at a frequency that does not depend on the motion.",
+      .advice = "At standstill switch off pumps, fans and the spindle one after another and watch the line in the "
+                "spectrum. Balance or isolate its source.",
       .aliases = {},
       .abscissa = Abscissa::own_force,
       .needs = {Need::seconds},

@@ -8,8 +8,8 @@ EffectDescriptor position_dependent_friction() {
   return described<PositionDependentFriction>({
       .order = 90,
       .title = "Friction that varies along the stroke",
-      .meaning = "The axis runs heavier in some places than in others, in both directions.",
-      .advice = "Look at the place: guide out of line, a dry or dirty stretch, a screw with changing preload, a cover "
+      .meaning = "Friction is higher at some positions than at others, in both directions.",
+      .advice = "Inspect these positions: misaligned guide, dry or dirty segment, screw with varying preload, cover "
                 "that binds. A table over position compensates it.",
       .aliases = {},
       .abscissa = Abscissa::position,

@@ -8,10 +8,10 @@ EffectDescriptor position_spring() {
   return described<PositionSpring>({
       .order = 120,
       .title = "Force proportional to position",
-      .meaning = "Something pulls like a spring: cable carrier, bellows, hose.",
-      .advice = "Move it by hand over its stroke with and without cable carrier and covers; take the extended file's "
-                "stiffness.",
-      .aliases = {{"position_dependent_friction", "traverse the same stretch in both directions"}},
+      .meaning = "A force proportional to position acts like a spring: cable carrier, bellows or hose.",
+      .advice = "Move the axis by hand over its stroke with and without cable carrier and covers; use the stiffness of "
+                "the extended file.",
+      .aliases = {{"position_dependent_friction", "the same segment in both directions"}},
       .abscissa = Abscissa::position,
       .needs = {Need::stroke, Need::both_directions},
       .not_in_rows = rows::no_position,

@@ -8,9 +8,10 @@ EffectDescriptor presliding_hysteresis() {
   return described<PreslidingHysteresis>({
       .order = 70,
       .title = "Presliding displacement",
-      .meaning =
-          "Before it slides the axis gives way like a spring that remembers; reversals on a circle show it first.",
-      .advice = "Take the extended file's contact. For compensation at reversals the distance is the one to set.",
+      .meaning = "Before sliding, friction acts like a spring with hysteresis; it is first visible at the reversals of "
+                 "a circle.",
+      .advice =
+          "Use the contact of the extended file. For compensation at reversals its distance is the parameter to set.",
       .aliases = {},
       .abscissa = Abscissa::since_reversal,
       .needs = {Need::small_reversals},

@@ -8,9 +8,9 @@ EffectDescriptor structural_resonance() {
   return described<StructuralResonance>({
       .order = 180,
       .title = "Elastic mode",
-      .meaning = "Something between motor and encoder swings: coupling, screw, mount.",
-      .advice = "Set a notch at its frequency or lower the velocity gain; make jerk times multiples of its period; "
-                "stiffen the joint, or measure nearer to the motor.",
+      .meaning = "An elastic part between motor and encoder oscillates: coupling, screw or mount.",
+      .advice = "Set a notch at its frequency or reduce the velocity gain; make jerk times multiples of its period; "
+                "stiffen the joint, or measure closer to the motor.",
       .aliases = {},
       .abscissa = Abscissa::own_force,
       .needs = {Need::acceleration},

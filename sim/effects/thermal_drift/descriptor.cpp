@@ -8,8 +8,9 @@ EffectDescriptor thermal_drift() {
   return described<ThermalDrift>({
       .order = 100,
       .title = "Friction that drifts as the machine warms up",
-      .meaning = "The level of friction changes from the record's start on.",
-      .advice = "Warm up before precise work. Identify friction cold and warm and compare the lubricant's viscosity.",
+      .meaning = "The level of friction changes from the start of the record on.",
+      .advice = "Warm up before precise work. Identify friction cold and warm and compare with the viscosity of the "
+                "lubricant.",
       .aliases = {},
       .abscissa = Abscissa::time,
       .needs = {Need::long_record},

@@ -8,13 +8,13 @@ EffectDescriptor time_skew() {
   return described<TimeSkew>({
       .order = 200,
       .title = "Time skew of the record",
-      .meaning = "Current and position were not recorded at the same instant.",
-      .advice = "Correct the recorder's delay before anything else is identified from its logs; where the delay is in "
-                "the loop itself, it costs phase margin.",
+      .meaning = "Current and position were not recorded at the same time.",
+      .advice = "Correct the delay of the recorder before you identify anything else from its logs; if the delay is in "
+                "the loop itself, it reduces the phase margin.",
       .aliases = {{"viscous_mismatch", experiments::frequency_response},
                   {"structural_resonance", experiments::frequency_response},
                   {"controller_gain_mismatch",
-                   "a test signal on the current: the phase of a delay grows with frequency"},
+                   "a test signal on the current: the phase of a delay increases with frequency"},
                   {"friction_lag", experiments::frequency_response}},
       .abscissa = Abscissa::own_force,
       .needs = {Need::current, Need::acceleration},

@@ -9,8 +9,9 @@ EffectDescriptor viscous_mismatch() {
   return described<ViscousMismatch>({
       .order = 30,
       .title = "Slope of viscous friction",
-      .meaning = "Friction grows with speed at another rate.",
-      .advice = "Take the extended file's slope. Compare a cold and a warm machine: lubricant is its usual cause.",
+      .meaning = "The slope of friction over speed differs from that of the machine file.",
+      .advice =
+          "Use the slope of the extended file. Compare a cold and a warm machine: the lubricant is the usual cause.",
       .aliases = {{"structural_resonance", experiments::frequency_response},
                   {"thermal_drift", "several speeds at each temperature"}},
       .abscissa = Abscissa::speed,

@@ -6,10 +6,10 @@ namespace stiction::sim::effects {
 EffectDescriptor viscous_nonlinear() {
   return described<ViscousNonlinear>({
       .order = 40,
-      .title = "Viscous friction that bends",
-      .meaning = "Friction does not grow in proportion to speed.",
-      .advice =
-          "Take the extended file's curve, or choose a friction model with one; record more speeds where it bends.",
+      .title = "Viscous friction that is not linear",
+      .meaning = "Friction does not increase in proportion to speed.",
+      .advice = "Use the curve of the extended file, or choose a friction law that is not linear; record more speeds "
+                "where it bends.",
       .aliases = {{"stribeck", "more speeds below 10 mm/s"}},
       .abscissa = Abscissa::speed,
       .needs = {Need::many_speeds},

@@ -111,8 +111,8 @@ TEST(EffectsFile, WhatCannotBeTogetherIsRefused) {
 }
 
 TEST(EffectsFile, TheReferencePageShowsEveryKey) {
-  const std::string page = reference_page();
-  for (const EffectId kind : all_effects()) {
+  const std::string page = sim::reference_page();
+  for (const sim::EffectId kind : sim::all_effects()) {
     const std::size_t at = page.find("effect " + kind.name() + ": ");
     ASSERT_NE(at, std::string::npos) << kind.name();
     const std::string section = page.substr(at, page.find("\n## ", at) - at);
@@ -123,10 +123,10 @@ TEST(EffectsFile, TheReferencePageShowsEveryKey) {
 
 TEST(Effects, HaveTheNamesKeysAndSuffixesOfTheVocabulary) {
   std::string all;
-  for (const EffectId kind : all_effects()) {
+  for (const sim::EffectId kind : sim::all_effects()) {
     all += kind.name() + ":";
     for (const ValueKey& key : kind->keys)
-      all += " " + std::string(key.key) + unit_suffix(key.unit) + (key.list ? "[]" : "");
+      all += " " + std::string(key.key) + sim::unit_suffix(key.unit) + (key.list ? "[]" : "");
     all += '\n';
   }
   EXPECT_EQ(all,
@@ -160,16 +160,17 @@ TEST(Effects, HaveTheNamesKeysAndSuffixesOfTheVocabulary) {
 }
 
 TEST(Effects, ConfuseBothWaysAndNameAnExperiment) {
-  for (const EffectId kind : all_effects())
-    for (const Confusion& confusion : confusions_of(kind)) {
+  for (const sim::EffectId kind : sim::all_effects())
+    for (const sim::Confusion& confusion : sim::confusions_of(kind)) {
       EXPECT_NE(confusion.other, kind);
       EXPECT_FALSE(confusion.separate_by.empty());
-      const auto back = confusions_of(confusion.other);
-      EXPECT_TRUE(std::any_of(back.begin(), back.end(), [&](const Confusion& each) { return each.other == kind; }))
+      const auto back = sim::confusions_of(confusion.other);
+      EXPECT_TRUE(std::any_of(back.begin(), back.end(), [&](const sim::Confusion& each) { return each.other == kind; }))
           << kind.name() << " " << confusion.other.name();
     }
-  EXPECT_EQ(confusions_of(*find_effect("constant_force")).at(0).other, *find_effect("friction_asymmetry"));
-  EXPECT_FALSE(find_effect("gravity"));
+  EXPECT_EQ(sim::confusions_of(*sim::find_effect("constant_force")).at(0).other,
+            *sim::find_effect("friction_asymmetry"));
+  EXPECT_FALSE(sim::find_effect("gravity"));
 }
 
 const std::vector<AxisEffects> additions{
@@ -244,11 +245,11 @@ TEST(ExtendedMachine, WritesOnlyTheOptionalKeysThatAreGivenAndVoltsForAForceSour
 }
 
 TEST(ExtendedMachine, TheShippedMachinesTakeEveryEffect) {
-  for (const EffectId kind : all_effects()) {
+  for (const sim::EffectId kind : sim::all_effects()) {
     Effect one{kind.name(), {}};
     for (const ValueKey& key : kind->keys) one.values[std::string(key.key)] = {key.unit == "N/m" ? 1e7 : 1e-3};
     const std::vector<AxisEffects> every{{"X", {one}}, {"Y", {one}}};
-    const Machine machine = parse_machine("e.toml", extended_machine(shipped_machine(), {}, every, {}));
+    const Machine machine = sim::parse_machine("e.toml", sim::extended_machine(shipped_machine(), {}, every, {}));
     for (const AxisModel& axis : machine.axes) EXPECT_EQ(axis.effects.at(0).values, one.values) << kind.name();
   }
 }

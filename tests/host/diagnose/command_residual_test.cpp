@@ -143,8 +143,8 @@ TEST(CommandResidual, names_the_gain_that_differs_with_its_value_and_leaves_the_
     const auto verdict = verdict_of(c.gains, 5);
     const auto* finding = gains_in(verdict);
     ASSERT_NE(finding, nullptr) << c.key;
-    ASSERT_TRUE(finding->effect.values.contains(c.key)) << c.key;
-    const double value = finding->effect.values.at(c.key).front();
+    ASSERT_TRUE(finding->values.contains(c.key)) << c.key;
+    const double value = finding->values.at(c.key).front();
     figure(std::string("command residual, ") + c.key, std::to_string(value) + ", true " + std::to_string(c.value));
     EXPECT_EQ(finding->parameters.size(), 1u) << c.key;
     EXPECT_NEAR(value, c.value, 0.005 * c.value) << c.key;

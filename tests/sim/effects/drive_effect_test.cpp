@@ -9,6 +9,7 @@
 #include "firmware/machine/configuration/axis_configuration.hpp"
 #include "firmware/machine/configuration/double_signals.hpp"
 #include "hal/simulated/simulated_backend.hpp"
+#include "sim/effects/force_saturation/force_saturation.hpp"
 #include "tests/sim/effects/effect_plant.hpp"
 
 namespace stiction::sim::test {

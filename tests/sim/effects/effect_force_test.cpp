@@ -6,6 +6,10 @@
 #include <numbers>
 #include <tuple>
 
+#include "sim/effects/force_ripple/force_ripple.hpp"
+#include "sim/effects/friction_asymmetry/friction_asymmetry.hpp"
+#include "sim/effects/stribeck/stribeck.hpp"
+#include "sim/effects/viscous_nonlinear/viscous_nonlinear.hpp"
 #include "tests/sim/effects/effect_plant.hpp"
 
 namespace stiction::sim::test {

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "sim/effects/position_dependent_friction/position_dependent_friction.hpp"
+#include "sim/effects/thermal_drift/thermal_drift.hpp"
 #include "tests/sim/effects/effect_plant.hpp"
 
 namespace stiction::sim::test {

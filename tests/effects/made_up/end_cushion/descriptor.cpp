@@ -8,9 +8,9 @@ EffectDescriptor end_cushion() {
   return described<EndCushion>({
       .order = 1000,
       .title = "Cushion at the end of the travel",
-      .meaning = "Before the end of its travel the axis presses into something soft.",
-      .advice = "Look at the end stop's buffer and at what lies before it.",
-      .aliases = {{"position_spring", "the same stretch with and without the part before the cushion"}},
+      .meaning = "Before the end of its travel the axis meets an elastic cushion.",
+      .advice = "Inspect the buffer of the end stop.",
+      .aliases = {{"position_spring", "the same segment with and without the part before the cushion"}},
       .abscissa = Abscissa::position,
       .needs = {Need::stroke},
       .not_in_rows = rows::no_position,

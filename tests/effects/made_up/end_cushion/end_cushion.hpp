@@ -1,4 +1,5 @@
-// A cushion before the end of the travel: from `begin` on it pushes back with the square of how far it is pressed in,
+// A cushion before the end of the travel: from `begin` on its force increases with the square of the displacement into
+// it,
 //   F = -stiffness (x - begin)^2 for x > begin.
 // Not an effect of the product: it shows that a folder is all that one takes.
 #pragma once
@@ -20,13 +21,13 @@ class EndCushion {
   static constexpr std::string_view text = "a cushion before the end of the travel";
   static constexpr bool several = false;
   static constexpr std::array<machine::Parameter<Parameters>, 2> parameters{{
-      {"begin", "m", machine::any_value(), &Parameters::begin, {}, "position from which it pushes back"},
+      {"begin", "m", machine::any_value(), &Parameters::begin, {}, "position from which it acts"},
       {"stiffness",
        "N/m^2",
        machine::positive(),
        &Parameters::stiffness,
        {},
-       "force over the square of the way into it"},
+       "force over the square of the displacement into it"},
   }};
   static constexpr bool is_friction = false;
 
