@@ -89,14 +89,17 @@ std::optional<std::size_t> candidate_index(sim::EffectId effect);
 
 namespace effects {
 // Adds a key of the finding's effect with its values and their standard errors. Throws std::logic_error for a key that
-// the effect has not.
+// the effect has not. `context`: of the axis, which has the unit of `key`; `finding`: to which it is added; `values`
+// and `errors` in SI.
 void add_key(const SearchContext& context, Finding& finding, std::string_view key, std::vector<double> values,
              std::vector<double> errors);
 
-// Cosine and sine of a wave over position, as force on the carriage of `size` (of each sample) times it.
+// Cosine and sine of a wave over position, as force on the carriage of `size` (of each sample) times it. `motion` of
+// the axis; `pitch` in m.
 Columns waves_over_position(const Motion& motion, double pitch, const std::vector<double>& size);
 
 inline std::vector<double> no_scan(const SearchContext&) { return {0.0}; }
+// For an effect whose coefficients (VectorXd) may have any sign and size, at each shape (double) and SearchContext.
 inline bool any(const SearchContext&, double, const Eigen::VectorXd&) { return true; }
 // Of the weights of a wave that has a pair in each record: the amplitude that they have in common (their root mean
 // square) with the first record's phase, as cosine and sine.

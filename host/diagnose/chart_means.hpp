@@ -10,7 +10,7 @@
 
 namespace stiction::host {
 
-// Mean of `values` in equally filled ranges of `over` (times `scale` in the chart).
+// Mean of `values` in equally filled ranges of `over` (times `scale` in the chart). `name` of the series.
 inline sim::Series means(std::string name, const Eigen::VectorXd& over, double scale, const Eigen::VectorXd& values,
                          std::size_t ranges = 60) {
   std::vector<Eigen::Index> order(static_cast<std::size_t>(over.size()));
@@ -32,7 +32,7 @@ inline sim::Series means(std::string name, const Eigen::VectorXd& over, double s
 }
 
 // Mean of `values` in ranges of `over` of equal width: for what repeats along it. Ranges with fewer than three values
-// are left away.
+// are left away. `name` of the series; `scale`: of `over` in the chart.
 inline sim::Series even_means(std::string name, const Eigen::VectorXd& over, double scale,
                               const Eigen::VectorXd& values, std::size_t ranges = 160) {
   const double low = over.minCoeff(), width = (over.maxCoeff() - low) / static_cast<double>(ranges);

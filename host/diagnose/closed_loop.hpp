@@ -14,7 +14,8 @@ namespace stiction::host {
 machine::Machine extended_machine(machine::Machine machine, const std::vector<Finding>& findings);
 
 // Fills in position errors, their ratios by finding and what each does to the position. Without set-points nothing is
-// changed. A machine that cannot follow the set-points is a LogError without causes and a note with them.
+// changed. A machine that cannot follow the set-points is a LogError without causes and a note with them. `verdict`:
+// with its findings on `axis`, the index in `machine`; `held_out`: logs that were not used.
 void judge_in_closed_loop(Verdict& verdict, const machine::Machine& machine, std::size_t axis,
                           const std::vector<Log>& held_out);
 

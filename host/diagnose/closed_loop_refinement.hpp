@@ -15,8 +15,8 @@ namespace stiction::host {
 
 // `findings`: with start values and standard errors of their parameters; both are replaced where the fit gets better.
 // `found`: their terms in the same order; `rows`, `target`: what they were found on; `responses`: of these records,
-// with different hunting, of which the one that fits best counts. A term whose phase differs from record to record,
-// and one that replays under disturbances, stays as it is.
+// with different hunting, of which the one that fits best counts. A term whose phase differs from record to record, and
+// one that replays under disturbances, stays as it is. `context`: of the search.
 void refine_in_closed_loop(std::vector<Finding>& findings, const SearchResult& found,
                            std::span<EffectResponse> responses, const LogRows& rows, const Eigen::VectorXd& target,
                            const SearchContext& context);

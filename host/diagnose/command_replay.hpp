@@ -26,6 +26,7 @@ std::optional<RecordedCommand> recorded_command(const AxisLog& channels, const m
 // does not know the record's. Between the samples positions are those of a spline. S: FixedSignals, the drive's own
 // numbers, or sim::DoubleSignals. Throws sim::ConfigurationError; LogError where the control stops on these inputs.
 template <class S>
+// `timing` of the loops; `log` with its `channels` of this axis.
 std::vector<double> replay_command(const machine::Timing& timing, const machine::AxisModel& axis, const Log& log,
                                    const AxisLog& channels);
 

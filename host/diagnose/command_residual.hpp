@@ -25,6 +25,8 @@ struct RecordDelay {
 };
 
 // Adds findings and the figures of the command residual to the verdict, where all records have what it takes.
+// `verdict`: to which they are added; `input`: of the diagnosis; `training` and `held_out` records; `delay`: that of
+// the residual force.
 void judge_command(Verdict& verdict, const DiagnoseInput& input, const CommandRecords& training,
                    const CommandRecords& held_out, const RecordDelay& delay);
 

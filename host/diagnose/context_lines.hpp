@@ -11,7 +11,7 @@
 namespace stiction::host {
 
 // Sets the scene's lines from `residual` (N, of the rows), looked at through `whitening`; the motor's pole pitches are
-// always among them.
+// always among them. `context`: whose lines are set.
 void find_lines(const LogRows& rows, const Eigen::VectorXd& residual, const Whitening& whitening,
                 SearchContext& context);
 

@@ -10,12 +10,14 @@
 
 namespace stiction::host {
 
-// `before`, `after`: residual force in the rows (N), with the file's machine and with all causes.
+// `before`, `after`: residual force in the rows (N), with the file's machine and with all causes. `verdict`: to which
+// they are added.
 void add_charts(Verdict& verdict, const LogRows& rows, const Eigen::VectorXd& before, const Eigen::VectorXd& after);
 
 // To each finding: the residual with all other causes taken out, beside what the cause makes of it (a partial residual
 // plot: Larsen and McCleary 1972), over position, speed, way since the last reversal, or whatever the cause depends on.
-// `terms` in the order of the findings, of the rows whose residual is `after`.
+// `terms` in the order of the findings, of the rows whose residual is `after`. `verdict`: with the findings; `context`:
+// of the search.
 void add_cause_charts(Verdict& verdict, const LogRows& rows, const SearchContext& context,
                       const std::vector<Term>& terms, const Eigen::VectorXd& after);
 

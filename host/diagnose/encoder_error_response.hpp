@@ -11,7 +11,7 @@ namespace stiction::host {
 
 class EncoderErrorResponse {
  public:
-  // `log_period`: s, of the log's samples.
+  // `log_period`: s, of the log's samples. `axis` and `timing`: of the machine file.
   EncoderErrorResponse(const machine::AxisModel& axis, const machine::Timing& timing, double log_period);
 
   // Residual force (N) for an error of 1 m at `frequency` (Hz, not negative), as the log's samples show it.

@@ -67,6 +67,7 @@ class Evidence {
   };
   // That the weights first .. first + count - 1 are zero. Of whitened rows the covariance by clusters is drawn to that
   // of even noise by as much as the noise is even (moderated F: Smyth, Stat. Appl. Genet. Mol. Biol. 3, 2004).
+  // `chosen`: indices of columns; `coefficients`: their weights.
   Test test(const ColumnIndices& chosen, const Eigen::VectorXd& coefficients, Eigen::Index first,
             Eigen::Index count) const;
   // Number of clusters that bear on the columns `of` with these weights: (sum h)^2 / sum h^2 of their squared lengths.

@@ -20,11 +20,13 @@ struct HeldOutFigures {
   HeldOutAmplitude together;
 };
 
-// `target`: residual force of the held-out rows. Intervals: bootstrap over blocks of rows, from `seed`.
+// `target`: residual force of the held-out rows. Intervals: bootstrap over blocks of rows, from `seed`. `context`: of
+// the search; `terms`: what it found.
 HeldOutFigures evaluate_held_out(const LogRows& rows, const Eigen::VectorXd& target, const SearchContext& context,
                                  std::span<const Term> terms, std::uint64_t seed);
 
-// 95 % interval of the ratio of two residuals' rms, from a bootstrap over blocks of rows.
+// 95 % interval of the ratio of two residuals' rms, from a bootstrap over blocks of rows. `after` and `before`:
+// residual force in the `rows` (N) with the causes and without them; `seed` of the bootstrap.
 std::array<double, 2> ratio_interval(const Eigen::VectorXd& after, const Eigen::VectorXd& before, const LogRows& rows,
                                      std::uint64_t seed);
 

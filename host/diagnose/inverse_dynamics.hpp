@@ -24,10 +24,10 @@ struct ModeColumns {
   std::vector<double> bend;     // M d^4x/dt^4 + d^2(load)/dt^2 / r, N/s^2
   std::vector<double> damping;  // -d(bend)/dt, N/s^3
 };
-// `force`: what a rigid axis needs, N; `ratio`: r.
+// `force`: what a rigid axis needs, N; `ratio`: r. `mass` in kg; `motion` of the load.
 ModeColumns mode_columns(double mass, double ratio, const Motion& motion, const std::vector<double>& force);
 
-// The force with `changed` less the force with `axis`, over `by`.
+// The force with `changed` less the force with `axis`, over `by`. `motion`: the one that both make.
 std::vector<double> force_change(const machine::AxisModel& axis, const machine::AxisModel& changed,
                                  const Motion& motion, double by);
 

@@ -26,7 +26,7 @@ struct Searched {
 
 // Adds to the findings' confused_with what the search could not try on these records and what explains as much as all
 // of them; sets verdict.next where something is open and `propose`. `verdict.findings` are those of found.terms, in
-// that order.
+// that order. `searched`: what the search left open.
 void propose_next_measurement(Verdict& verdict, const Searched& searched, bool propose);
 
 }  // namespace stiction::host

@@ -9,7 +9,8 @@
 
 namespace stiction::host {
 
-// A held-out log that is one of the training logs, or overlaps one.
+// A held-out log that is one of the training logs, or overlaps one. `held_out`: the logs against which the others are
+// held; `axis`: the name of the axis.
 void refuse_same_record(std::span<const Log> logs, std::span<const Log> held_out, const machine::AxisModel& axis);
 
 // Set-points faster or further than the machine file allows.

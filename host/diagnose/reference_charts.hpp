@@ -7,6 +7,7 @@
 
 namespace stiction::host {
 
+// `verdict`: to which they are added; `machine` of the file; `extension`: what was fitted to its rows.
 void add_reference_charts(Verdict& verdict, const machine::Machine& machine, const ReferenceExtension& extension);
 
 }  // namespace stiction::host

@@ -47,12 +47,13 @@ SlidingLaw file_law(const machine::AxisModel& axis);
 ReferenceExtension extend_by_rows(const machine::Machine& machine, double training_feed);
 
 // The effects of an axis of the extension, in the order coulomb, viscous, rise, contact; only those that are named.
+// `machine`: of the file.
 std::vector<machine::Effect> effects_of(const machine::Machine& machine, const ReferenceExtension& extension,
                                         std::size_t axis);
 
 machine::Machine extended_by(machine::Machine machine, const ReferenceExtension& extension);
 
-// The measured row of an axis at a feed (m/s); nullptr without one.
+// The measured row of an axis at a feed (m/s); nullptr without one. `machine`: of the file.
 const machine::CircleReference* measured_row(const machine::Machine& machine, const std::string& axis, double feed);
 
 }  // namespace stiction::host

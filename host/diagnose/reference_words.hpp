@@ -12,9 +12,12 @@ namespace stiction::host {
 
 sim::EffectId effect_of(SlidingPart part);
 
+// `extension` of the machine, its part for this `axis`, the `effect` that is named, and the row that trained it
+// (`training_row`).
 std::string evidence_words(const ReferenceExtension& extension, const AxisExtension& axis, sim::EffectId effect,
                            const machine::CircleReference& training_row);
 
+// `extension` of the machine, its part for this `axis`, the `effect` that is named.
 std::vector<ConfusedWith> confusion_words(const ReferenceExtension& extension, const AxisExtension& axis,
                                           sim::EffectId effect);
 

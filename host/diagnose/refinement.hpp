@@ -7,7 +7,7 @@
 namespace stiction::host {
 
 // Sets nonlinear parameter, weights and covariance of each term by the whitened rows of `searched`; returns the
-// residual force that the terms leave (N, of the rows, not whitened).
+// residual force that the terms leave (N, of the rows, not whitened). `context`: of the search.
 Eigen::VectorXd refine(const LogRows& rows, const Evidence& searched, const SearchContext& context,
                        std::vector<Term>& terms);
 

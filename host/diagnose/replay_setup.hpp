@@ -19,6 +19,7 @@ struct ReplaySetup {
 };
 
 // Logs without set-points are left out. `coupled`: with the other axis of two, where a log has its set-points.
+// `machine` of the file; `logs` that are replayed.
 ReplaySetup replay_setup_of(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
                             bool coupled = false);
 
@@ -36,6 +37,7 @@ struct WithoutNoise {
 // and the effects looked for did to it. A regressor of the measured motion carries the disturbance that it is regressed
 // on, through the control loop (Gilson, Garnier, Young, Van den Hof 2011); one of this motion does not. Empty when a
 // log has no set-points, when the machine cannot follow them, or when it goes another way than the measured one.
+// `axis`: its index.
 WithoutNoise without_noise(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs);
 
 // Within an increment of its position controller an axis hunts. Near reversals a replay does so as the record did, and
@@ -51,12 +53,14 @@ class EffectResponse {
   static constexpr auto as_needed = std::numeric_limits<std::size_t>::max();
 
   // `logs`: with set-points, of that axis; `settings`: those of the motions; `replayed`: what without_noise() has
-  // replayed of them with that hunting, in their order, so that it need not be done again.
+  // replayed of them with that hunting, in their order, so that it need not be done again. `machine` of the file;
+  // `limit_cycle`: of the quantizer at standstill.
   EffectResponse(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
                  const SignalSettings& settings, QuantizerLimitCycle limit_cycle = QuantizerLimitCycle::simulated,
                  const std::vector<Log>& replayed = {});
   // Under forces like `disturbance`: what runs under them have in common; two, and more where they agree on so little
-  // that what is left to chance in their common part is a force like those.
+  // that what is left to chance in their common part is a force like those. `machine` of the file; `axis`: its index;
+  // `settings` of the rows.
   EffectResponse(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
                  const SignalSettings& settings, const Disturbance& disturbance, const std::vector<Log>& replayed = {});
 
@@ -64,7 +68,7 @@ class EffectResponse {
   // than `most_runs`. Throws sim::EffectError, std::out_of_range for a motion of another log.
   std::vector<double> operator()(const Motion& motion, const machine::Effect& effect,
                                  std::size_t most_runs = as_needed);
-  // The same of several effects that act together.
+  // The same of several effects that act together. `motion` of the record; `most_runs`: how many replays at most.
   std::vector<double> together(const Motion& motion, std::span<const machine::Effect> effects,
                                std::size_t most_runs = as_needed);
 

@@ -7,7 +7,8 @@
 
 namespace stiction::host {
 
-// `residual`: N, in the rows; `baseline_square`: sum of squares before any cause was taken out (N^2).
+// `residual`: N, in the rows; `baseline_square`: sum of squares before any cause was taken out (N^2). `correlation`:
+// rows over which the residual is correlated.
 Unexplained signature_of(const LogRows& rows, const Eigen::VectorXd& residual, double baseline_square,
                          double correlation);
 

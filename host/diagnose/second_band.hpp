@@ -14,7 +14,7 @@ namespace stiction::host {
 
 // Adds to each finding's evidence how large its force is in the rows below 30 Hz, over that in the whole band, and to
 // the verdict's notes where the two contradict each other. `terms`: of the findings, in the same order, found on
-// `target` (N).
+// `target` (N). `context`: of the search.
 void compare_bands(Verdict& verdict, std::span<const Term> terms, const LogRows& rows, const Eigen::VectorXd& target,
                    const SearchContext& context);
 

@@ -45,7 +45,7 @@ class Separation {
   // each record.
   double expected(const Records& records, std::span<const Explanation> truth, std::span<const Explanation> rival,
                   std::span<const Explanation> others) const;
-  // Share of `target`'s square (whitened) that causes take away at their best weights.
+  // Share of `target`'s square (whitened) that causes take away at their best weights. `records`: of the trajectory.
   double explained(const Records& records, const Eigen::VectorXd& target, std::span<const Explanation> causes) const;
 
  private:

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "host/diagnose/fisher.hpp"
+#include "sim/effects/viscous_nonlinear/viscous_nonlinear.hpp"
 
 namespace stiction::host {
 namespace {
@@ -68,7 +69,7 @@ class Fitter {
     Eigen::MatrixXd slopes(n, count);
     const auto& law = solution.law;
     for (Eigen::Index i = 0; i < n; ++i) {
-      const double v = points_[static_cast<std::size_t>(i)].velocity, decay = std::exp(-v / law.rise_velocity);
+      const double v = points_[static_cast<std::size_t>(i)].velocity, decay = 1.0 - sim::ViscousNonlinear::risen(v / law.rise_velocity);
       Eigen::Index c = 0;
       if (chosen[0]) slopes(i, c++) = 1.0;
       if (chosen[1]) slopes(i, c++) = v;
@@ -104,7 +105,7 @@ class Fitter {
       const auto& point = points_[static_cast<std::size_t>(i)];
       target[i] = point.force;
       Eigen::Index c = 0;
-      const std::array values{1.0, point.velocity, 1.0 - std::exp(-point.velocity / rise_velocity)};
+      const std::array values{1.0, point.velocity, sim::ViscousNonlinear::risen(point.velocity / rise_velocity)};
       const std::array known{file_.coulomb, file_.viscous, 0.0};
       for (std::size_t k = 0; k < 3; ++k)
         if (chosen[k])
@@ -145,7 +146,7 @@ SlidingPartTest test(const Fitter& fitter, const Chosen& chosen, SlidingPart par
 }  // namespace
 
 double SlidingLaw::at(double velocity) const {
-  return coulomb + viscous * velocity + (rise == 0.0 ? 0.0 : rise * -std::expm1(-velocity / rise_velocity));
+  return coulomb + viscous * velocity + (rise == 0.0 ? 0.0 : rise * sim::ViscousNonlinear::risen(velocity / rise_velocity));
 }
 
 SlidingFit fit_sliding_law(const std::vector<SteadyPoint>& points, const SlidingLaw& file) {

@@ -28,7 +28,8 @@ struct Rehearsal {
   SearchContext context;  // of the present records, with this one's extent
 };
 
-// Those that the machine follows in simulation, at the rate that gives rows like those of `rows`.
+// Those that the machine follows in simulation, at the rate that gives rows like those of `rows`. `axis` as the file
+// has it, `range` of positions (m), `context` of the search, `settings` of the rows.
 std::vector<Rehearsal> rehearse(const machine::Machine& machine, std::size_t axis, const sim::MotionRange& range,
                                 const LogRows& rows, const SearchContext& context, const SignalSettings& settings);
 

@@ -25,7 +25,8 @@ struct EffectParameter {
   // In verdict.json: "pitch_m".
   std::string name() const { return key + sim::unit_suffix(unit); }
 };
-// Of an axis' effect. Throws std::logic_error for a key that the effect has not.
+// Of an axis' effect. Throws std::logic_error for a key that the effect has not. `values` and `errors` in SI, one for
+// each of a list.
 EffectParameter effect_parameter(const machine::AxisModel& axis, sim::EffectId effect, std::string_view key,
                                  std::vector<double> values, std::vector<double> errors);
 

@@ -13,7 +13,8 @@ namespace stiction::host {
 std::size_t power_of_two(std::size_t at_least);
 
 // What weight times (cosine, sine) takes off the residual's square, from the sums over residual times weight times
-// wave, weight squared times the wave of twice the order, and weight squared.
+// wave, weight squared times the wave of twice the order, and weight squared. `moment`: scalar products of the waves
+// with the residual.
 double gain_of(std::complex<double> moment, std::complex<double> twice, double square);
 
 // For all orders 0, step, 2 step, .. at once (Dutt, Rokhlin 1993; Greengard, Lee 2004): the places fall into bins, fine
@@ -23,7 +24,7 @@ class WaveSums {
  public:
   WaveSums(double step, double highest_order);
 
-  // Two sets of weights at `place` (m, from 0 to an eighth of 1/step).
+  // Two sets of weights at `place` (m, from 0 to an eighth of 1/step). `one` and `other`: two real sequences.
   void transform(const Eigen::VectorXd& place, const Eigen::VectorXd& one, const Eigen::VectorXd& other);
   // Their sums, at an order that counts steps.
   std::complex<double> one(std::size_t order) const;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/plant/friction/lugre.hpp"
+
 namespace stiction::host {
 
 Contact contact_of(const Motion& motion, const ContactShape& shape) {
@@ -15,7 +17,7 @@ Contact contact_of(const Motion& motion, const ContactShape& shape) {
     double limit = 1.0;
     if (stribeck) {
       const double ratio = step / (motion.period * shape.stribeck_velocity);
-      limit += (shape.static_ratio - 1.0) * std::exp(-ratio * ratio);
+      limit += (shape.static_ratio - 1.0) * sim::LuGre<>::stribeck(ratio);
     }
     const double left = std::exp(-shape.inverse_length * std::abs(step) / limit);
     const double to = std::copysign(limit, step);
@@ -30,10 +32,8 @@ Contact contact_of(const Motion& motion, const ContactShape& shape) {
 
 std::vector<double> stribeck_column(const Motion& motion, const std::vector<double>& level, double stribeck_velocity) {
   std::vector<double> column(level.size());
-  for (std::size_t i = 0; i < column.size(); ++i) {
-    const double ratio = motion.v[i] / stribeck_velocity;
-    column[i] = level[i] * std::exp(-ratio * ratio);
-  }
+  for (std::size_t i = 0; i < column.size(); ++i)
+    column[i] = level[i] * sim::LuGre<>::stribeck(motion.v[i] / stribeck_velocity);
   return column;
 }
 

@@ -10,8 +10,8 @@
 
 namespace stiction::host {
 
-// The contact of unit Coulomb level: s' = k (v - |v| s / g(v)), g(v) = 1 + (static_ratio - 1) exp(-(v/v_s)^2). With the
-// Coulomb level F_C, F_C s is the LuGre model's k_s z and k = k_s / F_C.
+// The contact of unit Coulomb level: s' = k (v - |v| s / g(v)), g(v) = 1 + (static_ratio - 1) stribeck(v/v_s), the law's own
+// curve (sim/plant/friction/lugre.hpp). With the Coulomb level F_C, F_C s is the LuGre model's k_s z and k = k_s / F_C.
 struct ContactShape {
   double inverse_length = 0.0;  // k, 1/m
   double static_ratio = 1.0;
@@ -27,7 +27,7 @@ struct Contact {
 // Each step is exact for the displacement it covers, whatever its length.
 Contact contact_of(const Motion& motion, const ContactShape& shape);
 
-// exp(-(v/v_s)^2) times the level of the contact: what Stribeck's effect adds to the force for one newton. `motion`: of
+// stribeck(v/v_s) times the level of the contact: what Stribeck's effect adds to the force for one newton. `motion`: of
 // the log; `level`: from contact_of(); `stribeck_velocity`: v_s, m/s, above 0.
 std::vector<double> stribeck_column(const Motion& motion, const std::vector<double>& level, double stribeck_velocity);
 

@@ -40,7 +40,7 @@ Eigen::Vector3d linear_part(const std::vector<SteadyPoint>& points, double rise_
   Eigen::VectorXd force(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto& point = points[static_cast<std::size_t>(i)];
-    regressors.row(i) << 1.0, -std::expm1(-point.velocity / rise_velocity), point.velocity;
+    regressors.row(i) << 1.0, sim::MaxwellSlip<>::risen(point.velocity / rise_velocity), point.velocity;
     force[i] = point.force;
   }
   const Eigen::Vector3d solution = regressors.colPivHouseholderQr().solve(force);
@@ -51,7 +51,7 @@ Eigen::Vector3d linear_part(const std::vector<SteadyPoint>& points, double rise_
 }  // namespace
 
 double SteadyCurve::at(double velocity) const {
-  return creeping - rise * std::expm1(-velocity / rise_velocity) + viscous * velocity;
+  return creeping + rise * sim::MaxwellSlip<>::risen(velocity / rise_velocity) + viscous * velocity;
 }
 
 SteadyCurve fit_steady_curve(const std::vector<SteadyPoint>& points) {

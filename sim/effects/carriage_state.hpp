@@ -39,7 +39,8 @@ class SlidingDirection {
 };
 
 // Force (N) against the motion of a friction that is proportional to the speed at this speed, `per_velocity` (N s/m).
-// Limited to half of what stops the carriage in one step, so that no slope, however steep, makes it chatter.
+// Limited to half of what stops the carriage in one step, so that no slope, however steep, makes it chatter. `velocity`
+// in m/s; `body`: the carriage.
 inline double damping_force(double per_velocity, double velocity, const Body& body) {
   return -std::min(per_velocity, 0.5 * body.mass / body.step) * velocity;
 }

@@ -15,11 +15,11 @@ namespace stiction::sim {
 
 class Harmonics {
  public:
-  // `period` (m) above 0; as many sines as cosines.
+  // `period` (m) above 0; as many sines as cosines. `cosine` and `sine`: amplitudes.
   Harmonics(double period, std::vector<double> cosine, std::vector<double> sine)
       : angle_per_metre_(2.0 * std::numbers::pi / period), cosine_(std::move(cosine)), sine_(std::move(sine)) {}
 
-  // Throws EffectError in the name of `effect`.
+  // Throws EffectError in the name of `effect`. `cosine` and `sine`: amplitudes.
   static void check(std::string_view effect, const std::vector<double>& cosine, const std::vector<double>& sine) {
     if (sine.size() != cosine.size())
       throw EffectError(effect, fmt::format("a list of {} as sine", sine.size()),

@@ -21,6 +21,7 @@ namespace stiction::sim {
 class ActingEffects {
  public:
   // `axis` as plant_axis() returns it, at rest at `position` (m); its clock begins at `time` (s). Throws EffectError.
+  // `step`: of the plant, s.
   ActingEffects(const machine::AxisModel& axis, double step, double position, double time = 0.0)
       : step_(step), start_(time), follower_(position) {
     for (const auto& parameters : effects_of<StructuralResonance>(axis))
@@ -64,6 +65,7 @@ class ActingEffects {
     double friction = 0.0;
   };
   // From position (m) and velocity (m/s) at the beginning of the step, and the motor's mean force (N) in it.
+  // `motor_force`: that mean, without what the effects add.
   Forces advance(double position, double velocity, double motor_force) {
     if (forces_.empty()) return forces(motor_force);
     state_ = {position, velocity, direction_.advance(velocity, step_), start_ + step_ * static_cast<double>(steps_++),

@@ -19,7 +19,7 @@ namespace {
 
 const std::filesystem::path root = STICTION_SOURCE_DIR;
 
-machine::Machine shipped() { return sim::read_machine(root / "sim" / "machine" / "shipped" / "mcfv5050ln.toml"); }
+machine::Machine shipped() { return sim::read_machine(root / "firmware" / "machine" / "shipped" / "mcfv5050ln.toml"); }
 
 std::string page_of(sim::EffectId effect) {
   std::ifstream stream(root / effect->folder / "page.md");

@@ -61,7 +61,7 @@ TEST(MadeUpEffect, IsOnTheReferencePageAndInTheTablesOfTheDocumentation) {
   EXPECT_NE(tables.find("| [end_cushion](../tests/effects/made_up/end_cushion/page.md) | a cushion before the end of "
                         "the travel | `begin` (m), `stiffness` (N/m^2) |\n"),
             std::string::npos);
-  EXPECT_NE(tables.find("| position_spring | end_cushion | the same stretch with and without"), std::string::npos);
+  EXPECT_NE(tables.find("| position_spring | end_cushion | the same segment with and without"), std::string::npos);
 }
 
 // Held at a place within it, a plant without current is pushed out; before it, it stays.
@@ -119,8 +119,8 @@ TEST(MadeUpEffect, IsFoundInRecordsAndShownOnAReport) {
   ASSERT_FALSE(found.charts.empty());
   EXPECT_EQ(found.charts.front().title, "Along the stroke");
   const auto page = host::diagnosis_report_html({"stiction diagnose", "0", input.machine, verdict});
-  for (const char* text : {"Cushion at the end of the travel", "the axis presses into something soft",
-                           "the end stop's buffer", "tests/effects/made_up/end_cushion/page.md"})
+  for (const char* text : {"Cushion at the end of the travel", "the axis meets an elastic cushion",
+                           "the buffer of the end stop", "tests/effects/made_up/end_cushion/page.md"})
     EXPECT_NE(page.find(text), std::string::npos) << text;
 }
 

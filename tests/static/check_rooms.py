@@ -80,7 +80,7 @@ ROOMS = {
     "sim/plant": {
         "sim/number": "the mathematics that its parts share",
         "firmware/machine/model": "the plant is built from a machine",
-        "sim/effects": "with what diagnosis added",
+        "sim/effects/*": "with what diagnosis added",
         "sim/plant/friction": "with one of the friction laws",
     },
     "sim/experiment": {

@@ -15,16 +15,11 @@ import phrases
 CHECKS = ("phrases", "citations", "parameters")
 ROOMS = ("firmware", "hal", "host", "sim", "tests", "toolchain", "docs", "examples")
 
-# Where each check looks: paths from the root, files or folders. A path in EXCEPT is left out of the folder above it.
+# Where each check looks: paths from the root, files or folders.
 FOLDERS = {
     "phrases": ("firmware", "hal", "host", "sim", "docs", "README.md"),
     "citations": ROOMS + ("README.md",),
     "parameters": ("firmware", "hal", "host", "sim", "toolchain"),
-}
-EXCEPT = {
-    "phrases": ("sim/effects"),
-    "citations": (),
-    "parameters": ("firmware/machine/file", "firmware/machine/model", "firmware/machine/configuration", "sim/effects", "sim/plant/friction", "host/diagnose"),
 }
 SUFFIXES = {
     "phrases": {".cpp", ".hpp", ".h", ".js", ".html", ".md"},
@@ -46,7 +41,7 @@ def inside(path, folders):
 
 def chosen(paths, check):
     return [path for path in paths
-            if inside(path, FOLDERS[check]) and not inside(path, EXCEPT[check]) and pathlib.PurePath(path).suffix in SUFFIXES[check]]
+            if inside(path, FOLDERS[check]) and pathlib.PurePath(path).suffix in SUFFIXES[check]]
 
 
 def read(root, path):

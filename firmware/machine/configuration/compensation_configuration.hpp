@@ -34,7 +34,7 @@ double learning_lead(const AxisModel& axis);
 std::vector<double> sliding_node_speeds();
 
 // A (speed, value) list, increasing in speed, read at `speed`: from zero at rest by straight lines, beyond its end by
-// the last one's slope.
+// the last one's slope. `speeds` in m/s; `values` in the unit of the result, one for each.
 double sliding_value(const std::vector<double>& speeds, const std::vector<double>& values, double speed);
 
 }  // namespace stiction::machine

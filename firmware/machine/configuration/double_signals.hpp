@@ -56,7 +56,9 @@ constexpr Real cut(Real x) {
 }
 constexpr Real opposite(Real x) { return -x; }
 constexpr Real negative(Real x) { return -x; }
+// `a` + `b`; in double precision nothing saturates, and the SaturationCounter stays.
 constexpr Real saturated_sum(Real a, Real b, SaturationCounter&) { return a + b; }
+// `a` - `b`, likewise with its SaturationCounter.
 constexpr Real saturated_difference(Real a, Real b, SaturationCounter&) { return a - b; }
 inline bool exceeds(Real x, Real bound) { return std::abs(x.value) > bound.value; }
 
@@ -139,6 +141,7 @@ struct DoubleSignals {
     if (a.value == 0.0) return 0;
     return std::clamp(std::ilogb(a.value) + 6, 0, highest);
   }
+  // Whether `value` is by a quarter above `reference`, beyond a `tolerance`; all in m.
   static bool has_grown(Distance value, Distance reference, Distance tolerance) {
     return value.value - tolerance.value > 1.25 * reference.value;
   }

@@ -13,6 +13,7 @@ namespace stiction::machine {
 // ConfigurationError. Whether limit switches are wired is told by their lines; a backend that reads them from
 // elsewhere sets supervision.negative_switch and positive_switch.
 template <class S>
+// `timing` and `axis`: of the machine file.
 ServoDriveConfig<S> configure_drive(const Timing& timing, const AxisModel& axis, const DriveAxisSetup& setup);
 
 // Of all axes.

@@ -10,6 +10,7 @@
 namespace stiction::machine {
 
 // `table`: that of the axis, at `path`; `machine`: its name and timing are read already. Throws MachineFileError.
+// `document`: names the place in messages.
 void check_compensation(const Document& document, const toml::table& table, const std::string& path,
                         const AxisModel& axis, const Machine& machine);
 

@@ -37,7 +37,8 @@ std::string describe_range(const Range& range, std::string_view unit);
 
 enum class ValueKind { number, whole_number, list };
 
-// What a value must be: "a value greater than 0 kg (moving mass)".
+// What a value must be: "a value greater than 0 kg (moving mass)". `kind` of value, its `range` in `unit`, and `text`,
+// what it is.
 std::string describe_expectation(ValueKind kind, const Range& range, std::string_view unit, std::string_view text);
 
 // Names as a message lists them: `"a", "b" or "c"`.

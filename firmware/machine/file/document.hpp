@@ -26,11 +26,13 @@ class Document {
   // removes the key.
   void apply_set(std::string_view assignment);
 
-  // Throws MachineFileError "PLACE: KEY: found ...; expected ...".
+  // Throws MachineFileError "PLACE: KEY: found ...; expected ...". `place` in the file; `key` with its path; `found`
+  // and `expected` as the message has them.
   [[noreturn]] void fail(const toml::source_region& place, std::string_view key, std::string_view found,
                          std::string_view expected) const;
 
-  // Refuses a key that is not among `known`, with the nearest of them as suggestion.
+  // Refuses a key that is not among `known`, with the nearest of them as suggestion. `place` in the file; `key` as it
+  // was found.
   [[noreturn]] void fail_unknown(const toml::source_region& place, std::string_view key,
                                  const std::vector<std::string_view>& known) const;
 

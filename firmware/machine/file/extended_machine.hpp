@@ -19,14 +19,15 @@ struct AxisEffects {
 // it reads back as a machine with these effects behind those of the file. Where the text cannot simply go on, because
 // of assignments in `set` (as on the command line, ReadOptions), because the file writes its effects as a list in one
 // line, or because an effect that an axis has only once is there already and so is replaced, the tree of the file is
-// written anew, and its comments are lost. Throws MachineFileError when the result is no valid machine file,
-// ValueError for effects with names, keys or values that `vocabulary` does not have.
+// written anew, and its comments are lost. Throws MachineFileError when the result is no valid machine file, ValueError
+// for effects with names, keys or values that `vocabulary` does not have. `file`: its path; `additions`: the effects of
+// each axis.
 std::string extended_machine(const std::filesystem::path& file, const Vocabulary& vocabulary,
                              const std::vector<std::string>& set, std::span<const AxisEffects> additions,
                              std::span<const std::string> comment);
 
 // One table [[axis.NAME.effect]] as text, its values in SI units. `force_motor`: the axis' motor is a force source,
-// which some keys take in volts. Throws ValueError as above.
+// which some keys take in volts. Throws ValueError as above. `axis`: its name; `vocabulary` has the keys of `effect`.
 std::string effect_table(const Vocabulary& vocabulary, const std::string& axis, const Effect& effect,
                          bool force_motor = false);
 

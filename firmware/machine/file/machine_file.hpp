@@ -26,9 +26,10 @@ struct ReadOptions {
 
 // The machine of a file, checked: every table of it, also friction models that are not in use and the overrides of
 // every experiment. `vocabulary`: what stands in the tables of friction models and effects. Throws MachineFileError.
+// `options`: an experiment and assignments to merge before.
 Machine read_machine(const std::filesystem::path& file, const Vocabulary& vocabulary, const ReadOptions& options = {});
 
-// The same from a text; `file` is the name shown in messages.
+// The same from a text; `file` is the name shown in messages. `text`: the content; `vocabulary` and `options` as above.
 Machine parse_machine(const std::string& file, const std::string& text, const Vocabulary& vocabulary,
                       const ReadOptions& options = {});
 

@@ -26,7 +26,7 @@ namespace stiction::machine {
 class TableReader {
  public:
   // `force_motor`: quantities take their unit of a motor driven by voltage. `vocabulary`: of friction models and
-  // effects, for whoever reads an axis.
+  // effects, for whoever reads an axis. `document`: names the place in messages.
   TableReader(const Document& document, bool force_motor, const Vocabulary* vocabulary = nullptr)
       : document_(document), force_motor_(force_motor), vocabulary_(vocabulary) {}
 
@@ -44,6 +44,7 @@ class TableReader {
     return owner;
   }
 
+  // The `node` at `path` as a table; `text` says what it should hold. Throws MachineFileError.
   const toml::table& as_table(const toml::node& node, const std::string& path, std::string_view text) const {
     if (!node.is_table()) document_.fail(node.source(), path, describe_node(node), fmt::format("a table ({})", text));
     return *node.as_table();

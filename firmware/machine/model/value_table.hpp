@@ -45,6 +45,7 @@ struct ValueTable {
 // Values that a table of the vocabulary cannot have, alone or on this axis.
 class ValueError : public std::invalid_argument {
  public:
+  // In the name of `table`; `what_found` and `what_expected` end the sentence "found ...; expected ...".
   ValueError(std::string_view table, std::string what_found, std::string what_expected)
       : std::invalid_argument(std::string(table) + ": found " + what_found + "; expected " + what_expected),
         name(table),

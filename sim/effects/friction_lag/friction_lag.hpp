@@ -28,6 +28,7 @@ class FrictionLag {
   }};
   static constexpr bool is_friction = true;
 
+  // `p`: its time constant; `body`: the carriage; `axis`: with the friction law in use.
   FrictionLag(const Parameters& p, Body body, const machine::AxisModel& axis)
       : share_(one_minus_exp(body.step / p.time)),
         friction_(steady_friction(axis.friction)),

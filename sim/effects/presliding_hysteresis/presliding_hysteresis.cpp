@@ -34,7 +34,7 @@ MaxwellSlipParameters presliding_elements(double coulomb, double stiffness, doub
   const double sharpness = stiffness * distance / coulomb;
   if (!(coulomb > 0.0) || !PreslidingHysteresis::sharpness.contains(sharpness * (1.0 + 1e-12)))
     throw EffectError(PreslidingHysteresis::name,
-                      fmt::format("stiffness times distance of {:g} N beside a Coulomb friction of {:g} N",
+                      fmt::format("stiffness times distance of {:g} N with a Coulomb friction of {:g} N",
                                   stiffness * distance, coulomb),
                       fmt::format("a product of {} to {} times Coulomb friction", PreslidingHysteresis::sharpness.low,
                                   PreslidingHysteresis::sharpness.high));

@@ -38,7 +38,8 @@ struct PreslidingHysteresis {
 };
 
 // The elements of that curve: its polygon of tangents at 0, 10, .. 90 and 98 % of Coulomb friction, so that initial
-// stiffness, the point at 90 % and Coulomb friction are exact. Throws EffectError beyond `sharpness`.
+// stiffness, the point at 90 % and Coulomb friction are exact. Throws EffectError beyond `sharpness`. `coulomb` in N,
+// `distance` in m.
 MaxwellSlipParameters presliding_elements(double coulomb, double stiffness, double distance);
 
 }  // namespace stiction::sim

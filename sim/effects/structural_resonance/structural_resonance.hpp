@@ -51,7 +51,7 @@ class StructuralResonance {
 
   // Force (N) on the load during the step.
   double force() const { return stiffness_ * (lead_ + 0.5 * step_ * rate_) + damping_ * rate_; }
-  // Ends the step, with the motor's force (N), force() and the change of the load's velocity (m/s).
+  // Ends the step, with the motor's force (N), force() and the change of the load's velocity (m/s). `motor_force` in N.
   void advance(double motor_force, double force, double change) {
     const double next = rate_ + step_per_motor_mass_ * (motor_force - force) - change;
     lead_ += 0.5 * step_ * (rate_ + next);

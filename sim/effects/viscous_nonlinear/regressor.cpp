@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "host/diagnose/effect_regressor.hpp"
+#include "sim/effects/viscous_nonlinear/viscous_nonlinear.hpp"
 
 namespace stiction::host::effects {
 namespace {
@@ -12,7 +13,7 @@ std::vector<double> grid(const SearchContext& context) {
 Columns columns(const SearchContext&, const Motion& motion, double velocity) {
   std::vector<double> column(motion.v.size());
   for (std::size_t i = 0; i < column.size(); ++i)
-    column[i] = std::copysign(-std::expm1(-std::abs(motion.v[i]) / velocity), motion.v[i]);
+    column[i] = std::copysign(sim::ViscousNonlinear::risen(std::abs(motion.v[i]) / velocity), motion.v[i]);
   return {column};
 }
 void describe(const SearchContext& context, double velocity, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,

@@ -27,6 +27,10 @@ class ViscousNonlinear {
   ViscousNonlinear(const Parameters& p, Body body)
       : slope_(p.force / p.velocity), per_velocity_(1.0 / p.velocity), body_(body) {}
 
+  // The share of it that is there at `ratio` times that speed, not negative.
+  static double risen(double ratio) { return one_minus_exp(ratio); }
+
+  // force risen(|v|/velocity) sgn v, as a slope at this speed.
   double force(const CarriageState& s) const {
     return damping_force(slope_ / relaxation_divisor(std::abs(s.velocity) * per_velocity_), s.velocity, body_);
   }

@@ -70,6 +70,10 @@ class LuGre {
   // From rest the deflection approaches the level exponentially.
   std::optional<Contact> contact() const { return Contact{coulomb_, stiffness_, coulomb_ * ln_10 / stiffness_}; }
 
+  // The share of the rise from Coulomb to static friction that is there at `ratio` Stribeck velocities.
+  // A function without effects that is called, as in relaxation_divisor(): where g is constant it costs nothing.
+  [[gnu::const, gnu::noinline]] static Real stribeck(Real ratio) { return exponential(-ratio * ratio); }
+
   // Contact deflection limit g(v), m (4.6).
   Real deflection_limit(Real velocity) const { return level(velocity) / stiffness_; }
 
@@ -97,11 +101,8 @@ class LuGre {
 
   // k_s g(v), N.
   [[gnu::always_inline]] Real level(Real velocity) const {
-    return coulomb_ + rise_ * fall(velocity * per_stribeck_velocity_);
+    return coulomb_ + rise_ * stribeck(velocity * per_stribeck_velocity_);
   }
-  // A function without effects that is called, as in relaxation_divisor(): where g is constant it costs nothing.
-  [[gnu::const, gnu::noinline]] static Real fall(Real ratio) { return exponential(-ratio * ratio); }
-
   Real coulomb_;                // F_C
   Real rise_;                   // F_Ts - F_C
   Real per_stribeck_velocity_;  // 1 / v_s

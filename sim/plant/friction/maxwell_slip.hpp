@@ -84,9 +84,11 @@ class MaxwellSlip {
     return (velocity + gain_ * (force - contact)) / (1.0 + gain_ * viscous_);
   }
   Real steady_force(Real velocity, Real direction) const {
-    const Real risen = rises_ ? rise_ * one_minus_exp(absolute(velocity) / rise_velocity_) : 0.0;
-    return (level() + risen) * direction + viscous_ * velocity;
+    const Real rise = rises_ ? rise_ * risen(absolute(velocity) / rise_velocity_) : 0.0;
+    return (level() + rise) * direction + viscous_ * velocity;
   }
+  // The share of the rise from creeping to sliding that is there at `ratio` rise velocities, not negative.
+  static Real risen(Real ratio) { return one_minus_exp(ratio); }
   // The curve of first loading rises; its point at 90 % is found by halves, from 0 to its last corner.
   std::optional<Contact> contact() const {
     Real stiffness = 0.0;
@@ -102,7 +104,7 @@ class MaxwellSlip {
   // Moves the contact for one step of held velocity (m/s); returns the sum of the elements' forces (N) at its end.
   Real move_contact(Real velocity) {
     const Real travel = velocity * step_;
-    const Real sliding = rises_ ? 1.0 + relative_rise_ * one_minus_exp(absolute(velocity) / rise_velocity_) : 1.0;
+    const Real sliding = rises_ ? 1.0 + relative_rise_ * risen(absolute(velocity) / rise_velocity_) : 1.0;
     Real contact = 0.0;
     for (Element& e : elements_) {
       const Real stretched = e.force + e.stiffness * travel;

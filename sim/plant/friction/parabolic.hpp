@@ -1,6 +1,6 @@
 // Friction model B2, parabolic (Mendricky 2006, 4.3): F = a |v|^(1/n) sgn(v). Its slope at standstill is infinite, so
 // an explicit step chatters; the step is solved implicitly for s = |v|^(1/n): s^n + (h a / m) s = |v + h F / m|.
-// A Coulomb level and a viscous slope may be beside the root, which the source's model does not have:
+// A Coulomb level and a viscous slope may be in addition to the root, which the source's model does not have:
 //   (1 + h mu_v / m) s^n + (h a / m) s = |v + h F / m| - h F_C / m, and s = 0 where the right side is not positive.
 #pragma once
 
@@ -26,8 +26,10 @@ class Parabolic {
   static constexpr std::array<machine::Parameter<Parameters>, 4> parameters{{
       {"force_at_1_m_per_s", "N", machine::not_negative(), &Parameters::force_at_1_m_per_s, {}, "friction a at 1 m/s"},
       {"order", "1", {1.0, 20.0}, &Parameters::order, {}, "order n of the root"},
-      {"coulomb", "N", machine::not_negative(), &Parameters::coulomb, 0.0, "Coulomb friction F_C beside the root"},
-      {"viscous", "N s/m", machine::not_negative(), &Parameters::viscous, 0.0, "viscous friction mu_v beside the root"},
+      {"coulomb", "N", machine::not_negative(), &Parameters::coulomb, 0.0,
+       "Coulomb friction F_C in addition to the root"},
+      {"viscous", "N s/m", machine::not_negative(), &Parameters::viscous, 0.0,
+       "viscous friction mu_v in addition to the root"},
   }};
   static double coulomb(const Parameters& p) { return p.coulomb; }
   static double viscous(const Parameters& p) { return p.viscous; }

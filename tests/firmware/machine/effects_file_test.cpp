@@ -106,7 +106,7 @@ TEST(EffectsFile, WhatCannotBeTogetherIsRefused) {
             "FILE:32: axis.B.effect[1]: found backlash with it twice on one axis; expected it once");
   // 1e6 N/m over 10 um is half of the 20 N of Coulomb friction.
   EXPECT_EQ(error_of_effect("name = \"presliding_hysteresis\"\nstiffness = \"1e6 N/m\"\ndistance = \"10 um\"\n"),
-            "FILE:29: axis.B.effect[0]: found presliding_hysteresis with stiffness times distance of 10 N beside a "
+            "FILE:29: axis.B.effect[0]: found presliding_hysteresis with stiffness times distance of 10 N with a "
             "Coulomb friction of 20 N; expected a product of 0.9 to 1000 times Coulomb friction");
 }
 
