@@ -26,8 +26,11 @@ class Document {
   // removes the key.
   void apply_set(std::string_view assignment);
 
+  // "FILE:LINE: KEY", as messages name a place.
+  std::string place(const toml::source_region& place, std::string_view key) const;
+
   // Throws MachineFileError "PLACE: KEY: found ...; expected ...".
-  [[noreturn]] void fail(const toml::source_region& place, std::string_view key, std::string_view found,
+  [[noreturn]] void fail(const toml::source_region& where, std::string_view key, std::string_view found,
                          std::string_view expected) const;
 
   // Refuses a key that is not among `known`, with the nearest of them as suggestion.
