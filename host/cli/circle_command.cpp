@@ -72,7 +72,8 @@ sim::CircleResult run_plan(const CirclePlan& plan, const CirclePlaces& places) {
 void write_circle_folder(const std::filesystem::path& folder, const CirclePlan& plan, const sim::CircleResult& result,
                          const nlohmann::ordered_json& json, const Invocation& invocation) {
   PendingFolder pending(folder);
-  pending.write("report.html", circle_report_html({"Circle: " + plan.machine.name, invocation.command_line,
+  const std::string title = plan.machine.axes.size() == 1 ? "Sine: " : "Circle: ";
+  pending.write("report.html", circle_report_html({title + plan.machine.name, invocation.command_line,
                                                    invocation.version, plan.machine, result}));
   pending.write("result.json", json.dump(2) + "\n");
   pending.commit();

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <numbers>
+#include <string>
+
+#include "firmware/machine/model/motor_force.hpp"
 #include "host/report/circle_table.hpp"
 
 namespace stiction::host {
@@ -20,26 +24,50 @@ std::string cell(const std::optional<double>& value, double scale) {
   return value ? fmt::format("{:.1f}", *value * scale) : "-";
 }
 
+machine::Effort effort_of(const machine::Machine& machine, const std::string& axis) {
+  for (const auto& each : machine.axes)
+    if (each.name == axis) return machine::effort_of(each.motor);
+  return machine::effort_of({});
+}
+
+// "peak current, A", or "peak voltage, V" where the motors are force sources.
+std::string effort_heading(const machine::Machine& machine) {
+  std::string names;
+  for (const auto& axis : machine.axes) {
+    const auto effort = machine::effort_of(axis.motor);
+    const auto name = fmt::format("{}, {}", effort.name, effort.unit);
+    if (names.find(name) == std::string::npos) names += (names.empty() ? "peak " : " or ") + name;
+  }
+  return names;
+}
+
 }  // namespace
 
 nlohmann::ordered_json circle_json(const sim::CircleResult& result, const machine::Machine& machine) {
-  nlohmann::ordered_json json{
-      {"schema", "stiction.circle/1"},           {"machine", machine.id},
-      {"radius_m", result.runs.front().radius},  {"signals", result.signals},
-      {"rows", nlohmann::ordered_json::array()}, {"circular_errors", nlohmann::ordered_json::array()}};
+  nlohmann::ordered_json json{{"schema", "stiction.circle/1"},
+                              {"machine", machine.id},
+                              {"motion", result.runs.front().is_circle() ? "circle" : "sine"},
+                              {"radius_m", result.runs.front().radius},
+                              {"signals", result.signals},
+                              {"rows", nlohmann::ordered_json::array()},
+                              {"circular_errors", nlohmann::ordered_json::array()}};
   for (const auto& row : circle_table(result, machine)) {
     nlohmann::ordered_json r{{"axis", row.axis},
                              {"friction", row.friction},
                              {"feed_m_per_min", row.feed * per_minute},
                              {"direction", name_of(row.direction)},
                              {"peak_error_um", row.error.simulated * micro},
-                             {"peak_error_quantised_um", row.error_quantised.simulated * micro},
-                             {"peak_current_A", row.current.simulated}};
+                             {"peak_error_quantised_um", row.error_quantised.simulated * micro}};
+    const auto effort = effort_of(machine, row.axis);
+    r[fmt::format("peak_{}_{}", effort.name, effort.unit)] = row.current.simulated;
+    if (!result.runs.front().is_circle())
+      r["frequency_Hz"] = row.feed / (2.0 * std::numbers::pi * result.runs.front().radius);
     if (row.error.published) r["published_simulation"] = reference_json(row.error.published, row.current.published);
     if (row.error.measured) r["measured"] = reference_json(row.error.measured, row.current.measured);
     json["rows"].push_back(std::move(r));
   }
   for (const auto& run : result.runs) {
+    if (!run.is_circle()) continue;
     nlohmann::ordered_json r{{"friction", run.friction},
                              {"feed_m_per_min", run.feed * per_minute},
                              {"direction", name_of(run.direction)},
@@ -56,18 +84,26 @@ nlohmann::ordered_json circle_json(const sim::CircleResult& result, const machin
 }
 
 std::string circle_text(const sim::CircleResult& result, const machine::Machine& machine) {
+  const auto& first = result.runs.front();
+  const auto motion = first.is_circle()
+                          ? fmt::format("circle R = {:g} mm", first.radius * 1e3)
+                          : fmt::format(
+                                "sine of axis {} with the amplitude of a circle of R = {:g} mm and its frequency, "
+                                "feed / (2 pi R)",
+                                first.axes.front().axis, first.radius * 1e3);
   std::string text = fmt::format(
-      "{}, circle R = {:g} mm, {} signals\n\n"
-      "                                        peak error, um                          peak current, A\n"
+      "{}, {}, {} signals\n\n"
+      "                                        peak error, um                          {}\n"
       "axis friction          feed    dir  simulated quantised published measured  simulated published measured\n"
       "                       m/min\n",
-      machine.name, result.runs.front().radius * 1e3, result.signals);
+      machine.name, motion, result.signals, effort_heading(machine));
   for (const auto& row : circle_table(result, machine))
     text += fmt::format("{:<4} {:<16} {:>6.4g} {:>5}  {:>9.2f} {:>9.0f} {:>9} {:>8}  {:>9.2f} {:>9} {:>8}\n", row.axis,
-                        row.friction, row.feed * per_minute, name_of(row.direction), row.error.simulated * micro,
-                        row.error_quantised.simulated * micro, cell(row.error.published, micro),
-                        cell(row.error.measured, micro), row.current.simulated, cell(row.current.published, 1.0),
-                        cell(row.current.measured, 1.0));
+                        row.friction, row.feed * per_minute, first.is_circle() ? name_of(row.direction) : "-",
+                        row.error.simulated * micro, row.error_quantised.simulated * micro,
+                        cell(row.error.published, micro), cell(row.error.measured, micro), row.current.simulated,
+                        cell(row.current.published, 1.0), cell(row.current.measured, 1.0));
+  if (!first.is_circle()) return text;
   text +=
       "\ncircular errors at the encoder, um (ISO 230-4, Annex E; least-squares centre, no filter)\n"
       "friction          feed    dir   circular G  radial F max  F min    both directions G(b)     D\n"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "firmware/machine/file/units.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/experiment_output.hpp"
@@ -24,6 +25,7 @@ struct ExperimentOptions {
   std::string log;
   std::string feed;
   std::string equations;
+  std::string jerk;
   std::string out;
   bool json = false;
 };
@@ -73,6 +75,7 @@ class ExperimentLogs {
                       {"friction", input.friction.front()},
                       {"current", "amplitude (peak) amperes"}};
       if (!run.empty()) log.comments.emplace_back("run", run);
+      if (input.jerk) log.comments.emplace_back("jerk", fmt::format("{:g} m/s^3", *input.jerk));
       places_.push_back(log_place(options.log, run));
       files_.push_back(std::make_unique<PendingFile>(places_.back()));
       write_csv_log(files_.back()->path(), log);
@@ -100,6 +103,17 @@ std::vector<std::string> equations_for(const Experiment& experiment, const std::
   return names;
 }
 
+double jerk_of(const std::string& text) {
+  constexpr const char* expected = "a jerk above zero, such as \"40 m/s^3\"";
+  try {
+    const double jerk = machine::parse_quantity(text, "m/s^3");
+    if (jerk > 0.0) return jerk;
+  } catch (const machine::UnitError& error) {
+    throw UsageError(fmt::format("--jerk: found '{}' ({}); expected {}", text, error.what(), expected));
+  }
+  throw UsageError(fmt::format("--jerk: found '{}'; expected {}", text, expected));
+}
+
 ExperimentInput input_of(const Experiment& experiment, const ExperimentOptions& options) {
   ExperimentInput input{options.machine.load(options.machine.machine, experiment.name), {}};
   if (!needs_of(experiment.name).feed_drive) input.friction = models_for(experiment, options.friction, input.machine);
@@ -107,13 +121,14 @@ ExperimentInput input_of(const Experiment& experiment, const ExperimentOptions& 
   for (const double feed : input.feeds)
     if (!(feed > 0.0)) throw UsageError(fmt::format("--feed: found '{}'; expected feeds above zero", options.feed));
   input.equations = equations_for(experiment, options.equations);
+  if (!options.jerk.empty()) input.jerk = jerk_of(options.jerk);
   return input;
 }
 
 void run(const Experiment& experiment, const ExperimentOptions& options, const Invocation& invocation) {
   auto input = input_of(experiment, options);
   ExperimentLogs logs(experiment, options, input);
-  const auto result = experiment.run(input);
+  const auto result = run_experiment(experiment, input);
   logs.commit();
   const auto json = experiment_json(result, input.machine);
   if (!options.out.empty()) {
@@ -160,6 +175,11 @@ void add_experiments(CLI::App& simulate, const Invocation& invocation) {
               "--equations", o->equations,
               fmt::format("version of the equations, or a list: {} [all]", fmt::join(experiment.equations, ", ")))
           ->type_name("FORM");
+    if (experiment.jerk)
+      command
+          ->add_option("--jerk", o->jerk,
+                       "limit of the jerk of the set-points [none: the acceleration steps where an arc begins or ends]")
+          ->type_name("\"NUMBER UNIT\"");
     if (experiment.keeps_logs)
       command->add_option("--log", o->log, "write the run as a log (CSV); one file per run if there are several")
           ->type_name("FILE");

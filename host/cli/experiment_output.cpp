@@ -126,7 +126,7 @@ nlohmann::ordered_json experiment_json(const sim::ExperimentResult& result, cons
 std::string experiment_text(const sim::ExperimentResult& result, const machine::Machine& machine) {
   std::string text = fmt::format("{}, {}", result.title, machine.name);
   if (!result.signals.empty()) text += fmt::format(", {} signals", result.signals);
-  text += "\n\n" + paragraph("source: ", result.question);
+  text += "\n\n" + paragraph("asked:  ", result.question);
   for (const auto& finding : result.findings)
     text += paragraph(&finding == &result.findings.front() ? "found:  " : "        ", finding);
   std::vector<std::string> sources;

@@ -17,6 +17,7 @@
 #include "host/log/read_log.hpp"
 #include "host/report/experiment_report.hpp"
 #include "host/response/response_result.hpp"
+#include "host/simulate/expected_figures.hpp"
 #include "host/simulate/frequency_response.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
@@ -172,6 +173,7 @@ void run(const Options& options, const Invocation& invocation) {
   try {
     const auto m = options.from.empty() ? simulated(options, machine) : measured(options, machine);
     result = response_result(m.responses, machine, loops, m.text);
+    if (options.from.empty()) add_expected_figures(result, machine, {}, loops.empty());
   } catch (const ResponseError& error) {
     throw UsageError(error.what());
   } catch (const LogError& error) {

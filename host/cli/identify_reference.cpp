@@ -8,6 +8,7 @@
 #include "host/cli/output.hpp"
 #include "host/identify/measured_machine_result.hpp"
 #include "host/report/experiment_report.hpp"
+#include "host/simulate/expected_figures.hpp"
 
 namespace stiction::host {
 
@@ -17,7 +18,8 @@ void identify_reference(const IdentifyReferenceOptions& options, const Invocatio
   const auto machine = options.machine.load(options.machine.machine, "circle", needs_of("identify --reference circle"));
   permitted_rows(machine);  // says what is missing before anything runs
   const auto study = study_measured_machine(machine, options.machine.load(options.machine.machine, "l-shape"));
-  const auto result = measured_machine_result(machine, study);
+  auto result = measured_machine_result(machine, study);
+  add_expected_figures(result, machine);
   const auto json = experiment_json(result, machine);
   if (!options.out.empty()) {
     PendingFolder folder(options.out);

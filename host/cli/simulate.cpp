@@ -17,27 +17,33 @@ namespace {
 struct CircleOptions {
   MachineOptions machine;
   std::string friction;
-  std::string feed = "16 m/min";
+  std::string feed;
   std::string direction = "ccw";
-  std::string radius = "90 mm";
+  std::string radius;
   std::string signals = "fixed";
   CirclePlaces places;
   bool json = false;
 };
+
+double radius_of(const std::string& text) {
+  try {
+    return machine::parse_quantity(text, "m");
+  } catch (const machine::UnitError& error) {
+    throw UsageError(fmt::format("--radius: found '{}' ({}); expected a length such as \"90 mm\"", text, error.what()));
+  }
+}
 
 CirclePlan plan_of(const CircleOptions& options) {
   CirclePlan plan;
   plan.machine = options.machine.load(options.machine.machine, "circle");
   plan.signals = options.signals == "double" ? SignalKind::double_precision : SignalKind::fixed_point;
   plan.friction = friction_models(options.friction, plan.machine);
-  plan.feeds = feeds(options.feed);
   plan.directions = directions(options.direction);
-  try {
-    plan.radius = machine::parse_quantity(options.radius, "m");
-  } catch (const machine::UnitError& error) {
-    throw UsageError(
-        fmt::format("--radius: found '{}' ({}); expected a length such as \"90 mm\"", options.radius, error.what()));
-  }
+  if (plan.machine.axes.size() == 1 && plan.directions.size() > 1)
+    throw UsageError(fmt::format("--direction: found '{}'; expected none, as the sine of one axis has no direction",
+                                 options.direction));
+  plan.radius = options.radius.empty() ? usual_radius(plan.machine) : radius_of(options.radius);
+  plan.feeds = options.feed.empty() ? std::vector{usual_feed(plan.machine, plan.radius)} : feeds(options.feed);
   return plan;
 }
 
@@ -61,18 +67,23 @@ void add_simulate(CLI::App& program, const Invocation& invocation) {
   auto* simulate = program.add_subcommand("simulate", "run an experiment: the firmware controls the simulated machine");
   expect_subcommand(*simulate, "experiment");
 
-  auto* circle = simulate->add_subcommand(
-      "circle", "circle of two axes with a jerk-limited start: peak errors, currents and ISO 230-4 terms of one lap");
+  auto* circle = simulate->add_subcommand("circle",
+                                          "circle of two axes with a jerk-limited start: peak errors, currents and ISO "
+                                          "230-4 terms of one lap; on a machine "
+                                          "with one axis, a sine with the amplitude and frequency of the circle");
   auto o = std::make_shared<CircleOptions>();
   o->machine.add_to(*circle, "shipped machine by name, or a machine file");
   o->machine.add_compensation_to(*circle);
   circle->add_option("--friction", o->friction, "friction model, list of models, or all [as in the machine file]")
       ->type_name("MODEL");
-  circle->add_option("--feed", o->feed, "feed along the path, or a list of feeds")
-      ->type_name("\"NUMBER UNIT\"")
-      ->capture_default_str();
+  circle
+      ->add_option("--feed", o->feed,
+                   "feed along the path, which is the highest speed of each axis, or a list of feeds [16 m/min, or "
+                   "slower where an axis requires it]")
+      ->type_name("\"NUMBER UNIT\"");
   circle->add_option("--direction", o->direction, "cw, ccw or both")->type_name("DIR")->capture_default_str();
-  circle->add_option("--radius", o->radius, "radius")->type_name("\"NUMBER UNIT\"")->capture_default_str();
+  circle->add_option("--radius", o->radius, "radius, the amplitude of each axis [90 mm, or the largest that fits]")
+      ->type_name("\"NUMBER UNIT\"");
   circle
       ->add_option("--signals", o->signals,
                    "fixed: the firmware in fixed point; double: the same laws in double precision")

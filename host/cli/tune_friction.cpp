@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <memory>
 
 #include "host/cli/commands.hpp"
@@ -13,6 +14,7 @@
 #include "host/cli/progress.hpp"
 #include "host/log/read_log.hpp"
 #include "host/report/experiment_report.hpp"
+#include "host/simulate/circle.hpp"
 #include "host/tune/tuned_machine.hpp"
 #include "sim/machine_file.hpp"
 
@@ -23,15 +25,38 @@ struct TuneOptions {
   std::vector<std::string> logs;
   MachineOptions machine;
   std::string axis;
-  std::string feed = "3.2 m/min, 8 m/min, 16 m/min, 24 m/min, 48 m/min";
-  std::string shown = "16 m/min";
+  std::string feed;
+  std::string shown;
   std::string out;
   bool no_pulse = false;
   bool json = false;
 };
 
-constexpr double timing_feed = 0.4;  // m/s, of the laps that the timing rule judges
-constexpr std::array<double, 3> feeds_without_logs{3.2 / 60.0, 16.0 / 60.0, 48.0 / 60.0};  // m/s
+// The circles of a tuning, unless feeds are given: those of the measurements on the cross table. Where an axis cannot
+// drive the fastest of them, all are slower by one factor and smaller.
+struct Circles {
+  double radius = 0.09;                                                                      // m
+  std::vector<double> feeds{3.2 / 60.0, 8.0 / 60.0, 16.0 / 60.0, 24.0 / 60.0, 48.0 / 60.0};  // m/s, before and after
+  double shown = 16.0 / 60.0;                                                                // of the charts
+  double timing = 0.4;  // of the laps for the timing rule
+  std::vector<double> without_logs{3.2 / 60.0, 16.0 / 60.0, 48.0 / 60.0};
+};
+
+Circles circles_of(const machine::Machine& machine) {
+  Circles circles;
+  circles.radius = usual_radius(machine);
+  const double highest = circles.feeds.back(), allowed = highest_feed(machine, circles.radius);
+  if (allowed >= highest) return circles;
+  const auto slower = [&](double& feed) {
+    // Two digits in m/min, as feeds are given.
+    feed = std::strtod(fmt::format("{:.2g}", feed * allowed / highest * 60.0).c_str(), nullptr) / 60.0;
+  };
+  for (auto* feeds : {&circles.feeds, &circles.without_logs})
+    for (double& feed : *feeds) slower(feed);
+  slower(circles.shown);
+  slower(circles.timing);
+  return circles;
+}
 
 // The axes to tune: the one named, else all that every log has channels of.
 std::vector<std::size_t> axes_to_tune(const std::string& name, const machine::Machine& machine,
@@ -52,27 +77,25 @@ std::vector<std::size_t> axes_to_tune(const std::string& name, const machine::Ma
                                name.empty() ? "none" : "'" + name + "'", machine.id, fmt::join(names, ", ")));
 }
 
-sim::CircleSettings circle_at(double feed) {
-  sim::CircleSettings circle;
-  circle.feed = feed;
-  return circle;
-}
-
 // Of an axis: those given, or circles of the machine file's simulation without compensation.
-std::vector<Log> logs_of(machine::Machine machine, std::size_t axis, const std::vector<Log>& given) {
+std::vector<Log> logs_of(machine::Machine machine, std::size_t axis, const std::vector<Log>& given,
+                         const Circles& circles) {
   if (!given.empty()) return given;
   machine.axes[axis].friction_compensation.reset();
   std::vector<Log> logs;
-  for (const double feed : feeds_without_logs) logs.push_back(simulated_circle(machine, axis, circle_at(feed), 2));
+  for (const double feed : circles.without_logs)
+    logs.push_back(simulated_circle(machine, axis, circle_settings(machine, feed, circles.radius), 2));
   return logs;
 }
 
 TunedCompensations tune(const TuneOptions& options, const machine::Machine& machine, const std::vector<Log>& logs) {
-  const auto shown = feeds(options.shown);
+  const auto circles = circles_of(machine);
+  const auto shown = options.shown.empty() ? std::vector{circles.shown} : feeds(options.shown);
   if (shown.size() != 1) throw UsageError(fmt::format("--show: found {} feeds; expected one", shown.size()));
   ComparisonSettings comparison;
-  comparison.circle = circle_at(shown.front());
-  comparison.feeds = feeds(options.feed);
+  comparison.circle = circle_settings(machine, shown.front(), circles.radius);
+  for (const auto& axis : machine.axes) check_circle(axis, comparison.circle);
+  comparison.feeds = options.feed.empty() ? circles.feeds : feeds(options.feed);
   if (std::find(comparison.feeds.begin(), comparison.feeds.end(), shown.front()) == comparison.feeds.end())
     comparison.feeds.push_back(shown.front());
   TunedCompensations all{machine, {}, {}, comparison.circle};
@@ -82,10 +105,10 @@ TunedCompensations tune(const TuneOptions& options, const machine::Machine& mach
     for (const auto k : chosen) {
       CompensationSettings settings;
       if (!options.no_pulse) settings.pulse = comparison.circle;
-      const auto lap = [k](const machine::Machine& with) {
-        return simulated_circle(with, k, circle_at(timing_feed), 2);
+      const auto lap = [&, k](const machine::Machine& with) {
+        return simulated_circle(with, k, circle_settings(machine, circles.timing, circles.radius), 2);
       };
-      auto tuning = tune_compensation(all.machine, k, logs_of(machine, k, logs), lap, settings);
+      auto tuning = tune_compensation(all.machine, k, logs_of(machine, k, logs, circles), lap, settings);
       all.machine = tuning.machine;
       all.tuned.emplace_back(k, std::move(tuning));
       progress.add(machine.axes[k].name);
@@ -138,9 +161,14 @@ void add_tune_friction(CLI::App& program, const Invocation& invocation) {
   o->machine.add_to(*command,
                     "shipped machine by name, or a machine file for drive and simulation, such as identified.toml");
   command->add_option("--axis", o->axis, "axis [all axes that every log has]")->type_name("NAME");
-  command->add_option("--feed", o->feed, "feeds of the circles for the comparison [" + o->feed + "]")
+  command
+      ->add_option("--feed", o->feed,
+                   "feeds of the circles for the comparison, or of the sines of one axis [3.2 to 48 m/min, or slower "
+                   "by one factor where the axes require it]")
       ->type_name("FEEDS");
-  command->add_option("--show", o->shown, "feed of the charts, at which the speed pulse is tuned [" + o->shown + "]")
+  command
+      ->add_option("--show", o->shown,
+                   "feed of the charts, at which the speed pulse is tuned [16 m/min, or a third of the fastest feed]")
       ->type_name("FEED");
   command->add_flag("--no-pulse", o->no_pulse, "omit the speed pulse, whose tuning takes 250 simulated laps per axis");
   command->add_option("--out", o->out, "write tuned.toml, report.html and result.json into this folder")

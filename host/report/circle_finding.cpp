@@ -77,8 +77,9 @@ CircleFinding circle_finding(const sim::CircleResult& result, const machine::Mac
   CircleFinding finding;
   finding.feed = feed;
   finding.headline =
-      fmt::format("At {:.4g} m/min the largest quadrant error is {:.1f} µm ({}, {}){}.", feed * 60.0,
-                  largest->error.simulated * 1e6, largest->axis, friction_label(largest->friction), beside(*largest));
+      fmt::format("At {:.4g} m/min the largest {} error is {:.1f} µm ({}, {}){}.", feed * 60.0,
+                  result.runs.front().is_circle() ? "quadrant" : "following", largest->error.simulated * 1e6,
+                  largest->axis, friction_label(largest->friction), beside(*largest));
   const auto model = only_model(rows);
   const auto errors = model ? mean_errors(rows) : std::string();
   if (!errors.empty())

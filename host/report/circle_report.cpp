@@ -3,14 +3,20 @@
 #include "host/report/circle_report.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <span>
 #include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
 
+#include "firmware/machine/model/motor_force.hpp"
 #include "host/report/assets.hpp"
 #include "host/report/circle_finding.hpp"
 #include "host/report/circle_table.hpp"
@@ -44,8 +50,10 @@ std::string packed_time(const std::vector<std::size_t>& instants, double period)
 }
 
 json run_json(const sim::CircleRun& run) {
-  const auto& [x, y] = run.axes;
-  const std::array<std::span<const double>, 5> channels{run.radial_deviation, x.error, y.error, x.current, y.current};
+  std::vector<std::span<const double>> channels;
+  if (run.is_circle()) channels.emplace_back(run.radial_deviation);
+  for (const auto& lap : run.axes) channels.emplace_back(lap.error);
+  for (const auto& lap : run.axes) channels.emplace_back(lap.current);
   const auto instants = select_instants(run.angle, channels, instants_per_lap);
   json out{{"friction", run.friction},
            {"feed", m_per_min(run.feed)},
@@ -54,12 +62,14 @@ json run_json(const sim::CircleRun& run) {
            {"instants", instants.size()},
            {"time", packed_time(instants, run.sample_period)},
            {"angle", packed(run.angle, instants, degree)},
-           {"radial", packed(run.radial_deviation, instants, micro)},
-           {"axes", json::array()},
-           {"G", run.errors.circular_error * micro},
-           {"F_max", run.errors.radial_error_max * micro},
-           {"F_min", run.errors.radial_error_min * micro},
-           {"centre", {run.errors.centre[0] * micro, run.errors.centre[1] * micro}}};
+           {"axes", json::array()}};
+  if (run.is_circle()) {
+    out["radial"] = packed(run.radial_deviation, instants, micro);
+    out["G"] = run.errors.circular_error * micro;
+    out["F_max"] = run.errors.radial_error_max * micro;
+    out["F_min"] = run.errors.radial_error_min * micro;
+    out["centre"] = {run.errors.centre[0] * micro, run.errors.centre[1] * micro};
+  }
   for (const auto& lap : run.axes)
     out["axes"].push_back({{"error", packed(lap.error, instants, micro)},
                            {"current", packed(lap.current, instants, 1.0)},
@@ -134,16 +144,25 @@ json conditions_json(const CircleReport& report) {
   }
   const auto& first = report.result.runs.front();
   Conditions conditions;
-  conditions.add("Plane", first.axes[0].axis + first.axes[1].axis);
-  conditions.add("Radius", joined(radii));
-  conditions.add("Feeds", joined(feeds) + " m/min");
-  conditions.add("Direction", joined(directions));
+  if (first.is_circle()) {
+    conditions.add("Plane", first.axes[0].axis + first.axes[1].axis);
+    conditions.add("Radius", joined(radii));
+    conditions.add("Feeds", joined(feeds) + " m/min");
+    conditions.add("Direction", joined(directions));
+  } else {
+    json frequencies = json::array();
+    for (const auto& run : report.result.runs) add_once(frequencies, fmt::format("{:.4g}", run.frequency()));
+    conditions.add("Axis", first.axes[0].axis);
+    conditions.add("Amplitude", joined(radii));
+    conditions.add("Highest speeds", joined(feeds) + " m/min");
+    conditions.add("Frequencies", joined(frequencies) + " Hz");
+  }
   conditions.add("Sample rate", joined(rates));
   conditions.add("Signals", signals_text(report.result.signals));
   conditions.add("Velocity feedback",
                  by_axis(machine, [](const auto& a) { return velocity_source_name(a.encoder.velocity); }));
   conditions.add("Motor model", by_axis(machine, [](const auto& a) { return motor_model_name(a.motor.model); }));
-  conditions.add("Circle fit", "least squares");
+  if (first.is_circle()) conditions.add("Circle fit", "least squares");
   conditions.add("Filter", "none");
   return conditions.json();
 }
@@ -158,13 +177,22 @@ json report_json(const CircleReport& report, const CircleFinding& finding) {
     packed_runs.push_back(run_json(run));
   }
   std::sort(feeds.begin(), feeds.end());
+  json axes = json::array(), efforts = json::array();
+  for (const auto& lap : runs.front().axes) {
+    axes.push_back(lap.axis);
+    const auto own = std::find_if(report.machine.axes.begin(), report.machine.axes.end(),
+                                  [&](const auto& axis) { return axis.name == lap.axis; });
+    const auto effort = machine::effort_of(own == report.machine.axes.end() ? machine::MotorParameters{} : own->motor);
+    efforts.push_back({{"name", effort.name}, {"unit", effort.unit}});
+  }
   const auto table = circle_table(report.result, report.machine);
   return {{"schema", "stiction.circle-report/1"},
           {"conditions", conditions_json(report)},
           {"models", models},
           {"feeds", feeds},
           {"directions", directions},
-          {"axes", {runs.front().axes[0].axis, runs.front().axes[1].axis}},
+          {"axes", axes},
+          {"efforts", efforts},
           {"selected_feed", m_per_min(finding.feed)},
           {"runs", packed_runs},
           {"table", table_json(table)},
@@ -173,13 +201,35 @@ json report_json(const CircleReport& report, const CircleFinding& finding) {
           {"machine", machine_json(report.machine)}};
 }
 
+// What drives the motors, by name; `amperes` is the word for it where it is a current.
+std::string effort_words(const CircleReport& report, std::string_view amperes) {
+  json words = json::array();
+  for (const auto& axis : report.machine.axes) {
+    const auto effort = machine::effort_of(axis.motor);
+    add_once(words, effort.unit == "A" ? amperes : effort.name);
+  }
+  return fmt::format("{}", fmt::join(words.get<std::vector<std::string>>(), " or "));
+}
+
 }  // namespace
 
 std::string circle_report_html(const CircleReport& report) {
   const auto finding = circle_finding(report.result, report.machine);
+  const bool circle = report.result.runs.front().is_circle();
   return report_page(
       {report.title, report.command, report.version}, assets::circle_html(),
-      {{"headline", escape_html(finding.headline)}, {"detail", escape_html(finding.detail)}},
+      {{"headline", escape_html(finding.headline)},
+       {"detail", escape_html(finding.detail)},
+       {"kind", circle ? "Circular test" : "Sine of one axis"},
+       {"scope",
+        circle ? "Circular test using the feedback signal (ISO 230-4 Annex E): shows errors of servo and friction at "
+                 "the encoder, never tool-point geometry."
+               : "Sine of one axis, with the amplitude and frequency of a circle, using the feedback signal: shows "
+                 "errors of servo and friction at the encoder, never tool-point geometry."},
+       {"reversal", circle ? "Quadrant" : "Reversal"},
+       {"whose", circle ? "both axes" : "the axis"},
+       {"effort", effort_words(report, "current")},
+       {"efforts", effort_words(report, "current amplitude")}},
       report_json(report, finding),
       {assets::circle_plots_js(), assets::circle_series_js(), assets::circle_tables_js(), assets::circle_js()});
 }

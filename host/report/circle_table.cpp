@@ -69,7 +69,8 @@ std::optional<double> ComparedFigure::published_deviation() const {
 
 std::vector<CircleTableRow> circle_table(const sim::CircleResult& result, const machine::Machine& machine) {
   std::vector<CircleTableRow> table;
-  for (std::size_t axis = 0; axis < 2; ++axis)
+  const std::size_t axes = result.runs.empty() ? 0 : result.runs.front().axes.size();
+  for (std::size_t axis = 0; axis < axes; ++axis)
     for (const auto& run : result.runs) table.push_back(make_row(run, run.axes[axis], machine));
   return table;
 }

@@ -113,7 +113,7 @@ std::string verdict(const sim::ExperimentResult& result) {
                           : row.text.empty()   ? friction_label(row.friction)
                                                : fmt::format("{} ({})", row.text, friction_label(row.friction)));
   }
-  if (expected == 0) return "The machine file states no expected figures for this experiment.";
+  if (expected == 0) return "The machine file states no expected figures for this run.";
   auto text = fmt::format("{} of {} figures are as expected", expected - differing.size(), expected);
   if (differing.size() == 1 || differing.size() == 2)
     text += fmt::format("; different: {}", fmt::join(differing, ", "));

@@ -51,10 +51,8 @@ std::vector<CircleCase> cases_of(const CirclePlan& plan) {
   for (const auto& friction : plan.friction)
     for (const double feed : plan.feeds)
       for (const auto direction : plan.directions) {
-        CircleCase c{plan.machine, {}, plan.signals};
+        CircleCase c{plan.machine, circle_settings(plan.machine, feed, plan.radius), plan.signals};
         use_friction(c.machine, friction);
-        c.settings.feed = feed;
-        c.settings.radius = plan.radius;
         c.settings.direction = direction;
         if (learns(c.machine)) c.settings.laps_before = learning_laps;
         check_circle(c.machine, c.settings);
@@ -96,24 +94,30 @@ sim::CircleResult run_circles(const CirclePlan& plan, const std::function<void()
     }
     result.runs.push_back(std::move(*runs[i]));
   }
-  if (plan.directions.size() == 2) join_directions(result.runs);
+  if (plan.directions.size() == 2 && result.runs.front().is_circle()) join_directions(result.runs);
   return result;
 }
 
 sim::CircleRun run_traced(const CircleCase& c, const std::filesystem::path& file) {
   const bool fixed = c.signals == SignalKind::fixed_point;
-  const std::vector<std::string> comments{
-      "log: stiction simulate circle",
+  std::vector<std::string> comments{
+      c.machine.axes.size() == 2 ? "log: stiction simulate circle"
+                                 : "log: stiction simulate circle, a sine of one axis",
       fmt::format("machine: {}", c.machine.name),
       fmt::format("friction: {}", friction_in_use(c.machine)),
       fmt::format("feed: {:g} m/min", c.settings.feed * 60.0),
       fmt::format("radius: {:g} mm", c.settings.radius * 1e3),
       fmt::format("direction: {}", c.settings.direction == sim::Direction::clockwise ? "cw" : "ccw"),
-      fmt::format("signals: {}", fixed ? FixedSignals::name : machine::DoubleSignals::name),
-      "current: amplitude (peak) amperes"};
+      fmt::format("signals: {}", fixed ? FixedSignals::name : machine::DoubleSignals::name)};
   std::vector<std::string> axes;
-  for (const auto& axis : c.machine.axes) axes.push_back(axis.name);
-  machine::TraceWriter writer(file, axes, comments);
+  std::vector<bool> force_sources;
+  for (const auto& axis : c.machine.axes) {
+    axes.push_back(axis.name);
+    force_sources.push_back(axis.motor.model == machine::MotorModel::force);
+  }
+  if (std::find(force_sources.begin(), force_sources.end(), false) != force_sources.end())
+    comments.emplace_back("current: amplitude (peak) amperes");
+  machine::TraceWriter writer(file, axes, comments, force_sources);
   std::optional<sim::CircleRun> run;
   std::exception_ptr fault;
   try {

@@ -1,5 +1,8 @@
 #include "host/simulate/experiments.hpp"
 
+#include "host/simulate/expected_figures.hpp"
+#include "host/simulate/machine_needs.hpp"
+
 namespace stiction::host {
 
 std::span<const Experiment> experiments() {
@@ -16,6 +19,7 @@ std::span<const Experiment> experiments() {
        .text = "a path with standstill of one axis: residual current there, and errors at the two restarts",
        .run = run_l_shape,
        .keeps_logs = true,
+       .jerk = true,
        .compensation = true},
       {.name = "presliding",
        .text = "slow force ramps below break-away: displacement that does not return",
@@ -39,6 +43,16 @@ std::span<const Experiment> experiments() {
        .equations = {equations_corrected, equations_printed}},
   };
   return table;
+}
+
+sim::ExperimentResult run_experiment(const Experiment& experiment, const ExperimentInput& input) {
+  auto result = experiment.run(input);
+  if (needs_of(experiment.name).one_axis)
+    for (auto& figure : result.figures) figure.axis = input.machine.axes.front().name;
+  std::map<std::string, double> options;
+  if (input.jerk) options["jerk"] = *input.jerk;
+  add_expected_figures(result, input.machine, options);
+  return result;
 }
 
 }  // namespace stiction::host

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@ struct ExperimentInput {
   std::vector<std::string> friction;     // the models to run, at least one; none without axes
   std::vector<double> feeds{};           // m/s, at least one; none where the experiment has no --feed
   std::vector<std::string> equations{};  // at least one; none where the experiment has no --equations
+  std::optional<double> jerk{};          // m/s^3, to which set-points are limited; none: as the experiment has them
   // Takes the log of a run; `run` tells several runs of one model apart ("24 m/min") and is empty where there is one.
   // Empty: no logs are wanted.
   std::function<void(const std::string& run, Log)> keep_log = {};
@@ -35,10 +37,15 @@ struct Experiment {
   bool keeps_logs = false;               // calls keep_log
   const char* feeds = nullptr;           // what --feed is unless it is given; null: the experiment has no --feed
   std::vector<std::string> equations{};  // what --equations chooses from, all unless it is given
+  bool jerk = false;                     // whether its set-points can be limited: it has --jerk
   bool compensation = false;             // whether it shows what friction compensation does: it has --compensation
 };
 
 std::span<const Experiment> experiments();
+
+// Runs it, and puts the expected figures of the machine file to its figures. Throws what the experiment throws, and
+// MachineFileError for an expected value in a unit that is not the figure's.
+sim::ExperimentResult run_experiment(const Experiment& experiment, const ExperimentInput& input);
 
 // The experiments, firmware in fixed point where control takes part. Throw FaultTripped.
 sim::ExperimentResult run_constant_velocity(const ExperimentInput& input);

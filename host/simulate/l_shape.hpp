@@ -1,6 +1,8 @@
 // The irregular path (Mendricky 2006, 6.4) on one machine: what is left at standstill and the two restarts of Y.
 #pragma once
 
+#include <optional>
+
 #include "firmware/machine/model/machine.hpp"
 #include "host/simulate/control_run.hpp"
 #include "sim/experiment/experiment_result.hpp"
@@ -18,11 +20,14 @@ struct LShapeRun {
   double kept_current() const { return -standing_current; }
 };
 
-// Throws InfeasibleMotion for a machine without two axes, or with one that cannot drive the path.
-void check_l_shape(const machine::Machine& machine);
+// Throws InfeasibleMotion for a machine without two axes, or with one that cannot drive the path, and for a `jerk`
+// (m/s^3) lower than that of the arcs.
+void check_l_shape(const machine::Machine& machine, std::optional<double> jerk = {});
 
 // With the friction models that the machine's axes use, firmware in fixed point. The first axis of the machine is X,
-// the second Y. Throws InfeasibleMotion, FaultTripped.
-LShapeRun drive_l_shape(const machine::Machine& machine, const TraceSink<FixedSignals>& trace = {});
+// the second Y. `trace` is given every tick. `jerk` (m/s^3): the limit of the jerk of the set-points; none: the
+// acceleration steps where arcs begin and end, and at the start. Throws InfeasibleMotion, FaultTripped.
+LShapeRun drive_l_shape(const machine::Machine& machine, const TraceSink<FixedSignals>& trace = {},
+                        std::optional<double> jerk = {});
 
 }  // namespace stiction::host

@@ -13,11 +13,12 @@ namespace {
 constexpr std::array<std::string_view, 1> with_bristles{"lugre"};
 constexpr std::array<std::string_view, 2> with_sticking{"lugre", "classical"};
 
-constexpr std::string_view for_a_circle = "one for each coordinate of the circle";
+constexpr std::string_view for_a_circle = "one for each coordinate of the circle, or one alone for a sine";
+constexpr std::string_view for_both_coordinates = "one for each coordinate of the circle";
 
 constexpr std::array table{
     MachineNeeds{.command = ""},
-    MachineNeeds{.command = "circle", .least_axes = 2, .most_axes = 2, .why = for_a_circle},
+    MachineNeeds{.command = "circle", .most_axes = 2, .why = for_a_circle},
     MachineNeeds{.command = "constant-velocity", .one_axis = true},
     MachineNeeds{.command = "impact", .one_axis = true},
     MachineNeeds{
@@ -30,21 +31,18 @@ constexpr std::array table{
     MachineNeeds{.command = "frequency-response --loop current",
                  .current_controller = true,
                  .why = "of which the current loop consists"},
-    MachineNeeds{.command = "compare --reference circle",
-                 .least_axes = 2,
-                 .most_axes = 2,
-                 .circle_references = true,
-                 .why = for_a_circle},
+    MachineNeeds{
+        .command = "compare --reference circle", .most_axes = 2, .circle_references = true, .why = for_a_circle},
     MachineNeeds{.command = "identify --reference circle",
                  .least_axes = 2,
                  .most_axes = 2,
                  .circle_references = true,
-                 .why = for_a_circle},
+                 .why = for_both_coordinates},
     MachineNeeds{.command = "diagnose --reference circle",
                  .least_axes = 2,
                  .most_axes = 2,
                  .circle_references = true,
-                 .why = for_a_circle},
+                 .why = for_both_coordinates},
     MachineNeeds{.command = "machine", .least_axes = 0},
 };
 

@@ -18,10 +18,11 @@ machine::Machine one_axis(const machine::Machine& machine, std::size_t axis) {
 
 QuadrantRun run_quadrants(const machine::Machine& machine, std::size_t axis, const sim::CircleSettings& settings,
                           int laps, const TraceSink<FixedSignals>& trace, const CurrentNoise& noise) {
-  check_circle(machine, settings);
+  check_circle(machine.axes.at(axis), settings);
   const machine::Machine one = one_axis(machine, axis);
+  const std::size_t coordinate = axis % 2;  // the first and every second axis along x of the circle
   const sim::CirclePath path(settings);
-  const std::array<double, 1> start{path.at(0.0).axes[axis].position};
+  const std::array<double, 1> start{path.at(0.0).axes[coordinate].position};
   ControlRun<FixedSignals> run(one, start);
   constexpr double turn = 2.0 * std::numbers::pi, first = sim::CirclePath::lap_begin - turn;
   std::mt19937_64 random(noise.seed);
@@ -31,7 +32,7 @@ QuadrantRun run_quadrants(const machine::Machine& machine, std::size_t axis, con
   for (;;) {
     const double turned = path.at(std::max(0.0, run.set_point_time())).turned - first;
     if (turned >= turn * laps) break;
-    std::array<sim::AxisSetPoint, 1> set{path.at(run.time()).axes[axis]};
+    std::array<sim::AxisSetPoint, 1> set{path.at(run.time()).axes[coordinate]};
     if (noise.rms > 0.0) set[0].injection = amperes(random);
     run.tick(set, trace);
     const auto& s = run.signals(0);

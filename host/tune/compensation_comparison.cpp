@@ -53,7 +53,7 @@ bool compares(const machine::Machine& machine, CompensationKind kind) {
 bool can_drive(const machine::Machine& machine, sim::CircleSettings circle, double feed) {
   circle.feed = feed;
   try {
-    check_circle(machine, circle);
+    for (const auto& axis : machine.axes) check_circle(axis, circle);
     return true;
   } catch (const InfeasibleMotion&) {
     return false;

@@ -40,16 +40,18 @@ class Edits {
   std::vector<machine::MachineEdit> list_;
 };
 
-// Every key that the machine file's tables describe (firmware/machine/file/compensation_parameters.hpp).
+// Every key that the machine file's tables describe (firmware/machine/file/compensation_parameters.hpp). `force_motor`:
+// the motor of the axis is a force source, for which some keys have another unit.
 template <class T>
-void write(Edits& edits, const std::string& table, const T& values) {
+void write(Edits& edits, const std::string& table, const T& values, bool force_motor) {
   for (const auto& parameter : machine::Table<T>::parameters) {
     const Path key{table, std::string(parameter.key)};
     std::visit(
         [&](auto member) {
           const auto& value = values.*member;
           using Value = std::decay_t<decltype(value)>;
-          const std::string unit(parameter.unit);
+          const std::string unit(force_motor && !parameter.unit_of_force_motor.empty() ? parameter.unit_of_force_motor
+                                                                                       : parameter.unit);
           if constexpr (std::is_same_v<Value, std::vector<double>>)
             edits.quantities(key, value, unit);
           else if constexpr (std::is_same_v<Value, std::optional<double>>) {
@@ -74,12 +76,13 @@ std::string tuned_machine(const std::filesystem::path& file, const std::vector<s
   for (const auto& [k, tuning] : all.tuned) {
     const auto& axis = all.machine.axes[k];
     const auto& compensation = *axis.friction_compensation;
+    const bool force_motor = axis.motor.model == machine::MotorModel::force;
     Edits own({"axis", axis.name, "friction_compensation"});
     own.remove({});  // what stood there was another tuning's
     own.text({"use"}, name_of(compensation.use));
-    write(own, "friction", *compensation.friction);
-    write(own, "learning", *compensation.learning);
-    if (compensation.pulse) write(own, "pulse", *compensation.pulse);
+    write(own, "friction", *compensation.friction, force_motor);
+    write(own, "learning", *compensation.learning, force_motor);
+    if (compensation.pulse) write(own, "pulse", *compensation.pulse, force_motor);
     edits.insert(edits.end(), own.list().begin(), own.list().end());
   }
   return machine::edited_machine(file, set, edits, comment);

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string_view>
+
+#include "firmware/machine/model/motor_force.hpp"
 
 namespace stiction::host {
 namespace {
@@ -15,6 +18,12 @@ constexpr double magnification = 1000.0;
 // "16": of a feed in m/min, for names and words.
 std::string feed_text(double feed) { return fmt::format("{:g}", std::round(feed * metre_per_minute * 1e6) * 1e-6); }
 
+// An error (m) in micrometres, with two digits or without decimals.
+std::string error_text(double error) {
+  const double um = 1e6 * error;
+  return um < 100.0 ? fmt::format("{:.2g}", um) : fmt::format("{:.0f}", um);
+}
+
 std::string timing_sentence(const machine::Machine& machine, const std::string& axis, const JudgedLap& lap) {
   return fmt::format(
       "{}: with a look-ahead of {:.0f} us the current comes {} ({:+.0f} us, standard error {:.0f} us over {} "
@@ -23,24 +32,29 @@ std::string timing_sentence(const machine::Machine& machine, const std::string& 
       1e6 * lap.timing.standard_error, lap.timing.reversals);
 }
 
+std::string_view unit_on(const machine::Machine& machine, std::size_t axis) {
+  return machine::effort_of(machine.axes[axis].motor).unit;
+}
+
 std::vector<std::string> findings(const TunedCompensations& all) {
   std::vector<std::string> sentences;
   for (const auto& [k, tuning] : all.tuned) {
     const auto& axis = all.machine.axes[k].name;
     const auto& friction = tuning.friction;
     sentences.push_back(fmt::format(
-        "{}: {} presliding elements sum up to {:.3g} A of Coulomb friction. Of {:.3g} A rms without the part of the "
-        "mass, elements and sliding curve leave a residual of {:.2g} A rms.",
-        axis, friction.friction.level.size(), friction.coulomb, friction.current_rms, friction.residual_rms));
+        "{}: {} presliding element{} to {:.3g} {unit} of Coulomb friction. Of {:.3g} {unit} rms "
+        "without the part of the mass, elements and sliding curve leave a residual of {:.2g} {unit} rms.",
+        axis, friction.friction.level.size(), friction.friction.level.size() == 1 ? " comes" : "s sum up",
+        friction.coulomb, friction.current_rms, friction.residual_rms, fmt::arg("unit", unit_on(all.machine, k))));
     for (const auto& lap : tuning.laps) sentences.push_back(timing_sentence(all.machine, axis, lap));
     for (const auto& note : friction.notes) sentences.push_back(fmt::format("{}: {}.", axis, note));
     if (tuning.pulse)
-      sentences.push_back(
-          fmt::format("{}: with the best of {} speed pulses the error is {:.2g} um instead of {:.2g} um at {} m/min: "
-                      "{:.3g} mm/s, {:.2g} ms long, {:.2g} ms after the reversal.",
-                      axis, tuning.pulse->evaluations, 1e6 * tuning.pulse->error, 1e6 * tuning.pulse->error_off,
-                      feed_text(all.drawn.feed), 1e3 * tuning.pulse->pulse.amplitude,
-                      1e3 * tuning.pulse->pulse.duration, 1e3 * tuning.pulse->pulse.delay));
+      sentences.push_back(fmt::format(
+          "{}: with the best of {} speed pulses the error is {} um instead of {} um at {} m/min: "
+          "{:.3g} mm/s, {:.2g} ms long, {:.2g} ms after the reversal.",
+          axis, tuning.pulse->evaluations, error_text(tuning.pulse->error), error_text(tuning.pulse->error_off),
+          feed_text(all.drawn.feed), 1e3 * tuning.pulse->pulse.amplitude, 1e3 * tuning.pulse->pulse.duration,
+          1e3 * tuning.pulse->pulse.delay));
   }
   for (const auto& circle : all.circles)
     if (circle.dropped)
@@ -57,7 +71,12 @@ std::vector<sim::Figure> figures(const TunedCompensations& all) {
       const auto name = fmt::format("{}_{}_{}_m_per_min", axis, name_of(circle.kind), feed_text(circle.feed));
       const auto text = fmt::format("{} at {} m/min, {}", axis, feed_text(circle.feed), words_of(circle.kind));
       list.push_back({"peak_error_" + name, "um", "largest error, " + text, 1e6 * circle.peak_error[k], {}});
-      list.push_back({"peak_current_" + name, "A", "largest current, " + text, circle.peak_current[k], {}});
+      const auto effort = machine::effort_of(all.machine.axes[k].motor);
+      list.push_back({fmt::format("peak_{}_{}", effort.name, name),
+                      std::string(effort.unit),
+                      fmt::format("largest {}, {}", effort.name, text),
+                      circle.peak_current[k],
+                      {}});
     }
   return list;
 }
@@ -94,7 +113,7 @@ sim::Chart error_chart(const TunedCompensations& all, std::size_t axis) {
   sim::Chart chart;
   chart.title =
       fmt::format("Error of {} over a lap at {} m/min", all.machine.axes[axis].name, feed_text(all.drawn.feed));
-  chart.x_label = "angle along the circle, deg";
+  chart.x_label = all.machine.axes.size() == 1 ? "phase of the sine, deg" : "angle along the circle, deg";
   chart.y_label = "set minus actual position, um";
   chart.shape = {.wide = true, .height = sim::Shape::Height::low};
   for (const auto& circle : all.circles) {
@@ -126,11 +145,13 @@ sim::Chart feed_chart(const TunedCompensations& all, std::size_t axis) {
   return chart;
 }
 
-sim::Chart presliding_chart(const std::string& axis, const machine::FrictionFeedforwardParameters& friction) {
+sim::Chart presliding_chart(const machine::AxisModel& of, const machine::FrictionFeedforwardParameters& friction) {
+  const auto& axis = of.name;
+  const auto effort = machine::effort_of(of.motor);
   sim::Chart chart;
   chart.title = "Presliding of " + axis;
   chart.x_label = "displacement since the reversal, um";
-  chart.y_label = "current, A";
+  chart.y_label = fmt::format("{}, {}", effort.name, effort.unit);
   chart.caption = "Stop elements found from the logs, from sliding in one direction to sliding in the other.";
   chart.logarithmic_x = true;
   sim::Series series{.name = "found", .x = {}, .y = {}};
@@ -145,11 +166,13 @@ sim::Chart presliding_chart(const std::string& axis, const machine::FrictionFeed
   return chart;
 }
 
-sim::Chart sliding_chart(const std::string& axis, const FrictionTuning& tuning) {
+sim::Chart sliding_chart(const machine::AxisModel& of, const FrictionTuning& tuning) {
+  const auto& axis = of.name;
+  const auto effort = machine::effort_of(of.motor);
   sim::Chart chart;
   chart.title = "Sliding friction of " + axis;
   chart.x_label = "speed, m/min";
-  chart.y_label = "current against the motion, A";
+  chart.y_label = fmt::format("{} against the motion, {}", effort.name, effort.unit);
   chart.caption = "Coulomb level and sliding curve.";
   sim::Series forward{.name = "forward", .x = {}, .y = {}}, backward{.name = "backward", .x = {}, .y = {}};
   for (std::size_t i = 0; i < tuning.friction.speed.size(); ++i) {
@@ -175,8 +198,8 @@ sim::ExperimentResult tuning_result(const TunedCompensations& all) {
   for (std::size_t k = 0; k < all.machine.axes.size(); ++k) result.charts.push_back(feed_chart(all, k));
   for (std::size_t k = 0; k < all.machine.axes.size(); ++k) result.charts.push_back(error_chart(all, k));
   for (const auto& [k, tuning] : all.tuned) {
-    result.charts.push_back(presliding_chart(all.machine.axes[k].name, tuning.friction.friction));
-    result.charts.push_back(sliding_chart(all.machine.axes[k].name, tuning.friction));
+    result.charts.push_back(presliding_chart(all.machine.axes[k], tuning.friction.friction));
+    result.charts.push_back(sliding_chart(all.machine.axes[k], tuning.friction));
   }
   return result;
 }

@@ -47,19 +47,19 @@ double mean(const std::vector<double>& values) {
 }  // namespace
 
 CircleMeasurement::CircleMeasurement(const CircleSettings& settings, double sample_period,
-                                     const std::array<std::string, 2>& axes) {
+                                     const std::vector<std::string>& axes) {
   run_.feed = settings.feed;
   run_.radius = settings.radius;
   run_.direction = settings.direction;
   run_.sample_period = sample_period;
-  for (std::size_t k = 0; k < 2; ++k) run_.axes[k].axis = axes[k];
+  for (const auto& axis : axes) run_.axes.emplace_back().axis = axis;
 }
 
 void CircleMeasurement::add(const CirclePath::Point& set, const std::array<CircleAxisSample, 2>& axes) {
   if (set.turned < CirclePath::lap_begin || set.turned >= CirclePath::lap_end) return;
   run_.angle.push_back(std::atan2(set.axes[1].position, set.axes[0].position));
-  run_.radial_deviation.push_back(std::hypot(axes[0].position, axes[1].position) - run_.radius);
-  for (std::size_t k = 0; k < 2; ++k) {
+  if (run_.is_circle()) run_.radial_deviation.push_back(std::hypot(axes[0].position, axes[1].position) - run_.radius);
+  for (std::size_t k = 0; k < run_.axes.size(); ++k) {
     auto& lap = run_.axes[k];
     lap.error.push_back(axes[k].error);
     lap.current.push_back(axes[k].current);
@@ -72,7 +72,7 @@ void CircleMeasurement::add(const CirclePath::Point& set, const std::array<Circl
 CircleRun CircleMeasurement::finish() const {
   if (run_.angle.empty()) throw std::logic_error("circle: the evaluated lap was not reached");
   CircleRun run = run_;
-  run.errors = circular_errors(run.angle, run.radial_deviation);
+  if (run.is_circle()) run.errors = circular_errors(run.angle, run.radial_deviation);
   return run;
 }
 

@@ -1,7 +1,9 @@
-// What a circle run leaves behind: one lap of both axes and the figures taken from it. SI units throughout.
+// What a circle run leaves behind: one lap of both axes and the figures taken from it; of a machine with one axis that
+// axis' part of the circle, a sine. SI units throughout.
 #pragma once
 
 #include <array>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -44,9 +46,12 @@ struct CircleRun {
   double sample_period = 0.0;            // s
   std::vector<double> angle;             // rad, polar angle of the set-point, counted from +X to +Y, over one lap
   std::vector<double> radial_deviation;  // m, |position| - radius
-  std::array<AxisLap, 2> axes;
+  std::vector<AxisLap> axes;  // two; one of a sine, which has no deviation from a circle and no errors of one
   CircularErrors errors;
   std::optional<BidirectionalErrors> both_directions;  // where the other direction was run too
+
+  bool is_circle() const { return axes.size() == 2; }
+  double frequency() const { return feed / (2.0 * std::numbers::pi * radius); }  // Hz, of each axis
 };
 
 struct CircleResult {

@@ -17,11 +17,13 @@ struct Expectation {
 };
 
 struct Figure {
-  std::string name;  // "peak_deviation_lugre"
+  std::string name;  // "peak_deviation_lugre"; a machine file calls it "peak_deviation"
   std::string unit;  // as it is shown, "um"; empty for a plain number
   std::string text;  // what it is, for readers
   double value = 0.0;
   std::optional<Expectation> expected;
+  std::string friction{};  // the model that its name contains; empty: none
+  std::string axis{};      // the axis that it is of; empty: of the machine
 
   // Empty where nothing is expected.
   std::optional<bool> holds() const {
@@ -37,6 +39,12 @@ enum class SeriesRole {
   before,    // simulated, before the machine file was extended
   after,     // and extended
 };
+
+// The figure of a run with one friction model, whose name its own contains.
+inline Figure of_model(Figure figure, const std::string& friction) {
+  figure.friction = friction;
+  return figure;
+}
 
 struct Series {
   std::string name;

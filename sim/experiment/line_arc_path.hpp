@@ -5,9 +5,11 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "sim/experiment/set_point.hpp"
+#include "sim/experiment/speed_ramp.hpp"
 
 namespace stiction::sim {
 
@@ -17,6 +19,13 @@ class LineArcPath {
   // reaches `speed` (m/s) there with `acceleration` (m/s^2).
   LineArcPath(double heading, double speed, double acceleration)
       : speed_(speed), acceleration_(acceleration), lead_time_(speed / acceleration), heading_(heading) {}
+  // The same `heading`, `speed` and `acceleration`, with a lead-in whose `jerk` (m/s^3) is limited.
+  LineArcPath(double heading, double speed, double acceleration, double jerk)
+      : speed_(speed),
+        acceleration_(acceleration),
+        ramp_(SpeedRamp(speed, acceleration, jerk)),
+        lead_time_(ramp_->duration()),
+        heading_(heading) {}
 
   void line(double length) { add(length, 0.0); }
   // Turns by `angle` (rad, positive to the left) on `radius` (m).
@@ -26,8 +35,20 @@ class LineArcPath {
   // s, when the end of the first `count` elements is passed
   double end_of(std::size_t count) const { return lead_time_ + elements_[count - 1].end / speed_; }
   double duration() const { return end_of(elements_.size()); }
+  // s, rising: where acceleration or jerk steps.
+  std::vector<double> knots() const {
+    std::vector<double> all{0.0};
+    if (ramp_) all.insert(all.end(), {ramp_->rise(), lead_time_ - ramp_->rise()});
+    all.push_back(lead_time_);
+    for (std::size_t i = 1; i <= elements_.size(); ++i) all.push_back(end_of(i));
+    return all;
+  }
 
   std::array<AxisSetPoint, 2> at(double t) const {
+    if (t < lead_time_ && ramp_) {
+      const auto m = ramp_->at(t);
+      return along(0.0, 0.0, heading_, m.distance - 0.5 * speed_ * lead_time_, m.speed, m.acceleration);
+    }
     if (t < lead_time_) {
       const double rest = lead_time_ - t;
       return along(0.0, 0.0, heading_, -speed_ * rest + 0.5 * acceleration_ * rest * rest,
@@ -76,6 +97,7 @@ class LineArcPath {
 
   double speed_;
   double acceleration_;
+  std::optional<SpeedRamp> ramp_;  // of the lead-in, where its jerk is limited
   double lead_time_;
   double heading_;
   std::vector<Element> elements_;

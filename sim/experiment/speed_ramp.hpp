@@ -26,6 +26,7 @@ class SpeedRamp {
         half_way_(0.5 * speed * end_) {}
 
   double duration() const { return end_; }  // s, until the speed is constant
+  double rise() const { return rise_; }     // s, in which the acceleration comes, and goes
 
   Motion at(double t) const {
     // The ramp is point-symmetric about its middle, so it covers half of speed * duration.

@@ -49,13 +49,19 @@ TEST(ParabolicFriction, DoesNotChatterAtTheTickOrWithTheImplicitStep) {
 }
 
 TEST(BreakAway, FallsWithTheRateOfTheForceAsThePrototypeFound) {
-  const auto result = host::run_break_away({machine_for("break-away"), {"lugre"}});
+  const auto experiments = host::experiments();
+  const auto break_away = std::find_if(experiments.begin(), experiments.end(),
+                                       [](const auto& each) { return each.run == host::run_break_away; });
+  const auto result = host::run_experiment(*break_away, {machine_for("break-away"), {"lugre"}});
   std::string found;
+  int count = 0;
   for (const auto& f : result.figures) {
     if (!f.expected) continue;
+    ++count;
     EXPECT_NEAR(f.value, f.expected->value, 0.002 * f.expected->value) << f.name;
     found += fmt::format("{:.1f} ", f.value);
   }
+  EXPECT_EQ(count, 4);
   figure("break-away at 10, 1e3, 3e3, 1e4 N/s", found + "N (578.6, 551.5, 504.9, 415.3 N within 2 %)");
 }
 

@@ -11,6 +11,8 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "firmware/machine/configuration/conversion.hpp"
@@ -20,10 +22,15 @@ namespace stiction::machine {
 
 class TraceWriter {
  public:
-  // `axes`: their names, in the order of the signals. `comments`: "key: value" lines. Throws std::runtime_error when
-  // the file cannot be written.
-  TraceWriter(const std::filesystem::path& file, std::vector<std::string> axes, std::span<const std::string> comments)
-      : name_(file.string()), axes_(std::move(axes)), file_(std::fopen(file.c_str(), "w")) {
+  // `axes`: their names, in the order of the signals. `comments`: "key: value" lines. `force_sources`: of each axis
+  // whether its motor is one, driven by a voltage in the place of a current; empty: none is. Throws std::runtime_error
+  // when the file cannot be written.
+  TraceWriter(const std::filesystem::path& file, std::vector<std::string> axes, std::span<const std::string> comments,
+              std::vector<bool> force_sources = {})
+      : name_(file.string()),
+        axes_(std::move(axes)),
+        force_sources_(std::move(force_sources)),
+        file_(std::fopen(file.c_str(), "w")) {
     if (file_ == nullptr) throw std::runtime_error(name_ + ": cannot be written");
     for (const auto& comment : comments) buffer_ += "# " + comment + "\n";
   }
@@ -60,7 +67,13 @@ class TraceWriter {
   void write_header(std::span<const AxisSignals<S>> signals) {
     buffer_ += "t[s]";
     for (std::size_t i = 0; i < signals.size(); ++i) {
-      for_each_signal(signals[i], [&](const char* name, const char* unit, auto, auto) {
+      const bool force_source = i < force_sources_.size() && force_sources_[i];
+      for_each_signal(signals[i], [&](std::string_view name, std::string_view unit, auto, auto) {
+        if (force_source && unit == "A") {
+          unit = "V";
+          // A log has the channel u for the commanded voltage.
+          if (name == "i_set" || name == "i") name = name == "i_set" ? "u" : "u_motor";
+        }
         buffer_ += fmt::format(",{}.{}[{}]", axes_[i], name, unit);
       });
       for (const char* flag : {"limiting_velocity", "limiting_current", "limiting_voltage", "fault"})
@@ -77,6 +90,7 @@ class TraceWriter {
 
   std::string name_;
   std::vector<std::string> axes_;
+  std::vector<bool> force_sources_;
   std::FILE* file_;
   std::string buffer_;
   bool header_written_ = false;

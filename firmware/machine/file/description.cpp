@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "firmware/machine/file/drive_parameters.hpp"
+#include "firmware/machine/file/expected_parameters.hpp"
 #include "firmware/machine/file/parameters.hpp"
 
 namespace stiction::machine {
@@ -154,6 +155,28 @@ void describe_effects(const Vocabulary& vocabulary, std::vector<TableDescription
   }
 }
 
+KeyDescription expected_key_description(std::string_view key, std::string_view allowed, bool required,
+                                        std::string_view text) {
+  KeyDescription description;
+  description.key = key;
+  description.allowed = allowed;
+  description.fallback = required ? "required" : "left out";
+  description.text = text;
+  description.expected = fmt::format("{} ({})", allowed, text);
+  return description;
+}
+
+void describe_expected(std::vector<TableDescription>& out) {
+  TableDescription table{fmt::format("[{}]", expected_key), "any number", std::string(expected_text), {}};
+  for (const auto& text : expected_texts)
+    table.keys.push_back(expected_key_description(
+        text.key, "a text", std::holds_alternative<std::string ExpectedFigure::*>(text.member), text.text));
+  for (const auto& quantity : expected_quantities)
+    table.keys.push_back(expected_key_description(quantity.key, "a number with its unit", true, quantity.text));
+  table.keys.push_back(expected_key_description(when_key, "a table", false, when_text));
+  out.push_back(std::move(table));
+}
+
 }  // namespace
 
 std::vector<TableDescription> machine_file_description(const Vocabulary& vocabulary) {
@@ -167,6 +190,7 @@ std::vector<TableDescription> machine_file_description(const Vocabulary& vocabul
   describe_table<CircleReference>("[reference.circle]", "any number", out);
   describe_table<SteadyFrictionReference>("[reference.steady_friction]", "any number", out);
   describe_table<PreslidingReference>("[reference.presliding]", "any number", out);
+  describe_expected(out);
   KeyDescription schema;
   schema.key = "schema";
   schema.allowed = fmt::format("\"{}\"", machine_schema);

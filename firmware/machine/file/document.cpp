@@ -84,13 +84,16 @@ Document::Document(std::string file, std::string text) : file_(std::move(file)),
   }
 }
 
-void Document::fail(const toml::source_region& place, std::string_view key, std::string_view found,
-                    std::string_view expected) const {
+std::string Document::place(const toml::source_region& place, std::string_view key) const {
   const std::string_view tag = place.path ? std::string_view(*place.path) : from_file;
-  const std::string what = fmt::format("found {}; expected {}", found, expected);
-  if (tag.starts_with(from_set)) throw MachineFileError(fmt::format("{}: {}: {}", tag, key, what));
+  if (tag.starts_with(from_set)) return fmt::format("{}: {}", tag, key);
   const std::string prefix = tag.starts_with(from_experiment) ? fmt::format("{}.", tag) : "";
-  throw MachineFileError(fmt::format("{}:{}: {}{}: {}", file_, place.begin.line, prefix, key, what));
+  return fmt::format("{}:{}: {}{}", file_, place.begin.line, prefix, key);
+}
+
+void Document::fail(const toml::source_region& where, std::string_view key, std::string_view found,
+                    std::string_view expected) const {
+  throw MachineFileError(fmt::format("{}: found {}; expected {}", place(where, key), found, expected));
 }
 
 void Document::fail_unknown(const toml::source_region& place, std::string_view key,

@@ -26,9 +26,12 @@ class Document {
   // removes the key.
   void apply_set(std::string_view assignment);
 
-  // Throws MachineFileError "PLACE: KEY: found ...; expected ...". `place` in the file; `key` with its path; `found`
+  // "FILE:LINE: KEY", as messages name a place.
+  std::string place(const toml::source_region& place, std::string_view key) const;
+
+  // Throws MachineFileError "PLACE: KEY: found ...; expected ...". `where` in the file; `key` with its path; `found`
   // and `expected` as the message has them.
-  [[noreturn]] void fail(const toml::source_region& place, std::string_view key, std::string_view found,
+  [[noreturn]] void fail(const toml::source_region& where, std::string_view key, std::string_view found,
                          std::string_view expected) const;
 
   // Refuses a key that is not among `known`, with the nearest of them as suggestion. `place` in the file; `key` as it

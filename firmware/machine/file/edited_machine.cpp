@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "firmware/machine/file/document.hpp"
+#include "firmware/machine/file/expected_parameters.hpp"
 
 namespace stiction::machine {
 namespace {
@@ -52,6 +53,7 @@ std::string edited_machine(const std::filesystem::path& file, const std::vector<
   for (const auto& assignment : set) document.apply_set(assignment);
   toml::table root = document.root();
   for (const auto& edit : edits) apply(root, edit, 0);
+  if (!set.empty() || !edits.empty()) root.erase(expected_key);  // they are of the machine before
   std::ostringstream out;
   for (const auto& line : comment) out << "# " << line << '\n';
   out << root << '\n';

@@ -1,5 +1,6 @@
 // The text of a machine file with other values: what identification and diagnosis leave behind. Values are replaced in
-// the tree of the file and the tree is written anew: comments of the file are not kept.
+// the tree of the file and the tree is written anew: comments of the file are not kept, nor the figures expected of the
+// machine before ([[expected]]).
 #pragma once
 
 #include <filesystem>

@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <sstream>
+#include <string_view>
+#include <vector>
 
 #include "firmware/machine/file/description.hpp"
 #include "firmware/machine/file/document.hpp"
 #include "firmware/machine/file/edited_machine.hpp"
+#include "firmware/machine/file/expected_parameters.hpp"
 #include "firmware/machine/file/machine_file.hpp"
 #include "firmware/machine/file/parameters.hpp"
 
@@ -59,6 +62,7 @@ bool has_force_motor(const Machine& machine, const std::string& name) {
 std::string rewritten(const std::filesystem::path& file, const Machine& machine, const Vocabulary& vocabulary,
                       const std::vector<std::string>& set, std::span<const AxisEffects> additions) {
   toml::table root = toml::parse(edited_machine(file, set, {}, {}));
+  if (!additions.empty()) root.erase(expected_key);
   for (const AxisEffects& addition : additions) {
     toml::table* axis = root["axis"][addition.axis].as_table();
     if (axis == nullptr) continue;
@@ -71,8 +75,32 @@ std::string rewritten(const std::filesystem::path& file, const Machine& machine,
   return out.str();
 }
 
+bool begins_with(std::string_view line, std::string_view what) {
+  const std::size_t first = line.find_first_not_of(" \t");
+  return first != std::string_view::npos && line.substr(first).starts_with(what);
+}
+
+// Without the rows [[expected]], which belong to the machine before, and the comment above the first of them.
+std::string without_expected(const std::string& text) {
+  const std::string header = fmt::format("[[{}]]", expected_key);
+  std::vector<std::string> kept;
+  std::istringstream lines(text);
+  bool in_row = false, any = false;
+  for (std::string line; std::getline(lines, line);) {
+    if (begins_with(line, header)) {
+      while (!any && !kept.empty() && begins_with(kept.back(), "#")) kept.pop_back();
+      in_row = any = true;
+    } else if (begins_with(line, "[") || begins_with(line, "#")) {
+      in_row = false;
+    }
+    if (!in_row) kept.push_back(line);
+  }
+  return any ? fmt::format("{}\n", fmt::join(kept, "\n")) : text;
+}
+
 std::string continued(std::string text, const Machine& machine, const Vocabulary& vocabulary,
                       std::span<const AxisEffects> additions) {
+  if (!additions.empty()) text = without_expected(text);
   if (!text.empty() && text.back() != '\n') text += '\n';
   for (const AxisEffects& addition : additions)
     for (const Effect& effect : addition.effects)
@@ -125,8 +153,8 @@ std::string extended_machine(const std::filesystem::path& file, const Vocabulary
   if (set.empty() && !replaces_any(machine, vocabulary, additions)) {
     std::string text = with_comment(continued(original, machine, vocabulary, additions), comment);
     try {
-      parse_machine(file.string(), text, vocabulary);
-      return text;
+      const bool other_machine = !additions.empty();
+      if (parse_machine(file.string(), text, vocabulary).expected.empty() || !other_machine) return text;
     } catch (const MachineFileError&) {
       // The file writes its axis or its effects in a way that no table can follow.
     }

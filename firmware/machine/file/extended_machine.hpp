@@ -19,8 +19,9 @@ struct AxisEffects {
 // it reads back as a machine with these effects behind those of the file. Where the text cannot simply go on, because
 // of assignments in `set` (as on the command line, ReadOptions), because the file writes its effects as a list in one
 // line, or because an effect that an axis has only once is there already and so is replaced, the tree of the file is
-// written anew, and its comments are lost. Throws MachineFileError when the result is no valid machine file, ValueError
-// for effects with names, keys or values that `vocabulary` does not have. `file`: its path; `additions`: the effects of
+// written anew, and its comments are lost. The figures that were expected of the machine without the effects,
+// [[expected]], are left out. Throws MachineFileError when the result is no valid machine file, ValueError for effects
+// with names, keys or values that `vocabulary` does not have. `file`: its path; `additions`: the effects of
 // each axis.
 std::string extended_machine(const std::filesystem::path& file, const Vocabulary& vocabulary,
                              const std::vector<std::string>& set, std::span<const AxisEffects> additions,

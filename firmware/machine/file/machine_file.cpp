@@ -11,6 +11,7 @@
 #include "firmware/machine/file/compensation_checks.hpp"
 #include "firmware/machine/file/document.hpp"
 #include "firmware/machine/file/drive_file.hpp"
+#include "firmware/machine/file/expected_figures.hpp"
 #include "firmware/machine/file/table_reader.hpp"
 #include "stiction/control/compensation_kind.hpp"
 
@@ -54,6 +55,7 @@ class MachineReader {
     drive_setup_of(document_, machine_);
     check_experiments();
     read_references();
+    machine_.expected = read_expected_figures(document_, machine_, friction_model_names(vocabulary_));
     return std::move(machine_);
   }
 
@@ -302,6 +304,30 @@ class MachineReader {
 
 }  // namespace
 
+namespace {
+
+Document document_with(const std::string& file, const std::string& text, const std::string& experiment,
+                       std::span<const std::string> set) {
+  Document document(file, text);
+  document.apply_experiment(experiment);
+  for (const std::string& assignment : set) document.apply_set(assignment);
+  return document;
+}
+
+void mark_expected(Machine& machine, const std::string& file, const std::string& text, const Vocabulary& vocabulary,
+                   const ReadOptions& options) {
+  if (machine.expected.empty()) return;
+  const auto with = [&](const std::string& experiment, std::span<const std::string> set) {
+    auto document = document_with(file, text, experiment, set);
+    MachineReader(document, vocabulary, experiment == options.experiment).read();
+    return document;
+  };
+  mark_in_force(machine.expected, document_with(file, text, options.experiment, {}),
+                document_with(file, text, options.experiment, options.set), options.experiment, with);
+}
+
+}  // namespace
+
 std::string content_of(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::error_code error;
@@ -325,11 +351,9 @@ Machine parse_machine(const std::string& file, const std::string& text, const Vo
     }
   }
   if (!options.set.empty()) {
-    Document document(file, text);
-    document.apply_experiment(options.experiment);
-    for (const std::string& assignment : options.set) document.apply_set(assignment);
-    machine = MachineReader(document, vocabulary).read();
+    machine = MachineReader(document_with(file, text, options.experiment, options.set), vocabulary).read();
   }
+  mark_expected(machine, file, text, vocabulary, options);
   machine.id = std::filesystem::path(file).stem().string();
   return machine;
 }

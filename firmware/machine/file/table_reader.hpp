@@ -64,7 +64,7 @@ class TableReader {
       for (const ValueTable& model : vocabulary_->friction_models) known.push_back(model.name);
     if constexpr (std::is_same_v<Owner, AxisModel>) known.push_back(effect_key);
     if constexpr (std::is_same_v<Owner, Machine>)
-      known.insert(known.end(), {"axis", "drive", "experiment", "reference"});
+      known.insert(known.end(), {"axis", "drive", "expected", "experiment", "reference"});
     if constexpr (std::is_same_v<Owner, DriveSetup>) known.push_back("axis");
     return known;
   }

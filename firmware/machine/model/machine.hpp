@@ -191,6 +191,20 @@ struct PreslidingReference {
   double displacement = 0.0;    // m
 };
 
+// A figure that an experiment is expected to show on this machine ([[expected]]).
+struct ExpectedFigure {
+  std::string experiment;
+  std::optional<std::string> axis, friction;
+  std::string figure;                     // as in the results, without model and unit
+  std::string value, tolerance;           // "92 um", as written: the unit is the figure's
+  std::string source;                     // document and place
+  std::vector<std::string> overrides;     // KEY=VALUE that the figure is for
+  std::map<std::string, double> options;  // of the experiment, that it is for: "jerk", in SI
+  std::string settings;                   // both as a command line has them
+  bool in_force = false;                  // the machine runs with just these overrides
+  std::string place;                      // "m.toml:412: expected[3]", for messages
+};
+
 struct Machine {
   std::string name;  // as in the file
   std::string id;    // file name without extension
@@ -200,6 +214,7 @@ struct Machine {
   std::vector<CircleReference> circle_references;
   std::vector<SteadyFrictionReference> steady_friction_references;
   std::vector<PreslidingReference> presliding_references;
+  std::vector<ExpectedFigure> expected;
 };
 
 }  // namespace stiction::machine

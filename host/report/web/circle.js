@@ -14,10 +14,11 @@ const state = {
 
 function drawControls() {
   segments('choose-feed', DATA.feeds.map(feed => ({ value: feed, label: String(feed) })), state.feed, value => change({ feed: value }));
-  segments('choose-quadrant', [0, 90, 180, 270].map(angle => ({ value: angle, label: `${angle}° ${DATA.axes[reversingAxis(angle)]}` })), state.quadrant,
+  segments('choose-quadrant', REVERSALS.map(angle => ({ value: angle, label: `${angle}° ${DATA.axes[reversingAxis(angle)]}` })), state.quadrant,
            value => change({ quadrant: value }));
   segments('choose-window', [{ value: 'auto', label: 'auto' }, ...WINDOWS.map(half => ({ value: half, label: `${half}°` }))], state.window,
            value => change({ window: value }));
+  if (!IS_CIRCLE) return;
   const directions = DATA.directions.length > 1 ? [...DATA.directions, 'both'] : DATA.directions;
   segments('choose-direction', directions.map(direction => ({ value: direction, label: DIRECTION_TEXT[direction] })), state.direction,
            value => change({ direction: value }));
@@ -62,17 +63,17 @@ function largestFitting(magnification) {
 }
 
 function drawChosen() {
-  drawPolar(state);
+  if (IS_CIRCLE) drawPolar(state);
   drawQuadrant(state);
   drawLap(state);
   drawPeaks(state);
   drawFigures(state);
-  document.getElementById('lap-what').textContent = `at ${state.feed} m/min, ${DIRECTION_TEXT[state.direction]}`;
+  document.getElementById('lap-what').textContent = chosenText(state);
 }
 
 function change(chosen) {
   Object.assign(state, chosen);
-  state.magnification = largestFitting(state.magnification);
+  if (IS_CIRCLE) state.magnification = largestFitting(state.magnification);
   drawControls();
   drawChosen();
 }
@@ -81,7 +82,12 @@ drawConditions();
 drawModelChoice();
 drawKey();
 drawComparison();
-drawIso();
+if (IS_CIRCLE) drawIso();
+else {
+  document.querySelectorAll('.of-circle, #direction-control').forEach(part => part.remove());
+  document.querySelector('section.pair').classList.remove('pair');
+  document.body.classList.add('one-axis');
+}
 drawMachine();
 change({});
 document.getElementById('peaks').on('plotly_click', event => {

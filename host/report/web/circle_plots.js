@@ -1,6 +1,10 @@
 // The charts of the circle: polar plot, quadrant, lap, peaks against feed. Each function draws one from the state.
 'use strict';
 
+// Two axes drive a circle, one alone a sine: that axis' part of it.
+const IS_CIRCLE = DATA.axes.length === 2;
+const REVERSALS = IS_CIRCLE ? [0, 90, 180, 270] : [0, 180];  // degrees of the path
+
 const DIRECTION_TEXT = { ccw: 'counter-clockwise', cw: 'clockwise', both: 'both directions' };
 const DIRECTION_SIGN = { ccw: '↺ ', cw: '↻ ', both: '' };
 const DASH = { ccw: 'solid', cw: '5px 3px' };
@@ -16,7 +20,7 @@ function unwrapped(angles) {
 }
 
 for (const run of DATA.runs) {
-  for (const name of ['time', 'angle', 'radial']) run[name] = decodeFloats(run[name]);
+  for (const name of ['time', 'angle', ...(IS_CIRCLE ? ['radial'] : [])]) run[name] = decodeFloats(run[name]);
   run.angle = unwrapped(run.angle);
   for (const axis of run.axes)
     for (const name of ['error', 'current']) axis[name] = decodeFloats(axis[name]);
@@ -30,6 +34,10 @@ function directionChosen(state, direction) {
 
 function chosenRuns(state) {
   return DATA.runs.filter(run => run.feed === state.feed && directionChosen(state, run.direction) && !state.hidden.has(run.friction));
+}
+
+function chosenText(state) {
+  return `at ${state.feed} m/min` + (IS_CIRCLE ? `, ${DIRECTION_TEXT[state.direction]}` : '');
 }
 
 function traceName(run) {
@@ -137,7 +145,7 @@ function drawPolar(state) {
 
 const WINDOWS = [5, 15, 45];
 
-// The first axis reverses at 0 and 180 degrees, the second at 90 and 270.
+// The first axis, or the only one, reverses at 0 and 180 degrees, the second at 90 and 270.
 function reversingAxis(quadrant) {
   return quadrant % 180 ? 1 : 0;
 }
@@ -197,7 +205,7 @@ function drawQuadrant(state) {
   }
   return drawChart('quadrant', traces, {
     margin: { l: 58, r: 14, t: 24, b: 46 },
-    xaxis: axisStyle('angle from +' + DATA.axes[0] + ', degrees', { range: [quadrant - half, quadrant + half], ticksuffix: '°' }),
+    xaxis: axisStyle(IS_CIRCLE ? 'angle from +' + DATA.axes[0] + ', degrees' : 'phase of the sine, degrees', { range: [quadrant - half, quadrant + half], ticksuffix: '°' }),
     yaxis: axisStyle(`${axis} error at the encoder, µm`, { zeroline: true, zerolinecolor: '#9aa5b1', nticks: 7 }),
     shapes: [{ type: 'line', x0: quadrant, x1: quadrant, yref: 'paper', y0: 0, y1: 1, line: { color: '#9aa5b1', width: 1, dash: 'dot' }, layer: 'below' }],
     annotations,

@@ -2,20 +2,21 @@
 // state.
 'use strict';
 
-// Error and current of both axes, in the order of the charts from top to bottom.
+// Error and current (or voltage) of each axis, in the order of the charts from top to bottom.
 const CHANNELS = ['error', 'current'].flatMap(kind => DATA.axes.map((axis, i) => ({
-  kind, axis, index: i, unit: kind === 'error' ? 'µm' : 'A', peak: 'peak_' + kind })));
+  kind, axis, index: i, name: kind === 'error' ? kind : DATA.efforts[i].name, unit: kind === 'error' ? 'µm' : DATA.efforts[i].unit,
+  peak: 'peak_' + kind })));
 
 // ---- lap ----
 
 const LAP_GAP = 0.045;  // between two charts, of the height of all
 
-// Instants at which the angle passes a multiple of 90 degrees, and the axis that reverses there.
+// Instants at which the angle passes that of a reversal, and the axis that reverses there.
 function reversals(run) {
   const found = [];
   for (let i = 1; i < run.angle.length; ++i) {
     const [low, high] = [run.angle[i - 1], run.angle[i]].sort((a, b) => a - b);
-    const crossed = 90 * Math.ceil(low / 90);
+    const crossed = REVERSALS[1] * Math.ceil(low / REVERSALS[1]);
     if (crossed >= high) continue;
     const share = (crossed - run.angle[i - 1]) / (run.angle[i] - run.angle[i - 1]);
     const angle = (crossed % 360 + 360) % 360;
@@ -33,7 +34,7 @@ function drawLap(state) {
       traces.push({ name: traceName(run), x: run.time, y: run.axes[channel.index][channel.kind], mode: 'lines', line: lineOf(run, 1.4),
                     xaxis: 'x', yaxis: 'y' + n, hovertemplate: `${traceName(run)}<br>${channel.axis} %{y:.2f} ${channel.unit} at %{x:.3f} s<extra></extra>` });
     const height = (1 - (CHANNELS.length - 1) * LAP_GAP) / CHANNELS.length, bottom = 1 - row * LAP_GAP - (row + 1) * height;
-    layout['yaxis' + n] = axisStyle(`${channel.axis} ${channel.kind}, ${channel.unit}`,
+    layout['yaxis' + n] = axisStyle(`${channel.axis} ${channel.name}, ${channel.unit}`,
       { domain: [Math.max(0, bottom), bottom + height], anchor: 'x', zeroline: true, zerolinecolor: '#9aa5b1', nticks: 5 });
   });
   layout.xaxis = axisStyle('time in the lap, s', { anchor: 'y' + CHANNELS.length, range: runs.length ? [0, Math.max(...runs.map(run => run.time.at(-1)))] : undefined });
@@ -79,11 +80,11 @@ function drawPeaks(state) {
   const feeds = [...new Set([...DATA.feeds, ...DATA.references.map(row => row.feed)])];
   const range = [0, 1.06 * Math.max(...feeds)];
   CHANNELS.forEach((channel, i) => {
-    const n = i ? i + 1 : '', column = i % 2, top = i < 2;
+    const n = i ? i + 1 : '', column = i % 2, top = i < 2, rows = CHANNELS.length > 2 ? 2 : 1;
     traces.push(...peakTraces(state, channel, { xaxis: 'x' + n, yaxis: 'y' + n }));
     layout['xaxis' + n] = axisStyle('feed, m/min', { domain: column ? [0.545, 1] : [0, 0.455], anchor: 'y' + n, range, ...(feeds.length <= 8 ? { tickvals: feeds } : {}) });
-    layout['yaxis' + n] = axisStyle(`${channel.axis} peak ${channel.kind}, ${channel.unit}`,
-      { domain: top ? [0.575, 1] : [0, 0.425], anchor: 'x' + n, rangemode: 'tozero' });
+    layout['yaxis' + n] = axisStyle(`${channel.axis} peak ${channel.name}, ${channel.unit}`,
+      { domain: rows === 1 ? [0, 1] : top ? [0.575, 1] : [0, 0.425], anchor: 'x' + n, rangemode: 'tozero' });
     layout.shapes.push({ type: 'line', xref: 'x' + n, yref: `y${n} domain`, x0: state.feed, x1: state.feed, y0: 0, y1: 1, layer: 'below',
                          line: { color: '#dfe5eb', width: 9 } });
   });

@@ -15,27 +15,29 @@ function figure(value, digits, more = '') {
 // ---- peaks at the chosen feed ----
 
 function drawFigures(state) {
-  document.getElementById('figures-what').textContent = `at ${state.feed} m/min, ${DIRECTION_TEXT[state.direction]}`;
-  const [x, y] = DATA.axes;
-  const head = [[text('', { class: 'text' }), text(`${x} error, µm`), text(`${y} error, µm`), text(`${x} current, A`, { class: 'gap' }), text(`${y} current, A`),
-                 text('G, µm', { class: 'gap', title: 'circular error' })]];
+  document.getElementById('figures-what').textContent = chosenText(state);
+  const gap = i => i ? '' : 'gap';
+  const head = [[text('', { class: 'text' }), ...DATA.axes.map(axis => text(`${axis} error, µm`)),
+                 ...DATA.axes.map((axis, i) => text(`${axis} ${DATA.efforts[i].name}, ${DATA.efforts[i].unit}`, { class: gap(i) || null })),
+                 ...(IS_CIRCLE ? [text('G, µm', { class: 'gap', title: 'circular error' })] : [])]];
   const body = chosenRuns(state).map(run => [
-    modelCell(run.friction, run.direction), figure(run.axes[0].peak_error, 2), figure(run.axes[1].peak_error, 2),
-    figure(run.axes[0].peak_current, 2, 'gap'), figure(run.axes[1].peak_current, 2), figure(run.G, 2, 'gap')]);
+    modelCell(run.friction, run.direction), ...run.axes.map(axis => figure(axis.peak_error, 2)),
+    ...run.axes.map((axis, i) => figure(axis.peak_current, 2, gap(i))), ...(IS_CIRCLE ? [figure(run.G, 2, 'gap')] : [])]);
   const measured = DATA.axes.map(axis => reference(axis, state.feed));
   if (measured.some(Boolean))
     body.push(classed('measured', [text('◆ measured', { head: true, class: 'text' }), ...measured.map(row => figure(row?.error, 1)),
-                                   ...measured.map((row, i) => figure(row?.current, 1, i ? '' : 'gap')), text('')]));
+                                   ...measured.map((row, i) => figure(row?.current, 1, i ? '' : 'gap')), ...(IS_CIRCLE ? [text('')] : [])]));
   show('figures', table(head, body));
 }
 
 // ---- simulation, publication, measurement ----
 
 function comparisonTable(axis) {
+  const effort = DATA.efforts[DATA.axes.indexOf(axis)];
   const rows = DATA.table.filter(row => row.axis === axis)
     .sort((a, b) => DATA.models.findIndex(m => m.name === a.friction) - DATA.models.findIndex(m => m.name === b.friction) ||
                     b.direction.localeCompare(a.direction) * -1 || a.feed - b.feed);
-  const head = [[text('', { span: 2 }), text('Peak error, µm', { span: 5, class: 'group gap' }), text('Peak current, A', { span: 4, class: 'group gap' })],
+  const head = [[text('', { span: 2 }), text('Peak error, µm', { span: 5, class: 'group gap' }), text(`Peak ${effort.name}, ${effort.unit}`, { span: 4, class: 'group gap' })],
                 [text('Friction', { class: 'text' }), text('m/min'), ...['simul.', 'quant.', 'publ.', 'meas.', 'dev. %'].map((t, i) => text(t, { class: i ? null : 'gap' })),
                  ...['simul.', 'publ.', 'meas.', 'dev. %'].map((t, i) => text(t, { class: i ? null : 'gap' }))]];
   const key = row => row.friction + row.direction;
@@ -60,7 +62,7 @@ function drawComparison() {
   const columns = DATA.axes.flatMap(axis => [['error', 'simul.'], ['quantised', 'quant.'], ['error_published', 'publ.']].map(([key, name]) => ({ axis, key, name, group: 'error' })))
     .concat(DATA.axes.flatMap(axis => [['current', 'simul.'], ['current_published', 'publ.']].map(([key, name]) => ({ axis, key, name, group: 'current' }))));
   const first = i => !i || columns[i - 1].axis !== columns[i].axis || columns[i - 1].group !== columns[i].group;
-  const head = [[text(''), ...columns.filter((_, i) => first(i)).map(c => text(`${c.axis} ${c.group}`, { span: c.group === 'error' ? 3 : 2, class: 'group gap' }))],
+  const head = [[text(''), ...columns.filter((_, i) => first(i)).map(c => text(`${c.axis} ${c.group === 'error' ? c.group : DATA.efforts[DATA.axes.indexOf(c.axis)].name}`, { span: c.group === 'error' ? 3 : 2, class: 'group gap' }))],
                 [text('Friction', { class: 'text' }), ...columns.map((c, i) => text(c.name, { class: first(i) ? 'gap' : null }))]];
   const body = DATA.models.map(model => [modelCell(model.name), ...columns.map((c, i) => {
     const mean = DATA.means.find(row => row.axis === c.axis && row.friction === model.name);

@@ -92,7 +92,7 @@ TEST(MachineFileError, UnknownKeySuggestsTheNearestAndListsTheKnown) {
             "count; did you mean \"model\"?");
   EXPECT_EQ(error_after("name = \"small\"", "name = \"small\"\ncolour = \"red\""),
             "FILE:3: colour: found an unknown key; expected one of schema, name, timing, feed_drive, axis, drive, "
-            "experiment, reference");
+            "expected, experiment, reference");
 }
 
 TEST(MachineFileError, UnknownKeyIsFoundAtEveryLevel) {

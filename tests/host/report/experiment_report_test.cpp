@@ -157,7 +157,7 @@ TEST(Verdict, CountsAndNamesWhatDiffers) {
   for (auto& figure : result.figures) figure.value = std::nan("");
   EXPECT_EQ(verdict(result), "0 of 13 figures are as expected.");
   for (auto& figure : result.figures) figure.expected.reset();
-  EXPECT_EQ(verdict(result), "The machine file states no expected figures for this experiment.");
+  EXPECT_EQ(verdict(result), "The machine file states no expected figures for this run.");
 }
 
 // ---- text ----
