@@ -69,7 +69,8 @@ class Fitter {
     Eigen::MatrixXd slopes(n, count);
     const auto& law = solution.law;
     for (Eigen::Index i = 0; i < n; ++i) {
-      const double v = points_[static_cast<std::size_t>(i)].velocity, decay = 1.0 - sim::ViscousNonlinear::risen(v / law.rise_velocity);
+      const double v = points_[static_cast<std::size_t>(i)].velocity,
+                   decay = 1.0 - sim::ViscousNonlinear::risen(v / law.rise_velocity);
       Eigen::Index c = 0;
       if (chosen[0]) slopes(i, c++) = 1.0;
       if (chosen[1]) slopes(i, c++) = v;
@@ -146,7 +147,8 @@ SlidingPartTest test(const Fitter& fitter, const Chosen& chosen, SlidingPart par
 }  // namespace
 
 double SlidingLaw::at(double velocity) const {
-  return coulomb + viscous * velocity + (rise == 0.0 ? 0.0 : rise * sim::ViscousNonlinear::risen(velocity / rise_velocity));
+  return coulomb + viscous * velocity +
+         (rise == 0.0 ? 0.0 : rise * sim::ViscousNonlinear::risen(velocity / rise_velocity));
 }
 
 SlidingFit fit_sliding_law(const std::vector<SteadyPoint>& points, const SlidingLaw& file) {

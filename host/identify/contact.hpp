@@ -10,8 +10,9 @@
 
 namespace stiction::host {
 
-// The contact of unit Coulomb level: s' = k (v - |v| s / g(v)), g(v) = 1 + (static_ratio - 1) stribeck(v/v_s), the law's own
-// curve (sim/plant/friction/lugre.hpp). With the Coulomb level F_C, F_C s is the LuGre model's k_s z and k = k_s / F_C.
+// The contact of unit Coulomb level: s' = k (v - |v| s / g(v)), g(v) = 1 + (static_ratio - 1) stribeck(v/v_s), the
+// law's own curve (sim/plant/friction/lugre.hpp). With the Coulomb level F_C, F_C s is the LuGre model's k_s z and k =
+// k_s / F_C.
 struct ContactShape {
   double inverse_length = 0.0;  // k, 1/m
   double static_ratio = 1.0;
