@@ -25,6 +25,7 @@ BY_CLASS = {
     "host/diagnose/reference_diagnosis.cpp": "the same",
     "host/diagnose/reference_extension.cpp": "the same",
     "host/diagnose/reference_words.cpp": "the same",
+    "host/diagnose/sliding_law.cpp": "the same",
 }
 # Text that is not the name of an effect.
 OTHER_MEANINGS = {("firmware/machine/file/feed_drive_parameters.hpp", "constant_force"): "a key of the feed drive's cutting force"}

@@ -151,7 +151,7 @@ TEST(NextMeasurement, proposes_no_motion_where_none_can_tell) {
   EXPECT_EQ(question.effect.name(), "constant_force");
   EXPECT_EQ(question.rival, sim::find_effect("friction_asymmetry"));
   EXPECT_FALSE(question.by_motion);
-  EXPECT_NE(question.separate_by.find("turn the axis"), std::string::npos);
+  EXPECT_NE(question.separate_by.find("the axis turned over"), std::string::npos);
   EXPECT_TRUE(host::verdict_json(verdict)["next_measurement"]["log"].is_null() || verdict.next->questions.size() > 1);
 }
 

@@ -98,9 +98,9 @@ TEST(Inspection, SaysWhatOneSpeedInOneDirectionCannotTell) {
 
 TEST(Inspection, CannotTellViscousFromCoulombAtOneSpeed) {
   const auto axis = inspect(rigid_log(10.0, triangle)).axes[0];
-  EXPECT_FALSE(judgement(axis, "viscous friction").possible);
-  EXPECT_NE(judgement(axis, "viscous friction").reason.find("does not separate it from Coulomb"), std::string::npos);
-  EXPECT_TRUE(judgement(axis, "difference between the directions").possible);
+  EXPECT_FALSE(judgement(axis, "Slope of viscous friction").possible);
+  EXPECT_NE(judgement(axis, "Slope of viscous friction").reason.find("does not separate it from Coulomb"), std::string::npos);
+  EXPECT_TRUE(judgement(axis, "Friction differs between directions").possible);
 }
 
 TEST(Inspection, SuspectsASwappedSign) {
@@ -147,7 +147,7 @@ TEST(Inspection, StandsALogOfTwoSamplesAndOneAtRest) {
   EXPECT_FALSE(judgement(inspect(log).axes[0], "Level of Coulomb friction").possible);
   const auto rest = inspect(rigid_log(1.0, [](double) { return Point{0.3, 0.0, 0.0}; })).axes[0];
   EXPECT_EQ(rest.reversals, 0);
-  EXPECT_EQ(judgement(rest, "Coulomb friction").reason, "the axis hardly moves");
+  EXPECT_EQ(judgement(rest, "Level of Coulomb friction").reason, "the axis hardly moves");
 }
 
 TEST(Inspection, FitsTheMotionOfAParabolaExactly) {

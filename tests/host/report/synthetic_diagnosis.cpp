@@ -101,7 +101,7 @@ NextMeasurement next_measurement() {
   next.questions = {{effect("force_ripple"), effect("position_dependent_friction"),
                      "traverse the same stretch in both directions", true, 0.7},
                     {effect("constant_force"), effect("friction_asymmetry"),
-                     "turn the axis, another payload, a reading at standstill", false, 0.0}};
+                     "the axis turned over, a different payload, or a reading at standstill", false, 0.0}};
   next.trajectories = {{"slow sweep", "the stroke both ways, slowly and at twice the speed", 25.0, {14.2, 0.0}},
                        {"constant speeds", "ten constant speeds", 12.3, {6.1, 0.0}}};
   next.log.emplace();
@@ -154,7 +154,7 @@ DiagnosisReport synthetic_diagnosis() {
   constant.explains = 0.08;
   constant.holdout = {0.95, {}, {}, {0.93, 0.98}};
   constant.p_value = 1e-14;
-  constant.confused_with = {{effect("friction_asymmetry"), "turn the axis, another payload, a reading at standstill"}};
+  constant.confused_with = {{effect("friction_asymmetry"), "the axis turned over, a different payload, or a reading at standstill"}};
   constant.evidence = "The residual's mean is -1.4 N in every block.";
   v.findings = {cogging, constant};
   v.rejected = {{effect("backlash"), "no gain on held-out data (-0.2 %)"}, {effect("stribeck"), "p 0.21 over blocks"}};
