@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <set>
 
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
@@ -11,6 +12,7 @@
 #include "host/cli/identify_reference.hpp"
 #include "host/cli/machine_options.hpp"
 #include "host/cli/output.hpp"
+#include "host/identify/friction_fit.hpp"
 #include "host/identify/identified_machine.hpp"
 #include "host/identify/refinement.hpp"
 #include "host/identify/standstill.hpp"
@@ -67,9 +69,11 @@ Amperes amperes_of(const std::string& text) {
 
 std::string model_to_identify(const std::string& wanted, const machine::AxisModel& axis) {
   const std::string recipe(sim::CoulombViscous<>::name), contact(sim::LuGre<>::name);
-  if (wanted.empty()) return sticks_rigidly(axis) ? recipe : contact;
-  if (wanted != recipe && wanted != contact)
-    throw UsageError(fmt::format("--friction: found '{}'; expected {} or {}", wanted, recipe, contact));
+  const std::string own = has_contact_of_one_length(axis.friction) ? axis.friction.use : contact;
+  if (wanted.empty()) return sticks_rigidly(axis) ? recipe : own;
+  const std::set<std::string> laws{recipe, contact, own};
+  if (!laws.contains(wanted))
+    throw UsageError(fmt::format("--friction: found '{}'; expected {}", wanted, fmt::join(laws, " or ")));
   return wanted;
 }
 
@@ -150,8 +154,10 @@ void add_identify(CLI::App& program, const Invocation& invocation) {
   command->add_option("--axis", o->axis, "axis to identify, if logs and machine have several")->type_name("NAME");
   command
       ->add_option("--friction", o->friction,
-                   "coulomb_viscous: sgn(v) of every sample, as published for EMPS; lugre: with presliding "
-                   "[for a law of the file that sticks rigidly sgn(v) of the moving rows, else lugre]")
+                   "coulomb_viscous: sgn(v) of every sample, as published for EMPS; lugre: with presliding; or the "
+                   "law in use, if its contact has one length (dahl, elasto_plastic) "
+                   "[for a law of the file that sticks rigidly sgn(v) of the moving rows; else the law in use, if its "
+                   "contact has one length; else lugre]")
       ->type_name("MODEL");
   command
       ->add_option("--amperes", o->amperes,

@@ -143,7 +143,7 @@ sim::Chart contact(const machine::Machine& machine, const AxisExtension& axis, c
     extended.y.push_back(100.0 * force / coulomb);
     file.x.push_back(x);
   }
-  file.y = sim::loading_curve(own->friction, file.x);
+  file.y = sim::contact_force(own->friction, file.x);
   for (double& x : file.x) x *= 1e6;
   for (double& y : file.y) y *= 100.0 / sim::coulomb_of(own->friction);
   if (file.y.empty()) file.x.clear();

@@ -3,9 +3,24 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/plant/friction/lugre.hpp"
+#include "sim/plant/friction/friction.hpp"
 
 namespace stiction::host {
+namespace {
+
+// The contact of the law along the motion, over its level.
+std::vector<double> level_of_law(const Motion& motion, const ContactShape& shape) {
+  auto friction = *shape.law;
+  const auto contact = sim::contact_of(friction);
+  sim::stretch_contact(friction, contact->stiffness / (contact->level * shape.inverse_length));
+  std::vector<double> displacement(motion.x.size());
+  for (std::size_t i = 0; i < displacement.size(); ++i) displacement[i] = motion.x[i] - motion.x.front();
+  auto level = sim::contact_force(friction, displacement);
+  for (double& s : level) s /= contact->level;
+  return level;
+}
+
+}  // namespace
 
 Contact contact_of(const Motion& motion, const ContactShape& shape) {
   const std::size_t n = motion.x.size();
@@ -26,6 +41,7 @@ Contact contact_of(const Motion& motion, const ContactShape& shape) {
     contact.level[i] = s;
     contact.memory[i] = memory;
   }
+  if (shape.law != nullptr) contact.level = level_of_law(motion, shape);
   contact.rate = central_difference(contact.level, motion.period);
   return contact;
 }

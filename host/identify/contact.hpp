@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "firmware/machine/model/machine.hpp"
 #include "host/identify/motion.hpp"
 
 namespace stiction::host {
@@ -17,6 +18,9 @@ struct ContactShape {
   double inverse_length = 0.0;  // k, 1/m
   double static_ratio = 1.0;
   double stribeck_velocity = 1e-3;  // m/s
+  // The law whose contact it is, rate-independent, drawn out until its stiffness over its level is `inverse_length`;
+  // nullptr: LuGre's, as above.
+  const machine::FrictionParameters* law = nullptr;
 };
 
 struct Contact {

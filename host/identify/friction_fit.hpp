@@ -55,6 +55,14 @@ FrictionFit fit_coulomb_viscous(const LogRows& rows, const FitSettings& settings
 // be, on either side of 1.
 FrictionFit fit_lugre(const LogRows& rows, const FitSettings& settings);
 
+// Whether the law in use has a contact whose shape the file gives and whose length a fit can find: not one of elements
+// of their own lengths.
+bool has_contact_of_one_length(const machine::FrictionParameters& friction);
+
+// The same with the contact of the law in use of `friction`, drawn out or shortened as a whole: what else shapes it
+// stays as it is there. Where friction falls with speed it is fit_lugre(). `rows`, `settings`: as above.
+FrictionFit fit_law(const LogRows& rows, const machine::FrictionParameters& friction, const FitSettings& settings);
+
 // Viscous friction of each direction, a fit with both beside the other columns of `fit`:
 // viscous_positive_N_s_per_m, viscous_negative_N_s_per_m, coulomb_positive_N, coulomb_negative_N. `rows`: of all logs;
 // `settings`: of the bootstrap.

@@ -9,7 +9,7 @@
 #include "host/identify/fit_support.hpp"
 #include "host/identify/standstill.hpp"
 #include "host/identify/suitability.hpp"
-#include "sim/plant/friction/coulomb_viscous.hpp"
+#include "sim/plant/friction/friction.hpp"
 
 namespace stiction::host {
 namespace {
@@ -213,13 +213,18 @@ Identification identify_logs(const std::vector<Log>& logs, const machine::AxisMo
   require_excitation(excitation, sources_of(rows.motions()));
   refuse_swapped_sign(rows);
   if (options.moving_rows_only) rows.weigh(moving_rows(rows, axis, signals.cutoff));
-  const auto fit = recipe ? fit_coulomb_viscous(rows, options.fit) : fit_lugre(rows, options.fit);
+  const auto fit = recipe                                   ? fit_coulomb_viscous(rows, options.fit)
+                   : options.friction == sim::LuGre<>::name ? fit_lugre(rows, options.fit)
+                                                            : fit_law(rows, axis.friction, options.fit);
+  result.friction = fit.model;
   refuse_contradiction(fit, rows);
 
   result.method = recipe ? "Least squares with sgn(v) of every sample, as published for EMPS; data filtered at 100 Hz, "
                            "rows at 100 Hz, intervals by block bootstrap."
-                         : "Least squares with a LuGre contact driven by the measured position; data filtered at 100 "
-                           "Hz, rows at 100 Hz, intervals by block bootstrap.";
+                         : fmt::format(
+                               "Least squares with the contact of the law {} driven by the measured position; "
+                               "data filtered at 100 Hz, rows at 100 Hz, intervals by block bootstrap.",
+                               fit.model);
   if (options.moving_rows_only && rows.counts().minCoeff() < 1.0)
     result.method += fmt::format(
         " Rows at standstill, {:.0f} % of all, have no weight: there the friction of {} is a reaction, which no motion "

@@ -36,7 +36,8 @@ struct LogResidual {
 struct Identification {
   std::string axis;
   std::vector<std::string> sources;
-  std::string method;  // sentences for readers
+  std::string friction;  // the law that was fitted, by its name in a machine file
+  std::string method;    // sentences for readers
   std::size_t samples = 0;
   std::vector<IdentifiedParameter> parameters;
   std::vector<NotDetermined> not_determined;
@@ -51,8 +52,9 @@ struct Identification {
 };
 
 struct IdentifyOptions {
-  std::string
-      friction;  // model to identify by its name in a machine file; "coulomb_viscous" means the published recipe
+  // The law to identify by its name in a machine file: "coulomb_viscous" means the published recipe, "lugre" its
+  // contact, and any other the contact of the axis' law in use.
+  std::string friction;
   Amperes amperes = Amperes::amplitude;
   FitSettings fit;
   bool moving_rows_only = false;  // leaves rows out in which friction is a reaction (standstill.hpp)

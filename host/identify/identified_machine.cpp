@@ -57,17 +57,23 @@ struct FrictionTable {
   std::vector<std::string> missing;
 };
 
+bool is_identified(std::string_view key) {
+  return std::any_of(parameter_of_key.begin(), parameter_of_key.end(),
+                     [&](const auto& row) { return row.first == key; });
+}
+
 template <class Model>
 FrictionTable friction_table(const Identification& result) {
   FrictionTable table{std::string(Model::name), {}, {}};
-  // A Stribeck velocity acts on nothing while the static ratio is 1: the file's may stay.
+  // A Stribeck velocity acts on nothing while the static ratio is 1: the file's may stay. So may what shapes the
+  // contact that was fitted and was taken from the file.
   const bool no_fall = result.find("static_ratio") != nullptr && result.find("stribeck_velocity_m_per_s") == nullptr;
   for (const auto& parameter : Model::parameters) {
     const std::string key(parameter.key);
     const bool list = parameter.member.index() == 3;
     if (const auto value = key_value(result, key, parameter.unit, list))
       table.keys.emplace_back(key, *value);
-    else if (!(key == "stribeck_velocity" && no_fall))
+    else if (!(key == "stribeck_velocity" && no_fall) && !(Model::name == result.friction && !is_identified(key)))
       table.missing.push_back(key);
   }
   return table;

@@ -39,6 +39,7 @@ machine::Machine machine_of(const machine::Machine& machine, const machine::Axis
     return found == nullptr ? otherwise : found->value;
   };
   if (result.find("stiffness_N_per_m") != nullptr) {
+    if (result.friction != sim::LuGre<>::name) return one;  // the law in use was fitted
     const bool falls = result.find("stribeck_velocity_m_per_s") != nullptr;
     friction.use = std::string(sim::LuGre<>::name);
     friction.models[friction.use] = sim::values_of<sim::LuGre<>>({0.0, falls ? value("static_ratio", 1.0) : 1.0, 0.0,

@@ -53,7 +53,7 @@ void set_viscous(machine::FrictionParameters& friction, double viscous) {
   change_law(friction, [viscous]<class Law>(typename Law::Parameters& p) { Law::set_viscous(p, viscous); });
 }
 
-std::vector<double> loading_curve(const machine::FrictionParameters& friction,
+std::vector<double> contact_force(const machine::FrictionParameters& friction,
                                   const std::vector<double>& displacements) {
   return with_law_in_use(friction, [&]<class Law>(const typename Law::Parameters& p) {
     std::vector<double> force;

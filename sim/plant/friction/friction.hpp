@@ -97,9 +97,9 @@ double viscous_of(const machine::FrictionParameters& friction);  // N s/m
 void set_coulomb(machine::FrictionParameters& friction, double coulomb);
 void set_viscous(machine::FrictionParameters& friction, double viscous);
 
-// The force (N) at each of the displacements (m, rising) of first loading from rest, rate-independent; empty for a law
-// without a contact.
-std::vector<double> loading_curve(const machine::FrictionParameters& friction,
+// The force (N) of the contact at each of these displacements (m) from rest, reached in straight steps, rate-independent;
+// empty for a law without a contact.
+std::vector<double> contact_force(const machine::FrictionParameters& friction,
                                   const std::vector<double>& displacements);
 
 // The contact of the law in use drawn out by `factor`, its level kept. Does nothing for a law without a contact.

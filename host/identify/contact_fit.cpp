@@ -1,4 +1,4 @@
-// The LuGre contact beside mass, viscous friction and constant force: see friction_fit.hpp.
+// A contact with mass, viscous friction and constant force, LuGre's or that of a law: see friction_fit.hpp.
 #include <ceres/ceres.h>
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "host/identify/fit_support.hpp"
-#include "sim/plant/friction/lugre.hpp"
+#include "sim/plant/friction/friction.hpp"
 
 namespace stiction::host {
 
@@ -14,7 +14,7 @@ using namespace fitting;
 
 namespace {
 
-Eigen::MatrixXd lugre_columns(const LogRows& rows, const ContactShape& shape) {
+Eigen::MatrixXd contact_columns(const LogRows& rows, const ContactShape& shape) {
   const auto& motions = rows.motions();
   const auto logs = static_cast<Eigen::Index>(motions.size());
   Eigen::MatrixXd columns(rows.rows(), 5 + logs);
@@ -34,32 +34,40 @@ Eigen::MatrixXd lugre_columns(const LogRows& rows, const ContactShape& shape) {
   return columns;
 }
 
+using Law = const machine::FrictionParameters*;  // nullptr: LuGre's contact
+
 // The contact's nonlinear parameters as the solver sees them: logarithms, Stribeck's two only when they act.
-ContactShape shape_of(const double* p, bool stribeck) {
-  ContactShape shape;
-  shape.inverse_length = std::exp(p[0]);
-  if (stribeck) {
-    shape.static_ratio = 1.0 + std::exp(p[1]);
-    shape.stribeck_velocity = std::exp(p[2]);
+struct ShapeOf {
+  Law law = nullptr;
+  bool stribeck = false;
+
+  ContactShape operator()(const double* p) const {
+    ContactShape shape;
+    shape.law = law;
+    shape.inverse_length = std::exp(p[0]);
+    if (stribeck) {
+      shape.static_ratio = 1.0 + std::exp(p[1]);
+      shape.stribeck_velocity = std::exp(p[2]);
+    }
+    return shape;
   }
-  return shape;
-}
+};
 
 struct ProjectedResidual {
   const LogRows& rows;
-  bool stribeck;
+  ShapeOf shape_of;
   bool operator()(double const* const* p, double* residual) const {
-    const auto columns = lugre_columns(rows, shape_of(p[0], stribeck));
+    const auto columns = contact_columns(rows, shape_of(p[0]));
     Eigen::Map<Eigen::VectorXd>(residual, rows.rows()) = rows.force - columns * weights_of(columns, rows.force);
     return true;
   }
 };
 
-std::vector<double> refine(const LogRows& rows, std::vector<double> start, bool stribeck) {
+std::vector<double> refine(const LogRows& rows, std::vector<double> start, const ShapeOf& shape_of) {
   using Cost = ceres::DynamicNumericDiffCostFunction<ProjectedResidual, ceres::CENTRAL>;
   ceres::NumericDiffOptions steps;
   steps.relative_step_size = 1e-4;
-  auto* cost = new Cost(new ProjectedResidual{rows, stribeck}, ceres::TAKE_OWNERSHIP, steps);
+  auto* cost = new Cost(new ProjectedResidual{rows, shape_of}, ceres::TAKE_OWNERSHIP, steps);
   cost->AddParameterBlock(static_cast<int>(start.size()));
   cost->SetNumResiduals(static_cast<int>(rows.rows()));
   ceres::Problem problem;
@@ -76,7 +84,7 @@ std::vector<double> refine(const LogRows& rows, std::vector<double> start, bool 
 }
 
 // log of the inverse length with the least residual: contact lengths from 0.3 um to 30 mm, three a decade.
-double scanned_inverse_length(const LogRows& rows) {
+double scanned_inverse_length(const LogRows& rows, Law law) {
   double best = 0.0, least = INFINITY;
   Eigen::MatrixXd columns(rows.rows(), 4);
   columns.col(acceleration) = rows.acceleration;
@@ -84,7 +92,7 @@ double scanned_inverse_length(const LogRows& rows) {
   columns.col(one).setOnes();
   for (int step = 0; step <= 15; ++step) {
     const double trial = std::log(1.0 / 30e-3) + std::log(10.0) * step / 3.0;
-    const ContactShape shape{std::exp(trial), 1.0, 1e-3};
+    const ContactShape shape = ShapeOf{law, false}(&trial);
     columns.col(level) = rows.stacked([&](const Motion& m) { return contact_of(m, shape).level; });
     const double left = (rows.force - columns * weights_of(columns, rows.force)).squaredNorm();
     if (left >= least) continue;
@@ -145,7 +153,7 @@ StribeckScan scan_stribeck(const LogRows& rows, const FrictionFit& fit, const Fi
 
 void take_shape(FrictionFit& fit, const LogRows& rows, const ContactShape& shape) {
   fit.shape = shape;
-  fit.columns = lugre_columns(rows, shape);
+  fit.columns = contact_columns(rows, shape);
   fit.weights = weights_of(fit.columns, rows.force);
   fit.contact = fit.columns.col(level);
   fit.residual = rows.force - fit.columns * fit.weights;
@@ -154,7 +162,7 @@ void take_shape(FrictionFit& fit, const LogRows& rows, const ContactShape& shape
 // Columns of the change of the fit with each nonlinear parameter, so that resampling the linear problem resamples these
 // too (one Gauss-Newton step a replicate).
 Eigen::MatrixXd with_tangents(const LogRows& rows, const FrictionFit& fit, const std::vector<double>& p,
-                              bool stribeck) {
+                              const ShapeOf& shape_of) {
   constexpr double step = 1e-3;
   Eigen::MatrixXd columns(rows.rows(), fit.columns.cols() + static_cast<Eigen::Index>(p.size()));
   columns.leftCols(fit.columns.cols()) = fit.columns;
@@ -163,9 +171,8 @@ Eigen::MatrixXd with_tangents(const LogRows& rows, const FrictionFit& fit, const
     above[i] += step;
     below[i] -= step;
     columns.col(fit.columns.cols() + static_cast<Eigen::Index>(i)) =
-        (lugre_columns(rows, shape_of(above.data(), stribeck)) -
-         lugre_columns(rows, shape_of(below.data(), stribeck))) *
-        fit.weights / (2.0 * step);
+        (contact_columns(rows, shape_of(above.data())) - contact_columns(rows, shape_of(below.data()))) * fit.weights /
+        (2.0 * step);
   }
   return columns;
 }
@@ -173,9 +180,9 @@ Eigen::MatrixXd with_tangents(const LogRows& rows, const FrictionFit& fit, const
 // A factor whose logarithm is not determined at all stays within what can be written down.
 double grown(double logarithm) { return std::exp(std::clamp(logarithm, -10.0, 10.0)); }
 
-void add_lugre_parameters(FrictionFit& fit, const LogRows& rows, const std::vector<double>& p, bool stribeck,
-                          const FitSettings& settings) {
-  const auto columns = with_tangents(rows, fit, p, stribeck);
+void add_contact_parameters(FrictionFit& fit, const LogRows& rows, const std::vector<double>& p,
+                            const ShapeOf& shape_of, const FitSettings& settings) {
+  const auto columns = with_tangents(rows, fit, p, shape_of);
   const auto replicates =
       BlockRegression(columns, rows.force, fit.blocks).bootstrap(settings.replicates, settings.seed);
   Eigen::RowVectorXd centre = Eigen::RowVectorXd::Zero(columns.cols());
@@ -190,31 +197,32 @@ void add_lugre_parameters(FrictionFit& fit, const LogRows& rows, const std::vect
     const double under_root = std::max(stiffness(w) * w[acceleration], 1e-300);
     return w[rate] * k * grown(w[first]) / (2.0 * std::sqrt(under_root));
   });
-  if (!stribeck) return;
+  if (!shape_of.stribeck) return;
   add(fit, "static_ratio", centre, replicates,
       [=, rise = fit.shape.static_ratio - 1.0](const auto& w) { return 1.0 + rise * grown(w[first + 1]); });
   add(fit, "stribeck_velocity_m_per_s", centre, replicates,
       [=, v = fit.shape.stribeck_velocity](const auto& w) { return v * grown(w[first + 2]); });
 }
 
-}  // namespace
-
-FrictionFit fit_lugre(const LogRows& rows, const FitSettings& settings) {
+FrictionFit fit_contact(const LogRows& rows, const FitSettings& settings, Law law) {
   FrictionFit fit;
-  fit.model = std::string(sim::LuGre<>::name);
-  std::vector<double> p = refine(rows, {scanned_inverse_length(rows)}, false);
-  take_shape(fit, rows, shape_of(p.data(), false));
+  fit.model = law == nullptr ? std::string(sim::LuGre<>::name) : law->use;
+  ShapeOf shape_of{law, false};
+  std::vector<double> p = refine(rows, {scanned_inverse_length(rows, law)}, shape_of);
+  take_shape(fit, rows, shape_of(p.data()));
   choose_blocks(fit, rows);
   const auto scan = scan_stribeck(rows, fit, settings);
   // One part in a hundred of the held-out residual: below, a named cause is false in one null record of two hundred.
-  const bool stribeck = scan.gain > 0.01 && fit.weights[level] > 0.0 && scan.rise > 0.02 * fit.weights[level];
-  if (stribeck) {
-    p = refine(rows, {p[0], std::log(scan.rise / fit.weights[level]), std::log(scan.velocity)}, true);
-    take_shape(fit, rows, shape_of(p.data(), true));
+  shape_of.stribeck = scan.gain > 0.01 && fit.weights[level] > 0.0 && scan.rise > 0.02 * fit.weights[level];
+  // Of the laws that are fitted only LuGre's has a contact that falls with speed.
+  if (shape_of.stribeck && law != nullptr) return fit_contact(rows, settings, nullptr);
+  if (shape_of.stribeck) {
+    p = refine(rows, {p[0], std::log(scan.rise / fit.weights[level]), std::log(scan.velocity)}, shape_of);
+    take_shape(fit, rows, shape_of(p.data()));
     choose_blocks(fit, rows);
   }
-  add_lugre_parameters(fit, rows, p, stribeck, settings);
-  if (!stribeck) {
+  add_contact_parameters(fit, rows, p, shape_of, settings);
+  if (!shape_of.stribeck) {
     const double coulomb = fit.weights[level];
     FittedParameter ratio{"static_ratio", 1.0 + scan.rise_at_1_mm_per_s / coulomb, {}};
     for (const double rise : scan.rise_replicates) ratio.replicates.push_back(1.0 + rise / coulomb);
@@ -222,6 +230,21 @@ FrictionFit fit_lugre(const LogRows& rows, const FitSettings& settings) {
   }
   check_against_sliding(fit, rows, settings);
   return fit;
+}
+
+}  // namespace
+
+FrictionFit fit_lugre(const LogRows& rows, const FitSettings& settings) { return fit_contact(rows, settings, nullptr); }
+
+bool has_contact_of_one_length(const machine::FrictionParameters& friction) {
+  if (!sim::contact_of(friction)) return false;
+  const auto tables = sim::friction_tables();
+  const auto law = std::find_if(tables.begin(), tables.end(), [&](const auto& t) { return t.name == friction.use; });
+  return std::none_of(law->keys.begin(), law->keys.end(), [](const auto& key) { return key.list; });
+}
+
+FrictionFit fit_law(const LogRows& rows, const machine::FrictionParameters& friction, const FitSettings& settings) {
+  return fit_contact(rows, settings, &friction);
 }
 
 }  // namespace stiction::host
