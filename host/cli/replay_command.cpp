@@ -36,9 +36,8 @@ std::vector<ReplayCase> cases_of(const ReplayOptions& options) {
           throw UsageError(fmt::format("--machine, --friction: found {} twice; expected different names", label));
       auto& c = cases.emplace_back(ReplayCase{label, machine, {}});
       use_friction(c.machine, friction);
-      // Machines are told apart by colours of their own.
-      if (label != machine.id) c.friction = friction;
-      for (auto& axis : c.machine.axes) axis.friction.use = friction;
+      // Machines have colours of their own, and so have axes with laws of their own.
+      if (label != machine.id && machine.axes.front().friction.models.contains(friction)) c.friction = friction;
     }
   }
   return cases;
