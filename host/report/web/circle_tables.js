@@ -32,43 +32,66 @@ function drawFigures(state) {
 
 // ---- simulation, publication, measurement ----
 
+// Columns for references that the machine file does not have are left out.
+const HAS = { published: DATA.references.some(row => !row.measured), measured: DATA.references.some(row => row.measured) };
+
+const COMPARED = [
+  { of: 'error', title: 'simul.', cell: (row, gap) => figure(row.error.simulated, 2, gap) },
+  { of: 'error', title: 'quant.', cell: row => figure(row.quantised.simulated, 0, row.quantised.differs ? 'differs' : '') },
+  { of: 'error', title: 'publ.', needs: 'published', cell: row => figure(row.error.published, 0) },
+  { of: 'error', title: 'meas.', needs: 'measured', cell: row => figure(row.error.measured, 1) },
+  { of: 'error', title: 'dev. %', needs: 'measured', cell: row => figure(row.error.deviation, 0) },
+  { of: 'current', title: 'simul.', cell: (row, gap) => figure(row.current.simulated, 2, row.current.differs ? `${gap} differs` : gap) },
+  { of: 'current', title: 'publ.', needs: 'published', cell: row => figure(row.current.published, 1) },
+  { of: 'current', title: 'meas.', needs: 'measured', cell: row => figure(row.current.measured, 1) },
+  { of: 'current', title: 'dev. %', needs: 'measured', cell: row => figure(row.current.deviation, 0) },
+].filter(column => !column.needs || HAS[column.needs]);
+
 function comparisonTable(axis) {
   const effort = DATA.efforts[DATA.axes.indexOf(axis)];
   const rows = DATA.table.filter(row => row.axis === axis)
     .sort((a, b) => DATA.models.findIndex(m => m.name === a.friction) - DATA.models.findIndex(m => m.name === b.friction) ||
                     b.direction.localeCompare(a.direction) * -1 || a.feed - b.feed);
-  const head = [[text('', { span: 2 }), text('Peak error, µm', { span: 5, class: 'group gap' }), text(`Peak ${effort.name}, ${effort.unit}`, { span: 4, class: 'group gap' })],
-                [text('Friction', { class: 'text' }), text('m/min'), ...['simul.', 'quant.', 'publ.', 'meas.', 'dev. %'].map((t, i) => text(t, { class: i ? null : 'gap' })),
-                 ...['simul.', 'publ.', 'meas.', 'dev. %'].map((t, i) => text(t, { class: i ? null : 'gap' }))]];
+  const count = of => COMPARED.filter(column => column.of === of).length;
+  const gap = i => !i || COMPARED[i - 1].of !== COMPARED[i].of ? 'gap' : '';
+  const head = [[text('', { span: 2 }), text('Peak error, µm', { span: count('error'), class: 'group gap' }),
+                 text(`Peak ${effort.name}, ${effort.unit}`, { span: count('current'), class: 'group gap' })],
+                [text('Friction', { class: 'text' }), text('m/min'), ...COMPARED.map((column, i) => text(column.title, { class: gap(i) || null }))]];
   const key = row => row.friction + row.direction;
   const body = rows.map((row, i) => {
     const first = !i || key(rows[i - 1]) !== key(row);
     const cells = first ? [modelCell(row.friction, row.direction, { rows: rows.filter(each => key(each) === key(row)).length, class: 'text wrap' })] : [];
-    cells.push(text(String(row.feed)), figure(row.error.simulated, 2, 'gap'), figure(row.quantised.simulated, 0, row.quantised.differs ? 'differs' : ''),
-               figure(row.error.published, 0), figure(row.error.measured, 1), figure(row.error.deviation, 0),
-               figure(row.current.simulated, 2, row.current.differs ? 'gap differs' : 'gap'), figure(row.current.published, 1),
-               figure(row.current.measured, 1), figure(row.current.deviation, 0));
+    cells.push(text(String(row.feed)), ...COMPARED.map((column, k) => column.cell(row, gap(k))));
     return first ? classed('first', cells) : cells;
   });
   return element('div', { class: 'scroll' }, element('h3', {}, `${axis} axis`), table(head, body));
 }
 
 function drawComparison() {
+  const parts = ['simulation', ...(HAS.published ? ['publication'] : []), ...(HAS.measured ? ['measurement'] : [])].join(', ');
+  document.getElementById('table-title').textContent = parts[0].toUpperCase() + parts.slice(1);
   show('table', ...DATA.axes.map(comparisonTable));
-  const published = DATA.references.some(row => !row.measured);
-  show('table-caption', 'simul.: unquantised; quant.: rounded to increments of the position controller; publ.: published simulation; ' +
-       'dev.: (measured − simulated) / measured for the unquantised peak. ',
-       ...(published ? [element('mark', {}, 'Marked'), ': differs from the published simulation (quantised error by more than half an increment, current by more than 5 %).'] : []));
-  const columns = DATA.axes.flatMap(axis => [['error', 'simul.'], ['quantised', 'quant.'], ['error_published', 'publ.']].map(([key, name]) => ({ axis, key, name, group: 'error' })))
-    .concat(DATA.axes.flatMap(axis => [['current', 'simul.'], ['current_published', 'publ.']].map(([key, name]) => ({ axis, key, name, group: 'current' }))));
+  const words = { 'simul.': 'unquantised', 'quant.': 'rounded to increments of the position controller', 'publ.': 'published simulation',
+                  'dev. %': '(measured − simulated) / measured for the unquantised peak' };
+  const shown = Object.keys(words).filter(title => COMPARED.some(column => column.title === title));
+  show('table-caption', shown.map(title => `${title}: ${words[title]}`).join('; ') + '. ',
+       ...(HAS.published ? [element('mark', {}, 'Marked'), ': differs from the published simulation (quantised error by more than half an increment, current by more than 5 %).'] : []));
+  if (HAS.measured) drawMeans();
+}
+
+function drawMeans() {
+  const kinds = { error: [['error', 'simul.'], ['quantised', 'quant.'], ['error_published', 'publ.']], current: [['current', 'simul.'], ['current_published', 'publ.']] };
+  const columns = Object.entries(kinds).flatMap(([group, list]) => DATA.axes.flatMap(axis =>
+    list.filter(([, name]) => name !== 'publ.' || HAS.published).map(([key, name]) => ({ axis, key, name, group }))));
   const first = i => !i || columns[i - 1].axis !== columns[i].axis || columns[i - 1].group !== columns[i].group;
-  const head = [[text(''), ...columns.filter((_, i) => first(i)).map(c => text(`${c.axis} ${c.group === 'error' ? c.group : DATA.efforts[DATA.axes.indexOf(c.axis)].name}`, { span: c.group === 'error' ? 3 : 2, class: 'group gap' }))],
+  const count = c => columns.filter(each => each.axis === c.axis && each.group === c.group).length;
+  const head = [[text(''), ...columns.filter((_, i) => first(i)).map(c => text(`${c.axis} ${c.group === 'error' ? c.group : DATA.efforts[DATA.axes.indexOf(c.axis)].name}`, { span: count(c), class: 'group gap' }))],
                 [text('Friction', { class: 'text' }), ...columns.map((c, i) => text(c.name, { class: first(i) ? 'gap' : null }))]];
   const body = DATA.models.map(model => [modelCell(model.name), ...columns.map((c, i) => {
     const mean = DATA.means.find(row => row.axis === c.axis && row.friction === model.name);
     return figure(mean?.[c.key], 1, first(i) ? 'gap' : '');
   })]);
-  show('means', table(head, body));
+  show('means', element('h2', { class: 'minor' }, 'Mean absolute deviation from the measurement, %'), table(head, body));
 }
 
 // ---- ISO 230-4 ----

@@ -51,8 +51,8 @@ class Parabolic {
     if (target <= 0.0) return 0.0;
     if (slope_ == 0.0) return copy_sign(target / inertia_, free);
     // Both terms alone bound the root from above; from there Newton's steps on a convex function fall to it.
-    const Real by_root = power(target, 1.0 / order_), by_slope = target / slope_;
-    Real s = by_slope < by_root ? by_slope : by_root;
+    const Real by_slope = target / slope_;
+    Real s = power(by_slope, order_) < target ? by_slope : power(target, 1.0 / order_);
     for (int i = 0; i < 60; ++i) {
       const Real below = power(s, order_ - 1.0);
       const Real next = s - (inertia_ * below * s + slope_ * s - target) / (order_ * inertia_ * below + slope_);
