@@ -20,6 +20,16 @@ std::string detection(const FaultDescription& row, std::int64_t period_ns) {
                      static_cast<double>(row.detection_ticks * period_ns) * 1e-3);
 }
 
+// As a cell of a table, in which a bar would begin the next one.
+std::string cell(std::string_view text) {
+  std::string escaped;
+  for (const char c : text) {
+    if (c == '|') escaped += '\\';
+    escaped += c;
+  }
+  return escaped;
+}
+
 }  // namespace
 
 std::string fault_page(std::int64_t period_ns) {
@@ -31,7 +41,7 @@ std::string fault_page(std::int64_t period_ns) {
       "Detection times count in ticks of the fast loop from the first sample that violates the condition.\n\n"
       "| number | fault | condition | seen by | within | reaction |\n| --- | --- | --- | --- | --- | --- |\n";
   for (const auto& row : fault_table)
-    page += fmt::format("| {} | {} | {} | {} | {} | {} |\n", static_cast<int>(row.fault), row.name, row.condition,
+    page += fmt::format("| {} | {} | {} | {} | {} | {} |\n", static_cast<int>(row.fault), row.name, cell(row.condition),
                         detectors[static_cast<std::size_t>(row.detector)], detection(row, period_ns),
                         reactions[static_cast<std::size_t>(row.reaction)]);
   return page;

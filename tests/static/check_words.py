@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Checks the words: phrases that texts for users do not have (phrases.py), citations that lead nowhere (citations.py),
-public functions whose comment leaves out a parameter (parameter_docs.py). Prints each finding, and the counts on stderr.
+public functions whose comment leaves out a parameter (parameter_docs.py), tables that a bar breaks (tables.py). Prints
+each finding, and the counts on stderr.
 
-usage: check_words.py [ROOT] [phrases] [citations] [parameters]     default: all three; status 1: findings
+usage: check_words.py [ROOT] [phrases] [citations] [parameters] [tables]     default: all; status 1: findings
 """
 
 import pathlib
@@ -11,8 +12,9 @@ import sys
 import citations
 import parameter_docs
 import phrases
+import tables
 
-CHECKS = ("phrases", "citations", "parameters")
+CHECKS = ("phrases", "citations", "parameters", "tables")
 ROOMS = ("firmware", "hal", "host", "sim", "tests", "toolchain", "docs", "examples")
 
 # Where each check looks: paths from the root, files or folders.
@@ -20,11 +22,13 @@ FOLDERS = {
     "phrases": ("firmware", "hal", "host", "sim", "docs", "README.md"),
     "citations": ROOMS + ("README.md",),
     "parameters": ("firmware", "hal", "host", "sim", "toolchain"),
+    "tables": ROOMS + ("README.md",),
 }
 SUFFIXES = {
     "phrases": {".cpp", ".hpp", ".h", ".js", ".html", ".md"},
     "citations": {".cpp", ".hpp", ".h", ".c", ".js", ".md", ".toml", ".py", ".sh", ".cmake", ".txt", ""},
     "parameters": {".hpp"},
+    "tables": {".md"},
 }
 
 
@@ -56,7 +60,8 @@ def check(root, checks=CHECKS):
     paths = files(root)
     cited = citations.Citations(paths, read(root, citations.SOURCES_PAGE) if citations.SOURCES_PAGE in paths else "")
     judges = {"phrases": phrases.findings, "citations": cited.findings,
-              "parameters": lambda path, text: parameter_docs.findings(text)}
+              "parameters": lambda path, text: parameter_docs.findings(text),
+              "tables": lambda path, text: tables.findings(text)}
     return {name: [f"{path}:{line}: {message}" for path in chosen(paths, name)
                    for line, message in judges[name](path, read(root, path))] for name in checks}
 

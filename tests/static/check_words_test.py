@@ -37,6 +37,12 @@ class Words(unittest.TestCase):
     def expect_none(self, check, file, text):
         self.assertEqual(findings_in(SOUND | {file: text}, check), [])
 
+    def test_finds_a_bar_that_breaks_a_table(self):
+        head = "| fault | when |\n| --- | --- |\n"
+        self.expect("tables", "docs/drive.md", head + "| over-speed | |v| above 1 |\n", "4 cells", line=3)
+        self.expect("tables", "docs/drive.md", "| fault | when |\n| --- |\n", "rule", line=2)
+        self.expect_none("tables", "docs/drive.md", head + "| over-speed | \\|v\\| above 1 |\n\nA text | with bars.\n")
+
     def test_accepts_a_sound_tree(self):
         self.assertEqual(findings_in(SOUND), [])
 

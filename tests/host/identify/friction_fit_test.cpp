@@ -48,6 +48,22 @@ TEST(FrictionFit, finds_stribecks_fall_of_the_friction) {
   EXPECT_NEAR(result.find("coulomb_N")->value, 90.0, 1.0);
 }
 
+// What shapes its contact is the file's, its length and level are found. LuGre's contact creeps where this one is elastic.
+TEST(FrictionFit, a_law_whose_contact_has_one_length_is_fitted_by_its_own_contact) {
+  for (const char* law : {"dahl", "elasto_plastic"}) {
+    const auto machine = test::bench_machine(law);
+    auto expected = machine.axes.front();
+    sim::stretch_contact(expected.friction, 2.0);  // the file from which the fit begins
+    const auto result = identify_logs(records(machine), expected, {law, Amperes::amplitude, {}});
+    EXPECT_EQ(result.friction, law);
+    const auto contact = sim::contact_of(machine.axes.front().friction);
+    ASSERT_NE(result.find("stiffness_N_per_m"), nullptr) << law;
+    EXPECT_NEAR(result.find("stiffness_N_per_m")->value / contact->stiffness, 1.0, 1e-2) << law;
+    EXPECT_NEAR(result.find("coulomb_N")->value / contact->level, 1.0, 2e-3) << law;
+    EXPECT_LT(result.residual_rms, 0.1) << law;
+  }
+}
+
 TEST(FrictionFit, maxwell_slip_elements_sum_to_the_coulomb_level) {
   const auto machine = test::bench_machine("maxwell_slip");
   const auto result = identify_logs(records(machine), machine.axes.front(), {"lugre", Amperes::amplitude, {}});
