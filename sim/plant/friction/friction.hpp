@@ -97,8 +97,8 @@ double viscous_of(const machine::FrictionParameters& friction);  // N s/m
 void set_coulomb(machine::FrictionParameters& friction, double coulomb);
 void set_viscous(machine::FrictionParameters& friction, double viscous);
 
-// The force (N) of the contact at each of these displacements (m) from rest, reached in straight steps, rate-independent;
-// empty for a law without a contact.
+// The force (N) of the contact at each of these displacements (m) from rest, reached in straight steps,
+// rate-independent; empty for a law without a contact.
 std::vector<double> contact_force(const machine::FrictionParameters& friction,
                                   const std::vector<double>& displacements);
 

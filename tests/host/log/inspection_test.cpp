@@ -99,7 +99,8 @@ TEST(Inspection, SaysWhatOneSpeedInOneDirectionCannotTell) {
 TEST(Inspection, CannotTellViscousFromCoulombAtOneSpeed) {
   const auto axis = inspect(rigid_log(10.0, triangle)).axes[0];
   EXPECT_FALSE(judgement(axis, "Slope of viscous friction").possible);
-  EXPECT_NE(judgement(axis, "Slope of viscous friction").reason.find("does not separate it from Coulomb"), std::string::npos);
+  EXPECT_NE(judgement(axis, "Slope of viscous friction").reason.find("does not separate it from Coulomb"),
+            std::string::npos);
   EXPECT_TRUE(judgement(axis, "Friction differs between directions").possible);
 }
 

@@ -154,7 +154,8 @@ DiagnosisReport synthetic_diagnosis() {
   constant.explains = 0.08;
   constant.holdout = {0.95, {}, {}, {0.93, 0.98}};
   constant.p_value = 1e-14;
-  constant.confused_with = {{effect("friction_asymmetry"), "the axis turned over, a different payload, or a reading at standstill"}};
+  constant.confused_with = {
+      {effect("friction_asymmetry"), "the axis turned over, a different payload, or a reading at standstill"}};
   constant.evidence = "The residual's mean is -1.4 N in every block.";
   v.findings = {cogging, constant};
   v.rejected = {{effect("backlash"), "no gain on held-out data (-0.2 %)"}, {effect("stribeck"), "p 0.21 over blocks"}};
