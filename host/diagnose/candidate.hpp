@@ -98,6 +98,12 @@ void add_key(const SearchContext& context, Finding& finding, std::string_view ke
 // the axis; `pitch` in m.
 Columns waves_over_position(const Motion& motion, double pitch, const std::vector<double>& size);
 
+// Adds the keys of a wave over position whose length (m) is the scanned `shape`: that one by its name `length`, and the
+// amplitudes "cosine" and "sine". `context`, `finding`: as above; `w` and `c`: coefficients and covariance, the
+// length's last.
+void add_wave_keys(const SearchContext& context, Finding& finding, std::string_view length, double shape,
+                   const Eigen::VectorXd& w, const Eigen::MatrixXd& c);
+
 inline std::vector<double> no_scan(const SearchContext&) { return {0.0}; }
 // For an effect whose coefficients (VectorXd) may have any sign and size, at each shape (double) and SearchContext.
 inline bool any(const SearchContext&, double, const Eigen::VectorXd&) { return true; }

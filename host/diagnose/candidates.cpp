@@ -71,6 +71,13 @@ void add_key(const SearchContext& context, Finding& finding, std::string_view ke
       effect_parameter(context.axis, finding.effect, key, std::move(values), std::move(errors)));
 }
 
+void add_wave_keys(const SearchContext& context, Finding& finding, std::string_view length, double shape,
+                   const Eigen::VectorXd& w, const Eigen::MatrixXd& c) {
+  add_key(context, finding, length, {shape}, {std::sqrt(c(2, 2))});
+  add_key(context, finding, "cosine", {w[0]}, {std::sqrt(c(0, 0))});
+  add_key(context, finding, "sine", {w[1]}, {std::sqrt(c(1, 1))});
+}
+
 Columns waves_over_position(const Motion& motion, double pitch, const std::vector<double>& size) {
   Columns pair(2, std::vector<double>(motion.x.size()));
   for (std::size_t i = 0; i < motion.x.size(); ++i) {

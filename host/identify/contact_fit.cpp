@@ -237,7 +237,7 @@ FrictionFit fit_contact(const LogRows& rows, const FitSettings& settings, Law la
 FrictionFit fit_lugre(const LogRows& rows, const FitSettings& settings) { return fit_contact(rows, settings, nullptr); }
 
 bool has_contact_of_one_length(const machine::FrictionParameters& friction) {
-  if (!sim::contact_of(friction)) return false;
+  if (friction.use == sim::LuGre<>::name || !sim::contact_of(friction)) return false;
   const auto tables = sim::friction_tables();
   const auto law = std::find_if(tables.begin(), tables.end(), [&](const auto& t) { return t.name == friction.use; });
   return std::none_of(law->keys.begin(), law->keys.end(), [](const auto& key) { return key.list; });

@@ -56,7 +56,7 @@ FrictionFit fit_coulomb_viscous(const LogRows& rows, const FitSettings& settings
 FrictionFit fit_lugre(const LogRows& rows, const FitSettings& settings);
 
 // Whether the law in use has a contact whose shape the file gives and whose length a fit can find: not one of elements
-// of their own lengths.
+// of their own lengths, and not LuGre's, which fit_lugre() finds with its fall.
 bool has_contact_of_one_length(const machine::FrictionParameters& friction);
 
 // The same with the contact of the law in use of `friction`, drawn out or shortened as a whole: what else shapes it

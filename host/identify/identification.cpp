@@ -213,9 +213,10 @@ Identification identify_logs(const std::vector<Log>& logs, const machine::AxisMo
   require_excitation(excitation, sources_of(rows.motions()));
   refuse_swapped_sign(rows);
   if (options.moving_rows_only) rows.weigh(moving_rows(rows, axis, signals.cutoff));
-  const auto fit = recipe                                   ? fit_coulomb_viscous(rows, options.fit)
-                   : options.friction == sim::LuGre<>::name ? fit_lugre(rows, options.fit)
-                                                            : fit_law(rows, axis.friction, options.fit);
+  const bool own = options.friction == axis.friction.use && has_contact_of_one_length(axis.friction);
+  const auto fit = recipe ? fit_coulomb_viscous(rows, options.fit)
+                   : own  ? fit_law(rows, axis.friction, options.fit)
+                          : fit_lugre(rows, options.fit);
   result.friction = fit.model;
   refuse_contradiction(fit, rows);
 

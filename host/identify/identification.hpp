@@ -52,8 +52,8 @@ struct Identification {
 };
 
 struct IdentifyOptions {
-  // The law to identify by its name in a machine file: "coulomb_viscous" means the published recipe, "lugre" its
-  // contact, and any other the contact of the axis' law in use.
+  // The law to identify by its name in a machine file: "coulomb_viscous" means the published recipe; the axis' law in
+  // use its own contact, where that has one length; all else LuGre's contact.
   std::string friction;
   Amperes amperes = Amperes::amplitude;
   FitSettings fit;

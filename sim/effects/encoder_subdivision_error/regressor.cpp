@@ -47,9 +47,7 @@ Columns columns(const SearchContext& context, const Motion& motion, double perio
 }
 void describe(const SearchContext& context, double period, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
               Finding& finding) {
-  add_key(context, finding, "period", {period}, {std::sqrt(c(2, 2))});
-  add_key(context, finding, "cosine", {w[0]}, {std::sqrt(c(0, 0))});
-  add_key(context, finding, "sine", {w[1]}, {std::sqrt(c(1, 1))});
+  add_wave_keys(context, finding, "period", period, w, c);
 }
 
 }  // namespace

@@ -25,9 +25,7 @@ Columns columns(const SearchContext& context, const Motion& motion, double pitch
 bool possible(const SearchContext&, double, const Eigen::VectorXd& w) { return std::hypot(w[0], w[1]) < 0.5; }
 void describe(const SearchContext& context, double pitch, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
               Finding& finding) {
-  add_key(context, finding, "pitch", {pitch}, {std::sqrt(c(2, 2))});
-  add_key(context, finding, "cosine", {w[0]}, {std::sqrt(c(0, 0))});
-  add_key(context, finding, "sine", {w[1]}, {std::sqrt(c(1, 1))});
+  add_wave_keys(context, finding, "pitch", pitch, w, c);
 }
 
 }  // namespace

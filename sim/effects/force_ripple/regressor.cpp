@@ -1,7 +1,5 @@
 // Cogging: force on the carriage periodic in position, cosine_h cos(2 pi h x / pitch) + sine_h sin(2 pi h x / pitch).
 // The pitches to try come from the residual's spectrum over position (line_scan.hpp).
-#include <cmath>
-
 #include "host/diagnose/effect_regressor.hpp"
 
 namespace stiction::host::effects {
@@ -14,9 +12,7 @@ Columns columns(const SearchContext&, const Motion& motion, double pitch) {
 }
 void describe(const SearchContext& context, double pitch, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
               Finding& finding) {
-  add_key(context, finding, "pitch", {pitch}, {std::sqrt(c(2, 2))});
-  add_key(context, finding, "cosine", {w[0]}, {std::sqrt(c(0, 0))});
-  add_key(context, finding, "sine", {w[1]}, {std::sqrt(c(1, 1))});
+  add_wave_keys(context, finding, "pitch", pitch, w, c);
 }
 
 }  // namespace

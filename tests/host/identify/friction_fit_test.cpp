@@ -65,6 +65,16 @@ TEST(FrictionFit, a_law_whose_contact_has_one_length_is_fitted_by_its_own_contac
   }
 }
 
+TEST(FrictionFit, lugres_contact_is_fitted_where_the_law_has_none_of_one_length) {
+  for (const char* law : {"classical", "curve", "maxwell_slip", "lugre"}) {
+    const auto machine = test::bench_machine(law);
+    EXPECT_FALSE(has_contact_of_one_length(machine.axes.front().friction)) << law;
+    for (const char* wanted : {"", law})
+      EXPECT_EQ(identify_logs(records(machine), machine.axes.front(), {wanted, Amperes::amplitude, {}}).friction,
+                "lugre");
+  }
+}
+
 TEST(FrictionFit, lugres_contact_does_not_fit_one_that_is_elastic_up_to_break_away) {
   const auto machine = test::bench_machine("elasto_plastic");
   const auto& axis = machine.axes.front();
