@@ -1,0 +1,6 @@
+// Read once for all commands of a programme (toolchain/precompiled.cmake).
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "toolchain/precompiled/desk.hpp"
