@@ -25,7 +25,8 @@ struct PublishedAgreement {
 // `table`: of the circles; `machine`: whose position controller quantises.
 PublishedAgreement agreement_of(const std::vector<CircleTableRow>& table, const machine::Machine& machine);
 
-// One item of `machines`. `result`: the circles that were run; `table`: the same as rows beside the references.
+// One item of `machines`. `result`: the circles that were run; `machine`: on which; `table`: the same circles as rows
+// beside the references.
 nlohmann::ordered_json compared_circle_json(const sim::CircleResult& result, const machine::Machine& machine,
                                             const std::vector<CircleTableRow>& table);
 

@@ -27,8 +27,8 @@ struct ReplayOptions {
 using ReplayJson = std::function<nlohmann::ordered_json(const Log& log, const std::vector<ReplayCase>& cases,
                                                         const sim::ExperimentResult& result)>;
 
-// Replays the log on every machine with every friction model, prints, writes. `json_of`: empty: "stiction.replay/1".
-// Throws UsageError, LogError, FaultTripped.
+// Replays the log on every machine with every friction model, prints, writes. `options`: of the command; `invocation`:
+// for the report; `json_of`: empty: "stiction.replay/1". Throws UsageError, LogError, FaultTripped.
 void run_replay(const ReplayOptions& options, const Invocation& invocation, const ReplayJson& json_of = {});
 
 }  // namespace stiction::host

@@ -17,6 +17,9 @@ import jsonschema
 
 import commands
 
+sys.path.insert(0, str(commands.SOURCE / "tests/static"))
+import phrases  # of what users read
+
 SCHEMAS = commands.SOURCE / "docs/schemas"
 
 # Suffixes of keys, the longest first, and the units as descriptions have them.
@@ -101,6 +104,13 @@ class Schemas(unittest.TestCase):
                         if (unit := unit_of(key.rstrip("$"))) is not None:
                             self.assertRegex(f"{part['description']}; {node.get('description', '')}",
                                              rf"\bin {re.escape(UNITS[unit])}(?![\w/]| s/m)")
+
+    def test_describe_in_the_words_of_the_project(self):
+        for file, schema in self.files.items():
+            page = "\n\n".join(node["description"] for _, node in objects(schema)
+                               if isinstance(node.get("description"), str))
+            with self.subTest(file.name):
+                self.assertEqual([message for _, message in phrases.findings("schema.md", page)], [])
 
     def test_say_the_same_where_they_share_a_name(self):
         known = {}
