@@ -26,7 +26,6 @@ simulate presliding --machine mcfv5050ln --json
 simulate friction-lag --machine mcfv5050ln --json
 simulate break-away --machine mcfv5050ln --json
 simulate stick-slip --machine mcfv5050ln --json
-simulate feed-cutting --machine stick-slip-feed --feed '60 mm/min' --json
 simulate frequency-response --machine mcfv5050ln --axis X --passes 1 --json
 simulate frequency-response --machine emps --json
 simulate replay --from run.csv --machine mcfv5050ln --friction lugre --json
@@ -54,6 +53,7 @@ STOPPED = "simulate circle --machine mcfv5050ln --set 'axis.Y.position_controlle
 
 # Take longer than all others; where a folder with their results is given they are not run again.
 LONG = {"diagnose --reference circle --machine mcfv5050ln --json": "measured/verdict.json",
+        "simulate feed-cutting --machine stick-slip-feed --json": "feed/result.json",
         "compare --reference circle --machine mcfv5050ln --json": "comparison/result.json"}
 
 

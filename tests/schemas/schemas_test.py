@@ -163,7 +163,7 @@ class Outputs(unittest.TestCase):
         self.assertEqual(set(self.schemas) - {document.get("schema") for _, document in self.documents}, set())
 
     def test_come_from_every_command_that_has_json(self):
-        lines = [shlex.split(line) for line in commands.COMMANDS]
+        lines = [shlex.split(line) for line in (*commands.COMMANDS, *commands.LONG)]
         with tempfile.TemporaryDirectory() as folder:
             found = list(commands.subcommands(self.programme, folder))
         self.assertIn(("simulate", "circle"), found)
