@@ -1,5 +1,5 @@
-// Logs as MAT-files, level 5 and 7.3 (HDF5), through matio (https://github.com/tbeu/matio). Variables, units and comments:
-// docs/formats.md, "MAT". Other variables and fields are listed in `ignored`.
+// Logs as MAT-files, level 5 and 7.3 (HDF5), through matio (https://github.com/tbeu/matio). Variables, units and
+// comments: docs/formats.md, "MAT". Other variables and fields are listed in `ignored`.
 #pragma once
 
 #include <filesystem>
