@@ -2,12 +2,7 @@
 // not at all, whenever the power goes: a new file beside the old one, brought to the disk, takes its name, and the
 // folder is brought to the disk. The set before stays as FILE.previous.
 //
-// Format "stiction.parameters/1", text:
-//   stiction.parameters/1
-//   length BYTES-OF-WHAT-FOLLOWS-THE-HEAD
-//   crc32 EIGHT-HEX-DIGITS            (zlib's, of the same bytes)
-//   machine ID
-//   KEY VALUE                         (sorted; keys of the machine file, SI units)
+// The text "stiction.parameters/1", with an example: docs/formats.md, "Parameter store".
 #pragma once
 
 #include <filesystem>

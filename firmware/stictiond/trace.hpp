@@ -24,7 +24,7 @@ class Trace {
     times_ns_[used_++] = since_start_ns;
   }
 
-  // A log as docs/log_format.md describes it. Throws std::runtime_error when it cannot be written. `file`: to write;
+  // A log as docs/formats.md describes it. Throws std::runtime_error when it cannot be written. `file`: to write;
   // `axes`: their names, in the order of the loop; `comments`: leading lines "key: value".
   void write(const std::filesystem::path& file, const std::vector<std::string>& axes,
              std::span<const std::string> comments) const;

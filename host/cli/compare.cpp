@@ -1,14 +1,13 @@
 // `stiction compare`: the machine file's published and measured rows, or a measured log, beside the simulation.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <memory>
 #include <set>
 
 #include "host/cli/circle_command.hpp"
 #include "host/cli/circle_output.hpp"
 #include "host/cli/commands.hpp"
+#include "host/cli/compare_output.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/machine_options.hpp"
 #include "host/cli/replay_command.hpp"
@@ -28,31 +27,6 @@ struct CompareOptions {
   std::string out;
   bool json = false;
 };
-
-// How a simulation agrees with the rows of its machine file.
-struct Agreement {
-  int published_cells = 0;
-  int equal = 0;                   // quantised error equal to the published one
-  int within_increment = 0;        // or one increment beside it
-  double current_deviation = 0.0;  // mean |ours / published - 1|
-};
-
-Agreement agreement_of(const std::vector<CircleTableRow>& table, const machine::Machine& machine) {
-  Agreement a;
-  for (const auto& row : table) {
-    if (!row.error_quantised.published || !row.current.published) continue;
-    const auto axis = std::find_if(machine.axes.begin(), machine.axes.end(),
-                                   [&](const auto& candidate) { return candidate.name == row.axis; });
-    const double increment = axis->position_controller.increment;
-    const double off = std::abs(row.error_quantised.simulated - *row.error_quantised.published);
-    ++a.published_cells;
-    a.equal += off < 0.5 * increment;
-    a.within_increment += off < 1.5 * increment;
-    a.current_deviation += std::abs(row.current.simulated / *row.current.published - 1.0);
-  }
-  if (a.published_cells > 0) a.current_deviation /= a.published_cells;
-  return a;
-}
 
 // What the references speak of: their feeds, and the models of the published simulations.
 CirclePlan plan_of(const CompareOptions& options, const std::string& machine_name) {
@@ -77,30 +51,6 @@ CirclePlan plan_of(const CompareOptions& options, const std::string& machine_nam
   return plan;
 }
 
-nlohmann::ordered_json percent(const std::optional<double>& fraction) {
-  return fraction ? nlohmann::ordered_json(*fraction * 100.0) : nlohmann::ordered_json(nullptr);
-}
-
-nlohmann::ordered_json compare_json(const CirclePlan& plan, const sim::CircleResult& result,
-                                    const std::vector<CircleTableRow>& table) {
-  auto json = circle_json(result, plan.machine);
-  const auto a = agreement_of(table, plan.machine);
-  json["published_agreement"] = {{"cells", a.published_cells},
-                                 {"equal", a.equal},
-                                 {"within_one_increment", a.within_increment},
-                                 {"mean_current_deviation_percent", a.current_deviation * 100.0}};
-  json["mean_deviation_from_measured_percent"] = nlohmann::ordered_json::array();
-  for (const auto& mean : mean_deviations(table))
-    json["mean_deviation_from_measured_percent"].push_back({{"axis", mean.axis},
-                                                            {"friction", mean.friction},
-                                                            {"error", percent(mean.error)},
-                                                            {"error_quantised", percent(mean.error_quantised)},
-                                                            {"error_published", percent(mean.error_published)},
-                                                            {"current", percent(mean.current)},
-                                                            {"current_published", percent(mean.current_published)}});
-  return json;
-}
-
 std::string cell(const std::optional<double>& fraction) {
   return fraction ? fmt::format("{:.1f}", *fraction * 100.0) : "-";
 }
@@ -116,13 +66,13 @@ std::string compare_text(const CirclePlan& plan, const sim::CircleResult& result
     text += fmt::format("{:<4} {:<16} {:>7} {:>19} {:>10} {:>19}\n", mean.axis, mean.friction, cell(mean.error),
                         cell(mean.error_published), cell(mean.current), cell(mean.current_published));
   const auto a = agreement_of(table, plan.machine);
-  if (a.published_cells > 0)
+  if (a.cells > 0)
     text += fmt::format(
         "\n"
         "compared with the published simulation: {} of {} quantised peak errors are equal, {} differ by at most one "
         "increment;\n"
         "currents differ by {:.2f} % on average; velocity feedback: {}\n",
-        a.equal, a.published_cells, a.within_increment, a.current_deviation * 100.0,
+        a.equal, a.cells, a.within_increment, a.current_deviation * 100.0,
         velocity_source_name(plan.machine.axes.front().encoder.velocity));
   return text;
 }
@@ -134,33 +84,40 @@ void compare(const CompareOptions& options, const Invocation& invocation) {
   if (!options.log.empty()) {
     run_replay(
         {options.machine, options.log, options.friction, options.axis, options.signals, "", options.out, options.json},
-        invocation);
+        invocation, [&](const Log& log, const std::vector<ReplayCase>& cases, const sim::ExperimentResult& result) {
+          return compare_log_json(log, cases, options.axis, result.signals);
+        });
     return;
   }
   if (!options.axis.empty()) throw UsageError("--axis: found it together with --reference; expected it with LOG only");
   if (options.reference != "circle")
     throw UsageError(fmt::format("--reference: found '{}'; expected circle", options.reference));
-  const auto machines = split_list(options.machine.machine);
+  std::vector<CirclePlan> plans;
+  for (const auto& name : split_list(options.machine.machine)) {
+    plans.push_back(plan_of(options, name));
+    for (const auto& other : plans)
+      if (&other != &plans.back() && other.machine.id == plans.back().machine.id)
+        throw UsageError(fmt::format("--machine: found {} twice; expected different names", other.machine.id));
+  }
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
-  std::string text;
-  for (const auto& name : machines) {
-    const auto plan = plan_of(options, name);
+  std::string text, signals;
+  for (const auto& plan : plans) {
     // Several machines: a folder each.
     const std::string out =
-        options.out.empty() || machines.size() == 1 ? options.out : options.out + "/" + plan.machine.id;
+        options.out.empty() || plans.size() == 1 ? options.out : options.out + "/" + plan.machine.id;
     const auto result = run_plan(plan, {"", out});
     const auto table = circle_table(result, plan.machine);
-    auto json = compare_json(plan, result, table);
-    if (!out.empty()) write_circle_folder(out, plan, result, json, invocation);
+    auto json = compared_circle_json(result, plan.machine, table);
+    signals = result.signals;
+    if (!out.empty())
+      write_circle_folder(out, plan, result, compare_reference_json(signals, nlohmann::ordered_json::array({json})),
+                          invocation);
     text += compare_text(plan, result, table);
     if (!out.empty()) text += fmt::format("\nreport: {}/report.html\n", out);
     all.push_back(std::move(json));
   }
   if (options.json)
-    fmt::print("{}\n",
-               (machines.size() == 1 ? all.front()
-                                     : nlohmann::ordered_json{{"schema", "stiction.comparison/1"}, {"machines", all}})
-                   .dump(2));
+    fmt::print("{}\n", compare_reference_json(signals, std::move(all)).dump(2));
   else
     fmt::print("{}", text);
 }

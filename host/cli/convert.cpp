@@ -62,7 +62,7 @@ void add_convert(CLI::App& program) {
   command->add_option("IN", o->in, "a log (CSV, MAT), a TwinCAT Scope export, a recorder's JSON or zip, any table")
       ->required();
   command->add_option("OUT", o->out, "the log to write: NAME.csv or NAME.mat")->required();
-  command->add_option("--map", o->map, "mapping file that names the channels of a recording (docs/log_format.md)")
+  command->add_option("--map", o->map, "mapping file that names the channels of a recording (docs/formats.md)")
       ->type_name("FILE");
   command->add_option("--mat", o->mat, "level of a MAT-file: 5 or 7.3 [5]")->type_name("LEVEL");
   command->callback([o] { convert(*o); });

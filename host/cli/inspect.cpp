@@ -67,7 +67,8 @@ json axis_json(const Log& log, std::size_t index, const AxisInspection& axis) {
   for (const auto& p : axis.plateaus) out["speeds"].push_back({{"speed_m_per_s", p.speed}, {"duration_s", p.duration}});
   out["saturation"] = json::array();
   for (const auto& s : axis.saturation)
-    out["saturation"].push_back({{"channel", s.channel}, {"level", s.level}, {"part", s.part}});
+    out["saturation"].push_back(
+        {{"channel", s.channel}, {"level", s.level}, {"unit", find_channel(s.channel)->unit}, {"part", s.part}});
   if (axis.delay) out["delay_s"] = *axis.delay;
   if (axis.force_per_current) out["force_per_current_N_per_A"] = *axis.force_per_current;
   if (axis.force_constant) out[std::string("force_constant_N_per_") + axis.effort->unit] = *axis.force_constant;

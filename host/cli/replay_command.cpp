@@ -58,7 +58,7 @@ void keep(const std::filesystem::path& file, Log simulated, const ReplayOptions&
 
 }  // namespace
 
-void run_replay(const ReplayOptions& options, const Invocation& invocation) {
+void run_replay(const ReplayOptions& options, const Invocation& invocation, const ReplayJson& json_of) {
   auto cases = cases_of(options);
   if (!options.log.empty() && cases.size() != 1)
     throw UsageError(fmt::format("--log: found {} runs; expected one machine and one friction model", cases.size()));
@@ -71,7 +71,7 @@ void run_replay(const ReplayOptions& options, const Invocation& invocation) {
   const auto result =
       replay_result(log, cases, fixed ? FixedSignals::name : machine::DoubleSignals::name, options.axis);
   const auto& machine = cases.front().machine;
-  const auto json = experiment_json(result, machine);
+  const auto json = json_of ? json_of(log, cases, result) : experiment_json(result, machine);
   if (!options.out.empty()) {
     PendingFolder folder(options.out);
     folder.write("report.html", experiment_report_html({invocation.command_line, invocation.version, machine, result}));

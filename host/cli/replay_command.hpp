@@ -1,10 +1,14 @@
 // The set-points of a log through the simulation: `stiction simulate replay` and `stiction compare LOG`.
 #pragma once
 
+#include <functional>
+#include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "host/cli/commands.hpp"
 #include "host/cli/machine_options.hpp"
+#include "host/simulate/replay_result.hpp"
 
 namespace stiction::host {
 
@@ -19,8 +23,12 @@ struct ReplayOptions {
   bool json = false;
 };
 
-// Replays the log on every machine with every friction model, prints, writes. Throws UsageError, LogError,
-// FaultTripped.
-void run_replay(const ReplayOptions& options, const Invocation& invocation);
+// The result as --json prints it and result.json holds it, of the measured log and its replays.
+using ReplayJson = std::function<nlohmann::ordered_json(const Log& log, const std::vector<ReplayCase>& cases,
+                                                        const sim::ExperimentResult& result)>;
+
+// Replays the log on every machine with every friction model, prints, writes. `options`: of the command; `invocation`:
+// for the report; `json_of`: empty: "stiction.replay/1". Throws UsageError, LogError, FaultTripped.
+void run_replay(const ReplayOptions& options, const Invocation& invocation, const ReplayJson& json_of = {});
 
 }  // namespace stiction::host

@@ -1,4 +1,4 @@
-// "stiction.verdict/1", and the same for a terminal.
+// "stiction.verdict/1" (docs/schemas/verdict-1.json), and the same for a terminal.
 #pragma once
 
 #include <nlohmann/json.hpp>

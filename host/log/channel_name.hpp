@@ -1,5 +1,5 @@
 // A column's header, "X.x_set[mm]": axis, name, unit. Every format of a log has the same names
-// (docs/log_format.md).
+// (docs/formats.md).
 #pragma once
 
 #include <string>

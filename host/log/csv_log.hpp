@@ -1,4 +1,4 @@
-// Logs as CSV (RFC 4180, UTF-8, point as decimal mark; docs/log_format.md): leading "# key: value" lines, one header
+// Logs as CSV (RFC 4180, UTF-8, point as decimal mark; docs/formats.md): leading "# key: value" lines, one header
 // row with a unit for every channel, uniform samples.
 #pragma once
 

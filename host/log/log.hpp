@@ -1,5 +1,5 @@
-// A measured or simulated log in memory: uniform samples, SI units, one record of channels an axis. Readers fill it,
-// everything that judges data works on it.
+// A measured or simulated log in memory: uniform samples, SI units, one record of channels an axis. Readers fill it
+// from the files of docs/formats.md; everything that judges data works on it.
 #pragma once
 
 #include <array>

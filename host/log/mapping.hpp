@@ -1,26 +1,5 @@
-// A mapping file says what the channels of a foreign recording are:
-//
-//   schema = "stiction.mapping/1"
-//   [[channel]]
-//   from = "Axis1.ActPos"          # the channel's name in the recording
-//   to = "X.x"                     # the channel of the log (docs/log_format.md), with axis where there are several
-//   unit = "mm"                    # needed where the recording states none
-//   [[channel]]
-//   from = "Axis1.ActCurrent"
-//   to = "X.i"
-//   unit = "A"
-//   amperes = "rms"                # of a current: "peak" (amplitude, as it is kept) or "rms"; never guessed
-//   reverse = true                 # optional: counts against the axis' direction
-//   fill = "hold"                  # optional: a channel recorded slower than the position; "hold" or "linear"
-//
-//   [table]                        # only for plain tables; all optional
-//   separator = ";"                # ";", ",", "tab" [the one the header has most of]
-//   decimal = ","                  # [a comma, where the numbers have some]
-//   header_line = 3                # [the first line that is no comment]
-//   [time]                         # only for plain tables: a column, or a period
-//   column = "time"
-//   unit = "ms"
-//   period = "1 ms"
+// A mapping file states what the channels of a foreign recording are. Its keys, with an example: docs/formats.md,
+// "Recordings of drives and the mapping file".
 #pragma once
 
 #include <filesystem>

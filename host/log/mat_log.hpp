@@ -1,15 +1,5 @@
-// Logs as MAT-files, level 5 and 7.3 (HDF5), through matio (https://github.com/tbeu/matio). A log stands in the file as
-// one would write it in MATLAB:
-//
-//   t = (0:24999)' * 1e-3;                    % s, always
-//   x = ...; x_set = ...; i = ...;            % one axis: its channels as plain variables, names and SI units of
-//                                             % docs/log_format.md
-//   X.x = ...; X.i = ...; Y.x = ...;          % several axes: one struct an axis
-//   units.x = 'mm'; units.i = 'A';            % optional: other units, by channel; `units.t` for the time
-//   comments = sprintf('machine: table\n');   % optional: "key: value" lines
-//   save run.mat t X Y units comments         % or -v7.3
-//
-// Rows or columns, any real number type. Other variables and fields are listed in `ignored`.
+// Logs as MAT-files, level 5 and 7.3 (HDF5), through matio (https://github.com/tbeu/matio). Variables, units and
+// comments: docs/formats.md, "MAT". Other variables and fields are listed in `ignored`.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,5 @@
 // The open and closed loops of an axis and its plant alone, from the answers of its signals to one test signal that is
-// added to the output of the velocity controller (i_inject in docs/log_format.md). No loop is opened, and one
+// added to the output of the velocity controller (i_inject in docs/formats.md). No loop is opened, and one
 // experiment gives all of them: with O, I, V, X the answers of controller output, current, speed and position, and S =
 // 1 + O that of the set current,
 //

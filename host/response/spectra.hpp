@@ -1,4 +1,4 @@
-// How the signals of an axis answer to a test signal, from a log (docs/log_format.md), at each frequency, with
+// How the signals of an axis answer to a test signal, from a log (docs/formats.md), at each frequency, with
 // its coherence.
 // The test signal is the instrument: every answer is its cross-spectrum with the test signal over the power of that, so
 // that what noise and friction feed round the loop does not bend the result, as it does the plain ratio of two signals

@@ -1,6 +1,6 @@
 // The experiment of a frequency response: axes shuttle at a constant speed that never comes near zero, so that friction
 // acts nearly linearly, and a test signal is added to their set currents meanwhile. It leaves a log as a drive would
-// record it (docs/log_format.md), which host/response works on as on any other.
+// record it (docs/formats.md), which host/response works on as on any other.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Runs as logs in memory, in the channels of docs/log_format.md.
+// Runs as logs in memory, in the channels of docs/formats.md.
 #pragma once
 
 #include <utility>

@@ -50,11 +50,6 @@ std::vector<double> scaled(std::vector<double> values, double factor) {
   return values;
 }
 
-double offset_of(const Log& measured, const ReplayCase& c, std::size_t axis, const std::string& name) {
-  const auto& machine_axis = c.machine.axes[match_axes(c.machine, measured, name)[axis]];
-  return encoder_offset(measured.axes[axis], machine_axis.supervision.following_error.value_or(2e-3));
-}
-
 class Result {
  public:
   Result(const Log& measured, const std::vector<ReplayCase>& cases, std::string axis)
@@ -95,7 +90,7 @@ class Result {
               false,
               {}};
     }
-    const double offset = offset_of(log_, cases_.front(), axis, axis_);
+    const double offset = replay_offset(log_, cases_.front(), axis, axis_);
     error.series.push_back(measured_line(scaled(difference(measured.x_set, measured.x, 0, -offset), micro)));
     if (effort != nullptr) current.series.push_back(measured_line(measured.*effort->values));
     for (const auto& c : cases_) {
@@ -154,11 +149,6 @@ class Result {
                                {}});
   }
 
-  static std::string effort_name(const ReplayDifference& d) {
-    const std::string unit = d.effort_unit;
-    return unit == "A" ? "current" : unit == "V" ? "voltage" : "force";
-  }
-
   void add_figures(const std::string& label, const std::string& axis, const ReplayDifference& d) {
     std::string key = axis.empty() ? "" : axis + "_";
     for (const char c : label) key += (c == ' ' || c == ',' || c == '/') ? '_' : c;
@@ -206,6 +196,16 @@ class Result {
 };
 
 }  // namespace
+
+std::string effort_name(const ReplayDifference& difference) {
+  const std::string unit = difference.effort_unit;
+  return unit == "A" ? "current" : unit == "V" ? "voltage" : unit == "N" ? "force" : "";
+}
+
+double replay_offset(const Log& measured, const ReplayCase& replayed, std::size_t axis, const std::string& name) {
+  const auto& machine_axis = replayed.machine.axes[match_axes(replayed.machine, measured, name)[axis]];
+  return encoder_offset(measured.axes[axis], machine_axis.supervision.following_error.value_or(2e-3));
+}
 
 ReplayDifference compare_replay(const Log& measured, const Log& simulated, std::size_t axis, double offset) {
   const auto& m = measured.axes[axis];

@@ -33,6 +33,13 @@ inline constexpr double settling = 0.1;  // s
 // measured one.
 ReplayDifference compare_replay(const Log& measured, const Log& simulated, std::size_t axis, double offset);
 
+// "current", "voltage" or "force"; empty where there is no effort to compare. `difference`: of an axis.
+std::string effort_name(const ReplayDifference& difference);
+
+// m, the encoder_offset() of an axis of the log on the machine of a case. `measured`: the log; `replayed`: the case;
+// `axis`: index in the log; `name`: of the machine's axis, for a log without axis names.
+double replay_offset(const Log& measured, const ReplayCase& replayed, std::size_t axis, const std::string& name);
+
 // The experiment "replay" of all cases, which share the log's time. `cases`: at least one. `measured`: the log;
 // `signals`: "fixed" or "double"; `axis`: of the machine, for a log without axis names.
 sim::ExperimentResult replay_result(const Log& measured, const std::vector<ReplayCase>& cases,

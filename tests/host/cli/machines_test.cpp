@@ -163,9 +163,34 @@ TEST_F(Cli, OneAxisDrivesASineInPlaceOfTheCircle) {
   EXPECT_FALSE(small["rows"][0].contains("peak_current_A"));
   EXPECT_NE(stiction("simulate circle --machine emps").out.find("sine of axis X with the amplitude"),
             std::string::npos);
-  EXPECT_EQ(json("compare --reference circle --machine " + one)["published_agreement"]["cells"], 20);
+  EXPECT_EQ(json("compare --reference circle --machine " + one)["machines"][0]["published_agreement"]["cells"], 20);
   expect_refused("simulate circle --machine emps --direction both", "the sine of one axis has no direction");
   expect_refused("simulate circle --machine emps --radius '1 nm'", "radius: found 1e-06 mm, at 0.0016 m/min a lap of");
+}
+
+// One shape for one machine and for several; a folder holds what --json prints of its machine.
+TEST_F(Cli, ComparesAnyNumberOfMachinesInOneShape) {
+  const auto json = [&](const std::string& machines, const std::string& more) {
+    const auto result =
+        stiction("compare --reference circle --friction lugre --json --machine " + machines + " --out " + more);
+    EXPECT_EQ(result.code, 0) << result.error;
+    return nlohmann::json::parse(result.out);
+  };
+  const auto second = machine_of_one_axis();
+  const auto one = json("mcfv5050ln", "alone"), both = json("mcfv5050ln," + second, "both");
+  EXPECT_EQ(one["schema"], "stiction.compare/1");
+  ASSERT_EQ(one["machines"].size(), 1u);
+  ASSERT_EQ(both["machines"].size(), 2u);
+  EXPECT_EQ(one["machines"][0], both["machines"][0]);
+  EXPECT_EQ(both["machines"][1]["machine"], "one");
+  EXPECT_EQ(nlohmann::json::parse(content(work() / "alone/result.json")), one);
+  EXPECT_EQ(nlohmann::json::parse(content(work() / "both/mcfv5050ln/result.json")), one);
+  EXPECT_EQ(nlohmann::json::parse(content(work() / "both/one/result.json"))["machines"][0], both["machines"][1]);
+}
+
+TEST_F(Cli, ComparesNoMachineTwice) {
+  expect_refused("compare --reference circle --machine mcfv5050ln,mcfv5050ln --out twice",
+                 "--machine: found mcfv5050ln twice; expected different names");
 }
 
 TEST_F(Cli, ReadmesOrderOfCommandsServesOneAxis) {

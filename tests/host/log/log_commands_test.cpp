@@ -125,7 +125,19 @@ TEST_F(LogCommands, ReplayAndCompareALogOfTheCircle) {
   EXPECT_EQ(again.axes[0].x.size(), read_log(work() / "circle.csv").t.size());
   const auto other = nlohmann::json::parse(
       done("compare circle.csv --machine mcfv5050ln --friction lugre,classical --out compared --json"));
-  EXPECT_GT(other["results"]["position_difference_rms_X_classical_um"].get<double>(), 0.1);
+  EXPECT_EQ(other["schema"], "stiction.compare/1");
+  ASSERT_EQ(other["machines"].size(), 1u);
+  // Two axes with the one model, then with the other.
+  const auto& rows = other["machines"][0]["rows"];
+  ASSERT_EQ(rows.size(), 4u);
+  EXPECT_EQ(rows[2]["axis"], "X");
+  EXPECT_EQ(rows[2]["friction"], "classical");
+  EXPECT_GT(rows[2]["position_difference_rms_um"].get<double>(), 0.1);
+  EXPECT_NEAR(rows[0]["position_difference_rms_um"].get<double>(),
+              json["results"]["position_difference_rms_X_lugre_um"].get<double>(), 1e-9);
+  EXPECT_NEAR(rows[1]["measured"]["current_rms_A"].get<double>(),
+              json["results"]["current_rms_measured_Y_A"].get<double>(), 1e-9);
+  EXPECT_EQ(nlohmann::json::parse(read_text_file(work() / "compared" / "result.json")), other);
   EXPECT_TRUE(fs::exists(work() / "compared" / "report.html"));
 }
 
