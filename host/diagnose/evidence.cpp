@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/algebra/least_squares.hpp"
 #include "host/diagnose/fisher.hpp"
 
 namespace stiction::host {
@@ -15,10 +16,8 @@ constexpr double normal_limit = 1.959964;  // exceeded by |z| with a probability
 // Pseudo-inverse, in columns of one length, or newtons beside metres would hide a dependence.
 Eigen::MatrixXd inverse(const Eigen::MatrixXd& gram) {
   const Eigen::VectorXd scale = gram.diagonal().unaryExpr([](double g) { return g > 0.0 ? 1.0 / std::sqrt(g) : 0.0; });
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
-  decomposition.setThreshold(1e-9);
-  decomposition.compute(scale.asDiagonal() * gram * scale.asDiagonal());
-  return scale.asDiagonal() * decomposition.pseudoInverse() * scale.asDiagonal();
+  const LeastSquares scaled(scale.asDiagonal() * gram * scale.asDiagonal(), 1e-9);
+  return scale.asDiagonal() * scaled.pseudo_inverse() * scale.asDiagonal();
 }
 
 }  // namespace
@@ -110,10 +109,8 @@ Evidence::Fit Evidence::solve(const Sums& sums) {
   const Eigen::VectorXd scale =
       sums.gram.diagonal().unaryExpr([](double g) { return g > 0.0 ? 1.0 / std::sqrt(g) : 0.0; });
   const Eigen::MatrixXd gram = scale.asDiagonal() * sums.gram * scale.asDiagonal();
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
-  decomposition.setThreshold(1e-9);
-  decomposition.compute(gram);
-  const Eigen::VectorXd coefficients = decomposition.solve(scale.cwiseProduct(sums.moment)).cwiseProduct(scale);
+  const Eigen::VectorXd coefficients =
+      LeastSquares(gram, 1e-9).solve(scale.cwiseProduct(sums.moment)).cwiseProduct(scale);
   return {coefficients, left(sums, coefficients)};
 }
 
@@ -148,12 +145,12 @@ Evidence::Jackknife Evidence::jackknife(const ColumnIndices& chosen, const Eigen
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(k, k);
   Eigen::ArrayXd bearing = Eigen::ArrayXd::Zero(k), squares = bearing;
   for (const auto& cluster : clusters_) {
-    const auto own = columns.middleRows(static_cast<Eigen::Index>(cluster.begin),
-                                        static_cast<Eigen::Index>(cluster.end - cluster.begin));
-    const Eigen::MatrixXd own_gram = own.transpose() * own;
+    const Eigen::MatrixXd own = columns.middleRows(static_cast<Eigen::Index>(cluster.begin),
+                                                   static_cast<Eigen::Index>(cluster.end - cluster.begin));
+    const Eigen::MatrixXd own_gram = transposed_product(own, own);
     const Eigen::VectorXd moved =
         inverse(gram - own_gram) *
-        (own.transpose() * left.segment(static_cast<Eigen::Index>(cluster.begin), own.rows()));
+        transposed_times(own, left.segment(static_cast<Eigen::Index>(cluster.begin), own.rows()));
     sum += moved * moved.transpose();
     const Eigen::ArrayXd share = (all * own_gram * all).diagonal().array();
     bearing += share;
@@ -227,7 +224,7 @@ Evidence::Test Evidence::test(const ColumnIndices& chosen, const Eigen::VectorXd
     spread = (all.freedom * even + freedom * spread) / (all.freedom + freedom);
     freedom += all.freedom;
   }
-  const double wald = own.dot(spread.completeOrthogonalDecomposition().solve(own)) / static_cast<double>(count);
+  const double wald = own.dot(LeastSquares(spread).solve(own)) / static_cast<double>(count);
   return {wald, fisher_tail(wald, static_cast<double>(count), freedom)};
 }
 

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <random>
 
+#include "host/algebra/least_squares.hpp"
 #include "host/diagnose/candidate_columns.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
 
@@ -55,7 +56,7 @@ class Nuisances {
  private:
   std::vector<Rows> records_;
   std::vector<Eigen::MatrixXd> columns_;
-  std::vector<Eigen::ColPivHouseholderQR<Eigen::MatrixXd>> solvers_;
+  std::vector<PivotedLeastSquares> solvers_;
 };
 
 // A term's force in the rows; of a periodic one with the phase that fits each record best.

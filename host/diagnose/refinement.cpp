@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/algebra/least_squares.hpp"
 #include "host/diagnose/candidate_columns.hpp"
 
 namespace stiction::host {
@@ -57,9 +58,9 @@ class Refinement {
   }
   Eigen::VectorXd weights_of(const Eigen::MatrixXd& columns) const {
     const Eigen::VectorXd scale = columns.colwise().norm().cwiseMax(1e-300).cwiseInverse().transpose();
-    const Eigen::MatrixXd gram = scale.asDiagonal() * (columns.transpose() * columns) * scale.asDiagonal();
-    const Eigen::VectorXd moment = scale.cwiseProduct(columns.transpose() * white_target_);
-    return scale.cwiseProduct(gram.completeOrthogonalDecomposition().solve(moment));
+    const Eigen::MatrixXd gram = scale.asDiagonal() * transposed_product(columns, columns) * scale.asDiagonal();
+    const Eigen::VectorXd moment = scale.cwiseProduct(transposed_times(columns, white_target_));
+    return scale.cwiseProduct(LeastSquares(gram).solve(moment));
   }
   double left_with(std::size_t k, double shape) {
     white_[k] = whitened(group(terms_[k], shape));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/algebra/least_squares.hpp"
 #include "host/diagnose/candidate_columns.hpp"
 #include "host/diagnose/context_lines.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
@@ -22,12 +23,9 @@ class Basis {
     matrix_.resize(columns.front().size(), static_cast<Eigen::Index>(columns.size()));
     for (std::size_t k = 0; k < columns.size(); ++k) matrix_.col(static_cast<Eigen::Index>(k)) = columns[k];
     scale_ = matrix_.colwise().norm().unaryExpr([](double l) { return l > 0.0 ? 1.0 / l : 0.0; }).transpose();
-    solver_.setThreshold(1e-9);
-    solver_.compute(matrix_ * scale_.asDiagonal());
+    solver_ = LeastSquares(matrix_ * scale_.asDiagonal(), 1e-9);
   }
-  Eigen::VectorXd coefficients(const Eigen::VectorXd& force) const {
-    return scale_.cwiseProduct(Eigen::VectorXd(solver_.solve(force)));
-  }
+  Eigen::VectorXd coefficients(const Eigen::VectorXd& force) const { return scale_.cwiseProduct(solver_.solve(force)); }
   Eigen::VectorXd without(const Eigen::VectorXd& force) const {
     return matrix_.cols() == 0 ? force : Eigen::VectorXd(force - matrix_ * coefficients(force));
   }
@@ -35,7 +33,7 @@ class Basis {
  private:
   Eigen::MatrixXd matrix_;
   Eigen::VectorXd scale_;
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver_;
+  LeastSquares solver_;
 };
 
 void append(std::vector<Eigen::VectorXd>& all, const std::vector<Eigen::VectorXd>& more) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/algebra/least_squares.hpp"
 #include "host/diagnose/fisher.hpp"
 #include "sim/effects/viscous_nonlinear/viscous_nonlinear.hpp"
 
@@ -81,9 +82,7 @@ class Fitter {
     }
     const double variance = solution.left / static_cast<double>(n - count);
     const Eigen::VectorXd spread =
-        (variance * (slopes.transpose() * slopes).completeOrthogonalDecomposition().pseudoInverse())
-            .diagonal()
-            .cwiseSqrt();
+        (variance * LeastSquares(transposed_product(slopes, slopes)).pseudo_inverse()).diagonal().cwiseSqrt();
     SlidingLaw errors;
     Eigen::Index c = 0;
     for (const auto part : sliding_parts)
@@ -117,7 +116,7 @@ class Fitter {
     Solution solution{file_, 0.0};
     solution.law.rise_velocity = rise_velocity;
     if (count > 0) {
-      const Eigen::VectorXd coefficients = columns.colPivHouseholderQr().solve(target);
+      const Eigen::VectorXd coefficients = PivotedLeastSquares(columns).solve(target);
       Eigen::Index c = 0;
       for (const auto part : sliding_parts)
         if (chosen[static_cast<std::size_t>(part)]) value_of(solution.law, part) = coefficients[c++];

@@ -5,6 +5,8 @@
 #include <numeric>
 #include <random>
 
+#include "host/algebra/least_squares.hpp"
+
 namespace stiction::host {
 namespace {
 
@@ -81,9 +83,9 @@ BlockRegression::BlockRegression(const Eigen::MatrixXd& columns, const Eigen::Ve
   for (const auto& block : blocks_) {
     const auto begin = static_cast<Eigen::Index>(block.begin);
     const auto length = static_cast<Eigen::Index>(block.end - block.begin);
-    const auto part = columns.middleRows(begin, length);
-    const auto f = force.segment(begin, length);
-    sums_.push_back({part.transpose() * part, part.transpose() * f, f.squaredNorm()});
+    const Eigen::MatrixXd part = columns.middleRows(begin, length);
+    const Eigen::VectorXd f = force.segment(begin, length);
+    sums_.push_back({transposed_product(part, part), transposed_times(part, f), f.squaredNorm()});
     total_.gram += sums_.back().gram;
     total_.moment += sums_.back().moment;
     total_.force += sums_.back().force;
@@ -114,10 +116,7 @@ Eigen::VectorXd BlockRegression::solve(const Sums& sums, std::span<const std::si
     for (Eigen::Index j = 0; j < n; ++j)
       gram(i, j) = sums.gram(ci, static_cast<Eigen::Index>(chosen[static_cast<std::size_t>(j)])) * scale[i] * scale[j];
   }
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
-  decomposition.setThreshold(1e-11);
-  decomposition.compute(gram);
-  return decomposition.solve(moment).cwiseProduct(scale);
+  return LeastSquares(gram, 1e-11).solve(moment).cwiseProduct(scale);
 }
 
 double BlockRegression::residual_sum(const Sums& sums, std::span<const std::size_t> chosen,
@@ -193,8 +192,8 @@ Eigen::VectorXd solve_not_negative(const Eigen::MatrixXd& columns, const Eigen::
   const Eigen::Index n = columns.cols();
   Eigen::VectorXd scale = columns.colwise().norm().transpose();
   for (Eigen::Index i = 0; i < n; ++i) scale[i] = scale[i] > 0.0 ? 1.0 / scale[i] : 0.0;
-  const Eigen::MatrixXd gram = scale.asDiagonal() * (columns.transpose() * columns) * scale.asDiagonal();
-  const Eigen::VectorXd moment = scale.cwiseProduct(columns.transpose() * force);
+  const Eigen::MatrixXd gram = scale.asDiagonal() * transposed_product(columns, columns) * scale.asDiagonal();
+  const Eigen::VectorXd moment = scale.cwiseProduct(transposed_times(columns, force));
   std::vector<bool> active(static_cast<std::size_t>(n));
   for (std::size_t i = 0; i < active.size(); ++i) active[i] = i < free;
   Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
@@ -204,7 +203,7 @@ Eigen::VectorXd solve_not_negative(const Eigen::MatrixXd& columns, const Eigen::
       if (active[static_cast<std::size_t>(i)]) index.push_back(i);
     if (index.empty()) return Eigen::VectorXd::Zero(n).eval();
     const Eigen::MatrixXd g = gram(index, index);
-    const Eigen::VectorXd solved = g.completeOrthogonalDecomposition().solve(moment(index));
+    const Eigen::VectorXd solved = LeastSquares(g).solve(moment(index));
     Eigen::VectorXd full = Eigen::VectorXd::Zero(n);
     full(index) = solved;
     return full;

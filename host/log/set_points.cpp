@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "host/algebra/least_squares.hpp"
+
 namespace stiction::host {
 namespace {
 
@@ -53,7 +55,7 @@ void smooth(Values& x, Values& v, Values& a, int half, double period) {
   Eigen::MatrixXd powers(width, 4);
   for (int i = 0; i < width; ++i)
     for (int p = 0; p < 4; ++p) powers(i, p) = std::pow(static_cast<double>(i - half) / half, p);
-  const Eigen::MatrixXd fit = (powers.transpose() * powers).ldlt().solve(powers.transpose());  // 4 x width
+  const Eigen::MatrixXd fit = solve_symmetric(transposed_product(powers, powers), powers.transpose());  // 4 x width
   const auto samples = static_cast<int>(x.size());
   const double unit = half * period;  // s, of the fit's abscissa
   const Values raw = x;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "firmware/machine/model/motor_force.hpp"
+#include "host/algebra/least_squares.hpp"
 #include "host/identify/contact.hpp"
 #include "host/identify/identification.hpp"
 #include "host/identify/log_rows.hpp"
@@ -107,8 +108,8 @@ Equations equations(const LogRows& rows, const std::vector<double>& d, const std
   }
   const Eigen::VectorXd current = rows.force / constant;
   const Eigen::MatrixXd weighted = weight.asDiagonal() * columns;
-  q.normal = columns.transpose() * weighted;
-  q.right = weighted.transpose() * current;
+  q.normal = transposed_product(columns, weighted);
+  q.right = transposed_times(weighted, current);
   q.square = current.dot(weight.asDiagonal() * current);
   return q;
 }

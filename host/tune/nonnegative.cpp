@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "host/algebra/least_squares.hpp"
+
 namespace stiction::host {
 namespace {
 
@@ -12,7 +14,7 @@ Eigen::VectorXd minimum_over(const Eigen::MatrixXd& normal, const Eigen::VectorX
                              const std::vector<Index>& active) {
   Eigen::VectorXd w = Eigen::VectorXd::Zero(right.size());
   const Eigen::MatrixXd part = normal(active, active);
-  const Eigen::VectorXd solved = part.ldlt().solve(right(active));
+  const Eigen::VectorXd solved = solve_symmetric(part, right(active));
   for (std::size_t k = 0; k < active.size(); ++k) w[active[k]] = solved[static_cast<Index>(k)];
   return w;
 }

@@ -88,7 +88,9 @@ ROOMS = {
         "firmware/machine/*": "set-points cross the border to the drive's formats within the limits of a machine",
         f"{FIRMWARE}/*": "and end in the cascade's types",
     },
+    "host/algebra": {},
     "host/log": {
+        "host/algebra": "set-points are smoothed by least squares",
         "sim/*": "signals leave in SI units; set-points and units are those of the machine's files",
         "firmware/machine/*": "as its file describes it",
         f"{FIRMWARE}/*": "the cascade lists its own signals",
@@ -106,6 +108,7 @@ ROOMS = {
         f"{FIRMWARE}/*": "never the control",
     },
     "host/identify": {
+        "host/algebra": "fits are least squares",
         "host/log": "models are fitted to logs",
         "host/simulate": "and held against runs of the same motion",
         "sim/*": "they are those of the simulation",
@@ -113,6 +116,7 @@ ROOMS = {
         f"{FIRMWARE}/*": "and what they compensate is the control",
     },
     "host/diagnose": {
+        "host/algebra": "evidence is least squares",
         "host/identify": "a cause is told from friction by the same fits",
         "host/response": "and by what the loops do at each frequency",
         "host/log": "in logs",
@@ -122,6 +126,7 @@ ROOMS = {
         f"{FIRMWARE}/*": "and the control as it is",
     },
     "host/tune": {
+        "host/algebra": "tables are fitted by least squares",
         "host/identify": "friction is compensated as it was identified",
         "host/log": "from logs",
         "host/simulate": "and tried on runs",
