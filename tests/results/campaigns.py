@@ -1,16 +1,16 @@
-"""What a campaign prints, as runs for campaigns.toml."""
+"""The output of the blind campaign, as runs for campaigns.toml."""
 
 import datetime
 import re
 
 # What the engine of a campaign is made of: the last commit that touched one of these names it.
-ENGINE = ["firmware/include", "firmware/machine", "hal/simulated", "host", "sim"]
-TRUTH = {"blind": ["tests/blind"], "matrix": ["tests/matrix"]}
+ENGINE = ["firmware/include", "firmware/machine", "host", "sim", "tests/blind"]
 
 # The headings of tests/blind/campaign_report.cpp: the kind, and the name of the count below each.
 KINDS = {"nothing hidden": "null", "one at 50 %": "one50", "one at 10 %": "one10", "one at 5 %": "one5",
          "one at 2 %": "one2", "two at 10 % each": "two10", "outside the vocabulary at 10 %": "outside10",
          "parameters slightly off": "off"}
+GAINS = {"one effect, share 50 %": "one50", "one effect, share 10 %": "one10", "two effects, 10 % each": "two10"}
 COUNTS = {"some cause is named": "named", "the first name is right (exact aliases count)": "first_right",
           "right, or declared an alias of the right one": "right_or_alias", "no name": "no_name",
           "the first name is wrong": "first_wrong", "some name is wrong": "some_wrong", "the exact set": "exact_set",
@@ -23,17 +23,12 @@ class NotKept(Exception):
     """Why a run is not kept."""
 
 
-def read_log(name, seed, text, git):
+def read_log(seed, text, git):
     """The runs in the output of a campaign; NotKept when its engine has changes that no commit has."""
-    paths = ENGINE + TRUTH[name]
-    if git("status", "--porcelain", "--", *paths):
-        raise NotKept(f"the counts are not kept, because {', '.join(paths)} have changes without a commit")
-    head = {"campaign": name, "seed": seed, "commit": git("log", "-1", "--format=%h", "--abbrev=7", "--", *paths),
+    if git("status", "--porcelain", "--", *ENGINE):
+        raise NotKept(f"the counts are not kept, because {', '.join(ENGINE)} have changes without a commit")
+    head = {"campaign": "blind", "seed": seed, "commit": git("log", "-1", "--format=%h", "--abbrev=7", "--", *ENGINE),
             "date": str(datetime.date.today())}
-    return blind(text, head) if name == "blind" else matrix(text, head)
-
-
-def blind(text, head):
     runs, kind = {}, ""
     for line in text.splitlines():
         found = re.match(r"(.+?)\s+(\d+) of (\d+)\s+[\d.]+ %", line)
@@ -48,8 +43,8 @@ def blind(text, head):
             run["counts"][COUNTS[what.strip()]] = [k, n]
     for line in text.splitlines():
         gain = re.match(r"held-out gain, (.+?)\s+([\d.]+) % of the oracle's in the mean .*reached in (\d+) of (\d+)", line)
-        if gain and KINDS.get(gain[1]) in runs:
-            run = runs[KINDS[gain[1]]]
+        if gain:
+            run = runs[GAINS[gain[1]]]
             run["means"] = {"gain": [float(gain[2]), run["cases"]]}
             run["counts"]["gain_reached"] = [int(gain[3]), int(gain[4])]
     covered = re.search(r"^95 % intervals that cover the true value\s+(\d+) of (\d+)", text, re.M)
@@ -59,13 +54,3 @@ def blind(text, head):
     if not runs:
         raise NotKept("the campaign's output has no counts")
     return list(runs.values())
-
-
-def matrix(text, head):
-    counts = {}
-    for what, k, n in re.findall(r"^matrix, (.+?): (\d+) of (\d+),", text, re.M):
-        counts[re.sub(r"[^a-z]+", "_", what.lower()).strip("_")] = [int(k), int(n)]
-    if not counts:
-        raise NotKept("the matrix printed no counts")
-    cases = max(n for _, n in counts.values())
-    return [head | {"kind": "", "seed": f"1 to {head['seed']}", "cases": cases, "counts": counts}]

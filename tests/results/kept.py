@@ -13,7 +13,7 @@ from claims import FOLDER
 
 HEAD = {
     "kept.toml": "# What the newest run of every source printed. Written by `toolchain/test --results`; not edited by hand.\n",
-    "campaigns.toml": "# Runs of campaigns. Written by `toolchain/test --blind N --seed S` and `toolchain/test --matrix SEEDS`.\n",
+    "campaigns.toml": "# Runs of campaigns. Written by `toolchain/suites/blind CASES SEED [KIND]`; not edited by hand.\n",
 }
 
 

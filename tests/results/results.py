@@ -8,7 +8,6 @@ usage: results.py collect SOURCE...      takes what these have printed into kept
        results.py check [BUILD]          what a row lacks, commands that do not exist (BUILD: build/release), and whether
                                          docs/results.md is what the kept data make
        results.py blind SEED LOG         keeps a blind campaign's counts and writes docs/results.md
-       results.py matrix SEEDS LOG       the same for `--matrix`
 """
 
 import datetime
@@ -24,7 +23,7 @@ from claims import ClaimError, read_claims, read_sources
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs/results.md"
-AGAIN = "docs/results.md is then not true; `toolchain/test --results {0}` writes it anew"
+AGAIN = "docs/results.md is then not true; `toolchain/test --results {0}` writes it again"
 
 
 def outputs(source, table):
@@ -176,8 +175,8 @@ def main(words):
                 return render()
             case ["check", *build] if len(build) < 2:
                 return check(build[0] if build else ROOT / "build/release")
-            case ["blind" | "matrix" as name, seeds, log]:
-                return keep_runs(campaigns.read_log(name, seeds, pathlib.Path(log).read_text(encoding="utf-8"), git))
+            case ["blind", seed, log]:
+                return keep_runs(campaigns.read_log(seed, pathlib.Path(log).read_text(encoding="utf-8"), git))
     except (ClaimError, campaigns.NotKept) as error:
         print(f"results: {error}")
         return 1
