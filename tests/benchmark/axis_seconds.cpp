@@ -1,4 +1,5 @@
 // usage: axis_seconds fixed|double SECONDS      prints the last position
+// Under callgrind with --instr-atstart=no all seconds but the first are counted.
 #include <cstdio>
 #include <cstdlib>
 #include <string_view>

@@ -189,6 +189,26 @@ TYPED_TEST(SupervisionOf, SeesAnOffsetOfEachPhaseOnceTheCurrentsHaveEnded) {
   }
 }
 
+// Without a position there is nothing that could be unchanged: the set-point's way counts from the first one on.
+TYPED_TEST(SupervisionOf, WatchesForAFrozenEncoderFromTheFirstPositionUnderPowerOn) {
+  for (const bool powered : {true, false}) {
+    Watched<TypeParam> w;
+    w.supervision.restart();
+    w.seen.powered = powered;
+    for (int k = 0; k < 10; ++k) {
+      w.set(k * 100e-6);
+      EXPECT_EQ(w.shows(0.0, false), Fault::none);
+    }
+    w.seen.powered = true;
+    for (const double way : {0.0, 50e-6, 99e-6}) {
+      w.set(1e-3 + way);
+      EXPECT_EQ(w.shows(0.0), Fault::none) << way;
+    }
+    w.set(1e-3 + 101e-6);
+    EXPECT_EQ(w.shows(0.0), Fault::encoder_frozen);
+  }
+}
+
 TYPED_TEST(SupervisionOf, AsksNoSensorsThatAreNotThere) {
   auto config = bench_supervision<TypeParam>();
   config.phases_sum = config.current_measured = false;

@@ -126,6 +126,68 @@ TEST(PositionProfile, HaltsWithItsDecelerationAndGoesOn) {
   EXPECT_NEAR(mover.x, 0.4, 1e-12);
 }
 
+TEST(PositionProfile, HaltsAMotionBackwardsAsOneForwards) {
+  Mover mover(62'500, 4);
+  mover.go(-0.4, 0.4, 5.0, 8.0);
+  for (int i = 0; i < 2000; ++i) mover.tick();
+  EXPECT_NEAR(mover.v, -0.4, 1e-6);
+  const int ticks = mover.run(10'000, true);
+  EXPECT_NEAR(ticks * 62.5e-6, 0.4 / 8.0 + 1e-3, 1e-3);
+  EXPECT_EQ(mover.v, 0.0);
+  EXPECT_LE(mover.braked, 8.1);
+  mover.run(100'000);
+  EXPECT_NEAR(mover.x, -0.4, 1e-12);
+}
+
+TEST(PositionProfile, PassesATargetThatIsTooCloseToBrakeAndComesBack) {
+  for (const double side : {1.0, -1.0}) {
+    Mover mover(62'500, 0);
+    mover.go(Mover::start + side, 0.4, 5.0, 8.0);
+    for (int i = 0; i < 3000; ++i) mover.tick();
+    const double target = mover.x + side * 10e-9;
+    mover.go(target, 0.4, 5.0, 8.0);
+    mover.run(100'000);
+    EXPECT_NEAR(mover.x, target, 1e-12);
+    // v^2 / (2 d) of braking, and a tick at most.
+    const double beyond = side > 0.0 ? mover.highest - target : target - mover.lowest;
+    EXPECT_NEAR(beyond, 0.4 * 0.4 / (2.0 * 8.0), 0.4 * 62.5e-6);
+    EXPECT_LE(mover.braked, 8.0 * 1.13 + 1e-6);
+  }
+}
+
+TEST(PositionProfile, AcceleratesSlowlyTowardsATargetThatIsNearerThanATicksBraking) {
+  Mover mover(62'500, 0);
+  constexpr double way = 10e-9, a = 0.05;
+  mover.go(Mover::start + way, 0.4, a, 10.0);
+  const int ticks = mover.run(10'000);
+  EXPECT_NEAR(mover.x, Mover::start + way, 1e-12);
+  EXPECT_LE(mover.accelerated, a * 1.01 + 1e-6);
+  EXPECT_NEAR(ticks * 62.5e-6, std::sqrt(2.0 * way / a), 3.0 * 62.5e-6);
+}
+
+TEST(PositionProfile, ArrivesWithTheLeastDecelerationThatTheFormatHas) {
+  constexpr double least = 1.0 / (1 << 28) / 62.5e-6;  // one unit of velocity a tick: 60 um/s^2
+  Mover mover(62'500, 0);
+  constexpr double way = 1e-6;
+  mover.go(Mover::start + way, 0.4, 10.0 * least, least);
+  const int ticks = mover.run(100'000);
+  EXPECT_NEAR(mover.x, Mover::start + way, 1e-12);
+  // Below one unit there is no reserve to plan with; what rounding leaves is not seen by a 1 nm encoder.
+  EXPECT_LE(mover.highest - (Mover::start + way), 1e-9);
+  EXPECT_NEAR(ticks * 62.5e-6, ideal_time(way, 0.4, 10.0 * least, least), 0.05 * ticks * 62.5e-6);
+}
+
+TEST(PositionProfile, TellsTheMoveThatItMakes) {
+  PositionProfile profile({S::seconds(62'500), S::rate(62'500), 0});
+  const auto place = *machine::to_signal<S::Position>(0.5), target = *machine::to_signal<S::Position>(0.25);
+  const auto speed = *machine::to_signal<S::Velocity>(0.125);
+  profile.start(place);
+  EXPECT_EQ(profile.move().target, place);
+  profile.go({target, speed, speed, speed});
+  EXPECT_EQ(profile.move().target, target);
+  EXPECT_EQ(profile.move().velocity, speed);
+}
+
 TEST(PositionProfile, StandsUntilItIsGivenAMove) {
   Mover mover(62'500, 8);
   for (int i = 0; i < 1000; ++i) mover.tick();

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <string>
 
 #include "firmware/machine/configuration/conversion.hpp"
 #include "tests/support/figure.hpp"
@@ -140,6 +142,59 @@ TEST(SetPointInterpolator, GoesOnWithItsAccelerationWhereNoTargetCame) {
     // Targets within half a nanometre, taken on by 3, -3, 1 and once more.
     EXPECT_LT(off, 12e-9) << missing;
   }
+}
+
+TEST(SetPointInterpolator, GoesOnNoFasterThanItsLargestWay) {
+  for (const double side : {1.0, -1.0}) {
+    auto in = interpolator(16);
+    in.start({});
+    in.take(position(side * 9.0e-3));
+    in.take(position(side * 18.8e-3));  // 9.8 mm, and 0.8 mm more than the cycle before
+    in.extrapolate();
+    EXPECT_NEAR(machine::to_si(in.target()), side * 28.8e-3, 2e-12);
+  }
+}
+
+TEST(SetPointInterpolator, StaysAtATargetAfterWhichNoneComes) {
+  auto in = interpolator(16);
+  in.start({});
+  in.take(position(3e-3));
+  for (int i = 0; i < 16; ++i) in.step();
+  for (int i = 0; i < 5; ++i) EXPECT_NEAR(machine::to_si(in.step().position), 3e-3, 2e-12);
+}
+
+// The promise of at_rest(), held to what the set-point does: targets a few units of the format apart, where its
+// rounding decides, and then the same ones.
+TEST(SetPointInterpolator, SaysThatItIsAtRestWhenAndOnlyWhenItStandsFromTheNextCycleOn) {
+  constexpr int cycles = 9, ways = 2;
+  for (std::int64_t first = -7; first <= 7; ++first)
+    for (std::int64_t second = -7; second <= 7; ++second) {
+      SCOPED_TRACE(std::to_string(first) + ", " + std::to_string(second));
+      auto in = interpolator(4);
+      in.start({});
+      std::array<bool, cycles> says{}, stands{};
+      std::int64_t target = 0;
+      for (int k = 0; k < cycles; ++k) {
+        target += k == 0 ? first : k == 1 ? second : 0;
+        in.take(S::Position::from_raw(target));
+        says[k] = in.at_rest();
+        stands[k] = true;
+        for (int i = 0; i < 4; ++i) {
+          const auto point = in.step();
+          stands[k] =
+              stands[k] && point.position.raw() == target && point.velocity.raw() == 0 && point.acceleration.raw() == 0;
+        }
+      }
+      for (int k = 0; k < cycles; ++k) {
+        if (says[k] && (k > 0 || second == 0)) {  // from here on the targets stand
+          for (int later = k + 1; later < cycles; ++later) EXPECT_TRUE(stands[later]) << k << ", " << later;
+        }
+      }
+      // A way is forgotten after four more targets.
+      EXPECT_EQ(says[0], first == 0);
+      EXPECT_EQ(says[1], first == 0 && second == 0);
+      EXPECT_TRUE(says[ways + 4]);
+    }
 }
 
 TEST(SetPointInterpolator, StandsWhereItWasStarted) {
