@@ -55,13 +55,13 @@ TEST(CompensationDesign, GivesTheConfigurationOfTheSameMachineFileToTheBit) {
   }
 }
 
-struct Wrong {
+struct WrongCompensation {
   const char* sentence;
   std::function<void(CompensationDesign&)> change;
 };
 
 constexpr double two[] = {2e-6, 1e-6};
-const std::vector<Wrong> wrong{
+const std::vector<WrongCompensation> wrong_compensations{
     {"timing.set_point_delay: found 0.002 s; expected 0 s to 0.0009375 s, 15 fast periods",
      [](CompensationDesign& d) { d.set_point_delay = 2e-3; }},
     {"friction_compensation.friction.look_ahead: found 0.01 s; expected 0 s to 0.000625 s, the set_point_delay",
@@ -77,7 +77,7 @@ const std::vector<Wrong> wrong{
 TEST(CompensationDesign, SaysInASentenceWhatIsWrong) {
   const auto machine = cross_table();
   const auto axis = machine::design_of(machine.timing, machine.axes.at(0));
-  for (const auto& row : wrong) {
+  for (const auto& row : wrong_compensations) {
     auto design = design_of(machine, CompensationKind::learning);
     row.change(design);
     std::string found;
