@@ -16,6 +16,7 @@ constexpr stiction::AxisDesign design{
     .inverter = {.voltage_limit = 300.0, .current_limit = 20.0},
     .position_controller = {.gain = 80.0},
     .velocity_controller = {.gain = 150.0, .integral_time = 8e-3},
+    .notch = {.frequency = 900.0, .numerator_damping = 0.1, .denominator_damping = 0.7},
     .current_controller = {.gain = 40.0, .integral_time = 2e-3},
     .feedforward = {.velocity = 1.0, .current = 1.0},
 };

@@ -66,7 +66,6 @@ def install(source):
 def programmes(build):
     prefix = KIT.with_name("programmes")
     shutil.rmtree(prefix, ignore_errors=True)
-    KIT.mkdir(parents=True, exist_ok=True)
     run("cmake", "--install", build, "--prefix", prefix, "--component", "programmes")
     expect(not (prefix / "include").exists(), "headers are a component of their own")
     for program in ("stictiond", "stiction-plant"):
