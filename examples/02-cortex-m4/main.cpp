@@ -31,7 +31,7 @@ constexpr Ramp::Config ramp{to_signal<S::Velocity>(2.0 * design.timing.fast_peri
                             S::rate(62500)};  // 2 m/s^2
 constexpr auto feed = to_signal<S::Velocity>(0.1), rest = S::Velocity{};
 
-stiction::Axis<S> axis(design.configuration());
+constinit stiction::Axis<S> axis(design.configuration());
 stiction::Ticker clock(62500, design.slow_ticks());
 stiction::AxisSignals<S> signals;
 stiction::SaturationCounter saturations;

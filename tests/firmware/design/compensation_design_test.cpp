@@ -60,7 +60,7 @@ struct WrongCompensation {
   std::function<void(CompensationDesign&)> change;
 };
 
-constexpr double two[] = {2e-6, 1e-6};
+constexpr double two[] = {2e-6, 1e-6}, long_ones[] = {1e-3, 2e-3};
 const std::vector<WrongCompensation> wrong_compensations{
     {"timing.set_point_delay: found 0.002 s; expected 0 s to 0.0009375 s, 15 fast periods",
      [](CompensationDesign& d) { d.set_point_delay = 2e-3; }},
@@ -70,6 +70,10 @@ const std::vector<WrongCompensation> wrong_compensations{
      [](CompensationDesign& d) { d.friction.distance = two; }},
     {"friction_compensation.friction.distance: found 1e-06 m; expected increasing values, more than 2e-06 m",
      [](CompensationDesign& d) { d.friction.distance = d.friction.level = two; }},
+    {"friction_compensation.friction.distance: found 0.002 m; expected at most 0.0019 m",
+     [](CompensationDesign& d) { d.friction.distance = d.friction.level = long_ones; }},
+    {"friction_compensation.pulse.duration: found 1e+30 s; expected more than 0 s and at most 10 s",
+     [](CompensationDesign& d) { d.pulse.duration = 1e30; }},
     {"friction_compensation.learning.filter: found 0 s; expected 0.0001 s to 0.01 s",
      [](CompensationDesign& d) { d.learning.filter = 0.0; }},
 };

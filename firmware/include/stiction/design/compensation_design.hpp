@@ -25,9 +25,10 @@ struct CompensationDesign {
   constexpr design::Problems validate(const AxisDesign& axis) const {
     design::Problems problems;
     check_delay(axis, problems);
-    if (kind == CompensationKind::pulse) check_pulse(axis, problems);
-    if (kind == CompensationKind::friction || kind == CompensationKind::learning) check_friction(axis, problems);
-    if (kind == CompensationKind::learning) check_learning(axis, problems);
+    const bool learns = kind == CompensationKind::learning;
+    if (kind == CompensationKind::pulse || pulse.duration > 0.0) check_pulse(axis, problems);
+    if (kind == CompensationKind::friction || learns || friction.given()) check_friction(axis, problems);
+    if (learns || learning.filter > 0.0) check_learning(axis, problems);
     if (problems.empty()) design::configure_compensation<FixedSignals>(axis, *this, problems);
     return problems;
   }
@@ -40,6 +41,8 @@ struct CompensationDesign {
   }
 
  private:
+  static constexpr double longest_pulse = 10.0;       // s
+  static constexpr double longest_distance = 1.9e-3;  // m: half of it is the deflection of an element, S::bounded_step
   using Quantity = design::Quantity;
 
   constexpr void check_delay(const AxisDesign& axis, design::Problems& problems) const {
@@ -68,9 +71,14 @@ struct CompensationDesign {
     more(pulse.rise_until, 0.0, {"friction_compensation.pulse.rise_until", "", "m/s^2"}, "");
     more(pulse.flat_until, pulse.rise_until, {"friction_compensation.pulse.flat_until", "", "m/s^2"}, ", rise_until");
     more(pulse.fall_until, pulse.flat_until, {"friction_compensation.pulse.fall_until", "", "m/s^2"}, ", flat_until");
-    more(pulse.duration, 0.0, {"friction_compensation.pulse.duration", "", "s"}, "");
-    if (!(pulse.delay >= 0.0 && pulse.delay < 100.0))
-      problems.add({{"friction_compensation.pulse.delay", "", "s"}, pulse.delay, "0 s to", 100.0, ""});
+    if (!(pulse.duration > 0.0 && pulse.duration <= longest_pulse))
+      problems.add({{"friction_compensation.pulse.duration", "", "s"},
+                    pulse.duration,
+                    "more than 0 s and at most",
+                    longest_pulse,
+                    ""});
+    if (!(pulse.delay >= 0.0 && pulse.delay <= longest_pulse))
+      problems.add({{"friction_compensation.pulse.delay", "", "s"}, pulse.delay, "0 s to", longest_pulse, ""});
   }
 
   constexpr void check_friction(const AxisDesign& axis, design::Problems& problems) const {
@@ -98,6 +106,9 @@ struct CompensationDesign {
             "as many as there are speeds,");
     as_many(f.backward, f.speed, {"friction_compensation.friction.backward", "number of values", ""},
             "as many as there are speeds,");
+    for (const double distance : f.distance)
+      if (distance > longest_distance)
+        problems.add({{"friction_compensation.friction.distance", "", "m"}, distance, "at most", longest_distance, ""});
     check_rising(f.distance, {"friction_compensation.friction.distance", "", "m"}, problems);
     check_rising(f.speed, {"friction_compensation.friction.speed", "", "m/s"}, problems);
     double coulomb = 0.0;
