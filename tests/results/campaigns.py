@@ -42,7 +42,7 @@ def read_log(seed, text, git):
             run = runs.setdefault(kind, head | {"kind": kind, "cases": n, "counts": {}})
             run["counts"][COUNTS[what.strip()]] = [k, n]
     for line in text.splitlines():
-        gain = re.match(r"held-out gain, (.+?)\s+([\d.]+) % of the oracle's in the mean .*reached in (\d+) of (\d+)", line)
+        gain = re.match(r"held-out gain, (.+?)\s+([\d.]+) % of the oracle's .*reached in (\d+) of (\d+)", line)
         if gain:
             run = runs[GAINS[gain[1]]]
             run["means"] = {"gain": [float(gain[2]), run["cases"]]}

@@ -12,8 +12,8 @@ import tomllib
 from claims import FOLDER
 
 HEAD = {
-    "kept.toml": "# What the newest run of every source printed. Written by `toolchain/test --results`; not edited by hand.\n",
-    "campaigns.toml": "# Runs of campaigns. Written by `toolchain/suites/blind CASES SEED [KIND]`; not edited by hand.\n",
+    "kept.toml": "# The newest run of every source. Written by `toolchain/test --results`; not edited by hand.\n",
+    "campaigns.toml": "# Runs of campaigns. Written by `toolchain/suites/blind CASES SEED [KIND]`, not by hand.\n",
 }
 
 
@@ -64,7 +64,8 @@ def add_run(runs, new):
     of_engine = [r for r in same if r["commit"] == new["commit"] and str(r["seed"]) != str(new["seed"])]
     cases = new["cases"] + sum(r["cases"] for r in of_engine)
     if before and 2 * cases < sum(r["cases"] for r in before):
-        return runs, f"{what}: not kept, {cases} cases in place of {sum(r['cases'] for r in before)} of {before[0]['commit']}"
+        old = f"{sum(r['cases'] for r in before)} of {before[0]['commit']}"
+        return runs, f"{what}: not kept, {cases} cases in place of {old}"
     return [r for r in runs if r not in same] + of_engine + [new], f"{what}: kept, commit {new['commit']}"
 
 

@@ -140,6 +140,26 @@ class Page(unittest.TestCase):
         kept = {"proof": {"commit": "abc", "date": "2026-01-01", "rows": {"error": ["1.54"]}}}
         self.assertIn("abc, 2026-01-01", self.table(Section({"title": "Circle", "row": [table]}, SOURCES), kept)[2])
 
+    def test_shows_cases_interval_commit_and_seeds_of_a_campaign(self):
+        claim = {"key": "k", "what": "found", "campaign": "blind", "kind": "one10", "count": "right", "unit": "%",
+                 "bound": "≥ 95 %", "limits": [">= 95"], "command": "toolchain/suites/blind 20 1 one10"}
+        run = {"campaign": "blind", "kind": "one10", "seed": "1", "cases": 20, "commit": "abc", "date": "2026-01-01",
+               "counts": {"right": [18, 20]}}
+        line = self.table(Section({"title": "Blind", "row": [claim]}, SOURCES), {}, [run])[2]
+        self.assertEqual(line, "| found | 90.0 % (**missed**) | ≥ 95 % | 18 of 20, 69.9 to 97.2 % | "
+                               "abc, 2026-01-01, seed 1 | `toolchain/suites/blind 20 1 one10` |")
+
+    def test_that_was_edited_by_hand_is_found(self):
+        with tempfile.TemporaryDirectory() as folder:
+            edited = pathlib.Path(folder) / "results.md"
+            for text, status in ((page.render(), 0), (page.render() + "and better\n", 1)):
+                edited.write_text(text, encoding="utf-8")
+                said = io.StringIO()
+                with mock.patch.object(results, "PAGE", edited), contextlib.redirect_stdout(said), \
+                     mock.patch.object(commands, "Commands", lambda *_: mock.Mock(missing=lambda _: [])):
+                    self.assertEqual(results.check(folder), status)
+                self.assertEqual("is not what the kept data make" in said.getvalue(), bool(status))
+
     def test_writes_no_value_that_nothing_printed(self):
         with self.assertRaisesRegex(ValueError, "'error': nothing printed its value yet"):
             self.table(Section({"title": "Circle", "row": [BASE]}, SOURCES), {})
