@@ -23,6 +23,12 @@ ROOMS = {
         f"{FIRMWARE}/motion": "and follows the set-points",
         f"{FIRMWARE}/number": "in fixed-point numbers",
     },
+    f"{FIRMWARE}/design": {
+        f"{FIRMWARE}/drive": "a design in SI units becomes the cascade's configuration",
+        f"{FIRMWARE}/control": "and that of its laws",
+        f"{FIRMWARE}/number": "in the drive's formats; doubles enter the firmware's headers here and nowhere else",
+    },
+    FIRMWARE: {f"{FIRMWARE}/*": "one header for who wants all of them"},
     "firmware/machine/model": {
         f"{FIRMWARE}/control": "a machine names what its drive does against friction (compensation_kind.hpp)",
     },
@@ -179,8 +185,9 @@ INCLUDE_ROOTS = ("", "firmware/include", "toolchain/cortex-m")
 # The standard headers that the firmware may use: freestanding in C++20 and without floating point, exceptions or heap.
 FREESTANDING = {"atomic", "bit", "climits", "compare", "concepts", "cstddef", "cstdint", "initializer_list", "limits",
                 "type_traits", "version"}
-# std::array is freestanding by the letter only from C++26 on (P2976), but it is nothing but an aggregate.
-FREESTANDING |= {"array"}
+# By the letter freestanding only from C++26 on: std::array (P2976), but it is nothing but an aggregate, and std::span
+# (P2833), a pointer and a length.
+FREESTANDING |= {"array", "span"}
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*(?:<([^>]+)>|"([^"]+)"|(\S+))')
 SOURCES = {".cpp", ".hpp", ".h", ".c"}

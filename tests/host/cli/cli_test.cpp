@@ -80,7 +80,7 @@ TEST_F(Cli, FeedCuttingPrintsItsFiguresByTheContract) {
 
 TEST_F(Cli, RefusesAGainThatTheNumberFormatCannotHold) {
   expect_refused("simulate circle --machine mcfv5050ln --set axis.X.position_controller.gain='2000 1/s'",
-                 "axis.X.position_controller.gain: found gain = 2000; expected at most 1024");
+                 "axis.X.position_controller.gain: found 2000 1/s; expected at most 1024 1/s in magnitude");
 }
 
 TEST_F(Cli, StopsAnUnstableLoopWithItsFaultAndKeepsTheTrace) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "stiction/number/fixed.hpp"
@@ -64,7 +65,7 @@ struct SpeedDelay {
   };
 
   static constexpr void push(State& state, typename S::Velocity v) {
-    for (int i = length - 1; i > 0; --i) state.past[i] = state.past[i - 1];
+    for (std::size_t i = length - 1; i > 0; --i) state.past[i] = state.past[i - 1];
     state.past[0] = v;
   }
 
@@ -73,8 +74,8 @@ struct SpeedDelay {
   static constexpr typename S::Velocity read(const State& state, typename S::Ticks delay,
                                              SaturationCounter& saturations) {
     const auto [whole, fraction] = S::split(delay, length - 2);
-    const auto newer = state.past[whole];
-    const auto older = state.past[whole + 1];
+    const auto newer = state.past[static_cast<std::size_t>(whole)];
+    const auto older = state.past[static_cast<std::size_t>(whole + 1)];
     return narrow<typename S::Velocity>(newer * S::complement(fraction) + older * fraction, saturations);
   }
 };

@@ -1,0 +1,16 @@
+// All of the firmware: include this one, or the headers of the parts that a drive uses. What they need of the world is
+// a C++20 compiler: no library, no heap, no exceptions, no operating system, and no floating point outside of design/.
+#pragma once
+
+#include "stiction/design/axis_design.hpp"             // a drive's configuration from SI units
+#include "stiction/design/compensation_design.hpp"     // that of its friction compensation
+#include "stiction/drive/axis.hpp"                     // the cascade: Axis<FixedSignals>
+#include "stiction/drive/faults.hpp"                   // its faults, one table
+#include "stiction/drive/friction_compensation.hpp"    // between set-points and axis
+#include "stiction/drive/remote_axis.hpp"              // set-points from a bus: csp and pp of CiA 402
+#include "stiction/drive/servo_drive.hpp"              // states, supervision, homing, stops around the cascade
+#include "stiction/drive/ticker.hpp"                   // fast and slow ticks
+#include "stiction/motion/position_profile.hpp"        // moves with limited jerk
+#include "stiction/motion/set_point_interpolator.hpp"  // from targets each cycle to a set-point each tick
+#include "stiction/number/crc.hpp"                     // checksums of parameter blocks
+#include "stiction/number/fixed_signals.hpp"           // the formats
