@@ -23,6 +23,8 @@ import check_pages
 import pages
 
 WITH_RECIPES = "docs/extending.md"
+# Pages that a different test follows, because their examples are more than commands.
+OTHERS = {"docs/formats.md": "tests/schemas/formats_test.py"}
 BUILT = """#!/bin/sh
 echo "run_pages: $0 $*: the programmes are built already"
 """
@@ -231,6 +233,9 @@ def main():
         recipes = arguments.recipes if page.name == WITH_RECIPES else None
         if page.name == WITH_RECIPES and not recipes:
             report["left"].append(f"{page.name}: needs its recipes built")
+            continue
+        if (root / OTHERS.get(page.name, "none")).is_file():
+            report["said"].append(f"run_pages: {page.name}: {OTHERS[page.name]} follows it")
             continue
         if not any(block.language == "sh" for block in page.blocks):
             continue
