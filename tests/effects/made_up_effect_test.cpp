@@ -1,5 +1,5 @@
-// An effect that the product does not have, from the folder made_up/end_cushion alone: this programme links it into the
-// vocabulary, and file, plant, diagnosis, report and documentation have it.
+// An effect that the product does not have, from the folder of a recipe (docs/extending.md) alone: this programme links
+// it into the vocabulary, and file, plant, diagnosis, report and documentation have it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,9 +15,9 @@
 #include "host/report/diagnosis_report.hpp"
 #include "host/simulate/commissioning.hpp"
 #include "sim/effects/effects_markdown.hpp"
+#include "sim/effects/end_cushion/end_cushion.hpp"
 #include "sim/machine_file.hpp"
 #include "sim/plant/axis_plant.hpp"
-#include "tests/effects/made_up/end_cushion/end_cushion.hpp"
 #include "tests/support/figure.hpp"
 
 namespace stiction::test {
@@ -58,8 +58,8 @@ TEST(MadeUpEffect, IsOnTheReferencePageAndInTheTablesOfTheDocumentation) {
   EXPECT_NE(sim::reference_page().find("effect end_cushion: a cushion before the end of the travel"),
             std::string::npos);
   const auto tables = sim::effects_markdown();
-  EXPECT_NE(tables.find("| [end_cushion](../tests/effects/made_up/end_cushion/page.md) | a cushion before the end of "
-                        "the travel | `begin` (m), `stiffness` (N/m^2) |\n"),
+  EXPECT_NE(tables.find("| [end_cushion](../" STICTION_MADE_UP_FOLDER "/page.md) | a cushion before the end of the "
+                        "travel | `begin` (m), `stiffness` (N/m^2) |\n"),
             std::string::npos);
   EXPECT_NE(tables.find("| position_spring | end_cushion | the same segment with and without"), std::string::npos);
 }
@@ -120,7 +120,7 @@ TEST(MadeUpEffect, IsFoundInRecordsAndShownOnAReport) {
   EXPECT_EQ(found.charts.front().title, "Along the stroke");
   const auto page = host::diagnosis_report_html({"stiction diagnose", "0", input.machine, verdict});
   for (const char* text : {"Cushion at the end of the travel", "the axis meets an elastic cushion",
-                           "the buffer of the end stop", "tests/effects/made_up/end_cushion/page.md"})
+                           "the buffer of the end stop", STICTION_MADE_UP_FOLDER "/page.md"})
     EXPECT_NE(page.find(text), std::string::npos) << text;
 }
 

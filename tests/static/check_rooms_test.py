@@ -48,6 +48,12 @@ class CheckRooms(unittest.TestCase):
     def test_accepts_arrows_that_run_down(self):
         self.assertEqual(findings_in(SOUND), [])
 
+    def test_accepts_tests_of_a_recipe_and_no_product_with_it(self):
+        page = {"docs/extending.md": "`hal/new/new.hpp`:\n\n```cpp\n```\n"}
+        include = '#include "hal/new/new.hpp"\n'
+        self.assertEqual(findings_in(SOUND | page | {"tests/hal/new_test.cpp": include}), [])
+        self.assertEqual(len(findings_in(SOUND | page | {"hal/can/can_backend.hpp": include})), 1)
+
     def test_finds_a_hosted_header_in_the_firmware(self):
         self.expect_finding(NUMBER, "#include <vector>", "<vector>", "freestanding")
 

@@ -99,6 +99,11 @@ class Citations(Words):
     def test_finds_the_name_of_a_file_that_does_not_exist(self):
         self.expect("citations", "host/log/a.hpp", "// Units: contracts.md, 2.\n", "contracts.md")
 
+    def test_accepts_files_that_the_page_itself_has_as_blocks(self):
+        page = "# A\n\n`hal/new/new.hpp`:\n\n```cpp\n```\n\nSee `hal/new/`, `new.hpp`.\n"
+        self.expect_none("citations", "docs/a.md", page)
+        self.expect("citations", "docs/a.md", page + "And `hal/old/old.hpp`.\n", "hal/old/old.hpp", line=9)
+
     def test_accepts_folders_tails_of_paths_and_placeholders(self):
         self.expect_none("citations", "host/log/a.hpp", "// host/log, log/log.hpp, host/log/log, sim/effects/NAME/law.hpp, host/*.hpp.\n")
 

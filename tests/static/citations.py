@@ -15,6 +15,8 @@ LINK = re.compile(r"\]\(([^)\s]+)\)")
 PATH = re.compile(rf"(?<![\w/.<$}}-])(?:{ROOMS})/[\w./*{{}}<>-]+")
 FILE = re.compile(r"(?<![\w/.*>-])(?:[\w-]+/)*[\w-]+\.(?:hpp|cpp|md|py)\b(?!/)")
 PLACEHOLDER = re.compile(r"[*{}<>]|(?:^|/)[A-Z]{2,}(?:[/_.]|$)")
+# A block of a page that is a file (tests/docs/pages.py): its name in a line of its own.
+GIVEN = re.compile(r"^(?:[-*] |\d+\. )?`([\w./-]+)`:$", re.M)
 NO_PLACEHOLDER = re.compile(r"(?:^|/)(?:README\.md|CMakeLists\.txt)$")
 DOCUMENT = re.compile(r"\b(?:plant|cam|drive|plan|diagnosis|friction|hil|sources'?) stud(?:y|ies)\b|\b[Tt]he study\b"
                       r"|\bstudy's\b|\b[Cc]ontract\b|\.\./shared\b")
@@ -81,11 +83,13 @@ class Citations:
 
     def findings(self, name, text):
         """Yields (line, message) for a file."""
+        given = set(GIVEN.findall(text)) if name.endswith(".md") else set()
+        given |= {path.rsplit("/", 1)[k] for path in given if "/" in path for k in (0, 1)}
         for kind, passage in passages(name, text):
             if kind == "page":
                 yield from self.links(name, passage)
             if kind != "literal":
-                yield from self.names(passage)
+                yield from self.names(passage, given)
                 yield from self.publications(name, passage)
             for match in DOCUMENT.finditer(passage.text):
                 yield passage.line(match.start()), f'"{match[0]}" names a document without a reference'
@@ -102,13 +106,15 @@ class Citations:
             if not self.exists("/".join(parts)):
                 yield passage.line(match.start()), f"the link {match[1]} leads nowhere"
 
-    def names(self, passage):
+    def names(self, passage, given):
+        """`given`: files, and their folders, that the page itself has as blocks."""
         for pattern, known in ((PATH, self.exists), (FILE, self.tails.__contains__)):
             for match in pattern.finditer(passage.text):
                 path = match[0].rstrip(".:-")
                 if pattern is FILE and PATH.match(path):
                     continue
-                if (not PLACEHOLDER.search(path) or NO_PLACEHOLDER.search(path)) and not known(path):
+                if (not PLACEHOLDER.search(path) or NO_PLACEHOLDER.search(path)) and not known(path) \
+                        and path.rstrip("/") not in given:
                     yield passage.line(match.start()), f"there is no {path}"
 
     def publications(self, name, passage):
