@@ -59,7 +59,8 @@ TEST(MachineFileError, MissingUnitUnknownUnitAndWrongType) {
   const std::string expected = "; expected a value greater than 0 kg (moving mass)";
   EXPECT_EQ(error_after("\"95 kg\"", "95"), "FILE:4: axis.B.mass: found 95 (no unit)" + expected);
   EXPECT_EQ(error_after("\"95 kg\"", "\"95\""), "FILE:4: axis.B.mass: found \"95\" (no unit)" + expected);
-  EXPECT_EQ(error_after("95 kg", "95 kq"), "FILE:4: axis.B.mass: found \"95 kq\" (unknown unit \"kq\")" + expected);
+  EXPECT_EQ(error_after("95 kg", "95 kq"),
+            "FILE:4: axis.B.mass: found \"95 kq\" (unknown unit \"kq\"; did you mean \"kg\"?)" + expected);
   EXPECT_EQ(error_after("95 kg", "heavy"), "FILE:4: axis.B.mass: found \"heavy\" (not NUMBER UNIT)" + expected);
   EXPECT_EQ(error_after("95 kg", "nan kg"), "FILE:4: axis.B.mass: found \"nan kg\" (not a finite number)" + expected);
   EXPECT_EQ(error_after("\"95 kg\"", "true"), "FILE:4: axis.B.mass: found true" + expected);
@@ -118,7 +119,7 @@ TEST(MachineFileError, UnreadableFile) {
     FAIL() << "read";
   } catch (const MachineFileError& error) {
     EXPECT_STREQ(error.what(),
-                 "/nowhere/machine.toml: found no readable file; expected a machine file (stiction.machine/1)");
+                 "/nowhere/machine.toml: found no folder /nowhere; expected a machine file (stiction.machine/1) in it");
   }
 }
 
