@@ -1,0 +1,27 @@
+// Work over a second shows that it goes on where a person reads it, and nowhere else.
+#include "tests/host/cli/program.hpp"
+
+namespace stiction::test {
+namespace {
+
+// Seconds on any machine: 250 laps of a circle.
+const std::string slow = "tune-friction --machine emps --feed '3.2 m/min'";
+
+TEST_F(Cli, ATerminalShowsProgressAndTheLineIsWiped) {
+  const auto result = run_shell("script -qec \"'{}' " + slow + "\" /dev/null </dev/null");
+  ASSERT_EQ(result.code, 0) << result.out;
+  EXPECT_NE(result.out.find("tuning ["), std::string::npos);
+  const auto last = result.out.rfind('\r', result.out.find("feed") - 1);
+  ASSERT_NE(last, std::string::npos);
+  EXPECT_EQ(result.out.substr(last, 4), "\r\x1b[K") << "the progress is still there when the result is printed";
+}
+
+TEST_F(Cli, WithoutATerminalThereIsNoProgress) {
+  const auto result = stiction(slow);
+  EXPECT_EQ(result.code, 0);
+  EXPECT_EQ(result.error, "");
+  EXPECT_EQ(result.out.find('\x1b'), std::string::npos);
+}
+
+}  // namespace
+}  // namespace stiction::test
