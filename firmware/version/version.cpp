@@ -1,6 +1,6 @@
 #include "firmware/version/version.hpp"
 
-#include "commit.hpp"
+#include <stiction_commit.hpp>  // made by commit.cmake
 
 namespace stiction {
 

@@ -68,7 +68,7 @@ void add_convert(CLI::App& program) {
       ->required()
       ->type_name("LOG");
   add_output_file(*command, "OUT", o->out, "the log to write: NAME.csv or NAME.mat")->required();
-  command->add_option("--map", o->map, "mapping file that names the channels of a recording (docs/log_format.md)")
+  command->add_option("--map", o->map, "mapping file that names the channels of a recording (docs/formats.md)")
       ->type_name("FILE");
   command->add_option("--mat", o->mat, "level of a MAT-file: 5 or 7.3")
       ->check(one_of({"5", "7.3"}))

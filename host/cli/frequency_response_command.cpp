@@ -201,7 +201,9 @@ void add_frequency_response(CLI::App& simulate, const Invocation& invocation) {
   auto o = std::make_shared<Options>();
   o->machine.add_to(*command, "shipped machine by name, or a machine file");
   command->add_option("--axis", o->axis, "axis, or a list of axes [all]")->type_name("AXIS");
-  command->add_option("--loop", o->loop, "current, velocity, position, or a list of them [all, with the plant]")
+  command
+      ->add_option("--loop", o->loop,
+                   "loop to measure: current, velocity, position, or a list of them [all, with the plant]")
       ->type_name("LOOP");
   auto* from =
       command->add_option("--from", o->from, "evaluate this log instead, which must have i_inject[A] or u_inject[V]")
@@ -223,7 +225,8 @@ void add_frequency_response(CLI::App& simulate, const Invocation& invocation) {
       command->add_option("--lowest", o->lowest, "lowest frequency, and spacing of the lines of a multisine"))
       ->type_name("\"NUMBER UNIT\"")
       ->capture_default_str();
-  simulated_only(command->add_option("--periods", o->periods, "number of evaluated periods, after one for settling"))
+  simulated_only(
+      command->add_option("--periods", o->periods, "number of evaluated periods, at least 2, after one for settling"))
       ->capture_default_str();
   simulated_only(
       command->add_option("--passes", o->passes, "number of passes of a multisine, each with different phases"))

@@ -43,13 +43,28 @@ void refuse_unknown_arguments(CLI::App& command) {
   for (auto* each : commands) refuse_unknown_arguments(*each);
 }
 
+// "Feed along the path.": the sources have phrases, which messages use too. What begins with the name of a value,
+// "fixed: ...", keeps it.
+std::string sentence(std::string text) {
+  const auto end = text.find_first_of(" :");
+  const bool name = end != std::string::npos && text[end] != ' ';
+  if (text.empty()) return text;
+  if (!name && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text.back() == '.' ? text : text + ".";
+}
+
+void write_help_in_sentences(CLI::App& command) {
+  command.description(sentence(command.get_description()));
+  for (auto* option : command.get_options()) option->description(sentence(option->get_description()));
+  for (auto* each : command.get_subcommands([](CLI::App*) { return true; })) write_help_in_sentences(*each);
+}
+
 int run(int argc, char** argv) {
   Invocation invocation{"stiction", program_version()};
   const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
   for (const auto& argument : arguments) invocation.command_line += " " + quoted(argument);
 
-  CLI::App program("controller firmware of a servo axis, its simulated machine, and tools to identify and diagnose it",
-                   "stiction");
+  CLI::App program("simulate, identify and diagnose servo axes", "stiction");
   program.set_version_flag("--version", invocation.version);
   expect_subcommand(program, "command");
   program.failure_message(CLI::FailureMessage::help);
@@ -64,6 +79,7 @@ int run(int argc, char** argv) {
   add_completion(program);
 
   refuse_unknown_arguments(program);
+  write_help_in_sentences(program);
 
   const auto bad_input = [](const std::exception& error) {
     fmt::print(stderr, "stiction: {}\n", error.what());

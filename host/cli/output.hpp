@@ -11,11 +11,12 @@
 
 namespace stiction::host {
 
-// The option --out DIR; `text` is its help. A place that cannot hold a result is refused before anything runs.
-// `several`: the folder gets a folder for each result.
+// Adds the option --out DIR, with the help `text`, to `command`; its value comes into `out`. A place that cannot hold a
+// result is refused before anything runs. `several`: the folder gets a folder for each result.
 CLI::Option* add_out(CLI::App& command, std::string& out, const std::string& text, bool several = false);
 
-// An option that names a file to write, refused before anything runs where it cannot be written.
+// Adds the option `name`, with the help `text`, to `command`: a file to write, whose path comes into `file`. What cannot
+// be written is refused before anything runs.
 CLI::Option* add_output_file(CLI::App& command, const std::string& name, std::string& file, const std::string& text);
 
 class PendingFile {

@@ -56,7 +56,11 @@ const CLI::Option* find_option(const CLI::App& command, const std::string& name)
 // "MACHINE, shipped machine by name, or a machine file".
 std::string wanted_value(const CLI::Option& option) {
   const auto type = option.get_type_name();
-  return fmt::format("{}{}{}", type, type.empty() ? "" : ", ", option.get_description());
+  auto text = option.get_description();  // a sentence, which becomes a part of one
+  if (text.size() > 1 && text[1] >= 'a' && text[1] <= 'z' && text[0] >= 'A' && text[0] <= 'Z')
+    text[0] = static_cast<char>(text[0] - 'A' + 'a');
+  if (text.ends_with('.')) text.pop_back();
+  return fmt::format("{}{}{}", type, type.empty() ? "" : ", ", text);
 }
 
 std::string surplus(const CLI::App& command, const std::string& argument) {

@@ -224,7 +224,7 @@ TEST(MachineFileError, OverridesOfEveryExperimentAreChecked) {
             "FILE:30: experiment.impact.axis.B.friction.lugre.coulomb: found \"3 kg\" (dimension kg, not m kg s^-2); "
             "expected a value greater than 0 N (Coulomb friction F_C)");
   EXPECT_EQ(error_of(small_machine + "[experiment.impact.axis.C]\nmass = \"3 kg\"\n"),
-            "FILE:29: experiment.impact.axis.C: found an unknown key; expected one of B; did you mean \"B\"?");
+            "FILE:29: experiment.impact.axis.C: found an unknown key; expected one of B");
   EXPECT_EQ(error_of(small_machine + "[experiment.impact.reference]\n"),
             "FILE:29: experiment.impact.reference: found an unknown key; expected one of name, timing, axis, drive, "
             "feed_drive");
@@ -284,7 +284,7 @@ TEST(MachineFileError, SetNamesItselfAsThePlace) {
             "(moving mass)");
   EXPECT_TRUE(error_of_set({"axis.X.mas=3 kg"}).starts_with("--set axis.X.mas: axis.X.mas: found an unknown key; "));
   EXPECT_EQ(error_of_set({"axis.Q.mass=3 kg"}),
-            "--set axis.Q.mass: axis.Q: found an unknown key; expected one of X, Y; did you mean \"X\"?");
+            "--set axis.Q.mass: axis.Q: found an unknown key; expected one of X, Y");
   EXPECT_EQ(
       error_of_set({"reference.circle=3"}),
       "--set reference.circle: reference: found an unknown key; expected one of name, timing, axis, drive, feed_drive");

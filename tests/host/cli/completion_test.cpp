@@ -66,7 +66,7 @@ TEST_F(Completion, TheScriptForZshIsValidAndOffersTheSame) {
       "${{(P)2}}; }}; compadd() {{ print -l ${{(P)2}}; }}; source ./_stiction; words=(stiction simulate \"\"); "
       "CURRENT=3; _stiction; words=(stiction simulate frequency-response --machine mcfv5050ln --axis \"\"); CURRENT=7; "
       "_stiction'");
-  EXPECT_NE(asked.out.find("circle:circle of two axes"), std::string::npos) << asked.out << asked.error;
+  EXPECT_NE(asked.out.find("circle:Circle of two axes"), std::string::npos) << asked.out << asked.error;
   EXPECT_NE(asked.out.find("X\nY\n"), std::string::npos) << asked.out << asked.error;
 }
 

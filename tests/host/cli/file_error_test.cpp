@@ -4,21 +4,21 @@
 namespace stiction::test {
 namespace {
 
-const std::string circle = "simulate circle --machine emps ";
+const std::string sine = "simulate circle --machine emps ";
 
 TEST_F(Cli, AFolderIsNoFile) {
   fs::create_directories(work() / "../folder");
   expect_refused("inspect ../folder", "../folder: found a folder; expected a log");
   expect_refused("simulate circle --machine ../folder", "../folder: found a folder; expected a machine file");
-  expect_refused(circle + "--log ../folder", "../folder: found a folder; expected the name of a file");
+  expect_refused(sine + "--log ../folder", "../folder: found a folder; expected the name of a file");
   expect_refused("convert a.csv b.csv --map ../folder", "../folder: found a folder; expected a mapping file");
 }
 
 TEST_F(Cli, AFileIsNoFolder) {
   std::ofstream(work() / "../file") << "precious";
-  expect_refused(circle + "--out ../file", "../file: found a file; expected a folder for the results");
-  expect_refused(circle + "--out ../file/r", "../file/r: found that ../file is a file; expected a folder");
-  expect_refused(circle + "--log ../file/run.csv", "found that ../file is a file; expected a folder");
+  expect_refused(sine + "--out ../file", "../file: found a file; expected a folder for the results");
+  expect_refused(sine + "--out ../file/r", "../file/r: found that ../file is a file; expected a folder");
+  expect_refused(sine + "--log ../file/run.csv", "found that ../file is a file; expected a folder");
   expect_refused("inspect ../file/run.csv", "a part of the path is a file, not a folder");
   EXPECT_EQ(content(work() / "../file"), "precious");
 }
@@ -28,8 +28,8 @@ TEST_F(Cli, WhatIsNotThereIsNamedWithTheNearestThatIs) {
   expect_refused("inspect ../marhc.csv",
                  "../marhc.csv: found no such file; expected a log; did you mean \"march.csv\"?");
   expect_refused("inspect nowhere/run.csv", "nowhere/run.csv: found no folder nowhere; expected a log in it");
-  expect_refused(circle + "--log nowhere/run.csv", "found no folder nowhere; expected a folder that exists");
-  expect_refused(circle + "--out ''", "--out: found an empty name; expected that of a folder");
+  expect_refused(sine + "--log nowhere/run.csv", "found no folder nowhere; expected a folder that exists");
+  expect_refused(sine + "--out ''", "--out: found an empty name; expected that of a folder");
 }
 
 TEST_F(Cli, WithoutPermissionNothingIsReadOrWritten) {
@@ -43,8 +43,8 @@ TEST_F(Cli, WithoutPermissionNothingIsReadOrWritten) {
     EXPECT_NE(result.error.find(message), std::string::npos) << arguments << "\n" << result.error;
   };
   nobody("inspect ../closed/run.csv", "../closed/run.csv: found no permission to read it; expected a log");
-  nobody(circle + "--out ../closed/r", "found no permission to write into ../closed");
-  nobody(circle + "--log ../closed/r.csv", "../closed/r.csv: found no permission to write it");
+  nobody(sine + "--out ../closed/r", "found no permission to write into ../closed");
+  nobody(sine + "--log ../closed/r.csv", "../closed/r.csv: found no permission to write it");
   fs::permissions(work() / "../closed", fs::perms::owner_all);
   EXPECT_EQ(std::distance(fs::directory_iterator(work() / "../closed"), {}), 1);
 }
@@ -52,7 +52,7 @@ TEST_F(Cli, WithoutPermissionNothingIsReadOrWritten) {
 TEST_F(Cli, AFullDiskIsToldAndNothingIsLeft) {
   // The limit of a file's size fails a write halfway, as a full disk does.
   for (const char* output : {"--out r", "--log run.csv"}) {
-    const auto result = run_shell("ulimit -f 8; '{}' " + circle + output);
+    const auto result = run_shell("ulimit -f 8; '{}' " + sine + output);
     EXPECT_EQ(result.code, 1) << output;
     EXPECT_NE(result.error.find("cannot be written: the file becomes larger than the system allows"), std::string::npos)
         << result.error;
@@ -60,7 +60,7 @@ TEST_F(Cli, AFullDiskIsToldAndNothingIsLeft) {
         << "the message names a temporary file: " << result.error;
     EXPECT_TRUE(nothing_written()) << output;
   }
-  const auto device = stiction(circle + "--log /dev/full");
+  const auto device = stiction(sine + "--log /dev/full");
   EXPECT_EQ(device.code, 1);
   EXPECT_NE(device.error.find("/dev/full: cannot be written: the disk is full"), std::string::npos) << device.error;
   EXPECT_TRUE(fs::is_character_file("/dev/full")) << "a device was replaced by a file";
@@ -71,7 +71,7 @@ TEST_F(Cli, AFullDiskIsToldAndNothingIsLeft) {
 }
 
 TEST_F(Cli, ALogGoesThroughAPipe) {
-  const auto result = run_shell("'{}' " + circle + "--log /dev/stderr");
+  const auto result = run_shell("'{}' " + sine + "--log /dev/stderr");
   EXPECT_EQ(result.code, 0);
   EXPECT_NE(result.error.find("X.x[m]"), std::string::npos);
 }
