@@ -27,8 +27,10 @@ CLI::Validator one_of(const std::vector<std::string>& names) {
   return CLI::Validator(
       [names](std::string& found) {
         if (std::find(names.begin(), names.end(), found) != names.end()) return std::string();
-        return fmt::format("found '{}'; expected {}{}", excerpt(found), fmt::join(names, " or "),
-                           nearest_words(found, names));
+        std::string expected;
+        for (std::size_t k = 0; k < names.size(); ++k)
+          expected += (k == 0 ? "" : k + 1 == names.size() ? " or " : ", ") + names[k];
+        return fmt::format("found '{}'; expected {}{}", excerpt(found), expected, nearest_words(found, names));
       },
       fmt::format("{{{}}}", fmt::join(names, ",")));
 }

@@ -59,7 +59,8 @@ std::string nearest_file(const fs::path& file) {
     throw UnreadableFile(fmt::format("{}: found no such file; expected {}{}", shown, expected, nearest_file(file)));
   if (error == EACCES)
     throw UnreadableFile(fmt::format("{}: found no permission to read it; expected {}", shown, expected));
-  throw UnreadableFile(fmt::format("{}: cannot be read: {}; expected {}", shown, file_error_words(error), expected));
+  throw UnreadableFile(
+      fmt::format("{}: found that it cannot be read: {}; expected {}", shown, file_error_words(error), expected));
 }
 
 }  // namespace

@@ -5,15 +5,18 @@ namespace stiction::test {
 namespace {
 
 // Seconds on any machine: 250 laps of a circle.
-const std::string slow = "tune-friction --machine emps --feed '3.2 m/min'";
+const std::string slow = "tune-friction --machine mcfv5050ln --axis X --feed '3.2 m/min'";
 
 TEST_F(Cli, ATerminalShowsProgressAndTheLineIsWiped) {
   const auto result = run_shell("script -qec \"'{}' " + slow + "\" /dev/null </dev/null");
   ASSERT_EQ(result.code, 0) << result.out;
   EXPECT_NE(result.out.find("tuning ["), std::string::npos);
-  const auto last = result.out.rfind('\r', result.out.find("feed") - 1);
+  const auto last = result.out.rfind("\r\x1b[K");
   ASSERT_NE(last, std::string::npos);
-  EXPECT_EQ(result.out.substr(last, 4), "\r\x1b[K") << "the progress is still there when the result is printed";
+  const auto printed = result.out.substr(last + 4);
+  EXPECT_TRUE(printed.starts_with("asked:") || printed.find("\nasked:") != std::string::npos) << printed;
+  for (const char* bar : {"[#", "[.", " of "})
+    EXPECT_EQ(printed.substr(0, printed.find("asked:")).find(bar), std::string::npos) << "progress is still there";
 }
 
 TEST_F(Cli, WithoutATerminalThereIsNoProgress) {

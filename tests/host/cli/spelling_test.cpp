@@ -25,7 +25,7 @@ TEST_F(Cli, NamesTheNearestValueOfAnOption) {
   expect_refused("simulate circle --machine mcfv505ln", "did you mean \"mcfv5050ln\"?");
   expect_refused(run + "--friction lurge", "did you mean 'lugre'?");
   expect_refused(run + "--signals fixd", "--signals: found 'fixd'; expected fixed or double; did you mean 'fixed'?");
-  expect_refused(run + "--direction coww", "--direction: found 'coww'; expected cw or ccw or both; did you mean");
+  expect_refused(run + "--direction boht", "--direction: found 'boht'; expected cw, ccw or both; did you mean 'both'?");
   expect_refused(run + "--compensation feed_forward", "--compensation: found 'feed_forward'");
   expect_refused("simulate frequency-response --machine mcfv5050ln --axis x", "did you mean 'X'?");
   expect_refused("simulate frequency-response --machine mcfv5050ln --loop velocty", "did you mean 'velocity'?");
