@@ -4,6 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <limits>
 
 #include "firmware/machine/file/nearest_name.hpp"
 #include "host/cli/errors.hpp"
@@ -33,6 +36,19 @@ CLI::Validator one_of(const std::vector<std::string>& names) {
         return fmt::format("found '{}'; expected {}{}", excerpt(found), expected, nearest_words(found, names));
       },
       fmt::format("{{{}}}", fmt::join(names, ",")));
+}
+
+CLI::Validator whole_number() {
+  return CLI::Validator(
+      [](std::string& found) {
+        std::uint64_t number = 0;
+        const auto* end = found.data() + found.size();
+        const auto read = std::from_chars(found.data(), end, number);
+        if (read.ec == std::errc{} && read.ptr == end) return std::string();
+        return fmt::format("found '{}'; expected a whole number from 0 to {}", excerpt(found),
+                           std::numeric_limits<std::uint64_t>::max());
+      },
+      "");
 }
 
 }  // namespace stiction::host

@@ -19,6 +19,9 @@ void require_known(std::string_view option, const std::string& name, std::string
 // For options that take one of `names`; the help lists them as {a,b}.
 CLI::Validator one_of(const std::vector<std::string>& names);
 
+// For options that take a whole number of 64 bits, such as a seed: CLI11 takes -1 for the largest one.
+CLI::Validator whole_number();
+
 // Names of the axes of a machine, for messages and choices.
 template <class Machine>
 std::vector<std::string> axis_names(const Machine& machine) {

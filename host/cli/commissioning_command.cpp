@@ -96,8 +96,12 @@ void add_commissioning(CLI::App& simulate, const Invocation& invocation) {
   command->add_option("--axis", o->axis, "the axis that moves [the machine's first]")->type_name("NAME");
   command
       ->add_option("--hide", o->hide, "add an effect that is drawn with this seed to the machine, but not to its file")
+      ->check(whole_number())
       ->type_name("SEED");
-  command->add_option("--seed", o->seed, "seed of the noise, a whole number")->type_name("N")->capture_default_str();
+  command->add_option("--seed", o->seed, "seed of the noise")
+      ->check(whole_number())
+      ->type_name("N")
+      ->capture_default_str();
   add_out(*command, o->out, "write the logs, the machine file and the hidden effect into this folder")->required();
   command->add_flag("--json", o->json, "print the list of written files as JSON on standard output");
   command->callback([o, &invocation] { run(*o, invocation); });

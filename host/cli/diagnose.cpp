@@ -81,7 +81,10 @@ void add_diagnose(CLI::App& program, const Invocation& invocation) {
   command->add_option("--reference", o->reference, "use the measured rows of the machine file instead of logs")
       ->check(one_of({"circle"}));
   command->add_option("--axis", o->axis, "axis to diagnose, if logs and machine have several")->type_name("NAME");
-  command->add_option("--seed", o->seed, "seed of the bootstrap for intervals on held-out data [1]")->type_name("N");
+  command->add_option("--seed", o->seed, "seed of the bootstrap for intervals on held-out data")
+      ->check(whole_number())
+      ->type_name("N")
+      ->capture_default_str();
   add_out(*command, o->out, "write verdict.json, extended.toml, report.html and next_measurement.csv into this folder");
   command->add_flag("--json", o->json, "print the verdict as JSON on standard output");
   command->callback([o, &invocation] {

@@ -105,27 +105,27 @@ std::vector<std::string> friction_models(const std::string& text, const machine:
 }
 
 // "8,5 m/min": one number, and no list of them, which have units.
-void refuse_decimal_comma(const std::string& text) {
+void refuse_decimal_comma(const std::string& text, const std::string& option) {
   const auto digit = [&](std::size_t k) { return k < text.size() && text[k] >= '0' && text[k] <= '9'; };
   for (std::size_t k = 1; k + 1 < text.size(); ++k)
     if (text[k] == ',' && digit(k - 1) && digit(k + 1))
       throw UsageError(
-          fmt::format("--feed: found '{}' (a comma between digits); expected numbers with a decimal point, as in \"8.5 "
+          fmt::format("{}: found '{}' (a comma between digits); expected numbers with a decimal point, as in \"8.5 "
                       "m/min\", each with its unit in a list, as in \"8 m/min, 16 m/min\"",
-                      text));
+                      option, text));
 }
 
-std::vector<double> feeds(const std::string& text) {
-  refuse_decimal_comma(text);
+std::vector<double> feeds(const std::string& text, const std::string& option) {
+  refuse_decimal_comma(text, option);
   std::vector<double> result;
   for (const auto& part : split_list(text)) {
     try {
       result.push_back(machine::parse_quantity(part, "m/s"));
     } catch (const machine::UnitError& error) {
       throw UsageError(
-          fmt::format("--feed: found '{}' ({}); expected a speed such as \"16 m/min\", or a list \"8 m/min, "
+          fmt::format("{}: found '{}' ({}); expected a speed such as \"16 m/min\", or a list \"8 m/min, "
                       "16 m/min\"",
-                      part, error.what()));
+                      option, part, error.what()));
     }
   }
   return result;

@@ -53,10 +53,17 @@ std::string sentence(std::string text) {
   return text.back() == '.' ? text : text + ".";
 }
 
-void write_help_in_sentences(CLI::App& command) {
+// What holds for all options: their help is in sentences, and an empty value is none.
+void finish(CLI::App& command) {
+  const auto empty = [](const std::string& value) {
+    return value.empty() ? std::string("found an empty value; expected one, or not the option") : std::string();
+  };
   command.description(sentence(command.get_description()));
-  for (auto* option : command.get_options()) option->description(sentence(option->get_description()));
-  for (auto* each : command.get_subcommands([](CLI::App*) { return true; })) write_help_in_sentences(*each);
+  for (auto* option : command.get_options()) {
+    option->description(sentence(option->get_description()));
+    if (option->get_items_expected_max() > 0) option->check(CLI::Validator(empty, ""));
+  }
+  for (auto* each : command.get_subcommands([](CLI::App*) { return true; })) finish(*each);
 }
 
 int run(int argc, char** argv) {
@@ -79,7 +86,7 @@ int run(int argc, char** argv) {
   add_completion(program);
 
   refuse_unknown_arguments(program);
-  write_help_in_sentences(program);
+  finish(program);
 
   const auto bad_input = [](const std::exception& error) {
     fmt::print(stderr, "stiction: {}\n", error.what());

@@ -36,6 +36,11 @@ fs::path folder_of(const fs::path& place) {
 
 bool may_write(const fs::path& place) { return ::access(place.c_str(), W_OK) == 0; }
 
+// Why not.
+std::string lacking(const fs::path& place, const std::string& permission) {
+  return ::access(place.c_str(), W_OK) != 0 && errno == EROFS ? "a read-only file system" : permission;
+}
+
 // Devices and pipes are written, not replaced.
 bool is_stream(const fs::path& place) {
   return fs::exists(place, unimportant) && !fs::is_regular_file(place, unimportant) &&
@@ -57,7 +62,8 @@ std::optional<std::string> trouble_with_file(const fs::path& place) {
   if (!fs::is_directory(folder, unimportant))
     return says(fmt::format("found that {} is a file; expected a folder", folder.string()));
   if (fs::exists(place, unimportant) ? !may_write(place) : !may_write(folder))
-    return says("found no permission to write it; expected a file that may be written");
+    return says(fmt::format("found {}; expected a file that may be written",
+                            lacking(fs::exists(place, unimportant) ? place : folder, "no permission to write it")));
   if (!is_stream(place) && !may_write(folder))
     return says(
         fmt::format("found no permission to write into {}; expected a folder that may be written", folder.string()));
@@ -80,8 +86,8 @@ std::optional<std::string> trouble_with_folder(const fs::path& place, bool sever
   if (!fs::is_directory(part, unimportant))
     return says(fmt::format("found that {} is a file; expected a folder", part.string()));
   if (!may_write(part))
-    return says(
-        fmt::format("found no permission to write into {}; expected a folder that may be written", part.string()));
+    return says(fmt::format("found {}; expected a folder that may be written",
+                            lacking(part, "no permission to write into " + part.string())));
   if (several || !fs::exists(place, unimportant)) return {};
   std::error_code error;
   if (!fs::is_empty(place, error) && !error && read_result_record(place).empty())
@@ -97,8 +103,8 @@ fs::path pending_folder(const fs::path& place) {
   if (!fs::exists(place, unimportant)) return beside;
   if (!may_write(folder_of(place)) || ::access(folder_of(place).c_str(), X_OK) != 0)
     return plain(place) / temporary_name(place);
-  struct stat here {
-  }, above{};
+  struct stat here = {};
+  struct stat above = {};
   const bool same_disk =
       ::stat(place.c_str(), &here) == 0 && ::stat(folder_of(place).c_str(), &above) == 0 && here.st_dev == above.st_dev;
   return same_disk ? beside : plain(place) / temporary_name(place);

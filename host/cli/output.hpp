@@ -15,8 +15,8 @@ namespace stiction::host {
 // result is refused before anything runs. `several`: the folder gets a folder for each result.
 CLI::Option* add_out(CLI::App& command, std::string& out, const std::string& text, bool several = false);
 
-// Adds the option `name`, with the help `text`, to `command`: a file to write, whose path comes into `file`. What cannot
-// be written is refused before anything runs.
+// Adds the option `name`, with the help `text`, to `command`: a file to write, whose path comes into `file`. What
+// cannot be written is refused before anything runs.
 CLI::Option* add_output_file(CLI::App& command, const std::string& name, std::string& file, const std::string& text);
 
 class PendingFile {

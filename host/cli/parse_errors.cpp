@@ -83,7 +83,7 @@ std::string about_option(const CLI::App& command, const std::string& text, const
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr)
     return option->get_items_expected_max() == 0
                ? fmt::format("{}: found a value; expected none", name)
-               : fmt::format("{}: found no value, or several; expected {}", name, wanted_value(*option));
+               : fmt::format("{}: found no value; expected {}", name, wanted_value(*option));
   if (dynamic_cast<const CLI::ExcludesError*>(&error) != nullptr)
     return fmt::format("{}: found it together with {}; expected only one of the two", name,
                        text.substr(text.rfind(' ') + 1));

@@ -47,7 +47,7 @@ void remove_temporaries_when_interrupted() {
   auto set = interruptions();
   // What the caller ignores, as nohup does with the closed terminal, stays ignored.
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    struct sigaction now {};
+    struct sigaction now = {};
     if (sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_IGN) sigdelset(&set, signal);
   }
   if (pthread_sigmask(SIG_BLOCK, &set, nullptr) == 0) std::thread(wait_for_interruption).detach();

@@ -91,7 +91,7 @@ std::vector<Log> logs_of(machine::Machine machine, std::size_t axis, const std::
 
 TunedCompensations tune(const TuneOptions& options, const machine::Machine& machine, const std::vector<Log>& logs) {
   const auto circles = circles_of(machine);
-  const auto shown = options.shown.empty() ? std::vector{circles.shown} : feeds(options.shown);
+  const auto shown = options.shown.empty() ? std::vector{circles.shown} : feeds(options.shown, "--show");
   if (shown.size() != 1) throw UsageError(fmt::format("--show: found {} feeds; expected one", shown.size()));
   ComparisonSettings comparison;
   comparison.circle = circle_settings(machine, shown.front(), circles.radius);

@@ -169,7 +169,7 @@ TEST_F(Cli, RefusesAFrequencyResponseThatCannotBeMeasured) {
   expect_refused(run + "--amplitude '3 V'", "--amplitude: found '3 V'");
   expect_refused(run + "--periods 1", "--periods: found 1; expected at least 2");
   expect_refused(run + "--axis Z", "--axis: found 'Z'; expected axes of mcfv5050ln: X, Y");
-  expect_refused(run + "--loop force", "--loop: found 'force'; expected all, or some of current, velocity, position");
+  expect_refused(run + "--loop force", "--loop: found 'force'; expected all, or some of: current, velocity, position");
   expect_refused(run + "--friction all", "--friction: found");
   expect_refused(run + "--from nowhere.csv", "nowhere.csv: found no such file; expected a log");
   expect_refused(run + "--from run.csv --speed '1 m/min'",

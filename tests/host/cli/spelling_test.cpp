@@ -34,6 +34,8 @@ TEST_F(Cli, NamesTheNearestValueOfAnOption) {
                  "--friction: found 'lugre', of which an axis has no parameters");
   expect_refused("simulate frequency-response --machine emps --periods two",
                  "--periods: found 'two'; expected a whole number");
+  expect_refused("diagnose run.csv --machine emps --seed -1", "--seed: found '-1'; expected a whole number from 0 to");
+  expect_refused("simulate circle --machine emps --feed ''", "--feed: found an empty value");
 }
 
 TEST_F(Cli, NamesTheNearestKeyUnitAndEffectOfAMachine) {
@@ -55,6 +57,7 @@ TEST_F(Cli, ADecimalCommaIsNoListAndNoNumber) {
   expect_refused("simulate circle --machine mcfv5050ln --feed '8,5 m/min'",
                  "--feed: found '8,5 m/min' (a comma between digits); expected numbers with a decimal point");
   expect_refused("simulate circle --machine mcfv5050ln --feed '8,5 m/min, 16 m/min'", "(a comma between digits)");
+  expect_refused("tune-friction --machine emps --show '8,5 m/min'", "--show: found '8,5 m/min'");
   expect_refused("simulate circle --machine mcfv5050ln --radius '62,5 mm'", "for a decimal comma");
   expect_refused("simulate circle --machine mcfv5050ln --set axis.X.mass='3,5 kg'", "for a decimal comma");
   expect_refused("simulate circle --machine " + machine_with("numerator_damping = 0.05", "numerator_damping = 0,05"),
