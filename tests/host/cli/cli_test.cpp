@@ -208,6 +208,11 @@ TEST_F(Cli, ShowsTheShippedMachinesAndTheirReference) {
   const auto sheet = stiction("machine --check mcfv5050ln");
   EXPECT_EQ(sheet.code, 0);
   EXPECT_NE(sheet.out.find("MCFV 5050 LN"), std::string::npos);
+  EXPECT_EQ(stiction("machine list").out, stiction("machine").out);
+  EXPECT_EQ(stiction("machine reference").out, stiction("machine --reference").out);
+  EXPECT_EQ(stiction("machine check mcfv5050ln").out, sheet.out);
+  EXPECT_EQ(stiction("machine list --axes mcfv5050ln").out, "X\nY\n");
+  EXPECT_NE(stiction("--version").out.find(" (commit "), std::string::npos);
   for (const char* help : {"--help", "simulate --help", "simulate circle --help", "compare --help", "--version"})
     EXPECT_EQ(stiction(help).code, 0) << help;
 }
