@@ -26,17 +26,17 @@ inline void catch_stop_signals() {
 struct ProgramName {
   const char* name;
   const char* text;
-  const char* version;
+  std::string (*version)();
 };
 
 // Reads the options and serves by them; what goes wrong before or in it is said on standard error and refuses the
 // start. Options: add_to(CLI::App&). Serve: int(const Options&), the exit status. `argc`, `argv`: of main(); `program`:
-// its name and version; `serve`: called with the options.
+// its name, text and what gives its version; `serve`: called with the options.
 template <class Options, class Serve>
 int run_program(int argc, char** argv, const ProgramName& program, Serve serve) noexcept {
   try {
     CLI::App app(program.text, program.name);
-    app.set_version_flag("--version", program.version);
+    app.set_version_flag("--version", program.version());
     Options options;
     options.add_to(app);
     try {

@@ -15,6 +15,7 @@
 #include "firmware/stictiond/real_time_check.hpp"
 #include "firmware/stictiond/remote_setup.hpp"
 #include "firmware/stictiond/run.hpp"
+#include "firmware/version/version.hpp"
 #include "hal/gpio/beside_lines.hpp"
 #include "hal/gpio/gpio_backend.hpp"
 #include "hal/modbus/modbus_backend.hpp"
@@ -160,6 +161,7 @@ int serve(const DriveOptions& options) {
 
 int main(int argc, char** argv) {
   return stiction::hal::run_program<stiction::drive::DriveOptions>(
-      argc, argv, {"stictiond", "the drive: closes the loops of a machine's axes over its buses", STICTION_VERSION},
+      argc, argv,
+      {"stictiond", "the drive: closes the loops of a machine's axes over its buses", stiction::program_version},
       stiction::drive::serve);
 }

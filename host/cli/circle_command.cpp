@@ -23,7 +23,7 @@ namespace {
   };
   std::filesystem::path kept;
   if (places.log.empty() && !places.out.empty()) {
-    PendingFolder folder(places.out);
+    PendingFolder folder(places.out, places.command);
     record(folder.path() / "trace.csv");
     folder.write("result.json", nlohmann::ordered_json{{"schema", "stiction.fault/1"},
                                                        {"machine", c.machine.id},
@@ -39,7 +39,7 @@ namespace {
   } else {
     kept = places.log.empty() ? "stiction-fault.csv" : places.log;
     PendingFile file(kept);
-    record(file.path());
+    file.fill(record);
     file.commit();
   }
   throw std::runtime_error(
@@ -60,7 +60,7 @@ sim::CircleResult run_plan(const CirclePlan& plan, const CirclePlaces& places) {
     auto result = run_circles(plan, [&] { progress.add(); });
     if (!places.log.empty()) {
       PendingFile file(places.log);
-      run_traced(cases_of(plan).front(), file.path());
+      file.fill([&](const auto& path) { run_traced(cases_of(plan).front(), path); });
       file.commit();
     }
     return result;
@@ -71,7 +71,7 @@ sim::CircleResult run_plan(const CirclePlan& plan, const CirclePlaces& places) {
 
 void write_circle_folder(const std::filesystem::path& folder, const CirclePlan& plan, const sim::CircleResult& result,
                          const nlohmann::ordered_json& json, const Invocation& invocation) {
-  PendingFolder pending(folder);
+  PendingFolder pending(folder, invocation.command);
   const std::string title = plan.machine.axes.size() == 1 ? "Sine: " : "Circle: ";
   pending.write("report.html", circle_report_html({title + plan.machine.name, invocation.command_line,
                                                    invocation.version, plan.machine, result}));

@@ -14,8 +14,9 @@ namespace stiction::host {
 
 // Where a command was told to leave things; empty: nowhere.
 struct CirclePlaces {
-  std::string log;  // trace of the only run
-  std::string out;  // result folder
+  std::string log;        // trace of the only run
+  std::string out;        // result folder
+  std::string command{};  // that makes it, as in Invocation
 };
 
 // Runs the plan. When a fault trips, the run's trace is kept: in `places.log`, else as trace.csv in `places.out`, else

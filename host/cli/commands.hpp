@@ -10,10 +10,13 @@ namespace stiction::host {
 struct Invocation {
   std::string command_line;  // as typed, quoted for a shell
   std::string version;
+  std::string command{};  // that was called, "simulate circle"
 };
 
 // Without a known subcommand, `command` throws UsageError with what was found and what it knows.
 void expect_subcommand(CLI::App& command, const std::string& kind);
+// Throws that UsageError. `kind`: what its commands are called, "experiment".
+[[noreturn]] void refuse_unknown_command(const CLI::App& command, const std::string& kind);
 
 void add_simulate(CLI::App& program, const Invocation& invocation);
 // The experiments of the table, below `stiction simulate`.
@@ -27,6 +30,8 @@ void add_machine(CLI::App& program, const Invocation& invocation);
 void add_identify(CLI::App& program, const Invocation& invocation);
 void add_diagnose(CLI::App& program, const Invocation& invocation);
 void add_tune_friction(CLI::App& program, const Invocation& invocation);
+// Scripts for the shells, made from the commands that `program` has when it runs.
+void add_completion(CLI::App& program);
 void add_convert(CLI::App& program);
 void add_inspect(CLI::App& program);
 

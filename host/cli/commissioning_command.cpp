@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "host/cli/choices.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/machine_options.hpp"
@@ -29,20 +31,17 @@ struct CommissioningOptions {
 };
 
 std::size_t axis_of(const CommissioningOptions& options, const machine::Machine& machine) {
-  std::vector<std::string> names;
-  for (std::size_t k = 0; k < machine.axes.size(); ++k) {
-    names.push_back(machine.axes[k].name);
-    if (options.axis.empty() || names.back() == options.axis) return k;
-  }
-  throw UsageError(
-      fmt::format("--axis: found '{}'; expected an axis of {}: {}", options.axis, machine.id, fmt::join(names, ", ")));
+  if (options.axis.empty()) return 0;
+  const auto names = axis_names(machine);
+  require_known("--axis", options.axis, "an axis of " + machine.id, names);
+  return static_cast<std::size_t>(std::find(names.begin(), names.end(), options.axis) - names.begin());
 }
 
 void run(const CommissioningOptions& options, const Invocation& invocation) {
   const auto file = options.machine.load(options.machine.machine, "commissioning");
   const std::size_t axis = axis_of(options, file);
   auto machine = file;
-  PendingFolder folder(options.out);
+  PendingFolder folder(options.out, invocation.command);
   if (options.hide) {
     const auto effect = draw_hidden_effect(file.axes[axis], *options.hide);
     machine.axes[axis].effects.push_back(effect);
@@ -59,7 +58,7 @@ void run(const CommissioningOptions& options, const Invocation& invocation) {
     record.log.comments = {
         {"made by", invocation.command_line}, {"machine", file.name}, {"current", "amplitude (peak) amperes"}};
     const std::string name = record.name + ".csv";
-    write_csv_log(folder.path() / name, record.log);
+    folder.write(name, csv_log_text(record.log));
     (record.held_out ? held_out : training).push_back(name);
   }
   const std::vector<std::string> comment{"the records were made by: " + invocation.command_line};
@@ -97,11 +96,13 @@ void add_commissioning(CLI::App& simulate, const Invocation& invocation) {
   command->add_option("--axis", o->axis, "the axis that moves [the machine's first]")->type_name("NAME");
   command
       ->add_option("--hide", o->hide, "add an effect that is drawn with this seed to the machine, but not to its file")
+      ->check(whole_number())
       ->type_name("SEED");
-  command->add_option("--seed", o->seed, "seed of the noise")->type_name("N")->capture_default_str();
-  command->add_option("--out", o->out, "write the logs, the machine file and the hidden effect into this folder")
-      ->required()
-      ->type_name("DIR");
+  command->add_option("--seed", o->seed, "seed of the noise")
+      ->check(whole_number())
+      ->type_name("N")
+      ->capture_default_str();
+  add_out(*command, o->out, "write the logs, the machine file and the hidden effect into this folder")->required();
   command->add_flag("--json", o->json, "print the list of written files as JSON on standard output");
   command->callback([o, &invocation] { run(*o, invocation); });
 }

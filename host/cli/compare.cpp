@@ -4,12 +4,14 @@
 #include <memory>
 #include <set>
 
+#include "host/cli/choices.hpp"
 #include "host/cli/circle_command.hpp"
 #include "host/cli/circle_output.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/compare_output.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/machine_options.hpp"
+#include "host/cli/output.hpp"
 #include "host/cli/replay_command.hpp"
 #include "host/report/circle_table.hpp"
 #include "host/report/machine_sheet.hpp"
@@ -90,8 +92,7 @@ void compare(const CompareOptions& options, const Invocation& invocation) {
     return;
   }
   if (!options.axis.empty()) throw UsageError("--axis: found it together with --reference; expected it with LOG only");
-  if (options.reference != "circle")
-    throw UsageError(fmt::format("--reference: found '{}'; expected circle", options.reference));
+  require_known("--reference", options.reference, "rows of the machine file", {"circle"});
   std::vector<CirclePlan> plans;
   for (const auto& name : split_list(options.machine.machine)) {
     plans.push_back(plan_of(options, name));
@@ -105,7 +106,7 @@ void compare(const CompareOptions& options, const Invocation& invocation) {
     // Several machines: a folder each.
     const std::string out =
         options.out.empty() || plans.size() == 1 ? options.out : options.out + "/" + plan.machine.id;
-    const auto result = run_plan(plan, {"", out});
+    const auto result = run_plan(plan, {"", out, invocation.command});
     const auto table = circle_table(result, plan.machine);
     auto json = compared_circle_json(result, plan.machine, table);
     signals = result.signals;
@@ -128,9 +129,9 @@ void add_compare(CLI::App& program, const Invocation& invocation) {
   auto* command = program.add_subcommand(
       "compare", "compare the simulation with published and measured rows, or with a measured log");
   auto o = std::make_shared<CompareOptions>();
-  command->add_option("--reference", o->reference, "rows of the machine file to compare with: circle")
-      ->type_name("KIND");
-  command->add_option("LOG", o->log, "a measured log; the simulation follows its set-points");
+  command->add_option("--reference", o->reference, "rows of the machine file to compare with")
+      ->check(one_of({"circle"}));
+  command->add_option("LOG", o->log, "a measured log; the simulation follows its set-points")->type_name("LOG");
   command->add_option("--axis", o->axis, "axis of the machine, for a log without axis names")->type_name("AXIS");
   o->machine.add_to(*command, "shipped machine by name, or a machine file; or a list of them");
   command
@@ -140,9 +141,9 @@ void add_compare(CLI::App& program, const Invocation& invocation) {
   command
       ->add_option("--signals", o->signals,
                    "fixed: the firmware in fixed point; double: the same laws in double precision")
-      ->check(CLI::IsMember({"fixed", "double"}))
+      ->check(one_of({"fixed", "double"}))
       ->capture_default_str();
-  command->add_option("--out", o->out, "write report.html and result.json into this folder")->type_name("DIR");
+  add_out(*command, o->out, "write report.html and result.json into this folder", true);
   command->add_flag("--json", o->json, "print the result as JSON on standard output");
   command->callback([o, &invocation] { compare(*o, invocation); });
 }

@@ -3,10 +3,13 @@
 
 #include <fstream>
 #include <memory>
+#include <optional>
 
+#include "host/cli/choices.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/output.hpp"
+#include "host/cli/progress.hpp"
 #include "host/log/csv_log.hpp"
 #include "host/log/mapping.hpp"
 #include "host/log/mat_log.hpp"
@@ -31,8 +34,7 @@ void convert(const ConvertOptions& options) {
   const auto kind = std::filesystem::path(options.out).extension();
   if (kind != ".csv" && kind != ".mat")
     throw UsageError(fmt::format("OUT: found '{}'; expected a name that ends in .csv or .mat", options.out));
-  if (options.mat != "5" && options.mat != "7.3")
-    throw UsageError(fmt::format("--mat: found '{}'; expected 5 or 7.3", options.mat));
+  auto progress = std::make_optional<Progress>("converting");
   if (options.map.empty()) refuse_recording(options.in);
   Log log;
   if (options.map.empty()) {
@@ -43,10 +45,13 @@ void convert(const ConvertOptions& options) {
   }
   PendingFile file(options.out);
   if (kind == ".csv")
-    write_csv_log(file.path(), log);
+    file.write(csv_log_text(log));
   else
-    write_mat_log(file.path(), log, options.mat == "5" ? MatLevel::level_5 : MatLevel::level_7_3);
+    file.fill([&](const auto& path) {
+      write_mat_log(path, log, options.mat == "5" ? MatLevel::level_5 : MatLevel::level_7_3);
+    });
   file.commit();
+  progress.reset();
   fmt::print("{}: {} samples at {:.6g} ms", options.out, log.t.size(), log.period * 1e3);
   for (std::size_t k = 0; k < log.ignored.size(); ++k)
     fmt::print("{}{}", k == 0 ? "; not converted: " : ", ", log.ignored[k]);
@@ -60,11 +65,15 @@ void add_convert(CLI::App& program) {
       program.add_subcommand("convert", "convert logs between CSV and MAT, and recordings of drives into logs");
   auto o = std::make_shared<ConvertOptions>();
   command->add_option("IN", o->in, "a log (CSV, MAT), a TwinCAT Scope export, a recorder's JSON or zip, any table")
-      ->required();
-  command->add_option("OUT", o->out, "the log to write: NAME.csv or NAME.mat")->required();
+      ->required()
+      ->type_name("LOG");
+  add_output_file(*command, "OUT", o->out, "the log to write: NAME.csv or NAME.mat")->required();
   command->add_option("--map", o->map, "mapping file that names the channels of a recording (docs/formats.md)")
       ->type_name("FILE");
-  command->add_option("--mat", o->mat, "level of a MAT-file: 5 or 7.3 [5]")->type_name("LEVEL");
+  command->add_option("--mat", o->mat, "level of a MAT-file: 5 or 7.3")
+      ->check(one_of({"5", "7.3"}))
+      ->type_name("LEVEL")
+      ->capture_default_str();
   command->callback([o] { convert(*o); });
 }
 

@@ -7,13 +7,15 @@
 #include <algorithm>
 #include <memory>
 
+#include "host/cli/choices.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/diagnose_output.hpp"
 #include "host/cli/diagnose_reference.hpp"
 #include "host/cli/errors.hpp"
+#include "host/cli/logs.hpp"
 #include "host/cli/machine_options.hpp"
+#include "host/cli/output.hpp"
 #include "host/cli/progress.hpp"
-#include "host/log/read_log.hpp"
 
 namespace stiction::host {
 namespace {
@@ -29,8 +31,8 @@ struct DiagnoseCommandOptions {
 };
 
 std::size_t axis_of_run(const std::string& name, const machine::Machine& machine, const std::vector<Log>& logs) {
-  std::vector<std::string> names;
-  for (const auto& axis : machine.axes) names.push_back(axis.name);
+  const auto names = axis_names(machine);
+  if (!name.empty()) require_known("--axis", name, "an axis of " + machine.id, names);
   std::vector<std::size_t> fitting;
   for (std::size_t k = 0; k < names.size(); ++k) {
     if (!name.empty() && names[k] == name) return k;
@@ -41,15 +43,15 @@ std::size_t axis_of_run(const std::string& name, const machine::Machine& machine
       fitting.push_back(k);
   }
   if (name.empty() && fitting.size() == 1) return fitting.front();
-  throw UsageError(fmt::format("--axis: found {}; expected one of {}", name.empty() ? "none" : "'" + name + "'",
-                               fmt::join(names, ", ")));
+  throw UsageError(fmt::format("--axis: found none, but the logs have channels of {} axes of {}; expected one of {}",
+                               fitting.size(), machine.id, fmt::join(names, ", ")));
 }
 
 void run(const DiagnoseCommandOptions& options, const Invocation& invocation) {
   DiagnoseInput input;
   input.machine = options.machine.load(options.machine.machine, "");
-  for (const auto& file : options.logs) input.logs.push_back(read_log(file));
-  for (const auto& file : options.held_out) input.held_out.push_back(read_log(file));
+  input.logs = read_logs(options.logs);
+  input.held_out = read_logs(options.held_out);
   auto all = input.logs;
   all.insert(all.end(), input.held_out.begin(), input.held_out.end());
   input.axis = axis_of_run(options.axis, input.machine, all);
@@ -76,14 +78,14 @@ void add_diagnose(CLI::App& program, const Invocation& invocation) {
       ->add_option("--holdout", o->held_out,
                    "logs of different trajectories for validation [the last third of each LOG]")
       ->type_name("LOG");
-  command->add_option("--reference", o->reference, "use the measured rows of the machine file instead of logs: circle")
-      ->type_name("KIND");
+  command->add_option("--reference", o->reference, "use the measured rows of the machine file instead of logs")
+      ->check(one_of({"circle"}));
   command->add_option("--axis", o->axis, "axis to diagnose, if logs and machine have several")->type_name("NAME");
-  command->add_option("--seed", o->seed, "seed of the bootstrap for intervals on held-out data [1]")->type_name("N");
-  command
-      ->add_option("--out", o->out,
-                   "write verdict.json, extended.toml, report.html and next_measurement.csv into this folder")
-      ->type_name("DIR");
+  command->add_option("--seed", o->seed, "seed of the bootstrap for intervals on held-out data")
+      ->check(whole_number())
+      ->type_name("N")
+      ->capture_default_str();
+  add_out(*command, o->out, "write verdict.json, extended.toml, report.html and next_measurement.csv into this folder");
   command->add_flag("--json", o->json, "print the verdict as JSON on standard output");
   command->callback([o, &invocation] {
     try {

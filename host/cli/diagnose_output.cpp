@@ -14,7 +14,7 @@ void put_out(const Verdict& verdict, const machine::Machine& machine, const Mach
              const std::string& out, bool json, const Invocation& invocation) {
   const auto document = verdict_json(verdict);
   if (!out.empty()) {
-    PendingFolder folder(out);
+    PendingFolder folder(out, invocation.command);
     std::vector<machine::AxisEffects> additions;
     for (const auto& axis : machine.axes) {
       machine::AxisEffects effects{axis.name, {}};
@@ -34,7 +34,7 @@ void put_out(const Verdict& verdict, const machine::Machine& machine, const Mach
                                                verdict.next->trajectories.front().words)},
                       {"set-points", "x_set, v_set, a_set; " + verdict.next->note},
                       {"not measured", "x and current come from the simulation of the machine file"}};
-      write_csv_log(folder.path() / next_measurement_file, log);
+      folder.write(next_measurement_file, csv_log_text(log));
     }
     folder.write("report.html", diagnosis_report_html({invocation.command_line, invocation.version, machine, verdict}));
     folder.commit();

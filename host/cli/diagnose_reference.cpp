@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "firmware/machine/file/machine_file.hpp"
+#include "host/cli/choices.hpp"
 #include "host/cli/diagnose_output.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/progress.hpp"
@@ -12,8 +13,7 @@
 namespace stiction::host {
 
 void diagnose_from_reference(const DiagnoseReferenceOptions& options, const Invocation& invocation) try {
-  if (options.reference != "circle")
-    throw UsageError(fmt::format("--reference: found '{}'; expected circle", options.reference));
+  require_known("--reference", options.reference, "rows of the machine file", {"circle"});
   const auto machine = options.machine.load(options.machine.machine, "circle", needs_of("diagnose --reference circle"));
   Verdict verdict;
   {

@@ -6,11 +6,13 @@
 #include <memory>
 
 #include "firmware/machine/file/units.hpp"
+#include "host/cli/choices.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/experiment_output.hpp"
 #include "host/cli/machine_options.hpp"
 #include "host/cli/output.hpp"
+#include "host/cli/progress.hpp"
 #include "host/log/csv_log.hpp"
 #include "host/report/experiment_report.hpp"
 #include "host/simulate/experiments.hpp"
@@ -46,9 +48,8 @@ std::vector<std::string> models_for(const Experiment& experiment, const std::str
   const auto known = [&](const std::string& name) { return std::ranges::find(models, name) != models.end(); };
   if (!text.empty() && text != "all")
     for (const auto& name : names)
-      if (!known(name))
-        throw UsageError(fmt::format("--friction: found '{}'; expected a friction model that {} supports: {}", name,
-                                     experiment.name, fmt::join(models, ", ")));
+      require_known("--friction", name, fmt::format("a friction model that {} supports", experiment.name),
+                    {models.begin(), models.end()});
   std::erase_if(names, [&](const std::string& name) { return !known(name); });
   return names;
 }
@@ -78,7 +79,7 @@ class ExperimentLogs {
       if (input.jerk) log.comments.emplace_back("jerk", fmt::format("{:g} m/s^3", *input.jerk));
       places_.push_back(log_place(options.log, run));
       files_.push_back(std::make_unique<PendingFile>(places_.back()));
-      write_csv_log(files_.back()->path(), log);
+      files_.back()->write(csv_log_text(log));
     };
   }
   void commit() {
@@ -96,10 +97,7 @@ std::vector<std::string> equations_for(const Experiment& experiment, const std::
   if (text.empty()) return experiment.equations;
   const auto& known = experiment.equations;
   auto names = split_list(text);
-  for (const auto& name : names)
-    if (std::find(known.begin(), known.end(), name) == known.end())
-      throw UsageError(
-          fmt::format("--equations: found '{}'; expected one or several of: {}", name, fmt::join(known, ", ")));
+  for (const auto& name : names) require_known("--equations", name, "one or several of", known);
   return names;
 }
 
@@ -128,11 +126,12 @@ ExperimentInput input_of(const Experiment& experiment, const ExperimentOptions& 
 void run(const Experiment& experiment, const ExperimentOptions& options, const Invocation& invocation) {
   auto input = input_of(experiment, options);
   ExperimentLogs logs(experiment, options, input);
-  const auto result = run_experiment(experiment, input);
+  const auto result =
+      during("simulating " + std::string(experiment.name), [&] { return run_experiment(experiment, input); });
   logs.commit();
   const auto json = experiment_json(result, input.machine);
   if (!options.out.empty()) {
-    PendingFolder folder(options.out);
+    PendingFolder folder(options.out, invocation.command);
     folder.write("report.html",
                  experiment_report_html({invocation.command_line, invocation.version, input.machine, result}));
     folder.write("result.json", json.dump(2) + "\n");
@@ -181,9 +180,8 @@ void add_experiments(CLI::App& simulate, const Invocation& invocation) {
                        "limit of the jerk of the set-points [none: the acceleration steps where an arc begins or ends]")
           ->type_name("\"NUMBER UNIT\"");
     if (experiment.keeps_logs)
-      command->add_option("--log", o->log, "write the run as a log (CSV); one file per run if there are several")
-          ->type_name("FILE");
-    command->add_option("--out", o->out, "write report.html and result.json into this folder")->type_name("DIR");
+      add_output_file(*command, "--log", o->log, "write the run as a log (CSV); one file per run if there are several");
+    add_out(*command, o->out, "write report.html and result.json into this folder");
     command->add_flag("--json", o->json, "print the result as JSON on standard output");
     command->callback([o, &experiment, &invocation] { run(experiment, *o, invocation); });
   }

@@ -9,10 +9,12 @@
 
 #include "firmware/machine/file/machine_file.hpp"
 #include "firmware/machine/file/units.hpp"
+#include "host/cli/choices.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/experiment_output.hpp"
 #include "host/cli/machine_options.hpp"
 #include "host/cli/output.hpp"
+#include "host/cli/progress.hpp"
 #include "host/log/csv_log.hpp"
 #include "host/log/read_log.hpp"
 #include "host/report/experiment_report.hpp"
@@ -48,9 +50,7 @@ std::vector<std::string> loops_of(const std::string& text) {
   if (text.empty() || text == "all") return {};
   const auto names = split_list(text);
   for (const auto& name : names)
-    if (std::find(loop_names.begin(), loop_names.end(), name) == loop_names.end())
-      throw UsageError(
-          fmt::format("--loop: found '{}'; expected all, or some of {}", name, fmt::join(loop_names, ", ")));
+    require_known("--loop", name, "all, or some of", {loop_names.begin(), loop_names.end()});
   return names;
 }
 
@@ -58,12 +58,7 @@ std::vector<std::string> loops_of(const std::string& text) {
 void choose_axes(machine::Machine& machine, const std::string& text) {
   if (text.empty()) return;
   const auto names = split_list(text);
-  std::vector<std::string> known;
-  for (const auto& axis : machine.axes) known.push_back(axis.name);
-  for (const auto& name : names)
-    if (std::find(known.begin(), known.end(), name) == known.end())
-      throw UsageError(
-          fmt::format("--axis: found '{}'; expected axes of {}: {}", name, machine.id, fmt::join(known, ", ")));
+  for (const auto& name : names) require_known("--axis", name, "axes of " + machine.id, axis_names(machine));
   std::erase_if(machine.axes,
                 [&](const auto& axis) { return std::find(names.begin(), names.end(), axis.name) == names.end(); });
 }
@@ -109,7 +104,7 @@ Measurement simulated(const Options& options, const machine::Machine& machine) {
   const auto log = run_frequency_response(plan);
   if (!options.log.empty()) {
     PendingFile file(options.log);
-    write_csv_log(file.path(), log);
+    file.write(csv_log_text(log));
     file.commit();
   }
   Measurement m;
@@ -171,7 +166,9 @@ void run(const Options& options, const Invocation& invocation) {
                   machine::find_machine(options.machine.machine));
   sim::ExperimentResult result;
   try {
-    const auto m = options.from.empty() ? simulated(options, machine) : measured(options, machine);
+    const auto m = during("measuring the loops", [&] {
+      return options.from.empty() ? simulated(options, machine) : measured(options, machine);
+    });
     result = response_result(m.responses, machine, loops, m.text);
     if (options.from.empty()) add_expected_figures(result, machine, {}, loops.empty());
   } catch (const ResponseError& error) {
@@ -181,7 +178,7 @@ void run(const Options& options, const Invocation& invocation) {
   }
   const auto json = experiment_json(result, machine);
   if (!options.out.empty()) {
-    PendingFolder folder(options.out);
+    PendingFolder folder(options.out, invocation.command);
     folder.write("report.html", experiment_report_html({invocation.command_line, invocation.version, machine, result}));
     folder.write("result.json", json.dump(2) + "\n");
     folder.commit();
@@ -204,7 +201,9 @@ void add_frequency_response(CLI::App& simulate, const Invocation& invocation) {
   auto o = std::make_shared<Options>();
   o->machine.add_to(*command, "shipped machine by name, or a machine file");
   command->add_option("--axis", o->axis, "axis, or a list of axes [all]")->type_name("AXIS");
-  command->add_option("--loop", o->loop, "current, velocity, position, or a list of them [all, with the plant]")
+  command
+      ->add_option("--loop", o->loop,
+                   "loop to measure: current, velocity, position, or a list of them [all, with the plant]")
       ->type_name("LOOP");
   auto* from =
       command->add_option("--from", o->from, "evaluate this log instead, which must have i_inject[A] or u_inject[V]")
@@ -213,7 +212,7 @@ void add_frequency_response(CLI::App& simulate, const Invocation& invocation) {
   simulated_only(command->add_option("--friction", o->friction, "friction model [as in the machine file]"))
       ->type_name("MODEL");
   simulated_only(command->add_option("--signal", o->signal, "multisine: all frequencies at once; stepped-sine"))
-      ->check(CLI::IsMember({"multisine", "stepped-sine"}))
+      ->check(one_of({"multisine", "stepped-sine"}))
       ->capture_default_str();
   simulated_only(
       command->add_option("--speed", o->speed, "speed of the axis, which moves back and forth during the test"))
@@ -226,14 +225,14 @@ void add_frequency_response(CLI::App& simulate, const Invocation& invocation) {
       command->add_option("--lowest", o->lowest, "lowest frequency, and spacing of the lines of a multisine"))
       ->type_name("\"NUMBER UNIT\"")
       ->capture_default_str();
-  simulated_only(command->add_option("--periods", o->periods, "number of evaluated periods, after one for settling"))
+  simulated_only(
+      command->add_option("--periods", o->periods, "number of evaluated periods, at least 2, after one for settling"))
       ->capture_default_str();
   simulated_only(
       command->add_option("--passes", o->passes, "number of passes of a multisine, each with different phases"))
       ->capture_default_str();
-  simulated_only(command->add_option("--log", o->log, "write the signals that a drive would record (CSV)"))
-      ->type_name("FILE");
-  command->add_option("--out", o->out, "write report.html and result.json into this folder")->type_name("DIR");
+  simulated_only(add_output_file(*command, "--log", o->log, "write the signals that a drive would record (CSV)"));
+  add_out(*command, o->out, "write report.html and result.json into this folder");
   command->add_flag("--json", o->json, "print the result as JSON on standard output");
   command->callback([o, &invocation] { run(*o, invocation); });
 }

@@ -6,17 +6,19 @@
 #include <memory>
 #include <set>
 
+#include "host/cli/choices.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/identify_output.hpp"
 #include "host/cli/identify_reference.hpp"
+#include "host/cli/logs.hpp"
 #include "host/cli/machine_options.hpp"
 #include "host/cli/output.hpp"
+#include "host/cli/progress.hpp"
 #include "host/identify/friction_fit.hpp"
 #include "host/identify/identified_machine.hpp"
 #include "host/identify/refinement.hpp"
 #include "host/identify/standstill.hpp"
-#include "host/log/read_log.hpp"
 #include "host/log/text_file.hpp"
 #include "host/report/identification_report.hpp"
 #include "sim/machine_file.hpp"
@@ -40,13 +42,10 @@ struct IdentifyCommandOptions {
 // The axis named, or the only one that machine and logs have in common.
 const machine::AxisModel& axis_to_identify(const std::string& name, const machine::Machine& machine,
                                            const std::vector<Log>& logs) {
-  std::vector<std::string> names;
-  for (const auto& axis : machine.axes) names.push_back(axis.name);
+  const auto names = axis_names(machine);
   if (!name.empty()) {
+    require_known("--axis", name, "an axis of " + machine.id, names);
     const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end())
-      throw UsageError(
-          fmt::format("--axis: found '{}'; expected an axis of {}: {}", name, machine.id, fmt::join(names, ", ")));
     return machine.axes[static_cast<std::size_t>(found - names.begin())];
   }
   std::vector<const machine::AxisModel*> common;
@@ -64,7 +63,8 @@ const machine::AxisModel& axis_to_identify(const std::string& name, const machin
 Amperes amperes_of(const std::string& text) {
   if (text.empty()) return Amperes::amplitude;  // by the format of a log
   if (const auto amperes = parse_amperes(text)) return *amperes;
-  throw UsageError(fmt::format("--amperes: found '{}'; expected peak or rms", text));
+  throw UsageError(
+      fmt::format("--amperes: found '{}'; expected peak or rms{}", text, nearest_words(text, {"peak", "rms"})));
 }
 
 std::string model_to_identify(const std::string& wanted, const machine::AxisModel& axis) {
@@ -73,7 +73,8 @@ std::string model_to_identify(const std::string& wanted, const machine::AxisMode
   if (wanted.empty()) return sticks_rigidly(axis) ? recipe : own;
   const std::set<std::string> laws{recipe, contact, own};
   if (!laws.contains(wanted))
-    throw UsageError(fmt::format("--friction: found '{}'; expected {}", wanted, fmt::join(laws, " or ")));
+    throw UsageError(fmt::format("--friction: found '{}'; expected {}{}", wanted, fmt::join(laws, " or "),
+                                 nearest_words(wanted, {laws.begin(), laws.end()})));
   return wanted;
 }
 
@@ -103,11 +104,11 @@ Run identify(const IdentifyCommandOptions& options, const machine::Machine& mach
       return {&axis, identify_table(parse_steady_table(text, options.logs.front()), axis,
                                     parse_amperes(options.amperes), FitSettings{})};
     }
-  std::vector<Log> logs;
-  for (const auto& file : options.logs) logs.push_back(read_log(file));
+  const auto logs = read_logs(options.logs);
   const auto& axis = axis_to_identify(options.axis, machine, logs);
   const IdentifyOptions settings{model_to_identify(options.friction, axis), amperes, FitSettings{},
                                  options.friction.empty()};
+  const Progress progress(options.refine ? "identifying and refining" : "identifying");
   Run run{&axis, identify_logs(logs, axis, settings)};
   if (options.refine) take(run.result, refine_in_closed_loop(logs, machine, axis, run.result, settings));
   return run;
@@ -119,7 +120,7 @@ void run(const IdentifyCommandOptions& options, const Invocation& invocation) {
   const auto [axis, result] = identify(options, machine);
   const auto json = identification_json(result);
   if (!options.out.empty()) {
-    PendingFolder folder(options.out);
+    PendingFolder folder(options.out, invocation.command);
     folder.write("identified.toml",
                  identified_machine(file, options.machine.set, *axis, result, invocation.command_line));
     sim::read_machine(folder.path() / "identified.toml");  // what was written must be a machine
@@ -146,9 +147,9 @@ void add_identify(CLI::App& program, const Invocation& invocation) {
           ->type_name("LOG");
   command
       ->add_option("--reference", o->reference,
-                   "use the measured rows of this experiment in the machine file instead of logs (circle)")
+                   "use the measured rows of this experiment in the machine file instead of logs")
       ->excludes(logs)
-      ->type_name("KIND");
+      ->check(one_of({"circle"}));
   o->machine.add_to(*command,
                     "shipped machine by name, or a machine file with force constant, limits and friction models");
   command->add_option("--axis", o->axis, "axis to identify, if logs and machine have several")->type_name("NAME");
@@ -161,13 +162,12 @@ void add_identify(CLI::App& program, const Invocation& invocation) {
       ->type_name("MODEL");
   command
       ->add_option("--amperes", o->amperes,
-                   "convention of the currents: peak or rms [logs: peak; a table needs this option or a comment]")
-      ->type_name("KIND");
+                   "convention of the currents [logs: peak; a table needs this option or a comment]")
+      ->check(one_of({"peak", "rms"}));
   command->add_flag("--refine", o->refine,
                     "refine mass, friction and stiffness in closed-loop simulation with the set-points of the logs; "
                     "takes seconds, and helps if the position is noisy or coarse");
-  command->add_option("--out", o->out, "write identified.toml, report.html and result.json into this folder")
-      ->type_name("DIR");
+  add_out(*command, o->out, "write identified.toml, report.html and result.json into this folder");
   command->add_flag("--json", o->json, "print the result as JSON on standard output");
   command->callback([o, &invocation] {
     try {

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include "firmware/machine/file/machine_file.hpp"
+#include "host/cli/choices.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/experiment_output.hpp"
 #include "host/cli/output.hpp"
+#include "host/cli/progress.hpp"
 #include "host/identify/measured_machine_result.hpp"
 #include "host/report/experiment_report.hpp"
 #include "host/simulate/expected_figures.hpp"
@@ -13,16 +15,16 @@
 namespace stiction::host {
 
 void identify_reference(const IdentifyReferenceOptions& options, const Invocation& invocation) try {
-  if (options.reference != "circle")
-    throw UsageError(fmt::format("--reference: found '{}'; expected circle", options.reference));
+  require_known("--reference", options.reference, "rows of the machine file", {"circle"});
   const auto machine = options.machine.load(options.machine.machine, "circle", needs_of("identify --reference circle"));
   permitted_rows(machine);  // says what is missing before anything runs
-  const auto study = study_measured_machine(machine, options.machine.load(options.machine.machine, "l-shape"));
+  const auto l_shape = options.machine.load(options.machine.machine, "l-shape");
+  const auto study = during("identifying", [&] { return study_measured_machine(machine, l_shape); });
   auto result = measured_machine_result(machine, study);
   add_expected_figures(result, machine);
   const auto json = experiment_json(result, machine);
   if (!options.out.empty()) {
-    PendingFolder folder(options.out);
+    PendingFolder folder(options.out, invocation.command);
     folder.write("report.html", experiment_report_html({invocation.command_line, invocation.version,
                                                         with_friction(machine, study.identified), result}));
     folder.write("result.json", json.dump(2) + "\n");

@@ -8,6 +8,7 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/machine_options.hpp"
+#include "host/cli/progress.hpp"
 #include "host/log/channel_name.hpp"
 #include "host/log/inspection.hpp"
 #include "host/log/read_log.hpp"
@@ -119,7 +120,7 @@ std::string axis_text(const Log& log, std::size_t index, const AxisInspection& a
 }
 
 void run(const InspectOptions& options) {
-  const auto log = read_log(options.log);
+  const auto log = during("reading", [&] { return read_log(options.log); });
   const auto known = known_axes(options, log);
   const auto inspection = inspect(log, known);
   if (options.json) {
@@ -150,9 +151,11 @@ void add_inspect(CLI::App& program) {
   auto* command = program.add_subcommand(
       "inspect", "describe a log: channels, suspicious signals, and quantities that it can determine");
   auto o = std::make_shared<InspectOptions>();
-  command->add_option("LOG", o->log, "a log (CSV, MAT)")->required();
-  command->add_option("--machine", o->machine.machine,
-                      "machine of the log, for further checks: a shipped machine by name, or a machine file");
+  command->add_option("LOG", o->log, "a log (CSV, MAT)")->required()->type_name("LOG");
+  command
+      ->add_option("--machine", o->machine.machine,
+                   "machine of the log, for further checks: a shipped machine by name, or a machine file")
+      ->type_name("MACHINE");
   command->add_option("--axis", o->axis, "axis of the machine, for a log without axis names")->type_name("AXIS");
   command->add_flag("--json", o->json, "print the result as JSON on standard output");
   command->callback([o] { run(*o); });

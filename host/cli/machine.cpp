@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "firmware/machine/file/machine_notes.hpp"
+#include "host/cli/choices.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/machine_options.hpp"
 #include "host/report/machine_sheet.hpp"
@@ -13,7 +14,7 @@ namespace stiction::host {
 namespace {
 
 struct MachineCommand {
-  std::string check;
+  std::string check, checked;
   bool reference = false;
 };
 
@@ -34,20 +35,45 @@ void check_machine(const std::string& name) {
   for (const auto& note : notes) fmt::print("  {}\n", note);
 }
 
+void print_lines(const std::vector<std::string>& lines) {
+  for (const auto& line : lines) fmt::print("{}\n", line);
+}
+
+void add_list(CLI::App& command) {
+  auto* list = command.add_subcommand("list", "print the names of the shipped machines, or of the axes of a machine");
+  auto machine = std::make_shared<std::string>();
+  list->add_option("--axes", *machine, "print the names of the axes of this machine instead")->type_name("MACHINE");
+  list->callback([machine] {
+    print_lines(machine->empty() ? machine::shipped_machines()
+                                 : axis_names(sim::read_machine(machine::find_machine(*machine))));
+  });
+}
+
 }  // namespace
 
 void add_machine(CLI::App& program, const Invocation&) {
   auto* command = program.add_subcommand(
       "machine", "list the shipped machines, check a machine file, print the reference of its keys");
   auto o = std::make_shared<MachineCommand>();
+  command->prefix_command();  // a command that it does not know is told by the callback
+  add_list(*command);
+  auto* check = command->add_subcommand("check", "read a machine file and print its errors or its contents");
+  check->add_option("MACHINE", o->checked, "shipped machine by name, or a machine file")
+      ->required()
+      ->type_name("MACHINE");
+  check->callback([o] { check_machine(o->checked); });
+  command->add_subcommand("reference", "print the reference of all keys of a machine file (Markdown)")->callback([] {
+    fmt::print("{}", sim::reference_page());
+  });
   command->add_option("--check", o->check, "read a machine file and print its errors or its contents")
       ->type_name("MACHINE");
   command->add_flag("--reference", o->reference, "print the reference of all keys (Markdown)");
-  command->callback([o] {
+  command->callback([o, command] {
+    if (!command->get_subcommands().empty()) return;
+    if (const auto found = command->remaining(); !found.empty()) refuse_unknown_command(*command, "command");
     if (o->reference) fmt::print("{}", sim::reference_page());
     if (!o->check.empty()) check_machine(o->check);
-    if (!o->reference && o->check.empty())
-      for (const auto& name : machine::shipped_machines()) fmt::print("{}\n", name);
+    if (!o->reference && o->check.empty()) print_lines(machine::shipped_machines());
   });
 }
 

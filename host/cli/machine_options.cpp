@@ -9,6 +9,7 @@
 #include "firmware/machine/configuration/compensation_configuration.hpp"
 #include "firmware/machine/file/compensation_parameters.hpp"
 #include "firmware/machine/file/units.hpp"
+#include "host/cli/choices.hpp"
 #include "host/cli/errors.hpp"
 #include "host/simulate/friction_choice.hpp"
 #include "sim/effects/effects.hpp"
@@ -20,11 +21,8 @@ namespace stiction::host {
 namespace {
 
 void keep_axis(machine::Machine& machine, const std::string& name) {
-  std::vector<std::string> names;
-  for (const auto& axis : machine.axes) names.push_back(axis.name);
-  if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end())
-    throw UsageError(
-        fmt::format("--axis: found '{}'; expected an axis of {}: {}", name, machine.id, fmt::join(names, ", ")));
+  const auto names = axis_names(machine);
+  if (!name.empty()) require_known("--axis", name, "an axis of " + machine.id, names);
   std::erase_if(machine.axes, [&](const auto& axis) { return axis.name != (name.empty() ? names.front() : name); });
 }
 
@@ -43,7 +41,7 @@ void MachineOptions::add_compensation_to(CLI::App& command) {
   command
       .add_option("--compensation", compensation,
                   "friction compensation of every axis, with parameters of the machine file [as in the machine file]")
-      ->check(CLI::IsMember(names))
+      ->check(one_of(names))
       ->type_name("KIND");
 }
 
@@ -85,9 +83,10 @@ std::vector<std::string> split_list(const std::string& text) {
 }
 
 std::vector<std::string> friction_models(const std::string& text, const machine::Machine& machine) {
-  std::vector<std::string> everywhere;
+  std::vector<std::string> everywhere, all{"all"};
   sim::for_each_friction_model([&]<class Model>() {
     const std::string name(Model::name);
+    all.push_back(name);
     if (std::all_of(machine.axes.begin(), machine.axes.end(),
                     [&](const auto& axis) { return axis.friction.models.contains(name); }))
       everywhere.push_back(name);
@@ -95,23 +94,38 @@ std::vector<std::string> friction_models(const std::string& text, const machine:
   if (text == "all") return everywhere;
   if (text.empty()) return {friction_in_use(machine)};
   const auto names = split_list(text);
-  for (const auto& name : names)
-    if (std::find(everywhere.begin(), everywhere.end(), name) == everywhere.end())
-      throw UsageError(fmt::format("--friction: found '{}'; expected 'all' or models that every axis of {} has: {}",
-                                   name, machine.id, fmt::join(everywhere, ", ")));
+  for (const auto& name : names) {
+    if (std::find(everywhere.begin(), everywhere.end(), name) != everywhere.end()) continue;
+    const bool law = std::find(all.begin(), all.end(), name) != all.end();
+    throw UsageError(fmt::format("--friction: found '{}'{}; expected 'all' or models that every axis of {} has: {}{}",
+                                 name, law ? ", of which an axis has no parameters" : "", machine.id,
+                                 fmt::join(everywhere, ", "), law ? "" : nearest_words(name, all)));
+  }
   return names;
 }
 
-std::vector<double> feeds(const std::string& text) {
+// "8,5 m/min": one number, and no list of them, which have units.
+void refuse_decimal_comma(const std::string& text, const std::string& option) {
+  const auto digit = [&](std::size_t k) { return k < text.size() && text[k] >= '0' && text[k] <= '9'; };
+  for (std::size_t k = 1; k + 1 < text.size(); ++k)
+    if (text[k] == ',' && digit(k - 1) && digit(k + 1))
+      throw UsageError(
+          fmt::format("{}: found '{}' (a comma between digits); expected numbers with a decimal point, as in \"8.5 "
+                      "m/min\", each with its unit in a list, as in \"8 m/min, 16 m/min\"",
+                      option, text));
+}
+
+std::vector<double> feeds(const std::string& text, const std::string& option) {
+  refuse_decimal_comma(text, option);
   std::vector<double> result;
   for (const auto& part : split_list(text)) {
     try {
       result.push_back(machine::parse_quantity(part, "m/s"));
     } catch (const machine::UnitError& error) {
       throw UsageError(
-          fmt::format("--feed: found '{}' ({}); expected a speed such as \"16 m/min\", or a list \"8 m/min, "
+          fmt::format("{}: found '{}' ({}); expected a speed such as \"16 m/min\", or a list \"8 m/min, "
                       "16 m/min\"",
-                      part, error.what()));
+                      option, part, error.what()));
     }
   }
   return result;
@@ -121,7 +135,8 @@ std::vector<sim::Direction> directions(const std::string& text) {
   if (text == "ccw") return {sim::Direction::counter_clockwise};
   if (text == "cw") return {sim::Direction::clockwise};
   if (text == "both") return {sim::Direction::counter_clockwise, sim::Direction::clockwise};
-  throw UsageError(fmt::format("--direction: found '{}'; expected cw, ccw or both", text));
+  throw UsageError(fmt::format("--direction: found '{}'; expected cw, ccw or both{}", text,
+                               nearest_words(text, {"cw", "ccw", "both"})));
 }
 
 }  // namespace stiction::host

@@ -40,8 +40,8 @@ std::vector<std::string> split_list(const std::string& text);
 // every axis has parameters for; or a list of them. Throws UsageError.
 std::vector<std::string> friction_models(const std::string& text, const machine::Machine& machine);
 
-// Feeds in m/s from "16 m/min" or a list of such quantities. Throws UsageError.
-std::vector<double> feeds(const std::string& text);
+// Feeds in m/s from "16 m/min" or a list of such quantities, the value of `option`. Throws UsageError.
+std::vector<double> feeds(const std::string& text, const std::string& option = "--feed");
 
 // "cw", "ccw" or "both"; "both" begins with counter-clockwise. Throws UsageError.
 std::vector<sim::Direction> directions(const std::string& text);

@@ -2,13 +2,23 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
 #include <exception>
 
 #include "firmware/machine/configuration/axis_configuration.hpp"
 #include "firmware/machine/file/machine_file.hpp"
+#include "firmware/machine/file/whole_file.hpp"
+#include "firmware/version/version.hpp"
+#include "host/cli/choices.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
+#include "host/cli/parse_errors.hpp"
+#include "host/cli/temporaries.hpp"
 #include "host/log/log.hpp"
+#include "host/log/message.hpp"
 #include "host/simulate/circle.hpp"
 
 namespace stiction::host {
@@ -33,13 +43,36 @@ void refuse_unknown_arguments(CLI::App& command) {
   for (auto* each : commands) refuse_unknown_arguments(*each);
 }
 
-int run(int argc, char** argv) {
-  Invocation invocation{"stiction", STICTION_VERSION};
-  for (int i = 1; i < argc; ++i) invocation.command_line += " " + quoted(argv[i]);
+// "Feed along the path.": the sources have phrases, which messages use too. What begins with the name of a value,
+// "fixed: ...", keeps it.
+std::string sentence(std::string text) {
+  const auto end = text.find_first_of(" :");
+  const bool name = end != std::string::npos && text[end] != ' ';
+  if (text.empty()) return text;
+  if (!name && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text.back() == '.' ? text : text + ".";
+}
 
-  CLI::App program("controller firmware of a servo axis, its simulated machine, and tools to identify and diagnose it",
-                   "stiction");
-  program.set_version_flag("--version", STICTION_VERSION);
+// What holds for all options: their help is in sentences, and an empty value is none.
+void finish(CLI::App& command) {
+  const auto empty = [](const std::string& value) {
+    return value.empty() ? std::string("found an empty value; expected one, or not the option") : std::string();
+  };
+  command.description(sentence(command.get_description()));
+  for (auto* option : command.get_options()) {
+    option->description(sentence(option->get_description()));
+    if (option->get_items_expected_max() > 0) option->check(CLI::Validator(empty, ""));
+  }
+  for (auto* each : command.get_subcommands([](CLI::App*) { return true; })) finish(*each);
+}
+
+int run(int argc, char** argv) {
+  Invocation invocation{"stiction", program_version()};
+  const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
+  for (const auto& argument : arguments) invocation.command_line += " " + quoted(argument);
+
+  CLI::App program("simulate, identify and diagnose servo axes", "stiction");
+  program.set_version_flag("--version", invocation.version);
   expect_subcommand(program, "command");
   program.failure_message(CLI::FailureMessage::help);
   add_simulate(program, invocation);
@@ -50,20 +83,25 @@ int run(int argc, char** argv) {
   add_tune_friction(program, invocation);
   add_convert(program);
   add_inspect(program);
+  add_completion(program);
 
   refuse_unknown_arguments(program);
+  finish(program);
 
   const auto bad_input = [](const std::exception& error) {
     fmt::print(stderr, "stiction: {}\n", error.what());
     return exit_bad_input;
   };
   try {
+    invocation.command = called_command(program, arguments);
     program.parse(argc, argv);
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)  // what is buffered fails here, or nowhere
+      throw std::runtime_error("standard output: cannot be written: " + machine::file_error_words(errno));
     return exit_done;
   } catch (const CLI::Success& wanted) {  // --help, --version
     return program.exit(wanted);
   } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "stiction: {}; see stiction --help\n", error.what());
+    fmt::print(stderr, "stiction: {}\n", usage_message(program, arguments, error));
     return exit_bad_input;
   } catch (const UsageError& error) {
     return bad_input(error);
@@ -83,18 +121,23 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
+void refuse_unknown_command(const CLI::App& command, const std::string& kind) {
+  std::vector<std::string> known;
+  for (const auto* sub : command.get_subcommands([](const CLI::App*) { return true; }))
+    known.push_back(sub->get_name());
+  const auto found = command.remaining();
+  const auto see = fmt::format(" (see `{} --help`)", command_words(command));
+  if (!found.empty() && found.front().starts_with("--")) throw UsageError(unknown_option(command, found.front()) + see);
+  throw UsageError(fmt::format("{}: found {}; expected one of {}{}{}", kind,
+                               found.empty() ? "none" : "'" + excerpt(found.front()) + "'", fmt::join(known, ", "),
+                               found.empty() ? "" : nearest_words(found.front(), known), see));
+}
+
 void expect_subcommand(CLI::App& command, const std::string& kind) {
   command.require_subcommand(0, 1);
   command.prefix_command();  // leaves what it does not know to the callback
   command.callback([&command, kind] {
-    if (!command.get_subcommands().empty()) return;
-    std::vector<std::string> known;
-    for (const auto* sub : command.get_subcommands([](const CLI::App*) { return true; }))
-      known.push_back(sub->get_name());
-    const auto found = command.remaining();
-    throw UsageError(fmt::format("{}: found {}; expected {}{}; see {} --help", kind,
-                                 found.empty() ? "none" : "'" + found.front() + "'", known.size() > 1 ? "one of " : "",
-                                 fmt::join(known, ", "), command.get_name()));
+    if (command.get_subcommands().empty()) refuse_unknown_command(command, kind);
   });
 }
 
@@ -102,6 +145,8 @@ void expect_subcommand(CLI::App& command, const std::string& kind) {
 
 int main(int argc, char** argv) {
   try {
+    std::signal(SIGXFSZ, SIG_IGN);  // a file at its limit is an error to be told
+    stiction::host::remove_temporaries_when_interrupted();
     return stiction::host::run(argc, argv);
   } catch (...) {
     return stiction::host::exit_failed;  // standard error cannot be written either

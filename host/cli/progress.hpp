@@ -2,16 +2,20 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
 #include <cstddef>
 #include <mutex>
 #include <string>
 #include <string_view>
+#include <thread>
 
 namespace stiction::host {
 
 class Progress {
  public:
-  Progress(std::string what, std::size_t total);
+  // `what` is done, "circles", in `total` steps; 0: the number is not known, and only the time is shown. The line
+  // appears after a second and is drawn again while the work goes on, also between steps.
+  explicit Progress(std::string what, std::size_t total = 0);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   ~Progress();  // wipes the line
@@ -20,13 +24,24 @@ class Progress {
   void add(std::string_view now = {});
 
  private:
-  std::string what_;
+  void draw_until_done();
+  void draw() const;
+
+  std::string what_, now_;
   std::size_t total_;
   std::size_t done_ = 0;
-  bool terminal_;
-  bool shown_ = false;
+  bool over_ = false;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::mutex mutex_;
+  std::condition_variable changed_;
+  std::thread thread_;  // only where standard error is a terminal
 };
+
+// What `work` returns, with a line that says `what` is going on and for how long.
+template <class Work>
+auto during(const std::string& what, Work work) {
+  const Progress progress(what);
+  return work();
+}
 
 }  // namespace stiction::host

@@ -4,11 +4,14 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "firmware/machine/configuration/double_signals.hpp"
+#include "host/cli/choices.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/experiment_output.hpp"
 #include "host/cli/output.hpp"
+#include "host/cli/progress.hpp"
 #include "host/log/csv_log.hpp"
 #include "host/log/mat_log.hpp"
 #include "host/log/read_log.hpp"
@@ -50,9 +53,9 @@ void keep(const std::filesystem::path& file, Log simulated, const ReplayOptions&
                         {"from", options.from}};
   PendingFile pending(file);
   if (file.extension() == ".mat")
-    write_mat_log(pending.path(), simulated);
+    pending.fill([&](const auto& path) { write_mat_log(path, simulated); });
   else
-    write_csv_log(pending.path(), simulated);
+    pending.write(csv_log_text(simulated));
   pending.commit();
 }
 
@@ -62,22 +65,26 @@ void run_replay(const ReplayOptions& options, const Invocation& invocation, cons
   auto cases = cases_of(options);
   if (!options.log.empty() && cases.size() != 1)
     throw UsageError(fmt::format("--log: found {} runs; expected one machine and one friction model", cases.size()));
+  auto progress = std::make_optional<Progress>("simulating", 1 + cases.size());
   const auto log = read_log(options.from);
   const bool fixed = options.signals != "double";
-  for (auto& c : cases)
+  for (auto& c : cases) {
+    progress->add(c.label);
     c.simulated = fixed ? replay<FixedSignals>(c.machine, log, {options.axis})
                         : replay<machine::DoubleSignals>(c.machine, log, {options.axis});
+  }
   if (!options.log.empty()) keep(options.log, cases.front().simulated, options, cases.front());
   const auto result =
       replay_result(log, cases, fixed ? FixedSignals::name : machine::DoubleSignals::name, options.axis);
   const auto& machine = cases.front().machine;
   const auto json = json_of ? json_of(log, cases, result) : experiment_json(result, machine);
   if (!options.out.empty()) {
-    PendingFolder folder(options.out);
+    PendingFolder folder(options.out, invocation.command);
     folder.write("report.html", experiment_report_html({invocation.command_line, invocation.version, machine, result}));
     folder.write("result.json", json.dump(2) + "\n");
     folder.commit();
   }
+  progress.reset();
   if (options.json) {
     fmt::print("{}\n", json.dump(2));
     return;
@@ -99,11 +106,11 @@ void add_replay(CLI::App& simulate, const Invocation& invocation) {
   command
       ->add_option("--signals", o->signals,
                    "fixed: the firmware in fixed point; double: the same laws in double precision")
-      ->check(CLI::IsMember({"fixed", "double"}))
+      ->check(one_of({"fixed", "double"}))
       ->capture_default_str();
-  command->add_option("--log", o->log, "write the simulated channels at the times of the log (NAME.csv or NAME.mat)")
-      ->type_name("FILE");
-  command->add_option("--out", o->out, "write report.html and result.json into this folder")->type_name("DIR");
+  add_output_file(*command, "--log", o->log,
+                  "write the simulated channels at the times of the log (NAME.csv or NAME.mat)");
+  add_out(*command, o->out, "write report.html and result.json into this folder");
   command->add_flag("--json", o->json, "print the result as JSON on standard output");
   command->callback([o, &invocation] { run_replay(*o, invocation); });
 }

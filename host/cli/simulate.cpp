@@ -4,12 +4,14 @@
 #include <memory>
 
 #include "firmware/machine/file/units.hpp"
+#include "host/cli/choices.hpp"
 #include "host/cli/circle_command.hpp"
 #include "host/cli/circle_output.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/frequency_response_command.hpp"
 #include "host/cli/machine_options.hpp"
+#include "host/cli/output.hpp"
 
 namespace stiction::host {
 namespace {
@@ -49,7 +51,9 @@ CirclePlan plan_of(const CircleOptions& options) {
 
 void simulate_circle(const CircleOptions& options, const Invocation& invocation) {
   const auto plan = plan_of(options);
-  const auto result = run_plan(plan, options.places);
+  auto places = options.places;
+  places.command = invocation.command;
+  const auto result = run_plan(plan, places);
   const auto json = circle_json(result, plan.machine);
   if (!options.places.out.empty()) write_circle_folder(options.places.out, plan, result, json, invocation);
   if (options.json) {
@@ -81,17 +85,18 @@ void add_simulate(CLI::App& program, const Invocation& invocation) {
                    "feed along the path, which is the highest speed of each axis, or a list of feeds [16 m/min, or "
                    "slower where an axis requires it]")
       ->type_name("\"NUMBER UNIT\"");
-  circle->add_option("--direction", o->direction, "cw, ccw or both")->type_name("DIR")->capture_default_str();
+  circle->add_option("--direction", o->direction, "direction of the circle")
+      ->check(one_of({"cw", "ccw", "both"}))
+      ->capture_default_str();
   circle->add_option("--radius", o->radius, "radius, the amplitude of each axis [90 mm, or the largest that fits]")
       ->type_name("\"NUMBER UNIT\"");
   circle
       ->add_option("--signals", o->signals,
                    "fixed: the firmware in fixed point; double: the same laws in double precision")
-      ->check(CLI::IsMember({"fixed", "double"}))
+      ->check(one_of({"fixed", "double"}))
       ->capture_default_str();
-  circle->add_option("--log", o->places.log, "write every signal of the cascade in every tick (CSV)")
-      ->type_name("FILE");
-  circle->add_option("--out", o->places.out, "write report.html and result.json into this folder")->type_name("DIR");
+  add_output_file(*circle, "--log", o->places.log, "write every signal of the cascade in every tick (CSV)");
+  add_out(*circle, o->places.out, "write report.html and result.json into this folder");
   circle->add_flag("--json", o->json, "print the result as JSON on standard output");
   circle->callback([o, &invocation] { simulate_circle(*o, invocation); });
 

@@ -6,13 +6,14 @@
 #include <cstdlib>
 #include <memory>
 
+#include "host/cli/choices.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/experiment_output.hpp"
+#include "host/cli/logs.hpp"
 #include "host/cli/machine_options.hpp"
 #include "host/cli/output.hpp"
 #include "host/cli/progress.hpp"
-#include "host/log/read_log.hpp"
 #include "host/report/experiment_report.hpp"
 #include "host/simulate/circle.hpp"
 #include "host/tune/tuned_machine.hpp"
@@ -62,10 +63,10 @@ Circles circles_of(const machine::Machine& machine) {
 std::vector<std::size_t> axes_to_tune(const std::string& name, const machine::Machine& machine,
                                       const std::vector<Log>& logs) {
   std::vector<std::size_t> chosen;
-  std::vector<std::string> names;
+  const auto names = axis_names(machine);
+  if (!name.empty()) require_known("--axis", name, "an axis of " + machine.id, names);
   for (std::size_t k = 0; k < machine.axes.size(); ++k) {
     const auto& axis = machine.axes[k].name;
-    names.push_back(axis);
     const auto in = [&](const Log& log) {
       return std::any_of(log.axes.begin(), log.axes.end(),
                          [&](const auto& c) { return c.axis == axis || (c.axis.empty() && machine.axes.size() == 1); });
@@ -90,7 +91,7 @@ std::vector<Log> logs_of(machine::Machine machine, std::size_t axis, const std::
 
 TunedCompensations tune(const TuneOptions& options, const machine::Machine& machine, const std::vector<Log>& logs) {
   const auto circles = circles_of(machine);
-  const auto shown = options.shown.empty() ? std::vector{circles.shown} : feeds(options.shown);
+  const auto shown = options.shown.empty() ? std::vector{circles.shown} : feeds(options.shown, "--show");
   if (shown.size() != 1) throw UsageError(fmt::format("--show: found {} feeds; expected one", shown.size()));
   ComparisonSettings comparison;
   comparison.circle = circle_settings(machine, shown.front(), circles.radius);
@@ -122,13 +123,12 @@ TunedCompensations tune(const TuneOptions& options, const machine::Machine& mach
 
 void run(const TuneOptions& options, const Invocation& invocation) {
   const auto machine = options.machine.load(options.machine.machine, "");
-  std::vector<Log> logs;
-  for (const auto& file : options.logs) logs.push_back(read_log(file));
+  const auto logs = read_logs(options.logs);
   const auto all = tune(options, machine, logs);
   const auto result = tuning_result(all);
   const auto json = experiment_json(result, all.machine);
   if (!options.out.empty()) {
-    PendingFolder folder(options.out);
+    PendingFolder folder(options.out, invocation.command);
     auto sources = options.logs;
     if (sources.empty()) sources.emplace_back("circles of the simulated machine file");
     folder.write("tuned.toml", tuned_machine(machine::find_machine(options.machine.machine), options.machine.set, all,
@@ -171,8 +171,7 @@ void add_tune_friction(CLI::App& program, const Invocation& invocation) {
                    "feed of the charts, at which the speed pulse is tuned [16 m/min, or a third of the fastest feed]")
       ->type_name("FEED");
   command->add_flag("--no-pulse", o->no_pulse, "omit the speed pulse, whose tuning takes 250 simulated laps per axis");
-  command->add_option("--out", o->out, "write tuned.toml, report.html and result.json into this folder")
-      ->type_name("DIR");
+  add_out(*command, o->out, "write tuned.toml, report.html and result.json into this folder");
   command->add_flag("--json", o->json, "print the figures as JSON on standard output");
   command->callback([o, &invocation] { run(*o, invocation); });
 }

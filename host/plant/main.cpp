@@ -6,6 +6,7 @@
 
 #include "firmware/machine/configuration/axis_configuration.hpp"
 #include "firmware/machine/file/drive_file.hpp"
+#include "firmware/version/version.hpp"
 #include "hal/program.hpp"
 #include "hal/tick_clock.hpp"
 #include "host/plant/can_nodes.hpp"
@@ -67,6 +68,7 @@ int serve(const PlantOptions& options) {
 int main(int argc, char** argv) {
   return stiction::hal::run_program<stiction::host::PlantOptions>(
       argc, argv,
-      {"stiction-plant", "the simulated machine on a real bus, as the counterpart of stictiond", STICTION_VERSION},
+      {"stiction-plant", "the simulated machine on a real bus, as the counterpart of stictiond",
+       stiction::program_version},
       stiction::host::serve);
 }

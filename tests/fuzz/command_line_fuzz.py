@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 """Runs the programme with command lines drawn from the grammar of its own help, on shipped, small and damaged files.
 
-Whatever it is given, it ends with 0, 1 or 2, with a message on standard error where it fails, without a folder where it
-refuses, with JSON alone on standard output where JSON was asked for. A run that takes too long is ended and told. It
+Whatever it is given, it ends with 0, 1 or 2, with a message on standard error where it fails, with what it found and what
+it expected where it refuses, and without a folder then; the right spelling of an option with a slip is named, foreign
+files in a folder of results stay, no temporary file is left, and there is JSON alone on standard output where JSON was
+asked for. A run that takes too long is ended and told. It
 follows from the seed and its number: --seed S --run N repeats it. Exit 0: nothing found; 1: findings; 2: bad usage."""
 
 import argparse
@@ -34,6 +36,7 @@ WORDS = ["", " ", "X", "Y", "Z", "*", "x", "all", "none", "circle", "lugre", "ma
 MODELS = ["lugre", "maxwell_slip", "coulomb_viscous", "classical", "linear_ramp", "parabolic", "all", "lugre,classical"]
 SENSIBLE = {"m/min": ["2", "8", "16", "48"], "mm": ["20", "90"], "Hz": ["2", "10"], "A": ["0.5", "3"]}
 FAULT = 99  # the sanitizers' exit code
+FOREIGN = "thesis.txt"  # a file that no command made
 
 
 @dataclasses.dataclass
@@ -46,6 +49,7 @@ class Run:
     finding: str = ""  # what is wrong, in a few words
     note: str = ""     # what is not wrong, but told
     whole: bool = True  # every option has its value
+    meant: str = ""     # the option that is misspelt in the line, in its right spelling
 
 
 class Drawer:
@@ -55,6 +59,7 @@ class Drawer:
         self.commands, self.files, self.draw, self.folder = commands, files, draw, folder
         self.keys = command_files.keys_of(files["machine"][:3])
         self.outputs = []  # what a run that refuses must not leave
+        self.meant = ""
         # How much of a line is odd: what is refused at once shows nothing of what lies behind.
         self.oddness = draw.choice([0.0, 0.0, 0.02, 0.02, 0.06, 0.3])
 
@@ -99,8 +104,32 @@ class Drawer:
         if self.odd():
             return self.draw.choice(["/dev/full", "/proc/x", ".", "in0.toml", "", "a/b/c"])
         name = f"out{len(self.outputs)}{self.draw.choice(kind)}"
+        if kind == [""] and self.draw.random() < 0.3:
+            return self.used_folder(f"used{len(self.outputs)}")
         self.outputs.append(name)
         return name
+
+    def used_folder(self, name):
+        """A folder with a file of somebody else, and often with an earlier result beside it."""
+        place = self.folder / name
+        place.mkdir(exist_ok=True)
+        (place / FOREIGN).write_text("precious", encoding="utf-8")
+        if self.draw.random() < 0.7:
+            (place / "result.json").write_text("{}", encoding="utf-8")
+        return name
+
+    def misspell(self, line):
+        """One option of the line loses, doubles or exchanges a letter."""
+        places = [k for k, part in enumerate(line) if part.startswith("--") and len(part) > 6 and part[2:].isalpha()]
+        if not places or "--help" in line or "--version" in line:
+            return
+        place = self.draw.choice(places)
+        meant = line[place]
+        at = self.draw.randrange(3, len(meant) - 1)
+        slip = self.draw.choice([meant[:at] + meant[at + 1:], meant[:at] + meant[at] + meant[at:],
+                                 meant[:at] + meant[at + 1] + meant[at] + meant[at + 2:]])
+        if slip != meant:
+            line[place], self.meant = slip, meant
 
     def value(self, command, argument):
         """A value for an argument, as the help calls it or as its name says."""
@@ -146,6 +175,8 @@ class Drawer:
                 value = [self.value(command, argument)] if argument.takes or argument.choices else []
                 line += ([argument.name] if argument.name.startswith("-") else []) + value
         self.whole = not self.odd()
+        if self.oddness == 0.0 and self.draw.random() < 0.1:
+            self.misspell(line)
         if not self.whole:
             odd = self.draw.choice(WORDS + ["--help", "--version", "--bogus"])
             line.insert(self.draw.randrange(len(line) + 1), odd)
@@ -172,6 +203,7 @@ class Fuzzer:
         folder.mkdir()
         drawer = Drawer(self.commands, self.files, draw, folder)
         run = Run(number, drawer.line(), whole=drawer.whole)
+        run.meant = drawer.meant
         begin = time.monotonic()
         process = subprocess.Popen([self.program, *run.line], cwd=folder, env=self.environment,
                                    stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
@@ -186,6 +218,7 @@ class Fuzzer:
         run.seconds = time.monotonic() - begin
         run.error = error.decode("utf-8", errors="replace")
         judge(run, out.decode("utf-8", errors="replace"), [name for name in drawer.outputs if (folder / name).exists()])
+        run.finding = left_wrong(folder) or run.finding
         if run.finding:
             self.keep(run, folder)
         shutil.rmtree(folder)
@@ -207,6 +240,18 @@ class Fuzzer:
         (place / "said").write_text(run.error, encoding="utf-8")
 
 
+def left_wrong(folder):
+    """What a run has left in its folder that it must not leave."""
+    for file in folder.rglob("*"):
+        if ".partial-" in file.name:
+            return "a temporary file is left"
+        if file.name == FOREIGN and file.read_text(encoding="utf-8") != "precious":
+            return "a foreign file is changed"
+    if any(not (used / FOREIGN).exists() for used in folder.glob("used*")):
+        return "a foreign file is gone"
+    return ""
+
+
 def judge(run, out, written):
     """Puts what is wrong with a run, or worth telling, into it."""
     if run.code is None or run.code == -signal.SIGXCPU:
@@ -224,6 +269,10 @@ def judge(run, out, written):
         run.finding = f"exit {run.code} without a message"
     elif run.code == 2 and written:
         run.finding = "refused, and something is written"
+    elif run.code == 2 and not ("found" in run.error and "expected" in run.error):
+        run.finding = "refused without what was found and what was expected"
+    elif run.meant and (run.code != 2 or f"did you mean '{run.meant}'" not in run.error):
+        run.finding = "a misspelt option without its right spelling"
     elif run.code == 0 and "--json" in run.line and run.whole:
         try:
             json.loads(out)

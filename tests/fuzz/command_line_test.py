@@ -31,6 +31,7 @@ Options:
   --signal TEXT:{multisine,stepped-sine}=multisine Excludes: --from
                               multisine: all frequencies at once
   --json                      print the result as JSON
+  --out DIR                   write the result into this folder
 """
 
 
@@ -39,7 +40,7 @@ class Grammar(unittest.TestCase):
         command = help_grammar.command_of(("simulate", "circle"), HELP)
         found = {argument.name: argument for argument in command.arguments}
         self.assertEqual(list(found), ["logs", "OUT", "--machine", "--set", "--compensation", "--feed", "--signal",
-                                       "--json"])
+                                       "--json", "--out"])
         self.assertTrue(found["logs"].many and not found["logs"].required)
         self.assertEqual(found["logs"].takes, "LOG")
         self.assertTrue(found["OUT"].required)
@@ -109,7 +110,9 @@ class Runs(unittest.TestCase):
 
     def test_that_fail_without_a_word_are_findings(self):
         self.assertEqual(self.findings("exit 2")[0].finding, "exit 2 without a message")
-        self.assertEqual(self.findings("echo no >&2; exit 2")[0].finding, "")
+        self.assertEqual(self.findings("echo 'found a; expected b' >&2; exit 2")[0].finding, "")
+        self.assertEqual(self.findings("echo no >&2; exit 2")[0].finding,
+                         "refused without what was found and what was expected")
         self.assertEqual(self.findings("echo no >&2; exit 1")[0].finding, "")
 
     def test_that_do_not_end_are_ended_and_told(self):
@@ -122,7 +125,22 @@ class Runs(unittest.TestCase):
 
     def test_owe_json_where_it_was_asked_for(self):
         self.assertIn("no JSON on standard output", {run.finding for run in self.findings("echo no", runs=60)})
-        self.assertEqual({run.finding for run in self.findings("echo '{}'", runs=60)}, {""})
+        self.assertEqual({run.finding for run in self.findings("echo '{}'", runs=60) if not run.meant}, {""})
+
+    def test_owe_the_right_spelling_of_a_misspelt_option(self):
+        runs = [run for run in self.findings("echo 'found a; expected b' >&2; exit 2", runs=80) if run.meant]
+        self.assertTrue(runs)
+        self.assertEqual({run.finding for run in runs}, {"a misspelt option without its right spelling"})
+        tells = "echo \"found; expected; did you mean '--machine'? did you mean '--signal'? did you mean '--feed'? did " \
+                "you mean '--json'? did you mean '--set'? did you mean '--compensation'?\" >&2; exit 2"
+        self.assertEqual({run.finding for run in self.findings(tells, runs=80) if run.meant}, {""})
+
+    def test_that_change_foreign_files_or_leave_temporary_ones_are_findings(self):
+        spoils = 'for word; do case $word in used*) echo >"$word/thesis.txt";; esac; done; exit 0'
+        self.assertIn("a foreign file is changed", {run.finding for run in self.findings(spoils, runs=60)})
+        removes = 'for word; do case $word in used*) rm "$word/thesis.txt";; esac; done; exit 0'
+        self.assertIn("a foreign file is gone", {run.finding for run in self.findings(removes, runs=60)})
+        self.assertEqual(self.findings("touch .a.partial-1")[0].finding, "a temporary file is left")
 
     def test_follow_from_seed_and_number(self):
         lines = [[run.line for run in self.findings("exit 0", runs=20)] for _ in range(2)]

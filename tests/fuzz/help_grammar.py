@@ -17,7 +17,7 @@ class Argument:
 
 @dataclasses.dataclass(frozen=True)
 class Command:
-    """A command that has no commands below it."""
+    """A command that runs by itself."""
     words: tuple  # ("simulate", "circle")
     arguments: tuple
 
@@ -67,6 +67,9 @@ def read(program, *words):
     """All commands of the programme that have none below them."""
     text = subprocess.run([program, *words, "--help"], check=True, capture_output=True, text=True).stdout
     below = commands_below(text)
+    own = command_of(words, text)
     if not below:
-        return [command_of(words, text)]
-    return [command for word in below for command in read(program, *words, word)]
+        return [own]
+    inner = [command for word in below for command in read(program, *words, word)]
+    # A command that also works without those below it has options of its own; the programme has --version alone.
+    return ([own] if words and own.arguments else []) + inner

@@ -41,7 +41,9 @@ ROOMS = {
         "firmware/machine/model": "the drive's configuration is computed from a machine",
         f"{FIRMWARE}/*": "and is the cascade's own",
     },
+    "firmware/version": {},
     "firmware/stictiond": {
+        "firmware/version": "a programme says which it is,",
         f"{FIRMWARE}/*": "the drive's programme runs the cascade",
         "hal/*": "over the backend that its command line names",
         "firmware/machine/*": "its configuration is computed before the loop starts, from the machine file",
@@ -147,6 +149,7 @@ ROOMS = {
         f"{FIRMWARE}/*": "in the tables that the drive interpolates",
     },
     "host/plant": {
+        "firmware/version": "a programme says which it is",
         "hal/*": "the simulated machine behind a real bus speaks the backends' frames",
         "sim/*": "and is the simulation",
         "firmware/machine/*": "as its file describes it",
@@ -165,6 +168,7 @@ ROOMS = {
         "firmware/machine/*": "as its file describes it",
     },
     "host/cli": {
+        "firmware/version": "the programme says which it is",
         "host/log": "a command reads and writes logs",
         "host/simulate": "runs experiments",
         "host/response": "measures loops",

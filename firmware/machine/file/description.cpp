@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "firmware/machine/file/drive_parameters.hpp"
 #include "firmware/machine/file/expected_parameters.hpp"
@@ -229,37 +228,6 @@ std::string quoted_list(const std::vector<std::string_view>& names) {
     list += fmt::format("\"{}\"", names[i]);
   }
   return list;
-}
-
-namespace {
-
-// Levenshtein's distance: insertions, deletions and replacements of one character.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0]++;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, diagonal + 1, row[j] + 1});
-    }
-  }
-  return row.back();
-}
-
-}  // namespace
-
-std::string_view nearest_name(std::string_view name, const std::vector<std::string_view>& known) {
-  std::string_view nearest;
-  std::size_t smallest = 1 + name.size() / 4;  // one slip, and one more for every four characters
-  for (const std::string_view candidate : known) {
-    const std::size_t distance = edit_distance(name, candidate);
-    if (distance > smallest || (distance == smallest && !nearest.empty())) continue;
-    smallest = distance;
-    nearest = candidate;
-  }
-  return nearest;
 }
 
 }  // namespace stiction::machine

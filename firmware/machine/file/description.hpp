@@ -44,7 +44,4 @@ std::string describe_expectation(ValueKind kind, const Range& range, std::string
 // Names as a message lists them: `"a", "b" or "c"`.
 std::string quoted_list(const std::vector<std::string_view>& names);
 
-// The name nearest to `name` when a slip of the pen explains the difference; empty otherwise.
-std::string_view nearest_name(std::string_view name, const std::vector<std::string_view>& known);
-
 }  // namespace stiction::machine

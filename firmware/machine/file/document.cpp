@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <regex>
 #include <sstream>
 #include <utility>
 
-#include "firmware/machine/file/description.hpp"
+#include "firmware/machine/file/nearest_name.hpp"
 
 namespace stiction::machine {
 namespace {
@@ -73,14 +74,25 @@ void remove_key(toml::table& from, const toml::table& path, const std::string& a
   }
 }
 
+// " (...)" where the line reads KEY = 8,5.
+std::string comma_hint(const std::string& text, std::size_t line) {
+  std::istringstream lines(text);
+  std::string found;
+  for (std::size_t k = 0; k < line && std::getline(lines, found);) ++k;
+  static const std::regex comma(R"(=\s*[-+]?[0-9]+,[0-9])");
+  return std::regex_search(found.substr(0, 200), comma) ? " (a decimal comma; numbers have a decimal point, as in 8.5)"
+                                                        : "";
+}
+
 }  // namespace
 
 Document::Document(std::string file, std::string text) : file_(std::move(file)), text_(std::move(text)) {
   try {
     root_ = toml::parse(text_, from_file);
   } catch (const toml::parse_error& error) {
-    throw MachineFileError(fmt::format("{}:{}: found invalid TOML: {}; expected a TOML file", file_,
-                                       error.source().begin.line, error.description()));
+    const std::size_t line = error.source().begin.line;
+    throw MachineFileError(fmt::format("{}:{}: found invalid TOML: {}{}; expected a TOML file", file_, line,
+                                       error.description(), comma_hint(text_, line)));
   }
 }
 
@@ -99,9 +111,8 @@ void Document::fail(const toml::source_region& where, std::string_view key, std:
 void Document::fail_unknown(const toml::source_region& place, std::string_view key,
                             const std::vector<std::string_view>& known) const {
   const std::size_t dot = key.rfind('.');
-  const std::string_view nearest = nearest_name(dot == std::string_view::npos ? key : key.substr(dot + 1), known);
-  const std::string suggestion = nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest);
-  fail(place, key, "an unknown key", fmt::format("one of {}{}", fmt::join(known, ", "), suggestion));
+  const std::string_view name = dot == std::string_view::npos ? key : key.substr(dot + 1);
+  fail(place, key, "an unknown key", fmt::format("one of {}{}", fmt::join(known, ", "), did_you_mean(name, known)));
 }
 
 void Document::apply_experiment(std::string_view name) {

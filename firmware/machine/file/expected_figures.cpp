@@ -11,6 +11,7 @@
 
 #include "firmware/machine/file/description.hpp"
 #include "firmware/machine/file/expected_parameters.hpp"
+#include "firmware/machine/file/nearest_name.hpp"
 #include "firmware/machine/file/units.hpp"
 
 namespace stiction::machine {
@@ -101,9 +102,7 @@ class RowReader {
   void check_name(std::string_view key, std::string_view name, const std::vector<std::string_view>& known,
                   std::string_view what) const {
     if (std::find(known.begin(), known.end(), name) != known.end()) return;
-    const auto nearest = nearest_name(name, known);
-    fail(key, fmt::format("{}: {}{}", what, quoted_list(known),
-                          nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest)));
+    fail(key, fmt::format("{}: {}{}", what, quoted_list(known), did_you_mean(name, known)));
   }
 
   void read_when() {

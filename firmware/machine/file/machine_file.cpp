@@ -4,15 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <utility>
 
 #include "firmware/machine/file/compensation_checks.hpp"
 #include "firmware/machine/file/document.hpp"
 #include "firmware/machine/file/drive_file.hpp"
 #include "firmware/machine/file/expected_figures.hpp"
+#include "firmware/machine/file/nearest_name.hpp"
 #include "firmware/machine/file/table_reader.hpp"
+#include "firmware/machine/file/whole_file.hpp"
 #include "stiction/control/compensation_kind.hpp"
 
 namespace stiction::machine {
@@ -292,7 +292,7 @@ class MachineReader {
                   const std::vector<std::string_view>& known, std::string_view what) const {
     if (std::find(known.begin(), known.end(), name) != known.end()) return;
     document_.fail(table.get(key)->source(), join_key(path, key), fmt::format("\"{}\"", name),
-                   fmt::format("{}: {}", what, quoted_list(known)));
+                   fmt::format("{}: {}{}", what, quoted_list(known), did_you_mean(name, known)));
   }
 
   const Document& document_;
@@ -329,12 +329,11 @@ void mark_expected(Machine& machine, const std::string& file, const std::string&
 }  // namespace
 
 std::string content_of(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::error_code error;
-  if (!stream || std::filesystem::is_directory(file, error))
-    throw MachineFileError(
-        fmt::format("{}: found no readable file; expected a machine file ({})", file.string(), machine_schema));
-  return {std::istreambuf_iterator<char>(stream), {}};
+  try {
+    return read_whole_file(file, fmt::format("a machine file ({})", machine_schema));
+  } catch (const UnreadableFile& error) {
+    throw MachineFileError(error.what());
+  }
 }
 
 Machine parse_machine(const std::string& file, const std::string& text, const Vocabulary& vocabulary,

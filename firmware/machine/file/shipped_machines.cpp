@@ -5,8 +5,8 @@
 #include <set>
 #include <sstream>
 
-#include "firmware/machine/file/description.hpp"
 #include "firmware/machine/file/machine_file.hpp"
+#include "firmware/machine/file/nearest_name.hpp"
 
 namespace stiction::machine {
 namespace {
@@ -48,11 +48,11 @@ std::filesystem::path find_machine(const std::string& name_or_path) {
     if (!name_or_path.empty() && fs::exists(candidate, error)) return candidate;
   }
   const std::vector<std::string> shipped = shipped_machines();
-  const std::string_view nearest = nearest_name(name_or_path, {shipped.begin(), shipped.end()});
-  throw MachineFileError(fmt::format(
-      "machine \"{}\": found no such machine; expected {}the path of a file or the name of a shipped machine: {}",
-      name_or_path, nearest.empty() ? "" : fmt::format("\"{}\"? Or ", nearest),
-      shipped.empty() ? "none found" : fmt::format("{}", fmt::join(shipped, ", "))));
+  throw MachineFileError(
+      fmt::format("machine \"{}\": found {}; expected the path of a file or the name of a shipped machine: {}{}",
+                  name_or_path, fs::is_directory(path, error) ? "a folder" : "no such machine",
+                  shipped.empty() ? "none found" : fmt::format("{}", fmt::join(shipped, ", ")),
+                  did_you_mean(name_or_path, {shipped.begin(), shipped.end()})));
 }
 
 }  // namespace stiction::machine

@@ -17,6 +17,7 @@
 #include "firmware/machine/file/description.hpp"
 #include "firmware/machine/file/document.hpp"
 #include "firmware/machine/file/drive_parameters.hpp"
+#include "firmware/machine/file/nearest_name.hpp"
 #include "firmware/machine/file/parameters.hpp"
 #include "firmware/machine/file/units.hpp"
 #include "firmware/machine/model/value_table.hpp"
@@ -109,9 +110,11 @@ class TableReader {
       owner.*p.member = choice.value;
       return;
     }
-    document_.fail(node == nullptr ? table.source() : node->source(), join_key(path, p.key),
-                   node == nullptr ? "no such key" : describe_node(*node),
-                   fmt::format("{} ({})", quoted_list(names), p.text));
+    document_.fail(
+        node == nullptr ? table.source() : node->source(), join_key(path, p.key),
+        node == nullptr ? "no such key" : describe_node(*node),
+        fmt::format("{} ({}){}", quoted_list(names), p.text,
+                    node != nullptr && node->is_string() ? did_you_mean(node->as_string()->get(), names) : ""));
   }
 
   template <class Owner, std::size_t Count>
@@ -255,10 +258,8 @@ class TableReader {
                                         const std::string& name) const {
     std::vector<std::string_view> names;
     for (const ValueTable& effect : vocabulary_->effects) names.push_back(effect.name);
-    const std::string_view nearest = nearest_name(name, names);
     document_.fail(table.get(effect_name_key)->source(), join_key(path, effect_name_key), fmt::format("\"{}\"", name),
-                   fmt::format("an effect: {}{}", quoted_list(names),
-                               nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest)));
+                   fmt::format("an effect: {}{}", quoted_list(names), did_you_mean(name, names)));
   }
 
   // The values of a table that the vocabulary describes; `besides` is a key of it that is no value.

@@ -9,6 +9,10 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
+#include <string>
+#include <vector>
+
+#include "firmware/machine/file/nearest_name.hpp"
 
 namespace stiction::machine {
 namespace {
@@ -69,11 +73,22 @@ bool has_control_character(std::string_view text) {
   return std::ranges::any_of(text, [](char c) { return (c >= 0 && c < ' ' && c != '\t') || c == '\x7f'; });
 }
 
-Unit parse_unit(std::string_view text) {
+// How units are usually written: for the right spelling of one that nobody knows.
+constexpr std::array usual_units{"m",      "mm",    "um",    "nm",    "m/s",   "mm/s",  "m/min",   "mm/min",  "m/s^2",
+                                 "mm/s^2", "m/s^3", "kg",    "g",     "N",     "kN",    "N m",     "N s/m",   "N/m",
+                                 "N/um",   "N/A",   "N/V",   "N m/A", "V",     "A",     "mA",      "V/A",     "A/V",
+                                 "Ohm",    "mOhm",  "H",     "mH",    "V s/m", "A s/m", "V s/rad", "1/s",     "s",
+                                 "ms",     "us",    "ns",    "min",   "Hz",    "kHz",   "deg",     "rad",     "rev",
+                                 "rpm",    "rad/s", "deg/s", "degC",  "K",     "W",     "kg m^2",  "N m/rad", "%"};
+
+// "; did you mean ...?" for an unknown `unit`, of the dimension of the unit `wanted`; of any where that is empty.
+std::string unit_suggestion(std::string_view unit, std::string_view wanted);
+
+Unit parse_unit(std::string_view text, std::string_view wanted = {}) {
   const std::string unit(trimmed(text));
   if (has_control_character(unit)) throw UnitError("a control character in the unit");
   Unit parsed(has_stray_number(unit) ? nullptr : ut_parse(unit_system(), unit.c_str(), UT_UTF8));
-  if (!parsed) throw UnitError(fmt::format("unknown unit \"{}\"", unit));
+  if (!parsed) throw UnitError(fmt::format("unknown unit \"{}\"{}", unit, unit_suggestion(unit, wanted)));
   return parsed;
 }
 
@@ -106,6 +121,16 @@ bool same_dimension(const ut_unit* a, const ut_unit* b) {
   return ratio && ut_is_dimensionless(ratio.get()) != 0 && dimension_text(ratio.get()) == "1";
 }
 
+std::string unit_suggestion(std::string_view unit, std::string_view wanted) {
+  std::vector<std::string_view> known;
+  const Unit like(wanted.empty() ? nullptr : ut_parse(unit_system(), std::string(wanted).c_str(), UT_UTF8));
+  for (const char* each : usual_units) {
+    const Unit candidate(ut_parse(unit_system(), each, UT_UTF8));
+    if (candidate && (!like || same_dimension(candidate.get(), like.get()))) known.emplace_back(each);
+  }
+  return did_you_mean(unit, known);
+}
+
 Converter converter(ut_unit* from, ut_unit* to) {
   Converter made(same_dimension(from, to) ? ut_get_converter(from, to) : nullptr);
   if (!made) throw UnitError(fmt::format("dimension {}, not {}", dimension_text(from), dimension_text(to)));
@@ -130,6 +155,8 @@ double split(std::string_view text, std::string_view& unit) {
   const std::string_view rest = text.substr(static_cast<std::size_t>(end - text.data()));
   if (error == std::errc::result_out_of_range) throw UnitError("beyond the range of numbers");
   if (error != std::errc{}) throw UnitError("not NUMBER UNIT");
+  if (rest.size() > 1 && rest.front() == ',' && is_digit(rest[1]))
+    throw UnitError("not NUMBER UNIT, for a decimal comma; numbers have a decimal point, as in \"8.5\"");
   if (!std::isfinite(number)) throw UnitError("not a finite number");
   if (!rest.empty() && blanks.find(rest.front()) == std::string_view::npos && rest.front() != '%')
     throw UnitError("not NUMBER UNIT with a blank between them");
@@ -147,7 +174,7 @@ double parse_quantity(std::string_view text, std::string_view si_unit) {
     if (si_unit != "1") throw UnitError("no unit");
     return number;
   }
-  const Unit from = parse_unit(unit);
+  const Unit from = parse_unit(unit, si_unit);
   const Unit to = parse_unit(si_unit);
   const double value = convert(converter(from.get(), to.get()).get(), number);
   if (!std::isfinite(value)) throw UnitError("beyond the range of numbers");

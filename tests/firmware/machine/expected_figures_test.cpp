@@ -64,9 +64,9 @@ TEST(ExpectedFigures, RefuseWhatTheyCannotBe) {
   EXPECT_EQ(error_of_row("axis = \"B\"", "axis = \"spindle\""),
             "m.toml:31: expected[0].axis: found \"spindle\"; expected an axis of this machine: \"B\"");
   EXPECT_TRUE(error_of_row("\"lugre\"", "\"lugrr\"").ends_with("did you mean \"lugre\"?"));
-  EXPECT_TRUE(
-      error_of_row("\"92 um\"", "\"92 uq\"")
-          .starts_with("m.toml:34: expected[0].value: found \"92 uq\" (unknown unit \"uq\"); expected a number"));
+  EXPECT_TRUE(error_of_row("\"92 um\"", "\"92 uq\"")
+                  .starts_with("m.toml:34: expected[0].value: found \"92 uq\" (unknown unit \"uq\"; did you mean "
+                               "\"um\"?); expected a number"));
   EXPECT_TRUE(error_of_row("\"92 um\"", "true").starts_with("m.toml:34: expected[0].value: found true; expected"));
   EXPECT_TRUE(error_of_row("\"2 um\"", "\"2 N\"")
                   .starts_with("m.toml:35: expected[0].tolerance: found \"2 N\" (dimension m kg s^-2, not m)"));

@@ -59,7 +59,8 @@ TEST(MachineFileError, MissingUnitUnknownUnitAndWrongType) {
   const std::string expected = "; expected a value greater than 0 kg (moving mass)";
   EXPECT_EQ(error_after("\"95 kg\"", "95"), "FILE:4: axis.B.mass: found 95 (no unit)" + expected);
   EXPECT_EQ(error_after("\"95 kg\"", "\"95\""), "FILE:4: axis.B.mass: found \"95\" (no unit)" + expected);
-  EXPECT_EQ(error_after("95 kg", "95 kq"), "FILE:4: axis.B.mass: found \"95 kq\" (unknown unit \"kq\")" + expected);
+  EXPECT_EQ(error_after("95 kg", "95 kq"),
+            "FILE:4: axis.B.mass: found \"95 kq\" (unknown unit \"kq\"; did you mean \"kg\"?)" + expected);
   EXPECT_EQ(error_after("95 kg", "heavy"), "FILE:4: axis.B.mass: found \"heavy\" (not NUMBER UNIT)" + expected);
   EXPECT_EQ(error_after("95 kg", "nan kg"), "FILE:4: axis.B.mass: found \"nan kg\" (not a finite number)" + expected);
   EXPECT_EQ(error_after("\"95 kg\"", "true"), "FILE:4: axis.B.mass: found true" + expected);
@@ -118,7 +119,7 @@ TEST(MachineFileError, UnreadableFile) {
     FAIL() << "read";
   } catch (const MachineFileError& error) {
     EXPECT_STREQ(error.what(),
-                 "/nowhere/machine.toml: found no readable file; expected a machine file (stiction.machine/1)");
+                 "/nowhere/machine.toml: found no folder /nowhere; expected a machine file (stiction.machine/1) in it");
   }
 }
 
@@ -223,7 +224,7 @@ TEST(MachineFileError, OverridesOfEveryExperimentAreChecked) {
             "FILE:30: experiment.impact.axis.B.friction.lugre.coulomb: found \"3 kg\" (dimension kg, not m kg s^-2); "
             "expected a value greater than 0 N (Coulomb friction F_C)");
   EXPECT_EQ(error_of(small_machine + "[experiment.impact.axis.C]\nmass = \"3 kg\"\n"),
-            "FILE:29: experiment.impact.axis.C: found an unknown key; expected one of B; did you mean \"B\"?");
+            "FILE:29: experiment.impact.axis.C: found an unknown key; expected one of B");
   EXPECT_EQ(error_of(small_machine + "[experiment.impact.reference]\n"),
             "FILE:29: experiment.impact.reference: found an unknown key; expected one of name, timing, axis, drive, "
             "feed_drive");
@@ -283,7 +284,7 @@ TEST(MachineFileError, SetNamesItselfAsThePlace) {
             "(moving mass)");
   EXPECT_TRUE(error_of_set({"axis.X.mas=3 kg"}).starts_with("--set axis.X.mas: axis.X.mas: found an unknown key; "));
   EXPECT_EQ(error_of_set({"axis.Q.mass=3 kg"}),
-            "--set axis.Q.mass: axis.Q: found an unknown key; expected one of X, Y; did you mean \"X\"?");
+            "--set axis.Q.mass: axis.Q: found an unknown key; expected one of X, Y");
   EXPECT_EQ(
       error_of_set({"reference.circle=3"}),
       "--set reference.circle: reference: found an unknown key; expected one of name, timing, axis, drive, feed_drive");

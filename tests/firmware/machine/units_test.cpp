@@ -89,8 +89,8 @@ TEST(Units, QuantityWithoutUnitIsRefused) {
 }
 
 TEST(Units, UnknownUnitIsNamed) {
-  EXPECT_EQ(error_of("3 kq", "kg"), "unknown unit \"kq\"");
-  EXPECT_EQ(error_of("3 Nm", "N m"), "unknown unit \"Nm\"");
+  EXPECT_EQ(error_of("3 kq", "kg"), "unknown unit \"kq\"; did you mean \"kg\"?");
+  EXPECT_EQ(error_of("3 Nm", "N m"), "unknown unit \"Nm\"; did you mean \"N m\"?");
   EXPECT_EQ(error_of("3 kg # heavy", "kg"), "unknown unit \"kg # heavy\"");
 }
 

@@ -29,7 +29,7 @@ TEST_F(Cli, RefusesBadUsage) {
   expect_refused("", "command: found none; expected one of simulate, compare, machine");
   expect_refused("simulate", "experiment: found none; expected one of circle, constant-velocity");
   expect_refused("simulate square --machine mcfv5050ln", "experiment: found 'square'; expected one of circle");
-  expect_refused("simulate circle", "--machine is required");
+  expect_refused("simulate circle", "--machine: found none; expected MACHINE, shipped machine by name");
   expect_refused("simulate circle --machine nowhere", "found no such machine");
   expect_refused("simulate circle --machine mcfv5050ln --feed 16", "--feed: found '16' (no unit)");
   expect_refused("simulate circle --machine mcfv5050ln --friction stribeck", "--friction: found 'stribeck'");
@@ -169,10 +169,11 @@ TEST_F(Cli, RefusesAFrequencyResponseThatCannotBeMeasured) {
   expect_refused(run + "--amplitude '3 V'", "--amplitude: found '3 V'");
   expect_refused(run + "--periods 1", "--periods: found 1; expected at least 2");
   expect_refused(run + "--axis Z", "--axis: found 'Z'; expected axes of mcfv5050ln: X, Y");
-  expect_refused(run + "--loop force", "--loop: found 'force'; expected all, or some of current, velocity, position");
+  expect_refused(run + "--loop force", "--loop: found 'force'; expected all, or some of: current, velocity, position");
   expect_refused(run + "--friction all", "--friction: found");
-  expect_refused(run + "--from nowhere.csv", "nowhere.csv: cannot be read");
-  expect_refused(run + "--from run.csv --speed '1 m/min'", "--from excludes --speed");
+  expect_refused(run + "--from nowhere.csv", "nowhere.csv: found no such file; expected a log");
+  expect_refused(run + "--from run.csv --speed '1 m/min'",
+                 "--from: found it together with --speed; expected only one of the two");
 }
 
 TEST_F(Cli, MeasuresAFrequencyResponseFromALogAsFromItsOwnRun) {
@@ -207,6 +208,11 @@ TEST_F(Cli, ShowsTheShippedMachinesAndTheirReference) {
   const auto sheet = stiction("machine --check mcfv5050ln");
   EXPECT_EQ(sheet.code, 0);
   EXPECT_NE(sheet.out.find("MCFV 5050 LN"), std::string::npos);
+  EXPECT_EQ(stiction("machine list").out, stiction("machine").out);
+  EXPECT_EQ(stiction("machine reference").out, stiction("machine --reference").out);
+  EXPECT_EQ(stiction("machine check mcfv5050ln").out, sheet.out);
+  EXPECT_EQ(stiction("machine list --axes mcfv5050ln").out, "X\nY\n");
+  EXPECT_NE(stiction("--version").out.find(" (commit "), std::string::npos);
   for (const char* help : {"--help", "simulate --help", "simulate circle --help", "compare --help", "--version"})
     EXPECT_EQ(stiction(help).code, 0) << help;
 }

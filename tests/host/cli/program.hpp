@@ -37,12 +37,12 @@ class Cli : public ::testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
 
   // Runs `stiction ARGUMENTS` in an empty folder.
-  Outcome stiction(const std::string& arguments) {
-    const auto out = folder_ / "out", error = folder_ / "error";
-    const std::string command = fmt::format("cd '{}' && '{}' {} >'{}' 2>'{}'", work().string(), STICTION_PROGRAM,
-                                            arguments, out.string(), error.string());
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(out), content(error)};
+  Outcome stiction(const std::string& arguments) { return run("'" STICTION_PROGRAM "' " + arguments); }
+  // Runs a line of the shell there, in which {} is the program.
+  Outcome run_shell(const std::string& line) { return run(fmt::format(fmt::runtime(line), STICTION_PROGRAM)); }
+  // Before a command: a user whom permissions hold, which they do not hold root.
+  static std::string as_nobody() {
+    return ::getuid() == 0 ? "setpriv --reuid 65534 --regid 65534 --clear-groups " : "";
   }
   fs::path work() const { return folder_ / "work"; }
   bool nothing_written() const { return fs::is_empty(work()); }
@@ -100,6 +100,14 @@ class Cli : public ::testing::Test {
   }
 
  private:
+  Outcome run(const std::string& line) {
+    const auto out = folder_ / "out", error = folder_ / "error";
+    const std::string command =
+        fmt::format("cd '{}' && {{ {}; }} >'{}' 2>'{}'", work().string(), line, out.string(), error.string());
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(out), content(error)};
+  }
+
   fs::path folder_;
 };
 

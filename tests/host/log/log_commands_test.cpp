@@ -80,13 +80,13 @@ TEST_F(LogCommands, ConvertWritesNothingFromBadInput) {
                   "schema = \"stiction.mapping/1\"\n[[channel]]\nfrom = \"Pos\"\nto = \"x\"\nunit = \"mm\"\n"
                   "[[channel]]\nfrom = \"Cur\"\nto = \"i\"\nunit = \"A\"\n");
   expect_refused("convert bad.csv out.csv", "bad.csv:3: column 2, x[m]: found 'nan'; expected a finite number");
-  expect_refused("convert none.csv out.csv", "none.csv: cannot be read");
+  expect_refused("convert none.csv out.csv", "none.csv: found no such file; expected a log");
   expect_refused("convert run.csv out.txt", "found 'out.txt'; expected a name that ends in .csv or .mat");
   expect_refused("convert run.csv out.mat --mat 4", "--mat: found '4'");
   expect_refused("convert scope.csv out.csv", "a TwinCAT Scope export with the channels 'Pos', 'Cur'; expected --map");
   expect_refused("convert scope.csv out.csv --map map.toml", "map.toml:6");
   expect_refused("convert scope.csv out.csv --map map.toml", "amperes = \"peak\" or amperes = \"rms\"");
-  expect_refused("convert scope.csv out.csv --map none.toml", "none.toml: cannot be read");
+  expect_refused("convert scope.csv out.csv --map none.toml", "none.toml: found no such file; expected a mapping file");
 }
 
 TEST_F(LogCommands, ConvertMapsAScopeExport) {
@@ -107,7 +107,7 @@ TEST_F(LogCommands, InspectPrintsTextAndJson) {
   EXPECT_EQ(json["schema"], "stiction.inspection/1");
   EXPECT_EQ(json["axes"][0]["channels"].size(), 3u);
   EXPECT_FALSE(json["axes"][0]["determinable"].empty());
-  expect_refused("inspect none.csv", "none.csv: cannot be read");
+  expect_refused("inspect none.csv", "none.csv: found no such file; expected a log");
   expect_refused("inspect run.csv --machine mcfv5050ln", "expected --axis with one of: X, Y");
   done("inspect run.csv --machine mcfv5050ln --axis X");
 }

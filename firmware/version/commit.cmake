@@ -1,0 +1,18 @@
+# Writes FILE, with the commit of SOURCE as STICTION_COMMIT, when it is another than FILE has. Run by each build.
+set(commit unknown)
+find_program(git git)
+if(git AND EXISTS ${SOURCE}/.git)
+  execute_process(COMMAND ${git} --no-optional-locks -C ${SOURCE} describe --always --dirty
+                  OUTPUT_VARIABLE described OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE status)
+  if(status EQUAL 0)
+    set(commit ${described})
+  endif()
+endif()
+set(text "#define STICTION_COMMIT \"${commit}\"\n")
+set(present "")
+if(EXISTS ${FILE})
+  file(READ ${FILE} present)
+endif()
+if(NOT present STREQUAL text)
+  file(WRITE ${FILE} "${text}")
+endif()

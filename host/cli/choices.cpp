@@ -1,0 +1,54 @@
+#include "host/cli/choices.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <limits>
+
+#include "firmware/machine/file/nearest_name.hpp"
+#include "host/cli/errors.hpp"
+#include "host/log/message.hpp"
+
+namespace stiction::host {
+
+std::string nearest_words(std::string_view name, const std::vector<std::string>& known) {
+  const auto nearest = machine::nearest_name(name, {known.begin(), known.end()});
+  return nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest);
+}
+
+void require_known(std::string_view option, const std::string& name, std::string_view expected,
+                   const std::vector<std::string>& known) {
+  if (std::find(known.begin(), known.end(), name) != known.end()) return;
+  throw UsageError(fmt::format("{}: found '{}'; expected {}: {}{}", option, excerpt(name), expected,
+                               fmt::join(known, ", "), nearest_words(name, known)));
+}
+
+CLI::Validator one_of(const std::vector<std::string>& names) {
+  return CLI::Validator(
+      [names](std::string& found) {
+        if (std::find(names.begin(), names.end(), found) != names.end()) return std::string();
+        std::string expected;
+        for (std::size_t k = 0; k < names.size(); ++k)
+          expected += (k == 0 ? "" : k + 1 == names.size() ? " or " : ", ") + names[k];
+        return fmt::format("found '{}'; expected {}{}", excerpt(found), expected, nearest_words(found, names));
+      },
+      fmt::format("{{{}}}", fmt::join(names, ",")));
+}
+
+CLI::Validator whole_number() {
+  return CLI::Validator(
+      [](std::string& found) {
+        std::uint64_t number = 0;
+        const auto* end = found.data() + found.size();
+        const auto read = std::from_chars(found.data(), end, number);
+        if (read.ec == std::errc{} && read.ptr == end) return std::string();
+        return fmt::format("found '{}'; expected a whole number from 0 to {}", excerpt(found),
+                           std::numeric_limits<std::uint64_t>::max());
+      },
+      "");
+}
+
+}  // namespace stiction::host
