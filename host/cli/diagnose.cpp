@@ -13,6 +13,7 @@
 #include "host/cli/errors.hpp"
 #include "host/cli/machine_options.hpp"
 #include "host/cli/progress.hpp"
+#include "host/cli/report_origin.hpp"
 #include "host/log/read_log.hpp"
 
 namespace stiction::host {
@@ -61,7 +62,8 @@ void run(const DiagnoseCommandOptions& options, const Invocation& invocation) {
     verdict = diagnose(input);
     input.progress = {};
   }
-  put_out(verdict, input.machine, options.machine, options.out, options.json, invocation);
+  put_out(verdict, input.machine, options.machine, options.out, options.json, invocation,
+          report_origin(options.machine.machine, all));
 }
 
 }  // namespace

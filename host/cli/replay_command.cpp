@@ -9,6 +9,7 @@
 #include "host/cli/errors.hpp"
 #include "host/cli/experiment_output.hpp"
 #include "host/cli/output.hpp"
+#include "host/cli/report_origin.hpp"
 #include "host/log/csv_log.hpp"
 #include "host/log/mat_log.hpp"
 #include "host/log/read_log.hpp"
@@ -74,7 +75,8 @@ void run_replay(const ReplayOptions& options, const Invocation& invocation) {
   const auto json = experiment_json(result, machine);
   if (!options.out.empty()) {
     PendingFolder folder(options.out);
-    folder.write("report.html", experiment_report_html({invocation.command_line, invocation.version, machine, result}));
+    folder.write("report.html", experiment_report_html({invocation.command_line, invocation.version, machine, result,
+                                                        report_origin(options.machine.machine, std::vector{log})}));
     folder.write("result.json", json.dump(2) + "\n");
     folder.commit();
   }

@@ -1,4 +1,4 @@
-// The sentences at the head of the circle's report: see circle_finding.hpp.
+// The sentence at the head of the circle's report: see circle_finding.hpp.
 #include "host/report/circle_finding.hpp"
 
 #include <fmt/format.h>
@@ -32,9 +32,9 @@ double middle_feed(const std::vector<CircleTableRow>& table, bool measured_only)
 }
 
 std::string beside(const CircleTableRow& row) {
-  if (row.error.measured) return fmt::format("; the measured value is {:.1f} µm", *row.error.measured * 1e6);
-  if (row.error.published) return fmt::format("; the published simulation gives {:.1f} µm", *row.error.published * 1e6);
-  return "; no measured or published value is available";
+  if (row.error.measured) return fmt::format(", {:.1f} µm were measured", *row.error.measured * 1e6);
+  if (row.error.published) return fmt::format(", the published simulation gives {:.1f} µm", *row.error.published * 1e6);
+  return ", without a measured or published value to compare";
 }
 
 // "9 % (X) and 12 % (Y)" of the model that acts on each axis; empty when no axis has one.
@@ -76,16 +76,15 @@ CircleFinding circle_finding(const sim::CircleResult& result, const machine::Mac
 
   CircleFinding finding;
   finding.feed = feed;
-  finding.headline =
-      fmt::format("At {:.4g} m/min the largest {} error is {:.1f} µm ({}, {}){}.", feed * 60.0,
+  finding.sentence =
+      fmt::format("At {:.4g} m/min the largest {} error is {:.1f} µm ({}, {}){}", feed * 60.0,
                   result.runs.front().is_circle() ? "quadrant" : "following", largest->error.simulated * 1e6,
                   largest->axis, friction_label(largest->friction), beside(*largest));
   const auto model = only_model(rows);
   const auto errors = model ? mean_errors(rows) : std::string();
   if (!errors.empty())
-    finding.detail = fmt::format(
-        "Over all measured feeds, the {} model deviates from the measured quadrant errors by {} on average.", *model,
-        errors);
+    finding.sentence += fmt::format("; over all measured feeds the simulation deviates by {} on average", errors);
+  finding.sentence += ".";
   return finding;
 }
 

@@ -7,7 +7,7 @@ const REVERSALS = IS_CIRCLE ? [0, 90, 180, 270] : [0, 180];  // degrees of the p
 
 const DIRECTION_TEXT = { ccw: 'counter-clockwise', cw: 'clockwise', both: 'both directions' };
 const DIRECTION_SIGN = { ccw: '↺ ', cw: '↻ ', both: '' };
-const DASH = { ccw: 'solid', cw: '5px 3px' };
+const CLOCKWISE_DASH = '1.5px 3px';  // of the second direction, where both are on the page
 
 const modelLabels = Object.fromEntries(DATA.models.map(model => [model.name, model.label]));
 const modelStyles = stylesOf(DATA.models.map(model => model.name));
@@ -45,7 +45,8 @@ function traceName(run) {
 }
 
 function lineOf(run, width = 1.6) {
-  return { color: modelStyles[run.friction].colour, width, dash: DASH[run.direction] };
+  const { colour, dash } = modelStyles[run.friction];
+  return { color: colour, width, dash: run.direction === 'cw' && DATA.directions.length > 1 ? CLOCKWISE_DASH : dash };
 }
 
 function reference(axis, feed, friction = null) {
@@ -85,7 +86,7 @@ function sectorShape(centre, half, inner, outer) {
   for (let i = 0; i <= 24; ++i) points.push([outer, centre - half + i * half / 12]);
   for (let i = 24; i >= 0; --i) points.push([inner, centre - half + i * half / 12]);
   const path = points.map(([r, a]) => `${r * Math.cos(a * Math.PI / 180)},${r * Math.sin(a * Math.PI / 180)}`);
-  return { type: 'path', path: `M${path.join('L')}Z`, fillcolor: '#eef2f6', line: { width: 0 }, layer: 'below' };
+  return { type: 'path', path: `M${path.join('L')}Z`, fillcolor: 'var(--sector)', line: { width: 0 }, layer: 'below' };
 }
 
 const extreme = (values, pick) => values.reduce((most, value) => pick(most, value));
@@ -98,16 +99,16 @@ function polarGrid(state, runs, radius, division) {
   const shapes = [], annotations = [];
   for (let ring = low; ring <= high; ++ring) {
     if (radius + ring * step <= 0) continue;
-    shapes.push(circleShape(radius + ring * step, ring ? { color: GRID, width: 1 } : { color: '#77828e', width: 1 }));
+    shapes.push(circleShape(radius + ring * step, ring ? { color: GRID, width: 1 } : { color: RULE, width: 1 }));
     if (ring && (Math.abs(ring) < 3 || ring % 2 === 0))
       annotations.push(label(`${ring > 0 ? '+' : '−'}${Math.abs(ring) * division}`, (radius + ring * step) * Math.SQRT1_2,
-                             (radius + ring * step) * Math.SQRT1_2, { font: { size: 10.5, color: QUIET }, bgcolor: 'rgba(255,255,255,0.75)', borderpad: 0 }));
+                             (radius + ring * step) * Math.SQRT1_2, { font: { size: 10.5, color: QUIET }, bgcolor: 'var(--veil)', borderpad: 0 }));
   }
   const inner = Math.max(0, radius + low * step), outer = radius + high * step;
   for (let angle = 0; angle < 360; angle += 30) {
     const c = Math.cos(angle * Math.PI / 180), s = Math.sin(angle * Math.PI / 180);
     shapes.push({ type: 'line', x0: inner * c, y0: inner * s, x1: outer * c, y1: outer * s, layer: 'below',
-                  line: { color: angle % 90 ? GRID : '#c3cbd4', width: 1 } });
+                  line: { color: angle % 90 ? GRID : 'var(--line)', width: 1 } });
     if (angle % 90 === 0) annotations.push(label(`${angle}°`, (outer + 0.07 * radius) * c, (outer + 0.07 * radius) * s));
   }
   return { shapes, annotations, inner, outer, step };
@@ -182,7 +183,7 @@ function quadrantHalfWidth(state) {
 function measuredTrace(axis, measured, half, quadrant, peaks) {
   const level = (peaks >= 0 ? 1 : -1) * measured.error;
   return { name: 'measured', x: [quadrant - half, quadrant + half], y: [level, level], mode: 'lines+markers', cliponaxis: false,
-           line: { color: '#000', width: 1, dash: '2px 3px' }, marker: MEASURED,
+           line: { color: INK, width: 1, dash: '2px 3px' }, marker: MEASURED,
            hovertemplate: `${axis} measured, peak ${formatNumber(measured.error, 1)} µm<extra></extra>` };
 }
 
@@ -201,13 +202,13 @@ function drawQuadrant(state) {
   if (measured) {
     traces.push(measuredTrace(axis, measured, half, quadrant, peaks));
     annotations.push(label(`measured peak ${formatNumber(measured.error, 1)} µm`, quadrant - half, traces.at(-1).y[0],
-                           { xanchor: 'left', yanchor: peaks >= 0 ? 'bottom' : 'top', xshift: 8, font: { size: 12, color: '#000' } }));
+                           { xanchor: 'left', yanchor: peaks >= 0 ? 'bottom' : 'top', xshift: 8, font: { size: 12, color: INK } }));
   }
   return drawChart('quadrant', traces, {
     margin: { l: 58, r: 14, t: 24, b: 46 },
     xaxis: axisStyle(IS_CIRCLE ? 'angle from +' + DATA.axes[0] + ', degrees' : 'phase of the sine, degrees', { range: [quadrant - half, quadrant + half], ticksuffix: '°' }),
-    yaxis: axisStyle(`${axis} error at the encoder, µm`, { zeroline: true, zerolinecolor: '#9aa5b1', nticks: 7 }),
-    shapes: [{ type: 'line', x0: quadrant, x1: quadrant, yref: 'paper', y0: 0, y1: 1, line: { color: '#9aa5b1', width: 1, dash: 'dot' }, layer: 'below' }],
+    yaxis: axisStyle(`${axis} error at the encoder, µm`, { zeroline: true, zerolinecolor: RULE, nticks: 7 }),
+    shapes: [{ type: 'line', x0: quadrant, x1: quadrant, yref: 'paper', y0: 0, y1: 1, line: { color: RULE, width: 1, dash: 'dot' }, layer: 'below' }],
     annotations,
   });
 }
