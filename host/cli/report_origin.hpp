@@ -16,9 +16,7 @@ namespace stiction::host {
 // machine::MachineFileError for a machine that is not found.
 inline Origin report_origin(const std::string& machines, std::vector<std::string> sources = {}) {
   Origin origin;
-  for (const auto& name : split_list(machines))
-    origin.machine_file +=
-        (origin.machine_file.empty() ? "" : ", ") + machine::find_machine(name).lexically_normal().string();
+  for (const auto& name : split_list(machines)) origin.machine_files.push_back(machine::find_machine(name).string());
   origin.sources = std::move(sources);
   return origin;
 }

@@ -173,7 +173,7 @@ Origin origin_of(const DiagnosisReport& report) {
   }
   if (origin.sources.empty() && verdict.reference)
     origin.sources = {"measured rows of the machine file, " + verdict.reference->reference};
-  if (origin.machine_file.empty()) origin.machine_file = verdict.machine;
+  if (origin.machine_files.empty()) origin.machine_files = {verdict.machine};
   return origin;
 }
 

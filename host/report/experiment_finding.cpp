@@ -176,8 +176,7 @@ std::string tune_friction(const Spoken& s) {
   const auto where = off->text.substr(0, off->text.rfind(", "));  // "largest error, X at 48 m/min"
   const auto kind = best->text.substr(best->text.rfind(", ") + 2);
   if (best->value >= off->value) return fmt::format("No kind of compensation lowers the {} of {}", where, shown(off));
-  return fmt::format("{:.3g} → {:.2g} {} at reversals: the {} with {}", off->value, best->value, off->unit, where,
-                     kind);
+  return fmt::format("{:.3g} → {:.2g} {} at reversals: the {} {}", off->value, best->value, off->unit, where, kind);
 }
 
 std::string frequency_response(const Spoken& s) {

@@ -36,7 +36,8 @@ std::string identification_sentence(const Identification& result) {
   std::vector<std::string> parts;
   for (const auto& each : spoken_parameters)
     if (const auto* parameter = result.find(each.name))
-      parts.push_back(fmt::format("a {} {}", each.words, with_interval(*parameter, each.unit)));
+      if (parts.empty() || each.name != std::string_view("coulomb_positive_N"))
+        parts.push_back(fmt::format("a {} {}", each.words, with_interval(*parameter, each.unit)));
   std::string text = fmt::format("{} of {} parameters are determined", result.parameters.size(), total);
   if (!parts.empty()) {
     const auto last = parts.back();

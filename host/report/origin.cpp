@@ -7,10 +7,21 @@
 #include <algorithm>
 #include <cstdlib>
 #include <ctime>
+#include <filesystem>
 
 #include "host/report/page.hpp"
 
 namespace stiction::host {
+namespace {
+
+// The command line has their folders.
+std::string file_names(const std::vector<std::string>& paths) {
+  std::vector<std::string> names;
+  for (const auto& path : paths) names.push_back(std::filesystem::path(path).filename().string());
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+}  // namespace
 
 std::string present_date() {
   std::time_t now = std::time(nullptr);
@@ -43,9 +54,8 @@ std::string origin_html(const Origin& origin, const std::string& machine, const 
   };
   add("Date", origin.date.empty() ? present_date() : origin.date);
   add("Machine", machine);
-  add("Machine file", origin.machine_file);
-  add("Source files",
-      origin.sources.empty() ? "none: a simulation" : fmt::format("{}", fmt::join(origin.sources, ", ")));
+  add("Machine file", file_names(origin.machine_files));
+  add("Source files", origin.sources.empty() ? "none: a simulation" : file_names(origin.sources));
   add("Sample rate", sample_rates(origin.sample_periods));
   add("Version", "stiction " + version);
   add("Command line", command, "command");

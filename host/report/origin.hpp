@@ -9,10 +9,10 @@ namespace stiction::host {
 
 // What a command knows of its input, beside the machine itself.
 struct Origin {
-  std::string machine_file{};            // as it was found; empty: not known
-  std::vector<std::string> sources{};    // files that were read; empty: a simulation alone
-  std::vector<double> sample_periods{};  // s, of the sources or of the simulation; empty: none
-  std::string date{};                    // "2026-11-23 15:41 UTC"; empty: the time at which the page is made
+  std::vector<std::string> machine_files{};  // as they were found; empty: not known
+  std::vector<std::string> sources{};        // files that were read; empty: a simulation alone
+  std::vector<double> sample_periods{};      // s, of the sources or of the simulation; empty: none
+  std::string date{};                        // "2026-11-23 15:41 UTC"; empty: the time at which the page is made
 };
 
 // The present time as "2026-11-23 15:41 UTC", or that of the environment's SOURCE_DATE_EPOCH, for builds that must be

@@ -120,15 +120,17 @@ function hasOneBelow(i) {
   return below !== undefined && below.place === DATA.charts[i].place && !below.title && below.x_label === DATA.charts[i].x_label;
 }
 
-// Levels across the chart and distances at one abscissa, as lines and as words.
+// Levels across the chart and distances at one abscissa, as lines and as words, which are on the side with more room.
 function marksOf(chart) {
   const place = x => chart.logarithmic_x ? Math.log10(x) : x;
+  const [low, high] = abscissaStyle(chart).range || [-Infinity, Infinity];
+  const side = x => place(x) - low > high - place(x) ? { xanchor: 'right', xshift: -5 } : { xanchor: 'left', xshift: 5 };
   const line = more => ({ type: 'line', line: { color: QUIET, width: 1, dash: 'dash' }, ...more });
   return {
     shapes: [...chart.levels.map(level => line({ xref: 'paper', x0: 0, x1: 1, y0: level, y1: level })),
              ...chart.distances.map(each => line({ x0: each.x, x1: each.x, y0: each.from, y1: each.to, line: { color: INK, width: 2 } }))],
     annotations: chart.distances.map(each => label(plain(each.label), place(each.x), (each.from + each.to) / 2,
-                                                       { xanchor: 'left', xshift: 5, font: { size: 12, color: INK }, bgcolor: 'var(--veil)' })),
+                                                       { ...side(each.x), font: { size: 12, color: INK }, bgcolor: 'var(--veil)' })),
   };
 }
 

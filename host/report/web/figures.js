@@ -112,7 +112,7 @@ function drawForPaper() {
   const folded = () => document.querySelectorAll('details.sheet-of-machine');
   const fit = paper => {
     document.documentElement.classList.toggle('paper', paper);
-    applyScheme(paper ? 'light' : chosenScheme());
+    applyScheme(chosenScheme());
     for (const each of folded()) {
       if (paper) each.dataset.open = each.open;
       each.open = paper || each.dataset.open === 'true';

@@ -13,12 +13,12 @@ const MODEL_STYLES = {
   linear_ramp: { colour: 'var(--ochre)', symbol: 'triangle-up', dash: '9px 3px 2px 3px' },
   dahl: { colour: 'var(--sky)', symbol: 'pentagon', dash: '5px 2px' },
   elasto_plastic: { colour: 'var(--brown)', symbol: 'hexagon', dash: '9px 3px 2px 3px' },
-  curve: { colour: 'var(--pink)', symbol: 'cross', dash: '9px 3px' },
+  curve: { colour: 'var(--pink)', symbol: 'cross', dash: '11px 2px 2px 2px 2px 2px' },
 };
 const OTHER_STYLES = [{ colour: 'var(--slate)', symbol: 'hexagon' }, { colour: 'var(--indigo)', symbol: 'cross', dash: '5px 2px' },
                       { colour: 'var(--pink)', symbol: 'pentagon', dash: '9px 3px' }, { colour: 'var(--olive)', symbol: 'hourglass', dash: '9px 3px 2px 3px' }];
 const MEASURED = { color: 'var(--ink)', symbol: 'diamond', size: 10 };
-const FEW = 4;  // series that their colours alone keep apart
+const FEW = 3;  // series that their colours alone keep apart
 
 // The styles of all models, and of each other name the next one that no model on the page has. `names`: of all series
 // that may be shown together; up to FEW of them are drawn without dashes.

@@ -21,8 +21,10 @@ function keepScheme(choice) {
   } catch { /* this page alone follows the switch */ }
 }
 
+// Paper is light, whatever was chosen.
 function applyScheme(choice) {
-  document.documentElement.dataset.scheme = choice === 'auto' ? (prefersDark.matches ? 'dark' : 'light') : choice;
+  const root = document.documentElement;
+  root.dataset.scheme = root.classList.contains('paper') ? 'light' : choice === 'auto' ? (prefersDark.matches ? 'dark' : 'light') : choice;
 }
 
 applyScheme(chosenScheme());

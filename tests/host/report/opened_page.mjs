@@ -1,5 +1,6 @@
 // What the scripts that open a report in a browser have in common: their command line, the browser, what they ask of
-// any page (nothing is loaded from outside, the console is silent, nothing sticks out sideways), and the verdict.
+// any page (nothing is loaded from outside, the console is silent, page_checks.mjs holds in light, dark, on a narrow
+// screen and on paper), and the verdict.
 // usage: node SCRIPT.mjs FILE.html [--screenshot FILE.png] [--width PIXELS] [--pdf FILE.pdf] [MORE...]
 // The browser is $CHROMIUM, else /usr/bin/chromium. Exit 0: all holds; 1: a message says what does not; 2: usage.
 import { existsSync } from 'node:fs';
@@ -7,6 +8,8 @@ import { createRequire } from 'node:module';
 import { resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { parseArgs } from 'node:util';
+
+import { axesWithoutUnit, confusableSeries, cutOff, poorContrasts } from './page_checks.mjs';
 
 const { chromium } = createRequire(new URL('../../../host/report/web/package.json', import.meta.url))('playwright-core');
 
@@ -47,10 +50,48 @@ function pageData(page) {
   return page.evaluate(() => JSON.parse(document.getElementById('data').textContent));
 }
 
-async function checkAnyPage(page) {
-  expect((await page.locator('.headline').innerText()).length > 10, 'the page has no headline');
-  const wide = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
-  expect(wide <= 0, `the page is ${wide} pixels wider than the window`);
+// Two frames: what a change of the window started has been drawn.
+const drawn = page => page.evaluate(() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done))));
+const sized = page => becomes(page, () => [...document.querySelectorAll('.js-plotly-plot')].every(chart => Math.abs(chart._fullLayout.width - chart.clientWidth) < 2), null, 10000);
+
+const NARROW = { width: 375, height: 800 }, PAPER = { width: 702, height: 1000 };  // A4 less its margins, pixels of CSS
+
+// What holds for a report of any kind: the head, units at every axis, contrast and telling series apart in light and
+// dark, everything whole on a narrow screen and on paper.
+async function checkAnyPage(page, window) {
+  const ask = async (where, question, argument) => {
+    for (const answer of await page.evaluate(question, argument)) expect(false, `${where}: ${answer}`);
+  };
+  const sentence = await page.locator('.headline').innerText();
+  expect(/^\S.{20,}[.]$/.test(sentence) && !/[.] [A-Z]/.test(sentence), `the head is not one sentence: '${sentence}'`);
+  for (const term of ['Date', 'Machine', 'Source files', 'Version', 'Command line'])
+    expect(await page.locator('.origin dt', { hasText: new RegExp(`^${term}$`) }).count() === 1, `the head does not say '${term}'`);
+  expect(await page.locator('details.sheet-of-machine:not([open])').count() === 1, 'the machine sheet is not folded');
+  await ask('axes', axesWithoutUnit);
+  for (const scheme of ['light', 'dark']) {
+    await page.emulateMedia({ colorScheme: scheme });
+    await drawn(page);
+    expect(await page.evaluate(() => document.documentElement.dataset.scheme) === scheme, `the page does not follow the system to ${scheme}`);
+    await ask(scheme, poorContrasts);
+    await ask(scheme, confusableSeries);
+  }
+  await page.emulateMedia({ colorScheme: 'light' });
+  await ask('wide screen', cutOff, false);
+  await page.setViewportSize(NARROW);
+  expect(await sized(page), 'the charts do not follow a narrow window');
+  await ask('narrow screen', cutOff, false);
+  await page.setViewportSize(PAPER);
+  await page.emulateMedia({ media: 'print', colorScheme: 'dark' });
+  await page.evaluate(() => dispatchEvent(new Event('beforeprint')));
+  await drawn(page);
+  expect(await page.evaluate(() => document.documentElement.dataset.scheme) === 'light', 'a dark page is printed dark');
+  expect(await page.locator('details.sheet-of-machine[open]').count() === 1, 'the machine sheet is folded on paper');
+  await ask('paper', cutOff, true);
+  await ask('paper', poorContrasts);
+  await page.evaluate(() => dispatchEvent(new Event('afterprint')));
+  await page.emulateMedia({ media: 'screen', colorScheme: 'light' });
+  await page.setViewportSize(window);
+  expect(await sized(page), 'the charts do not return to the window after printing');
 }
 
 // Opens the page of the command line, runs `checks`(page, the page's data, what else the command line says), and ends
@@ -59,7 +100,8 @@ export async function openPage(script, more, checks) {
   const { options, file, rest } = parse(script, more);
   const address = pathToFileURL(resolve(file)).href;
   const open = async browser => {
-    const page = await browser.newPage({ viewport: { width: Number(options.width), height: 1000 } });
+    const window = { width: Number(options.width), height: 1000 };
+    const page = await browser.newPage({ viewport: window, colorScheme: 'light' });
     page.setDefaultTimeout(PATIENCE);
     page.on('console', message => { if (['error', 'warning'].includes(message.type())) problems.push(`console: ${message.text()}`); });
     page.on('pageerror', error => problems.push(`script: ${error.message}`));
@@ -67,7 +109,7 @@ export async function openPage(script, more, checks) {
       if (request.url() !== address && !/^(data|blob):/.test(request.url())) problems.push(`the page asks for ${request.url()}`);
     });
     await page.goto(address, { waitUntil: 'load' });
-    await checkAnyPage(page);
+    await checkAnyPage(page, window);
     await checks(page, await pageData(page), rest);
     if (options.screenshot) await page.screenshot({ path: options.screenshot, fullPage: true });
     if (options.pdf) await page.pdf({ path: options.pdf, preferCSSPageSize: true, printBackground: true });
