@@ -32,9 +32,9 @@ double middle_feed(const std::vector<CircleTableRow>& table, bool measured_only)
 }
 
 std::string beside(const CircleTableRow& row) {
-  if (row.error.measured) return fmt::format(", {:.1f} µm were measured", *row.error.measured * 1e6);
-  if (row.error.published) return fmt::format(", the published simulation gives {:.1f} µm", *row.error.published * 1e6);
-  return ", without a measured or published value to compare";
+  if (row.error.measured) return fmt::format("; the measured value is {:.1f} µm", *row.error.measured * 1e6);
+  if (row.error.published) return fmt::format("; the published simulation gives {:.1f} µm", *row.error.published * 1e6);
+  return "; no measured or published value is available";
 }
 
 // "9 % (X) and 12 % (Y)" of the model that acts on each axis; empty when no axis has one.
@@ -83,7 +83,7 @@ CircleFinding circle_finding(const sim::CircleResult& result, const machine::Mac
   const auto model = only_model(rows);
   const auto errors = model ? mean_errors(rows) : std::string();
   if (!errors.empty())
-    finding.sentence += fmt::format("; over all measured feeds the simulation deviates by {} on average", errors);
+    finding.sentence += fmt::format(", and over all measured feeds the simulation deviates by {} on average", errors);
   finding.sentence += ".";
   return finding;
 }

@@ -75,8 +75,8 @@ std::string nothing_found(const Verdict& verdict) {
         fmt::format("{}{} µm rms of position error", size.empty() ? "" : ", ", micrometres(*rest.position_error_rms));
   const auto of = size.empty() ? "" : fmt::format(" of {}", size);
   if (verdict.unexplained.signature)
-    return fmt::format("Simulation and machine do not agree: no known cause explains the residual{}, which {}.", of,
-                       *verdict.unexplained.signature);
+    return fmt::format("Simulation and machine do not agree: no known cause explains the residual{}; its pattern: {}.",
+                       of, *verdict.unexplained.signature);
   return fmt::format("The simulation agrees with the data within their noise: the residual{} has no cause to be found.",
                      of);
 }

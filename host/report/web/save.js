@@ -30,8 +30,8 @@ function offer(name, address) {
 // "t[s]", "i[A]"; of several series "current of C LuGre[A]".
 function columnName(axisLabel, series) {
   const [name, unit] = quantity(axisLabel);
-  const channel = LOG_CHANNELS[name] || name;
-  return `${series ? `${series === 'measured' && LOG_CHANNELS[name] ? channel : `${channel} of ${series}`}` : channel}[${logUnit(unit)}]`;
+  const channel = LOG_CHANNELS[name], own = !series || (channel && series === 'measured');
+  return `${(own ? channel || name : `${channel || name} of ${series}`).replaceAll(',', '')}[${logUnit(unit)}]`;
 }
 
 const sameValues = (a, b) => a.length === b.length && a.every((value, i) => value === b[i]);
@@ -96,11 +96,7 @@ function addTools(figure) {
   figure.button = cursors;
   figure.readout = element('dl', { class: 'readout', role: 'status', hidden: true });
   const picture = format => button(format.toUpperCase(), `Save this chart as a picture (${format.toUpperCase()})`, async shown => offer(name(format), await pictureOf(shown, format)));
-  const points = button('CSV', 'Save the shown points as a table (CSV)', shown => {
-    const address = URL.createObjectURL(new Blob([csvOf(shown)], { type: 'text/csv;charset=utf-8' }));
-    offer(name('csv'), address);
-    setTimeout(() => URL.revokeObjectURL(address), 60000);
-  });
+  const points = button('CSV', 'Save the shown points as a table (CSV)', shown => offer(name('csv'), `data:text/csv;charset=utf-8,${encodeURIComponent(csvOf(shown))}`));
   node.after(element('div', { class: 'tools on-screen', 'data-of': id }, cursors, element('span', { class: 'quiet' }, 'save as'), picture('png'), picture('svg'), points), figure.readout);
   listenToCursors(id);
 }

@@ -3,7 +3,7 @@
 // screen and on paper), and the verdict.
 // usage: node SCRIPT.mjs FILE.html [--screenshot FILE.png] [--width PIXELS] [--pdf FILE.pdf] [MORE...]
 // The browser is $CHROMIUM, else /usr/bin/chromium. Exit 0: all holds; 1: a message says what does not; 2: usage.
-import { existsSync } from 'node:fs';
+import { existsSync, readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
@@ -94,6 +94,43 @@ async function checkAnyPage(page, window) {
   expect(await sized(page), 'the charts do not return to the window after printing');
 }
 
+// The file that a button of a chart saves.
+async function saved(page, chart, words) {
+  const [download] = await Promise.all([page.waitForEvent('download'), page.locator(`.tools[data-of="${chart}"] button`, { hasText: words }).click()]);
+  return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
+}
+
+// What is below the first chart: cursors by mouse and keyboard, and the chart saved as picture and as table.
+async function checkTools(page) {
+  const chart = await page.locator('.js-plotly-plot').first().getAttribute('id').catch(() => null);
+  if (!chart) return;
+  const cursors = page.locator(`.tools[data-of="${chart}"] button`, { hasText: 'Cursors' }), readout = page.locator(`.tools[data-of="${chart}"] + .readout`);
+  expect(await readout.isHidden(), 'cursors are read out before they are chosen');
+  await cursors.click();
+  const changes = async (what, act) => {
+    const before = await readout.innerText();
+    await act();
+    expect(await readout.innerText() !== before, `${what} moves no cursor of '${chart}'`);
+  };
+  await changes('a key', () => page.keyboard.press('Shift+ArrowRight'));
+  await changes('a key after b', async () => { await page.keyboard.press('b'); await page.keyboard.press('Shift+ArrowLeft'); });
+  const box = await page.locator(`#${chart} .nsewdrag`).first().boundingBox();
+  await changes('the mouse', () => page.mouse.click(box.x + 0.05 * box.width, box.y + 0.5 * box.height));
+  const [a, b] = await page.evaluate(id => FIGURES.get(id).cursors.map(({ curve, point }) => { const trace = FIGURES.get(id).traces[curve]; return [trace.x[point], trace.y[point]]; }), chart);
+  const told = (await readout.innerText()).match(/Δx (\S+) .*Δy (\S+)/)?.slice(1).map(value => Number(value.replace('−', '-'))) || [];
+  for (const k of [0, 1]) expect(Math.abs(told[k] - (b[k] - a[k])) <= 1e-4 * Math.abs(b[k] - a[k]), `the cursors of '${chart}' differ by ${b[k] - a[k]} and are said to differ by ${told[k]}`);
+  await page.keyboard.press('Escape');
+  expect(await readout.isHidden(), 'Escape leaves the cursors');
+
+  const picture = await saved(page, chart, 'PNG'), drawing = await saved(page, chart, 'SVG'), points = await saved(page, chart, 'CSV');
+  expect(picture.bytes.subarray(1, 4).toString() === 'PNG' && picture.bytes.readUInt32BE(16) >= 1800, `${picture.name} is not a picture of at least 1800 pixels`);
+  const lines = points.bytes.toString().split('\r\n').filter(Boolean), header = lines.find(line => !line.startsWith('#')), rows = lines.slice(lines.indexOf(header) + 1);
+  expect(drawing.bytes.toString().startsWith('<svg') && drawing.bytes.toString().includes(await page.locator('h1').innerText()), `${drawing.name} does not have the page's title`);
+  const names = await page.evaluate(id => FIGURES.get(id).traces.filter(readable).map(trace => trace.name), chart);
+  expect(header.split(',').every(column => /\[[^\]]+\]"?$/.test(column)) && header.split(',').length > names.length - 1, `${points.name} has the header '${header}'`);
+  expect(rows.length >= 2 && rows.every(row => row.split(',').length === header.split(',').length), `${points.name} has ${rows.length} rows, not all as long as the header`);
+}
+
 // Opens the page of the command line, runs `checks`(page, the page's data, what else the command line says), and ends
 // the process.
 export async function openPage(script, more, checks) {
@@ -110,6 +147,7 @@ export async function openPage(script, more, checks) {
     });
     await page.goto(address, { waitUntil: 'load' });
     await checkAnyPage(page, window);
+    await checkTools(page);
     await checks(page, await pageData(page), rest);
     if (options.screenshot) await page.screenshot({ path: options.screenshot, fullPage: true });
     if (options.pdf) await page.pdf({ path: options.pdf, preferCSSPageSize: true, printBackground: true });
