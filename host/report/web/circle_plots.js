@@ -92,7 +92,7 @@ function sectorShape(centre, half, inner, outer) {
 const extreme = (values, pick) => values.reduce((most, value) => pick(most, value));
 
 // Rings a division apart around the circle, as many as the deviations need; what lies in the middle says the scale.
-function polarGrid(state, runs, radius, division) {
+function polarGrid(state, runs, radius, division, narrow) {
   const step = division * state.magnification * 1e-3;  // mm drawn
   const high = Math.max(2, ...runs.map(run => Math.ceil(extreme(run.radial, Math.max) / division)));
   const low = Math.min(-2, ...runs.map(run => Math.floor(extreme(run.radial, Math.min) / division)));
@@ -100,7 +100,7 @@ function polarGrid(state, runs, radius, division) {
   for (let ring = low; ring <= high; ++ring) {
     if (radius + ring * step <= 0) continue;
     shapes.push(circleShape(radius + ring * step, ring ? { color: GRID, width: 1 } : { color: RULE, width: 1 }));
-    if (ring && (Math.abs(ring) < 3 || ring % 2 === 0))
+    if (ring && (narrow ? ring % 2 === 0 : Math.abs(ring) < 3 || ring % 2 === 0))
       annotations.push(label(`${ring > 0 ? '+' : '−'}${Math.abs(ring) * division}`, (radius + ring * step) * Math.SQRT1_2,
                              (radius + ring * step) * Math.SQRT1_2, { font: { size: 10.5, color: QUIET }, bgcolor: 'var(--veil)', borderpad: 0 }));
   }
@@ -114,32 +114,36 @@ function polarGrid(state, runs, radius, division) {
   return { shapes, annotations, inner, outer, step };
 }
 
-function scaleBar(state, division, step, radius) {
-  const line = { color: INK, width: 1.5 }, y = -0.02 * radius, tick = 0.018 * radius;
+// On a narrow page the words in the middle need more of the circle.
+function scaleBar(state, division, step, radius, narrow) {
+  const line = { color: INK, width: 1.5 }, y = -0.02 * radius, tick = 0.018 * radius, apart = narrow ? 1.9 : 1, size = narrow ? 10 : 12;
   const bar = (x0, y0, x1, y1) => ({ type: 'line', x0, y0, x1, y1, line });
+  const words = (content, height, font) => label(content, 0, apart * height * radius, { font: { size, color: QUIET, ...font } });
   return { shapes: [bar(-step / 2, y, step / 2, y), bar(-step / 2, y - tick, -step / 2, y + tick), bar(step / 2, y - tick, step / 2, y + tick)],
-           annotations: [label(`<b>${state.feed} m/min</b>`, 0, 0.25 * radius, { font: { size: 15, color: INK } }),
-                         label(DIRECTION_SIGN[state.direction] + DIRECTION_TEXT[state.direction], 0, 0.15 * radius),
-                         label(`${division} µm per division`, 0, -0.10 * radius, { font: { size: 12, color: INK } }),
-                         label(`deviation magnified ${state.magnification} ×`, 0, -0.19 * radius)] };
+           annotations: [words(`<b>${state.feed} m/min</b>`, 0.25, { size: narrow ? 12 : 15, color: INK }),
+                         words(DIRECTION_SIGN[state.direction] + DIRECTION_TEXT[state.direction], 0.15),
+                         words(`${division} µm per division`, -0.10, { color: INK }),
+                         words(narrow ? `magnified ${state.magnification} ×` : `deviation magnified ${state.magnification} ×`, -0.19)] };
 }
 
-function drawPolar(state) {
-  const runs = chosenRuns(state);
+function polarLayout(state, runs, narrow) {
   const radius = (runs[0] || DATA.runs[0]).radius;
   const division = roundUpNice(radius / 9 / state.magnification * 1e3);  // µm
-  const grid = polarGrid(state, runs, radius, division);
-  const bar = scaleBar(state, division, grid.step, radius);
+  const grid = polarGrid(state, runs, radius, division, narrow);
+  const bar = scaleBar(state, division, grid.step, radius, narrow);
   const sector = sectorShape(state.quadrant, quadrantHalfWidth(state), grid.inner, grid.outer);
   const limit = grid.outer + 0.2 * radius;
   const ticks = [-radius, -radius / 2, 0, radius / 2, radius];
   const style = { range: [-limit, limit], showgrid: false, tickvals: ticks, constrain: 'domain' };
-  return drawChart('polar', runs.map(run => polarTrace(run, state.magnification)), {
-    margin: { l: 52, r: 8, t: 8, b: 46 },
-    xaxis: axisStyle(`${DATA.axes[0]}, mm`, style),
-    yaxis: axisStyle(`${DATA.axes[1]}, mm`, { ...style, scaleanchor: 'x' }),
-    shapes: [sector, ...grid.shapes, ...bar.shapes], annotations: [...grid.annotations, ...bar.annotations],
-  });
+  return { margin: { l: 52, r: 8, t: 8, b: 46 },
+           xaxis: axisStyle(`${DATA.axes[0]}, mm`, style),
+           yaxis: axisStyle(`${DATA.axes[1]}, mm`, { ...style, scaleanchor: 'x' }),
+           shapes: [sector, ...grid.shapes, ...bar.shapes], annotations: [...grid.annotations, ...bar.annotations] };
+}
+
+function drawPolar(state) {
+  const runs = chosenRuns(state);
+  return drawChart('polar', runs.map(run => polarTrace(run, state.magnification)), narrow => polarLayout(state, runs, narrow));
 }
 
 // ---- quadrant ----

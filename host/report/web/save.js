@@ -1,7 +1,7 @@
 // What stands below each chart: cursors, and the chart saved as a picture or as a table of its points.
 'use strict';
 
-// Labels of axes that show channels of a log, by their names in logs (docs/formats.md).
+// Labels of axes that show channels of a log, by their names in logs.
 const LOG_CHANNELS = { 'time': 't', 'set position': 'x_set', 'set velocity': 'v_set', 'set acceleration': 'a_set', 'position': 'x',
                        'velocity': 'v', 'current': 'i', 'set current': 'i_set', 'force': 'F', 'motor force': 'F', 'voltage': 'u', 'temperature': 'temperature',
                        'external force': 'F_ext' };
@@ -58,7 +58,7 @@ function csvOf(figure) {
 
 // ---- picture ----
 
-// With title and legend, which the page has beside the chart.
+// With title and legend, which the page has outside of the chart.
 function pictureOf(figure, format) {
   const node = document.getElementById(figure.id), named = new Set();
   const traces = figure.traces.map(trace => {

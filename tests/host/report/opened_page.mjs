@@ -79,14 +79,14 @@ async function checkAnyPage(page, window) {
   await ask('wide screen', cutOff, false);
   await page.setViewportSize(NARROW);
   expect(await sized(page), 'the charts do not follow a narrow window');
-  await ask('narrow screen', cutOff, false);
+  await ask('narrow screen', cutOff, true);
   await page.setViewportSize(PAPER);
   await page.emulateMedia({ media: 'print', colorScheme: 'dark' });
   await page.evaluate(() => dispatchEvent(new Event('beforeprint')));
   await drawn(page);
   expect(await page.evaluate(() => document.documentElement.dataset.scheme) === 'light', 'a dark page is printed dark');
   expect(await page.locator('details.sheet-of-machine[open]').count() === 1, 'the machine sheet is folded on paper');
-  await ask('paper', cutOff, true);
+  await ask('paper', cutOff, false);
   await ask('paper', poorContrasts);
   await page.evaluate(() => dispatchEvent(new Event('afterprint')));
   await page.emulateMedia({ media: 'screen', colorScheme: 'light' });

@@ -113,16 +113,16 @@ export function confusableSeries() {
   return [...wrong];
 }
 
-// Nothing is wider than the page, no text is cut off, and the words of a chart lie within it. On screen a table may be
-// moved within its own frame; on paper it may not.
-export function cutOff(paper) {
+// Nothing is wider than the page, no text is cut off, and the words of a chart lie within it. `framed`: a table may be
+// moved within its own frame, as on a narrow screen.
+export function cutOff(framed) {
   const wrong = new Set(), width = document.documentElement.clientWidth, SLACK = 1.5;  // pixels
   if (document.documentElement.scrollWidth > width) wrong.add(`the page is ${document.documentElement.scrollWidth - width} pixels wider than the window`);
   for (const node of document.querySelectorAll('body *:not(script, style, noscript)')) {
     if (!node.checkVisibility?.({ visibilityProperty: true })) continue;
     const frame = node.closest('.scroll'), style = getComputedStyle(node);
     const words = `${node.tagName.toLowerCase()}${node.id ? `#${node.id}` : ''}${typeof node.className === 'string' && node.className ? `.${node.className}` : ''} '${(node.textContent || '').trim().slice(0, 40)}'`;
-    if (paper && frame === node && node.scrollWidth > node.clientWidth + SLACK) wrong.add(`${words} is ${node.scrollWidth - node.clientWidth} pixels wider than its frame on paper`);
+    if (!framed && frame === node && node.scrollWidth > node.clientWidth + SLACK) wrong.add(`${words} is ${node.scrollWidth - node.clientWidth} pixels wider than its frame`);
     if (node.closest('svg')) continue;
     if (!frame && node.getBoundingClientRect().right > width + SLACK) wrong.add(`${words} ends beyond the page`);
     if (style.display !== 'inline' && ['hidden', 'clip'].includes(style.overflowX) && node.scrollWidth > node.clientWidth + SLACK) wrong.add(`${words} is cut off`);
