@@ -209,6 +209,13 @@ constexpr std::array<std::pair<std::string_view, std::string (*)(const Spoken&)>
     {"frequency-response", frequency_response},
 }};
 
+// A finding may go on after the sentence that says what was found.
+std::string first_sentence(const std::string& text) {
+  for (auto at = text.find(". "); at != std::string::npos; at = text.find(". ", at + 1))
+    if (at + 2 < text.size() && std::isupper(static_cast<unsigned char>(text[at + 2]))) return text.substr(0, at + 1);
+  return text;
+}
+
 std::string without_full_stop(std::string text) {
   if (text.ends_with('.')) text.pop_back();
   return text;
@@ -221,7 +228,7 @@ std::string experiment_sentence(const ExperimentResult& result, const machine::M
   std::string text;
   for (const auto& [experiment, sentence] : sentences)
     if (experiment == result.experiment) text = sentence(spoken);
-  if (text.empty() && !result.findings.empty()) text = without_full_stop(result.findings.front());
+  if (text.empty() && !result.findings.empty()) text = without_full_stop(first_sentence(result.findings.front()));
   const bool expects = std::any_of(result.figures.begin(), result.figures.end(),
                                    [](const Figure& figure) { return figure.expected.has_value(); });
   if (text.empty()) return typeset(result.figures.empty() ? "The run has no figures." : verdict(result));

@@ -5,7 +5,7 @@
 const LOG_CHANNELS = { 'time': 't', 'set position': 'x_set', 'set velocity': 'v_set', 'set acceleration': 'a_set', 'position': 'x',
                        'velocity': 'v', 'current': 'i', 'set current': 'i_set', 'force': 'F', 'motor force': 'F', 'voltage': 'u', 'temperature': 'temperature',
                        'external force': 'F_ext' };
-const PICTURE = { width: 1200, legendRow: 24, perRow: 4 };  // pixels
+const PICTURE = { width: 1200, legendRow: 24, perRow: 3 };  // pixels
 
 // As the units of logs are spelled: "um", "m/s^2".
 const logUnit = unit => unit.replaceAll('µ', 'u').replaceAll('²', '^2').replaceAll('√', 'sqrt ').replaceAll('°', 'deg');

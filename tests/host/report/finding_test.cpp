@@ -65,7 +65,7 @@ TEST(ExperimentSentence, EndsWithTheFiguresThatWereExpected) {
 TEST(ExperimentSentence, OfAnUnknownExperimentIsItsFirstFinding) {
   auto result = experiment("new", {});
   EXPECT_EQ(sentence_of(result), "The run has no figures.");
-  result.findings = {"It moved by 3 um.", "And more."};
+  result.findings = {"It moved by 3 um. It came back.", "And more."};
   EXPECT_EQ(sentence_of(result), "It moved by 3 µm.");
 }
 
