@@ -5,6 +5,7 @@
 #include "host/cli/errors.hpp"
 #include "host/cli/output.hpp"
 #include "host/cli/progress.hpp"
+#include "host/cli/report_origin.hpp"
 #include "host/report/circle_report.hpp"
 #include "host/simulate/friction_choice.hpp"
 
@@ -70,11 +71,11 @@ sim::CircleResult run_plan(const CirclePlan& plan, const CirclePlaces& places) {
 }
 
 void write_circle_folder(const std::filesystem::path& folder, const CirclePlan& plan, const sim::CircleResult& result,
-                         const nlohmann::ordered_json& json, const Invocation& invocation) {
+                         const nlohmann::ordered_json& json, const Invocation& invocation, const std::string& machine) {
   PendingFolder pending(folder, invocation.command);
   const std::string title = plan.machine.axes.size() == 1 ? "Sine: " : "Circle: ";
   pending.write("report.html", circle_report_html({title + plan.machine.name, invocation.command_line,
-                                                   invocation.version, plan.machine, result}));
+                                                   invocation.version, plan.machine, result, report_origin(machine)}));
   pending.write("result.json", json.dump(2) + "\n");
   pending.commit();
 }

@@ -94,7 +94,8 @@ void compare(const CompareOptions& options, const Invocation& invocation) {
   if (!options.axis.empty()) throw UsageError("--axis: found it together with --reference; expected it with LOG only");
   require_known("--reference", options.reference, "rows of the machine file", {"circle"});
   std::vector<CirclePlan> plans;
-  for (const auto& name : split_list(options.machine.machine)) {
+  const auto names = split_list(options.machine.machine);
+  for (const auto& name : names) {
     plans.push_back(plan_of(options, name));
     for (const auto& other : plans)
       if (&other != &plans.back() && other.machine.id == plans.back().machine.id)
@@ -102,7 +103,8 @@ void compare(const CompareOptions& options, const Invocation& invocation) {
   }
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   std::string text, signals;
-  for (const auto& plan : plans) {
+  for (std::size_t k = 0; k < plans.size(); ++k) {
+    const auto& plan = plans[k];
     // Several machines: a folder each.
     const std::string out =
         options.out.empty() || plans.size() == 1 ? options.out : options.out + "/" + plan.machine.id;
@@ -112,7 +114,7 @@ void compare(const CompareOptions& options, const Invocation& invocation) {
     signals = result.signals;
     if (!out.empty())
       write_circle_folder(out, plan, result, compare_reference_json(signals, nlohmann::ordered_json::array({json})),
-                          invocation);
+                          invocation, names[k]);
     text += compare_text(plan, result, table);
     if (!out.empty()) text += fmt::format("\nreport: {}/report.html\n", out);
     all.push_back(std::move(json));

@@ -16,6 +16,7 @@
 #include "host/cli/machine_options.hpp"
 #include "host/cli/output.hpp"
 #include "host/cli/progress.hpp"
+#include "host/cli/report_origin.hpp"
 
 namespace stiction::host {
 namespace {
@@ -63,7 +64,8 @@ void run(const DiagnoseCommandOptions& options, const Invocation& invocation) {
     verdict = diagnose(input);
     input.progress = {};
   }
-  put_out(verdict, input.machine, options.machine, options.out, options.json, invocation);
+  put_out(verdict, input.machine, options.machine, options.out, options.json, invocation,
+          report_origin(options.machine.machine, all));
 }
 
 }  // namespace

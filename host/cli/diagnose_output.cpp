@@ -11,7 +11,7 @@
 namespace stiction::host {
 
 void put_out(const Verdict& verdict, const machine::Machine& machine, const MachineOptions& options,
-             const std::string& out, bool json, const Invocation& invocation) {
+             const std::string& out, bool json, const Invocation& invocation, const Origin& origin) {
   const auto document = verdict_json(verdict);
   if (!out.empty()) {
     PendingFolder folder(out, invocation.command);
@@ -36,7 +36,8 @@ void put_out(const Verdict& verdict, const machine::Machine& machine, const Mach
                       {"not measured", "x and current come from the simulation of the machine file"}};
       folder.write(next_measurement_file, csv_log_text(log));
     }
-    folder.write("report.html", diagnosis_report_html({invocation.command_line, invocation.version, machine, verdict}));
+    folder.write("report.html",
+                 diagnosis_report_html({invocation.command_line, invocation.version, machine, verdict, origin}));
     folder.commit();
   }
   if (json) {

@@ -7,6 +7,7 @@
 #include "host/cli/diagnose_output.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/progress.hpp"
+#include "host/cli/report_origin.hpp"
 #include "host/diagnose/reference_diagnosis.hpp"
 #include "host/identify/friction_curves.hpp"
 
@@ -20,7 +21,8 @@ void diagnose_from_reference(const DiagnoseReferenceOptions& options, const Invo
     Progress progress("diagnosis", 10);  // the extension, four causes an axis, five feeds left out
     verdict = diagnose_reference(machine, [&] { progress.add(); });
   }
-  put_out(verdict, machine, options.machine, options.out, options.json, invocation);
+  put_out(verdict, machine, options.machine, options.out, options.json, invocation,
+          report_origin(options.machine.machine));
 } catch (const MissingRows& error) {
   throw UsageError(fmt::format("{}: {}", machine::find_machine(options.machine.machine).string(), error.what()));
 }

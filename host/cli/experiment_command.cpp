@@ -13,6 +13,7 @@
 #include "host/cli/machine_options.hpp"
 #include "host/cli/output.hpp"
 #include "host/cli/progress.hpp"
+#include "host/cli/report_origin.hpp"
 #include "host/log/csv_log.hpp"
 #include "host/report/experiment_report.hpp"
 #include "host/simulate/experiments.hpp"
@@ -132,8 +133,8 @@ void run(const Experiment& experiment, const ExperimentOptions& options, const I
   const auto json = experiment_json(result, input.machine);
   if (!options.out.empty()) {
     PendingFolder folder(options.out, invocation.command);
-    folder.write("report.html",
-                 experiment_report_html({invocation.command_line, invocation.version, input.machine, result}));
+    folder.write("report.html", experiment_report_html({invocation.command_line, invocation.version, input.machine,
+                                                        result, report_origin(options.machine.machine)}));
     folder.write("result.json", json.dump(2) + "\n");
     folder.commit();
   }

@@ -15,6 +15,7 @@
 #include "host/cli/machine_options.hpp"
 #include "host/cli/output.hpp"
 #include "host/cli/progress.hpp"
+#include "host/cli/report_origin.hpp"
 #include "host/log/csv_log.hpp"
 #include "host/log/read_log.hpp"
 #include "host/report/experiment_report.hpp"
@@ -97,6 +98,7 @@ FrequencyResponsePlan plan_of(const Options& options, const machine::Machine& ma
 struct Measurement {
   std::vector<AxisResponse> responses;
   ResponseText text;
+  double period = 0.0;  // s, of the log
 };
 
 Measurement simulated(const Options& options, const machine::Machine& machine) {
@@ -140,6 +142,7 @@ const machine::AxisModel* axis_for(const Log& log, const AxisLog& measured, cons
 Measurement measured(const Options& options, const machine::Machine& machine) {
   const auto log = read_log(options.from);
   Measurement m;
+  m.period = log.period;
   bool any_test = false;
   for (const auto& axis : log.axes) any_test = any_test || !axis.i_inject.empty() || !axis.u_inject.empty();
   for (const auto& axis : log.axes) {
@@ -165,10 +168,12 @@ void run(const Options& options, const Invocation& invocation) {
     require_needs(machine, needs_of("frequency-response --loop " + loop),
                   machine::find_machine(options.machine.machine));
   sim::ExperimentResult result;
+  auto origin = report_origin(options.machine.machine);
   try {
     const auto m = during("measuring the loops", [&] {
       return options.from.empty() ? simulated(options, machine) : measured(options, machine);
     });
+    if (!options.from.empty()) origin.sources = {options.from}, origin.sample_periods = {m.period};
     result = response_result(m.responses, machine, loops, m.text);
     if (options.from.empty()) add_expected_figures(result, machine, {}, loops.empty());
   } catch (const ResponseError& error) {
@@ -179,7 +184,8 @@ void run(const Options& options, const Invocation& invocation) {
   const auto json = experiment_json(result, machine);
   if (!options.out.empty()) {
     PendingFolder folder(options.out, invocation.command);
-    folder.write("report.html", experiment_report_html({invocation.command_line, invocation.version, machine, result}));
+    folder.write("report.html",
+                 experiment_report_html({invocation.command_line, invocation.version, machine, result, origin}));
     folder.write("result.json", json.dump(2) + "\n");
     folder.commit();
   }

@@ -15,6 +15,7 @@
 #include "host/cli/machine_options.hpp"
 #include "host/cli/output.hpp"
 #include "host/cli/progress.hpp"
+#include "host/cli/report_origin.hpp"
 #include "host/identify/friction_fit.hpp"
 #include "host/identify/identified_machine.hpp"
 #include "host/identify/refinement.hpp"
@@ -81,6 +82,7 @@ std::string model_to_identify(const std::string& wanted, const machine::AxisMode
 struct Run {
   const machine::AxisModel* axis;
   Identification result;
+  Origin origin;  // of the report
 };
 
 // Puts what the closed loop made of them in place of the parameters, and says what it gained.
@@ -101,15 +103,17 @@ Run identify(const IdentifyCommandOptions& options, const machine::Machine& mach
     if (const auto text = read_text_file(options.logs.front()); is_steady_table(text)) {
       if (options.refine) throw UsageError("--refine: found a table of steady states; expected logs with set-points");
       const auto& axis = axis_to_identify(options.axis, machine, {});
-      return {&axis, identify_table(parse_steady_table(text, options.logs.front()), axis,
-                                    parse_amperes(options.amperes), FitSettings{})};
+      return {&axis,
+              identify_table(parse_steady_table(text, options.logs.front()), axis, parse_amperes(options.amperes),
+                             FitSettings{}),
+              report_origin(options.machine.machine, options.logs)};
     }
   const auto logs = read_logs(options.logs);
   const auto& axis = axis_to_identify(options.axis, machine, logs);
   const IdentifyOptions settings{model_to_identify(options.friction, axis), amperes, FitSettings{},
                                  options.friction.empty()};
   const Progress progress(options.refine ? "identifying and refining" : "identifying");
-  Run run{&axis, identify_logs(logs, axis, settings)};
+  Run run{&axis, identify_logs(logs, axis, settings), report_origin(options.machine.machine, logs)};
   if (options.refine) take(run.result, refine_in_closed_loop(logs, machine, axis, run.result, settings));
   return run;
 }
@@ -117,7 +121,7 @@ Run identify(const IdentifyCommandOptions& options, const machine::Machine& mach
 void run(const IdentifyCommandOptions& options, const Invocation& invocation) {
   const auto machine = options.machine.load(options.machine.machine, "");
   const auto file = machine::find_machine(options.machine.machine);
-  const auto [axis, result] = identify(options, machine);
+  const auto [axis, result, origin] = identify(options, machine);
   const auto json = identification_json(result);
   if (!options.out.empty()) {
     PendingFolder folder(options.out, invocation.command);
@@ -125,7 +129,7 @@ void run(const IdentifyCommandOptions& options, const Invocation& invocation) {
                  identified_machine(file, options.machine.set, *axis, result, invocation.command_line));
     sim::read_machine(folder.path() / "identified.toml");  // what was written must be a machine
     folder.write("report.html",
-                 identification_report_html({invocation.command_line, invocation.version, machine, result}));
+                 identification_report_html({invocation.command_line, invocation.version, machine, result, origin}));
     folder.write("result.json", json.dump(2) + "\n");
     folder.commit();
   }

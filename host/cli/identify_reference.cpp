@@ -8,6 +8,7 @@
 #include "host/cli/experiment_output.hpp"
 #include "host/cli/output.hpp"
 #include "host/cli/progress.hpp"
+#include "host/cli/report_origin.hpp"
 #include "host/identify/measured_machine_result.hpp"
 #include "host/report/experiment_report.hpp"
 #include "host/simulate/expected_figures.hpp"
@@ -25,8 +26,10 @@ void identify_reference(const IdentifyReferenceOptions& options, const Invocatio
   const auto json = experiment_json(result, machine);
   if (!options.out.empty()) {
     PendingFolder folder(options.out, invocation.command);
-    folder.write("report.html", experiment_report_html({invocation.command_line, invocation.version,
-                                                        with_friction(machine, study.identified), result}));
+    folder.write("report.html",
+                 experiment_report_html(
+                     {invocation.command_line, invocation.version, with_friction(machine, study.identified), result,
+                      report_origin(options.machine.machine, {"rows of the machine file, " + options.reference})}));
     folder.write("result.json", json.dump(2) + "\n");
     folder.write("identified.toml", friction_toml(study.identified));
     folder.commit();

@@ -12,6 +12,7 @@
 #include "host/cli/experiment_output.hpp"
 #include "host/cli/output.hpp"
 #include "host/cli/progress.hpp"
+#include "host/cli/report_origin.hpp"
 #include "host/log/csv_log.hpp"
 #include "host/log/mat_log.hpp"
 #include "host/log/read_log.hpp"
@@ -80,7 +81,8 @@ void run_replay(const ReplayOptions& options, const Invocation& invocation, cons
   const auto json = json_of ? json_of(log, cases, result) : experiment_json(result, machine);
   if (!options.out.empty()) {
     PendingFolder folder(options.out, invocation.command);
-    folder.write("report.html", experiment_report_html({invocation.command_line, invocation.version, machine, result}));
+    folder.write("report.html", experiment_report_html({invocation.command_line, invocation.version, machine, result,
+                                                        report_origin(options.machine.machine, std::vector{log})}));
     folder.write("result.json", json.dump(2) + "\n");
     folder.commit();
   }

@@ -55,7 +55,8 @@ void simulate_circle(const CircleOptions& options, const Invocation& invocation)
   places.command = invocation.command;
   const auto result = run_plan(plan, places);
   const auto json = circle_json(result, plan.machine);
-  if (!options.places.out.empty()) write_circle_folder(options.places.out, plan, result, json, invocation);
+  if (!options.places.out.empty())
+    write_circle_folder(options.places.out, plan, result, json, invocation, options.machine.machine);
   if (options.json) {
     fmt::print("{}\n", json.dump(2));
     return;

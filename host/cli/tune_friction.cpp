@@ -14,6 +14,7 @@
 #include "host/cli/machine_options.hpp"
 #include "host/cli/output.hpp"
 #include "host/cli/progress.hpp"
+#include "host/cli/report_origin.hpp"
 #include "host/report/experiment_report.hpp"
 #include "host/simulate/circle.hpp"
 #include "host/tune/tuned_machine.hpp"
@@ -134,8 +135,8 @@ void run(const TuneOptions& options, const Invocation& invocation) {
     folder.write("tuned.toml", tuned_machine(machine::find_machine(options.machine.machine), options.machine.set, all,
                                              sources, invocation.command_line));
     sim::read_machine(folder.path() / "tuned.toml");  // what was written must be a machine
-    folder.write("report.html",
-                 experiment_report_html({invocation.command_line, invocation.version, all.machine, result}));
+    folder.write("report.html", experiment_report_html({invocation.command_line, invocation.version, all.machine,
+                                                        result, report_origin(options.machine.machine, logs)}));
     folder.write("result.json", json.dump(2) + "\n");
     folder.commit();
   }

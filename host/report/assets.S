@@ -15,12 +15,18 @@ stiction_asset_\name\()_end:
 
   .section .rodata, "a", %progbits
 asset frame_html, "host/report/web/frame.html"
+asset opening_html, "host/report/web/opening.html"
 asset closing_html, "host/report/web/closing.html"
 asset circle_html, "host/report/web/circle.html"
 asset experiment_html, "host/report/web/experiment.html"
 asset identification_html, "host/report/web/identification.html"
+asset colours_css, "host/report/web/colours.css"
 asset report_css, "host/report/web/report.css"
 asset page_js, "host/report/web/page.js"
+asset scheme_js, "host/report/web/scheme.js"
+asset figures_js, "host/report/web/figures.js"
+asset cursors_js, "host/report/web/cursors.js"
+asset save_js, "host/report/web/save.js"
 asset models_js, "host/report/web/models.js"
 asset machine_js, "host/report/web/machine.js"
 asset circle_plots_js, "host/report/web/circle_plots.js"

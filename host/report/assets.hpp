@@ -6,13 +6,19 @@
 namespace stiction::host::assets {
 
 std::string_view frame_html();
+std::string_view opening_html();
 std::string_view closing_html();
 std::string_view circle_html();
 std::string_view experiment_html();
 std::string_view identification_html();
+std::string_view colours_css();
 std::string_view report_css();
+std::string_view scheme_js();
 std::string_view page_js();
 std::string_view models_js();
+std::string_view figures_js();
+std::string_view cursors_js();
+std::string_view save_js();
 std::string_view machine_js();
 std::string_view circle_plots_js();
 std::string_view circle_series_js();

@@ -40,6 +40,11 @@ const char* role_name(sim::SeriesRole role) {
   return "";
 }
 
+// A quantity without a unit has the unit one.
+std::string with_unit(const std::string& label) {
+  return label.find(", ") == std::string::npos ? label + ", 1" : label;
+}
+
 }  // namespace
 
 json series_json(const std::vector<sim::Chart>& charts) {
@@ -61,11 +66,12 @@ json series_json(const std::vector<sim::Chart>& charts) {
   return list;
 }
 
-json chart_json(const sim::Chart& chart, const std::string& place) {
+json chart_json(const sim::Chart& chart, const std::string& place, const std::string& record) {
   json out{{"place", place},
+           {"record", record},
            {"title", typeset(chart.title)},
-           {"x_label", typeset(chart.x_label)},
-           {"y_label", typeset(chart.y_label)},
+           {"x_label", with_unit(typeset(chart.x_label))},
+           {"y_label", with_unit(typeset(chart.y_label))},
            {"caption", typeset(chart.caption)},
            {"logarithmic_x", chart.logarithmic_x},
            {"x_range", chart.x_range ? json(*chart.x_range) : json(nullptr)},

@@ -1,4 +1,4 @@
-// The sentences at the head of the circle's report: see circle_finding.hpp.
+// The sentence at the head of the circle's report: see circle_finding.hpp.
 #include "host/report/circle_finding.hpp"
 
 #include <fmt/format.h>
@@ -76,16 +76,15 @@ CircleFinding circle_finding(const sim::CircleResult& result, const machine::Mac
 
   CircleFinding finding;
   finding.feed = feed;
-  finding.headline =
-      fmt::format("At {:.4g} m/min the largest {} error is {:.1f} µm ({}, {}){}.", feed * 60.0,
+  finding.sentence =
+      fmt::format("At {:.4g} m/min the largest {} error is {:.1f} µm ({}, {}){}", feed * 60.0,
                   result.runs.front().is_circle() ? "quadrant" : "following", largest->error.simulated * 1e6,
                   largest->axis, friction_label(largest->friction), beside(*largest));
   const auto model = only_model(rows);
   const auto errors = model ? mean_errors(rows) : std::string();
   if (!errors.empty())
-    finding.detail = fmt::format(
-        "Over all measured feeds, the {} model deviates from the measured quadrant errors by {} on average.", *model,
-        errors);
+    finding.sentence += fmt::format(", and over all measured feeds the simulation deviates by {} on average", errors);
+  finding.sentence += ".";
   return finding;
 }
 

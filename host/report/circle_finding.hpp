@@ -1,4 +1,4 @@
-// The sentences at the head of the circle's report: what the run shows, computed from its figures.
+// The sentence at the head of the circle's report: what the run shows, computed from its figures.
 #pragma once
 
 #include <string>
@@ -10,8 +10,7 @@
 namespace stiction::host {
 
 struct CircleFinding {
-  std::string headline;  // one sentence, plain text
-  std::string detail;    // a second one, empty where nothing was measured
+  std::string sentence;  // plain text
   double feed = 0.0;     // m/s, the feed it speaks of
 };
 

@@ -135,12 +135,11 @@ json references_json(const machine::Machine& machine) {
 
 json conditions_json(const CircleReport& report) {
   const auto& machine = report.machine;
-  json radii = json::array(), feeds = json::array(), directions = json::array(), rates = json::array();
+  json radii = json::array(), feeds = json::array(), directions = json::array();
   for (const auto& run : report.result.runs) {
     add_once(radii, fmt::format("{:.6g} mm", run.radius * 1e3));
     add_once(feeds, fmt::format("{:.4g}", run.feed * 60.0));
     add_once(directions, run.direction == sim::Direction::clockwise ? "clockwise" : "counter-clockwise");
-    add_once(rates, fmt::format("{:.5g} kHz ({:.5g} µs)", 1e-3 / run.sample_period, run.sample_period * micro));
   }
   const auto& first = report.result.runs.front();
   Conditions conditions;
@@ -157,7 +156,6 @@ json conditions_json(const CircleReport& report) {
     conditions.add("Highest speeds", joined(feeds) + " m/min");
     conditions.add("Frequencies", joined(frequencies) + " Hz");
   }
-  conditions.add("Sample rate", joined(rates));
   conditions.add("Signals", signals_text(report.result.signals));
   conditions.add("Velocity feedback",
                  by_axis(machine, [](const auto& a) { return velocity_source_name(a.encoder.velocity); }));
@@ -211,17 +209,23 @@ std::string effort_words(const CircleReport& report, std::string_view amperes) {
   return fmt::format("{}", fmt::join(words.get<std::vector<std::string>>(), " or "));
 }
 
+Origin origin_of(const CircleReport& report) {
+  auto origin = report.origin;
+  if (origin.sample_periods.empty())
+    for (const auto& run : report.result.runs) origin.sample_periods.push_back(run.sample_period);
+  return origin;
+}
+
 }  // namespace
 
 std::string circle_report_html(const CircleReport& report) {
   const auto finding = circle_finding(report.result, report.machine);
   const bool circle = report.result.runs.front().is_circle();
   return report_page(
-      {report.title, report.command, report.version}, assets::circle_html(),
-      {{"headline", escape_html(finding.headline)},
-       {"detail", escape_html(finding.detail)},
-       {"kind", circle ? "Circular test" : "Sine of one axis"},
-       {"scope",
+      {circle ? "Circular test" : "Sine of one axis", report.title, finding.sentence, report.command, report.version,
+       name_and_id(report.machine), origin_of(report)},
+      assets::circle_html(),
+      {{"scope",
         circle ? "Circular test using the feedback signal (ISO 230-4 Annex E): shows errors of servo and friction at "
                  "the encoder, never tool-point geometry."
                : "Sine of one axis, with the amplitude and frequency of a circle, using the feedback signal: shows "

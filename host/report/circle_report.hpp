@@ -5,6 +5,7 @@
 #include <string>
 
 #include "firmware/machine/model/machine.hpp"
+#include "host/report/origin.hpp"
 #include "sim/experiment/circle_result.hpp"
 
 namespace stiction::host {
@@ -15,6 +16,7 @@ struct CircleReport {
   std::string version;       // of stiction
   machine::Machine machine;  // its parameters and reference rows
   sim::CircleResult result;  // any number of friction models, feeds and directions; at least one run
+  Origin origin{};           // files, sample rate, date
 };
 
 // The whole page, UTF-8. A lap is drawn from at most 1500 of its instants (decimate.hpp); every printed figure is that

@@ -10,6 +10,7 @@
 
 #include "host/report/assets.hpp"
 #include "host/report/chart_json.hpp"
+#include "host/report/diagnosis_finding.hpp"
 #include "host/report/engineering_unit.hpp"
 #include "host/report/next_measurement_section.hpp"
 #include "host/report/page.hpp"
@@ -20,14 +21,12 @@ namespace stiction::host {
 namespace {
 
 using json = nlohmann::ordered_json;
+using namespace std::string_literals;
 
 std::string spaced(std::string key) {
   std::replace(key.begin(), key.end(), '_', ' ');
   return key;
 }
-
-std::string percent(double share) { return fmt::format("{:.{}f}", 100.0 * share, std::abs(share) < 0.1 ? 1 : 0); }
-std::string micrometres(double metres) { return fmt::format("{:.2g}", metres * 1e6); }
 
 // One row a value; a list's values are its harmonics or points, counted from 1. As many digits as the interval leaves:
 // two of its half width.
@@ -38,14 +37,15 @@ void add_rows(json& rows, const EffectParameter& parameter) {
     const bool known = k < parameter.standard_errors.size() && parameter.standard_errors[k] > 0.0;
     const double half = known ? 1.96 * parameter.standard_errors[k] : 0.0;
     const auto unit = engineering_unit(parameter.unit, std::max(std::abs(value), half));
+    const int digits = known ? std::clamp(1 - static_cast<int>(std::floor(std::log10(half * unit.factor))), 0, 9) : 0;
     const auto number = [&](double v) {
       if (!known) return fmt::format("{:.4g}", v * unit.factor);
-      const int digits = std::clamp(1 - static_cast<int>(std::floor(std::log10(half * unit.factor))), 0, 9);
       return fmt::format("{:.{}f}", v * unit.factor, digits);
     };
     rows.push_back({{"label", parameter.values.size() > 1 ? fmt::format("{} {}", label, k + 1) : label},
                     {"unit", typeset(unit.unit)},
                     {"value", number(value)},
+                    {"half", known ? json(fmt::format("{:.{}f}", half * unit.factor, digits)) : json(nullptr)},
                     {"low", known ? json(number(value - half)) : json(nullptr)},
                     {"high", known ? json(number(value + half)) : json(nullptr)}});
   }
@@ -91,6 +91,7 @@ json cause_json(const Finding& finding) {
           {"advice", effect.advice},
           {"page", fmt::format("{}/page.md", effect.folder)},
           {"explains", percent(finding.explains)},
+          {"residual", finding.in_command ? "command residual" : "residual force"},
           {"gain", gain_percent(gained_ratio(finding))},
           {"gain_interval",
            fmt::format("{} to {}", gain_percent(finding.holdout.ci95[1]), gain_percent(finding.holdout.ci95[0]))},
@@ -135,55 +136,11 @@ json rows_json(const ReferenceRows& reference) {
   return rows;
 }
 
-std::string scores_text(const ReferenceRows& reference) {
-  const auto line = [](const RowScores& s, double RowScore::*member) {
-    return fmt::format("from {} % (published simulation) to {} %", percent(s.published.*member),
-                       percent(s.extended.*member));
-  };
+std::string rows_note(const ReferenceRows& reference) {
   return fmt::format(
-      "On the held-out feeds the mean deviation of the current falls {}, and that of the error at reversals changes "
-      "{}. With each feed left out in turn, that of the current falls {}.",
-      line(reference.unused, &RowScore::current), line(reference.unused, &RowScore::error),
-      line(reference.left_out, &RowScore::current));
-}
-
-std::string headline(const Verdict& verdict) {
-  if (verdict.findings.empty())
-    return verdict.unexplained.signature
-               ? "No known cause explains the residual, but the residual has a repeatable pattern."
-               : "The simulation agrees with the data within their noise.";
-  std::vector<std::string> names;
-  for (const auto& finding : verdict.findings) {
-    std::string title(finding.effect->title);
-    title[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(title[0])));
-    if (std::find(names.begin(), names.end(), title) == names.end()) names.push_back(title);
-  }
-  return fmt::format("The machine file lacks or misstates: {}.", fmt::join(names, ", "));
-}
-
-std::string gain_line(const Verdict& verdict) {
-  if (verdict.reference) return scores_text(*verdict.reference);
-  const auto& [before, after] = std::pair(verdict.baseline, verdict.extended);
-  if (verdict.findings.empty() || before.force_rms <= 0.0) return "";
-  // A cause stands that the held-out records do not refute: one that hardly acts there, a gap that swings as it likes.
-  auto text =
-      after.force_rms < before.force_rms
-          ? fmt::format(
-                "With the extended machine file, the residual force on held-out data falls from {:.3g} N to {:.3g} N "
-                "rms",
-                before.force_rms, after.force_rms)
-          : fmt::format(
-                "With the extended machine file, the residual force on held-out data does not fall ({:.3g} N rms)",
-                after.force_rms);
-  if (before.position_error_rms && after.position_error_rms)
-    text += fmt::format(", the position error of the simulation from {} µm to {} µm rms",
-                        micrometres(*before.position_error_rms), micrometres(*after.position_error_rms));
-  if (before.command_rms && after.command_rms && *after.command_rms < *before.command_rms)
-    text += fmt::format(
-        ", the command residual (recorded controller output minus that of the machine file) from {:.2g} to {:.2g} {} "
-        "rms",
-        *before.command_rms, *after.command_rms, verdict.command_unit);
-  return text + ".";
+      "Shares refer to the squares of relative deviations, so that all feeds have equal weight. With each feed left "
+      "out in turn, the mean deviation of the current goes from {} % (published simulation) to {} %.",
+      percent(reference.left_out.published.current), percent(reference.left_out.extended.current));
 }
 
 std::string unexplained_text(const Unexplained& rest) {
@@ -207,20 +164,31 @@ std::string files(const std::vector<std::string>& paths) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
+Origin origin_of(const DiagnosisReport& report) {
+  auto origin = report.origin;
+  const auto& verdict = report.verdict;
+  if (origin.sources.empty()) {
+    origin.sources = verdict.logs;
+    origin.sources.insert(origin.sources.end(), verdict.holdout.begin(), verdict.holdout.end());
+  }
+  if (origin.sources.empty() && verdict.reference)
+    origin.sources = {"measured rows of the machine file, " + verdict.reference->reference};
+  if (origin.machine_files.empty()) origin.machine_files = {verdict.machine};
+  return origin;
+}
+
 json conditions_json(const Verdict& verdict) {
   Conditions conditions;
-  conditions.add("Machine file", std::filesystem::path(verdict.machine).filename().string());
   if (verdict.reference) {
     std::vector<std::string> feeds;
     for (const auto& row : verdict.reference->rows)
       if (row.training && row.axis == verdict.reference->rows.front().axis)
         feeds.push_back(fmt::format("{:g}", row.feed * 60.0));
-    conditions.add("Measured", "rows of the machine file, " + verdict.reference->reference);
     conditions.add("Training", fmt::format("circle at {} m/min, steady friction, presliding", fmt::join(feeds, ", ")));
     conditions.add("Held-out data", "circles at all other feeds");
     return conditions.json();
   }
-  conditions.add("Logs", files(verdict.logs));
+  conditions.add("Training", files(verdict.logs));
   conditions.add("Held-out data", verdict.holdout_is_a_part ? "the last third of each log" : files(verdict.holdout));
   return conditions.json();
 }
@@ -231,17 +199,22 @@ std::string diagnosis_report_html(const DiagnosisReport& report) {
   const auto& verdict = report.verdict;
   std::vector<sim::Chart> all = verdict.before_after;
   json charts = json::array(), causes = json::array(), rejected = json::array(), notes = json::array();
-  for (const auto& chart : verdict.before_after) charts.push_back(chart_json(chart, "before-after"));
+  // A chart without a title shows the record of the one above; the others are of several records.
+  std::string record;
+  for (const auto& chart : verdict.before_after) {
+    if (!chart.title.empty()) record = chart.title;
+    charts.push_back(chart_json(chart, "before-after", record));
+  }
   for (const auto& finding : verdict.findings) {
     for (const auto& chart : finding.charts) {
-      charts.push_back(chart_json(chart, fmt::format("cause-charts-{}", causes.size())));
+      charts.push_back(chart_json(chart, fmt::format("cause-charts-{}", causes.size()), ""));
       all.push_back(chart);
     }
     causes.push_back(cause_json(finding));
   }
   if (verdict.next)
     for (const auto& chart : verdict.next->charts) {
-      charts.push_back(chart_json(chart, "next-charts"));
+      charts.push_back(chart_json(chart, "next-charts", "next"));
       all.push_back(chart);
     }
   for (const auto& each : verdict.rejected)
@@ -253,12 +226,11 @@ std::string diagnosis_report_html(const DiagnosisReport& report) {
       {"picture", verdict.findings.empty() ? "" : "with the given and with the extended machine file"},
       {"residuals", residuals_json(verdict)},
       {"rows", verdict.reference ? rows_json(*verdict.reference) : json::array()},
-      {"holdout", verdict.reference
-                      ? "Shares refer to the squares of relative deviations, so that all feeds have equal weight."
+      {"holdout", verdict.reference ? rows_note(*verdict.reference)
                   : verdict.holdout_is_a_part
                       ? "No held-out log was given, so the last third of each log is used. This cannot separate a "
-                        "cause from other effects that repeat with the same motion. Record a different trajectory."
-                      : "The held-out logs were not used to choose or fit the causes."},
+                        "cause from other effects that repeat with the same motion. Record a different trajectory."s
+                      : "The held-out logs were not used to choose or fit the causes."s},
       {"causes", causes},
       {"next", next_measurement_json(verdict.next)},
       {"rejected", rejected},
@@ -267,9 +239,9 @@ std::string diagnosis_report_html(const DiagnosisReport& report) {
       {"series", series_json(all)},
       {"charts", charts},
       {"machine", machine_json(report.machine)}};
-  return report_page({"Diagnosis: " + report.machine.name, report.command, report.version}, assets::diagnosis_html(),
-                     {{"verdict", escape_html(headline(verdict))}, {"gain", escape_html(gain_line(verdict))}}, data,
-                     {assets::charts_js(), assets::diagnosis_js()});
+  return report_page({"Diagnosis", "Diagnosis: " + report.machine.name, diagnosis_sentence(verdict), report.command,
+                      report.version, name_and_id(report.machine), origin_of(report)},
+                     assets::diagnosis_html(), {}, data, {assets::charts_js(), assets::diagnosis_js()});
 }
 
 }  // namespace stiction::host

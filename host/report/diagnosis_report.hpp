@@ -6,6 +6,7 @@
 
 #include "firmware/machine/model/machine.hpp"
 #include "host/diagnose/verdict.hpp"
+#include "host/report/origin.hpp"
 
 namespace stiction::host {
 
@@ -14,6 +15,7 @@ struct DiagnosisReport {
   std::string version;  // of stiction
   machine::Machine machine;
   Verdict verdict;
+  Origin origin{};  // files, sample rate, date
 };
 
 // The whole page, UTF-8; one file that loads nothing. Throws std::invalid_argument when a series' x and y differ in

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "firmware/machine/model/machine.hpp"
+#include "host/report/origin.hpp"
 #include "sim/experiment/experiment_result.hpp"
 
 namespace stiction::host {
@@ -14,6 +15,7 @@ struct ExperimentReport {
   std::string version;  // of stiction
   machine::Machine machine;
   sim::ExperimentResult result;
+  Origin origin{};  // files, sample rate, date
 };
 
 // The whole page, UTF-8. A series is drawn from at most 3000 of its points (decimate.hpp, select_extremes); every

@@ -1,17 +1,16 @@
 #include "host/report/identification_report.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "host/report/assets.hpp"
 #include "host/report/decimate.hpp"
 #include "host/report/engineering_unit.hpp"
+#include "host/report/identification_finding.hpp"
 #include "host/report/page.hpp"
 #include "host/report/page_data.hpp"
 #include "host/report/typeset.hpp"
@@ -107,13 +106,10 @@ json initial_json(const InitialValues& initial) {
   return rows;
 }
 
-std::string verdict_of(const Identification& result) {
-  std::string text = fmt::format("{} of {} parameters are determined", result.parameters.size(),
-                                 result.parameters.size() + result.not_determined.size());
-  if (result.force_rms > 0.0)
-    text +=
-        fmt::format("; the residual of the fit is {:.3g} N rms of {:.3g} N rms", result.residual_rms, result.force_rms);
-  return text + ".";
+Origin origin_of(const IdentificationReport& report) {
+  auto origin = report.origin;
+  if (origin.sources.empty()) origin.sources = report.result.sources;
+  return origin;
 }
 
 }  // namespace
@@ -126,9 +122,6 @@ std::string identification_report_html(const IdentificationReport& report) {
     open.push_back({{"label", label_of(n.name).text}, {"why", typeset(n.why)}, {"record", typeset(n.record)}});
   Conditions conditions;
   conditions.add("Axis", result.axis);
-  std::vector<std::string> names;
-  for (const auto& source : result.sources) names.push_back(std::filesystem::path(source).filename().string());
-  conditions.add("Logs", fmt::format("{}", fmt::join(names, ", ")));
   conditions.add("Samples", fmt::format("{}", result.samples));
   const json data{{"schema", "stiction.identification-report/1"},
                   {"conditions", conditions.json()},
@@ -138,10 +131,10 @@ std::string identification_report_html(const IdentificationReport& report) {
                   {"residuals", residuals_json(result)},
                   {"initial", initial_json(result.initial)},
                   {"machine", machine_json(report.machine)}};
-  return report_page({"Identification: " + report.machine.name, report.command, report.version},
-                     assets::identification_html(),
-                     {{"verdict", escape_html(verdict_of(result))}, {"method", escape_html(typeset(result.method))}},
-                     data, {assets::identification_js()});
+  return report_page({"Identification", "Identification: " + report.machine.name, identification_sentence(result),
+                      report.command, report.version, name_and_id(report.machine), origin_of(report)},
+                     assets::identification_html(), {{"method", escape_html(typeset(result.method))}}, data,
+                     {assets::identification_js()});
 }
 
 }  // namespace stiction::host

@@ -6,6 +6,7 @@
 
 #include "firmware/machine/model/machine.hpp"
 #include "host/identify/identification.hpp"
+#include "host/report/origin.hpp"
 
 namespace stiction::host {
 
@@ -14,6 +15,7 @@ struct IdentificationReport {
   std::string version;  // of stiction
   machine::Machine machine;
   Identification result;
+  Origin origin{};  // files, sample rate, date
 };
 
 // The whole page, UTF-8. The residual of each log is drawn from at most 3000 of its rows (decimate.hpp).

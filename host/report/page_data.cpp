@@ -66,25 +66,33 @@ std::string signals_text(const std::string& signals) {
   return signals;
 }
 
+std::string name_and_id(const machine::Machine& machine) { return fmt::format("{} ({})", machine.name, machine.id); }
+
 std::string report_page(const PageFrame& frame, std::string_view body,
                         std::map<std::string, std::string, std::less<>> texts, const json& data,
                         std::initializer_list<std::string_view> scripts) {
   const auto title = escape_html(frame.title), version = escape_html(frame.version);
-  texts["title"] = title;
-  texts["closing"] = fill_template(assets::closing_html(), {{"version", version},
-                                                            {"command", escape_html(frame.command)},
-                                                            {"plotly_license", escape_html(assets::plotly_license())}});
+  texts["opening"] = fill_template(
+      assets::opening_html(), {{"kind", escape_html(frame.kind)},
+                               {"title", title},
+                               {"sentence", escape_html(frame.sentence)},
+                               {"origin", origin_html(frame.origin, frame.machine, frame.command, frame.version)}});
+  texts["closing"] = fill_template(assets::closing_html(),
+                                   {{"version", version}, {"plotly_license", escape_html(assets::plotly_license())}});
   std::string all_scripts;
-  for (const auto script : {assets::page_js(), assets::models_js(), assets::machine_js()})
+  for (const auto script : {assets::page_js(), assets::models_js(), assets::figures_js(), assets::cursors_js(),
+                            assets::save_js(), assets::machine_js()})
     all_scripts.append(script).append("\n");
   for (const auto script : scripts) all_scripts.append(script).append("\n");
-  return fill_template(assets::frame_html(), {{"title", title},
-                                              {"version", version},
-                                              {"style", std::string(assets::report_css())},
-                                              {"body", fill_template(body, texts)},
-                                              {"data", json_for_script(data)},
-                                              {"plotly", std::string(assets::plotly_js())},
-                                              {"scripts", all_scripts}});
+  return fill_template(assets::frame_html(),
+                       {{"title", title},
+                        {"version", version},
+                        {"scheme", std::string(assets::scheme_js())},
+                        {"style", std::string(assets::colours_css()).append(assets::report_css())},
+                        {"body", fill_template(body, texts)},
+                        {"data", json_for_script(data)},
+                        {"plotly", std::string(assets::plotly_js())},
+                        {"scripts", all_scripts}});
 }
 
 }  // namespace stiction::host

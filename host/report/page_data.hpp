@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "firmware/machine/model/machine.hpp"
+#include "host/report/origin.hpp"
 
 namespace stiction::host {
 
@@ -47,15 +48,22 @@ std::string by_axis(const machine::Machine& machine, const std::function<std::st
 // "fixed" and "double" for readers.
 std::string signals_text(const std::string& signals);
 
+// "MCFV 5050 LN cross table (mcfv5050ln)". `machine`: of the report.
+std::string name_and_id(const machine::Machine& machine);
+
 struct PageFrame {
-  std::string title;    // plain text, as the following
-  std::string command;  // the command line that made the page
-  std::string version;  // of stiction
+  std::string kind;      // "Diagnosis"; plain text, as the following
+  std::string title;     // "Diagnosis: MCFV 5050 LN cross table"
+  std::string sentence;  // the one at the head: what was found, and what it is worth
+  std::string command;   // the command line that made the page
+  std::string version;   // of stiction
+  std::string machine;   // its name and id
+  Origin origin;         // date, machine file, source files, sample rate
 };
 
-// A whole page: frame.html around `body`, which has the markers {{title}} and {{closing}} (machine and command) and
-// those of `texts`, whose values are HTML. `scripts` run in their order, behind page.js, models.js and machine.js.
-// `data`: becomes DATA of the scripts.
+// A whole page: frame.html around `body`, which has the markers {{opening}} (title, sentence, origin) and {{closing}}
+// (machine sheet) and those of `texts`, whose values are HTML. `scripts` run in their order, behind those that all
+// pages have. `data`: becomes DATA of the scripts.
 std::string report_page(const PageFrame& frame, std::string_view body,
                         std::map<std::string, std::string, std::less<>> texts, const nlohmann::ordered_json& data,
                         std::initializer_list<std::string_view> scripts);

@@ -45,13 +45,13 @@ function drawKey() {
     node.append(text);
     return node;
   };
-  const items = [mark('<svg viewBox="0 0 30 12"><path d="M0 6H30" stroke="#5c6875" stroke-width="1.6"/><circle cx="15" cy="6" r="3" fill="#5c6875"/></svg>', 'simulated')];
+  const items = [mark('<svg viewBox="0 0 30 12"><path d="M0 6H30" stroke="currentColor" stroke-width="1.6"/><circle cx="15" cy="6" r="3" fill="currentColor"/></svg>', 'simulated')];
   if (DATA.directions.length > 1)
-    items.push(mark('<svg viewBox="0 0 30 12"><path d="M0 6H30" stroke="#5c6875" stroke-width="1.6" stroke-dasharray="5 3"/></svg>', 'clockwise'));
+    items.push(mark('<svg viewBox="0 0 30 12"><path d="M0 6H30" stroke="currentColor" stroke-width="1.6" stroke-dasharray="5 3"/></svg>', 'clockwise'));
   if (DATA.references.some(row => !row.measured))
-    items.push(mark('<svg viewBox="0 0 30 12"><circle cx="15" cy="6" r="5" fill="none" stroke="#5c6875" stroke-width="1.3"/></svg>', 'published simulation'));
+    items.push(mark('<svg viewBox="0 0 30 12"><circle cx="15" cy="6" r="5" fill="none" stroke="currentColor" stroke-width="1.3"/></svg>', 'published simulation'));
   if (DATA.references.some(row => row.measured))
-    items.push(mark('<svg viewBox="0 0 30 12"><path d="M15 0L21 6L15 12L9 6Z" fill="#000"/></svg>', 'measured'));
+    items.push(mark('<svg viewBox="0 0 30 12"><path d="M15 0L21 6L15 12L9 6Z" class="ink"/></svg>', 'measured'));
   show('feed-key', ...items);
 }
 
@@ -91,7 +91,9 @@ else {
 drawMachine();
 change({});
 document.getElementById('peaks').on('plotly_click', event => {
+  if (FIGURES.get('peaks').cursors) return;
   const feed = event.points[0].x;
   if (DATA.feeds.includes(feed)) change({ feed });
 });
 drawForPaper();
+drawSchemeSwitch();

@@ -7,7 +7,7 @@ const REVERSALS = IS_CIRCLE ? [0, 90, 180, 270] : [0, 180];  // degrees of the p
 
 const DIRECTION_TEXT = { ccw: 'counter-clockwise', cw: 'clockwise', both: 'both directions' };
 const DIRECTION_SIGN = { ccw: '↺ ', cw: '↻ ', both: '' };
-const DASH = { ccw: 'solid', cw: '5px 3px' };
+const CLOCKWISE_DASH = '1.5px 3px';  // of the second direction, where both are on the page
 
 const modelLabels = Object.fromEntries(DATA.models.map(model => [model.name, model.label]));
 const modelStyles = stylesOf(DATA.models.map(model => model.name));
@@ -45,7 +45,8 @@ function traceName(run) {
 }
 
 function lineOf(run, width = 1.6) {
-  return { color: modelStyles[run.friction].colour, width, dash: DASH[run.direction] };
+  const { colour, dash } = modelStyles[run.friction];
+  return { color: colour, width, dash: run.direction === 'cw' && DATA.directions.length > 1 ? CLOCKWISE_DASH : dash };
 }
 
 function reference(axis, feed, friction = null) {
@@ -85,60 +86,64 @@ function sectorShape(centre, half, inner, outer) {
   for (let i = 0; i <= 24; ++i) points.push([outer, centre - half + i * half / 12]);
   for (let i = 24; i >= 0; --i) points.push([inner, centre - half + i * half / 12]);
   const path = points.map(([r, a]) => `${r * Math.cos(a * Math.PI / 180)},${r * Math.sin(a * Math.PI / 180)}`);
-  return { type: 'path', path: `M${path.join('L')}Z`, fillcolor: '#eef2f6', line: { width: 0 }, layer: 'below' };
+  return { type: 'path', path: `M${path.join('L')}Z`, fillcolor: 'var(--sector)', line: { width: 0 }, layer: 'below' };
 }
 
 const extreme = (values, pick) => values.reduce((most, value) => pick(most, value));
 
 // Rings a division apart around the circle, as many as the deviations need; what lies in the middle says the scale.
-function polarGrid(state, runs, radius, division) {
+function polarGrid(state, runs, radius, division, narrow) {
   const step = division * state.magnification * 1e-3;  // mm drawn
   const high = Math.max(2, ...runs.map(run => Math.ceil(extreme(run.radial, Math.max) / division)));
   const low = Math.min(-2, ...runs.map(run => Math.floor(extreme(run.radial, Math.min) / division)));
   const shapes = [], annotations = [];
   for (let ring = low; ring <= high; ++ring) {
     if (radius + ring * step <= 0) continue;
-    shapes.push(circleShape(radius + ring * step, ring ? { color: GRID, width: 1 } : { color: '#77828e', width: 1 }));
-    if (ring && (Math.abs(ring) < 3 || ring % 2 === 0))
+    shapes.push(circleShape(radius + ring * step, ring ? { color: GRID, width: 1 } : { color: RULE, width: 1 }));
+    if (ring && (narrow ? ring % 2 === 0 : Math.abs(ring) < 3 || ring % 2 === 0))
       annotations.push(label(`${ring > 0 ? '+' : '−'}${Math.abs(ring) * division}`, (radius + ring * step) * Math.SQRT1_2,
-                             (radius + ring * step) * Math.SQRT1_2, { font: { size: 10.5, color: QUIET }, bgcolor: 'rgba(255,255,255,0.75)', borderpad: 0 }));
+                             (radius + ring * step) * Math.SQRT1_2, { font: { size: 10.5, color: QUIET }, bgcolor: 'var(--veil)', borderpad: 0 }));
   }
   const inner = Math.max(0, radius + low * step), outer = radius + high * step;
   for (let angle = 0; angle < 360; angle += 30) {
     const c = Math.cos(angle * Math.PI / 180), s = Math.sin(angle * Math.PI / 180);
     shapes.push({ type: 'line', x0: inner * c, y0: inner * s, x1: outer * c, y1: outer * s, layer: 'below',
-                  line: { color: angle % 90 ? GRID : '#c3cbd4', width: 1 } });
+                  line: { color: angle % 90 ? GRID : 'var(--line)', width: 1 } });
     if (angle % 90 === 0) annotations.push(label(`${angle}°`, (outer + 0.07 * radius) * c, (outer + 0.07 * radius) * s));
   }
   return { shapes, annotations, inner, outer, step };
 }
 
-function scaleBar(state, division, step, radius) {
-  const line = { color: INK, width: 1.5 }, y = -0.02 * radius, tick = 0.018 * radius;
+// On a narrow page the words in the middle need more of the circle.
+function scaleBar(state, division, step, radius, narrow) {
+  const line = { color: INK, width: 1.5 }, y = -0.02 * radius, tick = 0.018 * radius, apart = narrow ? 1.9 : 1, size = narrow ? 10 : 12;
   const bar = (x0, y0, x1, y1) => ({ type: 'line', x0, y0, x1, y1, line });
+  const words = (content, height, font) => label(content, 0, apart * height * radius, { font: { size, color: QUIET, ...font } });
   return { shapes: [bar(-step / 2, y, step / 2, y), bar(-step / 2, y - tick, -step / 2, y + tick), bar(step / 2, y - tick, step / 2, y + tick)],
-           annotations: [label(`<b>${state.feed} m/min</b>`, 0, 0.25 * radius, { font: { size: 15, color: INK } }),
-                         label(DIRECTION_SIGN[state.direction] + DIRECTION_TEXT[state.direction], 0, 0.15 * radius),
-                         label(`${division} µm per division`, 0, -0.10 * radius, { font: { size: 12, color: INK } }),
-                         label(`deviation magnified ${state.magnification} ×`, 0, -0.19 * radius)] };
+           annotations: [words(`<b>${state.feed} m/min</b>`, 0.25, { size: narrow ? 12 : 15, color: INK }),
+                         words(DIRECTION_SIGN[state.direction] + DIRECTION_TEXT[state.direction], 0.15),
+                         words(`${division} µm per division`, -0.10, { color: INK }),
+                         words(narrow ? `magnified ${state.magnification} ×` : `deviation magnified ${state.magnification} ×`, -0.19)] };
 }
 
-function drawPolar(state) {
-  const runs = chosenRuns(state);
+function polarLayout(state, runs, narrow) {
   const radius = (runs[0] || DATA.runs[0]).radius;
   const division = roundUpNice(radius / 9 / state.magnification * 1e3);  // µm
-  const grid = polarGrid(state, runs, radius, division);
-  const bar = scaleBar(state, division, grid.step, radius);
+  const grid = polarGrid(state, runs, radius, division, narrow);
+  const bar = scaleBar(state, division, grid.step, radius, narrow);
   const sector = sectorShape(state.quadrant, quadrantHalfWidth(state), grid.inner, grid.outer);
   const limit = grid.outer + 0.2 * radius;
   const ticks = [-radius, -radius / 2, 0, radius / 2, radius];
   const style = { range: [-limit, limit], showgrid: false, tickvals: ticks, constrain: 'domain' };
-  return drawChart('polar', runs.map(run => polarTrace(run, state.magnification)), {
-    margin: { l: 52, r: 8, t: 8, b: 46 },
-    xaxis: axisStyle(`${DATA.axes[0]}, mm`, style),
-    yaxis: axisStyle(`${DATA.axes[1]}, mm`, { ...style, scaleanchor: 'x' }),
-    shapes: [sector, ...grid.shapes, ...bar.shapes], annotations: [...grid.annotations, ...bar.annotations],
-  });
+  return { margin: { l: 52, r: 8, t: 8, b: 46 },
+           xaxis: axisStyle(`${DATA.axes[0]}, mm`, style),
+           yaxis: axisStyle(`${DATA.axes[1]}, mm`, { ...style, scaleanchor: 'x' }),
+           shapes: [sector, ...grid.shapes, ...bar.shapes], annotations: [...grid.annotations, ...bar.annotations] };
+}
+
+function drawPolar(state) {
+  const runs = chosenRuns(state);
+  return drawChart('polar', runs.map(run => polarTrace(run, state.magnification)), narrow => polarLayout(state, runs, narrow));
 }
 
 // ---- quadrant ----
@@ -182,7 +187,7 @@ function quadrantHalfWidth(state) {
 function measuredTrace(axis, measured, half, quadrant, peaks) {
   const level = (peaks >= 0 ? 1 : -1) * measured.error;
   return { name: 'measured', x: [quadrant - half, quadrant + half], y: [level, level], mode: 'lines+markers', cliponaxis: false,
-           line: { color: '#000', width: 1, dash: '2px 3px' }, marker: MEASURED,
+           line: { color: INK, width: 1, dash: '2px 3px' }, marker: MEASURED,
            hovertemplate: `${axis} measured, peak ${formatNumber(measured.error, 1)} µm<extra></extra>` };
 }
 
@@ -201,13 +206,13 @@ function drawQuadrant(state) {
   if (measured) {
     traces.push(measuredTrace(axis, measured, half, quadrant, peaks));
     annotations.push(label(`measured peak ${formatNumber(measured.error, 1)} µm`, quadrant - half, traces.at(-1).y[0],
-                           { xanchor: 'left', yanchor: peaks >= 0 ? 'bottom' : 'top', xshift: 8, font: { size: 12, color: '#000' } }));
+                           { xanchor: 'left', yanchor: peaks >= 0 ? 'bottom' : 'top', xshift: 8, font: { size: 12, color: INK } }));
   }
   return drawChart('quadrant', traces, {
     margin: { l: 58, r: 14, t: 24, b: 46 },
     xaxis: axisStyle(IS_CIRCLE ? 'angle from +' + DATA.axes[0] + ', degrees' : 'phase of the sine, degrees', { range: [quadrant - half, quadrant + half], ticksuffix: '°' }),
-    yaxis: axisStyle(`${axis} error at the encoder, µm`, { zeroline: true, zerolinecolor: '#9aa5b1', nticks: 7 }),
-    shapes: [{ type: 'line', x0: quadrant, x1: quadrant, yref: 'paper', y0: 0, y1: 1, line: { color: '#9aa5b1', width: 1, dash: 'dot' }, layer: 'below' }],
+    yaxis: axisStyle(`${axis} error at the encoder, µm`, { zeroline: true, zerolinecolor: RULE, nticks: 7 }),
+    shapes: [{ type: 'line', x0: quadrant, x1: quadrant, yref: 'paper', y0: 0, y1: 1, line: { color: RULE, width: 1, dash: 'dot' }, layer: 'below' }],
     annotations,
   });
 }

@@ -35,12 +35,12 @@ function drawLap(state) {
                     xaxis: 'x', yaxis: 'y' + n, hovertemplate: `${traceName(run)}<br>${channel.axis} %{y:.2f} ${channel.unit} at %{x:.3f} s<extra></extra>` });
     const height = (1 - (CHANNELS.length - 1) * LAP_GAP) / CHANNELS.length, bottom = 1 - row * LAP_GAP - (row + 1) * height;
     layout['yaxis' + n] = axisStyle(`${channel.axis} ${channel.name}, ${channel.unit}`,
-      { domain: [Math.max(0, bottom), bottom + height], anchor: 'x', zeroline: true, zerolinecolor: '#9aa5b1', nticks: 5 });
+      { domain: [Math.max(0, bottom), bottom + height], anchor: 'x', zeroline: true, zerolinecolor: RULE, nticks: 5 });
   });
   layout.xaxis = axisStyle('time in the lap, s', { anchor: 'y' + CHANNELS.length, range: runs.length ? [0, Math.max(...runs.map(run => run.time.at(-1)))] : undefined });
   // Opposite directions pass the same reversal at other instants, so both together have marks without words.
   for (const { time, angle, axis } of runs.length ? reversals(runs[0]) : []) {
-    layout.shapes.push({ type: 'line', x0: time, x1: time, yref: 'paper', y0: 0, y1: 1, layer: 'below', line: { color: '#9aa5b1', width: 1, dash: 'dot' } });
+    layout.shapes.push({ type: 'line', x0: time, x1: time, yref: 'paper', y0: 0, y1: 1, layer: 'below', line: { color: RULE, width: 1, dash: 'dot' } });
     if (state.direction !== 'both') layout.annotations.push(label(`${axis} reverses, ${angle}°`, time, 1, { yref: 'paper', yanchor: 'bottom', font: { size: 11.5, color: QUIET } }));
   }
   return drawChart('lap', traces, layout);
@@ -75,18 +75,31 @@ function peakTraces(state, channel, axes) {
   return traces;
 }
 
-function drawPeaks(state) {
-  const traces = [], layout = { margin: { l: 58, r: 14, t: 10, b: 46 }, shapes: [], annotations: [] };
+// Error left, current right, one row an axis; on a narrow page one below the other.
+function peakDomains(i, narrow) {
+  if (narrow) {
+    const height = 1 / CHANNELS.length, top = 1 - i * height;
+    return { x: [0, 1], y: [top - height + (i + 1 < CHANNELS.length ? 0.07 : 0), top] };
+  }
+  const rows = CHANNELS.length > 2 ? 2 : 1;
+  return { x: i % 2 ? [0.545, 1] : [0, 0.455], y: rows === 1 ? [0, 1] : i < 2 ? [0.575, 1] : [0, 0.425] };
+}
+
+function peakLayout(state, narrow) {
+  const layout = { margin: { l: 58, r: 14, t: 10, b: 46 }, shapes: [], annotations: [] };
   const feeds = [...new Set([...DATA.feeds, ...DATA.references.map(row => row.feed)])];
   const range = [0, 1.06 * Math.max(...feeds)];
   CHANNELS.forEach((channel, i) => {
-    const n = i ? i + 1 : '', column = i % 2, top = i < 2, rows = CHANNELS.length > 2 ? 2 : 1;
-    traces.push(...peakTraces(state, channel, { xaxis: 'x' + n, yaxis: 'y' + n }));
-    layout['xaxis' + n] = axisStyle('feed, m/min', { domain: column ? [0.545, 1] : [0, 0.455], anchor: 'y' + n, range, ...(feeds.length <= 8 ? { tickvals: feeds } : {}) });
-    layout['yaxis' + n] = axisStyle(`${channel.axis} peak ${channel.name}, ${channel.unit}`,
-      { domain: rows === 1 ? [0, 1] : top ? [0.575, 1] : [0, 0.425], anchor: 'x' + n, rangemode: 'tozero' });
+    const n = i ? i + 1 : '', domain = peakDomains(i, narrow);
+    layout['xaxis' + n] = axisStyle('feed, m/min', { domain: domain.x, anchor: 'y' + n, range, ...(feeds.length <= 8 && !narrow ? { tickvals: feeds } : {}) });
+    layout['yaxis' + n] = axisStyle(`${channel.axis} peak ${channel.name}, ${channel.unit}`, { domain: domain.y, anchor: 'x' + n, rangemode: 'tozero' });
     layout.shapes.push({ type: 'line', xref: 'x' + n, yref: `y${n} domain`, x0: state.feed, x1: state.feed, y0: 0, y1: 1, layer: 'below',
-                         line: { color: '#dfe5eb', width: 9 } });
+                         line: { color: 'var(--stripe)', width: 9 } });
   });
-  return drawChart('peaks', traces, layout);
+  return layout;
+}
+
+function drawPeaks(state) {
+  const traces = CHANNELS.flatMap((channel, i) => peakTraces(state, channel, { xaxis: 'x' + (i ? i + 1 : ''), yaxis: 'y' + (i ? i + 1 : '') }));
+  return drawChart('peaks', traces, narrow => peakLayout(state, narrow));
 }

@@ -10,16 +10,55 @@ function bare(drawn) {
 
 // ---- all causes in one table ----
 
+const THUMBNAIL = { width: 132, height: 44, points: 400 };  // pixels
+
+// The first chart of a cause as a small picture: its shape, without scales.
+function thumbnail(i) {
+  const chart = DATA.charts.find(each => each.place === `cause-charts-${i}`);
+  if (!chart) return '–';
+  const along = x => chart.logarithmic_x ? Math.log10(x) : x;
+  const picked = chart.series.map(series => {
+    const kept = Array.from(series.y.keys()).filter(k => Number.isFinite(series.y[k]) && Number.isFinite(along(series.x[k])));
+    return kept.filter((_, k) => k % Math.ceil(kept.length / THUMBNAIL.points) === 0).map(k => [along(series.x[k]), series.y[k]]);
+  });
+  const range = which => extremes(picked.flat().map(point => point[which]));
+  const [[left, right], [low, high]] = [range(0), range(1)];
+  const place = ([x, y]) => [(x - left) / (right - left || 1) * (THUMBNAIL.width - 6) + 3, (high - y) / (high - low || 1) * (THUMBNAIL.height - 6) + 3].map(each => each.toFixed(1));
+  const drawn = chart.series.map((series, k) => {
+    const { colour } = seriesStyles[series.name];
+    return series.points ? svg('g', { style: `fill:${colour}` }, ...picked[k].map(point => svg('circle', { cx: place(point)[0], cy: place(point)[1], r: 1.3 })))
+      : svg('polyline', { points: picked[k].map(point => place(point).join(',')).join(' '), style: `fill:none;stroke:${colour};stroke-width:1.4` });
+  });
+  const picture = svg('svg', { class: 'thumbnail', viewBox: `0 0 ${THUMBNAIL.width} ${THUMBNAIL.height}`, role: 'img', 'aria-label': `${chart.title}: ${chart.y_label} over ${chart.x_label}` }, ...drawn);
+  return element('a', { href: `#cause-charts-${i}`, title: `${chart.title}: ${chart.y_label} over ${chart.x_label}` }, picture);
+}
+
+const extremes = values => values.reduce(([low, high], value) => [Math.min(low, value), Math.max(high, value)], [Infinity, -Infinity]);
+
+const SHOWN_VALUES = 4;
+function valueLines(cause) {
+  const line = row => element('div', {}, `${row.label} `, element('strong', {}, minus(row.value)), `${row.half ? ` ± ${row.half}` : ''} ${row.unit}`);
+  const more = cause.parameters.length - SHOWN_VALUES;
+  return [...cause.parameters.slice(0, SHOWN_VALUES).map(line), ...(more > 0 ? [element('div', { class: 'quiet' }, `${more} more below`)] : [])];
+}
+
+function explained(cause) {
+  return [element('div', {}, element('strong', {}, `${cause.explains} %`), ` of the ${cause.residual}`),
+          element('div', {}, `${minus(cause.gain)} % less on held-out data (95 %: ${minus(cause.gain_interval)} %)`),
+          ...(cause.part ? [element('div', {}, `up to ${cause.part} µm of position error`)] : [])];
+}
+
 function drawSummary() {
   const { baseline, extended } = DATA.residuals;
   document.getElementById('summary-what').textContent = DATA.causes.length ? 'sorted by explained variance' : 'none found';
   const rows = DATA.causes.map((cause, i) => classed('first', [
-    { text: element('a', { href: `#cause-${i}` }, `${i + 1}  ${cause.title}`), head: true, class: 'figure' }, text(cause.axis, { class: 'text' }),
-    text(cause.explains, { class: 'value' }), text(minus(cause.gain)), text(minus(cause.gain_interval), { class: 'text unit' }),
-    text(cause.part || '–')]));
-  const head = [text('Cause', { class: 'text' }), text('Axis', { class: 'text' }), text('Explains, %'), text('Residual force reduced by, %'),
-                text('95 % interval', { class: 'text unit' }), text('Position error, µm')];
-  if (rows.length) show('summary', bare(table([head], rows)));
+    { text: element('a', { href: `#cause-${i}` }, `${i + 1}  ${cause.title}`), head: true, class: 'text wrap' }, text(cause.axis, { class: 'text', label: 'Axis' }),
+    text(thumbnail(i), { class: 'text', label: 'Plot' }), text(valueLines(cause), { class: 'text wrap', label: 'Value ± uncertainty (95 %)' }),
+    text(explained(cause), { class: 'text wrap', label: 'Explains' }), text(cause.advice, { class: 'text wrap advice', label: 'What to do at the machine' })]));
+  const head = ['Cause', 'Axis', 'Plot', 'Value ± uncertainty (95 %)', 'Explains', 'What to do at the machine'].map(each => text(each, { class: 'text' }));
+  const drawn = table([head], rows);
+  drawn.className = 'stacked';
+  if (rows.length) show('summary', drawn);
   const figures = [`Residual force on the held-out data: ${baseline.force} N rms with the given machine file, ${extended.force} N rms with the extended one`];
   if (baseline.position) figures.push(`position error of the simulation: ${baseline.position} µm rms with the given machine file, ${extended.position} µm rms with the extended one`);
   show('summary-caption', `${figures.join('; ')}. ${DATA.holdout}`);
@@ -118,3 +157,4 @@ drawCharts();
 linkAbscissae();
 drawMachine();
 drawForPaper();
+drawSchemeSwitch();

@@ -3,28 +3,21 @@
 
 // ---- figures ----
 
-function svg(tag, attributes, ...children) {
-  const node = document.createElementNS('http://www.w3.org/2000/svg', tag);
-  for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
-  node.append(...children);
-  return node;
-}
-
 // Where the value lies: a band of the tolerance around the expected value, a dot for the value; an arrow where it lies
 // beyond the drawing.
 function toleranceMark(row) {
   if (row.offset === null) return '';
   const reach = 2.4, width = 96, scale = width / 2 / reach, middle = width / 2;
   const colour = row.holds ? INK : DIFFERS, x = middle + scale * row.offset, side = Math.sign(row.offset), edge = middle + side * (middle - 1);
-  const value = Math.abs(row.offset) <= reach - 0.2 ? svg('circle', { cx: x, cy: 7, r: 3.5, fill: colour })
-    : svg('path', { d: `M${edge} 7l${-8 * side} -4.5v9z`, fill: colour });
+  const value = Math.abs(row.offset) <= reach - 0.2 ? svg('circle', { cx: x, cy: 7, r: 3.5, style: `fill:${colour}` })
+    : svg('path', { d: `M${edge} 7l${-8 * side} -4.5v9z`, style: `fill:${colour}` });
   return svg('svg', { class: 'tolerance', viewBox: `0 0 ${width} 14`, 'aria-hidden': 'true' },
-             svg('path', { d: `M0 7H${width}`, stroke: GRID }), svg('rect', { x: middle - scale, y: 1.5, width: 2 * scale, height: 11, rx: 2, fill: '#dbe2e9' }),
-             svg('path', { d: `M${middle} 1.5v11`, stroke: QUIET }), value);
+             svg('path', { d: `M0 7H${width}`, style: `stroke:${GRID}` }), svg('rect', { x: middle - scale, y: 1.5, width: 2 * scale, height: 11, rx: 2, style: 'fill:var(--line)' }),
+             svg('path', { d: `M${middle} 1.5v11`, style: `stroke:${QUIET}` }), value);
 }
 
 const minus = number => number.replace('-', '−');
-const DIFFERS = '#b3400a';
+const DIFFERS = 'var(--differs)';
 
 function markCell(row) {
   if (row.holds === null) return text('—', { class: 'text none', title: 'the machine file states no expected value' });
@@ -96,3 +89,4 @@ linkAbscissae();
 drawFigures();
 drawMachine();
 drawForPaper();
+drawSchemeSwitch();

@@ -1,9 +1,8 @@
 // The page of an identification: friction over speed, residuals, parameters, what the data could not determine.
 'use strict';
 
-const POSITIVE = '#0b5fa5', NEGATIVE = '#c2500f', CURVE = '#16202c';
+const POSITIVE = 'var(--blue)', NEGATIVE = 'var(--orange)', CURVE = INK;
 const minus = words => words.replace(/-(?=\d|x\b)/g, '−');  // of numbers and of the direction -x
-const plain = words => words.replaceAll('&', '&amp;').replaceAll('<', '&lt;');  // the chart library reads tags
 
 // ---- tables ----
 
@@ -46,7 +45,7 @@ function drawCharacteristic() {
   const curve = DATA.curve;
   if (!curve) return document.getElementById('curve-section').remove();
   const band = (y, more) => ({ x: curve.speed, y, mode: 'lines', line: { width: 0 }, hoverinfo: 'skip', ...more });
-  const traces = [band(curve.low, { name: 'band, low' }), band(curve.high, { name: 'band', fill: 'tonexty', fillcolor: 'rgba(22,32,44,0.14)' }),
+  const traces = [band(curve.low, { name: 'band, low' }), band(curve.high, { name: 'band', fill: 'tonexty', fillcolor: 'var(--band)' }),
     { name: `${curve.curve} curve`, x: curve.speed, y: curve.force, mode: 'lines', line: { color: CURVE, width: 1.8 },
       hovertemplate: `${curve.curve} curve<br>%{y:.4~g} N<br>%{x:.4~g} mm/s<extra></extra>` },
     measuredTrace(curve.measured.filter(p => p[0] > 0), 'measured, +x', POSITIVE, 'circle'),
@@ -78,8 +77,9 @@ function drawResiduals() {
   show('residual-charts', ...DATA.residuals.map((log, i) => chart(`residual-${i}`, `Residual over time: ${name(log)}`, true)),
        chart('residual-speed', 'Residual over speed', true));
   const styles = stylesOf(DATA.residuals.map(log => log.name));
+  if (DATA.residuals.length > 1) show('residual-key', ...DATA.residuals.map(log => element('span', {}, swatch(styles[log.name]), ` ${name(log)}`)));
   const margin = { l: 76, r: 24, t: 10, b: 46 };
-  const force = axisStyle('residual force, N', { zeroline: true, zerolinecolor: '#9aa5b1', nticks: 7 });
+  const force = axisStyle('residual force, N', { zeroline: true, zerolinecolor: RULE, nticks: 7 });
   DATA.residuals.forEach((log, i) => drawChart(`residual-${i}`,
     [{ name: plain(name(log)), x: log.time, y: log.residual, mode: 'lines', line: { color: styles[log.name].colour, width: 1.1, simplify: false },
        hovertemplate: '%{y:.4~g} N<br>%{x:.4~g} s<extra></extra>' }], { margin, xaxis: axisStyle('time, s'), yaxis: force }));
@@ -95,3 +95,4 @@ drawCharacteristic();
 drawResiduals();
 drawMachine();
 drawForPaper();
+drawSchemeSwitch();

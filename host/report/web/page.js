@@ -1,5 +1,4 @@
-// Helpers of a report's page: its data, numbers and text as they are printed, controls, tables, and what all charts
-// have in common.
+// Helpers of a report's page: its data, numbers and text as they are printed, controls, tables.
 'use strict';
 
 const DATA = JSON.parse(document.getElementById('data').textContent);
@@ -35,6 +34,13 @@ function element(tag, attributes = {}, ...children) {
     else node.setAttribute(name, value === true ? '' : value);
   }
   node.append(...children.filter(child => child !== null && child !== undefined));
+  return node;
+}
+
+function svg(tag, attributes, ...children) {
+  const node = document.createElementNS('http://www.w3.org/2000/svg', tag);
+  for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
+  node.append(...children);
   return node;
 }
 
@@ -79,11 +85,12 @@ function toggles(id, items, hidden, changed) {
   }));
 }
 
-// rows: arrays of cells, a cell being { text, class, head, span, rows }.
+// rows: arrays of cells, a cell being { text, class, head, span, rows, title, label }; the label is shown where a narrow
+// page stacks the cells.
 function table(headRows, bodyRows) {
   const cell = (spec, head) =>
     element(head || spec.head ? 'th' : 'td',
-            { class: spec.class, colspan: spec.span, rowspan: spec.rows, scope: spec.head ? 'row' : null, title: spec.title },
+            { class: spec.class, colspan: spec.span, rowspan: spec.rows, scope: spec.head ? 'row' : null, title: spec.title, 'data-label': spec.label },
             ...[].concat(spec.text));
   const row = (specs, head) => {
     const node = element('tr', { class: specs.class }, ...specs.map(spec => cell(spec, head)));
@@ -99,41 +106,4 @@ const text = (content, more = {}) => ({ text: content, ...more });
 function classed(name, cells) {
   cells.class = name;
   return cells;
-}
-
-// ---- charts ----
-
-const INK = '#16202c';
-const QUIET = '#5c6875';
-const GRID = '#e6eaee';
-const FONT = '"Segoe UI", "Helvetica Neue", Helvetica, Arial, system-ui, sans-serif';
-
-function axisStyle(title, more = {}) {
-  return { title: { text: title, font: { size: 12.5, color: INK }, standoff: 8 }, gridcolor: GRID, zeroline: false,
-           linecolor: '#9aa5b1', ticks: 'outside', ticklen: 4, tickcolor: '#9aa5b1', tickfont: { size: 12, color: QUIET },
-           automargin: false, ...more };
-}
-
-// A double click leads back to the first view; from there, with `all`, to everything.
-function drawChart(id, traces, layout, { all = false } = {}) {
-  const base = { font: { family: FONT, size: 12, color: INK }, paper_bgcolor: 'rgba(0,0,0,0)', plot_bgcolor: '#fff',
-                 showlegend: false, hovermode: 'closest', dragmode: 'zoom', autosize: true,
-                 hoverlabel: { bgcolor: '#fff', bordercolor: '#9aa5b1', font: { family: FONT, size: 12, color: INK } } };
-  return Plotly.react(id, traces, { ...base, ...layout }, { displayModeBar: false, showTips: false, responsive: true, doubleClick: all ? 'reset+autosize' : 'reset' });
-}
-
-function label(text, x, y, more = {}) {
-  return { text, x, y, showarrow: false, font: { size: 12, color: QUIET }, ...more };
-}
-
-// On paper the page has another width: the charts are drawn at that width before printing and at the window's after.
-function drawForPaper() {
-  const fit = paper => {
-    document.documentElement.classList.toggle('paper', paper);
-    for (const chart of document.querySelectorAll('.js-plotly-plot'))
-      Plotly.relayout(chart, paper ? { autosize: false, width: chart.clientWidth, height: chart.clientHeight }
-                                   : { autosize: true, width: null, height: null });
-  };
-  addEventListener('beforeprint', () => fit(true));
-  addEventListener('afterprint', () => fit(false));
 }

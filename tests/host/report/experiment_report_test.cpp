@@ -51,8 +51,8 @@ TEST(ExperimentReport, EscapesWhatCouldEndItsElements) {
   EXPECT_EQ(count(page, "<script>alert"), 0u);
   const std::string escaped =
       "&lt;/script&gt;&lt;!--&lt;script&gt;alert(1)&lt;/script&gt; {{data}} &amp; &quot;q&quot;";
-  // title twice, experiment, question, finding, command, version twice
-  EXPECT_EQ(count(page, escaped), 8u);
+  // title twice, experiment, sentence, question, finding, command; version in the head twice and at the end
+  EXPECT_EQ(count(page, escaped), 10u);
   const auto data = data_of(page);
   EXPECT_EQ(data["charts"][0]["title"], bad);
   EXPECT_EQ(data["charts"][0]["series"][0]["name"], bad);

@@ -22,4 +22,9 @@ await openPage('open_identification', '', async (page, data) => {
     const [residual] = await traces(page, `residual-${i}`);
     expect(residual && residual.y.length > 10 && residual.y.every(Number.isFinite), `the residual of ${data.residuals[i].name} is not drawn`);
   }
+  await page.locator('#choose-scheme input[value="dark"]').check({ force: true });
+  await page.reload({ waitUntil: 'load' });
+  expect(await page.evaluate(() => document.documentElement.dataset.scheme) === 'dark', 'the chosen scheme is not kept');
+  await page.locator('#choose-scheme input[value="auto"]').check({ force: true });
+  expect(await page.evaluate(() => document.documentElement.dataset.scheme) === 'light', 'auto does not lead back to the scheme of the system');
 });

@@ -1,12 +1,15 @@
 // What the scripts that open a report in a browser have in common: their command line, the browser, what they ask of
-// any page (nothing is loaded from outside, the console is silent, nothing sticks out sideways), and the verdict.
+// any page (nothing is loaded from outside, the console is silent, page_checks.mjs holds in light, dark, on a narrow
+// screen and on paper), and the verdict.
 // usage: node SCRIPT.mjs FILE.html [--screenshot FILE.png] [--width PIXELS] [--pdf FILE.pdf] [MORE...]
 // The browser is $CHROMIUM, else /usr/bin/chromium. Exit 0: all holds; 1: a message says what does not; 2: usage.
-import { existsSync } from 'node:fs';
+import { existsSync, readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { parseArgs } from 'node:util';
+
+import { axesWithoutUnit, confusableSeries, cutOff, poorContrasts } from './page_checks.mjs';
 
 const { chromium } = createRequire(new URL('../../../host/report/web/package.json', import.meta.url))('playwright-core');
 
@@ -47,10 +50,85 @@ function pageData(page) {
   return page.evaluate(() => JSON.parse(document.getElementById('data').textContent));
 }
 
-async function checkAnyPage(page) {
-  expect((await page.locator('.headline').innerText()).length > 10, 'the page has no headline');
-  const wide = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
-  expect(wide <= 0, `the page is ${wide} pixels wider than the window`);
+// Two frames: what a change of the window started has been drawn.
+const drawn = page => page.evaluate(() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done))));
+const sized = page => becomes(page, () => [...document.querySelectorAll('.js-plotly-plot')].every(chart => Math.abs(chart._fullLayout.width - chart.clientWidth) < 2), null, 10000);
+
+const NARROW = { width: 375, height: 800 }, PAPER = { width: 702, height: 1000 };  // A4 less its margins, pixels of CSS
+
+// What holds for a report of any kind: the head, units at every axis, contrast and telling series apart in light and
+// dark, everything whole on a narrow screen and on paper.
+async function checkAnyPage(page, window) {
+  const ask = async (where, question, argument) => {
+    for (const answer of await page.evaluate(question, argument)) expect(false, `${where}: ${answer}`);
+  };
+  const sentence = await page.locator('.headline').innerText();
+  expect(/^\S.{20,}[.]$/.test(sentence) && !/[.] [A-Z]/.test(sentence), `the head is not one sentence: '${sentence}'`);
+  for (const term of ['Date', 'Machine', 'Source files', 'Version', 'Command line'])
+    expect(await page.locator('.origin dt', { hasText: new RegExp(`^${term}$`) }).count() === 1, `the head does not say '${term}'`);
+  expect(await page.locator('details.sheet-of-machine:not([open])').count() === 1, 'the machine sheet is not folded');
+  await ask('axes', axesWithoutUnit);
+  for (const scheme of ['light', 'dark']) {
+    await page.emulateMedia({ colorScheme: scheme });
+    await drawn(page);
+    expect(await page.evaluate(() => document.documentElement.dataset.scheme) === scheme, `the page does not follow the system to ${scheme}`);
+    await ask(scheme, poorContrasts);
+    await ask(scheme, confusableSeries);
+  }
+  await page.emulateMedia({ colorScheme: 'light' });
+  await ask('wide screen', cutOff, false);
+  await page.setViewportSize(NARROW);
+  expect(await sized(page), 'the charts do not follow a narrow window');
+  await ask('narrow screen', cutOff, true);
+  await page.setViewportSize(PAPER);
+  await page.emulateMedia({ media: 'print', colorScheme: 'dark' });
+  await page.evaluate(() => dispatchEvent(new Event('beforeprint')));
+  await drawn(page);
+  expect(await page.evaluate(() => document.documentElement.dataset.scheme) === 'light', 'a dark page is printed dark');
+  expect(await page.locator('details.sheet-of-machine[open]').count() === 1, 'the machine sheet is folded on paper');
+  await ask('paper', cutOff, false);
+  await ask('paper', poorContrasts);
+  await page.evaluate(() => dispatchEvent(new Event('afterprint')));
+  await page.emulateMedia({ media: 'screen', colorScheme: 'light' });
+  await page.setViewportSize(window);
+  expect(await sized(page), 'the charts do not return to the window after printing');
+}
+
+// The file that a button of a chart saves.
+async function saved(page, chart, words) {
+  const [download] = await Promise.all([page.waitForEvent('download'), page.locator(`.tools[data-of="${chart}"] button`, { hasText: words }).click()]);
+  return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
+}
+
+// What is below the first chart: cursors by mouse and keyboard, and the chart saved as picture and as table.
+async function checkTools(page) {
+  const chart = await page.evaluate(() => document.querySelector('.js-plotly-plot')?.id);  // an agreement may have none
+  if (!chart) return;
+  const cursors = page.locator(`.tools[data-of="${chart}"] button`, { hasText: 'Cursors' }), readout = page.locator(`.tools[data-of="${chart}"] + .readout`);
+  expect(await readout.isHidden(), 'cursors are read out before they are chosen');
+  await cursors.click();
+  const changes = async (what, act) => {
+    const before = await readout.innerText();
+    await act();
+    expect(await readout.innerText() !== before, `${what} moves no cursor of '${chart}'`);
+  };
+  await changes('a key', () => page.keyboard.press('Shift+ArrowRight'));
+  await changes('a key after b', async () => { await page.keyboard.press('b'); await page.keyboard.press('Shift+ArrowLeft'); });
+  const box = await page.locator(`#${chart} .nsewdrag`).first().boundingBox();
+  await changes('the mouse', () => page.mouse.click(box.x + 0.05 * box.width, box.y + 0.5 * box.height));
+  const [a, b] = await page.evaluate(id => FIGURES.get(id).cursors.map(({ curve, point }) => { const trace = FIGURES.get(id).traces[curve]; return [trace.x[point], trace.y[point]]; }), chart);
+  const told = (await readout.innerText()).match(/Δx (\S+) .*Δy (\S+)/)?.slice(1).map(value => Number(value.replace('−', '-'))) || [];
+  for (const k of [0, 1]) expect(Math.abs(told[k] - (b[k] - a[k])) <= 1e-4 * Math.abs(b[k] - a[k]), `the cursors of '${chart}' differ by ${b[k] - a[k]} and are said to differ by ${told[k]}`);
+  await page.keyboard.press('Escape');
+  expect(await readout.isHidden(), 'Escape leaves the cursors');
+
+  const picture = await saved(page, chart, 'PNG'), drawing = await saved(page, chart, 'SVG'), points = await saved(page, chart, 'CSV');
+  expect(picture.bytes.subarray(1, 4).toString() === 'PNG' && picture.bytes.readUInt32BE(16) >= 1800, `${picture.name} is not a picture of at least 1800 pixels`);
+  const lines = points.bytes.toString().split('\r\n').filter(Boolean), header = lines.find(line => !line.startsWith('#')), rows = lines.slice(lines.indexOf(header) + 1);
+  expect(drawing.bytes.toString().startsWith('<svg') && drawing.bytes.toString().includes(await page.locator('h1').innerText()), `${drawing.name} does not have the page's title`);
+  const names = await page.evaluate(id => FIGURES.get(id).traces.filter(readable).map(trace => trace.name), chart);
+  expect(header.split(',').every(column => /\[[^\]]+\]"?$/.test(column)) && header.split(',').length > names.length - 1, `${points.name} has the header '${header}'`);
+  expect(rows.length >= 2 && rows.every(row => row.split(',').length === header.split(',').length), `${points.name} has ${rows.length} rows, not all as long as the header`);
 }
 
 // Opens the page of the command line, runs `checks`(page, the page's data, what else the command line says), and ends
@@ -59,7 +137,8 @@ export async function openPage(script, more, checks) {
   const { options, file, rest } = parse(script, more);
   const address = pathToFileURL(resolve(file)).href;
   const open = async browser => {
-    const page = await browser.newPage({ viewport: { width: Number(options.width), height: 1000 } });
+    const window = { width: Number(options.width), height: 1000 };
+    const page = await browser.newPage({ viewport: window, colorScheme: 'light' });
     page.setDefaultTimeout(PATIENCE);
     page.on('console', message => { if (['error', 'warning'].includes(message.type())) problems.push(`console: ${message.text()}`); });
     page.on('pageerror', error => problems.push(`script: ${error.message}`));
@@ -67,7 +146,8 @@ export async function openPage(script, more, checks) {
       if (request.url() !== address && !/^(data|blob):/.test(request.url())) problems.push(`the page asks for ${request.url()}`);
     });
     await page.goto(address, { waitUntil: 'load' });
-    await checkAnyPage(page);
+    await checkAnyPage(page, window);
+    await checkTools(page);
     await checks(page, await pageData(page), rest);
     if (options.screenshot) await page.screenshot({ path: options.screenshot, fullPage: true });
     if (options.pdf) await page.pdf({ path: options.pdf, preferCSSPageSize: true, printBackground: true });

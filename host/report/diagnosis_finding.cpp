@@ -1,0 +1,100 @@
+#include "host/report/diagnosis_finding.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <vector>
+
+#include "host/report/typeset.hpp"
+
+namespace stiction::host {
+namespace {
+
+std::string decapitalized(std::string_view title) {
+  std::string text(title);
+  const bool word = text.size() > 1 && std::islower(static_cast<unsigned char>(text[1]));
+  if (word) text[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[0])));
+  return text;
+}
+
+// "force ripple (X)", "force ripple (X), backlash (X) and 2 more": the first ones explain most.
+std::string causes(const Verdict& verdict) {
+  constexpr std::size_t named = 3;
+  std::vector<std::string> names;
+  for (const auto& finding : verdict.findings) {
+    auto name = fmt::format("{} ({})", decapitalized(finding.effect->title), finding.axis);
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(std::move(name));
+  }
+  if (names.size() == 1) return names.front();
+  std::string last = names.back();
+  if (names.size() > named + 1) last = fmt::format("{} more", names.size() - named);
+  names.resize(std::min(names.size() - 1, named));
+  return fmt::format("{} and {}", fmt::join(names, ", "), last);
+}
+
+// "3.42 → 1.18 N"; of equal texts only one.
+std::string change(const std::string& before, const std::string& after, const char* unit) {
+  return before == after ? fmt::format("{} {}", before, unit) : fmt::format("{} → {} {}", before, after, unit);
+}
+
+// What the extended machine file is worth on data that was not used; empty where nothing falls.
+std::string worth(const ResidualFigures& before, const ResidualFigures& after, const std::string& command_unit) {
+  std::vector<std::string> parts;
+  if (before.position_error_rms && after.position_error_rms && *after.position_error_rms < *before.position_error_rms)
+    parts.push_back(fmt::format("{} rms of position error", change(micrometres(*before.position_error_rms),
+                                                                   micrometres(*after.position_error_rms), "µm")));
+  if (after.force_rms < before.force_rms)
+    parts.push_back(fmt::format("{} rms of force", change(fmt::format("{:.3g}", before.force_rms),
+                                                          fmt::format("{:.3g}", after.force_rms), "N")));
+  if (before.command_rms && after.command_rms && *after.command_rms < *before.command_rms)
+    parts.push_back(fmt::format("{} rms of controller output",
+                                change(fmt::format("{:.2g}", *before.command_rms),
+                                       fmt::format("{:.2g}", *after.command_rms), command_unit.c_str())));
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::string of_rows(const Verdict& verdict) {
+  const auto& score = verdict.reference->unused;
+  const auto line = [&](double RowScore::*member) {
+    return change(percent(score.published.*member), percent(score.extended.*member), "%");
+  };
+  return fmt::format(
+      "on feeds that were not used, the simulation with it deviates from the measured current by {} and from the "
+      "measured error at reversals by {} (published simulation → extended machine file)",
+      line(&RowScore::current), line(&RowScore::error));
+}
+
+std::string nothing_found(const Verdict& verdict) {
+  const auto& rest = verdict.baseline;
+  auto size = rest.force_rms > 0.0 ? fmt::format("{:.3g} N rms", rest.force_rms) : std::string();
+  if (rest.position_error_rms)
+    size +=
+        fmt::format("{}{} µm rms of position error", size.empty() ? "" : ", ", micrometres(*rest.position_error_rms));
+  const auto of = size.empty() ? "" : fmt::format(" of {}", size);
+  if (verdict.unexplained.signature)
+    return fmt::format("Simulation and machine do not agree: no known cause explains the residual{}; its pattern: {}.",
+                       of, *verdict.unexplained.signature);
+  return fmt::format("The simulation agrees with the data within their noise: the residual{} has no cause to be found.",
+                     of);
+}
+
+}  // namespace
+
+std::string percent(double share) { return fmt::format("{:.{}f}", 100.0 * share, std::abs(share) < 0.1 ? 1 : 0); }
+std::string micrometres(double metres) { return fmt::format("{:.2g}", metres * 1e6); }
+
+std::string diagnosis_sentence(const Verdict& verdict) {
+  if (verdict.findings.empty()) return typeset(nothing_found(verdict));
+  const auto missing = fmt::format("The machine file lacks or misstates {}", causes(verdict));
+  if (verdict.reference) return typeset(fmt::format("{}; {}.", missing, of_rows(verdict)));
+  const auto gain = worth(verdict.baseline, verdict.extended, verdict.command_unit);
+  if (gain.empty())
+    return typeset(fmt::format("{}, but on held-out data the residual force does not fall ({:.3g} N rms).", missing,
+                               verdict.extended.force_rms));
+  return typeset(fmt::format("{}; with it, the simulation's deviation on held-out data falls: {}.", missing, gain));
+}
+
+}  // namespace stiction::host

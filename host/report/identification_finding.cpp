@@ -1,0 +1,55 @@
+#include "host/report/identification_finding.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace stiction::host {
+namespace {
+
+// "94.1 ± 0.4 N": two digits of the half interval at most.
+std::string with_interval(const IdentifiedParameter& parameter, const char* unit) {
+  const double half = 0.5 * (parameter.ci95.high - parameter.ci95.low);
+  const int digits = half > 0.0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(half))), 0, 6) : 3;
+  return fmt::format("{:.{}f} ± {:.{}f} {}", parameter.value, digits, half, digits, unit);
+}
+
+struct SpokenParameter {
+  const char *name, *words, *unit;
+};
+constexpr std::array<SpokenParameter, 4> spoken_parameters{
+    {{"coulomb_N", "Coulomb friction of", "N"},
+     {"coulomb_positive_N", "Coulomb friction and constant force (+x) of", "N"},
+     {"viscous_N_s_per_m", "viscous friction of", "N s/m"},
+     {"mass_kg", "moving mass of", "kg"}}};
+
+}  // namespace
+
+std::string identification_sentence(const Identification& result) {
+  const auto total = result.parameters.size() + result.not_determined.size();
+  if (result.parameters.empty())
+    return fmt::format("None of the {} parameters of axis {} is determined by these records.", total, result.axis);
+  std::vector<std::string> parts;
+  for (const auto& each : spoken_parameters)
+    if (const auto* parameter = result.find(each.name))
+      if (parts.empty() || each.name != std::string_view("coulomb_positive_N"))
+        parts.push_back(fmt::format("a {} {}", each.words, with_interval(*parameter, each.unit)));
+  std::string text = fmt::format("{} of {} parameters are determined", result.parameters.size(), total);
+  if (!parts.empty()) {
+    const auto last = parts.back();
+    parts.pop_back();
+    text = fmt::format("Axis {} has {}{}{}", result.axis, fmt::join(parts, ", "), parts.empty() ? "" : " and ", last);
+    if (!result.not_determined.empty())
+      text += fmt::format(" ({} of {} parameters are determined)", result.parameters.size(), total);
+  }
+  if (result.force_rms > 0.0)
+    text += fmt::format("; the fit leaves {:.3g} of {:.3g} N rms, {:.2g} % of the force", result.residual_rms,
+                        result.force_rms, 100.0 * result.residual_rms / result.force_rms);
+  return text + ".";
+}
+
+}  // namespace stiction::host

@@ -1,0 +1,65 @@
+#include "host/report/origin.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <ctime>
+#include <filesystem>
+
+#include "host/report/page.hpp"
+
+namespace stiction::host {
+namespace {
+
+// The command line has their folders.
+std::string file_names(const std::vector<std::string>& paths) {
+  std::vector<std::string> names;
+  for (const auto& path : paths) names.push_back(std::filesystem::path(path).filename().string());
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+}  // namespace
+
+std::string present_date() {
+  std::time_t now = std::time(nullptr);
+  if (const char* given = std::getenv("SOURCE_DATE_EPOCH")) {
+    char* end = nullptr;
+    const long long epoch = std::strtoll(given, &end, 10);
+    if (end != given && *end == '\0') now = static_cast<std::time_t>(epoch);
+  }
+  return fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(now));
+}
+
+std::string sample_rates(const std::vector<double>& periods) {
+  std::vector<std::string> rates;
+  for (const double period : periods) {
+    const double hertz = 1.0 / period;
+    auto rate = hertz < 1e3 ? fmt::format("{:.5g} Hz ({:.5g} ms)", hertz, period * 1e3)
+                            : fmt::format("{:.5g} kHz ({:.5g} µs)", hertz * 1e-3, period * 1e6);
+    if (std::find(rates.begin(), rates.end(), rate) == rates.end()) rates.push_back(std::move(rate));
+  }
+  return fmt::format("{}", fmt::join(rates, ", "));
+}
+
+std::string origin_html(const Origin& origin, const std::string& machine, const std::string& command,
+                        const std::string& version) {
+  std::string items;
+  const auto add = [&](const char* term, const std::string& text, const char* kind = "") {
+    if (text.empty()) return;
+    items += fmt::format("<div{}><dt>{}</dt><dd{}>{}</dd></div>", *kind == '\0' ? "" : " class=\"broad\"", term,
+                         *kind == '\0' ? "" : fmt::format(" class=\"{}\"", kind), escape_html(text));
+  };
+  add("Date", origin.date.empty() ? present_date() : origin.date);
+  add("Machine", machine);
+  add("Machine file", file_names(origin.machine_files));
+  add("Source files", origin.sources.empty() ? "none: a simulation" : file_names(origin.sources));
+  add("Sample rate", sample_rates(origin.sample_periods));
+  add("Version", "stiction " + version);
+  add("Command line", command, "command");
+  return items;
+}
+
+}  // namespace stiction::host

@@ -1,0 +1,133 @@
+// The sentence at the head of each kind of report, and what the head says of the report's sources.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "host/report/diagnosis_finding.hpp"
+#include "host/report/experiment_finding.hpp"
+#include "host/report/identification_finding.hpp"
+#include "host/report/origin.hpp"
+#include "tests/host/report/synthetic_circle.hpp"
+#include "tests/host/report/synthetic_diagnosis.hpp"
+
+namespace stiction::host {
+namespace {
+
+sim::ExperimentResult experiment(const char* name, std::vector<sim::Figure> figures) {
+  sim::ExperimentResult result;
+  result.experiment = name;
+  result.figures = std::move(figures);
+  return result;
+}
+
+std::string sentence_of(const sim::ExperimentResult& result) {
+  return experiment_sentence(result, synthetic_circle().machine);
+}
+
+// ---- experiments ----
+
+TEST(ExperimentSentence, OfATuningNamesTheWorstCircleAndTheBestCompensation) {
+  const auto result = experiment(
+      "tune-friction",
+      {{"peak_error_X_off_8_m_per_min", "um", "largest error, X at 8 m/min, without compensation", 4.3, {}},
+       {"peak_error_X_friction_8_m_per_min", "um", "largest error, X at 8 m/min, with friction", 0.5, {}},
+       {"peak_error_X_off_48_m_per_min", "um", "largest error, X at 48 m/min, without compensation", 16.1, {}},
+       {"peak_error_X_pulse_48_m_per_min", "um", "largest error, X at 48 m/min, with pulses", 12.3, {}},
+       {"peak_error_X_friction_48_m_per_min", "um", "largest error, X at 48 m/min, with friction", 0.43, {}}});
+  EXPECT_EQ(sentence_of(result), "16.1 → 0.43 µm at reversals: the largest error, X at 48 m/min with friction.");
+}
+
+TEST(ExperimentSentence, OfATuningThatGainsNothingSaysSo) {
+  const auto result =
+      experiment("tune-friction",
+                 {{"peak_error_X_off_8_m_per_min", "um", "largest error, X at 8 m/min, without compensation", 4.3, {}},
+                  {"peak_error_X_friction_8_m_per_min", "um", "largest error, X at 8 m/min, with friction", 4.4, {}}});
+  EXPECT_EQ(sentence_of(result), "No kind of compensation lowers the largest error, X at 8 m/min of 4.3 µm.");
+}
+
+TEST(ExperimentSentence, OfTwoMachinesSaysWhatTheSecondGains) {
+  const auto result =
+      experiment("replay", {{"position_difference_rms_X_machine", "um", "position, rms of X, machine", 0.42, {}},
+                            {"position_difference_rms_X_extended", "um", "position, rms of X, extended", 0.25, {}}});
+  EXPECT_EQ(sentence_of(result),
+            "The deviation of the simulated position from the record falls from 0.42 µm rms (machine) to 0.25 µm rms "
+            "(extended).");
+}
+
+TEST(ExperimentSentence, EndsWithTheFiguresThatWereExpected) {
+  const auto result = experiment(
+      "friction-lag", {{"width_at_10_rad_per_s", "N", "width at 10 rad/s", 66.7, sim::Expectation{80.0, 1.0, "s"}}});
+  EXPECT_EQ(sentence_of(result),
+            "The friction lags behind the speed by a loop of up to 66.7 N; 0 of 1 figures are as expected; different: "
+            "width at 10 rad/s.");
+}
+
+TEST(ExperimentSentence, OfAnUnknownExperimentIsItsFirstFinding) {
+  auto result = experiment("new", {});
+  EXPECT_EQ(sentence_of(result), "The run has no figures.");
+  result.findings = {"It moved by 3 um. It came back.", "And more."};
+  EXPECT_EQ(sentence_of(result), "It moved by 3 µm.");
+}
+
+// ---- diagnosis ----
+
+TEST(DiagnosisSentence, NamesTheCausesAndWhatTheyAreWorthOnHeldOutData) {
+  const auto text = diagnosis_sentence(synthetic_diagnosis().verdict);
+  EXPECT_NE(text.find("constant force (X)"), std::string::npos) << text;
+  EXPECT_NE(text.find("0.61 → 0.22 µm rms of position error, 3.42 → 1.18 N rms of force."), std::string::npos) << text;
+}
+
+TEST(DiagnosisSentence, SaysThatTheResidualDoesNotFall) {
+  auto verdict = synthetic_diagnosis().verdict;
+  verdict.extended = verdict.baseline;
+  EXPECT_TRUE(
+      diagnosis_sentence(verdict).ends_with("but on held-out data the residual force does not fall (3.42 N rms)."))
+      << diagnosis_sentence(verdict);
+}
+
+TEST(DiagnosisSentence, TellsAgreementFromAResidualWithoutAKnownCause) {
+  auto verdict = synthetic_agreement().verdict;
+  EXPECT_TRUE(diagnosis_sentence(verdict).starts_with("The simulation agrees with the data within their noise"));
+  verdict.unexplained.signature = "grows with acceleration";
+  EXPECT_EQ(
+      diagnosis_sentence(verdict),
+      "Simulation and machine do not agree: no known cause explains the residual of 1.2 N rms; its pattern: grows "
+      "with acceleration.");
+}
+
+// ---- identification ----
+
+TEST(IdentificationSentence, GivesFrictionAndMassWithTheirIntervals) {
+  Identification result;
+  result.axis = "X";
+  EXPECT_EQ(identification_sentence(result), "None of the 0 parameters of axis X is determined by these records.");
+  result.parameters = {{"coulomb_N", 94.12, {93.72, 94.52}, ""}, {"mass_kg", 225.6, {224.1, 227.1}, ""}};
+  result.not_determined = {{"damping_ratio", "", ""}};
+  result.force_rms = 200.0;
+  result.residual_rms = 5.0;
+  EXPECT_EQ(
+      identification_sentence(result),
+      "Axis X has a Coulomb friction of 94.12 ± 0.40 N and a moving mass of 225.6 ± 1.5 kg (2 of 3 parameters are "
+      "determined); the fit leaves 5 of 200 N rms, 2.5 % of the force.");
+}
+
+// ---- origin ----
+
+TEST(Origin, NamesFilesWithoutTheirFoldersAndEscapesThem) {
+  const auto html = origin_html({{"/a/m.toml"}, {"/a/<run>.csv", "b.csv"}, {1e-3, 62.5e-6, 1e-3}, "2026-11-23"},
+                                "M & N", "stiction diagnose '<run>.csv'", "0.1.0");
+  for (const char* part :
+       {"<dd>2026-11-23</dd>", "<dd>M &amp; N</dd>", "<dd>m.toml</dd>", "<dd>&lt;run&gt;.csv, b.csv</dd>",
+        "<dd>1 kHz (1000 µs), 16 kHz (62.5 µs)</dd>", "stiction diagnose &#39;&lt;run&gt;.csv&#39;"})
+    EXPECT_NE(html.find(part), std::string::npos) << part << " in " << html;
+  EXPECT_NE(origin_html({}, "M", "c", "v").find("none: a simulation"), std::string::npos);
+}
+
+TEST(Origin, TakesTheDateOfAReproducibleBuild) {
+  ::setenv("SOURCE_DATE_EPOCH", "0", 1);
+  EXPECT_EQ(present_date(), "1970-01-01 00:00 UTC");
+  ::unsetenv("SOURCE_DATE_EPOCH");
+}
+
+}  // namespace
+}  // namespace stiction::host
