@@ -24,8 +24,7 @@ struct CirclePlaces {
 sim::CircleResult run_plan(const CirclePlan& plan, const CirclePlaces& places);
 
 // Writes report.html and result.json. `folder`: new, empty or of an earlier result; `plan`, `result`: of the runs;
-// `json`: result.json; `invocation`: command line and version; `machine`: as it was given on the command line; empty:
-// the report does not name its file.
+// `json`: result.json; `invocation`: command line and version; `machine`: as it was given on the command line.
 void write_circle_folder(const std::filesystem::path& folder, const CirclePlan& plan, const sim::CircleResult& result,
                          const nlohmann::ordered_json& json, const Invocation& invocation, const std::string& machine);
 

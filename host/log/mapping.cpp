@@ -21,7 +21,8 @@ constexpr std::string_view schema = "stiction.mapping/1";
 
 class Reader {
  public:
-  explicit Reader(const std::filesystem::path& file) : name_(file.string()), document_(name_, read_text_file(file, "a mapping file")) {}
+  explicit Reader(const std::filesystem::path& file)
+      : name_(file.string()), document_(name_, read_text_file(file, "a mapping file")) {}
 
   Mapping read() {
     const auto& root = document_.root();

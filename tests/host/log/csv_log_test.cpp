@@ -201,7 +201,8 @@ TEST(CsvLog, NamesAFileThatCannotBeRead) {
     }
     return "";
   };
-  EXPECT_TRUE(message("/nowhere/run.csv").starts_with("/nowhere/run.csv: found no folder /nowhere; expected a log in it"));
+  EXPECT_TRUE(
+      message("/nowhere/run.csv").starts_with("/nowhere/run.csv: found no folder /nowhere; expected a log in it"));
   EXPECT_TRUE(message(std::filesystem::temp_directory_path()).find("found a folder") != std::string::npos);
 }
 

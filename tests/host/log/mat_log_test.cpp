@@ -162,7 +162,8 @@ TEST(ReadLog, NamesWhatItCannotRead) {
   const TemporaryFile zip(".zip");
   write_text_file(zip.path(), std::string("PK\x03\x04") + "rest");
   EXPECT_NE(refusal(zip.path()).find("found a zip archive"), std::string::npos);
-  EXPECT_NE(refusal("/nowhere/run.mat").find("/nowhere/run.mat: found no folder /nowhere; expected a log in it"), std::string::npos);
+  EXPECT_NE(refusal("/nowhere/run.mat").find("/nowhere/run.mat: found no folder /nowhere; expected a log in it"),
+            std::string::npos);
 }
 
 }  // namespace

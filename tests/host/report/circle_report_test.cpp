@@ -105,7 +105,8 @@ TEST(CircleFinding, NamesTheActingModelsLargestErrorBesideTheMeasurement) {
   const auto finding = circle_finding(report.result, report.machine);
   EXPECT_NEAR(finding.feed, feed_16, 1e-9);
   EXPECT_TRUE(finding.sentence.starts_with("At 16 m/min the largest quadrant error is 8.")) << finding.sentence;
-  EXPECT_NE(finding.sentence.find(" µm (Y, C LuGre); the measured value is 8.5 µm, and over all measured feeds"), std::string::npos)
+  EXPECT_NE(finding.sentence.find(" µm (Y, C LuGre); the measured value is 8.5 µm, and over all measured feeds"),
+            std::string::npos)
       << finding.sentence;
   EXPECT_NE(finding.sentence.find("(X) and"), std::string::npos) << finding.sentence;
 }
