@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "host/algebra/least_squares.hpp"
+
 namespace stiction::host {
 namespace {
 
@@ -36,14 +38,14 @@ double argument_of_minimum(double low, double high, const Function& cost) {
 // Creeping, rise and viscous for a given rise velocity.
 Eigen::Vector3d linear_part(const std::vector<SteadyPoint>& points, double rise_velocity, double* squares) {
   const auto n = static_cast<Eigen::Index>(points.size());
-  Eigen::MatrixX3d regressors(n, 3);
+  Eigen::MatrixXd regressors(n, 3);
   Eigen::VectorXd force(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto& point = points[static_cast<std::size_t>(i)];
     regressors.row(i) << 1.0, sim::MaxwellSlip<>::risen(point.velocity / rise_velocity), point.velocity;
     force[i] = point.force;
   }
-  const Eigen::Vector3d solution = regressors.colPivHouseholderQr().solve(force);
+  const Eigen::Vector3d solution = PivotedLeastSquares(regressors).solve(force);
   *squares = (regressors * solution - force).squaredNorm();
   return solution;
 }
