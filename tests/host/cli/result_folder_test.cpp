@@ -60,8 +60,8 @@ TEST_F(Cli, AResultOfAVersionWithoutRecordsIsKnownByItsNames) {
 }
 
 TEST_F(Cli, AnInterruptedCommandLeavesNothing) {
-  // A run of seconds, ended as Ctrl-C ends it; the shell's status is 128 and the signal.
-  const auto result = run_shell("timeout -s INT -k 20 1 '{}' simulate commissioning --machine mcfv5050ln --out deep/r");
+  // A tuning takes its 250 simulated laps of time on any machine; it is ended as Ctrl-C ends it.
+  const auto result = run_shell("timeout -s INT -k 20 1 '{}' tune-friction --machine mcfv5050ln --out deep/r");
   ASSERT_EQ(result.code, 124) << "it was over before it was interrupted: " << result.error;
   std::size_t files = 0;
   for (const auto& entry : fs::recursive_directory_iterator(work())) files += !entry.is_directory();
