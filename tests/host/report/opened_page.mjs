@@ -115,7 +115,8 @@ async function checkTools(page) {
   await changes('a key', () => page.keyboard.press('Shift+ArrowRight'));
   await changes('a key after b', async () => { await page.keyboard.press('b'); await page.keyboard.press('Shift+ArrowLeft'); });
   const box = await page.locator(`#${chart} .nsewdrag`).first().boundingBox();
-  await changes('the mouse', () => page.mouse.click(box.x + 0.05 * box.width, box.y + 0.5 * box.height));
+  // The keys have brought the cursors of a chart with few points to its ends.
+  await changes('the mouse', () => page.mouse.click(box.x + 0.5 * box.width, box.y + 0.5 * box.height));
   const [a, b] = await page.evaluate(id => FIGURES.get(id).cursors.map(({ curve, point }) => { const trace = FIGURES.get(id).traces[curve]; return [trace.x[point], trace.y[point]]; }), chart);
   const told = (await readout.innerText()).match(/Δx (\S+) .*Δy (\S+)/)?.slice(1).map(value => Number(value.replace('−', '-'))) || [];
   for (const k of [0, 1]) expect(Math.abs(told[k] - (b[k] - a[k])) <= 1e-4 * Math.abs(b[k] - a[k]), `the cursors of '${chart}' differ by ${b[k] - a[k]} and are said to differ by ${told[k]}`);
