@@ -120,7 +120,7 @@ void compare(const CompareOptions& options, const Invocation& invocation) {
     all.push_back(std::move(json));
   }
   if (options.json)
-    fmt::print("{}\n", compare_reference_json(signals, std::move(all)).dump(2));
+    fmt::print("{}\n", compare_reference_json(signals, all).dump(2));
   else
     fmt::print("{}", text);
 }
