@@ -115,8 +115,13 @@ async function checkTools(page) {
   await changes('a key', () => page.keyboard.press('Shift+ArrowRight'));
   await changes('a key after b', async () => { await page.keyboard.press('b'); await page.keyboard.press('Shift+ArrowLeft'); });
   const box = await page.locator(`#${chart} .nsewdrag`).first().boundingBox();
-  // The keys have brought the cursors of a chart with few points to its ends.
-  await changes('the mouse', () => page.mouse.click(box.x + 0.5 * box.width, box.y + 0.5 * box.height));
+  // A click may fall where a cursor stands already; of three places that happens at one.
+  const seen = new Set();
+  for (const share of [0.05, 0.5, 0.95]) {
+    await page.mouse.click(box.x + share * box.width, box.y + 0.5 * box.height);
+    seen.add(await readout.innerText());
+  }
+  expect(seen.size > 1, `the mouse moves no cursor of '${chart}'`);
   const [a, b] = await page.evaluate(id => FIGURES.get(id).cursors.map(({ curve, point }) => { const trace = FIGURES.get(id).traces[curve]; return [trace.x[point], trace.y[point]]; }), chart);
   const told = (await readout.innerText()).match(/Δx (\S+) .*Δy (\S+)/)?.slice(1).map(value => Number(value.replace('−', '-'))) || [];
   for (const k of [0, 1]) expect(Math.abs(told[k] - (b[k] - a[k])) <= 1e-4 * Math.abs(b[k] - a[k]), `the cursors of '${chart}' differ by ${b[k] - a[k]} and are said to differ by ${told[k]}`);
