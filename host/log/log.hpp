@@ -1,5 +1,6 @@
 // A measured or simulated log in memory: uniform samples, SI units, one record of channels an axis. Readers fill it
-// from the files of docs/formats.md; everything that judges data works on it.
+// from the files of docs/formats.md; everything that judges data works on it. A record with gaps is several of these,
+// one a stretch.
 #pragma once
 
 #include <array>
@@ -33,6 +34,12 @@ struct AxisLog {
   std::vector<double> external_force;  // N, on the carriage, positive in +x
   std::vector<double> i_inject;        // A, test signal, contained in i
   std::vector<double> u_inject;        // V, test signal, contained in u
+  std::vector<double> x_load;          // m, of the second encoder
+  std::vector<double> supply;          // V, of the inverter
+  // A rotary axis has rad, rad/s, rad/s^2 and N m in place of m, m/s, m/s^2 and N.
+  bool rotary = false;
+  // Samples that no fit may use: a channel stands at its limit, a cell was blank. Empty: none.
+  std::vector<bool> left_out;
 };
 
 // The one list of an axis' channels: the column's name, the unit of the values, and where they are kept.
@@ -58,13 +65,21 @@ inline constexpr std::array<LogChannel, 13> log_channels{{
     {"u_inject", "V", &AxisLog::u_inject, "test signal on the voltage"},
 }};
 
+// The clock of a record as it was written, before its samples were made even.
+struct Clock {
+  double jitter = 0.0;     // s, rms deviation of the stamps from even ones, beyond what their digits explain
+  bool resampled = false;  // the samples are interpolated
+  std::size_t stretch = 0, stretches = 1;  // which part of the record this log is, and of how many
+};
+
 struct Log {
   std::string source;                                         // the file's name, for messages
   std::vector<std::pair<std::string, std::string>> comments;  // "# key: value"
   std::vector<double> t;                                      // s, uniform
   double period = 0.0;                                        // s, the mean step of t
-  std::vector<AxisLog> axes;                                  // at least one
-  std::vector<std::string> ignored;                           // headers of columns that have no meaning here
+  Clock clock;
+  std::vector<AxisLog> axes;         // at least one
+  std::vector<std::string> ignored;  // headers of columns that have no meaning here
 };
 
 }  // namespace stiction::host
