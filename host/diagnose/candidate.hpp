@@ -114,9 +114,23 @@ std::array<double, 2> first_wave(const Eigen::VectorXd& coefficients);
 std::vector<double> geometric(double low, double high, int count);
 }  // namespace effects
 
+// Shapes of forces that no effect of the vocabulary has; each source has a namespace of its own.
 namespace signatures {
-extern const Candidate localised_force, ripple_with_speed, force_after_reversal, force_after_way_back,
-    force_with_acceleration, drifting_force;
+namespace localised_force {
+extern const Candidate shape;
 }
+namespace ripple_with_speed {
+extern const Candidate shape;
+}
+namespace force_after_reversal {
+extern const Candidate shape, shape_on_way_back;
+}
+namespace force_with_acceleration {
+extern const Candidate shape;
+}
+namespace drifting_force {
+extern const Candidate shape;
+}
+}  // namespace signatures
 
 }  // namespace stiction::host

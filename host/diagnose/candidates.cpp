@@ -25,8 +25,9 @@ std::span<const Candidate> candidates() {
       if (const auto* regressor = regressor_of(effect); regressor != nullptr && regressor->force.columns != nullptr)
         made.emplace_back(regressor->force).effect = effect;
     for (const Candidate& shape :
-         {signatures::localised_force, signatures::ripple_with_speed, signatures::force_after_reversal,
-          signatures::force_after_way_back, signatures::force_with_acceleration, signatures::drifting_force})
+         {signatures::localised_force::shape, signatures::ripple_with_speed::shape,
+          signatures::force_after_reversal::shape, signatures::force_after_reversal::shape_on_way_back,
+          signatures::force_with_acceleration::shape, signatures::drifting_force::shape})
       made.push_back(shape);
     return made;
   }();

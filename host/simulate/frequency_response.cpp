@@ -15,7 +15,7 @@ namespace stiction::host {
 namespace {
 
 constexpr double acceleration = 2.0, jerk = 40.0;  // m/s^2, m/s^3: those of the source's circles
-constexpr double settling = 0.2;                   // s after a start, 17 time constants of the position loop
+constexpr double settling_time = 0.2;              // s after a start, 17 time constants of the position loop
 constexpr double pause = 0.02;                     // s between two sines
 constexpr double multisine_density = 50.0;         // lines per decade
 constexpr double sine_density = 25.0;
@@ -52,7 +52,7 @@ class Schedule {
   std::vector<double> test(double amplitude, std::uint64_t seed) const {
     std::vector<double> signal(ticks(), 0.0);
     for (std::size_t pass = 0; pass < passes_.size(); ++pass) {
-      const double begin = static_cast<double>(pass) * path_.pass_duration() + path_.cruise_begin() + settling;
+      const double begin = static_cast<double>(pass) * path_.pass_duration() + path_.cruise_begin() + settling_time;
       auto tick = static_cast<std::size_t>(std::ceil(begin / period_));
       for (const auto& stretch : passes_[pass]) {
         const auto block = sim::multisine(stretch.block, stretch.lines, amplitude, seed++);
@@ -69,7 +69,7 @@ class Schedule {
 
   double duration(const Stretch& stretch) const { return stretch.block * (plan_.periods + 1) * period_ + pause; }
   double duration(const Pass& pass) const {
-    double sum = settling;
+    double sum = settling_time;
     for (const auto& stretch : pass) sum += duration(stretch);
     return sum;
   }

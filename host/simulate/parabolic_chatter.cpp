@@ -10,8 +10,6 @@
 namespace stiction::host {
 namespace {
 
-constexpr double duration = 1.0, settled = 0.5, shown = 0.005;  // s
-
 double explicit_friction(const sim::ParabolicParameters& p, double velocity) {
   if (velocity == 0.0) return 0.0;
   return std::copysign(p.force_at_1_m_per_s * std::pow(std::abs(velocity), 1.0 / p.order), velocity);
@@ -37,6 +35,7 @@ ChatterRun impact_with_parabolic_friction(machine::Machine machine, double force
   const std::array<sim::AxisSetPoint, 1> standstill{};
   ControlRun<FixedSignals> run(machine, origin);
   ChatterRun result;
+  constexpr double duration = 1.0, settled = 0.5, shown = 0.005;  // s
   double held = 0.0, next_evaluation = 0.0, before = 0.0;
   int evaluations = 0, changes = 0;
   while (run.time() < duration) {

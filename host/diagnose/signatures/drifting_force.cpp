@@ -3,7 +3,7 @@
 
 #include "host/diagnose/candidate.hpp"
 
-namespace stiction::host::signatures {
+namespace stiction::host::signatures::drifting_force {
 namespace {
 
 Columns columns(const SearchContext& context, const Motion& motion, double) {
@@ -17,10 +17,10 @@ std::string looks_like(const SearchContext& context, double, const Eigen::Vector
 
 }  // namespace
 
-const Candidate drifting_force{.grid = effects::no_scan,
-                               .columns = columns,
-                               .possible = effects::any,
-                               .describe = nullptr,
-                               .looks_like = looks_like};
+const Candidate shape{.grid = effects::no_scan,
+                      .columns = columns,
+                      .possible = effects::any,
+                      .describe = nullptr,
+                      .looks_like = looks_like};
 
-}  // namespace stiction::host::signatures
+}  // namespace stiction::host::signatures::drifting_force

@@ -8,7 +8,7 @@
 
 #include "host/diagnose/candidate.hpp"
 
-namespace stiction::host::signatures {
+namespace stiction::host::signatures::force_after_reversal {
 namespace {
 
 constexpr int fewest_reversals = 4;
@@ -50,7 +50,7 @@ constexpr Candidate going_back{.grid = grid,
 
 // Beyond what a drive hunts at standstill, and beyond what a mount gives way. One that begins at the very turn would
 // stand for friction's contact and for a record's delay, too.
-const Candidate force_after_reversal = going_back<2000>;
-const Candidate force_after_way_back = going_back<10000>;
+const Candidate shape = going_back<2000>;
+const Candidate shape_on_way_back = going_back<10000>;
 
-}  // namespace stiction::host::signatures
+}  // namespace stiction::host::signatures::force_after_reversal

@@ -6,7 +6,7 @@
 
 #include "host/diagnose/candidate.hpp"
 
-namespace stiction::host::signatures {
+namespace stiction::host::signatures::force_with_acceleration {
 namespace {
 
 Columns columns(const SearchContext&, const Motion& motion, double) {
@@ -20,10 +20,10 @@ std::string looks_like(const SearchContext&, double, const Eigen::VectorXd& w) {
 
 }  // namespace
 
-const Candidate force_with_acceleration{.grid = effects::no_scan,
-                                        .columns = columns,
-                                        .possible = effects::any,
-                                        .describe = nullptr,
-                                        .looks_like = looks_like};
+const Candidate shape{.grid = effects::no_scan,
+                      .columns = columns,
+                      .possible = effects::any,
+                      .describe = nullptr,
+                      .looks_like = looks_like};
 
-}  // namespace stiction::host::signatures
+}  // namespace stiction::host::signatures::force_with_acceleration

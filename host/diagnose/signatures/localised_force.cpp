@@ -6,7 +6,7 @@
 
 #include "host/diagnose/candidate.hpp"
 
-namespace stiction::host::signatures {
+namespace stiction::host::signatures::localised_force {
 namespace {
 
 // Places along the stroke, a standard deviation apart: narrow ones, then wide ones.
@@ -43,11 +43,11 @@ std::string looks_like(const SearchContext& context, double number, const Eigen:
 
 }  // namespace
 
-const Candidate localised_force{.grid = grid,
-                                .columns = columns,
-                                .possible = effects::any,
-                                .describe = nullptr,
-                                .trials = narrow + wide,
-                                .looks_like = looks_like};
+const Candidate shape{.grid = grid,
+                      .columns = columns,
+                      .possible = effects::any,
+                      .describe = nullptr,
+                      .trials = narrow + wide,
+                      .looks_like = looks_like};
 
-}  // namespace stiction::host::signatures
+}  // namespace stiction::host::signatures::localised_force

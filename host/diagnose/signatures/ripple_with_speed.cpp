@@ -5,7 +5,7 @@
 
 #include "host/diagnose/candidate.hpp"
 
-namespace stiction::host::signatures {
+namespace stiction::host::signatures::ripple_with_speed {
 namespace {
 
 const LineScan& scan(const SearchContext& context) { return context.by_speed; }
@@ -22,13 +22,13 @@ std::string looks_like(const SearchContext& context, double pitch, const Eigen::
 
 }  // namespace
 
-const Candidate ripple_with_speed{.grid = grid,
-                                  .columns = columns,
-                                  .possible = effects::any,
-                                  .describe = nullptr,
-                                  .shape = true,
-                                  .periodic = true,
-                                  .scan = scan,
-                                  .looks_like = looks_like};
+const Candidate shape{.grid = grid,
+                      .columns = columns,
+                      .possible = effects::any,
+                      .describe = nullptr,
+                      .shape = true,
+                      .periodic = true,
+                      .scan = scan,
+                      .looks_like = looks_like};
 
-}  // namespace stiction::host::signatures
+}  // namespace stiction::host::signatures::ripple_with_speed

@@ -11,7 +11,7 @@
 #include "sim/effects/backlash/backlash.hpp"
 #include "sim/effects/effect_values.hpp"
 
-namespace stiction::host::effects {
+namespace stiction::host::effects::backlash {
 namespace {
 
 // m. By many increments a gap shows however the axis hunts: one run tells that there is one, and its width is found
@@ -46,12 +46,12 @@ void describe(const SearchContext& context, double, const Eigen::VectorXd& w, co
 
 }  // namespace
 
-extern const EffectRegressor backlash{.force = {.grid = grid,
-                                                .columns = columns,
-                                                .possible = possible,
-                                                .describe = describe,
-                                                .at_weight = true,
-                                                .replays = true,
-                                                .coarse = far}};
+extern const EffectRegressor regressor{.force = {.grid = grid,
+                                                 .columns = columns,
+                                                 .possible = possible,
+                                                 .describe = describe,
+                                                 .at_weight = true,
+                                                 .replays = true,
+                                                 .coarse = far}};
 
-}  // namespace stiction::host::effects
+}  // namespace stiction::host::effects::backlash

@@ -3,7 +3,7 @@
 
 #include "host/diagnose/effect_regressor.hpp"
 
-namespace stiction::host::effects {
+namespace stiction::host::effects::constant_force {
 namespace {
 
 Columns columns(const SearchContext&, const Motion& motion, double) {
@@ -16,7 +16,7 @@ void describe(const SearchContext& context, double, const Eigen::VectorXd& w, co
 
 }  // namespace
 
-extern const EffectRegressor constant_force{
+extern const EffectRegressor regressor{
     .force = {.grid = no_scan, .columns = columns, .possible = any, .describe = describe, .names_constant = true}};
 
-}  // namespace stiction::host::effects
+}  // namespace stiction::host::effects::constant_force

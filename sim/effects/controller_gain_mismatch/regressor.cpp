@@ -3,7 +3,7 @@
 
 #include "host/diagnose/effect_regressor.hpp"
 
-namespace stiction::host::effects {
+namespace stiction::host::effects::controller_gain_mismatch {
 namespace {
 
 constexpr double relative_step = 0.01;
@@ -38,6 +38,6 @@ constexpr std::array gains{
 }  // namespace
 
 // They leave nothing in the residual force.
-extern const EffectRegressor controller_gain_mismatch{.command = gains};
+extern const EffectRegressor regressor{.command = gains};
 
-}  // namespace stiction::host::effects
+}  // namespace stiction::host::effects::controller_gain_mismatch

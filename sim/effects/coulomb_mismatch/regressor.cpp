@@ -7,7 +7,7 @@
 #include "host/diagnose/effect_regressor.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
 
-namespace stiction::host::effects {
+namespace stiction::host::effects::coulomb_mismatch {
 namespace {
 
 constexpr double stiffness_stays = 0.0, distance_stays = 1.0;
@@ -32,11 +32,11 @@ void describe(const SearchContext& context, double, const Eigen::VectorXd& w, co
 
 }  // namespace
 
-extern const EffectRegressor coulomb_mismatch{.force = {.grid = grid,
-                                                        .columns = columns,
-                                                        .possible = possible,
-                                                        .describe = describe,
-                                                        .names_coulomb = true,
-                                                        .trials = 2.0}};
+extern const EffectRegressor regressor{.force = {.grid = grid,
+                                                 .columns = columns,
+                                                 .possible = possible,
+                                                 .describe = describe,
+                                                 .names_coulomb = true,
+                                                 .trials = 2.0}};
 
-}  // namespace stiction::host::effects
+}  // namespace stiction::host::effects::coulomb_mismatch

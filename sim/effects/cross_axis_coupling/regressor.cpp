@@ -3,7 +3,7 @@
 
 #include "host/diagnose/effect_regressor.hpp"
 
-namespace stiction::host::effects {
+namespace stiction::host::effects::cross_axis_coupling {
 namespace {
 
 std::vector<double> grid(const SearchContext& context) {
@@ -21,7 +21,7 @@ void describe(const SearchContext& context, double, const Eigen::VectorXd& w, co
 
 }  // namespace
 
-extern const EffectRegressor cross_axis_coupling{
+extern const EffectRegressor regressor{
     .force = {.grid = grid, .columns = columns, .possible = any, .describe = describe}};
 
-}  // namespace stiction::host::effects
+}  // namespace stiction::host::effects::cross_axis_coupling

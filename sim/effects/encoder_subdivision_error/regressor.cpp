@@ -11,7 +11,7 @@
 #include "host/diagnose/encoder_error_response.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
 
-namespace stiction::host::effects {
+namespace stiction::host::effects::encoder_subdivision_error {
 namespace {
 
 const LineScan& scan(const SearchContext& context) { return context.signals_of_encoder; }
@@ -52,12 +52,12 @@ void describe(const SearchContext& context, double period, const Eigen::VectorXd
 
 }  // namespace
 
-extern const EffectRegressor encoder_subdivision_error{.force = {.grid = grid,
-                                                                 .columns = columns,
-                                                                 .possible = any,
-                                                                 .describe = describe,
-                                                                 .shape = true,
-                                                                 .periodic = true,
-                                                                 .scan = scan}};
+extern const EffectRegressor regressor{.force = {.grid = grid,
+                                                 .columns = columns,
+                                                 .possible = any,
+                                                 .describe = describe,
+                                                 .shape = true,
+                                                 .periodic = true,
+                                                 .scan = scan}};
 
-}  // namespace stiction::host::effects
+}  // namespace stiction::host::effects::encoder_subdivision_error

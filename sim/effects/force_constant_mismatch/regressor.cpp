@@ -6,7 +6,7 @@
 #include "host/diagnose/effect_regressor.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
 
-namespace stiction::host::effects {
+namespace stiction::host::effects::force_constant_mismatch {
 namespace {
 
 // A logged force says nothing of the current.
@@ -25,7 +25,7 @@ void describe(const SearchContext& context, double, const Eigen::VectorXd& w, co
 
 }  // namespace
 
-extern const EffectRegressor force_constant_mismatch{
+extern const EffectRegressor regressor{
     .force = {.grid = grid, .columns = columns, .possible = possible, .describe = describe, .names_coulomb = true}};
 
-}  // namespace stiction::host::effects
+}  // namespace stiction::host::effects::force_constant_mismatch

@@ -7,7 +7,7 @@
 #include "host/diagnose/effect_regressor.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
 
-namespace stiction::host::effects {
+namespace stiction::host::effects::force_constant_ripple {
 namespace {
 
 const LineScan& scan(const SearchContext& context) { return context.modulation; }
@@ -30,12 +30,12 @@ void describe(const SearchContext& context, double pitch, const Eigen::VectorXd&
 
 }  // namespace
 
-extern const EffectRegressor force_constant_ripple{.force = {.grid = grid,
-                                                             .columns = columns,
-                                                             .possible = possible,
-                                                             .describe = describe,
-                                                             .shape = true,
-                                                             .periodic = true,
-                                                             .scan = scan}};
+extern const EffectRegressor regressor{.force = {.grid = grid,
+                                                 .columns = columns,
+                                                 .possible = possible,
+                                                 .describe = describe,
+                                                 .shape = true,
+                                                 .periodic = true,
+                                                 .scan = scan}};
 
-}  // namespace stiction::host::effects
+}  // namespace stiction::host::effects::force_constant_ripple

@@ -2,7 +2,7 @@
 // The pitches to try come from the residual's spectrum over position (line_scan.hpp).
 #include "host/diagnose/effect_regressor.hpp"
 
-namespace stiction::host::effects {
+namespace stiction::host::effects::force_ripple {
 namespace {
 
 const LineScan& scan(const SearchContext& context) { return context.pitches; }
@@ -17,12 +17,12 @@ void describe(const SearchContext& context, double pitch, const Eigen::VectorXd&
 
 }  // namespace
 
-extern const EffectRegressor force_ripple{.force = {.grid = grid,
-                                                    .columns = columns,
-                                                    .possible = any,
-                                                    .describe = describe,
-                                                    .shape = true,
-                                                    .periodic = true,
-                                                    .scan = scan}};
+extern const EffectRegressor regressor{.force = {.grid = grid,
+                                                 .columns = columns,
+                                                 .possible = any,
+                                                 .describe = describe,
+                                                 .shape = true,
+                                                 .periodic = true,
+                                                 .scan = scan}};
 
-}  // namespace stiction::host::effects
+}  // namespace stiction::host::effects::force_ripple

@@ -8,7 +8,7 @@
 #include "host/diagnose/effect_regressor.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
 
-namespace stiction::host::effects {
+namespace stiction::host::effects::force_saturation {
 namespace {
 
 // By the highest expected force over K I_s; more is a motor that has no force left.
@@ -44,7 +44,7 @@ void describe(const SearchContext& context, double, const Eigen::VectorXd& w, co
 
 }  // namespace
 
-extern const EffectRegressor force_saturation{
+extern const EffectRegressor regressor{
     .force = {.grid = grid, .columns = columns, .possible = possible, .describe = describe, .at_weight = true}};
 
-}  // namespace stiction::host::effects
+}  // namespace stiction::host::effects::force_saturation

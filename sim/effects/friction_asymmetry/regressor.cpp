@@ -5,7 +5,7 @@
 #include "host/diagnose/effect_regressor.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
 
-namespace stiction::host::effects {
+namespace stiction::host::effects::friction_asymmetry {
 namespace {
 
 Columns columns(const SearchContext& context, const Motion& motion, double) {
@@ -25,7 +25,7 @@ void describe(const SearchContext& context, double, const Eigen::VectorXd& w, co
 
 }  // namespace
 
-extern const EffectRegressor friction_asymmetry{
+extern const EffectRegressor regressor{
     .force = {.grid = no_scan, .columns = columns, .possible = any, .describe = describe, .names_constant = true}};
 
-}  // namespace stiction::host::effects
+}  // namespace stiction::host::effects::friction_asymmetry

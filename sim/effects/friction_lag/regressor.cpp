@@ -8,7 +8,7 @@
 #include "sim/effects/friction_lag/friction_lag.hpp"
 #include "sim/plant/friction/friction.hpp"
 
-namespace stiction::host::effects {
+namespace stiction::host::effects::friction_lag {
 namespace {
 
 // A slope a factor from its place fits worse than the mass that it is confused with.
@@ -36,7 +36,7 @@ void describe(const SearchContext& context, double, const Eigen::VectorXd& w, co
 
 }  // namespace
 
-extern const EffectRegressor friction_lag{
+extern const EffectRegressor regressor{
     .force = {.grid = grid, .columns = columns, .possible = possible, .describe = describe, .at_weight = true}};
 
-}  // namespace stiction::host::effects
+}  // namespace stiction::host::effects::friction_lag

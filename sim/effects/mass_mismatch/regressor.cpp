@@ -3,7 +3,7 @@
 
 #include "host/diagnose/effect_regressor.hpp"
 
-namespace stiction::host::effects {
+namespace stiction::host::effects::mass_mismatch {
 namespace {
 
 Columns columns(const SearchContext&, const Motion& motion, double) { return {motion.a}; }
@@ -15,7 +15,7 @@ void describe(const SearchContext& context, double, const Eigen::VectorXd& w, co
 
 }  // namespace
 
-extern const EffectRegressor mass_mismatch{
+extern const EffectRegressor regressor{
     .force = {.grid = no_scan, .columns = columns, .possible = possible, .describe = describe}};
 
-}  // namespace stiction::host::effects
+}  // namespace stiction::host::effects::mass_mismatch

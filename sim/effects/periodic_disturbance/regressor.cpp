@@ -5,7 +5,7 @@
 
 #include "host/diagnose/effect_regressor.hpp"
 
-namespace stiction::host::effects {
+namespace stiction::host::effects::periodic_disturbance {
 namespace {
 
 const LineScan& scan(const SearchContext& context) { return context.times; }
@@ -31,13 +31,13 @@ void describe(const SearchContext& context, double period, const Eigen::VectorXd
 
 }  // namespace
 
-extern const EffectRegressor periodic_disturbance{.force = {.grid = grid,
-                                                            .columns = columns,
-                                                            .possible = any,
-                                                            .describe = describe,
-                                                            .shape = true,
-                                                            .periodic = true,
-                                                            .per_record = true,
-                                                            .scan = scan}};
+extern const EffectRegressor regressor{.force = {.grid = grid,
+                                                 .columns = columns,
+                                                 .possible = any,
+                                                 .describe = describe,
+                                                 .shape = true,
+                                                 .periodic = true,
+                                                 .per_record = true,
+                                                 .scan = scan}};
 
-}  // namespace stiction::host::effects
+}  // namespace stiction::host::effects::periodic_disturbance

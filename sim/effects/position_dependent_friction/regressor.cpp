@@ -9,7 +9,7 @@
 #include "host/diagnose/effect_regressor.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
 
-namespace stiction::host::effects {
+namespace stiction::host::effects::position_dependent_friction {
 namespace {
 
 // Knot k of `count` stands at (k / (count - 1))^warp of the stroke.
@@ -58,12 +58,12 @@ void describe(const SearchContext& context, double index, const Eigen::VectorXd&
 
 }  // namespace
 
-extern const EffectRegressor position_dependent_friction{.force = {.grid = grid,
-                                                                   .columns = columns,
-                                                                   .possible = any,
-                                                                   .describe = describe,
-                                                                   .names_coulomb = true,
-                                                                   .along_stroke = true,
-                                                                   .trials = 3.0}};
+extern const EffectRegressor regressor{.force = {.grid = grid,
+                                                 .columns = columns,
+                                                 .possible = any,
+                                                 .describe = describe,
+                                                 .names_coulomb = true,
+                                                 .along_stroke = true,
+                                                 .trials = 3.0}};
 
-}  // namespace stiction::host::effects
+}  // namespace stiction::host::effects::position_dependent_friction

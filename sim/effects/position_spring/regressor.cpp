@@ -3,7 +3,7 @@
 
 #include "host/diagnose/effect_regressor.hpp"
 
-namespace stiction::host::effects {
+namespace stiction::host::effects::position_spring {
 namespace {
 
 double middle(const SearchContext& context) { return 0.5 * (context.lowest_position + context.highest_position); }
@@ -28,7 +28,7 @@ void describe(const SearchContext& context, double, const Eigen::VectorXd& w, co
 
 }  // namespace
 
-extern const EffectRegressor position_spring{
+extern const EffectRegressor regressor{
     .force = {.grid = grid, .columns = columns, .possible = any, .describe = describe}};
 
-}  // namespace stiction::host::effects
+}  // namespace stiction::host::effects::position_spring

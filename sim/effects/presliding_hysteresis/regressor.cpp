@@ -8,7 +8,7 @@
 #include "host/diagnose/effect_regressor.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
 
-namespace stiction::host::effects {
+namespace stiction::host::effects::presliding_hysteresis {
 namespace {
 
 // Seven large reversals do not identify a hysteresis: sgn(v) and a contact then fit one another.
@@ -55,7 +55,7 @@ void describe(const SearchContext& context, double, const Eigen::VectorXd& w, co
 
 }  // namespace
 
-extern const EffectRegressor presliding_hysteresis{
+extern const EffectRegressor regressor{
     .force = {.grid = grid, .columns = columns, .possible = possible, .describe = describe, .at_weight = true}};
 
-}  // namespace stiction::host::effects
+}  // namespace stiction::host::effects::presliding_hysteresis

@@ -5,7 +5,7 @@
 #include "host/diagnose/inverse_dynamics.hpp"
 #include "host/identify/contact.hpp"
 
-namespace stiction::host::effects {
+namespace stiction::host::effects::stribeck {
 namespace {
 
 std::vector<double> grid(const SearchContext& context) {
@@ -23,7 +23,7 @@ void describe(const SearchContext& context, double velocity, const Eigen::Vector
 
 }  // namespace
 
-extern const EffectRegressor stribeck{
+extern const EffectRegressor regressor{
     .force = {.grid = grid, .columns = columns, .possible = possible, .describe = describe, .shape = true}};
 
-}  // namespace stiction::host::effects
+}  // namespace stiction::host::effects::stribeck

@@ -8,7 +8,7 @@
 #include "host/diagnose/effect_regressor.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
 
-namespace stiction::host::effects {
+namespace stiction::host::effects::structural_resonance {
 namespace {
 
 constexpr double largest_ratio = 0.99;
@@ -37,7 +37,7 @@ void describe(const SearchContext& context, double ratio, const Eigen::VectorXd&
 
 }  // namespace
 
-extern const EffectRegressor structural_resonance{
+extern const EffectRegressor regressor{
     .force = {.grid = grid, .columns = columns, .possible = possible, .describe = describe, .shape = true}};
 
-}  // namespace stiction::host::effects
+}  // namespace stiction::host::effects::structural_resonance

@@ -5,7 +5,7 @@
 #include "host/diagnose/effect_regressor.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
 
-namespace stiction::host::effects {
+namespace stiction::host::effects::thermal_drift {
 namespace {
 
 // Shorter than a twentieth of a record it is an event at its start, longer than twice it is a straight line.
@@ -25,8 +25,8 @@ void describe(const SearchContext& context, double time_constant, const Eigen::V
 
 }  // namespace
 
-extern const EffectRegressor thermal_drift{
+extern const EffectRegressor regressor{
     .force = {
         .grid = grid, .columns = columns, .possible = any, .describe = describe, .shape = true, .names_coulomb = true}};
 
-}  // namespace stiction::host::effects
+}  // namespace stiction::host::effects::thermal_drift

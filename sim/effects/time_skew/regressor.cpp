@@ -9,7 +9,7 @@
 #include "sim/effects/effects.hpp"
 #include "sim/effects/time_skew/time_skew.hpp"
 
-namespace stiction::host::effects {
+namespace stiction::host::effects::time_skew {
 namespace {
 
 constexpr double longest_loop_delay = 0.3e-3;  // s; longer ones no current loop of this kind survives
@@ -71,8 +71,8 @@ constexpr std::array in_loop{CommandParameter{
 
 }  // namespace
 
-extern const EffectRegressor time_skew{
+extern const EffectRegressor regressor{
     .force = {.grid = grid, .columns = columns, .possible = possible, .describe = describe, .at_weight = true},
     .command = in_loop};
 
-}  // namespace stiction::host::effects
+}  // namespace stiction::host::effects::time_skew

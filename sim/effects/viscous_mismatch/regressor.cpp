@@ -4,7 +4,7 @@
 #include "host/diagnose/effect_regressor.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
 
-namespace stiction::host::effects {
+namespace stiction::host::effects::viscous_mismatch {
 namespace {
 
 Columns columns(const SearchContext& context, const Motion& motion, double) {
@@ -20,7 +20,7 @@ void describe(const SearchContext& context, double, const Eigen::VectorXd& w, co
 
 }  // namespace
 
-extern const EffectRegressor viscous_mismatch{
+extern const EffectRegressor regressor{
     .force = {.grid = no_scan, .columns = columns, .possible = possible, .describe = describe}};
 
-}  // namespace stiction::host::effects
+}  // namespace stiction::host::effects::viscous_mismatch

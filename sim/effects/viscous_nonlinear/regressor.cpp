@@ -4,7 +4,7 @@
 #include "host/diagnose/effect_regressor.hpp"
 #include "sim/effects/viscous_nonlinear/viscous_nonlinear.hpp"
 
-namespace stiction::host::effects {
+namespace stiction::host::effects::viscous_nonlinear {
 namespace {
 
 std::vector<double> grid(const SearchContext& context) {
@@ -24,7 +24,7 @@ void describe(const SearchContext& context, double velocity, const Eigen::Vector
 
 }  // namespace
 
-extern const EffectRegressor viscous_nonlinear{
+extern const EffectRegressor regressor{
     .force = {.grid = grid, .columns = columns, .possible = any, .describe = describe, .shape = true}};
 
-}  // namespace stiction::host::effects
+}  // namespace stiction::host::effects::viscous_nonlinear

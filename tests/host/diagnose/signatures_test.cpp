@@ -26,7 +26,7 @@ Motion slow_swing(double seconds) {
 // Turns at 0.5, 1.5, 2.5 s; each is seen 2 um on, and 90 % of what began there is gone 0.23 s later.
 TEST(Signatures, a_force_after_reversals_begins_at_slow_ones_too) {
   const auto motion = slow_swing(3.5);
-  const auto column = signatures::force_after_reversal.columns({}, motion, 0.1).front();
+  const auto column = signatures::force_after_reversal::shape.columns({}, motion, 0.1).front();
   const auto at = [&](double t) { return column[static_cast<std::size_t>(std::lround(t / 5e-4))]; };
   const double seen = std::acos(0.8) / std::numbers::pi;  // s after the turn
   EXPECT_EQ(at(0.4), 0.0);                                // no reversal yet
