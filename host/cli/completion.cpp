@@ -38,7 +38,7 @@ std::string listed_values(const std::string& option) {
   std::string names;
   if (option == "--friction") {
     names = "all";
-    sim::for_each_friction_model([&]<class Model>() { names += fmt::format(" {}", Model::name); });
+    for (const auto& law : sim::friction_tables()) names += fmt::format(" {}", law.name);
   }
   if (option == "--loop") names = "all current velocity position";
   if (option == "--equations") names = "corrected printed";

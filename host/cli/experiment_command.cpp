@@ -17,7 +17,7 @@
 #include "host/log/csv_log.hpp"
 #include "host/report/experiment_report.hpp"
 #include "host/simulate/experiments.hpp"
-#include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/coulomb_viscous.hpp"
 
 namespace stiction::host {
 namespace {

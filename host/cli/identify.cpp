@@ -23,7 +23,8 @@
 #include "host/log/text_file.hpp"
 #include "host/report/identification_report.hpp"
 #include "sim/machine_file.hpp"
-#include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/coulomb_viscous.hpp"
+#include "sim/plant/friction/lugre.hpp"
 
 namespace stiction::host {
 namespace {

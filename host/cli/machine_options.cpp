@@ -84,13 +84,13 @@ std::vector<std::string> split_list(const std::string& text) {
 
 std::vector<std::string> friction_models(const std::string& text, const machine::Machine& machine) {
   std::vector<std::string> everywhere, all{"all"};
-  sim::for_each_friction_model([&]<class Model>() {
-    const std::string name(Model::name);
+  for (const auto& law : sim::friction_tables()) {
+    const std::string name(law.name);
     all.push_back(name);
     if (std::all_of(machine.axes.begin(), machine.axes.end(),
                     [&](const auto& axis) { return axis.friction.models.contains(name); }))
       everywhere.push_back(name);
-  });
+  }
   if (text == "all") return everywhere;
   if (text.empty()) return {friction_in_use(machine)};
   const auto names = split_list(text);

@@ -9,6 +9,7 @@
 #include "sim/effects/structural_resonance/structural_resonance.hpp"
 #include "sim/plant/acting_effects.hpp"
 #include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/laws.hpp"
 
 namespace stiction::host {
 namespace {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/lugre.hpp"
 
 namespace stiction::host {
 namespace {

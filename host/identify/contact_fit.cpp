@@ -7,6 +7,7 @@
 
 #include "host/identify/fit_support.hpp"
 #include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/lugre.hpp"
 
 namespace stiction::host {
 

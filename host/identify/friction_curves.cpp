@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "host/algebra/least_squares.hpp"
+#include "sim/plant/friction/maxwell_slip.hpp"
 
 namespace stiction::host {
 namespace {

@@ -9,7 +9,7 @@
 #include "host/identify/fit_support.hpp"
 #include "host/identify/standstill.hpp"
 #include "host/identify/suitability.hpp"
-#include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/coulomb_viscous.hpp"
 
 namespace stiction::host {
 namespace {

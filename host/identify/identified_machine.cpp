@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "firmware/machine/file/edited_machine.hpp"
-#include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/laws.hpp"
 
 namespace stiction::host {
 namespace {

@@ -8,7 +8,8 @@
 
 #include "firmware/machine/configuration/double_signals.hpp"
 #include "host/simulate/circle.hpp"
-#include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/maxwell_slip.hpp"
+#include "sim/plant/friction/parameters.hpp"
 
 namespace stiction::host {
 namespace {

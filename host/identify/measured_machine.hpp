@@ -8,7 +8,7 @@
 
 #include "firmware/machine/model/machine.hpp"
 #include "host/identify/friction_curves.hpp"
-#include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/maxwell_slip.hpp"
 
 namespace stiction::host {
 

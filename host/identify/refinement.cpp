@@ -14,7 +14,10 @@
 #include "host/simulate/control_run.hpp"
 #include "sim/effects/constant_force/constant_force.hpp"
 #include "sim/effects/effects.hpp"
+#include "sim/plant/friction/classical.hpp"
 #include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/lugre.hpp"
+#include "sim/plant/friction/parameters.hpp"
 
 namespace stiction::host {
 namespace {

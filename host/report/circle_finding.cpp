@@ -56,9 +56,8 @@ std::optional<std::string> only_model(const std::vector<CircleTableRow>& rows) {
 
 std::string friction_label(std::string_view name) {
   std::string label(name);
-  sim::for_each_friction_model([&]<class Model>() {
-    if (Model::name == name) label = Model::label;
-  });
+  for (const auto& law : sim::friction_tables())
+    if (law.name == name) label = law.text;
   return label;
 }
 

@@ -13,7 +13,7 @@
 
 #include "firmware/machine/file/parameters.hpp"
 #include "host/report/engineering_unit.hpp"
-#include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/laws.hpp"
 
 namespace stiction::host {
 namespace {

@@ -39,25 +39,25 @@ std::string spelled(std::string_view text) {
 
 NamedModel split_model(std::string_view text) {
   NamedModel split{"", std::string(text)};
-  sim::for_each_friction_model([&]<class Model>() {
-    const std::string name(Model::name);
+  for (const auto& law : sim::friction_tables()) {
+    const std::string name(law.name);
     if (text == name) split = {name, ""};
     if (text.starts_with(name + ", ")) split = {name, std::string(text.substr(name.size() + 2))};
     if (text.ends_with(", " + name)) split = {name, std::string(text.substr(0, text.size() - name.size() - 2))};
-  });
+  }
   return split;
 }
 
 std::string typeset(std::string_view text) {
   std::string labelled(text);
-  sim::for_each_friction_model([&]<class Model>() {
-    const std::string name(Model::name);
+  for (const auto& law : sim::friction_tables()) {
+    const std::string name(law.name);
     const auto label = friction_label(name);
     if (text == name || text.starts_with(name + ":") || text.starts_with(name + ","))
       labelled = label + std::string(text.substr(name.size()));
     else if (text.ends_with(", " + name))
       labelled = std::string(text.substr(0, text.size() - name.size())) + label;
-  });
+  }
   return spelled(labelled);
 }
 

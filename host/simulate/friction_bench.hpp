@@ -3,7 +3,7 @@
 #pragma once
 
 #include "firmware/machine/model/machine.hpp"
-#include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/laws.hpp"
 
 namespace stiction::host {
 

@@ -9,6 +9,8 @@
 #include "host/simulate/experiments.hpp"
 #include "host/simulate/friction_bench.hpp"
 #include "host/simulate/log_recorder.hpp"
+#include "sim/plant/friction/lugre.hpp"
+#include "sim/plant/friction/parameters.hpp"
 
 namespace stiction::host {
 namespace {

@@ -10,6 +10,8 @@
 #include "host/simulate/experiments.hpp"
 #include "host/simulate/log_recorder.hpp"
 #include "host/simulate/parabolic_chatter.hpp"
+#include "sim/plant/friction/parabolic.hpp"
+#include "sim/plant/friction/parameters.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
 namespace stiction::host {

@@ -5,6 +5,9 @@
 #include <cmath>
 
 #include "host/simulate/control_run.hpp"
+#include "sim/plant/friction/coulomb_viscous.hpp"
+#include "sim/plant/friction/parabolic.hpp"
+#include "sim/plant/friction/parameters.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
 namespace stiction::host {

@@ -9,7 +9,7 @@
 
 #include "firmware/machine/model/machine.hpp"
 #include "sim/experiment/experiment_result.hpp"
-#include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/parabolic.hpp"
 
 namespace stiction::host {
 

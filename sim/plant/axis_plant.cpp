@@ -3,11 +3,18 @@
 #include <cmath>
 #include <stdexcept>
 #include <utility>
+#include <variant>
+
+#include "sim/plant/acting_effects.hpp"
+#include "sim/plant/friction/laws.hpp"
+#include "sim/plant/motor.hpp"
 
 namespace stiction::sim {
 namespace {
 
-std::variant<DcMotor, SynchronousMotor, ForceSource> make_motor(const machine::MotorParameters& motor, double step) {
+using MotorVariant = std::variant<DcMotor, SynchronousMotor, ForceSource>;
+
+MotorVariant make_motor(const machine::MotorParameters& motor, double step) {
   switch (motor.model) {
     case machine::MotorModel::dc:
       return DcMotor(motor, step);
@@ -29,55 +36,68 @@ T& held(Variant& variant) {
 
 }  // namespace
 
-AxisPlant::AxisPlant(const machine::Timing& timing, const machine::AxisModel& axis, double position, std::uint64_t seed)
-    : AxisPlant(timing.fast_period / plant_steps_per_tick, plant_axis(axis), position, seed) {}
+AxisPlant::State::State(double step, const machine::AxisModel& axis, double start, std::uint64_t seed)
+    : half_step(0.5 * step),
+      inverter(axis.inverter, step, plant_steps_per_tick),
+      mount(axis.encoder.mount, step),
+      encoder_increment(axis.encoder.increment),
+      increments_per_metre(1.0 / axis.encoder.increment),
+      encoder_noise(axis.encoder.noise),
+      random(seed),
+      position(start),
+      phases(axis.motor.model == machine::MotorModel::synchronous ? 3 : 1) {}
 
-AxisPlant::AxisPlant(double step, const machine::AxisModel& axis, double position, std::uint64_t seed)
-    : half_step_(0.5 * step),
-      inverter_(axis.inverter, step, plant_steps_per_tick),
-      motor_(make_motor(axis.motor, step)),
-      effects_(axis, step, position),
-      mass_per_step_(effects_.carriage(axis).mass / step),
-      friction_(make_friction(axis.friction, effects_.carriage(axis))),
-      tick_(tick_of(motor_, friction_, effects_.any())),
-      mount_(axis.encoder.mount, step),
-      encoder_increment_(axis.encoder.increment),
-      increments_per_metre_(1.0 / axis.encoder.increment),
-      encoder_noise_(axis.encoder.noise),
-      random_(seed),
-      position_(position),
-      lost_position_(effects_.reading_error(position).value),
-      phases_(axis.motor.model == machine::MotorModel::synchronous ? 3 : 1) {}
+struct AxisPlant::Moved final : State {
+  Moved(double step, const machine::AxisModel& axis, double start, std::uint64_t seed)
+      : State(step, axis, start, seed),
+        driving_motor(make_motor(axis.motor, step)),
+        acting_effects(axis, step, start),
+        acting_friction(make_friction(axis.friction, acting_effects.carriage(axis))) {
+    mass_per_step = acting_effects.carriage(axis).mass / step;
+    lost_position = acting_effects.reading_error(start).value;
+    tick = chosen();
+  }
 
-// The freewheeling diodes end the currents within a fraction of a millisecond: here at once.
-void AxisPlant::switch_off() {
-  inverter_.switch_off();
-  std::visit([](auto& motor) { motor.switch_off(); }, motor_);
-  current_ = {};
-}
+  // The tick of this motor with this friction, with or without effects: chosen once; a visit of both costs 29
+  // instructions a tick.
+  Tick chosen() const;
+  template <class MotorModel, class Friction, bool effects>
+  static void advance(State& state);
+  template <bool effects, class MotorModel, class Friction>
+  [[gnu::always_inline]] void advance_evenly(MotorModel& motor, Friction& friction);
+  template <bool effects, class MotorModel, class Friction>
+  void advance_unevenly(MotorModel& motor, Friction& friction);
+  template <bool effects, class MotorModel, class Friction>
+  [[gnu::always_inline]] void step(MotorModel& motor, Friction& friction, PhaseValues voltage);
+
+  MotorVariant driving_motor;
+  ActingEffects acting_effects;
+  FrictionModel acting_friction;
+};
 
 template <class MotorModel, class Friction, bool effects>
-void AxisPlant::tick(AxisPlant& plant) {
-  auto& friction = held<Friction>(plant.friction_);
-  plant.inverter_.advance_tick<MotorModel::phases>();
-  if (plant.enabled_) [[likely]] {
-    auto& motor = held<MotorModel>(plant.motor_);
-    if (plant.inverter_.changes_within_tick()) [[unlikely]]
+void AxisPlant::Moved::advance(State& state) {
+  auto& plant = static_cast<Moved&>(state);
+  auto& friction = held<Friction>(plant.acting_friction);
+  plant.inverter.advance_tick<MotorModel::phases>();
+  if (plant.enabled) [[likely]] {
+    auto& motor = held<MotorModel>(plant.driving_motor);
+    if (plant.inverter.changes_within_tick()) [[unlikely]]
       plant.advance_unevenly<effects>(motor, friction);
     else
       plant.advance_evenly<effects>(motor, friction);
-    const PhaseValues current = motor.current();
-    for (std::size_t k = 0; k < MotorModel::phases; ++k) plant.current_[k] = current[k];
+    const PhaseValues flowing = motor.current();
+    for (std::size_t k = 0; k < MotorModel::phases; ++k) plant.current[k] = flowing[k];
   } else {
     OpenWindings none;
     plant.advance_unevenly<effects>(none, friction);
   }
   if constexpr (effects) {
-    plant.lost_position_ = plant.effects_.follower() - plant.position_;
-    plant.lost_velocity_ = plant.effects_.closed() ? 0.0 : -plant.velocity_;
-    const auto error = plant.effects_.reading_error(plant.encoder_position());
-    plant.lost_velocity_ += error.slope * plant.encoder_velocity();
-    plant.lost_position_ += error.value;
+    plant.lost_position = plant.acting_effects.follower() - plant.position;
+    plant.lost_velocity = plant.acting_effects.closed() ? 0.0 : -plant.velocity;
+    const auto error = plant.acting_effects.reading_error(plant.encoder_position());
+    plant.lost_velocity += error.slope * plant.encoder_velocity();
+    plant.lost_position += error.value;
   }
 }
 
@@ -85,8 +105,8 @@ void AxisPlant::tick(AxisPlant& plant) {
 // lets the compiler keep the plant's state in registers. The steps are written out, which saves one instruction in
 // twelve.
 template <bool effects, class MotorModel, class Friction>
-inline void AxisPlant::advance_evenly(MotorModel& motor, Friction& friction) {
-  const PhaseValues voltage = inverter_.voltage<MotorModel::phases>();
+inline void AxisPlant::Moved::advance_evenly(MotorModel& motor, Friction& friction) {
+  const PhaseValues voltage = inverter.voltage<MotorModel::phases>();
   [&]<std::size_t... i>(std::index_sequence<i...>) {
     ((static_cast<void>(i), step<effects>(motor, friction, voltage)), ...);
   }
@@ -95,8 +115,8 @@ inline void AxisPlant::advance_evenly(MotorModel& motor, Friction& friction) {
 
 // Not inline: registers that it alone needs would cost each tick of the other 10 instructions.
 template <bool effects, class MotorModel, class Friction>
-[[gnu::noinline]] void AxisPlant::advance_unevenly(MotorModel& motor, Friction& friction) {
-  const auto acting = inverter_.acting();
+[[gnu::noinline]] void AxisPlant::Moved::advance_unevenly(MotorModel& motor, Friction& friction) {
+  const auto acting = inverter.acting();
   for (int i = 0; i < plant_steps_per_tick; ++i)
     step<effects>(motor, friction,
                   i >= acting.change      ? acting.after
@@ -106,36 +126,57 @@ template <bool effects, class MotorModel, class Friction>
 
 // Semi-implicit Euler: the new velocity from the forces, the position from the mean of old and new.
 template <bool effects, class MotorModel, class Friction>
-inline void AxisPlant::step(MotorModel& motor, Friction& friction, PhaseValues voltage) {
+inline void AxisPlant::Moved::step(MotorModel& motor, Friction& friction, PhaseValues voltage) {
   double friction_of_effects = 0.0;
   if constexpr (effects) {
     const double linear =
-        motor.advance(voltage, position_ + effects_.motor_lead(), velocity_ + effects_.motor_lead_rate());
-    motor_force_ = effects_.motor_force(linear);
-    const auto extra = effects_.advance(position_, velocity_, motor_force_);
-    applied_force_ = extra.applied + (effects_.transmitted(motor_force_) - motor_force_);
-    force_ = motor_force_ + external_force_ + applied_force_;
+        motor.advance(voltage, position + acting_effects.motor_lead(), velocity + acting_effects.motor_lead_rate());
+    motor_force = acting_effects.motor_force(linear);
+    const auto extra = acting_effects.advance(position, velocity, motor_force);
+    applied_force = extra.applied + (acting_effects.transmitted(motor_force) - motor_force);
+    force = motor_force + external_force + applied_force;
     friction_of_effects = extra.friction;
   } else {
-    motor_force_ = motor.advance(voltage, position_, velocity_);
-    force_ = motor_force_ + external_force_;
+    motor_force = motor.advance(voltage, position, velocity);
+    force = motor_force + external_force;
   }
-  const double next = friction.advance(velocity_, effects ? force_ + friction_of_effects : force_);
-  change_ = next - velocity_;
-  position_ += half_step_ * (velocity_ + next);
-  velocity_ = next;
-  mount_.advance(effects ? effects_.follow(position_, velocity_, change_) : change_);
+  const double next = friction.advance(velocity, effects ? force + friction_of_effects : force);
+  change = next - velocity;
+  position += half_step * (velocity + next);
+  velocity = next;
+  mount.advance(effects ? acting_effects.follow(position, velocity, change) : change);
 }
 
 double AxisPlant::with_noise(double reading) {
-  return reading + std::normal_distribution<double>(0.0, encoder_noise_)(random_);
+  return reading + std::normal_distribution<double>(0.0, state_->encoder_noise)(state_->random);
 }
 
 // Behind the templates that it names: clang 14 forgets to instantiate, for a lambda like this, what is defined later.
-AxisPlant::Tick AxisPlant::tick_of(const MotorVariant& motor_model, const FrictionModel& friction_model, bool effects) {
-  return std::visit([effects]<class M, class F>(
-                        const M&, const F&) -> Tick { return effects ? tick<M, F, true> : tick<M, F, false>; },
-                    motor_model, friction_model);
+AxisPlant::State::Tick AxisPlant::Moved::chosen() const {
+  return std::visit([any = acting_effects.any()]<class M, class F>(
+                        const M&, const F&) -> Tick { return any ? advance<M, F, true> : advance<M, F, false>; },
+                    driving_motor, acting_friction);
+}
+
+AxisPlant::AxisPlant(const machine::Timing& timing, const machine::AxisModel& axis, double position, std::uint64_t seed)
+    : state_(std::make_unique<Moved>(timing.fast_period / plant_steps_per_tick, plant_axis(axis), position, seed)) {}
+AxisPlant::AxisPlant(AxisPlant&&) noexcept = default;
+AxisPlant& AxisPlant::operator=(AxisPlant&&) noexcept = default;
+AxisPlant::~AxisPlant() = default;
+
+AxisPlant::Moved& AxisPlant::moved() { return static_cast<Moved&>(*state_); }
+const AxisPlant::Moved& AxisPlant::moved() const { return static_cast<const Moved&>(*state_); }
+
+bool AxisPlant::coupled() const { return moved().acting_effects.coupled(); }
+void AxisPlant::set_other_acceleration(double acceleration) {
+  moved().acting_effects.set_other_acceleration(acceleration);
+}
+
+// The freewheeling diodes end the currents within a fraction of a millisecond: here at once.
+void AxisPlant::switch_off() {
+  state_->inverter.switch_off();
+  std::visit([](auto& motor) { motor.switch_off(); }, moved().driving_motor);
+  state_->current = {};
 }
 
 }  // namespace stiction::sim

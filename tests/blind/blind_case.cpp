@@ -4,7 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/maxwell_slip.hpp"
+#include "sim/plant/friction/parameters.hpp"
 #include "tests/blind/truth/command.hpp"
 
 namespace stiction::blind {

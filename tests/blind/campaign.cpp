@@ -11,7 +11,8 @@
 #include <stdexcept>
 #include <thread>
 
-#include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/maxwell_slip.hpp"
+#include "sim/plant/friction/parameters.hpp"
 
 namespace stiction::blind {
 namespace {

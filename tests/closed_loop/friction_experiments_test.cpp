@@ -6,7 +6,8 @@
 
 #include "host/simulate/experiments.hpp"
 #include "host/simulate/parabolic_chatter.hpp"
-#include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/parabolic.hpp"
+#include "sim/plant/friction/parameters.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/shipped_machine.hpp"
 

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "host/identify/measured_machine_result.hpp"
+#include "sim/plant/friction/maxwell_slip.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/shipped_machine.hpp"
 

@@ -9,6 +9,8 @@
 #include "firmware/machine/file/machine_file.hpp"
 #include "sim/machine_file.hpp"
 #include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/maxwell_slip.hpp"
+#include "sim/plant/friction/parameters.hpp"
 
 namespace stiction::compensation {
 namespace {

@@ -7,7 +7,7 @@
 #include "firmware/machine/file/parameters.hpp"
 #include "sim/effects/effects.hpp"
 #include "sim/machine_file.hpp"
-#include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/laws.hpp"
 
 int main() {
   namespace machine = stiction::machine;

@@ -12,7 +12,7 @@
 #include "host/simulate/commissioning.hpp"
 #include "host/tune/friction_tuning.hpp"
 #include "sim/machine_file.hpp"
-#include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/laws.hpp"
 #include "tests/host/identify/simulated_log.hpp"
 #include "tests/support/figure.hpp"
 

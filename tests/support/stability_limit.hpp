@@ -6,7 +6,8 @@
 #include <cmath>
 
 #include "hal/simulated/simulated_backend.hpp"
-#include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/coulomb_viscous.hpp"
+#include "sim/plant/friction/parameters.hpp"
 #include "tests/support/closed_loop.hpp"
 #include "tests/support/shipped_machine.hpp"
 

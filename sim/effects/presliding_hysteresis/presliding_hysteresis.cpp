@@ -7,6 +7,7 @@
 
 #include "sim/effects/effect_values.hpp"
 #include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/laws.hpp"
 
 namespace stiction::sim {
 namespace {

@@ -3,6 +3,8 @@
 #include <memory>
 #include <utility>
 
+#include "sim/plant/friction/laws.hpp"
+
 namespace stiction::sim {
 namespace {
 

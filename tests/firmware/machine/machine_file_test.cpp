@@ -5,7 +5,9 @@
 
 #include <limits>
 
-#include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/lugre.hpp"
+#include "sim/plant/friction/maxwell_slip.hpp"
+#include "sim/plant/friction/parameters.hpp"
 #include "tests/firmware/machine/machine_text.hpp"
 
 namespace stiction::machine {

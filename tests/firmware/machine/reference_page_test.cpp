@@ -7,6 +7,7 @@
 #include "firmware/machine/file/parameters.hpp"
 #include "sim/machine_file.hpp"
 #include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/laws.hpp"
 
 namespace stiction::machine {
 namespace {

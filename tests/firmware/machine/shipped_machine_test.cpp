@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "sim/machine_file.hpp"
-#include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/laws.hpp"
 #include "tests/firmware/machine/machine_text.hpp"
 
 namespace stiction::machine {

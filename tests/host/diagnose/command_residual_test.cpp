@@ -8,7 +8,8 @@
 
 #include "host/diagnose/command_replay.hpp"
 #include "host/diagnose/diagnose.hpp"
-#include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/coulomb_viscous.hpp"
+#include "sim/plant/friction/parameters.hpp"
 #include "stiction/number/fixed_signals.hpp"
 #include "tests/support/figure.hpp"
 

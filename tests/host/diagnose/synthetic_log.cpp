@@ -6,7 +6,8 @@
 #include <random>
 #include <vector>
 
-#include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/lugre.hpp"
+#include "sim/plant/friction/parameters.hpp"
 
 namespace stiction::test {
 namespace {

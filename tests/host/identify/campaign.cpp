@@ -6,6 +6,8 @@
 
 #include "sim/machine_file.hpp"
 #include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/lugre.hpp"
+#include "sim/plant/friction/parameters.hpp"
 
 namespace stiction::test {
 

@@ -5,6 +5,8 @@
 
 #include "host/identify/identification.hpp"
 #include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/lugre.hpp"
+#include "sim/plant/friction/parameters.hpp"
 #include "tests/host/identify/campaign.hpp"
 
 namespace stiction::host {

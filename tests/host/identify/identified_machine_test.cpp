@@ -8,7 +8,9 @@
 #include <fstream>
 
 #include "sim/machine_file.hpp"
-#include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/coulomb_viscous.hpp"
+#include "sim/plant/friction/lugre.hpp"
+#include "sim/plant/friction/parameters.hpp"
 #include "tests/host/identify/campaign.hpp"
 
 namespace stiction::host {

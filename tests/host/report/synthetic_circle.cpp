@@ -9,7 +9,12 @@
 #include <random>
 #include <string>
 
-#include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/classical.hpp"
+#include "sim/plant/friction/coulomb_viscous.hpp"
+#include "sim/plant/friction/linear_ramp.hpp"
+#include "sim/plant/friction/lugre.hpp"
+#include "sim/plant/friction/parabolic.hpp"
+#include "sim/plant/friction/parameters.hpp"
 
 namespace stiction::host {
 namespace {

@@ -8,6 +8,13 @@
 #include <vector>
 
 #include "sim/plant/axis_plant.hpp"
+#include "sim/plant/friction/classical.hpp"
+#include "sim/plant/friction/coulomb_viscous.hpp"
+#include "sim/plant/friction/linear_ramp.hpp"
+#include "sim/plant/friction/lugre.hpp"
+#include "sim/plant/friction/maxwell_slip.hpp"
+#include "sim/plant/friction/parabolic.hpp"
+#include "sim/plant/friction/parameters.hpp"
 
 namespace stiction::sim::test {
 

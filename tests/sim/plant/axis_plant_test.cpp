@@ -7,6 +7,10 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "sim/plant/friction/classical.hpp"
+#include "sim/plant/friction/coulomb_viscous.hpp"
+#include "sim/plant/friction/parameters.hpp"
+
 namespace stiction::sim {
 namespace {
 

@@ -9,6 +9,7 @@
 
 #include "sim/machine_file.hpp"
 #include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/laws.hpp"
 
 namespace stiction::sim {
 namespace {

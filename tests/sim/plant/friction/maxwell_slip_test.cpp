@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "sim/machine_file.hpp"
-#include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/parameters.hpp"
 #include "tests/firmware/number/exact.hpp"
 
 namespace stiction::sim {

@@ -7,7 +7,7 @@
 #include <ostream>
 #include <vector>
 
-#include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/laws.hpp"
 #include "tests/firmware/number/exact.hpp"
 
 namespace stiction::sim {
