@@ -6,9 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "host/simulate/bench_recorder.hpp"
 #include "host/simulate/experiments.hpp"
-#include "host/simulate/friction_bench.hpp"
-#include "host/simulate/log_recorder.hpp"
 #include "sim/plant/friction/lugre.hpp"
 #include "sim/plant/friction/parameters.hpp"
 
