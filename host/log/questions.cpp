@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "host/log/inspection.hpp"
 #include "host/log/resolution.hpp"
 
 namespace stiction::host {

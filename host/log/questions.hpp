@@ -15,7 +15,8 @@
 #include <string>
 #include <vector>
 
-#include "host/log/inspection.hpp"
+#include "host/log/known_axis.hpp"
+#include "host/log/log.hpp"
 #include "host/log/rigid_motion.hpp"
 
 namespace stiction::host {
