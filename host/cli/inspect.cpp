@@ -7,11 +7,10 @@
 #include "firmware/machine/model/motor_force.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
+#include "host/cli/log_input.hpp"
 #include "host/cli/machine_options.hpp"
-#include "host/cli/progress.hpp"
 #include "host/log/channel_name.hpp"
 #include "host/log/inspection.hpp"
-#include "host/log/read_log.hpp"
 #include "host/simulate/replay.hpp"
 
 namespace stiction::host {
@@ -21,7 +20,7 @@ using json = nlohmann::ordered_json;
 
 struct InspectOptions {
   MachineOptions machine;
-  std::string log, axis;
+  std::string log, columns, axis;
   bool json = false;
 };
 
@@ -55,7 +54,7 @@ json axis_json(const Log& log, std::size_t index, const AxisInspection& axis) {
   json channels = json::array();
   for (const auto& channel : log_channels)
     if (!(log.axes[index].*channel.values).empty())
-      channels.push_back({{"name", channel.name}, {"unit", channel.unit}});
+      channels.push_back({{"name", name_on(log.axes[index], channel)}, {"unit", unit_on(log.axes[index], channel)}});
   json out{{"axis", axis.axis},
            {"channels", channels},
            {"stroke_m", axis.stroke},
@@ -88,7 +87,8 @@ std::string axis_text(const Log& log, std::size_t index, const AxisInspection& a
   std::string channels;
   for (const auto& channel : log_channels)
     if (!(log.axes[index].*channel.values).empty())
-      channels += fmt::format("{}{}[{}]", channels.empty() ? "" : ", ", channel.name, channel.unit);
+      channels += fmt::format("{}{}[{}]", channels.empty() ? "" : ", ", name_on(log.axes[index], channel),
+                              unit_on(log.axes[index], channel));
   const auto line = [&](const char* name, const std::string& value) {
     text += fmt::format("  {:<14} {}\n", name, value);
   };
@@ -120,7 +120,7 @@ std::string axis_text(const Log& log, std::size_t index, const AxisInspection& a
 }
 
 void run(const InspectOptions& options) {
-  const auto log = during("reading", [&] { return read_log(options.log); });
+  const auto log = read_log_shown(options.log, options.columns);
   const auto known = known_axes(options, log);
   const auto inspection = inspect(log, known);
   if (options.json) {
@@ -152,6 +152,7 @@ void add_inspect(CLI::App& program) {
       "inspect", "describe a log: channels, suspicious signals, and quantities that it can determine");
   auto o = std::make_shared<InspectOptions>();
   command->add_option("LOG", o->log, "a log (CSV, MAT)")->required()->type_name("LOG");
+  add_columns(*command, o->columns);
   command
       ->add_option("--machine", o->machine.machine,
                    "machine of the log, for further checks: a shipped machine by name, or a machine file")
