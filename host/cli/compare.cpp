@@ -10,6 +10,7 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/compare_output.hpp"
 #include "host/cli/errors.hpp"
+#include "host/cli/log_input.hpp"
 #include "host/cli/machine_options.hpp"
 #include "host/cli/output.hpp"
 #include "host/cli/replay_command.hpp"
@@ -22,8 +23,9 @@ namespace {
 struct CompareOptions {
   MachineOptions machine;
   std::string reference;
-  std::string log;   // instead of a reference
-  std::string axis;  // of the log
+  std::string log;      // instead of a reference
+  std::string columns;  // of the log, without header
+  std::string axis;     // of the log
   std::string friction;
   std::string signals = "fixed";
   std::string out;
@@ -84,11 +86,12 @@ void compare(const CompareOptions& options, const Invocation& invocation) {
     throw UsageError(fmt::format("compare: found {}; expected either --reference circle or a measured log",
                                  options.log.empty() ? "neither --reference nor LOG" : "--reference and LOG"));
   if (!options.log.empty()) {
-    run_replay(
-        {options.machine, options.log, options.friction, options.axis, options.signals, "", options.out, options.json},
-        invocation, [&](const Log& log, const std::vector<ReplayCase>& cases, const sim::ExperimentResult& result) {
-          return compare_log_json(log, cases, options.axis, result.signals);
-        });
+    run_replay({options.machine, options.log, options.friction, options.axis, options.signals, "", options.out,
+                options.json, options.columns},
+               invocation,
+               [&](const Log& log, const std::vector<ReplayCase>& cases, const sim::ExperimentResult& result) {
+                 return compare_log_json(log, cases, options.axis, result.signals);
+               });
     return;
   }
   if (!options.axis.empty()) throw UsageError("--axis: found it together with --reference; expected it with LOG only");
@@ -134,6 +137,7 @@ void add_compare(CLI::App& program, const Invocation& invocation) {
   command->add_option("--reference", o->reference, "rows of the machine file to compare with")
       ->check(one_of({"circle"}));
   command->add_option("LOG", o->log, "a measured log; the simulation follows its set-points")->type_name("LOG");
+  add_columns(*command, o->columns);
   command->add_option("--axis", o->axis, "axis of the machine, for a log without axis names")->type_name("AXIS");
   o->machine.add_to(*command, "shipped machine by name, or a machine file; or a list of them");
   command

@@ -8,44 +8,36 @@
 #include "host/cli/choices.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
+#include "host/cli/log_input.hpp"
 #include "host/cli/output.hpp"
 #include "host/cli/progress.hpp"
 #include "host/log/csv_log.hpp"
 #include "host/log/mapping.hpp"
 #include "host/log/mat_log.hpp"
-#include "host/log/read_log.hpp"
-#include "host/log/text_file.hpp"
 
 namespace stiction::host {
 namespace {
 
 struct ConvertOptions {
-  std::string in, out, map, mat = "5";
+  std::string in, out, map, columns, mat = "5";
 };
-
-// Recordings of drives need a mapping; what it must say depends on the channels they have.
-void refuse_recording(const std::filesystem::path& file) {
-  const auto bytes = read_text_file(file);
-  if (is_recorder_export(bytes)) throw LogError(mapping_hint(read_recorder_export(bytes, file.string())));
-  if (is_scope_export(bytes)) throw LogError(mapping_hint(read_scope_export(bytes, file.string())));
-}
 
 void convert(const ConvertOptions& options) {
   const auto kind = std::filesystem::path(options.out).extension();
   if (kind != ".csv" && kind != ".mat")
     throw UsageError(fmt::format("OUT: found '{}'; expected a name that ends in .csv or .mat", options.out));
-  auto progress = std::make_optional<Progress>("converting");
-  if (options.map.empty()) refuse_recording(options.in);
   Log log;
   if (options.map.empty()) {
-    log = read_log(options.in);
+    log = read_log_shown(options.in, options.columns);
   } else {
+    const Progress progress("reading " + options.in);
     const auto mapping = read_mapping(options.map);
     log = apply_mapping(mapping, read_recording(options.in, mapping.table));
   }
+  auto progress = std::make_optional<Progress>("writing " + options.out);
   PendingFile file(options.out);
   if (kind == ".csv")
-    file.write(csv_log_text(log));
+    file.fill([&](const auto& path) { write_csv_log(path, log); });
   else
     file.fill([&](const auto& path) {
       write_mat_log(path, log, options.mat == "5" ? MatLevel::level_5 : MatLevel::level_7_3);
@@ -67,9 +59,11 @@ void add_convert(CLI::App& program) {
   command->add_option("IN", o->in, "a log (CSV, MAT), a TwinCAT Scope export, a recorder's JSON or zip, any table")
       ->required()
       ->type_name("LOG");
+  auto* columns = add_columns(*command, o->columns);
   add_output_file(*command, "OUT", o->out, "the log to write: NAME.csv or NAME.mat")->required();
   command->add_option("--map", o->map, "mapping file that names the channels of a recording (docs/formats.md)")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->excludes(columns);
   command->add_option("--mat", o->mat, "level of a MAT-file: 5 or 7.3")
       ->check(one_of({"5", "7.3"}))
       ->type_name("LEVEL")

@@ -26,6 +26,7 @@ struct DiagnoseCommandOptions {
   MachineOptions machine;
   std::string reference;  // instead of logs
   std::string axis;
+  std::string columns;
   std::string out;
   std::uint64_t seed = 1;
   bool json = false;
@@ -51,8 +52,8 @@ std::size_t axis_of_run(const std::string& name, const machine::Machine& machine
 void run(const DiagnoseCommandOptions& options, const Invocation& invocation) {
   DiagnoseInput input;
   input.machine = options.machine.load(options.machine.machine, "");
-  input.logs = read_logs(options.logs);
-  input.held_out = read_logs(options.held_out);
+  input.logs = read_logs(options.logs, options.columns);
+  input.held_out = read_logs(options.held_out, options.columns);
   auto all = input.logs;
   all.insert(all.end(), input.held_out.begin(), input.held_out.end());
   input.axis = axis_of_run(options.axis, input.machine, all);
@@ -75,6 +76,7 @@ void add_diagnose(CLI::App& program, const Invocation& invocation) {
       program.add_subcommand("diagnose", "find causes of deviations between measured logs and the machine file");
   auto o = std::make_shared<DiagnoseCommandOptions>();
   command->add_option("logs", o->logs, "logs of one axis to search for causes (training data)")->type_name("LOG");
+  add_columns(*command, o->columns);
   o->machine.add_to(*command, "shipped machine by name, or a machine file, with which the logs are compared");
   command
       ->add_option("--holdout", o->held_out,

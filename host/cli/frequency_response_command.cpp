@@ -16,6 +16,7 @@
 #include "host/cli/output.hpp"
 #include "host/cli/progress.hpp"
 #include "host/cli/report_origin.hpp"
+#include "host/cli/response_test_output.hpp"
 #include "host/log/csv_log.hpp"
 #include "host/log/read_log.hpp"
 #include "host/report/experiment_report.hpp"
@@ -161,6 +162,19 @@ Measurement measured(const Options& options, const machine::Machine& machine) {
 }
 
 void run(const Options& options, const Invocation& invocation) {
+  if (is_response_test_file(options.from)) {
+    if (!options.out.empty() || !options.axis.empty() || !options.loop.empty())
+      throw UsageError(fmt::format(
+          "--from: found {}, the response test of a control, together with --out, --axis or --loop; expected "
+          "it alone or with --json, as it is a response of its own",
+          options.from));
+    print_response_test(options.from, options.json);
+    return;
+  }
+  if (options.machine.machine.empty())
+    throw UsageError(
+        "--machine: found none; expected a shipped machine by name, or a machine file (only the response test of a "
+        "control, --from FILE.XML, needs none)");
   auto machine = options.machine.load(options.machine.machine, "frequency-response");
   choose_axes(machine, options.axis);
   const auto loops = loops_of(options.loop);
@@ -205,14 +219,19 @@ void add_frequency_response(CLI::App& simulate, const Invocation& invocation) {
                                           "measure current, velocity and position loop and the plant with a test "
                                           "signal on the set current: Bode plots and margins");
   auto o = std::make_shared<Options>();
-  o->machine.add_to(*command, "shipped machine by name, or a machine file");
+  o->machine.add_to(*command, "shipped machine by name, or a machine file; required but for a response test");
+  command->get_option("--machine")->required(false);
   command->add_option("--axis", o->axis, "axis, or a list of axes [all]")->type_name("AXIS");
   command
       ->add_option("--loop", o->loop,
                    "loop to measure: current, velocity, position, or a list of them [all, with the plant]")
       ->type_name("LOOP");
   auto* from =
-      command->add_option("--from", o->from, "evaluate this log instead, which must have i_inject[A] or u_inject[V]")
+      command
+          ->add_option(
+              "--from", o->from,
+              "evaluate this log instead, which must have i_inject[A] or u_inject[V], or the response test (XML) of "
+              "a SINUMERIK")
           ->type_name("LOG");
   const auto simulated_only = [&](CLI::Option* option) { return option->excludes(from); };
   simulated_only(command->add_option("--friction", o->friction, "friction model [as in the machine file]"))

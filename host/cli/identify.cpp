@@ -31,6 +31,7 @@ namespace {
 
 struct IdentifyCommandOptions {
   std::vector<std::string> logs;
+  std::string columns;
   std::string reference;
   MachineOptions machine;
   std::string axis;
@@ -109,7 +110,7 @@ Run identify(const IdentifyCommandOptions& options, const machine::Machine& mach
                              FitSettings{}),
               report_origin(options.machine.machine, options.logs)};
     }
-  const auto logs = read_logs(options.logs);
+  const auto logs = read_logs(options.logs, options.columns);
   const auto& axis = axis_to_identify(options.axis, machine, logs);
   const IdentifyOptions settings{model_to_identify(options.friction, axis), amperes, FitSettings{},
                                  options.friction.empty()};
@@ -150,6 +151,7 @@ void add_identify(CLI::App& program, const Invocation& invocation) {
   auto* logs =
       command->add_option("logs", o->logs, "logs of one axis, or one table of steady states (columns v[m/min],i[A])")
           ->type_name("LOG");
+  add_columns(*command, o->columns);
   command
       ->add_option("--reference", o->reference,
                    "use the measured rows of this experiment in the machine file instead of logs")

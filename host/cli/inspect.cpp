@@ -8,11 +8,10 @@
 #include "firmware/machine/model/motor_force.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
+#include "host/cli/log_input.hpp"
 #include "host/cli/machine_options.hpp"
-#include "host/cli/progress.hpp"
 #include "host/log/channel_name.hpp"
 #include "host/log/inspection.hpp"
-#include "host/log/read_log.hpp"
 #include "host/log/stretches.hpp"
 #include "host/simulate/replay.hpp"
 
@@ -23,7 +22,7 @@ using json = nlohmann::ordered_json;
 
 struct InspectOptions {
   MachineOptions machine;
-  std::string log, axis;
+  std::string log, columns, axis;
   bool json = false;
 };
 
@@ -148,7 +147,7 @@ json axis_json(const Log& log, std::size_t index, const AxisInspection& axis) {
   json channels = json::array();
   for (const auto& channel : log_channels)
     if (!(log.axes[index].*channel.values).empty())
-      channels.push_back({{"name", channel.name}, {"unit", channel.unit}});
+      channels.push_back({{"name", name_on(log.axes[index], channel)}, {"unit", unit_on(log.axes[index], channel)}});
   json out{{"axis", axis.axis},
            {"channels", channels},
            {"stroke_m", axis.stroke},
@@ -201,7 +200,8 @@ std::string axis_text(const Log& log, std::size_t index, const AxisInspection& a
   std::string channels;
   for (const auto& channel : log_channels)
     if (!(log.axes[index].*channel.values).empty())
-      channels += fmt::format("{}{}[{}]", channels.empty() ? "" : ", ", channel.name, channel.unit);
+      channels += fmt::format("{}{}[{}]", channels.empty() ? "" : ", ", name_on(log.axes[index], channel),
+                              unit_on(log.axes[index], channel));
   const auto line = [&](const char* name, const std::string& value) {
     text += fmt::format("  {:<14} {}\n", name, value);
   };
@@ -238,7 +238,7 @@ std::string axis_text(const Log& log, std::size_t index, const AxisInspection& a
 }
 
 void run(const InspectOptions& options) {
-  const auto stretches = stretches_of(during("reading", [&] { return read_log(options.log); }));
+  const auto stretches = stretches_of(read_log_shown(options.log, options.columns));
   const auto& log = *std::ranges::max_element(stretches, {}, [](const Log& each) { return each.t.size(); });
   const auto known = known_axes(options, log);
   const auto inspection = inspect(log, known);
@@ -282,6 +282,7 @@ void add_inspect(CLI::App& program) {
       "inspect", "describe a log: channels, suspicious signals, and quantities that it can determine");
   auto o = std::make_shared<InspectOptions>();
   command->add_option("LOG", o->log, "a log (CSV, MAT)")->required()->type_name("LOG");
+  add_columns(*command, o->columns);
   command
       ->add_option("--machine", o->machine.machine,
                    "machine of the log, for further checks: a shipped machine by name, or a machine file")

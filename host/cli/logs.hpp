@@ -5,21 +5,17 @@
 #include <utility>
 #include <vector>
 
-#include "host/cli/progress.hpp"
-#include "host/log/read_log.hpp"
+#include "host/cli/log_input.hpp"
 #include "host/log/stretches.hpp"
 
 namespace stiction::host {
 
-// The logs of `files`, in their order, one a stretch of a record with gaps, with progress where they are large. Throws
-// LogError.
-inline std::vector<Log> read_logs(const std::vector<std::string>& files) {
-  Progress progress("reading logs", files.size());
+// The logs of `files`, in their order, one a stretch of a record with gaps, with progress where they are large.
+// `columns`: of files without header (log_input.hpp). Throws LogError.
+inline std::vector<Log> read_logs(const std::vector<std::string>& files, const std::string& columns = {}) {
   std::vector<Log> logs;
-  for (const auto& file : files) {
-    for (auto& stretch : stretches_of(read_log(file))) logs.push_back(std::move(stretch));
-    progress.add();
-  }
+  for (const auto& file : files)
+    for (auto& stretch : stretches_of(read_log_shown(file, columns))) logs.push_back(std::move(stretch));
   return logs;
 }
 

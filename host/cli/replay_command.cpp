@@ -10,12 +10,12 @@
 #include "host/cli/choices.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/experiment_output.hpp"
+#include "host/cli/log_input.hpp"
 #include "host/cli/output.hpp"
 #include "host/cli/progress.hpp"
 #include "host/cli/report_origin.hpp"
 #include "host/log/csv_log.hpp"
 #include "host/log/mat_log.hpp"
-#include "host/log/read_log.hpp"
 #include "host/report/experiment_report.hpp"
 #include "host/simulate/friction_choice.hpp"
 #include "host/simulate/replay.hpp"
@@ -67,7 +67,7 @@ void run_replay(const ReplayOptions& options, const Invocation& invocation, cons
   if (!options.log.empty() && cases.size() != 1)
     throw UsageError(fmt::format("--log: found {} runs; expected one machine and one friction model", cases.size()));
   auto progress = std::make_optional<Progress>("simulating", 1 + cases.size());
-  const auto log = read_log(options.from);
+  const auto log = read_log(options.from, {options.columns, {}});
   const bool fixed = options.signals != "double";
   for (auto& c : cases) {
     progress->add(c.label);
@@ -101,6 +101,7 @@ void add_replay(CLI::App& simulate, const Invocation& invocation) {
       simulate.add_subcommand("replay", "simulate the set-points of a log and compare with the measured signals");
   auto o = std::make_shared<ReplayOptions>();
   command->add_option("--from", o->from, "log with the channel x_set")->required()->type_name("LOG");
+  add_columns(*command, o->columns);
   o->machine.add_to(*command, "shipped machine by name, or a machine file");
   command->add_option("--friction", o->friction, "friction model, list of models, or all [as in the machine file]")
       ->type_name("MODEL");

@@ -21,6 +21,7 @@ struct ReplayOptions {
   std::string log;  // empty: the simulated log is not kept
   std::string out;  // empty: no folder of results
   bool json = false;
+  std::string columns;  // of a log without header
 };
 
 // The result as --json prints it and result.json holds it, of the measured log and its replays.

@@ -3,17 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
+#include <cerrno>
 #include <cmath>
+#include <fstream>
+#include <functional>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <set>
 
+#include "firmware/machine/file/whole_file.hpp"
 #include "host/log/channel_name.hpp"
 #include "host/log/csv_rows.hpp"
 #include "host/log/message.hpp"
 #include "host/log/sampling.hpp"
-#include "host/log/text_file.hpp"
+#include "host/log/table_form.hpp"
 #include "host/log/unit_scale.hpp"
 
 namespace stiction::host {
@@ -51,33 +55,29 @@ struct Column {
   std::size_t axis = 0;
   std::vector<double> AxisLog::*values = nullptr;  // null: the time
   UnitScale scale;
+  bool whole = false;  // numbers
 };
 
-UnitScale scale_of(const CsvRows& rows, std::size_t field, std::string_view header, const ChannelName& split,
-                   std::string_view unit) {
-  const auto place = [&] { return fmt::format("{}: column {}, {}", rows.place(), field + 1, excerpt(header)); };
+// `channel`: null for the time.
+ChannelScale scale_of(const std::string& header_place, std::size_t field, std::string_view header,
+                      const ChannelName& split, const LogChannel* channel) {
+  const auto place = [&] { return fmt::format("{}: column {}, {}", header_place, field + 1, excerpt(header)); };
+  const bool rotary = channel != nullptr && split.name != channel->name;
+  const std::string_view unit = channel == nullptr ? "s" : rotary ? channel->rotary_unit : channel->unit;
   const auto wanted = fmt::format("expected a unit like that of {}[{}]", split.name, unit);
-  if (split.unit.empty()) throw LogError(fmt::format("{}: found no unit; {}", place(), wanted));
+  if (split.unit.empty() && (channel == nullptr || !channel->whole))
+    throw LogError(fmt::format("{}: found no unit; {}", place(), wanted));
   try {
-    return {split.unit, unit};
+    if (channel == nullptr) return {{split.unit, unit}, AxisKind::either};
+    return channel_scale(*channel, split.name, split.unit);
   } catch (const machine::UnitError& error) {
     throw LogError(
         fmt::format("{}: found [{}] ({}); {}", place(), excerpt(split.unit), excerpt(error.what(), 120), wanted));
   }
 }
 
-void refuse_other_separator(const CsvRows& rows, const std::vector<std::string_view>& header) {
-  if (header.size() != 1) return;
-  for (const auto& [separator, name] : {std::pair{'\t', "tabs"}, std::pair{';', "semicolons"}})
-    if (header[0].find(separator) != std::string_view::npos)
-      throw LogError(
-          fmt::format("{}: found a header with {} between the columns; expected commas (`stiction convert --map` reads "
-                      "different tables)",
-                      rows.place(), name));
-}
-
-std::vector<Column> columns_of(const CsvRows& rows, const std::vector<std::string_view>& header, Log& log) {
-  refuse_other_separator(rows, header);
+std::vector<Column> columns_of(const std::string& header_place, const std::vector<std::string_view>& header, Log& log,
+                               AxisKinds& kinds) {
   std::vector<Column> columns;
   std::set<std::string_view> seen;
   std::map<std::string_view, std::size_t> axes;
@@ -95,10 +95,13 @@ std::vector<Column> columns_of(const CsvRows& rows, const std::vector<std::strin
                            ? split.name
                            : std::string_view(split.axis.data(), split.axis.size() + 1 + split.name.size());
     if (!seen.insert(whole).second)
-      throw LogError(fmt::format("{}: column {}: found {} a second time; expected it once", rows.place(), field + 1,
+      throw LogError(fmt::format("{}: column {}: found {} a second time; expected it once", header_place, field + 1,
                                  excerpt(whole)));
-    Column column{field, 0, nullptr, scale_of(rows, field, header[field], split, time ? "s" : channel->unit)};
+    const auto [scale, kind] = scale_of(header_place, field, header[field], split, channel);
+    Column column{field, 0, nullptr, scale};
     if (channel != nullptr) {
+      kinds.add(split.axis, kind, header[field], header_place);
+      column.whole = channel->whole;
       const auto [axis, is_new] = axes.try_emplace(split.axis, axes.size());
       if (is_new) log.axes.emplace_back().axis = split.axis;
       column.axis = axis->second;
@@ -107,86 +110,172 @@ std::vector<Column> columns_of(const CsvRows& rows, const std::vector<std::strin
     has_time = has_time || time;
     columns.push_back(column);
   }
-  if (!has_time) throw LogError(rows.place() + ": found no column t[s]; expected the time of every sample");
+  if (!has_time) {
+    const bool numbers = std::ranges::any_of(header, [](std::string_view name) {
+      double value = 0.0;
+      return Decimals('\0').read(trimmed(name), value);
+    });
+    throw LogError(fmt::format(
+        "{}: found {}; expected the time of every sample as t[s] ({})", header_place,
+        numbers ? "numbers where the names of the columns should be" : "no column t[s]",
+        "--columns \"t[ms],x[mm],i[mA]\" names the columns of any table, `stiction convert --map` those of a "
+        "recording"));
+  }
   return columns;
 }
 
+// The lines of the samples. Nearly always they follow each other, and take no memory then.
+class SampleLines {
+ public:
+  void add(std::size_t line) {
+    if (count_ == 0) first_ = line;
+    if (lines_.empty() && line != first_ + count_)
+      for (std::size_t k = 0; k < count_; ++k) lines_.push_back(first_ + k);
+    if (!lines_.empty() || line != first_ + count_) lines_.push_back(line);
+    ++count_;
+  }
+  std::size_t of(std::size_t sample, std::size_t behind) const {
+    if (sample >= count_) return behind;
+    return lines_.empty() ? first_ + sample : lines_[sample];
+  }
+
+ private:
+  std::size_t first_ = 0, count_ = 0;
+  std::vector<std::size_t> lines_;
+};
+
 class Reader {
  public:
-  Reader(std::string_view text, std::string name) : name_(std::move(name)) {
+  Reader(TextSource source, std::string name, std::string_view columns)
+      : name_(std::move(name)), source_(std::move(source)), stated_(columns) {
     log_.source = name_;
-    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-    const auto comments = take_comments(text, log_);
-    rows_.emplace_back(text, ',', name_, comments + 1);
   }
 
   Log read() {
+    auto text = source_.next();
+    std::size_t line = 1 + take_comments(text, log_);
+    if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
+      throw LogError(name_ + ":1: found no header; expected t[s], x[m], ...");
+    if (!stated_.empty()) line += skip_header(text, line);
+    const auto first = text.substr(0, text.find('\n'));
+    const char separator = stated_.empty() ? header_separator(first)
+                                           : static_cast<char>(number_separator(first, column_names(stated_).size()));
+    decimals_ = Decimals(separator);
+    rows_.emplace_back(text, source_, separator, name_, line);
     auto& rows = rows_.front();
-    if (rows.only_blanks_follow()) throw LogError(name_ + ":1: found no header; expected t[s], x[m], ...");
-    rows.next(fields_);
-    const std::size_t width = fields_.size();
-    std::vector<std::string> names(fields_.begin(), fields_.end());
-    columns_ = columns_of(rows, fields_, log_);
-    const auto header_place = rows.place();
-    while (rows.next(fields_)) {
-      const bool empty = fields_.size() == 1 && trimmed(fields_[0]).empty();
-      if (empty && rows.only_blanks_follow()) break;
-      if (fields_.size() != width)
-        throw LogError(fmt::format("{}: found {}; expected {} values, one a column", rows.place(),
-                                   empty ? "an empty line" : fmt::format("{} values", fields_.size()), width));
-      add_row(names);
-      lines_.push_back(rows.line());
-    }
+    if (stated_.empty())
+      rows.next(fields_);
+    else
+      fields_ = column_names(stated_);
+    names_.assign(fields_.begin(), fields_.end());
+    const std::vector<std::string_view> header(names_.begin(), names_.end());
+    const auto header_place = stated_.empty() ? rows.place() : name_ + ": --columns";
+    columns_ = columns_of(header_place, header, log_, kinds_);
+    read_rows(rows);
+    share_channels(log_);
+    kinds_.mark(log_);
+    drop_blank_channels(log_);
     if (!log_.t.empty()) require_channels(log_, header_place);
-    check_sampling(log_, digits_, [&](std::size_t k) {
-      return fmt::format("{}:{}", name_, k < lines_.size() ? lines_[k] : rows.line());
-    });
+    check_sampling(log_, digits_,
+                   [&](std::size_t k) { return fmt::format("{}:{}", name_, lines_.of(k, rows.line())); });
     return std::move(log_);
   }
 
  private:
-  void add_row(const std::vector<std::string>& names) {
+  // Takes off what stands before the first row of numbers: names of columns that --columns replaces, lines of units.
+  std::size_t skip_header(std::string_view& text, std::size_t first_line) {
+    constexpr std::size_t most = 100;
+    const auto width = column_names(stated_).size();
+    auto rest = text;
+    std::string_view begin = text.substr(0, text.find('\n'));
+    for (std::size_t skipped = 0; skipped < most && !rest.empty(); ++skipped) {
+      const auto end = rest.find('\n');
+      const auto line = rest.substr(0, end);
+      if (number_separator(line, width) >= 0) {
+        text = rest;
+        return skipped;
+      }
+      if (!line.empty() && ((line[0] >= '0' && line[0] <= '9') || line[0] == '-' || line[0] == '+' || line[0] == '.')) {
+        begin = line;
+        first_line += skipped;
+        break;
+      }
+      rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+    }
+    throw LogError(fmt::format("{}:{}: found '{}'; expected a row of {} numbers, as --columns names so many", name_,
+                               first_line, excerpt(trimmed(begin)), width));
+  }
+
+  void read_rows(CsvRows& rows) {
+    const std::size_t width = names_.size();
+    std::string blank_place;
+    while (rows.next(fields_)) {
+      const bool blank = std::ranges::all_of(fields_, [](auto field) { return trimmed(field).empty(); });
+      if (!blank_place.empty() && !blank)
+        throw LogError(fmt::format("{}: found an empty line; expected {} values, one a column", blank_place, width));
+      if (blank) {
+        if (blank_place.empty()) blank_place = rows.place();
+        continue;
+      }
+      if (fields_.size() != width)
+        throw LogError(
+            fmt::format("{}: found {} values; expected {}, one a column", rows.place(), fields_.size(), width));
+      add_row();
+      lines_.add(rows.line());
+    }
+  }
+
+  void add_row() {
     for (const auto& column : columns_) {
       const auto text = trimmed(fields_[column.field]);
-      const double value = column.scale(number(text, column.field, names));
-      if (!std::isfinite(value)) fail(column.field, names, text, "a number in the range of double precision");
       if (column.values != nullptr) {
+        const double value = text.empty() ? std::numeric_limits<double>::quiet_NaN() : scaled(column, text);
         (log_.axes[column.axis].*column.values).push_back(value);
         continue;
       }
+      const double value = scaled(column, text);
       if (!log_.t.empty() && !(value > log_.t.back()))
-        fail(column.field, names, text,
-             fmt::format("a time after that of the sample before ({:.10g} s)", log_.t.back()));
+        fail(column.field, text, fmt::format("a time after that of the sample before ({:.10g} s)", log_.t.back()));
       log_.t.push_back(value);
       count_digits(text, digits_, column.scale.factor());
     }
   }
 
-  double number(std::string_view text, std::size_t field, const std::vector<std::string>& names) const {
-    auto digits = text;
-    if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
+  double scaled(const Column& column, std::string_view text) {
     double value = 0.0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error == std::errc{} && end == digits.data() + digits.size() && std::isfinite(value)) return value;
-    if (text.find(',') != std::string_view::npos)
-      fail(field, names, text, "a point as decimal mark (`stiction convert --map` reads different tables)");
-    fail(field, names, text, "a finite number");
+    if (!decimals_.read(text, value)) refuse_number(column.field, text);
+    if (column.whole && value != std::round(value)) fail(column.field, text, "a whole number");
+    value = column.scale(value);
+    if (!std::isfinite(value)) fail(column.field, text, "a number in the range of double precision");
+    return value;
   }
 
-  [[noreturn]] void fail(std::size_t field, const std::vector<std::string>& names, std::string_view found,
-                         const std::string& expected) const {
+  [[noreturn]] void refuse_number(std::size_t field, std::string_view text) const {
+    const bool point = text.find('.') != std::string_view::npos, comma = text.find(',') != std::string_view::npos;
+    if (decimals_.mark() == '.' && comma)
+      fail(field, text, "a point as decimal mark, as a comma separates or the numbers before have a point");
+    if (decimals_.mark() == ',' && point) fail(field, text, "a comma as decimal mark, as the numbers before have it");
+    fail(field, text, "a finite number");
+  }
+
+  [[noreturn]] void fail(std::size_t field, std::string_view found, const std::string& expected) const {
     throw LogError(fmt::format("{}: column {}, {}: found {}; expected {}", rows_.front().place(), field + 1,
-                               excerpt(names[field]),
+                               excerpt(names_[field]),
                                found.empty() ? std::string("nothing") : "'" + excerpt(found) + "'", expected));
   }
 
   std::string name_;
+  TextSource source_;
+  std::string_view stated_;  // by --columns
   Log log_;
+  AxisKinds kinds_;
   std::vector<CsvRows> rows_;  // one, made after the comments are off
   std::vector<Column> columns_;
+  std::vector<std::string> names_;
   std::vector<std::string_view> fields_;
-  std::vector<std::size_t> lines_;  // of the samples
+  SampleLines lines_;
   StampDigits digits_{0.0, 0};
+  Decimals decimals_{','};
 };
 
 std::string one_line(std::string text) {
@@ -195,13 +284,9 @@ std::string one_line(std::string text) {
   return text;
 }
 
-}  // namespace
-
-Log parse_csv_log(std::string_view text, const std::string& name) { return Reader(text, name).read(); }
-
-Log read_csv_log(const std::filesystem::path& file) { return parse_csv_log(read_text_file(file), file.string()); }
-
-std::string csv_log_text(const Log& log) {
+// Calls sink(text) with one piece after the other.
+void print_csv_log(const Log& log, const std::function<void(std::string_view)>& sink) {
+  constexpr std::size_t piece = std::size_t{1} << 18;
   std::string text;
   for (const auto& [key, value] : log.comments)
     text += one_line(value.empty() ? "# " + key : "# " + key + ": " + value) + "\n";
@@ -210,20 +295,46 @@ std::string csv_log_text(const Log& log) {
   for (const auto& axis : log.axes)
     for (const auto& channel : log_channels) {
       if ((axis.*channel.values).empty()) continue;
-      text += "," + channel_header(axis.axis, channel);
+      text += "," + channel_header(axis, channel);
       columns.push_back(&(axis.*channel.values));
     }
   text += '\n';
   for (std::size_t k = 0; k < log.t.size(); ++k) {
     for (const auto* column : columns) {
       if (column != columns.front()) text += ',';
-      fmt::format_to(std::back_inserter(text), "{}", (*column)[k]);
+      if (!std::isnan((*column)[k])) fmt::format_to(std::back_inserter(text), "{}", (*column)[k]);
     }
     text += '\n';
+    if (text.size() < piece) continue;
+    sink(text);
+    text.clear();
   }
+  sink(text);
+}
+
+}  // namespace
+
+Log parse_csv_log(std::string_view text, const std::string& name, std::string_view columns) {
+  return Reader(TextSource(text, name), name, columns).read();
+}
+
+Log read_csv_log(const std::filesystem::path& file, std::string_view columns, const BytesRead& progress) {
+  return Reader(TextSource(file, progress), file.string(), columns).read();
+}
+
+std::string csv_log_text(const Log& log) {
+  std::string text;
+  print_csv_log(log, [&](std::string_view piece) { text += piece; });
   return text;
 }
 
-void write_csv_log(const std::filesystem::path& file, const Log& log) { write_text_file(file, csv_log_text(log)); }
+void write_csv_log(const std::filesystem::path& file, const Log& log) {
+  std::ofstream out(file, std::ios::binary);
+  print_csv_log(log,
+                [&](std::string_view piece) { out.write(piece.data(), static_cast<std::streamsize>(piece.size())); });
+  out.close();
+  if (!out)
+    throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(), machine::file_error_words(errno)));
+}
 
 }  // namespace stiction::host

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "host/log/log.hpp"
 #include "host/log/message.hpp"
 
@@ -31,11 +33,37 @@ std::string_view CsvRows::quoted_field() {
   }
 }
 
+void CsvRows::split_words(std::vector<std::string_view>& fields) {
+  const auto end = rest_.find('\n');
+  const auto line = rest_.substr(0, end);
+  constexpr std::string_view blanks = " \t\r";
+  for (auto at = line.find_first_not_of(blanks); at < line.size();) {
+    bool inside = false;
+    auto stop = at;
+    for (; stop < line.size() && (inside || blanks.find(line[stop]) == std::string_view::npos); ++stop)
+      inside = line[stop] == '[' || (inside && line[stop] != ']');
+    // "x [mm]" is one header.
+    if (const auto behind = line.find_first_not_of(blanks, stop);
+        behind != std::string_view::npos && line[behind] == '[')
+      stop = std::min(line.size(), line.find(']', behind) + (line.find(']', behind) == std::string_view::npos ? 0 : 1));
+    fields.push_back(line.substr(at, stop - at));
+    at = line.find_first_not_of(blanks, stop);
+  }
+  if (fields.empty()) fields.emplace_back();
+  rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+  ++next_line_;
+}
+
 bool CsvRows::next(std::vector<std::string_view>& fields) {
   fields.clear();
   unescaped_.clear();
+  if (rest_.empty() && source_ != nullptr) rest_ = source_->next();
   if (rest_.empty()) return false;
   line_ = next_line_;
+  if (separator_ == words) {
+    split_words(fields);
+    return true;
+  }
   for (;;) {
     if (!rest_.empty() && rest_.front() == '"') {
       rest_.remove_prefix(1);

@@ -36,6 +36,10 @@ struct AxisLog {
   std::vector<double> u_inject;        // V, test signal, contained in u
   std::vector<double> x_load;          // m, of the second encoder
   std::vector<double> supply;          // V, of the inverter
+  std::vector<double> motor_torque;    // N m, at the motor, before the transmission
+  std::vector<double> master;          // rad, of the axis that this one follows
+  std::vector<double> table;           // number of the cam table, a whole number
+  std::vector<double> fault;           // number of the drive's fault, a whole number
   // A rotary axis has rad, rad/s, rad/s^2 and N m in place of m, m/s, m/s^2 and N.
   bool rotary = false;
   // Samples that no fit may use: a channel stands at its limit, a cell was blank. Empty: none.
@@ -45,27 +49,38 @@ struct AxisLog {
   std::vector<double> increments;
 };
 
-// The one list of an axis' channels: the column's name, the unit of the values, and where they are kept.
+// The one list of an axis' channels: the column's name, the unit of the values, and where they are kept. `name` and
+// `unit` are those of a linear axis; a rotary one has `rotary_name` and `rotary_unit` (null: it has no such channel).
 struct LogChannel {
   const char* name;
   const char* unit;
   std::vector<double> AxisLog::*values;
   const char* text;
+  const char* rotary_name;
+  const char* rotary_unit;
+  bool shared = false;  // may stand without prefix beside prefixed channels, for all axes
+  bool whole = false;   // its values are whole numbers
 };
-inline constexpr std::array<LogChannel, 13> log_channels{{
-    {"x_set", "m", &AxisLog::x_set, "set position"},
-    {"v_set", "m/s", &AxisLog::v_set, "set velocity"},
-    {"a_set", "m/s^2", &AxisLog::a_set, "set acceleration"},
-    {"x", "m", &AxisLog::x, "measured position"},
-    {"v", "m/s", &AxisLog::v, "measured velocity"},
-    {"i", "A", &AxisLog::i, "motor current, amplitude"},
-    {"i_set", "A", &AxisLog::i_set, "set current"},
-    {"F", "N", &AxisLog::force, "motor force"},
-    {"u", "V", &AxisLog::u, "drive voltage"},
-    {"temperature", "degC", &AxisLog::temperature, "temperature"},
-    {"F_ext", "N", &AxisLog::external_force, "external force"},
-    {"i_inject", "A", &AxisLog::i_inject, "test signal on the current"},
-    {"u_inject", "V", &AxisLog::u_inject, "test signal on the voltage"},
+inline constexpr std::array<LogChannel, 19> log_channels{{
+    {"x_set", "m", &AxisLog::x_set, "set position", "x_set", "rad"},
+    {"v_set", "m/s", &AxisLog::v_set, "set velocity", "v_set", "rad/s"},
+    {"a_set", "m/s^2", &AxisLog::a_set, "set acceleration", "a_set", "rad/s^2"},
+    {"x", "m", &AxisLog::x, "measured position", "x", "rad"},
+    {"v", "m/s", &AxisLog::v, "measured velocity", "v", "rad/s"},
+    {"i", "A", &AxisLog::i, "motor current, amplitude", "i", "A"},
+    {"i_set", "A", &AxisLog::i_set, "set current", "i_set", "A"},
+    {"F", "N", &AxisLog::force, "motor force", "T", "N m"},
+    {"u", "V", &AxisLog::u, "drive voltage", "u", "V"},
+    {"temperature", "degC", &AxisLog::temperature, "temperature", "temperature", "degC", true},
+    {"F_ext", "N", &AxisLog::external_force, "external force", nullptr, nullptr},
+    {"i_inject", "A", &AxisLog::i_inject, "test signal on the current", "i_inject", "A"},
+    {"u_inject", "V", &AxisLog::u_inject, "test signal on the voltage", "u_inject", "V"},
+    {"x_load", "m", &AxisLog::x_load, "position of the second encoder", "x_load", "rad"},
+    {"supply", "V", &AxisLog::supply, "supply voltage of the inverter", "supply", "V", true},
+    {"T_motor", "N m", &AxisLog::motor_torque, "torque at the motor", "T_motor", "N m"},
+    {"master", "rad", &AxisLog::master, "position of the master", "master", "rad", true},
+    {"table", "1", &AxisLog::table, "number of the cam table", "table", "1", true, true},
+    {"fault", "1", &AxisLog::fault, "number of the fault", "fault", "1", true, true},
 }};
 
 // The clock of a record as it was written, before its samples were made even.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -72,9 +73,9 @@ class Reader {
   void read_table(const toml::table& table) {
     allow(table, "table", {"separator", "decimal", "header_line"});
     if (const auto separator = text(table, "separator"); !separator.empty()) {
-      if (separator != ";" && separator != "," && separator != "tab")
-        fail(table, "separator", "\";\", \",\" or \"tab\"");
-      mapping_.table.separator = separator == "tab" ? '\t' : separator[0];
+      if (separator != ";" && separator != "," && separator != "tab" && separator != "blank")
+        fail(table, "separator", "\";\", \",\", \"tab\" or \"blank\"");
+      mapping_.table.separator = separator == "tab" ? '\t' : separator == "blank" ? ' ' : separator[0];
     }
     if (const auto decimal = text(table, "decimal"); !decimal.empty()) {
       if (decimal != "," && decimal != ".") fail(table, "decimal", "\",\" or \".\"");
@@ -105,7 +106,7 @@ class Reader {
   }
 
   void read_channel(const toml::table& table) {
-    allow(table, "channel", {"from", "to", "unit", "amperes", "reverse", "fill"});
+    allow(table, "channel", {"from", "to", "unit", "amperes", "reverse", "fill", "scaling"});
     MappedChannel channel;
     channel.place = fmt::format("{}:{}", name_, table.source().begin.line);
     channel.from = text(table, "from");
@@ -114,6 +115,7 @@ class Reader {
     const auto split = split_channel_name(to);
     channel.to = find_channel(split.name);
     channel.axis = split.axis;
+    channel.name = split.name;
     if (channel.to == nullptr || !split.unit.empty()) {
       std::string known;
       for (const auto& each : log_channels) known += fmt::format("{}{}", known.empty() ? "" : ", ", each.name);
@@ -128,6 +130,10 @@ class Reader {
     if (const auto fill = text(table, "fill"); !fill.empty()) {
       if (fill != "hold" && fill != "linear") fail(table, "fill", "\"hold\" or \"linear\"");
       channel.fill = fill == "hold" ? MappedChannel::Fill::hold : MappedChannel::Fill::linear;
+    }
+    if (const auto scaling = text(table, "scaling"); !scaling.empty()) {
+      if (scaling != "done" && scaling != "apply") fail(table, "scaling", "\"done\" or \"apply\"");
+      channel.scaling = scaling == "done" ? MappedChannel::Scaling::done : MappedChannel::Scaling::apply;
     }
     for (const auto& other : mapping_.channels)
       if (other.to == channel.to && other.axis == channel.axis)
@@ -161,6 +167,23 @@ bool same_times(const std::vector<double>& a, const std::vector<double>& b) {
   for (std::size_t k = 0; k < a.size(); ++k)
     if (std::abs(a[k] - b[k]) > step_tolerance * step) return false;
   return true;
+}
+
+// `channel` on the times `t` of which it has one piece without holes, NaN before and behind it; what lies before or
+// behind `t` is left out. None: it has other times.
+std::optional<std::vector<double>> aligned(const RecordedChannel& channel, const std::vector<double>& t) {
+  const double step = (t.back() - t.front()) / static_cast<double>(std::max<std::size_t>(1, t.size() - 1));
+  const double near = step_tolerance * step;
+  std::vector<double> values(t.size(), std::numeric_limits<double>::quiet_NaN());
+  std::size_t k = 0, at = 0, found = 0;
+  while (at < channel.t.size() && channel.t[at] < t.front() - near) ++at;
+  while (k < t.size() && at < channel.t.size() && t[k] < channel.t[at] - near) ++k;
+  for (; k < t.size() && at < channel.t.size(); ++k, ++at, ++found) {
+    if (std::abs(channel.t[at] - t[k]) > near) return std::nullopt;
+    values[k] = channel.values[at];
+  }
+  if (found < 2) return std::nullopt;
+  return values;
 }
 
 // `channel` at the times `t`; before its first sample the first counts, behind the last the last.
@@ -201,6 +224,8 @@ class Applier {
     for (const auto& channel : recording_.channels)
       if (std::ranges::none_of(mapping_.channels, [&](const auto& m) { return m.from == channel.name; }))
         log_.ignored.push_back(channel.name);
+    share_channels(log_);
+    kinds_.mark(log_);
     require_channels(log_, mapping_.source);
     check_sampling(log_, recording_.digits, [&](std::size_t k) { return place_of(recording_, clock, k); });
     return std::move(log_);
@@ -233,11 +258,29 @@ class Applier {
     return *found;
   }
 
-  std::vector<double> values_of(const MappedChannel& mapped, const RecordedChannel& channel) const {
+  void require_scaling(const MappedChannel& mapped, const RecordedChannel& channel) const {
+    if (!channel.scaling || mapped.scaling == MappedChannel::Scaling::done) return;
+    const auto& s = *channel.scaling;
+    if (!s.known)
+      throw LogError(fmt::format(
+          "{}: '{}': found a scale factor or an offset in the head of {} whose column cannot be told; expected "
+          "scaling = \"done\" where the export was made with scaled values, or an export with a different separator",
+          mapped.place, excerpt(mapped.from, 60), recording_.source));
+    if (mapped.scaling == MappedChannel::Scaling::unstated)
+      throw LogError(fmt::format(
+          "{}: '{}': found ScaleFactor {}, Offset {}, Unit ScaleFactor {} and Unit Offset {} in the head of {}, which "
+          "does not say whether its values have them already; expected scaling = \"done\" or scaling = \"apply\"",
+          mapped.place, excerpt(mapped.from, 60), s.factor, s.offset, s.unit_factor, s.unit_offset, recording_.source));
+  }
+
+  std::vector<double> values_of(const MappedChannel& mapped, const RecordedChannel& channel) {
+    require_scaling(mapped, channel);
     const auto& unit = mapped.unit.empty() ? channel.unit : mapped.unit;
     UnitScale scale;
     try {
-      scale = UnitScale(unit, mapped.to->unit);
+      const auto [found, kind] = channel_scale(*mapped.to, mapped.name, unit);
+      scale = found;
+      kinds_.add(mapped.axis, kind, fmt::format("{}[{}]", mapped.name, unit), mapped.place);
     } catch (const machine::UnitError& error) {
       throw LogError(fmt::format("{}: '{}': found {} ({}); expected unit = \"...\" of {}, like {}", mapped.place,
                                  excerpt(mapped.from, 60),
@@ -247,6 +290,8 @@ class Applier {
     std::vector<double> values;
     if (same_times(channel.t, log_.t)) {
       values = channel.values;
+    } else if (auto part = mapped.fill == MappedChannel::Fill::none ? aligned(channel, log_.t) : std::nullopt) {
+      values = std::move(*part);
     } else {
       if (mapped.fill == MappedChannel::Fill::none)
         throw LogError(
@@ -257,8 +302,10 @@ class Applier {
       values = filled(channel, log_.t, mapped.fill);
     }
     for (double& value : values) {
+      const bool blank = std::isnan(value);
+      if (channel.scaling && mapped.scaling == MappedChannel::Scaling::apply) value = (*channel.scaling)(value);
       value = scale(value) * mapped.factor;
-      if (!std::isfinite(value))
+      if (!blank && !std::isfinite(value))
         throw LogError(
             fmt::format("{}: '{}': found a value beyond the range of double precision; expected a smaller one",
                         mapped.place, excerpt(mapped.from, 60)));
@@ -268,12 +315,36 @@ class Applier {
 
   const Mapping& mapping_;
   const Recording& recording_;
+  AxisKinds kinds_;
   Log log_;
 };
 
 }  // namespace
 
 Mapping read_mapping(const std::filesystem::path& file) { return Reader(file).read(); }
+
+std::optional<Mapping> mapping_by_names(const Recording& recording) {
+  Mapping mapping;
+  mapping.source = recording.source;
+  bool has_position = false;
+  for (const auto& recorded : recording.channels) {
+    const auto split = split_channel_name(recorded.name);
+    const auto* to = find_channel(split.name);
+    const auto unit = split.unit.empty() ? std::string_view(recorded.unit) : split.unit;
+    if (to == nullptr || (unit.empty() && !to->whole)) continue;
+    MappedChannel channel;
+    channel.from = recorded.name;
+    channel.axis = split.axis;
+    channel.name = split.name;
+    channel.to = to;
+    channel.unit = unit;
+    channel.place = recording.source;
+    if (to->shared) channel.fill = to->whole ? MappedChannel::Fill::hold : MappedChannel::Fill::linear;
+    has_position = has_position || split.name == "x";
+    mapping.channels.push_back(std::move(channel));
+  }
+  return has_position ? std::optional(std::move(mapping)) : std::nullopt;
+}
 
 Log apply_mapping(const Mapping& mapping, const Recording& recording) { return Applier(mapping, recording).apply(); }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,10 +15,12 @@ struct MappedChannel {
   std::string from;
   std::string axis;
   const LogChannel* to = nullptr;
+  std::string name;     // of it as the mapping writes it: "T" and "F" are one channel
   std::string unit;     // empty: that of the recording
   double factor = 1.0;  // from the recording's amperes and direction to those of the log
   enum class Fill { none, hold, linear } fill = Fill::none;
-  std::string place;  // "mapping.toml:3", for messages
+  enum class Scaling { unstated, done, apply } scaling = Scaling::unstated;  // of the head of a scope export
+  std::string place;                                                         // "mapping.toml:3", for messages
 };
 
 struct Mapping {
@@ -30,9 +33,14 @@ struct Mapping {
 // Throws LogError (the file cannot be read) or sim::MachineFileError (what stands in it, with file and line).
 Mapping read_mapping(const std::filesystem::path& file);
 
-// The recording as a log: SI units, amplitude amperes, all on the time of the first axis' measured position. Channels
-// that are not mapped are listed in `ignored`. Throws LogError, among others for a channel that is not there, one with
-// values that are no numbers, one with another sampling and no `fill`.
+// The mapping of a recording whose channels have the names of a log's already ("X.x[mm]", or "x" with a unit of its
+// own). None: no measured position is among them. `recording`: with its channels.
+std::optional<Mapping> mapping_by_names(const Recording& recording);
+
+// The recording as a log: SI units, amplitude amperes, all on the time of the first axis' measured position. A channel
+// that begins later or ends earlier is NaN (a blank) where it has no sample. Channels that are not mapped are listed in
+// `ignored`. Throws LogError, among others for a channel that is not there, one with values that are no numbers, one
+// with another sampling and no `fill`, linear and rotary channels of one axis.
 Log apply_mapping(const Mapping& mapping, const Recording& recording);
 
 // What a user must write to map `recording`: for the message when he gave no mapping.

@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <span>
+#include <set>
 
 #include "host/log/channel_name.hpp"
 #include "host/log/mat_handles.hpp"
+#include "host/log/mat_values.hpp"
 #include "host/log/message.hpp"
 #include "host/log/sampling.hpp"
 #include "host/log/unit_scale.hpp"
@@ -17,55 +18,6 @@ namespace stiction::host {
 namespace {
 
 constexpr int digits_of_single = 7;
-
-// Calls visit(values) with the array as a span of its own number type; false for a class that is no number.
-template <class Visit>
-bool with_numbers(const matvar_t& v, Visit&& visit) {
-  const auto as = [&]<class T>(T) {
-    visit(std::span<const T>(static_cast<const T*>(v.data), v.nbytes / sizeof(T)));
-    return true;
-  };
-  switch (v.class_type) {
-    case MAT_C_DOUBLE:
-      return as(double{});
-    case MAT_C_SINGLE:
-      return as(float{});
-    case MAT_C_INT8:
-      return as(std::int8_t{});
-    case MAT_C_UINT8:
-      return as(std::uint8_t{});
-    case MAT_C_INT16:
-      return as(std::int16_t{});
-    case MAT_C_UINT16:
-      return as(std::uint16_t{});
-    case MAT_C_INT32:
-      return as(std::int32_t{});
-    case MAT_C_UINT32:
-      return as(std::uint32_t{});
-    case MAT_C_INT64:
-      return as(std::int64_t{});
-    case MAT_C_UINT64:
-      return as(std::uint64_t{});
-    default:
-      return false;
-  }
-}
-
-std::string shape_of(const matvar_t& v) {
-  std::string shape;
-  for (int d = 0; d < v.rank; ++d) shape += fmt::format("{}{}", d > 0 ? "x" : "", v.dims[d]);
-  return shape;
-}
-
-std::string text_of(const matvar_t* v) {
-  if (v == nullptr || v->class_type != MAT_C_CHAR || v->data == nullptr) return {};
-  // Both levels may keep characters as 8 or 16 bits; units and comments are ASCII or UTF-8.
-  std::string text;
-  const auto size = static_cast<std::size_t>(std::max(1, v->data_size));
-  const auto* bytes = static_cast<const char*>(v->data);
-  for (std::size_t k = 0; k < v->nbytes; k += size) text += bytes[k];
-  return text;
-}
 
 class Reader {
  public:
@@ -93,6 +45,8 @@ class Reader {
       else if (!read_channel("", variable, v.get()))
         log_.ignored.push_back(variable);
     }
+    share_channels(log_);
+    kinds_.mark(log_);
     require_channels(log_, name_);
     check_sampling(log_, {0.0, time_digits_}, [&](std::size_t k) { return fmt::format("{}: t({})", name_, k + 1); });
     return std::move(log_);
@@ -125,9 +79,12 @@ class Reader {
               fmt::format("{}: found no variable t, but {}.t; expected the time as a variable of its own: "
                           "save(file, '-struct', '{}')",
                           name_, excerpt(variable), excerpt(variable)));
-      throw LogError(name_ + ": found no variable t; expected the time of every sample, in s");
+      throw LogError(
+          name_ +
+          ": found no variable t; expected the time of every sample, in s (--columns \"t[ms],x[mm],i[mA]\" names the "
+          "columns of a matrix, `stiction convert --map` vectors)");
     }
-    log_.t = values_of("t", "t", "s", t.mapped().get());
+    log_.t = values_of("t", time_scale(), t.mapped().get());
     if (t.mapped()->class_type == MAT_C_SINGLE) time_digits_ = digits_of_single;
     for (std::size_t k = 1; k < log_.t.size(); ++k)
       if (!(log_.t[k] > log_.t[k - 1]))
@@ -152,7 +109,7 @@ class Reader {
     const auto* channel = find_channel(name);
     if (channel == nullptr) return false;
     const auto full = axis.empty() ? name : axis + "." + name;
-    auto values = values_of(full, name, channel->unit, v);
+    auto values = values_of(full, scale_of(axis, full, name, *channel), v);
     if (values.size() != log_.t.size())
       throw LogError(fmt::format("{}: {}: found {} values; expected {}, as many as t has", name_, full, values.size(),
                                  log_.t.size()));
@@ -160,15 +117,13 @@ class Reader {
     return true;
   }
 
-  std::vector<double> values_of(const std::string& full, const std::string& name, const char* unit,
-                                const matvar_t* v) const {
+  std::vector<double> values_of(const std::string& full, const UnitScale& scale, const matvar_t* v) const {
     const auto refuse = [&](const std::string& what) -> LogError {
       return LogError(fmt::format("{}: {}: found {}", name_, full, what));
     };
     if (v->isComplex != 0) throw refuse("complex numbers; expected real ones");
     const bool vector = v->rank == 2 && (v->dims[0] == 1 || v->dims[1] == 1);
     if (!vector) throw refuse(shape_of(*v) + " values; expected a row or a column");
-    const auto scale = scale_of(full, name, unit);
     std::vector<double> values;
     values.reserve(v->dims[0] * v->dims[1]);
     const bool numbers = v->data != nullptr && with_numbers(*v, [&](const auto all) {
@@ -181,20 +136,43 @@ class Reader {
     return values;
   }
 
-  UnitScale scale_of(const std::string& full, const std::string& name, const char* unit) const {
-    const auto found = units_.find(name);
+  UnitScale time_scale() const {
+    const auto found = units_.find("t");
     if (found == units_.end()) return {};
     try {
-      return {found->second, unit};
+      return {found->second, "s"};
     } catch (const machine::UnitError& error) {
-      throw LogError(fmt::format("{}: {}: found the unit '{}' ({}); expected one like {}", name_, full,
-                                 excerpt(found->second), excerpt(error.what(), 120), unit));
+      refuse_unit("t", found->second, error, "s");
     }
+  }
+
+  UnitScale scale_of(const std::string& axis, const std::string& full, const std::string& name,
+                     const LogChannel& channel) {
+    const bool torque = name != channel.name, force = channel.rotary_name == nullptr || name != channel.rotary_name;
+    const auto found = units_.find(name);
+    if (found == units_.end()) {  // SI units, of a rotary axis too
+      kinds_.add(axis, torque ? AxisKind::rotary : force ? AxisKind::linear : AxisKind::either, full, name_);
+      return {};
+    }
+    try {
+      const auto [scale, kind] = channel_scale(channel, name, found->second);
+      kinds_.add(axis, kind, fmt::format("{}[{}]", full, found->second), name_);
+      return scale;
+    } catch (const machine::UnitError& error) {
+      refuse_unit(full, found->second, error, torque ? channel.rotary_unit : channel.unit);
+    }
+  }
+
+  [[noreturn]] void refuse_unit(const std::string& full, const std::string& unit, const machine::UnitError& error,
+                                const char* wanted) const {
+    throw LogError(fmt::format("{}: {}: found the unit '{}' ({}); expected one like {}", name_, full, excerpt(unit),
+                               excerpt(error.what(), 120), wanted));
   }
 
   std::string name_;
   MatFile file_;
   Log log_;
+  AxisKinds kinds_;
   std::map<std::string, std::string> units_;
   int time_digits_ = 17;
 };
@@ -216,6 +194,19 @@ MatVariable column(const char* name, const std::vector<double>& values) {
 MatVariable text(const char* name, const std::string& value) {
   std::size_t dims[2] = {1, value.size()};
   return MatVariable(Mat_VarCreate(name, MAT_C_CHAR, MAT_T_UTF8, 2, dims, const_cast<char*>(value.data()), 0));
+}
+
+// One unit for the channels of that name of all axes: files have no other place for it.
+const char* unit_of_all(const Log& log, const LogChannel& channel, const AxisLog& axis) {
+  for (const auto& other : log.axes)
+    if (other.rotary != axis.rotary && !(other.*channel.values).empty() &&
+        std::string_view(name_on(other, channel)) == name_on(axis, channel) &&
+        std::string_view(unit_on(other, channel)) != unit_on(axis, channel))
+      throw LogError(fmt::format(
+          "{}: found the linear axis {} and the rotary axis {}; expected axes of one kind in a MAT-file, "
+          "which has one unit for {} of all axes (a CSV has one for each)",
+          log.source, (axis.rotary ? other : axis).axis, (axis.rotary ? axis : other).axis, name_on(axis, channel)));
+  return unit_on(axis, channel);
 }
 
 class Writer {
@@ -274,14 +265,16 @@ void write_mat_log(const std::filesystem::path& file, const Log& log, MatLevel l
   writer.write(column("t", log.t));
   std::vector<MatVariable> units;
   units.push_back(text("t", "s"));
-  for (const auto& channel : log_channels) {
-    const bool used = std::ranges::any_of(log.axes, [&](const auto& axis) { return !(axis.*channel.values).empty(); });
-    if (used) units.push_back(text(channel.name, channel.unit));
-  }
+  std::set<std::string_view> stated;
+  for (const auto& channel : log_channels)
+    for (const auto& axis : log.axes)
+      if (!(axis.*channel.values).empty() && stated.insert(name_on(axis, channel)).second)
+        units.push_back(text(name_on(axis, channel), unit_of_all(log, channel, axis)));
   for (const auto& axis : log.axes) {
     std::vector<MatVariable> fields;
     for (const auto& channel : log_channels)
-      if (const auto& values = axis.*channel.values; !values.empty()) fields.push_back(column(channel.name, values));
+      if (const auto& values = axis.*channel.values; !values.empty())
+        fields.push_back(column(name_on(axis, channel), values));
     if (!axis.axis.empty())
       writer.write_struct(axis.axis.c_str(), std::move(fields));
     else

@@ -18,8 +18,13 @@ bool is_mat_file(const std::filesystem::path& file, std::string_view first_bytes
 // as in MATLAB, "t(17)".
 Log read_mat_log(const std::filesystem::path& file);
 
-// Throws LogError for an axis whose name no variable can have; std::runtime_error when the file cannot be written.
-// `file`: to write; `log`: its channels in SI units; `level`: of the format.
+// A log in one matrix, a channel a column (or a row, where it has as many rows as names). `file`: that has one such
+// matrix; `columns`: the names of its columns, "t[ms],x[mm],i[mA]". Throws LogError as above.
+Log read_mat_columns(const std::filesystem::path& file, std::string_view columns);
+
+// Throws LogError for axes of two kinds, one linear and one rotary, or for an axis whose name no variable can have;
+// std::runtime_error when the file cannot be written. `file`: to write; `log`: its channels in SI units; `level`: of
+// the format.
 void write_mat_log(const std::filesystem::path& file, const Log& log, MatLevel level = MatLevel::level_5);
 
 }  // namespace stiction::host

@@ -56,7 +56,9 @@ Recording read_plain_table(std::string_view text, const std::string& name, const
   for (; !text.empty() && !is_header(); ++line) text.remove_prefix(std::min(text.size(), line_at(text).size() + 1));
   if (text.empty())
     throw LogError(fmt::format("{}:{}: found no header; expected the names of the channels", name, line));
-  const char separator = form.separator != 0 ? form.separator : separator_of(line_at(text));
+  const char separator = form.separator == ' ' ? CsvRows::words
+                         : form.separator != 0 ? form.separator
+                                               : separator_of(line_at(text));
   CsvRows rows(text, separator, name, line);
   std::vector<std::string_view> fields;
   rows.next(fields);
@@ -98,10 +100,11 @@ Recording read_plain_table(std::string_view text, const std::string& name, const
     for (std::size_t k = 0; k < width; ++k) {
       auto& channel = recording.channels[k];
       double value = 0.0;
-      if (k == time || !channel.bad.empty()) continue;
+      // A blank cell is no sample: the channel begins later, ends earlier or is slower.
+      if (k == time || !channel.bad.empty() || fields[k].find_first_not_of(" \t\r") == std::string_view::npos) continue;
       if (!parse_number(fields[k], decimal, value)) {
-        channel.bad = fmt::format("{}: column {}, {}: found {}", rows.place(), k + 1, excerpt(channel.name),
-                                  fields[k].empty() ? "nothing" : "'" + excerpt(fields[k]) + "'");
+        channel.bad = fmt::format("{}: column {}, {}: found '{}'", rows.place(), k + 1, excerpt(channel.name),
+                                  excerpt(fields[k]));
         continue;
       }
       channel.t.push_back(time_scale(t));

@@ -5,7 +5,8 @@
 #include <charconv>
 #include <cmath>
 
-#include "host/log/text_file.hpp"
+#include "host/log/mat_log.hpp"
+#include "host/log/text_source.hpp"
 
 namespace stiction::host {
 
@@ -32,9 +33,11 @@ bool parse_number(std::string_view text, char decimal, double& value) {
 }
 
 Recording read_recording(const std::filesystem::path& file, const TableForm& form) {
-  const auto bytes = read_text_file(file);
+  const auto bytes = read_plain_or_gzip(file);
+  if (is_mat_file(file, std::string_view(bytes).substr(0, 16))) return read_mat_recording(file, form);
   if (is_recorder_export(bytes)) return read_recorder_export(bytes, file.string());
   if (is_scope_export(bytes)) return read_scope_export(bytes, file.string());
+  if (is_trace_xml(bytes)) return read_trace_xml(bytes, file.string());
   return read_plain_table(bytes, file.string(), form);
 }
 

@@ -10,6 +10,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "firmware/machine/file/nearest_name.hpp"
@@ -35,6 +36,12 @@ ut_system* unit_system() {
     ut_set_error_message_handler(ut_ignore);
     ut_system* read = ut_read_xml(nullptr);
     if (read == nullptr) throw std::runtime_error("UDUNITS-2: the database of units (udunits2.xml) cannot be read");
+    // The usual abbreviations of rotary axes, which the database lacks.
+    for (const auto& [name, unit] : {std::pair{"deg", "arc_degree"}, std::pair{"rev", "turn"}}) {
+      const Unit meant(ut_parse(read, unit, UT_UTF8));
+      if (const Unit known(ut_parse(read, name, UT_UTF8)); meant && !known)
+        ut_map_name_to_unit(name, UT_UTF8, meant.get());
+    }
     return read;
   }();
   return system;

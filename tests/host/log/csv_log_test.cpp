@@ -59,7 +59,8 @@ TEST(CsvLog, ConvertsTheUnitsOfItsHeaderToSi) {
 TEST(CsvLog, ReadsEveryChannelOfTheContract) {
   const auto log = parse(
       "t[s],x_set[m],v_set[m/s],a_set[m/s^2],x[m],v[m/s],i[A],i_set[A],F[N],u[V],temperature[degC],F_ext[N],"
-      "i_inject[A],u_inject[V]\n0,1,2,3,4,5,6,7,8,9,10,11,12,13\n1,1,2,3,4,5,6,7,8,9,10,11,12,13\n");
+      "i_inject[A],u_inject[V],x_load[m],supply[V],T_motor[N m],master[rad],table,fault\n"
+      "0,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19\n1,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19\n");
   double expected = 0.0;
   for (const auto& channel : log_channels) EXPECT_EQ((log.axes[0].*channel.values).at(0), expected += 1.0);
 }
@@ -103,7 +104,7 @@ TEST(CsvLog, NeedsNoLineEndBehindTheLastRow) { EXPECT_EQ(parse(header + "0,1,2\n
 TEST(CsvLog, RefusesABadValueWithFileLineAndColumn) {
   expect_refused(header + "0,1,2\n1,nan,2\n", "run.csv:3: column 2, x[m]", "'nan'");
   expect_refused(header + "0,1,2\n1,1,inf\n", "run.csv:3: column 3, i[A]", "'inf'");
-  expect_refused(header + "0,1,2\n1,,2\n", "run.csv:3: column 2, x[m]", "nothing");
+  expect_refused(header + "0,1,2\n,1,2\n", "run.csv:3: column 1, t[s]", "nothing");
   expect_refused(header + "0,1,2\n1,1 m,2\n", "run.csv:3: column 2, x[m]", "'1 m'");
   expect_refused(header + "0,1,2\n1,1e999,2\n", "run.csv:3: column 2, x[m]", "'1e999'");
   expect_refused("t[s],x[km],i[A]\n0,1,2\n1,1e308,2\n", "run.csv:3: column 2, x[km]", "'1e308'");
@@ -186,11 +187,9 @@ TEST(CsvLog, RefusesWrongMissingAndRepeatedHeaders) {
   expect_refused("t[s],X.x[m],i[A],X.x[mm]\n0,1,2,3\n", "run.csv:1: column 4", "X.x a second time");
 }
 
-TEST(CsvLog, RefusesWhatIsNoTableOfCommas) {
+TEST(CsvLog, RefusesWhatIsNoTable) {
   expect_refused("", "run.csv:1", "no header");
   expect_refused("# a: b\n\n", "run.csv:1", "no header");
-  expect_refused("t[s]\tx[m]\ti[A]\n0\t1\t2\n", "run.csv:1", "tabs");
-  expect_refused("t[s];x[m];i[A]\n0;1;2\n", "run.csv:1", "semicolons");
   expect_refused(header, "run.csv:1", "0 samples");
   expect_refused(header + "0,1,2\n", "run.csv:2", "1 sample;");
   expect_refused("t[s],\"x[m],i[A]\n0,1,2\n", "run.csv:1", "never closed");
