@@ -3,7 +3,6 @@
 // to the rate of the rows that regressions work on (Janot, Gautier, Brunot 2019; Gautier 1997).
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,7 +15,7 @@ namespace stiction::host {
 
 struct SignalSettings {
   double cutoff = 100.0;    // Hz, of the position's Butterworth filter of order 4; at most a fifth of the log's rate
-  double row_rate = 100.0;  // Hz; the rows hold frequencies up to 0.4 of it
+  double row_rate = 100.0;  // Hz; the rows hold frequencies up to 0.4 of it, and to a tenth of the log's rate
   int difference_points = 7;
   double skip_start = 0.05;  // s, dropped at the log's start: the filter's transient
   double skip_end = 0.05;    // s
@@ -70,7 +69,7 @@ class RowFilter {
 
   std::size_t begin_, end_, ratio_, padding_ = 0, rows_ = 0;
   double period_;
-  std::optional<Lowpass> lowpass_;  // none when the log's rate is that of the rows
+  Lowpass lowpass_;  // of every column, at every rate
 };
 
 }  // namespace stiction::host
