@@ -80,6 +80,8 @@ struct Log {
   Clock clock;
   std::vector<AxisLog> axes;         // at least one
   std::vector<std::string> ignored;  // headers of columns that have no meaning here
+  std::vector<std::string> notes;    // sentences on what the reading step made of the record
+  std::vector<Log> others;           // the other stretches of the record, in its order; empty in each of them
 };
 
 }  // namespace stiction::host
