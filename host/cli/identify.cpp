@@ -3,9 +3,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <set>
 
+#include "firmware/machine/file/units.hpp"
 #include "host/cli/choices.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
@@ -37,6 +39,7 @@ struct IdentifyCommandOptions {
   std::string axis;
   std::string friction;
   std::string amperes;
+  std::vector<std::string> fix;
   std::string out;
   bool refine = false;
   bool json = false;
@@ -81,6 +84,37 @@ std::string model_to_identify(const std::string& wanted, const machine::AxisMode
   return wanted;
 }
 
+// The values of --fix, in the order of the fit's columns.
+Held held_values(const std::vector<std::string>& fixes) {
+  struct Key {
+    std::string name;
+    const char* unit;
+    bool positive;
+  };
+  const std::array<Key, 4> keys{
+      {{"mass", "kg", true}, {"viscous", "N s/m", true}, {"constant_force", "N", false}, {"coulomb", "N", true}}};
+  Held held{};
+  for (const auto& fix : fixes) {
+    const auto sign = fix.find('=');
+    const auto key = fix.substr(0, sign);
+    const auto found = std::find_if(keys.begin(), keys.end(), [&](const auto& k) { return k.name == key; });
+    if (found == keys.end() || sign == std::string::npos)
+      throw UsageError(fmt::format(
+          "--fix: found '{}'; expected KEY=VALUE with mass, viscous, coulomb or constant_force, as mass=225kg{}", fix,
+          nearest_words(key, {"mass", "viscous", "constant_force", "coulomb"})));
+    try {
+      const double value = machine::parse_quantity(fix.substr(sign + 1), found->unit);
+      if (found->positive && value < 0.0)
+        throw UsageError(fmt::format("--fix: found {}; expected a value of at least 0 {}", fix, found->unit));
+      held[static_cast<std::size_t>(found - keys.begin())] = value;
+    } catch (const machine::UnitError& error) {
+      throw UsageError(
+          fmt::format("--fix: found '{}' ({}); expected {}=VALUE in {}", fix, error.what(), key, found->unit));
+    }
+  }
+  return held;
+}
+
 struct Run {
   const machine::AxisModel* axis;
   Identification result;
@@ -101,8 +135,10 @@ void take(Identification& result, const Refinement& refinement) {
 
 Run identify(const IdentifyCommandOptions& options, const machine::Machine& machine) {
   const auto amperes = amperes_of(options.amperes);
+  const auto held = held_values(options.fix);
   if (options.logs.size() == 1)
     if (const auto text = read_text_file(options.logs.front()); is_steady_table(text)) {
+      if (!options.fix.empty()) throw UsageError("--fix: found a table of steady states; expected logs");
       if (options.refine) throw UsageError("--refine: found a table of steady states; expected logs with set-points");
       const auto& axis = axis_to_identify(options.axis, machine, {});
       return {&axis,
@@ -113,7 +149,7 @@ Run identify(const IdentifyCommandOptions& options, const machine::Machine& mach
   const auto logs = read_logs(options.logs, options.columns);
   const auto& axis = axis_to_identify(options.axis, machine, logs);
   const IdentifyOptions settings{model_to_identify(options.friction, axis), amperes, FitSettings{},
-                                 options.friction.empty()};
+                                 options.friction.empty(), held};
   const Progress progress(options.refine ? "identifying and refining" : "identifying");
   Run run{&axis, identify_logs(logs, axis, settings), report_origin(options.machine.machine, logs)};
   if (options.refine) take(run.result, refine_in_closed_loop(logs, machine, axis, run.result, settings));
@@ -171,6 +207,11 @@ void add_identify(CLI::App& program, const Invocation& invocation) {
       ->add_option("--amperes", o->amperes,
                    "convention of the currents [logs: peak; a table needs this option or a comment]")
       ->check(one_of({"peak", "rms"}));
+  command
+      ->add_option("--fix", o->fix,
+                   "hold mass, viscous, coulomb or constant_force at this value instead of estimating it, for example "
+                   "mass=225kg; may be given several times")
+      ->type_name("KEY=VALUE");
   command->add_flag("--refine", o->refine,
                     "refine mass, friction and stiffness in closed-loop simulation with the set-points of the logs; "
                     "takes seconds, and helps if the position is noisy or coarse");

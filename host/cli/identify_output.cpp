@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <array>
+
 namespace stiction::host {
 namespace {
 
@@ -18,6 +20,35 @@ json curve_json(const SlidingCurve& curve) {
   }
   for (const auto& e : curve.errors) errors[e.curve] = e.held_out;
   return {{"curve", curve.curve}, {"parameters", parameters}, {"held_out_rms_N", errors}};
+}
+
+// The trials of the band: what each cut-off would have given.
+json band_json(const Band& band) {
+  constexpr std::array<const char*, 4> names{"mass_kg", "viscous_N_s_per_m", "constant_force_N", "coulomb_N"};
+  json trials = json::array();
+  for (const auto& p : band.trials) {
+    json trial{{"cutoff_Hz", p.cutoff},
+               {"blocks", p.blocks},
+               {"attenuation", p.attenuation},
+               {"speed_noise_m_per_s", p.speed_noise},
+               {"acceleration_noise_m_per_s2", p.acceleration_noise}};
+    for (std::size_t c = 0; c < names.size(); ++c) trial[names[c]] = {{"value", p.value[c]}, {"error", p.error[c]}};
+    trials.push_back(trial);
+  }
+  return {{"cutoff_Hz", band.best().cutoff},
+          {"position_noise_m", band.position_noise},
+          {"instruments", band.instruments ? "set position" : "none"},
+          {"trials", trials}};
+}
+
+std::string band_text(const Band& band) {
+  const auto& own = band.best();
+  return fmt::format(
+      "band: up to {:g} Hz, of {} tried; the encoder's noise is {:.3g} um rms, in the band {:.3g} mm/s and {:.3g} "
+      "m/s^2, "
+      "which would take {:.2g} % off the mass in plain least squares\n",
+      own.cutoff, band.trials.size(), band.position_noise * 1e6, own.speed_noise * 1e3, own.acceleration_noise,
+      100.0 * own.attenuation);
 }
 
 std::string initial_text(const InitialValues& initial) {
@@ -52,6 +83,12 @@ json identification_json(const Identification& result) {
             {{"coulomb_N", optional_json(result.initial.coulomb)},
              {"viscous_N_s_per_m", optional_json(result.initial.viscous)},
              {"mass_kg", optional_json(result.initial.mass)}}}};
+  if (result.band) out["band"] = band_json(*result.band);
+  if (result.held_out)
+    out["held_out_force"] = {{"fit_rms_N", result.held_out->fit},
+                             {"plain_least_squares_rms_N", result.held_out->plain},
+                             {"ratio", result.held_out->fit / result.held_out->plain}};
+  if (!result.notes.empty()) out["notes"] = result.notes;
   if (result.curve) out["sliding_curve"] = curve_json(*result.curve);
   if (!result.elements.empty()) {
     json stiffness = json::array(), level = json::array();
@@ -72,6 +109,13 @@ std::string identification_text(const Identification& result) {
     text += fmt::format("{:<30} {:>12.6g}   {:>12.6g} {:>12.6g}\n", p.name, p.value, p.ci95.low, p.ci95.high);
   text += fmt::format("\nThe force is {:.4g} N rms; the residual of the fit is {:.4g} N rms.\n", result.force_rms,
                       result.residual_rms);
+  if (result.held_out)
+    text += fmt::format(
+        "On data that were held out it leaves {:.4g} N rms, {:.3f} times what a plain least squares of mass, viscous "
+        "friction, Coulomb friction and offset leaves in the same rows.\n",
+        result.held_out->fit, result.held_out->fit / result.held_out->plain);
+  if (result.band) text += band_text(*result.band);
+  for (const auto& note : result.notes) text += note + "\n";
   if (const auto read = initial_text(result.initial); !read.empty())
     text += fmt::format("direct estimates from the record, independent of the fit: {}\n", read);
   if (result.curve) {

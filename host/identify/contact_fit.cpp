@@ -21,7 +21,7 @@ Eigen::MatrixXd contact_columns(const LogRows& rows, const ContactShape& shape) 
   Eigen::MatrixXd columns(rows.rows(), 5 + logs);
   columns.col(acceleration) = rows.acceleration;
   columns.col(velocity) = rows.velocity;
-  columns.col(one).setOnes();
+  columns.col(one) = rows.one;
   std::vector<Contact> contacts;
   for (const auto& motion : motions) contacts.push_back(contact_of(motion, shape));
   const auto each = [&](std::vector<double> Contact::*column) {
@@ -90,7 +90,7 @@ double scanned_inverse_length(const LogRows& rows, Law law) {
   Eigen::MatrixXd columns(rows.rows(), 4);
   columns.col(acceleration) = rows.acceleration;
   columns.col(velocity) = rows.velocity;
-  columns.col(one).setOnes();
+  columns.col(one) = rows.one;
   for (int step = 0; step <= 15; ++step) {
     const double trial = std::log(1.0 / 30e-3) + std::log(10.0) * step / 3.0;
     const ContactShape shape = ShapeOf{law, false}(&trial);

@@ -156,6 +156,33 @@ std::vector<double> central_difference(std::span<const double> values, double st
   return slope;
 }
 
+Derivatives derivatives(std::span<const double> values, double step) {
+  // Fornberg 1988, table 1: order of accuracy 10.
+  constexpr std::array<double, 5> first{5.0 / 6.0, -5.0 / 21.0, 5.0 / 84.0, -5.0 / 504.0, 1.0 / 1260.0};
+  constexpr std::array<double, 5> second{5.0 / 3.0, -5.0 / 21.0, 5.0 / 126.0, -5.0 / 1008.0, 1.0 / 3150.0};
+  const auto n = static_cast<std::ptrdiff_t>(values.size());
+  const auto at = [&](std::ptrdiff_t i) {
+    const auto inside = [&](std::ptrdiff_t k) {
+      return values[static_cast<std::size_t>(std::clamp(k, std::ptrdiff_t{0}, n - 1))];
+    };
+    if (i < 0) return 2.0 * inside(0) - inside(-i);
+    if (i >= n) return 2.0 * inside(n - 1) - inside(2 * (n - 1) - i);
+    return inside(i);
+  };
+  Derivatives d{std::vector<double>(values.size()), std::vector<double>(values.size())};
+  for (std::ptrdiff_t i = 0; i < n; ++i) {
+    double slope = 0.0, bend = 0.0;
+    for (std::ptrdiff_t k = 1; k <= 5; ++k) {
+      const double ahead = at(i + k) - at(i), behind = at(i) - at(i - k);
+      slope += first[static_cast<std::size_t>(k - 1)] * (ahead + behind);
+      bend += second[static_cast<std::size_t>(k - 1)] * (ahead - behind);
+    }
+    d.first[static_cast<std::size_t>(i)] = slope / step;
+    d.second[static_cast<std::size_t>(i)] = bend / (step * step);
+  }
+  return d;
+}
+
 std::vector<double> every(std::span<const double> values, std::size_t ratio) {
   std::vector<double> kept;
   if (values.empty()) return kept;

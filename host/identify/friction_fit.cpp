@@ -30,7 +30,7 @@ FrictionFit fit_coulomb_viscous(const LogRows& rows, const FitSettings& settings
     return sign;
   });
   fit.columns.resize(rows.rows(), 4);
-  fit.columns << rows.acceleration, rows.velocity, rows.counts(), fit.contact;
+  fit.columns << rows.acceleration, rows.velocity, rows.one, fit.contact;
   fit.weights = weights_of(fit.columns, rows.force);
   fit.residual = rows.force - fit.columns * fit.weights;
   choose_blocks(fit, rows);
@@ -66,7 +66,7 @@ MaxwellSlipFit fit_maxwell_slip(const LogRows& rows) {
   Eigen::MatrixXd columns(rows.rows(), 3 + elements);
   columns.col(acceleration) = rows.acceleration;
   columns.col(velocity) = rows.velocity;
-  columns.col(one).setOnes();
+  columns.col(one) = rows.one;
   std::array<double, elements> distance{};
   for (int i = 0; i < elements; ++i) {
     distance[static_cast<std::size_t>(i)] = 0.25e-6 * std::pow(4000.0, i / (elements - 1.0));

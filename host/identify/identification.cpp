@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "host/identify/determined.hpp"
 #include "host/identify/fit_support.hpp"
 #include "host/identify/standstill.hpp"
 #include "host/identify/suitability.hpp"
@@ -13,148 +14,6 @@
 
 namespace stiction::host {
 namespace {
-
-// How wide half of a 95 % interval may be for the parameter to be called determined.
-enum class Scale {
-  value,     // a share of the parameter's own value
-  coulomb,   // a share of the Coulomb friction, in newtons
-  at_speed,  // a share of the value, or a tenth of the Coulomb friction at the machine's highest speed
-  absolute,
-};
-struct Criterion {
-  const char* name;
-  Scale scale;
-  double widest;
-  const char* how;
-  const char* record;
-};
-
-constexpr const char* record_reversals =
-    "slow reversals of several small amplitudes, 5 to 200 um, a few periods of each at 1 to 2 Hz";
-constexpr const char* record_speeds = "constant speeds from a few mm/s up to the highest, each both ways";
-constexpr std::array<Criterion, 12> criteria{{
-    {"mass_kg", Scale::value, 0.2, "force over acceleration",
-     "moves with accelerations of 1 m/s^2 and more, both ways"},
-    {"coulomb_N", Scale::value, 0.3, "friction level in sliding, extrapolated to standstill", record_speeds},
-    {"viscous_N_s_per_m", Scale::at_speed, 0.5, "slope of the friction over speed", record_speeds},
-    {"constant_force_N", Scale::coulomb, 0.1,
-     "half the difference of both directions; includes gravity, current offset, and Coulomb friction that differs "
-     "between the directions",
-     record_speeds},
-    {"coulomb_positive_N", Scale::value, 0.3, "includes the constant force, which no log of one axis can separate",
-     record_speeds},
-    {"coulomb_negative_N", Scale::value, 0.3, "includes the constant force, which no log of one axis can separate",
-     record_speeds},
-    {"viscous_positive_N_s_per_m", Scale::at_speed, 0.5, "slope of the friction over speed in +x", record_speeds},
-    {"viscous_negative_N_s_per_m", Scale::at_speed, 0.5, "slope of the friction over speed in -x", record_speeds},
-    {"stiffness_N_per_m", Scale::value, 0.5, "initial slope of the contact after a reversal", record_reversals},
-    {"damping_ratio", Scale::absolute, 0.05, "force of the contact's deflection rate", record_reversals},
-    {"static_ratio", Scale::absolute, 0.05, "friction at 1 mm/s and below against the sliding level",
-     "four constant speeds and more below 10 mm/s, each both ways"},
-    {"stribeck_velocity_m_per_s", Scale::value, 0.5, "speed over which the friction falls",
-     "four constant speeds and more below 10 mm/s, each both ways"},
-}};
-
-const Criterion* criterion_of(std::string_view name) {
-  const auto found = std::find_if(criteria.begin(), criteria.end(), [&](const auto& c) { return c.name == name; });
-  return found == criteria.end() ? nullptr : &*found;
-}
-
-struct Scales {
-  double coulomb;            // N
-  double highest_speed;      // m/s, of the machine
-  double data_speed;         // m/s, the highest of the data
-  double data_acceleration;  // m/s^2, the highest of the data
-};
-
-// What no friction model gets right, as a share of the Coulomb level. A parameter whose whole force in the data is less
-// than that is read off the model's errors, however narrow its interval: the dither of a position controller's
-// quantizer turned 500 N s/m into 3100 +- 100 in reversals of 5 to 40 um, and into 2200 +- 400 in some of up to 200 um.
-constexpr double model_error = 0.05;
-
-double floor_of(std::string_view name, const Scales& scales) {
-  if (name == "mass_kg") return model_error * scales.coulomb / scales.data_acceleration;
-  if (name.starts_with("viscous")) return model_error * scales.coulomb / scales.data_speed;
-  return 0.0;
-}
-
-double allowed(const Criterion& c, double value, const Scales& scales) {
-  switch (c.scale) {
-    case Scale::value:
-      return c.widest * std::abs(value);
-    case Scale::coulomb:
-      return c.widest * scales.coulomb;
-    case Scale::at_speed:
-      return std::max(c.widest * std::abs(value), 0.1 * scales.coulomb / scales.highest_speed);
-    case Scale::absolute:
-      return c.widest;
-  }
-  return 0.0;
-}
-
-constexpr std::size_t least_blocks = 8;  // fewer do not say how much they scatter
-
-// Sorts a parameter into one of the two lists.
-void judge(Identification& result, const FittedParameter& fitted, const Scales& scales, std::size_t blocks,
-           const std::string& how) {
-  const auto* criterion = criterion_of(fitted.name);
-  const auto interval = fitted.interval();
-  const double half = 0.5 * (interval.high - interval.low);
-  const char* record = criterion != nullptr ? criterion->record : record_speeds;
-  if (blocks < least_blocks) {
-    result.not_determined.push_back(
-        {fitted.name, fmt::format("the data have {} independent blocks, fewer than {}", blocks, least_blocks), record});
-    return;
-  }
-  if (criterion != nullptr && floor_of(fitted.name, scales) > allowed(*criterion, fitted.value, scales)) {
-    result.not_determined.push_back({fitted.name,
-                                     fmt::format("the motion is too slow for it: at most {:.3g} mm/s and {:.3g} m/s^2",
-                                                 scales.data_speed * 1e3, scales.data_acceleration),
-                                     record});
-    return;
-  }
-  if (criterion != nullptr && !(half <= allowed(*criterion, fitted.value, scales))) {
-    result.not_determined.push_back({fitted.name,
-                                     fmt::format("the 95 % interval {:.3g} to {:.3g} around {:.3g} is too wide",
-                                                 interval.low, interval.high, fitted.value),
-                                     record});
-    return;
-  }
-  std::string text = criterion != nullptr ? criterion->how : "shape of the sliding curve";
-  if (!how.empty()) text += "; " + how;
-  result.parameters.push_back({fitted.name, fitted.value, interval, text});
-}
-
-// Below 1 a ratio means that friction does not fall with speed, which a machine file writes as 1.
-void bound_static_ratio(Identification& result) {
-  for (auto& p : result.parameters) {
-    if (p.name != "static_ratio") continue;
-    const auto bounded = [](double ratio) { return std::max(ratio, 1.0); };
-    p = {p.name, bounded(p.value), {bounded(p.ci95.low), bounded(p.ci95.high)}, p.how};
-  }
-}
-
-void judge_contact(Identification& result, const FrictionFit& fit, const Scales& scales) {
-  for (const char* name : {"stiffness_N_per_m", "damping_ratio", "static_ratio", "stribeck_velocity_m_per_s"}) {
-    const auto* fitted = fit.find(name);
-    if (fitted == nullptr) continue;
-    const bool damping = std::string_view(name) == "damping_ratio";
-    if (damping && result.find("stiffness_N_per_m") == nullptr)
-      result.not_determined.push_back({name, "the ratio needs the contact stiffness", record_reversals});
-    else
-      judge(result, *fitted, scales, fit.blocks.size(), "");
-  }
-  if (fit.find("stribeck_velocity_m_per_s") == nullptr)
-    result.not_determined.push_back({"stribeck_velocity_m_per_s", "the friction does not fall with speed",
-                                     criterion_of("stribeck_velocity_m_per_s")->record});
-  bound_static_ratio(result);
-}
-
-// What a fit without a contact leaves open.
-void name_contact(Identification& result, const char* why) {
-  for (const char* name : {"stiffness_N_per_m", "damping_ratio", "static_ratio", "stribeck_velocity_m_per_s"})
-    result.not_determined.push_back({name, why, criterion_of(name)->record});
-}
 
 void keep_residuals(Identification& result, const LogRows& rows, const FrictionFit& fit) {
   const auto n = static_cast<double>(std::max<Eigen::Index>(rows.rows(), 1));
@@ -168,6 +27,7 @@ void keep_residuals(Identification& result, const LogRows& rows, const FrictionF
   }
 }
 
+constexpr std::size_t least_blocks = 8;         // of a curve
 constexpr std::size_t least_sliding_rows = 40;  // eight curves' worth of parameters
 
 void add_curve(Identification& result, const LogRows& rows, const FrictionFit& fit, const FitSettings& settings) {
@@ -193,61 +53,220 @@ const IdentifiedParameter* Identification::find(std::string_view name) const {
   return found == parameters.end() ? nullptr : &*found;
 }
 
-Identification identify_logs(const std::vector<Log>& logs, const machine::AxisModel& axis,
-                             const IdentifyOptions& options) {
-  const bool recipe = options.friction == sim::CoulombViscous<>::name;
-  const auto signals = recipe ? published_recipe() : SignalSettings{};
-  Identification result;
-  result.axis = axis.name;
-  std::vector<Motion> motions;
+namespace {
+
+struct Source {
+  std::vector<LogOfAxis> logs;
+  std::vector<std::vector<bool>> left_out;
+};
+
+Source sources_for(Identification& result, const std::vector<Log>& logs, const machine::AxisModel& axis) {
+  Source source;
+  std::size_t masked = 0;
   for (const auto& log : logs) {
     const auto& channels = channels_of(log, axis);
     require_samples(log);
-    refuse_saturation(log, channels, axis);
-    motions.push_back(motion_of(log, channels, axis, options.amperes, signals));
+    source.logs.push_back({&log, &channels});
+    source.left_out.push_back(left_out(channels, axis));
+    masked += static_cast<std::size_t>(std::count(source.left_out.back().begin(), source.left_out.back().end(), true));
     result.sources.push_back(log.source);
     result.samples += log.t.size();
   }
-  LogRows rows(std::move(motions), signals);
-  const auto excitation = excitation_of(rows);
-  require_excitation(excitation, sources_of(rows.motions()));
-  refuse_swapped_sign(rows);
-  if (options.moving_rows_only) rows.weigh(moving_rows(rows, axis, signals.cutoff));
-  const bool own = options.friction == axis.friction.use && has_contact_of_one_length(axis.friction);
-  const auto fit = recipe ? fit_coulomb_viscous(rows, options.fit)
-                   : own  ? fit_law(rows, axis.friction, options.fit)
-                          : fit_lugre(rows, options.fit);
-  result.friction = fit.model;
-  refuse_contradiction(fit, rows);
+  if (masked > 0)
+    result.notes.push_back(
+        fmt::format("{} samples, {:.2g} % of all, do not count: the effort is at its limit there, or the record has "
+                    "none.",
+                    masked, 100.0 * static_cast<double>(masked) / static_cast<double>(result.samples)));
+  return source;
+}
 
-  result.method = recipe ? "Least squares with sgn(v) of every sample, as published for EMPS; data filtered at 100 Hz, "
-                           "rows at 100 Hz, intervals by block bootstrap."
-                         : fmt::format(
-                               "Least squares with the contact of the law {} driven by the measured position; "
-                               "data filtered at 100 Hz, rows at 100 Hz, intervals by block bootstrap.",
-                               fit.model);
-  if (options.moving_rows_only && rows.counts().minCoeff() < 1.0)
-    result.method += fmt::format(
-        " Rows at standstill, {:.0f} % of all, have no weight: there the friction of {} is a reaction, which no motion "
-        "tells.",
-        100.0 * (1.0 - rows.counts().mean()), axis.friction.use);
+// Rows of the fixed band, 40 Hz, of logs that are fast and fine enough for it.
+LogRows fixed_rows(const Source& source, const machine::AxisModel& axis, Amperes amperes,
+                   const SignalSettings& signals) {
+  std::vector<Motion> motions;
+  for (std::size_t k = 0; k < source.logs.size(); ++k) {
+    motions.push_back(motion_of(*source.logs[k].log, *source.logs[k].channels, axis, amperes, signals));
+    const auto& out = source.left_out[k];
+    if (std::find(out.begin(), out.end(), true) == out.end()) continue;
+    for (const bool each : out) motions.back().weight.push_back(each ? 0.0 : 1.0);
+  }
+  return {std::move(motions), signals};
+}
+
+// Whether the log resolves a contact: fast enough for what happens within it, and an encoder whose noise neither bends
+// the mass nor the contact's force.
+bool resolves_contact(const Band& band, const Source& source) {
+  constexpr double slowest = 400.0, coarsest = 1e-6, noisiest = 2e-3;  // Hz, m rms, of the mass
+  return band.position_noise < coarsest && band.trials.front().attenuation < noisiest &&
+         std::all_of(source.logs.begin(), source.logs.end(),
+                     [](const auto& each) { return each.log->period < 1.0 / slowest; });
+}
+
+// The direction in which all motion goes; 0: both.
+double only_direction(const LogRows& rows) {
+  constexpr double least = 0.02;  // of the time in motion
+  double forward = 0.0, backward = 0.0;
+  for (const auto& motion : rows.motions()) {
+    double highest = 0.0;
+    for (const double v : motion.v) highest = std::max(highest, std::abs(v));
+    for (const double v : motion.v)
+      if (std::abs(v) > 0.02 * highest) (v > 0.0 ? forward : backward) += motion.period;
+  }
+  if (backward < least * (forward + backward)) return 1.0;
+  return forward < least * (forward + backward) ? -1.0 : 0.0;
+}
+
+// A fit of mass, viscous and Coulomb friction and the constant force in the band that was chosen.
+FrictionFit followed_fit(const LogRows& rows, const Band& band, const Held& held, const FitSettings& settings) {
+  FrictionFit fit;
+  fit.model = std::string(sim::CoulombViscous<>::name);
+  const auto equations = equations_of(rows);
+  fit.columns = equations.columns;
+  fit.contact = equations.columns.col(fitting::level);
+  fit.blocks =
+      blocks_for(rows, rows.force - fit.columns * fitting::weights_of(fit.columns, rows.force), &fit.correlation);
+  const InstrumentFit estimate(equations, fit.blocks, held);
+  fit.weights = estimate.weights();
+  fit.residual = rows.force - fit.columns * fit.weights;
+  fitting::add_sliding_parameters(fit, fit.weights.transpose(),
+                                  estimate.replicates(settings.replicates, settings.seed, band.widening()));
+  return fit;
+}
+
+// The force (N rms) that is left on held-out blocks, of the fit and of a plain least squares in the same rows.
+HeldOutForce held_out_force(const LogRows& rows, const FrictionFit& fit, const Held& held, bool followed) {
+  auto own = followed ? equations_of(rows) : NoisyEquations{};
+  if (!followed) {
+    own.columns = own.instruments = fit.columns;
+    own.force = rows.force;
+    own.acceleration_noise = own.velocity_noise = Eigen::VectorXd::Zero(rows.rows());
+  }
+  auto plain = own;
+  plain.columns.resize(rows.rows(), 4);
+  plain.columns << rows.acceleration, rows.velocity, rows.one, rows.stacked([](const Motion& m) {
+    std::vector<double> sign(m.v.size());
+    std::transform(m.v.begin(), m.v.end(), sign.begin(), [](double v) { return v > 0.0 ? 1.0 : v < 0.0 ? -1.0 : 0.0; });
+    return sign;
+  });
+  plain.instruments = plain.columns;
+  plain.acceleration_noise.setZero();
+  plain.velocity_noise.setZero();
+  return {InstrumentFit(own, fit.blocks, held).held_out(), InstrumentFit(plain, fit.blocks, {}).held_out()};
+}
+
+constexpr std::array<const char*, 4> names_of_columns{"mass_kg", "viscous_N_s_per_m", "constant_force_N", "coulomb_N"};
+
+// Mass, viscous friction, Coulomb friction, constant force, and those of each direction.
+void judge_sliding(Identification& result, const LogRows& rows, const FrictionFit& fit, const Scales& scales,
+                   const IdentifyOptions& options, double direction) {
+  const char* how = fit.sliding_only ? "rows in steady sliding only" : "";
+  for (const std::size_t c : {0u, 3u, 1u, 2u}) {
+    const char* name = names_of_columns[c];
+    if (options.held[c]) {
+      result.parameters.push_back(
+          {name, *options.held[c], {*options.held[c], *options.held[c]}, "given, not estimated"});
+      continue;
+    }
+    if (direction != 0.0 && c >= 2) {
+      if (c == 3 || options.held[3]) continue;
+      auto one_way = fit.at(name);
+      one_way.name = direction > 0.0 ? "coulomb_positive_N" : "coulomb_negative_N";
+      if (direction < 0.0) {
+        one_way.value = -one_way.value;
+        for (double& value : one_way.replicates) value = -value;
+      }
+      judge(result, one_way, scales, fit.blocks.size(), how);
+      for (const char* both : {"coulomb_N", "constant_force_N"})
+        result.not_determined.push_back(
+            {both, "all motion goes in one direction, where Coulomb friction and a constant force are one",
+             record_speeds});
+      continue;
+    }
+    judge(result, fit.at(name), scales, fit.blocks.size(), how);
+  }
+  if (direction == 0.0 &&
+      std::none_of(options.held.begin(), options.held.end(), [](const auto& h) { return h.has_value(); }))
+    for (const auto& each : fit_directions(rows, fit, options.fit)) judge(result, each, scales, fit.blocks.size(), "");
+}
+
+std::string method_of(const Band& band, const FrictionFit& fit) {
+  return fmt::format(
+      "Least squares of mass, viscous friction, Coulomb friction and a constant force, all columns through one filter "
+      "that ends at {:g} Hz, the widest band with the narrowest intervals; {}; intervals by leaving out one of {} "
+      "blocks "
+      "at a time, widened by how far the estimates move with the band.",
+      band.best().cutoff,
+      band.instruments ? "derivatives of the set position are the instruments of speed and acceleration"
+                       : "the expected noise of the encoder is taken from the normal equations",
+      fit.blocks.size());
+}
+
+}  // namespace
+
+Identification identify_logs(const std::vector<Log>& logs, const machine::AxisModel& axis,
+                             const IdentifyOptions& options) {
+  Identification result;
+  result.axis = axis.name;
+  const auto source = sources_for(result, logs, axis);
+  const bool recipe = options.friction == sim::CoulombViscous<>::name;
+  const bool holds = std::any_of(options.held.begin(), options.held.end(), [](const auto& h) { return h.has_value(); });
+  const bool published = recipe && !options.moving_rows_only && !holds;
+  const auto model = level_model(axis, recipe || sticks_rigidly(axis));
+  if (!published) result.band = choose_band(source.logs, axis, options.amperes, model, options.held);
+  std::optional<LogRows> rows_in_band;
+  if (!published)
+    rows_in_band.emplace(followed_rows(source.logs, axis, options.amperes, result.band->best().cutoff, model));
+  const double direction = published ? 0.0 : only_direction(*rows_in_band);
+  const bool contact =
+      !published && !model.sticks && !holds && direction == 0.0 && resolves_contact(*result.band, source);
+  const bool followed = !published && !contact;
+  const LogRows rows =
+      followed ? std::move(*rows_in_band)
+               : fixed_rows(source, axis, options.amperes, published ? published_recipe() : SignalSettings{});
+  const auto excitation = excitation_of(rows);
+  if (published)
+    require_excitation(excitation, sources_of(rows.motions()));
+  else
+    require_motion(excitation, sources_of(rows.motions()));
+  refuse_swapped_sign(rows);
+  auto held = options.held;
+  if (direction != 0.0 && !held[3]) held[3] = 0.0;  // one column with the constant force
+  const bool own = options.friction == axis.friction.use && has_contact_of_one_length(axis.friction);
+  const auto fit = published  ? fit_coulomb_viscous(rows, options.fit)
+                   : followed ? followed_fit(rows, *result.band, held, options.fit)
+                   : own      ? fit_law(rows, axis.friction, options.fit)
+                              : fit_lugre(rows, options.fit);
+  result.friction = fit.model;
+  if (published)
+    result.method =
+        "Least squares with sgn(v) of every sample, as published for EMPS; data filtered at 100 Hz, rows at 100 Hz, "
+        "intervals by block bootstrap.";
+  else if (followed)
+    result.method = method_of(*result.band, fit);
+  else
+    result.method = fmt::format(
+        "Least squares with the contact of the law {} driven by the measured position; data filtered at 100 Hz, rows "
+        "at 100 Hz, intervals by block bootstrap.",
+        fit.model);
   if (fit.sliding_only)
     result.method +=
         " The contact model contradicts the rows in steady sliding. Mass, Coulomb and viscous friction therefore come "
         "from those rows alone, and the contact parameters are a compromise.";
-  const Scales scales{std::abs(fit.at("coulomb_N").value), axis.max_velocity, excitation.highest_speed,
-                      excitation.highest_acceleration};
-  const char* how = fit.sliding_only ? "rows in steady sliding only" : "";
-  for (const char* name : {"mass_kg", "coulomb_N", "viscous_N_s_per_m", "constant_force_N"})
-    judge(result, fit.at(name), scales, fit.blocks.size(), how);
-  for (const auto& each : fit_directions(rows, fit, options.fit)) judge(result, each, scales, fit.blocks.size(), "");
-  if (recipe)
+  const double level =
+      held[3] ? std::max(*held[3], std::abs(fit.at("constant_force_N").value)) : std::abs(fit.at("coulomb_N").value);
+  const Scales scales{level, axis.max_velocity, excitation.highest_speed, excitation.highest_acceleration};
+  judge_sliding(result, rows, fit, scales, options, direction);
+  if (published)
     name_contact(result, "sgn(v) contains no presliding; --friction lugre identifies it");
+  else if (followed)
+    name_contact(result, model.sticks ? "the law sticks rigidly, without presliding"
+                                      : "the log is too slow or its encoder too coarse to show presliding");
   else
     judge_contact(result, fit, scales);
   if (result.find("stiffness_N_per_m") != nullptr) result.elements = fit_maxwell_slip(rows).elements;
-  add_curve(result, rows, fit, options.fit);
+  if (direction == 0.0) add_curve(result, rows, fit, options.fit);
   result.initial = initial_values(rows);
+  result.held_out = held_out_force(rows, fit, held, followed);
   keep_residuals(result, rows, fit);
   return result;
 }
@@ -278,7 +297,7 @@ Identification identify_table(const SteadyTable& table, const machine::AxisModel
     result.not_determined.push_back(
         {"constant_force_N", "the table has speeds of one direction only, so it is a part of the Coulomb friction",
          record_speeds});
-  result.not_determined.push_back({"mass_kg", "a table of steady states has no acceleration", criteria[0].record});
+  result.not_determined.push_back({"mass_kg", "a table of steady states has no acceleration", record_accelerations});
   name_contact(result, "a table of steady states has no presliding");
   const Eigen::VectorXd left = data.force - columns * centre.transpose();
   const auto n = static_cast<double>(left.size());

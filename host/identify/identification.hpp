@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "host/identify/band.hpp"
 #include "host/identify/friction_fit.hpp"
 #include "host/identify/initial_values.hpp"
 #include "host/identify/sliding_curve.hpp"
@@ -33,6 +34,12 @@ struct LogResidual {
   std::vector<double> time, speed, residual;  // s, m/s, N
 };
 
+// Force that a fit leaves on blocks that took no part in it.
+struct HeldOutForce {
+  double fit = 0.0;    // N rms
+  double plain = 0.0;  // N rms, of a least squares of mass, viscous friction, Coulomb friction and offset, same rows
+};
+
 struct Identification {
   std::string axis;
   std::vector<std::string> sources;
@@ -45,7 +52,10 @@ struct Identification {
   std::optional<SlidingCurve> curve;  // none where the axis hardly slides
   std::vector<SlipElement> elements;  // Maxwell slip; empty when the presliding was not determined
   double force_rms = 0.0;             // N
-  double residual_rms = 0.0;          // N
+  std::optional<Band> band;           // none: the fixed band of a published recipe, or a table
+  std::optional<HeldOutForce> held_out;
+  std::vector<std::string> notes;  // sentences on what of the logs did not count
+  double residual_rms = 0.0;       // N
   std::vector<LogResidual> residuals;
 
   const IdentifiedParameter* find(std::string_view name) const;
@@ -57,7 +67,10 @@ struct IdentifyOptions {
   std::string friction;
   Amperes amperes = Amperes::amplitude;
   FitSettings fit;
-  bool moving_rows_only = false;  // leaves rows out in which friction is a reaction (standstill.hpp)
+  // The band follows the data, and samples at standstill, where the friction of a law that sticks is a reaction, do not
+  // count. Without it "coulomb_viscous" is the published recipe.
+  bool moving_rows_only = false;
+  Held held{};  // values that are given, not estimated: mass, viscous friction, constant force, Coulomb friction
 };
 
 // The log's channels of that axis, or those without an axis' name. Throws LogError when it has neither.

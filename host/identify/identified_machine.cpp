@@ -112,26 +112,28 @@ std::string identified_machine(const std::filesystem::path& file, const std::vec
   } else {
     comment.push_back(fmt::format("  mass: kept from the machine file, {:g} kg", axis.mass));
   }
-  edits.push_back({{"experiment", "*", "axis", axis.name, "friction"}, {}});
-  std::vector<std::string> complete;
+  std::vector<machine::MachineEdit> friction{{{"experiment", "*", "axis", axis.name, "friction"}, {}}};
+  std::vector<std::string> complete, left;
   sim::for_each_friction_model([&]<class Model>() {
     if (!axis.friction.models.contains(std::string(Model::name))) return;
     const auto table = friction_table<Model>(result);
     if (!table.missing.empty()) {
-      edits.push_back({path({"friction", table.model}), {}});
-      comment.push_back(
+      friction.push_back({path({"friction", table.model}), {}});
+      left.push_back(
           fmt::format("  friction.{}: left out, not determined: {}", table.model, fmt::join(table.missing, ", ")));
       return;
     }
     complete.push_back(table.model);
-    for (const auto& [key, value] : table.keys) edits.push_back({path({"friction", table.model, key}), value});
+    for (const auto& [key, value] : table.keys) friction.push_back({path({"friction", table.model, key}), value});
   });
-  if (complete.empty())
-    throw LogError(fmt::format(
-        "{}: found no friction model of axis {} in {} whose parameters these data determine completely; expected at "
-        "least Coulomb and viscous friction. Record constant speeds from a few mm/s up to the highest, each both ways",
-        fmt::join(result.sources, ", "), axis.name, file.filename().string()));
-  edits.push_back({path({"friction", "use"}), model_in_use(axis.friction.use, complete)});
+  if (complete.empty()) {
+    // Data that determine a mass alone still say that.
+    comment.push_back("  friction: kept from the machine file, as the data determine no law of it completely");
+  } else {
+    comment.insert(comment.end(), left.begin(), left.end());
+    edits.insert(edits.end(), friction.begin(), friction.end());
+    edits.push_back({path({"friction", "use"}), model_in_use(axis.friction.use, complete)});
+  }
   return machine::edited_machine(file, set, edits, comment);
 }
 

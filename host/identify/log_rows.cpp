@@ -1,10 +1,20 @@
 #include "host/identify/log_rows.hpp"
 
+#include <algorithm>
+
 namespace stiction::host {
 namespace {
 
 auto as_vector(const std::vector<double>& values) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+// The column of samples that count less than whole. Force and regressors are multiplied by the same weight before they
+// are filtered, so that the equation of each sample keeps holding and nothing of a sample that does not count reaches
+// a row.
+std::vector<double> weighed(const Motion& motion, std::vector<double> column) {
+  for (std::size_t i = 0; i < motion.weight.size(); ++i) column[i] *= motion.weight[i];
+  return column;
 }
 
 }  // namespace
@@ -21,18 +31,21 @@ LogRows::LogRows(std::vector<Motion> motions, const SignalSettings& settings) : 
   force = stacked([](const Motion& m) { return m.force; });
   acceleration = stacked([](const Motion& m) { return m.a; });
   velocity = stacked([](const Motion& m) { return m.v; });
+  one = counts_;
+  if (std::any_of(motions_.begin(), motions_.end(), [](const Motion& m) { return !m.weight.empty(); }))
+    one = stacked([](const Motion& m) { return std::vector<double>(m.t.size(), 1.0); });
   time = sampled([](const Motion& m) { return m.t; });
 }
 
 void LogRows::weigh(Eigen::VectorXd counts) {
   counts_ = std::move(counts);
-  for (auto* row : {&force, &acceleration, &velocity}) *row = row->cwiseProduct(counts_);
+  for (auto* row : {&force, &acceleration, &velocity, &one}) *row = row->cwiseProduct(counts_);
 }
 
 Eigen::VectorXd LogRows::stacked(const std::function<std::vector<double>(const Motion&)>& column) const {
   Eigen::VectorXd all(force.size());
   for (std::size_t k = 0; k < motions_.size(); ++k) {
-    const auto rows = filters_[k](column(motions_[k]));
+    const auto rows = filters_[k](weighed(motions_[k], column(motions_[k])));
     all.segment(static_cast<Eigen::Index>(logs_[k]), static_cast<Eigen::Index>(rows.size())) = as_vector(rows);
   }
   return all.cwiseProduct(counts_);
@@ -42,7 +55,9 @@ std::vector<Eigen::VectorXd> LogRows::stacked_together(
     const std::function<std::vector<std::vector<double>>(const Motion&)>& columns) const {
   std::vector<Eigen::VectorXd> all;
   for (std::size_t k = 0; k < motions_.size(); ++k) {
-    const auto rows = filters_[k](columns(motions_[k]));
+    auto all_of_log = columns(motions_[k]);
+    for (auto& column : all_of_log) column = weighed(motions_[k], std::move(column));
+    const auto rows = filters_[k](all_of_log);
     if (k == 0) all.assign(rows.size(), Eigen::VectorXd(force.size()));
     for (std::size_t c = 0; c < rows.size(); ++c)
       all[c].segment(static_cast<Eigen::Index>(logs_[k]), static_cast<Eigen::Index>(rows[c].size())) =
@@ -63,7 +78,7 @@ Eigen::VectorXd LogRows::sampled(const std::function<std::vector<double>(const M
 
 Eigen::VectorXd LogRows::of_log(std::size_t log, const std::vector<double>& column) const {
   Eigen::VectorXd all = Eigen::VectorXd::Zero(force.size());
-  const auto rows = filters_[log](column);
+  const auto rows = filters_[log](weighed(motions_[log], column));
   all.segment(static_cast<Eigen::Index>(logs_[log]), static_cast<Eigen::Index>(rows.size())) = as_vector(rows);
   return all.cwiseProduct(counts_);
 }

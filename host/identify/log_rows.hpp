@@ -35,6 +35,7 @@ class LogRows {
   Eigen::VectorXd of_log(std::size_t log, const std::vector<double>& column) const;
 
   Eigen::VectorXd force, acceleration, velocity, time;
+  Eigen::VectorXd one;  // the regressor of a constant force: the samples' weights, filtered
 
  private:
   std::vector<Motion> motions_;

@@ -14,11 +14,24 @@ constexpr int position_order = 4;
 constexpr int anti_alias_order = 8;
 constexpr double anti_alias_ripple = 0.05;  // dB
 constexpr double anti_alias_edge = 0.8;     // of half the new rate
+constexpr double rows_per_band = 2.5;       // rate of the rows over the band that they hold
+// The position's filter acts on the position alone and its edge is at most a fifth of the log's rate. Rows that end at
+// half of that have lost 0.4 % to it, and 0.04 % to the differences. Rows that reach further compare a filtered motion
+// with a force that still has everything: then the jumps of friction at reversals have no motion to belong to.
+constexpr double highest_position_edge = 0.2;               // of the log's rate
+constexpr double highest_row_edge = highest_position_edge;  // of half the log's rate: half as high
 
 // A filter's default padding is right for the rates of the recipe: the position's at 1 kHz, the anti-aliasing one's at
 // a ratio of 10. In time it stays the same.
 std::size_t scaled_padding(const Lowpass& filter, double scale) {
   return static_cast<std::size_t>(std::lround(static_cast<double>(default_padding(filter)) * std::max(1.0, scale)));
+}
+
+// Samples of the log for one row.
+std::size_t row_ratio(double period, const SignalSettings& settings) {
+  const double ratio = settings.band > 0.0 ? std::floor(1.0 / (rows_per_band * settings.band * period))
+                                           : std::round(1.0 / (settings.row_rate * period));
+  return static_cast<std::size_t>(std::max(1.0, ratio));
 }
 
 std::size_t samples(double duration, double period) { return static_cast<std::size_t>(std::lround(duration / period)); }
@@ -62,7 +75,7 @@ Motion motion_of(const Log& log, const AxisLog& channels, const machine::AxisMod
   motion.force = force_of(log, channels, axis, amperes);
   motion.force_is_current = channels.force.empty() && channels.external_force.empty();
   if (log.t.size() < 20) return motion;
-  const double cutoff = std::min(settings.cutoff, 0.2 / log.period);
+  const double cutoff = std::min(settings.cutoff, highest_position_edge / log.period);
   const auto lowpass = butterworth(position_order, 2.0 * cutoff * log.period);
   motion.x = filter_both_ways(lowpass, channels.x, scaled_padding(lowpass, 1e-3 / log.period));
   motion.v = central_difference(motion.x, log.period, settings.difference_points);
@@ -78,19 +91,19 @@ Motion motion_of(const Log& log, const AxisLog& channels, const machine::AxisMod
 RowFilter::RowFilter(const Motion& motion, const SignalSettings& settings)
     : begin_(samples(settings.skip_start, motion.period)),
       end_(motion.t.size()),
-      ratio_(
-          std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(1.0 / (settings.row_rate * motion.period))))),
+      ratio_(row_ratio(motion.period, settings)),
       period_(static_cast<double>(ratio_) * motion.period) {
   const std::size_t skipped_end = samples(settings.skip_end, motion.period);
   end_ = end_ > begin_ + skipped_end ? end_ - skipped_end : begin_;
   rows_ = (end_ - begin_ + ratio_ - 1) / ratio_;
-  if (ratio_ == 1) return;
-  lowpass_ = chebyshev(anti_alias_order, anti_alias_ripple, anti_alias_edge / static_cast<double>(ratio_));
+  const double edge = settings.band > 0.0 ? 2.0 * settings.band * motion.period
+                                          : std::min(anti_alias_edge / static_cast<double>(ratio_), highest_row_edge);
+  lowpass_ = chebyshev(anti_alias_order, anti_alias_ripple, edge);
   // Of even order it stands at the ripple's lower end at standstill; a force keeps its size in its rows.
   const double at_standstill = std::pow(10.0, anti_alias_ripple / 20.0);
-  auto& first = lowpass_->sections.front();
+  auto& first = lowpass_.sections.front();
   for (double* b : {&first.b0, &first.b1, &first.b2}) *b *= at_standstill;
-  padding_ = scaled_padding(*lowpass_, 0.1 * static_cast<double>(ratio_));
+  padding_ = scaled_padding(lowpass_, 0.1 * anti_alias_edge / edge);
 }
 
 std::span<const double> RowFilter::kept(std::span<const double> column) const {
@@ -98,18 +111,14 @@ std::span<const double> RowFilter::kept(std::span<const double> column) const {
 }
 
 std::vector<double> RowFilter::operator()(std::span<const double> column) const {
-  if (!lowpass_) return sampled(column);
-  return every(filter_both_ways(*lowpass_, kept(column), padding_), ratio_);
+  return every(filter_both_ways(lowpass_, kept(column), padding_), ratio_);
 }
 
 std::vector<std::vector<double>> RowFilter::operator()(const std::vector<std::vector<double>>& columns) const {
   std::vector<std::span<const double>> all;
   for (const auto& column : columns) all.push_back(kept(column));
   std::vector<std::vector<double>> rows;
-  if (lowpass_)
-    for (const auto& column : filter_both_ways(*lowpass_, all, padding_)) rows.push_back(every(column, ratio_));
-  else
-    for (const auto& column : all) rows.push_back(every(column, ratio_));
+  for (const auto& column : filter_both_ways(lowpass_, all, padding_)) rows.push_back(every(column, ratio_));
   return rows;
 }
 

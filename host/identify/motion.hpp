@@ -3,7 +3,6 @@
 // to the rate of the rows that regressions work on (Janot, Gautier, Brunot 2019; Gautier 1997).
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,10 +15,14 @@ namespace stiction::host {
 
 struct SignalSettings {
   double cutoff = 100.0;    // Hz, of the position's Butterworth filter of order 4; at most a fifth of the log's rate
-  double row_rate = 100.0;  // Hz; the rows hold frequencies up to 0.4 of it
+  double row_rate = 100.0;  // Hz; the rows hold frequencies up to 0.4 of it, and to a tenth of the log's rate
   int difference_points = 7;
   double skip_start = 0.05;  // s, dropped at the log's start: the filter's transient
   double skip_end = 0.05;    // s
+  // Hz, where the rows end, for a band that follows the data (host/identify/band.hpp); 0: by the rates above. Then
+  // the position is filtered only where the log is five times as fast as `cutoff`, and its derivatives are those of 11
+  // points, so that rows may reach to 0.3 of the log's rate.
+  double band = 0.0;
 };
 
 // The recipe of the published EMPS model (data: Janot, Gautier, Brunot 2019): differences of 3 points, the first 49 ms
@@ -36,6 +39,11 @@ struct Motion {
   std::vector<double> x_set;       // m; empty when the log has none
   bool force_is_current = false;   // `force` is the current or voltage times the file's force constant
   std::vector<double> other_a{};   // m/s^2, of the other axis; empty when the log does not have exactly two
+  // Of a band that follows the data; empty otherwise.
+  std::vector<double> weight{};          // 0 to 1, of each sample in every column; empty: all 1
+  std::vector<double> level{};           // of the friction, -1 to 1
+  std::vector<double> set_v{}, set_a{};  // m/s, m/s^2; derivatives of the set position, filtered as the position
+  double speed_noise = 0.0, acceleration_noise = 0.0;  // m/s, m/s^2 rms in the rows, of the encoder
 };
 
 // How the amperes of a record are to be read.
@@ -62,6 +70,10 @@ class RowFilter {
   std::vector<double> operator()(std::span<const double> column) const;
   // Those of several columns at once, which takes less time.
   std::vector<std::vector<double>> operator()(const std::vector<std::vector<double>>& columns) const;
+  // The column filtered at the log's own rate.
+  std::vector<double> whole(std::span<const double> column) const {
+    return filter_both_ways(lowpass_, kept(column), padding_);
+  }
   // The values at the rows, not filtered: of the time.
   std::vector<double> sampled(std::span<const double> column) const;
 
@@ -70,7 +82,7 @@ class RowFilter {
 
   std::size_t begin_, end_, ratio_, padding_ = 0, rows_ = 0;
   double period_;
-  std::optional<Lowpass> lowpass_;  // none when the log's rate is that of the rows
+  Lowpass lowpass_;  // of every column, at every rate
 };
 
 }  // namespace stiction::host

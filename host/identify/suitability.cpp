@@ -117,6 +117,40 @@ void refuse_saturation(const Log& log, const AxisLog& channels, const machine::A
   if (flat.length >= 10 && 2 * repeats < values.size()) complain(flat, "the same to the last digit");
 }
 
+std::vector<bool> saturated(const AxisLog& channels, const machine::AxisModel& axis) {
+  const auto signal = driving_signal(channels, axis);
+  const auto& values = *signal.values;
+  std::vector<bool> marked(channels.x.size(), false);
+  double largest = 0.0;
+  std::size_t repeats = 0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    largest = std::max(largest, std::abs(values[k]));
+    repeats += k > 0 && values[k] == values[k - 1];
+  }
+  const auto mark = [&](std::size_t least, auto&& at_top) {
+    for (std::size_t k = 0; k < values.size();) {
+      std::size_t end = k;
+      while (end < values.size() && at_top(end)) ++end;
+      if (end - k >= least)
+        std::fill(marked.begin() + static_cast<long>(k), marked.begin() + static_cast<long>(end), true);
+      k = std::max(end, k + 1);
+    }
+  };
+  mark(3, [&](std::size_t k) { return std::abs(values[k]) >= 0.999 * signal.limit; });
+  if (2 * repeats < values.size()) mark(10, [&](std::size_t k) { return std::abs(values[k]) == largest; });
+  return marked;
+}
+
+void require_motion(const Excitation& e, const std::string& sources) {
+  if (e.duration < shortest)
+    throw LogError(
+        fmt::format("{}: found {:.3g} s; expected at least {:g} s of motion. Record several reversals at "
+                    "several speeds",
+                    sources, e.duration, shortest));
+  if (e.highest_speed == 0.0)
+    throw LogError(fmt::format("{}: found an axis that stands still; expected motion", sources));
+}
+
 Excitation excitation_of(const LogRows& rows) {
   Excitation e;
   for (const auto& motion : rows.motions())
@@ -139,11 +173,7 @@ Excitation excitation_of(const LogRows& rows) {
 }
 
 void require_excitation(const Excitation& e, const std::string& sources) {
-  if (e.duration < shortest)
-    throw LogError(
-        fmt::format("{}: found {:.3g} s; expected at least {:g} s of motion. Record several reversals at "
-                    "several speeds",
-                    sources, e.duration, shortest));
+  require_motion(e, sources);
   if (e.reversals == 0)
     throw LogError(
         fmt::format("{}: found no reversal; expected motion in both directions, without which Coulomb friction cannot "
@@ -171,17 +201,6 @@ void refuse_swapped_sign(const LogRows& rows) {
                   "motion; expected force and position positive in the same direction. The sign of one of them is "
                   "swapped: reverse the current or the position in the record",
                   sources_of(rows.motions()), -power * rows.period(0)));
-}
-
-void refuse_contradiction(const FrictionFit& fit, const LogRows& rows) {
-  for (const char* name : {"mass_kg", "coulomb_N"}) {
-    const auto interval = fit.at(name).interval();
-    if (interval.high >= 0.0) continue;
-    throw LogError(fmt::format(
-        "{}: found {} = {:.4g}, from {:.4g} to {:.4g}; expected a positive value. Force and position are inconsistent: "
-        "check sign, scale and time of both channels, and record moves with higher acceleration",
-        sources_of(rows.motions()), name, fit.at(name).value, interval.low, interval.high));
-  }
 }
 
 }  // namespace stiction::host

@@ -30,13 +30,16 @@ void require_samples(const Log& log);
 // for messages; `channels`: of the axis in it; `axis`: of the machine. Throws LogError.
 void refuse_saturation(const Log& log, const AxisLog& channels, const machine::AxisModel& axis);
 
+// The samples at which it stood there. `channels`, `axis`: as above.
+std::vector<bool> saturated(const AxisLog& channels, const machine::AxisModel& axis);
+
+// Refuses logs that are too short or hardly move. `excitation`: of all; `sources`: their names.
+void require_motion(const Excitation& excitation, const std::string& sources);
+
 // Refuses logs that are too short, without reversals or without enough speeds.
 void require_excitation(const Excitation& excitation, const std::string& sources);
 
 // Refuses a force that drives where friction brakes, by its energy: its sign is swapped against the position's.
 void refuse_swapped_sign(const LogRows& rows);
-
-// Refuses a mass or a Coulomb level that the data say is negative.
-void refuse_contradiction(const FrictionFit& fit, const LogRows& rows);
 
 }  // namespace stiction::host

@@ -1,6 +1,7 @@
 // Records that nobody should identify from: each is refused with what is wrong and what to record instead.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "host/identify/identification.hpp"
@@ -45,34 +46,6 @@ TEST_F(BadInput, a_log_of_a_second) {
   auto log = general();
   keep(log, 0, 1000);
   expect_refused({log}, {"found 1 s", "expected at least 2 s", "reversals at several speeds"});
-}
-
-TEST_F(BadInput, a_log_without_reversals) {
-  const test::Trajectory one_way{"one way", 3.0, [](double t) {
-                                   const double w = std::numbers::pi / 3.0;
-                                   return sim::AxisSetPoint{0.1 * (t - std::sin(w * t) / w),
-                                                            0.1 * (1.0 - std::cos(w * t)), 0.1 * w * std::sin(w * t)};
-                                 }};
-  expect_refused({recorded(one_way)}, {"one way: found no reversal", "Record each speed there and back"});
-}
-
-TEST_F(BadInput, a_log_of_one_speed) {
-  // Accelerates in 0.05 s each time: that is not a second speed.
-  expect_refused({recorded(test::constant_speeds({0.02, 0.02, 0.02}, 0.6, 0.0))},
-                 {"one speed only, 2", "mm/s", "Record constant speeds"});
-}
-
-TEST_F(BadInput, a_current_at_the_machines_limit) {
-  auto log = general();
-  for (std::size_t k = 2000; k < 2010; ++k) log.axes.front().i[k] = machine_.axes.front().inverter.current_limit;
-  expect_refused({log}, {"found the current at 70 A for 10 ms at t = 2 s", "the limit of 70 A in the machine file",
-                         "lower acceleration"});
-}
-
-TEST_F(BadInput, a_current_whose_tops_are_cut_off) {
-  auto log = test::with_noise(general(), {}, 1);
-  for (double& i : log.axes.front().i) i = std::clamp(i, -3.0, 3.0);
-  expect_refused({log}, {"found the current at 3 A", "the same to the last digit", "wider measuring range"});
 }
 
 TEST_F(BadInput, a_force_of_the_wrong_sign) {

@@ -1,0 +1,205 @@
+#include "host/identify/followed_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "host/identify/standstill.hpp"
+#include "host/identify/suitability.hpp"
+#include "host/log/resolution.hpp"
+#include "sim/plant/friction/friction.hpp"
+
+namespace stiction::host {
+namespace {
+
+constexpr double position_edge = 100.0;  // Hz; logs slower than five times that are differentiated as they are
+constexpr double unresolved = 1e-7;      // m, length of a contact that no log of these rates resolves
+// Around a reversal a rigid axis has jumps of its acceleration, which differences and the position's filter smear over
+// this much of a log: what is smeared belongs to no force.
+constexpr double smeared_time = 0.010;  // s
+constexpr double smeared_samples = 3.0;
+constexpr double slow_log = 30.0;  // Hz; below it a reversal is shorter than a sample
+
+std::vector<double> low_passed(std::span<const double> x, double edge, double period) {
+  if (edge > 0.2 / period) return {x.begin(), x.end()};
+  const auto lowpass = butterworth(4, 2.0 * edge * period);
+  const double padding = static_cast<double>(default_padding(lowpass)) * std::max(1.0, 0.1 / (edge * period));
+  return filter_both_ways(lowpass, x, static_cast<std::size_t>(padding));
+}
+
+// How much of white noise is left behind filters that answer a unit impulse so.
+double gain_of(std::span<const double> answer) {
+  double sum = 0.0;
+  for (const double value : answer) sum += value * value;
+  return std::sqrt(sum);
+}
+
+std::vector<double> impulse(double period, double band) {
+  const auto half = static_cast<std::size_t>(std::ceil(4.0 / (band * period)));
+  std::vector<double> unit(2 * half + 1, 0.0);
+  unit[half] = 1.0;
+  return unit;
+}
+
+// Marks what lies within `reach` samples of a marked one.
+std::vector<bool> grown(const std::vector<bool>& marked, std::size_t reach) {
+  std::vector<bool> wider(marked.size(), false);
+  std::size_t until = 0;
+  for (std::size_t i = 0; i < marked.size(); ++i) {
+    if (!marked[i]) continue;
+    for (std::size_t k = std::max(until, i > reach ? i - reach : 0); k < std::min(i + reach + 1, marked.size()); ++k)
+      wider[k] = true;
+    until = std::min(i + reach + 1, marked.size());
+  }
+  return wider;
+}
+
+std::vector<std::size_t> sign_changes(std::span<const double> v) {
+  std::vector<std::size_t> at;
+  for (std::size_t i = 0; i + 1 < v.size(); ++i)
+    if (v[i] * v[i + 1] < 0.0) at.push_back(i);
+  return at;
+}
+
+// Where a rigid axis stands, or cannot be told from one that stands.
+std::vector<bool> standing(std::span<const double> v, double dead, double period) {
+  std::vector<bool> stands(v.size());
+  for (std::size_t i = 0; i < v.size(); ++i) stands[i] = std::abs(v[i]) <= dead;
+  if (1.0 / period <= slow_log) {
+    // One slow sample is a reversal on the way.
+    for (std::size_t i = 0; i < v.size(); ++i)
+      if (stands[i] && (i == 0 || !stands[i - 1]) && (i + 1 == v.size() || !stands[i + 1])) stands[i] = false;
+    return stands;
+  }
+  const auto changes = sign_changes(v);
+  for (const auto i : changes) stands[i] = stands[i + 1] = true;
+  std::vector<std::size_t> gaps;
+  for (std::size_t i = 1; i < changes.size(); ++i) gaps.push_back(changes[i] - changes[i - 1]);
+  double reach = std::max(smeared_time / period, smeared_samples);
+  if (gaps.size() > 1) {
+    std::nth_element(gaps.begin(), gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2), gaps.end());
+    reach = std::min(reach, std::max(1.0, static_cast<double>(gaps[gaps.size() / 2]) / 6.0));
+  }
+  return grown(stands, static_cast<std::size_t>(std::lround(reach)));
+}
+
+// 0 where a sample is left out, 1 elsewhere, with edges as smooth as the band when the position is noisy: the band
+// cancels noise of the second derivative from sample to sample, and a sharp edge cuts that in two.
+std::vector<double> weights(const std::vector<bool>& out, double period, double band, bool noisy) {
+  std::vector<double> weight(out.size());
+  const auto width = static_cast<std::size_t>(std::lround(0.4 / (band * period)));
+  if (!noisy || width < 2) {
+    for (std::size_t i = 0; i < out.size(); ++i) weight[i] = out[i] ? 0.0 : 1.0;
+    return weight;
+  }
+  const auto wide = grown(out, width / 2);
+  std::vector<double> window(width);
+  double sum = 0.0;
+  for (std::size_t k = 0; k < width; ++k)
+    sum += window[k] =
+        1.0 - std::cos(2.0 * std::numbers::pi * static_cast<double>(k + 1) / static_cast<double>(width + 1));
+  const auto centre = static_cast<std::ptrdiff_t>(width / 2);
+  for (std::size_t i = 0; i < out.size(); ++i)
+    for (std::size_t k = 0; k < width; ++k) {
+      const auto from = std::clamp(static_cast<std::ptrdiff_t>(i + k) - centre, std::ptrdiff_t{0},
+                                   static_cast<std::ptrdiff_t>(out.size()) - 1);
+      if (!wide[static_cast<std::size_t>(from)]) weight[i] += window[k] / sum;
+    }
+  return weight;
+}
+
+// Samples that do not count get the force between their neighbours: an outlier would reach others through the filter.
+void bridge(std::vector<double>& force, const std::vector<bool>& out) {
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (!out[i]) continue;
+    std::size_t end = i;
+    while (end < out.size() && out[end]) ++end;
+    const double before = i > 0 ? force[i - 1] : end < out.size() ? force[end] : 0.0;
+    const double after = end < out.size() ? force[end] : before;
+    for (std::size_t k = i; k < end; ++k)
+      force[k] = before + (after - before) * static_cast<double>(k - i + 1) / static_cast<double>(end - i + 1);
+    i = end;
+  }
+}
+
+}  // namespace
+
+LevelModel level_model(const machine::AxisModel& axis, bool sticks) {
+  LevelModel model{sticks, {}};
+  if (sticks) return model;
+  const auto contact = sim::contact_of(axis.friction);
+  model.shape.inverse_length = contact ? contact->stiffness / contact->level : 1.0 / unresolved;
+  return model;
+}
+
+double position_noise(const AxisLog& channels, const machine::AxisModel& axis) {
+  const double found = increment_of(channels.x);
+  const double increment = found > 0.0 ? found : axis.encoder.increment;
+  return std::hypot(increment / std::sqrt(12.0), axis.encoder.noise);
+}
+
+SignalSettings followed_signals(double band) {
+  SignalSettings settings;
+  settings.cutoff = position_edge;
+  settings.band = band;
+  settings.skip_start = settings.skip_end = 0.0;
+  return settings;
+}
+
+std::vector<bool> left_out(const AxisLog& channels, const machine::AxisModel& axis) {
+  auto out = saturated(channels, axis);
+  for (std::size_t i = 0; i < channels.left_out.size(); ++i) out[i] = out[i] || channels.left_out[i];
+  return out;
+}
+
+Motion followed_motion(const Log& log, const AxisLog& channels, const machine::AxisModel& axis, Amperes amperes,
+                       double band, const LevelModel& model) {
+  const double period = log.period;
+  Motion motion{log.source, period, log.t, {}, {}, {}, {}, channels.i, channels.x_set};
+  motion.force = force_of(log, channels, axis, amperes);
+  motion.force_is_current = channels.force.empty() && channels.external_force.empty();
+  motion.x = low_passed(channels.x, position_edge, period);
+  auto d = derivatives(motion.x, period);
+  motion.v = std::move(d.first);
+  motion.a = std::move(d.second);
+  if (!channels.x_set.empty()) {
+    auto set = derivatives(low_passed(channels.x_set, position_edge, period), period);
+    motion.set_v = std::move(set.first);
+    motion.set_a = std::move(set.second);
+  }
+  const double noise = position_noise(channels, axis);
+  // The direction needs a calmer speed than the rows do.
+  const double calm = std::clamp(2.5 * band, 10.0, position_edge);
+  const auto unit = impulse(period, std::min(band, calm));
+  const auto answer = derivatives(low_passed(unit, position_edge, period), period);
+  const Motion alone{"", period, std::vector<double>(unit.size()), {}, {}, {}, {}, {}, {}};
+  const RowFilter filter(alone, followed_signals(band));
+  motion.speed_noise = noise * gain_of(filter.whole(answer.first));
+  motion.acceleration_noise = noise * gain_of(filter.whole(answer.second));
+
+  auto out = left_out(channels, axis);
+  bridge(motion.force, out);
+  auto slow = motion;
+  slow.x = low_passed(channels.x, calm, period);
+  slow.v = derivatives(slow.x, period).first;
+  if (!model.sticks) {
+    motion.level = contact_of(slow, model.shape).level;
+  } else {
+    double highest = 0.0;
+    for (const double v : slow.v) highest = std::max(highest, std::abs(v));
+    const double speed_noise = noise * gain_of(derivatives(low_passed(unit, calm, period), period).first);
+    const bool seen = noise > 1e-9;
+    const auto stands = standing(slow.v, std::max(seen ? 4.0 * speed_noise : 0.0, 2e-3 * highest), period);
+    motion.level.resize(slow.v.size());
+    for (std::size_t i = 0; i < slow.v.size(); ++i) {
+      motion.level[i] = slow.v[i] > 0.0 ? 1.0 : slow.v[i] < 0.0 ? -1.0 : 0.0;
+      out[i] = out[i] || stands[i];
+    }
+  }
+  motion.v = std::move(slow.v);
+  if (std::find(out.begin(), out.end(), true) != out.end())
+    motion.weight = weights(out, period, band, noise > 1e-7 / std::sqrt(12.0));
+  return motion;
+}
+
+}  // namespace stiction::host
