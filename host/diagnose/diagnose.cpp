@@ -233,6 +233,17 @@ double explained(const std::vector<Term>& terms) {
                          [](double sum, const Term& term) { return sum + term.explains; });
 }
 
+std::string why_motion_is_measured(const DiagnoseInput& input) {
+  auto all = input.logs;
+  all.insert(all.end(), input.held_out.begin(), input.held_out.end());
+  const auto refused = refused_injection(input.machine, input.axis, all);
+  return fmt::format(
+      "{} The regressors were computed from the measured motion, which contains the response of the control loop to "
+      "the disturbances.{}",
+      refused.empty() ? "The logs have no set-points, or the simulation could not follow them." : refused + ".",
+      refused.empty() ? " Log x_set." : "");
+}
+
 // What was found outside of the vocabulary: taken out of the terms, with the force (N, of the rows) that it makes.
 struct Outside {
   Eigen::VectorXd force;
@@ -303,10 +314,7 @@ Verdict diagnose(const DiagnoseInput& input) {
   const auto held_simulated =
       simulated.motion.empty() ? WithoutNoise{} : without_noise(input.machine, input.axis, held_out);
   const bool known_motion = !held_simulated.motion.empty();
-  if (!known_motion)
-    verdict.notes.push_back(
-        "The logs have no set-points, or the simulation could not follow them. The regressors were computed from the "
-        "measured motion, which contains the response of the control loop to the disturbances. Log x_set.");
+  if (!known_motion) verdict.notes.push_back(why_motion_is_measured(input));
   auto regressors = known_motion ? rows_of(simulated.motion, axis, settings) : rows;
   auto held_regressors = known_motion ? rows_of(held_simulated.motion, axis, settings) : held_rows;
   if (known_motion) {

@@ -152,6 +152,7 @@ struct Verdict {
   std::vector<std::string> logs, holdout;
   bool holdout_is_a_part = false;      // no held-out log was given: the last third of each log stands in for one
   ResidualFigures baseline, extended;  // on the held-out data
+  std::string closed_loop_withheld;    // why they have no position error although there are set-points; empty: they do
   std::string command_unit = "A";      // of their command_rms
   std::vector<Finding> findings;       // by what each explains, the largest first
   std::vector<Rejected> rejected;

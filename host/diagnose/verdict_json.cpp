@@ -126,6 +126,7 @@ Json verdict_json(const Verdict& verdict) {
              {"signature", verdict.unexplained.signature ? Json(*verdict.unexplained.signature) : Json(nullptr)}}},
            {"notes", verdict.notes},
            {"extended_machine", "extended.toml"}};
+  if (!verdict.closed_loop_withheld.empty()) out["closed_loop_withheld"] = verdict.closed_loop_withheld;
   if (verdict.next) out["next_measurement"] = next_json(*verdict.next);
   if (verdict.reference) add_reference(out, *verdict.reference);
   return out;
@@ -200,6 +201,8 @@ std::string verdict_text(const Verdict& verdict) {
   if (!verdict.findings.empty())
     text += fmt::format("  {:<14} force {:.4g} N rms{}\n", "extended", verdict.extended.force_rms,
                         position(verdict.extended));
+  if (!verdict.closed_loop_withheld.empty())
+    text += fmt::format("  position error in closed loop: withheld. {}\n", verdict.closed_loop_withheld);
   if (verdict.findings.empty())
     text +=
         "\n"
