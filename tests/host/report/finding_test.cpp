@@ -132,6 +132,16 @@ TEST(IdentificationSentence, GivesFrictionAndMassWithTheirIntervals) {
       "determined); the fit leaves 5 of 200 N rms, 2.5 % of the force.");
 }
 
+TEST(IdentificationSentence, NamesTheValuesOfTheMachineFileBesideThem) {
+  Identification result;
+  result.axis = "X";
+  result.parameters = {{"coulomb_N", 94.12, {93.72, 94.52}, ""}, {"mass_kg", 225.6, {224.1, 227.1}, ""}};
+  machine::AxisModel file;
+  file.mass = 90.0;
+  EXPECT_EQ(identification_sentence(result, &file),
+            "Axis X has a Coulomb friction of 94.12 ± 0.40 N and a moving mass of 225.6 ± 1.5 kg (machine file: 90).");
+}
+
 // ---- origin ----
 
 TEST(Origin, SaysWhatTheLogsCanDetermineBeforeAnyResult) {
