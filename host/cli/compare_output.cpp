@@ -35,17 +35,21 @@ void add_replayed(CompareJson& machine, const Log& log, const ReplayCase& replay
   for (std::size_t k = 0; k < log.axes.size(); ++k) {
     const auto& model = replayed.machine.axes[matched[k]];
     const auto d = compare_replay(log, replayed.simulated, k, replay_offset(log, replayed, k, axis));
-    CompareJson row{{"axis", model.name},
-                    {"friction", model.friction.use},
-                    {"position_difference_rms_um", d.position * um},
-                    {"following_error_rms_um", d.following_error * um}};
+    const auto withheld = withheld_replay(log, replayed, k, axis);
+    CompareJson row{{"axis", model.name}, {"friction", model.friction.use}};
+    if (withheld.empty()) {
+      row["position_difference_rms_um"] = d.position * um;
+      row["following_error_rms_um"] = d.following_error * um;
+    } else {
+      row["withheld"] = withheld;
+    }
     CompareJson measured{{"following_error_rms_um", d.measured_following_error * um}};
     CompareJson deviation{{"axis", model.name}, {"friction", model.friction.use}};
     if (const auto effort = effort_name(d); !effort.empty()) {
-      row[fmt::format("{}_difference_rms_{}", effort, d.effort_unit)] = d.effort;
+      if (withheld.empty()) row[fmt::format("{}_difference_rms_{}", effort, d.effort_unit)] = d.effort;
       measured[fmt::format("{}_rms_{}", effort, d.effort_unit)] = d.measured_effort;
-      deviation[effort + "_percent"] =
-          percent_of(d.measured_effort > 0.0 ? std::optional(d.effort / d.measured_effort) : std::nullopt);
+      const bool known = withheld.empty() && d.measured_effort > 0.0;
+      deviation[effort + "_percent"] = percent_of(known ? std::optional(d.effort / d.measured_effort) : std::nullopt);
     }
     row["measured"] = std::move(measured);
     machine["rows"].push_back(std::move(row));

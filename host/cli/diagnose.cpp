@@ -11,6 +11,7 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/diagnose_output.hpp"
 #include "host/cli/diagnose_reference.hpp"
+#include "host/cli/diagnose_start.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/logs.hpp"
 #include "host/cli/machine_options.hpp"
@@ -29,24 +30,54 @@ struct DiagnoseCommandOptions {
   std::string columns;
   std::string out;
   std::uint64_t seed = 1;
+  bool identify = false;
   bool json = false;
 };
 
-std::size_t axis_of_run(const std::string& name, const machine::Machine& machine, const std::vector<Log>& logs) {
+// By index: the one that is named, else each that every log has channels of.
+std::vector<std::size_t> axes_of_run(const std::string& name, const machine::Machine& machine,
+                                     const std::vector<Log>& logs) {
   const auto names = axis_names(machine);
-  if (!name.empty()) require_known("--axis", name, "an axis of " + machine.id, names);
-  std::vector<std::size_t> fitting;
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    if (!name.empty() && names[k] == name) return k;
-    if (std::all_of(logs.begin(), logs.end(), [&](const Log& log) {
-          return std::any_of(log.axes.begin(), log.axes.end(),
-                             [&](const AxisLog& c) { return c.axis.empty() || c.axis == names[k]; });
-        }))
-      fitting.push_back(k);
+  if (!name.empty()) {
+    require_known("--axis", name, "an axis of " + machine.id, names);
+    const auto found = std::find(names.begin(), names.end(), name);
+    return {static_cast<std::size_t>(found - names.begin())};
   }
-  if (name.empty() && fitting.size() == 1) return fitting.front();
-  throw UsageError(fmt::format("--axis: found none, but the logs have channels of {} axes of {}; expected one of {}",
-                               fitting.size(), machine.id, fmt::join(names, ", ")));
+  const auto has = [](const Log& log, const std::string& axis) {
+    return std::any_of(log.axes.begin(), log.axes.end(), [&](const AxisLog& c) { return c.axis == axis; });
+  };
+  for (const auto& log : logs)
+    if (has(log, "") && names.size() > 1)
+      throw UsageError(
+          fmt::format("--axis: found none, but {} has channels without an axis, and {} has {} axes; "
+                      "expected one of {}",
+                      log.source, machine.id, names.size(), fmt::join(names, ", ")));
+  std::vector<std::size_t> shared;
+  for (std::size_t k = 0; k < names.size(); ++k)
+    if (std::all_of(logs.begin(), logs.end(), [&](const Log& log) { return has(log, "") || has(log, names[k]); }))
+      shared.push_back(k);
+  if (shared.empty())
+    throw UsageError(fmt::format("{}: found no axis that all logs and {} share; expected channels of {}",
+                                 logs.front().source, machine.id, fmt::join(names, ", ")));
+  return shared;
+}
+
+std::string start_sentence(const std::vector<StartValue>& values) {
+  std::vector<std::string> all;
+  for (const auto& each : values) all.push_back(fmt::format("{} = {:.4g}", each.name, each.value));
+  return fmt::format(
+      "The diagnosis starts from values that were identified from the training logs ({}); extended.toml contains them.",
+      fmt::join(all, ", "));
+}
+
+Verdict diagnose_axis(DiagnoseInput& input, DiagnosedFile& file, const IntermediateFolder& folder, bool identify,
+                      const Invocation& invocation) {
+  if (!identify) return diagnose(input);
+  const auto values = start_from_identified(input, file, folder, invocation.command_line);
+  auto verdict = diagnose(input);
+  verdict.identified = values;
+  verdict.notes.insert(verdict.notes.begin(), start_sentence(values));
+  return verdict;
 }
 
 void run(const DiagnoseCommandOptions& options, const Invocation& invocation) {
@@ -56,16 +87,21 @@ void run(const DiagnoseCommandOptions& options, const Invocation& invocation) {
   input.held_out = read_logs(options.held_out, options.columns);
   auto all = input.logs;
   all.insert(all.end(), input.held_out.begin(), input.held_out.end());
-  input.axis = axis_of_run(options.axis, input.machine, all);
+  const auto axes = axes_of_run(options.axis, input.machine, all);
   input.seed = options.seed;
-  Verdict verdict;
+  DiagnosedFile file{machine::find_machine(options.machine.machine), options.machine.set};
+  const IntermediateFolder folder;
+  std::vector<Verdict> verdicts;
   {
-    Progress progress("diagnosis", diagnosis_parts.size());
-    input.progress = [&](std::string_view part) { progress.add(part); };
-    verdict = diagnose(input);
-    input.progress = {};
+    Progress progress("diagnosis", axes.size() * diagnosis_parts.size());
+    for (const auto axis : axes) {
+      input.axis = axis;
+      const auto of = axes.size() > 1 ? input.machine.axes[axis].name + ": " : std::string();
+      input.progress = [&](std::string_view part) { progress.add(of + std::string(part)); };
+      verdicts.push_back(diagnose_axis(input, file, folder, options.identify, invocation));
+    }
   }
-  put_out(verdict, input.machine, options.machine, options.out, options.json, invocation,
+  put_out(verdicts, input.machine, file, options.out, options.json, invocation,
           report_origin(options.machine.machine, all));
 }
 
@@ -75,7 +111,7 @@ void add_diagnose(CLI::App& program, const Invocation& invocation) {
   auto* command =
       program.add_subcommand("diagnose", "find causes of deviations between measured logs and the machine file");
   auto o = std::make_shared<DiagnoseCommandOptions>();
-  command->add_option("logs", o->logs, "logs of one axis to search for causes (training data)")->type_name("LOG");
+  command->add_option("logs", o->logs, "logs to search for causes (training data)")->type_name("LOG");
   add_columns(*command, o->columns);
   o->machine.add_to(*command, "shipped machine by name, or a machine file, with which the logs are compared");
   command
@@ -84,7 +120,10 @@ void add_diagnose(CLI::App& program, const Invocation& invocation) {
       ->type_name("LOG");
   command->add_option("--reference", o->reference, "use the measured rows of the machine file instead of logs")
       ->check(one_of({"circle"}));
-  command->add_option("--axis", o->axis, "axis to diagnose, if logs and machine have several")->type_name("NAME");
+  command->add_flag("--identify", o->identify,
+                    "identify mass and friction from the training logs first, for a machine file that was never "
+                    "identified; the file with these values is diagnosed");
+  command->add_option("--axis", o->axis, "axis to diagnose [each that logs and machine share]")->type_name("NAME");
   command->add_option("--seed", o->seed, "seed of the bootstrap for intervals on held-out data")
       ->check(whole_number())
       ->type_name("N")
@@ -94,8 +133,9 @@ void add_diagnose(CLI::App& program, const Invocation& invocation) {
   command->callback([o, &invocation] {
     try {
       if (!o->reference.empty()) {
-        if (!o->logs.empty() || !o->held_out.empty() || !o->axis.empty())
-          throw UsageError("--reference: found it together with LOG, --holdout or --axis; expected it alone");
+        if (!o->logs.empty() || !o->held_out.empty() || !o->axis.empty() || o->identify)
+          throw UsageError(
+              "--reference: found it together with LOG, --holdout, --identify or --axis; expected it alone");
         diagnose_from_reference({o->machine, o->reference, o->out, o->json}, invocation);
         return;
       }

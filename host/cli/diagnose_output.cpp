@@ -9,44 +9,74 @@
 #include "sim/machine_file.hpp"
 
 namespace stiction::host {
+namespace {
 
-void put_out(const Verdict& verdict, const machine::Machine& machine, const MachineOptions& options,
-             const std::string& out, bool json, const Invocation& invocation, const Origin& origin) {
-  const auto document = verdict_json(verdict);
-  if (!out.empty()) {
-    PendingFolder folder(out, invocation.command);
-    std::vector<machine::AxisEffects> additions;
-    for (const auto& axis : machine.axes) {
-      machine::AxisEffects effects{axis.name, {}};
+std::vector<machine::AxisEffects> additions_of(const std::vector<Verdict>& verdicts, const machine::Machine& machine) {
+  std::vector<machine::AxisEffects> additions;
+  for (const auto& axis : machine.axes) {
+    machine::AxisEffects effects{axis.name, {}};
+    for (const auto& verdict : verdicts)
       for (const auto& finding : verdict.findings)
         if (finding.axis == axis.name) effects.effects.push_back(finding.row());
-      if (!effects.effects.empty()) additions.push_back(std::move(effects));
-    }
-    const std::vector<std::string> comment{"made by: " + invocation.command_line};
-    folder.write("extended.toml",
-                 sim::extended_machine(machine::find_machine(options.machine), options.set, additions, comment));
-    sim::read_machine(folder.path() / "extended.toml");  // what was written must be a machine
-    folder.write("verdict.json", document.dump(2) + "\n");
-    if (verdict.next && verdict.next->log) {
-      auto log = *verdict.next->log;
-      log.comments = {{"made by", invocation.command_line},
-                      {"proposed", fmt::format("{}: {}", verdict.next->trajectories.front().name,
-                                               verdict.next->trajectories.front().words)},
-                      {"set-points", "x_set, v_set, a_set; " + verdict.next->note},
-                      {"not measured", "x and current come from the simulation of the machine file"}};
-      folder.write(next_measurement_file, csv_log_text(log));
-    }
-    folder.write("report.html",
-                 diagnosis_report_html({invocation.command_line, invocation.version, machine, verdict, origin}));
-    folder.commit();
+    if (!effects.effects.empty()) additions.push_back(std::move(effects));
   }
+  return additions;
+}
+
+// Of the logs' axes that of this page alone.
+Origin origin_of_axis(Origin origin, const std::string& axis) {
+  std::erase_if(origin.abilities,
+                [&](const AxisAbility& each) { return !axis.empty() && !each.axis.empty() && each.axis != axis; });
+  return origin;
+}
+
+// Of the only axis without its name.
+std::string suffix_of(const Verdict& verdict, std::size_t axes) { return axes > 1 ? verdict.axis : ""; }
+
+std::string next_measurement_csv(const NextMeasurement& next, const Invocation& invocation) {
+  auto log = *next.log;
+  log.comments = {{"made by", invocation.command_line},
+                  {"proposed", fmt::format("{}: {}", next.trajectories.front().name, next.trajectories.front().words)},
+                  {"set-points", "x_set, v_set, a_set; " + next.note},
+                  {"not measured", "x and current come from the simulation of the machine file"}};
+  return csv_log_text(log);
+}
+
+void write_folder(const std::vector<Verdict>& verdicts, const machine::Machine& machine, const DiagnosedFile& file,
+                  const std::string& out, const Invocation& invocation, const Origin& origin) {
+  PendingFolder folder(out, invocation.command);
+  const std::vector<std::string> comment{"made by: " + invocation.command_line};
+  folder.write("extended.toml", sim::extended_machine(file.file, file.set, additions_of(verdicts, machine), comment));
+  sim::read_machine(folder.path() / "extended.toml");  // what was written must be a machine
+  folder.write("verdict.json", verdict_json(verdicts).dump(2) + "\n");
+  for (const auto& verdict : verdicts) {
+    const auto axis = suffix_of(verdict, verdicts.size());
+    if (verdict.next && verdict.next->log)
+      folder.write(next_measurement_file_of(axis), next_measurement_csv(*verdict.next, invocation));
+    folder.write(diagnosis_page_of(axis), diagnosis_report_html({invocation.command_line, invocation.version, machine,
+                                                                 verdict, origin_of_axis(origin, verdict.axis)}));
+  }
+  if (verdicts.size() > 1)
+    folder.write("report.html",
+                 diagnosed_axes_html(verdicts, {invocation.command_line, invocation.version, machine, {}, origin}));
+  folder.commit();
+}
+
+}  // namespace
+
+void put_out(const std::vector<Verdict>& verdicts, const machine::Machine& machine, const DiagnosedFile& file,
+             const std::string& out, bool json, const Invocation& invocation, const Origin& origin) {
+  if (!out.empty()) write_folder(verdicts, machine, file, out, invocation, origin);
   if (json) {
-    fmt::print("{}\n", document.dump(2));
+    fmt::print("{}\n", verdict_json(verdicts).dump(2));
     return;
   }
-  fmt::print("{}", verdict_text(verdict));
-  if (!out.empty() && verdict.next && verdict.next->log)
-    fmt::print("\nset-points to record: {}/{}", out, next_measurement_file);
+  for (const auto& verdict : verdicts) {
+    if (verdicts.size() > 1) fmt::print("{}axis {}\n", &verdict == &verdicts.front() ? "" : "\n", verdict.axis);
+    fmt::print("{}", verdict_text(verdict));
+    if (!out.empty() && verdict.next && verdict.next->log)
+      fmt::print("\nset-points to record: {}/{}", out, next_measurement_file_of(suffix_of(verdict, verdicts.size())));
+  }
   if (!out.empty())
     fmt::print("\nverdict: {0}/verdict.json\nmachine file: {0}/extended.toml\nreport: {0}/report.html\n", out);
 }

@@ -21,8 +21,8 @@ void diagnose_from_reference(const DiagnoseReferenceOptions& options, const Invo
     Progress progress("diagnosis", 10);  // the extension, four causes an axis, five feeds left out
     verdict = diagnose_reference(machine, [&] { progress.add(); });
   }
-  put_out(verdict, machine, options.machine, options.out, options.json, invocation,
-          report_origin(options.machine.machine));
+  put_out({verdict}, machine, {machine::find_machine(options.machine.machine), options.machine.set}, options.out,
+          options.json, invocation, report_origin(options.machine.machine));
 } catch (const MissingRows& error) {
   throw UsageError(fmt::format("{}: {}", machine::find_machine(options.machine.machine).string(), error.what()));
 }

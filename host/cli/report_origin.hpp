@@ -21,9 +21,14 @@ inline Origin report_origin(const std::string& machines, std::vector<std::string
   return origin;
 }
 
-// The same with the sample rates of the logs that were read.
+// What the logs together can determine, of each axis that they have channels of. `machine`: name or path of the file,
+// whose mass and force constant the inspection compares with.
+std::vector<AxisAbility> abilities_of(const std::string& machine, const std::vector<Log>& logs);
+
+// The same with the sample rates of the logs that were read, and with what they can determine.
 inline Origin report_origin(const std::string& machines, const std::vector<Log>& logs) {
   auto origin = report_origin(machines);
+  origin.abilities = abilities_of(split_list(machines).front(), logs);
   for (const auto& log : logs) {
     origin.sources.push_back(log.source);
     origin.sample_periods.push_back(log.period);

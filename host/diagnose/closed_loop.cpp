@@ -103,6 +103,8 @@ void judge_in_closed_loop(Verdict& verdict, const machine::Machine& machine, std
                   [](const Finding& finding) { return sim::is_a<sim::CrossAxisCoupling>(finding.effect); });
   auto setup = replay_setup_of(machine, axis, held_out, coupled);
   if (setup.logs.empty()) return;
+  verdict.closed_loop_withheld = refused_injection(machine, axis, held_out, coupled);
+  if (!verdict.closed_loop_withheld.empty()) return;
   std::vector<std::vector<double>> measured;
   for (const auto& log : setup.logs) measured.push_back(log.axes.front().x);
   const auto with = [&](const std::vector<Finding>& findings) {

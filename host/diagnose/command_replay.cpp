@@ -10,6 +10,7 @@
 #include "firmware/machine/configuration/conversion.hpp"
 #include "firmware/machine/configuration/double_signals.hpp"
 #include "host/log/set_points.hpp"
+#include "host/simulate/injection.hpp"
 #include "host/simulate/replay.hpp"
 #include "sim/effects/effects.hpp"
 #include "sim/plant/axis_plant.hpp"
@@ -77,19 +78,11 @@ AxisLog measured_as_set(const AxisLog& channels) {
   return measured;
 }
 
-double linear_at(const std::vector<double>& values, double place) {
-  if (values.empty()) return 0.0;
-  const double last = static_cast<double>(values.size() - 1);
-  const auto k = static_cast<std::size_t>(std::clamp(place, 0.0, last));
-  const auto next = std::min(k + 1, values.size() - 1);
-  return values[k] + (values[next] - values[k]) * (std::clamp(place, 0.0, last) - static_cast<double>(k));
-}
-
 }  // namespace
 
 std::optional<RecordedCommand> recorded_command(const AxisLog& channels, const machine::AxisModel& axis) {
   const bool force_motor = axis.motor.model == machine::MotorModel::force;
-  if (channels.x_set.empty() || (!force_motor && !channels.u_inject.empty())) return std::nullopt;
+  if (channels.x_set.empty() || !refused_injection(channels, axis).empty()) return std::nullopt;
   if (force_motor) {
     if (channels.u.empty()) return std::nullopt;
     return RecordedCommand{&AxisLog::u, "V", "u"};
@@ -108,7 +101,7 @@ std::vector<double> replay_command(const machine::Timing& timing, const machine:
   const double allowed = axis.supervision.following_error.value_or(2e-3);
   const double offset = encoder_offset(channels, allowed);
   const bool force_motor = axis.motor.model == machine::MotorModel::force;
-  const auto& injection = force_motor ? channels.u_inject : channels.i_inject;
+  const Injection injection(log, channels, axis);
   const bool wants_set_current = !force_motor && channels.i.empty();
 
   Axis<S> drive(unsupervised(machine::configure_axis<S>(timing, sim::drive_axis(axis))));
@@ -129,7 +122,7 @@ std::vector<double> replay_command(const machine::Timing& timing, const machine:
     for (std::size_t p = 0; p < 3; ++p) feedback.fault |= !machine::convert(windings.current()[p], feedback.current[p]);
     if (k == 0) drive.start(feedback);
     auto point = set.at(t);
-    point.injection = linear_at(injection, place);
+    point.injection = injection.at(t);
     const auto output = drive.tick(sim::to_set_point<S>(point), feedback, ticker.now_ns(), ticker.slow(), signals);
     if (drive.fault() != Fault::none)
       throw LogError(fmt::format(

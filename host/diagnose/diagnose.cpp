@@ -19,6 +19,7 @@
 #include "host/diagnose/inverse_dynamics.hpp"
 #include "host/diagnose/next_measurement.hpp"
 #include "host/diagnose/record_checks.hpp"
+#include "host/diagnose/record_rows.hpp"
 #include "host/diagnose/replay_setup.hpp"
 #include "host/diagnose/residual_diagnostics.hpp"
 #include "host/diagnose/search.hpp"
@@ -37,62 +38,6 @@ constexpr double shortest = 3.0;     // s, of the training logs together
 // Of what a shape takes that other records speak against: causes in its place take nearly as much of the training data,
 // or they are no more than what they share with it.
 constexpr double as_much = 0.7;
-// Of the expected force: what the inverse dynamics of a record may be off by whatever the machine does, by filtered
-// derivatives and by a contact moved from sample to sample. Exact records of the shipped machines leave 0.3e-4
-// to 3.4e-4 of it without any noise; of a residual that small no part is a cause, however significant.
-constexpr double resolution = 5e-4;
-
-SignalSettings wide_band() {
-  SignalSettings s;
-  s.row_rate = 250.0;  // 0 to 100 Hz, in which the share of an effect is counted
-  s.cutoff = 250.0;    // of the position alone, so well above: what it took off m a at 100 Hz the force still has
-  return s;
-}
-
-Log part_of(const Log& log, std::size_t begin, std::size_t end) {
-  const auto cut = [&](const std::vector<double>& values) {
-    return values.empty() ? values
-                          : std::vector<double>(values.begin() + static_cast<std::ptrdiff_t>(begin),
-                                                values.begin() + static_cast<std::ptrdiff_t>(end));
-  };
-  Log part = log;
-  part.t = cut(log.t);
-  for (auto& axis : part.axes)
-    for (const auto& channel : log_channels) axis.*channel.values = cut(axis.*channel.values);
-  return part;
-}
-
-// Time runs from the record's start, of parts of it too: what warms up does so from there.
-void count_from_start(Log& log) {
-  const double start = log.t.empty() ? 0.0 : log.t.front();
-  for (double& t : log.t) t -= start;
-}
-
-LogRows rows_of(const std::vector<Log>& logs, const machine::AxisModel& axis, const SignalSettings& settings) {
-  std::vector<Motion> motions;
-  for (const auto& log : logs) {
-    require_samples(log);
-    const auto& channels = channels_of(log, axis);
-    refuse_saturation(log, channels, axis);
-    motions.push_back(motion_of(log, channels, axis, Amperes::amplitude, settings));
-  }
-  return {std::move(motions), settings};
-}
-
-Eigen::VectorXd expected_force(const LogRows& rows, const machine::AxisModel& axis) {
-  return rows.stacked([&](const Motion& m) { return force_along(axis, m); });
-}
-
-// What a file makes of its own noise-free record: 0 but for what the inverse dynamics cannot know. N, of the rows.
-Eigen::VectorXd own_residual(const std::vector<Log>& replayed, const std::vector<Log>& logs,
-                             const machine::AxisModel& axis, const SignalSettings& settings) {
-  auto records = replayed;
-  for (std::size_t k = 0; k < records.size(); ++k)
-    records[k].axes.front().external_force = channels_of(logs[k], axis).external_force;
-  const auto rows = rows_of(records, axis, settings);
-  return rows.force - expected_force(rows, axis);
-}
-
 SearchContext context_of(const machine::AxisModel& axis, const LogRows& rows, const SignalSettings& settings) {
   SearchContext context;
   context.axis = axis;
@@ -233,6 +178,17 @@ double explained(const std::vector<Term>& terms) {
                          [](double sum, const Term& term) { return sum + term.explains; });
 }
 
+std::string why_motion_is_measured(const DiagnoseInput& input) {
+  auto all = input.logs;
+  all.insert(all.end(), input.held_out.begin(), input.held_out.end());
+  const auto refused = refused_injection(input.machine, input.axis, all);
+  return fmt::format(
+      "{} The regressors were computed from the measured motion, which contains the response of the control loop to "
+      "the disturbances.{}",
+      refused.empty() ? "The logs have no set-points, or the simulation could not follow them." : refused + ".",
+      refused.empty() ? " Log x_set." : "");
+}
+
 // What was found outside of the vocabulary: taken out of the terms, with the force (N, of the rows) that it makes.
 struct Outside {
   Eigen::VectorXd force;
@@ -253,6 +209,18 @@ Outside take_outside(const LogRows& rows, const SearchContext& context, SearchRe
   return outside;
 }
 
+double rms_about_mean(const Eigen::VectorXd& values, const Eigen::VectorXd& counts) {
+  const Eigen::VectorXd centred = values.array() - values.mean();
+  return std::sqrt(centred.cwiseProduct(counts).squaredNorm() / static_cast<double>(std::max<long>(values.size(), 1)));
+}
+
+void judge_agreement(Verdict& verdict, const NoiseFloor& floor, double record_force_rms) {
+  verdict.noise_floor = floor;
+  verdict.agreement = agreement_of({verdict.extended.force_rms, verdict.extended.position_error_rms, floor.force(),
+                                    floor.position, record_force_rms},
+                                   verdict.closed_loop_withheld);
+}
+
 }  // namespace
 
 Verdict diagnose(const DiagnoseInput& input) {
@@ -263,6 +231,7 @@ Verdict diagnose(const DiagnoseInput& input) {
     if (input.progress) input.progress(diagnosis_parts[part]);
   };
   Verdict verdict;
+  verdict.axis = axis.name;
   verdict.machine = input.machine.id + ".toml";
   auto logs = input.logs;
   auto held_out = input.held_out;
@@ -291,8 +260,9 @@ Verdict diagnose(const DiagnoseInput& input) {
     throw LogError(fmt::format("{}: found {:.3g} s of training data; expected at least {:g} s",
                                sources_of(rows.motions()), excitation_of(rows).duration, shortest));
   const auto expected = expected_force(rows, axis);
-  refuse_other_machine(rows, expected);
-  refuse_other_machine(held_rows, expected_force(held_rows, axis));
+  refuse_other_units(rows, expected);
+  refuse_other_units(held_rows, expected_force(held_rows, axis));
+  if (const auto note = suspected_file(rows, expected); !note.empty()) verdict.notes.push_back(note);
 
   Eigen::VectorXd target = rows.force - expected;
   Eigen::VectorXd held_target = held_rows.force - expected_force(held_rows, axis);
@@ -303,10 +273,7 @@ Verdict diagnose(const DiagnoseInput& input) {
   const auto held_simulated =
       simulated.motion.empty() ? WithoutNoise{} : without_noise(input.machine, input.axis, held_out);
   const bool known_motion = !held_simulated.motion.empty();
-  if (!known_motion)
-    verdict.notes.push_back(
-        "The logs have no set-points, or the simulation could not follow them. The regressors were computed from the "
-        "measured motion, which contains the response of the control loop to the disturbances. Log x_set.");
+  if (!known_motion) verdict.notes.push_back(why_motion_is_measured(input));
   auto regressors = known_motion ? rows_of(simulated.motion, axis, settings) : rows;
   auto held_regressors = known_motion ? rows_of(held_simulated.motion, axis, settings) : held_rows;
   if (known_motion) {
@@ -333,12 +300,12 @@ Verdict diagnose(const DiagnoseInput& input) {
     context.disturb(target);
   }
   begin(1);
-  const bool resolved = target.norm() > resolution * expected.norm();
+  const bool resolved = target.norm() > resolution_of_dynamics * expected.norm();
   if (!resolved)
     verdict.notes.push_back(fmt::format(
         "The residual force of these records is {:.2g} % of the expected force, less than the {:g} % that inverse "
         "dynamics can resolve: causes were not looked for in it.",
-        100.0 * target.norm() / expected.norm(), 100.0 * resolution));
+        100.0 * target.norm() / expected.norm(), 100.0 * resolution_of_dynamics));
   auto found = resolved ? search_causes(regressors, target, context) : SearchResult{{}, {}, target};
   begin(2);
   const auto keep = [&](SearchResult& searched) {
@@ -382,6 +349,10 @@ Verdict diagnose(const DiagnoseInput& input) {
   add_charts(verdict, rows, target, found.residual);
   begin(5);
   if (input.closed_loop) judge_in_closed_loop(verdict, input.machine, input.axis, held_out);
+  const auto& counts = held_regressors.counts();
+  const auto floor = noise_floor(held_out, axis, settings, counts, held_simulated.replayed,
+                                 expected_force(held_rows, axis), input.seed);
+  judge_agreement(verdict, floor, rms_about_mean(held_rows.force, counts));
   return verdict;
 }
 

@@ -11,6 +11,11 @@
 #include "host/log/set_points.hpp"
 
 namespace stiction::host {
+namespace {
+
+constexpr double much_unexplained = 0.5;  // of the force's variance: more than a known effect causes
+
+}  // namespace
 
 void refuse_same_record(std::span<const Log> logs, std::span<const Log> held_out, const machine::AxisModel& axis) {
   for (const auto& held : held_out)
@@ -49,7 +54,7 @@ void refuse_unreachable_set_points(const Log& log, const machine::AxisModel& axi
                     log.source, *high - *low, axis.travel, axis.name));
 }
 
-void refuse_other_machine(const LogRows& rows, const Eigen::VectorXd& expected) {
+void refuse_other_units(const LogRows& rows, const Eigen::VectorXd& expected) {
   const auto centred = [](const Eigen::VectorXd& v) { return Eigen::VectorXd(v.array() - v.mean()); };
   const Eigen::VectorXd force = centred(rows.force), model = centred(expected);
   const double force_square = force.squaredNorm(), model_square = model.squaredNorm();
@@ -75,12 +80,18 @@ void refuse_other_machine(const LogRows& rows, const Eigen::VectorXd& expected) 
           fmt::format("{}: found {:.3f} times the force that the machine file predicts, over the whole record; "
                       "expected 1. Most likely {}",
                       source, scale, text));
-  if (off > 0.5)
-    throw LogError(
-        fmt::format("{}: found a force of which the machine file does not explain {:.0f} % of the variance; expected "
-                    "less than 50 %, the most that a known effect causes. This log belongs to a different machine or "
-                    "axis, or has different units",
-                    source, 100.0 * off));
+}
+
+std::string suspected_file(const LogRows& rows, const Eigen::VectorXd& expected) {
+  const auto centred = [](const Eigen::VectorXd& v) { return Eigen::VectorXd(v.array() - v.mean()); };
+  const double force_square = centred(rows.force).squaredNorm();
+  const double off = centred(rows.force - expected).squaredNorm() / force_square;
+  if (!(force_square > 0.0) || !(off > much_unexplained)) return "";
+  return fmt::format(
+      "The machine file does not explain {:.0f} % of the variance of the force in {}. If mass and friction of the file "
+      "were never identified on this machine, begin with --identify; otherwise the log belongs to a different machine "
+      "or axis, or has different units, or its encoder is too coarse for the accelerations.",
+      100.0 * off, sources_of(rows.motions()));
 }
 
 }  // namespace stiction::host

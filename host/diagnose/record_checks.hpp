@@ -1,7 +1,8 @@
-// Records that cannot be diagnosed from, told before any cause is looked for. Every check throws LogError.
+// Records that cannot be diagnosed from, told before any cause is looked for. What is refused is a LogError.
 #pragma once
 
 #include <span>
+#include <string>
 
 #include "firmware/machine/model/machine.hpp"
 #include "host/identify/log_rows.hpp"
@@ -16,8 +17,12 @@ void refuse_same_record(std::span<const Log> logs, std::span<const Log> held_out
 // Set-points faster or further than the machine file allows.
 void refuse_unreachable_set_points(const Log& log, const machine::AxisModel& axis);
 
-// `expected`: the force (N) that the machine file gives for the rows' motion. A force of the other sign, in effective
-// amperes, or of another machine.
-void refuse_other_machine(const LogRows& rows, const Eigen::VectorXd& expected);
+// `expected`: the force (N) that the machine file gives for the motion of `rows`. A force of the other sign, or in
+// effective amperes.
+void refuse_other_units(const LogRows& rows, const Eigen::VectorXd& expected);
+
+// A sentence where the file leaves more of the force's variance than a known effect causes; else empty. `rows` and
+// `expected` as above.
+std::string suspected_file(const LogRows& rows, const Eigen::VectorXd& expected);
 
 }  // namespace stiction::host

@@ -1,5 +1,7 @@
 #include "host/diagnose/replay_setup.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -8,6 +10,7 @@
 #include "host/diagnose/coherent_mean.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
 #include "host/identify/identification.hpp"
+#include "host/simulate/injection.hpp"
 #include "host/simulate/replay.hpp"
 #include "sim/effects/effects.hpp"
 #include "stiction/number/fixed_signals.hpp"
@@ -63,6 +66,18 @@ ReplaySetup replay_setup_of(const machine::Machine& machine, std::size_t axis, c
   return setup;
 }
 
+std::string refused_injection(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
+                              bool coupled) {
+  for (const auto& log : logs)
+    for (std::size_t k = 0; k < machine.axes.size(); ++k) {
+      if (k != axis && !(coupled && machine.axes.size() == 2)) continue;
+      if (k != axis && log.axes.size() != 2) continue;
+      const auto why = refused_injection(channels_of(log, machine.axes[k]), machine.axes[k]);
+      if (!why.empty()) return fmt::format("{}: {}", log.source, why);
+    }
+  return "";
+}
+
 std::vector<Log> replays(const ReplaySetup& setup) {
   std::vector<Log> all;
   for (const auto& log : setup.logs)
@@ -78,7 +93,7 @@ std::vector<std::vector<double>> simulated_positions(const ReplaySetup& setup) {
 
 WithoutNoise without_noise(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs) {
   auto setup = replay_setup_of(machine, axis, logs);
-  if (setup.logs.size() != logs.size()) return {};
+  if (setup.logs.size() != logs.size() || !refused_injection(machine, axis, logs).empty()) return {};
   setup.machine.axes.front().encoder.noise = 0.0;
   try {
     WithoutNoise without{logs, replays(setup)};

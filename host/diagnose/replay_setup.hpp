@@ -23,6 +23,11 @@ struct ReplaySetup {
 ReplaySetup replay_setup_of(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
                             bool coupled = false);
 
+// Why a test signal of `logs` cannot act in replays of this axis, and of the other one if they are `coupled`: "FILE:
+// found ...". Empty when all can. `machine` of the file; `axis`: its index.
+std::string refused_injection(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
+                              bool coupled = false);
+
 // What the bench's axis makes of each log's set-points. Throws FaultTripped, LogError.
 std::vector<Log> replays(const ReplaySetup& setup);
 // Its position alone (m), at the log's samples.
@@ -36,7 +41,8 @@ struct WithoutNoise {
 // The motion is the same logs with the simulated position in place of the measured one: the motion without what noise
 // and the effects looked for did to it. A regressor of the measured motion carries the disturbance that it is regressed
 // on, through the control loop (Gilson, Garnier, Young, Van den Hof 2011); one of this motion does not. Empty when a
-// log has no set-points, when the machine cannot follow them, or when it goes another way than the measured one.
+// log has no set-points, when the machine cannot follow them, when it goes another way than the measured one, or when a
+// test signal cannot act in the simulation.
 // `axis`: its index.
 WithoutNoise without_noise(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs);
 

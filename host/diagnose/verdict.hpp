@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "firmware/machine/model/effect.hpp"
+#include "host/diagnose/agreement.hpp"
+#include "host/diagnose/noise_floor.hpp"
 #include "host/log/log.hpp"
 #include "sim/effects/effects.hpp"
 #include "sim/experiment/experiment_result.hpp"
@@ -147,15 +149,29 @@ struct ReferenceRows {
   RowScores left_out;  // all rows, each predicted with its feed left out of the training
 };
 
+// What identification from the training logs put into the machine file before it was diagnosed.
+struct StartValue {
+  std::string name;  // with its unit: "mass_kg"
+  double value = 0.0;
+  std::array<double, 2> ci95{};
+};
+
 struct Verdict {
+  std::string axis;  // of the machine; empty of a diagnosis of rows
   std::string machine;
   std::vector<std::string> logs, holdout;
   bool holdout_is_a_part = false;      // no held-out log was given: the last third of each log stands in for one
   ResidualFigures baseline, extended;  // on the held-out data
+  std::string closed_loop_withheld;    // why they have no position error although there are set-points; empty: they do
   std::string command_unit = "A";      // of their command_rms
-  std::vector<Finding> findings;       // by what each explains, the largest first
+  // Of the held-out data: what noise alone leaves, and whether the extended machine file (of no findings: the file)
+  // leaves no more. None of a diagnosis of rows, whose noise is not known.
+  std::optional<NoiseFloor> noise_floor;
+  std::optional<Agreement> agreement;
+  std::vector<Finding> findings;  // by what each explains, the largest first
   std::vector<Rejected> rejected;
   Unexplained unexplained;
+  std::vector<StartValue> identified;      // empty: the file was diagnosed as it is
   std::vector<std::string> notes;          // on the data: suspicions, what to record next
   std::optional<NextMeasurement> next;     // none: nothing is open
   std::optional<ReferenceRows> reference;  // of a diagnosis of the machine file's own rows

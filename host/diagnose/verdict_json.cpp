@@ -108,6 +108,24 @@ void add_reference(Json& out, const ReferenceRows& reference) {
 
 }  // namespace
 
+namespace {
+
+void add_agreement(Json& out, const Verdict& verdict) {
+  if (verdict.agreement) {
+    out["status"] = name_of(verdict.agreement->status);
+    out["status_reason"] = verdict.agreement->reason;
+  }
+  if (verdict.noise_floor) out["noise_floor_N"] = verdict.noise_floor->force();
+  if (!verdict.closed_loop_withheld.empty()) out["closed_loop_withheld"] = verdict.closed_loop_withheld;
+  if (verdict.identified.empty()) return;
+  Json values = Json::array();
+  for (const auto& each : verdict.identified)
+    values.push_back({{"name", each.name}, {"value", each.value}, {"ci95", each.ci95}});
+  out["identified"] = std::move(values);
+}
+
+}  // namespace
+
 Json verdict_json(const Verdict& verdict) {
   Json findings = Json::array(), rejected = Json::array();
   for (const auto& f : verdict.findings) findings.push_back(finding_json(f));
@@ -126,9 +144,34 @@ Json verdict_json(const Verdict& verdict) {
              {"signature", verdict.unexplained.signature ? Json(*verdict.unexplained.signature) : Json(nullptr)}}},
            {"notes", verdict.notes},
            {"extended_machine", "extended.toml"}};
+  add_agreement(out, verdict);
   if (verdict.next) out["next_measurement"] = next_json(*verdict.next);
   if (verdict.reference) add_reference(out, *verdict.reference);
   return out;
+}
+
+std::string next_measurement_file_of(const std::string& axis) {
+  return axis.empty() ? next_measurement_file : fmt::format("next_measurement_{}.csv", axis);
+}
+
+Json verdict_json(const std::vector<Verdict>& verdicts) {
+  if (verdicts.size() == 1) return verdict_json(verdicts.front());
+  const auto& first = verdicts.front();
+  Json axes = Json::object();
+  for (const auto& verdict : verdicts) {
+    auto axis = verdict_json(verdict);
+    for (const char* common : {"schema", "machine", "logs", "holdout", "holdout_is_a_part", "extended_machine"})
+      axis.erase(common);
+    if (verdict.next && verdict.next->log) axis["next_measurement"]["log"] = next_measurement_file_of(verdict.axis);
+    axes[verdict.axis] = std::move(axis);
+  }
+  return {{"schema", "stiction.verdict/1"},
+          {"machine", first.machine},
+          {"logs", first.logs},
+          {"holdout", first.holdout},
+          {"holdout_is_a_part", first.holdout_is_a_part},
+          {"axes", std::move(axes)},
+          {"extended_machine", "extended.toml"}};
 }
 
 namespace {
@@ -190,6 +233,37 @@ std::string next_measurement_text(const NextMeasurement& next) {
   return open.empty() ? text : text + fmt::format("; leaves open {}", fmt::join(open, ", "));
 }
 
+namespace {
+
+std::string agreement_text(const Verdict& verdict) {
+  std::string text;
+  if (verdict.noise_floor) {
+    const auto& floor = *verdict.noise_floor;
+    text += fmt::format(
+        "  {:<14} force {:.4g} N rms, position {:.3g} um rms (force: encoder {:.3g} N, clock {:.3g} N, current, force "
+        "or "
+        "voltage {:.3g} N, inverse dynamics {:.3g} N)\n",
+        "noise alone", floor.force(), floor.position * 1e6, floor.encoder, floor.clock, floor.effort, floor.dynamics);
+  }
+  const char* none = verdict.findings.empty() ? "no cause found; " : "";
+  if (!verdict.agreement) return text + (verdict.findings.empty() ? "\nno cause found\n" : "");
+  const char* which = verdict.findings.empty() ? "the machine file" : "the extended machine file";
+  switch (verdict.agreement->status) {
+    case Status::agrees:
+      return text + fmt::format("\n{}{} agrees with the data within their noise: {}\n", none, which,
+                                verdict.agreement->reason);
+    case Status::does_not_agree:
+      return text + fmt::format("\n{}{} does not agree with the data; the rest is unexplained: {}\n", none, which,
+                                verdict.agreement->reason);
+    case Status::cannot_tell:
+      return text + fmt::format("\n{}these records cannot tell whether {} agrees: {}\n", none, which,
+                                verdict.agreement->reason);
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string verdict_text(const Verdict& verdict) {
   std::string text = verdict.reference ? rows_text(*verdict.reference) : std::string();
   const auto position = [](const ResidualFigures& f) {
@@ -200,10 +274,9 @@ std::string verdict_text(const Verdict& verdict) {
   if (!verdict.findings.empty())
     text += fmt::format("  {:<14} force {:.4g} N rms{}\n", "extended", verdict.extended.force_rms,
                         position(verdict.extended));
-  if (verdict.findings.empty())
-    text +=
-        "\n"
-        "no cause found: except for the items below, the simulation agrees with the data within their noise\n";
+  if (!verdict.closed_loop_withheld.empty())
+    text += fmt::format("  position error in closed loop: withheld. {}\n", verdict.closed_loop_withheld);
+  text += agreement_text(verdict);
   for (std::size_t k = 0; k < verdict.findings.size(); ++k) {
     const auto& f = verdict.findings[k];
     text += fmt::format("\n{}. {}, axis {}\n", k + 1, f.effect.name(), f.axis);

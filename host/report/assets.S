@@ -17,6 +17,8 @@ stiction_asset_\name\()_end:
 asset frame_html, "host/report/web/frame.html"
 asset opening_html, "host/report/web/opening.html"
 asset closing_html, "host/report/web/closing.html"
+asset axes_html, "host/report/web/axes.html"
+asset axes_js, "host/report/web/axes.js"
 asset circle_html, "host/report/web/circle.html"
 asset experiment_html, "host/report/web/experiment.html"
 asset identification_html, "host/report/web/identification.html"

@@ -13,6 +13,8 @@
 STICTION_ASSET(frame_html)
 STICTION_ASSET(opening_html)
 STICTION_ASSET(closing_html)
+STICTION_ASSET(axes_html)
+STICTION_ASSET(axes_js)
 STICTION_ASSET(circle_html)
 STICTION_ASSET(experiment_html)
 STICTION_ASSET(identification_html)

@@ -8,6 +8,8 @@ namespace stiction::host::assets {
 std::string_view frame_html();
 std::string_view opening_html();
 std::string_view closing_html();
+std::string_view axes_html();
+std::string_view axes_js();
 std::string_view circle_html();
 std::string_view experiment_html();
 std::string_view identification_html();

@@ -74,11 +74,30 @@ std::string nothing_found(const Verdict& verdict) {
     size +=
         fmt::format("{}{} µm rms of position error", size.empty() ? "" : ", ", micrometres(*rest.position_error_rms));
   const auto of = size.empty() ? "" : fmt::format(" of {}", size);
+  const auto why = verdict.agreement ? verdict.agreement->reason : std::string();
   if (verdict.unexplained.signature)
     return fmt::format("Simulation and machine do not agree: no known cause explains the residual{}; its pattern: {}.",
                        of, *verdict.unexplained.signature);
-  return fmt::format("The simulation agrees with the data within their noise: the residual{} has no cause to be found.",
-                     of);
+  if (!verdict.agreement)
+    return fmt::format(
+        "No cause was found for the residual{}; without a known noise of the data, that is no agreement.", of);
+  switch (verdict.agreement->status) {
+    case Status::agrees:
+      return fmt::format("The simulation agrees with the data within their noise: {}.", why);
+    case Status::does_not_agree:
+      return fmt::format("Simulation and machine do not agree, and no known cause explains the difference: {}.", why);
+    case Status::cannot_tell:
+      break;
+  }
+  return fmt::format("These records cannot tell whether simulation and machine agree: {}.", why);
+}
+
+// What the extended machine file still leaves, after the figures of its gain; empty where that cannot be said.
+std::string rest_of(const Verdict& verdict) {
+  if (!verdict.agreement || !verdict.noise_floor) return "";
+  if (verdict.agreement->status == Status::agrees) return "; the remaining residual is noise";
+  if (verdict.agreement->status == Status::cannot_tell) return "; these records cannot tell whether more is missing";
+  return fmt::format("; noise accounts for {:.2g} N of the remaining force", verdict.noise_floor->force());
 }
 
 }  // namespace
@@ -88,13 +107,16 @@ std::string micrometres(double metres) { return fmt::format("{:.2g}", metres * 1
 
 std::string diagnosis_sentence(const Verdict& verdict) {
   if (verdict.findings.empty()) return typeset(nothing_found(verdict));
-  const auto missing = fmt::format("The machine file lacks or misstates {}", causes(verdict));
+  const auto missing = fmt::format(
+      "The machine file{} lacks or misstates {}",
+      verdict.identified.empty() ? "" : ", with mass and friction identified from these logs,", causes(verdict));
   if (verdict.reference) return typeset(fmt::format("{}; {}.", missing, of_rows(verdict)));
   const auto gain = worth(verdict.baseline, verdict.extended, verdict.command_unit);
   if (gain.empty())
     return typeset(fmt::format("{}, but on held-out data the residual force does not fall ({:.3g} N rms).", missing,
                                verdict.extended.force_rms));
-  return typeset(fmt::format("{}; with it, the simulation's deviation on held-out data falls: {}.", missing, gain));
+  return typeset(fmt::format("{}; with it, the simulation's deviation on held-out data falls: {}{}.", missing, gain,
+                             rest_of(verdict)));
 }
 
 }  // namespace stiction::host

@@ -155,7 +155,11 @@ json residuals_json(const Verdict& verdict) {
         {"force", fmt::format("{:.3g}", figures.force_rms)},
         {"position", figures.position_error_rms ? json(micrometres(*figures.position_error_rms)) : json(nullptr)}};
   };
-  return {{"baseline", row(verdict.baseline)}, {"extended", row(verdict.extended)}};
+  json out{{"baseline", row(verdict.baseline)}, {"extended", row(verdict.extended)}, {"noise", nullptr}};
+  if (verdict.noise_floor)
+    out["noise"] = {{"force", fmt::format("{:.3g}", verdict.noise_floor->force())},
+                    {"position", micrometres(verdict.noise_floor->position)}};
+  return out;
 }
 
 std::string files(const std::vector<std::string>& paths) {
@@ -188,8 +192,13 @@ json conditions_json(const Verdict& verdict) {
     conditions.add("Held-out data", "circles at all other feeds");
     return conditions.json();
   }
+  if (!verdict.axis.empty()) conditions.add("Axis", verdict.axis);
   conditions.add("Training", files(verdict.logs));
   conditions.add("Held-out data", verdict.holdout_is_a_part ? "the last third of each log" : files(verdict.holdout));
+  if (verdict.agreement) conditions.add("Agreement", std::string(name_of(verdict.agreement->status)));
+  if (!verdict.identified.empty()) conditions.add("Mass and friction", "identified from the training logs first");
+  if (!verdict.closed_loop_withheld.empty())
+    conditions.add("Closed loop", "withheld: " + typeset(verdict.closed_loop_withheld));
   return conditions.json();
 }
 
@@ -239,9 +248,35 @@ std::string diagnosis_report_html(const DiagnosisReport& report) {
       {"series", series_json(all)},
       {"charts", charts},
       {"machine", machine_json(report.machine)}};
-  return report_page({"Diagnosis", "Diagnosis: " + report.machine.name, diagnosis_sentence(verdict), report.command,
-                      report.version, name_and_id(report.machine), origin_of(report)},
+  auto title = "Diagnosis: " + report.machine.name;
+  if (!verdict.axis.empty() && report.machine.axes.size() > 1) title += ", axis " + verdict.axis;
+  return report_page({"Diagnosis", title, diagnosis_sentence(verdict), report.command, report.version,
+                      name_and_id(report.machine), origin_of(report)},
                      assets::diagnosis_html(), {}, data, {assets::charts_js(), assets::diagnosis_js()});
+}
+
+std::string diagnosis_page_of(const std::string& axis) {
+  return axis.empty() ? "report.html" : "report_" + axis + ".html";
+}
+
+std::string diagnosed_axes_html(const std::vector<Verdict>& verdicts, const DiagnosisReport& frame) {
+  std::string rows, names;
+  std::vector<std::string> sentences;
+  for (const auto& verdict : verdicts) {
+    rows += fmt::format("<h2><a href=\"{}\">Axis {}</a></h2><p>{}</p>", escape_html(diagnosis_page_of(verdict.axis)),
+                        escape_html(verdict.axis), escape_html(diagnosis_sentence(verdict)));
+    sentences.push_back(
+        fmt::format("{}: {} with {} and {:.3g} → {:.3g} N rms of force", verdict.axis,
+                    verdict.agreement ? name_of(verdict.agreement->status) : "not judged",
+                    verdict.findings.size() == 1 ? "1 cause" : fmt::format("{} causes", verdict.findings.size()),
+                    verdict.baseline.force_rms, verdict.extended.force_rms));
+  }
+  DiagnosisReport report = frame;
+  report.verdict = verdicts.front();
+  return report_page({"Diagnosis", "Diagnosis: " + frame.machine.name, fmt::format("{}.", fmt::join(sentences, "; ")),
+                      frame.command, frame.version, name_and_id(frame.machine), origin_of(report)},
+                     assets::axes_html(), {{"axes", rows}}, {{"machine", machine_json(frame.machine)}},
+                     {assets::axes_js()});
 }
 
 }  // namespace stiction::host

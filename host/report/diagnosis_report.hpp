@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "firmware/machine/model/machine.hpp"
 #include "host/diagnose/verdict.hpp"
@@ -21,5 +22,11 @@ struct DiagnosisReport {
 // The whole page, UTF-8; one file that loads nothing. Throws std::invalid_argument when a series' x and y differ in
 // length.
 std::string diagnosis_report_html(const DiagnosisReport& report);
+
+// "report.html", or "report_X.html" of one of several axes. `axis`: its name; empty: the only one.
+std::string diagnosis_page_of(const std::string& axis);
+
+// The page that leads to those of several axes. `verdicts`: one an axis; `frame`: all but the verdict.
+std::string diagnosed_axes_html(const std::vector<Verdict>& verdicts, const DiagnosisReport& frame);
 
 }  // namespace stiction::host

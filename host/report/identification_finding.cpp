@@ -8,6 +8,8 @@
 #include <cmath>
 #include <vector>
 
+#include "sim/plant/friction/friction.hpp"
+
 namespace stiction::host {
 namespace {
 
@@ -16,6 +18,17 @@ std::string with_interval(const IdentifiedParameter& parameter, const char* unit
   const double half = 0.5 * (parameter.ci95.high - parameter.ci95.low);
   const int digits = half > 0.0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(half))), 0, 6) : 3;
   return fmt::format("{:.{}f} ± {:.{}f} {}", parameter.value, digits, half, digits, unit);
+}
+
+// " (machine file: 90)", in the unit of the parameter; empty where the file has no such value.
+std::string in_file(std::string_view name, const machine::AxisModel* file) {
+  if (file == nullptr) return "";
+  const bool has_law = file->friction.models.contains(file->friction.use);
+  double value = 0.0;
+  if (name == "mass_kg") value = file->mass;
+  if (name == "coulomb_N" && has_law) value = sim::coulomb_of(file->friction);
+  if (name == "viscous_N_s_per_m" && has_law) value = sim::viscous_of(file->friction);
+  return value > 0.0 ? fmt::format(" (machine file: {:.4g})", value) : "";
 }
 
 struct SpokenParameter {
@@ -29,7 +42,7 @@ constexpr std::array<SpokenParameter, 4> spoken_parameters{
 
 }  // namespace
 
-std::string identification_sentence(const Identification& result) {
+std::string identification_sentence(const Identification& result, const machine::AxisModel* file) {
   const auto total = result.parameters.size() + result.not_determined.size();
   if (result.parameters.empty())
     return fmt::format("None of the {} parameters of axis {} is determined by these records.", total, result.axis);
@@ -37,7 +50,8 @@ std::string identification_sentence(const Identification& result) {
   for (const auto& each : spoken_parameters)
     if (const auto* parameter = result.find(each.name))
       if (parts.empty() || each.name != std::string_view("coulomb_positive_N"))
-        parts.push_back(fmt::format("a {} {}", each.words, with_interval(*parameter, each.unit)));
+        parts.push_back(
+            fmt::format("a {} {}{}", each.words, with_interval(*parameter, each.unit), in_file(each.name, file)));
   std::string text = fmt::format("{} of {} parameters are determined", result.parameters.size(), total);
   if (!parts.empty()) {
     const auto last = parts.back();

@@ -131,7 +131,10 @@ std::string identification_report_html(const IdentificationReport& report) {
                   {"residuals", residuals_json(result)},
                   {"initial", initial_json(result.initial)},
                   {"machine", machine_json(report.machine)}};
-  return report_page({"Identification", "Identification: " + report.machine.name, identification_sentence(result),
+  const auto axis = std::find_if(report.machine.axes.begin(), report.machine.axes.end(),
+                                 [&](const auto& each) { return each.name == result.axis; });
+  const auto* file = axis == report.machine.axes.end() ? nullptr : &*axis;
+  return report_page({"Identification", "Identification: " + report.machine.name, identification_sentence(result, file),
                       report.command, report.version, name_and_id(report.machine), origin_of(report)},
                      assets::identification_html(), {{"method", escape_html(typeset(result.method))}}, data,
                      {assets::identification_js()});

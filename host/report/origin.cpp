@@ -10,6 +10,7 @@
 #include <filesystem>
 
 #include "host/report/page.hpp"
+#include "host/report/typeset.hpp"
 
 namespace stiction::host {
 namespace {
@@ -60,6 +61,33 @@ std::string origin_html(const Origin& origin, const std::string& machine, const 
   add("Version", "stiction " + version);
   add("Command line", command, "command");
   return items;
+}
+
+std::string abilities_html(const Origin& origin) {
+  const char* logs = origin.sources.size() == 1 ? "This log" : "These logs";
+  std::string html;
+  for (const auto& axis : origin.abilities) {
+    const auto of = axis.axis.empty() ? std::string() : fmt::format(" of axis {}", axis.axis);
+    std::vector<std::string> missing;
+    std::string rows;
+    for (const auto& each : axis.open) {
+      missing.push_back(each.what);
+      rows += fmt::format("<li><strong>{}</strong>: {}{}.</li>", escape_html(typeset(each.what)),
+                          escape_html(typeset(each.reason)),
+                          each.record.empty() ? "" : "; record " + escape_html(typeset(each.record)));
+    }
+    for (const auto& suspicion : axis.suspicions)
+      html += fmt::format("<p class=\"scope\"><strong>Check first{}:</strong> {}.</p>", escape_html(of),
+                          escape_html(typeset(suspicion)));
+    if (!axis.possible.empty())
+      html += fmt::format("<p class=\"scope\"><strong>{} can determine{}:</strong> {}.</p>", logs, escape_html(of),
+                          escape_html(typeset(fmt::format("{}", fmt::join(axis.possible, ", ")))));
+    if (!rows.empty())
+      html += fmt::format(
+          "<details class=\"scope\"><summary><strong>Cannot determine{}:</strong> {}</summary><ul>{}</ul></details>",
+          escape_html(of), escape_html(typeset(fmt::format("{}", fmt::join(missing, ", ")))), rows);
+  }
+  return html.empty() ? "" : fmt::format("<div class=\"abilities\">{}</div>\n", html);
 }
 
 }  // namespace stiction::host

@@ -72,11 +72,12 @@ std::string report_page(const PageFrame& frame, std::string_view body,
                         std::map<std::string, std::string, std::less<>> texts, const json& data,
                         std::initializer_list<std::string_view> scripts) {
   const auto title = escape_html(frame.title), version = escape_html(frame.version);
-  texts["opening"] = fill_template(
-      assets::opening_html(), {{"kind", escape_html(frame.kind)},
-                               {"title", title},
-                               {"sentence", escape_html(frame.sentence)},
-                               {"origin", origin_html(frame.origin, frame.machine, frame.command, frame.version)}});
+  texts["opening"] = fill_template(assets::opening_html(),
+                                   {{"kind", escape_html(frame.kind)},
+                                    {"title", title},
+                                    {"sentence", escape_html(frame.sentence)},
+                                    {"origin", origin_html(frame.origin, frame.machine, frame.command, frame.version)},
+                                    {"abilities", abilities_html(frame.origin)}});
   texts["closing"] = fill_template(assets::closing_html(),
                                    {{"version", version}, {"plotly_license", escape_html(assets::plotly_license())}});
   std::string all_scripts;

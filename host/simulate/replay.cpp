@@ -9,6 +9,7 @@
 
 #include "firmware/machine/configuration/double_signals.hpp"
 #include "host/log/set_points.hpp"
+#include "host/simulate/injection.hpp"
 #include "sim/effects/effects.hpp"
 #include "sim/effects/time_skew/time_skew.hpp"
 #include "stiction/number/fixed_signals.hpp"
@@ -206,10 +207,12 @@ template <class S>
 Log replay(const machine::Machine& machine, const Log& log, const ReplaySettings& settings, const TraceSink<S>& trace) {
   const auto indices = match_axes(machine, log, settings.axis);
   std::vector<Motion> motions;
+  std::vector<Injection> injections;
   std::vector<double> start(machine.axes.size(), 0.0);
   double lead_in = 0.0;
   for (std::size_t k = 0; k < indices.size(); ++k) {
     motions.emplace_back(log, log.axes[k]);
+    injections.emplace_back(log, log.axes[k], machine.axes[indices[k]]);
     require_within_limits(log, log.axes[k], machine.axes[indices[k]], motions.back());
     lead_in = std::max(lead_in, motions.back().lead_in());
   }
@@ -226,6 +229,7 @@ Log replay(const machine::Machine& machine, const Log& log, const ReplaySettings
     const double t = zero + run.time();
     for (std::size_t k = 0; k < indices.size(); ++k) {
       points[indices[k]] = motions[k].at(t);
+      points[indices[k]].injection = injections[k].at(t);
       auto& plant = run.plant(indices[k]);
       if (!log.axes[k].external_force.empty()) plant.set_external_force(at_time(log, log.axes[k].external_force, t));
       values[k].force = plant.motor_force();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/simulate/injection.hpp"
 #include "host/simulate/replay.hpp"
 
 namespace stiction::host {
@@ -92,11 +93,18 @@ class Result {
     }
     const double offset = replay_offset(log_, cases_.front(), axis, axis_);
     error.series.push_back(measured_line(scaled(difference(measured.x_set, measured.x, 0, -offset), micro)));
+    add_measured(name, compare_replay(log_, cases_.front().simulated, axis, offset));
     if (effort != nullptr) current.series.push_back(measured_line(measured.*effort->values));
+    bool any = false;
     for (const auto& c : cases_) {
+      if (const auto why = withheld_replay(log_, c, axis, axis_); !why.empty()) {
+        result_.findings.push_back(
+            fmt::format("{}{}: the figures of the simulation are withheld. {}: {}.", c.label, of, log_.source, why));
+        continue;
+      }
+      any = true;
       const auto& simulated = c.simulated.axes[axis];
       const auto d = compare_replay(log_, c.simulated, axis, offset);
-      if (&c == &cases_.front()) add_measured(name, d);
       add_figures(c.label, name, d);
       error.series.push_back(line(c, scaled(difference(simulated.x_set, simulated.x, 0, -offset), micro)));
       position.series.push_back(line(c, scaled(difference(simulated.x, measured.x, 0), micro)));
@@ -114,10 +122,8 @@ class Result {
           fmt::format("The measured position{} differs from its set-point by {:.6g} mm on average, more than the "
                       "machine allows: the zero of the encoder differs. The offset is subtracted.",
                       of, offset * 1e3));
-    if (!measured.i_inject.empty() || !measured.u_inject.empty())
-      result_.findings.push_back("The test signal of the log" + of + " is not applied in the simulation.");
     result_.charts.push_back(std::move(error));
-    result_.charts.push_back(std::move(position));
+    if (any) result_.charts.push_back(std::move(position));
     if (effort == nullptr) {
       result_.findings.push_back(
           fmt::format("The measured actuating signal{} has no counterpart in the simulation: record the current, or "
@@ -126,7 +132,7 @@ class Result {
       return;
     }
     result_.charts.push_back(std::move(current));
-    result_.charts.push_back(std::move(rest));
+    if (any) result_.charts.push_back(std::move(rest));
   }
 
   static std::string short_name(const Effort& effort) {
@@ -205,6 +211,12 @@ std::string effort_name(const ReplayDifference& difference) {
 double replay_offset(const Log& measured, const ReplayCase& replayed, std::size_t axis, const std::string& name) {
   const auto& machine_axis = replayed.machine.axes[match_axes(replayed.machine, measured, name)[axis]];
   return encoder_offset(measured.axes[axis], machine_axis.supervision.following_error.value_or(2e-3));
+}
+
+std::string withheld_replay(const Log& measured, const ReplayCase& replayed, std::size_t axis,
+                            const std::string& name) {
+  const auto matched = match_axes(replayed.machine, measured, name);
+  return refused_injection(measured.axes[axis], replayed.machine.axes[matched[axis]]);
 }
 
 ReplayDifference compare_replay(const Log& measured, const Log& simulated, std::size_t axis, double offset) {

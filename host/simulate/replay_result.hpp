@@ -40,6 +40,11 @@ std::string effort_name(const ReplayDifference& difference);
 // `axis`: index in the log; `name`: of the machine's axis, for a log without axis names.
 double replay_offset(const Log& measured, const ReplayCase& replayed, std::size_t axis, const std::string& name);
 
+// Why an axis' replay must not be compared with the log: a test signal that the simulation of the case cannot have, as
+// a clause. Empty: it can be compared. `measured`: the log; `replayed`: the case; `axis`: index in the log; `name`: of
+// the machine's axis, for a log without axis names.
+std::string withheld_replay(const Log& measured, const ReplayCase& replayed, std::size_t axis, const std::string& name);
+
 // The experiment "replay" of all cases, which share the log's time. `cases`: at least one. `measured`: the log;
 // `signals`: "fixed" or "double"; `axis`: of the machine, for a log without axis names.
 sim::ExperimentResult replay_result(const Log& measured, const std::vector<ReplayCase>& cases,

@@ -49,7 +49,7 @@ function explained(cause) {
 }
 
 function drawSummary() {
-  const { baseline, extended } = DATA.residuals;
+  const { baseline, extended, noise } = DATA.residuals;
   document.getElementById('summary-what').textContent = DATA.causes.length ? 'sorted by explained variance' : 'none found';
   const rows = DATA.causes.map((cause, i) => classed('first', [
     { text: element('a', { href: `#cause-${i}` }, `${i + 1}  ${cause.title}`), head: true, class: 'text wrap' }, text(cause.axis, { class: 'text', label: 'Axis' }),
@@ -61,6 +61,7 @@ function drawSummary() {
   if (rows.length) show('summary', drawn);
   const figures = [`Residual force on the held-out data: ${baseline.force} N rms with the given machine file, ${extended.force} N rms with the extended one`];
   if (baseline.position) figures.push(`position error of the simulation: ${baseline.position} µm rms with the given machine file, ${extended.position} µm rms with the extended one`);
+  if (noise) figures.push(`noise alone leaves ${noise.force} N and ${noise.position} µm rms`);
   show('summary-caption', `${figures.join('; ')}. ${DATA.holdout}`);
 }
 

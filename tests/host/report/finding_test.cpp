@@ -85,14 +85,35 @@ TEST(DiagnosisSentence, SaysThatTheResidualDoesNotFall) {
       << diagnosis_sentence(verdict);
 }
 
+// The figures of the synthetic record: 1.2 N where noise leaves 1.08 N, 0.3 um where it leaves 0.2 um.
 TEST(DiagnosisSentence, TellsAgreementFromAResidualWithoutAKnownCause) {
   auto verdict = synthetic_agreement().verdict;
-  EXPECT_TRUE(diagnosis_sentence(verdict).starts_with("The simulation agrees with the data within their noise"));
+  EXPECT_EQ(diagnosis_sentence(verdict),
+            "The simulation agrees with the data within their noise: 1.2 N rms of residual force where noise "
+            "alone leaves 1.08 N; 0.3 µm rms of position error where noise alone leaves 0.2 µm.");
+  const auto with = [&](const Remainder& rest, const std::string& withheld = "") {
+    verdict.agreement = agreement_of(rest, withheld);
+    return diagnosis_sentence(verdict);
+  };
+  EXPECT_EQ(with({5.0, 0.3e-6, 1.08, 0.2e-6, 50.0}),
+            "Simulation and machine do not agree, and no known cause explains the difference: 5 N rms of residual "
+            "force where noise alone leaves 1.08 N.");
+  EXPECT_TRUE(with({1.2, 3e-6, 1.08, 0.2e-6, 50.0}).starts_with("Simulation and machine do not agree"));
+  // A floor of 46 % of the force.
+  EXPECT_TRUE(
+      with({23.0, 0.3e-6, 23.0, 0.2e-6, 50.0})
+          .starts_with("These records cannot tell whether simulation and machine agree: noise alone leaves 23 N rms of "
+                       "these records unexplained, whose force is 50 N rms"));
+  EXPECT_TRUE(with({1.2, {}, 1.08, 0.2e-6, 50.0}).starts_with("These records cannot tell"));
+  EXPECT_NE(with({1.2, {}, 1.08, 0.2e-6, 50.0}, "run.csv: found u_inject[V]").find("found u_inject[V]"),
+            std::string::npos);
+  verdict.agreement.reset();
+  EXPECT_TRUE(diagnosis_sentence(verdict).starts_with("No cause was found for the residual of 1.2 N rms"));
   verdict.unexplained.signature = "grows with acceleration";
   EXPECT_EQ(
       diagnosis_sentence(verdict),
-      "Simulation and machine do not agree: no known cause explains the residual of 1.2 N rms; its pattern: grows "
-      "with acceleration.");
+      "Simulation and machine do not agree: no known cause explains the residual of 1.2 N rms, 0.3 µm rms of position "
+      "error; its pattern: grows with acceleration.");
 }
 
 // ---- identification ----
@@ -111,7 +132,35 @@ TEST(IdentificationSentence, GivesFrictionAndMassWithTheirIntervals) {
       "determined); the fit leaves 5 of 200 N rms, 2.5 % of the force.");
 }
 
+TEST(IdentificationSentence, NamesTheValuesOfTheMachineFileBesideThem) {
+  Identification result;
+  result.axis = "X";
+  result.parameters = {{"coulomb_N", 94.12, {93.72, 94.52}, ""}, {"mass_kg", 225.6, {224.1, 227.1}, ""}};
+  machine::AxisModel file;
+  file.mass = 90.0;
+  EXPECT_EQ(identification_sentence(result, &file),
+            "Axis X has a Coulomb friction of 94.12 ± 0.40 N and a moving mass of 225.6 ± 1.5 kg (machine file: 90).");
+}
+
 // ---- origin ----
+
+TEST(Origin, SaysWhatTheLogsCanDetermineBeforeAnyResult) {
+  Origin origin;
+  EXPECT_EQ(abilities_html(origin), "");
+  origin.sources = {"run.csv"};
+  origin.abilities = {{"X",
+                       {"Moving mass", "Constant force"},
+                       {{"Stribeck <effect>", "no speed below 1 mm/s", "slow passes"}},
+                       {"the current is that of the other axis"}}};
+  const auto html = abilities_html(origin);
+  for (const char* part : {"<strong>Check first of axis X:</strong> the current is that of the other axis.",
+                           "<strong>This log can determine of axis X:</strong> Moving mass, Constant force.",
+                           "<strong>Cannot determine of axis X:</strong> Stribeck &lt;effect&gt;</summary>",
+                           "no speed below 1 mm/s; record slow passes."})
+    EXPECT_NE(html.find(part), std::string::npos) << part << "\n" << html;
+  origin.sources.push_back("other.csv");
+  EXPECT_NE(abilities_html(origin).find("These logs can determine"), std::string::npos);
+}
 
 TEST(Origin, NamesFilesWithoutTheirFoldersAndEscapesThem) {
   const auto html = origin_html({{"/a/m.toml"}, {"/a/<run>.csv", "b.csv"}, {1e-3, 62.5e-6, 1e-3}, "2026-11-23"},

@@ -172,7 +172,9 @@ DiagnosisReport synthetic_agreement() {
   v.machine = "mcfv5050ln.toml";
   v.logs = {"run1.csv"};
   v.holdout_is_a_part = true;
-  v.baseline = v.extended = {1.2, {}, {}};
+  v.baseline = v.extended = {1.2, 0.3e-6, {}};
+  v.noise_floor = NoiseFloor{.encoder = 0.9, .effort = 0.6, .position = 0.2e-6, .increment = 1e-6};
+  v.agreement = agreement_of({1.2, 0.3e-6, 1.08, 0.2e-6, 50.0}, "");
   return report;
 }
 

@@ -1,0 +1,34 @@
+// Whether a simulation agrees with the records: what it leaves of the held-out force and position against what noise
+// alone would leave.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace stiction::host {
+
+enum class Status { agrees, does_not_agree, cannot_tell };
+// "agrees", "does not agree", "cannot tell".
+std::string_view name_of(Status status);
+
+// Of one axis on the held-out data, with the machine file as it is or as it was extended.
+struct Remainder {
+  double force_rms = 0.0;                    // N, of the residual
+  std::optional<double> position_error_rms;  // m, in closed loop; none: no set-points, or withheld
+  double noise_force_rms = 0.0;              // N, NoiseFloor::force()
+  double noise_position_rms = 0.0;           // m, NoiseFloor::position
+  double record_force_rms = 0.0;             // N, of the record's force about its mean
+};
+
+struct Agreement {
+  Status status = Status::cannot_tell;
+  std::string reason;  // a clause for readers, with the figures
+};
+
+// The floor is an estimate and the residual a sample: a residual up to 1.25 times the floor is noise, a position error
+// up to twice its own. Where the floor is more than 0.3 of the force, agreement would say nothing. `rest`: figures of
+// the axis; `withheld`: why there is no position error, for the reason; empty: there are no set-points.
+Agreement agreement_of(const Remainder& rest, const std::string& withheld);
+
+}  // namespace stiction::host

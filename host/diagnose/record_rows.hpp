@@ -1,0 +1,33 @@
+// Records as the rows that a diagnosis works on, in its band.
+#pragma once
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "firmware/machine/model/machine.hpp"
+#include "host/identify/log_rows.hpp"
+#include "host/log/log.hpp"
+
+namespace stiction::host {
+
+// The band of a diagnosis: 0 to 100 Hz, in which the share of an effect is counted.
+SignalSettings wide_band();
+
+// Samples `begin` to before `end` of `log`.
+Log part_of(const Log& log, std::size_t begin, std::size_t end);
+
+// Time runs from the record's start, of parts of it too: what warms up does so from there. `log`: whose clock is set.
+void count_from_start(Log& log);
+
+// The rows of `axis` in `logs`, filtered by `settings`. Throws LogError for records that cannot be used.
+LogRows rows_of(const std::vector<Log>& logs, const machine::AxisModel& axis, const SignalSettings& settings);
+
+// N, what the file says of `axis` along the motion of `rows`.
+Eigen::VectorXd expected_force(const LogRows& rows, const machine::AxisModel& axis);
+
+// What a file makes of its own noise-free record: 0 but for what the inverse dynamics cannot know. N, of the rows.
+// `replayed`: the simulation's records; `logs`: those that it repeats; `axis`: of the file; `settings` of the rows.
+Eigen::VectorXd own_residual(const std::vector<Log>& replayed, const std::vector<Log>& logs,
+                             const machine::AxisModel& axis, const SignalSettings& settings);
+
+}  // namespace stiction::host
