@@ -78,10 +78,9 @@ def bounds(matrix):
     return out
 
 
-def judged(t, truth, axis, effort_noise, force_noise, rows=None):
-    """{name: {"true", "bound", "identifiable"}} of a record."""
-    errors = bounds(information(t, truth, axis, effort_noise, force_noise, rows))
+def told(matrix, axis):
+    """{name: {"true", "bound", "identifiable"}} from the information of a record, or the sum of several records'."""
     true = (axis.mass, axis.viscous, axis.coulomb, axis.offset)
     scales = (axis.mass, axis.viscous, axis.coulomb, axis.coulomb)
     return {name: {"true": value, "bound": error, "identifiable": bool(error <= IDENTIFIABLE * scale)}
-            for name, value, error, scale in zip(NAMES, true, errors, scales)}
+            for name, value, error, scale in zip(NAMES, true, bounds(matrix), scales)}

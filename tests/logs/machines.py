@@ -95,10 +95,11 @@ def published(cell):
         limit=limit, increment=si(table["encoder"]["increment"]), noise=0.0, velocity=table["encoder"]["velocity"])
 
 
-def draw(rng, cell, increment, law=None):
+def draw(rng, cell, increment, law=None, exact=False):
     """A true axis near a shipped one, with an encoder of this increment, and its file's errors.
 
     law: "coulomb" (set-valued, sticks rigidly), "dahl" (a contact with one stiffness), or None: drawn.
+    exact: the file has the true values, and the offset as a constant force.
     """
     axis = published(cell)
     near = lambda value, width: value * (1 + rng.uniform(-width, width))
@@ -113,7 +114,8 @@ def draw(rng, cell, increment, law=None):
     axis.increment, axis.noise = increment, increment * rng.choice([0.0, 0.5])
     soften(axis)
     keys = ("mass", "coulomb", "viscous") + (("stiffness",) if axis.stiffness else ())
-    axis.file = {key: near(getattr(axis, key), FILE_ERROR) for key in keys}
+    axis.file = {key: near(getattr(axis, key), 0.0 if exact else FILE_ERROR) for key in keys}
+    axis.file["constant_force"] = -axis.offset if exact else 0.0
     return axis
 
 
@@ -123,7 +125,6 @@ def soften(axis):
     if axis.increment <= 1e-6:
         return
     axis.velocity = "ideal"
-    axis.position_increment = axis.increment if axis.current_gain else 0.0
     force = axis.increment * axis.velocity_gain * axis.force_constant
     axis.position_gain = round(min(axis.position_gain, 0.5 * axis.coulomb / force), 3)
 
@@ -141,6 +142,12 @@ def friction_table(axis):
         text += (f"[axis.{axis.name}.friction.lugre]\n{common}{stiffness}static_ratio = 1.0\n"
                  'stribeck_velocity = "1 mm/s"\ndamping_ratio = 0.1\n')
     return text
+
+
+def effect_table(axis):
+    """The offset as a force on the carriage, where the file knows it."""
+    force = axis.file["constant_force"]
+    return f'[[axis.{axis.name}.effect]]\nname = "constant_force"\nforce = "{force:.6g} N"\n' if force else ""
 
 
 def motor_table(axis):
@@ -181,4 +188,4 @@ def machine_file(axis):
             f'max_velocity = "{axis.max_velocity:.6g} m/s"\nmax_acceleration = "{axis.max_acceleration:.6g} m/s^2"\n'
             f"[{at}.motor]\n{motor_table(axis)}[{at}.encoder]\n"
             f'increment = "{axis.increment:.6g} m"\nnoise = "{axis.noise:.6g} m"\nvelocity = "{axis.velocity}"\n'
-            f"{controller_table(axis)}{friction_table(axis)}")
+            f"{controller_table(axis)}{friction_table(axis)}{effect_table(axis)}")

@@ -58,12 +58,16 @@ def sample_ticks(rng, rate, duration):
     return np.round(grid / plant.TICK).astype(np.int64)
 
 
-def draw_record(seed, cell, index, kind=None, fault="none", law=None, duration=None, set_points=None):
-    """A record of a cell (machine, rate, increment); the same arguments give the same record."""
+def draw_record(seed, cell, index, kind=None, fault="none", law=None, duration=None, set_points=None,
+                exact=False):
+    """A record of a cell (machine, rate, increment); the same arguments give the same record.
+
+    Left out (None), kind of motion, law, duration and whether there are set-points are drawn. exact: the file is true.
+    """
     machine, rate, increment = cell
     key = (seed, machines.AXES.index(machine), rate, round(increment * 1e9), index, faults.FAULTS.index(fault))
     rng = np.random.default_rng(key)
-    axis = machines.draw(rng, machine, increment, law)
+    axis = machines.draw(rng, machine, increment, law, exact)
     axis.force_noise = axis.coulomb * rng.choice([0.0, 0.01, 0.03])
     duration = duration or rng.uniform(*((14, 20) if rate <= 200 else (8, 12) if rate <= 1000 else (5, 7)))
     kind = kind or str(rng.choice(list(motions.KINDS)))
@@ -79,6 +83,18 @@ def draw_record(seed, cell, index, kind=None, fault="none", law=None, duration=N
                     effort_noise, set_points)
     faults.before(record, rng)
     return record
+
+
+def partner(record):
+    """The second record of a pair: the other direction of a one-direction record, the same without its test signal."""
+    fault = {"forward": "backward", "inject": "none"}[record.fault]
+    other = dataclasses.replace(record, name=f"{record.name}-and-{fault}", fault=fault, inject=None,
+                                seed=record.seed + (2,))
+    if fault == "backward":
+        rng = np.random.default_rng(other.seed)
+        other.motion = motions.speeds(rng, record.axis, record.motion.duration, -1)
+        other.ticks = sample_ticks(rng, record.cell[1], other.motion.duration + 0.2)
+    return other
 
 
 def draw_records(seed, count, cells=None, **options):
@@ -125,15 +141,20 @@ def make_columns(record, rng):
 FORMATS = {"t": "%.7f", "x_set": "%.9f", "x": "%.9f", "i": "%.5f", "u": "%.6f", "i_inject": "%.6f", "u_inject": "%.7f"}
 
 
+def information_of(record):
+    """The Fisher matrix of a record that has been simulated."""
+    rows = record.clean if not record.clean.all() else None
+    return fisher.information(record.t, record.truth, record.axis, record.effort_noise, record.axis.force_noise, rows)
+
+
 def describe(record):
     """What is true of a record, for whoever judges the programme's answer."""
     a = record.axis
-    rows = record.clean if not record.clean.all() else None
     return {"name": record.name, "cell": list(record.cell), "kind": record.kind, "fault": record.fault,
             "seed": list(record.seed), "set_points": record.set_points, "law": "dahl" if a.stiffness else "coulomb",
             "force_constant": a.force_constant, "stiffness_N_per_m": a.stiffness, "effort_noise": record.effort_noise,
             "force_noise_N": a.force_noise, "encoder_noise_m": a.noise, "file": a.file,
-            "parameters": fisher.judged(record.t, record.truth, a, record.effort_noise, a.force_noise, rows)}
+            "parameters": fisher.told(information_of(record), a)}
 
 
 def write(record, folder):
