@@ -156,10 +156,11 @@ def process_force(rng, axes, corner=100.0):
 CHANNELS = ("x", "effort", "v", "a", "f")  # encoder, current or voltage, true speed, acceleration, Coulomb force, exact x
 
 
-def simulate(rng, axes, motions, ticks, inject=None):
+def simulate(rng, axes, motions, ticks, inject=None, progress=lambda text: None):
     """Records of axes of one kind of controller and friction, all at once.
 
     ticks: for each axis the ticks (of 62.5 us) at which its log has a sample, ascending.
+    progress: is told now and then how far it is.
     inject: for each axis a function of time (test signal at the controller's output) or None.
     Returns for each axis a dictionary of arrays: x (as the encoder shows it), x_true, effort (without a sensor's noise),
     v, a, f (true speed, acceleration and Coulomb part of friction), x_set, v_set, a_set, inject.
@@ -172,6 +173,7 @@ def simulate(rng, axes, motions, ticks, inject=None):
     end = 1 + max(int(t[-1]) for t in ticks)
     kept = [[] for _ in axes]
     for first in range(0, end, CHUNK):
+        progress(f"{count} axes are simulated: {100 * first // end} %")
         t = (first + np.arange(CHUNK)) * TICK
         sets = np.stack([np.stack(m(t)) for m in motions], axis=-1)  # 3 x CHUNK x count
         added = np.zeros((CHUNK, count))

@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 """The campaign on logs: draws records with a known truth, has them identified and inspected, prints the table.
 
-usage: campaign.py [N] [SEED] [--program PROGRAM] [--out FOLDER] [--parts PARTS] [--only TEXT] [--large] [--keep]
+usage: campaign.py [N] [SEED] [--program PROGRAM] [--out FOLDER] [--parts PARTS] [--only TEXT] [--large] [--keep] [--show FILE]
   N         sound records of each of the 120 cells of machine, rate and encoder (1)
   SEED      of all draws (1)
   --parts   of sound,questions,one_direction,saturated,gap,inject (all)
   --only    cells whose text MACHINE/RATE/INCREMENT has this, as mcfv5050ln.X/1000/
   --large   also 200 MB of CSV through `inspect`: memory and time
   --keep    leaves the records in FOLDER
+  --program may be repeated: each is asked about the same records
+  --show    prints the table of a results.json again
 FOLDER (build/logs) gets results.json: commit, seed, N, programme, every record's truth and answer.
 """
 
@@ -55,92 +57,88 @@ class Campaign:
     def chosen(self, cells):
         return [cell for cell in cells if self.options.only in "{}/{}/{:g}".format(*cell)]
 
-    def files(self, records, what):
-        """Yields (record, facts) of each record with its files written, and removes them afterwards."""
-        done = 0
-        for record in truth.run(records):
-            facts = truth.write(record, self.folder)
-            yield record, facts
-            done += 1
-            self.progress(f"{what}: {done} of {len(records)}")
-            if not self.options.keep and record.fault not in ("forward", "backward"):
-                self.remove(facts)
+    def drawn(self, part):
+        """The records of a part, as (part, record)."""
+        seed, count, cells = self.options.seed, self.options.count, self.chosen(FAULTY_CELLS)
+        draw = lambda fault, **options: truth.draw_records(seed, count, cells, fault=fault, **options)
+        with_partners = lambda records: records + [truth.partner(r) for r in records]
+        records = {"sound": lambda: truth.draw_records(seed, count, self.cells),
+                   "questions": lambda: [r for fault in faults.QUESTIONS for r in draw(fault)],
+                   "one_direction": lambda: with_partners(draw("forward")),
+                   "saturated": lambda: draw("saturated", kind="trapezoids"),
+                   "gap": lambda: draw("gap"),
+                   "inject": lambda: with_partners(draw("inject", exact=True))}[part]()
+        return [(part, record) for record in records]
+
+    def run(self):
+        """All parts, simulated together: a tick costs nearly the same for one axis as for hundreds."""
+        drawn = [pair for part in PARTS if part in self.options.parts for pair in self.drawn(part)]
+        part_of = {id(record): part for part, record in drawn}
+        # Those that `inspect` is asked about as well, spread over the cells, whatever N is.
+        sound = sorted((k * 7919) % 10007 * 100000 + k for k, (part, _) in enumerate(drawn) if part == "sound")
+        inspected = {id(drawn[k % 100000][1]) for k in sound[:table.FIRST_SOUND]}
+        answers, later = [Answers(program) for program in self.options.program], []
+        for done, record in enumerate(truth.run([record for _, record in drawn], self.progress)):
+            part, facts = part_of[id(record)], truth.write(record, self.folder)
+            for answer in answers:
+                answer.take(part, record, facts, part == "questions" or id(record) in inspected)
+            later.append(facts)
+            if part != "one_direction":  # of these the files of both are needed
+                self.remove(later.pop())
+            self.progress(f"{done + 1} of {len(drawn)} records")
+        for answer in answers:
+            answer.join_pairs()
+        for facts in later:
+            self.remove(facts)
+        return [answer.results for answer in answers]
 
     def remove(self, facts):
-        for path in (facts["log"], facts["machine"], facts["machine"].replace(".toml", ".json")):
-            pathlib.Path(path).unlink(missing_ok=True)
+        if not self.options.keep:
+            for path in (facts["log"], facts["machine"], facts["machine"].replace(".toml", ".json")):
+                pathlib.Path(path).unlink(missing_ok=True)
 
-    def sound(self):
-        records = truth.draw_records(self.options.seed, self.options.count, self.cells)
-        # Spread over the cells, whatever N is.
-        order = sorted(range(len(records)), key=lambda k: (k * 7919) % 10007)
-        inspected = {records[k].name for k in order[:table.FIRST_SOUND]}
-        rows = []
-        for record, facts in self.files(records, "sound records"):
-            row = judge.identify(self.options.program, facts)
-            if record.name in inspected:
-                row["inspect"] = judge.inspect(self.options.program, facts)
-            rows.append(row)
-        return {"sound": rows}
 
-    def of_fault(self, fault, with_inspect=False, **options):
-        records = truth.draw_records(self.options.seed, self.options.count, self.chosen(FAULTY_CELLS), fault=fault, **options)
-        rows = []
-        for _, facts in self.files(records, fault):
-            row = judge.identify(self.options.program, facts)
+class Answers:
+    """What one programme says of the records."""
+
+    def __init__(self, program):
+        self.program, self.results, self.pairs, self.loops = program, {"sound": []}, {}, {}
+
+    def take(self, part, record, facts, with_inspect):
+        rows = self.results.setdefault("faulty" if part == "questions" else part, [])
+        if part == "one_direction":
+            pair = self.pairs.setdefault(record.name.removesuffix("-and-backward"), {})
+            pair[record.fault] = (truth.information_of(record), facts, record.axis)
+            return
+        if part == "inject":
+            errors = self.loops.setdefault(record.name.removesuffix("-and-none"), {})
+            errors[record.fault] = judge.closed_loop_error(self.program, facts)
+        if part != "inject" or record.fault == "inject":
+            rows.append(judge.identify(self.program, facts))
             if with_inspect:
-                row["inspect"] = judge.inspect(self.options.program, facts)
-            rows.append(row)
-        return rows
+                rows[-1]["inspect"] = judge.inspect(self.program, facts)
 
-    def questions(self):
-        return {"faulty": [row for fault in faults.QUESTIONS for row in self.of_fault(fault, True)]}
-
-    def saturated(self):
-        return {"saturated": self.of_fault("saturated", kind="trapezoids")}
-
-    def gap(self):
-        return {"gap": self.of_fault("gap")}
-
-    def one_direction(self):
-        """Pairs: the information of both logs together, the files of both in one call."""
-        firsts = truth.draw_records(self.options.seed, self.options.count, self.chosen(FAULTY_CELLS), fault="forward")
-        made = {}
-        for record, facts in self.files(firsts + [truth.partner(r) for r in firsts], "one direction each"):
-            made[record.name] = (truth.information_of(record), facts)
-        rows = []
-        for record in firsts:
-            one, two = made[record.name], made[f"{record.name}-and-backward"]
-            facts = one[1] | {"parameters": truth.fisher.told(one[0] + two[0], record.axis)}
-            rows.append(judge.identify(self.options.program, facts, [one[1]["log"], two[1]["log"]]))
-            if not self.options.keep:
-                self.remove(one[1])
-                self.remove(two[1])
-        return {"one_direction": rows}
-
-    def inject(self):
-        """Test signals: what is identified from them, and the closed loop with and without them."""
-        firsts = truth.draw_records(self.options.seed, self.options.count, self.chosen(FAULTY_CELLS), fault="inject", exact=True)
-        rows, errors = [], {}
-        for record, facts in self.files(firsts + [truth.partner(r) for r in firsts], "test signals"):
-            errors[record.name] = judge.closed_loop_error(self.options.program, facts)
-            if record.fault == "inject":
-                rows.append(judge.identify(self.options.program, facts))
-        pairs = [{"name": r.name, "with": errors[r.name][0], "without": errors[f"{r.name}-and-none"][0],
-                  "message": errors[r.name][1]} for r in firsts]
-        return {"inject": rows, "loops": pairs}
+    def join_pairs(self):
+        """Logs of one direction each: the information of both together, the files of both in one call."""
+        for pair in self.pairs.values():
+            (one, facts, axis), (two, other, _) = pair["forward"], pair["backward"]
+            both = facts | {"parameters": truth.fisher.told(one + two, axis)}
+            self.results["one_direction"].append(judge.identify(self.program, both, [facts["log"], other["log"]]))
+        if self.loops:
+            self.results["loops"] = [{"name": name, "with": e["inject"][0], "without": e["none"][0],
+                                      "message": e["inject"][1]} for name, e in self.loops.items()]
 
 
 def git(*arguments):
     return subprocess.run(["git", "-C", machines.ROOT, *arguments], capture_output=True, text=True).stdout.strip()
 
 
-def head(options):
+def head(options, program):
     """What the results are of."""
-    version = subprocess.run([options.program, "--version"], capture_output=True, text=True)
+    version = subprocess.run([program, "--version"], capture_output=True, text=True)
     return {"schema": "stiction.logs-campaign/1", "commit": git("rev-parse", "--short", "HEAD"),
             "changes_without_commit": bool(git("status", "--porcelain")), "seed": options.seed, "n": options.count,
-            "program": options.program, "version": version.stdout.strip(), "date": time.strftime("%Y-%m-%d"),
+            "program": program, "version": version.stdout.strip(), "date": time.strftime("%Y-%m-%d"),
             "parts": options.parts, "only": options.only}
 
 
@@ -148,37 +146,47 @@ def arguments():
     parser = argparse.ArgumentParser(usage=__doc__.split("usage: ")[1])
     parser.add_argument("count", nargs="?", type=int, default=1)
     parser.add_argument("seed", nargs="?", type=int, default=1)
-    parser.add_argument("--program", default=str(machines.ROOT / "build/release/bin/stiction"))
+    parser.add_argument("--program", action="append")
     parser.add_argument("--out", type=pathlib.Path, default=machines.ROOT / "build/logs")
     parser.add_argument("--parts", default=",".join(PARTS))
     parser.add_argument("--only", default="")
     parser.add_argument("--large", action="store_true")
     parser.add_argument("--keep", action="store_true")
+    parser.add_argument("--show", type=pathlib.Path)
     options = parser.parse_args()
     options.parts = options.parts.split(",")
     unknown = set(options.parts) - set(PARTS)
     if unknown or options.count < 1:
         parser.error(f"found part '{unknown.pop()}'" if unknown else f"found N {options.count}; expected at least 1")
-    if not pathlib.Path(options.program).is_file():
-        parser.error(f"found no programme {options.program}; build the target stiction, or use --program")
+    options.program = options.program or [str(machines.ROOT / "build/release/bin/stiction")]
+    for program in options.program:
+        if not pathlib.Path(program).is_file():
+            parser.error(f"found no programme {program}; build the target stiction, or use --program")
     return options
+
+
+def show(results):
+    print(f"programme: {results['program']}")
+    if results["sound"]:
+        print("\n".join(table.by_cell(results["sound"])))
+    for title, text in table.whole(results) + large_csv.lines(results.get("large")):
+        print(f"{title:80} {text}")
 
 
 def main():
     options = arguments()
-    campaign = Campaign(options)
-    results = head(options) | {"sound": []}
-    for part in PARTS:
-        if part in options.parts:
-            results |= getattr(campaign, part)()
-    if options.large:
-        results["large"] = large_csv.measure(options.program, options.out)
-    sys.stderr.write("\n" if sys.stderr.isatty() else "")
-    (options.out / "results.json").write_text(json.dumps(results) + "\n", encoding="utf-8")
-    print("\n".join(table.by_cell(results["sound"])) if results["sound"] else "")
-    for title, text in table.whole(results) + large_csv.lines(results.get("large")):
-        print(f"{title:80} {text}")
-    print(f"results: {options.out / 'results.json'} (commit {results['commit']}, seed {options.seed}, n {options.count})")
+    if options.show:
+        show(json.loads(options.show.read_text(encoding="utf-8")))
+        return
+    for k, answers in enumerate(Campaign(options).run()):
+        results = head(options, options.program[k]) | answers
+        if options.large:
+            results["large"] = large_csv.measure(options.program[k], options.out)
+        sys.stderr.write("\n" if sys.stderr.isatty() else "")
+        path = options.out / (f"results-{k + 1}.json" if k else "results.json")
+        path.write_text(json.dumps(results) + "\n", encoding="utf-8")
+        show(results)
+        print(f"results: {path} (commit {results['commit']}, seed {options.seed}, n {options.count})")
 
 
 if __name__ == "__main__":

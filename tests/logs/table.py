@@ -217,6 +217,8 @@ def loops(pairs):
     ratios = [p["with"] / p["without"] for p in pairs if p["with"] and p["without"]]
     title = "closed loop with test signals over one without any, position rms (1.2)"
     text = f"median {np.median(ratios):.2f}, largest {max(ratios):.2f}, within 1.2: " if ratios else ""
+    lines = [(title, text + rate(sum(r <= 1.2 for r in ratios), len(pairs)))]
     refused = [p["message"] for p in pairs if p["message"]]
-    return [(title, text + rate(sum(r <= 1.2 for r in ratios), len(pairs)))] + [
-        ("  refused", f"{len(refused)} of {len(pairs)}; {tail(refused[0])[:140]}")] * bool(refused)
+    if refused:
+        lines.append(("  refused", f"{len(refused)} of {len(pairs)}; {tail(refused[0])[:140]}"))
+    return lines

@@ -23,7 +23,8 @@ import motions
 RATES = (10, 50, 100, 190, 500, 1000, 4000, 16000)  # Hz; 190 Hz with a jitter of 20 %
 INCREMENTS = (1e-9, 1e-7, 1e-6, 1e-5, 1e-4)  # m
 JITTER = {190: 0.2}  # largest displacement of a stamp over the period
-BATCH = 96
+BATCH = 256  # records simulated at once; a tick costs nearly the same for one as for all
+MOST_SAMPLES = 6_000_000  # of a batch, or its memory goes beyond a gigabyte
 
 
 @dataclasses.dataclass
@@ -102,26 +103,33 @@ def draw_records(seed, count, cells=None, **options):
     return [draw_record(seed, cell, k, **options) for cell in cells for k in range(count)]
 
 
-def run(records, progress=lambda done, of: None):
+def batches(records):
+    batch, samples = [], 0
+    for record in records:
+        if batch and (len(batch) == BATCH or samples + len(record.ticks) > MOST_SAMPLES):
+            yield batch
+            batch, samples = [], 0
+        batch.append(record)
+        samples += len(record.ticks)
+    if batch:
+        yield batch
+
+
+def run(records, progress=lambda text: None):
     """Simulates all records, many at once, and makes their columns. Yields each record when it is ready."""
     groups = {}
     for record in records:
         groups.setdefault((record.axis.effort, record.axis.stiffness == 0), []).append(record)
-    done = 0
     for group in groups.values():
-        group.sort(key=lambda r: r.ticks[-1])
-        for first in range(0, len(group), BATCH):
-            batch = group[first:first + BATCH]
+        for batch in batches(sorted(group, key=lambda r: r.ticks[-1])):
             rng = np.random.default_rng([7] + [int(r.seed[4]) for r in batch] + list(batch[0].seed))
             made = plant.simulate(rng, [r.axis for r in batch], [r.motion for r in batch], [r.ticks for r in batch],
-                                  [r.inject for r in batch])
+                                  [r.inject for r in batch], progress)
             for record, truth in zip(batch, made):
                 record.truth = truth
                 make_columns(record, np.random.default_rng(record.seed + (1,)))
                 yield record
                 record.truth = record.log = None
-            done += len(batch)
-            progress(done, len(records))
 
 
 def make_columns(record, rng):
