@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """The campaign on logs: draws records with a known truth, has them identified and inspected, prints the table.
 
-usage: campaign.py [N] [SEED] [--program PROGRAM] [--out FOLDER] [--parts PARTS] [--only TEXT] [--large] [--keep] [--show FILE]
+usage: campaign.py [N] [SEED] [--program PROGRAM] [--out FOLDER] [--parts PARTS] [--only REGEX] [--large]
+                   [--keep] [--again] [--show FILE]
   N         sound records of each of the 120 cells of machine, rate and encoder (1)
   SEED      of all draws (1)
   --parts   of sound,questions,one_direction,saturated,gap,inject (all)
-  --only    cells whose text MACHINE/RATE/INCREMENT has this, as mcfv5050ln.X/1000/
+  --only    cells whose text MACHINE/RATE/INCREMENT this regular expression finds, as /(50|100)/
   --large   also 200 MB of CSV through `inspect`: memory and time
-  --keep    leaves the records in FOLDER
+  --keep    leaves the records in FOLDER; --again asks about them without drawing any
   --program may be repeated: each is asked about the same records
   --show    prints the table of a results.json again
 FOLDER (build/logs) gets results.json: commit, seed, N, programme, every record's truth and answer.
@@ -16,11 +17,15 @@ FOLDER (build/logs) gets results.json: commit, seed, N, programme, every record'
 import argparse
 import json
 import pathlib
+import re
 import subprocess
 import sys
 import time
 
+import numpy as np
+
 import faults
+import fisher
 import judge
 import large_csv
 import machines
@@ -55,7 +60,7 @@ class Campaign:
         self.cells = self.chosen([(m, r, q) for m in machines.AXES for r in truth.RATES for q in truth.INCREMENTS])
 
     def chosen(self, cells):
-        return [cell for cell in cells if self.options.only in "{}/{}/{:g}".format(*cell)]
+        return [cell for cell in cells if re.search(self.options.only, "{}/{}/{:g}".format(*cell))]
 
     def drawn(self, part):
         """The records of a part, as (part, record)."""
@@ -70,22 +75,30 @@ class Campaign:
                    "inject": lambda: with_partners(draw("inject", exact=True))}[part]()
         return [(part, record) for record in records]
 
-    def run(self):
-        """All parts, simulated together: a tick costs nearly the same for one axis as for hundreds."""
+    def made(self):
+        """Facts of all records, simulated together: a tick costs nearly the same for one axis as for hundreds."""
         drawn = [pair for part in PARTS if part in self.options.parts for pair in self.drawn(part)]
-        part_of = {id(record): part for part, record in drawn}
-        # Those that `inspect` is asked about as well, spread over the cells, whatever N is.
-        sound = sorted((k * 7919) % 10007 * 100000 + k for k, (part, _) in enumerate(drawn) if part == "sound")
-        inspected = {id(drawn[k % 100000][1]) for k in sound[:table.FIRST_SOUND]}
-        answers, later = [Answers(program) for program in self.options.program], []
         for done, record in enumerate(truth.run([record for _, record in drawn], self.progress)):
-            part, facts = part_of[id(record)], truth.write(record, self.folder)
-            for answer in answers:
-                answer.take(part, record, facts, part == "questions" or id(record) in inspected)
-            later.append(facts)
-            if part != "one_direction":  # of these the files of both are needed
-                self.remove(later.pop())
+            yield truth.write(record, self.folder)
             self.progress(f"{done + 1} of {len(drawn)} records")
+
+    def found(self):
+        """Facts of the records that --keep left in the folder."""
+        paths = [path for path in sorted(self.folder.glob("*.json")) if path.with_suffix(".csv").is_file()]
+        for done, path in enumerate(paths):
+            facts = json.loads(path.read_text(encoding="utf-8"))
+            if part_of(facts) in self.options.parts and self.chosen([facts["cell"]]):
+                yield facts | {"log": str(path.with_suffix(".csv")), "machine": str(path.with_suffix(".toml"))}
+            self.progress(f"{done + 1} of {len(paths)} records")
+
+    def run(self):
+        answers, later = [Answers(program) for program in self.options.program], []
+        for facts in self.found() if self.options.again else self.made():
+            for answer in answers:
+                answer.take(part_of(facts), facts)
+            later.append(facts)
+            if part_of(facts) != "one_direction":  # of these the files of both are needed
+                self.remove(later.pop())
         for answer in answers:
             answer.join_pairs()
         for facts in later:
@@ -93,9 +106,24 @@ class Campaign:
         return [answer.results for answer in answers]
 
     def remove(self, facts):
-        if not self.options.keep:
+        if not self.options.keep and not self.options.again:
             for path in (facts["log"], facts["machine"], facts["machine"].replace(".toml", ".json")):
                 pathlib.Path(path).unlink(missing_ok=True)
+
+
+def part_of(facts):
+    fault = facts["fault"]
+    if fault in ("forward", "backward"):
+        return "one_direction"
+    if fault in faults.QUESTIONS:
+        return "questions"
+    return "inject" if facts["name"].endswith("-and-none") else "sound" if fault == "none" else fault
+
+
+def also_inspected(facts):
+    """Faulty records, and of the sound ones so many of each cell that about 200 are reached."""
+    index = facts["seed"][4]
+    return part_of(facts) == "questions" or part_of(facts) == "sound" and index < 2
 
 
 class Answers:
@@ -104,26 +132,26 @@ class Answers:
     def __init__(self, program):
         self.program, self.results, self.pairs, self.loops = program, {"sound": []}, {}, {}
 
-    def take(self, part, record, facts, with_inspect):
+    def take(self, part, facts):
         rows = self.results.setdefault("faulty" if part == "questions" else part, [])
         if part == "one_direction":
-            pair = self.pairs.setdefault(record.name.removesuffix("-and-backward"), {})
-            pair[record.fault] = (truth.information_of(record), facts, record.axis)
+            self.pairs.setdefault(facts["name"].removesuffix("-and-backward"), {})[facts["fault"]] = facts
             return
         if part == "inject":
-            errors = self.loops.setdefault(record.name.removesuffix("-and-none"), {})
-            errors[record.fault] = judge.closed_loop_error(self.program, facts)
-        if part != "inject" or record.fault == "inject":
+            errors = self.loops.setdefault(facts["name"].removesuffix("-and-none"), {})
+            errors[facts["fault"]] = judge.closed_loop_error(self.program, facts)
+        if part != "inject" or facts["fault"] == "inject":
             rows.append(judge.identify(self.program, facts))
-            if with_inspect:
+            if also_inspected(facts):
                 rows[-1]["inspect"] = judge.inspect(self.program, facts)
 
     def join_pairs(self):
         """Logs of one direction each: the information of both together, the files of both in one call."""
         for pair in self.pairs.values():
-            (one, facts, axis), (two, other, _) = pair["forward"], pair["backward"]
-            both = facts | {"parameters": truth.fisher.told(one + two, axis)}
-            self.results["one_direction"].append(judge.identify(self.program, both, [facts["log"], other["log"]]))
+            one, two = pair["forward"], pair["backward"]
+            both = np.array(one["information"]) + np.array(two["information"])
+            facts = one | {"parameters": fisher.told(both, [p["true"] for p in one["parameters"].values()])}
+            self.results["one_direction"].append(judge.identify(self.program, facts, [one["log"], two["log"]]))
         if self.loops:
             self.results["loops"] = [{"name": name, "with": e["inject"][0], "without": e["none"][0],
                                       "message": e["inject"][1]} for name, e in self.loops.items()]
@@ -152,6 +180,7 @@ def arguments():
     parser.add_argument("--only", default="")
     parser.add_argument("--large", action="store_true")
     parser.add_argument("--keep", action="store_true")
+    parser.add_argument("--again", action="store_true")
     parser.add_argument("--show", type=pathlib.Path)
     options = parser.parse_args()
     options.parts = options.parts.split(",")
@@ -159,7 +188,7 @@ def arguments():
     if unknown or options.count < 1:
         parser.error(f"found part '{unknown.pop()}'" if unknown else f"found N {options.count}; expected at least 1")
     options.program = options.program or [str(machines.ROOT / "build/release/bin/stiction")]
-    for program in options.program:
+    for program in () if options.show else options.program:
         if not pathlib.Path(program).is_file():
             parser.error(f"found no programme {program}; build the target stiction, or use --program")
     return options

@@ -78,9 +78,9 @@ def bounds(matrix):
     return out
 
 
-def told(matrix, axis):
-    """{name: {"true", "bound", "identifiable"}} from the information of a record, or the sum of several records'."""
-    true = (axis.mass, axis.viscous, axis.coulomb, axis.offset)
-    scales = (axis.mass, axis.viscous, axis.coulomb, axis.coulomb)
+def told(matrix, true):
+    """{name: {"true", "bound", "identifiable"}} from the information of a record, or the sum of several records', and
+    the true values in the order of NAMES."""
+    scales = (true[0], true[1], true[2], true[2])
     return {name: {"true": value, "bound": error, "identifiable": bool(error <= IDENTIFIABLE * scale)}
             for name, value, error, scale in zip(NAMES, true, bounds(matrix), scales)}

@@ -157,12 +157,13 @@ def information_of(record):
 
 def describe(record):
     """What is true of a record, for whoever judges the programme's answer."""
-    a = record.axis
+    a, matrix = record.axis, information_of(record)
     return {"name": record.name, "cell": list(record.cell), "kind": record.kind, "fault": record.fault,
             "seed": list(record.seed), "set_points": record.set_points, "law": "dahl" if a.stiffness else "coulomb",
             "force_constant": a.force_constant, "stiffness_N_per_m": a.stiffness, "effort_noise": record.effort_noise,
             "force_noise_N": a.force_noise, "encoder_noise_m": a.noise, "file": a.file,
-            "parameters": fisher.told(information_of(record), a)}
+            "parameters": fisher.told(matrix, (a.mass, a.viscous, a.coulomb, a.offset)),
+            "information": matrix.tolist()}
 
 
 def write(record, folder):
