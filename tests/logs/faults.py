@@ -19,7 +19,7 @@ def before(record, rng):
     axis = record.axis
     if record.fault == "inject":
         record.inject, record.set_points = test_signal(rng, axis), True
-    elif record.fault == "saturated":  # a supply or a limit that lets half of the largest acceleration through
+    elif record.fault == "saturated":  # a limit below the largest demand
         x, v, a = record.motion(np.arange(0, record.motion.duration, 1e-3))
         demand = np.abs(axis.mass * a + axis.viscous * v + axis.coulomb * np.sign(v)).max() / axis.force_constant
         axis.limit = round(0.8 * demand, 3)
@@ -33,17 +33,16 @@ def after(record, rng):
     if record.fault == "rms":
         log[effort] = log[effort] / np.sqrt(2) * (1 + rng.uniform(-0.001, 0.001))
     elif record.fault == "millimetres":
-        log["x[m]"] = log["x[m]"] * 1e3
-        if record.set_points:
-            log["x_set[m]"] = log["x_set[m]"] * 1e3
+        for header in {"x[m]", "x_set[m]", "v[m/s]"} & set(log):
+            log[header] = log[header] * 1e3
     elif record.fault == "sign":
         log[effort] = -log[effort]
     elif record.fault == "shift":  # the effort's channel is late (or the position's, where the shift is negative)
         period = np.median(np.diff(record.t))
         steps = int(np.sign(record.shift) * max(1, np.ceil(abs(record.shift) / period)))
-        late = effort if steps > 0 else "x[m]"
         n = abs(steps)
-        log[late] = np.concatenate([np.full(n, log[late][0]), log[late][:-n]])
+        for late in {effort} if steps > 0 else {"x[m]", "v[m/s]"} & set(log):
+            log[late] = np.concatenate([np.full(n, log[late][0]), log[late][:-n]])
         record.shift = steps * period
     elif record.fault == "gap":  # two stretches are missing, as after a full buffer
         for at in (0.3, 0.65):
@@ -55,5 +54,7 @@ def after(record, rng):
         record.clean[edges[2 * longest]:edges[2 * longest + 1]] = True
     elif record.fault == "inject":
         log["i_inject[A]" if effort == "i[A]" else "u_inject[V]"] = record.truth["inject"]
-    if record.fault == "saturated":
-        record.saturated = np.abs(record.truth["effort"]) > 0.98 * record.axis.limit
+    elif record.fault == "saturated":  # with what lies 20 ms, and two samples, around
+        reach = 2 + int(0.02 / np.median(np.diff(record.t)))
+        limited = np.abs(record.truth["effort"]) > 0.98 * record.axis.limit
+        record.clean = np.convolve(limited, np.ones(2 * reach + 1), "same") < 0.5

@@ -46,16 +46,13 @@ def noise_spectrum(f, axis, rate, effort_noise, force_noise):
 def information(t, truth, axis, effort_noise, force_noise, rows=None):
     """The Fisher matrix in the order of NAMES; t the times of the samples, truth as `simulate` returns it.
 
-    rows: samples that count, all when None (a mask of the longest part that is neither saturated nor missing).
+    rows: mask of the samples that count (neither saturated nor missing), all when None.
     """
-    rows = slice(None) if rows is None else rows
-    t = t[rows]
-    data = {key: value[rows] for key, value in truth.items()}
-    v, a = reconstruction(t, data["x_true"])
-    s = data["f"] / axis.coulomb
+    v, a = reconstruction(t, truth["x_true"])
+    s = truth["f"] / axis.coulomb
     rate = (len(t) - 1) / (t[-1] - t[0])
-    window = tukey(len(t), 0.05)
-    left = axis.mass * (data["a"] - a) + axis.viscous * (data["v"] - v)
+    window = tukey(len(t), 0.05) * (1.0 if rows is None else rows)
+    left = axis.mass * (truth["a"] - a) + axis.viscous * (truth["v"] - v)
     columns = np.stack([a, v, s, np.ones_like(t)]) * window
     spectra = np.fft.rfft(columns)
     f = np.fft.rfftfreq(len(t), 1 / rate)

@@ -46,6 +46,7 @@ class Record:
     log: dict = None  # columns as written: header -> values
     rows: np.ndarray = None  # of truth, that the log keeps
     clean: np.ndarray = None  # of truth, that a fit may use
+    shift: float = 0.0  # s by which the effort's channel is late
 
     @property
     def t(self):
@@ -140,13 +141,15 @@ def make_columns(record, rng):
     if record.set_points:
         log["x_set[m]"] = truth["x_set"]
     log["x[m]"] = truth["x"]
+    if rng.random() < 0.25 and record.effort_noise:  # a drive's own speed, as good as its encoder permits or better
+        log["v[m/s]"] = truth["v"] + 1e-4 * axis.max_velocity * rng.standard_normal(len(record.ticks))
     log["i[A]" if axis.effort == "i" else "u[V]"] = effort
     record.log, record.rows = log, np.ones(len(record.ticks), bool)
     record.clean = record.rows.copy()
     faults.after(record, rng)
 
 
-FORMATS = {"t": "%.7f", "x_set": "%.9f", "x": "%.9f", "i": "%.5f", "u": "%.6f", "i_inject": "%.6f", "u_inject": "%.7f"}
+FORMATS = {"t": "%.7f", "x_set": "%.9f", "x": "%.9f", "v": "%.7f", "i": "%.5f", "u": "%.6f", "i_inject": "%.6f", "u_inject": "%.7f"}
 
 
 def information_of(record):
@@ -162,6 +165,7 @@ def describe(record):
             "seed": list(record.seed), "set_points": record.set_points, "law": "dahl" if a.stiffness else "coulomb",
             "force_constant": a.force_constant, "stiffness_N_per_m": a.stiffness, "effort_noise": record.effort_noise,
             "force_noise_N": a.force_noise, "encoder_noise_m": a.noise, "file": a.file,
+            "shift_s": record.shift,
             "parameters": fisher.told(matrix, (a.mass, a.viscous, a.coulomb, a.offset)),
             "information": matrix.tolist()}
 
