@@ -167,7 +167,7 @@ def held_out(rows):
 
 def said(row, where):
     """What one row asked: list, or None when its output has no such key or the programme refused."""
-    told = row["inspect"]["questions"] if where == "inspect" else row["questions"]
+    told = row.get("inspect", {}).get("questions") if where == "inspect" else row["questions"]
     return told if isinstance(told, list) else None
 
 
