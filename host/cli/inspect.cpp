@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "firmware/machine/model/motor_force.hpp"
 #include "host/cli/commands.hpp"
@@ -91,17 +92,17 @@ std::string limited_text(const LimitedChannel& limited) {
   switch (limited.kind) {
     case LimitedChannel::Kind::limit:
       return fmt::format(
-          "{} is at the limit of {:.4g} {} in the machine file for {:.2g} % of the samples, which no fit "
+          "{} is at the limit of {:.4g} {} in the machine file for {:.1f} % of the samples, which no fit "
           "uses",
           limited.channel->name, limited.level, limited.channel->unit, percent);
     case LimitedChannel::Kind::clipped:
       return fmt::format(
-          "{} is held at the end of its range, up to {:.4g} {}, for {:.2g} % of the samples, which no fit "
+          "{} is held at the end of its range, up to {:.4g} {}, for {:.1f} % of the samples, which no fit "
           "uses",
           limited.channel->name, limited.level, limited.channel->unit, percent);
     case LimitedChannel::Kind::off:
       return fmt::format(
-          "{} is exactly 0 while the axis moves, for {:.2g} % of the samples: the drive is off, and no fit "
+          "{} is exactly 0 while the axis moves, for {:.1f} % of the samples: the drive is off, and no fit "
           "uses them",
           limited.channel->name, percent);
   }
@@ -238,8 +239,10 @@ std::string axis_text(const Log& log, std::size_t index, const AxisInspection& a
 }
 
 void run(const InspectOptions& options) {
-  const auto stretches = stretches_of(read_log_shown(options.log, options.columns));
-  const auto& log = *std::ranges::max_element(stretches, {}, [](const Log& each) { return each.t.size(); });
+  auto read = read_log_shown(options.log, options.columns);
+  const auto which = read.clock.stretch;
+  const auto stretches = stretches_of(std::move(read));
+  const auto& log = stretches.at(which);
   const auto known = known_axes(options, log);
   const auto inspection = inspect(log, known);
   if (options.json) {
@@ -248,11 +251,11 @@ void run(const InspectOptions& options) {
              {"samples", log.t.size()},
              {"period_s", log.period},
              {"duration_s", inspection.duration},
-             {"stretches", json::array()},
+             {"segments", json::array()},
              {"notes", log.notes},
              {"ignored", log.ignored},
              {"axes", json::array()}};
-    for (const auto& each : stretches) out["stretches"].push_back(clock_json(each));
+    for (const auto& each : stretches) out["segments"].push_back(clock_json(each));
     for (std::size_t k = 0; k < log.axes.size(); ++k) out["axes"].push_back(axis_json(log, k, inspection.axes[k]));
     fmt::print("{}\n", out.dump(2));
     return;
@@ -261,7 +264,8 @@ void run(const InspectOptions& options) {
              1e-3 / log.period, inspection.duration);
   fmt::print("  clock: {}\n", clock_text(log));
   if (stretches.size() > 1) {
-    fmt::print("  the record has {} stretches, of which this is the longest:\n", stretches.size());
+    fmt::print("  the record has {} segments; this is the one with the most samples that a fit may use:\n",
+               stretches.size());
     for (const auto& each : stretches)
       fmt::print("    {} to {} s: {} samples at {:.6g} ms, {}\n", each.t.front(), each.t.back(), each.t.size(),
                  each.period * 1e3, clock_text(each));

@@ -68,7 +68,7 @@ std::vector<bool> fill(const Values& t, Values& values) {
 
 std::vector<std::size_t> treat_blank_cells(Log& log, const std::function<std::string(std::size_t)>& place) {
   std::vector<std::size_t> rows;
-  const auto name = [](const AxisLog& axis, const LogChannel& channel) { return channel_header(axis.axis, channel); };
+  const auto name = [](const AxisLog& axis, const LogChannel& channel) { return channel_header(axis, channel); };
   for (auto& axis : log.axes)
     for (const auto& channel : log_channels) {
       auto& values = axis.*channel.values;

@@ -79,10 +79,11 @@ std::optional<LimitedChannel> piled_up(const LogChannel& channel, const AxisLog&
       levels.push_back(values[begin]);
   });
   if (levels.empty()) return std::nullopt;
-  std::ranges::sort(levels);
-  // A supply that changes by its last digit breaks a run: every sample on one of the levels counts.
+  // A supply that sags moves the end of the range: every sample from the lowest level on counts.
+  for (double& level : levels) level = std::abs(level);
+  const double lowest = *std::ranges::min_element(levels);
   for (std::size_t k = 0; k < values.size(); ++k)
-    if (std::ranges::binary_search(levels, values[k])) {
+    if (std::abs(values[k]) >= lowest) {
       out.samples[k] = true;
       out.level = std::max(out.level, std::abs(values[k]));
     }

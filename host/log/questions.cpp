@@ -19,11 +19,12 @@ constexpr double mass_known = 0.15;     // of the machine file's mass
 constexpr double channel_known = 0.03;  // of a ratio of two channels that should be one
 constexpr double model_error = 0.015;   // of r: what the equation of motion lacks, alike in all parts of a record
 constexpr double alike = 0.15;          // of what is unexplained, which may go with the acceleration everywhere
-constexpr double prior_odds = 0.03;     // of one hypothesis over a sound record: three records in a hundred
+constexpr double prior_odds = 0.1;      // of one hypothesis over a sound record: one record in ten
+constexpr double other_odds = 0.03;     // that anything else is wrong
 constexpr double determined = 4.0;      // standard errors from 0 from which a mass counts as one
 constexpr double explained = 0.5;       // of the effort's variance, for a delay
 constexpr double late_enough = 3.5e-3;  // s: half way between a sound loop (2 ms) and the 5 ms that must be asked
-constexpr double less_rest = 1.5;       // unexplained variance without the delay over that with it
+constexpr double less_rest = 1.3;       // unexplained variance without the delay over that with it
 constexpr double widest = 13.8;         // natural logarithm of 1e6: how far off anything else may be
 
 struct Hypothesis {
@@ -33,9 +34,10 @@ struct Hypothesis {
 
 double normal_part(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
 
-// Likelihood of ln r, `off` from that of the hypothesis, whose own ratio is uniform within +-`half`.
-double likelihood(double off, double half, double error) {
-  return (normal_part((off + half) / error) - normal_part((off - half) / error)) / (2.0 * half);
+// Likelihood of ln r, `off` from that of the hypothesis, whose own ratio is uniform from 1 - `within` to 1 + `within`.
+double likelihood(double off, double within, double error) {
+  const double low = std::log1p(-within), high = std::log1p(within);
+  return (normal_part((off - low) / error) - normal_part((off - high) / error)) / (high - low);
 }
 
 struct Choice {
@@ -44,19 +46,19 @@ struct Choice {
 };
 
 Choice most_likely(double ratio, double error, double known_within, const std::vector<Hypothesis>& hypotheses) {
-  const double half = std::log1p(known_within), relative = std::hypot(error / std::abs(ratio), model_error);
+  const double relative = std::hypot(error / std::abs(ratio), model_error);
   const auto of = [&](double factor) {
-    return ratio * factor > 0.0 ? likelihood(std::log(ratio / factor), half, relative) : 0.0;
+    return ratio * factor > 0.0 ? likelihood(std::log(ratio / factor), known_within, relative) : 0.0;
   };
   const double sound = of(1.0);
-  double sum = sound + prior_odds * 0.5 / widest, best = sound;
+  double sum = sound + other_odds * 0.5 / widest, best = sound;
   Choice choice;
   for (const auto& h : hypotheses) {
     const double weight = prior_odds * of(h.factor);
     sum += weight;
     if (weight > best) best = weight, choice.hypothesis = h;
   }
-  if (prior_odds * 0.5 / widest > best) best = prior_odds * 0.5 / widest, choice.hypothesis = {About::scale, 0.0};
+  if (other_odds * 0.5 / widest > best) best = other_odds * 0.5 / widest, choice.hypothesis = {About::scale, 0.0};
   choice.probability = best / sum;
   return choice;
 }

@@ -97,9 +97,10 @@ void finish(Log& log, const StampDigits& digits, bool resample) {
     for (const auto& channel : log_channels)
       axis.increments.push_back(increment_of(std::span<const double>(axis.*channel.values)));
   integrate_speeds(log);
+  // Before any sample is interpolated: one between a limited one and a free one is neither.
+  for (auto& axis : log.axes) leave_out(axis, limited_channels(log, axis));
   if (resample) log = made_even(log);
   log.clock.jitter = jitter;
-  for (auto& axis : log.axes) leave_out(axis, limited_channels(log, axis));
 }
 
 Log part_of(const Log& log, const Segment& segment) {
@@ -125,7 +126,15 @@ Log part_of(const Log& log, const Segment& segment) {
   return part;
 }
 
-// Splits the log into its stretches; it becomes the longest of them.
+// Samples that a fit may use on every axis.
+std::size_t used_samples(const Log& log) {
+  std::size_t least = log.t.size();
+  for (const auto& axis : log.axes)
+    least = std::min(least, log.t.size() - static_cast<std::size_t>(std::ranges::count(axis.left_out, true)));
+  return least;
+}
+
+// Splits the log into its stretches; it becomes the one of the most samples that a fit may use.
 void split(Log& log, const StampDigits& digits, const Uneven& uneven,
            const std::function<std::string(std::size_t)>& place) {
   auto segments = segments_of(log.t, digits);
@@ -141,7 +150,7 @@ void split(Log& log, const StampDigits& digits, const Uneven& uneven,
   if (!dropped.empty()) {
     const auto shown = std::min<std::size_t>(dropped.size(), 5);
     log.notes.push_back(
-        fmt::format("{} stretches of fewer than {} samples are dropped: {}{}.", dropped.size(), shortest_stretch,
+        fmt::format("{} segments of fewer than {} samples are dropped: {}{}.", dropped.size(), shortest_stretch,
                     fmt::join(dropped.begin(), dropped.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
                     dropped.size() > shown ? ", ..." : ""));
   }
@@ -149,13 +158,13 @@ void split(Log& log, const StampDigits& digits, const Uneven& uneven,
   std::vector<Log> stretches;
   for (std::size_t k = 0; k < segments.size(); ++k) {
     const auto& segment = segments[k];
-    if (segment.end - segment.begin > segments[longest].end - segments[longest].begin) longest = k;
     auto part = part_of(log, segment);
     part.clock.stretch = k;
     part.clock.stretches = segments.size();
-    if (segments.size() > 1) part.source += fmt::format(", stretch {} of {}", k + 1, segments.size());
+    if (segments.size() > 1) part.source += fmt::format(", segment {} of {}", k + 1, segments.size());
     finish(part, digits, first_uneven(part.t, digits).has_value());
     stretches.push_back(std::move(part));
+    if (used_samples(stretches.back()) > used_samples(stretches[longest])) longest = k;
   }
   log = std::move(stretches[longest]);
   stretches.erase(stretches.begin() + static_cast<std::ptrdiff_t>(longest));

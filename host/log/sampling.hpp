@@ -34,8 +34,8 @@ inline constexpr std::size_t shortest_stretch = 20;
 // * stamps that repeat or fall are refused with their place;
 // * blank cells (NaN) are trimmed, interpolated and left out (blank_cells.hpp);
 // * a speed without a position is integrated;
-// * the record is split at gaps and changes of rate (uneven_clock.hpp): `log` is the longest stretch, log.others has
-//   the rest, and stretches below `shortest_stretch` are dropped;
+// * the record is split at gaps and changes of rate (uneven_clock.hpp): `log` is the stretch of the most samples
+//   that a fit may use, log.others has the rest, and stretches below `shortest_stretch` are dropped;
 // * a stretch whose steps differ by more than `step_tolerance` beyond the digits is resampled (resample.hpp); others
 //   stay as they are to the last bit;
 // * samples at which a channel stands at the end of its range are left out (limits.hpp).

@@ -7,7 +7,7 @@
 
 namespace stiction::host {
 
-// All stretches of the record that `log`, as a reader returned it, is the longest of, in the record's order.
+// All stretches of the record that `log`, as a reader returned it, is one of, in the record's order.
 std::vector<Log> stretches_of(Log log);
 
 }  // namespace stiction::host

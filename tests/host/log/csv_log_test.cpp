@@ -157,7 +157,7 @@ TEST(CsvLog, FindsAGapInStampsRoundedToTheDigitsWritten) {
   for (int k = 0; k < 20000; ++k)
     if (k != 15000) text += fmt::format("{:.6g},0,0\n", k * 1e-3);
   const auto log = parse(text);
-  EXPECT_EQ(log.source, "run.csv, stretch 1 of 2");
+  EXPECT_EQ(log.source, "run.csv, segment 1 of 2");
   EXPECT_EQ(log.t.size(), 15000u);
   ASSERT_EQ(log.others.size(), 1u);
   EXPECT_EQ(log.others[0].t.size(), 4999u);
