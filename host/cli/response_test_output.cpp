@@ -15,13 +15,13 @@
 namespace stiction::host {
 namespace {
 
-using json = nlohmann::ordered_json;
+using Object = nlohmann::ordered_json;
 
 double decibels(const TestResponsePoint& point) { return 20.0 * std::log10(std::abs(point.gain)); }
 double degrees(const TestResponsePoint& point) { return std::arg(point.gain) * 180.0 / std::numbers::pi; }
 
-json points_json(const std::vector<TestResponsePoint>& points) {
-  json out = json::array();
+Object points_json(const std::vector<TestResponsePoint>& points) {
+  Object out = Object::array();
   for (const auto& point : points)
     out.push_back({{"frequency_Hz", point.frequency},
                    {"real", point.gain.real()},
@@ -30,7 +30,7 @@ json points_json(const std::vector<TestResponsePoint>& points) {
   return out;
 }
 
-json test_json(const ResponseTest& test, const std::vector<TestResponsePoint>& ours,
+Object test_json(const ResponseTest& test, const std::vector<TestResponsePoint>& ours,
                const std::vector<TestResponsePoint>& stored, const ResponseDifference& difference) {
   const auto& input = test.signals[test.input];
   return {{"schema", "stiction.response-test/1"},
