@@ -81,7 +81,8 @@ std::string test_text(const ResponseTest& test, const std::vector<TestResponsePo
       "above {:g}.\n",
       difference.gain_db, difference.phase_deg, difference.lines, stored.size(), least_coherence);
   // The control labels its lines with a spacing of its own.
-  const double label = stored.back().frequency / ours[stored.size() - 1].frequency - 1.0;
+  const double highest = ours[stored.size() - 1].frequency;
+  const double label = highest > 0.0 ? stored.back().frequency / highest - 1.0 : 0.0;
   if (std::abs(label) > 1e-6)
     text += fmt::format(
         "The frequencies here are multiples of 1/(N T) = {:.6g} Hz, as the records are; those written in the file are "
