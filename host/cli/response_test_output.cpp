@@ -15,13 +15,13 @@
 namespace stiction::host {
 namespace {
 
-using json = nlohmann::ordered_json;
+using Object = nlohmann::ordered_json;
 
 double decibels(const TestResponsePoint& point) { return 20.0 * std::log10(std::abs(point.gain)); }
 double degrees(const TestResponsePoint& point) { return std::arg(point.gain) * 180.0 / std::numbers::pi; }
 
-json points_json(const std::vector<TestResponsePoint>& points) {
-  json out = json::array();
+Object points_json(const std::vector<TestResponsePoint>& points) {
+  Object out = Object::array();
   for (const auto& point : points)
     out.push_back({{"frequency_Hz", point.frequency},
                    {"real", point.gain.real()},
@@ -30,7 +30,7 @@ json points_json(const std::vector<TestResponsePoint>& points) {
   return out;
 }
 
-json test_json(const ResponseTest& test, const std::vector<TestResponsePoint>& ours,
+Object test_json(const ResponseTest& test, const std::vector<TestResponsePoint>& ours,
                const std::vector<TestResponsePoint>& stored, const ResponseDifference& difference) {
   const auto& input = test.signals[test.input];
   return {{"schema", "stiction.response-test/1"},
@@ -81,7 +81,8 @@ std::string test_text(const ResponseTest& test, const std::vector<TestResponsePo
       "above {:g}.\n",
       difference.gain_db, difference.phase_deg, difference.lines, stored.size(), least_coherence);
   // The control labels its lines with a spacing of its own.
-  const double label = stored.back().frequency / ours[stored.size() - 1].frequency - 1.0;
+  const double highest = ours[stored.size() - 1].frequency;
+  const double label = highest > 0.0 ? stored.back().frequency / highest - 1.0 : 0.0;
   if (std::abs(label) > 1e-6)
     text += fmt::format(
         "The frequencies here are multiples of 1/(N T) = {:.6g} Hz, as the records are; those written in the file are "

@@ -16,7 +16,7 @@ constexpr double of_rate = 0.3;  // of the log's rate: how far derivatives of 11
 // Of the mass. What noise takes is put back by instruments or by its known variance, neither of which is exact; and a
 // plain least squares of the same rows predicts better by half of it.
 constexpr double noisiest = 0.02;
-constexpr std::size_t least_blocks = 10;
+constexpr std::size_t least_blocks_of_band = 10;
 constexpr double as_narrow = 0.3;   // sum of the logarithms of two intervals' widths
 constexpr double same_width = 2.5;  // ratio of intervals that are compared
 
@@ -53,7 +53,7 @@ double width_of(const BandPoint& p) {
 }
 
 bool sound(const BandPoint& p) {
-  return p.blocks >= least_blocks && p.attenuation < noisiest &&
+  return p.blocks >= least_blocks_of_band && p.attenuation < noisiest &&
          std::all_of(p.value.begin(), p.value.end(), [](double v) { return std::isfinite(v); }) && p.value[0] > 0.0;
 }
 

@@ -81,7 +81,7 @@ double allowed(const Criterion& c, double value, const Scales& scales) {
   return 0.0;
 }
 
-constexpr std::size_t least_blocks = 6;  // fewer do not say how much they scatter
+constexpr std::size_t least_blocks_of_scatter = 6;  // fewer do not say how much they scatter
 
 // What the motion must be able to show over the model's errors.
 double visible(std::string_view name, double value, const Scales& scales) {
@@ -110,9 +110,10 @@ void judge(Identification& result, const FittedParameter& fitted, const Scales& 
   const auto interval = fitted.interval();
   const double half = 0.5 * (interval.high - interval.low);
   const char* record = criterion != nullptr ? criterion->record : record_speeds;
-  if (blocks < least_blocks) {
+  if (blocks < least_blocks_of_scatter) {
     result.not_determined.push_back(
-        {fitted.name, fmt::format("the data have {} independent blocks, fewer than {}", blocks, least_blocks), record});
+        {fitted.name,
+         fmt::format("the data have {} independent blocks, fewer than {}", blocks, least_blocks_of_scatter), record});
     return;
   }
   if (criterion != nullptr && floor_of(fitted.name, scales) > visible(fitted.name, fitted.value, scales)) {

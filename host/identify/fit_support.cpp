@@ -10,7 +10,7 @@ namespace {
 // rows as the anti-aliasing filter correlates.
 constexpr double correlation_lengths = 3.0;
 constexpr std::size_t least_rows = 10;
-constexpr std::size_t least_blocks = 8;
+constexpr std::size_t least_blocks_of_fit = 8;
 constexpr double worth_while = 0.01;  // of the value; less is noise of the test itself in one record of thirty
 
 }  // namespace
@@ -72,7 +72,7 @@ void check_against_sliding(FrictionFit& fit, const LogRows& rows, const FitSetti
     if (sliding.segment(static_cast<Eigen::Index>(block.begin), static_cast<Eigen::Index>(block.end - block.begin))
             .maxCoeff() > 0.0)
       with_rows.push_back(block);
-  if (with_rows.size() < least_blocks) return;
+  if (with_rows.size() < least_blocks_of_fit) return;
   const BlockRegression paired(columns, force, fit.blocks);
   const Eigen::RowVectorXd centre = paired.solve().transpose();
   FrictionFit alone;

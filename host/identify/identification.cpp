@@ -27,12 +27,12 @@ void keep_residuals(Identification& result, const LogRows& rows, const FrictionF
   }
 }
 
-constexpr std::size_t least_blocks = 8;         // of a curve
-constexpr std::size_t least_sliding_rows = 40;  // eight curves' worth of parameters
+constexpr std::size_t least_blocks_of_curve = 8;  // of a curve
+constexpr std::size_t least_sliding_rows = 40;    // eight curves' worth of parameters
 
 void add_curve(Identification& result, const LogRows& rows, const FrictionFit& fit, const FitSettings& settings) {
   const auto data = sliding_data(rows, fit);
-  if (data.speed.size() >= static_cast<Eigen::Index>(least_sliding_rows) && data.blocks.size() >= least_blocks)
+  if (data.speed.size() >= static_cast<Eigen::Index>(least_sliding_rows) && data.blocks.size() >= least_blocks_of_curve)
     result.curve = choose_sliding_curve(data, fit.correlation, settings);
   else
     result.not_determined.push_back({"sliding_curve", "the data contain hardly any sliding", record_speeds});

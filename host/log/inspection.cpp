@@ -6,6 +6,7 @@
 
 #include "host/log/determinable.hpp"
 #include "host/log/resolution.hpp"
+#include "host/log/statistics.hpp"
 
 namespace stiction::host {
 namespace {
@@ -19,12 +20,6 @@ constexpr double sliding = 1e-4;          // m, that are surely beyond preslidin
 constexpr double same_speed = 0.03;       // plateaus nearer than this are one
 constexpr double independent = 0.01;      // s, between samples that count as independent
 constexpr double held_still = 0.005;      // s at the very end of the range that no free signal stays
-
-double largest_magnitude(const Values& values) {
-  double most = 0.0;
-  for (const double value : values) most = std::max(most, std::abs(value));
-  return most;
-}
 
 // Below this speed a sample rests: a thousandth of the fastest, or what the encoder's rounding makes of rest.
 double rest_speed(const Values& v) { return std::max(1e-3 * largest_magnitude(v), 1e-6); }
@@ -121,8 +116,8 @@ std::optional<RigidFit> fit_effort(const Values& effort, const FittedMotion& mot
   return fit;
 }
 
-// Slope of a over b through the origin.
-double slope(const Values& a, const Values& b) {
+// Of a over b.
+double slope_through_origin(const Values& a, const Values& b) {
   double ab = 0.0, bb = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) ab += a[k] * b[k], bb += b[k] * b[k];
   return bb > 0.0 ? ab / bb : 0.0;
@@ -136,7 +131,7 @@ std::optional<double> delay_of(const AxisLog& axis, const FittedMotion& motion) 
   for (std::size_t k = 0; k < behind.size(); ++k)
     mean += (axis.x_set[k] - axis.x[k]) / static_cast<double>(behind.size());
   for (std::size_t k = 0; k < behind.size(); ++k) behind[k] = axis.x_set[k] - axis.x[k] - mean;
-  return slope(behind, motion.v);
+  return slope_through_origin(behind, motion.v);
 }
 
 AxisInspection inspect_axis(const Log& log, const AxisLog& axis, const KnownAxis& known) {
@@ -166,7 +161,7 @@ AxisInspection inspect_axis(const Log& log, const AxisLog& axis, const KnownAxis
       }
   if (out.effort != nullptr && out.stroke > sliding)
     out.fit = fit_effort(axis.*out.effort->values, motion, rest, log.period);
-  if (!axis.i.empty() && !axis.force.empty()) out.force_per_current = slope(axis.force, axis.i);
+  if (!axis.i.empty() && !axis.force.empty()) out.force_per_current = slope_through_origin(axis.force, axis.i);
   const bool fitted = out.fit && out.fit->value[0] > 4.0 * out.fit->error[0];
   if (fitted && known.mass) out.force_constant = *known.mass / out.fit->value[0];
   out.delay = delay_of(axis, motion);

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "host/log/resolution.hpp"
+#include "host/log/statistics.hpp"
 
 namespace stiction::host {
 namespace {
@@ -18,12 +19,6 @@ constexpr std::size_t fewest = 5;   // samples
 constexpr double off_for = 0.1;     // s
 constexpr double stops = 0.1;       // of the greatest speed, lost within one sample
 constexpr double clear = 4.0;       // increments that a smooth peak would have risen
-
-double largest_magnitude(const Values& values) {
-  double most = 0.0;
-  for (const double value : values) most = std::max(most, std::abs(value));
-  return most;
-}
 
 // Calls `found(begin, end)` for every run of equal values of at least `least` samples.
 template <typename Found>

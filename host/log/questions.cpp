@@ -158,7 +158,7 @@ void ask_delay(const Effort& effort, const RigidMotion& motion, std::vector<Ques
 }
 
 // Slope of `a` over `b` about their means with its error; 0 and 1e9 where they do not go together.
-std::pair<double, double> slope(const Values& a, const Values& b) {
+std::pair<double, double> slope_about_means(const Values& a, const Values& b) {
   double ma = 0.0, mb = 0.0;
   const double n = static_cast<double>(a.size());
   for (std::size_t k = 0; k < a.size(); ++k) ma += a[k] / n, mb += b[k] / n;
@@ -179,7 +179,7 @@ void ask_channels(const char* a_name, const Values& a, const char* b_name, const
   if (a.empty() || a.size() != b.size()) return;
   const auto [least, most] = std::ranges::minmax(b);
   if (most - least < 20.0 * noise) return;
-  const auto [ratio, error] = slope(a, b);
+  const auto [ratio, error] = slope_about_means(a, b);
   if (ratio == 0.0 || std::abs(ratio) < determined * error) return;
   std::vector<Hypothesis> all{{About::sign, -1.0}};
   if (current) {

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "host/log/statistics.hpp"
+
 namespace stiction::host {
 namespace {
 
@@ -104,12 +106,6 @@ double grid_of(const std::vector<double>& gaps, std::vector<double> steps, doubl
       best = divisor;
   }
   return best;
-}
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/log/statistics.hpp"
+
 namespace stiction::host {
 namespace {
 
@@ -13,12 +15,6 @@ constexpr double least_change = 0.1;     // of the rate
 constexpr double sure = 6.0;             // standard deviations
 // The median of n normal values has 1.25 standard deviations over the root of n; a difference of two the root of two.
 const double change_error = 1.25 * std::sqrt(2.0 / static_cast<double>(of_one_rate));
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 double median_of(const std::vector<double>& values, std::ptrdiff_t begin, std::ptrdiff_t end,
                  std::vector<double>& scratch) {

@@ -19,8 +19,12 @@ inline void check_promises(const host::Log& log) {
     for (const auto& channel : host::log_channels) {
       const auto& values = axis.*channel.values;
       if (!values.empty() && values.size() != log.t.size()) finding("a channel has another length");
-      for (const double value : values)
-        if (!std::isfinite(value)) finding("a value is not finite");
+      std::size_t blank = 0;  // a cell without value
+      for (const double value : values) {
+        blank += std::isnan(value);
+        if (std::isinf(value)) finding("a value is not finite");
+      }
+      if (!values.empty() && blank == values.size()) finding("a channel has no value");
     }
   }
 }

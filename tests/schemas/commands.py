@@ -28,6 +28,7 @@ simulate break-away --machine mcfv5050ln --json
 simulate stick-slip --machine mcfv5050ln --json
 simulate frequency-response --machine mcfv5050ln --axis X --passes 1 --json
 simulate frequency-response --machine emps --json
+simulate frequency-response --from test.xml --json
 simulate replay --from run.csv --machine mcfv5050ln --friction lugre --json
 simulate replay --from lap.csv --machine emps --json
 simulate commissioning --machine emps --hide 3 --out records --json
@@ -70,6 +71,8 @@ def prepare(folder):
     shipped = SOURCE / "firmware/machine/shipped/mcfv5050ln.toml"
     (folder / "other.toml").write_text(shipped.read_text(encoding="utf-8"), encoding="utf-8")
     (folder / "steady.csv").write_text(STEADY, encoding="utf-8")
+    made = SOURCE / "tests/fuzz/seeds/response_file/made.xml"
+    (folder / "test.xml").write_text(made.read_text(encoding="utf-8"), encoding="utf-8")
     # A current that stays at a limit, and the motor's force beside it.
     rows = "".join(f"{k / 1000},{0.01 * k * k / 1e6},{min(k, 300) / 100},{94 * min(k, 300) / 100}\n" for k in range(600))
     (folder / "spare.csv").write_text("t[s],x[m],i[A],F[N]\n" + rows, encoding="utf-8")
