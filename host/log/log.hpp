@@ -40,6 +40,9 @@ struct AxisLog {
   bool rotary = false;
   // Samples that no fit may use: a channel stands at its limit, a cell was blank. Empty: none.
   std::vector<bool> left_out;
+  // Of each of log_channels the increment that it was written with, before any sample was interpolated, in its unit; 0:
+  // none found (resolution.hpp). Empty: not from a reader.
+  std::vector<double> increments;
 };
 
 // The one list of an axis' channels: the column's name, the unit of the values, and where they are kept.

@@ -10,13 +10,14 @@
 namespace stiction::host {
 namespace {
 
-constexpr double share = 0.9;             // of the differences that must be whole multiples
-constexpr std::size_t fewest = 8;         // differences that show a grid
-constexpr std::size_t few_gaps = 256;     // of the smallest, from which grids are proposed
-constexpr std::size_t drawn = 5;          // gaps whose common divisor is taken: it is that of all in 96 %
-constexpr int draws = 48;                 // so many, as a few gaps lie off the grid
-constexpr std::size_t most_kept = 20000;  // differences that are judged
-constexpr double clear = 8.0;             // an increment counts above this many times the error of a difference
+constexpr double share = 0.9;               // of the differences that must be whole multiples
+constexpr std::size_t fewest = 8;           // differences that show a grid
+constexpr std::size_t few_gaps = 256;       // of the smallest, from which grids are proposed
+constexpr std::size_t drawn = 5;            // gaps whose common divisor is taken: it is that of all in 96 %
+constexpr int draws = 24;                   // so many, as a few gaps lie off the grid
+constexpr std::size_t most_kept = 5000;     // differences that are judged
+constexpr std::size_t most_sorted = 20000;  // values whose gaps are
+constexpr double clear = 8.0;               // an increment counts above this many times the error of a difference
 
 // Sizes of the differences between neighbours that are not equal, evenly picked where there are very many.
 std::vector<double> steps_of(std::span<const double> values, double error) {
@@ -28,7 +29,9 @@ std::vector<double> steps_of(std::span<const double> values, double error) {
 }
 
 // Distances between different values, in the order of their size.
-std::vector<double> sorted_gaps(std::vector<double> values, double error) {
+std::vector<double> sorted_gaps(const std::vector<double>& all, double error) {
+  std::vector<double> values;
+  for (std::size_t k = 0; k < all.size(); k += 1 + all.size() / most_sorted) values.push_back(all[k]);
   std::ranges::sort(values);
   std::vector<double> gaps;
   double last = values.empty() ? 0.0 : values.front();
@@ -126,6 +129,13 @@ double increment_of(std::span<const double> all) {
     if (coarser > rounding)
       if (const double counts = grid_of(sorted_gaps(values, coarser), steps, coarser); counts > 0.0) increment = counts;
   return increment;
+}
+
+double increment_of(const AxisLog& axis, std::vector<double> AxisLog::*channel) {
+  if (!axis.increments.empty())
+    for (std::size_t k = 0; k < log_channels.size(); ++k)
+      if (log_channels[k].values == channel) return axis.increments[k];
+  return increment_of(std::span<const double>(axis.*channel));
 }
 
 double noise_of(std::span<const double> values) {

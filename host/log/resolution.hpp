@@ -3,6 +3,8 @@
 
 #include <span>
 
+#include "host/log/log.hpp"
+
 namespace stiction::host {
 
 // The largest increment of which nine in ten differences between neighbouring values are whole multiples, within the
@@ -11,6 +13,11 @@ namespace stiction::host {
 // values in full precision). `values`: of the channel, at least eight that differ. Blank cells (NaN) are passed over.
 // Takes N log N.
 double increment_of(std::span<const double> values);
+
+// The increment of one of an axis' channels as it was written, in its unit; 0: none found. After a resampling the
+// values themselves no longer tell. `axis`: whose `increments` count where it has some; `channel`: one of log_channels'
+// values.
+double increment_of(const AxisLog& axis, std::vector<double> AxisLog::*channel);
 
 // Standard deviation of what is random in a channel from sample to sample, its rounding included, in the unit of the
 // channel: robust (median) differences of the order, from 1 to 6, that leave least of the motion. 0: too few samples
