@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "firmware/machine/model/motor_force.hpp"
 #include "host/identify/determined.hpp"
 #include "host/identify/fit_support.hpp"
 #include "host/identify/standstill.hpp"
@@ -78,6 +79,25 @@ Source sources_for(Identification& result, const std::vector<Log>& logs, const m
                     "none.",
                     masked, 100.0 * static_cast<double>(masked) / static_cast<double>(result.samples)));
   return source;
+}
+
+// What looks wrong in the logs, the likeliest of each kind.
+void ask(Identification& result, const Source& source, const machine::AxisModel& axis) {
+  const bool force_motor = axis.motor.model == machine::MotorModel::force;
+  KnownAxis known{axis.mass,
+                  machine::acting_force_constant(axis.motor),
+                  force_motor ? axis.inverter.voltage_limit : axis.inverter.current_limit * axis.motor.count,
+                  {}};
+  if (axis.motor.pole_pair_pitch > 0.0) known.pole_pair_pitch = axis.motor.pole_pair_pitch;
+  for (const auto& each : source.logs)
+    for (const auto& question : questions_of(*each.log, *each.channels, known)) {
+      const auto same = std::find_if(result.questions.begin(), result.questions.end(),
+                                     [&](const auto& q) { return q.about == question.about; });
+      if (same == result.questions.end())
+        result.questions.push_back(question);
+      else if (same->probability < question.probability)
+        *same = question;
+    }
 }
 
 // Rows of the fixed band, 40 Hz, of logs that are fast and fine enough for it.
@@ -221,6 +241,7 @@ Identification identify_logs(const std::vector<Log>& logs, const machine::AxisMo
   Identification result;
   result.axis = axis.name;
   const auto source = sources_for(result, logs, axis);
+  ask(result, source, axis);
   const bool recipe = options.friction == sim::CoulombViscous<>::name;
   const bool holds = std::any_of(options.held.begin(), options.held.end(), [](const auto& h) { return h.has_value(); });
   const bool published = recipe && !options.moving_rows_only && !holds;
