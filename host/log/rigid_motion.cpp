@@ -13,11 +13,13 @@ namespace {
 
 using Values = std::vector<double>;
 
-constexpr int columns = 8;  // acceleration, speed, its sign, its root, one, friction that builds up over distances
+constexpr int columns = 9;  // acceleration, speed, its sign, root, fall near 0, one, friction built up over distances
 constexpr int parts = 12;   // of the record, one of which the jackknife leaves out
 constexpr double most_noise = 0.01;        // of the acceleration's variance that the position's noise may make
 constexpr std::size_t fewest_samples = 8;  // in a window; a fourth power of a cosine is summed exactly from 5 on
 constexpr int delays = 61;                 // that are tried
+constexpr double falls_within = 0.01;      // of the greatest speed: friction near standstill
+constexpr double most_standing = 0.25;     // of a window
 constexpr std::array<double, 3> distances{3e-4, 3e-3, 3e-2};                  // of the stroke
 constexpr std::array<double, 6> windows{0.04, 0.08, 0.16, 0.32, 0.64, 1.28};  // s
 
@@ -168,6 +170,7 @@ class Fit {
     for (std::ptrdiff_t k = begin; k < end; k += step) {
       Vector row = Vector::Zero();
       bool usable = true, moves = false;
+      double standing = 0.0;
       for (std::ptrdiff_t m = -reach; m <= reach && usable; ++m) {
         const auto at = static_cast<std::size_t>(k + m);
         const auto& s = shape_[static_cast<std::size_t>(m + reach)];
@@ -179,10 +182,13 @@ class Fit {
         row[2] += s.value * sign;
         row[3] += s.value * sign * std::sqrt(std::abs(v) / fastest_);
         row[4] += s.value;
+        row[8] += s.value * sign * std::exp(-std::abs(v) / (falls_within * fastest_));
+        standing += std::abs(v) < rest_ ? s.value : 0.0;
         for (std::size_t d = 0; d < distances.size(); ++d)
           row[5 + static_cast<Eigen::Index>(d)] += s.value * built_up_[d][at];
       }
-      if (!usable || !moves) continue;
+      // At rest friction takes any force below its own: no column can tell it.
+      if (!usable || !moves || standing > most_standing * row[4]) continue;
       row *= log_.period;
       for (int d = 0; d < delays; ++d) row_effort[static_cast<std::size_t>(d)] = effort_near(k, delay_at(d));
       auto& part = parts_[static_cast<std::size_t>((k - begin) * parts / (end - begin))];
