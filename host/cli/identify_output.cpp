@@ -22,7 +22,7 @@ json curve_json(const SlidingCurve& curve) {
   return {{"curve", curve.curve}, {"parameters", parameters}, {"held_out_rms_N", errors}};
 }
 
-const char* about(const Question& question) {
+const char* question_kind(const Question& question) {
   switch (question.about) {
     case Question::About::amperes:
       return "amperes";
@@ -43,7 +43,7 @@ const char* about(const Question& question) {
 json questions_json(const std::vector<Question>& questions) {
   json list = json::array();
   for (const auto& q : questions)
-    list.push_back({{"about", about(q)},
+    list.push_back({{"about", question_kind(q)},
                     {"question", q.text},
                     {"value", q.value},
                     {"ci95", {q.low, q.high}},
