@@ -22,6 +22,35 @@ json curve_json(const SlidingCurve& curve) {
   return {{"curve", curve.curve}, {"parameters", parameters}, {"held_out_rms_N", errors}};
 }
 
+const char* question_kind(const Question& question) {
+  switch (question.about) {
+    case Question::About::amperes:
+      return "amperes";
+    case Question::About::length:
+      return "length";
+    case Question::About::angle:
+      return "angle";
+    case Question::About::sign:
+      return "sign";
+    case Question::About::shift:
+      return "shift";
+    case Question::About::scale:
+      return "scale";
+  }
+  return "";
+}
+
+json questions_json(const std::vector<Question>& questions) {
+  json list = json::array();
+  for (const auto& q : questions)
+    list.push_back({{"about", question_kind(q)},
+                    {"question", q.text},
+                    {"value", q.value},
+                    {"ci95", {q.low, q.high}},
+                    {"probability", q.probability}});
+  return list;
+}
+
 // The trials of the band: what each cut-off would have given.
 json band_json(const Band& band) {
   constexpr std::array<const char*, 4> names{"mass_kg", "viscous_N_s_per_m", "constant_force_N", "coulomb_N"};
@@ -74,6 +103,7 @@ json identification_json(const Identification& result) {
            {"axis", result.axis},
            {"logs", result.sources},
            {"samples", result.samples},
+           {"questions", questions_json(result.questions)},
            {"method", result.method},
            {"parameters", parameters},
            {"not_determined", open},
@@ -84,6 +114,12 @@ json identification_json(const Identification& result) {
              {"viscous_N_s_per_m", optional_json(result.initial.viscous)},
              {"mass_kg", optional_json(result.initial.mass)}}}};
   if (result.band) out["band"] = band_json(*result.band);
+  if (result.band) {
+    out["cutoff_scan"] = json::array();
+    for (const auto& p : result.band->trials)
+      out["cutoff_scan"].push_back({{"cutoff_Hz", p.cutoff}, {"mass_kg", p.value.front()}});
+  }
+  if (result.held_out) out["held_out_force_ratio"] = result.held_out->fit / result.held_out->plain;
   if (result.held_out)
     out["held_out_force"] = {{"fit_rms_N", result.held_out->fit},
                              {"plain_least_squares_rms_N", result.held_out->plain},
@@ -102,9 +138,10 @@ json identification_json(const Identification& result) {
 }
 
 std::string identification_text(const Identification& result) {
-  std::string text =
-      fmt::format("axis {}, {} samples of {}\n{}\n\n{:<30} {:>12}   {:>12} {:>12}\n", result.axis, result.samples,
-                  fmt::join(result.sources, ", "), result.method, "parameter", "value", "95 % from", "to");
+  std::string text;
+  for (const auto& question : result.questions) text += fmt::format("QUESTION  {}\n", question.text);
+  text += fmt::format("axis {}, {} samples of {}\n{}\n\n{:<30} {:>12}   {:>12} {:>12}\n", result.axis, result.samples,
+                      fmt::join(result.sources, ", "), result.method, "parameter", "value", "95 % from", "to");
   for (const auto& p : result.parameters)
     text += fmt::format("{:<30} {:>12.6g}   {:>12.6g} {:>12.6g}\n", p.name, p.value, p.ci95.low, p.ci95.high);
   text += fmt::format("\nThe force is {:.4g} N rms; the residual of the fit is {:.4g} N rms.\n", result.force_rms,

@@ -29,8 +29,9 @@ struct Band {
   bool instruments = false;     // every log has set-points
 
   const BandPoint& best() const { return trials[chosen]; }
-  // Factor by which each interval grows because the estimates move with the band: root of one plus the mean square of
-  // their differences over the square of the error, over the bands with intervals of about the same width.
+  // Factor by which each interval grows for what its blocks cannot show: how far the estimates move with the band (mean
+  // square of their differences, over the bands with intervals of about the same width), and what all blocks have wrong
+  // alike.
   Eigen::VectorXd widening() const;
 };
 

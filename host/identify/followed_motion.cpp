@@ -132,6 +132,12 @@ LevelModel level_model(const machine::AxisModel& axis, bool sticks) {
   return model;
 }
 
+LevelModel unresolved_contact() {
+  LevelModel model;
+  model.shape.inverse_length = 1.0 / unresolved;
+  return model;
+}
+
 double position_noise(const AxisLog& channels, const machine::AxisModel& axis) {
   const double found = increment_of(channels.x);
   const double increment = found > 0.0 ? found : axis.encoder.increment;

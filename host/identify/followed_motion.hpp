@@ -19,6 +19,9 @@ struct LevelModel {
 // length of a contact that no log resolves.
 LevelModel level_model(const machine::AxisModel& axis, bool sticks);
 
+// A contact too short for any log of these rates: sgn(v), which keeps its sign at standstill.
+LevelModel unresolved_contact();
+
 // m rms: of the increment on which the positions lie (the file's where the log shows none) and of the file's noise.
 double position_noise(const AxisLog& channels, const machine::AxisModel& axis);
 

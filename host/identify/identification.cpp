@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "firmware/machine/model/motor_force.hpp"
 #include "host/identify/determined.hpp"
 #include "host/identify/fit_support.hpp"
 #include "host/identify/standstill.hpp"
@@ -80,6 +81,25 @@ Source sources_for(Identification& result, const std::vector<Log>& logs, const m
   return source;
 }
 
+// What looks wrong in the logs, the likeliest of each kind.
+void ask(Identification& result, const Source& source, const machine::AxisModel& axis) {
+  const bool force_motor = axis.motor.model == machine::MotorModel::force;
+  KnownAxis known{axis.mass,
+                  machine::acting_force_constant(axis.motor),
+                  force_motor ? axis.inverter.voltage_limit : axis.inverter.current_limit * axis.motor.count,
+                  {}};
+  if (axis.motor.pole_pair_pitch > 0.0) known.pole_pair_pitch = axis.motor.pole_pair_pitch;
+  for (const auto& each : source.logs)
+    for (const auto& question : questions_of(*each.log, *each.channels, known)) {
+      const auto same = std::find_if(result.questions.begin(), result.questions.end(),
+                                     [&](const auto& q) { return q.about == question.about; });
+      if (same == result.questions.end())
+        result.questions.push_back(question);
+      else if (same->probability < question.probability)
+        *same = question;
+    }
+}
+
 // Rows of the fixed band, 40 Hz, of logs that are fast and fine enough for it.
 LogRows fixed_rows(const Source& source, const machine::AxisModel& axis, Amperes amperes,
                    const SignalSettings& signals) {
@@ -137,8 +157,11 @@ FrictionFit followed_fit(const LogRows& rows, const Band& band, const Held& held
 HeldOutForce held_out_force(const LogRows& rows, const FrictionFit& fit, const Held& held, bool followed) {
   auto own = followed ? equations_of(rows) : NoisyEquations{};
   if (!followed) {
-    own.columns = own.instruments = fit.columns;
-    own.force = rows.force;
+    // What each log's contact remembers of its start acts in one block alone, and is no prediction.
+    const Eigen::Index columns = std::min<Eigen::Index>(fit.columns.cols(), 5);
+    const Eigen::Index memories = fit.columns.cols() - columns;
+    own.columns = own.instruments = fit.columns.leftCols(columns);
+    own.force = rows.force - fit.columns.rightCols(memories) * fit.weights.tail(memories);
     own.acceleration_noise = own.velocity_noise = Eigen::VectorXd::Zero(rows.rows());
   }
   auto plain = own;
@@ -149,6 +172,7 @@ HeldOutForce held_out_force(const LogRows& rows, const FrictionFit& fit, const H
     return sign;
   });
   plain.instruments = plain.columns;
+  plain.force = rows.force;
   plain.acceleration_noise.setZero();
   plain.velocity_noise.setZero();
   return {InstrumentFit(own, fit.blocks, held).held_out(), InstrumentFit(plain, fit.blocks, {}).held_out()};
@@ -189,6 +213,15 @@ void judge_sliding(Identification& result, const LogRows& rows, const FrictionFi
     for (const auto& each : fit_directions(rows, fit, options.fit)) judge(result, each, scales, fit.blocks.size(), "");
 }
 
+// Whether the contact of the machine file predicts worse than sgn(v): of another length than the axis', or shorter than
+// the log resolves.
+bool contact_misleads(const LogRows& rows, const IdentifyOptions& options) {
+  FrictionFit fit;
+  fit.blocks = blocks_for(rows, rows.force);
+  const auto force = held_out_force(rows, fit, options.held, true);
+  return force.fit > force.plain;
+}
+
 std::string method_of(const Band& band, const FrictionFit& fit) {
   return fmt::format(
       "Least squares of mass, viscous friction, Coulomb friction and a constant force, all columns through one filter "
@@ -208,10 +241,11 @@ Identification identify_logs(const std::vector<Log>& logs, const machine::AxisMo
   Identification result;
   result.axis = axis.name;
   const auto source = sources_for(result, logs, axis);
+  ask(result, source, axis);
   const bool recipe = options.friction == sim::CoulombViscous<>::name;
   const bool holds = std::any_of(options.held.begin(), options.held.end(), [](const auto& h) { return h.has_value(); });
   const bool published = recipe && !options.moving_rows_only && !holds;
-  const auto model = level_model(axis, recipe || sticks_rigidly(axis));
+  auto model = level_model(axis, recipe || sticks_rigidly(axis));
   if (!published) result.band = choose_band(source.logs, axis, options.amperes, model, options.held);
   std::optional<LogRows> rows_in_band;
   if (!published)
@@ -220,6 +254,11 @@ Identification identify_logs(const std::vector<Log>& logs, const machine::AxisMo
   const bool contact =
       !published && !model.sticks && !holds && direction == 0.0 && resolves_contact(*result.band, source);
   const bool followed = !published && !contact;
+  if (followed && !model.sticks && contact_misleads(*rows_in_band, options)) {
+    model = unresolved_contact();
+    result.band = choose_band(source.logs, axis, options.amperes, model, options.held);
+    rows_in_band.emplace(followed_rows(source.logs, axis, options.amperes, result.band->best().cutoff, model));
+  }
   const LogRows rows =
       followed ? std::move(*rows_in_band)
                : fixed_rows(source, axis, options.amperes, published ? published_recipe() : SignalSettings{});

@@ -12,6 +12,7 @@
 #include "host/identify/initial_values.hpp"
 #include "host/identify/sliding_curve.hpp"
 #include "host/identify/steady_table.hpp"
+#include "host/log/questions.hpp"
 
 namespace stiction::host {
 
@@ -54,8 +55,9 @@ struct Identification {
   double force_rms = 0.0;             // N
   std::optional<Band> band;           // none: the fixed band of a published recipe, or a table
   std::optional<HeldOutForce> held_out;
-  std::vector<std::string> notes;  // sentences on what of the logs did not count
-  double residual_rms = 0.0;       // N
+  std::vector<Question> questions;  // to be answered before the result is believed, of each kind one
+  std::vector<std::string> notes;   // sentences on what of the logs did not count
+  double residual_rms = 0.0;        // N
   std::vector<LogResidual> residuals;
 
   const IdentifiedParameter* find(std::string_view name) const;

@@ -27,6 +27,18 @@ double student_975(double freedom) {
          z * (3.0 * z2 * z2 * z2 + 19.0 * z2 * z2 + 17.0 * z2 - 15.0) / (384.0 * n * n * n);
 }
 
+double attenuation_of(const Eigen::MatrixXd& columns, double all_noise, const Held& held) {
+  std::vector<Eigen::Index> others;
+  for (Eigen::Index c = 1; c < columns.cols(); ++c)
+    if (columns.col(c).squaredNorm() > 0.0 && (c >= 4 || !held[static_cast<std::size_t>(c)])) others.push_back(c);
+  Eigen::MatrixXd m(columns.rows(), static_cast<Eigen::Index>(others.size()));
+  for (std::size_t i = 0; i < others.size(); ++i)
+    m.col(static_cast<Eigen::Index>(i)) = columns.col(others[i]).normalized();
+  const Eigen::VectorXd a = columns.col(fitting::acceleration);
+  const Eigen::VectorXd fit = LeastSquares(transposed_product(m, m), 1e-11).solve(transposed_times(m, a));
+  return all_noise / std::max((a - m * fit).squaredNorm(), 1e-300);
+}
+
 NoisyEquations equations_of(const LogRows& rows, const Eigen::MatrixXd& columns) {
   NoisyEquations e;
   e.columns = columns;
@@ -45,6 +57,7 @@ NoisyEquations equations_of(const LogRows& rows, const Eigen::MatrixXd& columns)
     e.acceleration_noise.segment(begin, end - begin) = share * std::pow(motion.acceleration_noise, 2);
     e.velocity_noise.segment(begin, end - begin) = share * std::pow(motion.speed_noise, 2);
   }
+  if (attenuation_of(columns, e.all_noise, {}) < noise_to_treat) e.instruments = columns;
   return e;
 }
 
@@ -97,18 +110,7 @@ InstrumentFit::InstrumentFit(const NoisyEquations& equations, std::vector<RowBlo
     weights_[free_[static_cast<std::size_t>(i)]] = centre[i];
     errors_[free_[static_cast<std::size_t>(i)]] = student_[i] * std::sqrt(square);
   }
-  // What is left of the acceleration when the other columns have taken theirs.
-  if (free_.empty() || free_.front() != fitting::acceleration) return;
-  const Eigen::MatrixXd others = [&] {
-    Eigen::MatrixXd m(equations_.columns.rows(), n - 1);
-    for (Eigen::Index i = 1; i < n; ++i)
-      m.col(i - 1) = scale_[i] * equations_.columns.col(free_[static_cast<std::size_t>(i)]);
-    return m;
-  }();
-  const Eigen::VectorXd a = equations_.columns.col(fitting::acceleration);
-  const Eigen::VectorXd fit =
-      LeastSquares(transposed_product(others, others), 1e-11).solve(transposed_times(others, a));
-  attenuation_ = equations_.all_noise / std::max((a - others * fit).squaredNorm(), 1e-300);
+  attenuation_ = attenuation_of(equations_.columns, equations_.all_noise, held_);
 }
 
 InstrumentFit::Sums InstrumentFit::sums_of(const RowBlock& block) const {

@@ -20,6 +20,9 @@
 
 namespace stiction::host {
 
+// Values that are held, not estimated; in the order of the columns.
+using Held = std::array<std::optional<double>, 4>;
+
 // What a regression works on.
 struct NoisyEquations {
   Eigen::MatrixXd columns, instruments;  // a row each; the first columns in the order of fitting::acceleration etc.
@@ -29,15 +32,20 @@ struct NoisyEquations {
   double all_noise = 0.0;  // (m/s^2)^2, expected square of the acceleration's noise over all rows
 };
 
+// Share of the mass above which noise is treated: below it instruments cost more than the noise does, as they follow
+// the motion less closely than the measured columns do.
+inline constexpr double noise_to_treat = 1e-4;
+
 // Mass, viscous friction, constant force and Coulomb level of `rows`, whose motions have a level.
 NoisyEquations equations_of(const LogRows& rows);
+
+// Share of the mass that the noise of the acceleration would take in plain least squares of `columns`. `all_noise`:
+// expected square of the noise over all rows; `held`: columns that do not count.
+double attenuation_of(const Eigen::MatrixXd& columns, double all_noise, const Held& held);
 
 // The same with these columns in place of the level's and any others beside it; the instruments of acceleration and
 // velocity stay.
 NoisyEquations equations_of(const LogRows& rows, const Eigen::MatrixXd& columns);
-
-// Values that are held, not estimated; in the order of the columns.
-using Held = std::array<std::optional<double>, 4>;
 
 class InstrumentFit {
  public:

@@ -23,8 +23,10 @@ host::Log simulated(const machine::Machine& machine, const Trajectory& trajector
   const std::array<double, 1> start{trajectory.at(0.0).position};
   host::ControlRun<machine::DoubleSignals> run(one_axis, start);
   const auto stride = static_cast<int>(std::lround(period / machine.timing.fast_period));
-  host::Log log{trajectory.name, {}, {}, period, {{}}, {}};
-  auto& axis = log.axes.front();
+  host::Log log;
+  log.source = trajectory.name;
+  log.period = period;
+  auto& axis = log.axes.emplace_back();
   axis.axis = machine.axes.front().name;
   for (int tick = 0; run.time() < trajectory.duration; ++tick) {
     const auto set = trajectory.at(run.time());
