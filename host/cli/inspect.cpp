@@ -1,6 +1,7 @@
 // `stiction inspect LOG`: what a log holds, what is suspicious in it, what it can determine.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -12,6 +13,7 @@
 #include "host/log/channel_name.hpp"
 #include "host/log/inspection.hpp"
 #include "host/log/read_log.hpp"
+#include "host/log/stretches.hpp"
 #include "host/simulate/replay.hpp"
 
 namespace stiction::host {
@@ -51,6 +53,97 @@ std::string ampere_text(const AxisInspection& axis, bool machine_known) {
                      *axis.force_constant);
 }
 
+const char* kind_of(const LimitedChannel& limited) {
+  switch (limited.kind) {
+    case LimitedChannel::Kind::limit:
+      return "limit";
+    case LimitedChannel::Kind::clipped:
+      return "clipped";
+    case LimitedChannel::Kind::off:
+      return "off";
+  }
+  return "";
+}
+
+const char* about(const Question& question) {
+  switch (question.about) {
+    case Question::About::amperes:
+      return "amperes";
+    case Question::About::length:
+      return "length";
+    case Question::About::angle:
+      return "angle";
+    case Question::About::sign:
+      return "sign";
+    case Question::About::shift:
+      return "shift";
+    case Question::About::scale:
+      return "scale";
+  }
+  return "";
+}
+
+double part_of(const LimitedChannel& limited) {
+  return static_cast<double>(std::ranges::count(limited.samples, true)) / static_cast<double>(limited.samples.size());
+}
+
+std::string limited_text(const LimitedChannel& limited) {
+  const double percent = 100.0 * part_of(limited);
+  switch (limited.kind) {
+    case LimitedChannel::Kind::limit:
+      return fmt::format(
+          "{} is at the limit of {:.4g} {} in the machine file for {:.2g} % of the samples, which no fit "
+          "uses",
+          limited.channel->name, limited.level, limited.channel->unit, percent);
+    case LimitedChannel::Kind::clipped:
+      return fmt::format(
+          "{} is held at the end of its range, up to {:.4g} {}, for {:.2g} % of the samples, which no fit "
+          "uses",
+          limited.channel->name, limited.level, limited.channel->unit, percent);
+    case LimitedChannel::Kind::off:
+      return fmt::format(
+          "{} is exactly 0 while the axis moves, for {:.2g} % of the samples: the drive is off, and no fit "
+          "uses them",
+          limited.channel->name, percent);
+  }
+  return "";
+}
+
+std::string direction_text(const AxisInspection& axis) {
+  if (axis.at_rest > 0.999) return "";
+  if (axis.forward > 0.95) return "; in one direction only, +x";
+  if (axis.forward < 0.05) return "; in one direction only, -x";
+  return "";
+}
+
+std::string resolution_text(const AxisInspection& axis) {
+  std::string text;
+  for (const auto& r : axis.resolution) {
+    if (r.increment == 0.0 && r.noise == 0.0) continue;
+    text += fmt::format("{}{}", text.empty() ? "" : "; ", r.channel->name);
+    if (r.increment > 0.0) text += fmt::format(" in steps of {:.4g} {}", r.increment, r.channel->unit);
+    if (r.noise > 0.0)
+      text += fmt::format("{} noise {:.2g} {} rms", r.increment > 0.0 ? "," : "", r.noise, r.channel->unit);
+  }
+  return text.empty() ? "no increment and no noise found" : text;
+}
+
+std::string clock_text(const Log& log) {
+  std::string text = log.clock.jitter > 0.0 ? fmt::format("jitter {:.3g} us rms ({:.2g} % of a step)",
+                                                          1e6 * log.clock.jitter, 100.0 * log.clock.jitter / log.period)
+                                            : std::string("no jitter beyond the digits of the stamps");
+  if (log.clock.resampled)
+    text +=
+        fmt::format("; the samples are interpolated at even times, the jitter adds {:.3g} um to the position at 1 m/s",
+                    1e6 * log.clock.jitter);
+  return text;
+}
+
+json clock_json(const Log& log) {
+  return {{"source", log.source},   {"begin_s", log.t.front()},     {"samples", log.t.size()},
+          {"period_s", log.period}, {"jitter_s", log.clock.jitter}, {"resampled", log.clock.resampled}};
+}
+
 json axis_json(const Log& log, std::size_t index, const AxisInspection& axis) {
   json channels = json::array();
   for (const auto& channel : log_channels)
@@ -73,6 +166,26 @@ json axis_json(const Log& log, std::size_t index, const AxisInspection& axis) {
   if (axis.delay) out["delay_s"] = *axis.delay;
   if (axis.force_per_current) out["force_per_current_N_per_A"] = *axis.force_per_current;
   if (axis.force_constant) out[std::string("force_constant_N_per_") + axis.effort->unit] = *axis.force_constant;
+  out["resolution"] = json::array();
+  for (const auto& r : axis.resolution)
+    out["resolution"].push_back(
+        {{"channel", r.channel->name}, {"unit", r.channel->unit}, {"increment", r.increment}, {"noise", r.noise}});
+  out["limited"] = json::array();
+  for (const auto& l : axis.limited)
+    out["limited"].push_back({{"channel", l.channel->name},
+                              {"unit", l.channel->unit},
+                              {"kind", kind_of(l)},
+                              {"level", l.level},
+                              {"part", part_of(l)}});
+  out["left_out"] = axis.left_out;
+  out["questions"] = json::array();
+  for (const auto& q : axis.questions)
+    out["questions"].push_back({{"about", about(q)},
+                                {"question", q.text},
+                                {"value", q.value},
+                                {"ci95", {q.low, q.high}},
+                                {"probability", q.probability}});
+  if (!axis.only_a_ratio.empty()) out["only_a_ratio"] = axis.only_a_ratio;
   out["suspicions"] = axis.suspicions;
   out["determinable"] = json::array();
   for (const auto& d : axis.determinable) {
@@ -92,12 +205,17 @@ std::string axis_text(const Log& log, std::size_t index, const AxisInspection& a
   const auto line = [&](const char* name, const std::string& value) {
     text += fmt::format("  {:<14} {}\n", name, value);
   };
+  for (const auto& question : axis.questions) line("QUESTION", question.text);
   line("channels", channels);
+  line("resolution", resolution_text(axis));
   line("stroke", fmt::format("{:.5g} mm", axis.stroke * 1e3));
   line("speed", fmt::format("up to {:.4g} mm/s ({:.4g} m/min), acceleration up to {:.3g} m/s^2", axis.max_speed * 1e3,
                             axis.max_speed * 60.0, axis.max_acceleration));
-  line("motion", fmt::format("{} reversals; {:.1f} % of the samples at rest; {:.0f} % of the others in +x",
-                             axis.reversals, 100.0 * axis.at_rest, 100.0 * axis.forward));
+  line("motion", fmt::format("{} reversals; {:.1f} % of the samples at rest; {:.0f} % of the others in +x{}",
+                             axis.reversals, 100.0 * axis.at_rest, 100.0 * axis.forward, direction_text(axis)));
+  for (const auto& limited : axis.limited) line("left out", limited_text(limited));
+  if (axis.left_out > 0.0) line("used", fmt::format("{:.1f} % of the samples", 100.0 * (1.0 - axis.left_out)));
+  if (!axis.only_a_ratio.empty()) line("ratio", axis.only_a_ratio);
   std::string speeds;
   for (const auto& p : axis.plateaus) {
     if (!speeds.empty()) speeds += ", ";
@@ -120,7 +238,8 @@ std::string axis_text(const Log& log, std::size_t index, const AxisInspection& a
 }
 
 void run(const InspectOptions& options) {
-  const auto log = during("reading", [&] { return read_log(options.log); });
+  const auto stretches = stretches_of(during("reading", [&] { return read_log(options.log); }));
+  const auto& log = *std::ranges::max_element(stretches, {}, [](const Log& each) { return each.t.size(); });
   const auto known = known_axes(options, log);
   const auto inspection = inspect(log, known);
   if (options.json) {
@@ -129,14 +248,25 @@ void run(const InspectOptions& options) {
              {"samples", log.t.size()},
              {"period_s", log.period},
              {"duration_s", inspection.duration},
+             {"stretches", json::array()},
+             {"notes", log.notes},
              {"ignored", log.ignored},
              {"axes", json::array()}};
+    for (const auto& each : stretches) out["stretches"].push_back(clock_json(each));
     for (std::size_t k = 0; k < log.axes.size(); ++k) out["axes"].push_back(axis_json(log, k, inspection.axes[k]));
     fmt::print("{}\n", out.dump(2));
     return;
   }
-  fmt::print("{}: {} samples at {:.6g} ms ({:.5g} kHz), {:.5g} s\n", options.log, log.t.size(), log.period * 1e3,
+  fmt::print("{}: {} samples at {:.6g} ms ({:.5g} kHz), {:.5g} s\n", log.source, log.t.size(), log.period * 1e3,
              1e-3 / log.period, inspection.duration);
+  fmt::print("  clock: {}\n", clock_text(log));
+  if (stretches.size() > 1) {
+    fmt::print("  the record has {} stretches, of which this is the longest:\n", stretches.size());
+    for (const auto& each : stretches)
+      fmt::print("    {} to {} s: {} samples at {:.6g} ms, {}\n", each.t.front(), each.t.back(), each.t.size(),
+                 each.period * 1e3, clock_text(each));
+  }
+  for (const auto& note : log.notes) fmt::print("  {}\n", note);
   for (const auto& [key, value] : log.comments) fmt::print("  # {}{}{}\n", key, value.empty() ? "" : ": ", value);
   std::string ignored;
   for (const auto& header : log.ignored) ignored += (ignored.empty() ? "" : ", ") + header;

@@ -2,19 +2,22 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host/cli/progress.hpp"
 #include "host/log/read_log.hpp"
+#include "host/log/stretches.hpp"
 
 namespace stiction::host {
 
-// The logs of `files`, in their order, with progress where they are large. Throws LogError.
+// The logs of `files`, in their order, one a stretch of a record with gaps, with progress where they are large. Throws
+// LogError.
 inline std::vector<Log> read_logs(const std::vector<std::string>& files) {
   Progress progress("reading logs", files.size());
   std::vector<Log> logs;
   for (const auto& file : files) {
-    logs.push_back(read_log(file));
+    for (auto& stretch : stretches_of(read_log(file))) logs.push_back(std::move(stretch));
     progress.add();
   }
   return logs;

@@ -72,7 +72,7 @@ void require_channels(const Log& log, std::string_view place) {
           fmt::format("{}: found channels with an axis ({}.) together with channels without one; expected the axis in "
                       "all names or in none",
                       place, log.axes[log.axes[0].axis.empty() ? 1 : 0].axis));
-    if (axis.x.empty())
+    if (axis.x.empty() && axis.v.empty())
       throw LogError(
           fmt::format("{}: found no {}x[m]{}; expected the measured position of every axis", place, prefix, others));
     if (axis.i.empty() && axis.force.empty() && axis.u.empty())

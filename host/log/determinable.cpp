@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -278,7 +277,11 @@ void add_suspicions(const Log&, const AxisLog& axis, const KnownAxis& known, Axi
   const auto& fit = *out.fit;
   const auto negative = [&](std::size_t k) { return fit.value[k] < -3.0 * fit.error[k]; };
   const bool mass = fit.inflation[0] < separable, friction = fit.inflation[2] < separable;
-  if (mass && negative(0) && (!friction || negative(2)))
+  const bool sign_is_asked =
+      std::ranges::any_of(out.questions, [](const auto& q) { return q.about == Question::About::sign; });
+  if (sign_is_asked)
+    ;  // the question says it
+  else if (mass && negative(0) && (!friction || negative(2)))
     out.suspicions.push_back(
         fmt::format("{} falls when the axis accelerates: its sign, or that of the position, is swapped; reverse one of "
                     "them (reverse = true in a mapping)",
@@ -297,18 +300,6 @@ void add_suspicions(const Log&, const AxisLog& axis, const KnownAxis& known, Axi
         "the position is {:.3g} ms ahead of its set-point: the channels may be swapped", -*out.delay * 1e3));
   if (axis.x_set.empty())
     out.suspicions.push_back("no x_set: the motion cannot be replayed in closed loop; record the set position");
-  if (!known.force_constant || !out.force_constant || std::string_view(out.effort->name) != "i") return;
-  const double ratio = *out.force_constant / *known.force_constant;
-  if (std::abs(ratio / std::numbers::sqrt2 - 1.0) < 0.1)
-    out.suspicions.push_back(
-        fmt::format("mass and force constant of the machine file require {:.2f} times the recorded current, which "
-                    "suggests rms amperes; convert it to amplitudes",
-                    ratio));
-  else if (std::abs(ratio - 1.0) > 0.1)
-    out.suspicions.push_back(
-        fmt::format("mass and force constant of the machine file require {:.2f} times the recorded current: one of the "
-                    "three is wrong",
-                    ratio));
 }
 
 void add_determinable(const Log& log, const AxisLog& axis, const KnownAxis& known, const FittedMotion& motion,

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "host/log/determinable.hpp"
+#include "host/log/resolution.hpp"
 
 namespace stiction::host {
 namespace {
@@ -169,6 +170,15 @@ AxisInspection inspect_axis(const Log& log, const AxisLog& axis, const KnownAxis
   const bool fitted = out.fit && out.fit->value[0] > 4.0 * out.fit->error[0];
   if (fitted && known.mass) out.force_constant = *known.mass / out.fit->value[0];
   out.delay = delay_of(axis, motion);
+  for (const auto& channel : log_channels)
+    if (const auto& values = axis.*channel.values; !values.empty())
+      out.resolution.push_back({&channel, increment_of(axis, channel.values), noise_of(values)});
+  out.limited = limited_channels(log, axis, known.effort_limit);
+  AxisLog masked;
+  masked.left_out = axis.left_out;
+  out.left_out = static_cast<double>(leave_out(masked, out.limited)) / static_cast<double>(axis.x.size());
+  out.questions = questions_of(log, axis, known);
+  if (!known.mass || !known.force_constant) out.only_a_ratio = known_only_as_ratio(log, axis);
   add_suspicions(log, axis, known, out);
   add_determinable(log, axis, known, motion, out);
   return out;

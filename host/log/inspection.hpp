@@ -6,17 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "host/log/known_axis.hpp"
+#include "host/log/limits.hpp"
 #include "host/log/log.hpp"
+#include "host/log/questions.hpp"
 
 namespace stiction::host {
-
-// What is known of an axis of the machine.
-struct KnownAxis {
-  std::optional<double> mass;             // kg
-  std::optional<double> force_constant;   // N/A, amplitude; N/V of a force motor
-  std::optional<double> effort_limit;     // A or V of the whole axis
-  std::optional<double> pole_pair_pitch;  // m
-};
 
 // Stretches of constant speed: within 1 % over at least 0.1 s and 0.1 mm.
 struct SpeedPlateau {
@@ -47,6 +42,12 @@ struct RigidFit {
   double residual = 0.0;                                   // rms, of the effort
 };
 
+// The increment that a channel was written with and the noise that rides on it, in its unit; 0: none found.
+struct ChannelResolution {
+  const LogChannel* channel = nullptr;
+  double increment = 0.0, noise = 0.0;
+};
+
 struct AxisInspection {
   std::string axis;
   double stroke = 0.0;            // m
@@ -57,11 +58,16 @@ struct AxisInspection {
   double forward = 0.0;                // part of the moving samples that go in +x
   std::vector<SpeedPlateau> plateaus;  // by speed
   std::vector<Saturation> saturation;
-  const LogChannel* effort = nullptr;       // i, F or u, the first that is there
-  std::optional<RigidFit> fit;              // none: too few moving samples, or a stroke within presliding
-  std::optional<double> force_per_current;  // N/A, where F and i are both there
-  std::optional<double> force_constant;     // N per unit of effort, from the accelerations and the known mass
-  std::optional<double> delay;              // s, of x behind x_set; none without x_set
+  const LogChannel* effort = nullptr;         // i, F or u, the first that is there
+  std::optional<RigidFit> fit;                // none: too few moving samples, or a stroke within presliding
+  std::optional<double> force_per_current;    // N/A, where F and i are both there
+  std::optional<double> force_constant;       // N per unit of effort, from the accelerations and the known mass
+  std::optional<double> delay;                // s, of x behind x_set; none without x_set
+  std::vector<ChannelResolution> resolution;  // of each channel that is there
+  std::vector<LimitedChannel> limited;        // channels that stand at an end of their range
+  double left_out = 0.0;                      // part of the samples that no fit may use
+  std::vector<Question> questions;            // to be answered before any result
+  std::string only_a_ratio;                   // what the log gives only as a ratio; empty: nothing
   std::vector<std::string> suspicions;
   std::vector<Determinable> determinable;
 };

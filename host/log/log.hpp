@@ -40,6 +40,9 @@ struct AxisLog {
   bool rotary = false;
   // Samples that no fit may use: a channel stands at its limit, a cell was blank. Empty: none.
   std::vector<bool> left_out;
+  // Of each of log_channels the increment that it was written with, before any sample was interpolated, in its unit; 0:
+  // none found (resolution.hpp). Empty: not from a reader.
+  std::vector<double> increments;
 };
 
 // The one list of an axis' channels: the column's name, the unit of the values, and where they are kept.
@@ -80,6 +83,8 @@ struct Log {
   Clock clock;
   std::vector<AxisLog> axes;         // at least one
   std::vector<std::string> ignored;  // headers of columns that have no meaning here
+  std::vector<std::string> notes;    // sentences on what the reading step made of the record
+  std::vector<Log> others;           // the other stretches of the record, in its order; empty in each of them
 };
 
 }  // namespace stiction::host

@@ -196,13 +196,13 @@ class Applier {
             fmt::format("{}: found the time {:.10g} s; expected one after that of the sample before "
                         "({:.10g} s)",
                         place_of(recording_, clock, k), log_.t[k], log_.t[k - 1]));
-    check_sampling(log_, recording_.digits, [&](std::size_t k) { return place_of(recording_, clock, k); });
     for (const auto& mapped : mapping_.channels)
       axis_of(log_, mapped.axis).*mapped.to->values = values_of(mapped, usable(mapped));
     for (const auto& channel : recording_.channels)
       if (std::ranges::none_of(mapping_.channels, [&](const auto& m) { return m.from == channel.name; }))
         log_.ignored.push_back(channel.name);
     require_channels(log_, mapping_.source);
+    check_sampling(log_, recording_.digits, [&](std::size_t k) { return place_of(recording_, clock, k); });
     return std::move(log_);
   }
 

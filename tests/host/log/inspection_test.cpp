@@ -104,15 +104,33 @@ TEST(Inspection, CannotTellViscousFromCoulombAtOneSpeed) {
   EXPECT_TRUE(judgement(axis, "Friction differs between directions").possible);
 }
 
-TEST(Inspection, SuspectsASwappedSign) {
-  EXPECT_TRUE(suspects(inspect(rigid_log(10.0, sine, -1.0)).axes[0], "swapped"));
-  EXPECT_FALSE(suspects(inspect(rigid_log(10.0, sine)).axes[0], "swapped"));
+bool asks(const AxisInspection& axis, Question::About about) {
+  return std::ranges::any_of(axis.questions, [&](const auto& q) { return q.about == about; });
 }
 
-TEST(Inspection, SuspectsRmsAmperesWhereTheMachineIsKnown) {
+TEST(Inspection, AsksAboutASwappedSign) {
+  EXPECT_TRUE(asks(inspect(rigid_log(10.0, sine, -1.0)).axes[0], Question::About::sign));
+  EXPECT_FALSE(asks(inspect(rigid_log(10.0, sine)).axes[0], Question::About::sign));
+}
+
+TEST(Inspection, AsksAboutRmsAmperesWhereTheMachineIsKnown) {
   const auto log = rigid_log(10.0, sine, 1.0 / std::numbers::sqrt2);
-  EXPECT_TRUE(suspects(inspect(log, {{mass, constant, {}, {}}}).axes[0], "suggests rms amperes"));
-  EXPECT_FALSE(suspects(inspect(log).axes[0], "rms"));
+  EXPECT_TRUE(asks(inspect(log, {{mass, constant, {}, {}}}).axes[0], Question::About::amperes));
+  const auto alone = inspect(log).axes[0];
+  EXPECT_TRUE(alone.questions.empty());
+  // 225 kg over 94 N/A, and the root of two.
+  EXPECT_NE(alone.only_a_ratio.find("ratio of mass and force constant"), std::string::npos) << alone.only_a_ratio;
+}
+
+TEST(Inspection, SaysTheResolutionOfEachChannel) {
+  auto log = rigid_log(10.0, sine);
+  for (double& x : log.axes[0].x) x = 1e-6 * std::round(x / 1e-6);
+  const auto axis = inspect(log).axes[0];
+  ASSERT_EQ(axis.resolution.size(), 3u);
+  EXPECT_STREQ(axis.resolution[1].channel->name, "x");
+  EXPECT_NEAR(axis.resolution[1].increment, 1e-6, 1e-10);
+  EXPECT_EQ(axis.resolution[2].increment, 0.0);
+  EXPECT_NEAR(axis.resolution[2].noise, 0.01, 1e-3);  // A, as rigid_log() adds
 }
 
 TEST(Inspection, SuspectsACurrentThatStandsAtItsEnd) {

@@ -1,0 +1,16 @@
+// What a machine file says of the axis that a log was recorded on.
+#pragma once
+
+#include <optional>
+
+namespace stiction::host {
+
+// What is known of an axis of the machine.
+struct KnownAxis {
+  std::optional<double> mass;             // kg
+  std::optional<double> force_constant;   // N/A, amplitude; N/V of a force motor
+  std::optional<double> effort_limit;     // A or V of the whole axis
+  std::optional<double> pole_pair_pitch;  // m
+};
+
+}  // namespace stiction::host
