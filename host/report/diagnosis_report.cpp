@@ -259,22 +259,34 @@ std::string diagnosis_page_of(const std::string& axis) {
   return axis.empty() ? "report.html" : "report_" + axis + ".html";
 }
 
+namespace {
+
+// "axis X agrees (1.2 N rms of residual force)", "axis Y does not agree (83 → 2.4 N rms with 1 cause)".
+std::string axis_clause(const Verdict& verdict) {
+  const auto status = verdict.agreement ? verdict.agreement->status : Status::cannot_tell;
+  const auto words = status == Status::cannot_tell ? "cannot be told to agree" : std::string(name_of(status));
+  if (verdict.findings.empty())
+    return fmt::format("axis {} {} ({:.3g} N rms of residual force)", verdict.axis, words, verdict.baseline.force_rms);
+  return fmt::format("axis {} {} ({:.3g} → {:.3g} N rms with {} {})", verdict.axis, words, verdict.baseline.force_rms,
+                     verdict.extended.force_rms, verdict.findings.size(),
+                     verdict.findings.size() == 1 ? "cause" : "causes");
+}
+
+}  // namespace
+
 std::string diagnosed_axes_html(const std::vector<Verdict>& verdicts, const DiagnosisReport& frame) {
   std::string rows, names;
   std::vector<std::string> sentences;
   for (const auto& verdict : verdicts) {
     rows += fmt::format("<h2><a href=\"{}\">Axis {}</a></h2><p>{}</p>", escape_html(diagnosis_page_of(verdict.axis)),
                         escape_html(verdict.axis), escape_html(diagnosis_sentence(verdict)));
-    sentences.push_back(
-        fmt::format("{}: {} with {} and {:.3g} → {:.3g} N rms of force", verdict.axis,
-                    verdict.agreement ? name_of(verdict.agreement->status) : "not judged",
-                    verdict.findings.size() == 1 ? "1 cause" : fmt::format("{} causes", verdict.findings.size()),
-                    verdict.baseline.force_rms, verdict.extended.force_rms));
+    sentences.push_back(axis_clause(verdict));
   }
   DiagnosisReport report = frame;
   report.verdict = verdicts.front();
-  return report_page({"Diagnosis", "Diagnosis: " + frame.machine.name, fmt::format("{}.", fmt::join(sentences, "; ")),
-                      frame.command, frame.version, name_and_id(frame.machine), origin_of(report)},
+  return report_page({"Diagnosis", "Diagnosis: " + frame.machine.name,
+                      fmt::format("Simulation and log: {}.", fmt::join(sentences, "; ")), frame.command, frame.version,
+                      name_and_id(frame.machine), origin_of(report)},
                      assets::axes_html(), {{"axes", rows}}, {{"machine", machine_json(frame.machine)}},
                      {assets::axes_js()});
 }

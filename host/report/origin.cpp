@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
@@ -20,6 +21,14 @@ std::string file_names(const std::vector<std::string>& paths) {
   std::vector<std::string> names;
   for (const auto& path : paths) names.push_back(std::filesystem::path(path).filename().string());
   return fmt::format("{}", fmt::join(names, ", "));
+}
+
+// "moving mass, level of Coulomb friction": titles within a sentence.
+std::string listed(std::vector<std::string> titles) {
+  for (auto& title : titles)
+    if (title.size() > 1 && std::islower(static_cast<unsigned char>(title[1])))
+      title[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(title[0])));
+  return escape_html(typeset(fmt::format("{}", fmt::join(titles, ", "))));
 }
 
 }  // namespace
@@ -81,11 +90,11 @@ std::string abilities_html(const Origin& origin) {
                           escape_html(typeset(suspicion)));
     if (!axis.possible.empty())
       html += fmt::format("<p class=\"scope\"><strong>{} can determine{}:</strong> {}.</p>", logs, escape_html(of),
-                          escape_html(typeset(fmt::format("{}", fmt::join(axis.possible, ", ")))));
+                          listed(axis.possible));
     if (!rows.empty())
       html += fmt::format(
           "<details class=\"scope\"><summary><strong>Cannot determine{}:</strong> {}</summary><ul>{}</ul></details>",
-          escape_html(of), escape_html(typeset(fmt::format("{}", fmt::join(missing, ", ")))), rows);
+          escape_html(of), listed(missing), rows);
   }
   return html.empty() ? "" : fmt::format("<div class=\"abilities\">{}</div>\n", html);
 }

@@ -154,8 +154,8 @@ TEST(Origin, SaysWhatTheLogsCanDetermineBeforeAnyResult) {
                        {"the current is that of the other axis"}}};
   const auto html = abilities_html(origin);
   for (const char* part : {"<strong>Check first of axis X:</strong> the current is that of the other axis.",
-                           "<strong>This log can determine of axis X:</strong> Moving mass, Constant force.",
-                           "<strong>Cannot determine of axis X:</strong> Stribeck &lt;effect&gt;</summary>",
+                           "<strong>This log can determine of axis X:</strong> moving mass, constant force.",
+                           "<strong>Cannot determine of axis X:</strong> stribeck &lt;effect&gt;</summary>",
                            "no speed below 1 mm/s; record slow passes."})
     EXPECT_NE(html.find(part), std::string::npos) << part << "\n" << html;
   origin.sources.push_back("other.csv");
