@@ -7,11 +7,16 @@ found in closed form, and there the mass sticks or goes back. A contact with sti
 """
 
 import numpy as np
-from scipy.signal import bilinear
+from scipy.signal import bilinear, lfilter
 
 TICK = 62.5e-6
 SLOW = 16  # ticks of a period of the position controller
 CHUNK = 2048
+
+
+def limited(values, limit):
+    """np.clip to both sides of zero; at this size clip itself takes five times as long."""
+    return np.minimum(np.maximum(values, -limit), limit)
 
 
 def notch_of(axis):
@@ -57,7 +62,7 @@ class Mechanics:
         if crossed.size:
             self.turn(crossed, force, sign, a, x1, v1)
         self.x, self.v = x1, v1
-        self.f = np.where(v1 != 0, np.sign(v1) * self.level, np.clip(force, -self.level, self.level))
+        self.f = np.where(v1 != 0, np.sign(v1) * self.level, limited(force, self.level))
 
     def turn(self, k, force, sign, a, x1, v1):
         """Where the speed becomes zero inside of the tick: sticks there, or goes back for the rest of the tick."""
@@ -100,7 +105,7 @@ class CurrentCascade:
 
     def act(self, tick, x_set, v_set, a_set, encoder, v, inject):
         if tick % SLOW == 0:
-            self.held = self.q * np.round((x_set - encoder) / self.q)
+            self.held = self.q * np.rint((x_set - encoder) / self.q)
         error = self.kv * self.held + v_set - v
         total = self.sum + error * (TICK / self.tn)
         y = self.kp * (error + total)
@@ -108,11 +113,11 @@ class CurrentCascade:
         self.s1 = self.b[1] * y - self.a[1] * out + self.s2
         self.s2 = self.b[2] * y - self.a[2] * out
         wanted = out + self.feed * a_set + inject
-        i_set = np.minimum(np.maximum(wanted, -self.limit), self.limit)
+        i_set = limited(wanted, self.limit)
         self.sum = np.where(i_set == wanted, total, self.sum)
         error = i_set - self.i
         self.current_sum += error * (TICK / self.ti)
-        self.volts.append(np.clip(self.ki * (error + self.current_sum), -600.0, 600.0))
+        self.volts.append(limited(self.ki * (error + self.current_sum), 600.0))
         u = self.volts.pop(0)
         before = self.i
         self.i = before * self.decay + (u - self.emf * v) / self.r * (1 - self.decay)
@@ -136,7 +141,7 @@ class VoltageCascade:
             speed = np.where(self.ideal, v, (mean - self.mean) / (SLOW * TICK))
             self.last, self.mean = encoder, mean
             u = self.kp * (self.kv * (x_set - encoder) - speed) + inject
-            self.u = np.minimum(np.maximum(u, -self.limit), self.limit)
+            self.u = limited(u, self.limit)
         return self.u, self.kf * self.u, self.kf * self.u
 
 
@@ -144,16 +149,11 @@ def process_force(rng, axes, corner=100.0):
     """Chunks of a force that no model has: first-order noise below `corner` Hz, rms as each axis has it."""
     rho = np.exp(-2 * np.pi * corner * TICK)
     rms = np.array([a.force_noise for a in axes])
-    state = rms * rng.standard_normal(len(axes))
+    state = rho * rms * rng.standard_normal((1, len(axes)))
     while True:
         drive = rng.standard_normal((CHUNK, len(axes))) * (rms * np.sqrt(1 - rho**2))
-        out = np.empty_like(drive)
-        for k in range(CHUNK):
-            state = out[k] = rho * state + drive[k]
+        out, state = lfilter([1.0], [1.0, -rho], drive, axis=0, zi=state)
         yield out
-
-
-CHANNELS = ("x", "effort", "v", "a", "f")  # encoder, current or voltage, true speed, acceleration, Coulomb force, exact x
 
 
 def simulate(rng, axes, motions, ticks, inject=None, progress=lambda text: None):
@@ -184,7 +184,7 @@ def simulate(rng, axes, motions, ticks, inject=None, progress=lambda text: None)
         wobble = rng.standard_normal((CHUNK, count)) * noise
         out = np.empty((6, CHUNK, count))
         for k in range(CHUNK):
-            encoder = increment * np.round((plant.x + wobble[k]) / increment)
+            encoder = increment * np.rint((plant.x + wobble[k]) / increment)
             now = cascade.act(first + k, sets[0, k], sets[1, k], sets[2, k], encoder, plant.v, added[k])
             out[0, k], out[1, k], out[2, k], out[4, k], out[5, k] = encoder, now[0], plant.v, plant.f, plant.x
             out[3, k] = plant.acceleration(now[1] + jolts[k])
