@@ -13,7 +13,9 @@
 #include "host/identify/identified_machine.hpp"
 #include "host/identify/standstill.hpp"
 #include "sim/machine_file.hpp"
+#include "sim/plant/friction/coulomb_viscous.hpp"
 #include "sim/plant/friction/friction.hpp"
+#include "sim/plant/friction/lugre.hpp"
 
 namespace stiction::host {
 namespace {

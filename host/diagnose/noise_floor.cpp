@@ -16,10 +16,10 @@ using Values = std::vector<double>;
 
 // Hz, of the residual's rows. A record that is five times as fast shows the noise of its effort above that band; what a
 // slower one has there is its motion.
-constexpr double band = 100.0, much_faster = 5.0;
+constexpr double residual_band = 100.0, much_faster = 5.0;
 constexpr double smooth_below = 15.0;  // Hz
 
-double rms(const Eigen::VectorXd& v) {
+double root_mean_square(const Eigen::VectorXd& v) {
   return v.size() == 0 ? 0.0 : std::sqrt(v.squaredNorm() / static_cast<double>(v.size()));
 }
 
@@ -50,7 +50,7 @@ Values effort_of(const Log& log, const machine::AxisModel& axis) {
 double effort_noise(const Log& log, const machine::AxisModel& axis, const Log* replayed) {
   const auto effort = effort_of(log, axis);
   const double rounding = grid_step(effort) / std::sqrt(12.0);
-  if (log.period * band * much_faster > 1.0) return rounding;
+  if (log.period * residual_band * much_faster > 1.0) return rounding;
   const double seen = white_noise(effort);
   double own = 0.0;
   if (replayed != nullptr) {
@@ -121,7 +121,7 @@ NoiseFloor noise_floor(const std::vector<Log>& logs, const machine::AxisModel& a
   const double noise = axis.encoder.noise, hunting = axis.position_controller.increment;
   floor.position =
       std::sqrt((floor.increment * floor.increment + hunting * hunting) / 6.0 + 2.0 * noise * noise + jitter_square);
-  floor.dynamics = resolution_of_dynamics * rms(expected.cwiseProduct(counts));
+  floor.dynamics = resolution_of_dynamics * root_mean_square(expected.cwiseProduct(counts));
 
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
@@ -131,7 +131,7 @@ NoiseFloor noise_floor(const std::vector<Log>& logs, const machine::AxisModel& a
   const Eigen::VectorXd exact =
       force_of_positions([](const Log&, const Motion& motion, std::size_t i) { return motion.x[i]; });
   const auto off = [&](const auto& position) {
-    return rms((force_of_positions(position) - exact).cwiseProduct(counts));
+    return root_mean_square((force_of_positions(position) - exact).cwiseProduct(counts));
   };
   if (floor.increment > 0.0 || noise > 0.0)
     floor.encoder = off([&](const Log&, const Motion& motion, std::size_t i) {
@@ -145,13 +145,13 @@ NoiseFloor noise_floor(const std::vector<Log>& logs, const machine::AxisModel& a
   Values deviations;
   for (std::size_t k = 0; k < logs.size(); ++k)
     deviations.push_back(effort_noise(logs[k], axis, k < replayed.size() ? &replayed[k] : nullptr));
-  floor.effort = rms(rows.stacked([&](const Motion& motion) {
-                           Values column(motion.t.size());
-                           const auto log = static_cast<std::size_t>(&motion - rows.motions().data());
-                           for (double& value : column) value = deviations[log] * normal(random);
-                           return column;
-                         })
-                         .cwiseProduct(counts));
+  floor.effort = root_mean_square(rows.stacked([&](const Motion& motion) {
+                                        Values column(motion.t.size());
+                                        const auto log = static_cast<std::size_t>(&motion - rows.motions().data());
+                                        for (double& value : column) value = deviations[log] * normal(random);
+                                        return column;
+                                      })
+                                      .cwiseProduct(counts));
   return floor;
 }
 
