@@ -31,7 +31,7 @@ Object points_json(const std::vector<TestResponsePoint>& points) {
 }
 
 Object test_json(const ResponseTest& test, const std::vector<TestResponsePoint>& ours,
-               const std::vector<TestResponsePoint>& stored, const ResponseDifference& difference) {
+                 const std::vector<TestResponsePoint>& stored, const ResponseDifference& difference) {
   const auto& input = test.signals[test.input];
   return {{"schema", "stiction.response-test/1"},
           {"source", test.source},

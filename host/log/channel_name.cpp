@@ -84,10 +84,10 @@ void AxisKinds::add(std::string_view axis, AxisKind kind, std::string_view heade
   if (is_new || found->second.kind == kind) return;
   const auto [linear, rotary] = kind == AxisKind::linear ? std::pair(header, std::string_view(found->second.header))
                                                          : std::pair(std::string_view(found->second.header), header);
-  throw LogError(
-      fmt::format("{}: found {} of a rotary axis beside {} of a linear one; expected columns of one kind for each axis "
-                  "(convert the others with the radius or the pitch, or leave them out)",
-                  place, excerpt(rotary), excerpt(linear)));
+  throw LogError(fmt::format(
+      "{}: found {} of a rotary axis together with {} of a linear one; expected columns of one kind for each axis "
+      "(convert the others with the radius or the pitch, or leave them out)",
+      place, excerpt(rotary), excerpt(linear)));
 }
 
 void AxisKinds::mark(Log& log) const {

@@ -13,16 +13,17 @@
 
 namespace stiction::host {
 
-// Values in SI units whatever the header's units are; blank cells are NaN. Columns that are no channel are listed in
-// `ignored`, their values not looked at. Channels that can be derived (v_set, a_set) stay empty when the file does not
-// have them. `columns`: the names of the columns ("t[ms],x[mm],i[mA]"), which count instead of the table's own header
-// where it has one; empty: the header counts. `name`: for messages. Throws LogError, "NAME:LINE: ...": a ragged row,
-// anything but a finite number or a blank, a time stamp that is blank, repeats or falls, all that sampling.hpp refuses,
-// a wrong or missing unit, linear and rotary columns of one axis, a required channel that is not there.
+// The log in `text`. Values in SI units whatever the header's units are; blank cells are NaN. Columns that are no
+// channel are listed in `ignored`, their values not looked at. Channels that can be derived (v_set, a_set) stay empty
+// when the file does not have them. `columns`: the names of the columns ("t[ms],x[mm],i[mA]"), which count instead of
+// the table's own header where it has one; empty: the header counts. `name`: for messages. Throws LogError, "NAME:LINE:
+// ...": a ragged row, anything but a finite number or a blank, a time stamp that is blank, repeats or falls, all that
+// sampling.hpp refuses, a wrong or missing unit, linear and rotary columns of one axis, a required channel that is not
+// there.
 Log parse_csv_log(std::string_view text, const std::string& name, std::string_view columns = {});
 
-// The same of a file, plain or compressed by gzip, which is not held in memory. `progress`: see text_source.hpp. Throws
-// LogError also when it cannot be read.
+// The same of a file, plain or compressed by gzip, which is not held in memory. `columns`: as above; `progress`: see
+// text_source.hpp. Throws LogError also when it cannot be read.
 Log read_csv_log(const std::filesystem::path& file, std::string_view columns = {}, const BytesRead& progress = {});
 
 // Every channel in its SI unit, with the digits that give back the same double, NaN as a blank cell. Columns that were

@@ -16,7 +16,8 @@ class CsvRows {
   // `text` must outlive the fields. `name` and `first_line` are for messages. `separator`: between the fields.
   CsvRows(std::string_view text, char separator, std::string name, std::size_t first_line = 1)
       : rest_(text), separator_(separator), name_(std::move(name)), next_line_(first_line) {}
-  // The same of `text`, the rest of a block of `source`, and of all blocks behind it. `source` must outlive the rows.
+  // The same of `text`, the rest of a block of `source`, and of all blocks behind it. `source` must outlive the rows;
+  // `separator`, `name` and `first_line`: as above.
   CsvRows(std::string_view text, TextSource& source, char separator, std::string name, std::size_t first_line)
       : CsvRows(text, separator, std::move(name), first_line) {
     source_ = &source;

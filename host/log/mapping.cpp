@@ -118,7 +118,11 @@ class Reader {
     channel.name = split.name;
     if (channel.to == nullptr || !split.unit.empty()) {
       std::string known;
-      for (const auto& each : log_channels) known += fmt::format("{}{}", known.empty() ? "" : ", ", each.name);
+      for (const auto& each : log_channels) {
+        known += fmt::format("{}{}", known.empty() ? "" : ", ", each.name);
+        if (each.rotary_name != nullptr && each.rotary_name != std::string_view(each.name))
+          known += fmt::format(", {}", each.rotary_name);
+      }
       fail(table, "to", fmt::format("a channel, with its axis where there are several (\"X.x\"): {}", known));
     }
     channel.unit = text(table, "unit");

@@ -11,7 +11,7 @@
 namespace stiction::host {
 namespace {
 
-constexpr std::size_t looked_at = 4096;  // bytes, in which every format shows itself
+constexpr std::size_t looked_at = std::size_t{1} << 16;  // bytes, in which every format shows itself
 
 Log of_recording(const std::filesystem::path& file, const ReadSettings& settings) {
   const auto recording = read_recording(file, {});

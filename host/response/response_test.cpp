@@ -17,6 +17,8 @@
 namespace stiction::host {
 namespace {
 
+constexpr double largest_value = 1e70;  // the square of a spectrum, a product of four, stays in the range of double
+
 constexpr std::string_view digits_85 =
     "0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ!#$`()*+-/:;=?@[]^_{|}~";
 
@@ -103,7 +105,8 @@ class Reader {
       fail(node, fmt::format("{} numbers in {}", values.size(), name),
            fmt::format("{}, as m_length is {}", length * doubles_each, length));
     for (const double value : values)
-      if (!std::isfinite(value)) fail(node, fmt::format("{} in {}", value, name), "finite numbers");
+      if (!(std::abs(value) < largest_value))
+        fail(node, fmt::format("{} in {}", value, name), fmt::format("numbers below {:g}", largest_value));
     return values;
   }
 
@@ -185,6 +188,11 @@ std::vector<std::complex<double>> transform(const std::vector<double>& record) {
   return lines;
 }
 
+// 0 where nothing answers.
+double coherence_of(std::complex<double> cross, double power, double answer) {
+  return power * answer > 0.0 ? std::norm(cross) / (power * answer) : 0.0;
+}
+
 double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 
 }  // namespace
@@ -242,8 +250,8 @@ std::vector<TestResponsePoint> stored_response(const ResponseTest& test) {
   for (std::size_t k = 0; k < found->values.size(); ++k) {
     const double power = input.power.values[k].real(), answer = output.power.values[k].real();
     if (!(power > 0.0)) continue;
-    const double coherence = answer > 0.0 ? std::norm(found->values[k]) / (power * answer) : 0.0;
-    points.push_back({found->frequency[k], std::conj(found->values[k]) / power, coherence});
+    points.push_back(
+        {found->frequency[k], std::conj(found->values[k]) / power, coherence_of(found->values[k], power, answer)});
   }
   return points;
 }
@@ -275,8 +283,7 @@ std::vector<TestResponsePoint> computed_response(const ResponseTest& test) {
   for (std::size_t k = 0; k < cross.size(); ++k) {
     if (!(power[k] > 0.0)) continue;
     const double frequency = static_cast<double>(k) / (static_cast<double>(samples) * input.period);
-    points.push_back(
-        {frequency, cross[k] / power[k], answer[k] > 0.0 ? std::norm(cross[k]) / (power[k] * answer[k]) : 0.0});
+    points.push_back({frequency, cross[k] / power[k], coherence_of(cross[k], power[k], answer[k])});
   }
   return points;
 }

@@ -144,10 +144,10 @@ TEST(ForeignTable, ReadsARotaryAxisInRadiansAndWritesItBack) {
 
 TEST(ForeignTable, RefusesLinearAndRotaryColumnsOfOneAxis) {
   expect_refused("t[s],x[deg],F[N]\n0,1,2\n", "", "run.csv:1",
-                 "found x[deg] of a rotary axis beside F[N] of a linear one");
+                 "found x[deg] of a rotary axis together with F[N] of a linear one");
   expect_refused("t[s],x[mm],v[deg/s],i[A]\n0,1,2,3\n", "", "run.csv:1",
-                 "found v[deg/s] of a rotary axis beside x[mm]");
-  expect_refused("t[s],x[mm],T[N m]\n0,1,2\n", "", "run.csv:1", "found T[N m] of a rotary axis beside x[mm]");
+                 "found v[deg/s] of a rotary axis together with x[mm]");
+  expect_refused("t[s],x[mm],T[N m]\n0,1,2\n", "", "run.csv:1", "found T[N m] of a rotary axis together with x[mm]");
   // Axes of two kinds in one log are none of this.
   const auto log = parse_csv_log("t[s],X.x[mm],X.F[N],C.x[deg],C.T[N m]\n0,1,2,3,4\n1,1,2,3,4\n", "run");
   EXPECT_FALSE(log.axes.at(0).rotary);

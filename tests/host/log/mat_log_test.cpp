@@ -5,6 +5,7 @@
 
 #include <cstdlib>
 
+#include "host/log/mapping.hpp"
 #include "host/log/read_log.hpp"
 #include "host/log/text_file.hpp"
 #include "tests/host/log/synthetic_log.hpp"
@@ -164,6 +165,38 @@ TEST(ReadLog, NamesWhatItCannotRead) {
   EXPECT_NE(refusal(zip.path()).find("found a zip archive"), std::string::npos);
   EXPECT_NE(refusal("/nowhere/run.mat").find("/nowhere/run.mat: found no folder /nowhere; expected a log in it"),
             std::string::npos);
+}
+
+TEST(MatLog, ReadsOneMatrixByTheColumnsStatedAndVectorsByAMapping) {
+  const TemporaryFile tall(".mat"), wide(".mat"), vectors(".mat"), map(".toml");
+  const std::string m = "m = np.c_[1e3 * t, 2.5 + t, 7 * t]\n";
+  if (!saved_by_scipy(tall.path(), m + "d['m'] = m; d['gain'] = 3.0") ||
+      !saved_by_scipy(wide.path(), m + "d['m'] = m.T"))
+    GTEST_SKIP() << "needs " << STICTION_PYTHON << " with scipy";
+  for (const auto* file : {&tall, &wide}) {
+    const auto log = read_log(file->path(), {"t[ms],x[mm],u[V]", {}});
+    ASSERT_EQ(log.t.size(), 100u);
+    EXPECT_DOUBLE_EQ(log.t[99], 0.099);
+    EXPECT_DOUBLE_EQ(log.axes.at(0).x[99], 2.599e-3);
+    EXPECT_DOUBLE_EQ(log.axes.at(0).u[99], 0.693);
+  }
+  try {
+    read_log(tall.path(), {"t[ms],x[mm]", {}});
+    ADD_FAILURE() << "three columns were read as two";
+  } catch (const LogError& error) {
+    EXPECT_NE(std::string(error.what()).find("found m (100x3); expected one matrix with 2 columns"), std::string::npos)
+        << error.what();
+  }
+  ASSERT_TRUE(saved_by_scipy(vectors.path(), m + "d['time'] = t; d['pos'] = m[:, 1]; d['rest'] = m[:, 1:]"));
+  write_text_file(
+      map.path(),
+      "schema = \"stiction.mapping/1\"\n[time]\ncolumn = \"time\"\n[[channel]]\nfrom = \"pos\"\nto = \"x\"\n"
+      "unit = \"mm\"\n[[channel]]\nfrom = \"rest(:,2)\"\nto = \"u\"\nunit = \"V\"\n");
+  const auto mapping = read_mapping(map.path());
+  const auto log = apply_mapping(mapping, read_recording(vectors.path(), mapping.table));
+  EXPECT_DOUBLE_EQ(log.period, 1e-3);
+  EXPECT_DOUBLE_EQ(log.axes.at(0).x[99], 2.599e-3);
+  EXPECT_DOUBLE_EQ(log.axes.at(0).u[99], 0.693);
 }
 
 }  // namespace
