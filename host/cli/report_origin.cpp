@@ -2,23 +2,13 @@
 
 #include <algorithm>
 
-#include "firmware/machine/model/motor_force.hpp"
+#include "host/diagnose/record_checks.hpp"
 #include "host/log/inspection.hpp"
 #include "host/simulate/replay.hpp"
 #include "sim/machine_file.hpp"
 
 namespace stiction::host {
 namespace {
-
-KnownAxis known_axis(const machine::AxisModel& axis) {
-  KnownAxis known;
-  known.mass = axis.mass;
-  known.force_constant = machine::acting_force_constant(axis.motor);
-  known.effort_limit = axis.motor.model == machine::MotorModel::force ? axis.inverter.voltage_limit
-                                                                      : axis.inverter.current_limit * axis.motor.count;
-  if (axis.motor.pole_pair_pitch > 0.0) known.pole_pair_pitch = axis.motor.pole_pair_pitch;
-  return known;
-}
 
 // None where channels without an axis could be those of several.
 std::vector<KnownAxis> known_axes(const machine::Machine& machine, const Log& log) {
@@ -36,6 +26,11 @@ void add_new(List& list, const Item& item) {
   if (std::find(list.begin(), list.end(), item) == list.end()) list.push_back(item);
 }
 
+std::string without_full_stop(std::string text) {
+  if (text.ends_with('.')) text.pop_back();
+  return text;
+}
+
 void add(AxisAbility& ability, const AxisInspection& axis) {
   for (const auto& each : axis.determinable) {
     if (each.possible) {
@@ -48,6 +43,7 @@ void add(AxisAbility& ability, const AxisInspection& axis) {
         std::none_of(ability.open.begin(), ability.open.end(), known))
       ability.open.push_back({each.what, each.reason, each.remedy});
   }
+  for (const auto& question : axis.questions) add_new(ability.suspicions, without_full_stop(question.text));
   for (const auto& suspicion : axis.suspicions) add_new(ability.suspicions, suspicion);
 }
 

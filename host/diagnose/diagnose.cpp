@@ -239,6 +239,11 @@ Verdict diagnose(const DiagnoseInput& input) {
     for (auto& log : *records) count_from_start(log);
   for (const auto& log : logs) verdict.logs.push_back(log.source);
   for (const auto& log : held_out) verdict.holdout.push_back(log.source);
+  for (const auto* records : {&logs, &held_out}) {
+    for (auto& question : questions_before(*records, axis)) verdict.questions.push_back(std::move(question));
+    for (const auto& log : *records)
+      for (const auto& note : log.notes) verdict.notes.push_back(fmt::format("{}: {}", log.source, note));
+  }
   for (const auto& log : logs) refuse_unreachable_set_points(log, axis);
   for (const auto& log : held_out) refuse_unreachable_set_points(log, axis);
   refuse_same_record(logs, held_out, axis);

@@ -23,14 +23,14 @@ constexpr double usual_duration = 20.0;  // s, for which separations of long and
 constexpr double as_good = 0.9;
 constexpr std::size_t most_questions = 6;
 
-struct OpenQuestion {
+struct AskedQuestion {
   OpenQuestion shown;
   std::vector<Explanation> truth;
   std::vector<Explanation> rival;   // none with an empty shown.rival
   std::vector<Explanation> others;  // that act beside either
 };
 
-double separation_of(const Separation& separation, const Records& records, const OpenQuestion& question) {
+double separation_of(const Separation& separation, const Records& records, const AskedQuestion& question) {
   const double one = separation.expected(records, question.truth, question.rival, question.others);
   if (question.rival.empty()) return one;
   // Either may be true: what is certain is the smaller.
@@ -77,7 +77,7 @@ class Questions {
       if (!discarded.nearly || candidates()[discarded.candidate].outside()) continue;
       const auto fit = separation_.best_fit(records_, searched_.target, discarded.candidate, terms_);
       if (!fit) continue;
-      const OpenQuestion question{
+      const AskedQuestion question{
           {*candidates()[discarded.candidate].effect, {}, "more data, in motions where its force is largest"},
           {*fit},
           {},
@@ -86,10 +86,10 @@ class Questions {
       if (separation_of(separation_, records_, question) < enough) ask(question);
     }
   }
-  std::vector<OpenQuestion> take() { return std::move(questions_); }
+  std::vector<AskedQuestion> take() { return std::move(questions_); }
 
  private:
-  void ask(OpenQuestion question) {
+  void ask(AskedQuestion question) {
     if (questions_.size() == most_questions) return;
     if (question.shown.by_motion) question.shown.these_logs = separation_of(separation_, records_, question);
     questions_.push_back(std::move(question));
@@ -111,8 +111,9 @@ class Questions {
   }
   // Whether it is already asked after instead of all findings.
   bool asked(std::size_t rival) const {
-    return std::any_of(questions_.begin(), questions_.end(),
-                       [&](const OpenQuestion& q) { return q.truth.size() > 1 && q.rival.front().candidate == rival; });
+    return std::any_of(questions_.begin(), questions_.end(), [&](const AskedQuestion& q) {
+      return q.truth.size() > 1 && q.rival.front().candidate == rival;
+    });
   }
 
   const Searched& searched_;
@@ -120,7 +121,7 @@ class Questions {
   SearchContext scene_;
   Records records_{searched_.rows, scene_};
   std::vector<Explanation> terms_;
-  std::vector<OpenQuestion> questions_;
+  std::vector<AskedQuestion> questions_;
 };
 
 // How much of the questions as much time of it is expected to settle; of equal ones the gentler is worth more: what a
@@ -188,7 +189,7 @@ void propose_next_measurement(Verdict& verdict, const Searched& searched, bool p
   NextMeasurement next;
   next.axis = searched.context.axis.name;
   for (const auto& question : questions) next.questions.push_back(question.shown);
-  if (std::any_of(questions.begin(), questions.end(), [](const OpenQuestion& q) { return q.shown.by_motion; })) {
+  if (std::any_of(questions.begin(), questions.end(), [](const AskedQuestion& q) { return q.shown.by_motion; })) {
     const auto range = motion_range(searched.machine.axes[searched.axis], searched.rows);
     auto rehearsals =
         rehearse(searched.machine, searched.axis, range, searched.rows, searched.context, searched.settings);

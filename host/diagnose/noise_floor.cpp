@@ -8,6 +8,7 @@
 #include "firmware/machine/model/motor_force.hpp"
 #include "host/diagnose/record_rows.hpp"
 #include "host/identify/identification.hpp"
+#include "host/log/resolution.hpp"
 
 namespace stiction::host {
 namespace {
@@ -49,7 +50,7 @@ Values effort_of(const Log& log, const machine::AxisModel& axis) {
 // N: the noise of the effort of one record.
 double effort_noise(const Log& log, const machine::AxisModel& axis, const Log* replayed) {
   const auto effort = effort_of(log, axis);
-  const double rounding = grid_step(effort) / std::sqrt(12.0);
+  const double rounding = increment_of(effort) / std::sqrt(12.0);
   if (log.period * residual_band * much_faster > 1.0) return rounding;
   const double seen = white_noise(effort);
   double own = 0.0;
@@ -85,22 +86,6 @@ double NoiseFloor::force() const {
   return std::sqrt(encoder * encoder + clock * clock + effort * effort + dynamics * dynamics);
 }
 
-double grid_step(const Values& values) {
-  double least = 0.0, largest = 0.0;
-  for (std::size_t k = 0; k < values.size(); ++k) largest = std::max(largest, std::abs(values[k]));
-  for (std::size_t k = 1; k < values.size(); ++k)
-    if (const double step = std::abs(values[k] - values[k - 1]); step > 1e-11 * largest)
-      least = least == 0.0 ? step : std::min(least, step);
-  if (least == 0.0) return 0.0;
-  // One pair of values may be further from the grid by the digits that they were written with.
-  std::size_t off = 0;
-  for (std::size_t k = 1; k < values.size(); ++k) {
-    const double steps = std::abs(values[k] - values[k - 1]) / least;
-    off += steps < 1e6 && std::abs(steps - std::round(steps)) > 0.1;
-  }
-  return 100 * off > values.size() ? 0.0 : least;
-}
-
 NoiseFloor noise_floor(const std::vector<Log>& logs, const machine::AxisModel& axis, const SignalSettings& settings,
                        const Eigen::VectorXd& counts, const std::vector<Log>& replayed, const Eigen::VectorXd& expected,
                        std::uint64_t seed) {
@@ -112,7 +97,7 @@ NoiseFloor noise_floor(const std::vector<Log>& logs, const machine::AxisModel& a
   smooth.cutoff = smooth_below;
   const auto rows = rows_of(logs, axis, smooth);
   for (std::size_t k = 0; k < logs.size(); ++k) {
-    floor.increment = std::max(floor.increment, grid_step(channels_of(logs[k], axis).x));
+    floor.increment = std::max(floor.increment, increment_of(channels_of(logs[k], axis), &AxisLog::x));
     const double jitter = logs[k].clock.resampled ? 0.0 : logs[k].clock.jitter;
     double square = 0.0;
     for (const double v : rows.motions()[k].v) square += v * v;

@@ -22,9 +22,6 @@ struct NoiseFloor {
   double force() const;  // N rms, all of them together
 };
 
-// The step of the grid that the values of a channel lie on; 0 where none is found.
-double grid_step(const std::vector<double>& values);
-
 // Through the same filters as the residual: the record's own motion with and without the rounding and the noise of the
 // encoder, and with the time of each sample off by the jitter; white noise of the effort. `logs` of one axis; `axis` of
 // the file; `settings` of the rows; `counts`: weight of each row; `replayed`: the simulation's records of the same

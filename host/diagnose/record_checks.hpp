@@ -3,12 +3,21 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "firmware/machine/model/machine.hpp"
 #include "host/identify/log_rows.hpp"
+#include "host/log/known_axis.hpp"
 #include "host/log/log.hpp"
 
 namespace stiction::host {
+
+// What the file says of `axis` to those who inspect its logs.
+KnownAxis known_axis(const machine::AxisModel& axis);
+
+// Questions to be answered before any result: amperes, lengths, signs and shifts of the channels of `axis` in `logs`
+// (host/log/questions.hpp), as sentences that name the log.
+std::vector<std::string> questions_before(std::span<const Log> logs, const machine::AxisModel& axis);
 
 // A held-out log that is one of the training logs, or overlaps one. `held_out`: the logs against which the others are
 // held; `axis`: the name of the axis.

@@ -171,6 +171,7 @@ struct Verdict {
   std::vector<Finding> findings;  // by what each explains, the largest first
   std::vector<Rejected> rejected;
   Unexplained unexplained;
+  std::vector<std::string> questions;      // on amperes, lengths, signs and shifts of the logs: to be answered first
   std::vector<StartValue> identified;      // empty: the file was diagnosed as it is
   std::vector<std::string> notes;          // on the data: suspicions, what to record next
   std::optional<NextMeasurement> next;     // none: nothing is open

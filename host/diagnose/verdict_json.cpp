@@ -117,6 +117,7 @@ void add_agreement(Json& out, const Verdict& verdict) {
   }
   if (verdict.noise_floor) out["noise_floor_N"] = verdict.noise_floor->force();
   if (!verdict.closed_loop_withheld.empty()) out["closed_loop_withheld"] = verdict.closed_loop_withheld;
+  if (!verdict.questions.empty()) out["questions"] = verdict.questions;
   if (verdict.identified.empty()) return;
   Json values = Json::array();
   for (const auto& each : verdict.identified)
@@ -265,7 +266,9 @@ std::string agreement_text(const Verdict& verdict) {
 }  // namespace
 
 std::string verdict_text(const Verdict& verdict) {
-  std::string text = verdict.reference ? rows_text(*verdict.reference) : std::string();
+  std::string text;
+  for (const auto& question : verdict.questions) text += fmt::format("QUESTION  {}\n\n", question);
+  if (verdict.reference) text += rows_text(*verdict.reference);
   const auto position = [](const ResidualFigures& f) {
     return f.position_error_rms ? fmt::format(", position {:.3g} um rms", *f.position_error_rms * 1e6) : std::string();
   };

@@ -106,15 +106,14 @@ TEST(NoiseFloor, OfTheCurrentIsItsWhiteNoiseInTheBand) {
   EXPECT_NEAR(floor_of(with_test, axis_without_noise()).effort, found, 0.15 * found);
 }
 
-TEST(NoiseFloor, FindsTheGridOfAChannelOrNone) {
-  std::vector<double> grid, none;
-  for (int k = 0; k < 500; ++k) {
-    grid.push_back(0.1 + 2.5e-4 * std::round(40.0 * std::sin(0.1 * k)));
-    none.push_back(std::sin(0.1 * k));
-  }
-  EXPECT_NEAR(grid_step(grid), 2.5e-4, 1e-12);
-  EXPECT_EQ(grid_step(none), 0.0);
-  EXPECT_EQ(grid_step(std::vector<double>(100, 1.0)), 0.0);
+// As the reading step leaves it: interpolated samples have no grid any more.
+TEST(NoiseFloor, KnowsTheIncrementOfARecordThatWasResampled) {
+  auto log = record();
+  auto& axis = log.axes.front();
+  axis.increments.resize(log_channels.size());
+  for (std::size_t k = 0; k < log_channels.size(); ++k)
+    if (log_channels[k].values == &AxisLog::x) axis.increments[k] = 5e-6;
+  EXPECT_EQ(floor_of(log, axis_without_noise()).increment, 5e-6);
 }
 
 }  // namespace
