@@ -169,6 +169,11 @@ AxisInspection inspect_axis(const Log& log, const AxisLog& axis, const KnownAxis
     if (const auto& values = axis.*channel.values; !values.empty())
       out.resolution.push_back({&channel, increment_of(axis, channel.values), noise_of(values)});
   out.limited = limited_channels(log, axis, known.effort_limit);
+  // A rounded peak repeats its greatest value too.
+  std::erase_if(out.saturation, [&](const Saturation& s) {
+    return out.effort != nullptr && s.channel == out.effort->name &&
+           std::ranges::none_of(out.limited, [&](const auto& l) { return l.channel == out.effort; });
+  });
   AxisLog masked;
   masked.left_out = axis.left_out;
   out.left_out = static_cast<double>(leave_out(masked, out.limited)) / static_cast<double>(axis.x.size());

@@ -17,7 +17,7 @@ using About = Question::About;
 
 constexpr double mass_known = 0.15;     // of the machine file's mass
 constexpr double channel_known = 0.03;  // of a ratio of two channels that should be one
-constexpr double model_error = 0.015;   // of r: what the equation of motion lacks, alike in all parts of a record
+constexpr double model_error = 0.008;   // of r: what the equation of motion lacks, alike in all parts of a record
 constexpr double alike = 0.15;          // of what is unexplained, which may go with the acceleration everywhere
 constexpr double prior_odds = 0.1;      // of one hypothesis over a sound record: one record in ten
 constexpr double other_odds = 0.03;     // that anything else is wrong

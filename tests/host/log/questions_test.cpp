@@ -13,7 +13,8 @@ namespace {
 
 using About = Question::About;
 
-// The bounds were set with the records of seeds 1 to 200; those reported here begin at 9001.
+// The constants of questions.cpp were set with the records of seeds 1 to 200 and 1001 to 1200; those reported here
+// begin at 9001.
 constexpr unsigned first_seed = 9001;
 constexpr int records = 200;
 
@@ -99,10 +100,9 @@ TEST(Questions, AreAskedOfWrongRecordsAndNotOfSoundOnes) {
   test::figure("asked: effort 5 to 20 ms late or early", shift.text());
   EXPECT_LE(sound.asked, records * 2 / 100);
   EXPECT_GE(length.of, records / 2);
-  EXPECT_EQ(length.asked, length.of);
-  EXPECT_EQ(sign.asked, sign.of);
-  EXPECT_EQ(amperes.asked, amperes.of);
-  EXPECT_EQ(shift.asked, shift.of);
+  // A mass at the end of its 15 % and a scale 3 % off leave no gap to a sound record, and a delay of 5 ms on a record
+  // of 20 ms a sample may be found as 3: three in a hundred may be missed.
+  for (const auto* count : {&amperes, &length, &sign, &shift}) EXPECT_GE(100 * count->asked, 97 * count->of);
 }
 
 }  // namespace
