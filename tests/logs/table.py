@@ -2,6 +2,7 @@
 a rate, its exact 95 % interval (Clopper and Pearson)."""
 
 import collections
+import re
 
 import numpy as np
 from scipy.stats import beta
@@ -50,7 +51,7 @@ def coverage(rows):
         groups = collections.defaultdict(list)
         for row, name, p in wanted:
             groups[key(row, name)].append((row, name, p))
-        lines += [(f"  by {title}: {value}", pooled(items)) for value, items in sorted(groups.items(), key=lambda g: str(g))]
+        lines += [(f"  by {title}: {value}", pooled(items)) for value, items in sorted(groups.items())]
     return lines
 
 
@@ -82,7 +83,8 @@ def not_returned(rows):
     reasons = collections.Counter()
     for row, name in lost:
         said = next((s for s in row["not_determined"] or [] if s.startswith(name)), None)
-        reasons[f"exit {row['status']}: {tail(row['message'])}" if row["status"] else said or "no word of it"] += 1
+        refusal = f"exit {row['status']}: {kind_of(tail(row['message']))}"
+        reasons[refusal if row["status"] else kind_of(said or "not returned without a word")] += 1
     lines = [("identifiable but not returned (none)", rate(len(lost), len(wanted)))]
     return lines + [(f"  {count} times", reason[:150]) for reason, count in reasons.most_common(6)]
 
@@ -90,6 +92,11 @@ def not_returned(rows):
 def tail(message):
     """A message without the path in front of it."""
     return message.split(".csv:")[-1].split(".toml:")[-1]
+
+
+def kind_of(reason):
+    """A reason with its numbers taken out, so that like ones are counted together."""
+    return re.sub(r"[-+]?\d+(\.\d+)?(e[-+]?\d+)?", "#", reason)
 
 
 def nonsense(rows):
