@@ -189,13 +189,17 @@ def questions(sound, faulty):
         for fault, about in faults.QUESTIONS.items():
             group = [row for row in faulty if row["fault"] == fault]
             asked = [said(row, where) for row in group]
+            answers = [row.get("inspect", {}) if where == "inspect" else row for row in group]
+            refused = sum(answer.get("status", 0) != 0 for answer in answers)
             if not any(a is not None for a in asked):
-                lines.append((f"  {fault} asked, {where} (all)", f"{judge.NOT_OFFERED}; n {len(group)}"))
+                word = f"all {refused} refused" if group and refused == len(group) else judge.NOT_OFFERED
+                lines.append((f"  {fault} asked, {where} (all)", f"{word}; n {len(group)}"))
                 continue
             right = [a is not None and about in a for a in asked]
             sure = [r for r, row in zip(right, group) if row["parameters"]["mass_kg"]["bound"] <= 0.03 * row["parameters"]["mass_kg"]["true"]]
             lines.append((f"  {fault} asked, {where} (all)",
-                          f"{rate(sum(right), len(right))}; where mass is known to 3 %: {rate(sum(sure), len(sure))}"))
+                          f"{rate(sum(right), len(right))}; where mass is known to 3 %: "
+                          f"{rate(sum(sure), len(sure))}; refused {refused}"))
     return lines
 
 
