@@ -68,7 +68,7 @@ class Campaign:
         draw = lambda fault, **options: truth.draw_records(seed, count, cells, fault=fault, **options)
         with_partners = lambda records: records + [truth.partner(r) for r in records]
         records = {"sound": lambda: truth.draw_records(seed, count, self.cells),
-                   "questions": lambda: [r for fault in faults.QUESTIONS for r in draw(fault)],
+                   "questions": lambda: [r for fault in faults.QUESTIONS for r in draw(fault) if faults.arises(r)],
                    "one_direction": lambda: with_partners(draw("forward")),
                    "saturated": lambda: draw("saturated", kind="trapezoids"),
                    "gap": lambda: draw("gap"),

@@ -2,6 +2,7 @@
 a rate, its exact 95 % interval (Clopper and Pearson)."""
 
 import collections
+import re
 
 import numpy as np
 from scipy.stats import beta
@@ -50,7 +51,7 @@ def coverage(rows):
         groups = collections.defaultdict(list)
         for row, name, p in wanted:
             groups[key(row, name)].append((row, name, p))
-        lines += [(f"  by {title}: {value}", pooled(items)) for value, items in sorted(groups.items(), key=lambda g: str(g))]
+        lines += [(f"  by {title}: {value}", pooled(items)) for value, items in sorted(groups.items())]
     return lines
 
 
@@ -82,7 +83,8 @@ def not_returned(rows):
     reasons = collections.Counter()
     for row, name in lost:
         said = next((s for s in row["not_determined"] or [] if s.startswith(name)), None)
-        reasons[f"exit {row['status']}: {tail(row['message'])}" if row["status"] else said or "no word of it"] += 1
+        refusal = f"exit {row['status']}: {kind_of(tail(row['message']))}"
+        reasons[refusal if row["status"] else kind_of(said or "not returned without a word")] += 1
     lines = [("identifiable but not returned (none)", rate(len(lost), len(wanted)))]
     return lines + [(f"  {count} times", reason[:150]) for reason, count in reasons.most_common(6)]
 
@@ -90,6 +92,11 @@ def not_returned(rows):
 def tail(message):
     """A message without the path in front of it."""
     return message.split(".csv:")[-1].split(".toml:")[-1]
+
+
+def kind_of(reason):
+    """A reason with its numbers taken out, so that like ones are counted together."""
+    return re.sub(r"[-+]?\d+(\.\d+)?(e[-+]?\d+)?", "#", reason)
 
 
 def nonsense(rows):
@@ -182,13 +189,17 @@ def questions(sound, faulty):
         for fault, about in faults.QUESTIONS.items():
             group = [row for row in faulty if row["fault"] == fault]
             asked = [said(row, where) for row in group]
+            answers = [row.get("inspect", {}) if where == "inspect" else row for row in group]
+            refused = sum(answer.get("status", 0) != 0 for answer in answers)
             if not any(a is not None for a in asked):
-                lines.append((f"  {fault} asked, {where} (all)", f"{judge.NOT_OFFERED}; n {len(group)}"))
+                word = f"all {refused} refused" if group and refused == len(group) else judge.NOT_OFFERED
+                lines.append((f"  {fault} asked, {where} (all)", f"{word}; n {len(group)}"))
                 continue
             right = [a is not None and about in a for a in asked]
             sure = [r for r, row in zip(right, group) if row["parameters"]["mass_kg"]["bound"] <= 0.03 * row["parameters"]["mass_kg"]["true"]]
             lines.append((f"  {fault} asked, {where} (all)",
-                          f"{rate(sum(right), len(right))}; where mass is known to 3 %: {rate(sum(sure), len(sure))}"))
+                          f"{rate(sum(right), len(right))}; where mass is known to 3 %: "
+                          f"{rate(sum(sure), len(sure))}; refused {refused}"))
     return lines
 
 
