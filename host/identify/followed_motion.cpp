@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "host/identify/standstill.hpp"
 #include "host/identify/suitability.hpp"
@@ -83,6 +82,23 @@ std::vector<bool> standing(std::span<const double> v, double dead, double period
   return grown(stands, static_cast<std::size_t>(std::lround(reach)));
 }
 
+// The mean of each sample and the `reach` on both sides of it; the ends go on as they are.
+std::vector<double> running_mean(const std::vector<double>& values, std::size_t reach) {
+  const auto n = static_cast<std::ptrdiff_t>(values.size()), far = static_cast<std::ptrdiff_t>(reach);
+  const auto at = [&](std::ptrdiff_t i) {
+    return values[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(i, 0, n - 1))];
+  };
+  std::vector<double> mean(values.size());
+  double sum = 0.0;
+  for (std::ptrdiff_t k = -far; k <= far; ++k) sum += at(k);
+  for (std::ptrdiff_t i = 0; i < n; ++i) {
+    // Rounding leaves 1e-13 where there is nothing.
+    mean[static_cast<std::size_t>(i)] = std::clamp(sum / static_cast<double>(2 * far + 1), 0.0, 1.0);
+    sum += at(i + far + 1) - at(i - far);
+  }
+  return mean;
+}
+
 // 0 where a sample is left out, 1 elsewhere, with edges as smooth as the band when the position is noisy: the band
 // cancels noise of the second derivative from sample to sample, and a sharp edge cuts that in two.
 std::vector<double> weights(const std::vector<bool>& out, double period, double band, bool noisy) {
@@ -93,18 +109,9 @@ std::vector<double> weights(const std::vector<bool>& out, double period, double 
     return weight;
   }
   const auto wide = grown(out, width / 2);
-  std::vector<double> window(width);
-  double sum = 0.0;
-  for (std::size_t k = 0; k < width; ++k)
-    sum += window[k] =
-        1.0 - std::cos(2.0 * std::numbers::pi * static_cast<double>(k + 1) / static_cast<double>(width + 1));
-  const auto centre = static_cast<std::ptrdiff_t>(width / 2);
-  for (std::size_t i = 0; i < out.size(); ++i)
-    for (std::size_t k = 0; k < width; ++k) {
-      const auto from = std::clamp(static_cast<std::ptrdiff_t>(i + k) - centre, std::ptrdiff_t{0},
-                                   static_cast<std::ptrdiff_t>(out.size()) - 1);
-      if (!wide[static_cast<std::size_t>(from)]) weight[i] += window[k] / sum;
-    }
+  for (std::size_t i = 0; i < out.size(); ++i) weight[i] = wide[i] ? 0.0 : 1.0;
+  // Three running means are nearly a raised cosine, and take the same time at any width.
+  for (int pass = 0; pass < 3; ++pass) weight = running_mean(weight, width / 6);
   return weight;
 }
 

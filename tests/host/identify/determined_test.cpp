@@ -42,7 +42,7 @@ Trajectory one_way(double direction) {
   return {"one way", 6.0, [direction](double t) {
             const double w = std::numbers::pi / 1.5;
             const double v = direction * (t < 3.0 ? 0.05 : 0.15), s = t < 3.0 ? t : t - 3.0;
-            const double from = t < 3.0 ? 0.0 : direction * 0.05 * 1.5;
+            const double from = t < 3.0 ? 0.0 : direction * 0.5 * 0.05 * 1.5;
             const double u = std::min(s, 1.5);
             return sim::AxisSetPoint{from + 0.5 * v * (u - std::sin(2.0 * w * u) / (2.0 * w)),
                                      0.5 * v * (1.0 - std::cos(2.0 * w * u)),

@@ -89,8 +89,12 @@ TEST_F(IdentifiedMachine, keeps_what_the_command_line_set) {
   EXPECT_DOUBLE_EQ(machine.axes.front().velocity_controller.gain, 500.0);
 }
 
-TEST_F(IdentifiedMachine, without_coulomb_friction_there_is_none) {
-  EXPECT_THROW(text_of(found({{"mass_kg", 230.5}})), LogError);
+TEST_F(IdentifiedMachine, with_a_mass_alone_keeps_the_files_friction_and_says_so) {
+  const auto text = text_of(found({{"mass_kg", 230.5}}));
+  EXPECT_NE(text.find("friction: kept from the machine file"), std::string::npos);
+  const auto machine = read(text);
+  EXPECT_DOUBLE_EQ(machine.axes.front().mass, 230.5);
+  EXPECT_EQ(machine.axes.front().friction.use, "lugre");
 }
 
 // What it is for: the closed loop with the identified machine follows the record.
