@@ -148,8 +148,9 @@ std::string identification_text(const Identification& result) {
                       result.residual_rms);
   if (result.held_out)
     text += fmt::format(
-        "On data that were held out it leaves {:.4g} N rms, {:.3f} times what a plain least squares of mass, viscous "
-        "friction, Coulomb friction and offset leaves in the same rows.\n",
+        "On data that were held out it leaves {:.4g} N rms, {:.3f} times the rest of a plain least squares of mass, "
+        "viscous "
+        "friction, Coulomb friction and offset in the same rows.\n",
         result.held_out->fit, result.held_out->fit / result.held_out->plain);
   if (result.band) text += band_text(*result.band);
   for (const auto& note : result.notes) text += note + "\n";

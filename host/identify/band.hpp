@@ -46,11 +46,12 @@ struct LogOfAxis {
 Band choose_band(const std::vector<LogOfAxis>& logs, const machine::AxisModel& axis, Amperes amperes,
                  const LevelModel& model, const Held& held);
 
-// Rows of `logs` up to `cutoff` (Hz); the others: as above.
+// Rows of `logs` up to `cutoff` (Hz); `axis`, `amperes`, `model`: as above.
 LogRows followed_rows(const std::vector<LogOfAxis>& logs, const machine::AxisModel& axis, Amperes amperes,
                       double cutoff, const LevelModel& model);
 
-// Blocks for a residual of `rows`: the direction of motion is `rows.velocity`'s.
+// Blocks for a residual of `rows`: the direction of motion is `rows.velocity`'s. `correlation`: gets the length, in
+// rows, over which the residual is correlated.
 std::vector<RowBlock> blocks_for(const LogRows& rows, const Eigen::VectorXd& residual, double* correlation = nullptr);
 
 }  // namespace stiction::host

@@ -22,7 +22,7 @@ inline constexpr const char* record_accelerations = "moves with accelerations of
 void judge(Identification& result, const FittedParameter& fitted, const Scales& scales, std::size_t blocks,
            const std::string& how);
 
-// The same for those of the contact of `fit`.
+// The same for those of the contact of `fit`. `result`, `scales`: as above.
 void judge_contact(Identification& result, const FrictionFit& fit, const Scales& scales);
 
 // Names those of the contact as not determined, because of `why`.

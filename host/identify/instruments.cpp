@@ -31,6 +31,7 @@ double attenuation_of(const Eigen::MatrixXd& columns, double all_noise, const He
   std::vector<Eigen::Index> others;
   for (Eigen::Index c = 1; c < columns.cols(); ++c)
     if (columns.col(c).squaredNorm() > 0.0 && (c >= 4 || !held[static_cast<std::size_t>(c)])) others.push_back(c);
+  if (others.empty()) return 1e300;  // no sample counts
   Eigen::MatrixXd m(columns.rows(), static_cast<Eigen::Index>(others.size()));
   for (std::size_t i = 0; i < others.size(); ++i)
     m.col(static_cast<Eigen::Index>(i)) = columns.col(others[i]).normalized();

@@ -49,6 +49,7 @@ NoisyEquations equations_of(const LogRows& rows, const Eigen::MatrixXd& columns)
 
 class InstrumentFit {
  public:
+  // `equations`: columns, instruments and force; `blocks`: of their rows; `held`: columns that are not estimated.
   InstrumentFit(const NoisyEquations& equations, std::vector<RowBlock> blocks, const Held& held);
 
   const Eigen::VectorXd& weights() const { return weights_; }
@@ -56,7 +57,8 @@ class InstrumentFit {
   const Eigen::VectorXd& errors() const { return errors_; }
   // Share of the mass that the noise of the acceleration would take in plain least squares.
   double attenuation() const { return attenuation_; }
-  // Replicates of the weights, a row each, that scatter as the estimate does. `wider`: a factor for each weight.
+  // Replicates of the weights, a row each, that scatter as the estimate does. `count`: of them; `seed`: of the signs;
+  // `wider`: a factor for each weight.
   Eigen::MatrixXd replicates(int count, std::uint64_t seed, const Eigen::VectorXd& wider) const;
   // Force (N rms) that is left on blocks that were held out, each once.
   double held_out() const;

@@ -148,7 +148,7 @@ void require_motion(const Excitation& e, const std::string& sources) {
                     "several speeds",
                     sources, e.duration, shortest));
   if (e.highest_speed == 0.0)
-    throw LogError(fmt::format("{}: found an axis that stands still; expected motion", sources));
+    throw LogError(fmt::format("{}: found an axis at rest; expected motion", sources));
 }
 
 Excitation excitation_of(const LogRows& rows) {
