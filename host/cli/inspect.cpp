@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <utility>
 
 #include "firmware/machine/model/motor_force.hpp"
@@ -109,6 +110,16 @@ std::string limited_text(const LimitedChannel& limited) {
   return "";
 }
 
+// How lengths of an axis are said: mm, or degrees of a rotary one.
+struct Spoken {
+  double factor;
+  const char* unit;
+};
+Spoken spoken(const AxisLog& axis) {
+  if (axis.rotary) return {180.0 / std::numbers::pi, "deg"};
+  return {1e3, "mm"};
+}
+
 std::string direction_text(const AxisInspection& axis) {
   if (axis.at_rest > 0.999) return "";
   if (axis.forward > 0.95) return "; in one direction only, +x";
@@ -116,14 +127,14 @@ std::string direction_text(const AxisInspection& axis) {
   return "";
 }
 
-std::string resolution_text(const AxisInspection& axis) {
+std::string resolution_text(const AxisLog& log, const AxisInspection& axis) {
   std::string text;
   for (const auto& r : axis.resolution) {
     if (r.increment == 0.0 && r.noise == 0.0) continue;
     text += fmt::format("{}{}", text.empty() ? "" : "; ", r.channel->name);
-    if (r.increment > 0.0) text += fmt::format(" in steps of {:.4g} {}", r.increment, r.channel->unit);
+    if (r.increment > 0.0) text += fmt::format(" in steps of {:.4g} {}", r.increment, unit_on(log, *r.channel));
     if (r.noise > 0.0)
-      text += fmt::format("{} noise {:.2g} {} rms", r.increment > 0.0 ? "," : "", r.noise, r.channel->unit);
+      text += fmt::format("{} noise {:.2g} {} rms", r.increment > 0.0 ? "," : "", r.noise, unit_on(log, *r.channel));
   }
   return text.empty() ? "no increment and no noise found" : text;
 }
@@ -133,9 +144,9 @@ std::string clock_text(const Log& log) {
                                                           1e6 * log.clock.jitter, 100.0 * log.clock.jitter / log.period)
                                             : std::string("no jitter beyond the digits of the stamps");
   if (log.clock.resampled)
-    text +=
-        fmt::format("; the samples are interpolated at even times, the jitter adds {:.3g} um to the position at 1 m/s",
-                    1e6 * log.clock.jitter);
+    text += fmt::format(
+        "; the samples are interpolated at even times, the jitter adds {:.3g} {} to the position at 1 {}/s",
+        1e6 * log.clock.jitter, log.axes.front().rotary ? "urad" : "um", log.axes.front().rotary ? "rad" : "m");
   return text;
 }
 
@@ -145,20 +156,22 @@ json clock_json(const Log& log) {
 }
 
 json axis_json(const Log& log, std::size_t index, const AxisInspection& axis) {
+  const std::string length = log.axes[index].rotary ? "rad" : "m";
   json channels = json::array();
   for (const auto& channel : log_channels)
     if (!(log.axes[index].*channel.values).empty())
       channels.push_back({{"name", name_on(log.axes[index], channel)}, {"unit", unit_on(log.axes[index], channel)}});
   json out{{"axis", axis.axis},
            {"channels", channels},
-           {"stroke_m", axis.stroke},
-           {"max_speed_m_per_s", axis.max_speed},
-           {"max_acceleration_m_per_s2", axis.max_acceleration},
+           {"stroke_" + length, axis.stroke},
+           {"max_speed_" + length + "_per_s", axis.max_speed},
+           {"max_acceleration_" + length + "_per_s2", axis.max_acceleration},
            {"reversals", axis.reversals},
            {"at_rest", axis.at_rest},
            {"forward", axis.forward}};
   out["speeds"] = json::array();
-  for (const auto& p : axis.plateaus) out["speeds"].push_back({{"speed_m_per_s", p.speed}, {"duration_s", p.duration}});
+  for (const auto& p : axis.plateaus)
+    out["speeds"].push_back({{"speed_" + length + "_per_s", p.speed}, {"duration_s", p.duration}});
   out["saturation"] = json::array();
   for (const auto& s : axis.saturation)
     out["saturation"].push_back(
@@ -168,8 +181,10 @@ json axis_json(const Log& log, std::size_t index, const AxisInspection& axis) {
   if (axis.force_constant) out[std::string("force_constant_N_per_") + axis.effort->unit] = *axis.force_constant;
   out["resolution"] = json::array();
   for (const auto& r : axis.resolution)
-    out["resolution"].push_back(
-        {{"channel", r.channel->name}, {"unit", r.channel->unit}, {"increment", r.increment}, {"noise", r.noise}});
+    out["resolution"].push_back({{"channel", name_on(log.axes[index], *r.channel)},
+                                 {"unit", unit_on(log.axes[index], *r.channel)},
+                                 {"increment", r.increment},
+                                 {"noise", r.noise}});
   out["limited"] = json::array();
   for (const auto& l : axis.limited)
     out["limited"].push_back({{"channel", l.channel->name},
@@ -208,10 +223,13 @@ std::string axis_text(const Log& log, std::size_t index, const AxisInspection& a
   };
   for (const auto& question : axis.questions) line("QUESTION", question.text);
   line("channels", channels);
-  line("resolution", resolution_text(axis));
-  line("stroke", fmt::format("{:.5g} mm", axis.stroke * 1e3));
-  line("speed", fmt::format("up to {:.4g} mm/s ({:.4g} m/min), acceleration up to {:.3g} m/s^2", axis.max_speed * 1e3,
-                            axis.max_speed * 60.0, axis.max_acceleration));
+  line("resolution", resolution_text(log.axes[index], axis));
+  const bool rotary = log.axes[index].rotary;
+  const auto [factor, unit] = spoken(log.axes[index]);
+  line("stroke", fmt::format("{:.5g} {}", axis.stroke * factor, unit));
+  line("speed", fmt::format("up to {:.4g} {}/s ({:.4g} {}), acceleration up to {:.3g} {}/s^2", axis.max_speed * factor,
+                            unit, axis.max_speed * (rotary ? 30.0 / std::numbers::pi : 60.0),
+                            rotary ? "turns/min" : "m/min", axis.max_acceleration, rotary ? "rad" : "m"));
   line("motion", fmt::format("{} reversals; {:.1f} % of the samples at rest; {:.0f} % of the others in +x{}",
                              axis.reversals, 100.0 * axis.at_rest, 100.0 * axis.forward, direction_text(axis)));
   for (const auto& limited : axis.limited) line("left out", limited_text(limited));
@@ -220,9 +238,10 @@ std::string axis_text(const Log& log, std::size_t index, const AxisInspection& a
   std::string speeds;
   for (const auto& p : axis.plateaus) {
     if (!speeds.empty()) speeds += ", ";
-    speeds += fmt::format("{:.4g} ({:.2g} s)", p.speed * 1e3, p.duration);
+    speeds += fmt::format("{:.4g} ({:.2g} s)", p.speed * factor, p.duration);
   }
-  line("steady speeds", speeds.empty() ? "none (at least 0.1 s and 0.1 mm within 1 %)" : speeds + " mm/s");
+  line("steady speeds",
+       speeds.empty() ? "none (at least 0.1 s and 0.1 mm within 1 %)" : fmt::format("{} {}/s", speeds, unit));
   if (axis.delay) line("position", fmt::format("{:.3g} ms behind the set position", *axis.delay * 1e3));
   if (axis.fit)
     line("sign",
@@ -231,6 +250,7 @@ std::string axis_text(const Log& log, std::size_t index, const AxisInspection& a
   if (const auto amperes = ampere_text(axis, machine_known); !amperes.empty()) line("amperes", amperes);
   if (axis.force_per_current) line("F over i", fmt::format("{:.4g} N/A", *axis.force_per_current));
   for (const auto& suspicion : axis.suspicions) line("SUSPICIOUS", suspicion);
+  if (rotary) return text + "  What it can determine is said of linear axes only.\n";
   text += "  this log can determine\n";
   for (const auto& d : axis.determinable)
     text += fmt::format("    {:<4} {:<45} {}{}\n", d.possible ? "yes" : "no", d.what, d.reason,

@@ -180,7 +180,7 @@ AxisInspection inspect_axis(const Log& log, const AxisLog& axis, const KnownAxis
   out.questions = questions_of(log, axis, known);
   if (!known.mass || !known.force_constant) out.only_a_ratio = known_only_as_ratio(log, axis);
   add_suspicions(log, axis, known, out);
-  add_determinable(log, axis, known, motion, out);
+  if (!axis.rotary) add_determinable(log, axis, known, motion, out);
   return out;
 }
 
