@@ -1,5 +1,5 @@
-// How a diagnosis looks for an effect: regressor.cpp in the effect's folder defines one EffectRegressor, `regressor`, in
-// the namespace effects::FOLDER.
+// How a diagnosis looks for an effect: regressor.cpp in the effect's folder defines one EffectRegressor, `regressor`,
+// in the namespace effects::FOLDER.
 #pragma once
 
 #include <span>

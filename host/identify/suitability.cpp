@@ -147,8 +147,7 @@ void require_motion(const Excitation& e, const std::string& sources) {
         fmt::format("{}: found {:.3g} s; expected at least {:g} s of motion. Record several reversals at "
                     "several speeds",
                     sources, e.duration, shortest));
-  if (e.highest_speed == 0.0)
-    throw LogError(fmt::format("{}: found an axis at rest; expected motion", sources));
+  if (e.highest_speed == 0.0) throw LogError(fmt::format("{}: found an axis at rest; expected motion", sources));
 }
 
 Excitation excitation_of(const LogRows& rows) {

@@ -13,6 +13,7 @@
 #include "host/simulate/control_run.hpp"
 #include "host/simulate/replay_result.hpp"
 #include "sim/experiment/shuttle_path.hpp"
+#include "sim/plant/friction/friction.hpp"
 #include "stiction/number/fixed_signals.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/shipped_machine.hpp"

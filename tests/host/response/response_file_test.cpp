@@ -1,7 +1,5 @@
 // Response tests of SINUMERIK Operate. The real one lies outside of the repository (shared/data/sinumerik); the one
 // made here has its shape and spectra that are summed up term by term.
-#include "host/response/response_test.hpp"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -12,6 +10,7 @@
 #include <numbers>
 
 #include "host/log/text_source.hpp"
+#include "host/response/response_test.hpp"
 
 namespace stiction::host {
 namespace {

@@ -7,9 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include "sim/effects/effects.hpp"
 #include "sim/plant/axis_plant.hpp"
 #include "sim/plant/friction/classical.hpp"
 #include "sim/plant/friction/coulomb_viscous.hpp"
+#include "sim/plant/friction/friction.hpp"
 #include "sim/plant/friction/linear_ramp.hpp"
 #include "sim/plant/friction/lugre.hpp"
 #include "sim/plant/friction/maxwell_slip.hpp"
