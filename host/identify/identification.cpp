@@ -12,6 +12,7 @@
 #include "host/identify/standstill.hpp"
 #include "host/identify/suitability.hpp"
 #include "sim/plant/friction/coulomb_viscous.hpp"
+#include "sim/plant/friction/lugre.hpp"
 
 namespace stiction::host {
 namespace {
@@ -245,7 +246,8 @@ Identification identify_logs(const std::vector<Log>& logs, const machine::AxisMo
   const bool recipe = options.friction == sim::CoulombViscous<>::name;
   const bool holds = std::any_of(options.held.begin(), options.held.end(), [](const auto& h) { return h.has_value(); });
   const bool published = recipe && !options.moving_rows_only && !holds;
-  auto model = level_model(axis, recipe || sticks_rigidly(axis));
+  const bool asked = options.friction == sim::LuGre<>::name;
+  auto model = level_model(axis, recipe || (sticks_rigidly(axis) && !asked));
   if (!published) result.band = choose_band(source.logs, axis, options.amperes, model, options.held);
   std::optional<LogRows> rows_in_band;
   if (!published)

@@ -28,7 +28,8 @@ BY_CLASS = {
     "host/diagnose/sliding_law.cpp": "the same",
 }
 # Text that is not the name of an effect.
-OTHER_MEANINGS = {("firmware/machine/file/feed_drive_parameters.hpp", "constant_force"): "a key of the feed drive's cutting force"}
+OTHER_MEANINGS = {("firmware/machine/file/feed_drive_parameters.hpp", "constant_force"): "a key of the feed drive's cutting force",
+                  ("host/cli/identify.cpp", "constant_force"): "a parameter of the fit"}
 
 TOPS = ("firmware", "hal", "sim", "host")
 SOURCES = {".cpp", ".hpp", ".js", ".html"}

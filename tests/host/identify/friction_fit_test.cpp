@@ -68,12 +68,24 @@ TEST(FrictionFit, a_law_whose_contact_has_one_length_is_fitted_by_its_own_contac
 }
 
 TEST(FrictionFit, lugres_contact_is_fitted_where_the_law_has_none_of_one_length) {
-  for (const char* law : {"classical", "curve", "maxwell_slip", "lugre"}) {
+  for (const char* law : {"maxwell_slip", "lugre"}) {
     const auto machine = test::bench_machine(law);
     EXPECT_FALSE(has_contact_of_one_length(machine.axes.front().friction)) << law;
     for (const char* wanted : {"", law})
       EXPECT_EQ(identify_logs(records(machine), machine.axes.front(), {wanted, Amperes::amplitude, {}}).friction,
                 "lugre");
+  }
+}
+
+// A contact where there is none took part of the mass and of the slope: of 24 records of an axis that sticks rigidly
+// the intervals of the mass held the truth in 58 %. Whoever expects a contact asks for it.
+TEST(FrictionFit, a_file_that_sticks_rigidly_gets_a_contact_only_where_it_is_asked_for) {
+  for (const char* law : {"classical", "curve"}) {
+    const auto machine = test::bench_machine(law);
+    for (const char* wanted : {"", law, "lugre"})
+      EXPECT_EQ(identify_logs(records(machine), machine.axes.front(), {wanted, Amperes::amplitude, {}}).friction,
+                std::string_view(wanted) == "lugre" ? "lugre" : "coulomb_viscous")
+          << law << wanted;
   }
 }
 

@@ -90,16 +90,16 @@ TEST(ForeignTable, RefusesTwoDecimalMarksInOneTable) {
   expect_refused("t[s];x[m];F[N]\n0;1.234,5;2\n1;1;2\n", "", "run.csv:2: column 2, x[m]", "'1.234,5'");
 }
 
-TEST(ForeignTable, ReadsBlankCellsAsNoValueAndWritesThemBlank) {
-  const std::string text = "t[s],x[m],F[N],temperature[degC],v[m/s]\n0,1,2,,\n1,1,2,25,\n2,1,2, ,\n";
+TEST(ForeignTable, FillsBlankCellsOfAChannelThatFitsDoNotNeed) {
+  const std::string text = "t[s],x[m],F[N],temperature[degC],v[m/s]\n0,1,2,,\n1,1,2,25,\n2,1,2, ,\n3,1,2,27,\n";
   const auto log = parse_csv_log(text, "run");
-  const auto& temperature = log.axes[0].temperature;
-  EXPECT_TRUE(std::isnan(temperature.at(0)) && std::isnan(temperature.at(2)));
-  EXPECT_EQ(temperature.at(1), 25.0);
+  EXPECT_EQ(log.axes[0].temperature, (std::vector<double>{25.0, 25.0, 26.0, 27.0}));
+  ASSERT_FALSE(log.notes.empty());
+  EXPECT_NE(log.notes.back().find("2 blank cells of temperature"), std::string::npos) << log.notes.back();
   // A channel without any value is none.
   EXPECT_TRUE(log.axes[0].v.empty());
   EXPECT_EQ(log.ignored, (std::vector<std::string>{"v[m/s] (blank)"}));
-  EXPECT_EQ(csv_log_text(log), "t[s],x[m],F[N],temperature[degC]\n0,1,2,\n1,1,2,25\n2,1,2,\n");
+  EXPECT_EQ(csv_log_text(log), "t[s],x[m],F[N],temperature[degC]\n0,1,2,25\n1,1,2,25\n2,1,2,26\n3,1,2,27\n");
   expect_refused("t[s],x[m],F[N]\n0,,2\n1,,2\n", "", "run.csv:1", "no x[m] (columns with unknown names: x[m] (blank))");
 }
 

@@ -111,7 +111,6 @@ TEST(MatLog, RefusesWithTheVariableAndSample) {
            Case{"d['t'] = t\nd['x'] = 'abc'\nd['i'] = t", ": x: found no numbers"},
            Case{"d['t'] = t\nd['x'] = t\nd['i'] = t\nd['units'] = {'x': 'N'}", ": x: found the unit 'N'"},
            Case{"d['t'] = t[::-1]\nd['x'] = t\nd['i'] = t", ": t(2): found 0.098 s"},
-           Case{"d['t'] = np.delete(t, 40)\nd['x'] = t[1:]\nd['i'] = t[1:]", ": t(41): found a gap of 2 ms"},
            Case{"d['x'] = t\nd['i'] = t", ": found no variable t;"},
            Case{"d['log'] = {'t': t, 'x': t, 'i': t}", "save(file, '-struct', 'log')"},
            Case{"d['t'] = t\nd['pos'] = t", "columns with unknown names: pos"},
