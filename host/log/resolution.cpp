@@ -20,6 +20,8 @@ constexpr int draws = 24;                   // so many, as a few gaps lie off th
 constexpr std::size_t most_kept = 5000;     // differences that are judged
 constexpr std::size_t most_sorted = 20000;  // values whose gaps are
 constexpr double clear = 8.0;               // an increment counts above this many times the error of a difference
+constexpr std::size_t some_values = 500;
+constexpr double slack_of_some = 0.15;  // what the share among so few may be less
 
 // Sizes of the differences between neighbours that are not equal, evenly picked where there are very many.
 std::vector<double> steps_of(std::span<const double> values, double error) {
@@ -95,12 +97,16 @@ double grid_of(const std::vector<double>& gaps, std::vector<double> steps, doubl
   all.insert(all.end(), gaps.begin(), gaps.end());
   // The smallest gaps are of few counts, so that Euclid's quotients are small.
   const std::size_t few = std::min(gaps.size(), few_gaps);
+  std::vector<double> some;
+  for (std::size_t k = 0; k < all.size(); k += 1 + all.size() / some_values) some.push_back(all[k]);
   std::mt19937 random(1);
   double best = 0.0;
   for (int draw = 0; draw < draws; ++draw) {
     Uncertain common{gaps[random() % few], error};
     for (std::size_t k = 1; k < drawn; ++k) common = common_divisor(common, {gaps[random() % few], error});
     if (common.value < clear * error || common.value <= 1.001 * best) continue;
+    // Most draws are of no grid, which a few of the values show as well as all.
+    if (on_grid(refined(common.value, some, error), some, error) < share - slack_of_some) continue;
     const double divisor = refined(common.value, all, error);
     if (divisor > best && on_grid(divisor, steps, error) >= share && on_grid(divisor, gaps, error) >= share)
       best = divisor;
