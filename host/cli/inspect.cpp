@@ -243,7 +243,7 @@ std::string axis_text(const Log& log, std::size_t index, const AxisInspection& a
   line("steady speeds",
        speeds.empty() ? "none (at least 0.1 s and 0.1 mm within 1 %)" : fmt::format("{} {}/s", speeds, unit));
   if (axis.delay) line("position", fmt::format("{:.3g} ms behind the set position", *axis.delay * 1e3));
-  if (axis.fit)
+  if (axis.fit && !rotary)
     line("sign",
          fmt::format("{} {} with the acceleration and {} with the direction of motion", axis.effort->name,
                      axis.fit->value[0] >= 0.0 ? "rises" : "falls", axis.fit->value[2] >= 0.0 ? "rises" : "falls"));

@@ -273,7 +273,8 @@ void add_suspicions(const Log&, const AxisLog& axis, const KnownAxis& known, Axi
           fmt::format("{} reaches {:.4g} {}, the limit of {:.4g} in the machine file, which distorts the motion",
                       out.effort->name, most, out.effort->unit, *known.effort_limit));
   }
-  if (!out.fit) return;
+  // A weight that turns with a rotary axis is in no fit of these, and takes the sign of friction and mass.
+  if (!out.fit || axis.rotary) return;
   const auto& fit = *out.fit;
   const auto negative = [&](std::size_t k) { return fit.value[k] < -3.0 * fit.error[k]; };
   const bool mass = fit.inflation[0] < separable, friction = fit.inflation[2] < separable;
