@@ -112,14 +112,14 @@ std::optional<LimitedChannel> switched_off(const LogChannel& channel, const Axis
 
 std::optional<LimitedChannel> stopped(const LogChannel& channel, const AxisLog& axis, double period) {
   const auto& x = axis.x;
-  const auto [least, most] = std::ranges::minmax(x);
+  const auto range = std::ranges::minmax(x);  // no structured binding: clang 14 captures none
   double fastest = 0.0;
   for (std::size_t k = 1; k < x.size(); ++k) fastest = std::max(fastest, std::abs(x[k] - x[k - 1]));
   LimitedChannel out{&channel, LimitedChannel::Kind::clipped, 0.0, std::vector<bool>(x.size(), false)};
   bool any = false;
   const double sudden = std::max(stops * fastest, clear * increment_of(axis, &AxisLog::x));
   runs_of(x, least_run(shortest, period, fewest), [&](std::size_t begin, std::size_t end) {
-    if (x[begin] != least && x[begin] != most) return;
+    if (x[begin] != range.min && x[begin] != range.max) return;
     // The step into the end is cut by the end; the one before it is whole.
     const double in = begin > 1 ? std::abs(x[begin - 1] - x[begin - 2]) : 0.0;
     const double out_of = end + 1 < x.size() ? std::abs(x[end + 1] - x[end]) : 0.0;
