@@ -67,12 +67,14 @@ std::vector<Segment> segments_of(std::span<const double> t, const StampDigits& d
     if (steps[k] > allowed * usual[k] + (rounding <= 0.5 * usual[k] ? rounding : 0.0)) breaks.push_back(k);
   }
   std::ranges::sort(breaks);
-  std::vector<Segment> segments{{0, t.size()}};
+  std::vector<Segment> segments;
+  std::size_t begin = 0;
   for (const std::size_t k : breaks) {
-    if (k + 1 == segments.back().begin) continue;
-    segments.back().end = k + 1;
-    segments.push_back({k + 1, t.size()});
+    if (k + 1 == begin) continue;
+    segments.push_back({begin, k + 1});
+    begin = k + 1;
   }
+  segments.push_back({begin, t.size()});
   return segments;
 }
 
