@@ -5,6 +5,8 @@
 
 #include <array>
 
+#include "host/cli/questions_json.hpp"
+
 namespace stiction::host {
 namespace {
 
@@ -20,35 +22,6 @@ json curve_json(const SlidingCurve& curve) {
   }
   for (const auto& e : curve.errors) errors[e.curve] = e.held_out;
   return {{"curve", curve.curve}, {"parameters", parameters}, {"held_out_rms_N", errors}};
-}
-
-const char* question_kind(const Question& question) {
-  switch (question.about) {
-    case Question::About::amperes:
-      return "amperes";
-    case Question::About::length:
-      return "length";
-    case Question::About::angle:
-      return "angle";
-    case Question::About::sign:
-      return "sign";
-    case Question::About::shift:
-      return "shift";
-    case Question::About::scale:
-      return "scale";
-  }
-  return "";
-}
-
-json questions_json(const std::vector<Question>& questions) {
-  json list = json::array();
-  for (const auto& q : questions)
-    list.push_back({{"about", question_kind(q)},
-                    {"question", q.text},
-                    {"value", q.value},
-                    {"ci95", {q.low, q.high}},
-                    {"probability", q.probability}});
-  return list;
 }
 
 // The trials of the band: what each cut-off would have given.

@@ -7,11 +7,11 @@
 #include <numbers>
 #include <utility>
 
-#include "firmware/machine/model/motor_force.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/log_input.hpp"
 #include "host/cli/machine_options.hpp"
+#include "host/cli/questions_json.hpp"
 #include "host/log/channel_name.hpp"
 #include "host/log/inspection.hpp"
 #include "host/log/stretches.hpp"
@@ -32,16 +32,7 @@ std::vector<KnownAxis> known_axes(const InspectOptions& options, const Log& log)
   if (options.machine.machine.empty()) return {};
   const auto machine = options.machine.load(options.machine.machine, "");
   std::vector<KnownAxis> known;
-  for (const auto index : match_axes(machine, log, options.axis)) {
-    const auto& axis = machine.axes[index];
-    const bool force_motor = axis.motor.model == machine::MotorModel::force;
-    KnownAxis k{axis.mass,
-                machine::acting_force_constant(axis.motor),
-                force_motor ? axis.inverter.voltage_limit : axis.inverter.current_limit * axis.motor.count,
-                {}};
-    if (axis.motor.pole_pair_pitch > 0.0) k.pole_pair_pitch = axis.motor.pole_pair_pitch;
-    known.push_back(k);
-  }
+  for (const auto index : match_axes(machine, log, options.axis)) known.push_back(known_axis(machine.axes[index]));
   return known;
 }
 
@@ -62,24 +53,6 @@ const char* kind_of(const LimitedChannel& limited) {
       return "clipped";
     case LimitedChannel::Kind::off:
       return "off";
-  }
-  return "";
-}
-
-const char* about(const Question& question) {
-  switch (question.about) {
-    case Question::About::amperes:
-      return "amperes";
-    case Question::About::length:
-      return "length";
-    case Question::About::angle:
-      return "angle";
-    case Question::About::sign:
-      return "sign";
-    case Question::About::shift:
-      return "shift";
-    case Question::About::scale:
-      return "scale";
   }
   return "";
 }
@@ -193,13 +166,7 @@ json axis_json(const Log& log, std::size_t index, const AxisInspection& axis) {
                               {"level", l.level},
                               {"part", part_of(l)}});
   out["left_out"] = axis.left_out;
-  out["questions"] = json::array();
-  for (const auto& q : axis.questions)
-    out["questions"].push_back({{"about", about(q)},
-                                {"question", q.text},
-                                {"value", q.value},
-                                {"ci95", {q.low, q.high}},
-                                {"probability", q.probability}});
+  out["questions"] = questions_json(axis.questions);
   if (!axis.only_a_ratio.empty()) out["only_a_ratio"] = axis.only_a_ratio;
   out["suspicions"] = axis.suspicions;
   out["determinable"] = json::array();

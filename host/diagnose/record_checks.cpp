@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "firmware/machine/model/motor_force.hpp"
 #include "host/identify/identification.hpp"
 #include "host/identify/suitability.hpp"
 #include "host/log/questions.hpp"
@@ -18,16 +17,6 @@ namespace {
 constexpr double much_unexplained = 0.5;  // of the force's variance: more than a known effect causes
 
 }  // namespace
-
-KnownAxis known_axis(const machine::AxisModel& axis) {
-  KnownAxis known;
-  known.mass = axis.mass;
-  known.force_constant = machine::acting_force_constant(axis.motor);
-  known.effort_limit = axis.motor.model == machine::MotorModel::force ? axis.inverter.voltage_limit
-                                                                      : axis.inverter.current_limit * axis.motor.count;
-  if (axis.motor.pole_pair_pitch > 0.0) known.pole_pair_pitch = axis.motor.pole_pair_pitch;
-  return known;
-}
 
 std::vector<std::string> questions_before(std::span<const Log> logs, const machine::AxisModel& axis) {
   std::vector<std::string> all;

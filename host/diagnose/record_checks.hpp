@@ -7,13 +7,9 @@
 
 #include "firmware/machine/model/machine.hpp"
 #include "host/identify/log_rows.hpp"
-#include "host/log/known_axis.hpp"
 #include "host/log/log.hpp"
 
 namespace stiction::host {
-
-// What the file says of `axis` to those who inspect its logs.
-KnownAxis known_axis(const machine::AxisModel& axis);
 
 // Questions to be answered before any result: amperes, lengths, signs and shifts of the channels of `axis` in `logs`
 // (host/log/questions.hpp), as sentences that name the log.

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 
-#include "firmware/machine/model/motor_force.hpp"
 #include "host/identify/determined.hpp"
 #include "host/identify/fit_support.hpp"
 #include "host/identify/standstill.hpp"
@@ -84,14 +83,8 @@ Source sources_for(Identification& result, const std::vector<Log>& logs, const m
 
 // What looks wrong in the logs, the likeliest of each kind.
 void ask(Identification& result, const Source& source, const machine::AxisModel& axis) {
-  const bool force_motor = axis.motor.model == machine::MotorModel::force;
-  KnownAxis known{axis.mass,
-                  machine::acting_force_constant(axis.motor),
-                  force_motor ? axis.inverter.voltage_limit : axis.inverter.current_limit * axis.motor.count,
-                  {}};
-  if (axis.motor.pole_pair_pitch > 0.0) known.pole_pair_pitch = axis.motor.pole_pair_pitch;
   for (const auto& each : source.logs)
-    for (const auto& question : questions_of(*each.log, *each.channels, known)) {
+    for (const auto& question : questions_of(*each.log, *each.channels, known_axis(axis))) {
       const auto same = std::find_if(result.questions.begin(), result.questions.end(),
                                      [&](const auto& q) { return q.about == question.about; });
       if (same == result.questions.end())

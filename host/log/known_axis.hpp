@@ -3,6 +3,8 @@
 
 #include <optional>
 
+#include "firmware/machine/model/machine.hpp"
+
 namespace stiction::host {
 
 // What is known of an axis of the machine.
@@ -12,5 +14,8 @@ struct KnownAxis {
   std::optional<double> effort_limit;     // A or V of the whole axis
   std::optional<double> pole_pair_pitch;  // m
 };
+
+// What the file says of `axis`.
+KnownAxis known_axis(const machine::AxisModel& axis);
 
 }  // namespace stiction::host

@@ -8,6 +8,7 @@
 
 #include "firmware/machine/model/motor_force.hpp"
 #include "host/identify/identification.hpp"
+#include "host/log/csv_log.hpp"
 #include "tests/host/identify/campaign.hpp"
 #include "tests/support/figure.hpp"
 
@@ -87,6 +88,28 @@ TEST_F(Determined, samples_that_the_log_leaves_out_do_not_count) {
   const auto result = identify({log});
   expect_near(result, "mass_kg", 225.0, 0.02);
   expect_near(result, "coulomb_N", 90.0, 0.03);
+}
+
+// Tops that are cut off in a file are found where it is read.
+TEST_F(Determined, tops_that_are_cut_off_do_not_count) {
+  auto log = general();
+  for (double& i : log.axes.front().i) i = std::clamp(i, -3.0, 3.0);
+  const auto result = identify({host::parse_csv_log(host::csv_log_text(log), "cut.csv")});
+  ASSERT_FALSE(result.notes.empty());
+  EXPECT_NE(result.notes.front().find("do not count"), std::string::npos) << result.notes.front();
+  for (const auto& [name, truth] : {std::pair{"mass_kg", 225.0}, std::pair{"coulomb_N", 90.0}})
+    if (!is_open(result, name)) expect_near(result, name, truth, 0.05);
+}
+
+// The slope of friction over speed is hardly in a log of one speed: it is named, or its interval says so.
+TEST_F(Determined, one_speed_claims_no_slope) {
+  const auto result = identify({recorded(constant_speeds({0.02, 0.02, 0.02}, 0.6, 0.0))});
+  const auto* slope = result.find("viscous_N_s_per_m");
+  if (slope == nullptr)
+    EXPECT_TRUE(is_open(result, "viscous_N_s_per_m"));
+  else
+    EXPECT_TRUE(slope->ci95.low <= 500.0 && 500.0 <= slope->ci95.high) << slope->value;
+  expect_near(result, "coulomb_N", 90.0, 0.05);
 }
 
 TEST_F(Determined, a_value_that_is_held_is_not_estimated) {
