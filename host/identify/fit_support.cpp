@@ -11,7 +11,16 @@ namespace {
 constexpr double correlation_lengths = 3.0;
 constexpr std::size_t least_rows = 10;
 constexpr std::size_t least_blocks_of_fit = 8;
+constexpr double separable = 20.0;  // variance inflation up to which speed and its sign count as told apart
 constexpr double worth_while = 0.01;  // of the value; less is noise of the test itself in one record of thirty
+
+// By how much the other columns inflate the variance of the level's weight (VIF; Belsley, Kuh, Welsch 1980).
+double inflation_of_level(const Eigen::MatrixXd& columns) {
+  Eigen::MatrixXd others(columns.rows(), 3);
+  others << columns.col(acceleration), columns.col(velocity), columns.col(one);
+  const Eigen::VectorXd own = columns.col(level), left = own - others * weights_of(others, own);
+  return own.squaredNorm() / left.squaredNorm();
+}
 
 }  // namespace
 
@@ -73,6 +82,8 @@ void check_against_sliding(FrictionFit& fit, const LogRows& rows, const FitSetti
             .maxCoeff() > 0.0)
       with_rows.push_back(block);
   if (with_rows.size() < least_blocks_of_fit) return;
+  // Rows of one speed do not tell its friction from the level, so that they contradict nothing.
+  if (!(inflation_of_level(columns) < separable)) return;
   const BlockRegression paired(columns, force, fit.blocks);
   const Eigen::RowVectorXd centre = paired.solve().transpose();
   FrictionFit alone;
