@@ -12,6 +12,7 @@
 #include <variant>
 
 #include "firmware/machine/file/parameters.hpp"
+#include "firmware/machine/model/value_table.hpp"
 #include "host/report/engineering_unit.hpp"
 #include "sim/plant/friction/laws.hpp"
 
@@ -39,31 +40,13 @@ std::string meaning_of(std::string_view text, std::optional<double> value) {
   return applies ? std::string(text.substr(colon + 2)) : std::string();
 }
 
-template <class Owner>
-std::vector<double> values_of(const machine::Parameter<Owner>& parameter, const Owner& owner) {
-  const auto values = std::visit(
-      [&]<class M>(M Owner::*member) -> std::vector<double> {
-        const M& given = owner.*member;
-        if constexpr (std::is_same_v<M, std::vector<double>>)
-          return given;
-        else if constexpr (std::is_same_v<M, std::optional<double>>)
-          return given ? std::vector{*given} : std::vector<double>{};
-        else
-          return {static_cast<double>(given)};
-      },
-      parameter.member);
-  // A key that this motor does not need holds a default that the range would refuse.
-  const bool given = std::all_of(values.begin(), values.end(), [&](double v) { return parameter.range.contains(v); });
-  return given ? values : std::vector<double>{};
-}
-
-template <class Owner>
-Cell make_cell(const machine::Parameter<Owner>& parameter, const Owner& owner, bool force_motor) {
-  Cell cell{force_motor && !parameter.unit_of_force_motor.empty() ? parameter.unit_of_force_motor : parameter.unit,
-            values_of(parameter, owner),
-            {}};
+// `values` of `key`: what its range refuses is the default of a key that this motor does not need.
+Cell make_cell(const machine::ValueKey& key, std::vector<double> values, bool force_motor) {
+  if (!std::all_of(values.begin(), values.end(), [&](double v) { return key.range.contains(v); })) values.clear();
+  Cell cell{
+      force_motor && !key.unit_of_force_motor.empty() ? key.unit_of_force_motor : key.unit, std::move(values), {}};
   if (cell.values.size() <= 1)
-    cell.instead = meaning_of(parameter.text, cell.values.empty() ? std::nullopt : std::optional(cell.values[0]));
+    cell.instead = meaning_of(key.text, cell.values.empty() ? std::nullopt : std::optional(cell.values[0]));
   if (cell.values.size() == 1 && std::isinf(cell.values[0])) cell.instead = "none";
   return cell;
 }
@@ -150,10 +133,13 @@ template <class Owner>
 void add_parameters(Sheet& sheet, std::span<const machine::Parameter<Owner>> parameters,
                     const std::vector<const Owner*>& owners, const std::vector<bool>& force_motor) {
   for (const auto& parameter : parameters) {
+    const auto key = machine::key_of(parameter);
     std::vector<std::optional<Cell>> cells;
     for (std::size_t i = 0; i < owners.size(); ++i)
-      cells.push_back(owners[i] ? std::optional(make_cell(parameter, *owners[i], force_motor[i])) : std::nullopt);
-    sheet.add(label_of(parameter.text), cells);
+      cells.push_back(
+          owners[i] ? std::optional(make_cell(key, machine::values_at(place_of(parameter, *owners[i])), force_motor[i]))
+                    : std::nullopt);
+    sheet.add(label_of(key.text), cells);
   }
 }
 

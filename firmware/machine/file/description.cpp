@@ -16,13 +16,6 @@ std::string with_unit(double value, std::string_view unit) {
   return unit == "1" ? fmt::format("{}", value) : fmt::format("{} {}", value, unit);
 }
 
-template <class Member>
-constexpr ValueKind kind_of() {
-  if constexpr (std::is_same_v<Member, int>) return ValueKind::whole_number;
-  if constexpr (std::is_same_v<Member, std::vector<double>>) return ValueKind::list;
-  return ValueKind::number;
-}
-
 // The motor models that need `path` (a key from the axis on).
 std::vector<std::string_view> motor_models_that_need(std::string_view path) {
   std::vector<std::string_view> names;
@@ -60,36 +53,54 @@ KeyDescription describe(const ValueKey& p, ValueKind kind, const std::string& ne
 
 template <class Owner>
 KeyDescription describe(const Parameter<Owner>& p, std::string_view path) {
-  const ValueKind kind = std::visit([]<class Member>(Member Owner::*) { return kind_of<Member>(); }, p.member);
-  return describe(keys_of(std::array{p}).front(), kind, need_of(path));
+  const ValueKey key = key_of(p);
+  const bool whole = std::holds_alternative<int Owner::*>(p.member);
+  return describe(key, key.list ? ValueKind::list : whole ? ValueKind::whole_number : ValueKind::number, need_of(path));
+}
+
+struct NamedChoice {
+  std::string_view name, text;
+};
+
+KeyDescription describe_choice(std::string_view name, std::string_view text, const std::vector<NamedChoice>& choices,
+                               std::optional<std::size_t> fallback) {
+  KeyDescription key;
+  key.key = name;
+  key.fallback = fallback ? fmt::format("\"{}\"", choices[*fallback].name) : "required";
+  key.text = text;
+  std::vector<std::string_view> names;
+  for (const auto& choice : choices) {
+    names.push_back(choice.name);
+    key.allowed += fmt::format("{}\"{}\": {}", key.allowed.empty() ? "" : "; ", choice.name, choice.text);
+  }
+  key.expected = fmt::format("{} ({})", quoted_list(names), text);
+  return key;
 }
 
 template <class Owner, class Value>
 KeyDescription describe(const ChoiceParameter<Owner, Value>& p) {
-  KeyDescription key;
-  key.key = p.key;
-  key.fallback = "required";
-  key.text = p.text;
-  std::vector<std::string_view> names;
+  std::vector<NamedChoice> choices;
+  std::optional<std::size_t> fallback;
   for (const Choice<Value>& choice : p.choices) {
-    names.push_back(choice.name);
-    key.allowed += fmt::format("{}\"{}\": {}", key.allowed.empty() ? "" : "; ", choice.name, choice.text);
-    if (p.fallback == choice.value) key.fallback = fmt::format("\"{}\"", choice.name);
+    if (p.fallback == choice.value) fallback = choices.size();
+    choices.push_back({choice.name, choice.text});
   }
-  key.expected = fmt::format("{} ({})", quoted_list(names), p.text);
-  return key;
+  return describe_choice(p.key, p.text, choices, fallback);
 }
 
-template <class Owner>
-KeyDescription describe(const TextParameter<Owner>& p) {
-  const bool required = std::holds_alternative<std::string Owner::*>(p.member);
-  return {.key = std::string(p.key),
+KeyDescription describe_text(std::string_view key, std::string_view text, bool required) {
+  return {.key = std::string(key),
           .unit = {},
           .unit_of_force_motor = {},
           .allowed = "a text",
           .fallback = required ? "required" : "left out",
-          .text = std::string(p.text),
-          .expected = fmt::format("a text ({})", p.text)};
+          .text = std::string(text),
+          .expected = fmt::format("a text ({})", text)};
+}
+
+template <class Owner>
+KeyDescription describe(const TextParameter<Owner>& p) {
+  return describe_text(p.key, p.text, std::holds_alternative<std::string Owner::*>(p.member));
 }
 
 template <class T>

@@ -34,7 +34,7 @@ class TableReader {
   template <class Owner>
   Owner read(const toml::table& table, const std::string& path) const {
     using T = Table<Owner>;
-    refuse_unknown<Owner>(table, path);
+    refuse_unknown(table, path, known_keys<Owner>());
     Owner owner;
     for (const auto& p : T::texts) read_text(table, path, p, owner);
     std::apply([&](const auto&... p) { (read_choice(table, path, p, owner), ...); }, T::choices);
@@ -70,11 +70,6 @@ class TableReader {
     return known;
   }
 
-  template <class Owner>
-  void refuse_unknown(const toml::table& table, const std::string& path) const {
-    refuse_unknown(table, path, known_keys<Owner>());
-  }
-
   void refuse_unknown(const toml::table& table, const std::string& path,
                       const std::vector<std::string_view>& known) const {
     for (auto&& [key, value] : table)
@@ -84,65 +79,74 @@ class TableReader {
 
   template <class Owner>
   void read_text(const toml::table& table, const std::string& path, const TextParameter<Owner>& p, Owner& owner) const {
-    const std::string key = join_key(path, p.key);
-    const std::string expected = fmt::format("a text ({})", p.text);
-    const toml::node* node = table.get(p.key);
-    const bool required = std::holds_alternative<std::string Owner::*>(p.member);
-    if (node == nullptr && !required) return;
+    const auto* required = std::get_if<std::string Owner::*>(&p.member);
+    const auto* text = text_of(table, path, p.key, p.text, required != nullptr);
+    if (text == nullptr) return;
+    if (required != nullptr)
+      owner.** required = *text;
+    else
+      owner.*std::get<std::optional<std::string> Owner::*>(p.member) = *text;
+  }
+
+  // Null for what is left out and not required.
+  const std::string* text_of(const toml::table& table, const std::string& path, std::string_view name,
+                             std::string_view what, bool required) const {
+    const std::string key = join_key(path, name);
+    const std::string expected = fmt::format("a text ({})", what);
+    const toml::node* node = table.get(name);
+    if (node == nullptr && !required) return nullptr;
     if (node == nullptr) document_.fail(table.source(), key, "no such key", expected);
     const auto* text = node->as_string();
     if (text == nullptr || text->get().empty()) document_.fail(node->source(), key, describe_node(*node), expected);
-    std::visit([&](auto member) { owner.*member = text->get(); }, p.member);
+    return &text->get();
   }
 
   template <class Owner, class Value>
   void read_choice(const toml::table& table, const std::string& path, const ChoiceParameter<Owner, Value>& p,
                    Owner& owner) const {
-    const toml::node* node = table.get(p.key);
-    if (node == nullptr && p.fallback) {
-      owner.*p.member = *p.fallback;
-      return;
-    }
     std::vector<std::string_view> names;
-    for (const Choice<Value>& choice : p.choices) {
-      names.push_back(choice.name);
-      if (node == nullptr || !node->is_string() || node->as_string()->get() != choice.name) continue;
-      owner.*p.member = choice.value;
-      return;
-    }
+    for (const Choice<Value>& choice : p.choices) names.push_back(choice.name);
+    const auto chosen = choice_of(table, path, p.key, p.text, names, p.fallback.has_value());
+    owner.*p.member = chosen ? p.choices[*chosen].value : *p.fallback;
+  }
+
+  // Which of `names`; none where the key is absent and has a default.
+  std::optional<std::size_t> choice_of(const toml::table& table, const std::string& path, std::string_view key,
+                                       std::string_view text, const std::vector<std::string_view>& names,
+                                       bool has_default) const {
+    const toml::node* node = table.get(key);
+    if (node == nullptr && has_default) return std::nullopt;
+    const auto* given = node == nullptr ? nullptr : node->as_string();
+    if (given != nullptr)
+      for (std::size_t k = 0; k < names.size(); ++k)
+        if (given->get() == names[k]) return k;
     document_.fail(
-        node == nullptr ? table.source() : node->source(), join_key(path, p.key),
+        node == nullptr ? table.source() : node->source(), join_key(path, key),
         node == nullptr ? "no such key" : describe_node(*node),
-        fmt::format("{} ({}){}", quoted_list(names), p.text,
-                    node != nullptr && node->is_string() ? did_you_mean(node->as_string()->get(), names) : ""));
+        fmt::format("{} ({}){}", quoted_list(names), text, given != nullptr ? did_you_mean(given->get(), names) : ""));
   }
 
   template <class Owner, std::size_t Count>
   void read_parameters(const toml::table& table, const std::string& path,
                        const std::array<Parameter<Owner>, Count>& parameters, Owner& owner) const {
-    for (const Parameter<Owner>& p : parameters)
-      std::visit(
-          [&]<class Member>(Member Owner::*member) {
-            // What is larger than its owner is no member of it; without this gcc warns of reading beyond the owner.
-            if constexpr (sizeof(Member) <= sizeof(Owner)) read_parameter(table, path, p, owner.*member);
-          },
-          p.member);
+    for (const Parameter<Owner>& p : parameters) read_parameter(table, path, key_of(p), place_of(p, owner));
   }
 
-  template <class Owner, class Member>
-  void read_parameter(const toml::table& table, const std::string& path, const Parameter<Owner>& p,
-                      Member& member) const {
-    const std::string_view unit = force_motor_ && !p.unit_of_force_motor.empty() ? p.unit_of_force_motor : p.unit;
-    const Wanted wanted{join_key(path, p.key), unit, p.range, p.text};
-    if (const toml::node* node = table.get(p.key)) {
-      read_value(*node, wanted, member);
-    } else if constexpr (std::is_arithmetic_v<Member>) {
-      if (!p.fallback)
-        fail_missing(table, wanted, std::is_same_v<Member, int> ? ValueKind::whole_number : ValueKind::number);
-      member = static_cast<Member>(*p.fallback);
-    } else if constexpr (std::is_same_v<Member, std::vector<double>>) {
-      fail_missing(table, wanted, ValueKind::list);
-    }
+  void read_parameter(const toml::table& table, const std::string& path, const ValueKey& key,
+                      const Place& place) const {
+    const Wanted wanted = wanted_of(path, key);
+    const toml::node* node = table.get(key.key);
+    if (node != nullptr)
+      std::visit([&](auto* member) { read_value(*node, wanted, *member); }, place);
+    else if (!key.optional && !key.fallback)
+      fail_missing(table, wanted, kind_of(key, place));
+    else if (key.fallback)
+      put(place, {*key.fallback});
+  }
+
+  static ValueKind kind_of(const ValueKey& key, const Place& place) {
+    if (key.list) return ValueKind::list;
+    return std::holds_alternative<int*>(place) ? ValueKind::whole_number : ValueKind::number;
   }
 
   // Far beyond what any machine has; but the plant divides by these numbers and multiplies them, and a mass of 1e-323
@@ -157,6 +161,10 @@ class TableReader {
     std::string_view text;
     std::string expected(ValueKind kind) const { return describe_expectation(kind, range, unit, text); }
   };
+  Wanted wanted_of(const std::string& path, const ValueKey& key) const {
+    const bool of_force = force_motor_ && !key.unit_of_force_motor.empty();
+    return {join_key(path, key.key), of_force ? key.unit_of_force_motor : key.unit, key.range, key.text};
+  }
 
   [[noreturn]] void fail_missing(const toml::table& table, const Wanted& wanted, ValueKind kind) const {
     document_.fail(table.source(), wanted.key, "no such key", wanted.expected(kind));
@@ -280,8 +288,7 @@ class TableReader {
 
   // Empty for what is left out and has no default.
   std::vector<double> read_value_of(const toml::table& table, const std::string& path, const ValueKey& key) const {
-    const std::string_view unit = force_motor_ && !key.unit_of_force_motor.empty() ? key.unit_of_force_motor : key.unit;
-    const Wanted wanted{join_key(path, key.key), unit, key.range, key.text};
+    const Wanted wanted = wanted_of(path, key);
     const toml::node* node = table.get(key.key);
     if (node == nullptr) {
       if (key.fallback) return {*key.fallback};

@@ -42,4 +42,35 @@ void check_values(const ValueTable& table, const KeyedValues& values) {
   }
 }
 
+std::vector<double> values_at(const ConstPlace& place) {
+  return std::visit(
+      []<class Value>(const Value* value) -> std::vector<double> {
+        if constexpr (std::is_same_v<Value, std::vector<double>>)
+          return *value;
+        else if constexpr (std::is_same_v<Value, std::optional<double>>)
+          return *value ? std::vector{**value} : std::vector<double>{};
+        else
+          return {static_cast<double>(*value)};
+      },
+      place);
+}
+
+void put(const Place& place, const std::vector<double>& values) {
+  if (values.empty()) return;
+  std::visit(
+      [&]<class Value>(Value* value) {
+        if constexpr (std::is_same_v<Value, std::vector<double>>)
+          *value = values;
+        else
+          *value = static_cast<Value>(values.front());
+      },
+      place);
+}
+
+std::vector<double> given_or_default(const KeyedValues& values, const ValueKey& key) {
+  const auto found = values.find(key.key);
+  if (found != values.end() && !found->second.empty()) return found->second;
+  return key.fallback ? std::vector{*key.fallback} : std::vector<double>{};
+}
+
 }  // namespace stiction::machine

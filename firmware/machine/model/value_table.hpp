@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -82,38 +83,61 @@ struct Vocabulary {
 // list of another length or order than its key asks for.
 void check_values(const ValueTable& table, const KeyedValues& values);
 
+// What one typed parameter says.
+template <class Owner>
+ValueKey key_of(const Parameter<Owner>& p) {
+  return {p.key,
+          p.unit,
+          p.unit_of_force_motor,
+          p.range,
+          std::holds_alternative<std::vector<double> Owner::*>(p.member),
+          std::holds_alternative<std::optional<double> Owner::*>(p.member),
+          p.fallback,
+          p.text,
+          p.as_long_as,
+          p.rising};
+}
+
 // The keys of a table of typed parameters.
 template <class Owner, std::size_t Count>
 std::vector<ValueKey> keys_of(const std::array<Parameter<Owner>, Count>& parameters) {
   std::vector<ValueKey> keys;
-  for (const auto& p : parameters)
-    keys.push_back(
-        {p.key, p.unit, p.unit_of_force_motor, p.range, std::holds_alternative<std::vector<double> Owner::*>(p.member),
-         std::holds_alternative<std::optional<double> Owner::*>(p.member), p.fallback, p.text, p.as_long_as, p.rising});
+  for (const auto& p : parameters) keys.push_back(key_of(p));
   return keys;
 }
+
+// Where the values of a typed parameter are in its owner. Whoever reads and writes values works on places, so that the
+// compiler makes his code once and not once an owner.
+using Place = std::variant<double*, int*, std::optional<double>*, std::vector<double>*>;
+using ConstPlace = std::variant<const double*, const int*, const std::optional<double>*, const std::vector<double>*>;
+
+template <class Owner, class MaybeConst>
+auto place_of(const Parameter<Owner>& p, MaybeConst& owner) {
+  using Found = std::conditional_t<std::is_const_v<MaybeConst>, ConstPlace, Place>;
+  if (const auto* member = std::get_if<int Owner::*>(&p.member)) return Found(&(owner.**member));
+  // What is larger than its owner is no member of it; without this gcc warns of writing beyond the owner.
+  if constexpr (sizeof(std::optional<double>) <= sizeof(Owner))
+    if (const auto* member = std::get_if<std::optional<double> Owner::*>(&p.member)) return Found(&(owner.**member));
+  if constexpr (sizeof(std::vector<double>) <= sizeof(Owner))
+    if (const auto* member = std::get_if<std::vector<double> Owner::*>(&p.member)) return Found(&(owner.**member));
+  return Found(&(owner.*std::get<double Owner::*>(p.member)));
+}
+
+// The values there; none: an optional one that is not given.
+std::vector<double> values_at(const ConstPlace& place);
+
+// A list takes all of `values`, everything else the first one; without any the place keeps what it holds.
+void put(const Place& place, const std::vector<double>& values);
+
+// The values of `key` among `values`, or its default; none where both lack.
+std::vector<double> given_or_default(const KeyedValues& values, const ValueKey& key);
 
 // Typed parameters from values that were checked against their keys; what is absent keeps the default of its key, or
 // else what `Owner` begins with.
 template <class Owner, std::size_t Count>
 Owner typed(const KeyedValues& values, const std::array<Parameter<Owner>, Count>& parameters) {
   Owner owner;
-  for (const auto& p : parameters)
-    std::visit(
-        [&]<class Member>(Member Owner::*member) {
-          const auto found = values.find(p.key);
-          // What is larger than its owner is no member of it; without this gcc warns of writing beyond the owner.
-          if constexpr (sizeof(Member) > sizeof(Owner)) {
-          } else if constexpr (std::is_same_v<Member, std::vector<double>>) {
-            if (found != values.end()) owner.*member = found->second;
-          } else {
-            if (found != values.end() && !found->second.empty())
-              owner.*member = static_cast<Member>(found->second.front());
-            else if (p.fallback)
-              owner.*member = static_cast<Member>(*p.fallback);
-          }
-        },
-        p.member);
+  for (const auto& p : parameters) put(place_of(p, owner), given_or_default(values, key_of(p)));
   return owner;
 }
 
@@ -121,19 +145,10 @@ Owner typed(const KeyedValues& values, const std::array<Parameter<Owner>, Count>
 template <class Owner, std::size_t Count>
 KeyedValues keyed(const Owner& owner, const std::array<Parameter<Owner>, Count>& parameters) {
   KeyedValues values;
-  for (const auto& p : parameters)
-    std::visit(
-        [&]<class Member>(Member Owner::*member) {
-          if constexpr (sizeof(Member) > sizeof(Owner)) {  // no member of it, see typed()
-          } else if constexpr (std::is_same_v<Member, std::vector<double>>) {
-            values[std::string(p.key)] = owner.*member;
-          } else if constexpr (std::is_same_v<Member, std::optional<double>>) {
-            if (owner.*member) values[std::string(p.key)] = {*(owner.*member)};
-          } else {
-            values[std::string(p.key)] = {static_cast<double>(owner.*member)};
-          }
-        },
-        p.member);
+  for (const auto& p : parameters) {
+    auto given = values_at(place_of(p, owner));
+    if (!given.empty()) values[std::string(p.key)] = std::move(given);
+  }
   return values;
 }
 
