@@ -13,14 +13,15 @@
 #include "host/diagnose/holdout.hpp"
 #include "host/identify/filter.hpp"
 #include "host/identify/identification.hpp"
+#include "host/identify/regression.hpp"
 #include "sim/effects/effects.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
 namespace stiction::host {
 namespace {
 
-constexpr double significance = 0.01;  // over the number of parameters
-constexpr double least_gain = 0.01;    // of the cross-validated residual
+constexpr double command_significance = 0.01;  // over the number of parameters
+constexpr double least_command_gain = 0.01;    // of the cross-validated residual
 // Slower than this the residual is the integrator's, which adds up the position quantizer's rounding and does not know
 // where the record began.
 constexpr double slowest = 1.0;  // Hz
@@ -118,8 +119,6 @@ struct CommandTerm {
   double explains = 0.0, p_value = 1.0;
 };
 
-double rms(const Eigen::VectorXd& v) { return std::sqrt(v.squaredNorm() / static_cast<double>(v.size())); }
-
 machine::AxisModel with_terms(machine::AxisModel axis, const std::vector<CommandTerm>& terms,
                               std::optional<sim::EffectId> without = {}) {
   for (const auto& term : terms)
@@ -181,7 +180,8 @@ class Selection {
     return chosen;
   }
   bool stands(const ColumnIndices& chosen, std::size_t term) const {
-    if (!(p_value(chosen, term) < significance / static_cast<double>(command_parameters().size()))) return false;
+    if (!(p_value(chosen, term) < command_significance / static_cast<double>(command_parameters().size())))
+      return false;
     const auto before = evidence_.held_out(beside(without(chosen, term))), after = evidence_.held_out(beside(chosen));
     std::vector<double> gains(before.size());
     double total = 0.0, gained = 0.0;
@@ -191,7 +191,7 @@ class Selection {
     }
     // Not the doing of one odd event.
     const double most = *std::max_element(gains.begin(), gains.end());
-    if (!(gained > least_gain * total && gained - most > 0.2 * gained)) return false;
+    if (!(gained > least_command_gain * total && gained - most > 0.2 * gained)) return false;
     std::vector<bool> half(evidence_.blocks());
     const double whole = fit(chosen).coefficients[static_cast<Eigen::Index>(term)];
     for (const bool first : {true, false}) {

@@ -9,6 +9,7 @@
 #include "host/algebra/least_squares.hpp"
 #include "host/diagnose/candidate_columns.hpp"
 #include "host/diagnose/inverse_dynamics.hpp"
+#include "host/identify/regression.hpp"
 
 namespace stiction::host {
 namespace {
@@ -99,8 +100,6 @@ Eigen::VectorXd force_of_term(const LogRows& rows, const SearchContext& context,
 std::vector<RowBlock> blocks_of_rows(const LogRows& rows) {
   return blocks_of(rows.velocity, rows.logs(), static_cast<std::size_t>(rows.rows() / 60 + 1));
 }
-
-double rms(const Eigen::VectorXd& v) { return std::sqrt(v.squaredNorm() / static_cast<double>(v.size())); }
 
 }  // namespace
 

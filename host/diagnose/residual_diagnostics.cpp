@@ -16,8 +16,8 @@
 namespace stiction::host {
 namespace {
 
-constexpr double least_gain = 0.02;     // of the cross-validated residual
-constexpr double significance = 0.001;  // of the blocks' t-test
+constexpr double least_diagnostic_gain = 0.02;  // of the cross-validated residual
+constexpr double block_significance = 0.001;    // of the blocks' t-test
 
 struct Signature {
   double gain = 0.0;  // cross-validated share of the residual's square
@@ -113,7 +113,7 @@ Unexplained signature_of(const LogRows& rows, const Eigen::VectorXd& residual, d
   const auto look = [&](const std::vector<Eigen::VectorXd>& columns, const std::string& text) {
     for (auto* evidence : {&plain, &white}) {
       const auto cv = cross_validate(*evidence, columns);
-      if (cv.gain > least_gain && cv.p_value < significance) found.push_back({cv.gain, text});
+      if (cv.gain > least_diagnostic_gain && cv.p_value < block_significance) found.push_back({cv.gain, text});
     }
   };
   const Eigen::VectorXd one = Eigen::VectorXd::Ones(rows.rows());

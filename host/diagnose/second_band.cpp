@@ -13,7 +13,7 @@ namespace stiction::host {
 namespace {
 
 constexpr double edge = 30.0;             // Hz
-constexpr int order = 4;                  // each way
+constexpr int filter_order = 4;           // each way
 constexpr double least_certain = 0.25;    // standard error of a ratio from which on the band says nothing
 constexpr double contradiction = 3.0;     // standard errors
 constexpr double least_difference = 0.1;  // of the size
@@ -23,7 +23,7 @@ Eigen::VectorXd below_edge(const LogRows& rows, const Eigen::VectorXd& column) {
   for (std::size_t k = 0; k < rows.logs().size(); ++k) {
     const std::size_t begin = rows.logs()[k];
     const std::size_t end = k + 1 < rows.logs().size() ? rows.logs()[k + 1] : static_cast<std::size_t>(rows.rows());
-    const auto lowpass = butterworth(order, 2.0 * edge * rows.period(k));
+    const auto lowpass = butterworth(filter_order, 2.0 * edge * rows.period(k));
     const auto part = filter_both_ways(lowpass, {column.data() + begin, end - begin}, default_padding(lowpass));
     std::copy(part.begin(), part.end(), filtered.data() + begin);
   }

@@ -8,7 +8,7 @@ namespace stiction::host {
 namespace {
 
 // Rows looked back: slow and fast noise together have their poles and the zero between in it.
-constexpr Eigen::Index order = 8;
+constexpr Eigen::Index model_order = 8;
 // White noise that is added to the residual's, of its variance: the rows end at 0.8 of their band, and what lies above
 // is no silence to listen to.
 constexpr double floor = 0.01;
@@ -21,18 +21,18 @@ std::size_t end_of(std::span<const std::size_t> logs, std::size_t log, Eigen::In
 
 Whitening::Whitening(const Eigen::VectorXd& residual, std::span<const std::size_t> logs)
     : logs_(logs.begin(), logs.end()) {
-  std::vector<double> covariance(order + 1, 0.0);
+  std::vector<double> covariance(model_order + 1, 0.0);
   for (std::size_t k = 0; k < logs.size(); ++k) {
     const auto begin = static_cast<Eigen::Index>(logs[k]);
     const auto length = static_cast<Eigen::Index>(end_of(logs, k, residual.size())) - begin;
-    for (Eigen::Index lag = 0; lag <= std::min(order, length - 1); ++lag)
+    for (Eigen::Index lag = 0; lag <= std::min(model_order, length - 1); ++lag)
       covariance[static_cast<std::size_t>(lag)] +=
           residual.segment(begin, length - lag).dot(residual.segment(begin + lag, length - lag));
   }
   if (!(covariance[0] > 0.0)) return;
   covariance[0] *= 1.0 + floor;
   double error = covariance[0];
-  for (std::size_t m = 1; m <= static_cast<std::size_t>(order); ++m) {
+  for (std::size_t m = 1; m <= static_cast<std::size_t>(model_order); ++m) {
     double reflection = covariance[m];
     for (std::size_t j = 0; j + 1 < m; ++j) reflection -= predictor_[j] * covariance[m - 1 - j];
     reflection /= error;

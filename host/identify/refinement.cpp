@@ -10,6 +10,7 @@
 #include "firmware/machine/configuration/double_signals.hpp"
 #include "firmware/machine/model/motor_force.hpp"
 #include "host/identify/fit_support.hpp"
+#include "host/identify/regression.hpp"
 #include "host/log/set_points.hpp"
 #include "host/simulate/control_run.hpp"
 #include "sim/effects/constant_force/constant_force.hpp"
@@ -177,10 +178,6 @@ struct OutputError {
     return loop.residual(scaled(start, factors[0]), residual);
   }
 };
-
-double rms(const Eigen::VectorXd& v) {
-  return v.norm() / std::sqrt(static_cast<double>(std::max<Eigen::Index>(v.size(), 1)));
-}
 
 }  // namespace
 

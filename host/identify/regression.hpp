@@ -4,12 +4,19 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace stiction::host {
+
+// Root of the mean square; 0 of none.
+inline double rms(const Eigen::VectorXd& v) {
+  return v.norm() / std::sqrt(static_cast<double>(std::max<Eigen::Index>(v.size(), 1)));
+}
 
 // Rows begin <= i < end.
 struct RowBlock {

@@ -13,13 +13,13 @@ namespace stiction::host {
 namespace {
 
 constexpr double share = 0.9;               // of the differences that must be whole multiples
-constexpr std::size_t fewest = 8;           // differences that show a grid
+constexpr std::size_t fewest_steps = 8;     // differences that show a grid
 constexpr std::size_t few_gaps = 256;       // of the smallest, from which grids are proposed
 constexpr std::size_t drawn = 5;            // gaps whose common divisor is taken: it is that of all in 96 %
 constexpr int draws = 24;                   // so many, as a few gaps lie off the grid
 constexpr std::size_t most_kept = 5000;     // differences that are judged
 constexpr std::size_t most_sorted = 20000;  // values whose gaps are
-constexpr double clear = 8.0;               // an increment counts above this many times the error of a difference
+constexpr double clear_of_error = 8.0;      // an increment counts above this many times the error of a difference
 constexpr std::size_t some_values = 500;
 constexpr double slack_of_some = 0.15;  // what the share among so few may be less
 
@@ -58,7 +58,7 @@ struct Uncertain {
 Uncertain common_divisor(Uncertain a, Uncertain b) {
   if (a.value < b.value) std::swap(a, b);
   const auto larger = a;
-  while (b.value > 0.5 * clear * b.error) {
+  while (b.value > 0.5 * clear_of_error * b.error) {
     const double quotient = std::round(a.value / b.value);
     a = std::exchange(b, {std::abs(a.value - quotient * b.value), a.error + quotient * b.error});
   }
@@ -92,7 +92,7 @@ double on_grid(double increment, const std::vector<double>& steps, double error)
 // `error`. A ramp of one speed has equal steps without a grid: its values tell. 0: none.
 double grid_of(const std::vector<double>& gaps, std::vector<double> steps, double error) {
   std::erase_if(steps, [&](double step) { return step <= error; });
-  if (steps.size() < fewest || gaps.empty()) return 0.0;
+  if (steps.size() < fewest_steps || gaps.empty()) return 0.0;
   auto all = steps;
   all.insert(all.end(), gaps.begin(), gaps.end());
   // The smallest gaps are of few counts, so that Euclid's quotients are small.
@@ -104,7 +104,7 @@ double grid_of(const std::vector<double>& gaps, std::vector<double> steps, doubl
   for (int draw = 0; draw < draws; ++draw) {
     Uncertain common{gaps[random() % few], error};
     for (std::size_t k = 1; k < drawn; ++k) common = common_divisor(common, {gaps[random() % few], error});
-    if (common.value < clear * error || common.value <= 1.001 * best) continue;
+    if (common.value < clear_of_error * error || common.value <= 1.001 * best) continue;
     // Most draws are of no grid, which a few of the values show as well as all.
     if (on_grid(refined(common.value, some, error), some, error) < share - slack_of_some) continue;
     const double divisor = refined(common.value, all, error);

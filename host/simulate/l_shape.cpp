@@ -25,7 +25,7 @@ namespace {
 constexpr double feed = 8.0 / 60.0;  // m/s
 constexpr double mm = 1e-3;
 constexpr double radius = 20 * mm;            // of all arcs
-constexpr double acceleration = 2.0;          // m/s^2, of the start
+constexpr double start_acceleration = 2.0;    // m/s^2, of the start
 constexpr double shortest_transition = 1e-6;  // s, far below any tick: a step is as good
 constexpr double longest_transition = 0.1;    // s, from an arc to a line: a third of the shorter standstill
 
@@ -35,8 +35,8 @@ using Path = sim::SmoothedPath<sim::LineArcPath>;
 // and where an arc begins or ends its acceleration v^2/r comes and goes in v^2/(r jerk).
 Path l_shape(std::optional<double> jerk) {
   constexpr double pi = std::numbers::pi, heading = pi / 2.0;
-  auto path =
-      jerk ? sim::LineArcPath(heading, feed, acceleration, *jerk) : sim::LineArcPath(heading, feed, acceleration);
+  auto path = jerk ? sim::LineArcPath(heading, feed, start_acceleration, *jerk)
+                   : sim::LineArcPath(heading, feed, start_acceleration);
   path.line(60 * mm);           // 1  A-B
   path.arc(radius, pi);         // 2  B-D
   path.line(100 * mm);          // 3  D-E

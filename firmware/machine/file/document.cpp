@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <regex>
 #include <sstream>
 #include <utility>
 
@@ -74,14 +73,25 @@ void remove_key(toml::table& from, const toml::table& path, const std::string& a
   }
 }
 
-// " (...)" where the line reads KEY = 8,5.
+// Whether `line` reads KEY = 8,5.
+bool has_decimal_comma(std::string_view line) {
+  constexpr std::string_view digits = "0123456789";
+  for (std::size_t at = line.find('='); at != line.npos; at = line.find('=', at + 1)) {
+    std::size_t number = std::min(line.find_first_not_of(" \t", at + 1), line.size());
+    if (number < line.size() && (line[number] == '-' || line[number] == '+')) ++number;
+    const std::size_t end = line.find_first_not_of(digits, number);
+    if (end == line.npos || end == number || line[end] != ',') continue;
+    if (end + 1 < line.size() && digits.find(line[end + 1]) != digits.npos) return true;
+  }
+  return false;
+}
+
+// " (...)" where the line has a decimal comma.
 std::string comma_hint(const std::string& text, std::size_t line) {
   std::istringstream lines(text);
   std::string found;
   for (std::size_t k = 0; k < line && std::getline(lines, found);) ++k;
-  static const std::regex comma(R"(=\s*[-+]?[0-9]+,[0-9])");
-  return std::regex_search(found.substr(0, 200), comma) ? " (a decimal comma; numbers have a decimal point, as in 8.5)"
-                                                        : "";
+  return has_decimal_comma(found) ? " (a decimal comma; numbers have a decimal point, as in 8.5)" : "";
 }
 
 }  // namespace
