@@ -11,10 +11,10 @@ namespace {
 constexpr double correlation_lengths = 3.0;
 constexpr std::size_t least_rows = 10;
 constexpr std::size_t least_blocks_of_fit = 8;
-constexpr double separable = 20.0;  // variance inflation up to which speed and its sign count as told apart
+constexpr double separable = 20.0;    // variance inflation up to which speed and its sign count as told apart
 constexpr double worth_while = 0.01;  // of the value; less is noise of the test itself in one record of thirty
 
-// By how much the other columns inflate the variance of the level's weight (VIF; Belsley, Kuh, Welsch 1980).
+// By how much the other columns inflate the variance of the level's weight (its variance inflation factor).
 double inflation_of_level(const Eigen::MatrixXd& columns) {
   Eigen::MatrixXd others(columns.rows(), 3);
   others << columns.col(acceleration), columns.col(velocity), columns.col(one);
