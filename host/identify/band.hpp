@@ -20,6 +20,9 @@ struct BandPoint {
   double attenuation = 0.0;                            // share of the mass that noise would take in plain least squares
   double speed_noise = 0.0, acceleration_noise = 0.0;  // m/s, m/s^2 rms in the rows, the noisiest log's
   std::size_t blocks = 0;
+
+  // Whether it may be chosen: blocks enough, little noise in the acceleration, a positive mass.
+  bool sound() const;
 };
 
 struct Band {

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "host/identify/recorded_speed.hpp"
 #include "host/identify/standstill.hpp"
 #include "host/identify/suitability.hpp"
 #include "host/log/resolution.hpp"
@@ -115,6 +117,28 @@ std::vector<double> weights(const std::vector<bool>& out, double period, double 
   return weight;
 }
 
+// Puts the recorded speed and its derivative in the place of those of the position, where it is quieter in the rows and
+// the speed of that position; returns the speed then. `noise`: m rms, of the position; `filter`: of the rows; `unit`:
+// an impulse.
+std::optional<std::vector<double>> take_recorded_speed(const Log& log, const AxisLog& channels, double noise,
+                                                       const RowFilter& filter, const std::vector<double>& unit,
+                                                       Motion& motion) {
+  constexpr double worth = 0.5;  // of the acceleration's noise: a little less is no reason to trust a second channel
+  const auto speed = recorded_speed(log, channels, noise);
+  const auto answer = low_passed(unit, position_edge, log.period);
+  const double of_speed = speed.noise * gain_of(filter.whole(answer));
+  const double of_acceleration = speed.noise * gain_of(filter.whole(derivatives(answer, log.period).first));
+  if (of_acceleration > worth * motion.acceleration_noise) return std::nullopt;
+  motion.speed_objection = speed.objection;
+  if (!speed.consistent) return std::nullopt;
+  motion.recorded_speed = true;
+  motion.speed_noise = of_speed;
+  motion.acceleration_noise = of_acceleration;
+  auto v = low_passed(channels.v, position_edge, log.period);
+  motion.a = derivatives(v, log.period).first;
+  return v;
+}
+
 // Samples that do not count get the force between their neighbours: an outlier would reach others through the filter.
 void bridge(std::vector<double>& force, const std::vector<bool>& out) {
   for (std::size_t i = 0; i < out.size(); ++i) {
@@ -146,7 +170,7 @@ LevelModel unresolved_contact() {
 }
 
 double position_noise(const AxisLog& channels, const machine::AxisModel& axis) {
-  const double found = increment_of(channels.x);
+  const double found = increment_of(channels, &AxisLog::x);
   const double increment = found > 0.0 ? found : axis.encoder.increment;
   return std::hypot(increment / std::sqrt(12.0), axis.encoder.noise);
 }
@@ -189,6 +213,8 @@ Motion followed_motion(const Log& log, const AxisLog& channels, const machine::A
   const RowFilter filter(alone, followed_signals(band));
   motion.speed_noise = noise * gain_of(filter.whole(answer.first));
   motion.acceleration_noise = noise * gain_of(filter.whole(answer.second));
+  std::optional<std::vector<double>> recorded;
+  if (!channels.v.empty()) recorded = take_recorded_speed(log, channels, noise, filter, unit, motion);
 
   auto out = left_out(channels, axis);
   bridge(motion.force, out);
@@ -209,7 +235,7 @@ Motion followed_motion(const Log& log, const AxisLog& channels, const machine::A
       out[i] = out[i] || stands[i];
     }
   }
-  motion.v = std::move(slow.v);
+  motion.v = recorded ? std::move(*recorded) : std::move(slow.v);
   if (std::find(out.begin(), out.end(), true) != out.end())
     motion.weight = weights(out, period, band, noise > 1e-7 / std::sqrt(12.0));
   return motion;

@@ -81,6 +81,29 @@ Source sources_for(Identification& result, const std::vector<Log>& logs, const m
   return source;
 }
 
+// A law that sticks says nothing of an axis that cannot be told from one at rest.
+void require_counting_samples(const LogRows& rows, const Band& band) {
+  constexpr double least = 1e-3;  // of a row
+  if (rows.rows() > 0 && rows.one.cwiseAbs().maxCoeff() > least) return;
+  throw LogError(fmt::format(
+      "{}: found no sample in which the axis is seen to move: at every speed of the record the noise of its "
+      "position, {:.3g} um rms, may be all of the motion; expected faster motion, a longer stroke or a finer "
+      "encoder",
+      sources_of(rows.motions()), band.position_noise * 1e6));
+}
+
+// Which speed the rows have, of logs that record one.
+void note_speed(Identification& result, const LogRows& rows) {
+  for (const auto& motion : rows.motions()) {
+    if (motion.recorded_speed)
+      result.notes.push_back(
+          fmt::format("{}: speed and acceleration are those of the recorded v, which is quieter.", motion.source));
+    else if (!motion.speed_objection.empty())
+      result.notes.push_back(fmt::format("{}: the recorded v would be quieter, but is not used: {}.", motion.source,
+                                         motion.speed_objection));
+  }
+}
+
 // What looks wrong in the logs, the likeliest of each kind.
 void ask(Identification& result, const Source& source, const machine::AxisModel& axis) {
   for (const auto& each : source.logs)
@@ -257,6 +280,10 @@ Identification identify_logs(const std::vector<Log>& logs, const machine::AxisMo
   const LogRows rows =
       followed ? std::move(*rows_in_band)
                : fixed_rows(source, axis, options.amperes, published ? published_recipe() : SignalSettings{});
+  if (followed) {
+    require_counting_samples(rows, *result.band);
+    note_speed(result, rows);
+  }
   const auto excitation = excitation_of(rows);
   if (published)
     require_excitation(excitation, sources_of(rows.motions()));

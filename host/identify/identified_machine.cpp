@@ -86,6 +86,13 @@ std::string model_in_use(const std::string& wanted, const std::vector<std::strin
   return complete.back();
 }
 
+std::string lighter_than_transmission(const Identification& result, const machine::AxisModel& axis, double mass) {
+  return fmt::format(
+      "{}: found a moving mass of {:.4g} kg; expected more than the {:.4g} kg of motor and transmission "
+      "that the machine file gives axis {}",
+      result.sources.front(), mass, axis.mass - axis.load_mass, axis.name);
+}
+
 }  // namespace
 
 std::string identified_machine(const std::filesystem::path& file, const std::vector<std::string>& set,
@@ -107,7 +114,10 @@ std::string identified_machine(const std::filesystem::path& file, const std::vec
     return full;
   };
   if (const auto* mass = result.find("mass_kg")) {
-    edits.push_back({path({"mass"}), machine::written_quantity(mass->value, "kg")});
+    // The log tells the whole, the file has the load alone.
+    const double load = mass->value - (axis.mass - axis.load_mass);
+    if (!(load > 0.0)) throw LogError(lighter_than_transmission(result, axis, mass->value));
+    edits.push_back({path({"mass"}), machine::written_quantity(load, "kg")});
     edits.push_back({{"experiment", "*", "axis", axis.name, "mass"}, {}});
   } else {
     comment.push_back(fmt::format("  mass: kept from the machine file, {:g} kg", axis.mass));

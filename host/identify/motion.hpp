@@ -44,6 +44,8 @@ struct Motion {
   std::vector<double> level{};           // of the friction, -1 to 1
   std::vector<double> set_v{}, set_a{};  // m/s, m/s^2; derivatives of the set position, filtered as the position
   double speed_noise = 0.0, acceleration_noise = 0.0;  // m/s, m/s^2 rms in the rows, of the encoder
+  bool recorded_speed = false;                         // v and a are of the recorded speed
+  std::string speed_objection{};  // what spoke against a recorded speed that would be quieter; empty: nothing
 };
 
 // How the amperes of a record are to be read.

@@ -58,8 +58,10 @@ std::vector<double> speeds_of(const LogRows& rows, double highest) {
     const std::size_t end = log + 1 < rows.logs().size() ? rows.logs()[log + 1] : static_cast<std::size_t>(rows.rows());
     for (std::size_t i = rows.logs()[log]; i < end; ++i) {
       const double v = std::abs(rows.velocity[static_cast<Eigen::Index>(i)]);
-      if (sliding[static_cast<Eigen::Index>(i)] == 0.0) continue;
-      const auto bin = static_cast<std::size_t>(std::lround(std::log(highest / v) / std::log(factor)));
+      if (sliding[static_cast<Eigen::Index>(i)] == 0.0 || v == 0.0) continue;
+      // The filter of the rows may overshoot the highest speed of the samples.
+      const double below = std::max(0.0, std::log(highest / v) / std::log(factor));
+      const auto bin = static_cast<std::size_t>(std::lround(below));
       if (bin >= time_in.size()) {
         time_in.resize(bin + 1, 0.0);
         sum_in.resize(bin + 1, 0.0);

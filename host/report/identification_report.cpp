@@ -83,6 +83,28 @@ json curve_json(const Identification& result) {
           {"high", high},         {"measured", measured}, {"errors", errors}, {"parameters", parameters}};
 }
 
+// What each cut-off gives, from the widest on; null where the fit has no choice of it.
+json band_json(const Identification& result) {
+  if (!result.band) return nullptr;
+  const auto& band = *result.band;
+  json cutoffs = json::array(), sound = json::array(), charts = json::array();
+  for (const auto& p : band.trials) {
+    cutoffs.push_back(p.cutoff);
+    sound.push_back(p.sound());
+  }
+  // In the order of BandPoint's columns.
+  for (const auto& [name, column] : {std::pair{"mass_kg", std::size_t{0}}, std::pair{"coulomb_N", std::size_t{3}}}) {
+    const auto label = label_of(name);
+    json values = json::array(), halves = json::array();
+    for (const auto& p : band.trials) {
+      values.push_back(p.value[column]);
+      halves.push_back(1.96 * p.error[column]);
+    }
+    charts.push_back({{"label", label.text}, {"unit", label.unit}, {"value", values}, {"half", halves}});
+  }
+  return {{"cutoff", cutoffs}, {"sound", sound}, {"chosen", band.chosen}, {"charts", charts}};
+}
+
 json residuals_json(const Identification& result) {
   json logs = json::array();
   for (const auto& log : result.residuals) {
@@ -127,6 +149,7 @@ std::string identification_report_html(const IdentificationReport& report) {
                   {"conditions", conditions.json()},
                   {"parameters", parameters},
                   {"open", open},
+                  {"band", band_json(result)},
                   {"curve", curve_json(result)},
                   {"residuals", residuals_json(result)},
                   {"initial", initial_json(result.initial)},

@@ -32,6 +32,37 @@ function drawTables() {
   show('open', drawn);
 }
 
+// ---- estimates over the cut-off ----
+
+function drawBand() {
+  const band = DATA.band;
+  if (!band || band.cutoff.length < 2) return document.getElementById('band-section').remove();
+  const chosen = band.cutoff[band.chosen];
+  const order = band.cutoff.map((_, k) => k).sort((one, other) => band.cutoff[one] - band.cutoff[other]);
+  const looks = k => k === band.chosen ? ['circle', 10] : band.sound[k] ? ['circle-open', 7] : ['x-thin-open', 7];
+  band.charts.forEach((chart, i) => {
+    const marks = order.map(looks);
+    const trace = { name: 'estimate', x: order.map(k => band.cutoff[k]), y: order.map(k => chart.value[k]), mode: 'markers', type: 'scatter',
+                    error_y: { type: 'data', array: order.map(k => chart.half[k]), color: POSITIVE, thickness: 1.2, width: 3 },
+                    marker: { color: POSITIVE, symbol: marks.map(mark => mark[0]), size: marks.map(mark => mark[1]), line: { width: 1.3, color: POSITIVE } },
+                    hovertemplate: `%{y:.5~g} ${chart.unit} ± %{error_y.array:.2~g}<br>%{x:~g} Hz<extra></extra>` };
+    // Cut-offs that cannot be chosen may be far off: the ordinate shows those that can, with room.
+    const shown = band.cutoff.map((_, k) => k).filter(k => k === band.chosen || band.sound[k]);
+    const low = Math.min(...shown.map(k => chart.value[k] - chart.half[k])), high = Math.max(...shown.map(k => chart.value[k] + chart.half[k]));
+    const room = 0.15 * (high - low) || Math.abs(high) * 0.05 || 1;
+    drawChart(`band-${i}`, [trace], {
+      margin: { l: 76, r: 24, t: 10, b: 46 },
+      shapes: [{ type: 'line', x0: chosen, x1: chosen, yref: 'paper', y0: 0, y1: 1, layer: 'below', line: { color: RULE, width: 1, dash: 'dot' } }],
+      xaxis: axisStyle('cut-off, Hz', { type: 'log', tickformat: '~g', dtick: 'D2' }),
+      yaxis: axisStyle(plain(`${chart.label}, ${chart.unit}`), { range: [low - room, high + room], nticks: 6 }),
+    });
+  });
+  const refused = band.sound.filter(sound => !sound).length;
+  show('band-caption', `Estimates with the 95 % intervals that the scatter between blocks of the record gives, over the highest frequency that is fitted. The fit uses ${
+    band.cutoff[band.chosen]} Hz (filled), the widest band whose intervals are about the narrowest; how far the estimates of the other bands move is a part of the interval in the table.${
+    refused ? ' Crosses are bands with too much noise or too few blocks; they are not chosen and may lie outside of the chart.' : ''}`);
+}
+
 // ---- friction over speed ----
 
 function measuredTrace(points, name, colour, symbol) {
@@ -91,6 +122,7 @@ function drawResiduals() {
 
 drawConditions();
 drawTables();
+drawBand();
 drawCharacteristic();
 drawResiduals();
 drawMachine();

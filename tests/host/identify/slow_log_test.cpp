@@ -36,5 +36,30 @@ TEST_P(SlowLog, has_the_friction_and_the_mass_of_a_fast_one) {
 }
 INSTANTIATE_TEST_SUITE_P(Rates, SlowLog, ::testing::Values(20e-3, 10e-3, 5.25e-3));
 
+// Sines of a few increments of a coarse encoder: the rows' speed rises above the highest of the samples, and its place
+// in the histogram of kept speeds was a negative number. The truth is Newton's law.
+TEST(SlowLogs, sines_of_a_few_increments_are_answered) {
+  const auto machine = bench_machine("coulomb_viscous");
+  for (int frequency = 10; frequency < 80; ++frequency) {
+    host::Log log;
+    log.source = "sine";
+    log.period = 10e-3;
+    auto& axis = log.axes.emplace_back();
+    const double w = 0.6 * frequency, mass = 78.0, viscous = 223.0, coulomb = 16.5;
+    for (int k = 0; k < 1464; ++k) {
+      const double t = k * log.period;
+      log.t.push_back(t);
+      axis.x.push_back(1e-4 * std::round(7e-4 * std::sin(w * t) / 1e-4));
+      const double v = 7e-4 * w * std::cos(w * t);
+      axis.force.push_back(-mass * 7e-4 * w * w * std::sin(w * t) + viscous * v + std::copysign(coulomb, v));
+    }
+    try {
+      host::identify_logs({log}, machine.axes.front(), {"coulomb_viscous", host::Amperes::amplitude, {}, true});
+    } catch (const host::LogError&) {
+      // Said in a sentence.
+    }
+  }
+}
+
 }  // namespace
 }  // namespace stiction::test

@@ -18,6 +18,13 @@ await openPage('open_identification', '', async (page, data) => {
     expect(points === data.curve.measured.length && points > 0, `${points} measured points are drawn, the data have ${data.curve.measured.length}`);
     expect(data.curve.force.every((force, i) => data.curve.low[i] <= force && force <= data.curve.high[i]), 'the curve leaves its band');
   }
+  if (data.band && data.band.cutoff.length > 1)
+    for (const i of data.band.charts.keys()) {
+      const [drawn] = await traces(page, `band-${i}`);
+      expect(drawn && drawn.y.length === data.band.cutoff.length, `${drawn && drawn.y.length} cut-offs are drawn, ${data.band.cutoff.length} were tried`);
+      const filled = drawn.x.filter((_, k) => drawn.symbols[k] === 'circle');
+      expect(filled.length === 1 && filled[0] === data.band.cutoff[data.band.chosen], 'the chosen cut-off is not marked');
+    }
   for (const i of data.residuals.keys()) {
     const [residual] = await traces(page, `residual-${i}`);
     expect(residual && residual.y.length > 10 && residual.y.every(Number.isFinite), `the residual of ${data.residuals[i].name} is not drawn`);

@@ -41,9 +41,10 @@ export async function becomes(page, holds, argument, timeout = PATIENCE) {
   return page.waitForFunction(holds, argument, { timeout, polling: 50 }).then(() => true, () => false);
 }
 
-// Names of a chart's traces and their points, as the chart library holds them.
+// Names of a chart's traces, their points and the symbols of these where each has its own, as the chart library holds them.
 export function traces(page, chart) {
-  return page.evaluate(id => (document.getElementById(id).data || []).map(trace => ({ name: trace.name, x: Array.from(trace.x), y: Array.from(trace.y) })), chart);
+  return page.evaluate(id => (document.getElementById(id).data || []).map(trace => ({ name: trace.name, x: Array.from(trace.x), y: Array.from(trace.y),
+                                                                                                             symbols: Array.isArray(trace.marker?.symbol) ? trace.marker.symbol : [] })), chart);
 }
 
 function pageData(page) {

@@ -119,7 +119,8 @@ machine::AxisModel make_machine_axis(const std::string& name) {
   axis.max_acceleration = 20.0;
   axis.motor = {machine::MotorModel::synchronous, 1.8, 18e-3, 1.8e-3, 62.8, 62.8, 94.0, 0.072, y ? 2 : 1};
   axis.inverter = {125e-6, 600.0, 70.0};
-  axis.encoder = {1e-9, 0.0, machine::VelocitySource::estimated, machine::EncoderMountParameters{0.5, 2000.0, 0.05}};
+  axis.encoder.increment = 1e-9;
+  axis.encoder.mount = machine::EncoderMountParameters{0.5, 2000.0, 0.05};
   axis.position_controller = {83.3333, 1e-6};
   axis.velocity_controller = {y ? 1200.0 : 600.0, y ? 4.4e-3 : 5e-3};
   axis.current_controller = machine::CurrentControllerParameters{y ? 17.0 : 35.0, 2e-3};
