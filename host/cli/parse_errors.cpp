@@ -19,6 +19,7 @@ struct Named {
 Named named_command(const CLI::App& program, const std::vector<std::string>& arguments) {
   Named named{&program, {}};
   for (const auto& argument : arguments) {
+    if (argument == "--" && named.rest.empty()) continue;  // commands may follow it, as CLI11 reads them
     const CLI::App* below = nullptr;
     if (named.rest.empty())
       for (const auto* each : named.command->get_subcommands([](const CLI::App*) { return true; }))
@@ -87,6 +88,8 @@ std::string about_option(const CLI::App& command, const std::string& text, const
   if (dynamic_cast<const CLI::ExcludesError*>(&error) != nullptr)
     return fmt::format("{}: found it together with {}; expected only one of the two", name,
                        text.substr(text.rfind(' ') + 1));
+  if (dynamic_cast<const CLI::RequiresError*>(&error) != nullptr)
+    return fmt::format("{0}: found it without {1}; expected {1} as well", name, text.substr(text.rfind(' ') + 1));
   return text;
 }
 

@@ -4,6 +4,9 @@
 #include <matio.h>
 
 #include <memory>
+#include <string>
+
+#include "host/log/log.hpp"
 
 namespace stiction::host {
 
@@ -17,6 +20,14 @@ using MatVariable = std::unique_ptr<matvar_t, MatFree>;
 // matio prints what it finds wrong on standard error; our own messages say it.
 inline void silence_matio() {
   Mat_LogInitFunc("stiction", [](int, char*) {});
+}
+
+// The opened file, never null. Throws LogError.
+inline MatFile open_mat(const std::string& file) {
+  silence_matio();
+  MatFile opened(Mat_Open(file.c_str(), MAT_ACC_RDONLY));
+  if (!opened) throw LogError(file + ": found a different format; expected a MAT-file of level 5 or 7.3");
+  return opened;
 }
 
 }  // namespace stiction::host

@@ -21,11 +21,8 @@ constexpr int digits_of_single = 7;
 
 class Reader {
  public:
-  explicit Reader(const std::filesystem::path& file) : name_(file.string()) {
-    silence_matio();
+  explicit Reader(const std::filesystem::path& file) : name_(file.string()), file_(open_mat(name_)) {
     log_.source = name_;
-    file_.reset(Mat_Open(name_.c_str(), MAT_ACC_RDONLY));
-    if (!file_) throw LogError(name_ + ": cannot be read; expected a MAT-file of level 5 or 7.3");
   }
 
   Log read() {

@@ -37,9 +37,7 @@ struct Matrix {
 
 // All real matrices of the file that have more than one number, and those of structs one level down.
 std::vector<Matrix> matrices_of(const std::string& file) {
-  silence_matio();
-  const MatFile mat(Mat_Open(file.c_str(), MAT_ACC_RDONLY));
-  if (!mat) throw LogError(file + ": cannot be read; expected a MAT-file of level 5 or 7.3");
+  const MatFile mat = open_mat(file);
   std::vector<Matrix> matrices;
   const auto take = [&](const std::string& name, const matvar_t& v) {
     if (!is_real_matrix(v) || v.dims[0] * v.dims[1] < 2) return;
