@@ -27,6 +27,8 @@ std::vector<std::string_view> motor_models_that_need(std::string_view path) {
 }
 
 std::string need_of(std::string_view path) {
+  for (const Alternatives& pair : alternatives)
+    if (path == pair.first) return fmt::format("required without {}", pair.second.substr(pair.second.rfind('.') + 1));
   const auto models = motor_models_that_need(path);
   return models.empty() ? std::string{} : fmt::format("required with motor model {}", quoted_list(models));
 }
@@ -40,6 +42,8 @@ KeyDescription describe(const ValueKey& p, ValueKind kind, const std::string& ne
   key.text = p.text;
   key.expected = describe_expectation(kind, p.range, p.unit, p.text);
   key.list = kind == ValueKind::list;
+  key.rotary_expected =
+      describe_expectation(kind, p.range, Coordinate{AxisKind::rotary, 1.0}.own(p.key, p.unit).unit, p.text);
   if (!need.empty())
     key.fallback = need;
   else if (p.optional)

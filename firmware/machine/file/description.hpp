@@ -18,7 +18,8 @@ struct KeyDescription {
   std::string allowed;              // "greater than 0 kg", or the names to choose from; empty: any
   std::string fallback;             // "required", "left out" (the text says what that means), or the default
   std::string text;
-  std::string expected;  // the sentence of an error message: "a value greater than 0 kg (moving mass)"
+  std::string expected;           // the sentence of an error message: "a value greater than 0 kg (moving mass)"
+  std::string rotary_expected{};  // the same of a rotary axis or motor
   bool list = false;
 };
 

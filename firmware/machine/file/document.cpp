@@ -113,6 +113,11 @@ std::string Document::place(const toml::source_region& place, std::string_view k
   return fmt::format("{}:{}: {}{}", file_, place.begin.line, prefix, key);
 }
 
+void Document::report() const {
+  if (errors_.empty()) return;
+  throw MachineFileError(fmt::format("{}", fmt::join(errors_, "\n")));
+}
+
 void Document::fail(const toml::source_region& where, std::string_view key, std::string_view found,
                     std::string_view expected) const {
   throw MachineFileError(fmt::format("{}: found {}; expected {}", place(where, key), found, expected));

@@ -19,6 +19,25 @@ class Document {
 
   const toml::table& root() const { return root_; }
 
+  // From now on attempt() keeps what its checks throw, so that report() tells all errors of a file at once.
+  void collect_errors() { collects_ = true; }
+
+  // Runs `check`. Unless errors are collected it throws what `check` throws.
+  template <class Check>
+  void attempt(Check&& check) const {
+    if (!collects_) return check();
+    try {
+      check();
+    } catch (const MachineFileError& error) {
+      errors_.emplace_back(error.what());
+    }
+  }
+  bool has_errors() const { return !errors_.empty(); }
+  std::size_t errors() const { return errors_.size(); }
+
+  // Throws MachineFileError with all errors that were collected, a line each; does nothing where there is none.
+  void report() const;
+
   // Merges [experiment.NAME], if the file has it. The file itself must have been found valid before.
   void apply_experiment(std::string_view name);
 
@@ -47,6 +66,8 @@ class Document {
   std::string file_;
   std::string text_;
   toml::table root_;
+  bool collects_ = false;
+  mutable std::vector<std::string> errors_;
 };
 
 // A key below a table: "axis.X" and "mass" make "axis.X.mass".

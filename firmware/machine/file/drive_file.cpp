@@ -24,6 +24,9 @@ DriveAxisSetup with_defaults(DriveAxisSetup setup, const AxisModel& axis) {
 
 DriveSetup drive_setup_of(const Document& document, const Machine& machine) {
   const TableReader reader(document, false);
+  const auto reader_of = [&](const AxisModel& axis) {
+    return TableReader(document, false, nullptr, {axis.coordinate, axis.motor_coordinate});
+  };
   const std::string path = "drive";
   DriveSetup setup;
   const toml::table* axes = nullptr;
@@ -37,11 +40,15 @@ DriveSetup drive_setup_of(const Document& document, const Machine& machine) {
   if (axes != nullptr)
     for (auto&& [name, node] : *axes) {
       const std::string key = join_key("drive.axis", name.str());
-      if (std::find(names.begin(), names.end(), name.str()) == names.end())
-        document.fail_unknown(name.source(), key, names);
-      setup.axes[std::string(name.str())] =
-          reader.read<DriveAxisSetup>(reader.as_table(node, key, Table<DriveAxisSetup>::text), key);
+      const auto axis = std::find(names.begin(), names.end(), name.str());
+      if (axis == names.end()) document.fail_unknown(name.source(), key, names);
+      const AxisModel& model = machine.axes[static_cast<std::size_t>(axis - names.begin())];
+      setup.axes[model.name] =
+          reader_of(model).read<DriveAxisSetup>(reader.as_table(node, key, Table<DriveAxisSetup>::text), key);
     }
+  for (const AxisModel& axis : machine.axes)
+    if (!setup.axes.contains(axis.name))
+      setup.axes[axis.name] = reader_of(axis).read<DriveAxisSetup>(toml::table{}, join_key("drive.axis", axis.name));
   for (const AxisModel& axis : machine.axes) setup.axes[axis.name] = with_defaults(setup.axes[axis.name], axis);
   return setup;
 }

@@ -6,11 +6,15 @@
 #include <cmath>
 #include <utility>
 
+#include "firmware/machine/configuration/radius.hpp"
+#include "firmware/machine/file/axis_coordinates.hpp"
 #include "firmware/machine/file/compensation_checks.hpp"
 #include "firmware/machine/file/document.hpp"
 #include "firmware/machine/file/drive_file.hpp"
 #include "firmware/machine/file/expected_figures.hpp"
+#include "firmware/machine/file/name_check.hpp"
 #include "firmware/machine/file/nearest_name.hpp"
+#include "firmware/machine/file/reference_rows.hpp"
 #include "firmware/machine/file/table_reader.hpp"
 #include "firmware/machine/file/whole_file.hpp"
 #include "stiction/control/compensation_kind.hpp"
@@ -47,14 +51,17 @@ class MachineReader {
       : document_(document), vocabulary_(vocabulary), root_(document.root()), runs_(runs) {}
 
   Machine read() {
-    check_schema();
+    document_.attempt([&] { check_schema(); });
     machine_ = TableReader(document_, false).read<Machine>(root_, "");
-    check_periods();
-    read_axes();
+    if (!document_.has_errors()) document_.attempt([&] { check_periods(); });
+    document_.attempt([&] { read_axes(); });
+    document_.report();  // what follows works on values that are right
     check_feed_drive();
     drive_setup_of(document_, machine_);
+    document_.report();
     check_experiments();
-    read_references();
+    read_references(document_, friction_model_names(vocabulary_), machine_);
+    document_.report();
     machine_.expected = read_expected_figures(document_, machine_, friction_model_names(vocabulary_));
     return std::move(machine_);
   }
@@ -76,8 +83,10 @@ class MachineReader {
                      "at least one table [axis.NAME], or a table [feed_drive]");
     std::vector<std::pair<toml::source_region, AxisModel>> read;
     for (auto&& [name, node] : *axes->as_table()) {
-      check_axis_name(name);
-      read.emplace_back(name.source(), read_axis(std::string(name.str()), node));
+      document_.attempt([&, &key = name, &axis = node] {
+        check_axis_name(key);
+        read.emplace_back(key.source(), read_axis(std::string(key.str()), axis));
+      });
     }
     // toml++ sorts by name; the file's order is that of the user.
     std::stable_sort(read.begin(), read.end(), [](const auto& a, const auto& b) {
@@ -101,9 +110,20 @@ class MachineReader {
     const toml::table& table = TableReader(document_, false).as_table(node, path, Table<AxisModel>::text);
     const toml::node* model = node_at(table, "motor.model");
     const bool force_motor = model != nullptr && describe_node(*model) == "\"force\"";
-    AxisModel axis = TableReader(document_, force_motor, &vocabulary_).read<AxisModel>(table, path);
-    axis.name = name;
-    check_motor(table, path, axis.motor.model);
+    const auto on_radius = [&](double radius) {
+      const auto coordinates = coordinates_of(document_, table, path, radius);
+      AxisModel axis = TableReader(document_, force_motor, &vocabulary_, coordinates).read<AxisModel>(table, path);
+      document_.attempt([&] { check_alternatives(table, path); });
+      document_.attempt([&] { reduce(document_, table, path, axis, coordinates); });
+      axis.name = name;
+      check_motor(table, path, axis);
+      return axis;
+    };
+    const std::size_t errors = document_.errors();
+    AxisModel axis = on_radius(1.0);
+    if (document_.errors() > errors) return axis;  // what follows works on values that are right
+    if (axis.coordinate.rotary())
+      if (const auto choice = choose_radius(machine_.timing, axis); choice.radius) axis = on_radius(*choice.radius);
     check_friction(table, path, axis.friction);
     check_dead_time(table, path, axis.inverter.dead_time);
     check_notch(table, path, axis.notch);
@@ -126,27 +146,56 @@ class MachineReader {
     }
   }
 
-  void check_motor(const toml::table& table, const std::string& path, MotorModel model) const {
-    const auto rule = std::find_if(motor_rules.begin(), motor_rules.end(),
-                                   [&](const MotorRule& candidate) { return candidate.model == model; });
-    const std::string with = fmt::format("with motor model {}", describe_node(*node_at(table, "motor.model")));
-    for (const std::string_view key : rule->needs) {
+  void check_alternatives(const toml::table& table, const std::string& path) const {
+    for (const auto& [first, second] : alternatives) {
       const toml::table* nearest = nullptr;
-      if (node_at(table, key, &nearest) == nullptr)
-        document_.fail(nearest->source(), join_key(path, key), "no such key",
-                       fmt::format("{}, {}", expected_at(key), with));
+      const toml::node *one = node_at(table, first, &nearest), *other = node_at(table, second);
+      if (one == nullptr && other == nullptr)
+        document_.fail(nearest->source(), join_key(path, first), "no such key",
+                       fmt::format("{}, or {}", expected_at(first, {}), second));
+      if (one != nullptr && other != nullptr)
+        document_.fail(other->source(), join_key(path, second),
+                       fmt::format("{} together with {}, {} (line {})", describe_node(*other), first,
+                                   describe_node(*one), one->source().begin.line),
+                       "one of them");
     }
-    for (const std::string_view key : rule->excludes)
-      if (const toml::node* node = node_at(table, key))
-        document_.fail(node->source(), join_key(path, key), describe_node(*node), fmt::format("none {}", with));
   }
 
-  // What the description says of a key or table, by its path from the axis on.
-  std::string expected_at(std::string_view path) const {
+  void check_motor(const toml::table& table, const std::string& path, const AxisModel& axis) const {
+    const auto rule = std::find_if(motor_rules.begin(), motor_rules.end(),
+                                   [&](const MotorRule& candidate) { return candidate.model == axis.motor.model; });
+    const toml::node* model = node_at(table, "motor.model");
+    if (model == nullptr) return;
+    const std::string with = fmt::format("with motor model {}", describe_node(*model));
+    for (const std::string_view key : rule->needs)
+      document_.attempt([&] {
+        const toml::table* nearest = nullptr;
+        const auto own = own_path(key, axis.motor_coordinate);
+        if (node_at(table, own, &nearest) == nullptr)
+          document_.fail(nearest->source(), join_key(path, own), "no such key",
+                         fmt::format("{}, {}", expected_at(key, axis.motor_coordinate), with));
+      });
+    for (const std::string_view key : rule->excludes)
+      if (const toml::node* node = node_at(table, key))
+        document_.attempt([&] {
+          document_.fail(node->source(), join_key(path, key), describe_node(*node), fmt::format("none {}", with));
+        });
+  }
+
+  // The path from the axis on of a key that a linear motor's table calls by the last word of `path`.
+  static std::string own_path(std::string_view path, const Coordinate& motor) {
+    const std::size_t dot = path.rfind('.');
+    if (!path.starts_with("motor.") || dot == std::string_view::npos) return std::string(path);
+    return join_key(path.substr(0, dot), motor.own(path.substr(dot + 1), "").key);
+  }
+
+  // What the description says of a key or table, by its path from the axis on; `motor`: the coordinate of its units.
+  std::string expected_at(std::string_view path, const Coordinate& motor) const {
     for (const TableDescription& table : machine_file_description(vocabulary_)) {
       if (table.name == join_key("axis.NAME", path)) return fmt::format("a table ({})", table.text);
       for (const KeyDescription& key : table.keys)
-        if (join_key(table.name, key.key) == join_key("axis.NAME", path)) return key.expected;
+        if (join_key(table.name, key.key) == join_key("axis.NAME", path))
+          return motor.rotary() && path.starts_with("motor.") ? key.rotary_expected : key.expected;
     }
     return "a value";
   }
@@ -154,7 +203,7 @@ class MachineReader {
   void check_friction(const toml::table& table, const std::string& path, const FrictionParameters& friction) const {
     const toml::table& friction_table = *node_at(table, "friction")->as_table();
     const std::string friction_path = join_key(path, "friction");
-    check_name(friction_table, friction_path, "use", friction.use, friction_model_names(vocabulary_),
+    check_name(document_, friction_table, friction_path, "use", friction.use, friction_model_names(vocabulary_),
                "a friction model");
     if (!friction.models.contains(friction.use))
       document_.fail(friction_table.get("use")->source(), join_key(friction_path, "use"),
@@ -242,59 +291,6 @@ class MachineReader {
     }
   }
 
-  void read_references() {
-    const toml::node* references = root_.get("reference");
-    if (references == nullptr) return;
-    const TableReader reader(document_, false);
-    for (auto&& [kind, node] : reader.as_table(*references, "reference", "published or measured rows")) {
-      const std::string path = join_key("reference", kind.str());
-      if (kind.str() == "circle")
-        read_rows(node, path, machine_.circle_references);
-      else if (kind.str() == "steady_friction")
-        read_rows(node, path, machine_.steady_friction_references);
-      else if (kind.str() == "presliding")
-        read_rows(node, path, machine_.presliding_references);
-      else
-        document_.fail_unknown(kind.source(), path, {"circle", "steady_friction", "presliding"});
-    }
-  }
-
-  template <class Row>
-  void read_rows(const toml::node& node, const std::string& path, std::vector<Row>& rows) const {
-    if (!node.is_array()) document_.fail(node.source(), path, describe_node(node), fmt::format("rows [[{}]]", path));
-    const TableReader reader(document_, false);
-    for (const toml::node& row : *node.as_array()) {
-      const std::string row_path = fmt::format("{}[{}]", path, rows.size());
-      const toml::table& table = reader.as_table(row, row_path, Table<Row>::text);
-      rows.push_back(reader.read<Row>(table, row_path));
-      std::vector<std::string_view> axes;
-      for (const AxisModel& axis : machine_.axes) axes.push_back(axis.name);
-      check_name(table, row_path, "axis", rows.back().axis, axes, "an axis of this machine");
-      if constexpr (std::is_same_v<Row, CircleReference>) check_source(table, row_path, rows.back());
-    }
-  }
-
-  // A measured row stands for the machine, a published simulation for one friction model.
-  void check_source(const toml::table& table, const std::string& path, const CircleReference& row) const {
-    const toml::node* friction = table.get("friction");
-    const std::string key = join_key(path, "friction");
-    if (row.measured && friction != nullptr)
-      document_.fail(friction->source(), key, describe_node(*friction), "none with source \"measured\"");
-    if (row.measured) return;
-    const auto models = friction_model_names(vocabulary_);
-    if (friction == nullptr)
-      document_.fail(table.source(), key, "no such key",
-                     fmt::format("the friction model of the published simulation: {}", quoted_list(models)));
-    check_name(table, path, "friction", *row.friction, models, "a friction model");
-  }
-
-  void check_name(const toml::table& table, const std::string& path, std::string_view key, std::string_view name,
-                  const std::vector<std::string_view>& known, std::string_view what) const {
-    if (std::find(known.begin(), known.end(), name) != known.end()) return;
-    document_.fail(table.get(key)->source(), join_key(path, key), fmt::format("\"{}\"", name),
-                   fmt::format("{}: {}{}", what, quoted_list(known), did_you_mean(name, known)));
-  }
-
   const Document& document_;
   const Vocabulary& vocabulary_;
   const toml::table& root_;
@@ -338,7 +334,8 @@ std::string content_of(const std::filesystem::path& file) {
 
 Machine parse_machine(const std::string& file, const std::string& text, const Vocabulary& vocabulary,
                       const ReadOptions& options) {
-  const Document as_it_stands(file, text);
+  Document as_it_stands(file, text);
+  if (options.all_errors) as_it_stands.collect_errors();
   Machine machine = MachineReader(as_it_stands, vocabulary).read();
   if (const toml::node* experiments = as_it_stands.root().get("experiment")) {
     for (auto&& [name, overrides] : *experiments->as_table()) {

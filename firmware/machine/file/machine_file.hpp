@@ -22,6 +22,7 @@ class MachineFileError : public std::runtime_error {
 struct ReadOptions {
   std::string experiment;        // merges [experiment.NAME], if the file has it
   std::vector<std::string> set;  // "axis.X.mass=230 kg", merged in order after the experiment
+  bool all_errors = false;       // of the file as it is: what() has a line for each, in place of the first alone
 };
 
 // The machine of a file, checked: every table of it, also friction models that are not in use and the overrides of

@@ -120,21 +120,30 @@ inline constexpr std::array<Choice<VelocitySource>, 3> velocity_sources{{
     {"mean-difference", VelocitySource::mean_difference, "difference of two-sample means"},
 }};
 
+inline constexpr std::array<Choice<EncoderPlace>, 2> encoder_places{{
+    {"load", EncoderPlace::load, "the axis itself"},
+    {"motor", EncoderPlace::motor, "the motor's shaft"},
+}};
+
 template <>
 struct Table<EncoderParameters> : EmptyTable<EncoderParameters> {
   static constexpr std::string_view text = "position encoder";
-  static constexpr std::array<Parameter<EncoderParameters>, 2> parameters{{
-      {"increment",
-       "m",
-       not_negative(),
-       &EncoderParameters::increment,
-       {},
+  static constexpr std::array<Parameter<EncoderParameters>, 3> parameters{{
+      {"increment", "m", not_negative(), &EncoderParameters::increment, 0.0,
        "increment after interpolation; 0: continuous"},
+      {"counts",
+       "1",
+       positive(),
+       &EncoderParameters::counts,
+       {},
+       "edges in a turn of its shaft, after quadrature; in place of increment"},
       {"noise", "m", not_negative(), &EncoderParameters::noise, 0.0, "noise of the position, rms"},
   }};
   static constexpr std::tuple choices{
       ChoiceParameter<EncoderParameters, VelocitySource>{"velocity", &EncoderParameters::velocity, velocity_sources,
-                                                         VelocitySource::estimated, "source of the measured velocity"}};
+                                                         VelocitySource::estimated, "source of the measured velocity"},
+      ChoiceParameter<EncoderParameters, EncoderPlace>{"on", &EncoderParameters::on, encoder_places, EncoderPlace::load,
+                                                       "what it sits on"}};
   static constexpr std::tuple subtables{Subtable<EncoderParameters, std::optional<EncoderMountParameters>>{
       "mount", &EncoderParameters::mount, Presence::optional}};
 };
@@ -239,9 +248,37 @@ struct Table<FrictionParameters> : EmptyTable<FrictionParameters> {
       {{"use", &FrictionParameters::use, "the active model, unless a command names a different one"}}};
 };
 
+inline constexpr std::array<Choice<AxisKind>, 2> axis_kinds{{
+    {"linear", AxisKind::linear, "lengths and forces"},
+    {"rotary", AxisKind::rotary, "angles and torques"},
+}};
+
+template <>
+struct Table<TransmissionParameters> : EmptyTable<TransmissionParameters> {
+  static constexpr std::string_view text =
+      "rigid transmission from a rotary motor, to which the mass of the axis is the load alone; left out: direct";
+  static constexpr std::array<Parameter<TransmissionParameters>, 5> parameters{{
+      {"ratio", "1", positive(), &TransmissionParameters::ratio, 1.0,
+       "motor turns per turn of screw, pulley or rotary axis; a number or a fraction such as \"355/113\""},
+      {"lead", "m", positive(), &TransmissionParameters::lead, {}, "way of a turn of the screw"},
+      {"pulley_circumference",
+       "m",
+       positive(),
+       &TransmissionParameters::pulley_circumference,
+       {},
+       "way of a turn of the pulley"},
+      {"motor_inertia", "kg m^2", not_negative(), &TransmissionParameters::motor_inertia, 0.0,
+       "inertia at the motor's shaft"},
+      {"screw_inertia", "kg m^2", not_negative(), &TransmissionParameters::screw_inertia, 0.0,
+       "inertia at the screw or pulley"},
+  }};
+};
+
 template <>
 struct Table<AxisModel> : EmptyTable<AxisModel> {
   static constexpr std::string_view text = "one axis";
+  static constexpr std::tuple choices{
+      ChoiceParameter<AxisModel, AxisKind>{"kind", &AxisModel::kind, axis_kinds, AxisKind::linear, "kind of the axis"}};
   static constexpr std::array<Parameter<AxisModel>, 4> parameters{{
       {"mass", "kg", positive(), &AxisModel::mass, {}, "moving mass"},
       {"travel", "m", positive(), &AxisModel::travel, {}, "travel from end to end"},
@@ -249,6 +286,8 @@ struct Table<AxisModel> : EmptyTable<AxisModel> {
       {"max_acceleration", "m/s^2", positive(), &AxisModel::max_acceleration, {}, "largest acceleration"},
   }};
   static constexpr std::tuple subtables{
+      Subtable<AxisModel, std::optional<TransmissionParameters>>{"transmission", &AxisModel::transmission,
+                                                                 Presence::optional},
       Subtable<AxisModel, MotorParameters>{"motor", &AxisModel::motor, Presence::required},
       Subtable<AxisModel, InverterParameters>{"inverter", &AxisModel::inverter, Presence::required},
       Subtable<AxisModel, EncoderParameters>{"encoder", &AxisModel::encoder, Presence::required},
@@ -267,7 +306,13 @@ struct Table<AxisModel> : EmptyTable<AxisModel> {
   };
 };
 
-// Beyond the tables above: what each motor model makes necessary (keys from the axis on) and what it excludes.
+// Beyond the tables above: keys from the axis on of which exactly one must be there.
+struct Alternatives {
+  std::string_view first, second;
+};
+inline constexpr std::array<Alternatives, 1> alternatives{{{"encoder.increment", "encoder.counts"}}};
+
+// What each motor model makes necessary (keys from the axis on) and what it excludes.
 struct MotorRule {
   MotorModel model;
   std::span<const std::string_view> needs;

@@ -5,6 +5,7 @@
 
 #include "firmware/machine/file/description.hpp"
 #include "firmware/machine/file/parameters.hpp"
+#include "firmware/machine/model/coordinate.hpp"
 
 namespace stiction::machine {
 namespace {
@@ -18,6 +19,18 @@ std::string unit_of_key(const KeyDescription& key) {
 
 std::string heading(const TableDescription& table) {
   return table.name.empty() ? "The file itself" : fmt::format("`[{}]`", table.name);
+}
+
+std::string rotary_section() {
+  std::string section =
+      "\n## Rotary axes and motors\n\n"
+      "With `kind = \"rotary\"` every table of the axis has the units below, and so has the table of a motor behind a "
+      "transmission; friction models and effects keep their keys.\n\n";
+  for (const SpelledPair& unit : rotary_units())
+    section += fmt::format("- `{}` in place of `{}`\n", unit.rotary, unit.linear);
+  for (const SpelledPair& key : rotary_keys())
+    section += fmt::format("- the key `{}` in place of `{}`\n", key.rotary, key.linear);
+  return section;
 }
 
 }  // namespace
@@ -37,7 +50,7 @@ std::string reference_page(const Vocabulary& vocabulary) {
       page += fmt::format("| `{}` | {} | {} | {} | {} |\n", key.key, unit_of_key(key),
                           key.allowed.empty() ? "any" : key.allowed, key.fallback, key.text);
   }
-  return page;
+  return page + rotary_section();
 }
 
 }  // namespace stiction::machine

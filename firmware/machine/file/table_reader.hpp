@@ -8,7 +8,9 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -24,22 +26,34 @@
 
 namespace stiction::machine {
 
+// Whose units an axis' values have: its own, and those of its motor's table.
+struct AxisCoordinates {
+  Coordinate axis{}, motor{};
+};
+
 class TableReader {
  public:
   // `force_motor`: quantities take their unit of a motor driven by voltage. `vocabulary`: of friction models and
-  // effects, for whoever reads an axis. `document`: names the place in messages.
-  TableReader(const Document& document, bool force_motor, const Vocabulary* vocabulary = nullptr)
-      : document_(document), force_motor_(force_motor), vocabulary_(vocabulary) {}
+  // effects, for whoever reads an axis. `coordinates`: of the axis that is read. `document`: names the place in
+  // messages.
+  TableReader(const Document& document, bool force_motor, const Vocabulary* vocabulary = nullptr,
+              const AxisCoordinates& coordinates = {})
+      : document_(document),
+        force_motor_(force_motor),
+        vocabulary_(vocabulary),
+        coordinates_(coordinates),
+        coordinate_(coordinates.axis) {}
 
   template <class Owner>
   Owner read(const toml::table& table, const std::string& path) const {
     using T = Table<Owner>;
     refuse_unknown(table, path, known_keys<Owner>());
     Owner owner;
-    for (const auto& p : T::texts) read_text(table, path, p, owner);
-    std::apply([&](const auto&... p) { (read_choice(table, path, p, owner), ...); }, T::choices);
+    const auto attempt = [&](auto&& read_one) { document_.attempt(read_one); };
+    for (const auto& p : T::texts) attempt([&] { read_text(table, path, p, owner); });
+    std::apply([&](const auto&... p) { (attempt([&] { read_choice(table, path, p, owner); }), ...); }, T::choices);
     read_parameters(table, path, T::parameters, owner);
-    std::apply([&](const auto&... s) { (read_subtable(table, path, s, owner), ...); }, T::subtables);
+    std::apply([&](const auto&... s) { (attempt([&] { read_subtable(table, path, s, owner); }), ...); }, T::subtables);
     if constexpr (std::is_same_v<Owner, FrictionParameters>) read_friction_models(table, path, owner);
     if constexpr (std::is_same_v<Owner, AxisModel>) read_effects(table, path, owner);
     return owner;
@@ -59,7 +73,7 @@ class TableReader {
     if constexpr (std::is_same_v<Owner, Machine>) known.push_back("schema");
     for (const auto& p : T::texts) known.push_back(p.key);
     std::apply([&](const auto&... p) { (known.push_back(p.key), ...); }, T::choices);
-    for (const auto& p : T::parameters) known.push_back(p.key);
+    for (const auto& p : T::parameters) known.push_back(coordinate_.own(p.key, p.unit).key);
     std::apply([&](const auto&... s) { (known.push_back(s.key), ...); }, T::subtables);
     if constexpr (std::is_same_v<Owner, FrictionParameters>)
       for (const ValueTable& model : vocabulary_->friction_models) known.push_back(model.name);
@@ -74,7 +88,8 @@ class TableReader {
                       const std::vector<std::string_view>& known) const {
     for (auto&& [key, value] : table)
       if (std::find(known.begin(), known.end(), key.str()) == known.end())
-        document_.fail_unknown(key.source(), join_key(path, key.str()), known);
+        document_.attempt(
+            [&, &name = key] { document_.fail_unknown(name.source(), join_key(path, name.str()), known); });
   }
 
   template <class Owner>
@@ -129,19 +144,22 @@ class TableReader {
   template <class Owner, std::size_t Count>
   void read_parameters(const toml::table& table, const std::string& path,
                        const std::array<Parameter<Owner>, Count>& parameters, Owner& owner) const {
-    for (const Parameter<Owner>& p : parameters) read_parameter(table, path, key_of(p), place_of(p, owner));
+    for (const Parameter<Owner>& p : parameters)
+      document_.attempt([&] { read_parameter(table, path, key_of(p), place_of(p, owner)); });
   }
 
   void read_parameter(const toml::table& table, const std::string& path, const ValueKey& key,
                       const Place& place) const {
-    const Wanted wanted = wanted_of(path, key);
-    const toml::node* node = table.get(key.key);
+    const auto unit = unit_of_key(key);
+    const OwnQuantity own = coordinate_.own(key.key, unit);
+    const Wanted wanted{join_key(path, own.key), own, key.range, key.text};
+    const toml::node* node = table.get(own.key);
     if (node != nullptr)
       std::visit([&](auto* member) { read_value(*node, wanted, *member); }, place);
     else if (!key.optional && !key.fallback)
       fail_missing(table, wanted, kind_of(key, place));
     else if (key.fallback)
-      put(place, {*key.fallback});
+      put(place, {own.to_linear(*key.fallback)});
   }
 
   static ValueKind kind_of(const ValueKey& key, const Place& place) {
@@ -153,17 +171,20 @@ class TableReader {
   // kg has no finite reciprocal.
   static constexpr double least_magnitude = 1e-30, largest_magnitude = 1e30;
 
-  // One value to read: its key and what it must be.
+  // One value to read: its key and what it must be. The range is that of the number in the file.
   struct Wanted {
     std::string key;
-    std::string_view unit;
+    OwnQuantity own;
     Range range;
     std::string_view text;
-    std::string expected(ValueKind kind) const { return describe_expectation(kind, range, unit, text); }
+    std::string expected(ValueKind kind) const { return describe_expectation(kind, range, own.unit, text); }
   };
+  std::string_view unit_of_key(const ValueKey& key) const {
+    return force_motor_ && !key.unit_of_force_motor.empty() ? key.unit_of_force_motor : key.unit;
+  }
+  // Of the vocabulary, whose keys every kind of axis has.
   Wanted wanted_of(const std::string& path, const ValueKey& key) const {
-    const bool of_force = force_motor_ && !key.unit_of_force_motor.empty();
-    return {join_key(path, key.key), of_force ? key.unit_of_force_motor : key.unit, key.range, key.text};
+    return {join_key(path, key.key), coordinate_.own(unit_of_key(key)), key.range, key.text};
   }
 
   [[noreturn]] void fail_missing(const toml::table& table, const Wanted& wanted, ValueKind kind) const {
@@ -175,14 +196,32 @@ class TableReader {
     document_.fail(node.source(), wanted.key, describe_node(node) + reason, wanted.expected(kind));
   }
 
+  // The value of "355/113"; none for any other text.
+  static std::optional<double> fraction_of(std::string_view text) {
+    const std::size_t slash = text.find('/');
+    if (slash == std::string_view::npos) return std::nullopt;
+    const auto whole = [](std::string_view digits) -> std::optional<double> {
+      std::int64_t number = 0;
+      const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+      if (error != std::errc{} || end != digits.data() + digits.size() || number <= 0) return std::nullopt;
+      return static_cast<double>(number);
+    };
+    const auto above = whole(text.substr(0, slash)), below = whole(text.substr(slash + 1));
+    if (!above || !below) return std::nullopt;
+    return *above / *below;
+  }
+
   double quantity(const toml::node& node, const Wanted& wanted) const {
     try {
-      if (const auto* text = node.as_string()) return parse_quantity(text->get(), wanted.unit);
+      const auto* text = node.as_string();
+      if (const auto fraction = text != nullptr && wanted.own.unit == "1" ? fraction_of(text->get()) : std::nullopt)
+        return *fraction;
+      if (text != nullptr) return parse_quantity(text->get(), wanted.own.unit);
     } catch (const UnitError& error) {
       fail_value(node, wanted, ValueKind::number, error.what());
     }
     if (!node.is_number()) fail_value(node, wanted, ValueKind::number);
-    if (wanted.unit != "1") fail_value(node, wanted, ValueKind::number, "no unit");
+    if (wanted.own.unit != "1") fail_value(node, wanted, ValueKind::number, "no unit");
     return *node.value<double>();
   }
 
@@ -191,6 +230,7 @@ class TableReader {
     if (!std::isfinite(value) || !wanted.range.contains(value)) fail_value(node, wanted, ValueKind::number);
     if (value != 0.0 && !(std::abs(value) >= least_magnitude && std::abs(value) <= largest_magnitude))
       fail_value(node, wanted, ValueKind::number, "beyond all machines: 1e-30 to 1e30 in SI units");
+    value = wanted.own.to_linear(value);
   }
   void read_value(const toml::node& node, const Wanted& wanted, std::optional<double>& value) const {
     read_value(node, wanted, value.emplace());
@@ -206,7 +246,7 @@ class TableReader {
     const auto* list = node.as_array();
     if (list == nullptr || list->empty()) fail_value(node, wanted, ValueKind::list, list == nullptr ? "" : "empty");
     for (const toml::node& element : *list) {
-      const Wanted one{fmt::format("{}[{}]", wanted.key, values.size()), wanted.unit, wanted.range, wanted.text};
+      const Wanted one{fmt::format("{}[{}]", wanted.key, values.size()), wanted.own, wanted.range, wanted.text};
       read_value(element, one, values.emplace_back());
     }
   }
@@ -218,20 +258,32 @@ class TableReader {
     const toml::node* node = table.get(s.key);
     if constexpr (requires(Member m) { m.emplace(); }) {
       using Inner = typename Member::value_type;
-      if (node != nullptr) owner.*s.member = read<Inner>(as_table(*node, key, Table<Inner>::text), key);
+      if (node != nullptr)
+        owner.*s.member = inside<Inner>().template read<Inner>(as_table(*node, key, Table<Inner>::text), key);
     } else if (node != nullptr || s.presence == Presence::optional) {
       static const toml::table absent;
-      owner.*s.member = read<Member>(node == nullptr ? absent : as_table(*node, key, Table<Member>::text), key);
+      owner.*s.member = inside<Member>().template read<Member>(
+          node == nullptr ? absent : as_table(*node, key, Table<Member>::text), key);
     } else {
       document_.fail(table.source(), key, "no such table", fmt::format("[{}] ({})", key, Table<Member>::text));
     }
+  }
+
+  // The reader of a table within that of an axis.
+  template <class Inner>
+  TableReader inside() const {
+    TableReader reader = *this;
+    if constexpr (std::is_same_v<Inner, MotorParameters>) reader.coordinate_ = coordinates_.motor;
+    if constexpr (std::is_same_v<Inner, TransmissionParameters>) reader.coordinate_ = {};
+    return reader;
   }
 
   void read_friction_models(const toml::table& table, const std::string& path, FrictionParameters& friction) const {
     for (const ValueTable& model : vocabulary_->friction_models)
       if (const toml::node* node = table.get(model.name)) {
         const std::string key = join_key(path, model.name);
-        friction.models.emplace(model.name, read_values(as_table(*node, key, model.text), key, model));
+        document_.attempt(
+            [&] { friction.models.emplace(model.name, read_values(as_table(*node, key, model.text), key, model)); });
       }
   }
 
@@ -242,7 +294,9 @@ class TableReader {
     if (!node->is_array()) document_.fail(node->source(), key, describe_node(*node), fmt::format("tables [[{}]]", key));
     for (const toml::node& element : *node->as_array()) {
       const std::string element_path = fmt::format("{}[{}]", key, axis.effects.size());
-      axis.effects.push_back(read_effect(as_table(element, element_path, "an effect"), element_path));
+      axis.effects.emplace_back();
+      document_.attempt(
+          [&] { axis.effects.back() = read_effect(as_table(element, element_path, "an effect"), element_path); });
     }
   }
 
@@ -278,10 +332,11 @@ class TableReader {
     for (const ValueKey& key : description.keys) known.push_back(key.key);
     refuse_unknown(table, path, known);
     KeyedValues values;
-    for (const ValueKey& key : description.keys) {
-      const auto read = read_value_of(table, path, key);
-      if (!read.empty()) values.emplace(key.key, read);
-    }
+    for (const ValueKey& key : description.keys)
+      document_.attempt([&] {
+        const auto read = read_value_of(table, path, key);
+        if (!read.empty()) values.emplace(key.key, read);
+      });
     for (const ValueKey& key : description.keys) check_list(table, path, key, values);
     return values;
   }
@@ -291,7 +346,7 @@ class TableReader {
     const Wanted wanted = wanted_of(path, key);
     const toml::node* node = table.get(key.key);
     if (node == nullptr) {
-      if (key.fallback) return {*key.fallback};
+      if (key.fallback) return {wanted.own.to_linear(*key.fallback)};
       if (!key.optional) fail_missing(table, wanted, key.list ? ValueKind::list : ValueKind::number);
       return {};
     }
@@ -317,15 +372,19 @@ class TableReader {
                        fmt::format("a list of {}, as many as {} has", wanted, key.as_long_as));
     }
     if (!key.rising) return;
+    const OwnQuantity own = coordinate_.own(key.unit);
     for (std::size_t k = 1; k < list.size(); ++k)
       if (list[k] <= list[k - 1])
-        document_.fail(place(), fmt::format("{}[{}]", join_key(path, key.key), k), fmt::format("{:g}", list[k]),
-                       fmt::format("a value above the one before it, {:g} {}", list[k - 1], key.unit));
+        document_.fail(place(), fmt::format("{}[{}]", join_key(path, key.key), k),
+                       fmt::format("{:g}", own.from_linear(list[k])),
+                       fmt::format("a value above the one before it, {:g} {}", own.from_linear(list[k - 1]), own.unit));
   }
 
   const Document& document_;
   bool force_motor_;
   const Vocabulary* vocabulary_;
+  AxisCoordinates coordinates_;
+  Coordinate coordinate_;  // of the table that is read
 };
 
 }  // namespace stiction::machine

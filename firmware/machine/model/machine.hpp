@@ -1,5 +1,6 @@
-// A machine as its file describes it, in SI units: what the simulated plant is built from and what the drive's
-// configuration is computed from. Format: README, "Machine file"; the reader is machine_file.hpp.
+// A machine as its file describes it, in SI units, all its axes as linear ones (coordinate.hpp): what the simulated
+// plant is built from and what the drive's configuration is computed from. Format: README, "Machine file"; the reader
+// is machine_file.hpp.
 #pragma once
 
 #include <filesystem>
@@ -8,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware/machine/model/coordinate.hpp"
 #include "firmware/machine/model/effect.hpp"
 #include "firmware/machine/model/feed_drive.hpp"
 #include "firmware/machine/model/value_table.hpp"
@@ -54,9 +56,14 @@ struct EncoderMountParameters {
   double damping_ratio = 0.0;
 };
 
+// What an encoder sits on; with a rigid transmission both move alike.
+enum class EncoderPlace { load, motor };
+
 struct EncoderParameters {
-  double increment = 0.0;  // m; 0: continuous
-  double noise = 0.0;      // m rms
+  EncoderPlace on = EncoderPlace::load;
+  std::optional<double> counts;  // in a turn of what it sits on; then they make the increment
+  double increment = 0.0;        // m; 0: continuous
+  double noise = 0.0;            // m rms
   VelocitySource velocity = VelocitySource::estimated;
   std::optional<EncoderMountParameters> mount;  // none: rigid
 };
@@ -146,12 +153,26 @@ struct FrictionCompensationParameters {
   std::optional<LearnedTable> learned;
 };
 
+// Between a rotary motor and the axis, rigid. In the file's own units, whatever the axis is.
+struct TransmissionParameters {
+  double ratio = 1.0;                          // motor turns per turn of screw, pulley or rotary axis
+  std::optional<double> lead;                  // m per turn of the screw
+  std::optional<double> pulley_circumference;  // m per turn of the pulley
+  double motor_inertia = 0.0;                  // kg m^2, at the motor's shaft
+  double screw_inertia = 0.0;                  // kg m^2, at the screw or pulley
+};
+
 struct AxisModel {
   std::string name;
-  double mass = 0.0;              // kg
-  double travel = 0.0;            // m
-  double max_velocity = 0.0;      // m/s
-  double max_acceleration = 0.0;  // m/s^2
+  AxisKind kind = AxisKind::linear;
+  Coordinate coordinate{};                             // of the values below in the file
+  Coordinate motor_coordinate{};                       // of the motor's
+  double mass = 0.0;                                   // kg, of all that moves, reduced to the axis
+  double load_mass = 0.0;                              // kg, without what the transmission adds: what the file gives
+  double travel = 0.0;                                 // m
+  double max_velocity = 0.0;                           // m/s
+  double max_acceleration = 0.0;                       // m/s^2
+  std::optional<TransmissionParameters> transmission;  // none: the motor moves the axis directly
   MotorParameters motor;
   InverterParameters inverter;
   EncoderParameters encoder;
