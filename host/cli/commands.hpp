@@ -27,6 +27,8 @@ void add_replay(CLI::App& simulate, const Invocation& invocation);
 void add_commissioning(CLI::App& simulate, const Invocation& invocation);
 void add_compare(CLI::App& program, const Invocation& invocation);
 void add_machine(CLI::App& program, const Invocation& invocation);
+// A machine file from data sheets, below `stiction machine`.
+void add_machine_new(CLI::App& machine, const Invocation& invocation);
 void add_identify(CLI::App& program, const Invocation& invocation);
 void add_diagnose(CLI::App& program, const Invocation& invocation);
 void add_tune_friction(CLI::App& program, const Invocation& invocation);

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "host/cli/circle_output.hpp"
+#include "host/log/own_units.hpp"
 #include "host/simulate/replay.hpp"
 
 namespace stiction::host {
@@ -30,24 +31,26 @@ CompareJson compare_document(const CompareJson& reference, const CompareJson& lo
 
 // Rows and deviations of one replay, an axis each.
 void add_replayed(CompareJson& machine, const Log& log, const ReplayCase& replayed, const std::string& axis) {
-  constexpr double um = 1e6;  // in a metre
   const auto matched = match_axes(replayed.machine, log, axis);
   for (std::size_t k = 0; k < log.axes.size(); ++k) {
     const auto& model = replayed.machine.axes[matched[k]];
     const auto d = compare_replay(log, replayed.simulated, k, replay_offset(log, replayed, k, axis));
+    const auto [factor, unit] = shown_deviation(log.axes[k].rotary);
+    const auto key = [unit = unit](const char* name) { return fmt::format("{}_{}", name, unit); };
     const auto withheld = withheld_replay(log, replayed, k, axis);
     CompareJson row{{"axis", model.name}, {"friction", model.friction.use}};
     if (withheld.empty()) {
-      row["position_difference_rms_um"] = d.position * um;
-      row["following_error_rms_um"] = d.following_error * um;
+      row[key("position_difference_rms")] = d.position * factor;
+      row[key("following_error_rms")] = d.following_error * factor;
     } else {
       row["withheld"] = withheld;
     }
-    CompareJson measured{{"following_error_rms_um", d.measured_following_error * um}};
+    CompareJson measured{{key("following_error_rms"), d.measured_following_error * factor}};
     CompareJson deviation{{"axis", model.name}, {"friction", model.friction.use}};
     if (const auto effort = effort_name(d); !effort.empty()) {
-      if (withheld.empty()) row[fmt::format("{}_difference_rms_{}", effort, d.effort_unit)] = d.effort;
-      measured[fmt::format("{}_rms_{}", effort, d.effort_unit)] = d.measured_effort;
+      const std::string in = effort == "torque" ? "N_m" : d.effort_unit;
+      if (withheld.empty()) row[fmt::format("{}_difference_rms_{}", effort, in)] = d.effort;
+      measured[fmt::format("{}_rms_{}", effort, in)] = d.measured_effort;
       const bool known = withheld.empty() && d.measured_effort > 0.0;
       deviation[effort + "_percent"] = percent_of(known ? std::optional(d.effort / d.measured_effort) : std::nullopt);
     }

@@ -12,6 +12,7 @@
 #include "host/cli/choices.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/experiment_output.hpp"
+#include "host/cli/log_input.hpp"
 #include "host/cli/machine_options.hpp"
 #include "host/cli/output.hpp"
 #include "host/cli/progress.hpp"
@@ -32,7 +33,7 @@ struct Options {
   MachineOptions machine;
   std::string friction, axis, loop, speed = "2 m/min", amplitude, lowest = "2 Hz", signal = "multisine";
   int periods = 2, passes = 8;
-  std::string from, log, out;
+  std::string from, columns, log, out;
   bool json = false;
 };
 
@@ -141,7 +142,7 @@ const machine::AxisModel* axis_for(const Log& log, const AxisLog& measured, cons
 }
 
 Measurement measured(const Options& options, const machine::Machine& machine) {
-  const auto log = read_log(options.from);
+  const auto log = read_log_shown(options.from, options.columns);
   Measurement m;
   m.period = log.period;
   bool any_test = false;
@@ -233,6 +234,7 @@ void add_frequency_response(CLI::App& simulate, const Invocation& invocation) {
               "evaluate this log instead, which must have i_inject[A] or u_inject[V], or the response test (XML) of "
               "a SINUMERIK")
           ->type_name("LOG");
+  add_columns(*command, o->columns)->needs(from);
   const auto simulated_only = [&](CLI::Option* option) { return option->excludes(from); };
   simulated_only(command->add_option("--friction", o->friction, "friction model [as in the machine file]"))
       ->type_name("MODEL");

@@ -30,7 +30,7 @@ struct InspectOptions {
 
 std::vector<KnownAxis> known_axes(const InspectOptions& options, const Log& log) {
   if (options.machine.machine.empty()) return {};
-  const auto machine = options.machine.load(options.machine.machine, "");
+  const auto machine = options.machine.load(options.machine.machine, "", needs_of("inspect"));
   std::vector<KnownAxis> known;
   for (const auto index : match_axes(machine, log, options.axis)) known.push_back(known_axis(machine.axes[index]));
   return known;
@@ -118,7 +118,8 @@ std::string clock_text(const Log& log) {
                                             : std::string("no jitter beyond the digits of the stamps");
   if (log.clock.resampled)
     text += fmt::format(
-        "; the samples are interpolated at even times, the jitter adds {:.3g} {} to the position at 1 {}/s",
+        "; the samples are interpolated at even times; if the stamps are not those of the sampling, the jitter adds "
+        "{:.3g} {} to the position at 1 {}/s",
         1e6 * log.clock.jitter, log.axes.front().rotary ? "urad" : "um", log.axes.front().rotary ? "rad" : "m");
   return text;
 }

@@ -18,8 +18,9 @@ struct MachineCommand {
   bool reference = false;
 };
 
-// Reads and checks a file, down to the drive's number formats, and prints what was understood.
+// Reads and checks a file, down to the drive's number formats, and prints what was understood, or all of its errors.
 void check_machine(const std::string& name) {
+  sim::read_machine(machine::find_machine(name), {.experiment = {}, .set = {}, .all_errors = true});
   const auto machine = MachineOptions{name, {}}.load(name, "", needs_of("machine"));
   fmt::print("{}: {}\n", machine.id, machine.name);
   for (const auto& section : machine_sheet(machine)) {
@@ -51,12 +52,13 @@ void add_list(CLI::App& command) {
 
 }  // namespace
 
-void add_machine(CLI::App& program, const Invocation&) {
+void add_machine(CLI::App& program, const Invocation& invocation) {
   auto* command = program.add_subcommand(
-      "machine", "list the shipped machines, check a machine file, print the reference of its keys");
+      "machine", "list the shipped machines, check a machine file, make a new one, print the reference of its keys");
   auto o = std::make_shared<MachineCommand>();
   command->prefix_command();  // a command that it does not know is told by the callback
   add_list(*command);
+  add_machine_new(*command, invocation);
   auto* check = command->add_subcommand("check", "read a machine file and print its errors or its contents");
   check->add_option("MACHINE", o->checked, "shipped machine by name, or a machine file")
       ->required()

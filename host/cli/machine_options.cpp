@@ -66,6 +66,7 @@ machine::Machine MachineOptions::load(const std::string& name, const std::string
   auto result = sim::read_machine(file, {experiment, assignments});
   if (needs.one_axis && !result.axes.empty()) keep_axis(result, axis);
   require_needs(result, needs, file);
+  if (!needs.formats) return result;
   // What the drive's number formats cannot hold is bad input too, found before anything runs.
   try {
     for (const auto& each : result.axes) machine::configure_axis<FixedSignals>(result.timing, sim::drive_axis(each));

@@ -23,9 +23,9 @@ struct MachineOptions {
   void add_compensation_to(CLI::App& command);
   // The option --axis, of commands that run on one axis alone.
   void add_axis_to(CLI::App& command);
-  // The machine `name` (shipped, or a path) as it is in `experiment`, checked down to the drive's number formats and to
-  // what that command `needs` (machine_needs.hpp); with one axis alone where the command runs on one. Throws
-  // machine::MachineFileError, UsageError.
+  // The machine `name` (shipped, or a path) as it is in `experiment`, checked down to the drive's number formats, where
+  // those matter, and to what that command `needs` (machine_needs.hpp); with one axis alone where the command runs on
+  // one. Throws machine::MachineFileError, UsageError.
   machine::Machine load(const std::string& name, const std::string& experiment) const;
   machine::Machine load(const std::string& name, const std::string& experiment, const MachineNeeds& needs) const;
 };

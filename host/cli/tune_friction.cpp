@@ -25,6 +25,7 @@ namespace {
 
 struct TuneOptions {
   std::vector<std::string> logs;
+  std::string columns;
   MachineOptions machine;
   std::string axis;
   std::string feed;
@@ -124,7 +125,7 @@ TunedCompensations tune(const TuneOptions& options, const machine::Machine& mach
 
 void run(const TuneOptions& options, const Invocation& invocation) {
   const auto machine = options.machine.load(options.machine.machine, "");
-  const auto logs = read_logs(options.logs);
+  const auto logs = read_logs(options.logs, options.columns);
   const auto all = tune(options, machine, logs);
   const auto result = tuning_result(all);
   const auto json = experiment_json(result, all.machine);
@@ -159,6 +160,7 @@ void add_tune_friction(CLI::App& program, const Invocation& invocation) {
                    "logs of slow and fast circles without compensation, with position and current [simulations of the "
                    "machine file]")
       ->type_name("LOG");
+  add_columns(*command, o->columns);
   o->machine.add_to(*command,
                     "shipped machine by name, or a machine file for drive and simulation, such as identified.toml");
   command->add_option("--axis", o->axis, "axis [all axes that every log has]")->type_name("NAME");

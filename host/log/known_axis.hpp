@@ -7,7 +7,7 @@
 
 namespace stiction::host {
 
-// What is known of an axis of the machine.
+// What is known of an axis of the machine; of a rotary one in kg m^2, N m/A, N m/V and rad.
 struct KnownAxis {
   std::optional<double> mass;             // kg
   std::optional<double> force_constant;   // N/A, amplitude; N/V of a force motor

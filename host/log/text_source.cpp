@@ -99,6 +99,26 @@ class Utf16 {
   std::string waiting_;
 };
 
+// The encoding that a byte-order mark of UTF-16 names; null for any other begin.
+const char* utf16_of(std::string_view bytes) {
+  if (bytes.starts_with("\xFF\xFE")) return "UTF-16LE";
+  return bytes.starts_with("\xFE\xFF") ? "UTF-16BE" : nullptr;
+}
+
+[[noreturn]] void refuse_utf16(const std::string& name) {
+  throw LogError(name + ": found text that begins as UTF-16 and is none; expected UTF-8 or UTF-16");
+}
+
+// `bytes` with UTF-16 turned into UTF-8; `whole`: not only the begin of a file, whose last character may be cut.
+std::string as_utf8(std::string bytes, const std::string& name, bool whole) {
+  const char* encoding = utf16_of(bytes);
+  if (encoding == nullptr) return bytes;
+  Utf16 utf16(encoding);
+  std::string text;
+  if (!utf16.append(std::string_view(bytes).substr(2), text) || (whole && !utf16.is_complete())) refuse_utf16(name);
+  return text;
+}
+
 }  // namespace
 
 struct TextSource::State {
@@ -121,16 +141,15 @@ struct TextSource::State {
       block.append(rest);
       return;
     }
-    if (!utf16->append(rest, block) || (over && !utf16->is_complete()))
-      throw LogError(name + ": found text that begins as UTF-16 and is none; expected UTF-8 or UTF-16");
+    if (!utf16->append(rest, block) || (over && !utf16->is_complete())) refuse_utf16(name);
   }
 
   // The length of the byte-order mark.
   std::size_t take_mark(std::string_view bytes) {
     if (bytes.starts_with("\xEF\xBB\xBF")) return 3;
-    const bool little = bytes.starts_with("\xFF\xFE"), big = bytes.starts_with("\xFE\xFF");
-    if (little || big) utf16 = std::make_unique<Utf16>(little ? "UTF-16LE" : "UTF-16BE");
-    return little || big ? 2 : 0;
+    const char* encoding = utf16_of(bytes);
+    if (encoding != nullptr) utf16 = std::make_unique<Utf16>(encoding);
+    return encoding != nullptr ? 2 : 0;
   }
 };
 
@@ -186,7 +205,7 @@ std::string read_plain_or_gzip(const std::filesystem::path& file, std::string_vi
     text.resize(size + piece);
     const auto got = source.read(text.data() + size, piece);
     text.resize(size + got);
-    if (got == 0) return text;
+    if (got == 0) return as_utf8(std::move(text), file.string(), true);
     if (text.size() > largest_whole)
       throw LogError(fmt::format("{}: found more than {} GiB; expected {} of a smaller size", file.string(),
                                  largest_whole >> 30, expected));
@@ -197,7 +216,7 @@ std::string first_bytes(const std::filesystem::path& file, std::size_t count) {
   GzipFile source(file, "a log");
   std::string bytes(count, '\0');
   bytes.resize(source.read(bytes.data(), count));
-  return bytes;
+  return as_utf8(std::move(bytes), file.string(), false);
 }
 
 }  // namespace stiction::host

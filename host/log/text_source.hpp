@@ -40,7 +40,8 @@ class TextSource {
 // what it should be, for the message. Throws LogError, also where the unpacked text is larger than 2 GiB.
 std::string read_plain_or_gzip(const std::filesystem::path& file, std::string_view expected = "a log");
 
-// The first bytes of a file, unpacked where it is compressed by gzip, fewer at its end: to tell its format.
+// The first bytes of a file, unpacked where it is compressed by gzip, UTF-16 as UTF-8, fewer at its end: to tell its
+// format.
 std::string first_bytes(const std::filesystem::path& file, std::size_t count);
 
 }  // namespace stiction::host

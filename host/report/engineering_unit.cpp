@@ -2,6 +2,7 @@
 #include "host/report/engineering_unit.hpp"
 
 #include <array>
+#include <numbers>
 
 namespace stiction::host {
 namespace {
@@ -14,13 +15,24 @@ struct Row {
   double factor;
 };
 constexpr std::array rows{
-    Row{"1", 0.0, "", 1.0},        Row{"m", 1e-3, "mm", 1e3},
-    Row{"m", 1e-6, "µm", 1e6},     Row{"m", 0.0, "nm", 1e9},
-    Row{"s", 1.0, "s", 1.0},       Row{"s", 1e-3, "ms", 1e3},
-    Row{"s", 0.0, "µs", 1e6},      Row{"m/s", 0.02, "m/min", 60.0},
-    Row{"m/s", 0.0, "mm/s", 1e3},  Row{"m/s^2", 0.0, "m/s²", 1.0},
-    Row{"N/m", 1e4, "N/µm", 1e-6}, Row{"H", 0.0, "mH", 1e3},
-    Row{"Ohm", 0.0, "Ω", 1.0},     Row{"1/s", 0.0, "(m/min)/mm", 0.06},  // K_v is the only rate
+    Row{"1", 0.0, "", 1.0},
+    Row{"m", 1e-3, "mm", 1e3},
+    Row{"m", 1e-6, "µm", 1e6},
+    Row{"m", 0.0, "nm", 1e9},
+    Row{"rad", 1e-3, "deg", 180.0 / std::numbers::pi},
+    Row{"rad", 0.0, "µrad", 1e6},
+    Row{"kg m^2", 1e-2, "kg m²", 1.0},
+    Row{"kg m^2", 0.0, "kg cm²", 1e4},
+    Row{"s", 1.0, "s", 1.0},
+    Row{"s", 1e-3, "ms", 1e3},
+    Row{"s", 0.0, "µs", 1e6},
+    Row{"m/s", 0.02, "m/min", 60.0},
+    Row{"m/s", 0.0, "mm/s", 1e3},
+    Row{"m/s^2", 0.0, "m/s²", 1.0},
+    Row{"N/m", 1e4, "N/µm", 1e-6},
+    Row{"H", 0.0, "mH", 1e3},
+    Row{"Ohm", 0.0, "Ω", 1.0},
+    Row{"1/s", 0.0, "(m/min)/mm", 0.06},  // K_v is the only rate
 };
 
 }  // namespace

@@ -40,11 +40,21 @@ std::string meaning_of(std::string_view text, std::optional<double> value) {
   return applies ? std::string(text.substr(colon + 2)) : std::string();
 }
 
-// `values` of `key`: what its range refuses is the default of a key that this motor does not need.
-Cell make_cell(const machine::ValueKey& key, std::vector<double> values, bool force_motor) {
+// Whose units the values of a column have.
+struct Column {
+  bool force_motor = false;
+  machine::Coordinate axis{}, motor{};
+};
+
+// `values` of `key`, in units of `coordinate`: what its range refuses is the default of a key that this motor does not
+// need.
+Cell make_cell(const machine::ValueKey& key, std::vector<double> values, const Column& column,
+               const machine::Coordinate& coordinate) {
+  const auto own = coordinate.own(
+      key.key, column.force_motor && !key.unit_of_force_motor.empty() ? key.unit_of_force_motor : key.unit);
+  for (double& value : values) value = own.from_linear(value);
   if (!std::all_of(values.begin(), values.end(), [&](double v) { return key.range.contains(v); })) values.clear();
-  Cell cell{
-      force_motor && !key.unit_of_force_motor.empty() ? key.unit_of_force_motor : key.unit, std::move(values), {}};
+  Cell cell{own.unit, std::move(values), {}};
   if (cell.values.size() <= 1)
     cell.instead = meaning_of(key.text, cell.values.empty() ? std::nullopt : std::optional(cell.values[0]));
   if (cell.values.size() == 1 && std::isinf(cell.values[0])) cell.instead = "none";
@@ -128,17 +138,24 @@ const T* pointer_to(const std::optional<T>& value) {
   return value ? &*value : nullptr;
 }
 
-// `force_motor`: of each owner.
+// The coordinate in which a column gives the values of a table.
+template <class Owner>
+machine::Coordinate coordinate_in(const Column& column) {
+  if (std::is_same_v<Owner, machine::TransmissionParameters>) return {};
+  return std::is_same_v<Owner, machine::MotorParameters> ? column.motor : column.axis;
+}
+
+// `described`: of each owner.
 template <class Owner>
 void add_parameters(Sheet& sheet, std::span<const machine::Parameter<Owner>> parameters,
-                    const std::vector<const Owner*>& owners, const std::vector<bool>& force_motor) {
+                    const std::vector<const Owner*>& owners, const std::vector<Column>& described) {
   for (const auto& parameter : parameters) {
     const auto key = machine::key_of(parameter);
     std::vector<std::optional<Cell>> cells;
     for (std::size_t i = 0; i < owners.size(); ++i)
-      cells.push_back(
-          owners[i] ? std::optional(make_cell(key, machine::values_at(place_of(parameter, *owners[i])), force_motor[i]))
-                    : std::nullopt);
+      cells.push_back(owners[i] ? std::optional(make_cell(key, machine::values_at(place_of(parameter, *owners[i])),
+                                                          described[i], coordinate_in<Owner>(described[i])))
+                                : std::nullopt);
     sheet.add(label_of(key.text), cells);
   }
 }
@@ -146,7 +163,7 @@ void add_parameters(Sheet& sheet, std::span<const machine::Parameter<Owner>> par
 // One table of the machine file and the tables in it; a null owner: this axis has no such table.
 template <class Owner>
 void add_table(Sheet& sheet, const std::string& title, const std::vector<const Owner*>& owners,
-               const std::vector<bool>& force_motor) {
+               const std::vector<Column>& described) {
   using T = machine::Table<Owner>;
   sheet.begin_section(title);
   const auto add_words = [&](std::string_view label, const auto& word) {
@@ -159,7 +176,7 @@ void add_table(Sheet& sheet, const std::string& title, const std::vector<const O
         (add_words(p.text, [&](const Owner& owner) { return name_of(p.choices, owner.*p.member); }), ...);
       },
       T::choices);
-  add_parameters<Owner>(sheet, T::parameters, owners, force_motor);
+  add_parameters<Owner>(sheet, T::parameters, owners, described);
   const auto descend = [&]<class Member>(const machine::Subtable<Owner, Member>& subtable) {
     using Child = std::remove_cvref_t<decltype(*pointer_to(std::declval<const Member&>()))>;
     if constexpr (!std::is_same_v<Child, machine::FrictionParameters>) {  // its tables are those of the models
@@ -167,13 +184,13 @@ void add_table(Sheet& sheet, const std::string& title, const std::vector<const O
       for (const Owner* owner : owners) children.push_back(owner ? pointer_to(owner->*subtable.member) : nullptr);
       const bool top = std::is_same_v<Owner, machine::AxisModel> || std::is_same_v<Owner, machine::FeedDrive>;
       add_table<Child>(sheet, top ? title_of(subtable.key) : title + " " + std::string(subtable.key), children,
-                       force_motor);
+                       described);
     }
   };
   std::apply([&](const auto&... subtable) { (descend(subtable), ...); }, T::subtables);
 }
 
-void add_friction(Sheet& sheet, std::span<const machine::AxisModel> axes, const std::vector<bool>& force_motor) {
+void add_friction(Sheet& sheet, std::span<const machine::AxisModel> axes, const std::vector<Column>& described) {
   sim::for_each_friction_model([&]<class Model>() {
     using Parameters = typename Model::Parameters;
     std::vector<std::optional<Parameters>> given(axes.size());
@@ -188,8 +205,25 @@ void add_friction(Sheet& sheet, std::span<const machine::AxisModel> axes, const 
     }
     sheet.begin_section("Friction " + std::string(Model::label));
     sheet.add("active unless a command names a different model", "", std::move(acting));
-    add_parameters<Parameters>(sheet, Model::parameters, owners, force_motor);
+    add_parameters<Parameters>(sheet, Model::parameters, owners, described);
   });
+}
+
+// What the file does not say in one place: what the load is of the whole, and on which radius a rotary axis runs.
+void add_reduction(Sheet& sheet, std::span<const machine::AxisModel> axes) {
+  sheet.begin_section("Reduction to the axis");
+  constexpr std::string_view mass = "kg";
+  std::vector<std::optional<Cell>> load, radius;
+  for (const auto& axis : axes) {
+    const auto own = axis.coordinate.own(mass);
+    const auto cell = [&](bool wanted, std::string_view unit, double value) {
+      return wanted ? std::optional(Cell{unit, {value}, {}}) : std::nullopt;
+    };
+    load.push_back(cell(axis.transmission.has_value(), own.unit, own.from_linear(axis.load_mass)));
+    radius.push_back(cell(axis.coordinate.rotary(), "m/rad", axis.coordinate.radius));
+  }
+  sheet.add("of the moving mass, load alone", load);
+  sheet.add("way of a radian in the drive's numbers", radius);
 }
 
 }  // namespace
@@ -205,19 +239,20 @@ std::string velocity_source_name(machine::VelocitySource source) {
 std::vector<SheetSection> machine_sheet(const machine::Machine& machine) {
   std::vector<std::string> names;
   std::vector<const machine::AxisModel*> axes;
-  std::vector<bool> force_motor;
+  std::vector<Column> described;
   for (const auto& axis : machine.axes) {
     names.push_back(axis.name);
     axes.push_back(&axis);
-    force_motor.push_back(axis.motor.model == machine::MotorModel::force);
+    described.push_back({axis.motor.model == machine::MotorModel::force, axis.coordinate, axis.motor_coordinate});
   }
   Sheet sheet(names);
-  add_table<machine::AxisModel>(sheet, "Axis", axes, force_motor);
-  add_friction(sheet, machine.axes, force_motor);
+  add_table<machine::AxisModel>(sheet, "Axis", axes, described);
+  add_friction(sheet, machine.axes, described);
+  add_reduction(sheet, machine.axes);
   auto sections = sheet.take();
   if (machine.feed_drive) {
     Sheet feed({"feed drive"});
-    add_table<machine::FeedDrive>(feed, "Feed drive", {&*machine.feed_drive}, {false});
+    add_table<machine::FeedDrive>(feed, "Feed drive", {&*machine.feed_drive}, {Column{}});
     for (auto& section : feed.take()) sections.push_back(std::move(section));
   }
   return sections;

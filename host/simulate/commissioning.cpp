@@ -6,6 +6,8 @@
 #include <numbers>
 #include <random>
 
+#include "firmware/machine/model/motor_force.hpp"
+#include "host/log/own_units.hpp"
 #include "host/simulate/replay.hpp"
 #include "sim/experiment/commissioning_path.hpp"
 #include "stiction/number/fixed_signals.hpp"
@@ -16,20 +18,43 @@ namespace {
 constexpr double period = 1e-3;         // s, of the log
 constexpr double current_noise = 0.03;  // A rms
 
+// Sizes of a rotary axis in those of the linear one that the records were planned for: its travel, its highest planned
+// speed, its motor.
+constexpr double planned_travel = 0.5;         // m
+constexpr double planned_speed = 24.0 / 60.0;  // m/s
+constexpr double planned_force = 6594.0;       // N
+constexpr double planned_current = 70.0;       // A, or V of a force source
+struct Scale {
+  double length = 1.0, speed = 1.0, force = 1.0, effort = 1.0;
+};
+
 constexpr double speed_share = 0.9;  // of what the axis can do at most
 constexpr double acceleration_share = 0.9;
 constexpr double stroke_share = 0.9;  // of the travel
 
-std::vector<double> per_second(std::vector<double> metres_per_minute) {
+Scale scale_of(const machine::AxisModel& axis) {
+  if (!axis.coordinate.rotary()) return {};
+  const double force = machine::largest_force(axis);
+  return {axis.travel / planned_travel, speed_share * axis.max_velocity / planned_speed, force / planned_force,
+          force / machine::acting_force_constant(axis.motor) / planned_current};
+}
+
+std::vector<double> times(double factor, std::vector<double> values) {
+  for (double& v : values) v *= factor;
+  return values;
+}
+
+std::vector<double> per_second(std::vector<double> metres_per_minute, const Scale& scale) {
   for (double& v : metres_per_minute) v /= 60.0;
-  return metres_per_minute;
+  return scale.speed == 1.0 ? metres_per_minute : times(scale.speed, std::move(metres_per_minute));
 }
 
 // The start of a motion as far as the axis can.
 sim::Dynamics start_on(const machine::AxisModel& axis) {
   auto start = sim::standard_start;
   const double highest = acceleration_share * axis.max_acceleration;
-  if (start.acceleration > highest) start = {highest, start.jerk * highest / start.acceleration};
+  if (axis.coordinate.rotary() || start.acceleration > highest)
+    start = {highest, start.jerk * highest / start.acceleration};
   return start;
 }
 
@@ -48,6 +73,9 @@ sim::Trajectory speeds_on(const machine::AxisModel& axis, std::vector<double> sp
 sim::Trajectory circle_on(const machine::AxisModel& axis, double feed, double turns) {
   sim::CircleSettings settings;
   const auto start = start_on(axis);
+  const auto scale = scale_of(axis);
+  settings.radius *= scale.length;
+  feed *= scale.speed;
   settings.acceleration = start.acceleration;
   settings.jerk = start.jerk;
   settings.radius = std::min(settings.radius, 0.5 * stroke_share * axis.travel);
@@ -63,14 +91,19 @@ struct Planned {
 };
 
 std::vector<Planned> plan(const machine::AxisModel& axis) {
+  const auto scale = scale_of(axis);
+  const auto speeds = [&](std::vector<double> list) { return per_second(std::move(list), scale); };
+  const auto amplitudes = [&](std::vector<double> list) { return times(scale.length, std::move(list)); };
   std::vector<Planned> all;
-  all.push_back(
-      {"speeds", false, speeds_on(axis, per_second({0.05, 0.2, 0.5, 1.0, 3.2, 8.0, 16.0, 24.0}), 0.3, 0.4e-3)});
+  all.push_back({"speeds", false,
+                 speeds_on(axis, speeds({0.05, 0.2, 0.5, 1.0, 3.2, 8.0, 16.0, 24.0}), 0.3, scale.length * 0.4e-3)});
   all.push_back({"circle", false, circle_on(axis, 16.0 / 60.0, 2.0)});
-  all.push_back({"reversals", false, sim::small_reversals({5e-6, 10e-6, 20e-6, 50e-6, 100e-6, 200e-6}, 2.0)});
-  all.push_back({"other-speeds", true, speeds_on(axis, per_second({0.1, 0.35, 1.5, 5.0, 12.0, 20.0}), 0.4, 0.6e-3)});
+  all.push_back(
+      {"reversals", false, sim::small_reversals(amplitudes({5e-6, 10e-6, 20e-6, 50e-6, 100e-6, 200e-6}), 2.0)});
+  all.push_back(
+      {"other-speeds", true, speeds_on(axis, speeds({0.1, 0.35, 1.5, 5.0, 12.0, 20.0}), 0.4, scale.length * 0.6e-3)});
   all.push_back({"other-circle", true, circle_on(axis, 10.0 / 60.0, 2.0)});
-  all.push_back({"other-reversals", true, sim::small_reversals({8e-6, 30e-6, 80e-6, 150e-6, 400e-6}, 1.5)});
+  all.push_back({"other-reversals", true, sim::small_reversals(amplitudes({8e-6, 30e-6, 80e-6, 150e-6, 400e-6}), 1.5)});
   return all;
 }
 
@@ -122,20 +155,24 @@ Log set_points(const Planned& planned, const std::string& axis) {
 
 // `bench`: of that axis alone.
 Log recorded(const machine::Machine& bench, Log wanted, Normal& normal) {
-  Coloured slow(2.5, 3.0, wanted.period), fast(2.0, 40.0, wanted.period);  // N, Hz
+  const auto& axis = bench.axes.front();
+  const auto scale = scale_of(axis);
+  Coloured slow(scale.force * 2.5, 3.0, wanted.period), fast(scale.force * 2.0, 40.0, wanted.period);  // N, Hz
   auto& push = wanted.axes.front().external_force;
   push.clear();
   for (std::size_t k = 0; k < wanted.t.size(); ++k) push.push_back(slow.next(normal) + fast.next(normal));
+  wanted.axes.front() = in_own_units(std::move(wanted.axes.front()), axis.coordinate);
   auto log = replay<FixedSignals>(bench, wanted);
   auto& channels = log.axes.front();
   AxisLog kept;
   kept.axis = channels.axis;
+  kept.rotary = channels.rotary;
   kept.x_set = std::move(channels.x_set);
   kept.v_set = std::move(channels.v_set);
   kept.a_set = std::move(channels.a_set);
   kept.x = std::move(channels.x);
   kept.i = std::move(channels.i);
-  for (double& i : kept.i) i += current_noise * normal();
+  for (double& i : kept.i) i += scale.effort * current_noise * normal();
   kept.u = std::move(channels.u);  // of a force source; the drive knows what it commands
   channels = std::move(kept);
   return log;

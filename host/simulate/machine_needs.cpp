@@ -43,7 +43,10 @@ constexpr std::array table{
                  .most_axes = 2,
                  .circle_references = true,
                  .why = for_both_coordinates},
-    MachineNeeds{.command = "machine", .least_axes = 0},
+    MachineNeeds{.command = "machine", .least_axes = 0, .rotary = true},
+    MachineNeeds{.command = "inspect", .rotary = true},
+    MachineNeeds{.command = "replay", .rotary = true},
+    MachineNeeds{.command = "commissioning", .rotary = true},
 };
 
 std::string found_axes(const machine::Machine& machine) {
@@ -100,6 +103,12 @@ std::optional<std::string> what_is_missing(const machine::Machine& machine, cons
     return missing("axes and no feed drive", "a machine with a table [feed_drive], such as stick-slip-feed");
   if (machine.axes.size() < needs.least_axes || machine.axes.size() > needs.most_axes)
     return missing(found_axes(machine), expected_axes(needs));
+  if (!needs.rotary)
+    for (const auto& axis : machine.axes)
+      if (axis.coordinate.rotary())
+        return missing(
+            fmt::format("the rotary axis {}", axis.name),
+            "linear axes; inspect, compare LOG, simulate replay and simulate commissioning serve rotary ones");
   if (!needs.friction.empty() && std::none_of(needs.friction.begin(), needs.friction.end(),
                                               [&](std::string_view model) { return every_axis_has(machine, model); }))
     return missing(found_friction(machine), fmt::format("parameters of a friction model that {} makes sense for: {}",

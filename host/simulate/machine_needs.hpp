@@ -23,6 +23,8 @@ struct MachineNeeds {
   bool feed_drive = false;                       // instead of axes
   bool circle_references = false;                // rows [[reference.circle]]
   bool one_axis = false;                         // runs on one axis alone: the one named, or the first
+  bool rotary = false;                           // serves rotary axes too
+  bool formats = true;                           // what the drive's number formats do not hold is refused
   std::string_view why{};                        // completes "expected exactly two axes: "
 };
 

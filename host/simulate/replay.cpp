@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "firmware/machine/configuration/double_signals.hpp"
+#include "host/log/own_units.hpp"
 #include "host/log/set_points.hpp"
 #include "host/simulate/injection.hpp"
 #include "sim/effects/effects.hpp"
@@ -68,12 +69,23 @@ void require_within_limits(const Log& log, const AxisLog& axis, const machine::A
                            const Motion& motion) {
   const auto& v = motion.points().velocity();
   for (std::size_t k = 0; k < v.size(); ++k)
-    if (std::abs(v[k]) > machine_axis.max_velocity)
+    if (std::abs(v[k]) > machine_axis.max_velocity) {
+      const auto own = machine_axis.coordinate.own("m/s");
       throw LogError(
-          fmt::format("{}: sample {}: found a set velocity of {:.4g} m/s{}; expected at most {:.4g} m/s, the "
+          fmt::format("{}: sample {}: found a set velocity of {:.4g} {}{}; expected at most {:.4g} {}, the "
                       "max_velocity of axis {}",
-                      log.source, k + 1, v[k], axis.v_set.empty() ? " (from x_set)" : "", machine_axis.max_velocity,
-                      machine_axis.name));
+                      log.source, k + 1, own.from_linear(v[k]), own.unit, axis.v_set.empty() ? " (from x_set)" : "",
+                      own.from_linear(machine_axis.max_velocity), own.unit, machine_axis.name));
+    }
+}
+
+void require_same_kind(const Log& log, const AxisLog& axis, const machine::AxisModel& machine_axis) {
+  if (axis.rotary == machine_axis.coordinate.rotary()) return;
+  const auto kind = [](bool rotary) { return rotary ? "rotary" : "linear"; };
+  throw LogError(
+      fmt::format("{}: found columns of a {} axis; expected those of a {} one, as the machine file describes "
+                  "axis {}",
+                  log.source, kind(axis.rotary), kind(!axis.rotary), machine_axis.name));
 }
 
 // The values of one axis that a replay keeps, at one time.
@@ -203,9 +215,12 @@ double encoder_offset(const AxisLog& axis, double allowed) {
   return std::abs(mean) > allowed ? mean : 0.0;
 }
 
+namespace {
+
+// replay() of a log whose axes are all linear; `indices`: of the machine's axis for each of the log's.
 template <class S>
-Log replay(const machine::Machine& machine, const Log& log, const ReplaySettings& settings, const TraceSink<S>& trace) {
-  const auto indices = match_axes(machine, log, settings.axis);
+Log replay_linear(const machine::Machine& machine, const Log& log, const std::vector<std::size_t>& indices,
+                  const TraceSink<S>& trace) {
   std::vector<Motion> motions;
   std::vector<Injection> injections;
   std::vector<double> start(machine.axes.size(), 0.0);
@@ -251,6 +266,25 @@ Log replay(const machine::Machine& machine, const Log& log, const ReplaySettings
     const double offset = encoder_offset(log.axes[k], allowed_following_error(machine.axes[indices[k]]));
     for (double& x : axis.x) x += offset;
   }
+  return out;
+}
+
+}  // namespace
+
+template <class S>
+Log replay(const machine::Machine& machine, const Log& log, const ReplaySettings& settings, const TraceSink<S>& trace) {
+  const auto indices = match_axes(machine, log, settings.axis);
+  const auto coordinate = [&](std::size_t k) { return machine.axes[indices[k]].coordinate; };
+  bool any = false;
+  for (std::size_t k = 0; k < indices.size(); ++k) {
+    require_same_kind(log, log.axes[k], machine.axes[indices[k]]);
+    any = any || coordinate(k).rotary();
+  }
+  if (!any) return replay_linear<S>(machine, log, indices, trace);
+  Log linear = log;
+  for (std::size_t k = 0; k < indices.size(); ++k) linear.axes[k] = as_linear(std::move(linear.axes[k]), coordinate(k));
+  Log out = replay_linear<S>(machine, linear, indices, trace);
+  for (std::size_t k = 0; k < indices.size(); ++k) out.axes[k] = in_own_units(std::move(out.axes[k]), coordinate(k));
   return out;
 }
 

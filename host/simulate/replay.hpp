@@ -26,11 +26,10 @@ struct ReplaySettings {
 // another zero: its mean distance is added to the simulated position, so that both can be compared (see
 // encoder_offset).
 //
-// Between ticks the simulated values are interpolated linearly. Where the machine's record has the current late (effect
-// time_skew), so are i, u, i_set and force. S: FixedSignals or sim::DoubleSignals. Throws LogError
-// when log and machine do not fit (axes, no x_set, beyond the machine's velocity), FaultTripped,
-// sim::ConfigurationError.
-// `settings`: the axis of a log without axis names.
+// The channels of a rotary axis are in its own units, in both logs. Between ticks the simulated values are interpolated
+// linearly. Where the machine's record has the current late (effect time_skew), so are i, u, i_set and force. S:
+// FixedSignals or sim::DoubleSignals. Throws LogError when log and machine do not fit (axes, no x_set, beyond the
+// machine's velocity), FaultTripped, sim::ConfigurationError. `settings`: the axis of a log without axis names.
 template <class S>
 Log replay(const machine::Machine& machine, const Log& log, const ReplaySettings& settings = {},
            const TraceSink<S>& trace = {});
@@ -40,7 +39,7 @@ inline constexpr double longest_lead_in = 0.5;  // s
 // The machine's axis for each of the log's, by index. Throws LogError.
 std::vector<std::size_t> match_axes(const machine::Machine& machine, const Log& log, const std::string& axis);
 
-// Mean of x - x_set where it is beyond `allowed` (m), else 0.
+// Mean of x - x_set where it is beyond `allowed`, in the unit of both, else 0.
 double encoder_offset(const AxisLog& axis, double allowed);
 
 }  // namespace stiction::host

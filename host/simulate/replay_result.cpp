@@ -4,14 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
+#include "host/log/own_units.hpp"
 #include "host/simulate/injection.hpp"
 #include "host/simulate/replay.hpp"
 
 namespace stiction::host {
 namespace {
-
-constexpr double micro = 1e6;  // m to um
 
 double rms(const std::vector<double>& values) {
   double sum = 0.0;
@@ -34,10 +34,14 @@ struct Effort {
   const char* unit;
 };
 const Effort* effort_of(const AxisLog& measured, const AxisLog& simulated) {
-  static constexpr Effort efforts[] = {
-      {&AxisLog::i, "current", "A"}, {&AxisLog::u, "voltage", "V"}, {&AxisLog::force, "motor force", "N"}};
+  static constexpr Effort efforts[] = {{&AxisLog::i, "current", "A"},
+                                       {&AxisLog::u, "voltage", "V"},
+                                       {&AxisLog::force, "motor force", "N"},
+                                       {&AxisLog::force, "motor torque", "N m"}};
   for (const auto& effort : efforts)
-    if (!(measured.*effort.values).empty() && !(simulated.*effort.values).empty()) return &effort;
+    if (!(measured.*effort.values).empty() && !(simulated.*effort.values).empty() &&
+        (effort.values != &AxisLog::force || std::string_view(effort.unit) == force_unit(measured.rotary)))
+      return &effort;
   return nullptr;
 }
 
@@ -72,9 +76,17 @@ class Result {
     const auto& measured = log_.axes[axis];
     const auto& name = measured.axis;
     const std::string of = name.empty() ? "" : " of " + name;
+    const auto deviation = shown_deviation(measured.rotary), speed = shown_speed(measured.rotary),
+               length = shown_position(measured.rotary);
     const auto* effort = effort_of(measured, cases_.front().simulated.axes[axis]);
-    sim::Chart error{"Following error" + of, "time, s", "set minus actual position, um", "", false, {}};
-    sim::Chart position{"Simulated minus measured position" + of, "time, s", "difference, um", "", false, {}};
+    sim::Chart error{
+        "Following error" + of, "time, s", fmt::format("set minus actual position, {}", deviation.unit), "", false, {}};
+    sim::Chart position{"Simulated minus measured position" + of,
+                        "time, s",
+                        fmt::format("difference, {}", deviation.unit),
+                        "",
+                        false,
+                        {}};
     sim::Chart current, rest;
     if (effort != nullptr) {
       const std::string unit = effort->unit;
@@ -85,15 +97,15 @@ class Result {
                  false,
                  {}};
       rest = {fmt::format("Measured minus simulated {}{}", effort->name, of),
-              "set velocity, m/min",
+              fmt::format("set velocity, {}", speed.unit),
               fmt::format("difference, {}", unit),
               "Residual that friction, force constant and mass of the machine file do not explain, over the velocity.",
               false,
               {}};
     }
     const double offset = replay_offset(log_, cases_.front(), axis, axis_);
-    error.series.push_back(measured_line(scaled(difference(measured.x_set, measured.x, 0, -offset), micro)));
-    add_measured(name, compare_replay(log_, cases_.front().simulated, axis, offset));
+    error.series.push_back(measured_line(scaled(difference(measured.x_set, measured.x, 0, -offset), deviation.factor)));
+    add_measured(name, deviation, compare_replay(log_, cases_.front().simulated, axis, offset));
     if (effort != nullptr) current.series.push_back(measured_line(measured.*effort->values));
     bool any = false;
     for (const auto& c : cases_) {
@@ -105,23 +117,23 @@ class Result {
       any = true;
       const auto& simulated = c.simulated.axes[axis];
       const auto d = compare_replay(log_, c.simulated, axis, offset);
-      add_figures(c.label, name, d);
-      error.series.push_back(line(c, scaled(difference(simulated.x_set, simulated.x, 0, -offset), micro)));
-      position.series.push_back(line(c, scaled(difference(simulated.x, measured.x, 0), micro)));
+      add_figures(c.label, name, deviation, d);
+      error.series.push_back(line(c, scaled(difference(simulated.x_set, simulated.x, 0, -offset), deviation.factor)));
+      position.series.push_back(line(c, scaled(difference(simulated.x, measured.x, 0), deviation.factor)));
       if (effort == nullptr) continue;
       current.series.push_back(line(c, simulated.*effort->values));
       const auto from = first_compared(log_);
       sim::Series over_velocity{
           c.label, {}, difference(measured.*effort->values, simulated.*effort->values, from), true};
       over_velocity.friction = c.friction;
-      for (std::size_t k = from; k < log_.t.size(); ++k) over_velocity.x.push_back(simulated.v_set[k] * 60.0);
+      for (std::size_t k = from; k < log_.t.size(); ++k) over_velocity.x.push_back(simulated.v_set[k] * speed.factor);
       rest.series.push_back(std::move(over_velocity));
     }
     if (offset != 0.0)
       result_.findings.push_back(
-          fmt::format("The measured position{} differs from its set-point by {:.6g} mm on average, more than the "
+          fmt::format("The measured position{} differs from its set-point by {:.6g} {} on average, more than the "
                       "machine allows: the zero of the encoder differs. The offset is subtracted.",
-                      of, offset * 1e3));
+                      of, offset * length.factor, length.unit));
     result_.charts.push_back(std::move(error));
     if (any) result_.charts.push_back(std::move(position));
     if (effort == nullptr) {
@@ -136,16 +148,16 @@ class Result {
   }
 
   static std::string short_name(const Effort& effort) {
-    return std::string(effort.name) == "motor force" ? "force" : effort.name;
+    return std::string(effort.name).starts_with("motor ") ? effort.name + 6 : effort.name;
   }
 
   // What is measured is the same beside every case.
-  void add_measured(const std::string& axis, const ReplayDifference& d) {
+  void add_measured(const std::string& axis, const ShownUnit& deviation, const ReplayDifference& d) {
     const std::string key = axis.empty() ? "" : "_" + axis, of = axis.empty() ? "" : " of " + axis;
     result_.figures.push_back({"following_error_rms_measured" + key,
-                               "um",
+                               deviation.unit,
                                "measured following error, rms" + of,
-                               d.measured_following_error * micro,
+                               d.measured_following_error * deviation.factor,
                                {}});
     if (*d.effort_unit == '\0') return;
     result_.figures.push_back({effort_name(d) + "_rms_measured" + key,
@@ -155,17 +167,18 @@ class Result {
                                {}});
   }
 
-  void add_figures(const std::string& label, const std::string& axis, const ReplayDifference& d) {
+  void add_figures(const std::string& label, const std::string& axis, const ShownUnit& deviation,
+                   const ReplayDifference& d) {
     std::string key = axis.empty() ? "" : axis + "_";
     for (const char c : label) key += (c == ' ' || c == ',' || c == '/') ? '_' : c;
     const std::string of = axis.empty() ? "" : " of " + axis;
     const auto add = [&](const char* figure, const char* unit, const std::string& text, double value) {
       result_.figures.push_back({std::string(figure) + "_" + key, unit, text + of + ", " + label, value, {}});
     };
-    add("position_difference_rms", "um", "simulated - measured position, rms", d.position * micro);
-    add("following_error_rms", "um", "simulated following error, rms", d.following_error * micro);
-    std::string sentence = fmt::format("{}{}: the position deviates by {:.3g} um rms from the measured one", label, of,
-                                       d.position * micro);
+    add("position_difference_rms", deviation.unit, "simulated - measured position, rms", d.position * deviation.factor);
+    add("following_error_rms", deviation.unit, "simulated following error, rms", d.following_error * deviation.factor);
+    std::string sentence = fmt::format("{}{}: the position deviates by {:.3g} {} rms from the measured one", label, of,
+                                       d.position * deviation.factor, deviation.unit);
     if (*d.effort_unit != '\0') {
       const auto what = effort_name(d);
       result_.figures.push_back({what + "_difference_rms_" + key,
@@ -205,12 +218,13 @@ class Result {
 
 std::string effort_name(const ReplayDifference& difference) {
   const std::string unit = difference.effort_unit;
-  return unit == "A" ? "current" : unit == "V" ? "voltage" : unit == "N" ? "force" : "";
+  return unit == "A" ? "current" : unit == "V" ? "voltage" : unit == "N" ? "force" : unit == "N m" ? "torque" : "";
 }
 
 double replay_offset(const Log& measured, const ReplayCase& replayed, std::size_t axis, const std::string& name) {
   const auto& machine_axis = replayed.machine.axes[match_axes(replayed.machine, measured, name)[axis]];
-  return encoder_offset(measured.axes[axis], machine_axis.supervision.following_error.value_or(2e-3));
+  const double allowed = machine_axis.supervision.following_error.value_or(2e-3);
+  return encoder_offset(measured.axes[axis], machine_axis.coordinate.own("m").from_linear(allowed));
 }
 
 std::string withheld_replay(const Log& measured, const ReplayCase& replayed, std::size_t axis,

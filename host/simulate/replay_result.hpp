@@ -21,22 +21,22 @@ struct ReplayCase {
 // How a simulated axis differs from the measured one. Without the log's first `settling` seconds, in which the
 // simulation's start dies out.
 struct ReplayDifference {
-  double position = 0.0;                  // m rms, simulated - measured position
-  double following_error = 0.0;           // m rms, x_set - x simulated
-  double measured_following_error = 0.0;  // m rms; without an encoder's offset
-  double effort = 0.0;                    // A, V or N rms, simulated - measured
+  double position = 0.0;                  // m or rad rms, simulated - measured position
+  double following_error = 0.0;           // m or rad rms, x_set - x simulated
+  double measured_following_error = 0.0;  // m or rad rms; without an encoder's offset
+  double effort = 0.0;                    // A, V, N or N m rms, simulated - measured
   double measured_effort = 0.0;           // rms of the measured one
-  const char* effort_unit = "";           // "A", "V", "N"; empty: the log has none that the simulation has
+  const char* effort_unit = "";           // "A", "V", "N", "N m"; empty: the log has none that the simulation has
 };
 inline constexpr double settling = 0.1;  // s
-// `measured`, `simulated`: logs with the same times; `axis`: index in both; `offset`: m, encoder_offset() of the
+// `measured`, `simulated`: logs with the same times; `axis`: index in both; `offset`: encoder_offset() of the
 // measured one.
 ReplayDifference compare_replay(const Log& measured, const Log& simulated, std::size_t axis, double offset);
 
-// "current", "voltage" or "force"; empty where there is no effort to compare. `difference`: of an axis.
+// "current", "voltage", "force" or "torque"; empty where there is no effort to compare. `difference`: of an axis.
 std::string effort_name(const ReplayDifference& difference);
 
-// m, the encoder_offset() of an axis of the log on the machine of a case. `measured`: the log; `replayed`: the case;
+// The encoder_offset() of an axis of the log on the machine of a case. `measured`: the log; `replayed`: the case;
 // `axis`: index in the log; `name`: of the machine's axis, for a log without axis names.
 double replay_offset(const Log& measured, const ReplayCase& replayed, std::size_t axis, const std::string& name);
 

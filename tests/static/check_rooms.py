@@ -34,6 +34,7 @@ ROOMS = {
         f"{FIRMWARE}/control": "a machine names what its drive does against friction (compensation_kind.hpp)",
     },
     "firmware/machine/file": {
+        "firmware/machine/configuration": "the radius of a rotary axis is the largest that the drive's formats hold",
         f"{FIRMWARE}/control": "keys are held to what the drive's buffers and tables hold (compensation_kind.hpp)",
         "firmware/machine/model": "a file becomes a machine",
     },
@@ -103,6 +104,9 @@ ROOMS = {
         "sim/*": "signals leave in SI units; set-points and units are those of the machine's files",
         "firmware/machine/*": "as its file describes it",
         f"{FIRMWARE}/*": "the cascade lists its own signals",
+    },
+    "host/sheet": {
+        "firmware/machine/*": "data sheets become a machine file, in its units",
     },
     "host/response": {
         "host/log": "frequency responses are measured from logs",
@@ -175,6 +179,7 @@ ROOMS = {
         "host/identify": "finds models",
         "host/diagnose": "and causes",
         "host/tune": "tunes the drive",
+        "host/sheet": "makes machine files",
         "host/cam": "makes profiles",
         "host/report": "and shows the results",
         "sim/*": "for the machine it is given",

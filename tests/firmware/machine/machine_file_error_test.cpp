@@ -1,6 +1,7 @@
 // What a bad machine file is told: place, key, what was found, what was expected.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "sim/machine_file.hpp"
@@ -14,6 +15,27 @@ using test::error_of;
 using test::error_of_set;
 using test::replaced;
 using test::small_machine;
+
+// Several keys of several tables, missing, unknown and out of range: a line each, with its place.
+TEST(MachineFileError, AllErrorsOfAFileAreToldAtOnce) {
+  auto text = replaced(small_machine, "95 kg", "-3 kg");
+  text = replaced(text, "travel = \"250 mm\"\n", "");
+  text = replaced(text, "gain = \"243 V s/m\"", "gian = \"243 V s/m\"");
+  text = replaced(text, "coulomb = \"20 N\"", "coulomb = \"20 A\"");
+  try {
+    test::read_text(text, {.experiment = {}, .set = {}, .all_errors = true});
+    FAIL();
+  } catch (const MachineFileError& error) {
+    const std::string all = error.what();
+    for (const char* part : {":4: axis.B.mass: found \"-3 kg\"", ":3: axis.B.travel: found no such key",
+                             ":19: axis.B.velocity_controller.gian: found an unknown key",
+                             ":18: axis.B.velocity_controller.gain: found no such key",
+                             ":23: axis.B.friction.lugre.coulomb: found \"20 A\""})
+      EXPECT_NE(all.find(part), std::string::npos) << part << " in\n" << all;
+    EXPECT_EQ(std::count(all.begin(), all.end(), '\n'), 4) << all;
+  }
+  EXPECT_EQ(error_of(text).find('\n'), std::string::npos);
+}
 
 TEST(MachineFileError, SmallMachineOfTheseTestsIsValid) { EXPECT_EQ(error_of(small_machine), "accepted"); }
 
@@ -314,6 +336,9 @@ TEST(MachineFileError, DamageAnywhereIsAnsweredWithAMachineFileError) {
 
 // Every key of the axes and of the timing, by the description the reader itself works from.
 TEST(MachineFileError, EveryDescribedQuantityRefusesAForeignUnitAndNamesItsKey) {
+  // Without its experiments, for each of which the file would be read again.
+  const std::string shipped = content_of(test::shipped_machine());
+  const test::MachineFileOnDisk axes(shipped.substr(0, shipped.find("\n[experiment.")));
   int quantities = 0;
   for (const TableDescription& table : sim::machine_file_description()) {
     if (table.name.starts_with('[') || table.name.empty()) continue;
@@ -329,7 +354,7 @@ TEST(MachineFileError, EveryDescribedQuantityRefusesAForeignUnitAndNamesItsKey) 
       std::vector<std::string> set;
       for (const KeyDescription& text : table.keys)
         if (text.allowed == "a text" && text.fallback == "required") set.push_back(in_file + "." + text.key + "=x");
-      const auto machine = table.name.starts_with("feed_drive") ? test::shipped_feed_drive() : test::shipped_machine();
+      const auto machine = table.name.starts_with("feed_drive") ? test::shipped_feed_drive() : axes.path();
       // No parameter is an amount of substance.
       auto foreign = set;
       foreign.push_back(path + (key.list ? "=['1 mol']" : "=1 mol"));

@@ -104,6 +104,22 @@ TEST(ScopeSettings, EverySeparatorDecimalMarkAndLineEndGivesTheSameChannels) {
       }
 }
 
+// As a spreadsheet writes "Unicode text": every character of the export in two bytes, behind a byte-order mark.
+TEST(ScopeSettings, Utf16GivesTheSameChannels) {
+  const auto text = shaped('\t', ',', "\r\n", false);
+  const auto expected = by_name(read_scope_export(text, "run.csv"));
+  for (const bool little : {true, false}) {
+    std::string wide = little ? "\xFF\xFE" : "\xFE\xFF";
+    for (const char c : text) wide += little ? std::string{c, '\0'} : std::string{'\0', c};
+    const test::TemporaryFile scope(".csv");
+    write_text_file(scope.path(), wide);
+    EXPECT_TRUE(is_scope_export(first_bytes(scope.path(), 101)));  // the last character is cut in two
+    expect_same_channels(by_name(read_recording(scope.path(), {})), expected, false);
+    write_text_file(scope.path(), wide + "\n");
+    EXPECT_THROW(read_recording(scope.path(), {}), LogError);
+  }
+}
+
 // Blanks within names are blanks between names: where the file does not show which, columns are named by number.
 TEST(ScopeSettings, NamesColumnsByNumberWhereBlanksLeaveTheNamesOpen) {
   auto text = shaped(' ', '.', "\n", false);
