@@ -24,12 +24,17 @@ DriveConfiguration read_configuration(const DriveOptions& options) {
   auto machine = machine::read_machine(file, machine::shipped_vocabulary(), read);
   if (machine.axes.empty())
     throw StartRefused(fmt::format("{}: found no axis; expected a table [axis.NAME]", file.string()));
-  for (const auto& axis : machine.axes)
+  for (const auto& axis : machine.axes) {
+    if (!axis.cascaded())
+      throw StartRefused(
+          fmt::format("{}: found axis {} with a controller that is not the cascade; expected the cascade alone",
+                      file.string(), axis.name));
     if (axis.coordinate.rotary())
       throw StartRefused(
           fmt::format("{}: found the rotary axis {}; expected linear axes, in whose units the drive "
                       "speaks with its controllers",
                       file.string(), axis.name));
+  }
   auto setup = machine::read_drive_setup(file, machine, read);
   std::optional<ParameterSet> stored;
   if (!options.parameters.empty()) stored = read_parameters(parameter_file(options));

@@ -57,8 +57,7 @@ void append_subtable(const machine::AxisModel& axis, Member machine::AxisModel::
   const auto append_named = [&]<class Other>(const machine::Subtable<machine::AxisModel, Other>& subtable) {
     if constexpr (std::is_same_v<Other, Member>)
       if (subtable.member == member)
-        append_table(owner, fmt::format("axis.{}.{}", axis.name, subtable.key),
-                     axis.motor.model == machine::MotorModel::force, out);
+        append_table(owner, fmt::format("axis.{}.{}", axis.name, subtable.key), axis.motor.driven_by_volts(), out);
   };
   std::apply([&](const auto&... subtables) { (append_named(subtables), ...); },
              machine::Table<machine::AxisModel>::subtables);

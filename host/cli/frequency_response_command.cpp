@@ -80,7 +80,7 @@ FrequencyResponsePlan plan_of(const Options& options, const machine::Machine& ma
       throw UsageError(fmt::format("--speed: found '{}'; expected at most {:.3g} m/min, the limit of axis {}",
                                    options.speed, axis.max_velocity * 60.0, axis.name));
   if (!options.amplitude.empty()) {
-    const bool force = machine.axes.front().motor.model == machine::MotorModel::force;
+    const bool force = machine.axes.front().motor.driven_by_volts();
     plan.amplitude =
         quantity("--amplitude", options.amplitude, force ? "V" : "A",
                  force ? "a voltage such as \"1 V\", as the motor is a force source" : "a current such as \"3 A\"");

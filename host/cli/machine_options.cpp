@@ -69,7 +69,8 @@ machine::Machine MachineOptions::load(const std::string& name, const std::string
   if (!needs.formats) return result;
   // What the drive's number formats cannot hold is bad input too, found before anything runs.
   try {
-    for (const auto& each : result.axes) machine::configure_axis<FixedSignals>(result.timing, sim::drive_axis(each));
+    for (const auto& each : result.axes)
+      if (each.cascaded()) machine::configure_axis<FixedSignals>(result.timing, sim::drive_axis(each));
     machine::configure_compensations<FixedSignals>(result);
   } catch (const machine::ConfigurationError& error) {
     throw UsageError(fmt::format("{}: {}", file.string(), error.what()));

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -70,7 +71,11 @@ void run_replay(const ReplayOptions& options, const Invocation& invocation, cons
     throw UsageError(fmt::format("--log: found {} runs; expected one machine and one friction model", cases.size()));
   auto progress = std::make_optional<Progress>("simulating", 1 + cases.size());
   const auto log = read_log(options.from, {options.columns, {}});
-  const bool fixed = options.signals != "double";
+  // A controller that is not the firmware's has doubles alone.
+  const bool fixed = options.signals != "double" && std::all_of(cases.begin(), cases.end(), [](const ReplayCase& c) {
+                       return std::all_of(c.machine.axes.begin(), c.machine.axes.end(),
+                                          [](const machine::AxisModel& axis) { return axis.cascaded(); });
+                     });
   for (auto& c : cases) {
     progress->add(c.label);
     c.simulated = fixed ? replay<FixedSignals>(c.machine, log, {options.axis})

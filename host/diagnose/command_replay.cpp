@@ -81,7 +81,7 @@ AxisLog measured_as_set(const AxisLog& channels) {
 }  // namespace
 
 std::optional<RecordedCommand> recorded_command(const AxisLog& channels, const machine::AxisModel& axis) {
-  const bool force_motor = axis.motor.model == machine::MotorModel::force;
+  const bool force_motor = axis.motor.driven_by_volts();
   if (channels.x_set.empty() || !refused_injection(channels, axis).empty()) return std::nullopt;
   if (force_motor) {
     if (channels.u.empty()) return std::nullopt;
@@ -100,7 +100,7 @@ std::vector<double> replay_command(const machine::Timing& timing, const machine:
   const bool each_tick = std::abs(ratio - 1.0) < 1e-6;  // nothing to interpolate
   const double allowed = axis.supervision.following_error.value_or(2e-3);
   const double offset = encoder_offset(channels, allowed);
-  const bool force_motor = axis.motor.model == machine::MotorModel::force;
+  const bool force_motor = axis.motor.driven_by_volts();
   const Injection injection(log, channels, axis);
   const bool wants_set_current = !force_motor && channels.i.empty();
 

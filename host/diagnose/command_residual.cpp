@@ -311,7 +311,7 @@ void judge_held_out(Verdict& verdict, std::vector<Finding>& findings, const Comm
   };
   const auto before = residual_with(axis);
   verdict.baseline.command_rms = rms(before);
-  if (axis.motor.model == machine::MotorModel::force) verdict.command_unit = std::string("V");
+  if (axis.motor.driven_by_volts()) verdict.command_unit = std::string("V");
   verdict.extended.command_rms = verdict.baseline.command_rms;
   if (findings.empty()) return;
   const auto after = residual_with(with_terms(axis, terms));

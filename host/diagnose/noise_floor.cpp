@@ -41,7 +41,7 @@ Values effort_of(const Log& log, const machine::AxisModel& axis) {
   const auto& channels = channels_of(log, axis);
   auto force = force_of(log, channels, axis, Amperes::amplitude);
   if (!channels.force.empty()) return force;
-  const bool source = axis.motor.model == machine::MotorModel::force;
+  const bool source = axis.motor.driven_by_volts();
   const auto& test = source ? channels.u_inject : channels.i_inject;
   for (std::size_t k = 0; k < test.size(); ++k) force[k] -= machine::acting_force_constant(axis.motor) * test[k];
   return force;

@@ -47,7 +47,7 @@ SignalSettings published_recipe() {
 }
 
 std::vector<double> force_of(const Log& log, const AxisLog& channels, const machine::AxisModel& axis, Amperes amperes) {
-  const bool source = axis.motor.model == machine::MotorModel::force;
+  const bool source = axis.motor.driven_by_volts();
   const double per_unit = machine::acting_force_constant(axis.motor);
   std::vector<double> force;
   if (!channels.force.empty()) {

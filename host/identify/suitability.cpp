@@ -40,7 +40,7 @@ struct Signal {
 };
 
 Signal driving_signal(const AxisLog& channels, const machine::AxisModel& axis) {
-  const bool source = axis.motor.model == machine::MotorModel::force;
+  const bool source = axis.motor.driven_by_volts();
   const double current = axis.inverter.current_limit * axis.motor.count;
   const double none = std::numeric_limits<double>::infinity();
   if (!channels.i.empty() && !source) return {&channels.i, "current", "A", current};

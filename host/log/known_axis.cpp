@@ -9,8 +9,8 @@ KnownAxis known_axis(const machine::AxisModel& axis) {
   const auto own = [&](double value, std::string_view unit) { return axis.coordinate.own(unit).from_linear(value); };
   known.mass = own(axis.mass, "kg");
   known.force_constant = own(machine::acting_force_constant(axis.motor), "N/A");
-  known.effort_limit = axis.motor.model == machine::MotorModel::force ? axis.inverter.voltage_limit
-                                                                      : axis.inverter.current_limit * axis.motor.count;
+  known.effort_limit =
+      axis.motor.driven_by_volts() ? axis.inverter.voltage_limit : axis.inverter.current_limit * axis.motor.count;
   if (axis.motor.pole_pair_pitch > 0.0) known.pole_pair_pitch = own(axis.motor.pole_pair_pitch, "m");
   return known;
 }

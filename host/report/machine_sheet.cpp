@@ -57,7 +57,7 @@ Cell make_cell(const machine::ValueKey& key, std::vector<double> values, const C
   Cell cell{own.unit, std::move(values), {}};
   if (cell.values.size() <= 1)
     cell.instead = meaning_of(key.text, cell.values.empty() ? std::nullopt : std::optional(cell.values[0]));
-  if (cell.values.size() == 1 && std::isinf(cell.values[0])) cell.instead = "none";
+  if (cell.values.size() == 1 && cell.values[0] >= machine::unlimited) cell.instead = "none";
   return cell;
 }
 
@@ -141,7 +141,6 @@ const T* pointer_to(const std::optional<T>& value) {
 // The coordinate in which a column gives the values of a table.
 template <class Owner>
 machine::Coordinate coordinate_in(const Column& column) {
-  if (std::is_same_v<Owner, machine::TransmissionParameters>) return {};
   return std::is_same_v<Owner, machine::MotorParameters> ? column.motor : column.axis;
 }
 
@@ -179,7 +178,7 @@ void add_table(Sheet& sheet, const std::string& title, const std::vector<const O
   add_parameters<Owner>(sheet, T::parameters, owners, described);
   const auto descend = [&]<class Member>(const machine::Subtable<Owner, Member>& subtable) {
     using Child = std::remove_cvref_t<decltype(*pointer_to(std::declval<const Member&>()))>;
-    if constexpr (!std::is_same_v<Child, machine::FrictionParameters>) {  // its tables are those of the models
+    if constexpr (!std::is_base_of_v<machine::FrictionParameters, Child>) {  // its tables are those of the models
       std::vector<const Child*> children;
       for (const Owner* owner : owners) children.push_back(owner ? pointer_to(owner->*subtable.member) : nullptr);
       const bool top = std::is_same_v<Owner, machine::AxisModel> || std::is_same_v<Owner, machine::FeedDrive>;
@@ -243,7 +242,7 @@ std::vector<SheetSection> machine_sheet(const machine::Machine& machine) {
   for (const auto& axis : machine.axes) {
     names.push_back(axis.name);
     axes.push_back(&axis);
-    described.push_back({axis.motor.model == machine::MotorModel::force, axis.coordinate, axis.motor_coordinate});
+    described.push_back({axis.motor.driven_by_volts(), axis.coordinate, axis.motor_coordinate});
   }
   Sheet sheet(names);
   add_table<machine::AxisModel>(sheet, "Axis", axes, described);

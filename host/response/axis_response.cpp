@@ -96,7 +96,7 @@ void find_margins(LoopResponse& loop) {
 }
 
 std::size_t samples_at_limit(const AxisLog& measured, const machine::AxisModel& axis) {
-  const bool force = axis.motor.model == machine::MotorModel::force;
+  const bool force = axis.motor.driven_by_volts();
   const double limit = 0.999 * (force ? axis.inverter.voltage_limit : axis.inverter.current_limit * axis.motor.count);
   const auto& set = force ? measured.u : measured.i_set.empty() ? measured.i : measured.i_set;
   return static_cast<std::size_t>(

@@ -110,10 +110,10 @@ Bode loop_bode(const LoopName& name, const AxisResponse& response, const LoopRes
 }
 
 Bode plant_bode(const AxisResponse& response, const machine::AxisModel& axis, bool wide) {
-  const char* per = axis.motor.model == machine::MotorModel::force ? "V" : "A";
+  const char* per = axis.motor.driven_by_volts() ? "V" : "A";
   auto b = bode("Plant, " + response.axis,
                 fmt::format("Speed at the input of the controller, per {} of the {}. Coherence: of the speed.", per,
-                            axis.motor.model == machine::MotorModel::force                      ? "motor voltage"
+                            axis.motor.driven_by_volts()                                        ? "motor voltage"
                             : response.spectra.known[static_cast<std::size_t>(Answer::current)] ? "current"
                                                                                                 : "set current"),
                 fmt::format("magnitude, dB (0 dB = 1 m/s per {})", per), wide);

@@ -113,7 +113,7 @@ sim::CircleRun run_traced(const CircleCase& c, const std::filesystem::path& file
   std::vector<bool> force_sources;
   for (const auto& axis : c.machine.axes) {
     axes.push_back(axis.name);
-    force_sources.push_back(axis.motor.model == machine::MotorModel::force);
+    force_sources.push_back(axis.motor.driven_by_volts());
   }
   if (std::find(force_sources.begin(), force_sources.end(), false) != force_sources.end())
     comments.emplace_back("current: amplitude (peak) amperes");

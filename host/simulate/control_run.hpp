@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <functional>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -14,6 +16,7 @@
 #include "hal/control_loop.hpp"
 #include "hal/simulated/simulated_backend.hpp"
 #include "host/simulate/late_current.hpp"
+#include "host/simulate/structured_loop.hpp"
 #include "sim/effects/effects.hpp"
 #include "sim/experiment/set_point.hpp"
 
@@ -42,45 +45,73 @@ using TraceSink = std::function<void(std::int64_t, std::span<const AxisSignals<S
 template <class S>
 class ControlRun {
  public:
-  // Rests at `positions` (m), one an axis of the machine. Throws sim::ConfigurationError.
+  // Rests at `positions` (m), one an axis of the machine. Throws sim::ConfigurationError; a machine has the cascade on
+  // every axis or on none.
   ControlRun(const machine::Machine& machine, std::span<const double> positions)
       : machine_(machine),
         set_point_delay_(machine::set_point_delay(machine)),
         backend_(machine, positions),
-        configs_(configure(machine)),
-        compensations_(machine::configure_compensations<S>(machine)),
-        loop_(backend_, std::span<const AxisConfig<S>>(configs_),
-              Ticker(machine::fast_period_ns(machine.timing),
-                     static_cast<std::uint32_t>(machine::slow_ratio(machine.timing))),
-              std::span<const FrictionCompensationConfig<S>>(compensations_)),
         set_(machine.axes.size()),
-        late_(machine) {}
+        late_(machine) {
+    const auto cascades = std::count_if(machine.axes.begin(), machine.axes.end(),
+                                        [](const machine::AxisModel& axis) { return axis.cascaded(); });
+    if (cascades == 0) {
+      structured_.emplace(machine, backend_);
+      return;
+    }
+    if (static_cast<std::size_t>(cascades) != machine.axes.size())
+      throw machine::ConfigurationError(
+          "found axes with the cascade and axes with a different controller.structure; expected one kind on all "
+          "axes "
+          "of a machine that is simulated");
+    configs_ = configure(machine);
+    compensations_ = machine::configure_compensations<S>(machine);
+    loop_.emplace(backend_, std::span<const AxisConfig<S>>(configs_),
+                  Ticker(machine::fast_period_ns(machine.timing),
+                         static_cast<std::uint32_t>(machine::slow_ratio(machine.timing))),
+                  std::span<const FrictionCompensationConfig<S>>(compensations_));
+  }
   ControlRun(const ControlRun&) = delete;
   ControlRun& operator=(const ControlRun&) = delete;
   ~ControlRun() = default;
 
-  double time() const { return static_cast<double>(loop_.now_ns()) * 1e-9; }  // s, of the tick that comes next
-  sim::AxisPlant& plant(std::size_t axis) { return backend_.plant(axis); }    // as the samples of that tick see it
-  const AxisSignals<S>& signals(std::size_t axis) const { return loop_.signals()[axis]; }  // of the tick before
+  double time() const {  // s, of the tick that comes next
+    return static_cast<double>(structured_ ? structured_->now_ns() : loop_->now_ns()) * 1e-9;
+  }
+  sim::AxisPlant& plant(std::size_t axis) { return backend_.plant(axis); }  // as the samples of that tick see it
+  const AxisSignals<S>& signals(std::size_t axis) const {                   // of the tick before
+    return structured_ ? structured_->signals()[axis] : loop_->signals()[axis];
+  }
   // Of an axis; none where the machine has no friction compensation.
   const FrictionCompensation<S>* compensation(std::size_t axis) const {
-    return loop_.compensations().empty() ? nullptr : &loop_.compensations()[axis];
+    return !loop_ || loop_->compensations().empty() ? nullptr : &loop_->compensations()[axis];
   }
-  std::span<const FrictionCompensationSignals<S>> compensation_signals() const { return loop_.compensation_signals(); }
+  std::span<const FrictionCompensationSignals<S>> compensation_signals() const { return loop_->compensation_signals(); }
   // The time (s) of the set-points that the axes follow in the tick that comes next: friction compensation holds them
   // back.
   double set_point_time() const { return time() - set_point_delay_; }
 
   // Controls one tick with a set-point an axis. Throws FaultTripped after the trace has had the tick.
   void tick(std::span<const sim::AxisSetPoint> set_points, const TraceSink<S>& trace = {}) {
+    if (structured_) [[unlikely]]
+      return tick_structured(set_points, trace);
     for (std::size_t i = 0; i < set_.size(); ++i) set_[i] = sim::to_set_point<S>(set_points[i]);
-    const std::int64_t now_ns = loop_.now_ns();
-    loop_.tick(set_);
-    if (trace) late_.record(now_ns, loop_.signals(), trace);
-    if (loop_.faulted()) throw_fault();
+    const std::int64_t now_ns = loop_->now_ns();
+    loop_->tick(set_);
+    if (trace) late_.record(now_ns, loop_->signals(), trace);
+    if (loop_->faulted()) throw_fault();
   }
 
  private:
+  void tick_structured(std::span<const sim::AxisSetPoint> set_points, const TraceSink<S>& trace) {
+    const std::int64_t now_ns = structured_->now_ns();
+    structured_->tick(set_points);
+    if (trace) late_.record(now_ns, structured_->signals(), trace);
+    for (std::size_t k = 0; k < machine_.axes.size(); ++k)
+      if (structured_->ran_away(k))
+        throw FaultTripped(machine_.axes[k].name, Fault::position_lost, static_cast<double>(now_ns) * 1e-9);
+  }
+
   static std::vector<AxisConfig<S>> configure(const machine::Machine& machine) {
     std::vector<AxisConfig<S>> configs;
     for (const auto& axis : machine.axes)
@@ -90,12 +121,12 @@ class ControlRun {
   [[noreturn]] void throw_fault() const {
     std::size_t first = 0;
     std::int64_t time = INT64_MAX;
-    for (std::size_t i = 0; i < loop_.axes().size(); ++i)
-      if (const auto& axis = loop_.axes()[i]; axis.fault() != Fault::none && axis.fault_time_ns() < time) {
+    for (std::size_t i = 0; i < loop_->axes().size(); ++i)
+      if (const auto& axis = loop_->axes()[i]; axis.fault() != Fault::none && axis.fault_time_ns() < time) {
         first = i;
         time = axis.fault_time_ns();
       }
-    throw FaultTripped(machine_.axes[first].name, loop_.axes()[first].fault(), static_cast<double>(time) * 1e-9);
+    throw FaultTripped(machine_.axes[first].name, loop_->axes()[first].fault(), static_cast<double>(time) * 1e-9);
   }
 
   const machine::Machine& machine_;
@@ -103,7 +134,8 @@ class ControlRun {
   hal::SimulatedBackend<S> backend_;
   std::vector<AxisConfig<S>> configs_;
   std::vector<FrictionCompensationConfig<S>> compensations_;
-  hal::ControlLoop<hal::SimulatedBackend<S>> loop_;
+  std::optional<hal::ControlLoop<hal::SimulatedBackend<S>>> loop_;
+  std::optional<StructuredLoop<S>> structured_;  // in place of the one above
   std::vector<SetPoint<S>> set_;
   LateCurrent<S> late_;
 };

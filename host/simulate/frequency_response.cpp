@@ -106,13 +106,10 @@ class Schedule {
 };
 
 double limit_of(const machine::AxisModel& axis) {
-  return axis.motor.model == machine::MotorModel::force ? axis.inverter.voltage_limit
-                                                        : axis.inverter.current_limit * axis.motor.count;
+  return axis.motor.driven_by_volts() ? axis.inverter.voltage_limit : axis.inverter.current_limit * axis.motor.count;
 }
 
-const char* unit_of(const machine::AxisModel& axis) {
-  return axis.motor.model == machine::MotorModel::force ? "V" : "A";
-}
+const char* unit_of(const machine::AxisModel& axis) { return axis.motor.driven_by_volts() ? "V" : "A"; }
 
 // Keeps the signals of an axis as a drive's log has them.
 void record(AxisLog& log, const AxisSignals<FixedSignals>& s, double test, bool force_motor) {
@@ -211,7 +208,7 @@ class Recording {
         log_.t.push_back(t);
         for (std::size_t k = 0; k < axes.size(); ++k) {
           const double test = tests_[k][tick];
-          record(log_.axes[k], signals[k], test, axes[k].motor.model == machine::MotorModel::force);
+          record(log_.axes[k], signals[k], test, axes[k].motor.driven_by_volts());
           if (test != 0.0) watches_[k].see(t, set[k].velocity, run.plant(k).velocity(), signals[k].limiting);
         }
       });

@@ -9,7 +9,7 @@ bool acts(const std::vector<double>& signal) {
   return std::any_of(signal.begin(), signal.end(), [](double value) { return value != 0.0; });
 }
 
-bool is_force_source(const machine::AxisModel& axis) { return axis.motor.model == machine::MotorModel::force; }
+bool is_force_source(const machine::AxisModel& axis) { return axis.commanded_in_volts(); }
 
 }  // namespace
 

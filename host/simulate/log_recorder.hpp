@@ -18,7 +18,7 @@ class LogRecorder {
     log_.period = machine.timing.fast_period;
     for (const auto& axis : machine.axes) {
       log_.axes.emplace_back().axis = axis.name;
-      force_source_.push_back(axis.motor.model == machine::MotorModel::force);
+      force_source_.push_back(axis.motor.driven_by_volts());
     }
   }
   LogRecorder(const LogRecorder&) = delete;

@@ -43,9 +43,9 @@ constexpr std::array table{
                  .most_axes = 2,
                  .circle_references = true,
                  .why = for_both_coordinates},
-    MachineNeeds{.command = "machine", .least_axes = 0, .rotary = true},
-    MachineNeeds{.command = "inspect", .rotary = true},
-    MachineNeeds{.command = "replay", .rotary = true},
+    MachineNeeds{.command = "machine", .least_axes = 0, .rotary = true, .controllers = Controllers::any},
+    MachineNeeds{.command = "inspect", .rotary = true, .controllers = Controllers::any},
+    MachineNeeds{.command = "replay", .rotary = true, .controllers = Controllers::known},
     MachineNeeds{.command = "commissioning", .rotary = true},
 };
 
@@ -109,6 +109,19 @@ std::optional<std::string> what_is_missing(const machine::Machine& machine, cons
         return missing(
             fmt::format("the rotary axis {}", axis.name),
             "linear axes; inspect, compare LOG, simulate replay and simulate commissioning serve rotary ones");
+  for (const auto& axis : machine.axes) {
+    if (axis.cascaded() || needs.controllers == Controllers::any) continue;
+    const bool unknown = axis.controller->structure == machine::ControlStructure::unknown;
+    if (needs.controllers == Controllers::cascade)
+      return missing(
+          fmt::format("axis {} with {}", axis.name,
+                      unknown ? "an unknown controller" : "a controller that is not the firmware's cascade"),
+          "the cascade, without [axis.NAME.controller]; inspect, compare LOG and simulate replay serve other "
+          "structures");
+    if (unknown)
+      return missing(fmt::format("axis {} with an unknown controller", axis.name),
+                     "a controller to simulate: [axis.NAME.controller] with its structure, or the cascade without it");
+  }
   if (!needs.friction.empty() && std::none_of(needs.friction.begin(), needs.friction.end(),
                                               [&](std::string_view model) { return every_axis_has(machine, model); }))
     return missing(found_friction(machine), fmt::format("parameters of a friction model that {} makes sense for: {}",

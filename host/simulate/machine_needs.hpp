@@ -14,6 +14,13 @@ namespace stiction::host {
 
 inline constexpr std::size_t any_number = std::numeric_limits<std::size_t>::max();
 
+// Of which axes a command makes use.
+enum class Controllers {
+  cascade,  // those that the firmware controls
+  known,    // those whose controller can be simulated
+  any,
+};
+
 struct MachineNeeds {
   std::string_view command;    // "impact"; commands without a row of their own need an axis, no more
   std::size_t least_axes = 1;  // of the machine, or of those that --axis chooses
@@ -24,8 +31,9 @@ struct MachineNeeds {
   bool circle_references = false;                // rows [[reference.circle]]
   bool one_axis = false;                         // runs on one axis alone: the one named, or the first
   bool rotary = false;                           // serves rotary axes too
-  bool formats = true;                           // what the drive's number formats do not hold is refused
-  std::string_view why{};                        // completes "expected exactly two axes: "
+  Controllers controllers = Controllers::cascade;
+  bool formats = true;     // what the drive's number formats do not hold is refused
+  std::string_view why{};  // completes "expected exactly two axes: "
 };
 
 // The row of a command, or that of commands without one.

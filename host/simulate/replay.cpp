@@ -90,13 +90,14 @@ void require_same_kind(const Log& log, const AxisLog& axis, const machine::AxisM
 
 // The values of one axis that a replay keeps, at one time.
 struct Sample {
-  double x = 0.0, v = 0.0, i = 0.0, i_set = 0.0, force = 0.0;
+  double x = 0.0, v = 0.0, i = 0.0, i_set = 0.0, force = 0.0, x_load = 0.0;
 };
 
 Sample between(const Sample& a, const Sample& b, double s) {
   if (s > 1.0 - 1e-4) return b;  // to the bit, whatever the rounding of the two clocks
   const auto mix = [s](double p, double q) { return p + s * (q - p); };
-  return {mix(a.x, b.x), mix(a.v, b.v), mix(a.i, b.i), mix(a.i_set, b.i_set), mix(a.force, b.force)};
+  return {mix(a.x, b.x),         mix(a.v, b.v),         mix(a.i, b.i),
+          mix(a.i_set, b.i_set), mix(a.force, b.force), mix(a.x_load, b.x_load)};
 }
 
 // Collects the simulated values at the log's times; currents at the times at which the machine's record has them.
@@ -155,13 +156,17 @@ class Sampler {
   void keep_motion(std::size_t k, const Sample& sample) {
     out_.axes[k].x.push_back(sample.x);
     out_.axes[k].v.push_back(sample.v);
+    if (machine_.axes[places_[k].axis].second_encoder) out_.axes[k].x_load.push_back(sample.x_load);
   }
   void keep_current(std::size_t k, const Sample& sample) {
     auto& axis = out_.axes[k];
-    const bool force_motor = machine_.axes[places_[k].axis].motor.model == machine::MotorModel::force;
+    const auto& simulated = machine_.axes[places_[k].axis];
     axis.force.push_back(sample.force);
-    (force_motor ? axis.u : axis.i).push_back(force_motor ? sample.i_set : sample.i);
-    if (!force_motor) axis.i_set.push_back(sample.i_set);
+    if (simulated.commanded_in_volts()) axis.u.push_back(sample.i_set);
+    if (simulated.motor.driven_by_volts()) return;
+    const bool ideal = simulated.motor.model == machine::MotorModel::force;  // its current is the command
+    axis.i.push_back(ideal ? sample.i_set : sample.i);
+    if (!ideal && !simulated.commanded_in_volts()) axis.i_set.push_back(sample.i_set);
   }
 
   const std::vector<double>& times_;
@@ -228,7 +233,9 @@ Log replay_linear(const machine::Machine& machine, const Log& log, const std::ve
   for (std::size_t k = 0; k < indices.size(); ++k) {
     motions.emplace_back(log, log.axes[k]);
     injections.emplace_back(log, log.axes[k], machine.axes[indices[k]]);
-    require_within_limits(log, log.axes[k], machine.axes[indices[k]], motions.back());
+    // The cascade clips its set speed; other structures have no such limit.
+    if (machine.axes[indices[k]].cascaded())
+      require_within_limits(log, log.axes[k], machine.axes[indices[k]], motions.back());
     lead_in = std::max(lead_in, motions.back().lead_in());
   }
   // Whole slow periods before the log.
@@ -248,12 +255,13 @@ Log replay_linear(const machine::Machine& machine, const Log& log, const std::ve
       auto& plant = run.plant(indices[k]);
       if (!log.axes[k].external_force.empty()) plant.set_external_force(at_time(log, log.axes[k].external_force, t));
       values[k].force = plant.motor_force();
+      values[k].x_load = plant.read_second_encoder().value_or(0.0);
     }
     run.tick(points, trace);
     for (std::size_t k = 0; k < indices.size(); ++k) {
       const auto& s = run.signals(indices[k]);
-      values[k] = {machine::to_si(s.x), machine::to_si(s.v), machine::to_si(s.i), machine::to_si(s.i_set),
-                   values[k].force};
+      values[k] = {machine::to_si(s.x),     machine::to_si(s.v), machine::to_si(s.i),
+                   machine::to_si(s.i_set), values[k].force,     values[k].x_load};
     }
     sampler.add(t, values);
   }

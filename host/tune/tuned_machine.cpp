@@ -76,7 +76,7 @@ std::string tuned_machine(const std::filesystem::path& file, const std::vector<s
   for (const auto& [k, tuning] : all.tuned) {
     const auto& axis = all.machine.axes[k];
     const auto& compensation = *axis.friction_compensation;
-    const bool force_motor = axis.motor.model == machine::MotorModel::force;
+    const bool force_motor = axis.motor.driven_by_volts();
     Edits own({"axis", axis.name, "friction_compensation"});
     own.remove({});  // what stood there was another tuning's
     own.text({"use"}, name_of(compensation.use));

@@ -67,8 +67,7 @@ void check_effect(const machine::Effect& effect) {
 }
 
 std::string_view key_unit(const machine::ValueKey& key, const machine::AxisModel& axis) {
-  return axis.motor.model == machine::MotorModel::force && !key.unit_of_force_motor.empty() ? key.unit_of_force_motor
-                                                                                            : key.unit;
+  return axis.motor.driven_by_volts() && !key.unit_of_force_motor.empty() ? key.unit_of_force_motor : key.unit;
 }
 
 std::string unit_suffix(std::string_view unit) {

@@ -1,9 +1,10 @@
-// What the effects of one axis do in the steps of its plant: between motor and carriage, forces on the carriage, the
-// play in front of the encoder, and the errors of what it reads. What they change in the plant's parameters is done
-// before, by plant_axis().
+// What the mechanics and the effects of one axis do in the steps of its plant: the shaft between motor and carriage,
+// forces on the carriage, its weight among them, the play in front of the encoder, and the errors of what it reads.
+// What they change in the plant's parameters is done before, by plant_axis().
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -15,6 +16,8 @@
 #include "sim/effects/encoder_subdivision_error/encoder_subdivision_error.hpp"
 #include "sim/effects/force_saturation/force_saturation.hpp"
 #include "sim/effects/structural_resonance/structural_resonance.hpp"
+#include "sim/plant/gravity.hpp"
+#include "sim/plant/two_masses.hpp"
 
 namespace stiction::sim {
 
@@ -24,8 +27,13 @@ class ActingEffects {
   // `step`: of the plant, s.
   ActingEffects(const machine::AxisModel& axis, double step, double position, double time = 0.0)
       : step_(step), start_(time), follower_(position) {
-    for (const auto& parameters : effects_of<StructuralResonance>(axis))
-      mode_.emplace(parameters, Body{axis.mass, step});
+    for (const auto& parameters : effects_of<StructuralResonance>(axis)) {
+      if (axis.elastic())
+        throw EffectError(StructuralResonance::name, "it on an axis with transmission.stiffness", "one of them");
+      mode_.emplace(StructuralResonance(parameters, axis.mass), step);
+    }
+    if (axis.elastic()) mode_.emplace(Shaft::of(axis), step);
+    if (axis.gravity) forces_.push_back({std::make_unique<Gravity>(axis, step), false});
     for (const auto& parameters : effects_of<ForceSaturation>(axis)) saturation_.emplace(parameters, axis);
     for (const auto& parameters : effects_of<CrossAxisCoupling>(axis)) coupling_mass_ += parameters.mass;
     for (const EffectId id : all_effects())
@@ -46,6 +54,16 @@ class ActingEffects {
   void set_other_acceleration(double acceleration) { coupling_force_ = coupling_mass_ * acceleration; }
 
   // Of the motor against the carriage: m, m/s.
+  // m/s, in the last step.
+  double motor_lead_rate_change() const { return mode_ ? mode_->rate_change() : 0.0; }
+  // From now on the shaft's damping is that of the middle of a step.
+  void step_finely() {
+    if (mode_) mode_->step_finely();
+  }
+  // How friction on the motor alone changes its velocity (m/s) in a step under a force (N).
+  void set_motor_friction(std::function<double(double, double)> friction) {
+    mode_->set_motor_friction(std::move(friction));
+  }
   double motor_lead() const { return mode_ ? mode_->motor_lead() : 0.0; }
   double motor_lead_rate() const { return mode_ ? mode_->motor_lead_rate() : 0.0; }
   // Force (N) of a motor whose force is proportional to its current but for the effects.
@@ -86,7 +104,7 @@ class ActingEffects {
   // The carriage is at `position` (m) with `velocity` (m/s) at the end of a step that changed it by `change`. Returns
   // by how much the velocity behind the play changed: what the encoder's mount stands on.
   double follow(double position, double velocity, double change) {
-    if (mode_) mode_->advance(motor_force_, transmitted_, change);
+    if (mode_) mode_->advance(motor_force_, transmitted_, velocity, change);
     if (!play_) {
       follower_ = position;
       return change;
@@ -117,7 +135,7 @@ class ActingEffects {
   };
 
   double step_;
-  std::optional<StructuralResonance> mode_;
+  std::optional<TwoMasses> mode_;
   std::optional<ForceSaturation> saturation_;
   double coupling_mass_ = 0.0, coupling_force_ = 0.0;
   double motor_force_ = 0.0, transmitted_ = 0.0;

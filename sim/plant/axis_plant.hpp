@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <random>
 
 #include "firmware/machine/model/machine.hpp"
@@ -14,8 +15,8 @@
 
 namespace stiction::sim {
 
-// Steps of the plant in one fast tick of the drive. At four (15.6 us) the circle's errors are within 0.01 um of
-// converged up to a contact stiffness of 1e8 N/m.
+// Steps of the plant in one fast tick of the drive, where the machine file does not ask for more. At four (15.6 us) the
+// circle's errors are within 0.01 um of converged up to a contact stiffness of 1e8 N/m.
 inline constexpr int plant_steps_per_tick = 4;
 
 class AxisPlant {
@@ -54,8 +55,12 @@ class AxisPlant {
   // m, before increment and noise
   double encoder_position() const { return state_->encoder_position(); }
   double encoder_velocity() const { return state_->encoder_velocity(); }  // m/s
-  std::size_t phases() const { return state_->phases; }                   // that carry current: 3, or 1
-  const PhaseValues& current() const { return state_->current; }          // A, of the phases
+  // m, for a controller that computes the speed by itself; none where the velocity loop has no encoder of its own.
+  std::optional<double> read_velocity_encoder();
+  std::optional<double> read_second_encoder();                    // m; none where there is none
+  double motor_position() const;                                  // m, of the motor: behind an elastic shaft its own
+  std::size_t phases() const { return state_->phases; }           // that carry current: 3, or 1
+  const PhaseValues& current() const { return state_->current; }  // A, of the phases
 
   // What the encoder reads now: with increment and noise. Draws a new noise value at each call.
   double read_encoder() {
@@ -72,7 +77,7 @@ class AxisPlant {
   struct State {
     using Tick = void (*)(State&);
 
-    State(double step, const machine::AxisModel& axis, double start, std::uint64_t seed);
+    State(double step, int steps, const machine::AxisModel& axis, double start, std::uint64_t seed);
     State(const State&) = delete;
     virtual ~State() = default;
 

@@ -16,7 +16,7 @@ IDEAL_SPEED, MEAN_DIFFERENCE = range(2)
  FEED_ACCELERATION, NOTCH, B0, B1, B2, A1, A2, CURRENT_LOOP, CURRENT_GAIN, CURRENT_TIME, VOLTS, PHASES,
  SETTINGS) = range(24)
 # Memory of the law.
-STARTED, HELD, SUM, OUTPUT, S1, S2, SUM_A, SUM_B, SUM_C, LAST, MEAN, MEMORY = range(12)
+STARTED, HELD, SUM, OUTPUT, S1, S2, SUM_A, SUM_B, SUM_C, LAST, MEAN, LAST_SET, MEMORY = range(13)
 
 
 def notch(frequency, numerator, denominator, tick):
@@ -81,7 +81,10 @@ def cascade(c, s, tick, x_set, v_set, a_set, x, speed_x, v):
     if tick % int(c[PERIOD]) == 0:
         s[HELD] = shown(x_set - x, c[POSITION_INCREMENT])
     speed = measured_speed(c, s, speed_x, v, c[TICK])
-    error = c[GAIN] * s[HELD] + c[FEED_SPEED] * v_set - speed
+    wanted_speed = v_set
+    if c[SPEED_KIND] == MEAN_DIFFERENCE:
+        wanted_speed, s[LAST_SET] = s[LAST_SET], v_set
+    error = c[GAIN] * s[HELD] + c[FEED_SPEED] * wanted_speed - speed
     total = s[SUM] + (error * c[TICK] / c[INTEGRAL_TIME] if c[INTEGRAL_TIME] > 0.0 else 0.0)
     wanted = notched(c, s, c[SPEED_GAIN] * (error + total)) + c[FEED_ACCELERATION] * a_set
     output = limited(wanted, c[LIMIT])

@@ -48,7 +48,8 @@ AxisDesign design_of(const Timing& timing, const AxisModel& axis) {
   d.max_velocity = axis.max_velocity;
   d.motor = {loop_of(axis.motor.model), axis.motor.force_constant, axis.motor.pole_pair_pitch, axis.motor.count};
   d.inverter = {axis.inverter.voltage_limit, axis.inverter.current_limit};
-  d.encoder.velocity = feedback_of(axis.encoder.velocity);
+  // A velocity encoder of its own gives the speed, whatever it is computed from.
+  d.encoder.velocity = axis.velocity_encoder ? VelocityFeedback::given : feedback_of(axis.encoder.velocity);
   d.position_controller = {axis.position_controller.gain, axis.position_controller.increment};
   d.velocity_controller = {axis.velocity_controller.gain, axis.velocity_controller.integral_time.value_or(0.0)};
   if (const auto& c = axis.current_controller) d.current_controller = {c->gain, c->integral_time.value_or(0.0)};

@@ -15,9 +15,13 @@ namespace stiction::machine {
 AxisCoordinates coordinates_of(const Document& document, const toml::table& table, const std::string& path,
                                double radius);
 
-// Adds to an `axis` that was read with `coordinates` what follows from them: the mass of its transmission, the
-// increment that its encoder's counts make, and the following error of a rotary axis that has no limit of its own.
-// `table` at `path` of `document`: the axis'. Throws MachineFileError for counts of an encoder on what does not turn.
+// Whether the force constant of the motor in the table of an `axis` is one per ampere.
+bool driven_by_amperes(const toml::table& axis);
+
+// Adds to an `axis` that was read with `coordinates` what follows from them: the mass of its transmission and its
+// counterweight, the damping of its shaft, the friction of its motor, the increments that its encoders' counts make,
+// the limits of a force source, and the following error of a rotary axis that has no limit of its own. `table` at
+// `path` of `document`: the axis'. Throws MachineFileError for counts of an encoder on what does not turn.
 void reduce(const Document& document, const toml::table& table, const std::string& path, AxisModel& axis,
             const AxisCoordinates& coordinates);
 

@@ -153,7 +153,7 @@ class Checker {
     }
   }
 
-  bool force_motor() const { return axis_.motor.model == MotorModel::force; }
+  bool force_motor() const { return axis_.motor.driven_by_volts(); }
   const char* unit() const { return force_motor() ? "V" : "A"; }
   const char* what_limits() const { return force_motor() ? "voltage" : "current"; }
   double current_limit() const {

@@ -136,6 +136,7 @@ void describe_table(const std::string& name, const std::string& presence, std::v
     const std::string child = name.empty() ? std::string(s.key) : fmt::format("{}.{}", name, s.key);
     std::string when = s.presence == Presence::required ? "required" : "optional";
     if (s.presence == Presence::by_motor_model) when = need_of(s.key);
+    if (s.presence == Presence::by_structure) when = "required without controller";
     describe_table<typename Unwrapped<Member>::type>(child, when, out);
   };
   std::apply([&](const auto&... s) { (describe_subtable(s), ...); }, T::subtables);

@@ -56,7 +56,7 @@ void put(toml::table& axis, const Vocabulary& vocabulary, const Effect& effect, 
 
 bool has_force_motor(const Machine& machine, const std::string& name) {
   return std::any_of(machine.axes.begin(), machine.axes.end(),
-                     [&](const AxisModel& axis) { return axis.name == name && axis.motor.model == MotorModel::force; });
+                     [&](const AxisModel& axis) { return axis.name == name && axis.motor.driven_by_volts(); });
 }
 
 std::string rewritten(const std::filesystem::path& file, const Machine& machine, const Vocabulary& vocabulary,

@@ -8,6 +8,7 @@
 
 #include "firmware/machine/configuration/radius.hpp"
 #include "firmware/machine/file/axis_coordinates.hpp"
+#include "firmware/machine/file/axis_rules.hpp"
 #include "firmware/machine/file/compensation_checks.hpp"
 #include "firmware/machine/file/document.hpp"
 #include "firmware/machine/file/drive_file.hpp"
@@ -109,22 +110,31 @@ class MachineReader {
     const std::string path = join_key("axis", name);
     const toml::table& table = TableReader(document_, false).as_table(node, path, Table<AxisModel>::text);
     const toml::node* model = node_at(table, "motor.model");
-    const bool force_motor = model != nullptr && describe_node(*model) == "\"force\"";
+    const bool force_source = model != nullptr && describe_node(*model) == "\"force\"";
+    const bool amperes = force_source && driven_by_amperes(table), force_motor = force_source && !amperes;
     const auto on_radius = [&](double radius) {
       const auto coordinates = coordinates_of(document_, table, path, radius);
       AxisModel axis = TableReader(document_, force_motor, &vocabulary_, coordinates).read<AxisModel>(table, path);
+      axis.motor.amperes = amperes;
+      if (axis.controller)
+        axis.controller->in_volts =
+            coordinates.controller_in_volts || axis.controller->structure == ControlStructure::p_voltage;
       document_.attempt([&] { check_alternatives(table, path); });
       document_.attempt([&] { reduce(document_, table, path, axis, coordinates); });
       axis.name = name;
       check_motor(table, path, axis);
+      check_axis_rules(document_, table, path, axis);
       return axis;
     };
     const std::size_t errors = document_.errors();
     AxisModel axis = on_radius(1.0);
     if (document_.errors() > errors) return axis;  // what follows works on values that are right
-    if (axis.coordinate.rotary())
+    if (axis.coordinate.rotary() && axis.cascaded())
       if (const auto choice = choose_radius(machine_.timing, axis); choice.radius) axis = on_radius(*choice.radius);
-    check_friction(table, path, axis.friction);
+    check_friction(table, path, "friction", axis.friction);
+    if (axis.motor_friction) check_friction(table, path, "motor_friction", *axis.motor_friction);
+    if (axis.motor_friction && !axis.elastic()) add_motor_friction(document_, table, path, axis);
+    check_controller_period(table, path, axis);
     check_dead_time(table, path, axis.inverter.dead_time);
     check_notch(table, path, axis.notch);
     check_compensation(document_, table, path, axis, machine_);
@@ -150,6 +160,7 @@ class MachineReader {
     for (const auto& [first, second] : alternatives) {
       const toml::table* nearest = nullptr;
       const toml::node *one = node_at(table, first, &nearest), *other = node_at(table, second);
+      if (nearest == &table && first.find('.') != std::string_view::npos) continue;  // no such table
       if (one == nullptr && other == nullptr)
         document_.fail(nearest->source(), join_key(path, first), "no such key",
                        fmt::format("{}, or {}", expected_at(first, {}), second));
@@ -169,7 +180,12 @@ class MachineReader {
     const std::string with = fmt::format("with motor model {}", describe_node(*model));
     for (const std::string_view key : rule->needs)
       document_.attempt([&] {
+        if (key == "current_controller" ? !has_current_loop(axis) : !axis.cascaded() && is_unknown(axis)) return;
         const toml::table* nearest = nullptr;
+        if (key == "inverter" && node_at(table, key) == nullptr)
+          document_.fail(table.source(), join_key(path, key), "no such table",
+                         fmt::format("[{}] ({})", join_key(path, key), Table<InverterParameters>::text));
+        if (key.starts_with("inverter.") && node_at(table, "inverter") == nullptr) return;
         const auto own = own_path(key, axis.motor_coordinate);
         if (node_at(table, own, &nearest) == nullptr)
           document_.fail(nearest->source(), join_key(path, own), "no such key",
@@ -200,9 +216,16 @@ class MachineReader {
     return "a value";
   }
 
-  void check_friction(const toml::table& table, const std::string& path, const FrictionParameters& friction) const {
-    const toml::table& friction_table = *node_at(table, "friction")->as_table();
-    const std::string friction_path = join_key(path, "friction");
+  void check_controller_period(const toml::table& table, const std::string& path, const AxisModel& axis) const {
+    if (axis.controller && axis.controller->period)
+      check_multiple(table, path, "controller.period", *axis.controller->period, machine_.timing.fast_period,
+                     "fast_period");
+  }
+
+  void check_friction(const toml::table& table, const std::string& path, std::string_view key,
+                      const FrictionParameters& friction) const {
+    const toml::table& friction_table = *node_at(table, key)->as_table();
+    const std::string friction_path = join_key(path, key);
     check_name(document_, friction_table, friction_path, "use", friction.use, friction_model_names(vocabulary_),
                "a friction model");
     if (!friction.models.contains(friction.use))

@@ -39,7 +39,7 @@ struct ChoiceParameter {
 };
 
 // A table within a table; Member may be std::optional.
-enum class Presence { required, optional, by_motor_model };
+enum class Presence { required, optional, by_motor_model, by_structure };
 template <class Owner, class Member>
 struct Subtable {
   std::string_view key;

@@ -30,7 +30,7 @@ inline constexpr std::array<std::string_view, 11> experiment_names{
 template <>
 struct Table<Timing> : EmptyTable<Timing> {
   static constexpr std::string_view text = "periods of the control loops";
-  static constexpr std::array<Parameter<Timing>, 3> parameters{{
+  static constexpr std::array<Parameter<Timing>, 4> parameters{{
       {"fast_period",
        "s",
        {33e-6, 0.1},
@@ -41,13 +41,19 @@ struct Table<Timing> : EmptyTable<Timing> {
       {"set_point_delay", "s", not_negative(0.1), &Timing::set_point_delay, 0.0,
        "delay of every axis behind its set-points while friction compensation acts, which looks ahead by it; a "
        "multiple of fast_period, at most 15 of them"},
+      {"plant_steps",
+       "1",
+       {4.0, 65536.0},
+       &Timing::plant_steps,
+       4.0,
+       "steps of the simulated plant in a fast period; more cost time alike"},
   }};
 };
 
 inline constexpr std::array<Choice<MotorModel>, 3> motor_models{{
     {"synchronous", MotorModel::synchronous, "three phases"},
     {"dc", MotorModel::dc, "equivalent with one winding"},
-    {"force", MotorModel::force, "ideal force source driven by voltage"},
+    {"force", MotorModel::force, "ideal force source driven by voltage, or by current"},
 }};
 
 template <>
@@ -62,13 +68,13 @@ struct Table<MotorParameters> : EmptyTable<MotorParameters> {
        "mutual inductance M of two windings"},
       {"emf_constant", "V s/m", positive(), &MotorParameters::emf_constant, 0.0, "induced voltage K_E of one winding"},
       {"phase_force_constant", "N/A", positive(), &MotorParameters::phase_force_constant, 0.0,
-       "force constant K_F of one winding"},
+       "force constant K_F of one winding, by default 2/3 of force_constant"},
       {"force_constant",
        "N/A",
        positive(),
        &MotorParameters::force_constant,
        {},
-       "force constant of the whole motor, amplitude amperes",
+       "force constant of the whole motor, amplitude amperes; the unit says what drives a force source",
        "N/V"},
       {"pole_pair_pitch", "m", positive(), &MotorParameters::pole_pair_pitch, 0.0, "pole-pair pitch tau_p"},
       {"count", "1", {1.0, 64.0}, &MotorParameters::count, 1.0, "motors in parallel on one servo module"},
@@ -125,10 +131,31 @@ inline constexpr std::array<Choice<EncoderPlace>, 2> encoder_places{{
     {"motor", EncoderPlace::motor, "the motor's shaft"},
 }};
 
+inline constexpr Range encoder_delays = not_negative(0.1);
+
+template <>
+struct Table<FurtherEncoderParameters> : EmptyTable<FurtherEncoderParameters> {
+  static constexpr std::string_view text = "encoder in addition to that of the position controller";
+  static constexpr std::array<Parameter<FurtherEncoderParameters>, 4> parameters{{
+      {"increment", "m", not_negative(), &FurtherEncoderParameters::increment, 0.0,
+       "increment after interpolation; 0: continuous"},
+      {"counts",
+       "1",
+       positive(),
+       &FurtherEncoderParameters::counts,
+       {},
+       "edges in a turn of its shaft, after quadrature; in place of increment"},
+      {"noise", "m", not_negative(), &FurtherEncoderParameters::noise, 0.0, "noise of the position, rms"},
+      {"delay", "s", encoder_delays, &FurtherEncoderParameters::delay, 0.0, "age of the position that it shows"},
+  }};
+  static constexpr std::tuple choices{ChoiceParameter<FurtherEncoderParameters, EncoderPlace>{
+      "on", &FurtherEncoderParameters::on, encoder_places, EncoderPlace::load, "what it sits on"}};
+};
+
 template <>
 struct Table<EncoderParameters> : EmptyTable<EncoderParameters> {
   static constexpr std::string_view text = "position encoder";
-  static constexpr std::array<Parameter<EncoderParameters>, 3> parameters{{
+  static constexpr std::array<Parameter<EncoderParameters>, 4> parameters{{
       {"increment", "m", not_negative(), &EncoderParameters::increment, 0.0,
        "increment after interpolation; 0: continuous"},
       {"counts",
@@ -138,6 +165,7 @@ struct Table<EncoderParameters> : EmptyTable<EncoderParameters> {
        {},
        "edges in a turn of its shaft, after quadrature; in place of increment"},
       {"noise", "m", not_negative(), &EncoderParameters::noise, 0.0, "noise of the position, rms"},
+      {"delay", "s", encoder_delays, &EncoderParameters::delay, 0.0, "age of the position that it shows"},
   }};
   static constexpr std::tuple choices{
       ChoiceParameter<EncoderParameters, VelocitySource>{"velocity", &EncoderParameters::velocity, velocity_sources,
@@ -254,10 +282,72 @@ inline constexpr std::array<Choice<AxisKind>, 2> axis_kinds{{
 }};
 
 template <>
+struct Table<MotorFriction> : EmptyTable<MotorFriction> {
+  static constexpr std::string_view text =
+      "friction on a rotary motor, at its shaft: one table a model, with the keys of axis.NAME.friction; a stiff axis "
+      "has coulomb_viscous or classical on both";
+  static constexpr std::array<TextParameter<MotorFriction>, 1> texts{
+      {{"use", &MotorFriction::use, "the active model"}}};
+};
+
+template <>
+struct Table<GravityParameters> : EmptyTable<GravityParameters> {
+  static constexpr std::string_view text = "weight, and what balances it; left out: none";
+  static constexpr std::array<Parameter<GravityParameters>, 4> parameters{{
+      {"force", "N", not_negative(), &GravityParameters::force, 0.0,
+       "weight of the load, towards -x; of a rotary axis its moment about the rest below"},
+      {"zero", "m", any_value(), &GravityParameters::zero, 0.0, "angle of the rest below, of a rotary axis"},
+      {"counterweight",
+       "N",
+       not_negative(),
+       &GravityParameters::counterweight,
+       {},
+       "force against the weight; left out: that of counterweight_mass, or none"},
+      {"counterweight_mass",
+       "kg",
+       positive(),
+       &GravityParameters::counterweight_mass,
+       {},
+       "mass of the counterweight where it moves along, of a linear axis"},
+  }};
+};
+
+inline constexpr std::array<Choice<ControlStructure>, 5> control_structures{{
+    {"cascade", ControlStructure::cascade, "the firmware's: position, velocity and current controller"},
+    {"p-voltage", ControlStructure::p_voltage, "voltage proportional to the position error"},
+    {"pd", ControlStructure::pd, "position error and its derivative"},
+    {"pid", ControlStructure::pid, "position error, its integral and its derivative"},
+    {"unknown", ControlStructure::unknown, "nothing is known: what needs the controller says so"},
+}};
+
+template <>
+struct Table<ControllerParameters> : EmptyTable<ControllerParameters> {
+  static constexpr std::string_view text =
+      "a controller other than the firmware's cascade, in the host's simulation; left out: the cascade";
+  static constexpr std::tuple choices{ChoiceParameter<ControllerParameters, ControlStructure>{
+      "structure", &ControllerParameters::structure, control_structures, ControlStructure::cascade,
+      "structure of the controller"}};
+  static constexpr std::array<Parameter<ControllerParameters>, 5> parameters{{
+      {"gain", "A/m", positive(), &ControllerParameters::gain, 0.0,
+       "output per position error; the unit says whether it is a current or a voltage", "V/m"},
+      {"derivative", "A s/m", not_negative(), &ControllerParameters::derivative, 0.0, "output per velocity error",
+       "V s/m"},
+      {"integral_time", "s", positive(), &ControllerParameters::integral_time, {}, "integral time"},
+      {"period",
+       "s",
+       positive(1.0),
+       &ControllerParameters::period,
+       {},
+       "a multiple of fast_period; left out: fast_period"},
+      {"supply", "V", positive(), &ControllerParameters::supply, {}, "largest voltage of the output"},
+  }};
+};
+
+template <>
 struct Table<TransmissionParameters> : EmptyTable<TransmissionParameters> {
   static constexpr std::string_view text =
-      "rigid transmission from a rotary motor, to which the mass of the axis is the load alone; left out: direct";
-  static constexpr std::array<Parameter<TransmissionParameters>, 5> parameters{{
+      "transmission from a rotary motor, to which the mass of the axis is the load alone; left out: direct";
+  static constexpr std::array<Parameter<TransmissionParameters>, 9> parameters{{
       {"ratio", "1", positive(), &TransmissionParameters::ratio, 1.0,
        "motor turns per turn of screw, pulley or rotary axis; a number or a fraction such as \"355/113\""},
       {"lead", "m", positive(), &TransmissionParameters::lead, {}, "way of a turn of the screw"},
@@ -271,6 +361,26 @@ struct Table<TransmissionParameters> : EmptyTable<TransmissionParameters> {
        "inertia at the motor's shaft"},
       {"screw_inertia", "kg m^2", not_negative(), &TransmissionParameters::screw_inertia, 0.0,
        "inertia at the screw or pulley"},
+      {"stiffness",
+       "N/m",
+       positive(),
+       &TransmissionParameters::stiffness,
+       {},
+       "stiffness of motor against load, at the load; left out: stiff"},
+      {"damping",
+       "N s/m",
+       not_negative(),
+       &TransmissionParameters::damping,
+       {},
+       "damping of motor against load; with stiffness"},
+      {"damping_ratio",
+       "1",
+       not_negative(1.0),
+       &TransmissionParameters::damping_ratio,
+       {},
+       "damping ratio of the mode of both masses, free; in place of damping"},
+      {"backlash", "m", not_negative(), &TransmissionParameters::backlash, 0.0,
+       "play at the load, from contact to contact; with stiffness"},
   }};
 };
 
@@ -279,9 +389,15 @@ struct Table<AxisModel> : EmptyTable<AxisModel> {
   static constexpr std::string_view text = "one axis";
   static constexpr std::tuple choices{
       ChoiceParameter<AxisModel, AxisKind>{"kind", &AxisModel::kind, axis_kinds, AxisKind::linear, "kind of the axis"}};
-  static constexpr std::array<Parameter<AxisModel>, 4> parameters{{
+  static constexpr std::array<Parameter<AxisModel>, 5> parameters{{
       {"mass", "kg", positive(), &AxisModel::mass, {}, "moving mass"},
-      {"travel", "m", positive(), &AxisModel::travel, {}, "travel from end to end"},
+      {"travel", "m", positive(), &AxisModel::travel, 0.0, "travel from end to end"},
+      {"modulo",
+       "m",
+       positive(),
+       &AxisModel::modulo,
+       {},
+       "way after which an endless axis is where it was; in place of travel"},
       {"max_velocity", "m/s", positive(), &AxisModel::max_velocity, {}, "largest velocity"},
       {"max_acceleration", "m/s^2", positive(), &AxisModel::max_acceleration, {}, "largest acceleration"},
   }};
@@ -289,28 +405,81 @@ struct Table<AxisModel> : EmptyTable<AxisModel> {
       Subtable<AxisModel, std::optional<TransmissionParameters>>{"transmission", &AxisModel::transmission,
                                                                  Presence::optional},
       Subtable<AxisModel, MotorParameters>{"motor", &AxisModel::motor, Presence::required},
-      Subtable<AxisModel, InverterParameters>{"inverter", &AxisModel::inverter, Presence::required},
+      Subtable<AxisModel, InverterParameters>{"inverter", &AxisModel::inverter, Presence::by_motor_model},
       Subtable<AxisModel, EncoderParameters>{"encoder", &AxisModel::encoder, Presence::required},
+      Subtable<AxisModel, std::optional<FurtherEncoderParameters>>{"velocity_encoder", &AxisModel::velocity_encoder,
+                                                                   Presence::optional},
+      Subtable<AxisModel, std::optional<FurtherEncoderParameters>>{"second_encoder", &AxisModel::second_encoder,
+                                                                   Presence::optional},
+      Subtable<AxisModel, std::optional<GravityParameters>>{"gravity", &AxisModel::gravity, Presence::optional},
+      Subtable<AxisModel, std::optional<ControllerParameters>>{"controller", &AxisModel::controller,
+                                                               Presence::optional},
       Subtable<AxisModel, PositionControllerParameters>{"position_controller", &AxisModel::position_controller,
-                                                        Presence::required},
+                                                        Presence::by_structure},
       Subtable<AxisModel, VelocityControllerParameters>{"velocity_controller", &AxisModel::velocity_controller,
-                                                        Presence::required},
+                                                        Presence::by_structure},
       Subtable<AxisModel, std::optional<CurrentControllerParameters>>{
           "current_controller", &AxisModel::current_controller, Presence::by_motor_model},
       Subtable<AxisModel, std::optional<NotchParameters>>{"notch", &AxisModel::notch, Presence::optional},
       Subtable<AxisModel, FeedforwardParameters>{"feedforward", &AxisModel::feedforward, Presence::optional},
       Subtable<AxisModel, SupervisionParameters>{"supervision", &AxisModel::supervision, Presence::optional},
       Subtable<AxisModel, FrictionParameters>{"friction", &AxisModel::friction, Presence::required},
+      Subtable<AxisModel, std::optional<MotorFriction>>{"motor_friction", &AxisModel::motor_friction,
+                                                        Presence::optional},
       Subtable<AxisModel, std::optional<FrictionCompensationParameters>>{
           "friction_compensation", &AxisModel::friction_compensation, Presence::optional},
   };
 };
 
-// Beyond the tables above: keys from the axis on of which exactly one must be there.
+// Beyond the tables above: keys from the axis on of which exactly one must be there, where their table is.
 struct Alternatives {
   std::string_view first, second;
 };
-inline constexpr std::array<Alternatives, 1> alternatives{{{"encoder.increment", "encoder.counts"}}};
+inline constexpr std::array alternatives{
+    Alternatives{"travel", "modulo"},
+    Alternatives{"encoder.increment", "encoder.counts"},
+    Alternatives{"velocity_encoder.increment", "velocity_encoder.counts"},
+    Alternatives{"second_encoder.increment", "second_encoder.counts"},
+};
+
+// What each structure of the controller makes necessary (keys and tables from the axis on) and what it excludes.
+struct StructureRule {
+  ControlStructure structure;
+  std::span<const std::string_view> needs;
+  std::span<const std::string_view> excludes;
+};
+inline constexpr std::array<std::string_view, 2> needs_of_cascade{"position_controller", "velocity_controller"};
+inline constexpr std::array<std::string_view, 5> excluded_by_cascade{
+    "controller.gain", "controller.derivative", "controller.integral_time", "controller.period", "controller.supply"};
+inline constexpr std::array<std::string_view, 2> needs_of_p_voltage{"controller.gain", "controller.supply"};
+inline constexpr std::array<std::string_view, 8> excluded_by_p_voltage{
+    "controller.derivative", "controller.integral_time", "position_controller",
+    "velocity_controller",   "current_controller",       "notch",
+    "feedforward",           "friction_compensation"};
+inline constexpr std::array<std::string_view, 2> needs_of_pd{"controller.gain", "controller.derivative"};
+inline constexpr std::array<std::string_view, 6> excluded_by_pd{
+    "controller.integral_time", "position_controller", "velocity_controller", "notch", "feedforward",
+    "friction_compensation"};
+inline constexpr std::array<std::string_view, 3> needs_of_pid{"controller.gain", "controller.derivative",
+                                                              "controller.integral_time"};
+inline constexpr std::array<std::string_view, 5> excluded_by_pid{"position_controller", "velocity_controller", "notch",
+                                                                 "feedforward", "friction_compensation"};
+inline constexpr std::array<std::string_view, 9> excluded_by_unknown{"controller.gain",
+                                                                     "controller.derivative",
+                                                                     "controller.integral_time",
+                                                                     "controller.period",
+                                                                     "position_controller",
+                                                                     "velocity_controller",
+                                                                     "notch",
+                                                                     "feedforward",
+                                                                     "friction_compensation"};
+inline constexpr std::array structure_rules{
+    StructureRule{ControlStructure::cascade, needs_of_cascade, excluded_by_cascade},
+    StructureRule{ControlStructure::p_voltage, needs_of_p_voltage, excluded_by_p_voltage},
+    StructureRule{ControlStructure::pd, needs_of_pd, excluded_by_pd},
+    StructureRule{ControlStructure::pid, needs_of_pid, excluded_by_pid},
+    StructureRule{ControlStructure::unknown, {}, excluded_by_unknown},
+};
 
 // What each motor model makes necessary (keys from the axis on) and what it excludes.
 struct MotorRule {
@@ -319,11 +488,11 @@ struct MotorRule {
   std::span<const std::string_view> excludes;
 };
 inline constexpr std::array<std::string_view, 8> needs_of_synchronous{
-    "motor.phase_resistance",     "motor.phase_inductance", "motor.mutual_inductance", "motor.emf_constant",
-    "motor.phase_force_constant", "motor.pole_pair_pitch",  "inverter.current_limit",  "current_controller"};
-inline constexpr std::array<std::string_view, 5> needs_of_dc{"motor.phase_resistance", "motor.phase_inductance",
-                                                             "motor.emf_constant", "inverter.current_limit",
-                                                             "current_controller"};
+    "inverter",           "motor.phase_resistance", "motor.phase_inductance", "motor.mutual_inductance",
+    "motor.emf_constant", "motor.pole_pair_pitch",  "inverter.current_limit", "current_controller"};
+inline constexpr std::array<std::string_view, 6> needs_of_dc{
+    "inverter",           "motor.phase_resistance", "motor.phase_inductance",
+    "motor.emf_constant", "inverter.current_limit", "current_controller"};
 inline constexpr std::array<std::string_view, 1> excluded_by_force{"current_controller"};
 inline constexpr std::array<MotorRule, 3> motor_rules{{
     {MotorModel::synchronous, needs_of_synchronous, {}},

@@ -29,6 +29,7 @@ namespace stiction::machine {
 // Whose units an axis' values have: its own, and those of its motor's table.
 struct AxisCoordinates {
   Coordinate axis{}, motor{};
+  bool controller_in_volts = false;  // the unit of [controller] gain
 };
 
 class TableReader {
@@ -54,7 +55,7 @@ class TableReader {
     std::apply([&](const auto&... p) { (attempt([&] { read_choice(table, path, p, owner); }), ...); }, T::choices);
     read_parameters(table, path, T::parameters, owner);
     std::apply([&](const auto&... s) { (attempt([&] { read_subtable(table, path, s, owner); }), ...); }, T::subtables);
-    if constexpr (std::is_same_v<Owner, FrictionParameters>) read_friction_models(table, path, owner);
+    if constexpr (std::is_base_of_v<FrictionParameters, Owner>) read_friction_models(table, path, owner);
     if constexpr (std::is_same_v<Owner, AxisModel>) read_effects(table, path, owner);
     return owner;
   }
@@ -75,7 +76,7 @@ class TableReader {
     std::apply([&](const auto&... p) { (known.push_back(p.key), ...); }, T::choices);
     for (const auto& p : T::parameters) known.push_back(coordinate_.own(p.key, p.unit).key);
     std::apply([&](const auto&... s) { (known.push_back(s.key), ...); }, T::subtables);
-    if constexpr (std::is_same_v<Owner, FrictionParameters>)
+    if constexpr (std::is_base_of_v<FrictionParameters, Owner>)
       for (const ValueTable& model : vocabulary_->friction_models) known.push_back(model.name);
     if constexpr (std::is_same_v<Owner, AxisModel>) known.push_back(effect_key);
     if constexpr (std::is_same_v<Owner, Machine>)
@@ -264,7 +265,7 @@ class TableReader {
       static const toml::table absent;
       owner.*s.member = inside<Member>().template read<Member>(
           node == nullptr ? absent : as_table(*node, key, Table<Member>::text), key);
-    } else {
+    } else if (s.presence == Presence::required) {
       document_.fail(table.source(), key, "no such table", fmt::format("[{}] ({})", key, Table<Member>::text));
     }
   }
@@ -273,8 +274,9 @@ class TableReader {
   template <class Inner>
   TableReader inside() const {
     TableReader reader = *this;
-    if constexpr (std::is_same_v<Inner, MotorParameters>) reader.coordinate_ = coordinates_.motor;
-    if constexpr (std::is_same_v<Inner, TransmissionParameters>) reader.coordinate_ = {};
+    if constexpr (std::is_same_v<Inner, MotorParameters> || std::is_same_v<Inner, MotorFriction>)
+      reader.coordinate_ = coordinates_.motor;
+    if constexpr (std::is_same_v<Inner, ControllerParameters>) reader.force_motor_ = coordinates_.controller_in_volts;
     return reader;
   }
 

@@ -26,12 +26,15 @@ constexpr std::array unit_pairs{
     UnitPair{"N/V", "N m/V", -1},
     UnitPair{"V s/m", "V s/rad", -1},
     UnitPair{"A s/m", "A s/rad", -1},
+    UnitPair{"V/m", "V/rad", -1},
+    UnitPair{"A/m", "A/rad", -1},
 };
 
 constexpr std::array key_pairs{
     SpelledPair{"mass", "inertia"},
     SpelledPair{"force_constant", "torque_constant"},
     SpelledPair{"phase_force_constant", "phase_torque_constant"},
+    SpelledPair{"force", "moment"},
 };
 // Data sheets give the pole pairs of a turn, not the angle of one.
 constexpr SpelledPair pitch_and_pairs{"pole_pair_pitch", "pole_pairs"};

@@ -30,19 +30,26 @@ struct Timing {
   double fast_period = 62.5e-6;  // s: current and velocity controllers, feedforwards
   double slow_period = 1e-3;     // s: position controller
   double set_point_delay = 0.0;  // s: by which the axes follow their set-points late, for compensation to look ahead
+  int plant_steps = 4;           // of the simulated plant in a fast period
 };
 
 struct MotorParameters {
   MotorModel model = MotorModel::dc;
+  bool amperes = false;               // of a force source: its command is a current, not a voltage
   double phase_resistance = 0.0;      // Ohm
   double phase_inductance = 0.0;      // H
   double mutual_inductance = 0.0;     // H
   double emf_constant = 0.0;          // V s/m, one winding
   double phase_force_constant = 0.0;  // N/A, one winding
-  double force_constant = 0.0;        // N/A of the whole motor, amplitude amperes; N/V for a force source
+  double force_constant = 0.0;        // N/A of the whole motor, amplitude amperes; N/V for a force source of volts
   double pole_pair_pitch = 0.0;       // m
   int count = 1;                      // motors in parallel on one servo module
+
+  bool driven_by_volts() const { return model == MotorModel::force && !amperes; }
 };
+
+// What stands for no limit where the file gives none (V, A): finite, since the drive's numbers are.
+inline constexpr double unlimited = 1e15;
 
 struct InverterParameters {
   double dead_time = 0.0;      // s
@@ -59,11 +66,21 @@ struct EncoderMountParameters {
 // What an encoder sits on; with a rigid transmission both move alike.
 enum class EncoderPlace { load, motor };
 
+// An encoder beside that of the position controller.
+struct FurtherEncoderParameters {
+  EncoderPlace on = EncoderPlace::load;
+  std::optional<double> counts;  // as those below
+  double increment = 0.0;        // m; 0: continuous
+  double noise = 0.0;            // m rms
+  double delay = 0.0;            // s, of what it shows
+};
+
 struct EncoderParameters {
   EncoderPlace on = EncoderPlace::load;
   std::optional<double> counts;  // in a turn of what it sits on; then they make the increment
   double increment = 0.0;        // m; 0: continuous
   double noise = 0.0;            // m rms
+  double delay = 0.0;            // s, of what it shows
   VelocitySource velocity = VelocitySource::estimated;
   std::optional<EncoderMountParameters> mount;  // none: rigid
 };
@@ -92,6 +109,33 @@ struct NotchParameters {
 struct FeedforwardParameters {
   double velocity = 0.0;  // K_wv, 1 = full
   double current = 0.0;   // K_wi, 1 = full
+};
+
+// What closes the loop in place of the cascade, in the host's simulation alone.
+enum class ControlStructure {
+  cascade,    // position, velocity and current controller: the firmware's
+  p_voltage,  // voltage proportional to the position error
+  pd,
+  pid,
+  unknown,  // that of a drive of which nothing is known
+};
+
+struct ControllerParameters {
+  ControlStructure structure = ControlStructure::cascade;
+  bool in_volts = false;                // its output is a voltage, not a current
+  double gain = 0.0;                    // A/m, or V/m
+  double derivative = 0.0;              // A s/m, or V s/m, of the velocity error
+  std::optional<double> integral_time;  // s
+  std::optional<double> period;         // s; none: the fast period
+  std::optional<double> supply;         // V, the largest output; none: the inverter's limit
+};
+
+// Weight of the axis and what balances it. Of a rotary axis the forces turn with its angle.
+struct GravityParameters {
+  double force = 0.0;                        // N, towards -x; N m of a rotary axis, m g l
+  double zero = 0.0;                         // m; the angle of rest below
+  std::optional<double> counterweight;       // N, towards +x; against the moment of a rotary axis
+  std::optional<double> counterweight_mass;  // kg, that moves along
 };
 
 // Limits whose violation is a fault (the motion stops), unlike the limits of inverter and axis, which only limit.
@@ -153,13 +197,20 @@ struct FrictionCompensationParameters {
   std::optional<LearnedTable> learned;
 };
 
-// Between a rotary motor and the axis, rigid. In the file's own units, whatever the axis is.
+// Friction on the motor, at its shaft.
+struct MotorFriction : FrictionParameters {};
+
+// Between a rotary motor and the axis. Inertias and ways of a turn are in the file's own units, whatever the axis is.
 struct TransmissionParameters {
   double ratio = 1.0;                          // motor turns per turn of screw, pulley or rotary axis
   std::optional<double> lead;                  // m per turn of the screw
   std::optional<double> pulley_circumference;  // m per turn of the pulley
   double motor_inertia = 0.0;                  // kg m^2, at the motor's shaft
   double screw_inertia = 0.0;                  // kg m^2, at the screw or pulley
+  std::optional<double> stiffness;             // N/m at the load, of motor against load; none: stiff
+  std::optional<double> damping;               // N s/m of the same, from damping_ratio where that is given
+  std::optional<double> damping_ratio;         // of the mode of both masses, free
+  double backlash = 0.0;                       // m at the load, from contact to contact
 };
 
 struct AxisModel {
@@ -168,23 +219,36 @@ struct AxisModel {
   Coordinate coordinate{};                             // of the values below in the file
   Coordinate motor_coordinate{};                       // of the motor's
   double mass = 0.0;                                   // kg, of all that moves, reduced to the axis
-  double load_mass = 0.0;                              // kg, without what the transmission adds: what the file gives
-  double travel = 0.0;                                 // m
+  double load_mass = 0.0;                              // kg, without what is added to it: what the file gives
+  double motor_mass = 0.0;                             // kg, of the motor and the screw: what their inertias add
+  double travel = 0.0;                                 // m; of an endless axis its modulo
+  std::optional<double> modulo;                        // m, after which an endless axis is where it was
   double max_velocity = 0.0;                           // m/s
   double max_acceleration = 0.0;                       // m/s^2
   std::optional<TransmissionParameters> transmission;  // none: the motor moves the axis directly
   MotorParameters motor;
   InverterParameters inverter;
   EncoderParameters encoder;
+  std::optional<FurtherEncoderParameters> velocity_encoder;  // none: the one above
+  std::optional<FurtherEncoderParameters> second_encoder;    // only measured
+  std::optional<GravityParameters> gravity;
+  std::optional<ControllerParameters> controller;  // none: the cascade
   PositionControllerParameters position_controller;
   VelocityControllerParameters velocity_controller;
   std::optional<CurrentControllerParameters> current_controller;  // none with a force motor
   std::optional<NotchParameters> notch;
   FeedforwardParameters feedforward;
   SupervisionParameters supervision;
-  FrictionParameters friction;
+  FrictionParameters friction;                  // of all that moves; behind an elastic shaft of the load alone
+  std::optional<MotorFriction> motor_friction;  // of what the file gives; acts by itself in front of an elastic shaft
   std::optional<FrictionCompensationParameters> friction_compensation;
   std::vector<Effect> effects;  // of the plant alone: the drive's configuration knows nothing of them
+
+  bool elastic() const { return transmission && transmission->stiffness.has_value(); }
+  // Whether the firmware's cascade controls it.
+  bool cascaded() const { return !controller || controller->structure == ControlStructure::cascade; }
+  // Whether its command, whatever makes it, is a voltage.
+  bool commanded_in_volts() const { return cascaded() ? motor.driven_by_volts() : controller->in_volts; }
 };
 
 // A row of a published or measured circle that reports stand beside the simulation. SI units.

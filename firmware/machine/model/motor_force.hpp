@@ -12,7 +12,7 @@ struct Effort {
   std::string_view name, unit;
 };
 inline Effort effort_of(const MotorParameters& motor) {
-  return motor.model == MotorModel::force ? Effort{"voltage", "V"} : Effort{"current", "A"};
+  return motor.driven_by_volts() ? Effort{"voltage", "V"} : Effort{"current", "A"};
 }
 
 // The force constant with which the motor makes its force: N per amplitude ampere of the whole motor, N/V of a force

@@ -16,8 +16,8 @@ EffectDescriptor force_saturation() {
       .not_in_rows = "not identifiable from two numbers per row: only the fastest circle has a high current; "
                      "accelerate at several levels",
       .hidden = {[](const machine::AxisModel& axis, Draw& draw) -> machine::KeyedValues {
-                   const double limit = axis.motor.model == machine::MotorModel::force ? axis.inverter.voltage_limit
-                                                                                       : axis.inverter.current_limit;
+                   const double limit =
+                       axis.motor.driven_by_volts() ? axis.inverter.voltage_limit : axis.inverter.current_limit;
                    return {{"current", {limit * draw.between(0.7, 1.2)}}};
                  },
                  {}},

@@ -25,7 +25,7 @@ AxisModel y_axis() {
   axis.name = "y";
   axis.mass = 520.0;
   axis.max_velocity = 80.0 / 60.0;
-  axis.motor = {MotorModel::synchronous, 1.8, 18e-3, 1.8e-3, 62.8, 62.8, 94.0, 0.072, 2};
+  axis.motor = {MotorModel::synchronous, false, 1.8, 18e-3, 1.8e-3, 62.8, 62.8, 94.0, 0.072, 2};
   axis.inverter = {0.125e-3, 300.0, 40.0};
   axis.encoder.velocity = VelocitySource::estimated;
   axis.position_controller = {83.3, 1e-6};

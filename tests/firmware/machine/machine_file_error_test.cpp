@@ -72,9 +72,15 @@ TEST(MachineFileError, WrongDimensionNamesBoth) {
   EXPECT_EQ(error_after("95 kg", "3 A"),
             "FILE:4: axis.B.mass: found \"3 A\" (dimension A, not kg); expected a value greater than 0 kg (moving "
             "mass)");
+  EXPECT_EQ(
+      error_after("35 N/V", "35 N/m"),
+      "FILE:10: axis.B.motor.force_constant: found \"35 N/m\" (dimension kg s^-2, not m^-1 s A); expected a value "
+      "greater than 0 N/V (force constant of the whole motor, amplitude amperes; the unit says what drives a force "
+      "source)");
+  // A source of amperes has a controller of amperes.
   EXPECT_EQ(error_after("35 N/V", "35 N/A"),
-            "FILE:10: axis.B.motor.force_constant: found \"35 N/A\" (dimension m kg s^-2 A^-1, not m^-1 s A); expected "
-            "a value greater than 0 N/V (force constant of the whole motor, amplitude amperes)");
+            "FILE:20: axis.B.velocity_controller.gain: found \"243 V s/m\" (dimension m kg s^-2 A^-1, not m^-1 s A); "
+            "expected a value greater than 0 A s/m (velocity gain k_pv)");
 }
 
 TEST(MachineFileError, MissingUnitUnknownUnitAndWrongType) {
@@ -214,8 +220,8 @@ TEST(MachineFileError, MaxwellSlipListsDifferInLength) {
 }
 
 TEST(MachineFileError, MotorModelNeedsItsKeys) {
-  const std::set<std::string> of_motor{"phase_resistance",     "phase_inductance", "mutual_inductance", "emf_constant",
-                                       "phase_force_constant", "pole_pair_pitch",  "force_constant"};
+  const std::set<std::string> of_motor{"phase_resistance", "phase_inductance", "mutual_inductance",
+                                       "emf_constant",     "pole_pair_pitch",  "force_constant"};
   for (const std::string& key : of_motor) {
     const std::string message = error_of_set({"axis.X.motor." + key + "="});
     EXPECT_NE(message.find(":18: axis.X.motor." + key + ": found no such key; expected a value "), std::string::npos)

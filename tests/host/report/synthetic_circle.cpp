@@ -117,7 +117,7 @@ machine::AxisModel make_machine_axis(const std::string& name) {
   axis.travel = y ? 0.4 : 0.5;
   axis.max_velocity = 80.0 / 60.0;
   axis.max_acceleration = 20.0;
-  axis.motor = {machine::MotorModel::synchronous, 1.8, 18e-3, 1.8e-3, 62.8, 62.8, 94.0, 0.072, y ? 2 : 1};
+  axis.motor = {machine::MotorModel::synchronous, false, 1.8, 18e-3, 1.8e-3, 62.8, 62.8, 94.0, 0.072, y ? 2 : 1};
   axis.inverter = {125e-6, 600.0, 70.0};
   axis.encoder.increment = 1e-9;
   axis.encoder.mount = machine::EncoderMountParameters{0.5, 2000.0, 0.05};

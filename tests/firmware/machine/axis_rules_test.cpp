@@ -1,0 +1,182 @@
+// What the tables of an axis need of one another: controllers, shafts, weights, encoders, endless axes.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "tests/firmware/machine/machine_text.hpp"
+#include "tests/support/rotary_joint.hpp"
+
+namespace stiction::machine {
+namespace {
+
+using test::error_of;
+using test::read_text;
+using test::replaced;
+
+// A belt axis: a motor of 6e-5 kg m^2 on a pulley of 150 mm, so that a radian of the motor is 150 mm/(2 pi).
+const std::string belt = R"(schema = "stiction.machine/1"
+name = "belt"
+[axis.B]
+mass = "6 kg"
+travel = "1 m"
+max_velocity = "1 m/s"
+max_acceleration = "10 m/s^2"
+[axis.B.transmission]
+pulley_circumference = "150 mm"
+motor_inertia = "6e-5 kg m^2"
+[axis.B.motor]
+model = "force"
+torque_constant = "0.1 N m/A"
+[axis.B.inverter]
+dead_time = "0 us"
+voltage_limit = "24 V"
+current_limit = "20 A"
+[axis.B.encoder]
+on = "motor"
+counts = 4096
+[axis.B.friction]
+use = "classical"
+[axis.B.friction.classical]
+coulomb = "10 N"
+static_ratio = 1.5
+viscous = "20 N s/m"
+)";
+const std::string cascade = R"([axis.B.position_controller]
+gain = "10 1/s"
+[axis.B.velocity_controller]
+gain = "20 A s/m"
+)";
+const std::string pd = R"([axis.B.controller]
+structure = "pd"
+gain = "800 A/m"
+derivative = "20 A s/m"
+)";
+constexpr double motor_way = 0.15 / (2.0 * std::numbers::pi);  // m per radian of the motor
+
+std::string with_line(std::string text, const std::string& behind, const std::string& line) {
+  return replaced(std::move(text), behind, behind + "\n" + line);
+}
+
+// The refusal of `text`, from its key on.
+void expect_refused(const std::string& text, const std::string& key, const std::string& says) {
+  const auto error = error_of(text);
+  EXPECT_NE(error.find(key), std::string::npos) << error;
+  EXPECT_NE(error.find(says), std::string::npos) << error;
+}
+
+TEST(AxisRules, AForceSourceIsDrivenByWhatItsConstantSays) {
+  const auto amperes = read_text(belt + cascade).axes[0];
+  EXPECT_TRUE(amperes.motor.amperes);
+  EXPECT_FALSE(amperes.commanded_in_volts());
+  EXPECT_EQ(amperes.inverter.voltage_limit, 20.0) << "the command is limited as the current is";
+  EXPECT_NEAR(amperes.motor.force_constant, 0.1 / motor_way, 1e-9);
+  const auto volts = read_text(replaced(replaced(belt + cascade, "N m/A", "N m/V"), "A s/m", "V s/m")).axes[0];
+  EXPECT_TRUE(volts.commanded_in_volts());
+  EXPECT_EQ(volts.inverter.voltage_limit, 24.0);
+}
+
+TEST(AxisRules, AForceSourceNeedsNoInverter) {
+  const auto text = replaced(belt + pd, R"([axis.B.inverter]
+dead_time = "0 us"
+voltage_limit = "24 V"
+current_limit = "20 A"
+)",
+                             "");
+  EXPECT_EQ(read_text(text).axes[0].inverter.current_limit, unlimited);
+}
+
+TEST(AxisRules, ControllersSayInWhatTheyCommand) {
+  const auto in_amperes = read_text(belt + pd).axes[0];
+  EXPECT_FALSE(in_amperes.cascaded());
+  EXPECT_FALSE(in_amperes.commanded_in_volts());
+  EXPECT_EQ(in_amperes.controller->gain, 800.0);
+  const auto in_volts = read_text(belt + replaced(replaced(pd, "A/m", "V/m"), "A s/m", "V s/m")).axes[0];
+  EXPECT_TRUE(in_volts.commanded_in_volts());
+  EXPECT_FALSE(read_text(belt + "[axis.B.controller]\nstructure = \"unknown\"\n").axes[0].cascaded());
+}
+
+TEST(AxisRules, StructuresNeedAndExclude) {
+  expect_refused(belt, "axis.B.position_controller: found no such table",
+                 "[axis.B.position_controller] (proportional position controller)");
+  expect_refused(belt + replaced(pd, "derivative = \"20 A s/m\"\n", ""),
+                 "axis.B.controller.derivative: found no such key", "with controller structure \"pd\" (line 28)");
+  expect_refused(belt + pd + cascade, "axis.B.position_controller: found a table", "none with controller structure");
+  expect_refused(belt + pd + "integral_time = \"1 s\"\n", "axis.B.controller.integral_time", "none with controller");
+  expect_refused(belt + pd + "period = \"100 us\"\n", "axis.B.controller.period", "a multiple of fast_period");
+  expect_refused(belt + "[axis.B.controller]\nstructure = \"pd\"\ngain = \"800 A\"\nderivative = \"20 A s/m\"\n",
+                 "axis.B.controller.gain", "A/m");
+}
+
+TEST(AxisRules, AShaftHasItsStiffnessAndItsDamping) {
+  const auto elastic = [](const std::string& lines) {
+    return with_line(belt + pd, "pulley_circumference = \"150 mm\"", lines);
+  };
+  const auto axis = read_text(elastic("stiffness = \"0.4 N/um\"\ndamping_ratio = 0.1\nbacklash = \"20 um\"")).axes[0];
+  const double motor = 6e-5 / (motor_way * motor_way), reduced = motor * 6.0 / (motor + 6.0);
+  EXPECT_TRUE(axis.elastic());
+  EXPECT_NEAR(axis.motor_mass, motor, 1e-12 * motor);
+  EXPECT_NEAR(*axis.transmission->damping, 2.0 * 0.1 * std::sqrt(4e5 * reduced), 1e-9);
+  EXPECT_EQ(axis.transmission->backlash, 20e-6);
+  expect_refused(elastic("stiffness = \"0.4 N/um\""), "axis.B.transmission.damping",
+                 "damping or damping_ratio, together with");
+  expect_refused(elastic("stiffness = \"0.4 N/um\"\ndamping_ratio = 0.1\ndamping = \"40 N s/m\""),
+                 "transmission.damping_ratio", "one of them");
+  expect_refused(elastic("backlash = \"20 um\""), "axis.B.transmission.backlash", "none without stiffness");
+}
+
+TEST(AxisRules, TheMotorsFrictionIsAPartOfAStiffAxis) {
+  const std::string motor_friction = R"([axis.B.motor_friction]
+use = "coulomb_viscous"
+[axis.B.motor_friction.coulomb_viscous]
+coulomb = "0.1 N m"
+viscous = "1e-3 N m s/rad"
+)";
+  const auto axis = read_text(belt + pd + motor_friction).axes[0];
+  const auto& sum = axis.friction.models.at("classical");
+  const double coulomb = 0.1 / motor_way;
+  EXPECT_NEAR(sum.at("coulomb")[0], 10.0 + coulomb, 1e-9);
+  EXPECT_NEAR(sum.at("static_ratio")[0], (15.0 + coulomb) / (10.0 + coulomb), 1e-12);
+  EXPECT_NEAR(sum.at("viscous")[0], 20.0 + 1e-3 / (motor_way * motor_way), 1e-9);
+  const auto ramp = replaced(replaced(belt, "use = \"classical\"", "use = \"linear_ramp\""),
+                             "[axis.B.friction.classical]\ncoulomb = \"10 N\"\nstatic_ratio = 1.5",
+                             "[axis.B.friction.linear_ramp]\ncoulomb = \"10 N\"\nslope = \"1000 N s/m\"");
+  expect_refused(ramp + pd + motor_friction, "axis.B.friction.use: found \"linear_ramp\"", "or transmission.stiffness");
+}
+
+TEST(AxisRules, AWeightIsHeldByTheMotor) {
+  const auto hanging = [](const std::string& lines) { return belt + pd + "[axis.B.gravity]\n" + lines; };
+  const auto axis = read_text(hanging("force = \"98.0665 N\"\ncounterweight_mass = \"6 kg\"\n")).axes[0];
+  EXPECT_NEAR(*axis.gravity->counterweight, 58.8399, 1e-9);
+  EXPECT_NEAR(axis.mass - axis.motor_mass, 12.0, 1e-12);
+  // 20 A at 0.1 N m/A on 150 mm a turn hold 83.8 N.
+  expect_refused(hanging("force = \"98.0665 N\"\n"), "found 98.07 N to hold", "at most 83.78 N");
+  expect_refused(hanging("force = \"10 N\"\nzero = \"1 m\"\n"), "axis.B.gravity.zero", "does not turn");
+  expect_refused(hanging(""), "axis.B.gravity.force: found no such key", "force, counterweight or counterweight_mass");
+}
+
+TEST(AxisRules, AnEndlessAxisHasAModuloInPlaceOfATravel) {
+  const auto joint = stiction::test::rotary_joint;
+  const auto endless = replaced(joint, "travel = \"360 deg\"", "modulo = \"360 deg\"");
+  ASSERT_TRUE(read_text(endless).axes[0].modulo.has_value());
+  expect_refused(with_line(joint, "travel = \"360 deg\"", "modulo = \"360 deg\""), "axis.J.modulo", "travel");
+  expect_refused(replaced(endless, "modulo = \"360 deg\"", "modulo = \"100 deg\""), "axis.J.modulo",
+                 "a whole number of increments, of encoder.counts, 4096");
+}
+
+TEST(AxisRules, EncodersHaveTheirOwnPlaces) {
+  const auto axis = read_text(belt + pd + "[axis.B.second_encoder]\nincrement = \"1 um\"\n" +
+                              "[axis.B.velocity_encoder]\non = \"motor\"\ncounts = 1000\ndelay = \"1 ms\"\n")
+                        .axes[0];
+  EXPECT_EQ(axis.second_encoder->increment, 1e-6);
+  EXPECT_NEAR(axis.velocity_encoder->increment, 0.15 / 1000.0, 1e-15);
+  EXPECT_EQ(axis.velocity_encoder->delay, 1e-3);
+  expect_refused(belt + pd + "[axis.B.second_encoder]\ncounts = 1000\n", "axis.B.second_encoder.counts",
+                 "does not turn");
+  expect_refused(belt + pd + "[axis.B.second_encoder]\nnoise = \"1 um\"\n", "axis.B.second_encoder.increment",
+                 "or second_encoder.counts");
+}
+
+}  // namespace
+}  // namespace stiction::machine
