@@ -30,7 +30,8 @@ class ActingEffects {
     for (const auto& parameters : effects_of<StructuralResonance>(axis)) {
       if (axis.elastic())
         throw EffectError(StructuralResonance::name, "it on an axis with transmission.stiffness", "one of them");
-      mode_.emplace(StructuralResonance(parameters, axis.mass), step);
+      const StructuralResonance mode(parameters, axis.mass);
+      mode_.emplace(Shaft{mode.load_mass, mode.motor_mass, mode.stiffness, mode.damping}, step);
     }
     if (axis.elastic()) mode_.emplace(Shaft::of(axis), step);
     if (axis.gravity) forces_.push_back({std::make_unique<Gravity>(axis, step), false});

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "firmware/machine/model/machine.hpp"
-#include "sim/effects/structural_resonance/structural_resonance.hpp"
 
 namespace stiction::sim {
 
@@ -26,9 +25,6 @@ struct Shaft {
     return {axis.mass - axis.motor_mass, axis.motor_mass, *axis.transmission->stiffness,
             axis.transmission->damping.value_or(0.0), axis.transmission->backlash};
   }
-  static Shaft of(const StructuralResonance& mode) {
-    return {mode.load_mass, mode.motor_mass, mode.stiffness, mode.damping};
-  }
 };
 
 class TwoMasses {
@@ -41,7 +37,6 @@ class TwoMasses {
         stiffness_(shaft.stiffness),
         damping_(shaft.damping),
         half_gap_(0.5 * shaft.backlash) {}
-  TwoMasses(const StructuralResonance& mode, double step) : TwoMasses(Shaft::of(mode), step) {}
 
   // Velocity of the motor (m/s) after a step, from the one before and the force on it (N); none: without friction.
   void set_motor_friction(std::function<double(double, double)> friction) { motor_friction_ = std::move(friction); }

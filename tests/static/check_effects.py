@@ -29,6 +29,8 @@ BY_CLASS = {
 }
 # Text that is not the name of an effect.
 OTHER_MEANINGS = {("firmware/machine/file/feed_drive_parameters.hpp", "constant_force"): "a key of the feed drive's cutting force",
+                  ("firmware/machine/file/parameters.hpp", "backlash"): "a key of the transmission",
+                  ("firmware/machine/file/axis_rules.cpp", "backlash"): "a key of the transmission",
                   ("host/cli/identify.cpp", "constant_force"): "a parameter of the fit"}
 
 TOPS = ("firmware", "hal", "sim", "host")
