@@ -58,6 +58,7 @@ struct AxisPlant::Moved final : State {
         acting_friction(make_friction(axis.friction, acting_effects.carriage(axis))),
         encoders(axis, step, steps * step, start),
         steps_per_tick(steps),
+        evenly(steps == plant_steps_per_tick && !inverter.changes_within_tick()),
         viscous(viscous_of(axis.friction)) {
     if (steps != plant_steps_per_tick) acting_effects.step_finely();
     if (axis.elastic() && axis.motor_friction) acting_effects.set_motor_friction(motor_friction(axis, step));
@@ -100,6 +101,7 @@ struct AxisPlant::Moved final : State {
   FrictionModel acting_friction;
   Encoders encoders;
   int steps_per_tick;
+  bool evenly;     // one voltage for a whole tick, of the usual number of steps
   double viscous;  // N s/m
 };
 
@@ -110,12 +112,14 @@ void AxisPlant::Moved::advance(State& state) {
   plant.inverter.advance_tick<MotorModel::phases>();
   if (plant.enabled) [[likely]] {
     auto& motor = held<MotorModel>(plant.driving_motor);
-    if (plant.steps_per_tick != plant_steps_per_tick) [[unlikely]]
-      plant.advance_unevenly<effects, true>(motor, friction);
-    else if (plant.inverter.changes_within_tick()) [[unlikely]]
-      plant.advance_unevenly<effects, false>(motor, friction);
-    else
+    if (!plant.evenly) [[unlikely]] {
+      if (plant.steps_per_tick == plant_steps_per_tick)
+        plant.advance_unevenly<effects, false>(motor, friction);
+      else
+        plant.advance_unevenly<effects, true>(motor, friction);
+    } else {
       plant.advance_evenly<effects>(motor, friction);
+    }
     const PhaseValues flowing = motor.current();
     for (std::size_t k = 0; k < MotorModel::phases; ++k) plant.current[k] = flowing[k];
   } else {
@@ -178,9 +182,11 @@ inline void AxisPlant::Moved::step(MotorModel& motor, Friction& friction, PhaseV
     motor_force = motor.advance(voltage, position, fine ? velocity + 0.5 * change : velocity);
     force = motor_force + external_force;
   }
+  double on_friction = effects ? force + friction_of_effects : force;
   // The laws take viscous friction at the end of the step.
-  const double ahead = fine && velocity != 0.0 ? 0.5 * viscous * change : 0.0;
-  const double next = friction.advance(velocity, effects ? force + friction_of_effects + ahead : force + ahead);
+  if constexpr (fine)
+    if (velocity != 0.0) on_friction += 0.5 * viscous * change;
+  const double next = friction.advance(velocity, on_friction);
   change = next - velocity;
   position += half_step * (velocity + next);
   velocity = next;
