@@ -20,6 +20,7 @@
 #include "host/cli/report_origin.hpp"
 #include "host/identify/friction_fit.hpp"
 #include "host/identify/identified_machine.hpp"
+#include "host/identify/own_identification.hpp"
 #include "host/identify/refinement.hpp"
 #include "host/identify/standstill.hpp"
 #include "host/log/text_file.hpp"
@@ -84,29 +85,40 @@ std::string model_to_identify(const std::string& wanted, const machine::AxisMode
   return wanted;
 }
 
-// The values of --fix, in the order of the fit's columns.
-Held held_values(const std::vector<std::string>& fixes) {
+// The values of --fix, in the order of the fit's columns, of a linear axis.
+Held held_values(const std::vector<std::string>& fixes, const machine::AxisModel& axis) {
   struct Key {
     std::string name;
-    const char* unit;
+    const char* linear;
     bool positive;
+    machine::OwnQuantity own{};
+    std::string_view unit{};
   };
-  const std::array<Key, 4> keys{
-      {{"mass", "kg", true}, {"viscous", "N s/m", true}, {"constant_force", "N", false}, {"coulomb", "N", true}}};
+  const bool rotary = axis.coordinate.rotary();
+  const char* constant = rotary ? axis.gravity ? "gravity" : "constant_moment" : "constant_force";
+  std::array<Key, 4> keys{{{rotary ? "inertia" : "mass", "kg", true},
+                           {"viscous", "N s/m", true},
+                           {constant, "N", false},
+                           {"coulomb", "N", true}}};
+  for (auto& key : keys) {
+    key.own = axis.coordinate.own(key.linear);
+    key.unit = key.own.unit;
+  }
   Held held{};
   for (const auto& fix : fixes) {
     const auto sign = fix.find('=');
     const auto key = fix.substr(0, sign);
     const auto found = std::find_if(keys.begin(), keys.end(), [&](const auto& k) { return k.name == key; });
     if (found == keys.end() || sign == std::string::npos)
-      throw UsageError(fmt::format(
-          "--fix: found '{}'; expected KEY=VALUE with mass, viscous, coulomb or constant_force, as mass=225kg{}", fix,
-          nearest_words(key, {"mass", "viscous", "constant_force", "coulomb"})));
+      throw UsageError(
+          fmt::format("--fix: found '{}'; expected KEY=VALUE with {}, viscous, coulomb or {}, as {}=225{}{}", fix,
+                      keys[0].name, keys[2].name, keys[0].name, keys[0].unit,
+                      nearest_words(key, {keys[0].name, "viscous", keys[2].name, "coulomb"})));
     try {
       const double value = machine::parse_quantity(fix.substr(sign + 1), found->unit);
       if (found->positive && value < 0.0)
         throw UsageError(fmt::format("--fix: found {}; expected a value of at least 0 {}", fix, found->unit));
-      held[static_cast<std::size_t>(found - keys.begin())] = value;
+      held[static_cast<std::size_t>(found - keys.begin())] = found->own.to_linear(value);
     } catch (const machine::UnitError& error) {
       throw UsageError(
           fmt::format("--fix: found '{}' ({}); expected {}=VALUE in {}", fix, error.what(), key, found->unit));
@@ -135,19 +147,26 @@ void take(Identification& result, const Refinement& refinement) {
 
 Run identify(const IdentifyCommandOptions& options, const machine::Machine& machine) {
   const auto amperes = amperes_of(options.amperes);
-  const auto held = held_values(options.fix);
   if (options.logs.size() == 1)
     if (const auto text = read_text_file(options.logs.front()); is_steady_table(text)) {
       if (!options.fix.empty()) throw UsageError("--fix: found a table of steady states; expected logs");
       if (options.refine) throw UsageError("--refine: found a table of steady states; expected logs with set-points");
       const auto& axis = axis_to_identify(options.axis, machine, {});
+      if (axis.coordinate.rotary())
+        throw UsageError(fmt::format("{}: found a table of steady states and the rotary axis {}; expected logs",
+                                     options.logs.front(), axis.name));
       return {&axis,
               identify_table(parse_steady_table(text, options.logs.front()), axis, parse_amperes(options.amperes),
                              FitSettings{}),
               report_origin(options.machine.machine, options.logs)};
     }
-  const auto logs = read_logs(options.logs, options.columns);
-  const auto& axis = axis_to_identify(options.axis, machine, logs);
+  const auto read = read_logs(options.logs, options.columns);
+  const auto& axis = axis_to_identify(options.axis, machine, read);
+  if (options.refine && (axis.coordinate.rotary() || !axis.cascaded()))
+    throw UsageError(fmt::format("--refine: found axis {}, which is {}; expected a linear axis with the cascade",
+                                 axis.name, axis.coordinate.rotary() ? "rotary" : "controlled differently"));
+  const auto logs = linear_logs(read, axis);
+  const auto held = held_values(options.fix, axis);
   const IdentifyOptions settings{model_to_identify(options.friction, axis), amperes, FitSettings{},
                                  options.friction.empty(), held};
   const Progress progress(options.refine ? "identifying and refining" : "identifying");
@@ -157,14 +176,15 @@ Run identify(const IdentifyCommandOptions& options, const machine::Machine& mach
 }
 
 void run(const IdentifyCommandOptions& options, const Invocation& invocation) {
-  const auto machine = options.machine.load(options.machine.machine, "");
+  const auto machine = options.machine.load(options.machine.machine, "", needs_of("identify"));
   const auto file = machine::find_machine(options.machine.machine);
-  const auto [axis, result, origin] = identify(options, machine);
+  const auto [axis, linear, origin] = identify(options, machine);
+  const auto result = in_own_units(linear, *axis);
   const auto json = identification_json(result);
   if (!options.out.empty()) {
     PendingFolder folder(options.out, invocation.command);
     folder.write("identified.toml",
-                 identified_machine(file, options.machine.set, *axis, result, invocation.command_line));
+                 identified_machine(file, options.machine.set, *axis, linear, invocation.command_line));
     sim::read_machine(folder.path() / "identified.toml");  // what was written must be a machine
     folder.write("report.html",
                  identification_report_html({invocation.command_line, invocation.version, machine, result, origin}));
@@ -209,7 +229,8 @@ void add_identify(CLI::App& program, const Invocation& invocation) {
       ->check(one_of({"peak", "rms"}));
   command
       ->add_option("--fix", o->fix,
-                   "hold mass, viscous, coulomb or constant_force at this value instead of estimating it, for example "
+                   "hold mass, viscous, coulomb or constant_force (of a rotary axis inertia, gravity or "
+                   "constant_moment) at this value instead of estimating it, for example "
                    "mass=225kg; may be given several times")
       ->type_name("KEY=VALUE");
   command->add_flag("--refine", o->refine,

@@ -6,6 +6,8 @@
 #include <array>
 
 #include "host/cli/questions_json.hpp"
+#include "host/identify/own_identification.hpp"
+#include "host/log/own_units.hpp"
 
 namespace stiction::host {
 namespace {
@@ -43,25 +45,38 @@ json band_json(const Band& band) {
           {"trials", trials}};
 }
 
-std::string band_text(const Band& band) {
+std::string band_text(const Band& band, bool rotary) {
   const auto& own = band.best();
   return fmt::format(
-      "band: up to {:g} Hz, of {} tried; the encoder's noise is {:.3g} um rms, in the band {:.3g} mm/s and {:.3g} "
-      "m/s^2, "
-      "which would take {:.2g} % off the mass in plain least squares\n",
-      own.cutoff, band.trials.size(), band.position_noise * 1e6, own.speed_noise * 1e3, own.acceleration_noise,
-      100.0 * own.attenuation);
+      "band: up to {:g} Hz, of {} tried; the encoder's noise is {:.3g} {} rms, in the band {:.3g} {} and {:.3g} {}, "
+      "which would take {:.2g} % off the {} in plain least squares\n",
+      own.cutoff, band.trials.size(), band.position_noise * 1e6, rotary ? "urad" : "um", own.speed_noise * 1e3,
+      rotary ? "mrad/s" : "mm/s", own.acceleration_noise, rotary ? "rad/s^2" : "m/s^2", 100.0 * own.attenuation,
+      rotary ? "inertia" : "mass");
 }
 
-std::string initial_text(const InitialValues& initial) {
+std::string initial_text(const InitialValues& initial, bool rotary) {
   std::string text;
   const auto add = [&](const char* name, const std::optional<double>& value, const char* unit) {
     if (value) text += fmt::format("{}{} {:.4g} {}", text.empty() ? "" : ", ", name, *value, unit);
   };
-  add("Coulomb", initial.coulomb, "N");
-  add("viscous", initial.viscous, "N s/m");
-  add("mass", initial.mass, "kg");
+  add("Coulomb", initial.coulomb, force_unit(rotary));
+  add("viscous", initial.viscous, rotary ? "N m s/rad" : "N s/m");
+  add(rotary ? "inertia" : "mass", initial.mass, rotary ? "kg m^2" : "kg");
   return text;
+}
+
+// The same tree with the names that go with the units of a rotary axis.
+json with_own_names(const json& tree) {
+  if (tree.is_array()) {
+    json out = json::array();
+    for (const auto& each : tree) out.push_back(with_own_names(each));
+    return out;
+  }
+  if (!tree.is_object()) return tree;
+  json out = json::object();
+  for (const auto& [name, value] : tree.items()) out[own_name(name)] = with_own_names(value);
+  return out;
 }
 
 }  // namespace
@@ -107,7 +122,7 @@ json identification_json(const Identification& result) {
     }
     out["maxwell_slip"] = {{"stiffness_N_per_m", stiffness}, {"level_N", level}};
   }
-  return out;
+  return result.rotary ? with_own_names(out) : out;
 }
 
 std::string identification_text(const Identification& result) {
@@ -117,21 +132,22 @@ std::string identification_text(const Identification& result) {
                       fmt::join(result.sources, ", "), result.method, "parameter", "value", "95 % from", "to");
   for (const auto& p : result.parameters)
     text += fmt::format("{:<30} {:>12.6g}   {:>12.6g} {:>12.6g}\n", p.name, p.value, p.ci95.low, p.ci95.high);
-  text += fmt::format("\nThe force is {:.4g} N rms; the residual of the fit is {:.4g} N rms.\n", result.force_rms,
-                      result.residual_rms);
+  const char* force = force_unit(result.rotary);
+  text += fmt::format("\nThe {} is {:.4g} {} rms; the residual of the fit is {:.4g} {} rms.\n",
+                      result.rotary ? "torque" : "force", result.force_rms, force, result.residual_rms, force);
   if (result.held_out)
     text += fmt::format(
-        "On data that were held out it leaves {:.4g} N rms, {:.3f} times the rest of a plain least squares of mass, "
+        "On data that were held out it leaves {:.4g} {} rms, {:.3f} times the rest of a plain least squares of mass, "
         "viscous "
         "friction, Coulomb friction and offset in the same rows.\n",
-        result.held_out->fit, result.held_out->fit / result.held_out->plain);
-  if (result.band) text += band_text(*result.band);
+        result.held_out->fit, force, result.held_out->fit / result.held_out->plain);
+  if (result.band) text += band_text(*result.band, result.rotary);
   for (const auto& note : result.notes) text += note + "\n";
-  if (const auto read = initial_text(result.initial); !read.empty())
+  if (const auto read = initial_text(result.initial, result.rotary); !read.empty())
     text += fmt::format("direct estimates from the record, independent of the fit: {}\n", read);
   if (result.curve) {
     text += fmt::format("sliding curve: {} (held-out error", result.curve->curve);
-    for (const auto& e : result.curve->errors) text += fmt::format(" {} {:.4g} N,", e.curve, e.held_out);
+    for (const auto& e : result.curve->errors) text += fmt::format(" {} {:.4g} {},", e.curve, e.held_out, force);
     text.back() = ')';
     text += "\n";
   }

@@ -117,9 +117,12 @@ void judge(Identification& result, const FittedParameter& fitted, const Scales& 
     return;
   }
   if (criterion != nullptr && floor_of(fitted.name, scales) > visible(fitted.name, fitted.value, scales)) {
+    const auto own = [&](double value, const char* unit) { return scales.coordinate.own(unit).from_linear(value); };
+    const bool rotary = scales.coordinate.rotary();
     result.not_determined.push_back({fitted.name,
-                                     fmt::format("the motion is too slow for it: at most {:.3g} mm/s and {:.3g} m/s^2",
-                                                 scales.data_speed * 1e3, scales.data_acceleration),
+                                     fmt::format("the motion is too slow for it: at most {:.3g} {} and {:.3g} {}",
+                                                 own(scales.data_speed, "m/s") * 1e3, rotary ? "mrad/s" : "mm/s",
+                                                 own(scales.data_acceleration, "m/s^2"), rotary ? "rad/s^2" : "m/s^2"),
                                      record});
     return;
   }

@@ -8,10 +8,11 @@
 namespace stiction::host {
 
 struct Scales {
-  double coulomb;            // N
-  double highest_speed;      // m/s, of the machine
-  double data_speed;         // m/s, the highest of the data
-  double data_acceleration;  // m/s^2, the highest of the data
+  double coulomb;                  // N
+  double highest_speed;            // m/s, of the machine
+  double data_speed;               // m/s, the highest of the data
+  double data_acceleration;        // m/s^2, the highest of the data
+  machine::Coordinate coordinate;  // of the axis, for what is told of speeds
 };
 
 inline constexpr const char* record_speeds = "constant speeds from a few mm/s up to the highest, each both ways";

@@ -196,6 +196,7 @@ Motion followed_motion(const Log& log, const AxisLog& channels, const machine::A
   motion.force = force_of(log, channels, axis, amperes);
   motion.force_is_current = channels.force.empty() && channels.external_force.empty();
   motion.x = low_passed(channels.x, position_edge, period);
+  motion.constant = shape_of_constant(axis, motion.x);
   auto d = derivatives(motion.x, period);
   motion.v = std::move(d.first);
   motion.a = std::move(d.second);

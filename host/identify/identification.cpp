@@ -10,6 +10,7 @@
 #include "host/identify/fit_support.hpp"
 #include "host/identify/standstill.hpp"
 #include "host/identify/suitability.hpp"
+#include "host/log/own_units.hpp"
 #include "sim/plant/friction/coulomb_viscous.hpp"
 #include "sim/plant/friction/lugre.hpp"
 
@@ -82,14 +83,16 @@ Source sources_for(Identification& result, const std::vector<Log>& logs, const m
 }
 
 // A law that sticks says nothing of an axis that cannot be told from one at rest.
-void require_counting_samples(const LogRows& rows, const Band& band) {
+void require_counting_samples(const LogRows& rows, const Band& band, const machine::AxisModel& axis) {
   constexpr double least = 1e-3;  // of a row
-  if (rows.rows() > 0 && rows.one.cwiseAbs().maxCoeff() > least) return;
+  if (rows.rows() > 0 && rows.weight.cwiseAbs().maxCoeff() > least) return;
+  const auto own = axis.coordinate.own("m");
+  const auto shown = shown_deviation(axis.coordinate.rotary());
   throw LogError(fmt::format(
       "{}: found no sample in which the axis is seen to move: at every speed of the record the noise of its "
-      "position, {:.3g} um rms, may be all of the motion; expected faster motion, a longer stroke or a finer "
+      "position, {:.3g} {} rms, may be all of the motion; expected faster motion, a longer stroke or a finer "
       "encoder",
-      sources_of(rows.motions()), band.position_noise * 1e6));
+      sources_of(rows.motions()), own.from_linear(band.position_noise) * shown.factor, shown.unit));
 }
 
 // Which speed the rows have, of logs that record one.
@@ -107,7 +110,8 @@ void note_speed(Identification& result, const LogRows& rows) {
 // What looks wrong in the logs, the likeliest of each kind.
 void ask(Identification& result, const Source& source, const machine::AxisModel& axis) {
   for (const auto& each : source.logs)
-    for (const auto& question : questions_of(*each.log, *each.channels, known_axis(axis))) {
+    for (const auto& question :
+         questions_of(*each.log, in_own_units(*each.channels, axis.coordinate), known_axis(axis))) {
       const auto same = std::find_if(result.questions.begin(), result.questions.end(),
                                      [&](const auto& q) { return q.about == question.about; });
       if (same == result.questions.end())
@@ -197,6 +201,17 @@ HeldOutForce held_out_force(const LogRows& rows, const FrictionFit& fit, const H
 
 constexpr std::array<const char*, 4> names_of_columns{"mass_kg", "viscous_N_s_per_m", "constant_force_N", "coulomb_N"};
 
+// The constant force of an axis whose weight goes with its angle.
+void name_gravity(Identification& result) {
+  for (auto& p : result.parameters)
+    if (p.name == "constant_force_N") {
+      p.name = "gravity_N";
+      p.how = "force over the sine of the angle from the rest below, less the counterweight";
+    }
+  for (auto& n : result.not_determined)
+    if (n.name == "constant_force_N") n.name = "gravity_N";
+}
+
 // Mass, viscous friction, Coulomb friction, constant force, and those of each direction.
 void judge_sliding(Identification& result, const LogRows& rows, const FrictionFit& fit, const Scales& scales,
                    const IdentifyOptions& options, double direction) {
@@ -225,7 +240,7 @@ void judge_sliding(Identification& result, const LogRows& rows, const FrictionFi
     }
     judge(result, fit.at(name), scales, fit.blocks.size(), how);
   }
-  if (direction == 0.0 &&
+  if (direction == 0.0 && rows.motions().front().constant.empty() &&
       std::none_of(options.held.begin(), options.held.end(), [](const auto& h) { return h.has_value(); }))
     for (const auto& each : fit_directions(rows, fit, options.fit)) judge(result, each, scales, fit.blocks.size(), "");
 }
@@ -281,7 +296,7 @@ Identification identify_logs(const std::vector<Log>& logs, const machine::AxisMo
       followed ? std::move(*rows_in_band)
                : fixed_rows(source, axis, options.amperes, published ? published_recipe() : SignalSettings{});
   if (followed) {
-    require_counting_samples(rows, *result.band);
+    require_counting_samples(rows, *result.band, axis);
     note_speed(result, rows);
   }
   const auto excitation = excitation_of(rows);
@@ -315,7 +330,8 @@ Identification identify_logs(const std::vector<Log>& logs, const machine::AxisMo
         "from those rows alone, and the contact parameters are a compromise.";
   const double level =
       held[3] ? std::max(*held[3], std::abs(fit.at("constant_force_N").value)) : std::abs(fit.at("coulomb_N").value);
-  const Scales scales{level, axis.max_velocity, excitation.highest_speed, excitation.highest_acceleration};
+  const Scales scales{level, axis.max_velocity, excitation.highest_speed, excitation.highest_acceleration,
+                      axis.coordinate};
   judge_sliding(result, rows, fit, scales, options, direction);
   if (published)
     name_contact(result, "sgn(v) contains no presliding; --friction lugre identifies it");
@@ -326,7 +342,11 @@ Identification identify_logs(const std::vector<Log>& logs, const machine::AxisMo
     judge_contact(result, fit, scales);
   if (result.find("stiffness_N_per_m") != nullptr) result.elements = fit_maxwell_slip(rows).elements;
   if (direction == 0.0) add_curve(result, rows, fit, options.fit);
-  result.initial = initial_values(rows);
+  // Read off the record by hand, they know nothing of a weight that goes with the angle.
+  if (rows.motions().front().constant.empty())
+    result.initial = initial_values(rows);
+  else
+    name_gravity(result);
   result.held_out = held_out_force(rows, fit, held, followed);
   keep_residuals(result, rows, fit);
   return result;
@@ -352,7 +372,7 @@ Identification identify_table(const SteadyTable& table, const machine::AxisModel
   fitting::add(straight, "coulomb_N", centre, replicates, [=](const auto& w) { return w[sign]; });
   fitting::add(straight, "viscous_N_s_per_m", centre, replicates, [=](const auto& w) { return w[sign + 1]; });
   if (sign > 0) fitting::add(straight, "constant_force_N", centre, replicates, [](const auto& w) { return w[0]; });
-  const Scales scales{std::abs(centre[sign]), axis.max_velocity, data.speed.cwiseAbs().maxCoeff(), INFINITY};
+  const Scales scales{std::abs(centre[sign]), axis.max_velocity, data.speed.cwiseAbs().maxCoeff(), INFINITY, {}};
   for (const auto& each : straight.parameters) judge(result, each, scales, data.blocks.size(), "straight line");
   if (sign == 0)
     result.not_determined.push_back(

@@ -43,6 +43,7 @@ struct HeldOutForce {
 
 struct Identification {
   std::string axis;
+  bool rotary = false;  // in rad, rad/s, N m, kg m^2 (own_identification.hpp)
   std::vector<std::string> sources;
   std::string friction;  // the law that was fitted, by its name in a machine file
   std::string method;    // sentences for readers

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "firmware/machine/file/edited_machine.hpp"
+#include "host/identify/own_identification.hpp"
 #include "sim/plant/friction/laws.hpp"
 
 namespace stiction::host {
@@ -25,30 +26,37 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 6> parameter
     {"stribeck_velocity", "stribeck_velocity_m_per_s"},
 }};
 
-Value written(double value, std::string_view unit) {
+// A value in the SI `unit` of a linear axis as the file of an axis with this coordinate has it.
+Value written(double value, std::string_view unit, const machine::Coordinate& coordinate) {
   if (unit == "1") return value;
-  return machine::written_quantity(value, unit);
+  const auto own = coordinate.own(unit);
+  return machine::written_quantity(own.from_linear(value), own.unit);
 }
 
-std::optional<Value> elements_value(const Identification& result, std::string_view key, std::string_view unit) {
+std::optional<Value> elements_value(const Identification& result, std::string_view key, std::string_view unit,
+                                    const machine::Coordinate& coordinate) {
   if (result.elements.empty()) return std::nullopt;
+  const auto own = coordinate.own(unit);
   std::vector<std::string> list;
   for (const auto& element : result.elements)
-    list.push_back(machine::written_quantity(key == "stiffness" ? element.stiffness : element.level, unit));
+    list.push_back(
+        machine::written_quantity(own.from_linear(key == "stiffness" ? element.stiffness : element.level), own.unit));
   return list;
 }
 
 // The value of a model's key; nothing when the data did not determine it.
-std::optional<Value> key_value(const Identification& result, std::string_view key, std::string_view unit, bool list) {
-  if (list) return key == "stiffness" || key == "level" ? elements_value(result, key, unit) : std::nullopt;
+std::optional<Value> key_value(const Identification& result, std::string_view key, std::string_view unit, bool list,
+                               const machine::Coordinate& coordinate) {
+  if (list) return key == "stiffness" || key == "level" ? elements_value(result, key, unit, coordinate) : std::nullopt;
   const auto row = std::find_if(parameter_of_key.begin(), parameter_of_key.end(),
                                 [&](const auto& candidate) { return candidate.first == key; });
   if (row == parameter_of_key.end()) return std::nullopt;
   const auto* parameter = result.find(row->second);
   if (parameter == nullptr) return std::nullopt;
   // Without a fall of the friction over speed the ratio is 1, and what is above is noise.
-  if (key == "static_ratio" && result.find("stribeck_velocity_m_per_s") == nullptr) return written(1.0, unit);
-  return written(std::max(parameter->value, 0.0), unit);
+  if (key == "static_ratio" && result.find("stribeck_velocity_m_per_s") == nullptr)
+    return written(1.0, unit, coordinate);
+  return written(std::max(parameter->value, 0.0), unit, coordinate);
 }
 
 struct FrictionTable {
@@ -63,7 +71,7 @@ bool is_identified(std::string_view key) {
 }
 
 template <class Model>
-FrictionTable friction_table(const Identification& result) {
+FrictionTable friction_table(const Identification& result, const machine::Coordinate& coordinate) {
   FrictionTable table{std::string(Model::name), {}, {}};
   // A Stribeck velocity acts on nothing while the static ratio is 1: the file's may stay. So may what shapes the
   // contact that was fitted and was taken from the file.
@@ -71,7 +79,7 @@ FrictionTable friction_table(const Identification& result) {
   for (const auto& parameter : Model::parameters) {
     const std::string key(parameter.key);
     const bool list = parameter.member.index() == 3;
-    if (const auto value = key_value(result, key, parameter.unit, list))
+    if (const auto value = key_value(result, key, parameter.unit, list, coordinate))
       table.keys.emplace_back(key, *value);
     else if (!(key == "stribeck_velocity" && no_fall) && !(Model::name == result.friction && !is_identified(key)))
       table.missing.push_back(key);
@@ -87,10 +95,12 @@ std::string model_in_use(const std::string& wanted, const std::vector<std::strin
 }
 
 std::string lighter_than_transmission(const Identification& result, const machine::AxisModel& axis, double mass) {
+  const auto own = axis.coordinate.own("mass", "kg");
   return fmt::format(
-      "{}: found a moving mass of {:.4g} kg; expected more than the {:.4g} kg of motor and transmission "
+      "{}: found a moving {} of {:.4g} {}; expected more than the {:.4g} {} of motor, transmission and counterweight "
       "that the machine file gives axis {}",
-      result.sources.front(), mass, axis.mass - axis.load_mass, axis.name);
+      result.sources.front(), own.key, own.from_linear(mass), own.unit, own.from_linear(axis.mass - axis.load_mass),
+      own.unit, axis.name);
 }
 
 }  // namespace
@@ -102,10 +112,11 @@ std::string identified_machine(const std::filesystem::path& file, const std::vec
   std::vector<std::string> comment{
       fmt::format("Identified from {}", fmt::join(result.sources, ", ")), fmt::format("by {}", command),
       fmt::format("on the machine file {}; axis {}:", file.filename().string(), axis.name)};
-  for (const auto& p : result.parameters)
+  const auto shown = in_own_units(result, axis);
+  for (const auto& p : shown.parameters)
     comment.push_back(
         fmt::format("  {} = {:.6g}, 95 % interval {:.6g} to {:.6g}", p.name, p.value, p.ci95.low, p.ci95.high));
-  for (const auto& n : result.not_determined) comment.push_back(fmt::format("  not determined: {}: {}", n.name, n.why));
+  for (const auto& n : shown.not_determined) comment.push_back(fmt::format("  not determined: {}: {}", n.name, n.why));
 
   const std::vector<std::string> at{"axis", axis.name};
   const auto path = [&](std::vector<std::string> tail) {
@@ -113,20 +124,25 @@ std::string identified_machine(const std::filesystem::path& file, const std::vec
     full.insert(full.end(), tail.begin(), tail.end());
     return full;
   };
+  const auto whole = axis.coordinate.own("mass", "kg");
   if (const auto* mass = result.find("mass_kg")) {
     // The log tells the whole, the file has the load alone.
     const double load = mass->value - (axis.mass - axis.load_mass);
     if (!(load > 0.0)) throw LogError(lighter_than_transmission(result, axis, mass->value));
-    edits.push_back({path({"mass"}), machine::written_quantity(load, "kg")});
-    edits.push_back({{"experiment", "*", "axis", axis.name, "mass"}, {}});
+    edits.push_back({path({std::string(whole.key)}), written(load, "kg", axis.coordinate)});
+    edits.push_back({{"experiment", "*", "axis", axis.name, std::string(whole.key)}, {}});
   } else {
-    comment.push_back(fmt::format("  mass: kept from the machine file, {:g} kg", axis.mass));
+    comment.push_back(
+        fmt::format("  {}: kept from the machine file, {:g} {}", whole.key, whole.from_linear(axis.mass), whole.unit));
   }
+  if (const auto* gravity = result.find("gravity_N"))
+    edits.push_back({path({"gravity", "moment"}),
+                     written(gravity->value + axis.gravity->counterweight.value_or(0.0), "N", axis.coordinate)});
   std::vector<machine::MachineEdit> friction{{{"experiment", "*", "axis", axis.name, "friction"}, {}}};
   std::vector<std::string> complete, left;
   sim::for_each_friction_model([&]<class Model>() {
     if (!axis.friction.models.contains(std::string(Model::name))) return;
-    const auto table = friction_table<Model>(result);
+    const auto table = friction_table<Model>(result, axis.coordinate);
     if (!table.missing.empty()) {
       friction.push_back({path({"friction", table.model}), {}});
       left.push_back(

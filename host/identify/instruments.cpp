@@ -52,7 +52,7 @@ NoisyEquations equations_of(const LogRows& rows, const Eigen::MatrixXd& columns)
     const auto& motion = rows.motions()[k];
     const auto begin = static_cast<Eigen::Index>(rows.logs()[k]);
     const auto end = k + 1 < rows.logs().size() ? static_cast<Eigen::Index>(rows.logs()[k + 1]) : rows.rows();
-    const Eigen::ArrayXd share = rows.one.segment(begin, end - begin).array().square();
+    const Eigen::ArrayXd share = rows.weight.segment(begin, end - begin).array().square();
     e.all_noise += share.sum() * std::pow(motion.acceleration_noise, 2);
     if (!motion.set_a.empty()) continue;
     e.acceleration_noise.segment(begin, end - begin) = share * std::pow(motion.acceleration_noise, 2);

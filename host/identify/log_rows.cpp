@@ -31,15 +31,18 @@ LogRows::LogRows(std::vector<Motion> motions, const SignalSettings& settings) : 
   force = stacked([](const Motion& m) { return m.force; });
   acceleration = stacked([](const Motion& m) { return m.a; });
   velocity = stacked([](const Motion& m) { return m.v; });
-  one = counts_;
+  weight = counts_;
   if (std::any_of(motions_.begin(), motions_.end(), [](const Motion& m) { return !m.weight.empty(); }))
-    one = stacked([](const Motion& m) { return std::vector<double>(m.t.size(), 1.0); });
+    weight = stacked([](const Motion& m) { return std::vector<double>(m.t.size(), 1.0); });
+  one = weight;
+  if (std::any_of(motions_.begin(), motions_.end(), [](const Motion& m) { return !m.constant.empty(); }))
+    one = stacked([](const Motion& m) { return m.constant; });
   time = sampled([](const Motion& m) { return m.t; });
 }
 
 void LogRows::weigh(Eigen::VectorXd counts) {
   counts_ = std::move(counts);
-  for (auto* row : {&force, &acceleration, &velocity, &one}) *row = row->cwiseProduct(counts_);
+  for (auto* row : {&force, &acceleration, &velocity, &weight, &one}) *row = row->cwiseProduct(counts_);
 }
 
 Eigen::VectorXd LogRows::stacked(const std::function<std::vector<double>(const Motion&)>& column) const {

@@ -35,7 +35,8 @@ class LogRows {
   Eigen::VectorXd of_log(std::size_t log, const std::vector<double>& column) const;
 
   Eigen::VectorXd force, acceleration, velocity, time;
-  Eigen::VectorXd one;  // the regressor of a constant force: the samples' weights, filtered
+  Eigen::VectorXd weight;  // the samples' weights, filtered
+  Eigen::VectorXd one;     // the regressor of the constant force: these weights, by what the force goes with
 
  private:
   std::vector<Motion> motions_;

@@ -69,6 +69,14 @@ std::vector<double> force_of(const Log& log, const AxisLog& channels, const mach
   return force;
 }
 
+std::vector<double> shape_of_constant(const machine::AxisModel& axis, const std::vector<double>& x) {
+  if (!axis.gravity || !axis.coordinate.rotary()) return {};
+  std::vector<double> shape(x.size());
+  std::transform(x.begin(), x.end(), shape.begin(),
+                 [&](double at) { return std::sin((at - axis.gravity->zero) / axis.coordinate.radius); });
+  return shape;
+}
+
 Motion motion_of(const Log& log, const AxisLog& channels, const machine::AxisModel& axis, Amperes amperes,
                  const SignalSettings& settings) {
   Motion motion{log.source, log.period, log.t, {}, {}, {}, {}, channels.i, channels.x_set};
@@ -78,6 +86,7 @@ Motion motion_of(const Log& log, const AxisLog& channels, const machine::AxisMod
   const double cutoff = std::min(settings.cutoff, highest_position_edge / log.period);
   const auto lowpass = butterworth(position_order, 2.0 * cutoff * log.period);
   motion.x = filter_both_ways(lowpass, channels.x, scaled_padding(lowpass, 1e-3 / log.period));
+  motion.constant = shape_of_constant(axis, motion.x);
   motion.v = central_difference(motion.x, log.period, settings.difference_points);
   motion.a = central_difference(motion.v, log.period, settings.difference_points);
   if (log.axes.size() != 2) return motion;

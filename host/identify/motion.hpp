@@ -45,6 +45,7 @@ struct Motion {
   std::vector<double> set_v{}, set_a{};  // m/s, m/s^2; derivatives of the set position, filtered as the position
   double speed_noise = 0.0, acceleration_noise = 0.0;  // m/s, m/s^2 rms in the rows, of the encoder
   bool recorded_speed = false;                         // v and a are of the recorded speed
+  std::vector<double> constant{};                      // what the constant force goes with, -1 to 1; empty: 1
   std::string speed_objection{};  // what spoke against a recorded speed that would be quieter; empty: nothing
 };
 
@@ -60,6 +61,10 @@ std::vector<double> force_of(const Log& log, const AxisLog& channels, const mach
 // filters. Throws LogError.
 Motion motion_of(const Log& log, const AxisLog& channels, const machine::AxisModel& axis, Amperes amperes,
                  const SignalSettings& settings);
+
+// What the constant force of an axis goes with at the positions `x` (m): of a rotary axis that has a weight the sine of
+// its angle, else empty, 1 everywhere.
+std::vector<double> shape_of_constant(const machine::AxisModel& axis, const std::vector<double>& x);
 
 // Takes columns of a motion at its full rate to rows.
 class RowFilter {

@@ -1,5 +1,7 @@
 #include "host/log/own_units.hpp"
 
+#include <fmt/format.h>
+
 #include <numbers>
 
 namespace stiction::host {
@@ -18,6 +20,15 @@ AxisLog converted(AxisLog axis, Convert&& convert) {
 }
 
 }  // namespace
+
+void require_same_kind(const Log& log, const AxisLog& channels, const machine::AxisModel& axis) {
+  if (channels.rotary == axis.coordinate.rotary()) return;
+  const auto kind = [](bool rotary) { return rotary ? "rotary" : "linear"; };
+  throw LogError(
+      fmt::format("{}: found columns of a {} axis; expected those of a {} one, as the machine file describes "
+                  "axis {}",
+                  log.source, kind(channels.rotary), kind(!channels.rotary), axis.name));
+}
 
 AxisLog as_linear(AxisLog axis, const machine::Coordinate& coordinate) {
   if (!coordinate.rotary()) return axis;

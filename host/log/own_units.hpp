@@ -1,10 +1,13 @@
 // A log's channels in the units of its axis, and as the linear axis has them that all computations work on.
 #pragma once
 
-#include "firmware/machine/model/coordinate.hpp"
+#include "firmware/machine/model/machine.hpp"
 #include "host/log/log.hpp"
 
 namespace stiction::host {
+
+// Throws LogError where `channels` of a `log` are linear and the axis of the machine is rotary, or the other way about.
+void require_same_kind(const Log& log, const AxisLog& channels, const machine::AxisModel& axis);
 
 // The channels of a rotary axis as those of the linear axis of `coordinate` that moves alike, and back. A linear axis
 // stays as it is.

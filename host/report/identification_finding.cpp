@@ -8,6 +8,8 @@
 #include <cmath>
 #include <vector>
 
+#include "host/identify/own_identification.hpp"
+#include "host/log/own_units.hpp"
 #include "sim/plant/friction/friction.hpp"
 
 namespace stiction::host {
@@ -25,9 +27,10 @@ std::string in_file(std::string_view name, const machine::AxisModel* file) {
   if (file == nullptr) return "";
   const bool has_law = file->friction.models.contains(file->friction.use);
   double value = 0.0;
-  if (name == "mass_kg") value = file->mass;
-  if (name == "coulomb_N" && has_law) value = sim::coulomb_of(file->friction);
-  if (name == "viscous_N_s_per_m" && has_law) value = sim::viscous_of(file->friction);
+  const auto own = [&](double linear, const char* unit) { return file->coordinate.own(unit).from_linear(linear); };
+  if (name == "mass_kg") value = own(file->mass, "kg");
+  if (name == "coulomb_N" && has_law) value = own(sim::coulomb_of(file->friction), "N");
+  if (name == "viscous_N_s_per_m" && has_law) value = own(sim::viscous_of(file->friction), "N s/m");
   return value > 0.0 ? fmt::format(" (machine file: {:.4g})", value) : "";
 }
 
@@ -39,6 +42,8 @@ constexpr std::array<SpokenParameter, 4> spoken_parameters{
      {"coulomb_positive_N", "Coulomb friction and constant force (+x) of", "N"},
      {"viscous_N_s_per_m", "viscous friction of", "N s/m"},
      {"mass_kg", "moving mass of", "kg"}}};
+constexpr SpokenParameter inertia{"mass_kg", "moving inertia of", "kg"};
+constexpr SpokenParameter gravity{"gravity_N", "moment of gravity of", "N"};
 
 }  // namespace
 
@@ -46,12 +51,19 @@ std::string identification_sentence(const Identification& result, const machine:
   const auto total = result.parameters.size() + result.not_determined.size();
   if (result.parameters.empty())
     return fmt::format("None of the {} parameters of axis {} is determined by these records.", total, result.axis);
+  const machine::Coordinate kind{result.rotary ? machine::AxisKind::rotary : machine::AxisKind::linear, 1.0};
+  std::vector<SpokenParameter> spoken(spoken_parameters.begin(), spoken_parameters.end());
+  if (result.rotary) {
+    spoken.back() = inertia;
+    spoken.push_back(gravity);
+  }
   std::vector<std::string> parts;
-  for (const auto& each : spoken_parameters)
-    if (const auto* parameter = result.find(each.name))
+  for (const auto& each : spoken)
+    if (const auto* parameter = result.find(result.rotary ? own_name(each.name) : each.name))
       if (parts.empty() || each.name != std::string_view("coulomb_positive_N"))
-        parts.push_back(
-            fmt::format("a {} {}{}", each.words, with_interval(*parameter, each.unit), in_file(each.name, file)));
+        parts.push_back(fmt::format("a {} {}{}", each.words,
+                                    with_interval(*parameter, std::string(kind.own(each.unit).unit).c_str()),
+                                    in_file(each.name, file)));
   std::string text = fmt::format("{} of {} parameters are determined", result.parameters.size(), total);
   if (!parts.empty()) {
     const auto last = parts.back();
@@ -61,8 +73,9 @@ std::string identification_sentence(const Identification& result, const machine:
       text += fmt::format(" ({} of {} parameters are determined)", result.parameters.size(), total);
   }
   if (result.force_rms > 0.0)
-    text += fmt::format("; the fit leaves {:.3g} of {:.3g} N rms, {:.2g} % of the force", result.residual_rms,
-                        result.force_rms, 100.0 * result.residual_rms / result.force_rms);
+    text += fmt::format("; the fit leaves {:.3g} of {:.3g} {} rms, {:.2g} % of the {}", result.residual_rms,
+                        result.force_rms, force_unit(result.rotary), 100.0 * result.residual_rms / result.force_rms,
+                        result.rotary ? "torque" : "force");
   return text + ".";
 }
 

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "host/identify/own_identification.hpp"
+#include "host/log/own_units.hpp"
 #include "host/report/assets.hpp"
 #include "host/report/decimate.hpp"
 #include "host/report/engineering_unit.hpp"
@@ -26,7 +28,8 @@ constexpr std::size_t rows_per_log = 3000;
 struct Label {
   std::string_view name, text, unit;  // SI
 };
-constexpr std::array<Label, 19> labels{{
+constexpr std::array<Label, 20> labels{{
+    {"gravity_N", "moment of gravity", "N"},
     {"mass_kg", "moving mass", "kg"},
     {"coulomb_N", "Coulomb friction F_C", "N"},
     {"viscous_N_s_per_m", "viscous friction mu_v", "N s/m"},
@@ -48,9 +51,15 @@ constexpr std::array<Label, 19> labels{{
     {"sliding_curve", "sliding curve", "1"},
 }};
 
+constexpr machine::Coordinate any_rotary{machine::AxisKind::rotary, 1.0};
+
 Label label_of(const std::string& name) {
-  const auto found = std::find_if(labels.begin(), labels.end(), [&](const auto& l) { return l.name == name; });
-  return found == labels.end() ? Label{name, name, "1"} : *found;
+  for (const auto& label : labels) {
+    if (label.name == name) return label;
+    if (own_name(std::string(label.name)) == name)
+      return {name, name == "inertia_kg_m2" ? "moving inertia" : label.text, any_rotary.own(label.unit).unit};
+  }
+  return {name, name, "1"};
 }
 
 json parameter_json(const std::string& name, double value, const Interval& ci, const std::string& how) {
@@ -94,7 +103,7 @@ json band_json(const Identification& result) {
   }
   // In the order of BandPoint's columns.
   for (const auto& [name, column] : {std::pair{"mass_kg", std::size_t{0}}, std::pair{"coulomb_N", std::size_t{3}}}) {
-    const auto label = label_of(name);
+    const auto label = label_of(result.rotary ? own_name(name) : name);
     json values = json::array(), halves = json::array();
     for (const auto& p : band.trials) {
       values.push_back(p.value[column]);
@@ -117,14 +126,15 @@ json residuals_json(const Identification& result) {
   return logs;
 }
 
-json initial_json(const InitialValues& initial) {
+json initial_json(const InitialValues& initial, bool rotary) {
+  const auto own = [&](const char* unit) { return rotary ? any_rotary.own(unit).unit : std::string_view(unit); };
   json rows = json::array();
   const auto add = [&](const char* text, const std::optional<double>& value, const char* unit) {
-    if (value) rows.push_back({{"label", text}, {"value", fmt::format("{:.4g}", *value)}, {"unit", unit}});
+    if (value) rows.push_back({{"label", text}, {"value", fmt::format("{:.4g}", *value)}, {"unit", own(unit)}});
   };
   add("Coulomb friction, from the steps at reversals", initial.coulomb, "N");
   add("viscous friction, from constant speeds", initial.viscous, "N s/m");
-  add("mass, from acceleration", initial.mass, "kg");
+  add(rotary ? "inertia, from acceleration" : "mass, from acceleration", initial.mass, "kg");
   return rows;
 }
 
@@ -152,7 +162,8 @@ std::string identification_report_html(const IdentificationReport& report) {
                   {"band", band_json(result)},
                   {"curve", curve_json(result)},
                   {"residuals", residuals_json(result)},
-                  {"initial", initial_json(result.initial)},
+                  {"initial", initial_json(result.initial, result.rotary)},
+                  {"units", {{"force", force_unit(result.rotary)}, {"speed", result.rotary ? "mrad/s" : "mm/s"}}},
                   {"machine", machine_json(report.machine)}};
   const auto axis = std::find_if(report.machine.axes.begin(), report.machine.axes.end(),
                                  [&](const auto& each) { return each.name == result.axis; });

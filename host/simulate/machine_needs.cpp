@@ -47,6 +47,7 @@ constexpr std::array table{
     MachineNeeds{.command = "inspect", .rotary = true, .controllers = Controllers::any},
     MachineNeeds{.command = "replay", .rotary = true, .controllers = Controllers::known},
     MachineNeeds{.command = "commissioning", .rotary = true},
+    MachineNeeds{.command = "identify", .rotary = true, .controllers = Controllers::any, .formats = false},
 };
 
 std::string found_axes(const machine::Machine& machine) {
@@ -106,9 +107,9 @@ std::optional<std::string> what_is_missing(const machine::Machine& machine, cons
   if (!needs.rotary)
     for (const auto& axis : machine.axes)
       if (axis.coordinate.rotary())
-        return missing(
-            fmt::format("the rotary axis {}", axis.name),
-            "linear axes; inspect, compare LOG, simulate replay and simulate commissioning serve rotary ones");
+        return missing(fmt::format("the rotary axis {}", axis.name),
+                       "linear axes; inspect, identify, compare LOG, simulate replay and simulate commissioning serve "
+                       "rotary ones");
   for (const auto& axis : machine.axes) {
     if (axis.cascaded() || needs.controllers == Controllers::any) continue;
     const bool unknown = axis.controller->structure == machine::ControlStructure::unknown;
@@ -116,7 +117,7 @@ std::optional<std::string> what_is_missing(const machine::Machine& machine, cons
       return missing(
           fmt::format("axis {} with {}", axis.name,
                       unknown ? "an unknown controller" : "a controller that is not the firmware's cascade"),
-          "the cascade, without [axis.NAME.controller]; inspect, compare LOG and simulate replay serve other "
+          "the cascade, without [axis.NAME.controller]; inspect, identify, compare LOG and simulate replay serve other "
           "structures");
     if (unknown)
       return missing(fmt::format("axis {} with an unknown controller", axis.name),

@@ -62,6 +62,8 @@ class Motion {
 };
 
 double allowed_following_error(const machine::AxisModel& axis) {
+  // No supervision says how far an axis with a different controller may lag or sag.
+  if (!axis.cascaded()) return std::numeric_limits<double>::infinity();
   return axis.supervision.following_error.value_or(default_following_error);
 }
 
@@ -77,15 +79,6 @@ void require_within_limits(const Log& log, const AxisLog& axis, const machine::A
                       log.source, k + 1, own.from_linear(v[k]), own.unit, axis.v_set.empty() ? " (from x_set)" : "",
                       own.from_linear(machine_axis.max_velocity), own.unit, machine_axis.name));
     }
-}
-
-void require_same_kind(const Log& log, const AxisLog& axis, const machine::AxisModel& machine_axis) {
-  if (axis.rotary == machine_axis.coordinate.rotary()) return;
-  const auto kind = [](bool rotary) { return rotary ? "rotary" : "linear"; };
-  throw LogError(
-      fmt::format("{}: found columns of a {} axis; expected those of a {} one, as the machine file describes "
-                  "axis {}",
-                  log.source, kind(axis.rotary), kind(!axis.rotary), machine_axis.name));
 }
 
 // The values of one axis that a replay keeps, at one time.

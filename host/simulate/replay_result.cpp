@@ -223,6 +223,7 @@ std::string effort_name(const ReplayDifference& difference) {
 
 double replay_offset(const Log& measured, const ReplayCase& replayed, std::size_t axis, const std::string& name) {
   const auto& machine_axis = replayed.machine.axes[match_axes(replayed.machine, measured, name)[axis]];
+  if (!machine_axis.cascaded()) return 0.0;  // as the replay does: its axis may lag and sag
   const double allowed = machine_axis.supervision.following_error.value_or(2e-3);
   return encoder_offset(measured.axes[axis], machine_axis.coordinate.own("m").from_linear(allowed));
 }

@@ -69,7 +69,7 @@ function measuredTrace(points, name, colour, symbol) {
   return { name, x: points.map(p => Math.abs(p[0])), y: points.map(p => Math.abs(p[1])), mode: 'markers', type: 'scatter',
            error_y: { type: 'data', array: points.map(p => p[2]), color: colour, thickness: 1.2, width: 3 },
            marker: { color: colour, symbol, size: 8, line: { width: 1.3, color: colour } },
-           hovertemplate: `${name}<br>%{y:.4~g} N ± %{error_y.array:.2~g} N<br>%{x:.4~g} mm/s<extra></extra>` };
+           hovertemplate: `${name}<br>%{y:.4~g} ${DATA.units.force} ± %{error_y.array:.2~g} ${DATA.units.force}<br>%{x:.4~g} ${DATA.units.speed}<extra></extra>` };
 }
 
 function drawCharacteristic() {
@@ -78,20 +78,20 @@ function drawCharacteristic() {
   const band = (y, more) => ({ x: curve.speed, y, mode: 'lines', line: { width: 0 }, hoverinfo: 'skip', ...more });
   const traces = [band(curve.low, { name: 'band, low' }), band(curve.high, { name: 'band', fill: 'tonexty', fillcolor: 'var(--band)' }),
     { name: `${curve.curve} curve`, x: curve.speed, y: curve.force, mode: 'lines', line: { color: CURVE, width: 1.8 },
-      hovertemplate: `${curve.curve} curve<br>%{y:.4~g} N<br>%{x:.4~g} mm/s<extra></extra>` },
+      hovertemplate: `${curve.curve} curve<br>%{y:.4~g} ${DATA.units.force}<br>%{x:.4~g} ${DATA.units.speed}<extra></extra>` },
     measuredTrace(curve.measured.filter(p => p[0] > 0), 'measured, +x', POSITIVE, 'circle'),
     measuredTrace(curve.measured.filter(p => p[0] < 0), 'measured, −x', NEGATIVE, 'square-open')].filter(trace => trace.x.length);
   drawChart('characteristic', traces, {
     margin: { l: 76, r: 24, t: 10, b: 46 },
-    xaxis: axisStyle('speed, mm/s', { type: 'log', tickformat: '~g', dtick: curve.speed.at(-1) / curve.speed[0] > 3000 ? 1 : 'D2' }),
-    yaxis: axisStyle('friction force, N', { rangemode: 'tozero', nticks: 7 }),
+    xaxis: axisStyle(`speed, ${DATA.units.speed}`, { type: 'log', tickformat: '~g', dtick: curve.speed.at(-1) / curve.speed[0] > 3000 ? 1 : 'D2' }),
+    yaxis: axisStyle(`friction force, ${DATA.units.force}`, { rangemode: 'tozero', nticks: 7 }),
   });
   show('characteristic-caption', 'Points: force without the parts of mass and constant force, means over an eighth of a decade of the speed, with two standard errors; ',
        swatch({ colour: POSITIVE }), ' motion in +x, ', swatch({ colour: NEGATIVE }), ' in −x. Line: the ', element('strong', {}, curve.curve),
        ' curve with its 95 % band, the one with the least error on held-out data (a curve other than the linear one must explain at least 1 % more).');
   const errors = table([[text('Curve', { class: 'text' }), text('Held-out error'), text('Unit', { class: 'text unit' })]],
     curve.errors.map(row => classed('first', [{ text: row.curve, head: true, class: 'figure' },
-                                              text(row.rms, { class: row.curve === curve.curve ? 'value' : null }), text('N rms', { class: 'text unit' })])));
+                                              text(row.rms, { class: row.curve === curve.curve ? 'value' : null }), text(`${DATA.units.force} rms`, { class: 'text unit' })])));
   errors.className = 'bare';
   show('curve-errors', errors);
   show('curve-parameters', parameterTable(curve.parameters, false));
@@ -110,14 +110,14 @@ function drawResiduals() {
   const styles = stylesOf(DATA.residuals.map(log => log.name));
   if (DATA.residuals.length > 1) show('residual-key', ...DATA.residuals.map(log => element('span', {}, swatch(styles[log.name]), ` ${name(log)}`)));
   const margin = { l: 76, r: 24, t: 10, b: 46 };
-  const force = axisStyle('residual force, N', { zeroline: true, zerolinecolor: RULE, nticks: 7 });
+  const force = axisStyle(`residual force, ${DATA.units.force}`, { zeroline: true, zerolinecolor: RULE, nticks: 7 });
   DATA.residuals.forEach((log, i) => drawChart(`residual-${i}`,
     [{ name: plain(name(log)), x: log.time, y: log.residual, mode: 'lines', line: { color: styles[log.name].colour, width: 1.1, simplify: false },
-       hovertemplate: '%{y:.4~g} N<br>%{x:.4~g} s<extra></extra>' }], { margin, xaxis: axisStyle('time, s'), yaxis: force }));
+       hovertemplate: `%{y:.4~g} ${DATA.units.force}<br>%{x:.4~g} s<extra></extra>` }], { margin, xaxis: axisStyle('time, s'), yaxis: force }));
   drawChart('residual-speed', DATA.residuals.map(log => (
     { name: plain(name(log)), x: log.speed, y: log.residual, mode: 'markers', type: 'scatter',
-      marker: { color: styles[log.name].colour, size: 3, opacity: 0.5 }, hovertemplate: `${plain(name(log))}<br>%{y:.4~g} N<br>%{x:.4~g} mm/s<extra></extra>` })),
-    { margin, xaxis: axisStyle('speed, mm/s'), yaxis: force });
+      marker: { color: styles[log.name].colour, size: 3, opacity: 0.5 }, hovertemplate: `${plain(name(log))}<br>%{y:.4~g} ${DATA.units.force}<br>%{x:.4~g} ${DATA.units.speed}<extra></extra>` })),
+    { margin, xaxis: axisStyle(`speed, ${DATA.units.speed}`), yaxis: force });
 }
 
 drawConditions();
