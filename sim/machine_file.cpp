@@ -26,8 +26,9 @@ machine::Machine parse_machine(const std::string& file, const std::string& text,
   return machine::parse_machine(file, text, vocabulary(), options);
 }
 
-std::string effect_table(const std::string& axis, const machine::Effect& effect, bool force_motor) {
-  return machine::effect_table(vocabulary(), axis, effect, force_motor);
+std::string effect_table(const std::string& axis, const machine::Effect& effect, bool force_motor,
+                         const machine::Coordinate& coordinate) {
+  return machine::effect_table(vocabulary(), axis, effect, force_motor, coordinate);
 }
 
 std::string extended_machine(const std::filesystem::path& file, const std::vector<std::string>& set,

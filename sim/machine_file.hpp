@@ -19,9 +19,10 @@ machine::Machine parse_machine(const std::string& file, const std::string& text,
                                const machine::ReadOptions& options = {});
 
 // As in firmware/machine/file/extended_machine.hpp: `effect` of `axis` as a table of the file, in units of a
-// `force_motor` where it is one; and `file` with the assignments `set`, the `additions` and lines of `comment`. They
-// throw machine::ValueError and machine::MachineFileError.
-std::string effect_table(const std::string& axis, const machine::Effect& effect, bool force_motor = false);
+// `force_motor` where it is one and of its `coordinate`; and `file` with the assignments `set`, the `additions` and
+// lines of `comment`. They throw machine::ValueError and machine::MachineFileError.
+std::string effect_table(const std::string& axis, const machine::Effect& effect, bool force_motor = false,
+                         const machine::Coordinate& coordinate = {});
 std::string extended_machine(const std::filesystem::path& file, const std::vector<std::string>& set,
                              std::span<const machine::AxisEffects> additions, std::span<const std::string> comment);
 

@@ -45,8 +45,8 @@ void run(const CommissioningOptions& options, const Invocation& invocation) {
   if (options.hide) {
     const auto effect = draw_hidden_effect(file.axes[axis], *options.hide);
     machine.axes[axis].effects.push_back(effect);
-    folder.write("hidden.toml",
-                 sim::effect_table(file.axes[axis].name, effect, file.axes[axis].motor.driven_by_volts()));
+    folder.write("hidden.toml", sim::effect_table(file.axes[axis].name, effect, file.axes[axis].motor.driven_by_volts(),
+                                                  file.axes[axis].coordinate));
   }
   std::vector<CommissioningRecord> records;
   {

@@ -82,7 +82,7 @@ Verdict diagnose_axis(DiagnoseInput& input, DiagnosedFile& file, const Intermedi
 
 void run(const DiagnoseCommandOptions& options, const Invocation& invocation) {
   DiagnoseInput input;
-  input.machine = options.machine.load(options.machine.machine, "");
+  input.machine = options.machine.load(options.machine.machine, "", needs_of("diagnose"));
   input.logs = read_logs(options.logs, options.columns);
   input.held_out = read_logs(options.held_out, options.columns);
   auto all = input.logs;

@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "host/log/shown_units.hpp"
+
 namespace stiction::host {
 
 enum class Status { agrees, does_not_agree, cannot_tell };
@@ -28,7 +30,8 @@ struct Agreement {
 
 // The floor is an estimate and the residual a sample: a residual up to 1.25 times the floor is noise, a position error
 // up to twice its own. Where the floor is more than 0.3 of the force, agreement would say nothing. `rest`: figures of
-// the axis; `withheld`: why there is no position error, for the reason; empty: there are no set-points.
-Agreement agreement_of(const Remainder& rest, const std::string& withheld);
+// the axis; `withheld`: why there is no position error, for the reason; empty: there are no set-points; `units`: of the
+// axis, for the reason.
+Agreement agreement_of(const Remainder& rest, const std::string& withheld, const ShownUnits& units);
 
 }  // namespace stiction::host

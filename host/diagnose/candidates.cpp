@@ -59,8 +59,10 @@ EffectParameter effect_parameter(const machine::AxisModel& axis, sim::EffectId e
                                   [&](const machine::ValueKey& each) { return each.key == key; });
   if (known == effect->keys.end())
     throw std::logic_error(fmt::format("effect {}: found no key {}", effect.name(), key));
-  return {std::string(key), std::string(sim::key_unit(*known, axis)), known->list, std::move(values),
-          std::move(errors)};
+  const auto own = axis.coordinate.own(sim::key_unit(*known, axis));
+  for (auto* all : {&values, &errors})
+    for (double& value : *all) value = own.from_linear(value);
+  return {std::string(key), std::string(own.unit), known->list, std::move(values), std::move(errors)};
 }
 
 namespace effects {

@@ -31,28 +31,30 @@ std::vector<double> since_reversal(const Motion& motion) {
 // What a cause's force is shown over. `opposing`: as a friction, positive when it opposes the motion.
 struct Abscissa {
   std::string_view title, label;
-  Eigen::VectorXd (*values)(const LogRows&);  // in the label's unit
+  Eigen::VectorXd (*values)(const LogRows&);  // SI
+  ShownQuantity ShownUnits::*shown;           // none: as they are
   bool opposing = false;
   bool logarithmic = false;
 };
 
 Eigen::VectorXd position(const LogRows& rows) {
-  return 1e3 * rows.sampled([](const Motion& m) { return m.x; });
+  return rows.sampled([](const Motion& m) { return m.x; });
 }
-Eigen::VectorXd velocity(const LogRows& rows) { return 1e3 * rows.velocity; }
-Eigen::VectorXd speed(const LogRows& rows) { return 1e3 * rows.velocity.cwiseAbs().cwiseMax(creeping); }
+Eigen::VectorXd velocity(const LogRows& rows) { return rows.velocity; }
+Eigen::VectorXd speed(const LogRows& rows) { return rows.velocity.cwiseAbs().cwiseMax(creeping); }
 Eigen::VectorXd acceleration(const LogRows& rows) { return rows.acceleration; }
 Eigen::VectorXd time(const LogRows& rows) {
   return rows.sampled([](const Motion& m) { return m.t; });
 }
-Eigen::VectorXd way(const LogRows& rows) { return 1e6 * rows.sampled(since_reversal).cwiseMax(1e-8); }
+Eigen::VectorXd way(const LogRows& rows) { return rows.sampled(since_reversal).cwiseMax(1e-8); }
 
-constexpr Abscissa over_position{"Along the stroke", "position, mm", position};
-constexpr Abscissa over_velocity{"Over velocity", "velocity, mm/s", velocity};
-constexpr Abscissa over_speed{"Over speed", "speed, mm/s", speed, true, true};
-constexpr Abscissa over_acceleration{"Over acceleration", "acceleration, m/s²", acceleration};
-constexpr Abscissa over_time{"Over time", "time since the start of the record, s", time, true};
-constexpr Abscissa after_reversals{"After reversals", "displacement since the last reversal, µm", way, true, true};
+constexpr Abscissa over_position{"Along the stroke", "position", position, &ShownUnits::position};
+constexpr Abscissa over_velocity{"Over velocity", "velocity", velocity, &ShownUnits::slow};
+constexpr Abscissa over_speed{"Over speed", "speed", speed, &ShownUnits::slow, true, true};
+constexpr Abscissa over_acceleration{"Over acceleration", "acceleration", acceleration, &ShownUnits::acceleration};
+constexpr Abscissa over_time{"Over time", "time since the start of the record, s", time, nullptr, true};
+constexpr Abscissa after_reversals{
+    "After reversals", "displacement since the last reversal", way, &ShownUnits::deviation, true, true};
 
 // Null where nothing but the effect's own force is worth it.
 const Abscissa* abscissa_of(sim::Abscissa abscissa) {
@@ -76,12 +78,13 @@ const Abscissa* abscissa_of(sim::Abscissa abscissa) {
   return nullptr;
 }
 
-sim::Chart partial(const LogRows& rows, const Abscissa& abscissa, const Eigen::VectorXd& left,
+sim::Chart partial(const LogRows& rows, const ShownUnits& own, const Abscissa& abscissa, const Eigen::VectorXd& left,
                    const Eigen::VectorXd& by) {
   sim::Chart chart;
   chart.title = abscissa.title;
-  chart.x_label = abscissa.label;
-  chart.y_label = abscissa.opposing ? "force against the motion, N" : "force, N";
+  const bool plain = abscissa.shown == nullptr;
+  chart.x_label = plain ? std::string(abscissa.label) : axis_label(abscissa.label, own.*abscissa.shown);
+  chart.y_label = axis_label(abscissa.opposing ? "force against the motion" : "force", own.force);
   chart.caption =
       "Means over equal numbers of samples: residual force without the parts of all other causes, and force of this "
       "cause.";
@@ -89,9 +92,10 @@ sim::Chart partial(const LogRows& rows, const Abscissa& abscissa, const Eigen::V
   chart.levels = {0.0};
   const Eigen::VectorXd sign = abscissa.opposing ? direction(rows) : Eigen::VectorXd::Ones(rows.rows());
   const Eigen::VectorXd over = abscissa.values(rows);
+  const double scale = plain ? 1.0 : (own.*abscissa.shown).factor;
   const auto mean = [&](const char* name, const Eigen::VectorXd& force) {
-    const Eigen::VectorXd signed_force = sign.cwiseProduct(force);
-    return abscissa.logarithmic ? means(name, over, 1.0, signed_force) : even_means(name, over, 1.0, signed_force);
+    const Eigen::VectorXd signed_force = own.force.factor * sign.cwiseProduct(force);
+    return abscissa.logarithmic ? means(name, over, scale, signed_force) : even_means(name, over, scale, signed_force);
   };
   auto residual = mean("residual without this cause", left);
   residual.points = true;
@@ -100,15 +104,15 @@ sim::Chart partial(const LogRows& rows, const Abscissa& abscissa, const Eigen::V
 }
 
 // Against the cause's own force: what is right lies on the diagonal.
-sim::Chart added_variable(const Eigen::VectorXd& left, const Eigen::VectorXd& by) {
+sim::Chart added_variable(const ShownUnits& own, const Eigen::VectorXd& left, const Eigen::VectorXd& by) {
   sim::Chart chart;
   chart.title = "Residual against this cause";
-  chart.x_label = "force of this cause, N";
-  chart.y_label = "residual force without it, N";
+  chart.x_label = axis_label("force of this cause", own.force);
+  chart.y_label = axis_label("residual force without it", own.force);
   chart.caption =
       "Means over equal numbers of samples, without the parts of all other causes. On the line the cause explains the "
       "residual completely.";
-  auto residual = means("residual without this cause", by, 1.0, left, 40);
+  auto residual = means("residual without this cause", by, own.force.factor, own.force.factor * left, 40);
   residual.points = true;
   sim::Series line{.name = "this cause", .x = residual.x, .y = residual.x};
   chart.series = {std::move(residual), std::move(line)};
@@ -125,8 +129,8 @@ void add_cause_charts(Verdict& verdict, const LogRows& rows, const SearchContext
     const Eigen::VectorXd left = after + by;
     auto& finding = verdict.findings[k];
     if (const auto* abscissa = abscissa_of(finding.effect->abscissa))
-      finding.charts.push_back(partial(rows, *abscissa, left, by));
-    finding.charts.push_back(added_variable(left, by));
+      finding.charts.push_back(partial(rows, verdict.units, *abscissa, left, by));
+    finding.charts.push_back(added_variable(verdict.units, left, by));
   }
 }
 

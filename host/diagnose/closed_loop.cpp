@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "host/diagnose/chart_means.hpp"
+#include "host/diagnose/diagnosis_charts.hpp"
 #include "host/diagnose/replay_setup.hpp"
 #include "host/simulate/control_run.hpp"
 #include "sim/effects/cross_axis_coupling/cross_axis_coupling.hpp"
@@ -54,7 +55,8 @@ void add_pictures(Verdict& verdict, const std::vector<Log>& logs, const std::vec
   sim::Chart error;
   error.title = "Position error on held-out data";
   error.x_label = "time, s";
-  error.y_label = "set minus actual position, µm";
+  const auto deviation = verdict.units.deviation;
+  error.y_label = axis_label("set minus actual position", deviation);
   error.caption =
       fmt::format("{}, around the largest deviation of the machine file; double-click shows the whole record.",
                   std::filesystem::path(chosen.source).filename().string());
@@ -62,12 +64,12 @@ void add_pictures(Verdict& verdict, const std::vector<Log>& logs, const std::vec
   error.x_range = std::array{from, from + 2.0 * shown};
   auto difference = error;
   difference.title.clear();
-  difference.y_label = "simulated minus measured, µm";
+  difference.y_label = axis_label("simulated minus measured", deviation);
   difference.caption.clear();
   difference.levels = {0.0};
   const auto line = [&](sim::Series series, const auto& value) {
     series.x = chosen.t;
-    for (std::size_t i = 0; i < chosen.t.size(); ++i) series.y.push_back(1e6 * value(i));
+    for (std::size_t i = 0; i < chosen.t.size(); ++i) series.y.push_back(deviation.factor * value(i));
     return series;
   };
   sim::Series of_machine{.name = "measured", .x = {}, .y = {}};
@@ -103,7 +105,7 @@ void judge_in_closed_loop(Verdict& verdict, const machine::Machine& machine, std
                   [](const Finding& finding) { return sim::is_a<sim::CrossAxisCoupling>(finding.effect); });
   auto setup = replay_setup_of(machine, axis, held_out, coupled);
   if (setup.logs.empty()) return;
-  verdict.closed_loop_withheld = refused_injection(machine, axis, held_out, coupled);
+  verdict.closed_loop_withheld = why_not_simulated(machine, axis, held_out, coupled);
   if (!verdict.closed_loop_withheld.empty()) return;
   std::vector<std::vector<double>> measured;
   for (const auto& log : setup.logs) measured.push_back(log.axes.front().x);

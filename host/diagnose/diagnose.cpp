@@ -25,6 +25,7 @@
 #include "host/diagnose/search.hpp"
 #include "host/diagnose/second_band.hpp"
 #include "host/identify/identification.hpp"
+#include "host/identify/own_identification.hpp"
 #include "host/identify/standstill.hpp"
 #include "host/identify/suitability.hpp"
 #include "sim/effects/effects.hpp"
@@ -181,7 +182,7 @@ double explained(const std::vector<Term>& terms) {
 std::string why_motion_is_measured(const DiagnoseInput& input) {
   auto all = input.logs;
   all.insert(all.end(), input.held_out.begin(), input.held_out.end());
-  const auto refused = refused_injection(input.machine, input.axis, all);
+  const auto refused = why_not_simulated(input.machine, input.axis, all);
   return fmt::format(
       "{} The regressors were computed from the measured motion, which contains the response of the control loop to "
       "the disturbances.{}",
@@ -218,7 +219,7 @@ void judge_agreement(Verdict& verdict, const NoiseFloor& floor, double record_fo
   verdict.noise_floor = floor;
   verdict.agreement = agreement_of({verdict.extended.force_rms, verdict.extended.position_error_rms, floor.force(),
                                     floor.position, record_force_rms},
-                                   verdict.closed_loop_withheld);
+                                   verdict.closed_loop_withheld, verdict.units);
 }
 
 }  // namespace
@@ -232,18 +233,19 @@ Verdict diagnose(const DiagnoseInput& input) {
   };
   Verdict verdict;
   verdict.axis = axis.name;
+  verdict.units = ShownUnits(axis.coordinate);
   verdict.machine = input.machine.id + ".toml";
-  auto logs = input.logs;
-  auto held_out = input.held_out;
+  for (const auto* records : {&input.logs, &input.held_out})
+    for (auto& question : questions_before(*records, axis)) verdict.questions.push_back(std::move(question));
+  auto logs = linear_logs(input.logs, input.machine.axes);
+  auto held_out = linear_logs(input.held_out, input.machine.axes);
   for (auto* records : {&logs, &held_out})
     for (auto& log : *records) count_from_start(log);
   for (const auto& log : logs) verdict.logs.push_back(log.source);
   for (const auto& log : held_out) verdict.holdout.push_back(log.source);
-  for (const auto* records : {&logs, &held_out}) {
-    for (auto& question : questions_before(*records, axis)) verdict.questions.push_back(std::move(question));
+  for (const auto* records : {&logs, &held_out})
     for (const auto& log : *records)
       for (const auto& note : log.notes) verdict.notes.push_back(fmt::format("{}: {}", log.source, note));
-  }
   for (const auto& log : logs) refuse_unreachable_set_points(log, axis);
   for (const auto& log : held_out) refuse_unreachable_set_points(log, axis);
   refuse_same_record(logs, held_out, axis);
@@ -344,12 +346,14 @@ Verdict diagnose(const DiagnoseInput& input) {
   begin(4);
   propose_next_measurement(verdict, {input.machine, input.axis, settings, regressors, inside, context, found},
                            input.next_measurement);
-  judge_command(verdict, input, {logs, rows}, {held_out, held_rows}, record_delay(regressors, context, found));
+  if (input.machine.axes[input.axis].cascaded())
+    judge_command(verdict, input, {logs, rows}, {held_out, held_rows}, record_delay(regressors, context, found));
   for (const auto& d : found.discarded) verdict.rejected.push_back({*candidates()[d.candidate].effect, d.why});
   if (outside.unexplained.signature)
     verdict.unexplained = outside.unexplained;
   else if (resolved && withdrawn.empty())
-    verdict.unexplained = signature_of(regressors, found.residual, target.squaredNorm(), found.correlation);
+    verdict.unexplained =
+        signature_of(regressors, found.residual, target.squaredNorm(), found.correlation, verdict.units);
   add_cause_charts(verdict, regressors, context, found.terms, found.residual);
   add_charts(verdict, rows, target, found.residual);
   begin(5);

@@ -1,5 +1,7 @@
 #include "host/diagnose/diagnosis_charts.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -12,9 +14,9 @@ namespace {
 
 constexpr std::size_t most_points = 3000;
 
-std::vector<double> thinned(const Eigen::VectorXd& values, std::size_t step) {
+std::vector<double> thinned(const Eigen::VectorXd& values, std::size_t step, double factor = 1.0) {
   std::vector<double> kept;
-  for (Eigen::Index i = 0; i < values.size(); i += static_cast<Eigen::Index>(step)) kept.push_back(values[i]);
+  for (Eigen::Index i = 0; i < values.size(); i += static_cast<Eigen::Index>(step)) kept.push_back(factor * values[i]);
   return kept;
 }
 
@@ -44,6 +46,14 @@ sim::Series spectrum(const Eigen::VectorXd& values, double period) {
 
 }  // namespace
 
+std::string axis_label(std::string_view quantity, const ShownQuantity& shown) {
+  std::string unit = shown.unit;
+  for (const auto& [plain, printed] :
+       {std::pair<std::string_view, std::string_view>{"^2", "²"}, {"um", "µm"}, {"urad", "µrad"}})
+    if (const auto at = unit.find(plain); at != std::string::npos) unit.replace(at, plain.size(), printed);
+  return fmt::format("{}, {}", quantity, unit);
+}
+
 void add_charts(Verdict& verdict, const LogRows& rows, const Eigen::VectorXd& before, const Eigen::VectorXd& after) {
   // Over time: the first log alone, times of several overlap.
   const auto first = rows.logs().size() > 1 ? static_cast<Eigen::Index>(rows.logs()[1]) : rows.rows();
@@ -52,10 +62,12 @@ void add_charts(Verdict& verdict, const LogRows& rows, const Eigen::VectorXd& be
   sim::Chart over_time;
   over_time.title = "Residual force over time";
   over_time.x_label = "time, s";
-  over_time.y_label = "measured minus expected force, N";
+  const auto& own = verdict.units;
+  over_time.y_label = fmt::format("measured minus expected force, {}", own.force.unit);
   over_time.caption = "Measured motor force minus the force that the machine file predicts for the measured motion.";
-  over_time.series = {of_machine_file({.name = {}, .x = time, .y = thinned(before.head(first), step)}),
-                      of_extended({.name = {}, .x = time, .y = thinned(after.head(first), step)})};
+  over_time.series = {
+      of_machine_file({.name = {}, .x = time, .y = thinned(before.head(first), step, own.force.factor)}),
+      of_extended({.name = {}, .x = time, .y = thinned(after.head(first), step, own.force.factor)})};
   over_time.shape = {true, sim::Shape::Height::usual};
   verdict.before_after.push_back(std::move(over_time));
 
@@ -63,27 +75,29 @@ void add_charts(Verdict& verdict, const LogRows& rows, const Eigen::VectorXd& be
   struct Abscissa {
     const char *title, *label;
     const Eigen::VectorXd& values;
-    double scale;
+    ShownQuantity shown;
   };
-  for (const auto& a : {Abscissa{"Residual force over position", "position, mm", position, 1e3},
-                        Abscissa{"Residual force over speed", "velocity, mm/s", rows.velocity, 1e3},
-                        Abscissa{"Residual force over acceleration", "acceleration, m/s²", rows.acceleration, 1.0}}) {
+  const Eigen::VectorXd shown_before = own.force.factor * before, shown_after = own.force.factor * after;
+  for (const auto& a :
+       {Abscissa{"Residual force over position", "position", position, own.position},
+        Abscissa{"Residual force over speed", "velocity", rows.velocity, own.slow},
+        Abscissa{"Residual force over acceleration", "acceleration", rows.acceleration, own.acceleration}}) {
     sim::Chart chart;
     chart.title = a.title;
-    chart.x_label = a.label;
-    chart.y_label = "mean of measured minus expected force, N";
-    chart.series = {of_machine_file(even_means("", a.values, a.scale, before)),
-                    of_extended(even_means("", a.values, a.scale, after))};
+    chart.x_label = axis_label(a.label, a.shown);
+    chart.y_label = fmt::format("mean of measured minus expected force, {}", own.force.unit);
+    chart.series = {of_machine_file(even_means("", a.values, a.shown.factor, shown_before)),
+                    of_extended(even_means("", a.values, a.shown.factor, shown_after))};
     chart.levels = {0.0};
     verdict.before_after.push_back(std::move(chart));
   }
   sim::Chart frequencies;
   frequencies.title = "Spectrum of the residual force";
   frequencies.x_label = "frequency, Hz";
-  frequencies.y_label = "residual force, N/√Hz";
+  frequencies.y_label = fmt::format("residual force, {}/√Hz", own.force.unit);
   frequencies.logarithmic_x = true;
-  frequencies.series = {of_machine_file(spectrum(before.head(first), rows.period(0))),
-                        of_extended(spectrum(after.head(first), rows.period(0)))};
+  frequencies.series = {of_machine_file(spectrum(shown_before.head(first), rows.period(0))),
+                        of_extended(spectrum(shown_after.head(first), rows.period(0)))};
   verdict.before_after.push_back(std::move(frequencies));
 }
 

@@ -10,6 +10,9 @@
 
 namespace stiction::host {
 
+// "velocity, mm/s": of what `shown` shows, with the squares of its unit as a page prints them.
+std::string axis_label(std::string_view quantity, const ShownQuantity& shown);
+
 // `before`, `after`: residual force in the rows (N), with the file's machine and with all causes. `verdict`: to which
 // they are added.
 void add_charts(Verdict& verdict, const LogRows& rows, const Eigen::VectorXd& before, const Eigen::VectorXd& after);

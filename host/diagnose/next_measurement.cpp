@@ -6,8 +6,10 @@
 #include <cmath>
 #include <numeric>
 
+#include "host/diagnose/diagnosis_charts.hpp"
 #include "host/diagnose/separation.hpp"
 #include "host/diagnose/trajectory_rehearsal.hpp"
+#include "host/log/own_units.hpp"
 #include "sim/effects/effects.hpp"
 
 namespace stiction::host {
@@ -135,24 +137,26 @@ double worth(const RehearsedTrajectory& trajectory, const Log& log) {
   return sum - 1e-5 * highest;
 }
 
-std::vector<sim::Chart> charts_of(const Log& log, const std::string& name) {
+std::vector<sim::Chart> charts_of(const Log& log, const std::string& name, const ShownUnits& own) {
   const auto& axis = log.axes.front();
-  const auto over_time = [&](const char* label, const std::vector<double>& values) {
+  const auto over_time = [&](const char* label, const ShownQuantity& shown, const std::vector<double>& values) {
     sim::Chart chart;
     chart.x_label = "time of the proposed record, s";
-    chart.y_label = label;
+    chart.y_label = axis_label(label, shown);
     chart.shape = {true, sim::Shape::Height::low};
     chart.series = {{.name = "proposed", .x = log.t, .y = values}};
-    for (double& v : chart.series.front().y) v *= 1e3;
+    for (double& v : chart.series.front().y) v *= shown.factor;
     return chart;
   };
-  auto position = over_time("set position, mm", axis.x_set), speed = over_time("set velocity, mm/s", axis.v_set);
+  auto position = over_time("set position", own.position, axis.x_set),
+       speed = over_time("set velocity", own.slow, axis.v_set);
   position.title = "Proposed: " + name;
   return {position, speed};
 }
 
 // Sorted by worth; the log of the best one, where it is of any.
-void rank(NextMeasurement& next, std::vector<Rehearsal>& rehearsals, std::vector<RehearsedTrajectory> judged) {
+void rank(NextMeasurement& next, std::vector<Rehearsal>& rehearsals, std::vector<RehearsedTrajectory> judged,
+          const ShownUnits& own) {
   std::vector<std::size_t> order(judged.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::vector<double> worths;
@@ -171,7 +175,7 @@ void rank(NextMeasurement& next, std::vector<Rehearsal>& rehearsals, std::vector
   if (!any) return;
   next.times = static_cast<int>(std::ceil(std::pow(enough / weakest, 2) - 1e-9));
   next.log = std::move(rehearsals[order.front()].log);
-  next.charts = charts_of(*next.log, next.trajectories.front().name);
+  next.charts = charts_of(*next.log, next.trajectories.front().name, own);
 }
 
 }  // namespace
@@ -201,8 +205,12 @@ void propose_next_measurement(Verdict& verdict, const Searched& searched, bool p
         judged.back().separations.push_back(question.shown.by_motion ? separation_of(separation, records, question)
                                                                      : 0.0);
     }
-    rank(next, rehearsals, std::move(judged));
-    if (next.log) next.note = extent_words(*next.log, searched.rows);
+    rank(next, rehearsals, std::move(judged), verdict.units);
+    if (next.log) {
+      next.note = extent_words(*next.log, searched.rows, verdict.units);
+      auto& channels = next.log->axes.front();
+      channels = in_own_units(std::move(channels), searched.machine.axes[searched.axis].coordinate);
+    }
   }
   // What was nearly found and no trajectory shows is no news.
   if (next.log || next.questions.front().rival) verdict.next = std::move(next);

@@ -10,6 +10,7 @@
 #include "host/identify/suitability.hpp"
 #include "host/log/questions.hpp"
 #include "host/log/set_points.hpp"
+#include "host/log/shown_units.hpp"
 
 namespace stiction::host {
 namespace {
@@ -47,20 +48,22 @@ void refuse_same_record(std::span<const Log> logs, std::span<const Log> held_out
 void refuse_unreachable_set_points(const Log& log, const machine::AxisModel& axis) {
   const auto& channels = channels_of(log, axis);
   if (channels.x_set.empty()) return;
+  const ShownUnits own(axis.coordinate);
   const SetPoints points(log, channels);
   double speed = 0.0;
   for (const double v : points.velocity()) speed = std::max(speed, std::abs(v));
   if (speed > 1.001 * axis.max_velocity)
-    throw LogError(
-        fmt::format("{}: found a set velocity of {:.4g} m/s; expected at most {:.4g} m/s, the max_velocity of axis {}: "
-                    "the machine in the machine file cannot follow these set-points",
-                    log.source, speed, axis.max_velocity, axis.name));
+    throw LogError(fmt::format(
+        "{}: found a set velocity of {:.4g} {}; expected at most {:.4g} {}, the max_velocity of axis {}: "
+        "the machine in the machine file cannot follow these set-points",
+        log.source, own.speed(speed), own.speed.unit, own.speed(axis.max_velocity), own.speed.unit, axis.name));
   const auto [low, high] = std::minmax_element(channels.x_set.begin(), channels.x_set.end());
-  if (axis.travel > 0.0 && *high - *low > 1.001 * axis.travel)
+  if (!axis.modulo && axis.travel > 0.0 && *high - *low > 1.001 * axis.travel)
     throw LogError(
-        fmt::format("{}: found set positions over {:.4g} m; expected at most {:.4g} m, the travel of axis {}: the "
+        fmt::format("{}: found set positions over {:.4g} {}; expected at most {:.4g} {}, the travel of axis {}: the "
                     "machine in the machine file cannot follow these set-points",
-                    log.source, *high - *low, axis.travel, axis.name));
+                    log.source, own.position(*high - *low), own.position.unit, own.position(axis.travel),
+                    own.position.unit, axis.name));
 }
 
 void refuse_other_units(const LogRows& rows, const Eigen::VectorXd& expected) {

@@ -66,8 +66,10 @@ ReplaySetup replay_setup_of(const machine::Machine& machine, std::size_t axis, c
   return setup;
 }
 
-std::string refused_injection(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
+std::string why_not_simulated(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
                               bool coupled) {
+  if (machine.axes[axis].unknown_controller())
+    return fmt::format("The controller of axis {} is not known", machine.axes[axis].name);
   for (const auto& log : logs)
     for (std::size_t k = 0; k < machine.axes.size(); ++k) {
       if (k != axis && !(coupled && machine.axes.size() == 2)) continue;
@@ -81,7 +83,7 @@ std::string refused_injection(const machine::Machine& machine, std::size_t axis,
 std::vector<Log> replays(const ReplaySetup& setup) {
   std::vector<Log> all;
   for (const auto& log : setup.logs)
-    all.push_back(replay<FixedSignals>(setup.machine, log, {setup.machine.axes.front().name}));
+    all.push_back(replay_linear<FixedSignals>(setup.machine, log, {setup.machine.axes.front().name}));
   return all;
 }
 
@@ -93,7 +95,7 @@ std::vector<std::vector<double>> simulated_positions(const ReplaySetup& setup) {
 
 WithoutNoise without_noise(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs) {
   auto setup = replay_setup_of(machine, axis, logs);
-  if (setup.logs.size() != logs.size() || !refused_injection(machine, axis, logs).empty()) return {};
+  if (setup.logs.size() != logs.size() || !why_not_simulated(machine, axis, logs).empty()) return {};
   setup.machine.axes.front().encoder.noise = 0.0;
   try {
     WithoutNoise without{logs, replays(setup)};
@@ -143,7 +145,7 @@ Log EffectResponse::disturbed(std::size_t record, std::size_t run) const {
 }
 
 Log EffectResponse::replayed(const Log& log, const machine::Machine& machine) const {
-  return replay<FixedSignals>(machine, log, {machine_.axes.front().name});
+  return replay_linear<FixedSignals>(machine, log, {machine_.axes.front().name});
 }
 
 std::vector<double> EffectResponse::residual(Log simulated, const Log& of) const {

@@ -23,9 +23,10 @@ struct ReplaySetup {
 ReplaySetup replay_setup_of(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
                             bool coupled = false);
 
-// Why a test signal of `logs` cannot act in replays of this axis, and of the other one if they are `coupled`: "FILE:
-// found ...". Empty when all can. `machine` of the file; `axis`: its index.
-std::string refused_injection(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
+// Why replays of this axis would not be what was recorded: its controller is not known, or a test signal of `logs`
+// cannot act in them, nor in those of the other axis if they are `coupled` ("FILE: found ..."). Empty when they are.
+// `machine` of the file; `axis`: its index.
+std::string why_not_simulated(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
                               bool coupled = false);
 
 // What the bench's axis makes of each log's set-points. Throws FaultTripped, LogError.

@@ -103,7 +103,7 @@ double strongest_line(const LogRows& rows, const Eigen::VectorXd& residual) {
 }  // namespace
 
 Unexplained signature_of(const LogRows& rows, const Eigen::VectorXd& residual, double baseline_square,
-                         double correlation) {
+                         double correlation, const ShownUnits& units) {
   const double n = static_cast<double>(rows.rows());
   const auto shortest = static_cast<std::size_t>(std::clamp(6.0 * correlation, n / 100.0, n / 30.0)) + 1;
   Evidence plain(residual, blocks_of(rows.velocity, rows.logs(), shortest)), white = plain;
@@ -126,7 +126,8 @@ Unexplained signature_of(const LogRows& rows, const Eigen::VectorXd& residual, d
   const auto scan = scan_pitches(rows, residual, whitening, one, {}, 1);
   if (!scan.periods.empty())
     look(waves(position, 1.0 / scan.periods.front()),
-         fmt::format("periodic in position with pitch {:.4g} mm", 1e3 * scan.periods.front()));
+         fmt::format("periodic in position with pitch {:.4g} {}", units.position(scan.periods.front()),
+                     units.position.unit));
   if (const double frequency = strongest_line(rows, residual); frequency > 0.0)
     look(waves(rows.time, frequency), fmt::format("periodic in time with frequency {:.4g} Hz", frequency));
   look(ranges(position, one, 12), "force that depends on position");

@@ -8,8 +8,8 @@
 namespace stiction::host {
 
 // `residual`: N, in the rows; `baseline_square`: sum of squares before any cause was taken out (N^2). `correlation`:
-// rows over which the residual is correlated.
+// rows over which the residual is correlated; `units`: of the axis, for the words.
 Unexplained signature_of(const LogRows& rows, const Eigen::VectorXd& residual, double baseline_square,
-                         double correlation);
+                         double correlation, const ShownUnits& units);
 
 }  // namespace stiction::host

@@ -83,7 +83,8 @@ sim::MotionRange motion_range(const machine::AxisModel& axis, const LogRows& row
   return {low, high, speed, acceleration, acceleration / rise, highest};
 }
 
-std::string extent_words(const Log& proposed, const LogRows& rows) {
+std::string extent_words(const Log& proposed, const LogRows& rows, const ShownUnits& units) {
+  const auto& place = units.position;
   const auto& axis = proposed.axes.front();
   const auto [low, high] = std::minmax_element(axis.x_set.begin(), axis.x_set.end());
   const auto largest = [](const std::vector<double>& values) {
@@ -91,20 +92,22 @@ std::string extent_words(const Log& proposed, const LogRows& rows) {
         *std::max_element(values.begin(), values.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
   };
   auto words = fmt::format(
-      "It begins at rest at {:.3f} mm, remains between {:.3f} and {:.3f} mm and reaches {:.3g} m/s and {:.3g} m/s^2.",
-      1e3 * axis.x_set.front(), 1e3 * *low, 1e3 * *high, largest(axis.v_set), largest(axis.a_set));
+      "It begins at rest at {:.3f} {}, remains between {:.3f} and {:.3f} {} and reaches {:.3g} {} and {:.3g} {}.",
+      place(axis.x_set.front()), place.unit, place(*low), place(*high), place.unit, units.speed(largest(axis.v_set)),
+      units.speed.unit, units.acceleration(largest(axis.a_set)), units.acceleration.unit);
   const auto covered = covered_by(rows);
   const double slack = 1e-3 * (covered.high - covered.low);
   if (*low < covered.low - slack || *high > covered.high + slack)
     words +=
-        fmt::format(" These records cover only {:.3f} to {:.3f} mm: make sure that the range is free of obstacles.",
-                    1e3 * covered.low, 1e3 * covered.high);
+        fmt::format(" These records cover only {:.3f} to {:.3f} {}: make sure that the range is free of obstacles.",
+                    place(covered.low), place(covered.high), place.unit);
   return words;
 }
 
 std::vector<Rehearsal> rehearse(const machine::Machine& machine, std::size_t axis, const sim::MotionRange& range,
                                 const LogRows& rows, const SearchContext& context, const SignalSettings& settings) {
   std::vector<Rehearsal> all;
+  if (machine.axes.at(axis).unknown_controller()) return all;
   if (!(range.high > range.low) || !(range.speed > 0.0) || !(range.acceleration > 0.0)) return all;
   auto setup = machine;
   setup.axes = {machine.axes.at(axis)};
@@ -113,7 +116,7 @@ std::vector<Rehearsal> rehearse(const machine::Machine& machine, std::size_t axi
   const double row_period = rows.period(0), period = row_period / std::max(1.0, std::round(row_period / usual_period));
   for (const auto& kind : sim::separating_trajectories()) {
     try {
-      auto log = replay<FixedSignals>(setup, set_points(kind, range, own.name, period));
+      auto log = replay_linear<FixedSignals>(setup, set_points(kind, range, own.name, period));
       log.axes.front().i_set.clear();
       LogRows moved({motion_of(log, log.axes.front(), own, Amperes::amplitude, settings)}, settings);
       log.axes.front().force.clear();

@@ -1,5 +1,6 @@
 // What a diagnosis found: causes with parameters and evidence, what was tried and rejected, what stays unexplained. The
-// report and verdict.json show it; they compute nothing.
+// report and verdict.json show it; they compute nothing. Everything is computed on the linear axis; parameters and
+// words are in the units of the axis itself, and `units` shows the rest in them.
 #pragma once
 
 #include <array>
@@ -11,6 +12,7 @@
 #include "host/diagnose/agreement.hpp"
 #include "host/diagnose/noise_floor.hpp"
 #include "host/log/log.hpp"
+#include "host/log/shown_units.hpp"
 #include "sim/effects/effects.hpp"
 #include "sim/experiment/experiment_result.hpp"
 
@@ -19,7 +21,7 @@ namespace stiction::host {
 // A key of an effect with what was found.
 struct EffectParameter {
   std::string key;   // "pitch"
-  std::string unit;  // SI
+  std::string unit;  // SI, of the axis itself
   bool list = false;
   std::vector<double> values;           // one, or those of a list
   std::vector<double> standard_errors;  // one a value; empty: not known
@@ -27,8 +29,8 @@ struct EffectParameter {
   // In verdict.json: "pitch_m".
   std::string name() const { return key + sim::unit_suffix(unit); }
 };
-// Of an axis' effect. Throws std::logic_error for a key that the effect has not. `values` and `errors` in SI, one for
-// each of a list.
+// Of an axis' effect. Throws std::logic_error for a key that the effect has not. `values` and `errors` in SI of the
+// linear axis, one for each of a list.
 EffectParameter effect_parameter(const machine::AxisModel& axis, sim::EffectId effect, std::string_view key,
                                  std::vector<double> values, std::vector<double> errors);
 
@@ -158,6 +160,7 @@ struct StartValue {
 
 struct Verdict {
   std::string axis;  // of the machine; empty of a diagnosis of rows
+  ShownUnits units;  // of the axis; figures and charts are in those of the linear axis until they are shown
   std::string machine;
   std::vector<std::string> logs, holdout;
   bool holdout_is_a_part = false;      // no held-out log was given: the last third of each log stands in for one

@@ -14,14 +14,17 @@ Json number_or_list(const std::vector<double>& values, bool list) {
   return list || values.size() != 1 ? Json(values) : Json(values.front());
 }
 
-Json figures(const ResidualFigures& f, const std::string& command_unit) {
-  Json out{{"force_rms_N", f.force_rms}};
-  if (f.position_error_rms) out["position_error_rms_um"] = *f.position_error_rms * 1e6;
-  if (f.command_rms) out["command_rms_" + command_unit] = *f.command_rms;
+std::string named(const char* quantity, const ShownQuantity& shown) { return quantity + sim::unit_suffix(shown.unit); }
+
+Json figures(const ResidualFigures& f, const Verdict& verdict) {
+  const auto &force = verdict.units.force, &deviation = verdict.units.deviation;
+  Json out{{named("force_rms", force), force(f.force_rms)}};
+  if (f.position_error_rms) out[named("position_error_rms", deviation)] = deviation(*f.position_error_rms);
+  if (f.command_rms) out["command_rms_" + verdict.command_unit] = *f.command_rms;
   return out;
 }
 
-Json finding_json(const Finding& f) {
+Json finding_json(const Finding& f, const ShownUnits& units) {
   Json parameters = Json::object(), errors = Json::object();
   for (const auto& p : f.parameters) {
     parameters[p.name()] = number_or_list(p.values, p.list);
@@ -38,7 +41,7 @@ Json finding_json(const Finding& f) {
            {"standard_errors", errors}, {"explains", f.explains},   {"holdout_gain", gain},
            {"p_value", f.p_value},      {"confused_with", confused}};
   if (f.in_command) out["residual"] = "command";
-  if (f.part_error) out["part_error_um"] = *f.part_error * 1e6;
+  if (f.part_error) out[named("part_error", units.deviation)] = units.deviation(*f.part_error);
   return out;
 }
 
@@ -115,7 +118,8 @@ void add_agreement(Json& out, const Verdict& verdict) {
     out["status"] = name_of(verdict.agreement->status);
     out["status_reason"] = verdict.agreement->reason;
   }
-  if (verdict.noise_floor) out["noise_floor_N"] = verdict.noise_floor->force();
+  if (verdict.noise_floor)
+    out[named("noise_floor", verdict.units.force)] = verdict.units.force(verdict.noise_floor->force());
   if (!verdict.closed_loop_withheld.empty()) out["closed_loop_withheld"] = verdict.closed_loop_withheld;
   if (!verdict.questions.empty()) out["questions"] = verdict.questions;
   if (verdict.identified.empty()) return;
@@ -129,15 +133,15 @@ void add_agreement(Json& out, const Verdict& verdict) {
 
 Json verdict_json(const Verdict& verdict) {
   Json findings = Json::array(), rejected = Json::array();
-  for (const auto& f : verdict.findings) findings.push_back(finding_json(f));
+  for (const auto& f : verdict.findings) findings.push_back(finding_json(f, verdict.units));
   for (const auto& r : verdict.rejected) rejected.push_back({{"effect", r.effect.name()}, {"why", r.why}});
   Json out{{"schema", "stiction.verdict/1"},
            {"machine", verdict.machine},
            {"logs", verdict.logs},
            {"holdout", verdict.holdout},
            {"holdout_is_a_part", verdict.holdout_is_a_part},
-           {"baseline", figures(verdict.baseline, verdict.command_unit)},
-           {"extended", figures(verdict.extended, verdict.command_unit)},
+           {"baseline", figures(verdict.baseline, verdict)},
+           {"extended", figures(verdict.extended, verdict)},
            {"findings", findings},
            {"rejected", rejected},
            {"unexplained",
@@ -236,15 +240,23 @@ std::string next_measurement_text(const NextMeasurement& next) {
 
 namespace {
 
+// "1.23 N rms".
+std::string rms_text(const ShownQuantity& shown, double value, int digits) {
+  return fmt::format("{:.{}g} {} rms", shown(value), digits, shown.unit);
+}
+
 std::string agreement_text(const Verdict& verdict) {
   std::string text;
   if (verdict.noise_floor) {
     const auto& floor = *verdict.noise_floor;
+    const auto& force = verdict.units.force;
     text += fmt::format(
-        "  {:<14} force {:.4g} N rms, position {:.3g} um rms (force: encoder {:.3g} N, clock {:.3g} N, current, force "
-        "or "
-        "voltage {:.3g} N, inverse dynamics {:.3g} N)\n",
-        "noise alone", floor.force(), floor.position * 1e6, floor.encoder, floor.clock, floor.effort, floor.dynamics);
+        "  {:<14} force {}, position {} (force: encoder {:.3g} {}, clock {:.3g} {}, current, force or voltage {:.3g} "
+        "{}, "
+        "inverse dynamics {:.3g} {})\n",
+        "noise alone", rms_text(force, floor.force(), 4), rms_text(verdict.units.deviation, floor.position, 3),
+        force(floor.encoder), force.unit, force(floor.clock), force.unit, force(floor.effort), force.unit,
+        force(floor.dynamics), force.unit);
   }
   const char* none = verdict.findings.empty() ? "no cause found; " : "";
   if (!verdict.agreement) return text + (verdict.findings.empty() ? "\nno cause found\n" : "");
@@ -269,14 +281,14 @@ std::string verdict_text(const Verdict& verdict) {
   std::string text;
   for (const auto& question : verdict.questions) text += fmt::format("QUESTION  {}\n\n", question);
   if (verdict.reference) text += rows_text(*verdict.reference);
-  const auto position = [](const ResidualFigures& f) {
-    return f.position_error_rms ? fmt::format(", position {:.3g} um rms", *f.position_error_rms * 1e6) : std::string();
+  const auto line = [&](const char* of, const ResidualFigures& f) {
+    const auto position = f.position_error_rms
+                              ? ", position " + rms_text(verdict.units.deviation, *f.position_error_rms, 3)
+                              : std::string();
+    return fmt::format("  {:<14} force {}{}\n", of, rms_text(verdict.units.force, f.force_rms, 4), position);
   };
-  text += fmt::format("residual on held-out data:\n  {:<14} force {:.4g} N rms{}\n", "machine file",
-                      verdict.baseline.force_rms, position(verdict.baseline));
-  if (!verdict.findings.empty())
-    text += fmt::format("  {:<14} force {:.4g} N rms{}\n", "extended", verdict.extended.force_rms,
-                        position(verdict.extended));
+  text += "residual on held-out data:\n" + line("machine file", verdict.baseline);
+  if (!verdict.findings.empty()) text += line("extended", verdict.extended);
   if (!verdict.closed_loop_withheld.empty())
     text += fmt::format("  position error in closed loop: withheld. {}\n", verdict.closed_loop_withheld);
   text += agreement_text(verdict);

@@ -121,6 +121,11 @@ std::vector<Log> linear_logs(std::vector<Log> logs, const machine::AxisModel& ax
   return logs;
 }
 
+std::vector<Log> linear_logs(std::vector<Log> logs, const std::vector<machine::AxisModel>& axes) {
+  for (const auto& axis : axes) logs = linear_logs(std::move(logs), axis);
+  return logs;
+}
+
 std::string own_name(const std::string& name) {
   if (name == "mass_kg") return "inertia_kg_m2";
   if (name == "force_at_1_m_per_s_N") return "moment_at_1_rad_per_s_N_m";

@@ -14,6 +14,8 @@ namespace stiction::host {
 // The logs with the channels of a rotary `axis` in the units of the linear one; as they are for a linear axis. Throws
 // LogError for channels of the other kind.
 std::vector<Log> linear_logs(std::vector<Log> logs, const machine::AxisModel& axis);
+// The same of every axis of a machine. `logs`, errors: as above; `axes`: of the machine.
+std::vector<Log> linear_logs(std::vector<Log> logs, const std::vector<machine::AxisModel>& axes);
 
 // "coulomb_N" of a rotary axis: "coulomb_N_m"; "mass_kg": "inertia_kg_m2". Other names stay.
 std::string own_name(const std::string& name);

@@ -41,18 +41,21 @@ std::string change(const std::string& before, const std::string& after, const ch
 }
 
 // What the extended machine file is worth on data that was not used; empty where nothing falls.
-std::string worth(const ResidualFigures& before, const ResidualFigures& after, const std::string& command_unit) {
+std::string worth(const ResidualFigures& before, const ResidualFigures& after, const Verdict& verdict) {
+  const auto &force = verdict.units.force, &deviation = verdict.units.deviation;
+  const auto number = [](double value) { return fmt::format("{:.3g}", value); };
   std::vector<std::string> parts;
   if (before.position_error_rms && after.position_error_rms && *after.position_error_rms < *before.position_error_rms)
-    parts.push_back(fmt::format("{} rms of position error", change(micrometres(*before.position_error_rms),
-                                                                   micrometres(*after.position_error_rms), "µm")));
+    parts.push_back(fmt::format("{} rms of position error",
+                                change(deviation_text(*before.position_error_rms, deviation),
+                                       deviation_text(*after.position_error_rms, deviation), deviation.unit)));
   if (after.force_rms < before.force_rms)
-    parts.push_back(fmt::format("{} rms of force", change(fmt::format("{:.3g}", before.force_rms),
-                                                          fmt::format("{:.3g}", after.force_rms), "N")));
+    parts.push_back(fmt::format("{} rms of force",
+                                change(number(force(before.force_rms)), number(force(after.force_rms)), force.unit)));
   if (before.command_rms && after.command_rms && *after.command_rms < *before.command_rms)
     parts.push_back(fmt::format("{} rms of controller output",
                                 change(fmt::format("{:.2g}", *before.command_rms),
-                                       fmt::format("{:.2g}", *after.command_rms), command_unit.c_str())));
+                                       fmt::format("{:.2g}", *after.command_rms), verdict.command_unit.c_str())));
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
@@ -69,10 +72,11 @@ std::string of_rows(const Verdict& verdict) {
 
 std::string nothing_found(const Verdict& verdict) {
   const auto& rest = verdict.baseline;
-  auto size = rest.force_rms > 0.0 ? fmt::format("{:.3g} N rms", rest.force_rms) : std::string();
+  const auto &force = verdict.units.force, &deviation = verdict.units.deviation;
+  auto size = rest.force_rms > 0.0 ? fmt::format("{:.3g} {} rms", force(rest.force_rms), force.unit) : std::string();
   if (rest.position_error_rms)
-    size +=
-        fmt::format("{}{} µm rms of position error", size.empty() ? "" : ", ", micrometres(*rest.position_error_rms));
+    size += fmt::format("{}{} {} rms of position error", size.empty() ? "" : ", ",
+                        deviation_text(*rest.position_error_rms, deviation), deviation.unit);
   const auto of = size.empty() ? "" : fmt::format(" of {}", size);
   const auto why = verdict.agreement ? verdict.agreement->reason : std::string();
   if (verdict.unexplained.signature)
@@ -97,13 +101,15 @@ std::string rest_of(const Verdict& verdict) {
   if (!verdict.agreement || !verdict.noise_floor) return "";
   if (verdict.agreement->status == Status::agrees) return "; the remaining residual is noise";
   if (verdict.agreement->status == Status::cannot_tell) return "; these records cannot tell whether more is missing";
-  return fmt::format("; noise accounts for {:.2g} N of the remaining force", verdict.noise_floor->force());
+  const auto& force = verdict.units.force;
+  return fmt::format("; noise accounts for {:.2g} {} of the remaining force", force(verdict.noise_floor->force()),
+                     force.unit);
 }
 
 }  // namespace
 
 std::string percent(double share) { return fmt::format("{:.{}f}", 100.0 * share, std::abs(share) < 0.1 ? 1 : 0); }
-std::string micrometres(double metres) { return fmt::format("{:.2g}", metres * 1e6); }
+std::string deviation_text(double linear, const ShownQuantity& shown) { return fmt::format("{:.2g}", shown(linear)); }
 
 std::string diagnosis_sentence(const Verdict& verdict) {
   if (verdict.findings.empty()) return typeset(nothing_found(verdict));
@@ -111,10 +117,10 @@ std::string diagnosis_sentence(const Verdict& verdict) {
       "The machine file{} lacks or misstates {}",
       verdict.identified.empty() ? "" : ", with mass and friction identified from these logs,", causes(verdict));
   if (verdict.reference) return typeset(fmt::format("{}; {}.", missing, of_rows(verdict)));
-  const auto gain = worth(verdict.baseline, verdict.extended, verdict.command_unit);
+  const auto gain = worth(verdict.baseline, verdict.extended, verdict);
   if (gain.empty())
-    return typeset(fmt::format("{}, but on held-out data the residual force does not fall ({:.3g} N rms).", missing,
-                               verdict.extended.force_rms));
+    return typeset(fmt::format("{}, but on held-out data the residual force does not fall ({:.3g} {} rms).", missing,
+                               verdict.units.force(verdict.extended.force_rms), verdict.units.force.unit));
   return typeset(fmt::format("{}; with it, the simulation's deviation on held-out data falls: {}{}.", missing, gain,
                              rest_of(verdict)));
 }

@@ -12,8 +12,8 @@ namespace stiction::host {
 // machine file's own rows.
 std::string diagnosis_sentence(const Verdict& verdict);
 
-// A length as reports print it, in micrometres with two digits. `metres`: of any sign.
-std::string micrometres(double metres);
+// A deviation of the position as reports print it, with two digits. `linear`: m, of any sign; `shown`: of the axis.
+std::string deviation_text(double linear, const ShownQuantity& shown);
 
 // A share as reports print it, in percent without its sign. `share`: 1 is all.
 std::string percent(double share);

@@ -72,13 +72,14 @@ std::string figures_of(const Finding& finding) {
   return text + ".";
 }
 
-std::string on_part(const Finding& finding) {
+std::string on_part(const Finding& finding, const ShownQuantity& deviation) {
   if (!finding.part_error)
     return "Not computed: the logs have no set-points with which the simulation could run with and without this cause.";
-  return fmt::format("Changes the position error by up to {} µm.", micrometres(*finding.part_error));
+  return typeset(fmt::format("Changes the position error by up to {} {}.",
+                             deviation_text(*finding.part_error, deviation), deviation.unit));
 }
 
-json cause_json(const Finding& finding) {
+json cause_json(const Finding& finding, const ShownQuantity& deviation) {
   const auto& effect = *finding.effect;
   json parameters = json::array(), confused = json::array();
   for (const auto& parameter : finding.parameters) add_rows(parameters, parameter);
@@ -95,11 +96,11 @@ json cause_json(const Finding& finding) {
           {"gain", gain_percent(gained_ratio(finding))},
           {"gain_interval",
            fmt::format("{} to {}", gain_percent(finding.holdout.ci95[1]), gain_percent(finding.holdout.ci95[0]))},
-          {"part", finding.part_error ? json(micrometres(*finding.part_error)) : json(nullptr)},
+          {"part", finding.part_error ? json(deviation_text(*finding.part_error, deviation)) : json(nullptr)},
           {"parameters", parameters},
           {"evidence", typeset(finding.evidence)},
           {"figures", figures_of(finding)},
-          {"on_part", on_part(finding)},
+          {"on_part", on_part(finding, deviation)},
           {"confused_with", confused}};
 }
 
@@ -150,15 +151,20 @@ std::string unexplained_text(const Unexplained& rest) {
 }
 
 json residuals_json(const Verdict& verdict) {
-  const auto row = [](const ResidualFigures& figures) {
-    return json{
-        {"force", fmt::format("{:.3g}", figures.force_rms)},
-        {"position", figures.position_error_rms ? json(micrometres(*figures.position_error_rms)) : json(nullptr)}};
+  const auto &force = verdict.units.force, &deviation = verdict.units.deviation;
+  const auto row = [&](const ResidualFigures& figures) {
+    return json{{"force", fmt::format("{:.3g}", force(figures.force_rms))},
+                {"position", figures.position_error_rms ? json(deviation_text(*figures.position_error_rms, deviation))
+                                                        : json(nullptr)}};
   };
-  json out{{"baseline", row(verdict.baseline)}, {"extended", row(verdict.extended)}, {"noise", nullptr}};
+  json out{{"baseline", row(verdict.baseline)},
+           {"extended", row(verdict.extended)},
+           {"noise", nullptr},
+           {"force_unit", force.unit},
+           {"position_unit", typeset(deviation.unit)}};
   if (verdict.noise_floor)
-    out["noise"] = {{"force", fmt::format("{:.3g}", verdict.noise_floor->force())},
-                    {"position", micrometres(verdict.noise_floor->position)}};
+    out["noise"] = {{"force", fmt::format("{:.3g}", force(verdict.noise_floor->force()))},
+                    {"position", deviation_text(verdict.noise_floor->position, deviation)}};
   return out;
 }
 
@@ -219,7 +225,7 @@ std::string diagnosis_report_html(const DiagnosisReport& report) {
       charts.push_back(chart_json(chart, fmt::format("cause-charts-{}", causes.size()), ""));
       all.push_back(chart);
     }
-    causes.push_back(cause_json(finding));
+    causes.push_back(cause_json(finding, verdict.units.deviation));
   }
   if (verdict.next)
     for (const auto& chart : verdict.next->charts) {
@@ -263,13 +269,15 @@ namespace {
 
 // "axis X agrees (1.2 N rms of residual force)", "axis Y does not agree (83 → 2.4 N rms with 1 cause)".
 std::string axis_clause(const Verdict& verdict) {
+  const auto& force = verdict.units.force;
   const auto status = verdict.agreement ? verdict.agreement->status : Status::cannot_tell;
   const auto words = status == Status::cannot_tell ? "cannot be told to agree" : std::string(name_of(status));
   if (verdict.findings.empty())
-    return fmt::format("axis {} {} ({:.3g} N rms of residual force)", verdict.axis, words, verdict.baseline.force_rms);
-  return fmt::format("axis {} {} ({:.3g} → {:.3g} N rms with {} {})", verdict.axis, words, verdict.baseline.force_rms,
-                     verdict.extended.force_rms, verdict.findings.size(),
-                     verdict.findings.size() == 1 ? "cause" : "causes");
+    return fmt::format("axis {} {} ({:.3g} {} rms of residual force)", verdict.axis, words,
+                       force(verdict.baseline.force_rms), force.unit);
+  return fmt::format("axis {} {} ({:.3g} → {:.3g} {} rms with {} {})", verdict.axis, words,
+                     force(verdict.baseline.force_rms), force(verdict.extended.force_rms), force.unit,
+                     verdict.findings.size(), verdict.findings.size() == 1 ? "cause" : "causes");
 }
 
 }  // namespace

@@ -27,6 +27,7 @@ std::string spelled(std::string_view text) {
   for (std::size_t at = 0; at < text.size();) {
     std::string_view from = text.substr(at, 1), to = from;
     if (is_word(text, at, "um")) from = "um", to = "µm";
+    if (is_word(text, at, "urad")) from = "urad", to = "µrad";
     for (const auto& [plain, spelling] : spellings)
       if (text.substr(at, plain.size()) == plain) from = plain, to = spelling;
     out += to;

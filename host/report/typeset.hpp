@@ -7,8 +7,8 @@
 
 namespace stiction::host {
 
-// The words "um" and "us" (the latter only where it is the whole text: it is an English word), "^2", "+-", and the
-// name of a friction model that begins the text before ":" or "," or ends it behind ", ".
+// The words "um", "urad" and "us" (the latter only where it is the whole text: it is an English word), "^2", "+-", and
+// the name of a friction model that begins the text before ":" or "," or ends it behind ", ".
 std::string typeset(std::string_view text);
 
 // A text's friction model and the text without it, from "NAME, TEXT" or "TEXT, NAME"; no model and the whole text

@@ -46,7 +46,8 @@ constexpr std::array table{
     MachineNeeds{.command = "machine", .least_axes = 0, .rotary = true, .controllers = Controllers::any},
     MachineNeeds{.command = "inspect", .rotary = true, .controllers = Controllers::any},
     MachineNeeds{.command = "replay", .rotary = true, .controllers = Controllers::known},
-    MachineNeeds{.command = "commissioning", .rotary = true},
+    MachineNeeds{.command = "diagnose", .rotary = true, .controllers = Controllers::any},
+    MachineNeeds{.command = "commissioning", .rotary = true, .controllers = Controllers::known},
     MachineNeeds{.command = "identify", .rotary = true, .controllers = Controllers::any, .formats = false},
 };
 
@@ -107,9 +108,10 @@ std::optional<std::string> what_is_missing(const machine::Machine& machine, cons
   if (!needs.rotary)
     for (const auto& axis : machine.axes)
       if (axis.coordinate.rotary())
-        return missing(fmt::format("the rotary axis {}", axis.name),
-                       "linear axes; inspect, identify, compare LOG, simulate replay and simulate commissioning serve "
-                       "rotary ones");
+        return missing(
+            fmt::format("the rotary axis {}", axis.name),
+            "linear axes; inspect, identify, diagnose, compare LOG, simulate replay and simulate commissioning "
+            "serve rotary ones");
   for (const auto& axis : machine.axes) {
     if (axis.cascaded() || needs.controllers == Controllers::any) continue;
     const bool unknown = axis.controller->structure == machine::ControlStructure::unknown;
@@ -117,8 +119,8 @@ std::optional<std::string> what_is_missing(const machine::Machine& machine, cons
       return missing(
           fmt::format("axis {} with {}", axis.name,
                       unknown ? "an unknown controller" : "a controller that is not the firmware's cascade"),
-          "the cascade, without [axis.NAME.controller]; inspect, identify, compare LOG and simulate replay serve other "
-          "structures");
+          "the cascade, without [axis.NAME.controller]; inspect, identify, diagnose, compare LOG and simulate replay "
+          "serve other structures");
     if (unknown)
       return missing(fmt::format("axis {} with an unknown controller", axis.name),
                      "a controller to simulate: [axis.NAME.controller] with its structure, or the cascade without it");

@@ -213,12 +213,10 @@ double encoder_offset(const AxisLog& axis, double allowed) {
   return std::abs(mean) > allowed ? mean : 0.0;
 }
 
-namespace {
-
-// replay() of a log whose axes are all linear; `indices`: of the machine's axis for each of the log's.
 template <class S>
-Log replay_linear(const machine::Machine& machine, const Log& log, const std::vector<std::size_t>& indices,
+Log replay_linear(const machine::Machine& machine, const Log& log, const ReplaySettings& settings,
                   const TraceSink<S>& trace) {
+  const auto indices = match_axes(machine, log, settings.axis);
   std::vector<Motion> motions;
   std::vector<Injection> injections;
   std::vector<double> start(machine.axes.size(), 0.0);
@@ -270,8 +268,6 @@ Log replay_linear(const machine::Machine& machine, const Log& log, const std::ve
   return out;
 }
 
-}  // namespace
-
 template <class S>
 Log replay(const machine::Machine& machine, const Log& log, const ReplaySettings& settings, const TraceSink<S>& trace) {
   const auto indices = match_axes(machine, log, settings.axis);
@@ -281,14 +277,18 @@ Log replay(const machine::Machine& machine, const Log& log, const ReplaySettings
     require_same_kind(log, log.axes[k], machine.axes[indices[k]]);
     any = any || coordinate(k).rotary();
   }
-  if (!any) return replay_linear<S>(machine, log, indices, trace);
+  if (!any) return replay_linear<S>(machine, log, settings, trace);
   Log linear = log;
   for (std::size_t k = 0; k < indices.size(); ++k) linear.axes[k] = as_linear(std::move(linear.axes[k]), coordinate(k));
-  Log out = replay_linear<S>(machine, linear, indices, trace);
+  Log out = replay_linear<S>(machine, linear, settings, trace);
   for (std::size_t k = 0; k < indices.size(); ++k) out.axes[k] = in_own_units(std::move(out.axes[k]), coordinate(k));
   return out;
 }
 
+template Log replay_linear<FixedSignals>(const machine::Machine&, const Log&, const ReplaySettings&,
+                                         const TraceSink<FixedSignals>&);
+template Log replay_linear<machine::DoubleSignals>(const machine::Machine&, const Log&, const ReplaySettings&,
+                                                   const TraceSink<machine::DoubleSignals>&);
 template Log replay<FixedSignals>(const machine::Machine&, const Log&, const ReplaySettings&,
                                   const TraceSink<FixedSignals>&);
 template Log replay<machine::DoubleSignals>(const machine::Machine&, const Log&, const ReplaySettings&,

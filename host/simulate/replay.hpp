@@ -34,6 +34,12 @@ template <class S>
 Log replay(const machine::Machine& machine, const Log& log, const ReplaySettings& settings = {},
            const TraceSink<S>& trace = {});
 
+// The same of a log whose channels are those of the linear axes on which all computing is done (own_units.hpp), and so
+// are those of the result. S, `settings`, `trace` and errors: as above.
+template <class S>
+Log replay_linear(const machine::Machine& machine, const Log& log, const ReplaySettings& settings = {},
+                  const TraceSink<S>& trace = {});
+
 inline constexpr double longest_lead_in = 0.5;  // s
 
 // The machine's axis for each of the log's, by index. Throws LogError.

@@ -43,20 +43,22 @@ bool replaces_any(const Machine& machine, const Vocabulary& vocabulary, std::spa
 }
 
 // Puts one effect into the tree of an axis, in the place of one that there may be only once.
-void put(toml::table& axis, const Vocabulary& vocabulary, const Effect& effect, bool force_motor) {
+void put(toml::table& axis, const Vocabulary& vocabulary, const Effect& effect, const AxisModel& model) {
   toml::array& list = *axis.insert(effect_key, toml::array{}).first->second.as_array();
   if (!known_effect(vocabulary, effect.name).several)
     for (auto it = list.begin(); it != list.end();)
       it = it->at_path(effect_name_key).value<std::string>() == effect.name ? list.erase(it) : it + 1;
-  toml::table table = toml::parse(effect_table(vocabulary, "X", effect, force_motor));
+  toml::table table =
+      toml::parse(effect_table(vocabulary, "X", effect, model.motor.driven_by_volts(), model.coordinate));
   list.push_back(std::move(*table["axis"]["X"][effect_key].as_array()->get(0)->as_table()));
   for (toml::node& element : list)
     if (element.is_table()) element.as_table()->is_inline(false);
 }
 
-bool has_force_motor(const Machine& machine, const std::string& name) {
-  return std::any_of(machine.axes.begin(), machine.axes.end(),
-                     [&](const AxisModel& axis) { return axis.name == name && axis.motor.driven_by_volts(); });
+// Of the machine's axes; check_axes() has found it.
+const AxisModel& axis_of(const Machine& machine, const std::string& name) {
+  return *std::find_if(machine.axes.begin(), machine.axes.end(),
+                       [&](const AxisModel& axis) { return axis.name == name; });
 }
 
 std::string rewritten(const std::filesystem::path& file, const Machine& machine, const Vocabulary& vocabulary,
@@ -67,8 +69,7 @@ std::string rewritten(const std::filesystem::path& file, const Machine& machine,
     toml::table* axis = root["axis"][addition.axis].as_table();
     if (axis == nullptr) continue;
     axis->is_inline(false);
-    for (const Effect& effect : addition.effects)
-      put(*axis, vocabulary, effect, has_force_motor(machine, addition.axis));
+    for (const Effect& effect : addition.effects) put(*axis, vocabulary, effect, axis_of(machine, addition.axis));
   }
   std::ostringstream out;
   out << root << '\n';
@@ -102,9 +103,11 @@ std::string continued(std::string text, const Machine& machine, const Vocabulary
                       std::span<const AxisEffects> additions) {
   if (!additions.empty()) text = without_expected(text);
   if (!text.empty() && text.back() != '\n') text += '\n';
-  for (const AxisEffects& addition : additions)
+  for (const AxisEffects& addition : additions) {
+    const AxisModel& axis = axis_of(machine, addition.axis);
     for (const Effect& effect : addition.effects)
-      text += "\n" + effect_table(vocabulary, addition.axis, effect, has_force_motor(machine, addition.axis));
+      text += "\n" + effect_table(vocabulary, axis.name, effect, axis.motor.driven_by_volts(), axis.coordinate);
+  }
   return text;
 }
 
@@ -126,8 +129,8 @@ void check_axes(const std::filesystem::path& file, const Machine& machine, std::
 
 }  // namespace
 
-std::string effect_table(const Vocabulary& vocabulary, const std::string& axis, const Effect& effect,
-                         bool force_motor) {
+std::string effect_table(const Vocabulary& vocabulary, const std::string& axis, const Effect& effect, bool force_motor,
+                         const Coordinate& coordinate) {
   const ValueTable& kind = known_effect(vocabulary, effect.name);
   check_values(kind, effect.values);
   std::string text = fmt::format("[[axis.{}.{}]]\n{} = \"{}\"\n", axis, effect_key, effect_name_key, effect.name);
@@ -136,8 +139,9 @@ std::string effect_table(const Vocabulary& vocabulary, const std::string& axis, 
     if (found == effect.values.end() && key.optional) continue;
     const auto values = found == effect.values.end() ? std::vector{key.fallback.value_or(0.0)} : found->second;
     std::vector<std::string> texts;
-    const auto unit = force_motor && !key.unit_of_force_motor.empty() ? key.unit_of_force_motor : key.unit;
-    for (const double value : values) texts.push_back(value_text(value, unit));
+    const auto own =
+        coordinate.own(force_motor && !key.unit_of_force_motor.empty() ? key.unit_of_force_motor : key.unit);
+    for (const double value : values) texts.push_back(value_text(own.from_linear(value), own.unit));
     text += key.list ? fmt::format("{} = [{}]\n", key.key, fmt::join(texts, ", "))
                      : fmt::format("{} = {}\n", key.key, texts.front());
   }

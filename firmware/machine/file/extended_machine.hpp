@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware/machine/model/coordinate.hpp"
 #include "firmware/machine/model/effect.hpp"
 
 namespace stiction::machine {
@@ -28,8 +29,9 @@ std::string extended_machine(const std::filesystem::path& file, const Vocabulary
                              std::span<const std::string> comment);
 
 // One table [[axis.NAME.effect]] as text, its values in SI units. `force_motor`: the axis' motor is a force source,
-// which some keys take in volts. Throws ValueError as above. `axis`: its name; `vocabulary` has the keys of `effect`.
+// which some keys take in volts; `coordinate`: of the axis, whose units they have. Throws ValueError as above. `axis`:
+// its name; `vocabulary` has the keys of `effect`.
 std::string effect_table(const Vocabulary& vocabulary, const std::string& axis, const Effect& effect,
-                         bool force_motor = false);
+                         bool force_motor = false, const Coordinate& coordinate = {});
 
 }  // namespace stiction::machine

@@ -247,6 +247,8 @@ struct AxisModel {
   bool elastic() const { return transmission && transmission->stiffness.has_value(); }
   // Whether the firmware's cascade controls it.
   bool cascaded() const { return !controller || controller->structure == ControlStructure::cascade; }
+  // Whether nobody knows how it is controlled: then it is not simulated.
+  bool unknown_controller() const { return controller && controller->structure == ControlStructure::unknown; }
   // Whether its command, whatever makes it, is a voltage.
   bool commanded_in_volts() const { return cascaded() ? motor.driven_by_volts() : controller->in_volts; }
 };

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "host/diagnose/candidate.hpp"
+#include "host/log/shown_units.hpp"
 
 namespace stiction::host::signatures::drifting_force {
 namespace {
@@ -12,7 +13,9 @@ Columns columns(const SearchContext& context, const Motion& motion, double) {
   return {column};
 }
 std::string looks_like(const SearchContext& context, double, const Eigen::VectorXd& w) {
-  return fmt::format("drifting with time, equal in both directions: {:.2g} N after {:.3g} s", w[0], context.duration);
+  const auto force = ShownUnits(context.axis.coordinate).force;
+  return fmt::format("drifting with time, equal in both directions: {:.2g} {} after {:.3g} s", force(w[0]), force.unit,
+                     context.duration);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "host/diagnose/candidate.hpp"
+#include "host/log/shown_units.hpp"
 
 namespace stiction::host::signatures::force_after_reversal {
 namespace {
@@ -33,9 +34,10 @@ Columns columns(const SearchContext&, const Motion& motion, double time) {
   }
   return {column};
 }
-std::string looks_like(const SearchContext&, double time, const Eigen::VectorXd& w) {
-  return fmt::format("at reversals: a force of {:.2g} N {} the motion that decays within {:.2g} ms", std::abs(w[0]),
-                     w[0] < 0.0 ? "along" : "against", 1e3 * time);
+std::string looks_like(const SearchContext& context, double time, const Eigen::VectorXd& w) {
+  const auto force = ShownUnits(context.axis.coordinate).force;
+  return fmt::format("at reversals: a force of {:.2g} {} {} the motion that decays within {:.2g} ms",
+                     std::abs(force(w[0])), force.unit, w[0] < 0.0 ? "along" : "against", 1e3 * time);
 }
 
 template <int way_back_nm>

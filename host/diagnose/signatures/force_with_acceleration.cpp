@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "host/diagnose/candidate.hpp"
+#include "host/log/shown_units.hpp"
 
 namespace stiction::host::signatures::force_with_acceleration {
 namespace {
@@ -14,8 +15,10 @@ Columns columns(const SearchContext&, const Motion& motion, double) {
   for (std::size_t i = 0; i < column.size(); ++i) column[i] = -std::abs(motion.a[i]);
   return {column};
 }
-std::string looks_like(const SearchContext&, double, const Eigen::VectorXd& w) {
-  return fmt::format("growing with acceleration, with equal sign for both directions of it: {:.2g} N at 1 m/s^2", w[0]);
+std::string looks_like(const SearchContext& context, double, const Eigen::VectorXd& w) {
+  const ShownUnits own(context.axis.coordinate);
+  return fmt::format("growing with acceleration, with equal sign for both directions of it: {:.2g} {} at 1 {}",
+                     own.force(w[0]) / own.acceleration.factor, own.force.unit, own.acceleration.unit);
 }
 
 }  // namespace

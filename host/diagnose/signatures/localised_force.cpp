@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "host/diagnose/candidate.hpp"
+#include "host/log/shown_units.hpp"
 
 namespace stiction::host::signatures::localised_force {
 namespace {
@@ -37,8 +38,10 @@ Columns columns(const SearchContext& context, const Motion& motion, double numbe
 }
 std::string looks_like(const SearchContext& context, double number, const Eigen::VectorXd& w) {
   const auto place = place_of(context, number);
-  return fmt::format("localised at {:.4g} mm: a force of {:.2g} N, equal in both directions, over about {:.2g} mm",
-                     1e3 * place.at, w[0], 2e3 * place.width);
+  const ShownUnits own(context.axis.coordinate);
+  return fmt::format("localised at {:.4g} {}: a force of {:.2g} {}, equal in both directions, over about {:.2g} {}",
+                     own.position(place.at), own.position.unit, own.force(w[0]), own.force.unit,
+                     2.0 * own.position(place.width), own.position.unit);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "host/diagnose/candidate.hpp"
+#include "host/log/shown_units.hpp"
 
 namespace stiction::host::signatures::ripple_with_speed {
 namespace {
@@ -16,8 +17,10 @@ Columns columns(const SearchContext& context, const Motion& motion, double pitch
   return effects::waves_over_position(motion, pitch, size);
 }
 std::string looks_like(const SearchContext& context, double pitch, const Eigen::VectorXd& w) {
-  return fmt::format("periodic in position with pitch {:.4g} mm, growing with speed: {:.2g} N at {:.3g} m/min",
-                     1e3 * pitch, w.head<2>().norm(), 60.0 * context.highest_speed);
+  const ShownUnits own(context.axis.coordinate);
+  return fmt::format("periodic in position with pitch {:.4g} {}, growing with speed: {:.2g} {} at {:.3g} {}",
+                     own.position(pitch), own.position.unit, own.force(w.head<2>().norm()), own.force.unit,
+                     own.feed(context.highest_speed), own.feed.unit);
 }
 
 }  // namespace

@@ -45,11 +45,11 @@ function valueLines(cause) {
 function explained(cause) {
   return [element('div', {}, element('strong', {}, `${cause.explains} %`), ` of the ${cause.residual}`),
           element('div', {}, `${minus(cause.gain)} % less on held-out data (95 %: ${minus(cause.gain_interval)} %)`),
-          ...(cause.part ? [element('div', {}, `up to ${cause.part} µm of position error`)] : [])];
+          ...(cause.part ? [element('div', {}, `up to ${cause.part} ${DATA.residuals.position_unit} of position error`)] : [])];
 }
 
 function drawSummary() {
-  const { baseline, extended, noise } = DATA.residuals;
+  const { baseline, extended, noise, force_unit, position_unit } = DATA.residuals;
   document.getElementById('summary-what').textContent = DATA.causes.length ? 'sorted by explained variance' : 'none found';
   const rows = DATA.causes.map((cause, i) => classed('first', [
     { text: element('a', { href: `#cause-${i}` }, `${i + 1}  ${cause.title}`), head: true, class: 'text wrap' }, text(cause.axis, { class: 'text', label: 'Axis' }),
@@ -59,9 +59,9 @@ function drawSummary() {
   const drawn = table([head], rows);
   drawn.className = 'stacked';
   if (rows.length) show('summary', drawn);
-  const figures = [`Residual force on the held-out data: ${baseline.force} N rms with the given machine file, ${extended.force} N rms with the extended one`];
-  if (baseline.position) figures.push(`position error of the simulation: ${baseline.position} µm rms with the given machine file, ${extended.position} µm rms with the extended one`);
-  if (noise) figures.push(`noise alone leaves ${noise.force} N and ${noise.position} µm rms`);
+  const figures = [`Residual force on the held-out data: ${baseline.force} ${force_unit} rms with the given machine file, ${extended.force} ${force_unit} rms with the extended one`];
+  if (baseline.position) figures.push(`position error of the simulation: ${baseline.position} ${position_unit} rms with the given machine file, ${extended.position} ${position_unit} rms with the extended one`);
+  if (noise) figures.push(`noise alone leaves ${noise.force} ${force_unit} and ${noise.position} ${position_unit} rms`);
   show('summary-caption', `${figures.join('; ')}. ${DATA.holdout}`);
 }
 
