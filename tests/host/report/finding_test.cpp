@@ -92,7 +92,7 @@ TEST(DiagnosisSentence, TellsAgreementFromAResidualWithoutAKnownCause) {
             "The simulation agrees with the data within their noise: 1.2 N rms of residual force where noise "
             "alone leaves 1.08 N; 0.3 µm rms of position error where noise alone leaves 0.2 µm.");
   const auto with = [&](const Remainder& rest, const std::string& withheld = "") {
-    verdict.agreement = agreement_of(rest, withheld);
+    verdict.agreement = agreement_of(rest, withheld, {});
     return diagnosis_sentence(verdict);
   };
   EXPECT_EQ(with({5.0, 0.3e-6, 1.08, 0.2e-6, 50.0}),

@@ -174,7 +174,7 @@ DiagnosisReport synthetic_agreement() {
   v.holdout_is_a_part = true;
   v.baseline = v.extended = {1.2, 0.3e-6, {}};
   v.noise_floor = NoiseFloor{.encoder = 0.9, .effort = 0.6, .position = 0.2e-6, .increment = 1e-6};
-  v.agreement = agreement_of({1.2, 0.3e-6, 1.08, 0.2e-6, 50.0}, "");
+  v.agreement = agreement_of({1.2, 0.3e-6, 1.08, 0.2e-6, 50.0}, "", {});
   return report;
 }
 
