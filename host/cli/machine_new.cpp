@@ -198,7 +198,7 @@ void add_machine_new(CLI::App& machine, const Invocation& invocation) {
       ->add_option(
           "--from-log", o->logs,
           "logs of the axis: what they tell is not asked, and is marked in the file; with the motor's constant "
-          "mass and friction are identified. Without flags on its windings the motor is a source of force")
+          "mass and friction are identified; without flags on its windings the motor is a source of force")
       ->type_name("LOG");
   add_columns(*command, o->columns);
   add_output_file(*command, "--out", o->out, "write the file here [standard output]");
