@@ -27,9 +27,10 @@ struct Criterion {
   const char* record;
 };
 
+constexpr const char* record_angles = "slow motion over a wide angle on both sides of the rest, each both ways";
 constexpr const char* record_reversals =
     "slow reversals of several small amplitudes, 5 to 200 um, a few periods of each at 1 to 2 Hz";
-constexpr std::array<Criterion, 12> criteria{{
+constexpr std::array<Criterion, 13> criteria{{
     {"mass_kg", Scale::value, 1.0, "force over acceleration", record_accelerations},
     {"coulomb_N", Scale::value, 1.0, "friction level in sliding, extrapolated to standstill", record_speeds},
     {"viscous_N_s_per_m", Scale::at_speed, 1.0, "slope of the friction over speed", record_speeds},
@@ -37,6 +38,9 @@ constexpr std::array<Criterion, 12> criteria{{
      "half the difference of both directions; includes gravity, current offset, and Coulomb friction that differs "
      "between the directions",
      record_speeds},
+    // A weight is the axis' own, however little it rubs; a constant force beside friction is an offset of it.
+    {"gravity_N", Scale::value, 1.0, "force over the sine of the angle from the rest below, less the counterweight",
+     record_angles},
     {"coulomb_positive_N", Scale::value, 0.3, "includes the constant force, which no log of one axis can separate",
      record_speeds},
     {"coulomb_negative_N", Scale::value, 0.3, "includes the constant force, which no log of one axis can separate",

@@ -201,15 +201,10 @@ HeldOutForce held_out_force(const LogRows& rows, const FrictionFit& fit, const H
 
 constexpr std::array<const char*, 4> names_of_columns{"mass_kg", "viscous_N_s_per_m", "constant_force_N", "coulomb_N"};
 
-// The constant force of an axis whose weight goes with its angle.
+// The constant force that was given of an axis whose weight goes with its angle.
 void name_gravity(Identification& result) {
   for (auto& p : result.parameters)
-    if (p.name == "constant_force_N") {
-      p.name = "gravity_N";
-      p.how = "force over the sine of the angle from the rest below, less the counterweight";
-    }
-  for (auto& n : result.not_determined)
-    if (n.name == "constant_force_N") n.name = "gravity_N";
+    if (p.name == "constant_force_N") p.name = "gravity_N";
 }
 
 // Mass, viscous friction, Coulomb friction, constant force, and those of each direction.
@@ -218,6 +213,12 @@ void judge_sliding(Identification& result, const LogRows& rows, const FrictionFi
   const char* how = fit.sliding_only ? "rows in steady sliding only" : "";
   for (const std::size_t c : {0u, 3u, 1u, 2u}) {
     const char* name = names_of_columns[c];
+    if (c == 2 && !options.held[c] && !rows.motions().front().constant.empty()) {
+      auto weight = fit.at(name);
+      weight.name = "gravity_N";
+      judge(result, weight, scales, fit.blocks.size(), how);
+      continue;
+    }
     if (options.held[c]) {
       result.parameters.push_back(
           {name, *options.held[c], {*options.held[c], *options.held[c]}, "given, not estimated"});

@@ -12,6 +12,7 @@
 #include <variant>
 
 #include "firmware/machine/file/parameters.hpp"
+#include "firmware/machine/model/own_words.hpp"
 #include "firmware/machine/model/value_table.hpp"
 #include "host/report/engineering_unit.hpp"
 #include "sim/plant/friction/laws.hpp"
@@ -21,6 +22,7 @@ namespace {
 
 // One axis' value of a parameter, before its unit is chosen.
 struct Cell {
+  std::string label;           // of the row, in the axis' own words
   std::string_view unit;       // SI
   std::vector<double> values;  // none: not given
   std::string instead;         // what stands there without a value, or in place of one that has a name
@@ -54,9 +56,10 @@ Cell make_cell(const machine::ValueKey& key, std::vector<double> values, const C
       key.key, column.force_motor && !key.unit_of_force_motor.empty() ? key.unit_of_force_motor : key.unit);
   for (double& value : values) value = own.from_linear(value);
   if (!std::all_of(values.begin(), values.end(), [&](double v) { return key.range.contains(v); })) values.clear();
-  Cell cell{own.unit, std::move(values), {}};
+  const auto text = machine::in_own_words(key.text, coordinate);
+  Cell cell{label_of(text), own.unit, std::move(values), {}};
   if (cell.values.size() <= 1)
-    cell.instead = meaning_of(key.text, cell.values.empty() ? std::nullopt : std::optional(cell.values[0]));
+    cell.instead = meaning_of(text, cell.values.empty() ? std::nullopt : std::optional(cell.values[0]));
   if (cell.values.size() == 1 && cell.values[0] >= machine::unlimited) cell.instead = "none";
   return cell;
 }
@@ -80,13 +83,14 @@ class Sheet {
     sections_.back().rows.push_back({std::move(label), std::move(unit), std::move(values)});
   }
 
-  // One cell an axis, none where the axis lacks the table. Axes whose motors give the parameter different units come in
-  // different rows.
-  void add(const std::string& label, const std::vector<std::optional<Cell>>& cells) {
-    std::vector<std::string_view> units;
+  // One cell an axis, none where the axis lacks the table. Axes that give the parameter different units or call it
+  // differently come in different rows.
+  void add(const std::vector<std::optional<Cell>>& cells) {
+    std::vector<const Cell*> rows;
     for (const auto& cell : cells)
-      if (cell && std::find(units.begin(), units.end(), cell->unit) == units.end()) units.push_back(cell->unit);
-    for (const auto unit : units) add_in_unit(label, unit, cells);
+      if (cell && std::none_of(rows.begin(), rows.end(), [&](const Cell* row) { return in_one_row(*row, *cell); }))
+        rows.push_back(&*cell);
+    for (const Cell* row : rows) add_row(*row, cells);
   }
 
   std::vector<SheetSection> take() {
@@ -95,20 +99,23 @@ class Sheet {
   }
 
  private:
-  void add_in_unit(const std::string& label, std::string_view unit, const std::vector<std::optional<Cell>>& cells) {
+  static bool in_one_row(const Cell& a, const Cell& b) { return a.unit == b.unit && a.label == b.label; }
+
+  // `first`: of the row.
+  void add_row(const Cell& first, const std::vector<std::optional<Cell>>& cells) {
     double size = 0.0;
     bool numbers = false;
     for (const auto& cell : cells)
-      if (cell && cell->unit == unit && cell->instead.empty())
+      if (cell && in_one_row(*cell, first) && cell->instead.empty())
         for (const double value : cell->values) {
           size = std::max(size, std::abs(value));
           numbers = true;
         }
-    const auto engineering = engineering_unit(unit, size);
+    const auto engineering = engineering_unit(first.unit, size);
     std::vector<std::string> values;
     for (const auto& cell : cells)
-      values.push_back(cell && cell->unit == unit ? print(*cell, engineering.factor) : std::string());
-    add(label, numbers ? engineering.unit : std::string(), std::move(values));
+      values.push_back(cell && in_one_row(*cell, first) ? print(*cell, engineering.factor) : std::string());
+    add(first.label, numbers ? engineering.unit : std::string(), std::move(values));
   }
 
   std::vector<std::string> columns_;
@@ -155,7 +162,7 @@ void add_parameters(Sheet& sheet, std::span<const machine::Parameter<Owner>> par
       cells.push_back(owners[i] ? std::optional(make_cell(key, machine::values_at(place_of(parameter, *owners[i])),
                                                           described[i], coordinate_in<Owner>(described[i])))
                                 : std::nullopt);
-    sheet.add(label_of(key.text), cells);
+    sheet.add(cells);
   }
 }
 
@@ -215,14 +222,17 @@ void add_reduction(Sheet& sheet, std::span<const machine::AxisModel> axes) {
   std::vector<std::optional<Cell>> load, radius;
   for (const auto& axis : axes) {
     const auto own = axis.coordinate.own(mass);
-    const auto cell = [&](bool wanted, std::string_view unit, double value) {
-      return wanted ? std::optional(Cell{unit, {value}, {}}) : std::nullopt;
+    const auto cell = [&](bool wanted, std::string label, std::string_view unit, double value) {
+      return wanted ? std::optional(Cell{std::move(label), unit, {value}, {}}) : std::nullopt;
     };
-    load.push_back(cell(axis.transmission.has_value(), own.unit, own.from_linear(axis.load_mass)));
-    radius.push_back(cell(axis.coordinate.rotary(), "m/rad", axis.coordinate.radius));
+    load.push_back(cell(axis.transmission.has_value(),
+                        machine::in_own_words("of the moving mass, load alone", axis.coordinate), own.unit,
+                        own.from_linear(axis.load_mass)));
+    radius.push_back(
+        cell(axis.coordinate.rotary(), "way of a radian in the drive's numbers", "m/rad", axis.coordinate.radius));
   }
-  sheet.add("of the moving mass, load alone", load);
-  sheet.add("way of a radian in the drive's numbers", radius);
+  sheet.add(load);
+  sheet.add(radius);
 }
 
 }  // namespace

@@ -15,22 +15,37 @@ bool has(const SheetAnswers& answers, std::string_view name, std::string_view wh
 }
 bool rotary(const SheetAnswers& answers) { return has(answers, "kind", "rotary"); }
 bool has_shaft(const SheetAnswers& answers) { return rotary(answers) || !has(answers, "transmission", "direct"); }
+double given_or_zero(const SheetAnswers& answers, std::string_view name, std::string_view unit) {
+  return answer_to(answers, name).empty() ? 0.0 : sheet_quantity(answers, name, unit);
+}
+
+// Way (m, of a rotary axis rad) of a radian of the screw or pulley; 0: none.
+double screw_of(const SheetAnswers& answers) {
+  if (has(answers, "transmission", "screw")) return sheet_quantity(answers, "lead", "m") / turn;
+  return has(answers, "transmission", "belt") ? sheet_quantity(answers, "pulley", "m") / turn : 0.0;
+}
 
 }  // namespace
 
 MotorValues motor_values(const SheetAnswers& answers) {
   MotorValues motor;
   motor.ampere_factor = has(answers, "amperes", "rms") ? std::numbers::sqrt2 : 1.0;
+  motor.source = is_force_source(answers);
+  motor.per_volt = driven_by_volts(answers);
+  motor.current_limit = motor.ampere_factor * given_or_zero(answers, "current-limit", "A");
+  motor.supply = given_or_zero(answers, "supply", "V");
+  const char* name = has_shaft(answers) ? "torque-constant" : "force-constant";
+  if (motor.per_volt) {
+    motor.constant = sheet_quantity(answers, name, has_shaft(answers) ? "N m/V" : "N/V");
+    return motor;
+  }
+  motor.constant = sheet_quantity(answers, name, has_shaft(answers) ? "N m/A" : "N/A") / motor.ampere_factor;
+  if (motor.source) return motor;
   const bool line = has(answers, "between", "line");
   // Between two lines two windings are in series.
   motor.line_factor = line ? 0.5 : 1.0;
   motor.resistance = motor.line_factor * sheet_quantity(answers, "resistance", "Ohm");
   motor.inductance = motor.line_factor * sheet_quantity(answers, "inductance", "H");
-  motor.current_limit = motor.ampere_factor * sheet_quantity(answers, "current-limit", "A");
-  motor.supply = sheet_quantity(answers, "supply", "V");
-  motor.constant = (has_shaft(answers) ? sheet_quantity(answers, "torque-constant", "N m/A")
-                                       : sheet_quantity(answers, "force-constant", "N/A")) /
-                   motor.ampere_factor;
   // Three windings with sine currents make 3/2 of what one makes; the energy that each converts makes its voltage.
   motor.emf = motor.constant / 1.5;
   if (has_shaft(answers) && !answer_to(answers, "voltage-constant").empty())
@@ -42,16 +57,20 @@ MotorValues motor_values(const SheetAnswers& answers) {
 AxisValues axis_values(const SheetAnswers& answers, const MotorValues& motor) {
   AxisValues axis;
   axis.mass = sheet_quantity(answers, "load", rotary(answers) ? "kg m^2" : "kg");
-  if (has_shaft(answers)) {
-    if (has(answers, "transmission", "screw")) axis.screw = sheet_quantity(answers, "lead", "m") / turn;
-    if (has(answers, "transmission", "belt")) axis.screw = sheet_quantity(answers, "pulley", "m") / turn;
-    const double out = axis.screw > 0.0 ? axis.screw : 1.0;
-    axis.way = has(answers, "transmission", "direct") ? 1.0 : out / ratio_in(answer_to(answers, "ratio"));
+  axis.way = way_of(answers);
+  axis.screw = screw_of(answers);
+  if (has_shaft(answers) && !(motor.source && has(answers, "transmission", "direct"))) {
     axis.mass += sheet_quantity(answers, "motor-inertia", "kg m^2") / (axis.way * axis.way);
     if (axis.screw > 0.0) axis.mass += sheet_quantity(answers, "screw-inertia", "kg m^2") / (axis.screw * axis.screw);
   }
   axis.force_per_ampere = motor.constant / axis.way;
   return axis;
+}
+
+double way_of(const SheetAnswers& answers) {
+  if (has(answers, "transmission", "direct")) return 1.0;
+  const double screw = screw_of(answers);
+  return (screw > 0.0 ? screw : 1.0) / ratio_in(answer_to(answers, "ratio"));
 }
 
 ControllerValues controller_values(const MotorValues& motor, const AxisValues& axis) {
@@ -67,14 +86,16 @@ ControllerValues controller_values(const MotorValues& motor, const AxisValues& a
   return c;
 }
 
-FrictionValues friction_values(const SheetAnswers& answers, const MotorValues& motor, const AxisValues& axis) {
+FrictionValues friction_values(const SheetAnswers& answers, const MotorValues& motor, const AxisValues& axis,
+                               double effort) {
   FrictionValues f;
   const bool turns = rotary(answers);
   f.estimated = answer_to(answers, "coulomb").empty();
   if (!f.estimated) {
     f.coulomb = sheet_quantity(answers, "coulomb", turns ? "N m" : "N");
   } else if (turns) {
-    f.coulomb = sheet_quantity(answers, "friction-share", "1") * axis.force_per_ampere * motor.current_limit;
+    const double limit = motor.per_volt ? motor.supply : motor.current_limit;
+    f.coulomb = sheet_quantity(answers, "friction-share", "1") * axis.force_per_ampere * (limit > 0.0 ? limit : effort);
   } else {
     const double carriages = sheet_quantity(answers, "carriages", "1");
     const double on_guides = standard_gravity * sheet_quantity(answers, "load", "kg") +
@@ -84,8 +105,10 @@ FrictionValues friction_values(const SheetAnswers& answers, const MotorValues& m
                 carriages * sheet_quantity(answers, "seal-drag", "N");
     if (axis.screw > 0.0) f.coulomb += sheet_quantity(answers, "drag-torque", "N m") / axis.screw;
   }
+  f.estimated_viscous = answer_to(answers, "viscous").empty();
   // At full speed lubricated guides and bearings drag about twice as much as at low speed.
-  f.viscous = f.coulomb / sheet_quantity(answers, "max-velocity", turns ? "rad/s" : "m/s");
+  f.viscous = f.estimated_viscous ? f.coulomb / sheet_quantity(answers, "max-velocity", turns ? "rad/s" : "m/s")
+                                  : sheet_quantity(answers, "viscous", turns ? "N m s/rad" : "N s/m");
   return f;
 }
 

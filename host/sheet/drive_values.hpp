@@ -10,10 +10,11 @@ namespace stiction::host {
 // SI units; at the motor: of its shaft, or of a linear motor's slider.
 struct MotorValues {
   double resistance = 0.0, inductance = 0.0;      // Ohm, H of one winding
-  double constant = 0.0;                          // N m/A or N/A of the whole motor, per amplitude ampere
+  double constant = 0.0;                          // N m/A or N/A of the whole motor, per amplitude ampere; or per volt
   double emf = 0.0;                               // V s/rad or V s/m of one winding, amplitude
-  double current_limit = 0.0, supply = 0.0;       // A amplitude, V
+  double current_limit = 0.0, supply = 0.0;       // A amplitude, V; 0: not known, of a source of force
   double line_factor = 1.0, ampere_factor = 1.0;  // from the sheet's to these
+  bool source = false, per_volt = false;          // a source of force: no windings; constant per volt
 };
 MotorValues motor_values(const SheetAnswers& answers);
 
@@ -25,6 +26,9 @@ struct AxisValues {
   double mass = 0.0, force_per_ampere = 0.0;
 };
 AxisValues axis_values(const SheetAnswers& answers, const MotorValues& motor);
+
+// The way alone, which needs no mass; of complete answers on the transmission.
+double way_of(const SheetAnswers& answers);
 
 // Cascade for the shipped periods, 62.5 us and 1 ms: the current loop by the magnitude optimum, the velocity loop by
 // the symmetrical optimum (Leonhard 2001).
@@ -38,9 +42,12 @@ ControllerValues controller_values(const MotorValues& motor, const AxisValues& a
 // Coulomb (N or N m) and viscous friction (N s/m or N m s/rad).
 struct FrictionValues {
   double coulomb = 0.0, viscous = 0.0;
-  bool estimated = false;  // the Coulomb friction is none of the sheet
+  bool estimated = false;          // the Coulomb friction is none of the answers
+  bool estimated_viscous = false;  // nor the viscous
 };
-// `answers` with the friction or what it is estimated from; `motor`, `axis`: of these answers.
-FrictionValues friction_values(const SheetAnswers& answers, const MotorValues& motor, const AxisValues& axis);
+// `answers` with the friction or what it is estimated from; `motor`, `axis`: of these answers; `effort` (A amplitude,
+// V): what takes the place of the motor's limit where that is not known, 0 where nothing does.
+FrictionValues friction_values(const SheetAnswers& answers, const MotorValues& motor, const AxisValues& axis,
+                               double effort = 0.0);
 
 }  // namespace stiction::host

@@ -23,8 +23,16 @@ struct SheetQuestion {
   std::vector<std::string_view> choices;  // empty: any
   std::string_view fallback;              // empty: it must be answered
   bool (*wanted)(const SheetAnswers&);    // whether it makes sense after the answers before
+  std::string_view of_source{};           // the fallback of a motor that is a source of force; empty: the one above
 };
 std::span<const SheetQuestion> sheet_questions();
+
+// Whether drive and motor are one source of force, and whether volts drive it, not amperes.
+bool is_force_source(const SheetAnswers& answers);
+bool driven_by_volts(const SheetAnswers& answers);
+
+// Whether the question may stay open after the `answers`: it has a fallback, or none is needed.
+bool may_stay_open(const SheetQuestion& question, const SheetAnswers& answers);
 
 // What `answers` say to the question `name`, or its fallback; empty where it is open.
 std::string answer_to(const SheetAnswers& answers, std::string_view name);

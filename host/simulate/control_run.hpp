@@ -62,8 +62,7 @@ class ControlRun {
     if (static_cast<std::size_t>(cascades) != machine.axes.size())
       throw machine::ConfigurationError(
           "found axes with the cascade and axes with a different controller.structure; expected one kind on all "
-          "axes "
-          "of a machine that is simulated");
+          "axes of a machine that is simulated");
     configs_ = configure(machine);
     compensations_ = machine::configure_compensations<S>(machine);
     loop_.emplace(backend_, std::span<const AxisConfig<S>>(configs_),

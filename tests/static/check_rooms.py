@@ -107,6 +107,9 @@ ROOMS = {
     },
     "host/sheet": {
         "firmware/machine/*": "data sheets become a machine file, in its units",
+        "host/log": "what logs tell is not asked,",
+        "host/identify": "mass and friction are identified from them",
+        "sim/*": "on the file as it is read",
     },
     "host/response": {
         "host/log": "frequency responses are measured from logs",

@@ -25,10 +25,12 @@ double way_per_radian(const TransmissionParameters& transmission, double radius)
 
 // Of a rotary axis; before its transmission is read, in whose units there are no lengths.
 void refuse_lengths(const Document& document, const toml::table& table, const std::string& path) {
-  for (const char* key : {"lead", "pulley_circumference"})
+  for (const char* key : {"lead", "pulley_circumference", "screw_inertia"})
     if (const toml::node* node = table.get(key))
-      document.fail(node->source(), join_key(path, key), describe_node(*node),
-                    "none on a rotary axis, whose transmission is its ratio alone");
+      document.attempt([&] {
+        document.fail(node->source(), join_key(path, key), describe_node(*node),
+                      "none on a rotary axis, whose transmission is its ratio alone, without a screw");
+      });
 }
 
 void check(const Document& document, const toml::table& table, const std::string& path, AxisKind kind,
@@ -37,7 +39,11 @@ void check(const Document& document, const toml::table& table, const std::string
                         const char* expected) { document.fail(place, join_key(path, key), found, expected); };
   if (kind == AxisKind::rotary) return;
   if (!transmission.lead && !transmission.pulley_circumference) {
-    fail(table.source(), "lead", "no such key",
+    const toml::node* screw = table.get("screw_inertia");
+    const auto together = screw == nullptr ? std::string()
+                                           : fmt::format(" together with screw_inertia, {} (line {})",
+                                                         describe_node(*screw), screw->source().begin.line);
+    fail(table.source(), "lead", "no such key" + together,
          "the lead of the screw, or pulley_circumference: how a rotary motor moves a linear axis");
   } else if (transmission.lead && transmission.pulley_circumference) {
     fail(table.get("pulley_circumference")->source(), "pulley_circumference",
@@ -112,7 +118,7 @@ AxisCoordinates coordinates_of(const Document& document, const toml::table& tabl
   const toml::table& given = reader.as_table(*node, key, Table<TransmissionParameters>::text);
   if (axis.rotary()) refuse_lengths(document, given, key);
   const auto transmission = reader.read<TransmissionParameters>(given, key);
-  check(document, given, key, kind, transmission);
+  document.attempt([&] { check(document, given, key, kind, transmission); });
   return {axis, {AxisKind::rotary, way_per_radian(transmission, radius) / transmission.ratio}, in_volts};
 }
 

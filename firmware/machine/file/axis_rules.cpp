@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "firmware/machine/file/description.hpp"
 #include "firmware/machine/file/parameters.hpp"
@@ -16,8 +17,13 @@ namespace {
 
 class Rules {
  public:
-  Rules(const Document& document, const toml::table& table, const std::string& path, const AxisModel& axis)
-      : document_(document), table_(table), path_(path), axis_(axis) {}
+  Rules(const Document& document, const toml::table& table, const std::string& path, const AxisModel& axis,
+        std::size_t errors_before)
+      : document_(document),
+        table_(table),
+        path_(path),
+        axis_(axis),
+        values_are_right_(document.errors() == errors_before) {}
 
   void check() const {
     check_structure();
@@ -97,8 +103,8 @@ class Rules {
       return;
     }
     const bool damping = node("transmission.damping") != nullptr, ratio = node("transmission.damping_ratio") != nullptr;
+    const toml::node& stiffness = *node("transmission.stiffness");
     document_.attempt([&] {
-      const toml::node& stiffness = *node("transmission.stiffness");
       if (damping && ratio)
         document_.fail(node("transmission.damping_ratio")->source(), join_key(path_, "transmission.damping_ratio"),
                        fmt::format("{} together with {}", describe_node(*node("transmission.damping_ratio")),
@@ -107,6 +113,8 @@ class Rules {
       if (!damping && !ratio)
         document_.fail(stiffness.source(), join_key(path_, "transmission.damping"), "no such key",
                        fmt::format("damping or damping_ratio, together with {}", at_line("transmission.stiffness")));
+    });
+    document_.attempt([&] {
       if (!(axis_.motor_mass > 0.0))
         document_.fail(
             stiffness.source(), join_key(path_, "transmission.motor_inertia"), "none",
@@ -129,40 +137,84 @@ class Rules {
     });
   }
 
+  // What limits the motor at standstill: the force that it gives there (N), and the key of the limit.
+  struct Hold {
+    double force;
+    std::string_view key;
+  };
+  Hold hold_of_motor() const {
+    const double constant = acting_force_constant(axis_.motor);
+    Hold least{largest_force(axis_),
+               axis_.motor.driven_by_volts() ? "inverter.voltage_limit" : "inverter.current_limit"};
+    const auto at_most = [&](double force, std::string_view key) {
+      if (force < least.force) least = {force, key};
+    };
+    const bool dc = axis_.motor.model == MotorModel::dc && axis_.motor.phase_resistance > 0.0;
+    const double per_volt = dc ? constant * axis_.motor.count / axis_.motor.phase_resistance
+                            : axis_.motor.driven_by_volts() ? constant
+                                                            : 0.0;
+    if (dc) at_most(per_volt * axis_.inverter.voltage_limit, "inverter.voltage_limit");
+    if (per_volt > 0.0 && axis_.controller && axis_.controller->in_volts && axis_.controller->supply)
+      at_most(per_volt * *axis_.controller->supply, "controller.supply");
+    return least;
+  }
+
+  // The key of the constant with which the motor acts.
+  std::string constant_of_motor() const {
+    for (const char* name : {"phase_force_constant", "force_constant"}) {
+      const auto key = join_key("motor", axis_.motor_coordinate.own(name, "N/A").key);
+      if (node(key) != nullptr && (axis_.motor.model == MotorModel::synchronous || name[0] == 'f')) return key;
+    }
+    return "motor";
+  }
+
   void check_gravity() const {
     if (!axis_.gravity) return;
     const bool rotary = axis_.coordinate.rotary();
     const std::string force = rotary ? "gravity.moment" : "gravity.force";
     exclude(rotary ? "gravity.counterweight_mass" : "gravity.zero",
             rotary ? "on a rotary axis, whose inertia holds it" : "on a linear axis, whose weight does not turn");
-    const toml::node* first = nullptr;
-    for (const std::string_view key : {std::string_view(force), std::string_view("gravity.counterweight"),
-                                       std::string_view("gravity.counterweight_mass")})
-      if (first == nullptr) first = node(key);
+    std::vector<std::string> given;
+    for (const std::string& key :
+         {force, std::string("gravity.counterweight"), std::string("gravity.counterweight_mass")})
+      if (node(key) != nullptr) given.push_back(key);
     document_.attempt([&] {
-      if (first == nullptr)
+      if (given.empty())
         document_.fail(node("gravity")->source(), join_key(path_, force), "no such key",
                        fmt::format("{}, counterweight or counterweight_mass", rotary ? "moment" : "force"));
-      const double held = std::abs(axis_.gravity->force - axis_.gravity->counterweight.value_or(0.0));
-      const double largest = largest_force(axis_);
-      const auto own = axis_.coordinate.own("N");
-      if (!is_unknown(axis_) && held > largest)
-        document_.fail(
-            first->source(), join_key(path_, "gravity"),
-            fmt::format("{:.4g} {} to hold", own.from_linear(held), own.unit),
-            fmt::format("at most {:.4g} {}, which the motor holds at its limit", own.from_linear(largest), own.unit));
+    });
+    if (!given.empty() && values_are_right_) check_hold(given);
+  }
+
+  // `given`: the keys of the weight.
+  void check_hold(const std::vector<std::string>& given) const {
+    const double held = std::abs(axis_.gravity->force - axis_.gravity->counterweight.value_or(0.0));
+    const auto hold = hold_of_motor();
+    if (is_unknown(axis_) || held <= hold.force) return;
+    const auto own = axis_.coordinate.own("N");
+    std::string weight, limit;
+    for (const auto& key : given) weight += (weight.empty() ? "" : " and ") + at_line(key);
+    for (const std::string& key : {constant_of_motor(), std::string(hold.key)})
+      if (node(key) != nullptr && !node(key)->is_table()) limit += (limit.empty() ? "" : " and ") + at_line(key);
+    document_.attempt([&] {
+      document_.fail(node(given.front())->source(), join_key(path_, "gravity"),
+                     fmt::format("{:.4g} {} to hold, by {}", own.from_linear(held), own.unit, weight),
+                     fmt::format("at most {:.4g} {}, which the motor holds at its limit, by {}",
+                                 own.from_linear(hold.force), own.unit, limit));
     });
   }
 
   // What an encoder on the load counts in one round must be whole, or the rounds drift apart.
   void check_modulo() const {
     if (!axis_.modulo || axis_.encoder.on != EncoderPlace::load || axis_.encoder.increment == 0.0) return;
+    if (!values_are_right_) return;
     const double counts = *axis_.modulo / axis_.encoder.increment;
     if (std::abs(counts - std::round(counts)) < 1e-6) return;
     document_.attempt([&] {
-      document_.fail(node("modulo")->source(), join_key(path_, "modulo"), describe_node(*node("modulo")),
-                     fmt::format("a whole number of increments, of {}; found {:.6g} of them",
-                                 at_line(axis_.encoder.counts ? "encoder.counts" : "encoder.increment"), counts));
+      document_.fail(node("modulo")->source(), join_key(path_, "modulo"),
+                     fmt::format("{}, {:.6g} increments by {}", describe_node(*node("modulo")), counts,
+                                 at_line(axis_.encoder.counts ? "encoder.counts" : "encoder.increment")),
+                     "a whole number of increments: an encoder on the load is where it was after each round");
     });
   }
 
@@ -170,6 +222,7 @@ class Rules {
   const toml::table& table_;
   const std::string& path_;
   const AxisModel& axis_;
+  bool values_are_right_;  // none was refused: what several of them make together may be judged
 };
 
 // Coulomb, static and viscous friction of laws that add up.
@@ -197,8 +250,8 @@ bool has_current_loop(const AxisModel& axis) {
 }
 
 void check_axis_rules(const Document& document, const toml::table& table, const std::string& path,
-                      const AxisModel& axis) {
-  Rules(document, table, path, axis).check();
+                      const AxisModel& axis, std::size_t errors_before) {
+  Rules(document, table, path, axis, errors_before).check();
 }
 
 void add_motor_friction(const Document& document, const toml::table& table, const std::string& path, AxisModel& axis) {

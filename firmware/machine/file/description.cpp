@@ -8,6 +8,7 @@
 #include "firmware/machine/file/drive_parameters.hpp"
 #include "firmware/machine/file/expected_parameters.hpp"
 #include "firmware/machine/file/parameters.hpp"
+#include "firmware/machine/model/own_words.hpp"
 
 namespace stiction::machine {
 namespace {
@@ -42,8 +43,9 @@ KeyDescription describe(const ValueKey& p, ValueKind kind, const std::string& ne
   key.text = p.text;
   key.expected = describe_expectation(kind, p.range, p.unit, p.text);
   key.list = kind == ValueKind::list;
+  constexpr Coordinate rotary{AxisKind::rotary, 1.0};
   key.rotary_expected =
-      describe_expectation(kind, p.range, Coordinate{AxisKind::rotary, 1.0}.own(p.key, p.unit).unit, p.text);
+      describe_expectation(kind, p.range, rotary.own(p.key, p.unit).unit, in_own_words(p.text, rotary));
   if (!need.empty())
     key.fallback = need;
   else if (p.optional)

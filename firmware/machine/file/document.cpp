@@ -113,6 +113,15 @@ std::string Document::place(const toml::source_region& place, std::string_view k
   return fmt::format("{}:{}: {}{}", file_, place.begin.line, prefix, key);
 }
 
+// Of a key at one place the first error is told: a table may be read twice, for what others need of it and for itself,
+// and what follows from the first error is none of its own.
+void Document::keep(std::string error) const {
+  const auto place_and_key = error.substr(0, error.find(": found "));
+  if (std::none_of(errors_.begin(), errors_.end(),
+                   [&](const std::string& each) { return each.starts_with(place_and_key + ": found "); }))
+    errors_.push_back(std::move(error));
+}
+
 void Document::report() const {
   if (errors_.empty()) return;
   throw MachineFileError(fmt::format("{}", fmt::join(errors_, "\n")));

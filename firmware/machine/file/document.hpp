@@ -29,7 +29,7 @@ class Document {
     try {
       check();
     } catch (const MachineFileError& error) {
-      errors_.emplace_back(error.what());
+      keep(error.what());
     }
   }
   bool has_errors() const { return !errors_.empty(); }
@@ -61,6 +61,7 @@ class Document {
  private:
   void refuse_unchangeable(const toml::table& changes) const;
   void overlay(toml::table& changes);
+  void keep(std::string error) const;
   void set_one(const std::string& tag, const std::string& key, const std::string& value);
 
   std::string file_;

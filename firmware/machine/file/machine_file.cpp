@@ -112,6 +112,7 @@ class MachineReader {
     const toml::node* model = node_at(table, "motor.model");
     const bool force_source = model != nullptr && describe_node(*model) == "\"force\"";
     const bool amperes = force_source && driven_by_amperes(table), force_motor = force_source && !amperes;
+    const std::size_t errors = document_.errors();
     const auto on_radius = [&](double radius) {
       const auto coordinates = coordinates_of(document_, table, path, radius);
       AxisModel axis = TableReader(document_, force_motor, &vocabulary_, coordinates).read<AxisModel>(table, path);
@@ -119,26 +120,27 @@ class MachineReader {
       if (axis.controller)
         axis.controller->in_volts =
             coordinates.controller_in_volts || axis.controller->structure == ControlStructure::p_voltage;
-      document_.attempt([&] { check_alternatives(table, path); });
+      check_alternatives(table, path);
       document_.attempt([&] { reduce(document_, table, path, axis, coordinates); });
       axis.name = name;
       check_motor(table, path, axis);
-      check_axis_rules(document_, table, path, axis);
+      check_axis_rules(document_, table, path, axis, errors);
       return axis;
     };
-    const std::size_t errors = document_.errors();
     AxisModel axis = on_radius(1.0);
     if (document_.errors() > errors) return axis;  // what follows works on values that are right
     if (axis.coordinate.rotary() && axis.cascaded())
       if (const auto choice = choose_radius(machine_.timing, axis); choice.radius) axis = on_radius(*choice.radius);
-    check_friction(table, path, "friction", axis.friction);
-    if (axis.motor_friction) check_friction(table, path, "motor_friction", *axis.motor_friction);
-    if (axis.motor_friction && !axis.elastic()) add_motor_friction(document_, table, path, axis);
-    check_controller_period(table, path, axis);
-    check_dead_time(table, path, axis.inverter.dead_time);
-    check_notch(table, path, axis.notch);
-    check_compensation(document_, table, path, axis, machine_);
-    if (runs_ && vocabulary_.check_effects) check_effects(table, path, axis);
+    const auto judge = [&](auto&& check) { document_.attempt(check); };
+    judge([&] { check_friction(table, path, "friction", axis.friction); });
+    if (axis.motor_friction) judge([&] { check_friction(table, path, "motor_friction", *axis.motor_friction); });
+    if (document_.errors() > errors) return axis;
+    if (axis.motor_friction && !axis.elastic()) judge([&] { add_motor_friction(document_, table, path, axis); });
+    judge([&] { check_controller_period(table, path, axis); });
+    judge([&] { check_dead_time(table, path, axis.inverter.dead_time); });
+    judge([&] { check_notch(table, path, axis.notch); });
+    judge([&] { check_compensation(document_, table, path, axis, machine_); });
+    if (runs_ && vocabulary_.check_effects) judge([&] { check_effects(table, path, axis); });
     return axis;
   }
 
@@ -161,14 +163,16 @@ class MachineReader {
       const toml::table* nearest = nullptr;
       const toml::node *one = node_at(table, first, &nearest), *other = node_at(table, second);
       if (nearest == &table && first.find('.') != std::string_view::npos) continue;  // no such table
-      if (one == nullptr && other == nullptr)
-        document_.fail(nearest->source(), join_key(path, first), "no such key",
-                       fmt::format("{}, or {}", expected_at(first, {}), second));
-      if (one != nullptr && other != nullptr)
-        document_.fail(other->source(), join_key(path, second),
-                       fmt::format("{} together with {}, {} (line {})", describe_node(*other), first,
-                                   describe_node(*one), one->source().begin.line),
-                       "one of them");
+      document_.attempt([&, &one_of = first, &in_place = second] {
+        if (one == nullptr && other == nullptr)
+          document_.fail(nearest->source(), join_key(path, one_of), "no such key",
+                         fmt::format("{}, or {}", expected_at(one_of, {}), in_place));
+        if (one != nullptr && other != nullptr)
+          document_.fail(other->source(), join_key(path, in_place),
+                         fmt::format("{} together with {}, {} (line {})", describe_node(*other), one_of,
+                                     describe_node(*one), one->source().begin.line),
+                         "one of them");
+      });
     }
   }
 

@@ -17,26 +17,29 @@ std::string beyond_rounding(double ratio) {
   return "; so much is no rounding: check whether one of them is in rms amperes, or of a line in place of a winding";
 }
 
-// The drive's force constant beside that of the windings.
+// The drive's force constant beside that of the windings, each as the file's motor has it.
 void note_force_constant(const AxisModel& axis, std::vector<std::string>& notes) {
   const double windings = acting_force_constant(axis.motor), ratio = windings / axis.motor.force_constant;
   if (std::abs(ratio - 1.0) <= equal) return;
-  notes.push_back(
-      fmt::format("Axis {}: force_constant is {:.5g} N/A, and the windings make {:.5g} N/A, 3/2 of {:.5g} ({:+.2f} %). "
-                  "The drive reckons with the first; the simulated motor has the second, and logs are read with it{}.",
-                  axis.name, axis.motor.force_constant, windings, axis.motor.phase_force_constant,
-                  100.0 * (ratio - 1.0), beyond_rounding(ratio)));
+  const auto own = axis.motor_coordinate.own("force_constant", "N/A");
+  notes.push_back(fmt::format(
+      "Axis {}: {} is {:.5g} {}, and the windings make {:.5g} {}, 3/2 of {:.5g} ({:+.2f} %). The drive reckons with "
+      "the "
+      "first; the simulated motor has the second, and logs are read with it{}.",
+      axis.name, own.key, own.from_linear(axis.motor.force_constant), own.unit, own.from_linear(windings), own.unit,
+      own.from_linear(axis.motor.phase_force_constant), 100.0 * (ratio - 1.0), beyond_rounding(ratio)));
 }
 
 // A winding's voltage per speed and force per ampere are one constant, by the energy that it converts.
 void note_emf_constant(const AxisModel& axis, std::vector<std::string>& notes) {
   const double ratio = axis.motor.emf_constant / axis.motor.phase_force_constant;
   if (std::abs(ratio - 1.0) <= rounding) return;
+  const auto emf = axis.motor_coordinate.own("emf_constant", "V s/m"),
+             force = axis.motor_coordinate.own("phase_force_constant", "N/A");
   notes.push_back(fmt::format(
-      "Axis {}: emf_constant is {:.5g} V s/m and phase_force_constant {:.5g} N/A ({:+.2f} %). Of one winding "
-      "they are the same number{}.",
-      axis.name, axis.motor.emf_constant, axis.motor.phase_force_constant, 100.0 * (ratio - 1.0),
-      beyond_rounding(ratio)));
+      "Axis {}: {} is {:.5g} {} and {} {:.5g} {} ({:+.2f} %). Of one winding they are the same number{}.", axis.name,
+      emf.key, emf.from_linear(axis.motor.emf_constant), emf.unit, force.key,
+      force.from_linear(axis.motor.phase_force_constant), force.unit, 100.0 * (ratio - 1.0), beyond_rounding(ratio)));
 }
 
 }  // namespace

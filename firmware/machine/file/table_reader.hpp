@@ -22,6 +22,7 @@
 #include "firmware/machine/file/nearest_name.hpp"
 #include "firmware/machine/file/parameters.hpp"
 #include "firmware/machine/file/units.hpp"
+#include "firmware/machine/model/own_words.hpp"
 #include "firmware/machine/model/value_table.hpp"
 
 namespace stiction::machine {
@@ -153,7 +154,7 @@ class TableReader {
                       const Place& place) const {
     const auto unit = unit_of_key(key);
     const OwnQuantity own = coordinate_.own(key.key, unit);
-    const Wanted wanted{join_key(path, own.key), own, key.range, key.text};
+    const Wanted wanted{join_key(path, own.key), own, key.range, in_own_words(key.text, coordinate_)};
     const toml::node* node = table.get(own.key);
     if (node != nullptr)
       std::visit([&](auto* member) { read_value(*node, wanted, *member); }, place);
@@ -177,7 +178,7 @@ class TableReader {
     std::string key;
     OwnQuantity own;
     Range range;
-    std::string_view text;
+    std::string text;
     std::string expected(ValueKind kind) const { return describe_expectation(kind, range, own.unit, text); }
   };
   std::string_view unit_of_key(const ValueKey& key) const {
@@ -185,7 +186,7 @@ class TableReader {
   }
   // Of the vocabulary, whose keys every kind of axis has.
   Wanted wanted_of(const std::string& path, const ValueKey& key) const {
-    return {join_key(path, key.key), coordinate_.own(unit_of_key(key)), key.range, key.text};
+    return {join_key(path, key.key), coordinate_.own(unit_of_key(key)), key.range, in_own_words(key.text, coordinate_)};
   }
 
   [[noreturn]] void fail_missing(const toml::table& table, const Wanted& wanted, ValueKind kind) const {

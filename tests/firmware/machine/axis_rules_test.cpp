@@ -1,6 +1,7 @@
 // What the tables of an axis need of one another: controllers, shafts, weights, encoders, endless axes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -151,7 +152,10 @@ TEST(AxisRules, AWeightIsHeldByTheMotor) {
   EXPECT_NEAR(*axis.gravity->counterweight, 58.8399, 1e-9);
   EXPECT_NEAR(axis.mass - axis.motor_mass, 12.0, 1e-12);
   // 20 A at 0.1 N m/A on 150 mm a turn hold 83.8 N.
-  expect_refused(hanging("force = \"98.0665 N\"\n"), "found 98.07 N to hold", "at most 83.78 N");
+  expect_refused(
+      hanging("force = \"98.0665 N\"\n"), "found 98.07 N to hold, by gravity.force, \"98.0665 N\" (line 32)",
+      "at most 83.78 N, which the motor holds at its limit, by motor.torque_constant, \"0.1 N m/A\" (line 13) "
+      "and inverter.current_limit, \"20 A\" (line 17)");
   expect_refused(hanging("force = \"10 N\"\nzero = \"1 m\"\n"), "axis.B.gravity.zero", "does not turn");
   expect_refused(hanging(""), "axis.B.gravity.force: found no such key", "force, counterweight or counterweight_mass");
 }
@@ -162,7 +166,7 @@ TEST(AxisRules, AnEndlessAxisHasAModuloInPlaceOfATravel) {
   ASSERT_TRUE(read_text(endless).axes[0].modulo.has_value());
   expect_refused(with_line(joint, "travel = \"360 deg\"", "modulo = \"360 deg\""), "axis.J.modulo", "travel");
   expect_refused(replaced(endless, "modulo = \"360 deg\"", "modulo = \"100 deg\""), "axis.J.modulo",
-                 "a whole number of increments, of encoder.counts, 4096");
+                 "found \"100 deg\", 1137.78 increments by encoder.counts, 4096 (line 16); expected a whole number");
 }
 
 TEST(AxisRules, EncodersHaveTheirOwnPlaces) {
@@ -176,6 +180,83 @@ TEST(AxisRules, EncodersHaveTheirOwnPlaces) {
                  "does not turn");
   expect_refused(belt + pd + "[axis.B.second_encoder]\nnoise = \"1 um\"\n", "axis.B.second_encoder.increment",
                  "or second_encoder.counts");
+}
+
+// At standstill a voltage makes a current through the resistance alone, and a supply limits the output.
+TEST(AxisRules, AWeightIsHeldByTheVoltageToo) {
+  const auto joint = replaced(stiction::test::rotary_joint, R"([axis.J.position_controller]
+gain = "40 1/s"
+[axis.J.velocity_controller]
+gain = "1.5 V s/rad"
+integral_time = "20 ms"
+)",
+                              R"([axis.J.controller]
+structure = "p-voltage"
+gain = "3 V/rad"
+supply = "5 V"
+)");
+  const auto hanging = [&](const std::string& moment) {
+    return joint + "[axis.J.gravity]\nmoment = \"" + moment + "\"\n";
+  };
+  EXPECT_EQ(error_of(hanging("0.59 N m")), "accepted");  // 0.12 N m/V make 0.6 N m of 5 V
+  expect_refused(hanging("0.61 N m"), "axis.J.gravity: found 0.61 N m to hold",
+                 "at most 0.6 N m, which the motor holds at its limit, by motor.torque_constant, \"0.12 N m/V\" (line "
+                 "11) and controller.supply, \"5 V\"");
+  const auto dc = replaced(joint, "model = \"force\"\ntorque_constant = \"0.12 N m/V\"",
+                           "model = \"dc\"\ntorque_constant = \"0.48 N m/A\"\nphase_resistance = \"4 Ohm\"\n"
+                           "phase_inductance = \"1 mH\"\nemf_constant = \"0.48 V s/rad\"");
+  const auto limited = replaced(dc, "voltage_limit = \"12 V\"", "voltage_limit = \"12 V\"\ncurrent_limit = \"9 A\"");
+  const auto weight = [&](const char* moment) { return limited + "[axis.J.gravity]\nmoment = \"" + moment + "\"\n"; };
+  EXPECT_EQ(error_of(weight("0.59 N m")), "accepted");
+  expect_refused(weight("0.61 N m"), "axis.J.gravity", "controller.supply, \"5 V\"");
+}
+
+TEST(AxisRules, AScrewHasALead) {
+  const auto screw = replaced(belt + pd, "pulley_circumference = \"150 mm\"", "screw_inertia = \"1e-4 kg m^2\"");
+  expect_refused(screw,
+                 "axis.B.transmission.lead: found no such key together with screw_inertia, \"1e-4 kg m^2\" (line 9)",
+                 "the lead of the screw");
+  expect_refused(stiction::test::rotary_joint + "[axis.J.transmission]\nratio = 3\nscrew_inertia = \"1e-4 kg m^2\"\n",
+                 "axis.J.transmission.screw_inertia: found \"1e-4 kg m^2\"", "none on a rotary axis");
+}
+
+// What contradicts is told at once, each with both keys and their lines; a key once, however often it is read.
+TEST(AxisRules, AllContradictionsAreToldAtOnce) {
+  const auto text = replaced(replaced(belt + pd, "pulley_circumference = \"150 mm\"\nmotor_inertia = \"6e-5 kg m^2\"",
+                                      "screw_inertia = \"0 kg m^2\"\nstiffness = \"0.4 N/um\"\nbogus = 1"),
+                             "travel = \"1 m\"", "travel = \"1 m\"\nmodulo = \"1 m\"");
+  const auto error = error_of(text, {.experiment = {}, .set = {}, .all_errors = true});
+  for (const char* each : {"modulo: found \"1 m\" together with travel, \"1 m\" (line 5); expected one of them",
+                           "transmission.lead: found no such key together with screw_inertia, \"0 kg m^2\" (line 10)",
+                           "transmission.damping: found no such key; expected damping or damping_ratio, together with "
+                           "transmission.stiffness, \"0.4 N/um\" (line 11)",
+                           "transmission.motor_inertia: found none", "transmission.bogus: found an unknown key"}) {
+    const auto at = error.find(each);
+    EXPECT_NE(at, std::string::npos) << each << "\n" << error;
+    EXPECT_EQ(error.find(each, at + 1), std::string::npos) << "told twice: " << each;
+  }
+  EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 4) << error;
+}
+
+TEST(AxisRules, AWeightAndRoundsAreJudgedApart) {
+  const auto text = replaced(stiction::test::rotary_joint, "travel = \"360 deg\"", "modulo = \"100 deg\"") +
+                    "[axis.J.gravity]\nmoment = \"9 N m\"\n";
+  const auto error = error_of(text, {.experiment = {}, .set = {}, .all_errors = true});
+  EXPECT_NE(error.find("axis.J.gravity: found 9 N m to hold"), std::string::npos) << error;
+  EXPECT_NE(error.find("axis.J.modulo: found \"100 deg\", 1137.78 increments"), std::string::npos) << error;
+}
+
+// A weight is judged by values that are right: a constant that is none makes no limit.
+TEST(AxisRules, AWeightIsNotJudgedByWhatIsRefused) {
+  const auto text = replaced(belt + pd, "0.1 N m/A", "0.1 N m") + "[axis.B.gravity]\nforce = \"98 N\"\n";
+  EXPECT_EQ(error_of(text, {.experiment = {}, .set = {}, .all_errors = true}).find("to hold"), std::string::npos);
+}
+
+TEST(AxisRules, ARotaryAxisIsToldOfInItsOwnWords) {
+  const auto joint = stiction::test::rotary_joint;
+  expect_refused(replaced(joint, "inertia = \"1.5e-3 kg m^2\"\n", ""), "axis.J.inertia", "moving inertia");
+  expect_refused(replaced(joint, "torque_constant = \"0.12 N m/V\"\n", ""), "axis.J.motor.torque_constant",
+                 "torque constant of the whole motor");
 }
 
 }  // namespace

@@ -32,6 +32,16 @@ TEST(MachineNotes, DoubtWhatNoDataSheetRoundsAway) {
   EXPECT_NE(emf[0].find("emf_constant is 36.3 V s/m and phase_force_constant 62.8 N/A"), std::string::npos) << emf[0];
 }
 
+TEST(MachineNotes, TellTheConstantsOfAShaftAsTheFileHasThem) {
+  const auto* path = "/tests/axes/machines/geared_pid_current_loop.toml";
+  const auto machine =
+      sim::read_machine(std::string(STICTION_SOURCE_DIR) + path, {{}, {"axis.A.motor.torque_constant=0.2 N m/A"}});
+  const auto notes = machine_notes(machine);
+  ASSERT_FALSE(notes.empty());
+  EXPECT_NE(notes[0].find("emf_constant is 0.2 V s/rad and phase_torque_constant 0.13333 N m/A"), std::string::npos)
+      << notes[0];
+}
+
 TEST(MachineNotes, AreSilentWhereOneConstantStandsAlone) {
   EXPECT_TRUE(machine_notes(shipped("emps")).empty());
   EXPECT_TRUE(machine_notes(shipped("mcfv5050ln", {"axis.*.motor.model=dc"})).empty());

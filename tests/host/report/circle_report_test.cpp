@@ -15,8 +15,10 @@
 #include "host/report/machine_sheet.hpp"
 #include "host/report/page.hpp"
 #include "host/report/reference_lookup.hpp"
+#include "sim/machine_file.hpp"
 #include "tests/host/report/page_text.hpp"
 #include "tests/host/report/synthetic_circle.hpp"
+#include "tests/support/rotary_joint.hpp"
 
 namespace stiction::host {
 namespace {
@@ -192,6 +194,21 @@ TEST(MachineSheet, ShowsWhatAForceMotorHasInItsOwnUnits) {
       if (!row.values.at(0).empty() && (section.title == "Motor" || section.title == "Current controller"))
         found.push_back(row.values[0] + " " + row.unit);
   EXPECT_EQ(found, (std::vector<std::string>{"force ", "0 mH", "35 N/V", "1 "}));
+}
+
+TEST(MachineSheet, HasTheWordsAndUnitsOfARotaryAxis) {
+  const auto machine =
+      sim::parse_machine("joint.toml", test::rotary_joint + "[axis.J.gravity]\nmoment = \"0.4 N m\"\n");
+  std::vector<std::string> found;
+  for (const auto& section : machine_sheet(machine))
+    for (const auto& row : section.rows) {
+      found.push_back(row.label + " | " + row.unit);
+      EXPECT_EQ(row.label.find("force"), std::string::npos) << row.label;
+      EXPECT_EQ(row.label.find("mass"), std::string::npos) << row.label;
+    }
+  for (const char* row : {"moving inertia | kg cm²", "moment of the load's weight about the rest below | N m",
+                          "torque constant of the whole motor, amplitude amperes | N m/V"})
+    EXPECT_NE(std::find(found.begin(), found.end(), row), found.end()) << row;
 }
 
 // ---- packing ----
