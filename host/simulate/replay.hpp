@@ -35,7 +35,7 @@ Log replay(const machine::Machine& machine, const Log& log, const ReplaySettings
            const TraceSink<S>& trace = {});
 
 // The same of a log whose channels are those of the linear axes on which all computing is done (own_units.hpp), and so
-// are those of the result. S, `settings`, `trace` and errors: as above.
+// are those of the result. S, `machine`, `settings`, `trace` and errors: as above.
 template <class S>
 Log replay_linear(const machine::Machine& machine, const Log& log, const ReplaySettings& settings = {},
                   const TraceSink<S>& trace = {});

@@ -25,13 +25,26 @@ def units(unit):
     return [unit] + ([unit.replace("A", "V")] if "A" in unit and "V" not in unit else [])
 
 
+# With angles in place of lengths.
+ROTARY = {"m": "rad", "m/s": "rad/s", "m/s^2": "rad/s^2", "N": "N m", "N/m": "N m/rad", "N s/m": "N m s/rad",
+          "kg": "kg m^2", "N/A": "N m/A", "N/V": "N m/V", "A s/m": "A s/rad", "V s/m": "V s/rad"}
+
+
+def spelled(unit):
+    """Every unit that a key may have, each with the axes that have it."""
+    for each in units(unit):
+        of = ", of a motor that is driven by voltage" if each != unit else ""
+        yield each, of
+        if each in ROTARY:
+            yield ROTARY[each], ", of a rotary axis" + of.replace(", of", " and")
+
+
 def parameters(keys):
     """The schema of an effect's parameters."""
     properties = {}
     for key, is_list, unit in KEY.findall(keys):
-        for each in units(unit):
-            text = f"key `{key}`" + (f", in {each}" if each else ", without unit")
-            text += ", of a motor that is driven by voltage" if each != unit else ""
+        for each, of in spelled(unit):
+            text = f"key `{key}`" + (f", in {each}" if each else ", without unit") + of
             kind = {"$ref": "#/$defs/number_list"} if is_list else {"type": "number"}
             properties[key + suffix(each)] = {**kind, "description": text}
     return {"type": "object", "additionalProperties": False, "properties": properties}

@@ -1,0 +1,69 @@
+// A rotary axis is diagnosed as the same axis written as a linear one, and its verdict is in its own units.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <string_view>
+
+#include "host/diagnose/diagnose.hpp"
+#include "host/diagnose/verdict_json.hpp"
+#include "host/log/own_units.hpp"
+#include "host/simulate/commissioning.hpp"
+#include "sim/machine_file.hpp"
+#include "tests/support/rotary_joint.hpp"
+
+namespace stiction::host {
+namespace {
+
+// Of a joint with half as much Coulomb friction again as in the file; on the circle where `linear`.
+Verdict verdict_of(bool linear, const std::string& more_of_the_file = "") {
+  const auto joint = sim::parse_machine("joint.toml", test::rotary_joint);
+  const auto coordinate = joint.axes[0].coordinate;
+  DiagnoseInput input;
+  input.machine = linear ? sim::parse_machine("joint.toml", test::joint_on_circle(coordinate.radius))
+                         : sim::parse_machine("joint.toml", test::rotary_joint + more_of_the_file);
+  input.next_measurement = false;
+  auto machine = joint;
+  machine.axes[0].effects.push_back({"coulomb_mismatch", {{"coulomb", {0.06 / coordinate.radius}}}});
+  for (auto& record : record_commissioning(machine, 0, 1)) {
+    if (linear) record.log.axes[0] = as_linear(std::move(record.log.axes[0]), coordinate);
+    (record.held_out ? input.held_out : input.logs).push_back(std::move(record.log));
+  }
+  return diagnose(input);
+}
+
+TEST(RotaryDiagnosis, HasTheBitsOfTheLinearAxisOnItsCircleInItsOwnUnits) {
+  const double radius = sim::parse_machine("joint.toml", test::rotary_joint).axes[0].coordinate.radius;
+  const auto turned = verdict_of(false), moved = verdict_of(true);
+  EXPECT_EQ(turned.baseline.force_rms, moved.baseline.force_rms);
+  EXPECT_EQ(turned.extended.force_rms, moved.extended.force_rms);
+  ASSERT_EQ(turned.findings.size(), moved.findings.size());
+  ASSERT_FALSE(turned.findings.empty());
+  EXPECT_EQ(turned.findings[0].effect.name(), "coulomb_mismatch");
+  for (std::size_t k = 0; k < turned.findings.size(); ++k) {
+    EXPECT_EQ(turned.findings[k].effect, moved.findings[k].effect);
+    EXPECT_EQ(turned.findings[k].values, moved.findings[k].values);
+  }
+  const auto& own = turned.findings[0].parameters.at(0);
+  EXPECT_EQ(own.name(), "coulomb_N_m");
+  EXPECT_EQ(own.values.at(0), radius * moved.findings[0].parameters.at(0).values.at(0));
+  EXPECT_NEAR(own.values.at(0), 0.06, 0.002);
+
+  const auto json = verdict_json(turned);
+  EXPECT_EQ(json.at("baseline").at("force_rms_N_m").get<double>(), radius * turned.baseline.force_rms);
+  EXPECT_TRUE(json.at("baseline").contains("position_error_rms_urad"));
+  const auto text = verdict_text(turned);
+  for (const std::string_view linear : {" N rms", " um", " mm"})
+    EXPECT_EQ(text.find(linear), std::string::npos) << text;
+}
+
+TEST(RotaryDiagnosis, JudgesNoCommandAndNoClosedLoopOfAControllerThatIsNotKnown) {
+  const auto verdict = verdict_of(false, "[axis.J.controller]\nstructure = \"unknown\"\n");
+  ASSERT_FALSE(verdict.findings.empty());
+  EXPECT_EQ(verdict.findings[0].effect.name(), "coulomb_mismatch");
+  EXPECT_FALSE(verdict.baseline.position_error_rms);
+  EXPECT_FALSE(verdict.baseline.command_rms);
+  EXPECT_EQ(verdict.closed_loop_withheld, "The controller of axis J is not known");
+}
+
+}  // namespace
+}  // namespace stiction::host
