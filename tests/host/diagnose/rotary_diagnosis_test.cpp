@@ -1,6 +1,8 @@
 // A rotary axis is diagnosed as the same axis written as a linear one, and its verdict is in its own units.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <numbers>
 #include <string>
 #include <string_view>
 
@@ -14,26 +16,46 @@
 namespace stiction::host {
 namespace {
 
-// Of a joint with half as much Coulomb friction again as in the file; on the circle where `linear`.
-Verdict verdict_of(bool linear, const std::string& more_of_the_file = "") {
-  const auto joint = sim::parse_machine("joint.toml", test::rotary_joint);
-  const auto coordinate = joint.axes[0].coordinate;
+// An encoder that is fine enough for the drive to estimate speeds from, and a drive that follows without lag.
+constexpr double counts = 1048576.0;
+const std::string without_lag = "axis.J.feedforward.velocity=1";
+
+const std::string counted = fmt::format("axis.J.encoder.counts={}", counts);
+
+machine::Machine joint() { return sim::parse_machine("joint.toml", test::rotary_joint, {{}, {counted, without_lag}}); }
+
+machine::Machine joint_on_circle(double radius) {
+  const double increment = 2.0 * std::numbers::pi * radius / counts;
+  return sim::parse_machine("joint.toml", test::joint_on_circle(radius),
+                            {{}, {fmt::format("axis.J.encoder.increment={} m", increment), without_lag}});
+}
+
+machine::Machine joint_of_an_unknown_controller() {
+  auto text = test::rotary_joint;
+  const auto begin = text.find("[axis.J.position_controller]"), end = text.find("[axis.J.friction]");
+  text.replace(begin, end - begin, "[axis.J.controller]\nstructure = \"unknown\"\n");
+  return sim::parse_machine("joint.toml", text, {{}, {counted}});
+}
+
+// Of records of a joint with half as much Coulomb friction again as in the file, compared with `machine`, which is the
+// joint or its linear axis on a circle.
+Verdict verdict_of(const machine::Machine& machine) {
+  auto true_machine = joint();
+  const auto coordinate = true_machine.axes[0].coordinate;
   DiagnoseInput input;
-  input.machine = linear ? sim::parse_machine("joint.toml", test::joint_on_circle(coordinate.radius))
-                         : sim::parse_machine("joint.toml", test::rotary_joint + more_of_the_file);
+  input.machine = machine;
   input.next_measurement = false;
-  auto machine = joint;
-  machine.axes[0].effects.push_back({"coulomb_mismatch", {{"coulomb", {0.06 / coordinate.radius}}}});
-  for (auto& record : record_commissioning(machine, 0, 1)) {
-    if (linear) record.log.axes[0] = as_linear(std::move(record.log.axes[0]), coordinate);
+  true_machine.axes[0].effects.push_back({"coulomb_mismatch", {{"coulomb", {0.06 / coordinate.radius}}}});
+  for (auto& record : record_commissioning(true_machine, 0, 1)) {
+    if (!machine.axes[0].coordinate.rotary()) record.log.axes[0] = as_linear(std::move(record.log.axes[0]), coordinate);
     (record.held_out ? input.held_out : input.logs).push_back(std::move(record.log));
   }
   return diagnose(input);
 }
 
 TEST(RotaryDiagnosis, HasTheBitsOfTheLinearAxisOnItsCircleInItsOwnUnits) {
-  const double radius = sim::parse_machine("joint.toml", test::rotary_joint).axes[0].coordinate.radius;
-  const auto turned = verdict_of(false), moved = verdict_of(true);
+  const double radius = joint().axes[0].coordinate.radius;
+  const auto turned = verdict_of(joint()), moved = verdict_of(joint_on_circle(radius));
   EXPECT_EQ(turned.baseline.force_rms, moved.baseline.force_rms);
   EXPECT_EQ(turned.extended.force_rms, moved.extended.force_rms);
   ASSERT_EQ(turned.findings.size(), moved.findings.size());
@@ -57,7 +79,7 @@ TEST(RotaryDiagnosis, HasTheBitsOfTheLinearAxisOnItsCircleInItsOwnUnits) {
 }
 
 TEST(RotaryDiagnosis, JudgesNoCommandAndNoClosedLoopOfAControllerThatIsNotKnown) {
-  const auto verdict = verdict_of(false, "[axis.J.controller]\nstructure = \"unknown\"\n");
+  const auto verdict = verdict_of(joint_of_an_unknown_controller());
   ASSERT_FALSE(verdict.findings.empty());
   EXPECT_EQ(verdict.findings[0].effect.name(), "coulomb_mismatch");
   EXPECT_FALSE(verdict.baseline.position_error_rms);
