@@ -18,8 +18,8 @@ inline constexpr int enough_reversals = 1000;
 // middle. Nine tenths of the axis' speed. Accelerations are half as high again as in the records; where they are what
 // is looked at, 0.7 of the axis' and what half of its motor's force gives.
 sim::MotionRange motion_range(const machine::AxisModel& axis, const LogRows& rows);
-// Where a proposed log begins, how far and how fast it goes, in the `units` of the axis, and a warning where the records
-// in the `rows` did not go there.
+// Where a proposed log begins, how far and how fast it goes, in the `units` of the axis, and a warning where the
+// records in the `rows` did not go there.
 std::string extent_words(const Log& proposed, const LogRows& rows, const ShownUnits& units);
 
 struct Rehearsal {
