@@ -47,7 +47,7 @@ std::optional<PhaseMargin> phase_margin(const Curve& open) {
     const double degrees =
         std::remainder(std::arg(open.value[k]) + part * turn + std::numbers::pi, 2.0 * std::numbers::pi) * 180.0 /
         std::numbers::pi;
-    if (!margin || degrees < margin->degrees) margin = {frequency_between(open, k, part), degrees};
+    if (!margin || std::abs(degrees) < std::abs(margin->degrees)) margin = {frequency_between(open, k, part), degrees};
   }
   return margin;
 }

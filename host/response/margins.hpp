@@ -34,7 +34,8 @@ struct PhaseMargin {
 // none where the phase never crosses -180 deg with a magnitude below 1.
 std::optional<GainMargin> gain_margin(const Curve& open);
 
-// The smallest of the crossings of magnitude 1; none where there is no crossing.
+// Of such a loop: at the crossing of magnitude 1 that is nearest to -180 deg, on either side of it; none where there is
+// no crossing. An elastic shaft makes several.
 std::optional<PhaseMargin> phase_margin(const Curve& open);
 
 // Where the magnitude of a closed loop first falls below -3 dB.

@@ -45,6 +45,24 @@ TEST(Margins, ALoopThatNeverTurnsByHalfACircleHasNoGainMargin) {
   EXPECT_NEAR(phase_margin(open)->degrees, 90.0, 1e-6);
 }
 
+TEST(Margins, AResonanceFarFromMinusOneTakesNothingFromThePhaseMargin) {
+  // K w0^2/(s (s^2 + 2 D w0 s + w0^2)), and a dead time with which the resonance comes at -360 deg: the loop crosses
+  // magnitude 1 there twice more, at -300 and at -420 deg, more than 90 deg away from -180 deg on either side.
+  constexpr double gain = 120.0, w0 = 2.0 * std::numbers::pi * 100.0, damping = 0.05;
+  const double dead = std::numbers::pi / w0;
+  const auto open = curve(1.0, 1000.0, [&](std::complex<double> s) {
+    return gain * w0 * w0 / (s * (s * s + 2.0 * damping * w0 * s + w0 * w0)) * std::exp(-s * dead);
+  });
+  // |L| = 1 far below w0: w (1 - w^2/w0^2) = K but for the damping.
+  double w = gain;
+  for (int k = 0; k < 50; ++k) w = gain / (1.0 - w * w / (w0 * w0));
+  const double lag = w * dead + std::atan2(2.0 * damping * w / w0, 1.0 - w * w / (w0 * w0));
+  const auto phase = phase_margin(open);
+  ASSERT_TRUE(phase);
+  EXPECT_NEAR(phase->frequency, w / (2.0 * std::numbers::pi), 0.1);
+  EXPECT_NEAR(phase->degrees, 90.0 - lag * 180.0 / std::numbers::pi, 0.5);
+}
+
 TEST(Margins, ACrossingAboveOneIsALowerLimitAndNotTheMargin) {
   // -180 deg at a low frequency with a large magnitude, and again, with a dead time, at a high one.
   const auto open = curve(
