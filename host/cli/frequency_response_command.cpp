@@ -19,7 +19,9 @@
 #include "host/cli/report_origin.hpp"
 #include "host/cli/response_test_output.hpp"
 #include "host/log/csv_log.hpp"
+#include "host/log/own_units.hpp"
 #include "host/log/read_log.hpp"
+#include "host/log/shown_units.hpp"
 #include "host/report/experiment_report.hpp"
 #include "host/response/response_result.hpp"
 #include "host/simulate/expected_figures.hpp"
@@ -31,7 +33,7 @@ namespace {
 
 struct Options {
   MachineOptions machine;
-  std::string friction, axis, loop, speed = "2 m/min", amplitude, lowest = "2 Hz", signal = "multisine";
+  std::string friction, axis, loop, speed, amplitude, lowest = "2 Hz", signal = "multisine";
   int periods = 2, passes = 8;
   std::string from, columns, log, out;
   bool json = false;
@@ -66,6 +68,29 @@ void choose_axes(machine::Machine& machine, const std::string& text) {
                 [&](const auto& axis) { return std::find(names.begin(), names.end(), axis.name) == names.end(); });
 }
 
+// What all axes do at the same time is a motion of linear axes.
+void require_one_kind(const machine::Machine& machine) {
+  for (const auto& axis : machine.axes)
+    if (axis.coordinate.rotary() && machine.axes.size() > 1)
+      throw UsageError(fmt::format("--axis: found {} axes, of which {} is rotary; expected linear axes, or one alone",
+                                   machine.axes.size(), axis.name));
+}
+
+// m/s
+double speed_of(const Options& options, const machine::Machine& machine) {
+  const auto& coordinate = machine.axes.front().coordinate;
+  const auto own = coordinate.own("m/s");
+  const double speed =
+      own.to_linear(quantity("--speed", options.speed, std::string(own.unit).c_str(),
+                             coordinate.rotary() ? "a speed such as \"60 deg/s\"" : "a speed such as \"2 m/min\""));
+  const auto feed = ShownUnits(coordinate).feed;
+  for (const auto& axis : machine.axes)
+    if (speed > axis.max_velocity)
+      throw UsageError(fmt::format("--speed: found '{}'; expected at most {:.3g} {}, the limit of axis {}",
+                                   options.speed, feed(axis.max_velocity), feed.unit, axis.name));
+  return speed;
+}
+
 FrequencyResponsePlan plan_of(const Options& options, const machine::Machine& machine) {
   FrequencyResponsePlan plan;
   plan.machine = machine;
@@ -74,11 +99,7 @@ FrequencyResponsePlan plan_of(const Options& options, const machine::Machine& ma
   if (!options.friction.empty())
     for (auto& axis : plan.machine.axes) axis.friction.use = friction.front();
   plan.signal = options.signal == "multisine" ? TestSignal::multisine : TestSignal::stepped_sine;
-  plan.speed = quantity("--speed", options.speed, "m/s", "a speed such as \"2 m/min\"");
-  for (const auto& axis : machine.axes)
-    if (plan.speed > axis.max_velocity)
-      throw UsageError(fmt::format("--speed: found '{}'; expected at most {:.3g} m/min, the limit of axis {}",
-                                   options.speed, axis.max_velocity * 60.0, axis.name));
+  if (!options.speed.empty()) plan.speed = speed_of(options, machine);
   if (!options.amplitude.empty()) {
     const bool force = machine.axes.front().motor.driven_by_volts();
     plan.amplitude =
@@ -94,6 +115,7 @@ FrequencyResponsePlan plan_of(const Options& options, const machine::Machine& ma
   if (options.passes < 1) throw UsageError(fmt::format("--passes: found {}; expected at least 1", options.passes));
   plan.periods = options.periods;
   plan.passes = options.passes;
+  if (!plan.speed) plan.speed = usual_speed(plan);
   return plan;
 }
 
@@ -104,7 +126,9 @@ struct Measurement {
 };
 
 Measurement simulated(const Options& options, const machine::Machine& machine) {
+  require_one_kind(machine);
   const auto plan = plan_of(options, machine);
+  const auto feed = ShownUnits(machine.axes.front().coordinate).feed;
   const auto log = run_frequency_response(plan);
   if (!options.log.empty()) {
     PendingFile file(options.log);
@@ -113,14 +137,15 @@ Measurement simulated(const Options& options, const machine::Machine& machine) {
   }
   Measurement m;
   for (std::size_t k = 0; k < plan.machine.axes.size(); ++k)
-    m.responses.push_back(axis_response(log, log.axes[k], plan.machine.timing, plan.machine.axes[k]));
+    m.responses.push_back(axis_response(log, as_linear(log.axes[k], plan.machine.axes[k].coordinate),
+                                        plan.machine.timing, plan.machine.axes[k]));
   std::vector<std::string> friction;
   for (const auto& axis : plan.machine.axes) friction.push_back(axis.name + " " + axis.friction.use);
   m.text = {FixedSignals::name,
-            fmt::format("Simulated: {} added to the set current while the axis moves back and forth at {:g} m/min; "
+            fmt::format("Simulated: {} added to the set current while the axis moves back and forth at {:.3g} {}; "
                         "friction model {}.",
                         plan.signal == TestSignal::multisine ? "multisine" : "one sine after the other",
-                        plan.speed * 60.0, fmt::join(friction, ", ")),
+                        feed(*plan.speed), feed.unit, fmt::join(friction, ", ")),
             true};
   return m;
 }
@@ -151,7 +176,8 @@ Measurement measured(const Options& options, const machine::Machine& machine) {
     const auto* of_machine = axis_for(log, axis, machine, !options.axis.empty());
     // An axis without a test signal is no error beside one that has it.
     if (of_machine == nullptr || (any_test && axis.i_inject.empty() && axis.u_inject.empty())) continue;
-    m.responses.push_back(axis_response(log, axis, machine.timing, *of_machine));
+    require_same_kind(log, axis, *of_machine);
+    m.responses.push_back(axis_response(log, as_linear(axis, of_machine->coordinate), machine.timing, *of_machine));
   }
   if (m.responses.empty())
     throw UsageError(
@@ -242,9 +268,10 @@ void add_frequency_response(CLI::App& simulate, const Invocation& invocation) {
       ->check(one_of({"multisine", "stepped-sine"}))
       ->capture_default_str();
   simulated_only(
-      command->add_option("--speed", o->speed, "speed of the axis, which moves back and forth during the test"))
-      ->type_name("\"NUMBER UNIT\"")
-      ->capture_default_str();
+      command->add_option("--speed", o->speed,
+                          "speed of the axis, which moves back and forth during the test [2 m/min; of a rotary axis a "
+                          "third of its highest speed, or what its travel allows]"))
+      ->type_name("\"NUMBER UNIT\"");
   simulated_only(
       command->add_option("--amplitude", o->amplitude, "peak value of the test signal [10 % of the current limit]"))
       ->type_name("\"NUMBER UNIT\"");

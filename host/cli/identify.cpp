@@ -23,6 +23,7 @@
 #include "host/identify/own_identification.hpp"
 #include "host/identify/refinement.hpp"
 #include "host/identify/standstill.hpp"
+#include "host/log/shown_units.hpp"
 #include "host/log/text_file.hpp"
 #include "host/report/identification_report.hpp"
 #include "sim/machine_file.hpp"
@@ -134,15 +135,16 @@ struct Run {
 };
 
 // Puts what the closed loop made of them in place of the parameters, and says what it gained.
-void take(Identification& result, const Refinement& refinement) {
+void take(Identification& result, const Refinement& refinement, const ShownUnits& own) {
   for (const auto& refined : refinement.parameters)
     for (auto& parameter : result.parameters)
       if (parameter.name == refined.name) parameter = refined;
   result.method += fmt::format(
-      " Refined in closed loop ({} simulations): the simulated force deviates from the logs by {:.4g} N rms (before: "
-      "{:.4g}), the position by {:.3g} um rms (before: {:.3g}).",
-      refinement.simulations, refinement.force_after, refinement.force_before, refinement.position_after * 1e6,
-      refinement.position_before * 1e6);
+      " Refined in closed loop ({} simulations): the simulated {} deviates from the logs by {:.4g} {} rms (before: "
+      "{:.4g}), the position by {:.3g} {} rms (before: {:.3g}).",
+      refinement.simulations, own.force_word, own.force(refinement.force_after), own.force.unit,
+      own.force(refinement.force_before), own.deviation(refinement.position_after), own.deviation.unit,
+      own.deviation(refinement.position_before));
 }
 
 Run identify(const IdentifyCommandOptions& options, const machine::Machine& machine) {
@@ -162,16 +164,16 @@ Run identify(const IdentifyCommandOptions& options, const machine::Machine& mach
     }
   const auto read = read_logs(options.logs, options.columns);
   const auto& axis = axis_to_identify(options.axis, machine, read);
-  if (options.refine && (axis.coordinate.rotary() || !axis.cascaded()))
-    throw UsageError(fmt::format("--refine: found axis {}, which is {}; expected a linear axis with the cascade",
-                                 axis.name, axis.coordinate.rotary() ? "rotary" : "controlled differently"));
+  if (options.refine && !axis.cascaded() && axis.controller->structure == machine::ControlStructure::unknown)
+    throw UsageError(fmt::format(
+        "--refine: found axis {} with an unknown controller; expected one that can be simulated", axis.name));
   const auto logs = linear_logs(read, axis);
   const auto held = held_values(options.fix, axis);
   const IdentifyOptions settings{model_to_identify(options.friction, axis), amperes, FitSettings{},
                                  options.friction.empty(), held};
   const Progress progress(options.refine ? "identifying and refining" : "identifying");
   Run run{&axis, identify_logs(logs, axis, settings), report_origin(options.machine.machine, logs)};
-  if (options.refine) take(run.result, refine_in_closed_loop(logs, machine, axis, run.result, settings));
+  if (options.refine) take(run.result, refine_in_closed_loop(logs, machine, axis, run.result, settings), ShownUnits(axis.coordinate));
   return run;
 }
 

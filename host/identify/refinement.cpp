@@ -83,6 +83,10 @@ class ClosedLoop {
       first_row_.push_back(rows_);
       rows_ += filters_.back().rows();
     }
+    if (const auto* weight = result.find("gravity_N"); weight != nullptr && machine_.axes.front().gravity) {
+      auto& gravity = *machine_.axes.front().gravity;
+      gravity.force = weight->value + gravity.counterweight.value_or(0.0);
+    }
     if (const auto* constant = result.find("constant_force_N")) {
       constant_ = constant->value;  // takes the place of the file's
       std::erase_if(machine_.axes.front().effects,

@@ -72,7 +72,7 @@ inline constexpr std::array<LogChannel, 19> log_channels{{
     {"F", "N", &AxisLog::force, "motor force", "T", "N m"},
     {"u", "V", &AxisLog::u, "drive voltage", "u", "V"},
     {"temperature", "degC", &AxisLog::temperature, "temperature", "temperature", "degC", true},
-    {"F_ext", "N", &AxisLog::external_force, "external force", nullptr, nullptr},
+    {"F_ext", "N", &AxisLog::external_force, "external force", "T_ext", "N m"},
     {"i_inject", "A", &AxisLog::i_inject, "test signal on the current", "i_inject", "A"},
     {"u_inject", "V", &AxisLog::u_inject, "test signal on the voltage", "u_inject", "V"},
     {"x_load", "m", &AxisLog::x_load, "position of the second encoder", "x_load", "rad"},

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "host/log/shown_units.hpp"
+
 namespace stiction::host {
 namespace {
 
@@ -110,14 +112,16 @@ Bode loop_bode(const LoopName& name, const AxisResponse& response, const LoopRes
 }
 
 Bode plant_bode(const AxisResponse& response, const machine::AxisModel& axis, bool wide) {
+  const auto speed = ShownUnits(axis.coordinate).speed;
   const char* per = axis.motor.driven_by_volts() ? "V" : "A";
   auto b = bode("Plant, " + response.axis,
                 fmt::format("Speed at the input of the controller, per {} of the {}. Coherence: of the speed.", per,
                             axis.motor.driven_by_volts()                                        ? "motor voltage"
                             : response.spectra.known[static_cast<std::size_t>(Answer::current)] ? "current"
                                                                                                 : "set current"),
-                fmt::format("magnitude, dB (0 dB = 1 m/s per {})", per), wide);
+                fmt::format("magnitude, dB (0 dB = 1 {} per {})", speed.unit, per), wide);
   b.magnitude.series = {magnitude_series("plant", response.plant)};
+  for (double& y : b.magnitude.series.front().y) y += decibel(speed.factor);
   b.phase.series = {phase_series("plant", response.plant)};
   b.phase.levels.clear();
   b.coherence.series = {{"coherence", response.plant.frequency, response.plant_coherence, false}};
@@ -171,13 +175,14 @@ std::string margin_sentence(const LoopName& name, const AxisResponse& response, 
   return text + ".";
 }
 
-std::string condition_sentence(const AxisResponse& response) {
+std::string condition_sentence(const AxisResponse& response, const machine::AxisModel& axis) {
+  const auto feed = ShownUnits(axis.coordinate).feed;
   const auto& s = response.spectra;
   std::size_t blocks = SIZE_MAX;
   for (const auto& point : s.points) blocks = std::min(blocks, point.blocks);
-  auto text = fmt::format("{}: {} frequencies from {:.3g} to {:.4g} Hz, each from at least {} {}; slowest {:.3g} m/min",
+  auto text = fmt::format("{}: {} frequencies from {:.3g} to {:.4g} Hz, each from at least {} {}; slowest {:.3g} {}",
                           response.axis, s.points.size(), s.points.front().frequency, s.points.back().frequency, blocks,
-                          s.periodic ? "blocks of whole periods" : "windows", s.slowest * 60.0);
+                          s.periodic ? "blocks of whole periods" : "windows", feed(s.slowest), feed.unit);
   if (s.slowest <= 0.0)
     text +=
         ": the speed crosses zero while the test signal acts, so that friction is strongly nonlinear; record with a "
@@ -206,12 +211,12 @@ sim::ExperimentResult response_result(const std::vector<AxisResponse>& responses
           : "The margins of a measured machine have no expected values. They are evaluated at frequencies with a "
             "coherence of at least 0.9.";
   result.findings.push_back(text.condition);
-  for (const auto& response : responses) result.findings.push_back(condition_sentence(response));
-  const bool wide = responses.size() != 2;
   const auto axis_of = [&](const AxisResponse& response) -> const machine::AxisModel& {
     return *std::find_if(machine.axes.begin(), machine.axes.end(),
                          [&](const auto& axis) { return axis.name == response.axis; });
   };
+  for (const auto& response : responses) result.findings.push_back(condition_sentence(response, axis_of(response)));
+  const bool wide = responses.size() != 2;
   for (const auto& name : loop_names) {
     if (!loops.empty() && std::find(loops.begin(), loops.end(), name.name) == loops.end()) continue;
     std::vector<Bode> bodes;

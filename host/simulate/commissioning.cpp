@@ -9,6 +9,7 @@
 #include "firmware/machine/model/motor_force.hpp"
 #include "host/log/own_units.hpp"
 #include "host/simulate/replay.hpp"
+#include "host/simulate/starts.hpp"
 #include "sim/experiment/commissioning_path.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
@@ -29,7 +30,6 @@ struct Scale {
 };
 
 constexpr double speed_share = 0.9;  // of what the axis can do at most
-constexpr double acceleration_share = 0.9;
 constexpr double stroke_share = 0.9;  // of the travel
 
 Scale scale_of(const machine::AxisModel& axis) {
@@ -47,15 +47,6 @@ std::vector<double> times(double factor, std::vector<double> values) {
 std::vector<double> per_second(std::vector<double> metres_per_minute, const Scale& scale) {
   for (double& v : metres_per_minute) v /= 60.0;
   return scale.speed == 1.0 ? metres_per_minute : times(scale.speed, std::move(metres_per_minute));
-}
-
-// The start of a motion as far as the axis can.
-sim::Dynamics start_on(const machine::AxisModel& axis) {
-  auto start = sim::standard_start;
-  const double highest = acceleration_share * axis.max_acceleration;
-  if (axis.coordinate.rotary() || start.acceleration > highest)
-    start = {highest, start.jerk * highest / start.acceleration};
-  return start;
 }
 
 // The speeds (m/s), all of them slower by one factor where the axis cannot do the highest.

@@ -5,8 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/log/own_units.hpp"
+#include "host/log/shown_units.hpp"
 #include "host/simulate/circle.hpp"
 #include "host/simulate/control_run.hpp"
+#include "host/simulate/starts.hpp"
+#include "sim/experiment/move_sequence.hpp"
 #include "sim/experiment/shuttle_path.hpp"
 #include "sim/experiment/test_signal.hpp"
 #include "stiction/number/fixed_signals.hpp"
@@ -14,13 +18,29 @@
 namespace stiction::host {
 namespace {
 
-constexpr double acceleration = 2.0, jerk = 40.0;  // m/s^2, m/s^3: those of the source's circles
+constexpr double usual_linear_speed = 2.0 / 60.0;  // m/s
+constexpr double usual_speed_share = 1.0 / 3.0;    // of the highest of a rotary axis
 constexpr double settling_time = 0.2;              // s after a start, 17 time constants of the position loop
 constexpr double pause = 0.02;                     // s between two sines
 constexpr double multisine_density = 50.0;         // lines per decade
 constexpr double sine_density = 25.0;
 constexpr double share_of_limit = 0.1;
 constexpr double share_of_travel = 0.8;  // that passes of many sines take
+
+// The slowest start of the axes.
+sim::Dynamics start_of(const FrequencyResponsePlan& plan) {
+  auto slowest = start_on(plan.machine.axes.front());
+  for (const auto& axis : plan.machine.axes)
+    if (const auto start = start_on(axis); start.acceleration < slowest.acceleration) slowest = start;
+  return slowest;
+}
+
+// Samples after which a multisine repeats: whole slow periods.
+int block_of(const FrequencyResponsePlan& plan) {
+  const auto& timing = plan.machine.timing;
+  return machine::slow_ratio(timing) *
+         std::max(1, static_cast<int>(std::lround(1.0 / (plan.lowest * timing.slow_period))));
+}
 
 // A stretch of test signal: so many blocks of whole periods of these lines.
 struct Stretch {
@@ -34,13 +54,16 @@ class Schedule {
       : plan_(plan),
         period_(plan.machine.timing.fast_period),
         passes_(passes_of(plan)),
-        path_(plan.speed, acceleration, jerk, cruise()) {
-    for (const auto& axis : plan.machine.axes)
-      if (path_.stroke() > axis.travel)
-        throw InfeasibleMotion(fmt::format(
-            "speed: found {:.4g} m/min, with which a pass of {:.2f} s takes {:.0f} mm; expected at most the travel of "
-            "axis {}, {:.0f} mm: a lower speed, fewer periods or a higher lowest frequency",
-            plan.speed * 60.0, path_.pass_duration(), path_.stroke() * 1e3, axis.name, axis.travel * 1e3));
+        path_(*plan.speed, start_of(plan).acceleration, start_of(plan).jerk, cruise()) {
+    for (const auto& axis : plan.machine.axes) {
+      if (axis.modulo || path_.stroke() <= axis.travel) continue;
+      const ShownUnits own(axis.coordinate);
+      throw InfeasibleMotion(fmt::format(
+          "speed: found {:.4g} {}, with which a pass of {:.2f} s takes {:.0f} {unit}; expected at most the travel of "
+          "axis {}, {:.0f} {unit}: a lower speed, fewer periods or a higher lowest frequency",
+          own.feed(*plan.speed), own.feed.unit, path_.pass_duration(), own.position(path_.stroke()), axis.name,
+          own.position(axis.travel), fmt::arg("unit", own.position.unit)));
+    }
   }
 
   sim::AxisSetPoint at(double t) const { return path_.at(t); }
@@ -80,14 +103,13 @@ class Schedule {
   }
 
   std::vector<Pass> passes_of(const FrequencyResponsePlan& plan) const {
-    const auto& timing = plan.machine.timing;
-    const int slow = machine::slow_ratio(timing);
-    const int block = slow * std::max(1, static_cast<int>(std::lround(1.0 / (plan.lowest * timing.slow_period))));
+    const int slow = machine::slow_ratio(plan.machine.timing);
+    const int block = block_of(plan);
     if (plan.signal == TestSignal::multisine)
       return std::vector<Pass>(static_cast<std::size_t>(plan.passes),
                                Pass{{block, sim::test_lines(block, slow, multisine_density)}});
     double longest = HUGE_VAL;
-    for (const auto& axis : plan.machine.axes) longest = std::min(longest, share_of_travel * axis.travel / plan.speed);
+    for (const auto& axis : plan.machine.axes) longest = std::min(longest, share_of_travel * axis.travel / *plan.speed);
     std::vector<Pass> passes{{}};
     for (const int line : sim::test_lines(block, slow, sine_density)) {
       // Higher frequencies have many periods in a fifth of the block.
@@ -140,6 +162,7 @@ class Watch {
   }
   bool saw_test() const { return slowest_ < HUGE_VAL; }
   void check(const machine::AxisModel& axis, double speed, double amplitude) const {
+    const auto feed = ShownUnits(axis.coordinate).feed;
     if (limited_ > 0)
       throw InfeasibleMotion(fmt::format(
           "amplitude: found {:.4g} {}, with which axis {} is held back at a limit of velocity, current or voltage in "
@@ -147,9 +170,10 @@ class Watch {
           amplitude, unit_of(axis), axis.name, limited_));
     if (slowest_ <= 0.0)
       throw InfeasibleMotion(fmt::format(
-          "speed: found {:.4g} m/min, but with a test signal of {:.4g} {} axis {} falls to {:.3g} m/min at {:.3f} s; "
-          "expected a speed that never crosses zero: at least {:.2g} m/min, or a smaller amplitude",
-          speed * 60.0, amplitude, unit_of(axis), axis.name, slowest_ * 60.0, time_, 1.3 * (speed - slowest_) * 60.0));
+          "speed: found {:.4g} {feed}, but with a test signal of {:.4g} {} axis {} falls to {:.3g} {feed} at {:.3f} s; "
+          "expected a speed that never crosses zero: at least {:.2g} {feed}, or a smaller amplitude",
+          feed(speed), amplitude, unit_of(axis), axis.name, feed(slowest_), time_, feed(1.3 * (speed - slowest_)),
+          fmt::arg("feed", feed.unit)));
   }
 
  private:
@@ -185,13 +209,15 @@ class Recording {
           amplitudes_.front(), unit_of(plan_.machine.axes.front()), fault.what()));
     }
     check();
+    for (std::size_t k = 0; k < log_.axes.size(); ++k)
+      log_.axes[k] = in_own_units(std::move(log_.axes[k]), plan_.machine.axes[k].coordinate);
     return std::move(log_);
   }
 
  private:
   void check() const {
     for (std::size_t k = 0; k < watches_.size(); ++k)
-      watches_[k].check(plan_.machine.axes[k], plan_.speed, amplitudes_[k]);
+      watches_[k].check(plan_.machine.axes[k], *plan_.speed, amplitudes_[k]);
   }
   void run() {
     const auto& axes = plan_.machine.axes;
@@ -225,6 +251,23 @@ class Recording {
 
 }  // namespace
 
-Log run_frequency_response(const FrequencyResponsePlan& plan) { return Recording(plan).take(); }
+double usual_speed(const FrequencyResponsePlan& plan) {
+  const auto& axis = plan.machine.axes.front();
+  if (!axis.coordinate.rotary()) {
+    double speed = usual_linear_speed;
+    for (const auto& each : plan.machine.axes) speed = std::min(speed, each.max_velocity);
+    return speed;
+  }
+  const double wanted = usual_speed_share * axis.max_velocity;
+  if (axis.modulo) return wanted;
+  const double cruise = settling_time + block_of(plan) * (plan.periods + 1) * plan.machine.timing.fast_period + pause;
+  return sim::speed_within(share_of_travel * axis.travel, wanted, cruise, start_of(plan));
+}
+
+Log run_frequency_response(const FrequencyResponsePlan& plan) {
+  auto complete = plan;
+  if (!complete.speed) complete.speed = usual_speed(plan);
+  return Recording(complete).take();
+}
 
 }  // namespace stiction::host

@@ -17,9 +17,9 @@ enum class TestSignal {
 };
 
 struct FrequencyResponsePlan {
-  machine::Machine machine;  // its axes are excited, all at the same time
+  machine::Machine machine;  // its axes are excited, all at the same time: linear ones, or one rotary one alone
   TestSignal signal = TestSignal::multisine;
-  double speed = 2.0 / 60.0;        // m/s
+  std::optional<double> speed;      // m/s; none: usual_speed()
   std::optional<double> amplitude;  // A (V of a force motor), largest magnitude; none: 10 % of the axis' limit
   double lowest = 2.0;              // Hz, lowest frequency and distance of the lines of a multisine
   int periods = 2;                  // measured, after one to settle; of a sine: blocks of whole periods
@@ -27,7 +27,10 @@ struct FrequencyResponsePlan {
   std::uint64_t seed = 1;           // of the phases
 };
 
-// Fixed-point signals: the firmware. Throws InfeasibleMotion when the motion does not fit the machine, when an axis
+// 2 m/min of linear axes; of a rotary one a third of its highest speed, or what its travel allows.
+double usual_speed(const FrequencyResponsePlan& plan);
+
+// The log in the units of its axes. Fixed-point signals: the firmware. Throws InfeasibleMotion when the motion does not fit the machine, when an axis
 // comes too near to standstill or is held back at a limit while the test signal acts; FaultTripped.
 Log run_frequency_response(const FrequencyResponsePlan& plan);
 

@@ -5,28 +5,29 @@
 #include <vector>
 
 #include "host/log/log.hpp"
+#include "host/log/own_units.hpp"
 #include "host/simulate/control_run.hpp"
-#include "stiction/number/fixed_signals.hpp"
 
 namespace stiction::host {
 
-// Every tick of a control run: set-points, position, velocity, currents; of a force source its voltage. It must outlive
-// its sink.
+// Every tick of a control run: set-points, position, velocity, currents; of what is driven by volts its voltage. It must
+// outlive its sink.
 class LogRecorder {
  public:
   explicit LogRecorder(const machine::Machine& machine) {
     log_.period = machine.timing.fast_period;
     for (const auto& axis : machine.axes) {
       log_.axes.emplace_back().axis = axis.name;
-      force_source_.push_back(axis.motor.driven_by_volts());
+      axes_.push_back({axis.coordinate, axis.commanded_in_volts(), !axis.motor.driven_by_volts()});
     }
   }
   LogRecorder(const LogRecorder&) = delete;
   LogRecorder& operator=(const LogRecorder&) = delete;
   ~LogRecorder() = default;
 
-  TraceSink<FixedSignals> sink() {
-    return [this](std::int64_t now_ns, std::span<const AxisSignals<FixedSignals>> signals) {
+  template <class S>
+  TraceSink<S> sink() {
+    return [this](std::int64_t now_ns, std::span<const AxisSignals<S>> signals) {
       log_.t.push_back(static_cast<double>(now_ns) * 1e-9);
       for (std::size_t k = 0; k < signals.size(); ++k) {
         auto& axis = log_.axes[k];
@@ -36,20 +37,28 @@ class LogRecorder {
         axis.a_set.push_back(machine::to_si(s.a_set));
         axis.x.push_back(machine::to_si(s.x));
         axis.v.push_back(machine::to_si(s.v));
-        if (force_source_[k]) {
-          axis.u.push_back(machine::to_si(s.i_set));
-          continue;
-        }
+        if (axes_[k].in_volts) axis.u.push_back(machine::to_si(s.i_set));
+        if (!axes_[k].has_current) continue;
         axis.i.push_back(machine::to_si(s.i));
-        axis.i_set.push_back(machine::to_si(s.i_set));
+        if (!axes_[k].in_volts) axis.i_set.push_back(machine::to_si(s.i_set));
       }
     };
   }
-  Log take() { return std::move(log_); }
+  // In the units of the axes.
+  Log take() {
+    for (std::size_t k = 0; k < log_.axes.size(); ++k)
+      log_.axes[k] = in_own_units(std::move(log_.axes[k]), axes_[k].coordinate);
+    return std::move(log_);
+  }
 
  private:
+  struct Axis {
+    machine::Coordinate coordinate;
+    bool in_volts, has_current;
+  };
+
   Log log_;
-  std::vector<bool> force_source_;
+  std::vector<Axis> axes_;
 };
 
 }  // namespace stiction::host

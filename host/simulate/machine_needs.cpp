@@ -19,8 +19,8 @@ constexpr std::string_view for_both_coordinates = "one for each coordinate of th
 constexpr std::array table{
     MachineNeeds{.command = ""},
     MachineNeeds{.command = "circle", .most_axes = 2, .why = for_a_circle},
-    MachineNeeds{.command = "constant-velocity", .one_axis = true},
-    MachineNeeds{.command = "impact", .one_axis = true},
+    MachineNeeds{.command = "constant-velocity", .one_axis = true, .rotary = true, .controllers = Controllers::known},
+    MachineNeeds{.command = "impact", .one_axis = true, .rotary = true, .controllers = Controllers::known},
     MachineNeeds{
         .command = "l-shape", .least_axes = 2, .most_axes = 2, .why = "one is at standstill while the other moves"},
     MachineNeeds{.command = "presliding", .friction = with_bristles, .one_axis = true},
@@ -28,8 +28,10 @@ constexpr std::array table{
     MachineNeeds{.command = "break-away", .friction = with_bristles, .one_axis = true},
     MachineNeeds{.command = "stick-slip", .friction = with_sticking, .one_axis = true},
     MachineNeeds{.command = "feed-cutting", .least_axes = 0, .feed_drive = true},
+    MachineNeeds{.command = "frequency-response", .rotary = true},
     MachineNeeds{.command = "frequency-response --loop current",
                  .current_controller = true,
+                 .rotary = true,
                  .why = "of which the current loop consists"},
     MachineNeeds{
         .command = "compare --reference circle", .most_axes = 2, .circle_references = true, .why = for_a_circle},
@@ -110,8 +112,8 @@ std::optional<std::string> what_is_missing(const machine::Machine& machine, cons
       if (axis.coordinate.rotary())
         return missing(
             fmt::format("the rotary axis {}", axis.name),
-            "linear axes; inspect, identify, diagnose, compare LOG, simulate replay and simulate commissioning "
-            "serve rotary ones");
+            "linear axes; inspect, identify, diagnose, compare LOG and simulate replay, commissioning, "
+            "constant-velocity, impact and frequency-response serve rotary ones");
   for (const auto& axis : machine.axes) {
     if (axis.cascaded() || needs.controllers == Controllers::any) continue;
     const bool unknown = axis.controller->structure == machine::ControlStructure::unknown;
@@ -119,8 +121,8 @@ std::optional<std::string> what_is_missing(const machine::Machine& machine, cons
       return missing(
           fmt::format("axis {} with {}", axis.name,
                       unknown ? "an unknown controller" : "a controller that is not the firmware's cascade"),
-          "the cascade, without [axis.NAME.controller]; inspect, identify, diagnose, compare LOG and simulate replay "
-          "serve other structures");
+          "the cascade, without [axis.NAME.controller]; inspect, identify, diagnose, compare LOG and simulate replay, "
+          "commissioning, constant-velocity and impact serve other structures");
     if (unknown)
       return missing(fmt::format("axis {} with an unknown controller", axis.name),
                      "a controller to simulate: [axis.NAME.controller] with its structure, or the cascade without it");

@@ -51,7 +51,7 @@ CompensationTuning tune_compensation(const machine::Machine& machine, std::size_
 
 Log simulated_circle(const machine::Machine& machine, std::size_t axis, const sim::CircleSettings& circle, int laps) {
   LogRecorder recorder(one_axis(machine, axis));
-  run_quadrants(machine, axis, circle, laps, recorder.sink());
+  run_quadrants(machine, axis, circle, laps, recorder.sink<FixedSignals>());
   auto log = recorder.take();
   log.source = fmt::format("simulated circle at {:g} m/min", 60.0 * circle.feed);
   return log;

@@ -26,7 +26,7 @@ sim::CircleSettings circle(double feed, double r = radius) {
 host::Log log_circle(const machine::Machine& machine, std::size_t axis, double feed, std::uint64_t seed) {
   const auto one = host::one_axis(machine, axis);
   host::LogRecorder recorder(one);
-  host::run_quadrants(machine, axis, circle(feed), 2, recorder.sink(), {current_noise, seed});
+  host::run_quadrants(machine, axis, circle(feed), 2, recorder.sink<FixedSignals>(), {current_noise, seed});
   auto log = recorder.take();
   log.source = fmt::format("circle at {} m/min", feed);
   return log;

@@ -43,6 +43,9 @@ class Machine:
     def axis(self, name):
         return self.tables["axis"][name]
 
+    def rotary(self, axis):
+        return self.axis(axis).get("kind") == "rotary"
+
     def models(self, axis):
         """The friction models that the file has parameters of."""
         return [key for key, value in table_at(self.axis(axis), "friction").items() if isinstance(value, dict)]
@@ -77,7 +80,7 @@ class Machine:
         """What identification has to find, by the names of its result: the file's values, Coulomb friction times
         `factor`. The contact of a model is no truth of another model's fit, so only what laws share is asked for."""
         values = self.axis(axis)
-        rotary = values.get("kind") == "rotary"
+        rotary = self.rotary(axis)
         truths = {"inertia_kg_m2" if rotary else "mass_kg": si(values["inertia" if rotary else "mass"])}
         coulomb = self.straight_level(axis, model, factor)
         if coulomb is not None:
@@ -99,7 +102,7 @@ class Machine:
             if not others or factor < 1.0:
                 return None
             true = (factor - 1.0) * max(others)
-        unit = "N m" if self.axis(axis).get("kind") == "rotary" else "N"
+        unit = "N m" if self.rotary(axis) else "N"
         return self.text + f'\n[[axis.{axis}.effect]]\nname = "coulomb_mismatch"\ncoulomb = "{true:.9g} {unit}"\n'
 
     def using(self, axis, model):

@@ -14,10 +14,12 @@ SENSOR_FORCE = 2.8  # N, 0.03 A of the cross table's 94 N/A
 
 
 class Limits:
-    """What a record may use of travel, speed and acceleration."""
+    """What a record may use of travel, speed and acceleration: m, or rad of a rotary axis."""
 
-    def __init__(self, travel, speed, acceleration):
-        self.amplitude = min(0.09, 0.4 * travel)
+    def __init__(self, travel, speed, acceleration, rotary):
+        self.rotary = rotary
+        self.amplitude = 0.18 * travel if rotary else min(0.09, 0.4 * travel)
+        self.sine_speed = 0.6 * speed if rotary else min(0.6 * speed, 0.2667)
         self.speed = 0.6 * speed
         self.acceleration = 0.4 * acceleration
 
@@ -25,7 +27,7 @@ class Limits:
 def sine(limits, share=1.0, laps=2.0):
     """Position, speed and acceleration of a sine whose phase starts gently: what a circle is to one axis of it."""
     amplitude = limits.amplitude * min(share, 1.0)
-    rate = share * min(limits.speed / amplitude, math.sqrt(limits.acceleration / amplitude), 0.2667 / amplitude)
+    rate = share * min(limits.sine_speed / amplitude, math.sqrt(limits.acceleration / amplitude))
     start = 1.0  # s until the full rate
     points, phase, time = [], 0.0, 0.0
     while phase < 2.0 * math.pi * laps:
@@ -114,16 +116,19 @@ def coloured(draw, rms, corner, count):
     return noise
 
 
-def write_set_points(place, axis, points, draw=None):
+LINEAR = ["x_set[m]", "v_set[m/s]", "a_set[m/s^2]", "x[m]", "F[N]", "F_ext[N]"]
+ROTARY = ["x_set[rad]", "v_set[rad/s]", "a_set[rad/s^2]", "x[rad]", "T[N m]", "T_ext[N m]"]
+
+
+def write_set_points(place, axis, points, rotary, draw=None):
     """A log for `simulate replay`; with `draw` there is a force on the carriage, as guides and wipers give it."""
     with open(place, "w", newline="", encoding="utf-8") as file:
         out = csv.writer(file)
-        names = ["x_set[m]", "v_set[m/s]", "a_set[m/s^2]", "x[m]", "F[N]"]  # a log must have a motor's signal
+        names = (ROTARY if rotary else LINEAR)[:6 if draw else 5]  # a log must have a motor's signal
         push = [0.0] * len(points)
         if draw:
             push = [a + b for a, b in zip(coloured(draw, SLOW, SLOW_CORNER, len(points)),
                                           coloured(draw, FAST, FAST_CORNER, len(points)))]
-            names.append("F_ext[N]")
         out.writerow(["t[s]"] + [f"{axis}.{name}" for name in names])
         for k, (x, v, a) in enumerate(points):
             row = [f"{k * PERIOD:.6f}", repr(x), repr(v), repr(a), repr(x), "0"]
@@ -136,7 +141,7 @@ def strip(simulated, place, axis, noise, draw):
     with open(simulated, newline="", encoding="utf-8") as file:
         lines = [line for line in file if not line.startswith("#")]
     rows = list(csv.reader(lines))
-    channels = ("x_set[m]", "v_set[m/s]", "a_set[m/s^2]", "x[m]", "i[A]", "u[V]")
+    channels = (*LINEAR[:4], *ROTARY[:4], "i[A]", "u[V]")
     wanted = ["t[s]"] + [f"{axis}.{channel}" for channel in channels]
     kept = [rows[0].index(name) for name in wanted if name in rows[0]]
     motor = [rows[0].index(name) for name in wanted[-2:] if name in rows[0]]

@@ -170,7 +170,8 @@ class Walk:
         self.expect_nothing(logs[:1], logs[1:], "diagnose the circle")
         self.command("compare", "compare", logs[0], "--machine", self.file, *self.using, out="compare")
         self.command("tune-friction", "tune-friction", *logs, "--machine", self.file, *self.using, "--axis",
-                     self.cell.axis, *(["--no-pulse"] if self.quick else []), out="tune-friction")
+                     self.cell.axis, *(["--no-pulse"] if self.quick else []),
+                     may_refuse=self.machine.rotary(self.cell.axis), out="tune-friction")
 
     def circle_logs(self):
         for name, feed, direction in (("run", FEED, "ccw"), ("other", OTHER_FEED, "cw")):
@@ -180,13 +181,18 @@ class Walk:
         return ["run.csv", "other.csv"]
 
     def sine_logs(self):
-        limits = records.Limits(*self.machine.limits(self.cell.axis))
+        limits = self.limits()
         for name, share in (("run", 1.0), ("other", 0.7)):
-            records.write_set_points(self.folder / f"{name}-set.csv", self.cell.axis, records.sine(limits, share))
+            records.write_set_points(self.folder / f"{name}-set.csv", self.cell.axis, records.sine(limits, share),
+                                     limits.rotary)
             if not self.command("simulate replay --log", "simulate", "replay", "--from", f"{name}-set.csv", "--machine",
                                 self.file, *self.using, "--log", f"{name}.csv"):
                 return []
         return ["run.csv", "other.csv"]
+
+    def limits(self):
+        axis = self.cell.axis
+        return records.Limits(*self.machine.limits(axis), self.machine.rotary(axis))
 
     def commissioned(self, name, file, suffix):
         """Records with noise to learn from and to judge on, of the machine of `file`."""
@@ -204,10 +210,11 @@ class Walk:
         motor = self.machine.axis(axis)["motor"]
         constant = float(re.match(r"[\d.e+-]+", str(motor.get("force_constant", "1"))).group())
         learn, judge = [], []
-        for record, held_out, points in records.commissioning(records.Limits(*self.machine.limits(axis))):
+        limits = self.limits()
+        for record, held_out, points in records.commissioning(limits):
             draw = records.drawing(self.cell.seed, axis, record)
             place = f"{name}/{record}.csv"
-            records.write_set_points(self.folder / "set-points.csv", axis, points, draw)
+            records.write_set_points(self.folder / "set-points.csv", axis, points, limits.rotary, draw)
             if not self.command(f"simulate replay{suffix}", "simulate", "replay", "--from", "set-points.csv",
                                 "--machine", file, *self.using, "--log", "simulated.csv"):
                 return [], []

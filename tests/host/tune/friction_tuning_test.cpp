@@ -27,7 +27,7 @@ Log log_of(const machine::Machine& machine, double feed, int laps = 2) {
   LogRecorder recorder(one);
   sim::CircleSettings circle;
   circle.feed = feed / 60.0;
-  run_quadrants(machine, 0, circle, laps, recorder.sink());
+  run_quadrants(machine, 0, circle, laps, recorder.sink<FixedSignals>());
   auto log = recorder.take();
   log.source = "circle.csv";
   return log;
