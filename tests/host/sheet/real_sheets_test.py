@@ -116,7 +116,7 @@ class RealSheets(unittest.TestCase):
         self.assertIn("ESTIMATE: 0.003 of weight", text)
 
     def test_guides_of_a_thesis(self):
-        # Its 2000 N are those of a mass, of which the sheet asks.
+        # The weight is that of a mass, of which the sheet asks.
         load = 2000.0 / G
         found = made(self.folder, GUIDES_OF_THESIS | {"load": f"{load:.9f} kg"})[1]
         self.expect(found, {"coulomb_N": 0.003 * (6 * 2950.0 + 15000.0 + 2000.0)})
