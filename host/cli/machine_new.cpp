@@ -128,8 +128,9 @@ bool is_identified(const SheetQuestion& question) {
 
 // Logs know of no windings: unless a flag tells of them, drive and motor are one source.
 void take_motor_for_a_source(SheetAnswers& given) {
-  constexpr std::array<std::string_view, 7> windings{"voltage-constant", "resistance",      "inductance", "volts",
-                                                     "pole-pairs",       "pole-pair-pitch", "between"};
+  constexpr std::array<std::string_view, 8> windings{
+      "voltage-constant", "resistance",      "inductance", "volts",
+      "pole-pairs",       "pole-pair-pitch", "between",    "winding-between"};
   const auto is_given = [&](std::string_view name) {
     const auto found = given.find(name);
     return found != given.end() && !found->second.empty();

@@ -42,8 +42,9 @@ MotorValues motor_values(const SheetAnswers& answers) {
   motor.constant = sheet_quantity(answers, name, has_shaft(answers) ? "N m/A" : "N/A") / motor.ampere_factor;
   if (motor.source) return motor;
   const bool line = has(answers, "between", "line");
-  // Between two lines two windings are in series.
-  motor.line_factor = line ? 0.5 : 1.0;
+  // Between two lines two windings are in series. Some sheets give the voltage between lines, the rest of a winding.
+  const bool apart = !answer_to(answers, "winding-between").empty();
+  motor.line_factor = has(answers, apart ? "winding-between" : "between", "line") ? 0.5 : 1.0;
   motor.resistance = motor.line_factor * sheet_quantity(answers, "resistance", "Ohm");
   motor.inductance = motor.line_factor * sheet_quantity(answers, "inductance", "H");
   // Three windings with sine currents make 3/2 of what one makes; the energy that each converts makes its voltage.

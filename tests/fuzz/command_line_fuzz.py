@@ -85,7 +85,7 @@ class Drawer:
         return place.name
 
     def machine(self):
-        shipped = ["mcfv5050ln", "emps"] * 6 + ["stick-slip-feed"]
+        shipped = ["mcfv5050ln", "emps"] * 6 + ["screw-motor-encoder", "screw-linear-scale"] * 2 + ["stick-slip-feed"]
         return self.draw.choice(shipped) if self.draw.random() < 0.7 else self.file("machine")
 
     def override(self):

@@ -9,7 +9,8 @@ import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SHIPPED = ROOT / "firmware/machine/shipped"
-AXES = ("emps.X", "mcfv5050ln.X", "mcfv5050ln.Y")  # stick-slip-feed has a feed drive and no axis, so no log of one
+# stick-slip-feed has a feed drive and no axis, so no log of one; the axes with a screw are those of tests/matrix.
+AXES = ("emps.X", "mcfv5050ln.X", "mcfv5050ln.Y")
 FILE_ERROR = 0.15  # largest relative error of what the file says of mass and friction
 
 UNITS = {"us": 1e-6, "ms": 1e-3, "s": 1.0, "nm": 1e-9, "um": 1e-6, "mm": 1e-3, "m": 1.0, "m/min": 1 / 60, "mH": 1e-3}

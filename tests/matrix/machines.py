@@ -2,6 +2,7 @@
 has to find, and a machine whose Coulomb friction is not that of its file."""
 
 import dataclasses
+import fractions
 import math
 import re
 import tomllib
@@ -76,12 +77,36 @@ class Machine:
             return factor * coulomb * (1.0 - si(parameters["viscous"]) / si(parameters["slope"]))
         return factor * coulomb
 
+    def turns(self, axis):
+        """Radians of the motor and of the screw, pulley or rotary axis for a metre (radian) of the axis."""
+        train = table_at(self.axis(axis), "transmission")
+        turn = train.get("lead", train.get("pulley_circumference"))
+        screw = 2.0 * math.pi / si(turn) if turn else 1.0
+        return float(fractions.Fraction(str(train.get("ratio", 1)).replace(" ", ""))) * screw, screw
+
+    def moved(self, axis):
+        """The mass (inertia) that the motor moves, reduced to the axis by its energy: the load with what moves along,
+        the motor's rotor, and screw or pulley."""
+        values = self.axis(axis)
+        train = table_at(values, "transmission")
+        motor, screw = self.turns(axis)
+        load = si(values["inertia" if values.get("kind") == "rotary" else "mass"])
+        load += si(table_at(values, "gravity").get("counterweight_mass", 0.0))
+        return load + si(train.get("motor_inertia", 0.0)) * motor**2 + si(train.get("screw_inertia", 0.0)) * screw**2
+
+    def force_constant(self, axis):
+        """Force (torque) at the axis for an ampere or a volt."""
+        motor = self.axis(axis)["motor"]
+        at_axis = "force_constant" in motor
+        number = float(motor["force_constant" if at_axis else "torque_constant"].split()[0])
+        return number if at_axis else number * self.turns(axis)[0]
+
     def truths(self, axis, model, factor=1.0):
         """What identification has to find, by the names of its result: the file's values, Coulomb friction times
         `factor`. The contact of a model is no truth of another model's fit, so only what laws share is asked for."""
         values = self.axis(axis)
         rotary = self.rotary(axis)
-        truths = {"inertia_kg_m2" if rotary else "mass_kg": si(values["inertia" if rotary else "mass"])}
+        truths = {"inertia_kg_m2" if rotary else "mass_kg": self.moved(axis)}
         coulomb = self.straight_level(axis, model, factor)
         if coulomb is not None:
             truths["coulomb_N_m" if rotary else "coulomb_N"] = coulomb

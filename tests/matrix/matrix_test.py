@@ -66,6 +66,39 @@ class MachineFiles(unittest.TestCase):
         self.assertAlmostEqual(MACHINE.truths("X", "linear_ramp")["coulomb_N"], 86.25)
         self.assertEqual(MACHINE.truths("Y", "curve"), {"mass_kg": 520.0})
 
+    def test_give_the_whole_mass_that_a_motor_moves_at_the_axis(self):
+        text = """
+[axis.X]
+mass = "200 kg"
+  [axis.X.transmission]
+  ratio = "3/2"
+  lead = "10 mm"
+  motor_inertia = "2e-4 kg m^2"
+  screw_inertia = "1e-4 kg m^2"
+  [axis.X.motor]
+  torque_constant = "0.5 N m/A"
+[axis.J]
+kind = "rotary"
+inertia = "0.5 kg m^2"
+  [axis.J.transmission]
+  ratio = 100
+  motor_inertia = "1e-5 kg m^2"
+[axis.Z]
+mass = "100 kg"
+  [axis.Z.gravity]
+  force = "981 N"
+  counterweight_mass = "90 kg"
+  [axis.Z.motor]
+  force_constant = "94 N/A"
+"""
+        machine = machines.Machine("trains", text)
+        # 100 turns a metre of the screw, 150 of the motor: 628.3 and 942.5 rad.
+        self.assertAlmostEqual(machine.moved("X"), 200.0 + 2e-4 * 942.477796**2 + 1e-4 * 628.318531**2, places=4)
+        self.assertAlmostEqual(machine.moved("J"), 0.6)
+        self.assertAlmostEqual(machine.moved("Z"), 190.0)
+        self.assertAlmostEqual(machine.force_constant("X"), 0.5 * 942.477796, places=5)
+        self.assertEqual(machine.force_constant("Z"), 94.0)
+
     def test_of_other_friction_differ_by_an_effect_alone(self):
         changed = machines.Machine("other", MACHINE.with_coulomb("X", "lugre", 1.2)).tables
         self.assertEqual(changed["axis"]["X"].pop("effect"), [{"name": "coulomb_mismatch", "coulomb": "108 N"}])

@@ -207,8 +207,7 @@ class Walk:
         """The same by replay of set-points within the axis' limits."""
         (self.folder / name).mkdir(exist_ok=True)
         axis = self.cell.axis
-        motor = self.machine.axis(axis)["motor"]
-        constant = float(re.match(r"[\d.e+-]+", str(motor.get("force_constant", "1"))).group())
+        constant = self.machine.force_constant(axis)
         learn, judge = [], []
         limits = self.limits()
         for record, held_out, points in records.commissioning(limits):

@@ -13,9 +13,11 @@ struct Shipped {
   const char *name, *mass, *other_mass;  // as its file writes it, and that of the other machine
   std::array<const char*, 2> own;        // experiments whose figures are expected in the shipped file; empty: none
 };
-constexpr std::array<Shipped, 3> machines{
+constexpr std::array<Shipped, 5> machines{
     {{"mcfv5050ln", "mass = \"225 kg\"", "mass = \"260 kg\"", {"impact", "stick-slip"}},
      {"emps", "mass = \"95.1089 kg\"", "mass = \"120 kg\"", {}},
+     {"screw-motor-encoder", "mass = \"200 kg\"", "mass = \"240 kg\"", {}},
+     {"screw-linear-scale", "mass = \"300 kg\"", "mass = \"340 kg\"", {}},
      {"stick-slip-feed", "mass = \"300 kg\"", "mass = \"240 kg\"", {"feed-cutting"}}}};
 constexpr std::array experiments{"circle",       "constant-velocity", "impact",     "l-shape",
                                  "presliding",   "friction-lag",      "break-away", "stick-slip",
