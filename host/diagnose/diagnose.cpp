@@ -349,7 +349,7 @@ Verdict diagnose(const DiagnoseInput& input) {
   const auto& judged = input.machine.axes[input.axis];
   if (judged.elastic() && judged.velocity_encoder)
     verdict.notes.push_back(
-        "The gains of the drive were not evaluated: its velocity controller sees another encoder than the recorded "
+        "The gains of the drive were not evaluated: its velocity controller sees a different encoder than the recorded "
         "one, "
         "with an elastic shaft between them.");
   else if (judged.cascaded())

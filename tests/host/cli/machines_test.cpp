@@ -122,7 +122,7 @@ TEST_F(Cli, NamesNothingInTheRecordsOfAnElasticScrewWithAScale) {
   ASSERT_EQ(result.code, 0) << result.error;
   const auto verdict = nlohmann::json::parse(result.out);
   EXPECT_TRUE(verdict["findings"].empty()) << verdict["findings"].dump(2);
-  EXPECT_NE(verdict["notes"].dump().find("sees another encoder than the recorded one"), std::string::npos);
+  EXPECT_NE(verdict["notes"].dump().find("sees a different encoder than the recorded one"), std::string::npos);
 }
 
 // What is too small to be told in an exact log is not what a machine has.
