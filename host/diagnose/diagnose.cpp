@@ -350,8 +350,7 @@ Verdict diagnose(const DiagnoseInput& input) {
   if (judged.elastic() && judged.velocity_encoder)
     verdict.notes.push_back(
         "The gains of the drive were not evaluated: its velocity controller sees a different encoder than the recorded "
-        "one, "
-        "with an elastic shaft between them.");
+        "one, with an elastic shaft between them.");
   else if (judged.cascaded())
     judge_command(verdict, input, {logs, rows}, {held_out, held_rows}, record_delay(regressors, context, found));
   for (const auto& d : found.discarded) verdict.rejected.push_back({*candidates()[d.candidate].effect, d.why});
