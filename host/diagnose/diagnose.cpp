@@ -346,7 +346,12 @@ Verdict diagnose(const DiagnoseInput& input) {
   begin(4);
   propose_next_measurement(verdict, {input.machine, input.axis, settings, regressors, inside, context, found},
                            input.next_measurement);
-  if (input.machine.axes[input.axis].cascaded())
+  const auto& judged = input.machine.axes[input.axis];
+  if (judged.elastic() && judged.velocity_encoder)
+    verdict.notes.push_back(
+        "The gains of the drive were not evaluated: its velocity controller sees a different encoder than the recorded "
+        "one, with an elastic shaft between them.");
+  else if (judged.cascaded())
     judge_command(verdict, input, {logs, rows}, {held_out, held_rows}, record_delay(regressors, context, found));
   for (const auto& d : found.discarded) verdict.rejected.push_back({*candidates()[d.candidate].effect, d.why});
   if (outside.unexplained.signature)

@@ -18,6 +18,12 @@ TEST_F(Cli, EveryExperimentRunsOnEachShippedMachineOrSaysWhatItNeeds) {
         {"break-away", "makes sense for: lugre"},
         {"stick-slip", "makes sense for: lugre, classical"},
         {"feed-cutting", "found axes and no feed drive"}}},
+      {"screw-motor-encoder",
+       {{"l-shape", "found axis X alone; expected a machine with exactly two axes"},
+        {"feed-cutting", "found axes and no feed drive"}}},
+      {"screw-linear-scale",
+       {{"l-shape", "found axis X alone; expected a machine with exactly two axes"},
+        {"feed-cutting", "found axes and no feed drive"}}},
       {"stick-slip-feed", {}}};
   for (const auto& [machine, sentences] : refused)
     for (const std::string experiment :
@@ -105,6 +111,18 @@ TEST_F(Cli, NamesNothingInTheLogOfTheFilesOwnCircle) {
   ASSERT_EQ(result.code, 0) << result.error;
   const auto identified = nlohmann::json::parse(result.out);
   EXPECT_NEAR(identified["parameters"]["mass_kg"]["value"], 225.0, 0.1);
+}
+
+// Its velocity controller sees the motor, the records the table: of the drive's gains nothing can be said.
+TEST_F(Cli, NamesNothingInTheRecordsOfAnElasticScrewWithAScale) {
+  ASSERT_EQ(stiction("simulate commissioning --machine screw-linear-scale --out records").code, 0);
+  const auto result = stiction(
+      "diagnose records/circle.csv records/speeds.csv --holdout records/other-circle.csv --machine screw-linear-scale "
+      "--json");
+  ASSERT_EQ(result.code, 0) << result.error;
+  const auto verdict = nlohmann::json::parse(result.out);
+  EXPECT_TRUE(verdict["findings"].empty()) << verdict["findings"].dump(2);
+  EXPECT_NE(verdict["notes"].dump().find("sees a different encoder than the recorded one"), std::string::npos);
 }
 
 // What is too small to be told in an exact log is not what a machine has.
