@@ -21,6 +21,8 @@ simulate constant-velocity --machine mcfv5050ln --friction lugre --json
 simulate constant-velocity --machine emps --json
 simulate impact --machine mcfv5050ln --friction all --json
 simulate impact --machine emps --out impact --json
+simulate constant-velocity --machine servo-joint --friction lugre --json
+simulate impact --machine servo-joint --friction lugre --out joint --json
 simulate l-shape --machine mcfv5050ln --friction lugre --json
 simulate presliding --machine mcfv5050ln --json
 simulate friction-lag --machine mcfv5050ln --json
@@ -28,6 +30,7 @@ simulate break-away --machine mcfv5050ln --json
 simulate stick-slip --machine mcfv5050ln --json
 simulate frequency-response --machine mcfv5050ln --axis X --passes 1 --json
 simulate frequency-response --machine emps --json
+simulate frequency-response --machine servo-joint --passes 1 --json
 simulate frequency-response --from test.xml --json
 simulate replay --from run.csv --machine mcfv5050ln --friction lugre --json
 simulate replay --from lap.csv --machine emps --json
