@@ -30,18 +30,26 @@ std::vector<std::string> questions_before(std::span<const Log> logs, const machi
 void refuse_same_record(std::span<const Log> logs, std::span<const Log> held_out, const machine::AxisModel& axis) {
   for (const auto& held : held_out)
     for (const auto& log : logs) {
-      const auto& a = channels_of(log, axis).x;
-      const auto& b = channels_of(held, axis).x;
-      // The first hundred samples that change, anywhere in the other log.
-      const std::size_t length = std::min<std::size_t>(100, b.size());
-      const std::size_t from = b.size() / 2 > length ? b.size() / 2 : 0;
-      const auto part = std::span(b).subspan(from, length);
+      const auto &a = channels_of(log, axis), &b = channels_of(held, axis);
+      // Samples in the middle of the held-out log, anywhere in the other one. A coarse encoder shows the same few counts
+      // again on different motions; what the motor does then differs.
+      const std::size_t length = std::min<std::size_t>(100, b.x.size());
+      const std::size_t from = b.x.size() / 2 > length ? b.x.size() / 2 : 0;
+      const auto part = std::span(b.x).subspan(from, length);
       if (part.empty() || std::all_of(part.begin(), part.end(), [&](double x) { return x == part.front(); })) continue;
-      if (std::search(a.begin(), a.end(), part.begin(), part.end()) == a.end()) continue;
-      throw LogError(
-          fmt::format("{}: found the samples of {} again; expected a held-out log that was not used for the search. "
-                      "Record a different trajectory",
-                      held.source, log.source));
+      const auto same_effort = [&](std::size_t at) {
+        for (const auto effort : {&AxisLog::i, &AxisLog::force, &AxisLog::u})
+          for (std::size_t k = 0; k < length && !(a.*effort).empty() && !(b.*effort).empty(); ++k)
+            if ((a.*effort)[at + k] != (b.*effort)[from + k]) return false;
+        return true;
+      };
+      for (auto found = a.x.begin();
+           (found = std::search(found, a.x.end(), part.begin(), part.end())) != a.x.end(); ++found)
+        if (same_effort(static_cast<std::size_t>(found - a.x.begin())))
+          throw LogError(fmt::format(
+              "{}: found the samples of {} again; expected a held-out log that was not used for the search. "
+              "Record a different trajectory",
+              held.source, log.source));
     }
 }
 

@@ -12,6 +12,9 @@ KnownAxis known_axis(const machine::AxisModel& axis) {
   known.effort_limit =
       axis.motor.driven_by_volts() ? axis.inverter.voltage_limit : axis.inverter.current_limit * axis.motor.count;
   if (axis.motor.pole_pair_pitch > 0.0) known.pole_pair_pitch = own(axis.motor.pole_pair_pitch, "m");
+  if (axis.gravity && axis.coordinate.rotary())
+    known.weight = {own(axis.gravity->force - axis.gravity->counterweight.value_or(0.0), "N"),
+                    own(axis.gravity->zero, "m")};
   return known;
 }
 

@@ -88,6 +88,15 @@ Effort effort_of(const AxisLog& axis, const KnownAxis& known) {
   return {&axis.u, "u", "V", known.force_constant.value_or(0.0)};
 }
 
+// The effort less what holds a known weight, which would pass for friction or mass.
+Values without_weight(const AxisLog& axis, const KnownAxis& known, const Effort& effort) {
+  Values values = *effort.values;
+  if (!known.weight || !axis.rotary || effort.constant == 0.0) return values;
+  for (std::size_t k = 0; k < values.size(); ++k)
+    values[k] -= known.weight->moment / effort.constant * std::sin(axis.x[k] - known.weight->zero);
+  return values;
+}
+
 std::string force_text(const Effort& effort, const Hypothesis& h, double ratio, double error, bool rotary) {
   const char* mass = rotary ? "inertia" : "mass";
   const auto found = fmt::format("the accelerations in it require {:.4g} ± {:.2g} times the {} of the machine file",
@@ -215,12 +224,13 @@ std::vector<Question> questions_of(const Log& log, const AxisLog& axis, const Kn
   ask_channels("i", axis.i, "i_set", axis.i_set, 0.0, true, axis.rotary, questions);
   const auto effort = effort_of(axis, known);
   if (effort.values->empty()) return questions;
-  auto motion = rigid_motion(log, axis, *effort.values);
+  const auto moving = without_weight(axis, known, effort);
+  auto motion = rigid_motion(log, axis, moving);
   if (!motion) return questions;
   const auto asked = questions.size();
   ask_delay(effort, *motion, questions);
   // The mass belongs to the effort at its own time.
-  if (questions.size() > asked) motion = rigid_motion(log, axis, *effort.values, motion->delay);
+  if (questions.size() > asked) motion = rigid_motion(log, axis, moving, motion->delay);
   if (motion) ask_force(axis, known, effort, *motion, questions);
   return questions;
 }

@@ -208,6 +208,9 @@ TEST(Diagnosis, refuses_what_cannot_be_diagnosed_from) {
   input.logs = {log};
   input.held_out = {log};
   EXPECT_NE(refusal(input).find("again"), std::string::npos);
+  // A coarse encoder shows the same counts again while the motor does something different.
+  input.held_out.front().axes.front().i[log.t.size() / 2 + 50] += 1e-3;
+  EXPECT_EQ(refusal(input).find("again"), std::string::npos);
   input.held_out.clear();
   const auto scaled = [&](double factor) {
     auto other = log;

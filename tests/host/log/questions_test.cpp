@@ -105,5 +105,30 @@ TEST(Questions, AreAskedOfWrongRecordsAndNotOfSoundOnes) {
   for (const auto* count : {&amperes, &length, &sign, &shift}) EXPECT_GE(100 * count->asked, 97 * count->of);
 }
 
+// A pendulum on a motor: i = (J phi'' + b phi' + m g l sin(phi - rest))/K, in closed form for a swing.
+TEST(Questions, AKnownWeightThatTurnsPassesForNoMassAndNoDelay) {
+  constexpr double inertia = 0.6, damping = 0.5, moment = 12.0, rest = 0.2, constant = 20.0, rate = 1.3;
+  Log log;
+  log.source = "swing";
+  log.period = 1e-3;
+  auto& axis = log.axes.emplace_back();
+  axis.rotary = true;
+  std::mt19937 random(7);
+  std::normal_distribution<double> noise(0.0, 2e-3);
+  for (int k = 0; k < 12000; ++k) {
+    const double t = k * log.period, x = 1.1 * std::sin(rate * t), v = 1.1 * rate * std::cos(rate * t);
+    log.t.push_back(t);
+    axis.x.push_back(std::round(x / 1.5e-5) * 1.5e-5);
+    axis.i.push_back((-inertia * rate * rate * x + damping * v + moment * std::sin(x - rest)) / constant +
+                     noise(random));
+  }
+  KnownAxis known;
+  known.mass = inertia;
+  known.force_constant = constant;
+  EXPECT_FALSE(questions_of(log, axis, known).empty());  // the weight goes with the way, as the acceleration does
+  known.weight = TurningWeight{moment, rest};
+  for (const auto& question : questions_of(log, axis, known)) ADD_FAILURE() << question.text;
+}
+
 }  // namespace
 }  // namespace stiction::host
