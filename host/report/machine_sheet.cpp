@@ -57,7 +57,9 @@ Cell make_cell(const machine::ValueKey& key, std::vector<double> values, const C
   for (double& value : values) value = own.from_linear(value);
   if (!std::all_of(values.begin(), values.end(), [&](double v) { return key.range.contains(v); })) values.clear();
   const auto text = machine::in_own_words(key.text, coordinate);
-  Cell cell{label_of(text), own.unit, std::move(values), {}};
+  // A rate of a rotary axis is no K_v of metres a minute.
+  const auto unit = own.unit == "1/s" && coordinate.rotary() ? "(rad/s)/rad" : own.unit;
+  Cell cell{label_of(text), unit, std::move(values), {}};
   if (cell.values.size() <= 1)
     cell.instead = meaning_of(text, cell.values.empty() ? std::nullopt : std::optional(cell.values[0]));
   if (cell.values.size() == 1 && cell.values[0] >= machine::unlimited) cell.instead = "none";
@@ -66,8 +68,12 @@ Cell make_cell(const machine::ValueKey& key, std::vector<double> values, const C
 
 std::string print(const Cell& cell, double factor) {
   if (!cell.instead.empty()) return cell.instead;
-  std::string list;  // six digits show every figure of a machine file and no digit of a conversion
-  for (const double value : cell.values) list += fmt::format("{}{:.6g}", list.empty() ? "" : ", ", value * factor);
+  std::string list;  // six digits show every figure of a machine file and no digit of a conversion; counts are whole
+  for (const double value : cell.values) {
+    const bool count = cell.unit == "1" && value == std::round(value) && std::abs(value) < 1e15;
+    list += count ? fmt::format("{}{:.0f}", list.empty() ? "" : ", ", value)
+                  : fmt::format("{}{:.6g}", list.empty() ? "" : ", ", value * factor);
+  }
   return list;
 }
 
