@@ -173,7 +173,8 @@ Run identify(const IdentifyCommandOptions& options, const machine::Machine& mach
                                  options.friction.empty(), held};
   const Progress progress(options.refine ? "identifying and refining" : "identifying");
   Run run{&axis, identify_logs(logs, axis, settings), report_origin(options.machine.machine, logs)};
-  if (options.refine) take(run.result, refine_in_closed_loop(logs, machine, axis, run.result, settings), ShownUnits(axis.coordinate));
+  if (options.refine)
+    take(run.result, refine_in_closed_loop(logs, machine, axis, run.result, settings), ShownUnits(axis.coordinate));
   return run;
 }
 

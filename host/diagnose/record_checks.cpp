@@ -31,8 +31,8 @@ void refuse_same_record(std::span<const Log> logs, std::span<const Log> held_out
   for (const auto& held : held_out)
     for (const auto& log : logs) {
       const auto &a = channels_of(log, axis), &b = channels_of(held, axis);
-      // Samples in the middle of the held-out log, anywhere in the other one. A coarse encoder shows the same few counts
-      // again on different motions; what the motor does then differs.
+      // Samples in the middle of the held-out log, anywhere in the other one. A coarse encoder shows the same few
+      // counts again on different motions; what the motor does then differs.
       const std::size_t length = std::min<std::size_t>(100, b.x.size());
       const std::size_t from = b.x.size() / 2 > length ? b.x.size() / 2 : 0;
       const auto part = std::span(b.x).subspan(from, length);
@@ -43,8 +43,8 @@ void refuse_same_record(std::span<const Log> logs, std::span<const Log> held_out
             if ((a.*effort)[at + k] != (b.*effort)[from + k]) return false;
         return true;
       };
-      for (auto found = a.x.begin();
-           (found = std::search(found, a.x.end(), part.begin(), part.end())) != a.x.end(); ++found)
+      for (auto found = a.x.begin(); (found = std::search(found, a.x.end(), part.begin(), part.end())) != a.x.end();
+           ++found)
         if (same_effort(static_cast<std::size_t>(found - a.x.begin())))
           throw LogError(fmt::format(
               "{}: found the samples of {} again; expected a held-out log that was not used for the search. "

@@ -29,8 +29,11 @@ struct Scale {
   double length = 1.0, speed = 1.0, force = 1.0, effort = 1.0;
 };
 
-constexpr double speed_share = 0.9;  // of what the axis can do at most
-constexpr double stroke_share = 0.9;  // of the travel
+constexpr double speed_share = 0.9;                                       // of what the axis can do at most
+constexpr double stroke_share = 0.9;                                      // of the travel
+constexpr double smallest_reversal = 5e-6;                                // m, of the planned ones
+constexpr double largest_reversal = 400e-6, largest_reversal_rate = 1.5;  // m, Hz
+constexpr double least_counts = 20.0;  // of the encoder that the smallest reversal of a rotary axis has
 
 Scale scale_of(const machine::AxisModel& axis) {
   if (!axis.coordinate.rotary()) return {};
@@ -75,6 +78,18 @@ sim::Trajectory circle_on(const machine::AxisModel& axis, double feed, double tu
   return sim::circle(settings, turns);
 }
 
+// Factor of the planned small reversals: an encoder of a rotary axis has to see the smallest one, as far as the axis
+// can do the largest.
+double reversal_scale(const machine::AxisModel& axis) {
+  const auto scale = scale_of(axis);
+  if (!axis.coordinate.rotary()) return scale.length;
+  const double turn = 2.0 * std::numbers::pi * largest_reversal_rate;
+  const double can = std::min({stroke_share * axis.travel / (2.0 * largest_reversal),
+                               speed_share * axis.max_velocity / (turn * largest_reversal),
+                               acceleration_share * axis.max_acceleration / (turn * turn * largest_reversal)});
+  return std::max(scale.length, std::min(can, least_counts * axis.encoder.increment / smallest_reversal));
+}
+
 struct Planned {
   const char* name;
   bool held_out;
@@ -84,13 +99,14 @@ struct Planned {
 std::vector<Planned> plan(const machine::AxisModel& axis) {
   const auto scale = scale_of(axis);
   const auto speeds = [&](std::vector<double> list) { return per_second(std::move(list), scale); };
-  const auto amplitudes = [&](std::vector<double> list) { return times(scale.length, std::move(list)); };
+  const double reversal = reversal_scale(axis);
+  const auto amplitudes = [&](std::vector<double> list) { return times(reversal, std::move(list)); };
   std::vector<Planned> all;
   all.push_back({"speeds", false,
                  speeds_on(axis, speeds({0.05, 0.2, 0.5, 1.0, 3.2, 8.0, 16.0, 24.0}), 0.3, scale.length * 0.4e-3)});
   all.push_back({"circle", false, circle_on(axis, 16.0 / 60.0, 2.0)});
-  all.push_back(
-      {"reversals", false, sim::small_reversals(amplitudes({5e-6, 10e-6, 20e-6, 50e-6, 100e-6, 200e-6}), 2.0)});
+  all.push_back({"reversals", false,
+                 sim::small_reversals(amplitudes({smallest_reversal, 10e-6, 20e-6, 50e-6, 100e-6, 200e-6}), 2.0)});
   all.push_back(
       {"other-speeds", true, speeds_on(axis, speeds({0.1, 0.35, 1.5, 5.0, 12.0, 20.0}), 0.4, scale.length * 0.6e-3)});
   all.push_back({"other-circle", true, circle_on(axis, 10.0 / 60.0, 2.0)});

@@ -46,8 +46,8 @@ bool can_drive(const machine::AxisModel& axis, double speed) {
   return axis.modulo || start.at(start.duration() + settling + averaging).distance <= axis.travel;
 }
 
-// Mean motor force less the weight, over the force constant (A, or V of a force source), over the last 0.1 s of a run at
-// `speed` (m/s); the start has died out by then, and the axis is at its speed, or at the end of its way.
+// Mean motor force less the weight, over the force constant (A, or V of a force source), over the last 0.1 s of a run
+// at `speed` (m/s); the start has died out by then, and the axis is at its speed, or at the end of its way.
 template <class S>
 double steady_effort(const machine::Machine& machine, double speed, const TraceSink<S>& trace) {
   const auto& axis = machine.axes.front();
@@ -140,8 +140,7 @@ sim::ExperimentResult run_with(const ExperimentInput& input) {
     for (const auto& point : points) {
       const auto speed = speed_text(point.speed, own);
       LogRecorder recorder(machine);
-      const double found =
-          steady_effort<S>(machine, point.speed, input.keep_log ? recorder.sink<S>() : TraceSink<S>{});
+      const double found = steady_effort<S>(machine, point.speed, input.keep_log ? recorder.sink<S>() : TraceSink<S>{});
       if (input.keep_log) input.keep_log(speed + " " + unit, recorder.take());
       series.x.push_back(own.feed(point.speed));
       series.y.push_back(found);

@@ -30,8 +30,9 @@ struct FrequencyResponsePlan {
 // 2 m/min of linear axes; of a rotary one a third of its highest speed, or what its travel allows.
 double usual_speed(const FrequencyResponsePlan& plan);
 
-// The log in the units of its axes. Fixed-point signals: the firmware. Throws InfeasibleMotion when the motion does not fit the machine, when an axis
-// comes too near to standstill or is held back at a limit while the test signal acts; FaultTripped.
+// The log in the units of its axes. Fixed-point signals: the firmware. Throws InfeasibleMotion when the motion does not
+// fit the machine, when an axis comes too near to standstill or is held back at a limit while the test signal acts;
+// FaultTripped.
 Log run_frequency_response(const FrequencyResponsePlan& plan);
 
 }  // namespace stiction::host

@@ -113,8 +113,8 @@ void add_chatter(const machine::Machine& machine, double step_force, sim::Experi
     if (c.step && *c.step > 100e-6) {
       const double amplitude = chatter_amplitude(parameters, axis.mass, *c.step);
       const auto add = [&](const char* name, const char* text, double value) {
-        result.figures.push_back({name, own.force.unit, std::string("B2 at rest, ") + text + ", explicit, 0.2 ms",
-                                  own.force(value), {}});
+        result.figures.push_back(
+            {name, own.force.unit, std::string("B2 at rest, ") + text + ", explicit, 0.2 ms", own.force(value), {}});
       };
       add("chatter_amplitude_200_us", "rms of the friction", r.rms);
       add("chatter_formula_200_us", "the same by a^(n/(n-1)) (h/2m)^(1/(n-1))", amplitude);
@@ -124,8 +124,8 @@ void add_chatter(const machine::Machine& machine, double step_force, sim::Experi
           "parabolic, evaluated explicitly every 0.2 ms, alternates between {:.3g} {unit} and {:+.3g} {unit}, {:.3g} "
           "{unit} rms; the formula with step and {} gives {:.3g} {unit}. This is an artefact of the step: the implicit "
           "step shows none.",
-          own.force(r.least), own.force(r.greatest), own.force(r.rms),
-          axis.coordinate.rotary() ? "inertia" : "mass", own.force(amplitude), fmt::arg("unit", own.force.unit)));
+          own.force(r.least), own.force(r.greatest), own.force(r.rms), axis.coordinate.rotary() ? "inertia" : "mass",
+          own.force(amplitude), fmt::arg("unit", own.force.unit)));
     }
     result.figures.push_back({std::string("chatter_alternations_") + c.key,
                               "%",
@@ -163,15 +163,14 @@ sim::ExperimentResult run_with(const ExperimentInput& input) {
                        fmt::format("External {} of {} from 10 ms on.", word, step),
                        false,
                        {}};
-  sim::Chart force{fmt::format("Motor {}", word),
-                   "time, ms",
-                   fmt::format("motor {}, {}", word, own.force.unit),
-                   fmt::format("At rest motor and friction share the {}{}.", step,
-                               axis.gravity ? " and the weight" : ""),
-                   false,
-                   {}};
-  sim::Chart friction{
-      "Friction", "time, ms", fmt::format("friction {}, {}", word, own.force.unit), "", false, {}};
+  sim::Chart force{
+      fmt::format("Motor {}", word),
+      "time, ms",
+      fmt::format("motor {}, {}", word, own.force.unit),
+      fmt::format("At rest motor and friction share the {}{}.", step, axis.gravity ? " and the weight" : ""),
+      false,
+      {}};
+  sim::Chart friction{"Friction", "time, ms", fmt::format("friction {}, {}", word, own.force.unit), "", false, {}};
   const bool integral =
       axis.cascaded() ? axis.velocity_controller.integral_time.has_value() : axis.controller->integral_time.has_value();
   const auto* without_integral = integral          ? ""
@@ -185,7 +184,8 @@ sim::ExperimentResult run_with(const ExperimentInput& input) {
     all_returned_soon = all_returned_soon && step_time + r.last_beyond < shown;
     if (input.keep_log) {
       auto log = recorder.take();
-      for (const double t : log.t) log.axes[0].external_force.push_back(t - holding_of(axis) >= step_time ? own.force(step_force) : 0.0);
+      for (const double t : log.t)
+        log.axes[0].external_force.push_back(t - holding_of(axis) >= step_time ? own.force(step_force) : 0.0);
       input.keep_log("", std::move(log));
     }
     const auto add = [&](const char* figure, const char* unit, const std::string& text, double value) {

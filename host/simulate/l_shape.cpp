@@ -169,7 +169,8 @@ sim::ExperimentResult run_l_shape(const ExperimentInput& input) {
     auto machine = input.machine;
     for (auto& axis : machine.axes) axis.friction.use = name;
     LogRecorder recorder(machine);
-    auto run = drive_l_shape(machine, input.keep_log ? recorder.sink<FixedSignals>() : TraceSink<FixedSignals>{}, input.jerk);
+    auto run =
+        drive_l_shape(machine, input.keep_log ? recorder.sink<FixedSignals>() : TraceSink<FixedSignals>{}, input.jerk);
     if (input.keep_log) input.keep_log("", recorder.take());
     run.error.name = run.current.name = name;
     run.error.friction = run.current.friction = name;

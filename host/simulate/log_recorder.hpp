@@ -10,8 +10,8 @@
 
 namespace stiction::host {
 
-// Every tick of a control run: set-points, position, velocity, currents; of what is driven by volts its voltage. It must
-// outlive its sink.
+// Every tick of a control run: set-points, position, velocity, currents; of what is driven by volts its voltage. It
+// must outlive its sink.
 class LogRecorder {
  public:
   explicit LogRecorder(const machine::Machine& machine) {

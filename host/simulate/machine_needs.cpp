@@ -110,10 +110,9 @@ std::optional<std::string> what_is_missing(const machine::Machine& machine, cons
   if (!needs.rotary)
     for (const auto& axis : machine.axes)
       if (axis.coordinate.rotary())
-        return missing(
-            fmt::format("the rotary axis {}", axis.name),
-            "linear axes; inspect, identify, diagnose, compare LOG and simulate replay, commissioning, "
-            "constant-velocity, impact and frequency-response serve rotary ones");
+        return missing(fmt::format("the rotary axis {}", axis.name),
+                       "linear axes; inspect, identify, diagnose, compare LOG and simulate replay, commissioning, "
+                       "constant-velocity, impact and frequency-response serve rotary ones");
   for (const auto& axis : machine.axes) {
     if (axis.cascaded() || needs.controllers == Controllers::any) continue;
     const bool unknown = axis.controller->structure == machine::ControlStructure::unknown;
