@@ -46,7 +46,7 @@ class EndlessPhase {
 
   // Moves `state` by `counts`, any number of either sign. Whole turns count around beyond 2^63, which no way of fewer
   // counts reaches. A step of up to two turns, as every tick has it, is one product and two comparisons; a longer one
-  // goes bit by bit.
+  // goes bit by bit. `config`: of the axis.
   static constexpr void step(const Config& config, State& state, std::int64_t counts) {
     const bool back = counts < 0;
     const auto size = back ? -static_cast<std::uint64_t>(counts) : static_cast<std::uint64_t>(counts);
@@ -57,7 +57,8 @@ class EndlessPhase {
       move_on(config, state, way);
   }
 
-  // The part of a turn beyond the whole ones in 2^-32 turns, rounded down: 0 to 2^32 - 1. The rest stays as it is.
+  // The part of a turn beyond the whole ones of `state` in 2^-32 turns, rounded down: 0 to 2^32 - 1. The rest stays as
+  // it is. `config`: of the axis.
   static constexpr std::uint32_t phase(const Config& config, const State& state) {
     std::uint64_t rest = state.rest;
     std::uint32_t phase = 0;
