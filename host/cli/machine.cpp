@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "firmware/machine/file/machine_notes.hpp"
 #include "host/cli/choices.hpp"
@@ -15,13 +16,42 @@ namespace {
 
 struct MachineCommand {
   std::string check, checked;
-  bool reference = false;
+  bool reference = false, json = false;
 };
 
+nlohmann::ordered_json endless_json(const machine::AxisModel& axis) {
+  if (!axis.modulo_counts) return nullptr;
+  return {{"encoder_on", axis.encoder.on == machine::EncoderPlace::motor ? "motor" : "load"},
+          {"counts_numerator", axis.modulo_counts->numerator},
+          {"counts_denominator", axis.modulo_counts->denominator}};
+}
+
+nlohmann::ordered_json check_json(const machine::Machine& machine, const std::vector<std::string>& notes) {
+  nlohmann::ordered_json axes = nlohmann::ordered_json::array();
+  for (const auto& axis : machine.axes) {
+    const bool rotary = axis.coordinate.rotary(), fits = axis.beyond_formats.empty();
+    axes.push_back({{"axis", axis.name},
+                    {"kind", rotary ? "rotary" : "linear"},
+                    {"radius_m", rotary && fits ? nlohmann::ordered_json(axis.coordinate.radius) : nullptr},
+                    {"beyond_formats", fits ? nullptr : nlohmann::ordered_json(axis.beyond_formats)},
+                    {"endless", endless_json(axis)}});
+  }
+  return {{"schema", "stiction.machine-check/1"},
+          {"machine", machine.id},
+          {"name", machine.name},
+          {"axes", axes},
+          {"notes", notes}};
+}
+
 // Reads and checks a file, down to the drive's number formats, and prints what was understood, or all of its errors.
-void check_machine(const std::string& name) {
+void check_machine(const std::string& name, bool json) {
   sim::read_machine(machine::find_machine(name), {.experiment = {}, .set = {}, .all_errors = true});
   const auto machine = MachineOptions{name, {}}.load(name, "", needs_of("machine"));
+  const auto notes = machine::machine_notes(machine);
+  if (json) {
+    fmt::print("{}\n", check_json(machine, notes).dump(2));
+    return;
+  }
   fmt::print("{}: {}\n", machine.id, machine.name);
   for (const auto& section : machine_sheet(machine)) {
     fmt::print("\n{}\n", section.title);
@@ -31,7 +61,6 @@ void check_machine(const std::string& name) {
       fmt::print("\n");
     }
   }
-  const auto notes = machine::machine_notes(machine);
   if (!notes.empty()) fmt::print("\nNotes\n");
   for (const auto& note : notes) fmt::print("  {}\n", note);
 }
@@ -63,18 +92,20 @@ void add_machine(CLI::App& program, const Invocation& invocation) {
   check->add_option("MACHINE", o->checked, "shipped machine by name, or a machine file")
       ->required()
       ->type_name("MACHINE");
-  check->callback([o] { check_machine(o->checked); });
+  check->add_flag("--json", o->json, "print what later steps need of it as JSON on standard output");
+  check->callback([o] { check_machine(o->checked, o->json); });
   command->add_subcommand("reference", "print the reference of all keys of a machine file (Markdown)")->callback([] {
     fmt::print("{}", sim::reference_page());
   });
   command->add_option("--check", o->check, "read a machine file and print its errors or its contents")
       ->type_name("MACHINE");
+  command->add_flag("--json", o->json, "with --check: print what later steps need of it as JSON on standard output");
   command->add_flag("--reference", o->reference, "print the reference of all keys (Markdown)");
   command->callback([o, command] {
     if (!command->get_subcommands().empty()) return;
     if (const auto found = command->remaining(); !found.empty()) refuse_unknown_command(*command, "command");
     if (o->reference) fmt::print("{}", sim::reference_page());
-    if (!o->check.empty()) check_machine(o->check);
+    if (!o->check.empty()) check_machine(o->check, o->json);
     if (!o->reference && o->check.empty()) print_lines(machine::shipped_machines());
   });
 }

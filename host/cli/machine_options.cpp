@@ -66,7 +66,7 @@ machine::Machine MachineOptions::load(const std::string& name, const std::string
   auto result = sim::read_machine(file, {experiment, assignments});
   if (needs.one_axis && !result.axes.empty()) keep_axis(result, axis);
   require_needs(result, needs, file);
-  if (!needs.formats) return result;
+  if (needs.formats == Formats::any || (needs.formats == Formats::or_doubles && !result.fits_formats())) return result;
   // What the drive's number formats cannot hold is bad input too, found before anything runs.
   try {
     for (const auto& each : result.axes)

@@ -30,7 +30,8 @@ std::vector<ReplayCase> cases_of(const ReplayOptions& options) {
   std::vector<ReplayCase> cases;
   const auto names = split_list(options.machine.machine);
   auto needs = needs_of("replay");
-  needs.formats = options.signals != "double";  // the limits of the number formats are the firmware's alone
+  // The limits of the number formats are the firmware's alone.
+  if (options.signals == "double") needs.formats = Formats::any;
   for (const auto& name : names) {
     const auto machine = options.machine.load(name, "replay", needs);
     const auto models = friction_models(options.friction, machine);

@@ -61,6 +61,10 @@ class Commands {
     for (const auto& log : records_.logs) all.push_back(replay_command<S>(timing_, axis, log, channels_of(log, axis_)));
     return rows_of(all);
   }
+  // By the firmware's numbers, where they hold the axis.
+  Eigen::VectorXd as_driven(const machine::AxisModel& axis) const {
+    return axis.beyond_formats.empty() ? replayed<FixedSignals>(axis) : replayed<machine::DoubleSignals>(axis);
+  }
   // What the command changes by with each parameter, per its unit. In doubles: the drive's rounding has no slope.
   std::vector<Eigen::VectorXd> slopes(const machine::AxisModel& axis, const Places& places) const {
     std::vector<Eigen::VectorXd> all;
@@ -263,7 +267,7 @@ std::vector<CommandTerm> refined(const Commands& commands, const machine::AxisMo
       if (file == 0.0) term.value = std::max(term.value, 0.0);
     }
     const auto at = with_terms(axis, terms);
-    const auto local = select(commands, at, commands.logged() - commands.replayed<FixedSignals>(at), places);
+    const auto local = select(commands, at, commands.logged() - commands.as_driven(at), places);
     const auto all = all_of(places);
     const auto step = local.fit(all).coefficients;
     const auto covariance = local.covariance(all);
@@ -307,7 +311,7 @@ bool is_record_delay(const RecordDelay& delay, double loop_delay) {
 void judge_held_out(Verdict& verdict, std::vector<Finding>& findings, const Commands& held_out,
                     const machine::AxisModel& axis, const std::vector<CommandTerm>& terms, std::uint64_t seed) {
   const auto residual_with = [&](const machine::AxisModel& each) {
-    return Eigen::VectorXd(held_out.logged() - held_out.replayed<FixedSignals>(each));
+    return Eigen::VectorXd(held_out.logged() - held_out.as_driven(each));
   };
   const auto before = residual_with(axis);
   verdict.baseline.command_rms = rms(before);
@@ -332,7 +336,7 @@ void find_and_judge(Verdict& verdict, const DiagnoseInput& input, const CommandR
     if (command_parameters()[k].value(axis)) places.push_back(k);
   // A delay of the record that the residual force names is taken out where the command, whatever the gains, agrees.
   const Commands as_recorded(training, timing, axis, 0.0), moved(training, timing, axis, delay.found);
-  const auto replayed = as_recorded.replayed<FixedSignals>(axis);
+  const auto replayed = as_recorded.as_driven(axis);
   const auto slopes = as_recorded.slopes(axis, places);
   const auto selection_of = [&](const Commands& each) {
     return Selection(each.logged() - replayed, each.rows(), places, slopes, each.nuisances());
@@ -346,8 +350,7 @@ void find_and_judge(Verdict& verdict, const DiagnoseInput& input, const CommandR
   auto selection = selection_of(commands);
   const auto chosen = selection.run();
   auto terms = refined(commands, axis, selection, chosen);
-  const Eigen::VectorXd left =
-      terms.empty() ? target : commands.logged() - commands.replayed<FixedSignals>(with_terms(axis, terms));
+  const Eigen::VectorXd left = terms.empty() ? target : commands.logged() - commands.as_driven(with_terms(axis, terms));
   if (rms(left) > foreign * rms(commands.logged())) {
     verdict.notes.push_back(
         fmt::format("No gains of the controller in the machine file reproduce the recorded command from the recorded "

@@ -13,7 +13,6 @@
 #include "host/simulate/injection.hpp"
 #include "host/simulate/replay.hpp"
 #include "sim/effects/effects.hpp"
-#include "stiction/number/fixed_signals.hpp"
 
 namespace stiction::host {
 namespace {
@@ -83,7 +82,7 @@ std::string why_not_simulated(const machine::Machine& machine, std::size_t axis,
 std::vector<Log> replays(const ReplaySetup& setup) {
   std::vector<Log> all;
   for (const auto& log : setup.logs)
-    all.push_back(replay_linear<FixedSignals>(setup.machine, log, {setup.machine.axes.front().name}));
+    all.push_back(replay_linear_as_held(setup.machine, log, {setup.machine.axes.front().name}));
   return all;
 }
 
@@ -145,7 +144,7 @@ Log EffectResponse::disturbed(std::size_t record, std::size_t run) const {
 }
 
 Log EffectResponse::replayed(const Log& log, const machine::Machine& machine) const {
-  return replay_linear<FixedSignals>(machine, log, {machine_.axes.front().name});
+  return replay_linear_as_held(machine, log, {machine_.axes.front().name});
 }
 
 std::vector<double> EffectResponse::residual(Log simulated, const Log& of) const {

@@ -11,7 +11,6 @@
 #include "host/diagnose/replay_setup.hpp"
 #include "host/simulate/control_run.hpp"
 #include "host/simulate/replay.hpp"
-#include "stiction/number/fixed_signals.hpp"
 
 namespace stiction::host {
 namespace {
@@ -116,7 +115,7 @@ std::vector<Rehearsal> rehearse(const machine::Machine& machine, std::size_t axi
   const double row_period = rows.period(0), period = row_period / std::max(1.0, std::round(row_period / usual_period));
   for (const auto& kind : sim::separating_trajectories()) {
     try {
-      auto log = replay_linear<FixedSignals>(setup, set_points(kind, range, own.name, period));
+      auto log = replay_linear_as_held(setup, set_points(kind, range, own.name, period));
       log.axes.front().i_set.clear();
       LogRows moved({motion_of(log, log.axes.front(), own, Amperes::amplitude, settings)}, settings);
       log.axes.front().force.clear();

@@ -78,6 +78,17 @@ std::string channel_header(const AxisLog& axis, const LogChannel& channel) {
                      unit_on(axis, channel));
 }
 
+const char* phase_unit(const AxisLog& axis) { return axis.rotary ? "deg" : "mm"; }
+
+std::string phase_header(const AxisLog& axis) {
+  return fmt::format("{}{}{}[{}]", axis.axis, axis.axis.empty() ? "" : ".", phase_name, phase_unit(axis));
+}
+
+// A multiple of 2^-32 of 360 deg is a double: nothing is rounded where a turn is one of the axis.
+double shown_phase(const AxisLog& axis, std::size_t sample) {
+  return std::ldexp(static_cast<double>(axis.phase[sample]) * axis.turn, -32);
+}
+
 void AxisKinds::add(std::string_view axis, AxisKind kind, std::string_view header, std::string_view place) {
   if (kind == AxisKind::either) return;
   const auto [found, is_new] = found_.try_emplace(std::string(axis), Found{kind, std::string(header)});

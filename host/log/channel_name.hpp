@@ -44,6 +44,13 @@ const char* unit_on(const AxisLog& axis, const LogChannel& channel);
 // "X.x[m]", or "x[m]" without an axis; "T[N m]" of a rotary one.
 std::string channel_header(const AxisLog& axis, const LogChannel& channel);
 
+// The column of the phase of an endless axis, which is written and is no channel: "R.phase[deg]", or in mm of a linear
+// one; and its value in a sample.
+inline constexpr const char* phase_name = "phase";
+const char* phase_unit(const AxisLog& axis);
+std::string phase_header(const AxisLog& axis);
+double shown_phase(const AxisLog& axis, std::size_t sample);
+
 // What was found of each axis' kind while its columns were read.
 class AxisKinds {
  public:

@@ -284,25 +284,43 @@ std::string one_line(std::string text) {
   return text;
 }
 
+// One column of a log that is written: a channel, or the phase of an endless axis.
+struct WrittenColumn {
+  const std::vector<double>* values = nullptr;
+  const AxisLog* endless = nullptr;
+
+  // Blank for NaN.
+  void print(std::size_t sample, std::string& text) const {
+    if (values == nullptr)
+      fmt::format_to(std::back_inserter(text), "{}", shown_phase(*endless, sample));
+    else if (!std::isnan((*values)[sample]))
+      fmt::format_to(std::back_inserter(text), "{}", (*values)[sample]);
+  }
+};
+
 // Calls sink(text) with one piece after the other.
 void print_csv_log(const Log& log, const std::function<void(std::string_view)>& sink) {
   constexpr std::size_t piece = std::size_t{1} << 18;
   std::string text;
   for (const auto& [key, value] : log.comments)
     text += one_line(value.empty() ? "# " + key : "# " + key + ": " + value) + "\n";
-  std::vector<const std::vector<double>*> columns{&log.t};
+  std::vector<WrittenColumn> columns{{&log.t}};
   text += "t[s]";
-  for (const auto& axis : log.axes)
+  for (const auto& axis : log.axes) {
     for (const auto& channel : log_channels) {
       if ((axis.*channel.values).empty()) continue;
       text += "," + channel_header(axis, channel);
-      columns.push_back(&(axis.*channel.values));
+      columns.push_back({&(axis.*channel.values)});
     }
+    if (axis.phase.empty()) continue;
+    text += "," + phase_header(axis);
+    columns.push_back({nullptr, &axis});
+  }
   text += '\n';
   for (std::size_t k = 0; k < log.t.size(); ++k) {
-    for (const auto* column : columns) {
-      if (column != columns.front()) text += ',';
-      if (!std::isnan((*column)[k])) fmt::format_to(std::back_inserter(text), "{}", (*column)[k]);
+    for (const auto& column : columns) {
+      if (&column != &columns.front()) text += ',';
+      column.print(k, text);
     }
     text += '\n';
     if (text.size() < piece) continue;

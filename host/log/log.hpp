@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -40,6 +41,10 @@ struct AxisLog {
   std::vector<double> master;          // rad, of the axis that this one follows
   std::vector<double> table;           // number of the cam table, a whole number
   std::vector<double> fault;           // number of the drive's fault, a whole number
+  // Of an endless axis in a simulated log: the part of a turn beyond whole ones. It is written and not read, and is no
+  // channel: between two samples there is nothing to interpolate.
+  std::vector<std::uint32_t> phase;  // 2^-32 turns
+  double turn = 0.0;                 // deg of a rotary axis, else mm: what the column shows for a whole turn
   // A rotary axis has rad, rad/s, rad/s^2 and N m in place of m, m/s, m/s^2 and N.
   bool rotary = false;
   // Samples that no fit may use: a channel stands at its limit, a cell was blank. Empty: none.

@@ -267,11 +267,18 @@ void write_mat_log(const std::filesystem::path& file, const Log& log, MatLevel l
     for (const auto& axis : log.axes)
       if (!(axis.*channel.values).empty() && stated.insert(name_on(axis, channel)).second)
         units.push_back(text(name_on(axis, channel), unit_of_all(log, channel, axis)));
+  const auto endless = std::ranges::find_if(log.axes, [](const AxisLog& axis) { return !axis.phase.empty(); });
+  if (endless != log.axes.end()) units.push_back(text(phase_name, phase_unit(*endless)));
   for (const auto& axis : log.axes) {
     std::vector<MatVariable> fields;
     for (const auto& channel : log_channels)
       if (const auto& values = axis.*channel.values; !values.empty())
         fields.push_back(column(name_on(axis, channel), values));
+    if (!axis.phase.empty()) {
+      std::vector<double> phase;
+      for (std::size_t k = 0; k < axis.phase.size(); ++k) phase.push_back(shown_phase(axis, k));
+      fields.push_back(column(phase_name, phase));
+    }
     if (!axis.axis.empty())
       writer.write_struct(axis.axis.c_str(), std::move(fields));
     else

@@ -221,6 +221,10 @@ void add_friction(Sheet& sheet, std::span<const machine::AxisModel> axes, const 
   });
 }
 
+std::string turn_label(machine::EncoderPlace place) {
+  return fmt::format("counts of the {} encoder a turn", place == machine::EncoderPlace::motor ? "motor's" : "load's");
+}
+
 // What the file does not say in one place: what the load is of the whole, and on which radius a rotary axis runs.
 void add_reduction(Sheet& sheet, std::span<const machine::AxisModel> axes) {
   sheet.begin_section("Reduction to the axis");
@@ -234,11 +238,17 @@ void add_reduction(Sheet& sheet, std::span<const machine::AxisModel> axes) {
     load.push_back(cell(axis.transmission.has_value(),
                         machine::in_own_words("of the moving mass, load alone", axis.coordinate), own.unit,
                         own.from_linear(axis.load_mass)));
-    radius.push_back(
-        cell(axis.coordinate.rotary(), "way of a radian in the drive's numbers", "m/rad", axis.coordinate.radius));
+    radius.push_back(cell(axis.coordinate.rotary() && axis.beyond_formats.empty(),
+                          "way of a radian in the drive's numbers", "m/rad", axis.coordinate.radius));
   }
   sheet.add(load);
   sheet.add(radius);
+  for (const auto place : {machine::EncoderPlace::motor, machine::EncoderPlace::load}) {
+    std::vector<std::string> counts;
+    for (const auto& axis : axes)
+      counts.push_back(axis.modulo_counts && axis.encoder.on == place ? machine::text_of(*axis.modulo_counts) : "");
+    sheet.add(turn_label(place), "", std::move(counts));
+  }
 }
 
 }  // namespace

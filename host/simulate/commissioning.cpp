@@ -6,6 +6,7 @@
 #include <numbers>
 #include <random>
 
+#include "firmware/machine/configuration/double_signals.hpp"
 #include "firmware/machine/model/motor_force.hpp"
 #include "host/log/own_units.hpp"
 #include "host/simulate/replay.hpp"
@@ -35,9 +36,15 @@ constexpr double smallest_reversal = 5e-6;                                // m, 
 constexpr double largest_reversal = 400e-6, largest_reversal_rate = 1.5;  // m, Hz
 constexpr double least_counts = 20.0;  // of the encoder that the smallest reversal of a rotary axis has
 
+// N, of a motor that has limits; without them what its axis needs for the largest acceleration.
+double force_of(const machine::AxisModel& axis) {
+  const bool limited = std::min(axis.inverter.current_limit, axis.inverter.voltage_limit) < machine::unlimited;
+  return limited ? machine::largest_force(axis) : axis.mass * axis.max_acceleration;
+}
+
 Scale scale_of(const machine::AxisModel& axis) {
   if (!axis.coordinate.rotary()) return {};
-  const double force = machine::largest_force(axis);
+  const double force = force_of(axis);
   return {axis.travel / planned_travel, speed_share * axis.max_velocity / planned_speed, force / planned_force,
           force / machine::acting_force_constant(axis.motor) / planned_current};
 }
@@ -169,7 +176,7 @@ Log recorded(const machine::Machine& bench, Log wanted, Normal& normal) {
   push.clear();
   for (std::size_t k = 0; k < wanted.t.size(); ++k) push.push_back(slow.next(normal) + fast.next(normal));
   wanted.axes.front() = in_own_units(std::move(wanted.axes.front()), axis.coordinate);
-  auto log = replay<FixedSignals>(bench, wanted);
+  auto log = bench.fits_formats() ? replay<FixedSignals>(bench, wanted) : replay<machine::DoubleSignals>(bench, wanted);
   auto& channels = log.axes.front();
   AxisLog kept;
   kept.axis = channels.axis;
@@ -178,6 +185,8 @@ Log recorded(const machine::Machine& bench, Log wanted, Normal& normal) {
   kept.v_set = std::move(channels.v_set);
   kept.a_set = std::move(channels.a_set);
   kept.x = std::move(channels.x);
+  kept.phase = std::move(channels.phase);
+  kept.turn = channels.turn;
   kept.i = std::move(channels.i);
   for (double& i : kept.i) i += scale.effort * current_noise * normal();
   kept.u = std::move(channels.u);  // of a force source; the drive knows what it commands

@@ -53,6 +53,8 @@ class ControlRun {
         backend_(machine, positions),
         set_(machine.axes.size()),
         late_(machine) {
+    if (std::ranges::any_of(machine.axes, [](const machine::AxisModel& axis) { return axis.modulo.has_value(); }))
+      counts_.resize(machine.axes.size());
     const auto cascades = std::count_if(machine.axes.begin(), machine.axes.end(),
                                         [](const machine::AxisModel& axis) { return axis.cascaded(); });
     if (cascades == 0) {
@@ -81,6 +83,8 @@ class ControlRun {
   const AxisSignals<S>& signals(std::size_t axis) const {                   // of the tick before
     return structured_ ? structured_->signals()[axis] : loop_->signals()[axis];
   }
+  // Of the same tick: the encoder of an endless axis, in counts from zero; of other axes 0.
+  std::int64_t encoder_counts(std::size_t axis) const { return counts_.empty() ? 0 : counts_[axis]; }
   // Of an axis; none where the machine has no friction compensation.
   const FrictionCompensation<S>* compensation(std::size_t axis) const {
     return !loop_ || loop_->compensations().empty() ? nullptr : &loop_->compensations()[axis];
@@ -96,6 +100,7 @@ class ControlRun {
       return tick_structured(set_points, trace);
     for (std::size_t i = 0; i < set_.size(); ++i) set_[i] = sim::to_set_point<S>(set_points[i]);
     const std::int64_t now_ns = loop_->now_ns();
+    count();  // what this tick works on was read when the one before ended
     loop_->tick(set_);
     if (trace) late_.record(now_ns, loop_->signals(), trace);
     if (loop_->faulted()) throw_fault();
@@ -105,10 +110,15 @@ class ControlRun {
   void tick_structured(std::span<const sim::AxisSetPoint> set_points, const TraceSink<S>& trace) {
     const std::int64_t now_ns = structured_->now_ns();
     structured_->tick(set_points);
+    count();
     if (trace) late_.record(now_ns, structured_->signals(), trace);
     for (std::size_t k = 0; k < machine_.axes.size(); ++k)
       if (structured_->ran_away(k))
         throw FaultTripped(machine_.axes[k].name, Fault::position_lost, static_cast<double>(now_ns) * 1e-9);
+  }
+
+  void count() {
+    for (std::size_t i = 0; i < counts_.size(); ++i) counts_[i] = backend_.plant(i).encoder_counts();
   }
 
   static std::vector<AxisConfig<S>> configure(const machine::Machine& machine) {
@@ -137,6 +147,7 @@ class ControlRun {
   std::optional<StructuredLoop<S>> structured_;  // in place of the one above
   std::vector<SetPoint<S>> set_;
   LateCurrent<S> late_;
+  std::vector<std::int64_t> counts_;  // none without an endless axis
 };
 
 }  // namespace stiction::host

@@ -45,12 +45,18 @@ constexpr std::array table{
                  .most_axes = 2,
                  .circle_references = true,
                  .why = for_both_coordinates},
-    MachineNeeds{.command = "machine", .least_axes = 0, .rotary = true, .controllers = Controllers::any},
-    MachineNeeds{.command = "inspect", .rotary = true, .controllers = Controllers::any},
+    MachineNeeds{.command = "machine",
+                 .least_axes = 0,
+                 .rotary = true,
+                 .controllers = Controllers::any,
+                 .formats = Formats::or_doubles},
+    MachineNeeds{.command = "inspect", .rotary = true, .controllers = Controllers::any, .formats = Formats::or_doubles},
     MachineNeeds{.command = "replay", .rotary = true, .controllers = Controllers::known},
-    MachineNeeds{.command = "diagnose", .rotary = true, .controllers = Controllers::any},
-    MachineNeeds{.command = "commissioning", .rotary = true, .controllers = Controllers::known},
-    MachineNeeds{.command = "identify", .rotary = true, .controllers = Controllers::any, .formats = false},
+    MachineNeeds{
+        .command = "diagnose", .rotary = true, .controllers = Controllers::any, .formats = Formats::or_doubles},
+    MachineNeeds{
+        .command = "commissioning", .rotary = true, .controllers = Controllers::known, .formats = Formats::or_doubles},
+    MachineNeeds{.command = "identify", .rotary = true, .controllers = Controllers::any, .formats = Formats::any},
 };
 
 std::string found_axes(const machine::Machine& machine) {

@@ -21,6 +21,13 @@ enum class Controllers {
   any,
 };
 
+// Whether a command asks the drive's number formats to hold the machine.
+enum class Formats {
+  needed,      // what they do not hold is refused
+  or_doubles,  // rotary axes that they hold on no radius run in double precision
+  any,
+};
+
 struct MachineNeeds {
   std::string_view command;    // "impact"; commands without a row of their own need an axis, no more
   std::size_t least_axes = 1;  // of the machine, or of those that --axis chooses
@@ -32,7 +39,7 @@ struct MachineNeeds {
   bool one_axis = false;                         // runs on one axis alone: the one named, or the first
   bool rotary = false;                           // serves rotary axes too
   Controllers controllers = Controllers::cascade;
-  bool formats = true;     // what the drive's number formats do not hold is refused
+  Formats formats = Formats::needed;
   std::string_view why{};  // completes "expected exactly two axes: "
 };
 

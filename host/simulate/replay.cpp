@@ -10,6 +10,7 @@
 #include "firmware/machine/configuration/double_signals.hpp"
 #include "host/log/own_units.hpp"
 #include "host/log/set_points.hpp"
+#include "host/simulate/endless_counter.hpp"
 #include "host/simulate/injection.hpp"
 #include "sim/effects/effects.hpp"
 #include "sim/effects/time_skew/time_skew.hpp"
@@ -84,13 +85,15 @@ void require_within_limits(const Log& log, const AxisLog& axis, const machine::A
 // The values of one axis that a replay keeps, at one time.
 struct Sample {
   double x = 0.0, v = 0.0, i = 0.0, i_set = 0.0, force = 0.0, x_load = 0.0;
+  std::uint32_t phase = 0;  // 2^-32 turns
 };
 
+// Everything but the phase, which is that of the earlier tick: it jumps at the end of a turn.
 Sample between(const Sample& a, const Sample& b, double s) {
   if (s > 1.0 - 1e-4) return b;  // to the bit, whatever the rounding of the two clocks
   const auto mix = [s](double p, double q) { return p + s * (q - p); };
-  return {mix(a.x, b.x),         mix(a.v, b.v),         mix(a.i, b.i),
-          mix(a.i_set, b.i_set), mix(a.force, b.force), mix(a.x_load, b.x_load)};
+  return {mix(a.x, b.x),         mix(a.v, b.v),           mix(a.i, b.i), mix(a.i_set, b.i_set),
+          mix(a.force, b.force), mix(a.x_load, b.x_load), a.phase};
 }
 
 // Collects the simulated values at the log's times; currents at the times at which the machine's record has them.
@@ -103,6 +106,8 @@ class Sampler {
     out_.period = log.period;
     for (const auto& axis : log.axes) out_.axes.emplace_back().axis = axis.axis;
     for (const std::size_t axis : axes) places_.push_back({axis, sim::record_delay(machine.axes[axis])});
+    for (std::size_t k = 0; k < axes.size(); ++k)
+      if (machine.axes[axes[k]].modulo_counts) out_.axes[k].turn = shown_turn(machine.axes[axes[k]]);
     for (auto& axis : out_.axes)
       for (auto* values : {&axis.x, &axis.v, &axis.force, &axis.i, &axis.i_set}) values->reserve(times_.size());
   }
@@ -150,6 +155,7 @@ class Sampler {
     out_.axes[k].x.push_back(sample.x);
     out_.axes[k].v.push_back(sample.v);
     if (machine_.axes[places_[k].axis].second_encoder) out_.axes[k].x_load.push_back(sample.x_load);
+    if (machine_.axes[places_[k].axis].modulo_counts) out_.axes[k].phase.push_back(sample.phase);
   }
   void keep_current(std::size_t k, const Sample& sample) {
     auto& axis = out_.axes[k];
@@ -238,6 +244,8 @@ Log replay_linear(const machine::Machine& machine, const Log& log, const ReplayS
   Sampler sampler(log, indices, machine);
   std::vector<sim::AxisSetPoint> points(machine.axes.size());
   std::vector<Sample> values(indices.size());
+  std::vector<EndlessCounter> counters;
+  for (const std::size_t index : indices) counters.emplace_back(machine.axes[index]);
   while (!sampler.done()) {
     const double t = zero + run.time();
     for (std::size_t k = 0; k < indices.size(); ++k) {
@@ -253,6 +261,9 @@ Log replay_linear(const machine::Machine& machine, const Log& log, const ReplayS
       const auto& s = run.signals(indices[k]);
       values[k] = {machine::to_si(s.x),     machine::to_si(s.v), machine::to_si(s.i),
                    machine::to_si(s.i_set), values[k].force,     values[k].x_load};
+      if (!counters[k].counts_phase()) continue;
+      counters[k].see(run.encoder_counts(indices[k]));
+      values[k].phase = counters[k].phase();
     }
     sampler.add(t, values);
   }
@@ -283,6 +294,11 @@ Log replay(const machine::Machine& machine, const Log& log, const ReplaySettings
   Log out = replay_linear<S>(machine, linear, settings, trace);
   for (std::size_t k = 0; k < indices.size(); ++k) out.axes[k] = in_own_units(std::move(out.axes[k]), coordinate(k));
   return out;
+}
+
+Log replay_linear_as_held(const machine::Machine& machine, const Log& log, const ReplaySettings& settings) {
+  return machine.fits_formats() ? replay_linear<FixedSignals>(machine, log, settings)
+                                : replay_linear<machine::DoubleSignals>(machine, log, settings);
 }
 
 template Log replay_linear<FixedSignals>(const machine::Machine&, const Log&, const ReplaySettings&,

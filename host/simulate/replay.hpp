@@ -26,10 +26,12 @@ struct ReplaySettings {
 // another zero: its mean distance is added to the simulated position, so that both can be compared (see
 // encoder_offset).
 //
-// The channels of a rotary axis are in its own units, in both logs. Between ticks the simulated values are interpolated
-// linearly. Where the machine's record has the current late (effect time_skew), so are i, u, i_set and force. S:
-// FixedSignals or sim::DoubleSignals. Throws LogError when log and machine do not fit (axes, no x_set, beyond the
-// machine's velocity), FaultTripped, sim::ConfigurationError. `settings`: the axis of a log without axis names.
+// Of an endless axis the log has the phase too, counted from the encoder's increments (endless_counter.hpp), at the
+// last tick before the time of the sample. The channels of a rotary axis are in its own units, in both logs. Between
+// ticks the simulated values are interpolated linearly. Where the machine's record has the current late (effect
+// time_skew), so are i, u, i_set and force. S: FixedSignals or sim::DoubleSignals. Throws LogError when log and machine
+// do not fit (axes, no x_set, beyond the machine's velocity), FaultTripped, sim::ConfigurationError. `settings`: the
+// axis of a log without axis names.
 template <class S>
 Log replay(const machine::Machine& machine, const Log& log, const ReplaySettings& settings = {},
            const TraceSink<S>& trace = {});
@@ -39,6 +41,10 @@ Log replay(const machine::Machine& machine, const Log& log, const ReplaySettings
 template <class S>
 Log replay_linear(const machine::Machine& machine, const Log& log, const ReplaySettings& settings = {},
                   const TraceSink<S>& trace = {});
+
+// The same `log`, with the same `settings`, in the firmware's numbers, or in double precision where these hold an axis
+// of the `machine` on no radius.
+Log replay_linear_as_held(const machine::Machine& machine, const Log& log, const ReplaySettings& settings = {});
 
 inline constexpr double longest_lead_in = 0.5;  // s
 

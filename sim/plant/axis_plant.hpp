@@ -69,6 +69,8 @@ class AxisPlant {
       reading = with_noise(reading);
     return nearest_increment(reading);
   }
+  // The same reading as a whole number of increments from zero: of the last call. 0 without an increment.
+  std::int64_t encoder_counts() const { return state_->encoder_counts; }
 
  private:
   // The plant's state. Whoever uses a plant sees this much of it; the motor, the effects and the friction that it moves
@@ -92,6 +94,7 @@ class AxisPlant {
     double encoder_increment;
     double increments_per_metre;
     double encoder_noise;
+    std::int64_t encoder_counts = 0;  // of the last reading
     std::mt19937_64 random;
     bool enabled = false;
 
@@ -114,14 +117,16 @@ class AxisPlant {
   void switch_off();
   double with_noise(double reading);
 
-  double nearest_increment(double reading) const {
+  double nearest_increment(double reading) {
     const double increments = reading * state_->increments_per_metre;
     // Beyond 2^51 increments a plant has run away; the reading passes as it is, for the control's border to refuse.
     // So it does without an increment.
     if (!(std::abs(increments) < 0x1p51)) [[unlikely]]
       return reading;
     constexpr double no_fraction = 0x1.8p52;  // added, it leaves no room for a fraction
-    return state_->encoder_increment * (increments + no_fraction - no_fraction);
+    const double whole = increments + no_fraction - no_fraction;
+    state_->encoder_counts = static_cast<std::int64_t>(whole);
+    return state_->encoder_increment * whole;
   }
 
   std::unique_ptr<State> state_;

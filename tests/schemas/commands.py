@@ -36,6 +36,8 @@ simulate replay --from run.csv --machine mcfv5050ln --friction lugre --json
 simulate replay --from lap.csv --machine emps --json
 simulate commissioning --machine emps --hide 3 --out records --json
 simulate commissioning --machine emps --set 'axis.X.velocity_controller.gain=300 V s/m' --out gain --json
+machine check endless.toml --json
+machine --check mcfv5050ln --json
 inspect run.csv --machine mcfv5050ln --json
 inspect records/circle.csv --machine emps --json
 inspect spare.csv --axis X --machine mcfv5050ln --json
@@ -73,6 +75,8 @@ def prepare(folder):
     """Inputs that no command writes."""
     shipped = SOURCE / "firmware/machine/shipped/mcfv5050ln.toml"
     (folder / "other.toml").write_text(shipped.read_text(encoding="utf-8"), encoding="utf-8")
+    endless = SOURCE / "tests/axes/machines/endless_355_113_cascade.toml"
+    (folder / "endless.toml").write_text(endless.read_text(encoding="utf-8"), encoding="utf-8")
     (folder / "steady.csv").write_text(STEADY, encoding="utf-8")
     made = SOURCE / "tests/fuzz/seeds/response_file/made.xml"
     (folder / "test.xml").write_text(made.read_text(encoding="utf-8"), encoding="utf-8")

@@ -36,6 +36,7 @@ ROOMS = {
     "firmware/machine/file": {
         "firmware/machine/configuration": "the radius of a rotary axis is the largest that the drive's formats hold",
         f"{FIRMWARE}/control": "keys are held to what the drive's buffers and tables hold (compensation_kind.hpp)",
+        f"{FIRMWARE}/motion": "and the turn of an endless axis to what it counts exactly (endless_phase.hpp)",
         "firmware/machine/model": "a file becomes a machine",
     },
     "firmware/machine/configuration": {

@@ -72,6 +72,8 @@ template <class S>
 AxisConfig<S> configure_axis(const Timing& timing, const AxisModel& axis) {
   design::Problems problems;
   const auto config = design::configure_axis<S>(design_of(timing, axis), problems);
+  // A number in the units of no radius that the axis has would tell nobody anything.
+  if (!problems.empty() && !axis.beyond_formats.empty()) throw ConfigurationError(axis.beyond_formats);
   refuse(problems, axis.name);
   return config;
 }

@@ -1,10 +1,8 @@
 #include "firmware/machine/configuration/radius.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <string_view>
 #include <vector>
 
 #include "firmware/machine/configuration/axis_configuration.hpp"
@@ -29,43 +27,63 @@ AxisDesign on_radius(AxisDesign design, double radius) {
   return design;
 }
 
-// A key, and in which direction its value leaves its format.
-using Refusal = std::pair<std::string, std::string>;
-
-std::vector<Refusal> refusals_on(const AxisDesign& design, double radius) {
+std::vector<design::Problem> problems_on(const AxisDesign& design, int exponent) {
   design::Problems problems;
-  design::configure_axis<FixedSignals>(on_radius(design, radius), problems);
-  std::vector<Refusal> refusals;
-  for (const design::Problem& problem : problems) refusals.emplace_back(problem.quantity.key, problem.expected);
-  return refusals;
+  design::configure_axis<FixedSignals>(on_radius(design, std::ldexp(1.0, exponent)), problems);
+  return {problems.begin(), problems.end()};
 }
 
-bool contains(const std::vector<Refusal>& refusals, const Refusal& refusal) {
-  return std::find(refusals.begin(), refusals.end(), refusal) != refusals.end();
+// What leaves its format in one direction, and from the lowest to the highest exponent at which it does.
+struct Refusal {
+  design::Problem problem;  // at the highest
+  int lowest, highest;
+
+  bool is(const design::Problem& other) const {
+    const auto text = [](const char* t) { return std::string_view(t); };
+    return text(problem.quantity.key) == other.quantity.key && text(problem.quantity.what) == other.quantity.what &&
+           text(problem.expected) == other.expected;
+  }
+  bool asks_for_less() const { return highest == largest_exponent; }
+  bool asks_for_more() const { return lowest == smallest_exponent; }
+};
+
+RadiusBound bound(const Refusal& refusal, int exponent) {
+  return {refusal.problem.quantity.key, refusal.problem.quantity.what, std::ldexp(1.0, exponent)};
 }
 
 }  // namespace
 
 RadiusChoice choose_radius(const Timing& timing, const AxisModel& axis) {
   const AxisDesign design = design_of(timing, axis);
-  const auto largest = refusals_on(design, std::ldexp(1.0, largest_exponent));
-  auto before = largest;
+  std::vector<Refusal> refusals;
   for (int exponent = largest_exponent; exponent >= smallest_exponent; --exponent) {
-    const double radius = std::ldexp(1.0, exponent);
-    const auto refusals = refusals_on(design, radius);
-    if (refusals.empty()) return {radius, {}};
-    // What asks for a larger radius, beside what still asks for a smaller one, or did so at twice this radius.
-    const auto larger =
-        std::find_if(refusals.begin(), refusals.end(), [&](const Refusal& r) { return !contains(largest, r); });
-    if (larger != refusals.end()) {
-      const auto smaller =
-          std::find_if(refusals.begin(), refusals.end(), [&](const Refusal& r) { return contains(largest, r); });
-      const Refusal& other = smaller != refusals.end() ? *smaller : before.front();
-      return {{}, fmt::format("{} and {}", other.first, larger->first)};
+    const auto problems = problems_on(design, exponent);
+    if (problems.empty()) return {std::ldexp(1.0, exponent), {}, {}, {}};
+    for (const auto& problem : problems) {
+      const auto known =
+          std::find_if(refusals.begin(), refusals.end(), [&](const Refusal& r) { return r.is(problem); });
+      if (known == refusals.end())
+        refusals.push_back({problem, exponent, exponent});
+      else
+        known->lowest = exponent;
     }
-    before = refusals;
   }
-  return {{}, before.front().first};
+  // The tightest on either side.
+  RadiusChoice none;
+  const Refusal *less = nullptr, *more = nullptr;
+  for (const auto& refusal : refusals) {
+    if (refusal.asks_for_less() && refusal.asks_for_more())
+      none.never.push_back({refusal.problem.quantity.key, refusal.problem.quantity.what, {}});
+    else if (refusal.asks_for_less() && (less == nullptr || refusal.lowest < less->lowest))
+      less = &refusal;
+    else if (refusal.asks_for_more() && (more == nullptr || refusal.highest > more->highest))
+      more = &refusal;
+  }
+  if (less != nullptr && more != nullptr && less->lowest <= more->highest + 1) {
+    none.at_most = bound(*less, less->lowest - 1);
+    none.at_least = bound(*more, more->highest + 1);
+  }
+  return none;
 }
 
 }  // namespace stiction::machine

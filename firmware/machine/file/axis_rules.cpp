@@ -31,7 +31,6 @@ class Rules {
     check_shaft();
     check_commutation();
     check_gravity();
-    check_modulo();
   }
 
  private:
@@ -201,20 +200,6 @@ class Rules {
                      fmt::format("{:.4g} {} to hold, by {}", own.from_linear(held), own.unit, weight),
                      fmt::format("at most {:.4g} {}, which the motor holds at its limit, by {}",
                                  own.from_linear(hold.force), own.unit, limit));
-    });
-  }
-
-  // What an encoder on the load counts in one round must be whole, or the rounds drift apart.
-  void check_modulo() const {
-    if (!axis_.modulo || axis_.encoder.on != EncoderPlace::load || axis_.encoder.increment == 0.0) return;
-    if (!values_are_right_) return;
-    const double counts = *axis_.modulo / axis_.encoder.increment;
-    if (std::abs(counts - std::round(counts)) < 1e-6) return;
-    document_.attempt([&] {
-      document_.fail(node("modulo")->source(), join_key(path_, "modulo"),
-                     fmt::format("{}, {:.6g} increments by {}", describe_node(*node("modulo")), counts,
-                                 at_line(axis_.encoder.counts ? "encoder.counts" : "encoder.increment")),
-                     "a whole number of increments: an encoder on the load is where it was after each round");
     });
   }
 

@@ -12,9 +12,11 @@
 #include "firmware/machine/file/compensation_checks.hpp"
 #include "firmware/machine/file/document.hpp"
 #include "firmware/machine/file/drive_file.hpp"
+#include "firmware/machine/file/endless_turn.hpp"
 #include "firmware/machine/file/expected_figures.hpp"
 #include "firmware/machine/file/name_check.hpp"
 #include "firmware/machine/file/nearest_name.hpp"
+#include "firmware/machine/file/radius_exclusion.hpp"
 #include "firmware/machine/file/reference_rows.hpp"
 #include "firmware/machine/file/table_reader.hpp"
 #include "firmware/machine/file/whole_file.hpp"
@@ -124,13 +126,14 @@ class MachineReader {
       document_.attempt([&] { reduce(document_, table, path, axis, coordinates); });
       axis.name = name;
       check_motor(table, path, axis);
+      const bool values_are_right = document_.errors() == errors;
       check_axis_rules(document_, table, path, axis, errors);
+      if (values_are_right) document_.attempt([&] { keep_exactly(document_, table, path, axis); });
       return axis;
     };
     AxisModel axis = on_radius(1.0);
     if (document_.errors() > errors) return axis;  // what follows works on values that are right
-    if (axis.coordinate.rotary() && axis.cascaded())
-      if (const auto choice = choose_radius(machine_.timing, axis); choice.radius) axis = on_radius(*choice.radius);
+    if (axis.coordinate.rotary() && axis.cascaded()) axis = on_its_radius(table, path, std::move(axis), on_radius);
     const auto judge = [&](auto&& check) { document_.attempt(check); };
     judge([&] { check_friction(table, path, "friction", axis.friction); });
     if (axis.motor_friction) judge([&] { check_friction(table, path, "motor_friction", *axis.motor_friction); });
@@ -141,6 +144,16 @@ class MachineReader {
     judge([&] { check_notch(table, path, axis.notch); });
     judge([&] { check_compensation(document_, table, path, axis, machine_); });
     if (runs_ && vocabulary_.check_effects) judge([&] { check_effects(table, path, axis); });
+    return axis;
+  }
+
+  // An `axis` that was read with a radius of 1 m as `read` gives it with its own; as it is where no radius serves,
+  // which it then says.
+  template <class Read>
+  AxisModel on_its_radius(const toml::table& table, const std::string& path, AxisModel axis, Read&& read) const {
+    const auto choice = choose_radius(machine_.timing, axis);
+    if (choice.radius) return read(*choice.radius);
+    axis.beyond_formats = describe_exclusion(document_, table, path, axis, choice);
     return axis;
   }
 

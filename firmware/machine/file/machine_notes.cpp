@@ -47,6 +47,13 @@ void note_emf_constant(const AxisModel& axis, std::vector<std::string>& notes) {
 std::vector<std::string> machine_notes(const Machine& machine) {
   std::vector<std::string> notes;
   for (const AxisModel& axis : machine.axes) {
+    if (axis.modulo && axis.encoder.increment != 0.0 && !axis.modulo_counts)
+      notes.push_back(fmt::format(
+          "Axis {} is endless, and the increment of its encoder is no exact part of a turn, as none in radians is: its "
+          "phase is not counted.",
+          axis.name));
+    if (!axis.beyond_formats.empty())
+      notes.push_back(fmt::format("Axis {} does not run in the firmware. {}.", axis.name, axis.beyond_formats));
     if (axis.motor.model != MotorModel::synchronous) continue;
     note_force_constant(axis, notes);
     note_emf_constant(axis, notes);

@@ -1,4 +1,5 @@
-// What a machine file says twice, where the two do not quite agree: no error, but worth a sentence.
+// What is no error of a machine file, but worth a sentence: what it says twice and not quite alike, and a rotary axis
+// that the firmware's number formats do not hold.
 #pragma once
 
 #include <string>

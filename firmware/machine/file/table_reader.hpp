@@ -8,9 +8,7 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -19,6 +17,7 @@
 #include "firmware/machine/file/description.hpp"
 #include "firmware/machine/file/document.hpp"
 #include "firmware/machine/file/drive_parameters.hpp"
+#include "firmware/machine/file/exact_value.hpp"
 #include "firmware/machine/file/nearest_name.hpp"
 #include "firmware/machine/file/parameters.hpp"
 #include "firmware/machine/file/units.hpp"
@@ -198,19 +197,13 @@ class TableReader {
     document_.fail(node.source(), wanted.key, describe_node(node) + reason, wanted.expected(kind));
   }
 
-  // The value of "355/113"; none for any other text.
+  // The value of "355/113"; none for any other text ("3 mm/mm"). Both its numbers are doubles: it is rounded once.
   static std::optional<double> fraction_of(std::string_view text) {
-    const std::size_t slash = text.find('/');
-    if (slash == std::string_view::npos) return std::nullopt;
-    const auto whole = [](std::string_view digits) -> std::optional<double> {
-      std::int64_t number = 0;
-      const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-      if (error != std::errc{} || end != digits.data() + digits.size() || number <= 0) return std::nullopt;
-      return static_cast<double>(number);
-    };
-    const auto above = whole(text.substr(0, slash)), below = whole(text.substr(slash + 1));
-    if (!above || !below) return std::nullopt;
-    return *above / *below;
+    if (text.find('/') == std::string_view::npos || text.find_first_not_of("0123456789/") != std::string_view::npos)
+      return std::nullopt;
+    const auto value = exact_number(text);
+    if (!value) throw UnitError(fmt::format("no fraction of two whole numbers from 1 to {}", largest_in_file_words));
+    return static_cast<double>(value->numerator) / static_cast<double>(value->denominator);
   }
 
   double quantity(const toml::node& node, const Wanted& wanted) const {

@@ -12,6 +12,7 @@
 #include "firmware/machine/model/coordinate.hpp"
 #include "firmware/machine/model/effect.hpp"
 #include "firmware/machine/model/feed_drive.hpp"
+#include "firmware/machine/model/fraction.hpp"
 #include "firmware/machine/model/value_table.hpp"
 #include "stiction/control/compensation_kind.hpp"
 
@@ -203,6 +204,7 @@ struct MotorFriction : FrictionParameters {};
 // Between a rotary motor and the axis. Inertias and ways of a turn are in the file's own units, whatever the axis is.
 struct TransmissionParameters {
   double ratio = 1.0;                          // motor turns per turn of screw, pulley or rotary axis
+  std::optional<Fraction> exact_ratio;         // the same, not rounded; none: more digits than are kept
   std::optional<double> lead;                  // m per turn of the screw
   std::optional<double> pulley_circumference;  // m per turn of the pulley
   double motor_inertia = 0.0;                  // kg m^2, at the motor's shaft
@@ -223,6 +225,8 @@ struct AxisModel {
   double motor_mass = 0.0;                             // kg, of the motor and the screw: what their inertias add
   double travel = 0.0;                                 // m; of an endless axis its modulo
   std::optional<double> modulo;                        // m, after which an endless axis is where it was
+  std::optional<Fraction> exact_modulo;                // the same, not rounded: turns of a rotary axis, else m
+  std::optional<Fraction> modulo_counts;               // of the encoder in a modulo; none: no such fraction
   double max_velocity = 0.0;                           // m/s
   double max_acceleration = 0.0;                       // m/s^2
   std::optional<TransmissionParameters> transmission;  // none: the motor moves the axis directly
@@ -243,6 +247,8 @@ struct AxisModel {
   std::optional<MotorFriction> motor_friction;  // of what the file gives; acts by itself in front of an elastic shaft
   std::optional<FrictionCompensationParameters> friction_compensation;
   std::vector<Effect> effects;  // of the plant alone: the drive's configuration knows nothing of them
+  // Why the firmware's number formats hold this axis on no radius, a sentence; empty: they hold it, or it is linear.
+  std::string beyond_formats;
 
   bool elastic() const { return transmission && transmission->stiffness.has_value(); }
   // Whether the firmware's cascade controls it.
@@ -302,6 +308,13 @@ struct Machine {
   std::vector<SteadyFrictionReference> steady_friction_references;
   std::vector<PreslidingReference> presliding_references;
   std::vector<ExpectedFigure> expected;
+
+  // Whether the firmware's number formats hold every rotary axis on some radius.
+  bool fits_formats() const {
+    for (const AxisModel& axis : axes)
+      if (!axis.beyond_formats.empty()) return false;
+    return true;
+  }
 };
 
 }  // namespace stiction::machine
