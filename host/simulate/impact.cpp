@@ -215,8 +215,8 @@ sim::ExperimentResult run_with(const ExperimentInput& input) {
 }  // namespace
 
 sim::ExperimentResult run_impact(const ExperimentInput& input) {
-  return input.machine.axes.front().cascaded() ? run_with<FixedSignals>(input)
-                                               : run_with<machine::DoubleSignals>(input);
+  const bool firmware = input.machine.axes.front().cascaded() && input.machine.fits_formats();
+  return firmware ? run_with<FixedSignals>(input) : run_with<machine::DoubleSignals>(input);
 }
 
 }  // namespace stiction::host

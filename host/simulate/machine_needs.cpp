@@ -19,8 +19,16 @@ constexpr std::string_view for_both_coordinates = "one for each coordinate of th
 constexpr std::array table{
     MachineNeeds{.command = ""},
     MachineNeeds{.command = "circle", .most_axes = 2, .why = for_a_circle},
-    MachineNeeds{.command = "constant-velocity", .one_axis = true, .rotary = true, .controllers = Controllers::known},
-    MachineNeeds{.command = "impact", .one_axis = true, .rotary = true, .controllers = Controllers::known},
+    MachineNeeds{.command = "constant-velocity",
+                 .one_axis = true,
+                 .rotary = true,
+                 .controllers = Controllers::known,
+                 .formats = Formats::or_doubles},
+    MachineNeeds{.command = "impact",
+                 .one_axis = true,
+                 .rotary = true,
+                 .controllers = Controllers::known,
+                 .formats = Formats::or_doubles},
     MachineNeeds{
         .command = "l-shape", .least_axes = 2, .most_axes = 2, .why = "one is at standstill while the other moves"},
     MachineNeeds{.command = "presliding", .friction = with_bristles, .one_axis = true},
