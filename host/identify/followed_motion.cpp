@@ -158,7 +158,7 @@ void bridge(std::vector<double>& force, const std::vector<bool>& out) {
 }  // namespace
 
 LevelModel level_model(const machine::AxisModel& axis, bool sticks) {
-  LevelModel model{sticks, {}};
+  LevelModel model{sticks, {}, false};
   if (sticks) return model;
   const auto contact = sim::contact_of(axis.friction);
   model.shape.inverse_length = contact ? contact->stiffness / contact->level : 1.0 / unresolved;
