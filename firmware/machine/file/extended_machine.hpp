@@ -29,7 +29,8 @@ std::string extended_machine(const std::filesystem::path& file, const Vocabulary
                              const std::vector<std::string>& set, std::span<const AxisEffects> additions,
                              std::span<const std::string> comment);
 
-// The same with values edited before (edited_machine()): the tree of the file is written anew.
+// The same with values edited before: the tree of the file is written anew. `file`, `vocabulary`, `set`, `additions`,
+// `comment` and errors: as above; `edits`: as of edited_machine.hpp.
 std::string edited_machine(const std::filesystem::path& file, const Vocabulary& vocabulary,
                            const std::vector<std::string>& set, std::span<const MachineEdit> edits,
                            std::span<const AxisEffects> additions, std::span<const std::string> comment);

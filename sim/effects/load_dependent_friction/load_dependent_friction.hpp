@@ -28,6 +28,7 @@ class LoadDependentFriction {
   }};
   static constexpr bool is_friction = true;
 
+  // `body`: what the plant accelerates, with the motor where `axis` is stiff; `p`: of the file.
   LoadDependentFriction(const Parameters& p, Body body, const machine::AxisModel& axis)
       : coefficient_(p.coefficient),
         step_(body.step),
