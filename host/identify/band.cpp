@@ -25,22 +25,23 @@ constexpr double same_width = 2.5;  // ratio of intervals that are compared
 // resolves, the shape of the contact. Both as found on simulated axes of known truth (tests/logs, seeds apart from
 // those that are reported): the factor of every interval, and a part of the value itself.
 constexpr double common = 1.2;
-constexpr std::array<double, 4> floors{5e-4, 1e-3, 0.0, 1e-3};
+constexpr std::array<double, 5> floors{5e-4, 1e-3, 0.0, 1e-3, 1e-3};
 
 BandPoint trial(const std::vector<LogOfAxis>& logs, const machine::AxisModel& axis, Amperes amperes, double cutoff,
                 const LevelModel& model, const Held& held) {
   const auto rows = followed_rows(logs, axis, amperes, cutoff, model);
-  const auto equations = equations_of(rows);
+  const auto equations = equations_of(rows, model);
   const Eigen::VectorXd left = equations.force - equations.columns * fitting::weights_of(equations.columns, rows.force);
   auto blocks = blocks_for(rows, left);
   BandPoint point;
   point.cutoff = cutoff;
   point.blocks = blocks.size();
   const InstrumentFit fit(equations, std::move(blocks), held);
-  for (std::size_t c = 0; c < 4; ++c) {
+  for (std::size_t c = 0; c < static_cast<std::size_t>(fit.weights().size()); ++c) {
     point.value[c] = fit.weights()[static_cast<Eigen::Index>(c)];
     point.error[c] = fit.errors()[static_cast<Eigen::Index>(c)];
   }
+  point.friction = friction_level(equations.columns, fit.weights());
   point.attenuation = fit.attenuation();
   for (const auto& motion : rows.motions()) {
     point.speed_noise = std::max(point.speed_noise, motion.speed_noise);
@@ -54,7 +55,8 @@ double width_of(const BandPoint& p) {
   double width = 0.0;
   for (const auto c : {fitting::acceleration, fitting::level}) {
     const auto k = static_cast<std::size_t>(c);
-    if (p.error[k] > 0.0) width += std::log(p.error[k] / std::max(std::abs(p.value[k]), 1e-12));
+    const double size = c == fitting::level ? p.friction : std::abs(p.value[k]);
+    if (p.error[k] > 0.0) width += std::log(p.error[k] / std::max(size, 1e-12));
   }
   return width;
 }
@@ -115,9 +117,9 @@ Band choose_band(const std::vector<LogOfAxis>& logs, const machine::AxisModel& a
 }
 
 Eigen::VectorXd Band::widening() const {
-  Eigen::VectorXd factor = Eigen::VectorXd::Ones(4);
   const auto& own = best();
-  for (std::size_t c = 0; c < 4; ++c) {
+  Eigen::VectorXd factor = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(own.value.size()));
+  for (std::size_t c = 0; c < own.value.size(); ++c) {
     if (own.error[c] <= 0.0) continue;
     double sum = 0.0;
     int count = 0;

@@ -13,10 +13,12 @@
 
 namespace stiction::host {
 
-// A trial. In the order of the columns: mass (kg), viscous friction (N s/m), constant force (N), Coulomb friction (N).
+// A trial. In the order of the columns: mass (kg), viscous friction (N s/m), constant force (N), Coulomb friction (N)
+// and, 0 where the level does not rise with a weight, by how much it rises from none to all of it (N).
 struct BandPoint {
   double cutoff = 0.0;                                 // Hz
-  std::array<double, 4> value{}, error{};              // estimates; half of their 95 % intervals over 1.96
+  std::array<double, 5> value{}, error{};              // estimates; half of their 95 % intervals over 1.96
+  double friction = 0.0;                               // N, mean level: what the error of the Coulomb friction means
   double attenuation = 0.0;                            // share of the mass that noise would take in plain least squares
   double speed_noise = 0.0, acceleration_noise = 0.0;  // m/s, m/s^2 rms in the rows, the noisiest log's
   std::size_t blocks = 0;

@@ -15,7 +15,8 @@ namespace {
 // value itself, as long as its sign is certain: a wide interval tells more than none.
 enum class Scale {
   value,     // a share of the parameter's own value
-  coulomb,   // a share of the Coulomb friction, in newtons
+  coulomb,   // a share of the friction's level, in newtons: without a load that it rises with the Coulomb friction
+  rise,      // a share of the coefficient that would make all of that level
   at_speed,  // a share of the value, or a tenth of the Coulomb friction at the machine's highest speed
   absolute,
 };
@@ -27,12 +28,12 @@ struct Criterion {
   const char* record;
 };
 
-constexpr const char* record_angles = "slow motion over a wide angle on both sides of the rest, each both ways";
 constexpr const char* record_reversals =
     "slow reversals of several small amplitudes, 5 to 200 um, a few periods of each at 1 to 2 Hz";
-constexpr std::array<Criterion, 13> criteria{{
+constexpr std::array<Criterion, 14> criteria{{
     {"mass_kg", Scale::value, 1.0, "force over acceleration", record_accelerations},
-    {"coulomb_N", Scale::value, 1.0, "friction level in sliding, extrapolated to standstill", record_speeds},
+    // Where friction rises with a load, the rows tell the level better than either of its parts.
+    {"coulomb_N", Scale::coulomb, 1.0, "friction level in sliding, extrapolated to standstill", record_speeds},
     {"viscous_N_s_per_m", Scale::at_speed, 1.0, "slope of the friction over speed", record_speeds},
     {"constant_force_N", Scale::coulomb, 0.6,
      "half the difference of both directions; includes gravity, current offset, and Coulomb friction that differs "
@@ -40,6 +41,8 @@ constexpr std::array<Criterion, 13> criteria{{
      record_speeds},
     // A weight is the axis' own, however little it rubs; a constant force beside friction is an offset of it.
     {"gravity_N", Scale::value, 1.0, "force over the sine of the angle from the rest below, less the counterweight",
+     record_angles},
+    {"load_coefficient", Scale::rise, 1.0, "rise of the friction with the moment of the weight, over that moment",
      record_angles},
     {"coulomb_positive_N", Scale::value, 0.3, "includes the constant force, which no log of one axis can separate",
      record_speeds},
@@ -77,6 +80,8 @@ double allowed(const Criterion& c, double value, const Scales& scales) {
       return c.widest * std::abs(value);
     case Scale::coulomb:
       return c.widest * scales.coulomb;
+    case Scale::rise:
+      return c.widest * scales.whole_rise;
     case Scale::at_speed:
       return std::max(c.widest * std::abs(value), 0.1 * scales.coulomb / scales.highest_speed);
     case Scale::absolute:

@@ -7,8 +7,9 @@
 
 namespace stiction::host::fitting {
 
-// Columns of every fit; the last two of those with a contact (level of the contact, its rate).
-inline constexpr Eigen::Index acceleration = 0, velocity = 1, one = 2, level = 3, rate = 4;
+// Columns of every fit; the last two of those with a contact (level of the contact, its rate), or of a level that rises
+// with a weight.
+inline constexpr Eigen::Index acceleration = 0, velocity = 1, one = 2, level = 3, rate = 4, risen_level = 4;
 
 // Least squares over all rows.
 Eigen::VectorXd weights_of(const Eigen::MatrixXd& columns, const Eigen::VectorXd& force);

@@ -14,6 +14,8 @@ namespace stiction::host {
 namespace {
 
 constexpr double position_edge = 100.0;  // Hz; logs slower than five times that are differentiated as they are
+constexpr double calm_edge = 10.0;       // Hz, the lowest of the speed that tells the direction
+constexpr double of_filter = 0.2;        // of the rate, the highest edge of these filters
 constexpr double unresolved = 1e-7;      // m, length of a contact that no log of these rates resolves
 // Around a reversal a rigid axis has jumps of its acceleration, which differences and the position's filter smear over
 // this much of a log: what is smeared belongs to no force.
@@ -22,7 +24,7 @@ constexpr double smeared_samples = 3.0;
 constexpr double slow_log = 30.0;  // Hz; below it a reversal is shorter than a sample
 
 std::vector<double> low_passed(std::span<const double> x, double edge, double period) {
-  if (edge > 0.2 / period) return {x.begin(), x.end()};
+  if (edge > of_filter / period) return {x.begin(), x.end()};
   const auto lowpass = butterworth(4, 2.0 * edge * period);
   const double padding = static_cast<double>(default_padding(lowpass)) * std::max(1.0, 0.1 / (edge * period));
   return filter_both_ways(lowpass, x, static_cast<std::size_t>(padding));
@@ -156,7 +158,7 @@ void bridge(std::vector<double>& force, const std::vector<bool>& out) {
 }  // namespace
 
 LevelModel level_model(const machine::AxisModel& axis, bool sticks) {
-  LevelModel model{sticks, {}};
+  LevelModel model{sticks, {}, false};
   if (sticks) return model;
   const auto contact = sim::contact_of(axis.friction);
   model.shape.inverse_length = contact ? contact->stiffness / contact->level : 1.0 / unresolved;
@@ -207,7 +209,7 @@ Motion followed_motion(const Log& log, const AxisLog& channels, const machine::A
   }
   const double noise = position_noise(channels, axis);
   // The direction needs a calmer speed than the rows do.
-  const double calm = std::clamp(2.5 * band, 10.0, position_edge);
+  const double calm = std::clamp(2.5 * band, calm_edge, position_edge);
   const auto unit = impulse(period, std::min(band, calm));
   const auto answer = derivatives(low_passed(unit, position_edge, period), period);
   const Motion alone{"", period, std::vector<double>(unit.size()), {}, {}, {}, {}, {}, {}};
@@ -225,14 +227,18 @@ Motion followed_motion(const Log& log, const AxisLog& channels, const machine::A
   if (!model.sticks) {
     motion.level = contact_of(slow, model.shape).level;
   } else {
+    // A band that reaches further than the filters do leaves the speed as it was measured, and four times its noise
+    // would take most of a small servo's motion for standstill.
+    const double clear = std::max(calm_edge, std::min(calm, of_filter / period));
+    const auto direction = clear < calm ? derivatives(low_passed(channels.x, clear, period), period).first : slow.v;
     double highest = 0.0;
-    for (const double v : slow.v) highest = std::max(highest, std::abs(v));
-    const double speed_noise = noise * gain_of(derivatives(low_passed(unit, calm, period), period).first);
+    for (const double v : direction) highest = std::max(highest, std::abs(v));
+    const double speed_noise = noise * gain_of(derivatives(low_passed(unit, clear, period), period).first);
     const bool seen = noise > 1e-9;
-    const auto stands = standing(slow.v, std::max(seen ? 4.0 * speed_noise : 0.0, 2e-3 * highest), period);
-    motion.level.resize(slow.v.size());
-    for (std::size_t i = 0; i < slow.v.size(); ++i) {
-      motion.level[i] = slow.v[i] > 0.0 ? 1.0 : slow.v[i] < 0.0 ? -1.0 : 0.0;
+    const auto stands = standing(direction, std::max(seen ? 4.0 * speed_noise : 0.0, 2e-3 * highest), period);
+    motion.level.resize(direction.size());
+    for (std::size_t i = 0; i < direction.size(); ++i) {
+      motion.level[i] = direction[i] > 0.0 ? 1.0 : direction[i] < 0.0 ? -1.0 : 0.0;
       out[i] = out[i] || stands[i];
     }
   }

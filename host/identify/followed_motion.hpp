@@ -13,6 +13,8 @@ namespace stiction::host {
 struct LevelModel {
   bool sticks = false;  // sgn(v), and at standstill a reaction that no motion tells; else a contact
   ContactShape shape;   // of the contact
+  // Whether the level rises with the weight that goes with the angle: a column of its own beside the level's.
+  bool rises_with_weight = false;
 };
 
 // The friction law of `axis`; with `sticks` sgn(v) whatever it is. A law without a contact that does not stick has the

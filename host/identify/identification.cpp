@@ -8,8 +8,10 @@
 
 #include "host/identify/determined.hpp"
 #include "host/identify/fit_support.hpp"
+#include "host/identify/load_friction.hpp"
 #include "host/identify/standstill.hpp"
 #include "host/identify/suitability.hpp"
+#include "host/log/limits.hpp"
 #include "host/log/own_units.hpp"
 #include "sim/plant/friction/coulomb_viscous.hpp"
 #include "sim/plant/friction/lugre.hpp"
@@ -62,23 +64,47 @@ struct Source {
   std::vector<std::vector<bool>> left_out;
 };
 
+// How many samples have the effort at an end: the machine's limit, or where it piles up. `out`: those that do not
+// count.
+std::size_t limited_samples(const Log& log, const AxisLog& channels, const machine::AxisModel& axis,
+                            const std::vector<bool>& out) {
+  auto at_end = saturated(channels, axis);
+  for (const auto& each : limited_channels(log, channels)) {
+    if (each.kind == LimitedChannel::Kind::off || each.channel->values == &AxisLog::x) continue;
+    for (std::size_t k = 0; k < at_end.size(); ++k) at_end[k] = at_end[k] || each.samples[k];
+  }
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < at_end.size(); ++k) count += at_end[k] && out[k];
+  return count;
+}
+
 Source sources_for(Identification& result, const std::vector<Log>& logs, const machine::AxisModel& axis) {
   Source source;
-  std::size_t masked = 0;
+  std::size_t masked = 0, limited = 0;
+  const char* effort = "";
   for (const auto& log : logs) {
     const auto& channels = channels_of(log, axis);
     require_samples(log);
     source.logs.push_back({&log, &channels});
     source.left_out.push_back(left_out(channels, axis));
     masked += static_cast<std::size_t>(std::count(source.left_out.back().begin(), source.left_out.back().end(), true));
+    limited += limited_samples(log, channels, axis, source.left_out.back());
+    effort = name_of_effort(channels, axis);
     result.sources.push_back(log.source);
     result.samples += log.t.size();
   }
-  if (masked > 0)
+  const auto share = [&](std::size_t samples) {
+    return 100.0 * static_cast<double>(samples) / static_cast<double>(result.samples);
+  };
+  if (limited > 0)
     result.notes.push_back(
-        fmt::format("{} samples, {:.2g} % of all, do not count: the effort is at its limit there, or the record has "
-                    "none.",
-                    masked, 100.0 * static_cast<double>(masked) / static_cast<double>(result.samples)));
+        fmt::format("{} samples, {:.2g} % of all, do not count, as the {} is at its limit there: what the motion then "
+                    "asks for is not known, and the rest says less of high accelerations and loads.",
+                    limited, share(limited), effort));
+  if (masked > limited)
+    result.notes.push_back(
+        fmt::format("{} samples, {:.2g} % of all, do not count, as the record has no {} there or the drive is off.",
+                    masked - limited, share(masked - limited), effort));
   return source;
 }
 
@@ -158,10 +184,11 @@ double only_direction(const LogRows& rows) {
 }
 
 // A fit of mass, viscous and Coulomb friction and the constant force in the band that was chosen.
-FrictionFit followed_fit(const LogRows& rows, const Band& band, const Held& held, const FitSettings& settings) {
+FrictionFit followed_fit(const LogRows& rows, const Band& band, const LevelModel& model, const Held& held,
+                         const FitSettings& settings) {
   FrictionFit fit;
   fit.model = std::string(sim::CoulombViscous<>::name);
-  const auto equations = equations_of(rows);
+  const auto equations = equations_of(rows, model);
   fit.columns = equations.columns;
   fit.contact = equations.columns.col(fitting::level);
   fit.blocks =
@@ -169,14 +196,17 @@ FrictionFit followed_fit(const LogRows& rows, const Band& band, const Held& held
   const InstrumentFit estimate(equations, fit.blocks, held);
   fit.weights = estimate.weights();
   fit.residual = rows.force - fit.columns * fit.weights;
-  fitting::add_sliding_parameters(fit, fit.weights.transpose(),
-                                  estimate.replicates(settings.replicates, settings.seed, band.widening()));
+  const auto replicates = estimate.replicates(settings.replicates, settings.seed, band.widening());
+  fitting::add_sliding_parameters(fit, fit.weights.transpose(), replicates);
+  if (model.rises_with_weight) add_load_coefficient(fit, replicates);
   return fit;
 }
 
 // The force (N rms) that is left on held-out blocks, of the fit and of a plain least squares in the same rows.
-HeldOutForce held_out_force(const LogRows& rows, const FrictionFit& fit, const Held& held, bool followed) {
-  auto own = followed ? equations_of(rows) : NoisyEquations{};
+// `followed`: model of the level of a fit in a band that follows the data; none for another.
+HeldOutForce held_out_force(const LogRows& rows, const FrictionFit& fit, const Held& held,
+                            const std::optional<LevelModel>& followed) {
+  auto own = followed ? equations_of(rows, *followed) : NoisyEquations{};
   if (!followed) {
     // What each log's contact remembers of its start acts in one block alone, and is no prediction.
     const Eigen::Index columns = std::min<Eigen::Index>(fit.columns.cols(), 5);
@@ -246,12 +276,29 @@ void judge_sliding(Identification& result, const LogRows& rows, const FrictionFi
     for (const auto& each : fit_directions(rows, fit, options.fit)) judge(result, each, scales, fit.blocks.size(), "");
 }
 
+// What of the friction rises with the weight.
+void judge_load(Identification& result, const FrictionFit& fit, const Scales& scales, const LogRows& rows) {
+  if (rows.motions().front().constant.empty()) return;
+  const auto* coefficient = fit.find("load_coefficient");
+  if (coefficient == nullptr) {
+    result.not_determined.push_back(
+        {"load_coefficient", "on held-out rows the friction does not rise with the weight", record_angles});
+    return;
+  }
+  judge(result, *coefficient, scales, fit.blocks.size(), "");
+  if (const auto* found = result.find("load_coefficient"))
+    result.notes.push_back(
+        fmt::format("The friction rises with the load, by {:.2g} of the weight's moment: the Coulomb friction is that "
+                    "without load, and no one level holds at every angle.",
+                    found->value));
+}
+
 // Whether the contact of the machine file predicts worse than sgn(v): of another length than the axis', or shorter than
 // the log resolves.
-bool contact_misleads(const LogRows& rows, const IdentifyOptions& options) {
+bool contact_misleads(const LogRows& rows, const LevelModel& model, const IdentifyOptions& options) {
   FrictionFit fit;
   fit.blocks = blocks_for(rows, rows.force);
-  const auto force = held_out_force(rows, fit, options.held, true);
+  const auto force = held_out_force(rows, fit, options.held, model);
   return force.fit > force.plain;
 }
 
@@ -288,10 +335,16 @@ Identification identify_logs(const std::vector<Log>& logs, const machine::AxisMo
   const bool contact =
       !published && !model.sticks && !holds && direction == 0.0 && resolves_contact(*result.band, source);
   const bool followed = !published && !contact;
-  if (followed && !model.sticks && contact_misleads(*rows_in_band, options)) {
-    model = unresolved_contact();
+  const auto take_model = [&](const LevelModel& better) {
+    model = better;
     result.band = choose_band(source.logs, axis, options.amperes, model, options.held);
     rows_in_band.emplace(followed_rows(source.logs, axis, options.amperes, result.band->best().cutoff, model));
+  };
+  if (followed && !model.sticks && contact_misleads(*rows_in_band, model, options)) take_model(unresolved_contact());
+  if (followed && direction == 0.0 && rises_with_weight(*rows_in_band, model, options.held)) {
+    auto risen = model;
+    risen.rises_with_weight = true;
+    take_model(risen);
   }
   const LogRows rows =
       followed ? std::move(*rows_in_band)
@@ -310,7 +363,7 @@ Identification identify_logs(const std::vector<Log>& logs, const machine::AxisMo
   if (direction != 0.0 && !held[3]) held[3] = 0.0;  // one column with the constant force
   const bool own = options.friction == axis.friction.use && has_contact_of_one_length(axis.friction);
   const auto fit = published  ? fit_coulomb_viscous(rows, options.fit)
-                   : followed ? followed_fit(rows, *result.band, held, options.fit)
+                   : followed ? followed_fit(rows, *result.band, model, held, options.fit)
                    : own      ? fit_law(rows, axis.friction, options.fit)
                               : fit_lugre(rows, options.fit);
   result.friction = fit.model;
@@ -329,11 +382,14 @@ Identification identify_logs(const std::vector<Log>& logs, const machine::AxisMo
     result.method +=
         " The contact model contradicts the rows in steady sliding. Mass, Coulomb and viscous friction therefore come "
         "from those rows alone, and the contact parameters are a compromise.";
-  const double level =
-      held[3] ? std::max(*held[3], std::abs(fit.at("constant_force_N").value)) : std::abs(fit.at("coulomb_N").value);
-  const Scales scales{level, axis.max_velocity, excitation.highest_speed, excitation.highest_acceleration,
-                      axis.coordinate};
+  const double level = held[3]                   ? std::max(*held[3], std::abs(fit.at("constant_force_N").value))
+                       : model.rises_with_weight ? friction_level(fit.columns, fit.weights)
+                                                 : std::abs(fit.at("coulomb_N").value);
+  Scales scales{level, axis.max_velocity, excitation.highest_speed, excitation.highest_acceleration, axis.coordinate};
+  if (const auto* rise = fit.find("load_coefficient"))
+    scales.whole_rise = rise->value * level / (level - std::abs(fit.weights[fitting::level]));
   judge_sliding(result, rows, fit, scales, options, direction);
+  if (followed) judge_load(result, fit, scales, rows);
   if (published)
     name_contact(result, "sgn(v) contains no presliding; --friction lugre identifies it");
   else if (followed)
@@ -348,7 +404,7 @@ Identification identify_logs(const std::vector<Log>& logs, const machine::AxisMo
     result.initial = initial_values(rows);
   else
     name_gravity(result);
-  result.held_out = held_out_force(rows, fit, held, followed);
+  result.held_out = held_out_force(rows, fit, held, followed ? std::optional(model) : std::nullopt);
   keep_residuals(result, rows, fit);
   return result;
 }

@@ -7,8 +7,11 @@
 #include <array>
 #include <optional>
 
-#include "firmware/machine/file/edited_machine.hpp"
+#include "firmware/machine/file/extended_machine.hpp"
 #include "host/identify/own_identification.hpp"
+#include "sim/effects/effect_values.hpp"
+#include "sim/effects/load_dependent_friction/load_dependent_friction.hpp"
+#include "sim/machine_file.hpp"
 #include "sim/plant/friction/laws.hpp"
 
 namespace stiction::host {
@@ -160,7 +163,12 @@ std::string identified_machine(const std::filesystem::path& file, const std::vec
     edits.insert(edits.end(), friction.begin(), friction.end());
     edits.push_back({path({"friction", "use"}), model_in_use(axis.friction.use, complete)});
   }
-  return machine::edited_machine(file, set, edits, comment);
+  // In the place of one that the file has: what was found is the whole.
+  std::vector<machine::AxisEffects> additions;
+  if (const auto* coefficient = result.find("load_coefficient"))
+    additions.push_back(
+        {axis.name, {sim::effect_of<sim::LoadDependentFriction>({std::clamp(coefficient->value, 0.0, 0.9)})}});
+  return machine::edited_machine(file, sim::vocabulary(), set, edits, additions, comment);
 }
 
 }  // namespace stiction::host

@@ -62,10 +62,24 @@ NoisyEquations equations_of(const LogRows& rows, const Eigen::MatrixXd& columns)
   return e;
 }
 
-NoisyEquations equations_of(const LogRows& rows) {
-  Eigen::MatrixXd columns(rows.rows(), 4);
-  columns << rows.acceleration, rows.velocity, rows.one, rows.stacked([](const Motion& m) { return m.level; });
+NoisyEquations equations_of(const LogRows& rows, const LevelModel& model) {
+  Eigen::MatrixXd columns(rows.rows(), model.rises_with_weight ? 5 : 4);
+  columns.leftCols(4) << rows.acceleration, rows.velocity, rows.one,
+      rows.stacked([](const Motion& m) { return m.level; });
+  if (model.rises_with_weight)
+    columns.col(fitting::risen_level) = rows.stacked([](const Motion& m) {
+      auto level = m.level;
+      for (std::size_t i = 0; i < level.size(); ++i) level[i] *= std::abs(m.constant[i]);
+      return level;
+    });
   return equations_of(rows, columns);
+}
+
+double friction_level(const Eigen::MatrixXd& columns, const Eigen::VectorXd& weights) {
+  double level = std::abs(weights[fitting::level]);
+  if (weights.size() <= fitting::risen_level) return level;
+  const double share = columns.col(fitting::risen_level).norm() / std::max(columns.col(fitting::level).norm(), 1e-300);
+  return level + std::abs(weights[fitting::risen_level]) * share;
 }
 
 InstrumentFit::InstrumentFit(const NoisyEquations& equations, std::vector<RowBlock> blocks, const Held& held)

@@ -15,6 +15,7 @@
 #include <optional>
 #include <vector>
 
+#include "host/identify/followed_motion.hpp"
 #include "host/identify/log_rows.hpp"
 #include "host/identify/regression.hpp"
 
@@ -36,8 +37,13 @@ struct NoisyEquations {
 // the motion less closely than the measured columns do.
 inline constexpr double noise_to_treat = 1e-4;
 
-// Mass, viscous friction, constant force and Coulomb level of `rows`, whose motions have a level.
-NoisyEquations equations_of(const LogRows& rows);
+// Mass, viscous friction, constant force and Coulomb level of `rows`, whose motions have a level; and what the level
+// rises by with the whole of a weight, where `model` says so: the level times the share of the weight that its angle
+// leaves. The weight alone is the load: a force of inertia from noisy positions would be all noise within a magnitude.
+NoisyEquations equations_of(const LogRows& rows, const LevelModel& model);
+
+// N, mean level of the friction over the rows by `weights` of their `columns`, as equations_of() has them.
+double friction_level(const Eigen::MatrixXd& columns, const Eigen::VectorXd& weights);
 
 // Share of the mass that the noise of the acceleration would take in plain least squares of `columns`. `all_noise`:
 // expected square of the noise over all rows; `held`: columns that do not count.

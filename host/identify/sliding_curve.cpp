@@ -197,8 +197,16 @@ SlidingData sliding_data(const LogRows& rows, const FrictionFit& fit) {
   data.speed = rows.velocity(kept);
   data.sign = data.speed.cwiseSign();
   data.force = rows.force(kept);
-  data.others.resize(data.speed.size(), 2);
-  data.others << rows.acceleration(kept), Eigen::VectorXd::Ones(data.speed.size());
+  // A weight goes with the angle, and its friction with both.
+  const bool weighed = !rows.motions().front().constant.empty();
+  const bool rises = fit.find("load_coefficient") != nullptr;
+  data.others.resize(data.speed.size(), rises ? 3 : 2);
+  data.others.col(0) = rows.acceleration(kept);
+  if (weighed)
+    data.others.col(1) = rows.one(kept);
+  else
+    data.others.col(1).setOnes();
+  if (rises) data.others.col(2) = fit.columns.col(fitting::risen_level)(kept);
   for (const auto& block : fit.blocks)
     if (new_place[block.end] > new_place[block.begin])
       data.blocks.push_back({new_place[block.begin], new_place[block.end]});

@@ -143,6 +143,10 @@ std::vector<bool> saturated(const AxisLog& channels, const machine::AxisModel& a
   return marked;
 }
 
+const char* name_of_effort(const AxisLog& channels, const machine::AxisModel& axis) {
+  return driving_signal(channels, axis).name;
+}
+
 void require_motion(const Excitation& e, const std::string& sources) {
   if (e.duration < shortest)
     throw LogError(

@@ -33,6 +33,9 @@ void refuse_saturation(const Log& log, const AxisLog& channels, const machine::A
 // The samples at which it stood there. `channels`, `axis`: as above.
 std::vector<bool> saturated(const AxisLog& channels, const machine::AxisModel& axis);
 
+// Name of the channel that drives: "voltage".
+const char* name_of_effort(const AxisLog& channels, const machine::AxisModel& axis);
+
 // Refuses logs that are too short or hardly move. `excitation`: of all; `sources`: their names.
 void require_motion(const Excitation& excitation, const std::string& sources);
 

@@ -28,8 +28,9 @@ constexpr std::size_t rows_per_log = 3000;
 struct Label {
   std::string_view name, text, unit;  // SI
 };
-constexpr std::array<Label, 20> labels{{
+constexpr std::array<Label, 21> labels{{
     {"gravity_N", "moment of gravity", "N"},
+    {"load_coefficient", "friction over the moment of the weight", "1"},
     {"mass_kg", "moving mass", "kg"},
     {"coulomb_N", "Coulomb friction F_C", "N"},
     {"viscous_N_s_per_m", "viscous friction mu_v", "N s/m"},
@@ -138,6 +139,14 @@ json initial_json(const InitialValues& initial, bool rotary) {
   return rows;
 }
 
+// What of the records did not count, and what a reader must know of the values.
+std::string notes_html(const Identification& result) {
+  if (result.notes.empty()) return "";
+  std::string items;
+  for (const auto& note : result.notes) items += fmt::format("<li>{}</li>", escape_html(typeset(note)));
+  return fmt::format("  <ul id=\"notes\">{}</ul>\n", items);
+}
+
 Origin origin_of(const IdentificationReport& report) {
   auto origin = report.origin;
   if (origin.sources.empty()) origin.sources = report.result.sources;
@@ -170,7 +179,8 @@ std::string identification_report_html(const IdentificationReport& report) {
   const auto* file = axis == report.machine.axes.end() ? nullptr : &*axis;
   return report_page({"Identification", "Identification: " + report.machine.name, identification_sentence(result, file),
                       report.command, report.version, name_and_id(report.machine), origin_of(report)},
-                     assets::identification_html(), {{"method", escape_html(typeset(result.method))}}, data,
+                     assets::identification_html(),
+                     {{"method", escape_html(typeset(result.method))}, {"notes", notes_html(result)}}, data,
                      {assets::identification_js()});
 }
 

@@ -176,6 +176,10 @@ class Identifier {
     }
     if (weight) {
       facts_.marks.moment = MarkedValue{found->value, fmt::format("from {}: {}", facts_.source, interval)};
+      if (const auto* rise = result.find("load_coefficient"))
+        facts_.marks.load_friction = MarkedValue{
+            rise->value,
+            fmt::format("from {}: 95 % from {:.3g} to {:.3g}", facts_.source, rise->ci95.low, rise->ci95.high)};
       return;
     }
     // What is found is the motor's force against it.

@@ -41,6 +41,7 @@ class Writer {
       controllers();
     friction();
     constant();
+    load_friction();
     return text_;
   }
 
@@ -137,6 +138,12 @@ class Writer {
     if (!marks_.constant) return;
     line(fmt::format("\n  [[axis.{}.effect]]\n  name = \"constant_force\"", answer("axis")));
     value("force", marks_.constant->value, rotary_ ? "N m" : "N", marks_.constant->comment);
+  }
+
+  void load_friction() {
+    if (!marks_.load_friction) return;
+    line(fmt::format("\n  [[axis.{}.effect]]\n  name = \"load_dependent_friction\"", answer("axis")));
+    entry(fmt::format("coefficient = {:.6g}", marks_.load_friction->value), marks_.load_friction->comment);
   }
 
   void transmission() {

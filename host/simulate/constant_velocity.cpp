@@ -107,7 +107,7 @@ std::string speed_text(double speed, const ShownUnits& own) {
 }
 
 template <class S>
-sim::ExperimentResult run_with(const ExperimentInput& input) {
+sim::ExperimentResult constant_velocity_with(const ExperimentInput& input) {
   auto machine = input.machine;
   auto& axis = machine.axes.front();
   const ShownUnits own(axis.coordinate);
@@ -177,7 +177,7 @@ sim::ExperimentResult run_with(const ExperimentInput& input) {
 
 sim::ExperimentResult run_constant_velocity(const ExperimentInput& input) {
   const bool firmware = input.machine.axes.front().cascaded() && input.machine.fits_formats();
-  return firmware ? run_with<FixedSignals>(input) : run_with<machine::DoubleSignals>(input);
+  return firmware ? constant_velocity_with<FixedSignals>(input) : constant_velocity_with<machine::DoubleSignals>(input);
 }
 
 }  // namespace stiction::host

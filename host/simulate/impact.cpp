@@ -138,7 +138,7 @@ void add_chatter(const machine::Machine& machine, double step_force, sim::Experi
 }
 
 template <class S>
-sim::ExperimentResult run_with(const ExperimentInput& input) {
+sim::ExperimentResult impact_with(const ExperimentInput& input) {
   auto machine = input.machine;
   auto& axis = machine.axes.front();
   const double step_force = step_force_on(axis);
@@ -216,7 +216,7 @@ sim::ExperimentResult run_with(const ExperimentInput& input) {
 
 sim::ExperimentResult run_impact(const ExperimentInput& input) {
   const bool firmware = input.machine.axes.front().cascaded() && input.machine.fits_formats();
-  return firmware ? run_with<FixedSignals>(input) : run_with<machine::DoubleSignals>(input);
+  return firmware ? impact_with<FixedSignals>(input) : impact_with<machine::DoubleSignals>(input);
 }
 
 }  // namespace stiction::host

@@ -19,6 +19,7 @@ struct CarriageState {
   double direction;          // the sign of the velocity as friction has it, -1 to 1, see SlidingDirection
   double time = 0.0;         // s, from the start
   double motor_force = 0.0;  // N, of the motor's current
+  double weight = 0.0;       // N towards -x, of gravity less what balances it; for an effect of the load
 };
 
 // The sign of the velocity without its jump: d(direction)/dx = (sgn v - direction)/turning_distance along the way

@@ -15,6 +15,7 @@
 #include "sim/effects/effects.hpp"
 #include "sim/effects/encoder_subdivision_error/encoder_subdivision_error.hpp"
 #include "sim/effects/force_saturation/force_saturation.hpp"
+#include "sim/effects/load_dependent_friction/load_dependent_friction.hpp"
 #include "sim/effects/structural_resonance/structural_resonance.hpp"
 #include "sim/plant/gravity.hpp"
 #include "sim/plant/two_masses.hpp"
@@ -34,7 +35,11 @@ class ActingEffects {
       mode_.emplace(Shaft{mode.load_mass, mode.motor_mass, mode.stiffness, mode.damping}, step);
     }
     if (axis.elastic()) mode_.emplace(Shaft::of(axis), step);
-    if (axis.gravity) forces_.push_back({std::make_unique<Gravity>(axis, step), false});
+    if (axis.gravity) {
+      auto gravity = std::make_unique<Gravity>(axis, step);
+      if (!effects_of<LoadDependentFriction>(axis).empty()) weight_ = gravity.get();
+      forces_.push_back({std::move(gravity), false});
+    }
     for (const auto& parameters : effects_of<ForceSaturation>(axis)) saturation_.emplace(parameters, axis);
     for (const auto& parameters : effects_of<CrossAxisCoupling>(axis)) coupling_mass_ += parameters.mass;
     for (const EffectId id : all_effects())
@@ -89,6 +94,7 @@ class ActingEffects {
     if (forces_.empty()) return forces(motor_force);
     state_ = {position, velocity, direction_.advance(velocity, step_), start_ + step_ * static_cast<double>(steps_++),
               motor_force};
+    if (weight_ != nullptr) state_.weight = -weight_->force(state_);
     for (const Acting& effect : forces_) effect.force->advance(state_);
     return forces(motor_force);
   }
@@ -144,6 +150,7 @@ class ActingEffects {
   std::int64_t steps_ = 0;
   CarriageState state_{};
   std::vector<Acting> forces_;
+  const Gravity* weight_ = nullptr;  // one of them, where an effect wants to know it
   SlidingDirection direction_;
   std::optional<Backlash> play_;
   std::vector<EncoderSubdivisionError> reading_;

@@ -17,6 +17,7 @@ BY_CLASS = {
                                     "in a step of the plant",
     "host/simulate/replay.cpp": "the current of a record comes late",
     "host/simulate/late_current.hpp": "the current of a record comes late",
+    "host/identify/identified_machine.cpp": "an identification writes friction that rises with a weight as it",
     "host/identify/refinement.cpp": "the fit has the constant force of the file as a parameter",
     "host/diagnose/diagnose.cpp": "a record's delay is taken out before the drive's commands are judged",
     "host/diagnose/closed_loop.cpp": "the other axis must be simulated where it acts on this one",

@@ -62,8 +62,9 @@ const AxisModel& axis_of(const Machine& machine, const std::string& name) {
 }
 
 std::string rewritten(const std::filesystem::path& file, const Machine& machine, const Vocabulary& vocabulary,
-                      const std::vector<std::string>& set, std::span<const AxisEffects> additions) {
-  toml::table root = toml::parse(edited_machine(file, set, {}, {}));
+                      const std::vector<std::string>& set, std::span<const MachineEdit> edits,
+                      std::span<const AxisEffects> additions) {
+  toml::table root = toml::parse(edited_machine(file, set, edits, {}));
   if (!additions.empty()) root.erase(expected_key);
   for (const AxisEffects& addition : additions) {
     toml::table* axis = root["axis"][addition.axis].as_table();
@@ -148,6 +149,15 @@ std::string effect_table(const Vocabulary& vocabulary, const std::string& axis, 
   return text;
 }
 
+std::string edited_machine(const std::filesystem::path& file, const Vocabulary& vocabulary,
+                           const std::vector<std::string>& set, std::span<const MachineEdit> edits,
+                           std::span<const AxisEffects> additions, std::span<const std::string> comment) {
+  if (additions.empty()) return edited_machine(file, set, edits, comment);
+  const Machine machine = parse_machine(file.string(), content_of(file), vocabulary, {{}, set});
+  check_axes(file, machine, additions);
+  return with_comment(rewritten(file, machine, vocabulary, set, edits, additions), comment);
+}
+
 std::string extended_machine(const std::filesystem::path& file, const Vocabulary& vocabulary,
                              const std::vector<std::string>& set, std::span<const AxisEffects> additions,
                              std::span<const std::string> comment) {
@@ -163,7 +173,7 @@ std::string extended_machine(const std::filesystem::path& file, const Vocabulary
       // The file writes its axis or its effects in a way that no table can follow.
     }
   }
-  std::string text = with_comment(rewritten(file, machine, vocabulary, set, additions), comment);
+  std::string text = with_comment(rewritten(file, machine, vocabulary, set, {}, additions), comment);
   parse_machine(file.string(), text, vocabulary);
   return text;
 }

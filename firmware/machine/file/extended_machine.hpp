@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware/machine/file/edited_machine.hpp"
 #include "firmware/machine/model/coordinate.hpp"
 #include "firmware/machine/model/effect.hpp"
 
@@ -27,6 +28,12 @@ struct AxisEffects {
 std::string extended_machine(const std::filesystem::path& file, const Vocabulary& vocabulary,
                              const std::vector<std::string>& set, std::span<const AxisEffects> additions,
                              std::span<const std::string> comment);
+
+// The same with values edited before: the tree of the file is written anew. `file`, `vocabulary`, `set`, `additions`,
+// `comment` and errors: as above; `edits`: as of edited_machine.hpp.
+std::string edited_machine(const std::filesystem::path& file, const Vocabulary& vocabulary,
+                           const std::vector<std::string>& set, std::span<const MachineEdit> edits,
+                           std::span<const AxisEffects> additions, std::span<const std::string> comment);
 
 // One table [[axis.NAME.effect]] as text, its values in SI units. `force_motor`: the axis' motor is a force source,
 // which some keys take in volts; `coordinate`: of the axis, whose units they have. Throws ValueError as above. `axis`:

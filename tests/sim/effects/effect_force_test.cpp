@@ -72,6 +72,30 @@ TEST(EffectForce, FrictionThatRisesLessThanLinearlyOpposesTheMotion) {
   }
 }
 
+TEST(EffectForce, FrictionOfTheLoadIsItsShareOfTheWeightInBothDirections) {
+  machine::AxisModel axis = with_effects({one("load_dependent_friction", {{"coefficient", {0.2}}})});
+  EXPECT_NEAR(effect_force(axis, 0.05), 0.0, servo);  // nothing to carry
+  axis.gravity.emplace();
+  axis.gravity->force = 60.0;
+  axis.gravity->counterweight = 20.0;
+  for (const double v : {0.05, -0.05}) EXPECT_NEAR(effect_force(axis, v), v > 0.0 ? -8.0 : 8.0, servo) << v;
+}
+
+// F = m a + c m_load a: what is in front of the teeth is accelerated without them.
+TEST(EffectForce, FrictionOfTheLoadGrowsWithTheForceThatAcceleratesIt) {
+  machine::AxisModel axis = with_effects({one("load_dependent_friction", {{"coefficient", {0.2}}})});
+  axis.friction = acting<CoulombViscous<>>({});
+  axis.motor_mass = 10.0;  // of 50 kg
+  AxisPlant plant(timing, axis, 0.0, 1);
+  for (int k = 0; k < 8000; ++k) {
+    plant.command({3.0, 0.0, 0.0}, true);  // 30 N
+    plant.advance_tick();
+  }
+  const double before = plant.velocity();
+  for (int k = 0; k < 8000; ++k) plant.advance_tick();
+  EXPECT_NEAR((plant.velocity() - before) / (8000 * tick), 30.0 / (50.0 + 0.2 * 40.0), 1e-6);
+}
+
 TEST(EffectForce, StribeckFrictionFallsWithSpeedAndOpposesTheMotion) {
   const machine::AxisModel axis = with_effects({one("stribeck", {{"break_away", {9.0}}, {"velocity", {0.02}}})});
   for (const double v : {0.002, 0.02, 0.03, 0.2}) {
