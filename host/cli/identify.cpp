@@ -96,7 +96,7 @@ Held held_values(const std::vector<std::string>& fixes, const machine::AxisModel
     std::string_view unit{};
   };
   const bool rotary = axis.coordinate.rotary();
-  const char* constant = rotary ? axis.gravity ? "gravity" : "constant_moment" : "constant_force";
+  const char* constant = rotary ? axis.gravity ? "gravity" : "constant_torque" : "constant_force";
   std::array<Key, 4> keys{{{rotary ? "inertia" : "mass", "kg", true},
                            {"viscous", "N s/m", true},
                            {constant, "N", false},
@@ -233,7 +233,7 @@ void add_identify(CLI::App& program, const Invocation& invocation) {
   command
       ->add_option("--fix", o->fix,
                    "hold mass, viscous, coulomb or constant_force (of a rotary axis inertia, gravity or "
-                   "constant_moment) at this value instead of estimating it, for example "
+                   "constant_torque) at this value instead of estimating it, for example "
                    "mass=225kg; may be given several times")
       ->type_name("KEY=VALUE");
   command->add_flag("--refine", o->refine,

@@ -40,8 +40,8 @@ constexpr std::array<Criterion, 14> criteria{{
      "between the directions",
      record_speeds},
     // A weight is the axis' own, however little it rubs; a constant force beside friction is an offset of it.
-    {"gravity_N", Scale::value, 1.0, "force over the sine of the angle from the rest below, less the counterweight",
-     record_angles},
+    {"gravity_moment_N", Scale::value, 1.0,
+     "force over the sine of the angle from the rest below, less the counterweight", record_angles},
     {"load_coefficient", Scale::rise, 1.0, "rise of the friction with the moment of the weight, over that moment",
      record_angles},
     {"coulomb_positive_N", Scale::value, 0.3, "includes the constant force, which no log of one axis can separate",

@@ -234,7 +234,7 @@ constexpr std::array<const char*, 4> names_of_columns{"mass_kg", "viscous_N_s_pe
 // The constant force that was given of an axis whose weight goes with its angle.
 void name_gravity(Identification& result) {
   for (auto& p : result.parameters)
-    if (p.name == "constant_force_N") p.name = "gravity_N";
+    if (p.name == "constant_force_N") p.name = "gravity_moment_N";
 }
 
 // Mass, viscous friction, Coulomb friction, constant force, and those of each direction.
@@ -245,7 +245,7 @@ void judge_sliding(Identification& result, const LogRows& rows, const FrictionFi
     const char* name = names_of_columns[c];
     if (c == 2 && !options.held[c] && !rows.motions().front().constant.empty()) {
       auto weight = fit.at(name);
-      weight.name = "gravity_N";
+      weight.name = "gravity_moment_N";
       judge(result, weight, scales, fit.blocks.size(), how);
       continue;
     }

@@ -138,7 +138,7 @@ std::string identified_machine(const std::filesystem::path& file, const std::vec
     comment.push_back(
         fmt::format("  {}: kept from the machine file, {:g} {}", whole.key, whole.from_linear(axis.mass), whole.unit));
   }
-  if (const auto* gravity = result.find("gravity_N"))
+  if (const auto* gravity = result.find("gravity_moment_N"))
     edits.push_back({path({"gravity", "moment"}),
                      written(gravity->value + axis.gravity->counterweight.value_or(0.0), "N", axis.coordinate)});
   std::vector<machine::MachineEdit> friction{{{"experiment", "*", "axis", axis.name, "friction"}, {}}};

@@ -128,12 +128,12 @@ std::vector<Log> linear_logs(std::vector<Log> logs, const std::vector<machine::A
 
 std::string own_name(const std::string& name) {
   if (name == "mass_kg") return "inertia_kg_m2";
-  if (name == "force_at_1_m_per_s_N") return "moment_at_1_rad_per_s_N_m";
+  if (name == "force_at_1_m_per_s_N") return "torque_at_1_rad_per_s_N_m";
   const auto* ending = ending_of(name);
   if (ending == nullptr || is_own(name)) return name;
   auto stem = name.substr(0, name.size() - ending->suffix.size());
-  for (const auto& [force, moment] : {std::pair<std::string_view, std::string_view>{"_force", "_moment"}})
-    if (stem.ends_with(force)) stem = stem.substr(0, stem.size() - force.size()) + std::string(moment);
+  for (const auto& [force, torque] : {std::pair<std::string_view, std::string_view>{"_force", "_torque"}})
+    if (stem.ends_with(force)) stem = stem.substr(0, stem.size() - force.size()) + std::string(torque);
   return stem + sim::unit_suffix(any_rotary.own(ending->unit).unit);
 }
 

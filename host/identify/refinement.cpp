@@ -83,7 +83,7 @@ class ClosedLoop {
       first_row_.push_back(rows_);
       rows_ += filters_.back().rows();
     }
-    if (const auto* weight = result.find("gravity_N"); weight != nullptr && machine_.axes.front().gravity) {
+    if (const auto* weight = result.find("gravity_moment_N"); weight != nullptr && machine_.axes.front().gravity) {
       auto& gravity = *machine_.axes.front().gravity;
       gravity.force = weight->value + gravity.counterweight.value_or(0.0);
     }

@@ -43,7 +43,7 @@ constexpr std::array<SpokenParameter, 4> spoken_parameters{
      {"viscous_N_s_per_m", "viscous friction of", "N s/m"},
      {"mass_kg", "moving mass of", "kg"}}};
 constexpr SpokenParameter inertia{"mass_kg", "moving inertia of", "kg"};
-constexpr SpokenParameter gravity{"gravity_N", "moment of gravity of", "N"};
+constexpr SpokenParameter gravity{"gravity_moment_N", "moment of gravity of", "N"};
 
 }  // namespace
 

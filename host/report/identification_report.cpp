@@ -29,7 +29,7 @@ struct Label {
   std::string_view name, text, unit;  // SI
 };
 constexpr std::array<Label, 21> labels{{
-    {"gravity_N", "moment of gravity", "N"},
+    {"gravity_moment_N", "moment of gravity", "N"},
     {"load_coefficient", "friction over the moment of the weight", "1"},
     {"mass_kg", "moving mass", "kg"},
     {"coulomb_N", "Coulomb friction F_C", "N"},

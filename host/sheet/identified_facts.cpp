@@ -159,7 +159,7 @@ class Identifier {
 
   // What acts on the axis at all times, and its weight.
   void keep_constant(const Identification& result, bool weight) {
-    const char* wanted = weight ? "gravity_N_m" : facts_.rotary ? "constant_moment_N_m" : "constant_force_N";
+    const char* wanted = weight ? "gravity_moment_N_m" : facts_.rotary ? "constant_torque_N_m" : "constant_force_N";
     const char* unit = facts_.rotary ? "N m" : "N";
     const char* called = weight ? "moment of the weight" : facts_.rotary ? "constant moment" : "constant force";
     auto& lines = facts_.marks.weight;

@@ -18,13 +18,13 @@ from write_truth import write
 JOINTS = {
     "pendulum_pd_voltage": {
         "inertia_kg_m2": (0.02 + 3.3e-6 * 50**2, 0.02),
-        "gravity_N_m": (1.9 - 0.6, 0.01),
+        "gravity_moment_N_m": (1.9 - 0.6, 0.01),
         "viscous_N_m_s_per_rad": (0.02, 0.15),
         "coulomb_N_m": (0.08, 0.15),
     },
     "servo_joint_p_voltage": {
         "inertia_kg_m2": (2.4e-3 + 4e-8 * 345**2, 0.02),
-        "gravity_N_m": (0.48, 0.01),
+        "gravity_moment_N_m": (0.48, 0.01),
         "viscous_N_m_s_per_rad": (0.011, 0.15),
         "coulomb_N_m": (0.036, 0.15),
     },

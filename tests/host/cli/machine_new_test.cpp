@@ -50,7 +50,7 @@ TEST_F(Cli, MakesAMachineFileOfTheLogOfAJoint) {
   EXPECT_EQ(stiction("machine check made.toml").code, 0);
   const auto result = stiction("identify joint.csv --machine made.toml --json");
   ASSERT_EQ(result.code, 0) << result.error;
-  EXPECT_NEAR(nlohmann::json::parse(result.out)["parameters"]["gravity_N_m"]["value"], 0.4, 0.02);
+  EXPECT_NEAR(nlohmann::json::parse(result.out)["parameters"]["gravity_moment_N_m"]["value"], 0.4, 0.02);
 }
 
 TEST_F(Cli, NamesWhatLogAndSheetContradict) {

@@ -94,7 +94,7 @@ TEST(LoadFriction, IsFoundWhereTheFrictionRisesWithTheWeight) {
   const Arm arm;
   const auto result = identified(arm);
   EXPECT_NEAR(value(result, "inertia_kg_m2"), arm.inertia, 0.03 * arm.inertia);
-  EXPECT_NEAR(value(result, "gravity_N_m"), arm.gravity, 0.02 * arm.gravity);
+  EXPECT_NEAR(value(result, "gravity_moment_N_m"), arm.gravity, 0.02 * arm.gravity);
   EXPECT_NEAR(value(result, "load_coefficient"), arm.coefficient, 0.1 * arm.coefficient);
   EXPECT_NEAR(value(result, "coulomb_N_m"), arm.coulomb, 0.2 * arm.coulomb);
   EXPECT_TRUE(std::any_of(result.notes.begin(), result.notes.end(),
@@ -108,7 +108,7 @@ TEST(LoadFriction, IsNotClaimedOfOneLevel) {
   const auto result = identified(arm);
   EXPECT_EQ(result.find("load_coefficient"), nullptr);
   EXPECT_NEAR(value(result, "inertia_kg_m2"), arm.inertia, 0.03 * arm.inertia);
-  EXPECT_NEAR(value(result, "gravity_N_m"), arm.gravity, 0.02 * arm.gravity);
+  EXPECT_NEAR(value(result, "gravity_moment_N_m"), arm.gravity, 0.02 * arm.gravity);
   EXPECT_NEAR(value(result, "coulomb_N_m"), arm.coulomb, 0.05 * arm.coulomb);
 }
 

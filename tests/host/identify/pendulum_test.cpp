@@ -85,7 +85,7 @@ double off(const Identification& result, const char* name, double published) {
 
 void print(const Trained& trained) {
   for (const auto& [name, published] : {std::pair{"inertia_kg_m2", published_inertia},
-                                        {"gravity_N_m", published_gravity},
+                                        {"gravity_moment_N_m", published_gravity},
                                         {"viscous_N_m_s_per_rad", published_viscous},
                                         {"coulomb_N_m", published_coulomb}})
     if (const auto* found = trained.result.find(name))
@@ -112,14 +112,14 @@ TEST_F(Pendulum, GainsOf100And200GiveInertiaAndGravity) {
   const auto trained = train(logs, "gains-100-200");
   print(trained);
   EXPECT_LT(std::abs(off(trained.result, "inertia_kg_m2", published_inertia)), 0.10);
-  EXPECT_LT(std::abs(off(trained.result, "gravity_N_m", published_gravity)), 0.06);
+  EXPECT_LT(std::abs(off(trained.result, "gravity_moment_N_m", published_gravity)), 0.06);
 }
 
 TEST_F(Pendulum, Gain800GivesThemRoughlyAndSaysWhatSpoilsThem) {
   const auto trained = train(records(800), "gain-800");
   print(trained);
   EXPECT_LT(std::abs(off(trained.result, "inertia_kg_m2", published_inertia)), 0.20);
-  EXPECT_LT(std::abs(off(trained.result, "gravity_N_m", published_gravity)), 0.20);
+  EXPECT_LT(std::abs(off(trained.result, "gravity_moment_N_m", published_gravity)), 0.20);
   std::string notes;
   for (const auto& note : trained.result.notes) notes += note + "\n";
   EXPECT_NE(notes.find("the voltage is at its limit"), std::string::npos) << notes;
