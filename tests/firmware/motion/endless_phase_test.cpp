@@ -93,7 +93,7 @@ TEST(EndlessPhase, MotorTurnsEndWhereTheRatioSays) {
 }
 
 // Any turn that can be kept, with large and small numbers alike.
-struct Turn {
+struct WholeTurn {
   std::int64_t numerator, denominator;
 };
 rc::Gen<std::int64_t> of_any_size(int most_bits) {
@@ -101,9 +101,9 @@ rc::Gen<std::int64_t> of_any_size(int most_bits) {
     return rc::gen::inRange<std::int64_t>(std::int64_t{1} << bits, (std::int64_t{1} << bits) * 2);
   });
 }
-rc::Gen<Turn> turns() {
+rc::Gen<WholeTurn> turns() {
   return rc::gen::map(rc::gen::pair(of_any_size(62), of_any_size(62)), [](const auto& both) {
-    return Turn{std::max(both.first, both.second), std::min(both.first, both.second)};
+    return WholeTurn{std::max(both.first, both.second), std::min(both.first, both.second)};
   });
 }
 rc::Gen<std::int64_t> ways() {
@@ -158,8 +158,8 @@ RC_GTEST_PROP(EndlessPhase, ThePhaseIsTheRestRoundedDown, ()) {
 
 TEST(EndlessPhase, TheFarthestWaysAreExact) {
   constexpr auto lowest = std::numeric_limits<std::int64_t>::min(), highest = std::numeric_limits<std::int64_t>::max();
-  for (const auto& turn : {Turn{numerator, denominator}, Turn{1, 1}, Turn{Phase::largest, 1},
-                           Turn{Phase::largest, Phase::largest}, Turn{Phase::largest, Phase::largest - 1}}) {
+  for (const auto& turn : {WholeTurn{numerator, denominator}, WholeTurn{1, 1}, WholeTurn{Phase::largest, 1},
+                           WholeTurn{Phase::largest, Phase::largest}, WholeTurn{Phase::largest, Phase::largest - 1}}) {
     const auto config = Phase::config(turn.numerator, turn.denominator);
     for (const auto way : {lowest, highest, std::int64_t{1}, std::int64_t{-1}}) {
       Phase::State state;
