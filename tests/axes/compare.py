@@ -50,22 +50,29 @@ def position_difference(log, truth, name):
     return float(np.abs(log[name][1] * factor - truth[name][1] * true_factor).max()), unit
 
 
-def compare(log, truth, most_command, most_position):
-    """Prints each difference and returns whether all lie within their bounds."""
+def differences(log, truth):
+    """That of the command over its rms, and the largest of each position that the truth has (m or rad), with its unit."""
     if len(log["t"][1]) != len(truth["t"][1]):
         raise ValueError(f"found {len(log['t'][1])} and {len(truth['t'][1])} samples; expected the same number")
     late = np.abs(log["t"][1] - truth["t"][1]).max()
     if not late < 1e-9:
         raise ValueError(f"found time stamps that differ by {late:.3g} s; expected the same samples")
-    name, ratio = command_difference(log, truth)
-    sound = ratio <= most_command  # a NaN is not within a bound
-    print(f"{name}: rms of the difference over rms: {ratio:.3g} (bound {most_command:.3g})")
+    positions = {}
     for position in ("x", "x_load"):
         if position not in truth:
             continue
         if position not in log:
             raise ValueError(f"found no column {position}; expected it, because the truth has it")
-        largest, unit = position_difference(log, truth, position)
+        positions[position] = position_difference(log, truth, position)
+    return command_difference(log, truth), positions
+
+
+def compare(log, truth, most_command, most_position):
+    """Prints each difference and returns whether all lie within their bounds."""
+    (name, ratio), positions = differences(log, truth)
+    sound = ratio <= most_command  # a NaN is not within a bound
+    print(f"{name}: rms of the difference over rms: {ratio:.3g} (bound {most_command:.3g})")
+    for position, (largest, unit) in positions.items():
         sound = sound and largest <= most_position
         print(f"{position}: largest difference: {largest:.3g} {unit} (bound {most_position:.3g} {unit})")
     return sound

@@ -2,16 +2,17 @@
 // do not know.
 #include "stiction/motion/endless_phase.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdio>
 #include <limits>
 #include <vector>
 
 #include "tests/firmware/number/exact.hpp"
+#include "tests/support/figure.hpp"
 
 namespace stiction {
 namespace {
@@ -75,7 +76,8 @@ TEST(EndlessPhase, ABillionTurnsForthAndBackLeaveNoDrift) {
   EXPECT_EQ(state.rest, 3550000u - 93u);
   turn_by_turn(state, turns, -1);
   const auto drift = static_cast<std::int64_t>(state.rest) + state.turns * numerator;  // in 1/113 counts
-  std::printf("drift after 1e9 turns forth and back: %lld\n", static_cast<long long>(drift));
+  test::figure("endless axis, ratio 355/113, 1e9 turns forth and back: drift",
+               fmt::format("{} of 1/113 count (bound 0)", drift));
   EXPECT_EQ(state, Phase::State{});
 }
 

@@ -17,6 +17,7 @@
 #include "host/sheet/machine_text.hpp"
 #include "host/simulate/replay.hpp"
 #include "sim/machine_file.hpp"
+#include "tests/support/figure.hpp"
 
 namespace stiction::host {
 namespace {
@@ -99,6 +100,15 @@ void print(const Trained& trained) {
   for (const auto& note : trained.result.notes) fmt::print("  {}\n", note);
 }
 
+// Prints how far off a value is, and holds it to `bound`.
+void expect_near(const Trained& trained, const char* gains, const char* name, const char* key, double published,
+                 double bound) {
+  const double share = off(trained.result, key, published);
+  test::figure(fmt::format("pendulum servo, gain {}: {}", gains, name),
+               fmt::format("{:+.1f} % of the published (bound {:.0f} %)", 100.0 * share, 100.0 * bound));
+  EXPECT_LT(std::abs(share), bound);
+}
+
 class Pendulum : public testing::Test {
  protected:
   void SetUp() override {
@@ -111,15 +121,15 @@ TEST_F(Pendulum, GainsOf100And200GiveInertiaAndGravity) {
   for (auto& log : records(200)) logs.push_back(std::move(log));
   const auto trained = train(logs, "gains-100-200");
   print(trained);
-  EXPECT_LT(std::abs(off(trained.result, "inertia_kg_m2", published_inertia)), 0.10);
-  EXPECT_LT(std::abs(off(trained.result, "gravity_moment_N_m", published_gravity)), 0.06);
+  expect_near(trained, "100 and 200", "inertia", "inertia_kg_m2", published_inertia, 0.10);
+  expect_near(trained, "100 and 200", "moment of gravity", "gravity_moment_N_m", published_gravity, 0.06);
 }
 
 TEST_F(Pendulum, Gain800GivesThemRoughlyAndSaysWhatSpoilsThem) {
   const auto trained = train(records(800), "gain-800");
   print(trained);
-  EXPECT_LT(std::abs(off(trained.result, "inertia_kg_m2", published_inertia)), 0.20);
-  EXPECT_LT(std::abs(off(trained.result, "gravity_moment_N_m", published_gravity)), 0.20);
+  expect_near(trained, "800", "inertia", "inertia_kg_m2", published_inertia, 0.20);
+  expect_near(trained, "800", "moment of gravity", "gravity_moment_N_m", published_gravity, 0.20);
   std::string notes;
   for (const auto& note : trained.result.notes) notes += note + "\n";
   EXPECT_NE(notes.find("the voltage is at its limit"), std::string::npos) << notes;
@@ -145,7 +155,8 @@ TEST_F(Pendulum, ASimulationFromGain200FollowsThoseOfGain100) {
     count += log.t.size();
   }
   const double together = std::sqrt(sum / static_cast<double>(count));
-  fmt::print("  gain 100, held out: {:.1f} mrad rms (published, Coulomb and viscous: 34.8)\n", 1e3 * together);
+  test::figure("pendulum servo, gain 100 simulated from gain 200: position",
+               fmt::format("{:.1f} mrad rms (published, Coulomb and viscous: 34.8; bound 38)", 1e3 * together));
   EXPECT_LE(together, 38e-3);
 }
 
