@@ -6,7 +6,6 @@
 #include <Eigen/Dense>
 #include <array>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -71,8 +70,8 @@ struct Candidate {
   // The lines among which a periodic one is looked for; null for others.
   const LineScan& (*scan)(const SearchContext&) = nullptr;
   bool replays = false;  // its columns cost a run of the closed loop
-  // From this value on it matters little what disturbs those runs.
-  double coarse = std::numeric_limits<double>::infinity();
+  // Whether it matters little at a value what disturbs those runs; null: at none.
+  bool (*coarse)(const SearchContext&, double shape) = nullptr;
   double trials = 1.0;  // independent values that a grid without a scan tries
   // Of a force outside of the vocabulary: what it looks like. It takes part in the search so that no name is forced
   // upon what none fits; found, it is no finding but the signature of what stays unexplained. Null for an effect.

@@ -68,7 +68,8 @@ void Dictionary::respond_under(const Eigen::VectorXd& noise) {
   scene_.disturb(noise);
   std::vector<Atom*> replayed;
   for (const auto& option : options_)
-    if (const auto& c = candidates()[option->candidate]; c.replays && option->shape < c.coarse)
+    if (const auto& c = candidates()[option->candidate];
+        c.replays && !(c.coarse != nullptr && c.coarse(scene_, option->shape)))
       replayed.push_back(option.get());
   give_columns(replayed);
 }
