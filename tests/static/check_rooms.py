@@ -295,10 +295,24 @@ def circles(arrows):
             yield from visit(folder, [folder])
 
 
+def unlisted_tests(root):
+    """Tests that no list names, by file or by pattern: nobody would see that they do not run."""
+    for file in sorted((root / "tests").rglob("*_test.cpp")):
+        for folder in file.relative_to(root).parents:
+            lists = root / folder / "CMakeLists.txt"
+            if lists.exists():
+                own = file.relative_to(lists.parent)
+                named = re.findall(r"[\w./*-]+_test\.cpp", lists.read_text(encoding="utf-8"))
+                if any(len(pathlib.Path(name).parts) == len(own.parts) and own.match(name) for name in named):
+                    break
+        else:
+            yield f"{file.relative_to(root)}: no CMakeLists.txt names this test; expected one that builds it"
+
+
 def check(root):
     arrows = {}
     findings = [finding for file in sources(root) for finding in check_file(root, file, arrows)]
-    return findings + list(circles(arrows)), arrows
+    return findings + list(circles(arrows)) + list(unlisted_tests(root)), arrows
 
 
 def main():

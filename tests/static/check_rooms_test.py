@@ -24,6 +24,7 @@ SOUND = {
     "host/report/page.hpp": '#include "firmware/machine/model/machine.hpp"\n',
     "host/identify/fit.hpp": '#include "firmware/machine/model/machine.hpp"\n',
     "host/cli/main.cpp": '#include "host/report/page.hpp"\n#include "host/identify/fit.hpp"\n',
+    "tests/hal/CMakeLists.txt": "stiction_test(hal_test backend_test.cpp new_test.cpp)\n",
     "tests/hal/backend_test.cpp": '#include "hal/simulated/simulated_backend.hpp"\n',
 }
 
@@ -121,6 +122,13 @@ class CheckRooms(unittest.TestCase):
 
     def test_finds_a_path_that_does_not_start_at_the_root(self):
         self.expect_finding("host/report/page.hpp", '#include "machine.hpp"', 'no "machine.hpp"')
+
+    def test_finds_a_test_that_nothing_builds(self):
+        self.assertEqual(findings_in(SOUND | {"tests/hal/can_test.cpp": "#include <string>\n"}),
+                         ["tests/hal/can_test.cpp: no CMakeLists.txt names this test; expected one that builds it"])
+        by_pattern = {"tests/sim/CMakeLists.txt": "file(GLOB plant CONFIGURE_DEPENDS plant/*_test.cpp)\n",
+                      "tests/sim/plant/axis_test.cpp": "#include <string>\n"}
+        self.assertEqual(findings_in(SOUND | by_pattern), [])
 
 
 if __name__ == "__main__":
