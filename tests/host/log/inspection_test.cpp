@@ -79,7 +79,7 @@ TEST(Inspection, FindsConstantSpeeds) {
 
 // A motion with everything in it: the rigid parameters are all there, within the noise.
 TEST(Inspection, FindsTheRigidParametersOfASine) {
-  const auto axis = inspect(rigid_log(20.0, sine), {{mass, constant, 70.0, 0.072}}).axes[0];
+  const auto axis = inspect(rigid_log(20.0, sine), {{mass, constant, 70.0, 0.072, {}}}).axes[0];
   for (const auto* what : {"Level of Coulomb friction", "Slope of viscous friction", "Moving mass", "Constant force"})
     EXPECT_TRUE(judgement(axis, what).possible) << what << ": " << judgement(axis, what).reason;
   EXPECT_NEAR(axis.force_constant.value(), constant, 0.01 * constant);
@@ -115,7 +115,7 @@ TEST(Inspection, AsksAboutASwappedSign) {
 
 TEST(Inspection, AsksAboutRmsAmperesWhereTheMachineIsKnown) {
   const auto log = rigid_log(10.0, sine, 1.0 / std::numbers::sqrt2);
-  EXPECT_TRUE(asks(inspect(log, {{mass, constant, {}, {}}}).axes[0], Question::About::amperes));
+  EXPECT_TRUE(asks(inspect(log, {{mass, constant, {}, {}, {}}}).axes[0], Question::About::amperes));
   const auto alone = inspect(log).axes[0];
   EXPECT_TRUE(alone.questions.empty());
   // 225 kg over 94 N/A, and the root of two.
@@ -136,7 +136,7 @@ TEST(Inspection, SaysTheResolutionOfEachChannel) {
 TEST(Inspection, SuspectsACurrentThatStandsAtItsEnd) {
   auto log = rigid_log(10.0, sine);
   for (double& i : log.axes[0].i) i = std::clamp(i, -2.5, 2.5);
-  const auto axis = inspect(log, {{mass, constant, 2.5, {}}}).axes[0];
+  const auto axis = inspect(log, {{mass, constant, 2.5, {}, {}}}).axes[0];
   ASSERT_EQ(axis.saturation.size(), 1u);
   EXPECT_EQ(axis.saturation[0].channel, "i");
   EXPECT_DOUBLE_EQ(axis.saturation[0].level, 2.5);

@@ -42,7 +42,7 @@ TEST(Questions, AreAskedOfWrongRecordsAndNotOfSoundOnes) {
     const auto r = test::draw_record(seed + static_cast<unsigned>(k));
     std::mt19937 random(seed + static_cast<unsigned>(k) + 100000u);
     const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
-    const KnownAxis known{r.machine.mass / uniform(0.85, 1.15), r.machine.force_constant, {}, {}};
+    const KnownAxis known{r.machine.mass / uniform(0.85, 1.15), r.machine.force_constant, {}, {}, {}};
     const auto what = fmt::format("seed {} {} friction {} {:.0f} Hz {:.1e} m", seed + static_cast<unsigned>(k),
                                   r.machine.name, static_cast<int>(r.friction), r.rate, r.increment);
     const auto log = test::written(r);
