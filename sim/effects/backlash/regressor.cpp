@@ -48,9 +48,12 @@ Columns columns(const SearchContext& context, const Motion& motion, double width
   for (double& force : column) force /= std::abs(width);
   return {column};
 }
-// A width beyond the next value of the grid is described by that one.
-bool possible(const SearchContext&, double width, const Eigen::VectorXd& w) {
-  return w[0] > width / 16.0 && w[0] < 16.0 * width;
+// A width beyond the next value of the grid is described by that one; below the first one's reach there is none,
+// however often it is linearised anew: the dither of a loop on coarse counts is alike in simulation and record and
+// shrinks it.
+bool possible(const SearchContext& context, double width, const Eigen::VectorXd& w) {
+  constexpr double reach = 16.0;
+  return w[0] > width / reach && w[0] > scale_of(context.axis) * near / reach && w[0] < reach * width;
 }
 bool coarse(const SearchContext& context, double width) { return width >= scale_of(context.axis) * far; }
 void describe(const SearchContext& context, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,

@@ -140,6 +140,7 @@ TEST(Effects, HaveTheNamesKeysAndSuffixesOfTheVocabulary) {
             "friction_lag: time_s\n"
             "position_dependent_friction: position_m[] force_N[]\n"
             "thermal_drift: change_N time_constant_s\n"
+            "load_dependent_friction: coefficient\n"
             "constant_force: force_N\n"
             "position_spring: stiffness_N_per_m neutral_m\n"
             "force_ripple: pitch_m cosine_N[] sine_N[]\n"
