@@ -42,7 +42,7 @@ sim::SpeedRamp start_of(const machine::AxisModel& axis, double speed) {
 
 bool can_drive(const machine::AxisModel& axis, double speed) {
   const auto start = start_of(axis, speed);
-  if (speed > axis.max_velocity) return false;
+  if (speed > axis.max_velocity || speed >= highest_followed_speed(axis)) return false;
   return axis.modulo || start.at(start.duration() + settling + averaging).distance <= axis.travel;
 }
 

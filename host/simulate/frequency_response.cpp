@@ -258,7 +258,7 @@ double usual_speed(const FrequencyResponsePlan& plan) {
     for (const auto& each : plan.machine.axes) speed = std::min(speed, each.max_velocity);
     return speed;
   }
-  const double wanted = usual_speed_share * axis.max_velocity;
+  const double wanted = std::min(usual_speed_share * axis.max_velocity, 0.5 * highest_followed_speed(axis));
   if (axis.modulo) return wanted;
   const double cruise = settling_time + block_of(plan) * (plan.periods + 1) * plan.machine.timing.fast_period + pause;
   return sim::speed_within(share_of_travel * axis.travel, wanted, cruise, start_of(plan));

@@ -39,9 +39,16 @@ stiffness = "60 N m/rad"
 damping_ratio = 0.1
 )";
 
-// The same with every quantity taken to a circle of `radius` (m) by its definition: a way is radius times angle, a
+// The same with an encoder that the loop's gains need to run: `counts` in a turn.
+inline std::string rotary_joint_of(int counts) {
+  auto text = rotary_joint;
+  const std::string coarse = "counts = 4096";
+  return text.replace(text.find(coarse), coarse.size(), fmt::format("counts = {}", counts));
+}
+
+// The first with every quantity taken to a circle of `radius` (m) by its definition: a way is radius times angle, a
 // force torque over radius, a mass inertia over radius squared.
-inline std::string joint_on_circle(double radius) {
+inline std::string joint_on_circle(double radius, int counts = 4096) {
   const double r = radius, r2 = radius * radius, turn = 6.283185307179586;
   return fmt::format(R"(schema = "stiction.machine/1"
 name = "joint"
@@ -74,7 +81,7 @@ stribeck_velocity = "{} m/s"
 stiffness = "{} N/m"
 damping_ratio = 0.1
 )",
-                     1.5e-3 / r2, turn * r, 20.0 * r, 400.0 * r, 0.12 / r, turn * r / 4096.0, 1.5 / r, 0.1 * r,
+                     1.5e-3 / r2, turn * r, 20.0 * r, 400.0 * r, 0.12 / r, turn * r / counts, 1.5 / r, 0.1 * r,
                      0.04 / r, 2e-3 / r2, 0.05 * r, 60.0 / r2);
 }
 

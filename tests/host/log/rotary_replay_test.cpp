@@ -32,9 +32,10 @@ Log sine(double per_radian, bool rotary) {
 }
 
 TEST(RotaryReplay, HasTheBitsOfTheLinearAxisOnItsCircle) {
-  const auto joint = sim::parse_machine("joint.toml", test::rotary_joint);
+  constexpr int counts = 1 << 22;
+  const auto joint = sim::parse_machine("joint.toml", test::rotary_joint_of(counts));
   const double radius = joint.axes[0].coordinate.radius;
-  const auto circle = sim::parse_machine("joint.toml", test::joint_on_circle(radius));
+  const auto circle = sim::parse_machine("joint.toml", test::joint_on_circle(radius, counts));
   const auto turned = replay<FixedSignals>(joint, sine(1.0, true));
   const auto moved = replay<FixedSignals>(circle, sine(radius, false));
   ASSERT_EQ(turned.axes[0].x.size(), moved.axes[0].x.size());

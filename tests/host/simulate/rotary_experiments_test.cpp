@@ -13,9 +13,10 @@ namespace stiction::host {
 namespace {
 
 struct Twins {
-  machine::Machine joint = sim::parse_machine("joint.toml", test::rotary_joint);
+  static constexpr int counts = 1 << 22;
+  machine::Machine joint = sim::parse_machine("joint.toml", test::rotary_joint_of(counts));
   double radius = joint.axes[0].coordinate.radius;
-  machine::Machine circle = sim::parse_machine("joint.toml", test::joint_on_circle(radius));
+  machine::Machine circle = sim::parse_machine("joint.toml", test::joint_on_circle(radius, counts));
 };
 
 sim::ExperimentResult result_on(const char* experiment, const machine::Machine& machine) {
@@ -46,7 +47,7 @@ TEST(RotaryExperiments, AStepOfTorqueMovesAJointByTheAngleOfItsCircle) {
 TEST(RotaryExperiments, AConstantSpeedTakesTheVoltageOfTheCircle) {
   Twins twins;
   // The same speeds on both, which are chosen in the axis' own unit otherwise.
-  for (const double speed : {0.5, 4.0})
+  for (const double speed : {0.5, 2.0})
     for (auto* machine : {&twins.joint, &twins.circle})
       machine->steady_friction_references.push_back({.axis = "J", .velocity = speed * twins.radius, .current = 1.0});
   const auto turned = result_on("constant-velocity", twins.joint), moved = result_on("constant-velocity", twins.circle);
