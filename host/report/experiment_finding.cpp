@@ -73,8 +73,9 @@ const Figure* greatest(const std::vector<const Figure*>& figures) {
 std::string impact(const Spoken& s) {
   const auto *peak = s.of_model("peak_deviation"), *back = s.of_model("return_time");
   if (!peak || !back) return "";
-  return fmt::format("The step of force moves the axis by {}, and it is back after {}{}", shown(peak), shown(back),
-                     s.with());
+  const bool rotary = peak->unit == "urad";
+  return fmt::format("The step of {} moves the axis by {}, and it is back after {}{}", rotary ? "torque" : "force",
+                     shown(peak), shown(back), s.with());
 }
 
 std::string constant_velocity(const Spoken& s) {
