@@ -99,10 +99,11 @@ void convert(SlidingCurve& curve, const Converter& own) {
 }
 
 void convert(Band& band, const Converter& own) {
-  constexpr std::array<std::string_view, 4> units{"kg", "N s/m", "N", "N"};
+  constexpr std::array<std::string_view, 5> units{"kg", "N s/m", "N", "N", "N"};
   for (auto& trial : band.trials) {
     for (std::size_t c = 0; c < units.size(); ++c)
       for (auto* values : {&trial.value, &trial.error}) (*values)[c] = own((*values)[c], units[c]);
+    trial.friction = own(trial.friction, "N");
     trial.speed_noise = own(trial.speed_noise, "m/s");
     trial.acceleration_noise = own(trial.acceleration_noise, "m/s^2");
   }
