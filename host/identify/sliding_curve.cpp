@@ -128,6 +128,13 @@ double best_shape(const SlidingData& data, const BlockRegression& regression, co
   return std::exp(0.5 * (low + high));
 }
 
+// Whether the data have a least within the trials. At an end of them they ask for more than what was tried, and what is
+// linear about the value there does not hold.
+bool within_trials(double shape, const std::vector<double>& shapes) {
+  constexpr double end = 1.005;  // the sections stop a thousandth before it
+  return shapes.size() < 2 || (shape > shapes.front() * end && shape < shapes.back() / end);
+}
+
 std::vector<MeasuredPoint> measured_points(const SlidingData& data, const Eigen::VectorXd& friction,
                                            double correlation) {
   struct Bin {
@@ -219,14 +226,18 @@ SlidingCurve choose_sliding_curve(const SlidingData& data, double correlation, c
   const BlockRegression regression(trials.columns, data.force, data.blocks);
   const std::size_t folds = std::min<std::size_t>(10, data.blocks.size());
   std::size_t chosen = 0;
+  double shape = 0.0;  // of the chosen one; the straight line has none
   for (std::size_t k = 0; k < kinds.size(); ++k) {
     result.errors.push_back({kinds[k].name, std::sqrt(regression.held_out(trials.choices[k], folds))});
     const double best = result.errors[chosen].held_out, linear = result.errors[0].held_out;
     const double error = result.errors[k].held_out;
-    if (error < best && error * error < 0.99 * linear * linear) chosen = k;
+    if (!(error < best && error * error < 0.99 * linear * linear)) continue;
+    const double found = best_shape(data, regression, trials, k);
+    if (!within_trials(found, trials.shapes[k])) continue;
+    chosen = k;
+    shape = found;
   }
   const auto& kind = kinds[chosen];
-  const double shape = best_shape(data, regression, trials, chosen);
   result.curve = kind.name;
 
   const Eigen::Index others = data.others.cols();

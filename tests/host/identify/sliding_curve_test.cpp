@@ -50,6 +50,20 @@ TEST_P(Curves, the_one_the_data_were_made_of_is_chosen) {
   for (const auto& point : result.measured)
     EXPECT_NEAR(point.force, std::copysign(made.friction(std::abs(point.speed)), point.speed), 8.0);
 }
+// A logarithm is steeper at standstill than every power that is tried: none of them has an interval that holds it.
+TEST(SlidingCurve, one_whose_parameter_leaves_what_is_tried_is_not_chosen) {
+  const auto result = choose_sliding_curve(made_of([](double v) { return 90.0 + 12.0 * std::log(1e-4 + v); }), 1.0, {});
+  EXPECT_NE(result.curve, "power");
+  for (const auto& p : result.parameters) {
+    EXPECT_LE(p.interval().low, p.value) << p.name;
+    EXPECT_GE(p.interval().high, p.value) << p.name;
+  }
+  for (const auto& point : result.points) {
+    EXPECT_LE(point.low, point.force);
+    EXPECT_GE(point.high, point.force);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(
     All, Curves,
     ::testing::Values(
