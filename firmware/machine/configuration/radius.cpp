@@ -30,7 +30,7 @@ AxisDesign on_radius(AxisDesign design, double radius) {
 std::vector<design::Problem> problems_on(const AxisDesign& design, int exponent) {
   design::Problems problems;
   design::configure_axis<FixedSignals>(on_radius(design, std::ldexp(1.0, exponent)), problems);
-  return {problems.begin(), problems.end()};
+  return std::vector<design::Problem>(problems.begin(), problems.end());
 }
 
 // What leaves its format in one direction, and from the lowest to the highest exponent at which it does.
