@@ -49,10 +49,9 @@ struct SlidingCurve {
 };
 
 // Curves: linear F_C + mu v; two-slope, mu changes at a speed; exponential, F_C + F_1 (1 - exp(-v/v_1)) + mu v; power,
-// F_C + a v^p. A curve that is not linear is chosen when it takes at least 1 % of the held-out mean square away, and its
-// nonlinear parameter lies within what was tried.
-// `correlation`: rows that say one thing, for the standard errors of the measured points. `data`: speed and force of
-// the rows; `settings`: of the bootstrap.
+// F_C + a v^p. A curve that is not linear is chosen when it takes at least 1 % of the held-out mean square away, and
+// its nonlinear parameter lies within what was tried. `correlation`: rows that say one thing, for the standard errors
+// of the measured points. `data`: speed and force of the rows; `settings`: of the bootstrap.
 SlidingCurve choose_sliding_curve(const SlidingData& data, double correlation, const FitSettings& settings);
 
 }  // namespace stiction::host
