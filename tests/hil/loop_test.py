@@ -50,9 +50,11 @@ FAULTS = [
     ("limit-negative", LASTING, {20, 21}, 1, False),
     ("limit-positive", LASTING, {20, 21}, 1, False),
 ]
+FAULTS = loop.sampled(FAULTS)
 HELD = ("--hold", "0.5")
 # Two frames a second are borne.
 BORNE = ["frame-lost", "frame-late", "frame-stale", "frame-damaged", "frame-duplicate", "frame-out-of-order"]
+BORNE = loop.sampled(BORNE)[:1] if loop.SAMPLE else BORNE
 
 
 class Circle(unittest.TestCase):
@@ -65,6 +67,7 @@ class Circle(unittest.TestCase):
                f"{differing} of {len(expected) - 1} rows differ (bound 0)")
         self.assertEqual(differing, 0)
 
+    @unittest.skipIf(loop.SAMPLE, "a sample")
     def test_over_classical_frames_differs_by_their_resolution(self):
         # 62.5 us is beyond a real bus of classical frames; here only their resolution counts.
         estimated = ("--set", "axis.*.encoder.velocity=estimated")  # they carry no velocity
