@@ -107,7 +107,8 @@ void add_machine(CLI::App& program, const Invocation& invocation) {
     if (o->json && o->check.empty())
       throw UsageError("--json: found it without --check; expected both, or stiction machine check MACHINE --json");
     if (o->json && o->reference)
-      throw UsageError("--json: found it together with --reference; expected --check alone, as the reference is Markdown");
+      throw UsageError(
+          "--json: found it together with --reference; expected --check alone, as the reference is Markdown");
     if (o->reference) fmt::print("{}", sim::reference_page());
     if (!o->check.empty()) check_machine(o->check, o->json);
     if (!o->reference && o->check.empty()) print_lines(machine::shipped_machines());

@@ -60,9 +60,9 @@ TEST_F(LargeLog, IsConvertedAndInspectedInBoundedMemoryWithProgress) {
 // The line appears after a second: the program stands still for most of its time, as on a slow disk, however fast or
 // busy the computer is.
 TEST_F(LargeLog, ShowsHowMuchOfItWasRead) {
-  const std::string slowed =
-      "'" STICTION_PROGRAM
-      "' convert run.csv again.csv & p=$!; while kill -STOP $p; do sleep 0.3; kill -CONT $p; sleep 0.02; done; wait $p\n";
+  const std::string slowed = "'" STICTION_PROGRAM
+                             "' convert run.csv again.csv & p=$!; while kill -STOP $p; do sleep 0.3; kill -CONT $p; "
+                             "sleep 0.1; done; wait $p\n";
   write_text_file(folder_ / "slowed", slowed);
   ASSERT_EQ(run("script -qec \"sh ./slowed\" typescript </dev/null >/dev/null"), 0);
   const auto shown = read_text_file(folder_ / "typescript");
