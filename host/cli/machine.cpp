@@ -101,14 +101,15 @@ void add_machine(CLI::App& program, const Invocation& invocation) {
       ->type_name("MACHINE");
   command->add_flag("--json", o->json, "with --check: print what later steps need of it as JSON on standard output");
   command->add_flag("--reference", o->reference, "print the reference of all keys (Markdown)");
+  // Before a subcommand prints anything.
+  command->parse_complete_callback([o, command] {
+    if (command->count("--json") == 0 || command->got_subcommand("check")) return;
+    if (o->check.empty() || o->reference)
+      throw UsageError("--json: found it without a machine to check; expected stiction machine --check MACHINE --json");
+  });
   command->callback([o, command] {
     if (!command->get_subcommands().empty()) return;
     if (const auto found = command->remaining(); !found.empty()) refuse_unknown_command(*command, "command");
-    if (o->json && o->check.empty())
-      throw UsageError("--json: found it without --check; expected both, or stiction machine check MACHINE --json");
-    if (o->json && o->reference)
-      throw UsageError(
-          "--json: found it together with --reference; expected --check alone, as the reference is Markdown");
     if (o->reference) fmt::print("{}", sim::reference_page());
     if (!o->check.empty()) check_machine(o->check, o->json);
     if (!o->reference && o->check.empty()) print_lines(machine::shipped_machines());

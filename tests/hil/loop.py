@@ -34,13 +34,13 @@ wait $plant
 """
 
 
-def sampled(rows):
-    """All rows, or a sample that the commit draws, so that each row has its turn and a failure can be repeated."""
+def sampled(rows, count=SAMPLE):
+    """All rows, or in a sample so many of them; the commit draws, so that each has its turn and a failure can be repeated."""
     if not SAMPLE:
         return rows
     commit = subprocess.run(["git", "rev-parse", "HEAD"], cwd=ROOT, capture_output=True, text=True, check=False).stdout
     first = int(commit.strip() or "0", 16)
-    return [rows[(first + k) % len(rows)] for k in range(min(SAMPLE, len(rows)))]
+    return [rows[(first + k) % len(rows)] for k in range(min(count, len(rows)))]
 
 
 @dataclasses.dataclass
@@ -116,9 +116,11 @@ def execute(folder, runs):
 
 
 def figure(name, text):
-    """What a test measured, with its bound: printed and kept."""
+    """What a test measured, with its bound: printed and, of whole suites, kept."""
     line = f"{name:<64} {text}\n"
     print(line, end="")
+    if SAMPLE:
+        return
     FIGURES.mkdir(parents=True, exist_ok=True)
     with open(FIGURES / "hil.txt", "a", encoding="utf-8") as file:
         file.write(line)
