@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "host/cli/output.hpp"
-#include "host/diagnose/verdict_json.hpp"
+#include "host/diagnose/verdict/verdict_json.hpp"
 #include "host/log/csv_log.hpp"
 #include "host/report/diagnosis_report.hpp"
 #include "sim/machine_file.hpp"

@@ -7,7 +7,7 @@
 
 #include "host/cli/commands.hpp"
 #include "host/cli/machine_options.hpp"
-#include "host/diagnose/verdict.hpp"
+#include "host/diagnose/verdict/verdict.hpp"
 #include "host/report/origin.hpp"
 
 namespace stiction::host {

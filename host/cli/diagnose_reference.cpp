@@ -8,7 +8,7 @@
 #include "host/cli/errors.hpp"
 #include "host/cli/progress.hpp"
 #include "host/cli/report_origin.hpp"
-#include "host/diagnose/reference_diagnosis.hpp"
+#include "host/diagnose/reference/reference_diagnosis.hpp"
 #include "host/identify/friction_curves.hpp"
 
 namespace stiction::host {

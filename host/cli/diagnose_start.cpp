@@ -7,7 +7,7 @@
 #include <system_error>
 
 #include "host/cli/temporaries.hpp"
-#include "host/diagnose/record_rows.hpp"
+#include "host/diagnose/record/record_rows.hpp"
 #include "host/identify/friction_fit.hpp"
 #include "host/identify/identification.hpp"
 #include "host/identify/identified_machine.hpp"

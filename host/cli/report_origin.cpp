@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "host/diagnose/record_checks.hpp"
+#include "host/diagnose/record/record_checks.hpp"
 #include "host/log/inspection.hpp"
 #include "host/simulate/replay.hpp"
 #include "sim/machine_file.hpp"

@@ -2,32 +2,10 @@
 // held-out data, what was rejected and what stays unexplained.
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <functional>
-#include <string_view>
-#include <vector>
-
-#include "firmware/machine/model/machine.hpp"
-#include "host/diagnose/verdict.hpp"
-#include "host/log/log.hpp"
+#include "host/diagnose/record/diagnose_input.hpp"
+#include "host/diagnose/verdict/verdict.hpp"
 
 namespace stiction::host {
-
-// What a diagnosis does, one after the other.
-inline constexpr std::array<std::string_view, 6> diagnosis_parts{
-    "simulated motion", "selection", "held-out data", "refinement in closed loop", "next measurement", "closed loop"};
-
-struct DiagnoseInput {
-  machine::Machine machine;
-  std::size_t axis = 0;                                 // of the machine
-  std::vector<Log> logs;                                // at least one
-  std::vector<Log> held_out;                            // empty: the last third of each log is held out
-  std::uint64_t seed = 1;                               // of the bootstrap
-  bool closed_loop = true;                              // replay the held-out logs where they have set-points
-  bool next_measurement = true;                         // propose one where something is open
-  std::function<void(std::string_view part)> progress;  // at the beginning of each of diagnosis_parts
-};
 
 // Throws LogError for logs that cannot be used (record_checks.hpp, suitability.hpp).
 Verdict diagnose(const DiagnoseInput& input);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "firmware/machine/model/machine.hpp"
-#include "host/diagnose/verdict.hpp"
+#include "host/diagnose/verdict/verdict.hpp"
 #include "host/report/origin.hpp"
 
 namespace stiction::host {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "host/diagnose/verdict_json.hpp"
+#include "host/diagnose/verdict/verdict_json.hpp"
 #include "host/report/typeset.hpp"
 
 namespace stiction::host {

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "host/diagnose/verdict.hpp"
+#include "host/diagnose/verdict/verdict.hpp"
 
 namespace stiction::host {
 

@@ -58,7 +58,7 @@ function(stiction_regressor_table variable)
     endif()
   endforeach()
   set(source ${CMAKE_CURRENT_BINARY_DIR}/regressor_folders.cpp)
-  file(CONFIGURE OUTPUT ${source} CONTENT "${stiction_effect_table_head}#include \"host/diagnose/effect_regressor.hpp\"
+  file(CONFIGURE OUTPUT ${source} CONTENT "${stiction_effect_table_head}#include \"host/diagnose/classes/effect_regressor.hpp\"
 
 namespace stiction::host {
 namespace effects {

@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "host/diagnose/diagnose.hpp"
-#include "host/diagnose/encoder_error_response.hpp"
+#include "host/diagnose/record/encoder_error_response.hpp"
 #include "sim/machine_file.hpp"
 #include "tests/blind/campaign.hpp"
 #include "tests/support/figure.hpp"

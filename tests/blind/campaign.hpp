@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "host/diagnose/verdict.hpp"
+#include "host/diagnose/verdict/verdict.hpp"
 #include "tests/blind/blind_case.hpp"
 
 namespace stiction::blind {

@@ -9,7 +9,7 @@
 
 #include "firmware/machine/file/machine_file.hpp"
 #include "firmware/machine/file/units.hpp"
-#include "host/diagnose/effect_regressor.hpp"
+#include "host/diagnose/classes/effect_regressor.hpp"
 #include "sim/effects/effects.hpp"
 #include "sim/machine_file.hpp"
 #include "sim/plant/axis_plant.hpp"

@@ -10,7 +10,7 @@
 #include "firmware/machine/file/machine_file.hpp"
 #include "firmware/machine/file/reference_page.hpp"
 #include "host/diagnose/diagnose.hpp"
-#include "host/diagnose/verdict_json.hpp"
+#include "host/diagnose/verdict/verdict_json.hpp"
 #include "host/log/inspection.hpp"
 #include "host/report/diagnosis_report.hpp"
 #include "host/simulate/commissioning.hpp"

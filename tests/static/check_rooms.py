@@ -85,7 +85,7 @@ ROOMS = {
     "sim/effects/*/regressor.cpp": {
         "sim/*": "an effect is looked for by the law that the simulation has of it",
         "firmware/machine/*": "on an axis as its file describes it",
-        "host/diagnose": "in the residual of a diagnosis",
+        "host/diagnose/*": "in the residual of a diagnosis",
         "host/identify": "with the columns of the fits",
     },
     "sim/plant": {
@@ -132,10 +132,63 @@ ROOMS = {
         "firmware/machine/*": "as its file describes it",
         f"{FIRMWARE}/*": "and what they compensate is the control",
     },
+    # Its rooms in the order in which each uses those above it: prepared records, statistics of their rows, classes of
+    # functions, the search among them, the judge, and what is said and asked for in the end.
+    "host/diagnose/statistics": {
+        "host/algebra": "evidence is least squares",
+        "host/identify": "over blocks of the rows of a fit",
+    },
+    "host/diagnose/record": {
+        "host/diagnose/statistics": "disturbances are drawn from the spectrum of what is left",
+        "host/identify": "the rows of a record are those of the fits",
+        "host/log": "in logs",
+        "host/simulate": "and in runs that reproduce them",
+        "sim/*": "with the laws of the simulation",
+        "firmware/machine/*": "of a machine as its file describes it",
+        f"{FIRMWARE}/*": "and the control as it is",
+    },
+    "host/diagnose/spectrum": {
+        "host/diagnose/record": "an encoder's error answers through the loop",
+        "host/diagnose/statistics": "lines are looked for in what is whitened",
+        "host/identify": "of the rows",
+        "firmware/machine/model": "of a machine",
+    },
+    "host/diagnose/verdict": {
+        "host/diagnose/record": "agreement is within the noise's floor",
+        "host/log": "figures are shown in the axis' own units",
+        "sim/*": "findings are effects, and charts those of results",
+        "firmware/machine/model": "of a machine",
+    },
+    "host/diagnose/classes": {
+        "host/diagnose/spectrum": "periodic ones are made of lines",
+        "host/diagnose/verdict": "a class describes a finding",
+        "host/identify": "by columns over the motion of the rows",
+        "host/log": "in the axis' own units",
+        "sim/*": "as the effects of the simulation",
+        "firmware/machine/model": "of a machine",
+    },
+    "host/diagnose/search": {
+        "host/algebra": "weights are least squares",
+        "host/diagnose/classes": "classes are chosen",
+        "host/diagnose/record": "over records",
+        "host/diagnose/spectrum": "with lines",
+        "host/diagnose/statistics": "by evidence",
+        "host/diagnose/verdict": "for findings",
+        "host/identify": "over the rows of the fits",
+        "sim/*": "that must be possible effects",
+    },
+    "host/diagnose/describe": {
+        "host/diagnose/classes": "pictures show a class' force",
+        "host/diagnose/search": "as it was found",
+        "host/diagnose/spectrum": "what is left is looked at for lines",
+        "host/diagnose/statistics": "and for significance",
+        "host/diagnose/verdict": "and becomes part of the verdict",
+        "host/identify": "over the rows of the fits",
+    },
     "host/diagnose": {
         "host/algebra": "evidence is least squares",
+        "host/diagnose/*": "the rooms of a diagnosis are gone through one after the other",
         "host/identify": "a cause is told from friction by the same fits",
-        "host/response": "and by what the loops do at each frequency",
         "host/log": "in logs",
         "host/simulate": "and in runs that reproduce them",
         "sim/*": "with the effects of the simulation",
@@ -166,7 +219,7 @@ ROOMS = {
     # Above the tools whose results it shows; none of them knows how it is shown.
     "host/report": {
         "host/cam": "profiles,",
-        "host/diagnose": "causes,",
+        "host/diagnose/*": "causes,",
         "host/identify": "models,",
         "host/response": "frequency responses",
         "host/simulate": "and results of runs become pages",
@@ -181,7 +234,7 @@ ROOMS = {
         "host/simulate": "runs experiments",
         "host/response": "measures loops",
         "host/identify": "finds models",
-        "host/diagnose": "and causes",
+        "host/diagnose/*": "and causes",
         "host/tune": "tunes the drive",
         "host/sheet": "makes machine files",
         "host/cam": "makes profiles",

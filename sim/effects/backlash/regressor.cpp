@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "host/diagnose/effect_regressor.hpp"
-#include "host/diagnose/inverse_dynamics.hpp"
+#include "host/diagnose/classes/effect_regressor.hpp"
+#include "host/diagnose/record/inverse_dynamics.hpp"
 #include "sim/effects/backlash/backlash.hpp"
 #include "sim/effects/effect_values.hpp"
 

@@ -1,7 +1,7 @@
 // Gravity, an unbalanced weight, an offset of the current: on the carriage in +x, so the motor needs less.
 #include <cmath>
 
-#include "host/diagnose/effect_regressor.hpp"
+#include "host/diagnose/classes/effect_regressor.hpp"
 
 namespace stiction::host::effects::constant_force {
 namespace {

@@ -1,7 +1,7 @@
 // Gains and integral times of the drive, which the command residual is searched for.
 #include <array>
 
-#include "host/diagnose/effect_regressor.hpp"
+#include "host/diagnose/classes/effect_regressor.hpp"
 
 namespace stiction::host::effects::controller_gain_mismatch {
 namespace {

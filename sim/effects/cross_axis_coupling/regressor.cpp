@@ -1,7 +1,7 @@
 // The other axis' acceleration as a force on the carriage, mass a_other in +x: the motor needs that much less.
 #include <cmath>
 
-#include "host/diagnose/effect_regressor.hpp"
+#include "host/diagnose/classes/effect_regressor.hpp"
 
 namespace stiction::host::effects::cross_axis_coupling {
 namespace {

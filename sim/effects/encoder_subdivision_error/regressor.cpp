@@ -7,9 +7,9 @@
 #include <complex>
 #include <numbers>
 
-#include "host/diagnose/effect_regressor.hpp"
-#include "host/diagnose/encoder_error_response.hpp"
-#include "host/diagnose/inverse_dynamics.hpp"
+#include "host/diagnose/classes/effect_regressor.hpp"
+#include "host/diagnose/record/encoder_error_response.hpp"
+#include "host/diagnose/record/inverse_dynamics.hpp"
 
 namespace stiction::host::effects::encoder_subdivision_error {
 namespace {

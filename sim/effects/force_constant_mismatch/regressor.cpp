@@ -3,8 +3,8 @@
 // mass, Coulomb and viscous friction it is their common scale.
 #include <cmath>
 
-#include "host/diagnose/effect_regressor.hpp"
-#include "host/diagnose/inverse_dynamics.hpp"
+#include "host/diagnose/classes/effect_regressor.hpp"
+#include "host/diagnose/record/inverse_dynamics.hpp"
 
 namespace stiction::host::effects::force_constant_mismatch {
 namespace {

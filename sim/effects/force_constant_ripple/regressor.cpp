@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "host/diagnose/effect_regressor.hpp"
-#include "host/diagnose/inverse_dynamics.hpp"
+#include "host/diagnose/classes/effect_regressor.hpp"
+#include "host/diagnose/record/inverse_dynamics.hpp"
 
 namespace stiction::host::effects::force_constant_ripple {
 namespace {

@@ -1,6 +1,6 @@
 // Cogging: force on the carriage periodic in position, cosine_h cos(2 pi h x / pitch) + sine_h sin(2 pi h x / pitch).
 // The pitches to try come from the residual's spectrum over position (line_scan.hpp).
-#include "host/diagnose/effect_regressor.hpp"
+#include "host/diagnose/classes/effect_regressor.hpp"
 
 namespace stiction::host::effects::force_ripple {
 namespace {

@@ -3,8 +3,8 @@
 // viscous friction alone it is for short times - viscous time dv/dt, a mass that is missing.
 #include <cmath>
 
-#include "host/diagnose/effect_regressor.hpp"
-#include "host/diagnose/inverse_dynamics.hpp"
+#include "host/diagnose/classes/effect_regressor.hpp"
+#include "host/diagnose/record/inverse_dynamics.hpp"
 #include "sim/effects/friction_lag/friction_lag.hpp"
 #include "sim/plant/friction/friction.hpp"
 

@@ -1,5 +1,5 @@
 // Its coefficient is a parameter of the axis, which `identify` finds of one whose weight goes with its angle.
-#include "host/diagnose/effect_regressor.hpp"
+#include "host/diagnose/classes/effect_regressor.hpp"
 
 namespace stiction::host::effects::load_dependent_friction {
 

@@ -1,7 +1,7 @@
 // Moving mass: the force is off by (true mass - mass) a.
 #include <cmath>
 
-#include "host/diagnose/effect_regressor.hpp"
+#include "host/diagnose/classes/effect_regressor.hpp"
 
 namespace stiction::host::effects::mass_mismatch {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "host/diagnose/effect_regressor.hpp"
+#include "host/diagnose/classes/effect_regressor.hpp"
 
 namespace stiction::host::effects::periodic_disturbance {
 namespace {

@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "host/diagnose/effect_regressor.hpp"
-#include "host/diagnose/inverse_dynamics.hpp"
+#include "host/diagnose/classes/effect_regressor.hpp"
+#include "host/diagnose/record/inverse_dynamics.hpp"
 
 namespace stiction::host::effects::position_dependent_friction {
 namespace {

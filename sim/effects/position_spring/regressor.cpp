@@ -1,7 +1,7 @@
 // Force proportional to position, -stiffness (x - neutral) on the carriage: cable carrier, bellows, hose.
 #include <cmath>
 
-#include "host/diagnose/effect_regressor.hpp"
+#include "host/diagnose/classes/effect_regressor.hpp"
 
 namespace stiction::host::effects::position_spring {
 namespace {

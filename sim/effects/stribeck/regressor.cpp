@@ -1,8 +1,8 @@
 // Friction that falls with speed near standstill: break_away exp(-(v / velocity)^2) times the contact's direction.
 #include <cmath>
 
-#include "host/diagnose/effect_regressor.hpp"
-#include "host/diagnose/inverse_dynamics.hpp"
+#include "host/diagnose/classes/effect_regressor.hpp"
+#include "host/diagnose/record/inverse_dynamics.hpp"
 #include "host/identify/contact.hpp"
 
 namespace stiction::host::effects::stribeck {

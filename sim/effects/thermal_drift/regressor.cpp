@@ -2,8 +2,8 @@
 // contact's direction.
 #include <cmath>
 
-#include "host/diagnose/effect_regressor.hpp"
-#include "host/diagnose/inverse_dynamics.hpp"
+#include "host/diagnose/classes/effect_regressor.hpp"
+#include "host/diagnose/record/inverse_dynamics.hpp"
 
 namespace stiction::host::effects::thermal_drift {
 namespace {

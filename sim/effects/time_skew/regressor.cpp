@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "host/diagnose/effect_regressor.hpp"
-#include "host/diagnose/inverse_dynamics.hpp"
+#include "host/diagnose/classes/effect_regressor.hpp"
+#include "host/diagnose/record/inverse_dynamics.hpp"
 #include "sim/effects/effects.hpp"
 #include "sim/effects/time_skew/time_skew.hpp"
 

@@ -1,8 +1,8 @@
 // Slope of viscous friction.
 #include <cmath>
 
-#include "host/diagnose/effect_regressor.hpp"
-#include "host/diagnose/inverse_dynamics.hpp"
+#include "host/diagnose/classes/effect_regressor.hpp"
+#include "host/diagnose/record/inverse_dynamics.hpp"
 
 namespace stiction::host::effects::viscous_mismatch {
 namespace {

@@ -1,7 +1,7 @@
 // Friction that rises less (or more) than linearly: force (1 - exp(-|v| / velocity)) sgn v beside the model's own.
 #include <cmath>
 
-#include "host/diagnose/effect_regressor.hpp"
+#include "host/diagnose/classes/effect_regressor.hpp"
 #include "sim/effects/viscous_nonlinear/viscous_nonlinear.hpp"
 
 namespace stiction::host::effects::viscous_nonlinear {

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <random>
 
-#include "host/diagnose/command_replay.hpp"
 #include "host/diagnose/diagnose.hpp"
+#include "host/diagnose/record/command_replay.hpp"
 #include "sim/plant/friction/coulomb_viscous.hpp"
 #include "sim/plant/friction/parameters.hpp"
 #include "stiction/number/fixed_signals.hpp"

@@ -1,6 +1,6 @@
 // Forces with a residual's spectrum, what runs under them have in common, and how well a weight is known by leaving
 // clusters out.
-#include "host/diagnose/disturbance.hpp"
+#include "host/diagnose/record/disturbance.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <numbers>
 #include <random>
 
-#include "host/diagnose/coherent_mean.hpp"
-#include "host/diagnose/evidence.hpp"
-#include "host/diagnose/fisher.hpp"
+#include "host/diagnose/statistics/coherent_mean.hpp"
+#include "host/diagnose/statistics/evidence.hpp"
+#include "host/diagnose/statistics/fisher.hpp"
 
 namespace stiction::test {
 namespace {

@@ -9,7 +9,7 @@
 #include <filesystem>
 
 #include "host/diagnose/diagnose.hpp"
-#include "host/diagnose/inverse_dynamics.hpp"
+#include "host/diagnose/record/inverse_dynamics.hpp"
 #include "host/identify/log_rows.hpp"
 #include "host/log/read_log.hpp"
 #include "sim/effects/effects.hpp"

@@ -1,5 +1,5 @@
 // What held-out rows say of a force that other rows showed.
-#include "host/diagnose/held_out_amplitude.hpp"
+#include "host/diagnose/judge/held_out_amplitude.hpp"
 
 #include <gtest/gtest.h>
 

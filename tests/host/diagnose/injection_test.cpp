@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "host/diagnose/closed_loop.hpp"
-#include "host/diagnose/command_replay.hpp"
-#include "host/diagnose/replay_setup.hpp"
+#include "host/diagnose/judge/closed_loop.hpp"
+#include "host/diagnose/record/command_replay.hpp"
+#include "host/diagnose/record/replay_setup.hpp"
 #include "host/simulate/control_run.hpp"
 #include "host/simulate/replay_result.hpp"
 #include "sim/experiment/shuttle_path.hpp"

@@ -1,6 +1,6 @@
 // Records that cannot tell two causes apart; the proposed trajectory is then run with the hidden effect, and the
 // diagnosis of both names the right one alone.
-#include "host/diagnose/next_measurement.hpp"
+#include "host/diagnose/next_measurement/next_measurement.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "host/diagnose/diagnose.hpp"
-#include "host/diagnose/verdict_json.hpp"
+#include "host/diagnose/verdict/verdict_json.hpp"
 #include "host/log/csv_log.hpp"
 #include "host/simulate/commissioning.hpp"
 #include "host/simulate/replay.hpp"

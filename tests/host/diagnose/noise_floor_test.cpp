@@ -1,5 +1,5 @@
 // What noise alone leaves of the residual, against white noise through the band by its formula.
-#include "host/diagnose/noise_floor.hpp"
+#include "host/diagnose/record/noise_floor.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <numbers>
 #include <random>
 
-#include "host/diagnose/agreement.hpp"
-#include "host/diagnose/record_rows.hpp"
+#include "host/diagnose/record/record_rows.hpp"
+#include "host/diagnose/verdict/agreement.hpp"
 #include "tests/host/diagnose/synthetic_log.hpp"
 #include "tests/support/figure.hpp"
 

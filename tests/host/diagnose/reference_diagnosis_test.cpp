@@ -1,11 +1,11 @@
 // The published measurements of the cross table: causes from the rows that may be used, score on those that were not.
-#include "host/diagnose/reference_diagnosis.hpp"
+#include "host/diagnose/reference/reference_diagnosis.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "host/diagnose/reference_extension.hpp"
+#include "host/diagnose/reference/reference_extension.hpp"
 #include "host/identify/measured_machine.hpp"
 #include "host/simulate/circle.hpp"
 #include "sim/machine_file.hpp"

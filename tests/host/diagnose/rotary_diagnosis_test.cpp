@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "host/diagnose/diagnose.hpp"
-#include "host/diagnose/verdict_json.hpp"
+#include "host/diagnose/verdict/verdict_json.hpp"
 #include "host/log/own_units.hpp"
 #include "host/simulate/commissioning.hpp"
 #include "sim/machine_file.hpp"

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <random>
 
-#include "host/diagnose/evidence.hpp"
-#include "host/diagnose/wave_sums.hpp"
+#include "host/diagnose/spectrum/wave_sums.hpp"
+#include "host/diagnose/statistics/evidence.hpp"
 #include "host/identify/filter.hpp"
 
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "host/diagnose/candidate.hpp"
+#include "host/diagnose/classes/candidate.hpp"
 
 namespace {
 

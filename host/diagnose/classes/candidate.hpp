@@ -1,0 +1,135 @@
+// What the engine knows of one effect: the regressors by which it shows in the residual force, the nonlinear parameters
+// to scan, and what fitted weights mean in a machine file's keys. One in the folder of each effect
+// (effect_regressor.hpp), one in signatures/ for each shape outside of the vocabulary.
+#pragma once
+
+#include <Eigen/Dense>
+#include <array>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "firmware/machine/model/machine.hpp"
+#include "host/diagnose/spectrum/line_scan.hpp"
+#include "host/diagnose/verdict/verdict.hpp"
+#include "host/identify/motion.hpp"
+#include "sim/effects/effect_descriptor.hpp"
+
+namespace stiction::host {
+
+// What the candidates may know: the axis as its file has it and what the training records cover. SI units.
+struct SearchContext {
+  machine::AxisModel axis;
+  SignalSettings signals;
+  double highest_speed = 0.0;
+  int reversals = 0;
+  double lowest_position = 0.0, highest_position = 0.0;
+  double highest_force = 0.0;     // N, expected
+  double highest_residual = 0.0;  // N, what the file does not make of the force
+  bool force_is_current = false;  // in every record: current (or voltage) times the file's force constant
+  bool other_axis = false;        // its motion is in every record
+  double duration = 0.0;          // s, of the longest record
+  machine::Timing timing{};       // of the drive
+  // Found as the search goes: lines over position, over position in proportion to the force and to the speed, over
+  // time, over the encoder's signal.
+  LineScan pitches{}, modulation{}, by_speed{}, times{}, signals_of_encoder{};
+  // The residual force (N, at the motion's rate) that a motion's set-points leave in simulation where the machine has
+  // the effect, less that where it has not: what the effect does through the control loop. `most_runs`: of how many
+  // runs under different forces the common part is taken, at most. Empty: no set-points.
+  std::function<std::vector<double>(const Motion&, const machine::Effect&, std::size_t most_runs)> response;
+  // From now on under forces like this one (N, of the rows): what of the residual force no cause explains.
+  std::function<void(const Eigen::VectorXd&)> disturb;
+  double stroke() const { return highest_position - lowest_position; }
+};
+
+// Columns of the residual force at a motion's full rate (N per unit of weight): the motor's force is larger by column
+// times weight where the machine has the effect.
+using Columns = std::vector<std::vector<double>>;
+
+struct Candidate {
+  // Values of the nonlinear parameter to try; one value, not looked at, for an effect that has none. Empty: this axis
+  // or these records cannot have the effect.
+  std::vector<double> (*grid)(const SearchContext&) = nullptr;
+  Columns (*columns)(const SearchContext&, const Motion&, double shape) = nullptr;
+  // Whether weights have a sign and size that the effect can have.
+  bool (*possible)(const SearchContext&, double shape, const Eigen::VectorXd& coefficients);
+  // Keys of the machine file; `deviations`: of weights and nonlinear parameter (last), covariance.
+  void (*describe)(const SearchContext&, double shape, const Eigen::VectorXd& coefficients,
+                   const Eigen::MatrixXd& covariance, Finding&) = nullptr;
+  bool shape = false;           // whether the scanned parameter is one of the effect's own
+  bool at_weight = false;       // the scanned value is where the law is linearised: at best the weight itself
+  bool names_constant = false;  // what it names is not a nuisance of its own evaluation
+  bool names_coulomb = false;
+  bool along_stroke = false;  // known between the places that the records reach, and nowhere else
+  bool periodic = false;      // pairs cosine, sine by harmonics: the phase moves with the home position
+  // Whether each record has weights of its own, the first record's before the second's: the phase moves from record to
+  // record.
+  bool per_record = false;
+  // The lines among which a periodic one is looked for; null for others.
+  const LineScan& (*scan)(const SearchContext&) = nullptr;
+  bool replays = false;  // its columns cost a run of the closed loop
+  // Whether it matters little at a value what disturbs those runs; null: at none.
+  bool (*coarse)(const SearchContext&, double shape) = nullptr;
+  double trials = 1.0;  // independent values that a grid without a scan tries
+  // Of a force outside of the vocabulary: what it looks like. It takes part in the search so that no name is forced
+  // upon what none fits; found, it is no finding but the signature of what stays unexplained. Null for an effect.
+  std::string (*looks_like)(const SearchContext&, double shape, const Eigen::VectorXd& coefficients) = nullptr;
+  // By whose folder it is; set by candidates(). None: a shape outside of the vocabulary.
+  std::optional<sim::EffectId> effect{};
+  bool outside() const { return !effect; }
+};
+
+// The vocabulary in its order; behind it what is outside of it.
+std::span<const Candidate> candidates();
+// Its place there; none where the effect does not show in the residual force.
+std::optional<std::size_t> candidate_index(sim::EffectId effect);
+
+namespace effects {
+// Adds a key of the finding's effect with its values and their standard errors. Throws std::logic_error for a key that
+// the effect has not. `context`: of the axis, which has the unit of `key`; `finding`: to which it is added; `values`
+// and `errors` in SI.
+void add_key(const SearchContext& context, Finding& finding, std::string_view key, std::vector<double> values,
+             std::vector<double> errors);
+
+// Cosine and sine of a wave over position, as force on the carriage of `size` (of each sample) times it. `motion` of
+// the axis; `pitch` in m.
+Columns waves_over_position(const Motion& motion, double pitch, const std::vector<double>& size);
+
+// Adds the keys of a wave over position whose length (m) is the scanned `shape`: that one by its name `length`, and the
+// amplitudes "cosine" and "sine". `context`, `finding`: as above; `w` and `c`: coefficients and covariance, the
+// length's last.
+void add_wave_keys(const SearchContext& context, Finding& finding, std::string_view length, double shape,
+                   const Eigen::VectorXd& w, const Eigen::MatrixXd& c);
+
+inline std::vector<double> no_scan(const SearchContext&) { return {0.0}; }
+// For an effect whose coefficients (VectorXd) may have any sign and size, at each shape (double) and SearchContext.
+inline bool any(const SearchContext&, double, const Eigen::VectorXd&) { return true; }
+// Of the weights of a wave that has a pair in each record: the amplitude that they have in common (their root mean
+// square) with the first record's phase, as cosine and sine.
+std::array<double, 2> first_wave(const Eigen::VectorXd& coefficients);
+// `count` values from `low` to `high`, each the same factor above the one before.
+std::vector<double> geometric(double low, double high, int count);
+}  // namespace effects
+
+// Shapes of forces that no effect of the vocabulary has; each source has a namespace of its own.
+namespace signatures {
+namespace localised_force {
+extern const Candidate shape;
+}
+namespace ripple_with_speed {
+extern const Candidate shape;
+}
+namespace force_after_reversal {
+extern const Candidate shape, shape_on_way_back;
+}
+namespace force_with_acceleration {
+extern const Candidate shape;
+}
+namespace drifting_force {
+extern const Candidate shape;
+}
+}  // namespace signatures
+
+}  // namespace stiction::host

@@ -1,0 +1,22 @@
+// What the user sees of the causes: the held-out logs' set-points through the simulated machine without and with them,
+// position error against the measured one.
+#pragma once
+
+#include <vector>
+
+#include "firmware/machine/model/machine.hpp"
+#include "host/diagnose/verdict/verdict.hpp"
+#include "host/log/log.hpp"
+
+namespace stiction::host {
+
+// The machine with the findings' effects on their axis.
+machine::Machine extended_machine(machine::Machine machine, const std::vector<Finding>& findings);
+
+// Fills in position errors, their ratios by finding and what each does to the position. Without set-points nothing is
+// changed. A machine that cannot follow the set-points is a LogError without causes and a note with them. `verdict`:
+// with its findings on `axis`, the index in `machine`; `held_out`: logs that were not used.
+void judge_in_closed_loop(Verdict& verdict, const machine::Machine& machine, std::size_t axis,
+                          const std::vector<Log>& held_out);
+
+}  // namespace stiction::host

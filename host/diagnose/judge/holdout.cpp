@@ -1,0 +1,177 @@
+#include "host/diagnose/judge/holdout.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <random>
+
+#include "host/algebra/least_squares.hpp"
+#include "host/diagnose/classes/candidate_columns.hpp"
+#include "host/diagnose/record/inverse_dynamics.hpp"
+#include "host/identify/regression.hpp"
+
+namespace stiction::host {
+namespace {
+
+struct Rows {
+  Eigen::Index begin, length;
+};
+
+std::vector<Rows> records_of(const LogRows& rows) {
+  std::vector<Rows> records;
+  for (std::size_t k = 0; k < rows.logs().size(); ++k) {
+    const auto begin = static_cast<Eigen::Index>(rows.logs()[k]);
+    const auto end = k + 1 < rows.logs().size() ? static_cast<Eigen::Index>(rows.logs()[k + 1]) : rows.rows();
+    records.push_back({begin, end - begin});
+  }
+  return records;
+}
+
+// Takes the nuisances of each record out of a column of all rows.
+class Nuisances {
+ public:
+  Nuisances(const LogRows& rows, const SearchContext& context, bool constant, bool coulomb) {
+    std::vector<Eigen::VectorXd> columns;
+    if (constant) columns.push_back(Eigen::VectorXd::Ones(rows.rows()));
+    if (coulomb) columns.push_back(rows.stacked([&](const Motion& m) { return contact_level(context.axis, m); }));
+    for (const auto& r : records_of(rows)) {
+      Eigen::MatrixXd own(r.length, static_cast<Eigen::Index>(columns.size()));
+      for (std::size_t c = 0; c < columns.size(); ++c)
+        own.col(static_cast<Eigen::Index>(c)) = columns[c].segment(r.begin, r.length);
+      records_.push_back(r);
+      columns_.push_back(own);
+      if (own.cols() > 0) solvers_.emplace_back(own);
+    }
+  }
+
+  Eigen::VectorXd without(Eigen::VectorXd column) const {
+    if (solvers_.empty()) return column;
+    for (std::size_t k = 0; k < records_.size(); ++k) {
+      const Eigen::VectorXd part = column.segment(records_[k].begin, records_[k].length);
+      column.segment(records_[k].begin, records_[k].length) -= columns_[k] * solvers_[k].solve(part);
+    }
+    return column;
+  }
+
+ private:
+  std::vector<Rows> records_;
+  std::vector<Eigen::MatrixXd> columns_;
+  std::vector<PivotedLeastSquares> solvers_;
+};
+
+// A term's force in the rows; of a periodic one with the phase that fits each record best.
+Eigen::VectorXd force_of_term(const LogRows& rows, const SearchContext& context, const Term& term,
+                              const Eigen::VectorXd& target) {
+  const auto& candidate = candidates()[term.candidate];
+  const auto columns = shared_columns(rows, context, candidate, term.shape);
+  // The training records' phases are not those of these.
+  const Eigen::VectorXd coefficients =
+      candidate.per_record
+          ? Eigen::VectorXd(Eigen::Map<const Eigen::Vector2d>(effects::first_wave(term.coefficients).data()))
+          : term.coefficients;
+  Eigen::VectorXd force = Eigen::VectorXd::Zero(rows.rows());
+  if (!candidate.periodic) {
+    for (std::size_t c = 0; c < columns.size(); ++c) force += coefficients[static_cast<Eigen::Index>(c)] * columns[c];
+    return force;
+  }
+  constexpr int phases = 72;
+  for (const auto& r : records_of(rows)) {
+    double least = 0.0;
+    for (int p = 0; p < phases; ++p) {
+      Eigen::VectorXd part = Eigen::VectorXd::Zero(r.length);
+      for (std::size_t c = 0; c + 1 < columns.size(); c += 2) {
+        const auto i = static_cast<Eigen::Index>(c);
+        const double harmonic = static_cast<double>(c / 2 + 1);
+        const auto turned = std::complex(coefficients[i], coefficients[i + 1]) *
+                            std::polar(1.0, 2.0 * std::numbers::pi * harmonic * p / phases);
+        part += turned.real() * columns[c].segment(r.begin, r.length) +
+                turned.imag() * columns[c + 1].segment(r.begin, r.length);
+      }
+      const double left = (target.segment(r.begin, r.length) - part).squaredNorm();
+      if (p > 0 && left >= least) continue;
+      least = left;
+      force.segment(r.begin, r.length) = part;
+    }
+  }
+  return force;
+}
+
+std::vector<RowBlock> blocks_of_rows(const LogRows& rows) {
+  return blocks_of(rows.velocity, rows.logs(), static_cast<std::size_t>(rows.rows() / 60 + 1));
+}
+
+}  // namespace
+
+std::array<double, 2> ratio_interval(const Eigen::VectorXd& after, const Eigen::VectorXd& before, const LogRows& rows,
+                                     std::uint64_t seed) {
+  const auto blocks = blocks_of_rows(rows);
+  std::vector<std::pair<double, double>> squares;
+  for (const auto& b : blocks) {
+    const auto begin = static_cast<Eigen::Index>(b.begin), length = static_cast<Eigen::Index>(b.end - b.begin);
+    squares.emplace_back(after.segment(begin, length).squaredNorm(), before.segment(begin, length).squaredNorm());
+  }
+  std::mt19937_64 random(seed);
+  std::vector<double> ratios;
+  for (int r = 0; r < 400; ++r) {
+    double a = 0.0, b = 0.0;
+    for (std::size_t k = 0; k < squares.size(); ++k) {
+      const auto& drawn = squares[random() % squares.size()];
+      a += drawn.first;
+      b += drawn.second;
+    }
+    ratios.push_back(std::sqrt(a / b));
+  }
+  const auto interval = interval_95(std::move(ratios));
+  return {interval.low, interval.high};
+}
+
+HeldOutFigures evaluate_held_out(const LogRows& rows, const Eigen::VectorXd& target, const SearchContext& context,
+                                 std::span<const Term> terms, std::uint64_t seed) {
+  // Phases of ripples are found with all other terms in place.
+  std::vector<Eigen::VectorXd> forces(terms.size());
+  Eigen::VectorXd rest = target;
+  for (const bool periodic : {false, true})
+    for (std::size_t k = 0; k < terms.size(); ++k) {
+      if (candidates()[terms[k].candidate].periodic != periodic) continue;
+      forces[k] = force_of_term(rows, context, terms[k], rest);
+      rest -= forces[k];
+    }
+  bool constant = true, coulomb = true;
+  for (const auto& term : terms) {
+    constant = constant && !candidates()[term.candidate].names_constant;
+    coulomb = coulomb && !candidates()[term.candidate].names_coulomb;
+  }
+  const Nuisances nuisances(rows, context, constant, coulomb);
+  const Eigen::VectorXd baseline = nuisances.without(target), extended = nuisances.without(rest);
+  HeldOutFigures figures{rms(baseline), rms(extended), {}, {}, {}};
+  const Whitening whitening(extended, rows.logs());
+  const auto blocks = blocks_of_rows(rows);
+  const auto held_out_amplitude = [&](const Eigen::VectorXd& before, const Eigen::VectorXd& after, bool whitened) {
+    const Eigen::VectorXd force = before - after;
+    const auto as_is = repetition_of(force, before, rows.logs(), blocks);
+    if (!whitened) return as_is;
+    const auto white = repetition_of(whitening(force), whitening(before), rows.logs(), blocks);
+    return white.against() > as_is.against() ? white : as_is;
+  };
+  const Eigen::ArrayXd position = rows.stacked([](const Motion& m) { return m.x; }).array();
+  const Eigen::ArrayXd recorded =
+      (position >= context.lowest_position && position <= context.highest_position).cast<double>();
+  bool whitened = false;
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    const auto& candidate = candidates()[terms[k].candidate];
+    const Nuisances own(rows, context, !candidate.names_constant && constant, !candidate.names_coulomb && coulomb);
+    Eigen::VectorXd after = own.without(rest), before = own.without(rest + forces[k]);
+    if (candidate.along_stroke) after.array() *= recorded, before.array() *= recorded;
+    HoldoutGain gain;
+    gain.force_rms_ratio = rms(after) / rms(before);
+    gain.ci95 = ratio_interval(after, before, rows, seed + k);
+    figures.gains.push_back(gain);
+    figures.held_out_amplitudes.push_back(held_out_amplitude(before, after, terms[k].whitened));
+    whitened = whitened || terms[k].whitened;
+  }
+  figures.together = held_out_amplitude(baseline, extended, whitened);
+  return figures;
+}
+
+}  // namespace stiction::host

@@ -1,0 +1,33 @@
+// What terms gain on data that took no part in finding them. Each record's nuisances are estimated anew, the same in
+// baseline and extension: a constant force, today's Coulomb level, and of a ripple the home position; never what a term
+// names. What is known along the recorded stroke alone is judged in the rows within it.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "host/diagnose/judge/held_out_amplitude.hpp"
+#include "host/diagnose/search/search.hpp"
+
+namespace stiction::host {
+
+struct HeldOutFigures {
+  double force_baseline = 0.0, force_extended = 0.0;  // N rms, without nuisances
+  std::vector<HoldoutGain> gains;                     // of each term beside the others; force only
+  // Of each term's force beside the others', and of all together: what these rows show of it. Of terms that were found
+  // on whitened rows the less favourable of that as they are and whitened.
+  std::vector<HeldOutAmplitude> held_out_amplitudes;
+  HeldOutAmplitude together;
+};
+
+// `target`: residual force of the held-out rows. Intervals: bootstrap over blocks of rows, from `seed`. `context`: of
+// the search; `terms`: what it found.
+HeldOutFigures evaluate_held_out(const LogRows& rows, const Eigen::VectorXd& target, const SearchContext& context,
+                                 std::span<const Term> terms, std::uint64_t seed);
+
+// 95 % interval of the ratio of two residuals' rms, from a bootstrap over blocks of rows. `after` and `before`:
+// residual force in the `rows` (N) with the causes and without them; `seed` of the bootstrap.
+std::array<double, 2> ratio_interval(const Eigen::VectorXd& after, const Eigen::VectorXd& before, const LogRows& rows,
+                                     std::uint64_t seed);
+
+}  // namespace stiction::host

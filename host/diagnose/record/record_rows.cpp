@@ -1,0 +1,65 @@
+#include "host/diagnose/record/record_rows.hpp"
+
+#include <utility>
+
+#include "host/diagnose/record/inverse_dynamics.hpp"
+#include "host/identify/identification.hpp"
+#include "host/identify/suitability.hpp"
+
+namespace stiction::host {
+
+SignalSettings wide_band() {
+  SignalSettings s;
+  s.row_rate = 250.0;  // 0 to 100 Hz, in which the share of an effect is counted
+  s.cutoff = 250.0;    // of the position alone, so well above: what it took off m a at 100 Hz the force still has
+  return s;
+}
+
+Log part_of(const Log& log, std::size_t begin, std::size_t end) {
+  const auto cut = [&](const std::vector<double>& values) {
+    return values.empty() ? values
+                          : std::vector<double>(values.begin() + static_cast<std::ptrdiff_t>(begin),
+                                                values.begin() + static_cast<std::ptrdiff_t>(end));
+  };
+  Log part = log;
+  part.t = cut(log.t);
+  for (auto& axis : part.axes) {
+    for (const auto& channel : log_channels) axis.*channel.values = cut(axis.*channel.values);
+    for (auto* values : {&axis.x_load, &axis.supply}) *values = cut(*values);
+    if (!axis.left_out.empty())
+      axis.left_out = {axis.left_out.begin() + static_cast<std::ptrdiff_t>(begin),
+                       axis.left_out.begin() + static_cast<std::ptrdiff_t>(end)};
+  }
+  return part;
+}
+
+void count_from_start(Log& log) {
+  const double start = log.t.empty() ? 0.0 : log.t.front();
+  for (double& t : log.t) t -= start;
+}
+
+LogRows rows_of(const std::vector<Log>& logs, const machine::AxisModel& axis, const SignalSettings& settings) {
+  std::vector<Motion> motions;
+  for (const auto& log : logs) {
+    require_samples(log);
+    const auto& channels = channels_of(log, axis);
+    refuse_saturation(log, channels, axis);
+    motions.push_back(motion_of(log, channels, axis, Amperes::amplitude, settings));
+  }
+  return {std::move(motions), settings};
+}
+
+Eigen::VectorXd expected_force(const LogRows& rows, const machine::AxisModel& axis) {
+  return rows.stacked([&](const Motion& m) { return force_along(axis, m); });
+}
+
+Eigen::VectorXd own_residual(const std::vector<Log>& replayed, const std::vector<Log>& logs,
+                             const machine::AxisModel& axis, const SignalSettings& settings) {
+  auto records = replayed;
+  for (std::size_t k = 0; k < records.size(); ++k)
+    records[k].axes.front().external_force = channels_of(logs[k], axis).external_force;
+  const auto rows = rows_of(records, axis, settings);
+  return rows.force - expected_force(rows, axis);
+}
+
+}  // namespace stiction::host

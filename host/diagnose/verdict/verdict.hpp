@@ -1,0 +1,188 @@
+// What a diagnosis found: causes with parameters and evidence, what was tried and rejected, what stays unexplained. The
+// report and verdict.json show it; they compute nothing. Everything is computed on the linear axis; parameters and
+// words are in the units of the axis itself, and `units` shows the rest in them.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "firmware/machine/model/effect.hpp"
+#include "host/diagnose/record/noise_floor.hpp"
+#include "host/diagnose/verdict/agreement.hpp"
+#include "host/log/log.hpp"
+#include "host/log/shown_units.hpp"
+#include "sim/effects/effects.hpp"
+#include "sim/experiment/experiment_result.hpp"
+
+namespace stiction::host {
+
+// A key of an effect with what was found.
+struct EffectParameter {
+  std::string key;   // "pitch"
+  std::string unit;  // SI, of the axis itself
+  bool list = false;
+  std::vector<double> values;           // one, or those of a list
+  std::vector<double> standard_errors;  // one a value; empty: not known
+
+  // In verdict.json: "pitch_m".
+  std::string name() const { return key + sim::unit_suffix(unit); }
+};
+// Of an axis' effect. Throws std::logic_error for a key that the effect has not. `values` and `errors` in SI of the
+// linear axis, one for each of a list.
+EffectParameter effect_parameter(const machine::AxisModel& axis, sim::EffectId effect, std::string_view key,
+                                 std::vector<double> values, std::vector<double> errors);
+
+struct ConfusedWith {
+  sim::EffectId effect;
+  std::string separate_by;  // the experiment that tells them apart
+  bool always = false;      // no motion of this axis alone does
+};
+
+// Ratios of the extended to the baseline simulation on data that was not used.
+struct HoldoutGain {
+  double force_rms_ratio = 1.0;
+  std::optional<double> position_error_rms_ratio;  // none: no set-points to run in closed loop
+  std::optional<double> command_rms_ratio;         // of a finding in the command residual
+  std::array<double, 2> ci95{1.0, 1.0};            // of force_rms_ratio, or of command_rms_ratio where there is one
+};
+
+struct Finding {
+  explicit Finding(sim::EffectId found) : effect(found) {}
+
+  sim::EffectId effect;
+  std::string axis;
+  machine::KeyedValues values;  // as they go into the extended machine file
+  std::vector<EffectParameter> parameters;
+  // Where it shows: explains, p_value and holdout speak of the command residual, not of the residual force.
+  bool in_command = false;
+  double explains = 0.0;  // share of the residual's variance that it takes away, given the other findings
+  HoldoutGain holdout;
+  double p_value = 1.0;
+  std::vector<ConfusedWith> confused_with;
+  std::string evidence;              // sentences for readers
+  std::optional<double> part_error;  // m, what it does to the part: peak change of the position error by it
+  std::vector<sim::Chart> charts;
+
+  machine::Effect row() const { return sim::effect_with(effect, values); }  // of the extended machine file
+};
+
+// Of the residual in which it shows, on held-out data: with it over without it, rms.
+inline double gained_ratio(const Finding& finding) {
+  return finding.holdout.command_rms_ratio.value_or(finding.holdout.force_rms_ratio);
+}
+
+struct Rejected {
+  sim::EffectId effect;
+  std::string why;
+};
+
+// What is left over, by what it looks like.
+struct Unexplained {
+  double share = 0.0;                    // of the baseline's residual variance that is neither explained nor noise
+  std::optional<std::string> signature;  // none: nothing that repeats
+};
+
+// What the records leave open: which of two causes it is, or whether it is there at all.
+struct OpenQuestion {
+  sim::EffectId effect;
+  std::optional<sim::EffectId> rival;  // none: whether the effect is there
+  std::string separate_by;             // the experiment in words
+  bool by_motion = true;               // false: no motion of this axis alone answers it
+  double these_logs = 0.0;  // standard errors between the two answers that these records were to be expected to give
+};
+
+// Standard errors: what a trajectory separates by less it leaves open, even recorded four times.
+inline constexpr double least_separation = 2.5;
+
+struct RehearsedTrajectory {
+  std::string name, words;
+  double duration = 0.0;            // s
+  std::vector<double> separations;  // standard errors expected of it, one a question; 0 where no motion answers
+};
+
+// What to record next, chosen by running each trajectory in simulation.
+struct NextMeasurement {
+  std::string axis;
+  std::vector<OpenQuestion> questions;
+  std::vector<RehearsedTrajectory> trajectories;  // the best first
+  // Of the best one: set-points, and x and i as the machine file's simulation gives them. None: no trajectory answers
+  // any of the questions.
+  std::optional<Log> log;
+  int times = 1;     // how often it must be recorded until the question that it answers worst is settled
+  std::string note;  // where it begins, how far it goes
+  std::vector<sim::Chart> charts;
+};
+
+struct ResidualFigures {
+  double force_rms = 0.0;                    // N
+  std::optional<double> position_error_rms;  // m, measured against simulated; none without set-points
+  std::optional<double> command_rms;         // A, or V of a force source, above 1 Hz; none without set-points
+};
+
+// A measured row of the machine file beside the simulation: largest error (m) and largest current (A) of a circle.
+struct RowFigures {
+  double error = 0.0;
+  double current = 0.0;
+};
+struct RowShare {
+  sim::EffectId effect;
+  RowFigures by;  // what the extended simulation loses without it
+};
+struct DiagnosedRow {
+  std::string axis;
+  double feed = 0.0;  // m/s
+  bool training = false;
+  RowFigures measured, machine_file, extended;
+  std::optional<RowFigures> published;  // with the friction model in use
+  RowFigures left_out;                  // extended, had this feed alone been left out of the training
+  std::vector<RowShare> shares;
+};
+// Mean |simulated / measured - 1| over rows.
+struct RowScore {
+  double error = 0.0, current = 0.0;
+};
+struct RowScores {
+  RowScore published, machine_file, extended;  // published: of rows that have it
+};
+struct ReferenceRows {
+  std::string reference;  // "circle"
+  std::string friction;   // the model in use
+  std::vector<DiagnosedRow> rows;
+  RowScores unused;    // rows of feeds that took no part
+  RowScores left_out;  // all rows, each predicted with its feed left out of the training
+};
+
+// What identification from the training logs put into the machine file before it was diagnosed.
+struct StartValue {
+  std::string name;  // with its unit: "mass_kg"
+  double value = 0.0;
+  std::array<double, 2> ci95{};
+};
+
+struct Verdict {
+  std::string axis;  // of the machine; empty of a diagnosis of rows
+  ShownUnits units;  // of the axis; figures and charts are in those of the linear axis until they are shown
+  std::string machine;
+  std::vector<std::string> logs, holdout;
+  bool holdout_is_a_part = false;      // no held-out log was given: the last third of each log stands in for one
+  ResidualFigures baseline, extended;  // on the held-out data
+  std::string closed_loop_withheld;    // why they have no position error although there are set-points; empty: they do
+  std::string command_unit = "A";      // of their command_rms
+  // Of the held-out data: what noise alone leaves, and whether the extended machine file (of no findings: the file)
+  // leaves no more. None of a diagnosis of rows, whose noise is not known.
+  std::optional<NoiseFloor> noise_floor;
+  std::optional<Agreement> agreement;
+  std::vector<Finding> findings;  // by what each explains, the largest first
+  std::vector<Rejected> rejected;
+  Unexplained unexplained;
+  std::vector<std::string> questions;      // on amperes, lengths, signs and shifts of the logs: to be answered first
+  std::vector<StartValue> identified;      // empty: the file was diagnosed as it is
+  std::vector<std::string> notes;          // on the data: suspicions, what to record next
+  std::optional<NextMeasurement> next;     // none: nothing is open
+  std::optional<ReferenceRows> reference;  // of a diagnosis of the machine file's own rows
+  std::vector<sim::Chart> before_after;  // measured against simulated, before and after; residual by position, speed..
+};
+
+}  // namespace stiction::host
