@@ -1,0 +1,238 @@
+"""One case from one number: machine, motions, noise, hidden causes at their share, and what an oracle would see."""
+
+import paths  # noqa: F401
+import numpy as np
+
+import causes
+import machines
+import oracle
+import plant
+import residuals
+import tight_spot
+import tolerance
+import trajectories
+import unknowns
+from hidden import Session, Setup
+from noise import Noise
+from records import record
+
+KINDS = ("exact", "tolerance", "single", "pair", "triple", "unknown", "tight_spot")
+COUNT = {"single": 1, "pair": 2, "triple": 3}
+
+
+class Unreachable(Exception):
+    """The asked share is out of this member's range; another one is drawn."""
+
+
+def usual_steps(setup):
+    """Steps of the plant in a tick: the selftest holds that twice as many change nothing."""
+    return 4 if setup.p[plant.TWO] or setup.p[plant.LAG] else 2
+
+
+class Case:
+    """Machine, session, noise; runs of it with hidden causes."""
+
+    def __init__(self, kind, seed, wishes):
+        self.kind, self.seed = kind, seed
+        streams = [np.random.default_rng([seed, KINDS.index(kind), k]) for k in range(5)]
+        self.rng_machine, self.rng_motion, self.rng_noise, self.rng_cause, self.rng_sensor = streams
+        self.machine = machines.draw(self.rng_machine, **wishes)
+        train, held = trajectories.commissioning(self.rng_motion, self.machine.room(), machines.TICK)
+        begins, at = [], 0.0
+        for sets in train + held:
+            begins.append(at)
+            at += len(sets) * machines.TICK + self.rng_motion.uniform(2.0, 30.0)
+        self.session = Session(train + held, begins, len(train), machines.TICK)
+        self.noise = Noise(self.rng_noise, self.machine)
+        self.draw_noise()
+        self.null()
+
+    def draw_noise(self):
+        """The noise of each log: force and encoder at each tick, current at each row."""
+        m, every = self.machine, round(1 / self.machine.rate / machines.TICK)
+        self.forces, self.errors, self.currents = [], [], []
+        for sets in self.session.sets:
+            self.forces.append(self.noise.on_carriage(self.rng_sensor, sets, machines.TICK))
+            self.errors.append(self.noise.of_encoder(self.rng_sensor, len(sets)))
+            self.currents.append(self.noise.of_current(self.rng_sensor, len(sets[::every]), 1 / m.rate))
+
+    def run(self, setup, log, noisy, substeps=None):
+        """A log: recorded with noise and steps, or without any."""
+        m, sets = self.machine, self.session.sets[log]
+        outside, factor = setup.signals(self.session, log)
+        substeps = substeps or usual_steps(setup)
+        quarter = setup.p[plant.DEAD] / machines.TICK * substeps
+        if abs(quarter - round(quarter)) > 1e-6:
+            substeps = 4
+        arrays = (setup.p, setup.tables, setup.on)
+        if noisy:
+            made = plant.simulate(arrays, setup.c, sets, outside + self.forces[log], factor, self.errors[log], substeps)
+            self.check(made, sets)
+            return record(m, sets, made, setup.skew, self.currents[log])
+        p, c = setup.p.copy(), setup.c.copy()
+        p[plant.INCREMENT] = c[machines.law.POSITION_INCREMENT] = 0.0
+        made = plant.simulate((p, setup.tables, setup.on), c, sets, outside, factor, None, substeps)
+        self.check(made, sets)
+        return residuals.noiseless(m, sets, made, setup.skew)
+
+    def check(self, made, sets):
+        """Raises where the loop is not stable or its current not within the limits."""
+        wrong = np.abs(made[:, plant.X] - sets[:, 0]).max()
+        if not np.isfinite(wrong) or wrong > 0.05 * self.machine.stroke or not np.all(np.isfinite(made[:, plant.I])):
+            raise Unreachable("the loop is not stable")
+        if np.abs(made[:, plant.COMMAND]).max() > 0.95 * self.machine.amperes:
+            raise Unreachable("the current is limited")
+        if hasattr(self, "worst") and wrong > 8 * self.worst:
+            raise Unreachable("the loop is hardly stable")
+
+    def residual(self, channel, logs):
+        """Residuals of the training logs in one channel."""
+        m = self.machine
+        if channel == "command":
+            return [residuals.command(m, log, sets) for log, sets in zip(logs, self.session.sets)]
+        return [residuals.force(m, log, mask) for log, mask in zip(logs, self.masks)]
+
+    def null(self):
+        """The noiseless and the noisy null of the training logs, and the noise of each channel."""
+        trained = range(self.session.trained)
+        exact = Setup(self.machine)
+        self.clean = [self.run(exact, k, False) for k in trained]
+        self.worst = max(np.abs(log.x - log.sets[:, 0]).max() for log in self.clean)
+        self.masks = [residuals.moving(self.machine, log) for log in self.clean]
+        self.noisy = [self.run(exact, k, True) for k in trained]
+        self.channels = {}
+        if self.channel("force")[3] > (0.06 * self.machine.coulomb) ** 2:
+            raise Unreachable("the noise is too large for a servo")
+
+    def channel(self, name):
+        """(clean residuals, noise, masks, noise power) of a channel, computed once."""
+        if name not in self.channels:
+            clean, noisy = self.residual(name, self.clean), self.residual(name, self.noisy)
+            noise = [a - b for a, b in zip(noisy, clean)]
+            masks = self.masks if name == "force" else [np.ones(len(n), bool) for n in noise]
+            self.channels[name] = (clean, noise, masks, residuals.power(noise, masks))
+        return self.channels[name]
+
+    def effect(self, cause, size, steps=None):
+        """The noiseless change of the residual by a cause, one signal per training log, in half of the usual steps (the
+        selftest holds the share against finer ones)."""
+        setup = Setup(self.machine)
+        cause.apply(setup, size)
+        steps = steps or usual_steps(setup) // 2
+        logs = [self.run(setup, k, False, steps) for k in range(self.session.trained)]
+        return [a - b for a, b in zip(self.residual(cause.channel, logs), self.channel(cause.channel)[0])]
+
+    def sized(self, cause, share):
+        """Size and effect at which the cause has the share, within 6 %; secant rule on the logarithms, bracketed."""
+        _, _, masks, noise = self.channel(cause.channel)
+        wanted = noise * share / (1 - share)
+        low, high, size, before = cause.least, cause.most, cause.size, None
+        for _ in range(9):
+            size = min(max(size, low), high)
+            try:
+                effect = self.effect(cause, size)
+                power = residuals.power(effect, masks)
+            except Unreachable:
+                if size <= cause.least * 1.01:
+                    raise
+                high, size = size, np.sqrt(size * low) if before is None else np.sqrt(size * before[0])
+                continue
+            if abs(power / wanted - 1) < 0.06:
+                return size, effect, power / (power + noise)
+            if (power < wanted and size >= 0.999 * high) or (power > wanted and size <= 1.001 * low):
+                raise Unreachable(f"{cause.name}: share out of range")
+            low, high = (size, high) if power < wanted else (low, size)
+            slope = 2.0
+            if before is not None and power != before[1] and size != before[0]:
+                slope = np.clip(np.log(power / before[1]) / np.log(size / before[0]), 0.5, 6.0)
+            before = (size, power)
+            size *= np.clip((wanted / max(power, 1e-300)) ** (1 / slope), 0.02, 50.0)
+            if not low < size < high:
+                size = np.sqrt(low * high)
+        raise Unreachable(f"{cause.name}: no size found")
+
+
+def wishes_of(names):
+    """What the machine must be like for these causes to be possible."""
+    wishes = {}
+    if "friction_lag" in names:
+        wishes["stribeck"] = True
+    if {"structural_resonance", "backlash", "tolerance"} & set(names):
+        wishes["two"] = False
+    return wishes
+
+
+def choose(rng, count, first):
+    """Names of causes that can be told from one another; the first is given or drawn evenly."""
+    while True:
+        names = [first] if first else [str(rng.choice(list(causes.CAUSES)))]
+        names += [str(n) for n in rng.choice([n for n in causes.CAUSES if n != names[0]], count - 1, replace=False)]
+        if not any(pair <= set(names) for pair in causes.NEVER_TOGETHER):
+            return names
+
+
+def new_case(kind, seed, names):
+    """A case whose null runs; a machine that its servo cannot move is replaced by the next one."""
+    for again in range(20):
+        try:
+            return Case(kind, seed + 1000003 * again, wishes_of(names))
+        except Unreachable:
+            continue
+    raise RuntimeError(f"no machine for {kind} {seed}")
+
+
+def drawn(case, factory, share):
+    """A member of a class at its share; other members are tried where one cannot reach it."""
+    for _ in range(6):
+        cause = factory(case.rng_cause, case.machine, case.session)
+        try:
+            return (cause, *case.sized(cause, share))
+        except Unreachable:
+            continue
+    return None
+
+
+def build(kind, seed, share=0.1, name=None):
+    """The whole case: Case, list of (Cause, size, effect, share reached), errors of tolerance, records."""
+    rng = np.random.default_rng([seed, KINDS.index(kind), 99])
+    for _ in range(8):
+        names = choose(rng, COUNT[kind], name) if kind in COUNT else [kind] if kind == "tolerance" else []
+        case = new_case(kind, seed, names)
+        off, found = {}, []
+        if kind in COUNT:
+            found = [drawn(case, causes.CAUSES[n], share) for n in names]
+        elif kind == "unknown":
+            found = [drawn(case, unknowns.UNKNOWNS[int(rng.integers(len(unknowns.UNKNOWNS)))], share)]
+        elif kind == "tight_spot":
+            cause = tight_spot.tight_spot(case.rng_cause, case.machine, case.session)
+            effect = case.effect(cause, cause.size)
+            power, noise = residuals.power(effect, case.masks), case.channel("force")[3]
+            found = [(cause, cause.size, effect, power / (power + noise))]
+        elif kind == "tolerance":
+            off = tolerance.draw(case.rng_cause, case.machine)
+        if any(f is None for f in found):
+            continue
+        setup = Setup(case.machine)
+        for cause, size, _, _ in found:
+            cause.apply(setup, size)
+        if off:
+            tolerance.apply(setup, off)
+        known = case.noisy if not (found or off) else []
+        try:
+            logs = known + [case.run(setup, k, True) for k in range(len(known), len(case.session.sets))]
+        except Unreachable:
+            continue
+        return case, found, off, logs
+    raise RuntimeError(f"no case for {kind} {seed} {name}")
+
+
+def odds(case, found):
+    """Nats of each hidden cause beside the others, and beside each set of aliases; the least of the first."""
+    each, alias = {}, {}
+    for k, (cause, _, effect, _) in enumerate(found):
+        clean, noise, masks, _ = case.channel(cause.channel)
+        seer = oracle.Oracle(case.machine, case.session, case.clean, masks, noise, cause.channel)
+        others = [seer.effect(e) for j, (c, _, e, _) in enumerate(found) if j != k and c.channel == cause.channel]
+        each[cause.name] = seer.nats(effect, cause.nuisance, others)
+        alias[cause.name] = {a: seer.nats(effect, cause.nuisance, others + seer.alias(a)) for a in cause.aliases}
+    return (min(each.values()) if each else None), each, alias
