@@ -26,7 +26,10 @@ class Unreachable(Exception):
 
 def usual_steps(setup):
     """Steps of the plant in a tick: the selftest holds that twice as many change nothing."""
-    return 4 if setup.p[plant.TWO] or setup.p[plant.LAG] else 2
+    if setup.p[plant.HALF_GAP]:
+        return 8
+    fine = setup.machine.friction == "coulomb_viscous" and setup.machine.increment * setup.machine.length < 5e-9
+    return 4 if setup.p[plant.TWO] or setup.p[plant.LAG] or fine else 2
 
 
 class Case:
