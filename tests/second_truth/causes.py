@@ -269,7 +269,7 @@ def split(s, machine, motor_part, stiffness, damping_ratio, behind=False):
 
 
 def structural_resonance(rng, machine, session):
-    behind, part, damping = rng.random() < 0.3, rng.uniform(0.2, 0.75), log_uniform(rng, 0.015, 0.12)
+    behind, part, damping = rng.random() < 0.3, rng.uniform(0.2, 0.75), log_uniform(rng, 0.03, 0.2)
     fastest = 2 * np.pi * 600.0
 
     def apply(s, size):

@@ -149,8 +149,9 @@ def rounded(value, digits=4):
     return float(f"{value:.{digits}g}")
 
 
-def draw(rng, rotary=None, two=None, friction=None, stribeck=False):
-    """A random machine. rotary, two, friction: wishes; stribeck: its law has a falling part."""
+def draw(rng, rotary=None, two=None, friction=None, stribeck=False, soft=False):
+    """A random machine. rotary, two, friction: wishes; stribeck: its law has a falling part; soft: its gains are those
+    of a machine with an elastic mode."""
     rotary = bool(rng.random() < 0.25) if rotary is None else rotary
     length = log_uniform(rng, 0.02, 0.3) if rotary else 1.0
     mass = rounded(log_uniform(rng, 1e-5, 10.0) if rotary else log_uniform(rng, 20.0, 2000.0))
@@ -182,7 +183,7 @@ def draw(rng, rotary=None, two=None, friction=None, stribeck=False):
     mutual = rounded(inductance * rng.uniform(0.0, 0.15), 3) if model == "synchronous" else 0.0
     lag = dead + 1.5 * TICK
     current_gain = rounded((inductance - mutual) / (2 * lag) * rng.uniform(0.6, 1.1))
-    bandwidth = log_uniform(rng, 90.0, 330.0)
+    bandwidth = log_uniform(rng, 30.0, 90.0) if soft else log_uniform(rng, 90.0, 330.0)
     integral = rounded(rng.uniform(1.3, 4.0) / bandwidth, 3)
     velocity_gain = rounded(bandwidth * mass / force_constant)
     finest = 1.2e-9 / length  # what the numbers of a drive hold: 2^30 counts a metre
