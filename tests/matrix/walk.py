@@ -30,7 +30,7 @@ def page_script(html):
 
 
 def names_in(verdict):
-    return [finding["effect"] for finding in verdict["findings"]]
+    return [finding["effect"] for finding in verdict["findings"] if finding["effect"] != "force_map"]
 
 
 def said_of(verdict):
