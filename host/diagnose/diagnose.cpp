@@ -14,7 +14,7 @@
 #include "host/diagnose/describe/diagnosis_charts.hpp"
 #include "host/diagnose/describe/residual_diagnostics.hpp"
 #include "host/diagnose/judge/closed_loop.hpp"
-#include "host/diagnose/judge/closed_loop_refinement.hpp"
+#include "host/diagnose/judge/closed_loop_description.hpp"
 #include "host/diagnose/judge/command_residual.hpp"
 #include "host/diagnose/judge/holdout.hpp"
 #include "host/diagnose/next_measurement/next_measurement.hpp"
@@ -24,11 +24,13 @@
 #include "host/diagnose/record/replay_setup.hpp"
 #include "host/diagnose/search/search.hpp"
 #include "host/diagnose/search/second_band.hpp"
+#include "host/diagnose/statistics/noise_model.hpp"
 #include "host/identify/identification.hpp"
 #include "host/identify/own_identification.hpp"
 #include "host/identify/standstill.hpp"
 #include "host/identify/suitability.hpp"
 #include "sim/effects/effects.hpp"
+#include "sim/effects/force_map/force_map.hpp"
 #include "sim/effects/time_skew/time_skew.hpp"
 
 namespace stiction::host {
@@ -36,9 +38,6 @@ namespace {
 
 constexpr double of_training = 0.1;  // residuals hold more than noise: a p-value claims too much
 constexpr double shortest = 3.0;     // s, of the training logs together
-// Of what a shape takes that other records speak against: causes in its place take nearly as much of the training data,
-// or they are no more than what they share with it.
-constexpr double as_much = 0.7;
 SearchContext context_of(const machine::AxisModel& axis, const LogRows& rows, const SignalSettings& settings) {
   SearchContext context;
   context.axis = axis;
@@ -67,13 +66,16 @@ std::vector<ConfusedWith> confused_with(const Term& term) {
   const auto known = sim::confusions_of(*candidates()[term.candidate].effect);
   for (const auto& confusion : known)
     if (confusion.always) list.push_back({confusion.other, std::string(confusion.separate_by), true});
-  for (const auto c : term.alternatives) {
-    const sim::EffectId other = *candidates()[c].effect;
+  for (const auto& [candidate, probability] : term.alternatives) {
+    if (candidates()[candidate].outside()) continue;
+    const sim::EffectId other = *candidates()[candidate].effect;
     if (std::any_of(list.begin(), list.end(), [&](const ConfusedWith& l) { return l.effect == other; })) continue;
     const auto alias = std::find_if(known.begin(), known.end(), [&](const auto& a) { return a.other == other; });
-    list.push_back({other, alias != known.end() ? std::string(alias->separate_by)
-                                                : "record longer, with different speeds, accelerations and strokes: in "
-                                                  "these records both explain the residual equally well"});
+    list.push_back({other,
+                    alias != known.end() ? std::string(alias->separate_by)
+                                         : "record longer, with different speeds, accelerations and strokes: in "
+                                           "these records both explain the residual equally well",
+                    false, probability});
   }
   return list;
 }
@@ -93,18 +95,15 @@ std::string evidence_of(const Term& term, const HeldOutAmplitude& held_out_ampli
       held_out_amplitude.against() < 0.0 ? "" : ", which neither confirms nor refutes it");
 }
 
-Finding finding_of(const SearchContext& context, const Term& term, const HoldoutGain& gain,
+// What the data say for a finding that has its parameters.
+void give_evidence(Finding& finding, const Term& term, const HoldoutGain& gain,
                    const HeldOutAmplitude& held_out_amplitude, std::size_t blocks) {
-  const auto& candidate = candidates()[term.candidate];
-  Finding finding(*candidate.effect);
-  finding.axis = context.axis.name;
-  candidate.describe(context, term.shape, term.coefficients, term.covariance, finding);
   finding.explains = term.explains;
   finding.holdout = gain;
   finding.p_value = term.judgement.p_value;
+  finding.probability = term.probability;
   finding.confused_with = confused_with(term);
   finding.evidence = evidence_of(term, held_out_amplitude, blocks);
-  return finding;
 }
 
 // What the residual force says of a current that is recorded late: by a cause found, and in what is left.
@@ -132,51 +131,43 @@ double most_against(const Term& term, const HeldOutAmplitude& held_out_amplitude
   return std::max(-2.0 * of_training * std::log(chance), 0.0);
 }
 
+std::vector<Term> joined(std::vector<Term> terms, std::span<const Term> more) {
+  terms.insert(terms.end(), more.begin(), more.end());
+  return terms;
+}
+
 // Withdraws the term that held-out data speak against most, until they do against none and not against all of them
-// together. Returns the candidates that were withdrawn.
+// together. Returns the candidates that were withdrawn. `maps`: terms without a name that the machine is extended by,
+// beside them.
 std::vector<std::size_t> keep_what_holds(const LogRows& rows, const Eigen::VectorXd& target,
-                                         const SearchContext& context, SearchResult& found, Verdict& verdict,
-                                         std::uint64_t seed) {
+                                         const SearchContext& context, std::vector<Term>& terms,
+                                         std::span<const Term> maps, Verdict& verdict, std::uint64_t seed) {
   std::vector<std::size_t> withdrawn;
   for (;;) {
-    const auto figures = evaluate_held_out(rows, target, context, found.terms, seed);
-    if (found.terms.empty()) return withdrawn;
+    if (terms.empty()) return withdrawn;
+    const auto figures = evaluate_held_out(rows, target, context, joined(terms, maps), seed);
     std::vector<double> too_much;
-    for (std::size_t k = 0; k < found.terms.size(); ++k)
+    for (std::size_t k = 0; k < terms.size(); ++k)
       too_much.push_back(figures.held_out_amplitudes[k].against() -
-                         most_against(found.terms[k], figures.held_out_amplitudes[k]));
+                         most_against(terms[k], figures.held_out_amplitudes[k]));
     const auto worst =
         static_cast<std::size_t>(std::distance(too_much.begin(), std::max_element(too_much.begin(), too_much.end())));
     // Each may gain beside the others and all of them together lose: wrong names that lean on each other.
     const bool holds_alone = too_much[worst] < 0.0;
-    if (holds_alone && (found.terms.size() == 1 || figures.together.against() < 0.0)) return withdrawn;
-    const auto& term = found.terms[worst];
+    if (holds_alone && (terms.size() == 1 || figures.together.against() < 0.0)) return withdrawn;
+    const auto& term = terms[worst];
     const auto& candidate = candidates()[term.candidate];
     withdrawn.push_back(term.candidate);
-    if (candidate.outside())
-      verdict.unexplained = {term.explains, candidate.looks_like(context, term.shape, term.coefficients) +
-                                                " (in the training logs; the held-out logs do not confirm it)"};
-    else
-      verdict.rejected.push_back(
-          {*candidate.effect,
-           fmt::format(
-               "withdrawn: found in the training data, but without improvement on held-out data: held-out amplitude {} "
-               "of the fitted one{}, residual force {:.4f} times that without it",
-               repeated(holds_alone ? figures.together : figures.held_out_amplitudes[worst]),
-               holds_alone ? ", together with all other findings" : "",
-               holds_alone ? figures.force_extended / figures.force_baseline : figures.gains[worst].force_rms_ratio)});
-    found.terms.erase(found.terms.begin() + static_cast<std::ptrdiff_t>(worst));
+    verdict.rejected.push_back(
+        {*candidate.effect,
+         fmt::format(
+             "withdrawn: found in the training data, but without improvement on held-out data: held-out amplitude {} "
+             "of the fitted one{}, residual force {:.4f} times that without it",
+             repeated(holds_alone ? figures.together : figures.held_out_amplitudes[worst]),
+             holds_alone ? ", together with all other findings" : "",
+             holds_alone ? figures.force_extended / figures.force_baseline : figures.gains[worst].force_rms_ratio)});
+    terms.erase(terms.begin() + static_cast<std::ptrdiff_t>(worst));
   }
-}
-
-std::vector<std::size_t> outside_among(std::vector<std::size_t> of) {
-  std::erase_if(of, [](std::size_t candidate) { return !candidates()[candidate].outside(); });
-  return of;
-}
-
-double explained(const std::vector<Term>& terms) {
-  return std::accumulate(terms.begin(), terms.end(), 0.0,
-                         [](double sum, const Term& term) { return sum + term.explains; });
 }
 
 std::string why_motion_is_measured(const DiagnoseInput& input) {
@@ -190,24 +181,48 @@ std::string why_motion_is_measured(const DiagnoseInput& input) {
       refused.empty() ? " Log x_set." : "");
 }
 
-// What was found outside of the vocabulary: taken out of the terms, with the force (N, of the rows) that it makes.
-struct Outside {
-  Eigen::VectorXd force;
+// Takes the terms without a name out of those that were found.
+std::vector<Term> take_unnamed(SearchResult& found) {
+  const auto first = std::stable_partition(found.terms.begin(), found.terms.end(),
+                                           [](const Term& term) { return !candidates()[term.candidate].outside(); });
+  std::vector<Term> unnamed(std::make_move_iterator(first), std::make_move_iterator(found.terms.end()));
+  found.terms.erase(first, found.terms.end());
+  return unnamed;
+}
+
+// Those that a table of the machine file holds.
+std::vector<Term> maps_of(const std::vector<Term>& unnamed) {
+  std::vector<Term> maps;
+  std::copy_if(unnamed.begin(), unnamed.end(), std::back_inserter(maps),
+               [](const Term& term) { return candidates()[term.candidate].has_map(); });
+  return maps;
+}
+
+Finding map_finding(const SearchContext& context, const Term& term, const HoldoutGain& gain,
+                    const HeldOutAmplitude& held_out_amplitude) {
+  const auto& candidate = candidates()[term.candidate];
+  Finding finding(sim::id_of<sim::ForceMap>());
+  finding.axis = context.axis.name;
+  candidate.describe(context, term.shape, term.coefficients, term.covariance, finding);
+  finding.explains = term.explains;
+  finding.holdout = gain;
+  finding.p_value = term.judgement.p_value;
+  finding.probability = term.probability;
+  finding.evidence =
+      fmt::format("{}. Held-out amplitude: {} of the fitted one.",
+                  candidate.looks_like(context, term.shape, term.coefficients), repeated(held_out_amplitude));
+  return finding;
+}
+
+Unexplained unexplained_by(const SearchContext& context, const std::vector<Term>& unnamed) {
   Unexplained unexplained;
-};
-Outside take_outside(const LogRows& rows, const SearchContext& context, SearchResult& found) {
-  Outside outside{Eigen::VectorXd::Zero(rows.rows()), {}};
   std::vector<std::string> words;
-  std::erase_if(found.terms, [&](const Term& term) {
-    const auto& candidate = candidates()[term.candidate];
-    if (!candidate.outside()) return false;
-    outside.force += weighted_columns(rows, context, candidate, term.shape, term.coefficients);
-    outside.unexplained.share += term.explains;
-    words.push_back(candidate.looks_like(context, term.shape, term.coefficients));
-    return true;
-  });
-  if (!words.empty()) outside.unexplained.signature = fmt::format("{}", fmt::join(words, "; and "));
-  return outside;
+  for (const auto& term : unnamed) {
+    unexplained.share += term.explains;
+    words.push_back(candidates()[term.candidate].looks_like(context, term.shape, term.coefficients));
+  }
+  if (!words.empty()) unexplained.signature = fmt::format("{}", fmt::join(words, "; and "));
+  return unexplained;
 }
 
 double rms_about_mean(const Eigen::VectorXd& values, const Eigen::VectorXd& counts) {
@@ -305,6 +320,15 @@ Verdict diagnose(const DiagnoseInput& input) {
                                         Disturbance(force, rows.logs(), rows.period(0)), replayed);
     };
     context.disturb(target);
+    EffectResponse own(input.machine, input.axis, all, settings, Disturbance(target, rows.logs(), rows.period(0)),
+                       replayed);
+    const auto of_disturbance = [&own](const Motion& motion) { return own.of_disturbance(motion); };
+    // Where the record is quieter than what is left of it would make it, the runs in silence are the nearer ones.
+    const Eigen::VectorXd disturbed = target - regressors.stacked(of_disturbance).cwiseProduct(regressors.counts());
+    if (noise_log_likelihood(disturbed, rows.logs()) > noise_log_likelihood(target, rows.logs())) {
+      target = disturbed;
+      held_target -= held_regressors.stacked(of_disturbance).cwiseProduct(held_regressors.counts());
+    }
   }
   begin(1);
   const bool resolved = target.norm() > resolution_of_dynamics * expected.norm();
@@ -315,34 +339,46 @@ Verdict diagnose(const DiagnoseInput& input) {
         100.0 * target.norm() / expected.norm(), 100.0 * resolution_of_dynamics));
   auto found = resolved ? search_causes(regressors, target, context) : SearchResult{{}, {}, target};
   begin(2);
-  const auto keep = [&](SearchResult& searched) {
-    return keep_what_holds(held_regressors, held_target, context, searched, verdict, input.seed);
+  auto unnamed = take_unnamed(found);
+  const auto describe = [&](std::vector<Term> named, std::vector<Term> without_name) {
+    return describe_in_closed_loop(std::move(named), std::move(without_name), responses, regressors, target,
+                                   found.residual, context);
   };
-  auto withdrawn = keep(found);
-  // A shape outside of the vocabulary that other records speak against may have stood in a cause's place.
-  if (const auto refuted = outside_among(withdrawn); found.terms.empty() && !refuted.empty()) {
-    auto again = search_causes(regressors, target, context, refuted);
-    const double taken = verdict.unexplained.share;
-    auto withdrawn_again = keep(again);
-    if (!again.terms.empty() && explained(again.terms) > as_much * taken) {
-      verdict.unexplained = {};
-      found = std::move(again);
-      withdrawn = std::move(withdrawn_again);
+  auto described = describe(std::move(found.terms), std::move(unnamed));
+  auto maps = maps_of(described.unnamed);
+  begin(3);
+  const auto withdrawn =
+      keep_what_holds(held_regressors, held_target, context, described.terms, maps, verdict, input.seed);
+  if (!withdrawn.empty()) described = describe(std::move(described.terms), std::move(described.unnamed));
+  found.terms = std::move(described.terms);
+  verdict.findings = std::move(described.findings);
+  for (const auto& remainder : described.remainders)
+    if (const auto& candidate = candidates()[remainder.candidate]; !candidate.outside())
+      verdict.rejected.push_back(
+          {*candidate.effect, "the other findings, described in closed loop, leave nothing of it"});
+  Eigen::VectorXd inside = target;
+  for (const auto& term : described.unnamed)
+    inside -= weighted_columns(regressors, context, candidates()[term.candidate], term.shape, term.coefficients);
+  maps = maps_of(described.unnamed);
+  auto figures = evaluate_held_out(held_regressors, held_target, context, joined(found.terms, maps), input.seed);
+  for (std::size_t k = 0; k < maps.size();) {
+    if (figures.held_out_amplitudes[found.terms.size() + k].against() < 0.0) {
+      ++k;
+      continue;
     }
+    maps.erase(maps.begin() + static_cast<std::ptrdiff_t>(k));
+    figures = evaluate_held_out(held_regressors, held_target, context, joined(found.terms, maps), input.seed);
+    k = 0;
   }
-  const auto outside = take_outside(regressors, context, found);
-  // What is outside extends no machine file: the names have to gain without it, too.
-  if (outside.unexplained.signature) keep_what_holds(held_regressors, held_target, context, found, verdict, input.seed);
-  const Eigen::VectorXd inside = target - outside.force;
-  const auto figures = evaluate_held_out(held_regressors, held_target, context, found.terms, input.seed);
   verdict.baseline.force_rms = figures.force_baseline;
   verdict.extended.force_rms = figures.force_extended;
   for (std::size_t k = 0; k < found.terms.size(); ++k)
-    verdict.findings.push_back(
-        finding_of(context, found.terms[k], figures.gains[k], figures.held_out_amplitudes[k], found.blocks));
+    give_evidence(verdict.findings[k], found.terms[k], figures.gains[k], figures.held_out_amplitudes[k], found.blocks);
+  for (std::size_t k = 0; k < maps.size(); ++k)
+    verdict.findings.push_back(map_finding(context, maps[k], figures.gains[found.terms.size() + k],
+                                           figures.held_out_amplitudes[found.terms.size() + k]));
   compare_bands(verdict, found.terms, regressors, inside, context);
-  begin(3);
-  refine_in_closed_loop(verdict.findings, found, responses, regressors, inside, context);
+  add_cause_charts(verdict, regressors, context, joined(found.terms, maps), found.residual);
   begin(4);
   propose_next_measurement(verdict, {input.machine, input.axis, settings, regressors, inside, context, found},
                            input.next_measurement);
@@ -354,12 +390,11 @@ Verdict diagnose(const DiagnoseInput& input) {
   else if (judged.cascaded())
     judge_command(verdict, input, {logs, rows}, {held_out, held_rows}, record_delay(regressors, context, found));
   for (const auto& d : found.discarded) verdict.rejected.push_back({*candidates()[d.candidate].effect, d.why});
-  if (outside.unexplained.signature)
-    verdict.unexplained = outside.unexplained;
+  if (!described.unnamed.empty())
+    verdict.unexplained = unexplained_by(context, described.unnamed);
   else if (resolved && withdrawn.empty())
     verdict.unexplained =
         signature_of(regressors, found.residual, target.squaredNorm(), found.correlation, verdict.units);
-  add_cause_charts(verdict, regressors, context, found.terms, found.residual);
   add_charts(verdict, rows, target, found.residual);
   begin(5);
   if (input.closed_loop) judge_in_closed_loop(verdict, input.machine, input.axis, held_out);

@@ -25,6 +25,7 @@ std::string causes(const Verdict& verdict) {
   constexpr std::size_t named = 3;
   std::vector<std::string> names;
   for (const auto& finding : verdict.findings) {
+    if (!finding.names_cause()) continue;
     auto name = fmt::format("{} ({})", decapitalized(finding.effect->title), finding.axis);
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(std::move(name));
   }
@@ -112,7 +113,12 @@ std::string percent(double share) { return fmt::format("{:.{}f}", 100.0 * share,
 std::string deviation_text(double linear, const ShownQuantity& shown) { return fmt::format("{:.2g}", shown(linear)); }
 
 std::string diagnosis_sentence(const Verdict& verdict) {
-  if (verdict.findings.empty()) return typeset(nothing_found(verdict));
+  if (named_causes(verdict.findings) == 0) {
+    const auto gain = verdict.findings.empty() ? "" : worth(verdict.baseline, verdict.extended, verdict);
+    if (gain.empty()) return typeset(nothing_found(verdict));
+    return typeset(fmt::format("{} The extended machine file holds it as a table without a name: {} on held-out data.",
+                               nothing_found(verdict), gain));
+  }
   const auto missing = fmt::format(
       "The machine file{} lacks or misstates {}",
       verdict.identified.empty() ? "" : ", with mass and friction identified from these logs,", causes(verdict));

@@ -23,6 +23,8 @@ namespace {
 using json = nlohmann::ordered_json;
 using namespace std::string_literals;
 
+constexpr std::size_t most_rows = 20;  // of a parameter without errors: a longer list is a table of the machine file
+
 std::string spaced(std::string key) {
   std::replace(key.begin(), key.end(), '_', ' ');
   return key;
@@ -32,6 +34,18 @@ std::string spaced(std::string key) {
 // two of its half width.
 void add_rows(json& rows, const EffectParameter& parameter) {
   const auto label = spaced(parameter.key);
+  if (parameter.standard_errors.empty() && parameter.values.size() > most_rows) {
+    const auto [least, most] = std::minmax_element(parameter.values.begin(), parameter.values.end());
+    const auto unit = engineering_unit(parameter.unit, std::max(std::abs(*least), std::abs(*most)));
+    rows.push_back({{"label", label},
+                    {"unit", typeset(unit.unit)},
+                    {"value", fmt::format("{} values, {:.3g} to {:.3g}", parameter.values.size(), *least * unit.factor,
+                                          *most * unit.factor)},
+                    {"half", nullptr},
+                    {"low", nullptr},
+                    {"high", nullptr}});
+    return;
+  }
   for (std::size_t k = 0; k < parameter.values.size(); ++k) {
     const double value = parameter.values[k];
     const bool known = k < parameter.standard_errors.size() && parameter.standard_errors[k] > 0.0;
@@ -272,12 +286,13 @@ std::string axis_clause(const Verdict& verdict) {
   const auto& force = verdict.units.force;
   const auto status = verdict.agreement ? verdict.agreement->status : Status::cannot_tell;
   const auto words = status == Status::cannot_tell ? "cannot be told to agree" : std::string(name_of(status));
+  const auto named = named_causes(verdict.findings);
   if (verdict.findings.empty())
     return fmt::format("axis {} {} ({:.3g} {} rms of residual force)", verdict.axis, words,
                        force(verdict.baseline.force_rms), force.unit);
   return fmt::format("axis {} {} ({:.3g} → {:.3g} {} rms with {} {})", verdict.axis, words,
-                     force(verdict.baseline.force_rms), force(verdict.extended.force_rms), force.unit,
-                     verdict.findings.size(), verdict.findings.size() == 1 ? "cause" : "causes");
+                     force(verdict.baseline.force_rms), force(verdict.extended.force_rms), force.unit, named,
+                     named == 1 ? "cause" : "causes");
 }
 
 }  // namespace

@@ -11,6 +11,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "sim/effects/effects.hpp"
+#include "sim/effects/force_map/force_map.hpp"
 #include "sim/plant/friction/maxwell_slip.hpp"
 #include "sim/plant/friction/parameters.hpp"
 
@@ -151,6 +153,7 @@ Outcome score(const PlannedCase& planned, const BlindCase& blind, const host::Ve
   const auto& order = planned.order;
   std::set<std::string> explained;
   for (const auto& finding : verdict.findings) {
+    if (sim::is_a<sim::ForceMap>(finding.effect)) continue;  // it names no cause
     const auto name = finding.effect.name();
     const bool hit = right(name, order);
     const bool alias = !hit && std::any_of(finding.confused_with.begin(), finding.confused_with.end(),
@@ -166,7 +169,7 @@ Outcome score(const PlannedCase& planned, const BlindCase& blind, const host::Ve
         outcome.parameters.insert(outcome.parameters.end(), scores.begin(), scores.end());
       }
   }
-  outcome.exact_set = explained.size() == order.hidden.size() && verdict.findings.size() == order.hidden.size();
+  outcome.exact_set = explained.size() == order.hidden.size() && outcome.named.size() == order.hidden.size();
   outcome.signature = verdict.unexplained.signature.value_or("");
   for (const auto& rejected : verdict.rejected)
     if (right(rejected.effect.name(), order) && !explained.contains(rejected.effect.name()))

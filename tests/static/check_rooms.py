@@ -160,6 +160,7 @@ ROOMS = {
         "firmware/machine/model": "of a machine",
     },
     "host/diagnose/classes": {
+        "host/diagnose/record": "functions of a record are made with the friction of its contact",
         "host/diagnose/spectrum": "periodic ones are made of lines",
         "host/diagnose/verdict": "a class describes a finding",
         "host/identify": "by columns over the motion of the rows",

@@ -55,7 +55,8 @@ struct Candidate {
   Columns (*columns)(const SearchContext&, const Motion&, double shape) = nullptr;
   // Whether weights have a sign and size that the effect can have.
   bool (*possible)(const SearchContext&, double shape, const Eigen::VectorXd& coefficients);
-  // Keys of the machine file; `deviations`: of weights and nonlinear parameter (last), covariance.
+  // Keys of the machine file; `deviations`: of weights and nonlinear parameter (last), covariance. Of a force outside
+  // of the vocabulary: those of a force_map; null where no table holds it.
   void (*describe)(const SearchContext&, double shape, const Eigen::VectorXd& coefficients,
                    const Eigen::MatrixXd& covariance, Finding&) = nullptr;
   bool shape = false;           // whether the scanned parameter is one of the effect's own
@@ -70,6 +71,8 @@ struct Candidate {
   // The lines among which a periodic one is looked for; null for others.
   const LineScan& (*scan)(const SearchContext&) = nullptr;
   bool replays = false;  // its columns cost a run of the closed loop
+  // The value that stands for the whole class of functions, of which the others are members; none: there is no such.
+  std::optional<double> whole_class{};
   // Whether it matters little at a value what disturbs those runs; null: at none.
   bool (*coarse)(const SearchContext&, double shape) = nullptr;
   double trials = 1.0;  // independent values that a grid without a scan tries
@@ -79,6 +82,7 @@ struct Candidate {
   // By whose folder it is; set by candidates(). None: a shape outside of the vocabulary.
   std::optional<sim::EffectId> effect{};
   bool outside() const { return !effect; }
+  bool has_map() const { return outside() && describe != nullptr; }
 };
 
 // The vocabulary in its order; behind it what is outside of it.
@@ -129,6 +133,9 @@ extern const Candidate shape;
 }
 namespace drifting_force {
 extern const Candidate shape;
+}
+namespace smooth_functions {
+std::span<const Candidate> all();
 }
 }  // namespace signatures
 

@@ -29,6 +29,7 @@ std::span<const Candidate> candidates() {
           signatures::force_after_reversal::shape, signatures::force_after_reversal::shape_on_way_back,
           signatures::force_with_acceleration::shape, signatures::drifting_force::shape})
       made.push_back(shape);
+    for (const Candidate& function : signatures::smooth_functions::all()) made.push_back(function);
     return made;
   }();
   return table;

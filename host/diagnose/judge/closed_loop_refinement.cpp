@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "host/diagnose/classes/candidate_columns.hpp"
+#include "host/diagnose/statistics/noise_model.hpp"
 #include "sim/effects/effects.hpp"
 
 namespace stiction::host {
@@ -25,56 +26,74 @@ struct Free {
 
 class ClosedLoopFit {
  public:
-  ClosedLoopFit(std::vector<Finding> findings, const SearchResult& found, EffectResponse& response, const LogRows& rows,
-                const Eigen::VectorXd& target, const SearchContext& context)
+  ClosedLoopFit(std::vector<Finding> findings, std::span<const Term> terms, EffectResponse& response,
+                const LogRows& rows, const Eigen::VectorXd& target, const SearchContext& context)
       : findings_(std::move(findings)), response_(response), rows_(rows), target_(target) {
-    bool whitened = true;
     for (std::size_t k = 0; k < findings_.size(); ++k) {
-      const auto& term = found.terms[k];
-      whitened = whitened && term.whitened;
+      const auto& term = terms[k];
       // What runs in silence do not know: a phase of each record, or a response under disturbances.
       if (const auto& candidate = candidates()[term.candidate]; candidate.per_record || candidate.replays)
         target_ -= weighted_columns(rows, context, candidate, term.shape, term.coefficients);
       else
         free_parameters(k);
     }
-    if (whitened) whitening_ = Whitening(found.residual, rows.logs());
   }
 
-  // Returns the square that is left, infinity where nothing is free. Where no step gains, the findings stay as they
-  // were.
+  // Returns the log likelihood of what is left, minus infinity where nothing is free. Where no step gains, the findings
+  // stay as they were. What a coarse description leaves is no noise: the first steps go by the force as it is, those
+  // after them by the noise that the first have left.
   double run() {
-    if (free_.empty()) return std::numeric_limits<double>::infinity();
-    Eigen::VectorXd force = simulated(start());
-    double left = square(target_ - force);
-    const double before = left;
-    Eigen::VectorXd at = start();
-    Eigen::MatrixXd slopes = slopes_at(at, force);
-    for (int step = 0; step < most_steps; ++step) {
-      Eigen::VectorXd way = evidence_of(force, slopes).fit(all()).coefficients;
-      double gained = 0.0;
-      for (int half = 0; half <= halvings && gained <= 0.0; ++half, way *= 0.5) {
-        const Eigen::VectorXd next = at + way, next_force = simulated(next);
-        if (const double next_left = square(target_ - next_force); next_left < left) {
-          gained = (left - next_left) / left;
-          at = next, force = next_force, left = next_left;
-        }
-      }
-      if (gained <= settled) break;
-      if (gained > far) slopes = slopes_at(at, force);
-    }
-    if (left < before)
-      write(at, evidence_of(force, slopes).interval_covariance(all(), Eigen::VectorXd::Zero(at.size())));
-    return left;
+    if (free_.empty()) return -std::numeric_limits<double>::infinity();
+    const Eigen::VectorXd began = simulated(start());
+    Place place{start(), began, {}};
+    place.slopes = slopes_at(place.at, began);
+    step_on(place);
+    whitening_ = noise_of(target_ - place.force, rows_.logs());
+    step_on(place);
+    const double before = likelihood(target_ - began), after = likelihood(target_ - place.force);
+    left_ = target_ - (after > before ? place.force : began);
+    if (after > before)
+      write(place.at, evidence_of(place).interval_covariance(all(), Eigen::VectorXd::Zero(place.at.size())));
+    return std::max(before, after);
   }
   const std::vector<Finding>& findings() const { return findings_; }
-  // Of a residual (N, of the rows), whitened as the findings were found; infinite where it is.
+  const Eigen::VectorXd& left() const { return left_; }  // N, of the rows
+
+ private:
+  // Of a residual (N, of the rows), with the noise that it is itself.
+  double likelihood(const Eigen::VectorXd& residual) const {
+    return residual.allFinite() ? noise_log_likelihood(residual, rows_.logs())
+                                : -std::numeric_limits<double>::infinity();
+  }
+  // Values of what is free, the force (N, of the rows) that the machine makes of them, and its slopes.
+  struct Place {
+    Eigen::VectorXd at, force;
+    Eigen::MatrixXd slopes;
+  };
+
+  // Gauss and Newton's steps, to where none gains.
+  void step_on(Place& place) {
+    double left = square(target_ - place.force);
+    for (int step = 0; step < most_steps; ++step) {
+      Eigen::VectorXd way = evidence_of(place).fit(all()).coefficients;
+      double gained = 0.0;
+      for (int half = 0; half <= halvings && gained <= 0.0; ++half, way *= 0.5) {
+        const Eigen::VectorXd next = place.at + way, next_force = simulated(next);
+        if (const double next_left = square(target_ - next_force); next_left < left) {
+          gained = (left - next_left) / left;
+          place.at = next, place.force = next_force, left = next_left;
+        }
+      }
+      if (gained <= settled) return;
+      if (gained > far) place.slopes = slopes_at(place.at, place.force);
+    }
+  }
+  // Of a residual (N, of the rows); infinite where it is.
   double square(const Eigen::VectorXd& residual) const {
     const double left = whitening_(residual).squaredNorm();
     return std::isfinite(left) ? left : std::numeric_limits<double>::infinity();
   }
 
- private:
   void free_parameters(std::size_t finding) {
     effects_.push_back(findings_[finding].row());
     of_finding_.push_back(finding);
@@ -133,12 +152,12 @@ class ClosedLoopFit {
     }
     return slopes;
   }
-  Evidence evidence_of(const Eigen::VectorXd& force, const Eigen::MatrixXd& slopes) const {
+  Evidence evidence_of(const Place& place) const {
     const auto longest = static_cast<std::size_t>(rows_.rows() / 60 + 1);
-    Evidence evidence(target_ - force, blocks_of(rows_.velocity, rows_.logs(), longest));
+    Evidence evidence(target_ - place.force, blocks_of(rows_.velocity, rows_.logs(), longest));
     evidence.whiten(whitening_);
     std::vector<Eigen::VectorXd> columns;
-    for (Eigen::Index i = 0; i < slopes.cols(); ++i) columns.emplace_back(slopes.col(i));
+    for (Eigen::Index i = 0; i < place.slopes.cols(); ++i) columns.emplace_back(place.slopes.col(i));
     evidence.add(columns);
     return evidence;
   }
@@ -163,7 +182,7 @@ class ClosedLoopFit {
   std::vector<Finding> findings_;
   EffectResponse& response_;
   const LogRows& rows_;
-  Eigen::VectorXd target_;
+  Eigen::VectorXd target_, left_;
   std::vector<machine::Effect> effects_;  // of the findings that are simulated
   std::vector<std::size_t> of_finding_;
   std::vector<Free> free_;
@@ -172,19 +191,20 @@ class ClosedLoopFit {
 
 }  // namespace
 
-void refine_in_closed_loop(std::vector<Finding>& findings, const SearchResult& found,
-                           std::span<EffectResponse> responses, const LogRows& rows, const Eigen::VectorXd& target,
-                           const SearchContext& context) {
-  const auto start = findings;
-  double least = std::numeric_limits<double>::infinity();
+ClosedLoopRefinement refine_in_closed_loop(std::vector<Finding> findings, std::span<const Term> terms,
+                                           std::span<EffectResponse> responses, const LogRows& rows,
+                                           const Eigen::VectorXd& target, Eigen::VectorXd left,
+                                           const SearchContext& context) {
+  ClosedLoopRefinement best{findings, std::move(left)};
+  double most = noise_log_likelihood(best.left, rows.logs());
   for (auto& response : responses) {
-    ClosedLoopFit fit(start, found, response, rows, target, context);
-    least = std::min(least, fit.square(found.residual));
-    if (const double left = fit.run(); left < least) {
-      least = left;
-      findings = fit.findings();
+    ClosedLoopFit fit(findings, terms, response, rows, target, context);
+    if (const double likelihood = fit.run(); likelihood > most) {
+      most = likelihood;
+      best = {fit.findings(), fit.left()};
     }
   }
+  return best;
 }
 
 }  // namespace stiction::host

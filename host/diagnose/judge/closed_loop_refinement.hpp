@@ -13,12 +13,18 @@
 
 namespace stiction::host {
 
-// `findings`: with start values and standard errors of their parameters; both are replaced where the fit gets better.
-// `found`: their terms in the same order; `rows`, `target`: what they were found on; `responses`: of these records,
-// with different hunting, of which the one that fits best counts. A term whose phase differs from record to record, and
-// one that replays under disturbances, stays as it is. `context`: of the search.
-void refine_in_closed_loop(std::vector<Finding>& findings, const SearchResult& found,
-                           std::span<EffectResponse> responses, const LogRows& rows, const Eigen::VectorXd& target,
-                           const SearchContext& context);
+struct ClosedLoopRefinement {
+  std::vector<Finding> findings;  // with the parameters and standard errors of the better fit
+  Eigen::VectorXd left;           // N, of the rows, not whitened: what the findings leave
+};
+
+// `findings`: with start values and standard errors of their parameters; `terms`: theirs, in the same order;
+// `rows`, `target`: what they were found on, less what has no name; `left`: what the terms leave of it; `responses`: of
+// these records, with different hunting, of which the one that fits best counts. A term whose phase differs from record
+// to record, and one that replays under disturbances, stays as it is. `context`: of the search.
+ClosedLoopRefinement refine_in_closed_loop(std::vector<Finding> findings, std::span<const Term> terms,
+                                           std::span<EffectResponse> responses, const LogRows& rows,
+                                           const Eigen::VectorXd& target, Eigen::VectorXd left,
+                                           const SearchContext& context);
 
 }  // namespace stiction::host

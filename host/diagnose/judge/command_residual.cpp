@@ -397,8 +397,7 @@ void find_and_judge(Verdict& verdict, const DiagnoseInput& input, const CommandR
     same->parameters.insert(same->parameters.end(), finding.parameters.begin(), finding.parameters.end());
     same->evidence += " " + finding.evidence;
   }
-  std::stable_sort(verdict.findings.begin(), verdict.findings.end(),
-                   [](const Finding& a, const Finding& b) { return a.explains > b.explains; });
+  std::stable_sort(verdict.findings.begin(), verdict.findings.end(), told_before);
 }
 
 }  // namespace

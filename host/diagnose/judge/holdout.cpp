@@ -147,17 +147,15 @@ HeldOutFigures evaluate_held_out(const LogRows& rows, const Eigen::VectorXd& tar
   HeldOutFigures figures{rms(baseline), rms(extended), {}, {}, {}};
   const Whitening whitening(extended, rows.logs());
   const auto blocks = blocks_of_rows(rows);
-  const auto held_out_amplitude = [&](const Eigen::VectorXd& before, const Eigen::VectorXd& after, bool whitened) {
+  const auto held_out_amplitude = [&](const Eigen::VectorXd& before, const Eigen::VectorXd& after) {
     const Eigen::VectorXd force = before - after;
     const auto as_is = repetition_of(force, before, rows.logs(), blocks);
-    if (!whitened) return as_is;
     const auto white = repetition_of(whitening(force), whitening(before), rows.logs(), blocks);
     return white.against() > as_is.against() ? white : as_is;
   };
   const Eigen::ArrayXd position = rows.stacked([](const Motion& m) { return m.x; }).array();
   const Eigen::ArrayXd recorded =
       (position >= context.lowest_position && position <= context.highest_position).cast<double>();
-  bool whitened = false;
   for (std::size_t k = 0; k < terms.size(); ++k) {
     const auto& candidate = candidates()[terms[k].candidate];
     const Nuisances own(rows, context, !candidate.names_constant && constant, !candidate.names_coulomb && coulomb);
@@ -167,10 +165,9 @@ HeldOutFigures evaluate_held_out(const LogRows& rows, const Eigen::VectorXd& tar
     gain.force_rms_ratio = rms(after) / rms(before);
     gain.ci95 = ratio_interval(after, before, rows, seed + k);
     figures.gains.push_back(gain);
-    figures.held_out_amplitudes.push_back(held_out_amplitude(before, after, terms[k].whitened));
-    whitened = whitened || terms[k].whitened;
+    figures.held_out_amplitudes.push_back(held_out_amplitude(before, after));
   }
-  figures.together = held_out_amplitude(baseline, extended, whitened);
+  figures.together = held_out_amplitude(baseline, extended);
   return figures;
 }
 

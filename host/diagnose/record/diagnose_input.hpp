@@ -14,7 +14,7 @@ namespace stiction::host {
 
 // What a diagnosis does, one after the other.
 inline constexpr std::array<std::string_view, 6> diagnosis_parts{
-    "simulated motion", "selection", "held-out data", "refinement in closed loop", "next measurement", "closed loop"};
+    "simulated motion", "selection", "refinement in closed loop", "held-out data", "next measurement", "closed loop"};
 
 struct DiagnoseInput {
   machine::Machine machine;

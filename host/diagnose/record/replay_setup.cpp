@@ -23,7 +23,8 @@ constexpr double fine = 0.01;              // of the position controller's incre
 constexpr std::size_t answers_kept = 6;    // of each log: a grid has two of backlash
 constexpr std::size_t usual_runs = 2;      // a third one is half as much work again and names no more of a small gap
 constexpr std::size_t most_runs_ever = 8;  // of a swing that keeps its phase for seconds two runs may agree by chance
-constexpr double much_chance = 0.25;       // of the disturbance's square
+constexpr std::size_t runs_of_disturbance = 4;
+constexpr double much_chance = 0.25;  // of the disturbance's square
 
 bool same_way(const std::vector<double>& simulated, const std::vector<double>& measured) {
   double mean = 0.0, square = 0.0;
@@ -32,6 +33,12 @@ bool same_way(const std::vector<double>& simulated, const std::vector<double>& m
   for (std::size_t i = 0; i < measured.size(); ++i) square += std::pow(simulated[i] - measured[i] - mean, 2) / n;
   const auto [low, high] = std::minmax_element(measured.begin(), measured.end());
   return std::sqrt(square) < another_way * (*high - *low);
+}
+
+// So fine that the axis does not hunt in it, but no finer than the drive's number format holds.
+double fine_increment(double increment) {
+  constexpr double finest = 1.0 / static_cast<double>(FixedSignals::IncrementInverse::highest_raw);  // m
+  return std::max(fine * increment, std::min(increment, finest));
 }
 
 // The equivalent motor takes a third of the time, and moves the axis the same but for how it hunts.
@@ -79,10 +86,16 @@ std::string why_not_simulated(const machine::Machine& machine, std::size_t axis,
   return "";
 }
 
+// With the channels that decide where the motor's force is taken from.
+Log replayed_like(const machine::Machine& machine, const Log& log) {
+  auto replayed = replay_linear_as_held(machine, log, {machine.axes.front().name});
+  if (log.axes.front().force.empty()) replayed.axes.front().force.clear();
+  return replayed;
+}
+
 std::vector<Log> replays(const ReplaySetup& setup) {
   std::vector<Log> all;
-  for (const auto& log : setup.logs)
-    all.push_back(replay_linear_as_held(setup.machine, log, {setup.machine.axes.front().name}));
+  for (const auto& log : setup.logs) all.push_back(replayed_like(setup.machine, log));
   return all;
 }
 
@@ -118,10 +131,10 @@ EffectResponse::EffectResponse(const machine::Machine& machine, std::size_t axis
   machine_ = std::move(setup.machine);
   auto& own = machine_.axes.front();
   own.encoder.noise = 0.0;
-  for (auto& log : setup.logs) records_.push_back({std::move(log), {}});
-  for (std::size_t k = 0; k < replayed.size(); ++k) records_[k].without = residual(replayed[k], records_[k].log);
+  for (auto& log : setup.logs) records_.push_back({std::move(log), {}, {}});
+  for (std::size_t k = 0; k < replayed.size(); ++k) records_[k].silent = residual(replayed[k], records_[k].log);
   if (limit_cycle == QuantizerLimitCycle::simulated) return;
-  own.position_controller.increment *= fine;
+  own.position_controller.increment = fine_increment(own.position_controller.increment);
   without_windings(own);
 }
 
@@ -143,10 +156,6 @@ Log EffectResponse::disturbed(std::size_t record, std::size_t run) const {
   return log;
 }
 
-Log EffectResponse::replayed(const Log& log, const machine::Machine& machine) const {
-  return replay_linear_as_held(machine, log, {machine_.axes.front().name});
-}
-
 std::vector<double> EffectResponse::residual(Log simulated, const Log& of) const {
   const auto& file = machine_.axes.front();
   simulated.axes.front().external_force = of.axes.front().external_force;
@@ -157,20 +166,59 @@ std::vector<double> EffectResponse::residual(Log simulated, const Log& of) const
   return force;
 }
 
-// Of runs with the effects, less the one without.
-std::vector<double> EffectResponse::common(std::size_t index, const machine::Machine& machine, std::size_t most_runs) {
+std::size_t EffectResponse::index_of(const Motion& motion) const {
+  const auto found = std::find_if(records_.begin(), records_.end(), [&](const Record& record) {
+    return record.log.source == motion.source && record.log.axes.front().x_set == motion.x_set;
+  });
+  if (found == records_.end()) throw std::out_of_range("no log of " + motion.source);
+  return static_cast<std::size_t>(found - records_.begin());
+}
+
+const std::vector<double>& EffectResponse::silent(Record& record) const {
+  if (record.silent.empty()) record.silent = residual(replayed_like(machine_, record.log), record.log);
+  return record.silent;
+}
+
+const std::vector<double>& EffectResponse::without(std::size_t index, std::size_t run) {
   auto& record = records_[index];
-  if (record.without.empty()) record.without = residual(replayed(record.log, machine_), record.log);
+  if (!disturbance_) return silent(record);
+  while (record.without.size() <= run) {
+    const auto log = disturbed(index, record.without.size());
+    record.without.push_back(residual(replayed_like(machine_, log), log));
+  }
+  return record.without[run];
+}
+
+// Of runs with the effects, each less the one without under the same forces.
+std::vector<double> EffectResponse::common(std::size_t index, const machine::Machine& machine, std::size_t most_runs) {
   CoherentMean part;
   const std::size_t most = disturbance_ ? std::min(most_runs, most_runs_ever) : 1;
   for (std::size_t r = 0; r < most; ++r) {
     if (r >= usual_runs && part.chance() < much_chance * disturbance_.mean_square()) break;
     const auto log = disturbed(index, r);
-    auto force = residual(replayed(log, machine), log);
-    for (std::size_t i = 0; i < force.size(); ++i) force[i] -= record.without[i];
+    auto force = residual(replayed_like(machine, log), log);
+    const auto& own = without(index, r);
+    for (std::size_t i = 0; i < force.size(); ++i) force[i] -= own[i];
     part.add(force);
   }
   return part.estimate();
+}
+
+std::vector<double> EffectResponse::of_disturbance(const Motion& motion) {
+  const auto k = index_of(motion);
+  if (!disturbance_) return std::vector<double>(motion.t.size(), 0.0);
+  try {
+    CoherentMean part;
+    for (std::size_t r = 0; r < runs_of_disturbance; ++r) {
+      auto force = without(k, r);
+      const auto& own = silent(records_[k]);
+      for (std::size_t i = 0; i < force.size(); ++i) force[i] -= own[i];
+      part.add(force);
+    }
+    return part.estimate();
+  } catch (const FaultTripped&) {
+    return std::vector<double>(motion.t.size(), 0.0);
+  }
 }
 
 std::vector<double> EffectResponse::operator()(const Motion& motion, const machine::Effect& effect,
@@ -180,25 +228,21 @@ std::vector<double> EffectResponse::operator()(const Motion& motion, const machi
 
 std::vector<double> EffectResponse::together(const Motion& motion, std::span<const machine::Effect> effects,
                                              std::size_t most_runs) {
-  for (std::size_t k = 0; k < records_.size(); ++k) {
-    const auto& log = records_[k].log;
-    if (log.source != motion.source || log.axes.front().x_set != motion.x_set) continue;
-    const auto known = std::find_if(known_.begin(), known_.end(), [&](const Known& each) {
-      return each.record == k && each.runs == most_runs && same(each.effects, effects);
-    });
-    if (known != known_.end()) return known->force;
-    auto machine = machine_;
-    auto& acting = machine.axes.front().effects;
-    acting.insert(acting.end(), effects.begin(), effects.end());
-    try {
-      known_.push_back({k, most_runs, {effects.begin(), effects.end()}, common(k, machine, most_runs)});
-      if (known_.size() > answers_kept * records_.size()) known_.pop_front();
-      return known_.back().force;
-    } catch (const FaultTripped&) {
-      return std::vector<double>(motion.t.size(), 0.0);
-    }
+  const auto k = index_of(motion);
+  const auto known = std::find_if(known_.begin(), known_.end(), [&](const Known& each) {
+    return each.record == k && each.runs == most_runs && same(each.effects, effects);
+  });
+  if (known != known_.end()) return known->force;
+  auto machine = machine_;
+  auto& acting = machine.axes.front().effects;
+  acting.insert(acting.end(), effects.begin(), effects.end());
+  try {
+    known_.push_back({k, most_runs, {effects.begin(), effects.end()}, common(k, machine, most_runs)});
+    if (known_.size() > answers_kept * records_.size()) known_.pop_front();
+    return known_.back().force;
+  } catch (const FaultTripped&) {
+    return std::vector<double>(motion.t.size(), 0.0);
   }
-  throw std::out_of_range("no log of " + motion.source);
 }
 
 }  // namespace stiction::host

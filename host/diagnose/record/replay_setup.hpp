@@ -78,15 +78,22 @@ class EffectResponse {
   // The same of several effects that act together. `motion` of the record; `most_runs`: how many replays at most.
   std::vector<double> together(const Motion& motion, std::span<const machine::Effect> effects,
                                std::size_t most_runs = as_needed);
+  // N at the motion's rate: what the disturbance does to the residual of the machine as it is, on average: hunting that
+  // it ends or begins, friction that it smoothes. Zeros without disturbance.
+  // Throws std::out_of_range for a motion of another log.
+  std::vector<double> of_disturbance(const Motion& motion);
 
  private:
   struct Record {
     Log log;
-    std::vector<double> without;  // N, the residual without effects and disturbances, once it was asked for
+    std::vector<double> silent;                // N, the residual without effects and disturbances
+    std::vector<std::vector<double>> without;  // N, without effects, of each run, once it was asked for
   };
+  std::size_t index_of(const Motion& motion) const;
+  const std::vector<double>& silent(Record& record) const;
+  const std::vector<double>& without(std::size_t record, std::size_t run);
   // The log of a record under one of many draws of the disturbance.
   Log disturbed(std::size_t record, std::size_t run) const;
-  Log replayed(const Log& log, const machine::Machine& machine) const;
   // `of`: what was replayed; its external force is known, and no residual.
   std::vector<double> residual(Log simulated, const Log& of) const;
   std::vector<double> common(std::size_t record, const machine::Machine& machine, std::size_t most_runs);

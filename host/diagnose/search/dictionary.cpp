@@ -2,21 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numeric>
 
 #include "host/diagnose/classes/candidate_columns.hpp"
 #include "host/diagnose/search/context_lines.hpp"
+#include "host/diagnose/search/price.hpp"
+#include "host/diagnose/statistics/noise_model.hpp"
 
 namespace stiction::host {
 namespace {
 
-constexpr double strong_evidence = 6.0;  // twice the logarithm of a Bayes factor (Kass, Raftery 1995)
-// The same, of a nonlinear parameter on a grid: positive evidence. At 6, a drift hidden by itself was called Coulomb
-// friction six times at seven blind seeds and a bend viscous friction five times, and never the other way about.
-constexpr double price_of_nonlinear = 4.0;
 constexpr double less_disturbed = 0.7;
-constexpr double cluster_lengths = 6.0;  // correlation lengths of the whitened residual in a cluster
+constexpr double cluster_lengths = 6.0;   // correlation lengths of the whitened residual in a cluster
+constexpr std::ptrdiff_t most_waves = 4;  // of one candidate
+constexpr int refining_steps = 9;         // of a golden section: to 2 % of the grid's step
 
 std::vector<RowBlock> blocks_for(const LogRows& rows, double correlation) {
   const auto n = static_cast<double>(rows.rows());
@@ -26,26 +24,25 @@ std::vector<RowBlock> blocks_for(const LogRows& rows, double correlation) {
 
 }  // namespace
 
-Dictionary::Dictionary(const LogRows& rows, const Eigen::VectorXd& target, SearchContext& context,
-                       std::span<const std::size_t> refuted)
+Dictionary::Dictionary(const LogRows& rows, const Eigen::VectorXd& target, SearchContext& context)
     : rows_(rows),
       scene_(context),
       correlation_(correlation_length(target, rows.logs())),
       evidence_(target, blocks_for(rows, std::min(correlation_, 0.1 / rows.period(0)))),
       plain_(target, evidence_.row_blocks()),
-      refuted_(refuted),
+      sizes_(sizes_beside(target)),
       disturbance_(target.squaredNorm()) {
   add_options(false);
+  on_grid_ = options_.size();
 }
 
 // The options of all candidates that are periodic, or that are not.
 void Dictionary::add_options(bool periodic) {
   std::vector<Atom*> added;
   for (std::size_t c = 0; c < candidates().size(); ++c) {
-    if (candidates()[c].periodic != periodic || std::find(refuted_.begin(), refuted_.end(), c) != refuted_.end())
-      continue;
+    if (candidates()[c].periodic != periodic) continue;
     for (const double value : candidates()[c].grid(scene_))
-      added.push_back(options_.emplace_back(std::make_unique<Atom>(Atom{c, value, {}})).get());
+      added.push_back(options_.emplace_back(std::make_unique<Atom>(Atom{c, value, {}, log_prior_of(scene_, c)})).get());
   }
   give_columns(added);
 }
@@ -55,8 +52,7 @@ void Dictionary::give_columns(const std::vector<Atom*>& options) {
   for (const auto* option : options) trials.push_back({&candidates()[option->candidate], option->shape});
   const auto groups = group_columns(rows_, scene_, trials);
   for (std::size_t k = 0; k < groups.size(); ++k) {
-    options[k]->columns.resize(groups[k].size());
-    std::iota(options[k]->columns.begin(), options[k]->columns.end(), evidence_.add(groups[k]));
+    options[k]->group = add_group(evidence_, groups[k]);
     plain_.add(groups[k]);
   }
 }
@@ -75,13 +71,27 @@ void Dictionary::respond_under(const Eigen::VectorXd& noise) {
 }
 
 Eigen::VectorXd Dictionary::residual(const ActiveSet& set) const {
-  const auto columns = columns_of(set);
-  return evidence_.residual(columns, evidence_.fit(columns).coefficients);
+  const auto of_set = posterior(set);
+  return evidence_.residual(of_set.columns(), of_set.weights());
 }
 
-void Dictionary::whiten(const ActiveSet& set) {
-  const Eigen::VectorXd noise = residual(set);
-  const Whitening whitening(noise, rows_.logs());
+// What the first and the last member of each candidate are needed for.
+Eigen::VectorXd Dictionary::absorbed_by_all(const ActiveSet& set) const {
+  auto of_set = posterior(set);
+  for (std::size_t k = 0; k < on_grid_; ++k) {
+    const auto& candidate = candidates()[options_[k]->candidate];
+    if (candidate.replays || has(set, options_[k]->candidate)) continue;
+    const bool first = k == 0 || options_[k - 1]->candidate != options_[k]->candidate;
+    const bool last = k + 1 == on_grid_ || options_[k + 1]->candidate != options_[k]->candidate;
+    if (first || last) of_set.add(options_[k]->group);
+  }
+  return evidence_.residual(of_set.columns(), of_set.weights());
+}
+
+void Dictionary::whiten(const ActiveSet& set, bool absorbed) {
+  if (!evidence_.whitening() || set.empty()) evidence_.whiten(noise_of(evidence_.target(), rows_.logs()));
+  const Eigen::VectorXd noise = absorbed ? absorbed_by_all(set) : residual(set);
+  const auto whitening = noise_of(noise.cwiseProduct(rows_.counts()), rows_.logs());
   correlation_ = correlation_length(whitening(noise), rows_.logs());
   evidence_.whiten(whitening, static_cast<std::size_t>(std::ceil(cluster_lengths * correlation_)));
   respond_under(noise);
@@ -94,76 +104,140 @@ void Dictionary::scan_lines(const ActiveSet& set) {
 
 ColumnIndices Dictionary::columns_of(const ActiveSet& set) {
   ColumnIndices all;
-  for (const auto* option : set) all.insert(all.end(), option->columns.begin(), option->columns.end());
+  for (const auto* option : set) all.insert(all.end(), option->group.columns.begin(), option->group.columns.end());
   return all;
 }
 
 // Whether the candidate is in the set, or another shape that looks alike: two of them would describe one thing twice.
+// Of waves there may be several: harmonics, two pitches, two tones.
 bool Dictionary::has(const ActiveSet& set, std::size_t candidate) {
+  if (candidates()[candidate].periodic)
+    return std::count_if(set.begin(), set.end(), [&](const auto* o) { return o->candidate == candidate; }) >=
+           most_waves;
   return std::any_of(set.begin(), set.end(), [&, alike = candidates()[candidate].looks_like](const auto* o) {
     return o->candidate == candidate || (alike != nullptr && candidates()[o->candidate].looks_like == alike);
   });
 }
 
-double Dictionary::trials(std::size_t candidate) const {
-  if (const auto scan = candidates()[candidate].scan)
-    return static_cast<double>(std::max<std::size_t>(scan(scene_).trials, 1));
-  return std::max(candidates()[candidate].trials, candidates()[candidate].shape ? 3.0 : 1.0);
+Dictionary::ActiveSet Dictionary::without(ActiveSet set, std::size_t term) {
+  set.erase(set.begin() + static_cast<std::ptrdiff_t>(term));
+  return set;
 }
 
-double Dictionary::effective_rows() const {
-  return std::max(static_cast<double>(evidence_.rows()) / correlation_, 20.0);
+Posterior Dictionary::posterior(const ActiveSet& set) const {
+  Posterior of_set(evidence_, sizes_);
+  for (const auto* atom : set) of_set.add(atom->group);
+  return of_set;
 }
 
-// A nonlinear parameter on a grid must show: a drift that settles at once is a level. One that is looked for in a scan
-// costs its trials. What no name fits must show strongly beside what has one.
-double Dictionary::penalty(std::size_t candidate, std::size_t columns) const {
-  const bool fitted = candidates()[candidate].shape && candidates()[candidate].scan == nullptr;
-  return static_cast<double>(columns) * std::log(effective_rows()) +
-         (fitted ? price_of_nonlinear : 2.0 * std::log(trials(candidate))) +
-         (candidates()[candidate].outside() ? strong_evidence : 0.0);
+double Dictionary::with_own_noise(const ActiveSet& set) const {
+  const auto of_set = posterior(set);
+  const Eigen::VectorXd left = evidence_.residual(of_set.columns(), of_set.weights()).cwiseProduct(rows_.counts());
+  double odds = noise_log_likelihood(left, rows_.logs()) + of_set.price();
+  for (const auto* atom : set) odds += atom->log_prior;
+  return odds;
 }
 
 double Dictionary::score(const ActiveSet& set) const {
-  const auto columns = columns_of(set);
-  double price = 0.0;
-  for (const auto* option : set) price += penalty(option->candidate, option->columns.size());
-  return effective_rows() * std::log(std::max(evidence_.fit(columns).left, 1e-300)) + price;
+  double odds = posterior(set).nats();
+  for (const auto* atom : set) odds += atom->log_prior;
+  return odds;
 }
 
-bool Dictionary::all_possible(const ActiveSet& set) const {
-  const auto coefficients = evidence_.fit(columns_of(set)).coefficients;
+// Whether the weights of all have signs and sizes that the effects can have.
+bool Dictionary::possible(const Atom& atom, const ActiveSet& beside, const Posterior& of_beside, double size) const {
+  const auto weights = of_beside.weights_with(atom.group, size);
   Eigen::Index at = 0;
-  for (const auto* option : set) {
-    const auto count = static_cast<Eigen::Index>(option->columns.size());
-    if (!candidates()[option->candidate].possible(scene_, option->shape, coefficients.segment(at, count))) return false;
+  const auto holds = [&](const Atom& each) {
+    const auto count = static_cast<Eigen::Index>(each.group.columns.size());
     at += count;
-  }
-  return true;
+    return candidates()[each.candidate].possible(scene_, each.shape, weights.segment(at - count, count));
+  };
+  return std::all_of(beside.begin(), beside.end(), [&](const Atom* each) { return holds(*each); }) && holds(atom);
 }
 
-const Atom* Dictionary::best_of(std::size_t candidate, const ActiveSet& beside) const {
-  const Atom* best = nullptr;
-  double least = std::numeric_limits<double>::infinity();
+std::optional<Dictionary::Option> Dictionary::best_of(std::size_t candidate, const ActiveSet& beside,
+                                                      const Posterior& of_beside) const {
+  std::optional<Option> best;
   for (const auto& option : options_) {
-    if (option->candidate != candidate) continue;
-    auto set = beside;
-    set.push_back(option.get());
-    const double left = score(set);  // options of one candidate may differ in columns
-    if (left >= least || !all_possible(set)) continue;
-    least = left;
-    best = option.get();
+    if (option->candidate != candidate || std::find(beside.begin(), beside.end(), option.get()) != beside.end())
+      continue;
+    const auto gain = of_beside.gain_of(option->group);
+    const double odds = gain.nats + option->log_prior;
+    if (best && odds <= best->score) continue;
+    if (possible(*option, beside, of_beside, gain.size)) best = Option{option.get(), odds};
   }
   return best;
 }
 
-void Dictionary::profile(ActiveSet& set) const {
-  for (int round = 0; round < 2; ++round)
-    for (std::size_t k = 0; k < set.size(); ++k) {
-      auto others = set;
-      others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
-      if (const auto* better = best_of(set[k]->candidate, others)) set[k] = better;
+std::optional<Dictionary::Option> Dictionary::at_shape(std::size_t candidate, double shape, const ActiveSet& beside,
+                                                       const Posterior& of_beside) {
+  auto atom = std::make_unique<Atom>(Atom{candidate, shape, {}, log_prior_of(scene_, candidate)});
+  const auto first = evidence_.columns();
+  give_columns({atom.get()});
+  const auto gain = of_beside.gain_of(atom->group);
+  if (!possible(*atom, beside, of_beside, gain.size)) {
+    evidence_.truncate(first);
+    plain_.truncate(first);
+    return std::nullopt;
+  }
+  return Option{options_.emplace_back(std::move(atom)).get(), gain.nats + options_.back()->log_prior};
+}
+
+// Of a law that is linearised the place of the slope moves to the weight that the slope gives; of others a golden
+// section within a step of the grid to either side.
+Dictionary::Option Dictionary::refined(Option option, const ActiveSet& beside, const Posterior& of_beside) {
+  const auto& candidate = candidates()[option.atom->candidate];
+  if (candidate.replays || option.atom->shape == candidate.whole_class) return option;
+  const auto keep_better = [&](const std::optional<Option>& tried) {
+    if (!tried) return -1e300;
+    if (tried->score > option.score) {
+      option = *tried;
+    } else {
+      evidence_.truncate(options_.back()->group.columns.front());
+      plain_.truncate(options_.back()->group.columns.front());
+      options_.pop_back();
     }
+    return tried->score;
+  };
+  if (candidate.at_weight) {
+    for (int k = 0; k < 3; ++k) {
+      const auto& group = option.atom->group;
+      const double weight = of_beside.weights_with(group, of_beside.gain_of(group).size).tail(1)[0];
+      if (weight == 0.0 || std::abs(weight - option.atom->shape) < 0.02 * std::abs(weight)) break;
+      const double before = option.score;
+      if (keep_better(at_shape(option.atom->candidate, weight, beside, of_beside)) <= before) break;
+    }
+    return option;
+  }
+  if (!candidate.shape || option.atom->shape == candidate.whole_class) return option;
+  constexpr double golden = 0.6180339887498949;
+  const std::size_t index = option.atom->candidate;
+  const double value = option.atom->shape;
+  const double factor = candidate.periodic
+                            ? 1.0 / (1.0 - std::min(0.2 * value / std::max(candidate.scan(scene_).extent, 1e-6), 0.5))
+                            : 1.6;
+  double low = value / factor, high = value * factor;
+  if (!candidate.periodic) {
+    // A class ends where its grid does: beyond, it is another one's member, as a bend is a line.
+    const auto grid = candidate.grid(scene_);
+    const auto [least, most] = std::minmax_element(grid.begin(), grid.end());
+    low = std::max(low, *least), high = std::min(high, *most);
+    if (!(low < high)) return option;
+  }
+  const auto score_at = [&](double shape) { return keep_better(at_shape(index, shape, beside, of_beside)); };
+  double a = high * std::pow(low / high, golden), b = low * std::pow(high / low, golden);
+  double score_a = score_at(a), score_b = score_at(b);
+  for (int i = 0; i < refining_steps; ++i) {
+    if (score_a > score_b) {
+      high = b, b = a, score_b = score_a;
+      score_a = score_at(a = high * std::pow(low / high, golden));
+    } else {
+      low = a, a = b, score_a = score_b;
+      score_b = score_at(b = low * std::pow(high / low, golden));
+    }
+  }
+  return option;
 }
 
 }  // namespace stiction::host

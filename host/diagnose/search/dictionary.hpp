@@ -1,13 +1,15 @@
 // All that a search may choose from: every candidate at each value of its nonlinear parameter that is tried, with its
-// columns over the rows; and what a set of them is worth.
+// columns over the rows; and what a set of them is worth: its evidence (marginal.hpp) and how likely it was beforehand.
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "host/diagnose/classes/candidate.hpp"
 #include "host/diagnose/statistics/evidence.hpp"
+#include "host/diagnose/statistics/marginal.hpp"
 #include "host/identify/log_rows.hpp"
 
 namespace stiction::host {
@@ -15,55 +17,65 @@ namespace stiction::host {
 struct Atom {
   std::size_t candidate;  // of candidates()
   double shape;
-  ColumnIndices columns;
+  Group group;
+  double log_prior = 0.0;  // that it is there, against none
 };
 
 class Dictionary {
  public:
   using ActiveSet = std::vector<const Atom*>;
 
-  // Those of the candidates that are not periodic. `target`: N, of the rows; `context` gets the lines that are found;
-  // `refuted`: candidates that are left out.
-  Dictionary(const LogRows& rows, const Eigen::VectorXd& target, SearchContext& context,
-             std::span<const std::size_t> refuted);
+  // Those of the candidates that are not periodic. `target`: N, of the rows; `context` gets the lines that are found.
+  Dictionary(const LogRows& rows, const Eigen::VectorXd& target, SearchContext& context);
 
   static ColumnIndices columns_of(const ActiveSet& set);
   static bool has(const ActiveSet& set, std::size_t candidate);
+  static ActiveSet without(ActiveSet set, std::size_t term);
   Eigen::VectorXd residual(const ActiveSet& set) const;  // N, of the rows, not whitened
 
-  // The noise is what the set leaves.
-  void whiten(const ActiveSet& set);
+  // The noise is what the set leaves; where more may be found yet, what all candidates together leave beside it:
+  // `absorbed`.
+  void whiten(const ActiveSet& set, bool absorbed);
   // Looks for lines in what the set leaves, for options of the periodic candidates; those in the set stay.
   void scan_lines(const ActiveSet& set);
 
-  // Number of independent values of the nonlinear parameter that were tried.
-  double trials(std::size_t candidate) const;
-  // n_eff ln(square) and the price of the columns (extended BIC: Chen, Chen 2008); the less the better.
+  Posterior posterior(const ActiveSet& set) const;
+  // Log likelihood of the set with the noise that it leaves, less its price: what tells apart sets that leave different
+  // noise; nats, but for a constant.
+  double with_own_noise(const ActiveSet& set) const;
+  // Log odds of the set against nothing, nats.
   double score(const ActiveSet& set) const;
-  // Whether the set's weights have signs and sizes that the effects can have.
-  bool all_possible(const ActiveSet& set) const;
-  // The candidate's option that scores best beside the others; null where none is possible.
-  const Atom* best_of(std::size_t candidate, const ActiveSet& beside) const;
-  // Every term's nonlinear parameter anew, given the others.
-  void profile(ActiveSet& set) const;
+
+  struct Option {
+    const Atom* atom = nullptr;
+    double score = 0.0;  // log odds of it against its absence, beside the rest, nats
+  };
+  // The candidate's atom with the highest odds `beside` a set, of which `of_beside` is the posterior; none where none
+  // is possible.
+  std::optional<Option> best_of(std::size_t candidate, const ActiveSet& beside, const Posterior& of_beside) const;
+  // The `option` with its nonlinear parameter between the values of the grid; `beside` and `of_beside` as above.
+  Option refined(Option option, const ActiveSet& beside, const Posterior& of_beside);
 
  protected:
   const LogRows& rows_;
   SearchContext& scene_;
-  double correlation_ = 1.0;  // rows, of the residual, whitened or not
-  Evidence evidence_;         // whitened in the second part of a run
+  double correlation_ = 1.0;  // rows, of the residual, whitened
+  Evidence evidence_;         // whitened
   Evidence plain_;            // never whitened: for what a term takes off the force
 
  private:
   void add_options(bool periodic);
   void give_columns(const std::vector<Atom*>& options);
   void respond_under(const Eigen::VectorXd& noise);
-  double effective_rows() const;
-  double penalty(std::size_t candidate, std::size_t columns) const;
+  bool possible(const Atom& atom, const ActiveSet& beside, const Posterior& of_beside, double size) const;
+  std::optional<Option> at_shape(std::size_t candidate, double shape, const ActiveSet& beside,
+                                 const Posterior& of_beside);
+  Eigen::VectorXd absorbed_by_all(const ActiveSet& set) const;
 
-  std::span<const std::size_t> refuted_;
   std::vector<std::unique_ptr<Atom>> options_;
-  double disturbance_;  // square of the force under which candidates replay
+  std::size_t on_grid_ = 0;  // of the options: those of candidates that are not periodic, as they were tried first
+  Sizes sizes_;              // N rms, of a group's force
+  double disturbance_;       // square of the force under which candidates replay
 };
 
 }  // namespace stiction::host

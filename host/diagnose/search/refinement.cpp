@@ -21,7 +21,18 @@ class Refinement {
         scene_(context),
         terms_(terms),
         white_target_(searched.whitening()(searched.target())) {
-    for (const auto& term : terms) white_.push_back(whitened(group(term, term.shape)));
+    const double variance =
+        searched.whitening() ? 1.0 : searched.target().squaredNorm() / static_cast<double>(searched.rows());
+    std::vector<double> precision;
+    for (const auto& term : terms) {
+      const auto columns = group(term, term.shape);
+      for (const auto& column : columns)
+        precision.push_back(term.size > 0.0
+                                ? variance * static_cast<double>(columns.size()) * std::pow(rms(column) / term.size, 2)
+                                : 0.0);
+      white_.push_back(whitened(columns));
+    }
+    precision_ = Eigen::Map<const Eigen::VectorXd>(precision.data(), static_cast<Eigen::Index>(precision.size()));
   }
 
   Eigen::VectorXd run() {
@@ -58,7 +69,9 @@ class Refinement {
   }
   Eigen::VectorXd weights_of(const Eigen::MatrixXd& columns) const {
     const Eigen::VectorXd scale = columns.colwise().norm().cwiseMax(1e-300).cwiseInverse().transpose();
-    const Eigen::MatrixXd gram = scale.asDiagonal() * transposed_product(columns, columns) * scale.asDiagonal();
+    Eigen::MatrixXd products = transposed_product(columns, columns);
+    products.diagonal() += precision_;
+    const Eigen::MatrixXd gram = scale.asDiagonal() * products * scale.asDiagonal();
     const Eigen::VectorXd moment = scale.cwiseProduct(transposed_times(columns, white_target_));
     return scale.cwiseProduct(LeastSquares(gram).solve(moment));
   }
@@ -152,7 +165,8 @@ class Refinement {
   const SearchContext& scene_;
   std::vector<Term>& terms_;
   Eigen::VectorXd white_target_;
-  std::vector<Group> white_;  // columns of each term, whitened
+  std::vector<Group> white_;   // columns of each term, whitened
+  Eigen::VectorXd precision_;  // of the weights beforehand
 };
 
 }  // namespace

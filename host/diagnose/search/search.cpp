@@ -4,20 +4,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <optional>
+#include <set>
 
 #include "host/diagnose/search/dictionary.hpp"
+#include "host/diagnose/search/price.hpp"
 #include "host/diagnose/search/refinement.hpp"
 #include "sim/effects/effects.hpp"
 
 namespace stiction::host {
 namespace {
 
-constexpr std::size_t most_terms = 8;
-constexpr double least_share = 2e-3;  // of the residual's variance: what is less is no cause that a part would show
-// Of the residual's variance: beside what takes more, the residual is no model of the noise, and what is whitened by it
-// would get the weight of noise.
-constexpr double dominant = 0.25;
+constexpr std::size_t most_terms = 10;
+constexpr std::size_t most_rounds = 40;
+constexpr std::size_t refined_each = 5;           // of the best options, before one of them is taken
+constexpr std::size_t paired = 10;                // of the best options, where none is worth its price alone
+constexpr double better = 0.5;                    // nats: less is no reason to move
+constexpr double least_probability = 1.0 / 21.0;  // what odds of the loss ratio exclude
 
 // Why a refined term is no effect that a machine can have.
 std::optional<std::string> impossible(const SearchContext& context, const Term& term) {
@@ -42,260 +45,246 @@ class Search : private Dictionary {
   SearchResult run();
 
  private:
-  bool settled(const Atom* option) const {
-    return std::find(settled_.begin(), settled_.end(), option->candidate) != settled_.end();
-  }
-  void improve(ActiveSet& set) {
-    profile(set);
-    exchange(set);
-    while (merge(set)) profile(set);
-    while (drop(set)) profile(set);
-  }
-  bool exchange(ActiveSet& set) const;
-  bool merge(ActiveSet& set) const;
-  bool grow(ActiveSet& set, double least_taken = 0.0);
-  bool drop(ActiveSet& set);
-  Judgement judge(const ActiveSet& set, std::size_t term) const;
-  void note(std::size_t candidate, const Judgement& judgement);
-  std::vector<std::size_t> alternatives(const ActiveSet& set, std::size_t term) const;
+  std::vector<Option> options_beside(const ActiveSet& set, const Posterior& of_set) const;
+  std::vector<Option> refined_best(const ActiveSet& set, const Posterior& of_set);
+  ActiveSet searched_from(bool absorbed);
+  bool grow(ActiveSet& set);
+  bool grow_by_pair(ActiveSet& set, const std::vector<Option>& options);
+  bool move_one(ActiveSet& set);
+  bool merge(ActiveSet& set);
+  void improve(ActiveSet& set);
+  double leftover(const ActiveSet& set) const;
+  void name(const ActiveSet& set, std::size_t term, Term& as);
+  void prune(ActiveSet& set);
   double explained_by(const ActiveSet& set, std::size_t term) const;
-  void drop_small(ActiveSet& set);
+  std::vector<Term> terms_of(const ActiveSet& set);
+  void discard(std::size_t candidate, std::string why, bool nearly);
 
-  std::vector<std::size_t> settled_;  // candidates that stood before it was whitened
-  std::size_t rounds_ = 0;
   std::vector<Discarded> discarded_;
+  std::set<std::size_t> refused_;  // candidates that an axis cannot have as these records want them
 };
 
-// A term for another candidate, where that scores better and would stay.
-bool Search::exchange(ActiveSet& set) const {
-  double least = score(set);
-  for (std::size_t k = 0; k < set.size(); ++k) {
-    if (settled(set[k])) continue;
-    auto others = set;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
-    for (std::size_t c = 0; c < candidates().size(); ++c) {
-      if (c == set[k]->candidate || has(others, c)) continue;
-      const auto* option = best_of(c, others);
-      if (option == nullptr) continue;
-      auto trial = others;
-      trial.push_back(option);
-      profile(trial);
-      if (const double s = score(trial); s < least - 1.0 && !judge(trial, trial.size() - 1).rejection_reason) {
-        set = trial;
-        exchange(set);
-        return true;
-      }
+// Each candidate's best beside the set, the likeliest first.
+std::vector<Dictionary::Option> Search::options_beside(const ActiveSet& set, const Posterior& of_set) const {
+  std::vector<Option> options;
+  for (std::size_t c = 0; c < candidates().size(); ++c)
+    if (!has(set, c) && !refused_.contains(c))
+      if (const auto option = best_of(c, set, of_set)) options.push_back(*option);
+  std::sort(options.begin(), options.end(), [](const Option& a, const Option& b) { return a.score > b.score; });
+  return options;
+}
+
+std::vector<Dictionary::Option> Search::refined_best(const ActiveSet& set, const Posterior& of_set) {
+  auto options = options_beside(set, of_set);
+  for (std::size_t k = 0; k < std::min(refined_each, options.size()); ++k)
+    options[k] = refined(options[k], set, of_set);
+  std::sort(options.begin(), options.end(), [](const Option& a, const Option& b) { return a.score > b.score; });
+  return options;
+}
+
+// What a further term has to be worth beside the strongest: so much may be left of how that one was described.
+double Search::leftover(const ActiveSet& set) const {
+  double strongest = 0.0;
+  const double all = score(set);
+  for (std::size_t k = 0; k < set.size(); ++k) strongest = std::max(strongest, all - score(without(set, k)));
+  return of_strongest * strongest;
+}
+
+bool Search::grow(ActiveSet& set) {
+  const auto of_set = posterior(set);
+  const auto options = refined_best(set, of_set);
+  if (!options.empty() && options.front().score > leftover(set)) {
+    set.push_back(options.front().atom);
+    return true;
+  }
+  return grow_by_pair(set, options);
+}
+
+// Terms can mask one another: two that together are worth their price.
+bool Search::grow_by_pair(ActiveSet& set, const std::vector<Option>& options) {
+  double most = leftover(set);
+  ActiveSet best;
+  for (std::size_t i = 0; i < std::min(paired, options.size()); ++i) {
+    auto with_one = set;
+    with_one.push_back(options[i].atom);
+    const auto of_one = posterior(with_one);
+    for (std::size_t j = 0; j < std::min(2 * paired, options.size()); ++j) {
+      if (has(with_one, options[j].atom->candidate)) continue;
+      const auto other = best_of(options[j].atom->candidate, with_one, of_one);
+      if (!other || options[i].score + other->score <= most) continue;
+      most = options[i].score + other->score;
+      best = with_one;
+      best.push_back(other->atom);
     }
   }
-  return false;
-}
-
-// Two terms for one other, where that scores better: a force constant is mass, Coulomb and viscous friction together.
-bool Search::merge(ActiveSet& set) const {
-  for (std::size_t i = 0; i < set.size(); ++i)
-    for (std::size_t j = i + 1; j < set.size(); ++j) {
-      if (settled(set[i]) || settled(set[j])) continue;
-      auto others = set;
-      others.erase(others.begin() + static_cast<std::ptrdiff_t>(j));
-      others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-      for (std::size_t c = 0; c < candidates().size(); ++c) {
-        if (has(set, c)) continue;
-        const auto* option = best_of(c, others);
-        if (option == nullptr) continue;
-        auto trial = others;
-        trial.push_back(option);
-        if (score(trial) > score(set) - 1.0 || judge(trial, trial.size() - 1).rejection_reason) continue;
-        set = trial;
-        return true;
-      }
-    }
-  return false;
-}
-
-Judgement Search::judge(const ActiveSet& set, std::size_t term) const {
-  auto others = set;
-  others.erase(others.begin() + static_cast<std::ptrdiff_t>(term));
-  return judge_columns(evidence_, plain_, columns_of(others), set[term]->columns, trials(set[term]->candidate));
-}
-
-void Search::note(std::size_t candidate, const Judgement& judgement) {
-  const auto known =
-      std::find_if(discarded_.begin(), discarded_.end(), [&](const Discarded& d) { return d.candidate == candidate; });
-  const Discarded now{candidate, *judgement.rejection_reason, judgement.nearly};
-  if (known == discarded_.end())
-    discarded_.push_back(now);
-  else
-    *known = now;
-}
-
-// Adds the best term that stands, or the best two that stand together: terms can mask one another. `least_taken`: share
-// of the residual's square that they must take.
-bool Search::grow(ActiveSet& set, double least_taken) {
-  struct Trial {
-    ActiveSet set;
-    double score;
-  };
-  std::vector<Trial> trials;
-  std::vector<const Atom*> best;
-  for (std::size_t c = 0; c < candidates().size(); ++c) {
-    if (has(set, c)) continue;
-    const auto* option = best_of(c, set);
-    if (option == nullptr) continue;
-    best.push_back(option);
-    auto trial = set;
-    trial.push_back(option);
-    trials.push_back({trial, score(trial)});
-  }
-  const auto by_score = [](const Trial& a, const Trial& b) { return a.score < b.score; };
-  std::sort(trials.begin(), trials.end(), by_score);
-  const double before = evidence_.fit(columns_of(set)).left;
-  const auto takes_enough = [&](const ActiveSet& with) {
-    return 1.0 - evidence_.fit(columns_of(with)).left / before >= least_taken;
-  };
-  for (auto& trial : trials) {
-    if (!takes_enough(trial.set)) continue;
-    if (trial.score > score(set)) break;
-    const auto judgement = judge(trial.set, trial.set.size() - 1);
-    if (!judgement.rejection_reason) {
-      set = trial.set;
-      return true;
-    }
-    note(trial.set.back()->candidate, judgement);
-  }
-  std::vector<Trial> pairs;
-  for (std::size_t i = 0; i < best.size(); ++i)
-    for (std::size_t j = i + 1; j < best.size(); ++j) {
-      if (has({best[i]}, best[j]->candidate)) continue;  // they look alike
-      auto trial = set;
-      trial.push_back(best[i]);
-      trial.push_back(best[j]);
-      if (all_possible(trial)) pairs.push_back({trial, score(trial)});
-    }
-  std::sort(pairs.begin(), pairs.end(), by_score);
-  if (pairs.empty() || pairs.front().score > score(set) || !takes_enough(pairs.front().set)) return false;
-  auto& pair = pairs.front().set;
-  for (std::size_t k = set.size(); k < pair.size(); ++k)
-    if (judge(pair, k).rejection_reason) return false;
-  set = pair;
+  if (best.empty()) return false;
+  set = best;
   return true;
 }
 
-bool Search::drop(ActiveSet& set) {
+// A term for another candidate, for another of its own values, or for none.
+bool Search::move_one(ActiveSet& set) {
+  const double now = score(set);
   for (std::size_t k = 0; k < set.size(); ++k) {
-    if (settled(set[k])) continue;
-    const auto judgement = judge(set, k);
-    if (!judgement.rejection_reason) continue;
-    note(set[k]->candidate, judgement);
-    set.erase(set.begin() + static_cast<std::ptrdiff_t>(k));
-    return true;
+    const auto others = without(set, k);
+    const auto of_others = posterior(others);
+    double of_rest = of_others.nats();
+    for (const auto* atom : others) of_rest += atom->log_prior;
+    if (of_rest > now) {
+      set = others;
+      return true;
+    }
+    auto options = options_beside(others, of_others);
+    for (std::size_t i = 0; i < std::min<std::size_t>(2, options.size()); ++i) {
+      if (of_rest + options[i].score < now - 20.0) break;
+      const auto option = refined(options[i], others, of_others);
+      if (option.atom == set[k] || of_rest + option.score <= now + better) continue;
+      set[k] = option.atom;
+      return true;
+    }
   }
   return false;
+}
+
+// Two terms for one other: a force constant is mass, Coulomb and viscous friction together.
+bool Search::merge(ActiveSet& set) {
+  const double now = score(set);
+  for (std::size_t i = 0; i < set.size(); ++i)
+    for (std::size_t j = i + 1; j < set.size(); ++j) {
+      const auto others = without(without(set, j), i);
+      const auto of_others = posterior(others);
+      double of_rest = of_others.nats();
+      for (const auto* atom : others) of_rest += atom->log_prior;
+      const auto options = options_beside(others, of_others);
+      if (options.empty() || of_rest + options.front().score < now - 20.0) continue;
+      const auto one = refined(options.front(), others, of_others);
+      if (of_rest + one.score <= now + better) continue;
+      set = others;
+      set.push_back(one.atom);
+      return true;
+    }
+  return false;
+}
+
+void Search::improve(ActiveSet& set) {
+  for (std::size_t round = 0; round < most_rounds; ++round)
+    if (!move_one(set) && !merge(set)) return;
+}
+
+// How likely the term is its candidate, and which others it may be. Differences of evidence are as good as the
+// description of what is there: they count less where more of it has to be described.
+void Search::name(const ActiveSet& set, std::size_t term, Term& as) {
+  const auto others = without(set, term);
+  const auto of_others = posterior(others);
+  auto options = options_beside(others, of_others);
+  for (std::size_t k = 0; k < std::min(refined_each, options.size()); ++k)
+    options[k] = refined(options[k], others, of_others);
+  const double own = score(set) - of_others.nats() - [&] {
+    double sum = 0.0;
+    for (const auto* atom : others) sum += atom->log_prior;
+    return sum;
+  }();
+  const double blur = std::max(1.0, of_strongest * own / sure);
+  double sum = 1.0 + std::exp(-own / blur);
+  for (const auto& option : options)
+    if (option.atom->candidate != set[term]->candidate) sum += std::exp((option.score - own) / blur);
+  as.nats = own;
+  as.probability = 1.0 / sum;
+  for (const auto& option : options) {
+    const double probability = std::exp((option.score - own) / blur) / sum;
+    const auto c = option.atom->candidate;
+    if (c != set[term]->candidate && probability > least_probability) as.alternatives.push_back({c, probability});
+  }
 }
 
 // Share of the residual's square that a term explains, given the others of the set.
 double Search::explained_by(const ActiveSet& set, std::size_t term) const {
-  auto others = set;
-  others.erase(others.begin() + static_cast<std::ptrdiff_t>(term));
-  return (plain_.fit(columns_of(others)).left - plain_.fit(columns_of(set)).left) / plain_.total();
+  return (plain_.fit(columns_of(without(set, term))).left - plain_.fit(columns_of(set)).left) / plain_.total();
 }
 
-// Discards terms that explain too little, the least of them first: of two that can do each other's work neither
-// explains anything given the other, and only one may go.
-void Search::drop_small(ActiveSet& set) {
-  while (!set.empty()) {
-    std::size_t least = 0;
-    for (std::size_t k = 1; k < set.size(); ++k)
-      if (explained_by(set, k) < explained_by(set, least)) least = k;
-    const double explains = explained_by(set, least);
-    if (explains >= least_share) return;
-    discarded_.push_back(
-        {set[least]->candidate, fmt::format("explains {:.2g} % of the residual variance; expected at least {:g} %",
-                                            100.0 * std::max(explains, 0.0), 100.0 * least_share)});
-    set.erase(set.begin() + static_cast<std::ptrdiff_t>(least));
-  }
+void Search::discard(std::size_t candidate, std::string why, bool nearly) {
+  if (!candidates()[candidate].outside()) discarded_.push_back({candidate, std::move(why), nearly});
 }
 
-// Candidates that in the term's place leave a residual that the blocks cannot tell from its own.
-std::vector<std::size_t> Search::alternatives(const ActiveSet& set, std::size_t term) const {
-  std::vector<std::size_t> as_good;
-  auto others = set;
-  others.erase(others.begin() + static_cast<std::ptrdiff_t>(term));
-  const auto without = evidence_.held_out(columns_of(others)), with = evidence_.held_out(columns_of(set));
-  for (std::size_t c = 0; c < candidates().size(); ++c) {
-    if (has(set, c) || candidates()[c].outside()) continue;
-    const auto* option = best_of(c, others);
-    if (option == nullptr) continue;
-    auto trial = others;
-    trial.push_back(option);
-    const auto instead = evidence_.held_out(columns_of(trial));
-    double gained = 0.0, of = 0.0, mean = 0.0, square = 0.0;
-    const double n = static_cast<double>(with.size());
-    for (std::size_t b = 0; b < with.size(); ++b) {
-      of += without[b] - with[b];
-      gained += without[b] - instead[b];
-      mean += (instead[b] - with[b]) / n;
-      square += (instead[b] - with[b]) * (instead[b] - with[b]) / n;
-    }
-    const double error = std::sqrt(std::max(square - mean * mean, 0.0) / (n - 1.0));
-    if (gained > 0.7 * of && mean < 2.0 * error) as_good.push_back(c);
+std::vector<Term> Search::terms_of(const ActiveSet& set) {
+  std::vector<Term> terms;
+  for (std::size_t k = 0; k < set.size(); ++k) {
+    Term term;
+    term.candidate = set[k]->candidate;
+    term.shape = set[k]->shape;
+    const auto others = columns_of(without(set, k));
+    term.judgement =
+        judge_columns(evidence_, plain_, others, set[k]->group.columns, trials_of(scene_, set[k]->candidate));
+    term.explains = explained_by(set, k);
+    if (candidates()[term.candidate].outside()) term.size = posterior(without(set, k)).gain_of(set[k]->group).size;
+    name(set, k, term);
+    terms.push_back(std::move(term));
   }
-  return as_good;
+  return terms;
+}
+
+// From noise that is what is left now, or what is left when all candidates have taken what they can.
+Dictionary::ActiveSet Search::searched_from(bool absorbed) {
+  ActiveSet set;
+  whiten(set, absorbed);
+  scan_lines(set);
+  for (std::size_t round = 0; round < most_rounds && set.size() < most_terms && grow(set); ++round) {
+    improve(set);
+    whiten(set, false);
+    scan_lines(set);
+  }
+  // What stays is judged by the noise that it leaves.
+  improve(set);
+  whiten(set, false);
+  return set;
+}
+
+// Drops what is not worth its price.
+void Search::prune(ActiveSet& set) {
+  for (;;) {
+    const auto least = leftover(set) + sure;
+    const double all = score(set);
+    std::size_t weakest = set.size();
+    double worth = least;
+    for (std::size_t k = 0; k < set.size(); ++k)
+      if (const double own = all - score(without(set, k)); own < worth) worth = own, weakest = k;
+    if (weakest == set.size()) return;
+    discard(set[weakest]->candidate,
+            fmt::format("log odds against its absence of {:.1f}; expected at least {:.1f}", worth, least), true);
+    set = without(set, weakest);
+    improve(set);
+  }
 }
 
 SearchResult Search::run() {
-  std::map<std::size_t, Judgement> judged;
-  const auto judge_new = [&](const ActiveSet& set) {
-    for (std::size_t k = 0; k < set.size(); ++k)
-      if (!judged.contains(set[k]->candidate)) judged[set[k]->candidate] = judge(set, k);
-  };
-  // What dominates, on the rows as they are.
-  ActiveSet set;
-  scan_lines(set);
-  while (set.size() < most_terms && grow(set, dominant)) {
-    scan_lines(set);
-    improve(set);
-    correlation_ = correlation_length(residual(set), rows_.logs());
-    if (++rounds_ > 2 * most_terms) break;
-  }
-  judge_new(set);
-  for (const auto* option : set) settled_.push_back(option->candidate);
-  // Then what is small beside the noise, each frequency by how little noise it carries.
-  whiten(set);
-  scan_lines(set);
-  while (set.size() < most_terms && grow(set)) {
-    scan_lines(set);
-    improve(set);
-    whiten(set);
-    if (++rounds_ > 4 * most_terms) break;
-  }
-  judge_new(set);
-  // Where causes were found without it, what is left may be more physics rather than noise, and would get the weight
-  // of noise: weights are then those of least squares as it is.
-  if (!settled_.empty()) evidence_.whiten({});
-  drop_small(set);
+  auto set = searched_from(true);
+  const double of_first = with_own_noise(set);
+  auto other = searched_from(false);
+  const double of_other = with_own_noise(other);
+  if (of_other > of_first) set = other;
+  whiten(set, false);
   SearchResult result;
-  for (std::size_t k = 0; k < set.size(); ++k) {
-    Term term{set[k]->candidate, set[k]->shape,       {}, {}, 0.0, judged.at(set[k]->candidate),
-              !settled(set[k]),  alternatives(set, k)};
-    term.explains = explained_by(set, k);
-    result.terms.push_back(std::move(term));
-  }
-  result.residual = refine(rows_, evidence_, scene_, result.terms);
-  // Terms that nearly cancel each other can end with values that they cannot have.
-  for (std::size_t k = 0; k < result.terms.size();) {
-    if (const auto why = impossible(scene_, result.terms[k])) {
-      discarded_.push_back({result.terms[k].candidate, *why});
-      result.terms.erase(result.terms.begin() + static_cast<std::ptrdiff_t>(k));
-      result.residual = refine(rows_, evidence_, scene_, result.terms);
-      k = 0;
-    } else {
-      ++k;
-    }
+  // Terms that nearly cancel each other can end with values that they cannot have: without such a one what it has kept
+  // out may enter.
+  for (;;) {
+    prune(set);
+    result.terms = terms_of(set);
+    result.residual = refine(rows_, evidence_, scene_, result.terms);
+    std::size_t k = 0;
+    std::optional<std::string> why;
+    while (k < set.size() && !(why = impossible(scene_, result.terms[k]))) ++k;
+    if (k == set.size()) break;
+    refused_.insert(set[k]->candidate);
+    discard(set[k]->candidate, *why, false);
+    set = without(set, k);
+    improve(set);
+    for (std::size_t round = 0; round < most_rounds && set.size() < most_terms && grow(set); ++round) improve(set);
   }
   for (const auto& d : discarded_)
-    if (!candidates()[d.candidate].outside() &&
-        std::none_of(result.terms.begin(), result.terms.end(),
-                     [&](const Term& term) { return term.candidate == d.candidate; }))
+    if (std::none_of(result.terms.begin(), result.terms.end(),
+                     [&](const Term& term) { return term.candidate == d.candidate; }) &&
+        std::none_of(result.discarded.begin(), result.discarded.end(),
+                     [&](const Discarded& known) { return known.candidate == d.candidate; }))
       result.discarded.push_back(d);
   std::sort(result.terms.begin(), result.terms.end(),
             [](const Term& a, const Term& b) { return a.explains > b.explains; });
@@ -306,9 +295,8 @@ SearchResult Search::run() {
 
 }  // namespace
 
-SearchResult search_causes(const LogRows& rows, const Eigen::VectorXd& target, SearchContext& context,
-                           std::span<const std::size_t> refuted) {
-  return Search(rows, target, context, refuted).run();
+SearchResult search_causes(const LogRows& rows, const Eigen::VectorXd& target, SearchContext& context) {
+  return Search(rows, target, context).run();
 }
 
 }  // namespace stiction::host

@@ -1,13 +1,11 @@
-// Which candidates the residual force needs: orthogonal matching over groups of regressors with their nonlinear
-// parameters scanned inside, joint refits, exchange, and a try to drop each (Billings 2013, ch. 3, over groups). Among
-// terms the score is that of forward selection by extended BIC; which stay, judgement.hpp says.
-// What dominates the residual is found on the rows as they are, the rest beside it on whitened ones (whitening.hpp).
+// Which candidates the residual force needs: the set with the highest odds, by adding, exchanging, merging and dropping
+// (all that remain are fitted again each time), with nonlinear parameters refined before anything is added after them.
+// Names compete with smooth functions that have none: what is certain and is no name's is what stays unexplained.
 #pragma once
 
 #include <functional>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -18,14 +16,20 @@
 namespace stiction::host {
 
 struct Term {
-  std::size_t candidate;  // of candidates()
-  double shape;
+  std::size_t candidate = 0;  // of candidates()
+  double shape = 0.0;
   Eigen::VectorXd coefficients;
   Eigen::MatrixXd covariance;  // of the weights, and of the nonlinear parameter behind them
-  double explains = 0.0;       // share of the target's square, given the others
+  double size = 0.0;      // N rms, of its force beforehand: of a term without a name, whose weights nothing else holds
+  double explains = 0.0;  // share of the target's square, given the others
   Judgement judgement;
-  bool whitened = false;                  // found on whitened rows
-  std::vector<std::size_t> alternatives;  // candidates that do as well in its place, as far as the blocks tell
+  double nats = 0.0;         // log odds of it against its absence, beside the others
+  double probability = 1.0;  // of this candidate, of all that could be in its place
+  struct Alternative {
+    std::size_t candidate;
+    double probability;
+  };
+  std::vector<Alternative> alternatives;  // other names that may be in its place, the likeliest first
 };
 
 struct Discarded {
@@ -42,9 +46,7 @@ struct SearchResult {
   std::size_t blocks = 0;
 };
 
-// `target`: the residual force of the rows. `context` gets the pitches that were found. `refuted`: candidates that
-// other records spoke against, and that are no choice here.
-SearchResult search_causes(const LogRows& rows, const Eigen::VectorXd& target, SearchContext& context,
-                           std::span<const std::size_t> refuted = {});
+// `target`: the residual force of the rows. `context` gets the pitches that were found.
+SearchResult search_causes(const LogRows& rows, const Eigen::VectorXd& target, SearchContext& context);
 
 }  // namespace stiction::host

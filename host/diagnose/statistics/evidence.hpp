@@ -33,7 +33,10 @@ class Evidence {
   std::size_t blocks() const { return blocks_.size(); }
   const std::vector<RowBlock>& row_blocks() const { return blocks_; }
   double total() const { return white_.total(of_target, of_target); }  // sum of squares of the whitened target
-  double column_square(Eigen::Index column) const { return white_.total(place(column), place(column)); }
+  double column_square(Eigen::Index column) const { return product(column, column); }
+  // Whitened: of two columns, and of a column with the target.
+  double product(Eigen::Index one, Eigen::Index other) const { return white_.total(place(one), place(other)); }
+  double moment(Eigen::Index column) const { return white_.total(of_target, place(column)); }
   const Eigen::VectorXd& target() const { return target_; }  // not whitened
   const Whitening& whitening() const { return whitening_; }
 

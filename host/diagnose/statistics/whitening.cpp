@@ -45,7 +45,7 @@ Whitening::Whitening(const Eigen::VectorXd& residual, std::span<const std::size_
 }
 
 Eigen::VectorXd Whitening::operator()(const Eigen::VectorXd& column) const {
-  if (predictor_.empty()) return column;
+  if (predictor_.empty()) return weight_.size() > 0 ? Eigen::VectorXd(column.cwiseProduct(weight_)) : column;
   Eigen::VectorXd white = column;
   const auto back = predictor_.size();
   for (std::size_t k = 0; k < logs_.size(); ++k) {
@@ -56,17 +56,19 @@ Eigen::VectorXd Whitening::operator()(const Eigen::VectorXd& column) const {
           predictor_[j] * column.segment(static_cast<Eigen::Index>(first - 1 - j), length);
     white.segment(static_cast<Eigen::Index>(logs_[k]), static_cast<Eigen::Index>(first - logs_[k])).setZero();
   }
+  if (weight_.size() > 0) white = white.cwiseProduct(weight_);
   return white;
 }
 
 Eigen::VectorXd Whitening::transposed(const Eigen::VectorXd& column) const {
-  if (predictor_.empty()) return column;
+  if (predictor_.empty()) return weight_.size() > 0 ? Eigen::VectorXd(column.cwiseProduct(weight_)) : column;
   Eigen::VectorXd out = Eigen::VectorXd::Zero(column.size());
   const auto back = predictor_.size();
   for (std::size_t k = 0; k < logs_.size(); ++k) {
     const std::size_t end = end_of(logs_, k, column.size()), first = std::min(logs_[k] + back, end);
     const auto length = static_cast<Eigen::Index>(end - first);
-    const Eigen::VectorXd part = column.segment(static_cast<Eigen::Index>(first), length);
+    Eigen::VectorXd part = column.segment(static_cast<Eigen::Index>(first), length);
+    if (weight_.size() > 0) part = part.cwiseProduct(weight_.segment(static_cast<Eigen::Index>(first), length));
     out.segment(static_cast<Eigen::Index>(first), length) += part;
     for (std::size_t j = 0; j < back; ++j)
       out.segment(static_cast<Eigen::Index>(first - 1 - j), length) -= predictor_[j] * part;

@@ -3,6 +3,7 @@
 // words are in the units of the axis itself, and `units` shows the rest in them.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -14,6 +15,7 @@
 #include "host/log/log.hpp"
 #include "host/log/shown_units.hpp"
 #include "sim/effects/effects.hpp"
+#include "sim/effects/force_map/force_map.hpp"
 #include "sim/experiment/experiment_result.hpp"
 
 namespace stiction::host {
@@ -36,8 +38,9 @@ EffectParameter effect_parameter(const machine::AxisModel& axis, sim::EffectId e
 
 struct ConfusedWith {
   sim::EffectId effect;
-  std::string separate_by;  // the experiment that tells them apart
-  bool always = false;      // no motion of this axis alone does
+  std::string separate_by;   // the experiment that tells them apart
+  bool always = false;       // no motion of this axis alone does
+  double probability = 0.0;  // by these records
 };
 
 // Ratios of the extended to the baseline simulation on data that was not used.
@@ -60,13 +63,24 @@ struct Finding {
   double explains = 0.0;  // share of the residual's variance that it takes away, given the other findings
   HoldoutGain holdout;
   double p_value = 1.0;
+  double probability = 1.0;  // of this name, of all that could be in its place, one without a name included
   std::vector<ConfusedWith> confused_with;
   std::string evidence;              // sentences for readers
   std::optional<double> part_error;  // m, what it does to the part: peak change of the position error by it
   std::vector<sim::Chart> charts;
 
+  bool names_cause() const { return !sim::is_a<sim::ForceMap>(effect); }
   machine::Effect row() const { return sim::effect_with(effect, values); }  // of the extended machine file
 };
+
+inline std::size_t named_causes(const std::vector<Finding>& findings) {
+  return static_cast<std::size_t>(
+      std::count_if(findings.begin(), findings.end(), [](const Finding& finding) { return finding.names_cause(); }));
+}
+// The order in which they are told: causes before what has no name, and each by what it explains.
+inline bool told_before(const Finding& one, const Finding& other) {
+  return one.names_cause() != other.names_cause() ? one.names_cause() : one.explains > other.explains;
+}
 
 // Of the residual in which it shows, on held-out data: with it over without it, rms.
 inline double gained_ratio(const Finding& finding) {

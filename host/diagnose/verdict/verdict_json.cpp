@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 namespace stiction::host {
 namespace {
 
@@ -34,10 +36,11 @@ Json finding_json(const Finding& f, const ShownUnits& units) {
   gain["ci95"] = f.holdout.ci95;
   Json confused = Json::array();
   for (const auto& c : f.confused_with)
-    confused.push_back({{"effect", c.effect.name()}, {"separate_by", c.separate_by}});
-  Json out{{"effect", f.effect.name()}, {"axis", f.axis},           {"parameters", parameters},
-           {"standard_errors", errors}, {"explains", f.explains},   {"holdout_gain", gain},
-           {"p_value", f.p_value},      {"confused_with", confused}};
+    confused.push_back({{"effect", c.effect.name()}, {"separate_by", c.separate_by}, {"probability", c.probability}});
+  Json out{
+      {"effect", f.effect.name()}, {"axis", f.axis},       {"parameters", parameters}, {"standard_errors", errors},
+      {"explains", f.explains},    {"holdout_gain", gain}, {"p_value", f.p_value},     {"probability", f.probability},
+      {"confused_with", confused}};
   if (f.in_command) out["residual"] = "command";
   if (f.part_error) out[named("part_error", units.deviation)] = units.deviation(*f.part_error);
   return out;
@@ -256,8 +259,9 @@ std::string agreement_text(const Verdict& verdict) {
         force(floor.encoder), force.unit, force(floor.clock), force.unit, force(floor.effort), force.unit,
         force(floor.dynamics), force.unit);
   }
-  const char* none = verdict.findings.empty() ? "no cause found; " : "";
-  if (!verdict.agreement) return text + (verdict.findings.empty() ? "\nno cause found\n" : "");
+  const bool named = named_causes(verdict.findings) > 0;
+  const char* none = named ? "" : "no cause found; ";
+  if (!verdict.agreement) return text + (named ? "" : "\nno cause found\n");
   const char* which = verdict.findings.empty() ? "the machine file" : "the extended machine file";
   switch (verdict.agreement->status) {
     case Status::agrees:
@@ -294,9 +298,14 @@ std::string verdict_text(const Verdict& verdict) {
     const auto& f = verdict.findings[k];
     text += fmt::format("\n{}. {}, axis {}\n", k + 1, f.effect.name(), f.axis);
     for (const auto& p : f.parameters)
-      for (std::size_t i = 0; i < p.values.size(); ++i)
-        text += fmt::format("   {} = {:.6g} +- {:.2g}\n", p.name(), p.values[i],
-                            i < p.standard_errors.size() ? p.standard_errors[i] : 0.0);
+      if (p.standard_errors.empty() && p.values.size() > 1) {
+        const auto [least, most] = std::minmax_element(p.values.begin(), p.values.end());
+        text += fmt::format("   {} = {} values from {:.6g} to {:.6g}\n", p.name(), p.values.size(), *least, *most);
+      } else {
+        for (std::size_t i = 0; i < p.values.size(); ++i)
+          text += fmt::format("   {} = {:.6g} +- {:.2g}\n", p.name(), p.values[i],
+                              i < p.standard_errors.size() ? p.standard_errors[i] : 0.0);
+      }
     text += fmt::format(
         "   {}\n   held-out data: rms {} is {:.3f} times that without this cause (95 % interval {:.3f} to {:.3f})",
         f.evidence, f.in_command ? "command residual" : "force", gained_ratio(f), f.holdout.ci95[0], f.holdout.ci95[1]);

@@ -16,6 +16,11 @@ Columns columns(const SearchContext& context, const Motion& motion, double) {
   for (double& x : way) x -= middle(context);
   return {way, std::vector<double>(motion.x.size(), -1.0)};
 }
+// A spring that is at rest far beyond the stroke is a constant force.
+bool possible(const SearchContext& context, double, const Eigen::VectorXd& w) {
+  constexpr double strokes = 2.5;
+  return std::abs(w[1]) < strokes * context.stroke() * std::abs(w[0]);
+}
 void describe(const SearchContext& context, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
               Finding& finding) {
   // k (x - neutral) = w0 (x - middle) - w1
@@ -29,6 +34,6 @@ void describe(const SearchContext& context, double, const Eigen::VectorXd& w, co
 }  // namespace
 
 extern const EffectRegressor regressor{
-    .force = {.grid = grid, .columns = columns, .possible = any, .describe = describe}};
+    .force = {.grid = grid, .columns = columns, .possible = possible, .describe = describe}};
 
 }  // namespace stiction::host::effects::position_spring

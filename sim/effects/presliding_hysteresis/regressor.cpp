@@ -11,8 +11,9 @@
 namespace stiction::host::effects::presliding_hysteresis {
 namespace {
 
-// Seven large reversals do not identify a hysteresis: sgn(v) and a contact then fit one another.
-constexpr int least_reversals = 10;
+// Of a file without a contact: seven large reversals do not identify one, since sgn(v) and a contact then fit each
+// other. One that is there already is told from a longer one by a reversal each way.
+constexpr int least_reversals = 10, least_with_contact = 2;
 constexpr double longest = 3e-3;  // m
 
 // 0 for friction that follows the speed alone.
@@ -27,8 +28,9 @@ double distance_with(const SearchContext& context, double longer) {
 }
 
 std::vector<double> grid(const SearchContext& context) {
-  if (!(coulomb_of(context.axis) > 0.0) || context.reversals < least_reversals) return {};
   const double file = distance_of(context);
+  if (!(coulomb_of(context.axis) > 0.0) || context.reversals < (file > 0.0 ? least_with_contact : least_reversals))
+    return {};
   if (!(file > 0.0)) return geometric(1e-6, 3e-3, 14);
   std::vector<double> longer;
   for (const double share : {-0.75, -0.5, -0.25, -0.1, -0.03, 0.03, 0.08, 0.2}) longer.push_back(share * file);

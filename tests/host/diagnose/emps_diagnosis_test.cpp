@@ -13,6 +13,7 @@
 #include "host/identify/log_rows.hpp"
 #include "host/log/read_log.hpp"
 #include "sim/effects/effects.hpp"
+#include "sim/effects/encoder_subdivision_error/encoder_subdivision_error.hpp"
 #include "sim/effects/time_skew/time_skew.hpp"
 #include "sim/machine_file.hpp"
 #include "tests/support/figure.hpp"
@@ -110,6 +111,12 @@ double residual_rms(const host::Log& log, const machine::Machine& machine,
     const auto k = std::min(static_cast<std::size_t>(place), u.size() - 2);
     const double share = place - static_cast<double>(k);
     u[i] = (1.0 - share) * log.axes.front().u[k] + share * log.axes.front().u[k + 1];
+  }
+  // What an encoder reads is known only with its errors taken off.
+  auto& x = shifted.axes.front().x;
+  for (const auto& error : sim::effects_of<sim::EncoderSubdivisionError>(axis)) {
+    const sim::EncoderSubdivisionError read(error);
+    for (double& each : x) each -= read.at(each).value;
   }
   host::SignalSettings settings;
   settings.row_rate = 250.0;

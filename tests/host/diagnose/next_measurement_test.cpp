@@ -74,21 +74,35 @@ struct Case {
   sim::Trajectory training, held_out;
 };
 
-// Contact of the file's own shape: stiffness times distance is ln 10 times the Coulomb level.
+// Hidden effects that these records show, but not so well that they tell them from the rival.
 std::vector<Case> cases() {
   const auto speeds = [](const std::vector<double>& v) { return sim::constant_speeds(v, 0.4, 2e-3); };
-  return {
-      {"few reversals",
-       {"presliding_hysteresis", {{"stiffness", {90.0 * std::numbers::ln10 / 300e-6}}, {"distance", {300e-6}}}},
-       "coulomb_mismatch",
-       speeds({0.3, 0.25}),
-       speeds({0.28, 0.22})},
-      {"few speeds",
-       {"viscous_mismatch", {{"viscous", {530.0}}}},
-       "viscous_nonlinear",
-       speeds({0.02, 0.1, 0.2, 0.05}),
-       speeds({0.03, 0.07, 0.15})},
-      {"two speeds", {"friction_lag", {{"time", {0.01}}}}, "mass_mismatch", speeds({0.3, 0.25}), speeds({0.28, 0.22})}};
+  return {{"few speeds",
+           {"viscous_mismatch", {{"viscous", {530.0}}}},
+           "viscous_nonlinear",
+           speeds({0.02, 0.1, 0.2, 0.05}),
+           speeds({0.03, 0.07, 0.15})},
+          {"two speeds",
+           {"friction_lag", {{"time", {0.005}}}},
+           "mass_mismatch",
+           speeds({0.3, 0.25}),
+           speeds({0.28, 0.22})}};
+}
+
+// Contact of the file's own shape: stiffness times distance is ln 10 times the Coulomb level.
+TEST(NextMeasurement, is_not_asked_for_what_few_reversals_show) {
+  host::DiagnoseInput input;
+  input.machine = machine();
+  input.closed_loop = false;
+  auto real = input.machine;
+  real.axes.front().effects = {
+      {"presliding_hysteresis", {{"stiffness", {90.0 * std::numbers::ln10 / 300e-6}}, {"distance", {300e-6}}}}};
+  const auto few = [](const std::vector<double>& v) { return sim::constant_speeds(v, 0.4, 2e-3); };
+  input.logs = {recorded(real, set_points("training", few({0.3, 0.25})), 1)};
+  input.held_out = {recorded(real, set_points("held out", few({0.28, 0.22})), 2)};
+  const auto verdict = host::diagnose(input);
+  ASSERT_EQ(findings_of(verdict), "presliding_hysteresis");
+  EXPECT_NEAR(verdict.findings.front().values.at("distance").front(), 300e-6, 30e-6);
 }
 
 class EachAmbiguity : public ::testing::TestWithParam<std::size_t> {};

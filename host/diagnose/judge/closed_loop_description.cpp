@@ -1,0 +1,142 @@
+#include "host/diagnose/judge/closed_loop_description.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include "host/diagnose/classes/candidate_columns.hpp"
+#include "host/diagnose/search/price.hpp"
+#include "host/diagnose/search/refinement.hpp"
+#include "host/diagnose/statistics/marginal.hpp"
+#include "host/diagnose/statistics/noise_model.hpp"
+
+namespace stiction::host {
+namespace {
+
+constexpr int passes_of_replays = 3;
+
+Finding bare_finding(const SearchContext& context, const Term& term) {
+  const auto& candidate = candidates()[term.candidate];
+  Finding finding(*candidate.effect);
+  finding.axis = context.axis.name;
+  candidate.describe(context, term.shape, term.coefficients, term.covariance, finding);
+  return finding;
+}
+
+class Description {
+ public:
+  // `noise`: N, what all terms leave.
+  Description(std::span<EffectResponse> responses, const LogRows& rows, const Eigen::VectorXd& target,
+              const Eigen::VectorXd& noise, const SearchContext& context)
+      : responses_(responses), rows_(rows), target_(target), noise_(noise), context_(context) {}
+
+  // All terms as they are.
+  ClosedLoopDescription taken(std::vector<Term> named, std::vector<Term> unnamed) {
+    ClosedLoopDescription description{std::move(named), {}, std::move(unnamed), {}};
+    run(description, noise_);
+    return description;
+  }
+
+  ClosedLoopDescription grown(std::vector<Term> named, std::vector<Term> unnamed) {
+    ClosedLoopDescription description;
+    auto waiting = std::move(named);
+    const auto strongest =
+        std::max_element(waiting.begin(), waiting.end(), [](const Term& a, const Term& b) { return a.nats < b.nats; });
+    const double leftover = of_strongest * strongest->nats;
+    description.terms.push_back(std::move(*strongest));
+    waiting.erase(strongest);
+    std::move(unnamed.begin(), unnamed.end(), std::back_inserter(waiting));
+    for (;;) {
+      const auto left = describe(description);
+      const auto next = most_needed(waiting, left, leftover);
+      if (next == waiting.size()) break;
+      const bool has_name = !candidates()[waiting[next].candidate].outside();
+      (has_name ? description.terms : description.unnamed).push_back(std::move(waiting[next]));
+      waiting.erase(waiting.begin() + static_cast<std::ptrdiff_t>(next));
+    }
+    description.remainders = std::move(waiting);
+    return description;
+  }
+
+ private:
+  Eigen::VectorXd force_of(const Term& term) const {
+    return weighted_columns(rows_, context_, candidates()[term.candidate], term.shape, term.coefficients);
+  }
+
+  std::vector<RowBlock> blocks() const {
+    return blocks_of(rows_.velocity, rows_.logs(), static_cast<std::size_t>(rows_.rows() / 60 + 1));
+  }
+  Evidence evidence_of(const Eigen::VectorXd& residual, const Eigen::VectorXd& noise) const {
+    Evidence evidence(residual, blocks());
+    evidence.whiten(noise_of(noise.cwiseProduct(rows_.counts()), rows_.logs()));
+    return evidence;
+  }
+
+  // Fits the terms that the description has, those with a name in closed loop; returns what is left. What a coarse
+  // description leaves is no noise: first the force counts as it is, then by the noise that this has left, under which
+  // what replays does so anew.
+  Eigen::VectorXd describe(ClosedLoopDescription& description) {
+    auto terms = description.terms;
+    terms.insert(terms.end(), description.unnamed.begin(), description.unnamed.end());
+    auto left = refine(rows_, Evidence(target_, blocks()), context_, terms);
+    const bool replays = context_.disturb && std::any_of(terms.begin(), terms.end(), [](const Term& term) {
+                           return candidates()[term.candidate].replays;
+                         });
+    for (int pass = 0; pass < (replays ? passes_of_replays : 1); ++pass) {
+      if (replays) context_.disturb(left);
+      left = refine(rows_, evidence_of(target_, left), context_, terms);
+    }
+    const auto named = static_cast<std::ptrdiff_t>(description.terms.size());
+    description.terms.assign(terms.begin(), terms.begin() + named);
+    description.unnamed.assign(terms.begin() + named, terms.end());
+    return run(description, std::move(left));
+  }
+
+  // Moves the findings to where runs of the machine fit best; returns what they leave. `left`: what the terms leave.
+  Eigen::VectorXd run(ClosedLoopDescription& description, Eigen::VectorXd left) {
+    std::vector<Finding> findings;
+    for (const auto& term : description.terms) findings.push_back(bare_finding(context_, term));
+    Eigen::VectorXd aside = Eigen::VectorXd::Zero(rows_.rows());
+    for (const auto& term : description.unnamed) aside += force_of(term);
+    auto refined = refine_in_closed_loop(std::move(findings), description.terms, responses_, rows_, target_ - aside,
+                                         std::move(left), context_);
+    description.findings = std::move(refined.findings);
+    return refined.left;
+  }
+
+  // Index of the term that is worth most beside the rest; their number where none is worth its price.
+  std::size_t most_needed(const std::vector<Term>& waiting, const Eigen::VectorXd& left, double leftover) const {
+    auto evidence = evidence_of(left, noise_);
+    const auto sizes = sizes_beside(left);
+    std::size_t best = waiting.size();
+    double most = leftover + sure;
+    for (std::size_t k = 0; k < waiting.size(); ++k) {
+      const auto group =
+          add_group(evidence, group_columns(rows_, context_, candidates()[waiting[k].candidate], waiting[k].shape));
+      const double nats = Posterior(evidence, sizes).gain_of(group).nats + log_prior_of(context_, waiting[k].candidate);
+      if (nats > most) most = nats, best = k;
+    }
+    return best;
+  }
+
+  std::span<EffectResponse> responses_;
+  const LogRows& rows_;
+  const Eigen::VectorXd &target_, &noise_;
+  const SearchContext& context_;
+};
+
+}  // namespace
+
+ClosedLoopDescription describe_in_closed_loop(std::vector<Term> named, std::vector<Term> unnamed,
+                                              std::span<EffectResponse> responses, const LogRows& rows,
+                                              const Eigen::VectorXd& target, const Eigen::VectorXd& left,
+                                              const SearchContext& context) {
+  Description description(responses, rows, target, left, context);
+  // Only what has a nonlinear parameter is described coarsely by its columns.
+  const bool coarse = std::any_of(named.begin(), named.end(), [](const Term& term) {
+    return candidates()[term.candidate].shape || candidates()[term.candidate].at_weight;
+  });
+  return responses.empty() || !coarse ? description.taken(std::move(named), std::move(unnamed))
+                                      : description.grown(std::move(named), std::move(unnamed));
+}
+
+}  // namespace stiction::host

@@ -1,0 +1,30 @@
+// What a term of a search has to be worth before it is called a cause.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/diagnose/classes/candidate.hpp"
+
+namespace stiction::host {
+
+// A loss ratio of 20: as log odds, what a name must have against all that has none.
+constexpr double sure = 3.0;
+// Of the strongest term's log evidence: so much may be left of how that one was described.
+constexpr double of_strongest = 0.02;
+
+// Number of independent values of a candidate's nonlinear parameter that were tried. `candidate`: index in
+// candidates().
+inline double trials_of(const SearchContext& context, std::size_t candidate) {
+  const auto& of = candidates()[candidate];
+  if (of.scan != nullptr) return static_cast<double>(std::max<std::size_t>(of.scan(context).trials, 1));
+  return std::max(of.trials, of.shape ? 3.0 : 1.0);
+}
+
+// Log odds beforehand that the candidate is there with one value of its nonlinear parameter: one of all is as likely as
+// none, each value as likely as the next.
+inline double log_prior_of(const SearchContext& context, std::size_t candidate) {
+  return -std::log(static_cast<double>(candidates().size()) * trials_of(context, candidate));
+}
+
+}  // namespace stiction::host

@@ -1,0 +1,20 @@
+// What the rows look like where nothing but noise is in them: the noise's spectrum, and how far each row may be out. A
+// few rows that are far out count less, as Student's t has it (Lange, Little, Taylor, J. Am. Stat. Assoc. 84, 1989), so
+// that one odd event names nothing.
+#pragma once
+
+#include <Eigen/Dense>
+#include <span>
+
+#include "host/diagnose/statistics/whitening.hpp"
+
+namespace stiction::host {
+
+// Makes rows white with a variance of one. `residual`: what is taken for noise, in rows of several logs, 0 in those
+// that do not count; `logs`: first row of each.
+Whitening noise_of(const Eigen::VectorXd& residual, std::span<const std::size_t> logs);
+
+// The log likelihood of that noise, nats, but for a constant: what tells two residuals of the same rows apart.
+double noise_log_likelihood(const Eigen::VectorXd& residual, std::span<const std::size_t> logs);
+
+}  // namespace stiction::host
