@@ -19,7 +19,9 @@ BY_CLASS = {
     "host/simulate/late_current.hpp": "the current of a record comes late",
     "host/identify/identified_machine.cpp": "an identification writes friction that rises with a weight as it",
     "host/identify/refinement.cpp": "the fit has the constant force of the file as a parameter",
-    "host/diagnose/diagnose.cpp": "a record's delay is taken out before the drive's commands are judged",
+    "host/diagnose/diagnose.cpp": "a record's delay is taken out before the drive's commands are judged; a smooth "
+                                      "force without a name extends the machine as a table",
+    "host/diagnose/verdict/verdict.hpp": "a table of the machine file names no cause",
     "host/diagnose/judge/closed_loop.cpp": "the other axis must be simulated where it acts on this one",
     "host/diagnose/record/inverse_dynamics.cpp": "the force that bends an elastic mode of the machine file is expected",
     "host/diagnose/reference/reference_charts.cpp": "rows of two numbers tell sliding friction and the contact, nothing else",
