@@ -2,10 +2,12 @@
 // against a closed form of its definition (its page).
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
 
+#include "sim/effects/force_map/force_map.hpp"
 #include "sim/effects/position_dependent_friction/position_dependent_friction.hpp"
 #include "sim/effects/thermal_drift/thermal_drift.hpp"
 #include "tests/sim/effects/effect_plant.hpp"
@@ -50,6 +52,46 @@ TEST(PositionDependentFriction, RefusesListsThatAreNoProfile) {
   EXPECT_THROW(PositionDependentFriction::check(P{{0.0, 0.1}, {1.0}}), EffectError);
   EXPECT_THROW(PositionDependentFriction::check(P{{0.1, 0.1}, {1.0, 2.0}}), EffectError);
   EXPECT_NO_THROW(PositionDependentFriction::check(P{{0.1}, {1.0}}));
+}
+
+TEST(ForceMap, IsBilinearBetweenItsPlacesAndConstantBeyondThem) {
+  const ForceMap::Parameters p{{0.1, 0.3}, {-0.2, 0.2}, {1.0, 5.0, -3.0, 9.0}};
+  const ForceMap map(p, {50.0, 1e-5});
+  const auto bilinear = [](double x, double v) {
+    const double a = std::clamp((x - 0.1) / 0.2, 0.0, 1.0), b = std::clamp((v + 0.2) / 0.4, 0.0, 1.0);
+    return (1.0 - a) * (1.0 - b) * 1.0 + (1.0 - a) * b * 5.0 + a * (1.0 - b) * -3.0 + a * b * 9.0;
+  };
+  for (const double x : {0.0, 0.1, 0.17, 0.3, 0.5})
+    for (const double v : {-0.4, -0.2, -0.05, 0.1, 0.4}) {
+      EXPECT_NEAR(map.at(x, v), bilinear(x, v), 1e-12) << x << " " << v;
+      // Sliding either way, the direction is that of the velocity.
+      EXPECT_NEAR(map.force({x, v, std::copysign(1.0, v)}), bilinear(x, v), 1e-12) << x << " " << v;
+    }
+}
+
+TEST(ForceMap, TurnsFromOneDirectionToTheOtherWithTheContact) {
+  const ForceMap map({{0.0}, {-1e-6, 1e-6}, {4.0, -4.0}}, {50.0, 1e-5});
+  for (const double direction : {-1.0, -0.5, 0.0, 0.25, 1.0})
+    EXPECT_NEAR(map.force({0.0, 0.0, direction}), 0.0, 1e-12) << "linear through standstill";
+  for (const double direction : {-1.0, -0.5, 0.0, 0.25, 1.0})
+    EXPECT_NEAR(map.force({0.0, 1e-3, direction}), -4.0 * direction, 1e-12) << direction;
+}
+
+TEST(ForceMap, ActsOnTheCarriageOfThePlant) {
+  const machine::AxisModel axis =
+      with_effects({{"force_map", {{"position", {-1.0, 1.0}}, {"velocity", {0.0}}, {"force", {-6.0, 6.0}}}}});
+  for (const double start : {-0.5, 0.0, 0.25})
+    for (const double v : {1e-3, -1e-3})
+      EXPECT_NEAR(effect_force(axis, v, start), 6.0 * (start + v * 1.5 * 4000 * tick), servo + 1e-3) << start << v;
+}
+
+TEST(ForceMap, RefusesListsThatAreNoTable) {
+  using P = ForceMap::Parameters;
+  EXPECT_THROW(ForceMap::check(P{{}, {0.0}, {}}), EffectError);
+  EXPECT_THROW(ForceMap::check(P{{0.0, 0.1}, {0.0}, {1.0}}), EffectError);
+  EXPECT_THROW(ForceMap::check(P{{0.1, 0.1}, {0.0}, {1.0, 2.0}}), EffectError);
+  EXPECT_THROW(ForceMap::check(P{{0.0}, {0.1, -0.1}, {1.0, 2.0}}), EffectError);
+  EXPECT_NO_THROW(ForceMap::check(P{{0.0, 0.1}, {-0.1, 0.1}, {1.0, 2.0, 3.0, 4.0}}));
 }
 
 TEST(ThermalDrift, ApproachesItsChangeWithItsTimeConstantAndOpposesTheMotion) {
