@@ -11,6 +11,7 @@ namespace stiction::host {
 
 class LogRows {
  public:
+  LogRows() = default;  // of no record
   LogRows(std::vector<Motion> motions, const SignalSettings& settings);
 
   const std::vector<Motion>& motions() const { return motions_; }

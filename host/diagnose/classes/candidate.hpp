@@ -71,8 +71,6 @@ struct Candidate {
   // The lines among which a periodic one is looked for; null for others.
   const LineScan& (*scan)(const SearchContext&) = nullptr;
   bool replays = false;  // its columns cost a run of the closed loop
-  // The value that stands for the whole class of functions, of which the others are members; none: there is no such.
-  std::optional<double> whole_class{};
   // Whether it matters little at a value what disturbs those runs; null: at none.
   bool (*coarse)(const SearchContext&, double shape) = nullptr;
   double trials = 1.0;  // independent values that a grid without a scan tries

@@ -52,6 +52,13 @@ bool same(std::span<const machine::Effect> one, std::span<const machine::Effect>
       [](const machine::Effect& a, const machine::Effect& b) { return a.name == b.name && a.values == b.values; });
 }
 
+// With the channels that decide where the motor's force is taken from.
+Log replayed_like(const machine::Machine& machine, const Log& log) {
+  auto replayed = replay_linear_as_held(machine, log, {machine.axes.front().name});
+  if (log.axes.front().force.empty()) replayed.axes.front().force.clear();
+  return replayed;
+}
+
 }  // namespace
 
 ReplaySetup replay_setup_of(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
@@ -84,13 +91,6 @@ std::string why_not_simulated(const machine::Machine& machine, std::size_t axis,
       if (!why.empty()) return fmt::format("{}: {}", log.source, why);
     }
   return "";
-}
-
-// With the channels that decide where the motor's force is taken from.
-Log replayed_like(const machine::Machine& machine, const Log& log) {
-  auto replayed = replay_linear_as_held(machine, log, {machine.axes.front().name});
-  if (log.axes.front().force.empty()) replayed.axes.front().force.clear();
-  return replayed;
 }
 
 std::vector<Log> replays(const ReplaySetup& setup) {

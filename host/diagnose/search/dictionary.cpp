@@ -188,7 +188,7 @@ std::optional<Dictionary::Option> Dictionary::at_shape(std::size_t candidate, do
 // section within a step of the grid to either side.
 Dictionary::Option Dictionary::refined(Option option, const ActiveSet& beside, const Posterior& of_beside) {
   const auto& candidate = candidates()[option.atom->candidate];
-  if (candidate.replays || option.atom->shape == candidate.whole_class) return option;
+  if (candidate.replays) return option;
   const auto keep_better = [&](const std::optional<Option>& tried) {
     if (!tried) return -1e300;
     if (tried->score > option.score) {
@@ -210,7 +210,7 @@ Dictionary::Option Dictionary::refined(Option option, const ActiveSet& beside, c
     }
     return option;
   }
-  if (!candidate.shape || option.atom->shape == candidate.whole_class) return option;
+  if (!candidate.shape) return option;
   constexpr double golden = 0.6180339887498949;
   const std::size_t index = option.atom->candidate;
   const double value = option.atom->shape;

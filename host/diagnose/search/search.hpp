@@ -3,9 +3,6 @@
 // Names compete with smooth functions that have none: what is certain and is no name's is what stays unexplained.
 #pragma once
 
-#include <functional>
-#include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 

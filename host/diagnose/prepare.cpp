@@ -1,0 +1,196 @@
+#include "host/diagnose/prepare.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/machine/model/motor_force.hpp"
+#include "host/diagnose/record/inverse_dynamics.hpp"
+#include "host/diagnose/record/record_checks.hpp"
+#include "host/diagnose/record/record_rows.hpp"
+#include "host/diagnose/statistics/noise_model.hpp"
+#include "host/identify/identification.hpp"
+#include "host/identify/own_identification.hpp"
+#include "host/identify/standstill.hpp"
+#include "host/identify/suitability.hpp"
+#include "sim/effects/effects.hpp"
+
+namespace stiction::host {
+namespace {
+
+constexpr double shortest = 3.0;  // s, of the training logs together
+
+SearchContext context_of(const machine::AxisModel& axis, const LogRows& rows, const SignalSettings& settings) {
+  SearchContext context;
+  context.axis = axis;
+  context.signals = settings;
+  context.reversals = excitation_of(rows).reversals;
+  context.force_is_current = context.other_axis = true;
+  context.lowest_position = context.highest_position = rows.motions().front().x.front();
+  for (const auto& motion : rows.motions()) {
+    context.force_is_current = context.force_is_current && motion.force_is_current;
+    context.other_axis = context.other_axis && !motion.other_a.empty();
+    for (const double force : force_along(axis, motion))
+      context.highest_force = std::max(context.highest_force, std::abs(force));
+    context.duration = std::max(context.duration, motion.t.back() - motion.t.front());
+    for (std::size_t i = 0; i < motion.x.size(); ++i) {
+      context.highest_speed = std::max(context.highest_speed, std::abs(motion.v[i]));
+      context.lowest_position = std::min(context.lowest_position, motion.x[i]);
+      context.highest_position = std::max(context.highest_position, motion.x[i]);
+    }
+  }
+  return context;
+}
+
+std::string why_motion_is_measured(const DiagnoseInput& input) {
+  auto all = input.logs;
+  all.insert(all.end(), input.held_out.begin(), input.held_out.end());
+  const auto refused = why_not_simulated(input.machine, input.axis, all);
+  return fmt::format(
+      "{} The regressors were computed from the measured motion, which contains the response of the control loop to "
+      "the disturbances.{}",
+      refused.empty() ? "The logs have no set-points, or the simulation could not follow them." : refused + ".",
+      refused.empty() ? " Log x_set." : "");
+}
+
+// The records on which a verdict is said to rest, with what was noticed in them.
+void list_records(Verdict& verdict, const std::vector<Log>& training, const std::vector<Log>& held_out) {
+  for (const auto& log : training) verdict.logs.push_back(log.source);
+  for (const auto& log : held_out) verdict.holdout.push_back(log.source);
+  for (const auto* records : {&training, &held_out})
+    for (const auto& log : *records)
+      for (const auto& note : log.notes) verdict.notes.push_back(fmt::format("{}: {}", log.source, note));
+}
+
+// The last third of each training log, which loses it.
+std::vector<Log> hold_out_a_part(std::vector<Log>& training) {
+  std::vector<Log> held_out;
+  for (auto& log : training) {
+    const std::size_t cut = log.t.size() * 2 / 3;
+    held_out.push_back(part_of(log, cut, log.t.size()));
+    log = part_of(log, 0, cut);
+  }
+  return held_out;
+}
+
+// Training and held-out logs of linear axes, checked.
+void take_logs(Prepared& prepared, const DiagnoseInput& input, Verdict& verdict) {
+  auto &training = prepared.training.logs, &held_out = prepared.held_out.logs;
+  for (const auto* records : {&input.logs, &input.held_out})
+    for (auto& question : questions_before(*records, prepared.axis)) verdict.questions.push_back(std::move(question));
+  training = linear_logs(input.logs, input.machine.axes);
+  held_out = linear_logs(input.held_out, input.machine.axes);
+  for (auto* records : {&training, &held_out})
+    for (auto& log : *records) count_from_start(log);
+  list_records(verdict, training, held_out);
+  for (const auto* records : {&training, &held_out})
+    for (const auto& log : *records) refuse_unreachable_set_points(log, prepared.axis);
+  refuse_same_record(training, held_out, prepared.axis);
+  if (!held_out.empty()) return;
+  verdict.holdout_is_a_part = true;
+  verdict.notes.push_back(
+      "No held-out log was given: the first two thirds of each log were used for the search and the last third for "
+      "validation. Effects that repeat with the motion in both can still be taken for a cause. Record a different "
+      "trajectory, with different speeds, stroke and accelerations, and give it with --holdout.");
+  held_out = hold_out_a_part(training);
+}
+
+void take_rows(Prepared& prepared, Verdict& verdict) {
+  for (auto* record : {&prepared.training, &prepared.held_out})
+    record->rows = rows_of(record->logs, prepared.axis, prepared.settings);
+  const auto& rows = prepared.training.rows;
+  if (const double duration = excitation_of(rows).duration; duration < shortest)
+    throw LogError(fmt::format("{}: found {:.3g} s of training data; expected at least {:g} s",
+                               sources_of(rows.motions()), duration, shortest));
+  for (auto* record : {&prepared.training, &prepared.held_out}) {
+    record->expected = expected_force(record->rows, prepared.axis);
+    refuse_other_units(record->rows, record->expected);
+    record->target = record->rows.force - record->expected;
+  }
+  if (const auto note = suspected_file(rows, prepared.training.expected); !note.empty()) verdict.notes.push_back(note);
+}
+
+// The motion of the columns: the file's simulation of the records, where it goes their way; else the measured one.
+void take_motion(Prepared& prepared, const DiagnoseInput& input, Verdict& verdict) {
+  Record* const records[] = {&prepared.training, &prepared.held_out};
+  std::vector<WithoutNoise> simulated;
+  for (const auto* record : records) {
+    simulated.push_back(without_noise(input.machine, input.axis, record->logs));
+    if (simulated.back().motion.empty()) break;
+  }
+  prepared.known_motion = !simulated.back().motion.empty();
+  if (!prepared.known_motion) verdict.notes.push_back(why_motion_is_measured(input));
+  for (std::size_t k = 0; k < std::size(records); ++k) {
+    auto& record = *records[k];
+    record.regressors = record.rows;
+    if (prepared.known_motion) {
+      record.regressors = rows_of(simulated[k].motion, prepared.axis, prepared.settings);
+      record.simulated = std::move(simulated[k].replayed);
+      record.target -= own_residual(record.simulated, record.logs, prepared.axis, prepared.settings);
+    }
+    record.regressors.weigh(moving_rows(record.regressors, prepared.axis, prepared.settings.cutoff));
+    record.target = record.target.cwiseProduct(record.regressors.counts());
+  }
+}
+
+template <class T>
+std::vector<T> joined(std::vector<T> first, const std::vector<T>& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
+// The simulations in which causes are tried, and what the residual force itself does to the file's own residual.
+void take_responses(Prepared& prepared, const DiagnoseInput& input) {
+  if (!prepared.known_motion) return;
+  auto &training = prepared.training, &held_out = prepared.held_out;
+  const auto logs = joined(training.logs, held_out.logs);
+  const auto simulated = joined(training.simulated, held_out.simulated);
+  const auto disturbed_by = [&prepared, &input, logs, simulated](const Eigen::VectorXd& force) {
+    const auto& rows = prepared.training.rows;
+    return EffectResponse(input.machine, input.axis, logs, prepared.settings,
+                          Disturbance(force, rows.logs(), rows.period(0)), simulated);
+  };
+  for (const auto limit_cycle : {QuantizerLimitCycle::simulated, QuantizerLimitCycle::smoothed})
+    prepared.responses.emplace_back(input.machine, input.axis, logs, prepared.settings, limit_cycle,
+                                    limit_cycle == QuantizerLimitCycle::simulated ? simulated : std::vector<Log>{});
+  prepared.context.disturb = [&prepared, disturbed_by](const Eigen::VectorXd& force) {
+    prepared.context.response = disturbed_by(force);
+  };
+  prepared.context.disturb(training.target);
+  auto own = disturbed_by(training.target);
+  const auto of_disturbance = [&own](const Record& record) -> Eigen::VectorXd {
+    return record.regressors.stacked([&own](const Motion& motion) { return own.of_disturbance(motion); })
+        .cwiseProduct(record.regressors.counts());
+  };
+  // Where the record is quieter than what is left of it would make it, the runs in silence are the nearer ones.
+  const Eigen::VectorXd disturbed = training.target - of_disturbance(training);
+  if (noise_log_likelihood(disturbed, training.rows.logs()) <=
+      noise_log_likelihood(training.target, training.rows.logs()))
+    return;
+  training.target = disturbed;
+  held_out.target -= of_disturbance(held_out);
+}
+
+}  // namespace
+
+std::unique_ptr<Prepared> prepare(const DiagnoseInput& input, Verdict& verdict) {
+  auto prepared = std::make_unique<Prepared>();
+  prepared->axis = sim::plant_axis(input.machine.axes.at(input.axis));
+  auto& motor = prepared->axis.motor;
+  motor.force_constant = machine::acting_force_constant(motor);  // true values are told against what acts
+  prepared->settings = wide_band();
+  verdict.axis = prepared->axis.name;
+  verdict.units = ShownUnits(prepared->axis.coordinate);
+  verdict.machine = input.machine.id + ".toml";
+  take_logs(*prepared, input, verdict);
+  take_rows(*prepared, verdict);
+  prepared->context = context_of(prepared->axis, prepared->training.rows, prepared->settings);
+  prepared->context.timing = input.machine.timing;
+  take_motion(*prepared, input, verdict);
+  prepared->context.highest_residual = prepared->training.target.cwiseAbs().maxCoeff();
+  take_responses(*prepared, input);
+  return prepared;
+}
+
+}  // namespace stiction::host
