@@ -129,9 +129,27 @@ void take_motion(Prepared& prepared, const DiagnoseInput& input, Verdict& verdic
       record.simulated = std::move(simulated[k].replayed);
       record.target -= own_residual(record.simulated, record.logs, prepared.axis, prepared.settings);
     }
-    record.regressors.weigh(moving_rows(record.regressors, prepared.axis, prepared.settings.cutoff));
+    const Eigen::VectorXd moves = moving_rows(record.rows, prepared.axis, prepared.settings.cutoff);
+    record.regressors.weigh(
+        moves.cwiseProduct(moving_rows(record.regressors, prepared.axis, prepared.settings.cutoff)));
     record.target = record.target.cwiseProduct(record.regressors.counts());
   }
+}
+
+// The file's friction along the simulated motion instead of the measured one, where that leaves less to explain.
+FrictionAlong take_friction(Prepared& prepared) {
+  const auto along_simulated = [&](const Record& record) -> Eigen::VectorXd {
+    const auto friction = [&](const Motion& motion) { return friction_along(prepared.axis, motion); };
+    return record.target + (record.rows.stacked(friction) - record.regressors.stacked(friction))
+                               .cwiseProduct(record.regressors.counts());
+  };
+  auto& training = prepared.training;
+  auto target = along_simulated(training);
+  if (noise_log_likelihood(target, training.rows.logs()) <= noise_log_likelihood(training.target, training.rows.logs()))
+    return FrictionAlong::own_motion;
+  training.target = std::move(target);
+  prepared.held_out.target = along_simulated(prepared.held_out);
+  return FrictionAlong::simulated_motion;
 }
 
 template <class T>
@@ -143,16 +161,17 @@ std::vector<T> joined(std::vector<T> first, const std::vector<T>& second) {
 // The simulations in which causes are tried, and what the residual force itself does to the file's own residual.
 void take_responses(Prepared& prepared, const DiagnoseInput& input) {
   if (!prepared.known_motion) return;
+  const auto friction = take_friction(prepared);
   auto &training = prepared.training, &held_out = prepared.held_out;
   const auto logs = joined(training.logs, held_out.logs);
   const auto simulated = joined(training.simulated, held_out.simulated);
-  const auto disturbed_by = [&prepared, &input, logs, simulated](const Eigen::VectorXd& force) {
+  const auto disturbed_by = [&prepared, &input, logs, simulated, friction](const Eigen::VectorXd& force) {
     const auto& rows = prepared.training.rows;
-    return EffectResponse(input.machine, input.axis, logs, prepared.settings,
+    return EffectResponse(input.machine, input.axis, logs, prepared.settings, friction,
                           Disturbance(force, rows.logs(), rows.period(0)), simulated);
   };
   for (const auto limit_cycle : {QuantizerLimitCycle::simulated, QuantizerLimitCycle::smoothed})
-    prepared.responses.emplace_back(input.machine, input.axis, logs, prepared.settings, limit_cycle,
+    prepared.responses.emplace_back(input.machine, input.axis, logs, prepared.settings, friction, limit_cycle,
                                     limit_cycle == QuantizerLimitCycle::simulated ? simulated : std::vector<Log>{});
   prepared.context.disturb = [&prepared, disturbed_by](const Eigen::VectorXd& force) {
     prepared.context.response = disturbed_by(force);

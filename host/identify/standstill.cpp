@@ -9,6 +9,8 @@
 namespace stiction::host {
 namespace {
 
+constexpr double reach = 2.0;  // of the filter, in periods of its cut-off, to either side
+
 double jump_of(const machine::AxisModel& axis) { return sim::steady_friction(axis.friction)(0.0, 1.0); }
 
 }  // namespace
@@ -19,9 +21,10 @@ Eigen::VectorXd moving_rows(const LogRows& rows, const machine::AxisModel& axis,
   Eigen::VectorXd moves = Eigen::VectorXd::Ones(rows.rows());
   if (!sticks_rigidly(axis)) return moves;
   const double slow = jump_of(axis) / axis.mass / (2.0 * std::numbers::pi * cutoff);
+  const auto beside = static_cast<Eigen::Index>(std::ceil(reach / cutoff / rows.period(0)));
   for (Eigen::Index i = 0; i < rows.rows(); ++i)
     if (std::abs(rows.velocity[i]) < slow)
-      for (Eigen::Index k = std::max<Eigen::Index>(i - 1, 0); k <= std::min(i + 1, rows.rows() - 1); ++k)
+      for (Eigen::Index k = std::max<Eigen::Index>(i - beside, 0); k <= std::min(i + beside, rows.rows() - 1); ++k)
         moves[k] = 0.0;
   return moves;
 }

@@ -13,8 +13,8 @@ namespace stiction::host {
 bool sticks_rigidly(const machine::AxisModel& axis);
 
 // 1 for each of `rows` that moves, else 0; all 1 where friction of `axis` is no reaction. Slower than friction stops
-// the mass within what the position's filter (`cutoff`, Hz) resolves, an axis cannot be told from one that stands; a
-// row on each side has a share in it.
+// the mass within what the position's filter (`cutoff`, Hz) resolves, an axis cannot be told from one that stands; as
+// far as that filter reaches, the rows on each side have a share in it.
 Eigen::VectorXd moving_rows(const LogRows& rows, const machine::AxisModel& axis, double cutoff);
 
 }  // namespace stiction::host

@@ -121,7 +121,7 @@ std::vector<Rehearsal> rehearse(const machine::Machine& machine, std::size_t axi
       log.axes.front().force.clear();
       log.axes.front().v.clear();
       auto known = scene_with(context, moved);
-      known.response = EffectResponse(setup, 0, {log}, settings);
+      known.response = EffectResponse(setup, 0, {log}, settings, FrictionAlong::own_motion);
       all.push_back({&kind, std::move(log), std::move(moved), std::move(known)});
     } catch (const FaultTripped&) {  // not for this machine
     } catch (const machine::ConfigurationError&) {

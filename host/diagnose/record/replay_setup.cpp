@@ -124,24 +124,24 @@ WithoutNoise without_noise(const machine::Machine& machine, std::size_t axis, co
 }
 
 EffectResponse::EffectResponse(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
-                               const SignalSettings& settings, QuantizerLimitCycle limit_cycle,
+                               const SignalSettings& settings, FrictionAlong friction, QuantizerLimitCycle limit_cycle,
                                const std::vector<Log>& replayed)
-    : settings_(settings) {
+    : settings_(settings), friction_(friction) {
   auto setup = replay_setup_of(machine, axis, logs);
   machine_ = std::move(setup.machine);
   auto& own = machine_.axes.front();
   own.encoder.noise = 0.0;
-  for (auto& log : setup.logs) records_.push_back({std::move(log), {}, {}});
-  for (std::size_t k = 0; k < replayed.size(); ++k) records_[k].silent = residual(replayed[k], records_[k].log);
+  for (auto& log : setup.logs) records_.push_back({std::move(log), {}, {}, {}});
+  for (std::size_t k = 0; k < replayed.size(); ++k) take_silent(records_[k], replayed[k]);
   if (limit_cycle == QuantizerLimitCycle::simulated) return;
   own.position_controller.increment = fine_increment(own.position_controller.increment);
   without_windings(own);
 }
 
 EffectResponse::EffectResponse(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
-                               const SignalSettings& settings, const Disturbance& disturbance,
+                               const SignalSettings& settings, FrictionAlong friction, const Disturbance& disturbance,
                                const std::vector<Log>& replayed)
-    : EffectResponse(machine, axis, logs, settings, QuantizerLimitCycle::simulated, replayed) {
+    : EffectResponse(machine, axis, logs, settings, friction, QuantizerLimitCycle::simulated, replayed) {
   without_windings(machine_.axes.front());
   disturbance_ = disturbance;
 }
@@ -156,13 +156,18 @@ Log EffectResponse::disturbed(std::size_t record, std::size_t run) const {
   return log;
 }
 
-std::vector<double> EffectResponse::residual(Log simulated, const Log& of) const {
-  const auto& file = machine_.axes.front();
-  simulated.axes.front().external_force = of.axes.front().external_force;
-  const auto motion = motion_of(simulated, simulated.axes.front(), file, Amperes::amplitude, settings_);
+std::vector<double> EffectResponse::residual(const Record& record, Log simulated,
+                                             const std::vector<double>& external_force) const {
+  const auto file = sim::plant_axis(machine_.axes.front());
+  simulated.axes.front().external_force = external_force;
+  const auto motion =
+      motion_of(simulated, simulated.axes.front(), machine_.axes.front(), Amperes::amplitude, settings_);
   auto force = motion.force;
-  const auto expected = force_along(sim::plant_axis(file), motion);
+  const auto expected = force_along(file, motion);
   for (std::size_t i = 0; i < force.size(); ++i) force[i] -= expected[i];
+  if (friction_ == FrictionAlong::own_motion || record.friction.empty()) return force;
+  const auto own = friction_along(file, motion);
+  for (std::size_t i = 0; i < force.size(); ++i) force[i] += own[i] - record.friction[i];
   return force;
 }
 
@@ -175,16 +180,25 @@ std::size_t EffectResponse::index_of(const Motion& motion) const {
 }
 
 const std::vector<double>& EffectResponse::silent(Record& record) const {
-  if (record.silent.empty()) record.silent = residual(replayed_like(machine_, record.log), record.log);
+  if (record.silent.empty()) take_silent(record, replayed_like(machine_, record.log));
   return record.silent;
+}
+
+void EffectResponse::take_silent(Record& record, const Log& replayed) const {
+  record.silent = residual(record, replayed, record.log.axes.front().external_force);
+  if (friction_ == FrictionAlong::own_motion) return;
+  const auto& axis = machine_.axes.front();
+  record.friction = friction_along(sim::plant_axis(axis),
+                                   motion_of(replayed, replayed.axes.front(), axis, Amperes::amplitude, settings_));
 }
 
 const std::vector<double>& EffectResponse::without(std::size_t index, std::size_t run) {
   auto& record = records_[index];
-  if (!disturbance_) return silent(record);
+  const auto& in_silence = silent(record);
+  if (!disturbance_) return in_silence;
   while (record.without.size() <= run) {
     const auto log = disturbed(index, record.without.size());
-    record.without.push_back(residual(replayed_like(machine_, log), log));
+    record.without.push_back(residual(record, replayed_like(machine_, log), log.axes.front().external_force));
   }
   return record.without[run];
 }
@@ -195,9 +209,9 @@ std::vector<double> EffectResponse::common(std::size_t index, const machine::Mac
   const std::size_t most = disturbance_ ? std::min(most_runs, most_runs_ever) : 1;
   for (std::size_t r = 0; r < most; ++r) {
     if (r >= usual_runs && part.chance() < much_chance * disturbance_.mean_square()) break;
-    const auto log = disturbed(index, r);
-    auto force = residual(replayed_like(machine, log), log);
     const auto& own = without(index, r);
+    const auto log = disturbed(index, r);
+    auto force = residual(records_[index], replayed_like(machine, log), log.axes.front().external_force);
     for (std::size_t i = 0; i < force.size(); ++i) force[i] -= own[i];
     part.add(force);
   }

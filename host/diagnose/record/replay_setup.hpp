@@ -53,6 +53,11 @@ WithoutNoise without_noise(const machine::Machine& machine, std::size_t axis, co
 // that all records have in common.
 enum class QuantizerLimitCycle { simulated, smoothed };
 
+// The motion along which the file's friction is computed where the residual force is: that of the record or run itself,
+// or the one that the file's simulation of the record makes. An encoder's noise makes the direction of the first
+// chatter near standstill; what acts on the machine makes the second reverse elsewhere.
+enum class FrictionAlong { own_motion, simulated_motion };
+
 // What an effect does to the residual force of a replayed log, through the control loop. Motions are known by the
 // source and the first time of the logs.
 class EffectResponse {
@@ -61,15 +66,17 @@ class EffectResponse {
 
   // `logs`: with set-points, of that axis; `settings`: those of the motions; `replayed`: what without_noise() has
   // replayed of them with that hunting, in their order, so that it need not be done again. `machine` of the file;
-  // `limit_cycle`: of the quantizer at standstill.
+  // `limit_cycle`: of the quantizer at standstill; `friction`: as in the residual force of the records.
   EffectResponse(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
-                 const SignalSettings& settings, QuantizerLimitCycle limit_cycle = QuantizerLimitCycle::simulated,
+                 const SignalSettings& settings, FrictionAlong friction,
+                 QuantizerLimitCycle limit_cycle = QuantizerLimitCycle::simulated,
                  const std::vector<Log>& replayed = {});
   // Under forces like `disturbance`: what runs under them have in common; two, and more where they agree on so little
   // that what is left to chance in their common part is a force like those. `machine` of the file; `axis`: its index;
-  // `settings` of the rows.
+  // `settings` of the rows; `friction`: as in the residual force of the records.
   EffectResponse(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
-                 const SignalSettings& settings, const Disturbance& disturbance, const std::vector<Log>& replayed = {});
+                 const SignalSettings& settings, FrictionAlong friction, const Disturbance& disturbance,
+                 const std::vector<Log>& replayed = {});
 
   // N at the motion's rate: with the effect less without; zeros where the machine cannot follow with it. Of no more
   // than `most_runs`. Throws sim::EffectError, std::out_of_range for a motion of another log.
@@ -87,19 +94,22 @@ class EffectResponse {
   struct Record {
     Log log;
     std::vector<double> silent;                // N, the residual without effects and disturbances
+    std::vector<double> friction;              // N, the file's, along that run
     std::vector<std::vector<double>> without;  // N, without effects, of each run, once it was asked for
   };
   std::size_t index_of(const Motion& motion) const;
   const std::vector<double>& silent(Record& record) const;
+  void take_silent(Record& record, const Log& replayed) const;
   const std::vector<double>& without(std::size_t record, std::size_t run);
   // The log of a record under one of many draws of the disturbance.
   Log disturbed(std::size_t record, std::size_t run) const;
-  // `of`: what was replayed; its external force is known, and no residual.
-  std::vector<double> residual(Log simulated, const Log& of) const;
+  // Of a run of the record; `external_force` is known, and no residual.
+  std::vector<double> residual(const Record& record, Log simulated, const std::vector<double>& external_force) const;
   std::vector<double> common(std::size_t record, const machine::Machine& machine, std::size_t most_runs);
 
   machine::Machine machine_;
   SignalSettings settings_;
+  FrictionAlong friction_;
   Disturbance disturbance_;
   std::vector<Record> records_;
   // The last answers: a search's grid begins a refinement, a refinement's end begins the one in closed loop.
