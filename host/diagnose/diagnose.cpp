@@ -57,8 +57,8 @@ std::vector<Term> maps_of(const std::vector<Term>& unnamed) {
 
 // What was found and how the machine shows it.
 struct Explained {
-  SearchResult found;                    // its terms have names and hold; its residual is what those leave
-  std::vector<Finding> findings;   // of its terms, with parameters
+  SearchResult found;             // its terms have names and hold; its residual is what those leave
+  std::vector<Finding> findings;  // of its terms, with parameters
   std::vector<Term> unnamed;
   Eigen::VectorXd inside;  // N, the target less the unnamed
   bool withdrew = false;
@@ -143,7 +143,8 @@ void judge_drive(Verdict& verdict, const DiagnoseInput& input, const Prepared& p
         "The gains of the drive were not evaluated: its velocity controller sees a different encoder than the recorded "
         "one, with an elastic shaft between them.");
   else if (axis.cascaded())
-    judge_command(verdict, input, {training.logs, training.rows}, {held_out.logs, held_out.rows},
+    judge_command(verdict, input, {training.logs, training.rows, training.simulated},
+                  {held_out.logs, held_out.rows, held_out.simulated},
                   record_delay(training.regressors, prepared.context, found));
 }
 
@@ -167,8 +168,8 @@ double rms_about_mean(const Eigen::VectorXd& values, const Eigen::VectorXd& coun
 
 void judge_agreement(Verdict& verdict, const Record& held_out, const Prepared& prepared, std::uint64_t seed) {
   const auto& counts = held_out.regressors.counts();
-  const auto floor = noise_floor(held_out.logs, prepared.axis, prepared.settings, counts, held_out.simulated,
-                                 held_out.expected, seed);
+  const auto floor =
+      noise_floor(held_out.logs, prepared.axis, prepared.settings, counts, held_out.simulated, held_out.expected, seed);
   verdict.noise_floor = floor;
   verdict.agreement = agreement_of({verdict.extended.force_rms, verdict.extended.position_error_rms, floor.force(),
                                     floor.position, rms_about_mean(held_out.rows.force, counts)},

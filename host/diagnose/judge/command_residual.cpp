@@ -11,6 +11,7 @@
 #include "host/diagnose/record/command_replay.hpp"
 #include "host/diagnose/statistics/evidence.hpp"
 #include "host/diagnose/statistics/fisher.hpp"
+#include "host/diagnose/statistics/most_odds.hpp"
 #include "host/identify/filter.hpp"
 #include "host/identify/identification.hpp"
 #include "host/identify/regression.hpp"
@@ -20,8 +21,9 @@
 namespace stiction::host {
 namespace {
 
-constexpr double command_significance = 0.01;  // over the number of parameters
-constexpr double least_command_gain = 0.01;    // of the cross-validated residual
+// Odds of the loss ratio, against as many parameters as there are.
+constexpr double loss_ratio = 20.0;
+constexpr double least_command_gain = 0.01;  // of the cross-validated residual
 // Slower than this the residual is the integrator's, which adds up the position quantizer's rounding and does not know
 // where the record began.
 constexpr double slowest = 1.0;  // Hz
@@ -47,7 +49,7 @@ class Commands {
       logged.push_back(earlier(values, record_delay / log.period));
       if (record_delay != 0.0) rates.push_back(rate_of(logged.back(), log.period));
     }
-    logged_ = rows_of(logged);
+    logged_ = rows_of(logged) - of_own_run();
     if (!rates.empty()) nuisances_.push_back(rows_of(rates));
   }
 
@@ -55,31 +57,46 @@ class Commands {
   const Eigen::VectorXd& logged() const { return logged_; }
   // What a parameter must stand beside: what is left of a record's delay, which is known to microseconds only.
   const std::vector<Eigen::VectorXd>& nuisances() const { return nuisances_; }
-  template <class S>
-  Eigen::VectorXd replayed(const machine::AxisModel& axis) const {
-    std::vector<std::vector<double>> all;
-    for (const auto& log : records_.logs) all.push_back(replay_command<S>(timing_, axis, log, channels_of(log, axis_)));
-    return rows_of(all);
-  }
   // By the firmware's numbers, where they hold the axis.
-  Eigen::VectorXd as_driven(const machine::AxisModel& axis) const {
-    return axis.beyond_formats.empty() ? replayed<FixedSignals>(axis) : replayed<machine::DoubleSignals>(axis);
-  }
+  Eigen::VectorXd as_driven(const machine::AxisModel& axis) const { return as_driven(axis, records_.logs); }
   // What the command changes by with each parameter, per its unit. In doubles: the drive's rounding has no slope.
   std::vector<Eigen::VectorXd> slopes(const machine::AxisModel& axis, const Places& places) const {
     std::vector<Eigen::VectorXd> all;
-    const auto base = replayed<machine::DoubleSignals>(axis);
+    const auto base = replayed<machine::DoubleSignals>(axis, records_.logs);
     for (const auto place : places) {
       const auto& parameter = command_parameters()[place];
       const double step = parameter.step(axis, timing_);
       auto changed = axis;
       parameter.set(changed, *parameter.value(axis) + step);
-      all.push_back((replayed<machine::DoubleSignals>(changed) - base) / step);
+      all.push_back((replayed<machine::DoubleSignals>(changed, records_.logs) - base) / step);
     }
     return all;
   }
 
  private:
+  template <class S>
+  Eigen::VectorXd replayed(const machine::AxisModel& axis, std::span<const Log> logs) const {
+    std::vector<std::vector<double>> all;
+    for (const auto& log : logs) all.push_back(replay_command<S>(timing_, axis, log, channels_of(log, axis_)));
+    return rows_of(all);
+  }
+  Eigen::VectorXd as_driven(const machine::AxisModel& axis, std::span<const Log> logs) const {
+    return axis.beyond_formats.empty() ? replayed<FixedSignals>(axis, logs)
+                                       : replayed<machine::DoubleSignals>(axis, logs);
+  }
+  // What a replay over the samples of a log leaves of a run whose controller is the file's: of positions between them
+  // it knows nothing.
+  Eigen::VectorXd of_own_run() const {
+    std::vector<std::vector<double>> commands;
+    for (const auto& log : records_.simulated) {
+      const auto& channels = channels_of(log, axis_);
+      const auto command = recorded_command(channels, axis_);
+      if (!command) break;
+      commands.push_back(channels.*(command->values));
+    }
+    if (commands.size() != records_.logs.size()) return Eigen::VectorXd::Zero(records_.rows.rows());
+    return rows_of(commands) - as_driven(axis_, records_.simulated);
+  }
   static std::vector<double> earlier(const std::vector<double>& values, double samples) {
     if (samples == 0.0) return values;
     std::vector<double> moved(values.size());
@@ -184,8 +201,7 @@ class Selection {
     return chosen;
   }
   bool stands(const ColumnIndices& chosen, std::size_t term) const {
-    if (!(p_value(chosen, term) < command_significance / static_cast<double>(command_parameters().size())))
-      return false;
+    if (most_odds(p_value(chosen, term)) < loss_ratio * static_cast<double>(command_parameters().size())) return false;
     const auto before = evidence_.held_out(beside(without(chosen, term))), after = evidence_.held_out(beside(chosen));
     std::vector<double> gains(before.size());
     double total = 0.0, gained = 0.0;

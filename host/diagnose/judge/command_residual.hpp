@@ -1,7 +1,8 @@
 // The second residual: what the drive commanded, less what the file's controller gives for the recorded set-points and
 // positions (command_replay.hpp). A wrong gain or integral time and a delay in the loop show here and leave nothing in
-// the residual force. Their regressors are differences of such replays with one parameter changed; selection as in
-// search.hpp, then Gauss-Newton on the replay itself.
+// the residual force. What a replay over samples makes of the file's own run is taken out. Their regressors are
+// differences of such replays with one parameter changed; selection as in search.hpp, then Gauss-Newton on the replay
+// itself.
 #pragma once
 
 #include <span>
@@ -16,6 +17,7 @@ namespace stiction::host {
 struct CommandRecords {
   std::span<const Log> logs;
   const LogRows& rows;
+  std::span<const Log> simulated;  // the file's own runs of the logs; empty where there are none
 };
 
 // By how much the current came late in the records (s) as the residual force says, with its standard error.

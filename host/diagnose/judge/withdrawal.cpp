@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "host/diagnose/judge/finding_evidence.hpp"
+#include "host/diagnose/statistics/most_odds.hpp"
 
 namespace stiction::host {
 namespace {
@@ -15,13 +15,12 @@ constexpr double of_training = 0.1;  // residuals hold more than noise: a p-valu
 
 // Up to where held-out records may speak against a term (HeldOutAmplitude::against) that stays: not at all, where they
 // would know it; else a small part of what the training records say for it, by the most that its p-value can mean as a
-// Bayes factor (Sellke, Bayarri, Berger, Am. Stat. 55, 2001) among so many candidates: records on which it hardly acts
+// Bayes factor among so many candidates: records on which it hardly acts
 // speak by chance.
 double most_against(const Term& term, const HeldOutAmplitude& held_out_amplitude) {
   if (!held_out_amplitude.may_be_all()) return 0.0;
-  const double p = std::clamp(term.judgement.p_value, 1e-300, 0.1);
-  const double chance = -std::numbers::e * p * std::log(p) * static_cast<double>(candidates().size());
-  return std::max(-2.0 * of_training * std::log(chance), 0.0);
+  const double odds = most_odds(term.judgement.p_value) / static_cast<double>(candidates().size());
+  return std::max(2.0 * of_training * std::log(odds), 0.0);
 }
 
 std::vector<Term> with_maps(std::vector<Term> terms, std::span<const Term> maps) {
