@@ -13,6 +13,7 @@
 
 #include "firmware/machine/model/machine.hpp"
 #include "host/diagnose/spectrum/line_scan.hpp"
+#include "host/diagnose/spectrum/place_scan.hpp"
 #include "host/diagnose/verdict/verdict.hpp"
 #include "host/identify/motion.hpp"
 #include "sim/effects/effect_descriptor.hpp"
@@ -35,6 +36,7 @@ struct SearchContext {
   // Found as the search goes: lines over position, over position in proportion to the force and to the speed, over
   // time, over the encoder's signal.
   LineScan pitches{}, modulation{}, by_speed{}, times{}, signals_of_encoder{};
+  PlaceScan tight_spots{}, pushes{};  // of friction, and of a force
   // The residual force (N, at the motion's rate) that a motion's set-points leave in simulation where the machine has
   // the effect, less that where it has not: what the effect does through the control loop. `most_runs`: of how many
   // runs under different forces the common part is taken, at most. Empty: no set-points.
@@ -74,6 +76,14 @@ struct Candidate {
   // Whether it matters little at a value what disturbs those runs; null: at none.
   bool (*coarse)(const SearchContext&, double shape) = nullptr;
   double trials = 1.0;  // independent values that a grid without a scan tries
+  // The places among which a local one is looked for, beside the grid; null for others. Place k is the scanned value
+  // first_place + k.
+  const PlaceScan& (*places)(const SearchContext&) = nullptr;
+  static constexpr double first_place = 1000.0;
+  bool local(double shape_at) const { return places != nullptr && shape_at >= first_place; }
+  const Place& place(const SearchContext& context, double shape_at) const {
+    return places(context).places[static_cast<std::size_t>(shape_at - first_place)];
+  }
   // Of a force outside of the vocabulary: what it looks like. It takes part in the search so that no name is forced
   // upon what none fits; found, it is no finding but the signature of what stays unexplained. Null for an effect.
   std::string (*looks_like)(const SearchContext&, double shape, const Eigen::VectorXd& coefficients) = nullptr;

@@ -112,7 +112,8 @@ class Description {
     for (std::size_t k = 0; k < waiting.size(); ++k) {
       const auto group =
           add_group(evidence, group_columns(rows_, context_, candidates()[waiting[k].candidate], waiting[k].shape));
-      const double nats = Posterior(evidence, sizes).gain_of(group).nats + log_prior_of(context_, waiting[k].candidate);
+      const double nats = Posterior(evidence, sizes).gain_of(group).nats +
+                          log_prior_of(context_, waiting[k].candidate, waiting[k].shape);
       if (nats > most) most = nats, best = k;
     }
     return best;

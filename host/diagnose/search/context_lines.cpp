@@ -1,5 +1,6 @@
 #include "host/diagnose/search/context_lines.hpp"
 
+#include <utility>
 #include <vector>
 
 #include "host/diagnose/record/inverse_dynamics.hpp"
@@ -26,6 +27,10 @@ void find_lines(const LogRows& rows, const Eigen::VectorXd& residual, const Whit
   context.times = scan_times(rows, whitening(residual), lines_tried);
   context.signals_of_encoder =
       scan_signal_periods(rows, residual, whitening, context.axis, context.timing, lines_tried);
+  const auto level = rows.stacked([&](const Motion& m) { return contact_level(context.axis, m); });
+  for (auto& [scan, of] :
+       {std::pair<PlaceScan*, const Eigen::VectorXd*>{&context.tight_spots, &level}, {&context.pushes, &by_itself}})
+    scan_places(rows, residual, whitening, *of, context.lowest_position, context.highest_position, *scan);
 }
 
 }  // namespace stiction::host

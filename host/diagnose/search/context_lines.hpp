@@ -1,5 +1,5 @@
 // The lines that periodic candidates are tried at: what stands out of a residual over position, over position in
-// proportion to the force and to the speed, over time, and over the encoder's signal.
+// proportion to the force and to the speed, over time, and over the encoder's signal; and the places of local ones.
 #pragma once
 
 #include <Eigen/Dense>
@@ -10,8 +10,8 @@
 
 namespace stiction::host {
 
-// Sets the scene's lines from `residual` (N, of the rows), looked at through `whitening`; the motor's pole pitches are
-// always among them. `context`: whose lines are set.
+// Sets the scene's lines and adds to its places, from `residual` (N, of the rows), looked at through `whitening`; the
+// motor's pole pitches are always among them. `context`: whose lines are set.
 void find_lines(const LogRows& rows, const Eigen::VectorXd& residual, const Whitening& whitening,
                 SearchContext& context);
 

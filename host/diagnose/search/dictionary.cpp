@@ -14,7 +14,8 @@ namespace {
 constexpr double less_disturbed = 0.7;
 constexpr double cluster_lengths = 6.0;   // correlation lengths of the whitened residual in a cluster
 constexpr std::ptrdiff_t most_waves = 4;  // of one candidate
-constexpr int refining_steps = 9;         // of a golden section: to 2 % of the grid's step
+constexpr int settling_rounds = 3;
+constexpr int refining_steps = 9;  // of a golden section: to 2 % of the grid's step
 
 std::vector<RowBlock> blocks_for(const LogRows& rows, double correlation) {
   const auto n = static_cast<double>(rows.rows());
@@ -36,14 +37,23 @@ Dictionary::Dictionary(const LogRows& rows, const Eigen::VectorXd& target, Searc
   on_grid_ = options_.size();
 }
 
-// The options of all candidates that are periodic, or that are not.
-void Dictionary::add_options(bool periodic) {
+// The values of the candidate's nonlinear parameter that are known from the start, or those that the scan of a residual
+// found last.
+std::vector<double> Dictionary::values_of(const Candidate& candidate, bool scanned) const {
+  if (candidate.periodic == scanned) return candidate.grid(scene_);
+  std::vector<double> found;
+  if (scanned && candidate.places != nullptr)
+    for (std::size_t k = candidate.places(scene_).first_new; k < candidate.places(scene_).places.size(); ++k)
+      found.push_back(Candidate::first_place + static_cast<double>(k));
+  return found;
+}
+
+void Dictionary::add_options(bool scanned) {
   std::vector<Atom*> added;
-  for (std::size_t c = 0; c < candidates().size(); ++c) {
-    if (candidates()[c].periodic != periodic) continue;
-    for (const double value : candidates()[c].grid(scene_))
-      added.push_back(options_.emplace_back(std::make_unique<Atom>(Atom{c, value, {}, log_prior_of(scene_, c)})).get());
-  }
+  for (std::size_t c = 0; c < candidates().size(); ++c)
+    for (const double value : values_of(candidates()[c], scanned))
+      added.push_back(
+          options_.emplace_back(std::make_unique<Atom>(Atom{c, value, {}, log_prior_of(scene_, c, value)})).get());
   give_columns(added);
 }
 
@@ -88,9 +98,30 @@ Eigen::VectorXd Dictionary::absorbed_by_all(const ActiveSet& set) const {
   return evidence_.residual(of_set.columns(), of_set.weights());
 }
 
+// Weights and noise tell each other: by the noise of a set that is not in it yet its weights are too small.
+Eigen::VectorXd Dictionary::settled_residual(const ActiveSet& set) const {
+  Evidence own(evidence_.target(), evidence_.row_blocks());
+  std::vector<Group> groups;
+  for (const auto* atom : set) {
+    std::vector<Eigen::VectorXd> columns;
+    for (const auto column : atom->group.columns) columns.push_back(evidence_.column(column));
+    groups.push_back(add_group(own, columns));
+  }
+  Eigen::VectorXd left = residual(set);
+  for (int round = 0; round < settling_rounds; ++round) {
+    own.whiten(noise_of(left.cwiseProduct(rows_.counts()), rows_.logs()));
+    Posterior of_set(own, sizes_);
+    for (const auto& group : groups) of_set.add(group);
+    left = own.residual(of_set.columns(), of_set.weights());
+  }
+  return left;
+}
+
 void Dictionary::whiten(const ActiveSet& set, bool absorbed) {
   if (!evidence_.whitening() || set.empty()) evidence_.whiten(noise_of(evidence_.target(), rows_.logs()));
-  const Eigen::VectorXd noise = absorbed ? absorbed_by_all(set) : residual(set);
+  const Eigen::VectorXd noise = absorbed      ? absorbed_by_all(set)
+                                : set.empty() ? evidence_.target()
+                                              : settled_residual(set);
   const auto whitening = noise_of(noise.cwiseProduct(rows_.counts()), rows_.logs());
   correlation_ = correlation_length(whitening(noise), rows_.logs());
   evidence_.whiten(whitening, static_cast<std::size_t>(std::ceil(cluster_lengths * correlation_)));
@@ -138,6 +169,14 @@ double Dictionary::with_own_noise(const ActiveSet& set) const {
   return odds;
 }
 
+double Dictionary::with_own_spectrum(const ActiveSet& set) const {
+  const auto of_set = posterior(set);
+  const Eigen::VectorXd left = evidence_.residual(of_set.columns(), of_set.weights()).cwiseProduct(rows_.counts());
+  double odds = noise_log_likelihood(left, rows_.logs(), evidence_.whitening()) + of_set.price();
+  for (const auto* atom : set) odds += atom->log_prior;
+  return odds;
+}
+
 double Dictionary::score(const ActiveSet& set) const {
   double odds = posterior(set).nats();
   for (const auto* atom : set) odds += atom->log_prior;
@@ -172,7 +211,7 @@ std::optional<Dictionary::Option> Dictionary::best_of(std::size_t candidate, con
 
 std::optional<Dictionary::Option> Dictionary::at_shape(std::size_t candidate, double shape, const ActiveSet& beside,
                                                        const Posterior& of_beside) {
-  auto atom = std::make_unique<Atom>(Atom{candidate, shape, {}, log_prior_of(scene_, candidate)});
+  auto atom = std::make_unique<Atom>(Atom{candidate, shape, {}, log_prior_of(scene_, candidate, shape)});
   const auto first = evidence_.columns();
   give_columns({atom.get()});
   const auto gain = of_beside.gain_of(atom->group);

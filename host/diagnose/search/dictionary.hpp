@@ -43,6 +43,9 @@ class Dictionary {
   // Log likelihood of the set with the noise that it leaves, less its price: what tells apart sets that leave different
   // noise; nats, but for a constant.
   double with_own_noise(const ActiveSet& set) const;
+  // The same but for the rows' weights, which stay those of the search's noise: what tells a set from one with less in
+  // it. That few rows that are far out are noise is not said anew by a set that leaves them there.
+  double with_own_spectrum(const ActiveSet& set) const;
   // Log odds of the set against nothing, nats.
   double score(const ActiveSet& set) const;
 
@@ -64,12 +67,14 @@ class Dictionary {
   Evidence plain_;            // never whitened: for what a term takes off the force
 
  private:
-  void add_options(bool periodic);
+  std::vector<double> values_of(const Candidate& candidate, bool scanned) const;
+  void add_options(bool scanned);
   void give_columns(const std::vector<Atom*>& options);
   void respond_under(const Eigen::VectorXd& noise);
   bool possible(const Atom& atom, const ActiveSet& beside, const Posterior& of_beside, double size) const;
   std::optional<Option> at_shape(std::size_t candidate, double shape, const ActiveSet& beside,
                                  const Posterior& of_beside);
+  Eigen::VectorXd settled_residual(const ActiveSet& set) const;
   Eigen::VectorXd absorbed_by_all(const ActiveSet& set) const;
 
   std::vector<std::unique_ptr<Atom>> options_;

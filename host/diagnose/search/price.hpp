@@ -15,16 +15,18 @@ constexpr double of_strongest = 0.02;
 
 // Number of independent values of a candidate's nonlinear parameter that were tried. `candidate`: index in
 // candidates().
-inline double trials_of(const SearchContext& context, std::size_t candidate) {
+// `shape`: which of its values.
+inline double trials_of(const SearchContext& context, std::size_t candidate, double shape) {
   const auto& of = candidates()[candidate];
+  if (of.local(shape)) return of.places(context).trials;
   if (of.scan != nullptr) return static_cast<double>(std::max<std::size_t>(of.scan(context).trials, 1));
   return std::max(of.trials, of.shape ? 3.0 : 1.0);
 }
 
 // Log odds beforehand that the candidate is there with one value of its nonlinear parameter: one of all is as likely as
 // none, each value as likely as the next.
-inline double log_prior_of(const SearchContext& context, std::size_t candidate) {
-  return -std::log(static_cast<double>(candidates().size()) * trials_of(context, candidate));
+inline double log_prior_of(const SearchContext& context, std::size_t candidate, double shape) {
+  return -std::log(static_cast<double>(candidates().size()) * trials_of(context, candidate, shape));
 }
 
 }  // namespace stiction::host

@@ -55,6 +55,7 @@ class Search : private Dictionary {
   void improve(ActiveSet& set);
   double leftover(const ActiveSet& set) const;
   void name(const ActiveSet& set, std::size_t term, Term& as);
+  double worth(const ActiveSet& set, std::size_t term) const;
   void prune(ActiveSet& set);
   double explained_by(const ActiveSet& set, std::size_t term) const;
   std::vector<Term> terms_of(const ActiveSet& set);
@@ -85,8 +86,7 @@ std::vector<Dictionary::Option> Search::refined_best(const ActiveSet& set, const
 // What a further term has to be worth beside the strongest: so much may be left of how that one was described.
 double Search::leftover(const ActiveSet& set) const {
   double strongest = 0.0;
-  const double all = score(set);
-  for (std::size_t k = 0; k < set.size(); ++k) strongest = std::max(strongest, all - score(without(set, k)));
+  for (std::size_t k = 0; k < set.size(); ++k) strongest = std::max(strongest, worth(set, k));
   return of_strongest * strongest;
 }
 
@@ -179,11 +179,13 @@ void Search::name(const ActiveSet& set, std::size_t term, Term& as) {
   auto options = options_beside(others, of_others);
   for (std::size_t k = 0; k < std::min(refined_each, options.size()); ++k)
     options[k] = refined(options[k], others, of_others);
-  const double own = score(set) - of_others.nats() - [&] {
-    double sum = 0.0;
-    for (const auto* atom : others) sum += atom->log_prior;
-    return sum;
-  }();
+  const double of_none = with_own_spectrum(others), own = worth(set, term);
+  const auto worth_of = [&](const Option& option) {
+    auto set_with = others;
+    set_with.push_back(option.atom);
+    return std::min(with_own_spectrum(set_with) - of_none, option.score);
+  };
+  for (auto& option : options) option.score = option.score > own - 30.0 ? worth_of(option) : option.score;
   const double blur = std::max(1.0, of_strongest * own / sure);
   double sum = 1.0 + std::exp(-own / blur);
   for (const auto& option : options)
@@ -213,8 +215,8 @@ std::vector<Term> Search::terms_of(const ActiveSet& set) {
     term.candidate = set[k]->candidate;
     term.shape = set[k]->shape;
     const auto others = columns_of(without(set, k));
-    term.judgement =
-        judge_columns(evidence_, plain_, others, set[k]->group.columns, trials_of(scene_, set[k]->candidate));
+    term.judgement = judge_columns(evidence_, plain_, others, set[k]->group.columns,
+                                   trials_of(scene_, set[k]->candidate, set[k]->shape));
     term.explains = explained_by(set, k);
     if (candidates()[term.candidate].outside()) term.size = posterior(without(set, k)).gain_of(set[k]->group).size;
     name(set, k, term);
@@ -239,19 +241,26 @@ Dictionary::ActiveSet Search::searched_from(bool absorbed) {
   return set;
 }
 
+// What a term is worth: against none, either set judged by the noise that it leaves. By the noise that is left with it
+// alone, a force that wanders would be worth all that it takes from the noise's slow end.
+double Search::worth(const ActiveSet& set, std::size_t term) const {
+  const auto others = without(set, term);
+  return std::min(with_own_spectrum(set) - with_own_spectrum(others), score(set) - score(others));
+}
+
 // Drops what is not worth its price.
 void Search::prune(ActiveSet& set) {
   for (;;) {
     const auto least = leftover(set) + sure;
-    const double all = score(set);
     std::size_t weakest = set.size();
-    double worth = least;
+    double lowest = least;
     for (std::size_t k = 0; k < set.size(); ++k)
-      if (const double own = all - score(without(set, k)); own < worth) worth = own, weakest = k;
+      if (const double own = worth(set, k); own < lowest) lowest = own, weakest = k;
     if (weakest == set.size()) return;
     discard(set[weakest]->candidate,
-            fmt::format("log odds against its absence of {:.1f}; expected at least {:.1f}", worth, least), true);
+            fmt::format("log odds against its absence of {:.1f}; expected at least {:.1f}", lowest, least), true);
     set = without(set, weakest);
+    whiten(set, false);
     improve(set);
   }
 }

@@ -79,6 +79,9 @@ class Evidence {
   // Square of the columns' force with these weights in each block.
   std::vector<double> bearing(const ColumnIndices& of, const Eigen::VectorXd& coefficients) const;
 
+  // A column as it was `added`.
+  const Eigen::VectorXd& column(Eigen::Index added) const { return columns_[static_cast<std::size_t>(added)]; }
+
   // Sum of squared residuals of each block with weights from the other folds; block i is in fold i mod `folds`.
   std::vector<double> held_out(const ColumnIndices& chosen, std::size_t folds = 5) const;
 

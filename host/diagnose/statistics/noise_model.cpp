@@ -43,4 +43,12 @@ double noise_log_likelihood(const Eigen::VectorXd& residual, std::span<const std
   return (white.counts * each).sum();
 }
 
+double noise_log_likelihood(const Eigen::VectorXd& residual, std::span<const std::size_t> logs,
+                            const Whitening& known) {
+  const Eigen::ArrayXd counts = (residual.array() != 0.0).cast<double>();
+  Eigen::ArrayXd white = Whitening(residual, logs)(residual).array();
+  if (known.weight().size() > 0) white *= known.weight().array();
+  return -0.5 * counts.sum() * std::log(std::max((white.square() * counts).sum(), 1e-300));
+}
+
 }  // namespace stiction::host

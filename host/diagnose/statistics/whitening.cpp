@@ -10,7 +10,8 @@ namespace {
 // Rows looked back: slow and fast noise together have their poles and the zero between in it.
 constexpr Eigen::Index model_order = 8;
 // White noise that is added to the residual's, of its variance: the rows end at 0.8 of their band, and what lies above
-// is no silence to listen to.
+// is no silence to listen to. Of the variance of the innovations alone, what a model gets wrong high in the band would
+// outweigh what slow noise leaves below: tried, it gave a quarter more wrong names.
 constexpr double floor = 0.01;
 
 std::size_t end_of(std::span<const std::size_t> logs, std::size_t log, Eigen::Index rows) {

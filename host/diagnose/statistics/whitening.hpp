@@ -22,6 +22,8 @@ class Whitening {
   // Each white row counts as many times as `weight` says from now on: the inverse of the noise's deviation there.
   void weigh(Eigen::VectorXd weight) { weight_ = std::move(weight); }
 
+  const Eigen::VectorXd& weight() const { return weight_; }  // empty: 1
+
   // Whether it changes anything.
   explicit operator bool() const { return !predictor_.empty(); }
   // A column of all rows, whitened; the rows at each log's start that have too little before them are 0.

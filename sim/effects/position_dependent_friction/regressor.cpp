@@ -1,7 +1,7 @@
-// Friction whose level varies along the stroke: at knots over it a level each, linear between, times the contact's
-// direction. How many knots, and whether they stand closer at one end, is what the scan finds: as few as the data ask
-// for. Their common level belongs to the profile; a change of the level alone is a Coulomb mismatch, which needs one
-// column for it.
+// Friction whose level varies along the stroke: at knots a level each, linear between, times the contact's direction.
+// Either they stand over the whole stroke, where their common level belongs to the profile (a change of the level alone
+// is a Coulomb mismatch, which needs one column for it): how many there are, and whether they stand closer at one end,
+// is what the scan finds. Or they stand at one place, with no change beside it: a tight spot.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -27,7 +27,18 @@ std::vector<double> grid(const SearchContext& context) {
     for (std::size_t i = 0; i < shapes.size(); ++i) indices.push_back(static_cast<double>(i));
   return indices;
 }
+const PlaceScan& spots(const SearchContext& context) { return context.tight_spots; }
+constexpr int knots_of_a_spot = 5;  // the outer two without a level
+
+// Where the knots stand; `index` of a shape, or of a tight spot.
 std::vector<double> knots_of(const SearchContext& context, double index) {
+  if (index >= Candidate::first_place) {
+    const auto& spot = spots(context).places[static_cast<std::size_t>(index - Candidate::first_place)];
+    std::vector<double> places;
+    for (int k = 0; k < knots_of_a_spot; ++k)
+      places.push_back(spot.at + spot.foot * (2.0 * k / (knots_of_a_spot - 1) - 1.0));
+    return places;
+  }
   const auto [count, warp] = shapes[static_cast<std::size_t>(index)];
   std::vector<double> places;
   for (int k = 0; k < count; ++k)
@@ -46,14 +57,20 @@ Columns columns(const SearchContext& context, const Motion& motion, double index
     hats[k - 1][i] = (1.0 - share) * level[i];
     hats[k][i] = share * level[i];
   }
+  if (index >= Candidate::first_place) hats = {hats.begin() + 1, hats.end() - 1};
   return hats;
 }
 void describe(const SearchContext& context, double index, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
               Finding& finding) {
-  std::vector<double> error;
+  std::vector<double> force(w.data(), w.data() + w.size()), error;
   for (Eigen::Index k = 0; k < w.size(); ++k) error.push_back(std::sqrt(c(k, k)));
+  if (index >= Candidate::first_place)
+    for (auto* values : {&force, &error}) {
+      values->insert(values->begin(), 0.0);
+      values->push_back(0.0);
+    }
   add_key(context, finding, "position", knots_of(context, index), {});
-  add_key(context, finding, "force", {w.data(), w.data() + w.size()}, error);
+  add_key(context, finding, "force", std::move(force), std::move(error));
 }
 
 }  // namespace
@@ -64,6 +81,7 @@ extern const EffectRegressor regressor{.force = {.grid = grid,
                                                  .describe = describe,
                                                  .names_coulomb = true,
                                                  .along_stroke = true,
-                                                 .trials = 3.0}};
+                                                 .trials = 3.0,
+                                                 .places = spots}};
 
 }  // namespace stiction::host::effects::position_dependent_friction

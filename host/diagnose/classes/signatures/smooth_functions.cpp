@@ -155,11 +155,12 @@ std::string like_acceleration(const SearchContext& context, double, const Eigen:
   return about(context, "a force that does not grow in proportion to acceleration", w);
 }
 
-// Of time in each record: any force, friction, friction that grows with speed.
+// Of time in each record: any force, friction, friction that grows with speed. What all of a record has is no function
+// of time.
 Values numbers_of_time(const SearchContext&) { return {3.0, 8.0}; }
 Columns of_time(const SearchContext& context, const Motion& motion, double number) {
   Columns columns;
-  add_cosines(columns, along_time(context, motion), ones(motion), 0, static_cast<int>(number) + 1);
+  add_cosines(columns, along_time(context, motion), ones(motion), 1, static_cast<int>(number) + 1);
   return columns;
 }
 std::string like_time(const SearchContext& context, double, const Eigen::VectorXd& w) {
@@ -167,7 +168,7 @@ std::string like_time(const SearchContext& context, double, const Eigen::VectorX
 }
 Columns friction_of_time(const SearchContext& context, const Motion& motion, double number) {
   Columns columns;
-  add_cosines(columns, along_time(context, motion), contact_level(context.axis, motion), 0,
+  add_cosines(columns, along_time(context, motion), contact_level(context.axis, motion), 1,
               static_cast<int>(number) + 1);
   return columns;
 }
