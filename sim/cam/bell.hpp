@@ -1,6 +1,7 @@
 // The motion whose speed is exp(-k / (4 x (1 - x))): every derivative is zero at both ends of [0, 1]. The function is
-// the standard example of one that is smooth and has no Taylor series; as a lift law it is this project's own. y has no closed form: it is a sum of integrals over octaves [2^-j, 2^-j+1], each by 16 points. The
-// singularity lies a whole octave away from each, so that their error is below 1e-16 of the integral.
+// the standard example of one that is smooth and has no Taylor series; as a lift law it is this project's own. y has no
+// closed form: it is a sum of integrals over octaves [2^-j, 2^-j+1], each by 16 points. The singularity lies a whole
+// octave away from each, so that their error is below 1e-16 of the integral.
 #pragma once
 
 #include <array>

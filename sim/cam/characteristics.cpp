@@ -76,20 +76,26 @@ Extremes torque_extremes(const Curve& curve) {
   return all;
 }
 
+std::array<double, 4> derivative_sizes(const Curve& curve) {
+  std::array<double, 4> sizes{};
+  const auto position = extremes(curve, 0);
+  sizes[0] = position.highest.value - position.lowest.value;
+  double scale = sizes[0];
+  for (std::size_t order = 1; order < 4; ++order) {
+    scale *= 3.0 / curve.length();
+    sizes[order] = std::max(extremes(curve, static_cast<int>(order)).magnitude(), 1e-3 * scale);
+  }
+  return sizes;
+}
+
 std::vector<Jump> inner_jumps(const Curve& curve, double tolerance) {
   std::vector<Jump> jumps;
-  std::array<double, 4> peak{};
-  for (int order = 0; order < 4; ++order)
-    for (const Piece& piece : curve.pieces())
-      for (int k = 0; k <= 6; ++k)
-        peak[static_cast<std::size_t>(order)] =
-            std::max(peak[static_cast<std::size_t>(order)],
-                     absolute(piece.derivative(piece.begin + piece.length() * k / 6.0, order)));
+  const auto size = derivative_sizes(curve);
   for (std::size_t k = 1; k < curve.pieces().size(); ++k) {
     const Piece &before = curve.pieces()[k - 1], &behind = curve.pieces()[k];
     for (int order = 0; order < 4; ++order) {
       const double step = behind.derivative(behind.begin, order) - before.derivative(before.end, order);
-      if (absolute(step) > tolerance * peak[static_cast<std::size_t>(order)])
+      if (absolute(step) > tolerance * size[static_cast<std::size_t>(order)])
         jumps.push_back({behind.begin, order, step});
     }
   }

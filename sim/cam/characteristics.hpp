@@ -2,6 +2,7 @@
 // Cj, C_M), jumps, and the residual vibration after it.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "sim/cam/curve.hpp"
@@ -28,6 +29,10 @@ Extremes extremes(const Curve& curve, int order);
 
 // The same of y' y'', of which a driven mass makes the torque at the master's shaft.
 Extremes torque_extremes(const Curve& curve);
+
+// What a step of each derivative is compared with: its largest magnitude, and of the position its range. A derivative
+// that is zero but for rounding, of a dwell or a line, has no peak: a thousandth of a wave over the whole stands in.
+std::array<double, 4> derivative_sizes(const Curve& curve);
 
 // A step of the derivative of `order` at a place: value behind it minus value before it.
 struct Jump {
