@@ -11,6 +11,9 @@
 namespace stiction::sim::cam {
 namespace {
 
+// m or rad, of a length and a stroke: beyond what any machine has, and squares of it still are numbers.
+constexpr double least_length = 1e-9, largest_extent = 1e9;
+
 constexpr std::string_view points_law = "points";
 
 // A cycle closes, and points cover their segment, within this share of the motion's size: files give 15 digits.
@@ -36,7 +39,10 @@ std::string problem_of_points(const Segment& segment) {
 std::string problem_of_segment(const Segment& segment) {
   if (!std::isfinite(segment.length) || !(segment.length > 0.0))
     return fmt::format("found a length of {}; expected more than 0: its end behind its begin", segment.length);
-  if (!std::isfinite(segment.stroke)) return fmt::format("found a stroke of {}; expected a number", segment.stroke);
+  if (segment.length < least_length || segment.length > largest_extent)
+    return fmt::format("found a length of {}; expected {} to {}", segment.length, least_length, largest_extent);
+  if (!(std::fabs(segment.stroke) <= largest_extent))
+    return fmt::format("found a stroke of {}; expected a number up to {}", segment.stroke, largest_extent);
   if (segment.law == points_law) return problem_of_points(segment);
   const Law* law = find_law(segment.law);
   if (law == nullptr) return fmt::format("found the law \"{}\"; expected one of `stiction cam laws`", segment.law);
