@@ -32,6 +32,11 @@ void add_machine_new(CLI::App& machine, const Invocation& invocation);
 void add_identify(CLI::App& program, const Invocation& invocation);
 void add_diagnose(CLI::App& program, const Invocation& invocation);
 void add_tune_friction(CLI::App& program, const Invocation& invocation);
+// Lift laws, motion files and tables of electronic cams.
+void add_cam(CLI::App& program, const Invocation& invocation);
+// Laws compared for one stroke, and the page of a motion, below `stiction cam`.
+void add_cam_rank(CLI::App& cam);
+void add_cam_design(CLI::App& cam, const Invocation& invocation);
 // Scripts for the shells, made from the commands that `program` has when it runs.
 void add_completion(CLI::App& program);
 void add_convert(CLI::App& program);
