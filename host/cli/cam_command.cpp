@@ -160,6 +160,7 @@ void add_cam(CLI::App& program, const Invocation& invocation) {
   add_cam_design(*command, invocation);
   add_cam_rank(*command);
   add_table(*command);
+  add_cam_exchange(*command);
 }
 
 }  // namespace stiction::host

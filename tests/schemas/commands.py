@@ -52,6 +52,8 @@ compare --reference circle --machine mcfv5050ln,other.toml --friction lugre --ou
 tune-friction records/circle.csv --machine emps --no-pulse --out tuned --json
 tune-friction --machine mcfv5050ln --axis X --feed '16 m/min' --no-pulse --json
 identify --reference circle --machine mcfv5050ln --json
+simulate cam --machine servo-joint --cam indexing.toml --speed '20 rpm' --cycles 1 --out cam-run --json
+simulate cam --machine screw-linear-scale --cam shear.toml --name carriage --speed '0.2 m/s' --cycles 1 --master steps --json
 cam laws --json
 cam check indexing.toml --json
 cam check indexing.toml --machine servo-joint --speed '20 rpm' --json
@@ -85,6 +87,8 @@ def prepare(folder):
     (folder / "endless.toml").write_text(endless.read_text(encoding="utf-8"), encoding="utf-8")
     motion = SOURCE / "examples/cams/indexing.toml"
     (folder / "indexing.toml").write_text(motion.read_text(encoding="utf-8"), encoding="utf-8")
+    shear = SOURCE / "examples/cams/flying_shear.toml"
+    (folder / "shear.toml").write_text(shear.read_text(encoding="utf-8"), encoding="utf-8")
     (folder / "steady.csv").write_text(STEADY, encoding="utf-8")
     made = SOURCE / "tests/fuzz/seeds/response_file/made.xml"
     (folder / "test.xml").write_text(made.read_text(encoding="utf-8"), encoding="utf-8")

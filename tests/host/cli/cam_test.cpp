@@ -97,5 +97,24 @@ TEST_F(CamCli, RanksLawsAndDesignsAPage) {
   EXPECT_GT(fs::file_size(work() / "page/report.html"), 1'000'000u);
 }
 
+TEST_F(CamCli, ExportsWithTheErrorAndImportsAgain) {
+  const auto out = stiction("cam export " + example("flying_shear.toml") +
+                            " --cam carriage --format codesys-xy --points 121 -o c.txt");
+  ASSERT_EQ(out.code, 0) << out.error;
+  EXPECT_NE(out.out.find("error of the position: at most"), std::string::npos);
+  EXPECT_NE(out.out.find("error of the acceleration: at most"), std::string::npos);
+  const auto in = stiction("cam import c.txt --format codesys-xy --master linear --slave linear -o back.toml");
+  ASSERT_EQ(in.code, 0) << in.error;
+  EXPECT_EQ(stiction("cam check back.toml").code, 0);
+  const auto wrong = stiction("cam import c.txt --format sew -o no.toml");
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_NE(wrong.error.find("looks like codesys-xy"), std::string::npos) << wrong.error;
+  EXPECT_EQ(stiction("cam export " + example("indexing.toml") + " --format isg --points 361 -o no.txt").code, 2);
+  const auto comma = stiction("cam export " + example("indexing.toml") +
+                              " --format csv --columns xyva --separator ';' --decimal , -o k.csv");
+  ASSERT_EQ(comma.code, 0) << comma.error;
+  EXPECT_TRUE(content(work() / "k.csv").starts_with("master;slave;speed;acceleration\n0;0;0;0\n"));
+}
+
 }  // namespace
 }  // namespace stiction::test
