@@ -13,17 +13,27 @@
 #include "host/cli/errors.hpp"
 #include "host/cli/output.hpp"
 #include "sim/cam/law.hpp"
+#include "sim/cam/laws_page.hpp"
 #include "sim/cam/segment_table.hpp"
 
 namespace stiction::host {
 namespace {
 
 struct LawsOptions {
-  std::string task;
-  bool json = false;
+  std::string task, picture;
+  bool json = false, markdown = false;
 };
 
 void run_laws(const LawsOptions& options) {
+  if (!options.picture.empty()) {
+    PendingFile file(options.picture);
+    file.write(sim::cam::laws_svg());
+    file.commit();
+  }
+  if (options.markdown) {
+    fmt::print("{}", sim::cam::laws_markdown());
+    return;
+  }
   std::vector<const sim::cam::Law*> chosen;
   for (const auto& law : sim::cam::laws())
     if (options.task.empty() || task_of(law) == options.task) chosen.push_back(&law);
@@ -41,6 +51,8 @@ void add_laws(CLI::App& cam) {
                    "only those for a task of VDI 2143: R rest, G constant speed, U reversal, B motion")
       ->check(one_of(cam_tasks()))
       ->type_name("TASK");
+  command->add_flag("--markdown", o->markdown, "print all of them as a table for a page (Markdown)");
+  add_output_file(*command, "--picture", o->picture, "write a picture of all of them into this file (SVG)");
   command->add_flag("--json", o->json, "print names, parameters, formulas and figures as JSON on standard output");
   command->callback([o] { run_laws(*o); });
 }

@@ -74,6 +74,10 @@ double polynomial_remainder(const std::vector<double>& polynomial, double farthe
   return bound * (1.0 + 1e-13);
 }
 
+// Whether a part of a bell begins so near to its end, in comparison with its length, that no circle around its middle
+// holds it and leaves out the end: there every derivative is small, and the motion itself is the remainder.
+bool begins_flat(double t, double radius) { return t - radius <= 0.05 * (t + radius); }
+
 }  // namespace
 
 double Piece::chain(int order) const {
@@ -100,12 +104,11 @@ TaylorModel taylor_model(const Piece& piece, double begin, double end, std::size
     double bound = polynomial_remainder(piece.polynomial, t + radius, radius, order, d);
     for (const Wave& wave : piece.waves) bound += wave_remainder(wave, radius, order, d);
     for (const Bell& bell : piece.bells)
-      // A part that begins where every derivative is zero has no series: its whole motion is the remainder.
-      bound += t - radius <= 1e-9 ? bell.bound_at_end(t + radius, d) : bell.remainder(t, radius, order, d);
+      bound += begins_flat(t, radius) ? bell.bound_at_end(t + radius, d) : bell.remainder(t, radius, order, d);
     model.remainder[d] = bound * absolute(piece.chain(d)) * (1.0 + 1e-14);
   }
   for (const Bell& bell : piece.bells) {
-    if (t - radius <= 1e-9) continue;
+    if (begins_flat(t, radius)) continue;
     const auto series = bell.taylor(t, order);
     for (std::size_t n = 0; n <= order; ++n) model.coefficients[n] = model.coefficients[n] + series[n];
   }

@@ -137,18 +137,16 @@ TableBound rounding_of(const CamTable::Segment& segment, const Coefficients& tab
 
 double power_of_two(int exponent) { return std::bit_cast<double>(static_cast<std::int64_t>(1023 + exponent) << 52); }
 
-FittedSegment fit_segment(const Part& part, double cycle, int position_bits) {
+FittedSegment fit_segment(const Part& part, double cycle, int position_bits, double tolerance) {
   FittedSegment fitted;
   const std::uint64_t length = part.end - part.begin;
   fitted.segment.start = static_cast<std::uint32_t>(part.begin);
   set_reciprocal(fitted.segment, length);
-  const auto exact = hermite_of(part, cycle);
-  set_coefficients(fitted.segment, exact, position_bits);
+  set_coefficients(fitted.segment, hermite_of(part, cycle), position_bits);
 
   const auto table = exact_of(fitted.segment, position_bits);
   const auto model = taylor_model(*part.piece, place_of(part.begin, cycle), place_of(part.end, cycle), taylor_order);
   const auto d = difference(model, table);
-  const auto first = derivative_of(d), second = derivative_of(first);
   const TableBound rounding = rounding_of(fitted.segment, table, length, position_bits);
   // From s to cycles.
   const double rate = cycle / model.radius;
@@ -160,14 +158,20 @@ FittedSegment fit_segment(const Part& part, double cycle, int position_bits) {
   constexpr double ulps = 64.0 * 0x1p-53;
   const double place = 2.0 * ulps * static_cast<double>(part.end) / static_cast<double>(length);
   fitted.bound.position = largest_of(d) + model.remainder[0] + rounding.position + ulps * size + place * fast;
+  if (fitted.bound.position > tolerance) return fitted;
+  const auto first = derivative_of(d), second = derivative_of(first);
   fitted.bound.speed = largest_of(first) * rate + model.remainder[1] * cycle + rounding.speed +
                        0.5 * rate * (ulps * fast + place * bent);
   fitted.bound.acceleration = largest_of(second) * rate * rate + model.remainder[2] * cycle * cycle +
                               rounding.acceleration + 0.25 * rate * rate * (ulps * bent + 4.0 * place * bent);
-  const auto ideal = difference(model, exact);
-  fitted.smooth.position = largest_of(ideal);
-  fitted.smooth.acceleration = largest_of(derivative_of(derivative_of(ideal))) * rate * rate;
   return fitted;
+}
+
+TableBound smooth_error(const Part& part, double cycle) {
+  const auto model = taylor_model(*part.piece, place_of(part.begin, cycle), place_of(part.end, cycle), taylor_order);
+  const auto ideal = difference(model, hermite_of(part, cycle));
+  const double rate = cycle / model.radius;
+  return {largest_of(ideal), 0.0, largest_of(derivative_of(derivative_of(ideal))) * rate * rate};
 }
 
 }  // namespace stiction::sim::cam

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "sim/cam/piece.hpp"
 #include "sim/cam/segment_table.hpp"
@@ -17,12 +18,17 @@ struct Part {
 struct FittedSegment {
   CamTable::Segment segment;
   TableBound bound;
-  TableBound smooth;  // position and acceleration without what rounding of coefficients adds: what halving improves
 };
 
 // The segment of `part` of a motion with that `cycle`, its position in 2^-`position_bits` of the slave's unit. The
-// bound is that of an output that is not rounded to the header's scales.
-FittedSegment fit_segment(const Part& part, double cycle, int position_bits);
+// bound is that of an output that is not rounded to the header's scales; where the position's is above `tolerance` the
+// others are left out.
+FittedSegment fit_segment(const Part& part, double cycle, int position_bits,
+                          double tolerance = std::numeric_limits<double>::infinity());
+
+// The errors of position and acceleration of `part` of a motion with that `cycle` without the rounding of coefficients:
+// what halving improves.
+TableBound smooth_error(const Part& part, double cycle);
 
 // 2^exponent, for -1000 to 1000.
 double power_of_two(int exponent);

@@ -66,7 +66,7 @@ class TableWriter {
 // The finest scale of speed or acceleration that no segment's products are coarser than, and whose peak still fits.
 int output_bits(const std::vector<FittedSegment>& fitted, int position_bits, int order) {
   int bits = 100;
-  for (const auto& [segment, bound, smooth] : fitted)
+  for (const auto& [segment, bound] : fitted)
     bits = std::min(bits, order == 1 ? position_bits + segment.shift + segment.down - 32
                                      : position_bits + segment.shift + 2 * segment.down - 64);
   return bits;
@@ -79,7 +79,7 @@ SegmentTable written(const Motion& motion, const std::vector<FittedSegment>& fit
   table.segments = static_cast<std::uint32_t>(fitted.size());
   const int speed_bits = std::clamp(output_bits(fitted, position_bits, 1), -100, 100);
   const int acceleration_bits = std::clamp(output_bits(fitted, position_bits, 2), -100, 100);
-  for (const auto& [segment, bound, smooth] : fitted) {
+  for (const auto& [segment, bound] : fitted) {
     table.bound.position = std::max(table.bound.position, bound.position);
     table.bound.speed = std::max(table.bound.speed, bound.speed + power_of_two(-speed_bits));
     table.bound.acceleration =
@@ -101,7 +101,7 @@ SegmentTable written(const Motion& motion, const std::vector<FittedSegment>& fit
   out.number(in_units(table.bound.speed, speed_bits), 8);
   out.number(in_units(table.bound.acceleration, acceleration_bits), 8);
   out.number(std::uint64_t{0}, 8);
-  for (const auto& [segment, bound, smooth] : fitted) {
+  for (const auto& [segment, bound] : fitted) {
     out.number(std::uint64_t{segment.start}, 4);
     out.number(std::uint64_t{segment.reciprocal}, 4);
     out.number(segment.c0, 8);
@@ -117,7 +117,7 @@ SegmentTable written(const Motion& motion, const std::vector<FittedSegment>& fit
 
 // Halves `part` until its error is within the tolerance.
 void add_within(const Part& part, double cycle, int position_bits, double tolerance, std::vector<FittedSegment>& all) {
-  const FittedSegment fitted = fit_segment(part, cycle, position_bits);
+  const FittedSegment fitted = fit_segment(part, cycle, position_bits, tolerance);
   if (fitted.bound.position <= tolerance) {
     all.push_back(fitted);
     return;
@@ -131,9 +131,9 @@ void add_within(const Part& part, double cycle, int position_bits, double tolera
   add_within({part.piece, middle, part.end}, cycle, position_bits, tolerance, all);
 }
 
-struct FittedPart {
+struct DividedPart {
   Part part;
-  FittedSegment fitted;
+  TableBound smooth;
 };
 
 // What the errors of a table are compared with: a billionth of the range of positions, and 10^-5 of the largest
@@ -146,20 +146,19 @@ TableBound wanted_of(const Motion& motion) {
 
 // Halves the part whose error is the largest of what is `wanted`, so that the errors of all become alike. False where
 // none needs it, or it is too short for that.
-bool halve_worst(std::vector<FittedPart>& parts, const TableBound& wanted, double cycle, int position_bits) {
-  const auto error = [&](const FittedPart& part) {
-    return std::max(part.fitted.smooth.position / wanted.position,
-                    part.fitted.smooth.acceleration / wanted.acceleration);
+bool halve_worst(std::vector<DividedPart>& parts, const TableBound& wanted, double cycle) {
+  const auto error = [&](const DividedPart& part) {
+    return std::max(part.smooth.position / wanted.position, part.smooth.acceleration / wanted.acceleration);
   };
   const auto worst = std::max_element(parts.begin(), parts.end(),
-                                      [&](const FittedPart& a, const FittedPart& b) { return error(a) < error(b); });
+                                      [&](const DividedPart& a, const DividedPart& b) { return error(a) < error(b); });
   const Part whole = worst->part;
   if (whole.end - whole.begin < shortest_part || error(*worst) < 0.01) return false;
   const std::uint64_t middle = whole.begin + (whole.end - whole.begin) / 2;
   const Part second{whole.piece, middle, whole.end};
   worst->part.end = middle;
-  worst->fitted = fit_segment(worst->part, cycle, position_bits);
-  parts.insert(worst + 1, {second, fit_segment(second, cycle, position_bits)});
+  worst->smooth = smooth_error(worst->part, cycle);
+  parts.insert(worst + 1, {second, smooth_error(second, cycle)});
   return true;
 }
 
@@ -179,17 +178,17 @@ SegmentTable table_of_parts(const Motion& motion, int parts) {
   const int bits = position_bits_of(motion);
   const double cycle = motion.cam.cycle();
   const TableBound wanted = wanted_of(motion);
-  std::vector<std::vector<FittedPart>> segments(motion.segments.size());
+  std::vector<std::vector<DividedPart>> segments(motion.segments.size());
   for (const Part& piece : pieces_of(motion)) {
     const auto at = static_cast<std::size_t>(piece.piece - motion.curve.pieces().data());
-    segments[motion.segment_of(at)].push_back({piece, fit_segment(piece, cycle, bits)});
+    segments[motion.segment_of(at)].push_back({piece, smooth_error(piece, cycle)});
   }
   std::vector<FittedSegment> fitted;
   for (std::size_t k = 0; k < segments.size(); ++k) {
     auto& of_segment = segments[k];
     while (motion.cam.segments[k].law != "linear" && of_segment.size() < static_cast<std::size_t>(parts))
-      if (!halve_worst(of_segment, wanted, cycle, bits)) break;
-    for (const FittedPart& part : of_segment) fitted.push_back(part.fitted);
+      if (!halve_worst(of_segment, wanted, cycle)) break;
+    for (const DividedPart& part : of_segment) fitted.push_back(fit_segment(part.part, cycle, bits));
   }
   return written(motion, fitted, bits);
 }

@@ -53,7 +53,7 @@ tune-friction records/circle.csv --machine emps --no-pulse --out tuned --json
 tune-friction --machine mcfv5050ln --axis X --feed '16 m/min' --no-pulse --json
 identify --reference circle --machine mcfv5050ln --json
 simulate cam --machine servo-joint --cam indexing.toml --speed '20 rpm' --cycles 1 --out cam-run --json
-simulate cam --machine screw-linear-scale --cam shear.toml --name carriage --speed '0.2 m/s' --cycles 1 --master steps --json
+simulate cam --machine screw-linear-scale --cam shear.toml --name carriage --speed '0.2 m/s' --cycles 1 --json
 cam laws --json
 cam check indexing.toml --json
 cam check indexing.toml --machine servo-joint --speed '20 rpm' --json

@@ -117,6 +117,18 @@ TEST(CamSegmentTable, SaysForWhomItIs) {
   EXPECT_NEAR(static_cast<double>(h.position_bound) * std::ldexp(1.0, -h.position_bits), table.bound.position, 1e-12);
 }
 
+// The bytes of 100 motions, as one checksum. It is a constant: whatever compiler and processor this test runs on must
+// make the same tables.
+TEST(CamSegmentTable, HasTheSameBytesEverywhere) {
+  Crc32 checksum;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    RandomMotion random(9000 + seed);
+    const auto table = table_within(compose(seed % 2 == 0 ? random.rests(6) : random.septics(5)), 1e-8);
+    checksum.add(table.bytes, table.bytes.size());
+  }
+  EXPECT_EQ(checksum.value(), 0x3898d0efu);
+}
+
 TEST(CamSegmentTable, RefusesEachFlippedBitAndEachLength) {
   Cam cam{.name = "a", .periodic = false};
   cam.segments = {{.length = 2.0, .stroke = 1.0, .law = "modified_sine"}, {.length = 1.0}};
