@@ -17,6 +17,7 @@
 #include "host/log/csv_log.hpp"
 #include "host/report/experiment_report.hpp"
 #include "host/simulate/cam_run_result.hpp"
+#include "host/simulate/control_run.hpp"
 #include "sim/cam/check.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
@@ -64,7 +65,14 @@ std::vector<CamRunCase> cam_cases(const machine::Machine& machine, const sim::ca
   const bool compensates = axis.friction_compensation && axis.friction_compensation->use != CompensationKind::off;
   Progress progress("simulating", compensates ? 3 : 2);
   const auto add = [&](const char* name, const char* label) {
-    cases.push_back({name, label, run_cam<S>(machine, motion, settings)});
+    cases.push_back({name, label, {}, {}});
+    // A run with less than the machine file has may stop; its own must not.
+    try {
+      cases.back().run = run_cam<S>(machine, motion, settings);
+    } catch (const FaultTripped& tripped) {
+      if (cases.size() == 1) throw;
+      cases.back().stopped = tripped.what();
+    }
     progress.add(label);
   };
   if (compensates) add("compensated", "with feedforward and friction compensation");

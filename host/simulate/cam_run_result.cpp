@@ -71,16 +71,21 @@ sim::ExperimentResult cam_run_result(const sim::cam::Motion& motion, const machi
   errors.x_label = efforts.x_label = units.master_label;
   errors.shape.wide = efforts.shape.wide = true;
   for (const auto& c : cases) {
+    if (!c.stopped.empty()) continue;
     add_case(c, units, result);
     errors.series.push_back(series_of(c, c.run.following, units.master, units.error));
     efforts.series.push_back(series_of(c, c.run.effort, units.master, 1.0));
   }
   result.charts = {errors, efforts};
   for (const auto& c : cases)
-    result.findings.push_back(fmt::format("The following error is {:.3g} {} at most, at {:.4g} {} of the master, {}.",
-                                          c.run.error.peak * units.error, errors.y_label,
-                                          c.run.error.place * units.master,
-                                          motion.cam.master == sim::cam::Coordinate::rotary ? "°" : "mm", c.label));
+    if (!c.stopped.empty())
+      result.findings.push_back(fmt::format("A fault stops the axis {}: {}.", c.label, c.stopped));
+  for (const auto& c : cases)
+    if (c.stopped.empty())
+      result.findings.push_back(fmt::format("The following error is {:.3g} {} at most, at {:.4g} {} of the master, {}.",
+                                            c.run.error.peak * units.error, errors.y_label,
+                                            c.run.error.place * units.master,
+                                            motion.cam.master == sim::cam::Coordinate::rotary ? "°" : "mm", c.label));
   return result;
 }
 

@@ -14,6 +14,7 @@ struct CamRunCase {
   std::string name;   // "feedforward", as it is in the names of figures
   std::string label;  // "with feedforward"
   CamRun run;
+  std::string stopped{};  // by which fault, a clause; empty: it ran
 };
 
 // "stiction.cam-run/1". `motion` on the axis `axis`, in its own units; `signals`: of the control; `cases`: at least
