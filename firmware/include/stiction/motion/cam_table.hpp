@@ -188,9 +188,11 @@ class CamTable {
     constexpr std::int64_t most = std::int64_t{1} << 61;
     const auto within = [](std::int64_t value) { return value >= -most && value <= most; };
     if (header_.cycle <= 0 || !within(header_.rise)) return CamTableProblem::scale;
+    for (std::uint32_t k = 0; k < header_.count; ++k)
+      if (k == 0 ? segment(k).start != 0 : segment(k).start <= segment(k - 1).start)
+        return CamTableProblem::segment_order;
     for (std::uint32_t k = 0; k < header_.count; ++k) {
       const Segment s = segment(k);
-      if (k == 0 ? s.start != 0 : s.start <= segment(k - 1).start) return CamTableProblem::segment_order;
       const auto shifts = [](int shift) { return shift >= 0 && shift <= 127; };
       const std::uint64_t length =
           (k + 1 < header_.count ? std::uint64_t{segment(k + 1).start} : std::uint64_t{1} << 32) - s.start;
