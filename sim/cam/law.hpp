@@ -61,6 +61,9 @@ inline machine::ValueKey law_parameter(std::string_view key, machine::Range rang
   return {key, "1", "", range, false, false, fallback, text, "", false};
 }
 
+// Of slopes, accelerations and coefficients of unit laws: beyond what any motion has, and products of them are numbers.
+constexpr machine::Range law_range() { return {-1e6, 1e6}; }
+
 // The first value of `key`, which is there.
 inline double value(const LawValues& values, std::string_view key) { return values.find(key)->second.front(); }
 

@@ -85,8 +85,8 @@ End end_of(const Law& law, const LawValues& values) {
 std::vector<machine::ValueKey> detail::modifications(double c, double lambda, double start_slope, double end_slope) {
   return {law_parameter("c", {0.001, 1.0}, c, "share of the interval that accelerates and brakes; the rest is a line"),
           law_parameter("lambda", {0.001, 0.999}, lambda, "share of accelerating in accelerating and braking"),
-          law_parameter("start_slope", machine::any_value(), start_slope, "speed of the unit law at the start, y1_a"),
-          law_parameter("end_slope", machine::any_value(), end_slope, "speed of the unit law at the end, y1_b")};
+          law_parameter("start_slope", law_range(), start_slope, "speed of the unit law at the start, y1_a"),
+          law_parameter("end_slope", law_range(), end_slope, "speed of the unit law at the end, y1_b")};
 }
 
 }  // namespace stiction::sim::cam

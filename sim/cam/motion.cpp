@@ -12,7 +12,7 @@ namespace stiction::sim::cam {
 namespace {
 
 // m or rad, of a length and a stroke: beyond what any machine has, and squares of it still are numbers.
-constexpr double least_length = 1e-9, largest_extent = 1e9;
+constexpr double least_length = 1e-9, largest_extent = 1e9, largest_forced = 1e12;
 
 constexpr std::string_view points_law = "points";
 
@@ -36,7 +36,15 @@ std::string problem_of_points(const Segment& segment) {
   return {};
 }
 
+std::string problem_of_forced(const Boundary& boundary) {
+  for (const auto& value : {boundary.speed, boundary.acceleration, boundary.jerk})
+    if (value && !(std::fabs(*value) <= largest_forced))
+      return fmt::format("found a forced value of {}; expected a number up to {}", *value, largest_forced);
+  return {};
+}
+
 std::string problem_of_segment(const Segment& segment) {
+  if (auto problem = problem_of_forced(segment.end); !problem.empty()) return problem;
   if (!std::isfinite(segment.length) || !(segment.length > 0.0))
     return fmt::format("found a length of {}; expected more than 0: its end behind its begin", segment.length);
   if (segment.length < least_length || segment.length > largest_extent)
@@ -94,7 +102,11 @@ Curve own_curve(const Segment& segment, const Boundary& start, const Boundary& e
     if (start.speed) values["start_slope"] = {*start.speed / unit_scale(segment, 1)};
     if (end.speed) values["end_slope"] = {*end.speed / unit_scale(segment, 1)};
   }
-  return unit_curve(law, values).placed({.stretch = segment.length, .gain = segment.stroke});
+  try {
+    return unit_curve(law, values).placed({.stretch = segment.length, .gain = segment.stroke});
+  } catch (const machine::ValueError& error) {  // a forced speed makes a slope beyond what a law takes
+    throw CamError(fmt::format("law {}: found {} of the unit law; expected {}", law.name, error.found, error.expected));
+  }
 }
 
 // Forced values that the curve of a law does not have.
@@ -184,6 +196,9 @@ double Cam::position_of(std::size_t k) const {
 
 std::string problem_of(const Cam& cam) {
   if (cam.segments.empty()) return "found no segment; expected one or more";
+  if (!(std::fabs(cam.start) <= largest_extent))
+    return fmt::format("found a start at {}; expected a number up to {}", cam.start, largest_extent);
+  if (auto problem = problem_of_forced(cam.begin); !problem.empty()) return problem;
   double size = 0.0;
   for (std::size_t k = 0; k < cam.segments.size(); ++k) {
     if (auto problem = problem_of_segment(cam.segments[k]); !problem.empty()) return place_of(k) + problem;

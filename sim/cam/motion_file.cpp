@@ -272,6 +272,9 @@ Track read_track(const MotionTable& table, const Cam& cam) {
   const auto unit = unit_of(cam.master);
   track.name = table.text("name", "name of the track").value_or("");
   if (track.name.empty()) table.fail("name", "no such key", "a text (name of the track)");
+  for (const char c : track.name)
+    if (c == '"' || c == '\\' || static_cast<unsigned char>(c) < ' ' || c == '\x7f')
+      table.fail("name", "a quote, a backslash or a control character", "a name without them");
   const auto on = table.quantities("on", unit, "masters where it switches on");
   const auto off = table.quantities("off", unit, "masters where it switches off");
   if (on.empty() || on.size() != off.size())
@@ -293,7 +296,14 @@ Coordinate read_coordinate(const MotionTable& table, std::string_view name, std:
   return table.choice(name, {"rotary", "linear"}, "rotary", text) == "linear" ? Coordinate::linear : Coordinate::rotary;
 }
 
+// Names are bare keys of TOML, so that they are written as they are read.
+bool is_bare(std::string_view name) {
+  return !name.empty() && name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") ==
+                              std::string_view::npos;
+}
+
 Cam read_cam(const MotionTable& table, std::string name) {
+  if (!is_bare(name)) table.fail(fmt::format("found the name \"{}\"; expected letters, digits, - and _", name));
   table.allow({"cycle", "master", "slave", "periodic", "start", "modulo", "start_speed", "start_acceleration",
                "start_jerk", "segment", "track"});
   Cam cam;

@@ -9,14 +9,14 @@ namespace stiction::sim::cam {
 namespace {
 
 // In degrees or millimetres where that reads back as the same double, else in SI.
-std::string quantity_text(double value, std::string_view unit) {
-  const std::string_view usual = unit == "rad" ? "deg" : unit == "m" ? "mm" : "";
-  if (!usual.empty()) {
-    const auto text = machine::format_quantity(value, unit, usual);
-    if (machine::parse_quantity(text, unit) == value) return fmt::format("\"{}\"", text);
+std::string quantity_text(double value, std::string_view si) {
+  const std::string_view shown = si == "rad" ? "deg" : si == "m" ? "mm" : "";
+  if (!shown.empty()) {
+    const auto text = machine::format_quantity(value, si, shown);
+    if (machine::parse_quantity(text, si) == value) return fmt::format("\"{}\"", text);
   }
-  if (unit == "1") return fmt::format("{}", value);
-  return fmt::format("\"{} {}\"", value, unit);
+  if (si == "1") return fmt::format("{}", value);
+  return fmt::format("\"{} {}\"", value, si);
 }
 
 void write_boundary(std::string& text, const Cam& cam, const Boundary& boundary, std::string_view prefix) {

@@ -27,6 +27,9 @@ constexpr NamedInterpolation named_interpolations[] = {
 // intervals. A tenth of the whole motion is more than any table has of that, and less than a wrong unit makes.
 constexpr double integral_tolerance = 0.1;
 
+// Of a point: beyond what any machine has, and products of it are numbers.
+constexpr double largest_value = 1e9;
+
 std::string problem_of_numbers(const PointTable& table) {
   const auto n = table.master.size();
   if (n < 2) return fmt::format("found {}; expected two points or more", n == 1 ? "one point" : "no point");
@@ -36,8 +39,8 @@ std::string problem_of_numbers(const PointTable& table) {
   if (table.speed.empty() && !table.acceleration.empty()) return "found accelerations without speeds; expected both";
   for (const auto* column : {&table.master, &table.slave, &table.speed, &table.acceleration})
     for (std::size_t i = 0; i < column->size(); ++i)
-      if (!std::isfinite((*column)[i]))
-        return fmt::format("found {} in point {}; expected a finite number", (*column)[i], i + 1);
+      if (!(std::fabs((*column)[i]) <= largest_value))
+        return fmt::format("found {} in point {}; expected a number up to {}", (*column)[i], i + 1, largest_value);
   for (std::size_t i = 1; i < n; ++i)
     if (!(table.master[i] > table.master[i - 1]))
       return fmt::format("found a master of {} behind {} (point {}); expected rising masters", table.master[i],

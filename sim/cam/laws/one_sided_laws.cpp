@@ -58,7 +58,7 @@ std::vector<Law> fixed_laws() {
 }
 
 machine::ValueKey boundary(std::string_view key, double fallback, std::string_view text) {
-  return law_parameter(key, machine::any_value(), fallback, text);
+  return law_parameter(key, law_range(), fallback, text);
 }
 
 // What the task leaves free at its ends, of the unit law.

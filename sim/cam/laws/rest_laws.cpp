@@ -167,7 +167,7 @@ std::vector<Law> free_laws() {
        End::motion,
        End::motion,
        EndValues::own,
-       {number_list("coefficients", machine::any_value(), "of x, x^2, ...; their sum is 1")},
+       {number_list("coefficients", law_range(), "of x, x^2, ...; their sum is 1")},
        "sum of c_n x^n",
        vdi,
        free_polynomial},

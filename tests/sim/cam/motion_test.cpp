@@ -102,6 +102,9 @@ TEST(CamMotionFile, RefusesWhatCannotBeWithItsPlace) {
             std::string::npos);
   EXPECT_NE(message("law = \"3-4-5\"", "law = \"cubic\"\nend_jerk = \"1 m/rad^3\"").find("jerk"), std::string::npos);
   EXPECT_NE(message("law = \"3-4-5\"", "law = \"polynomial_asymmetric_6\"").find("forced speed"), std::string::npos);
+  EXPECT_NE(message("to = \"40 mm\"", "to = \"1 nm\"").find("end_slope"), std::string::npos);
+  EXPECT_NE(message("[cam.feed]", "[cam.\"a b\"]").find("letters, digits"), std::string::npos);
+  EXPECT_NE(message("name = \"clamp\"", "name = 'a\"b'").find("without them"), std::string::npos);
   EXPECT_NE(message("off = \"350 deg\"", "off = [\"350 deg\", \"3 deg\"]").find("as many"), std::string::npos);
   EXPECT_NE(message("on = \"190 deg\"", "on = \"400 deg\"").find("0 to the cycle"), std::string::npos);
   EXPECT_NE(message("cycle = \"360 deg\"\nslave", "cycle = \"350 deg\"\nslave").find("fill the cycle"),
