@@ -23,7 +23,13 @@ struct Shown {
 
 Shown shown_of(const sim::cam::Cam& cam) {
   const bool angle = cam.master == sim::cam::Coordinate::rotary, turn = cam.slave == sim::cam::Coordinate::rotary;
-  return {angle ? degree : 1e3, angle ? "master [°]" : "master [mm]", turn ? degree : 1e3, turn ? "°" : "mm"};
+  return {angle ? degree : 1e3, angle ? "master, °" : "master, mm", turn ? degree : 1e3, turn ? "°" : "mm"};
+}
+
+// Of y' y''.
+std::string product_unit(const sim::cam::Cam& cam) {
+  const bool angle = cam.master == sim::cam::Coordinate::rotary, turn = cam.slave == sim::cam::Coordinate::rotary;
+  return angle ? turn ? "1" : "m²/rad³" : turn ? "rad²/m³" : "1/m";
 }
 
 // Both sides of each joint are drawn, so that a jump is one.
@@ -57,15 +63,17 @@ void add_motion_charts(const CamDesign& d, sim::ExperimentResult& result) {
   const auto shown = shown_of(d.motion.cam);
   const double w = d.duty.master_speed;
   const char* const titles[] = {"Position", "Speed", "Acceleration", "Jerk"};
+  const char* const names[] = {"position", "speed", "acceleration", "jerk"};
   const char* const rates[] = {"", "/s", "/s²", "/s³"};
   double factor = shown.y_scale;
   for (int order = 0; order < 4; ++order, factor *= w)
-    result.charts.push_back(chart_of(titles[order], shown.x_label, fmt::format("{}{}", shown.y_unit, rates[order]), "",
-                                     {series_of(d.motion, "slave", shown.x_scale, [&](const auto& piece, double x) {
-                                       return piece.derivative(x, order) * factor;
-                                     })}));
+    result.charts.push_back(
+        chart_of(titles[order], shown.x_label, fmt::format("{}, {}{}", names[order], shown.y_unit, rates[order]), "",
+                 {series_of(d.motion, "slave", shown.x_scale,
+                            [&](const auto& piece, double x) { return piece.derivative(x, order) * factor; })}));
   result.charts.push_back(chart_of(
-      "Product of speed and acceleration", shown.x_label, "y' y''", "Torque at the shaft of a classic cam follows it.",
+      "Product of speed and acceleration", shown.x_label, "product, " + product_unit(d.motion.cam),
+      "Torque at the shaft of a classic cam follows it.",
       {series_of(d.motion, "slave", shown.x_scale,
                  [&](const auto& piece, double x) { return piece.derivative(x, 1) * piece.derivative(x, 2); })}));
 }
@@ -74,7 +82,8 @@ void add_effort_chart(const CamDesign& d, sim::ExperimentResult& result) {
   const auto shown = shown_of(d.motion.cam);
   const double w = d.duty.master_speed, load = d.load.load;
   auto chart = chart_of(
-      d.load.kind == sim::cam::Coordinate::rotary ? "Torque" : "Force", shown.x_label, d.load.effort_unit(),
+      d.load.kind == sim::cam::Coordinate::rotary ? "Torque" : "Force", shown.x_label,
+      std::string(d.load.kind == sim::cam::Coordinate::rotary ? "torque, " : "force, ") + d.load.effort_unit(),
       "Motor: with rotor, friction and weight. M_D: the load alone at the output. M_H: at the shaft of a classic cam.",
       {series_of(d.motion, "motor", shown.x_scale,
                  [&](const auto& piece, double x) {
@@ -99,8 +108,9 @@ void add_spectrum_chart(const CamDesign& d, sim::ExperimentResult& result) {
     series.x.push_back(static_cast<double>(k + 1) * cycles);
     series.y.push_back(amplitudes[k] * w * w * shown.y_scale);
   }
-  result.charts.push_back(chart_of("Spectrum of the acceleration", "frequency [Hz]", shown.y_unit + "/s²",
-                                   "Amplitudes of the harmonics of a cycle.", {series}));
+  result.charts.push_back(chart_of("Spectrum of the acceleration", "frequency, Hz",
+                                   "acceleration, " + shown.y_unit + "/s²", "Amplitudes of the harmonics of a cycle.",
+                                   {series}));
 }
 
 // Of the segments that move, each at its own duration; the largest counts.
@@ -132,7 +142,7 @@ void add_residual_chart(const CamDesign& d, sim::ExperimentResult& result) {
     series.x.push_back(f);
     series.y.push_back(residual_at(d, f) * shown.y_scale);
   }
-  auto chart = chart_of("Residual oscillation", "natural frequency [Hz]", shown.y_unit,
+  auto chart = chart_of("Residual oscillation", "natural frequency, Hz", "amplitude, " + shown.y_unit,
                         "Amplitude behind a segment of an undamped load of that frequency.", {series});
   if (d.load.frequency)
     chart.distances.push_back({*d.load.frequency, 0.0, residual_at(d, *d.load.frequency) * shown.y_scale,

@@ -81,7 +81,7 @@ struct RowLayout {
   char separator = ' ';
   char decimal = '.';
   std::string columns = "xy";
-  std::string_view last = "";  // a word at the end of each row
+  std::string_view last{};  // a word at the end of each row
 };
 
 struct RawRows {

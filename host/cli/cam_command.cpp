@@ -54,6 +54,7 @@ void add_laws(CLI::App& cam) {
   command->add_flag("--markdown", o->markdown, "print all of them as a table for a page (Markdown)");
   add_output_file(*command, "--picture", o->picture, "write a picture of all of them into this file (SVG)");
   command->add_flag("--json", o->json, "print names, parameters, formulas and figures as JSON on standard output");
+  command->get_option("--markdown")->excludes("--json");
   command->callback([o] { run_laws(*o); });
 }
 

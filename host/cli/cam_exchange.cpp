@@ -167,7 +167,7 @@ void add_cam_exchange(CLI::App& cam) {
   e->motion.add_to(*out);
   add_exchange_options(*out, e->exchange);
   out->add_option("--points", e->points, "points of the cycle [the format's usual number]")
-      ->check(CLI::PositiveNumber)
+      ->check(whole_number_between(2, 1000000))
       ->type_name("N");
   add_output_file(*out, "--out,-o", e->out, "file to write")->required();
   out->callback([e] { run_export(*e); });

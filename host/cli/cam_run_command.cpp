@@ -142,7 +142,7 @@ void add_cam_run(CLI::App& simulate, const Invocation& invocation) {
       ->required()
       ->type_name("SPEED");
   command->add_option("--cycles", o->cycles, "measured cycles, after the one in which the master starts [3]")
-      ->check(CLI::Range(1, 1000))
+      ->check(whole_number_between(1, 1000))
       ->type_name("N");
   command
       ->add_option(

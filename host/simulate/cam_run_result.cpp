@@ -22,7 +22,7 @@ struct CamUnits {
 CamUnits units_of(const sim::cam::Cam& cam) {
   const bool turn = cam.slave == sim::cam::Coordinate::rotary, angle = cam.master == sim::cam::Coordinate::rotary;
   return {turn ? 180.0 / std::numbers::pi * 1e3 : 1e6, turn ? "mdeg" : "um", angle ? 180.0 / std::numbers::pi : 1e3,
-          angle ? "master [°]" : "master [mm]", turn ? "N m" : "N"};
+          angle ? "master, °" : "master, mm", turn ? "N m" : "N"};
 }
 
 void add_case(const CamRunCase& c, const CamUnits& units, sim::ExperimentResult& result) {
@@ -65,9 +65,9 @@ sim::ExperimentResult cam_run_result(const sim::cam::Motion& motion, const machi
   result.question = "How closely does the axis follow the cam, and what does it take?";
   sim::Chart errors, efforts;
   errors.title = "Following error";
-  errors.y_label = units.error_unit == "um" ? "µm" : "m°";
+  errors.y_label = units.error_unit == "um" ? "error, µm" : "error, m°";
   efforts.title = units.effort_unit == "N" ? "Motor force" : "Motor torque";
-  efforts.y_label = units.effort_unit;
+  efforts.y_label = (units.effort_unit == "N" ? "force, " : "torque, ") + units.effort_unit;
   errors.x_label = efforts.x_label = units.master_label;
   errors.shape.wide = efforts.shape.wide = true;
   for (const auto& c : cases) {
@@ -83,7 +83,7 @@ sim::ExperimentResult cam_run_result(const sim::cam::Motion& motion, const machi
   for (const auto& c : cases)
     if (c.stopped.empty())
       result.findings.push_back(fmt::format("The following error is {:.3g} {} at most, at {:.4g} {} of the master, {}.",
-                                            c.run.error.peak * units.error, errors.y_label,
+                                            c.run.error.peak * units.error, units.error_unit == "um" ? "µm" : "m°",
                                             c.run.error.place * units.master,
                                             motion.cam.master == sim::cam::Coordinate::rotary ? "°" : "mm", c.label));
   return result;

@@ -12,7 +12,7 @@ namespace stiction::sim::cam {
 namespace {
 
 // Of the picture: columns of cells, their size in px, and the room for a curve in them.
-constexpr int columns = 8, cell_width = 150, cell_height = 130, room_width = 130, room_height = 84;
+constexpr int columns = 6, cell_width = 200, cell_height = 130, room_width = 170, room_height = 84;
 constexpr int drawn_points = 96;
 
 // The two laws with free coefficients are shown by an example.
