@@ -51,4 +51,16 @@ CLI::Validator whole_number() {
       "");
 }
 
+CLI::Validator whole_number_between(int least, int most) {
+  return CLI::Validator(
+      [least, most](const std::string& text) {
+        int value = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        const bool whole = error == std::errc() && end == text.data() + text.size();
+        if (whole && value >= least && value <= most) return std::string();
+        return fmt::format("found '{}'; expected a whole number from {} to {}", excerpt(text), least, most);
+      },
+      "");
+}
+
 }  // namespace stiction::host

@@ -22,6 +22,9 @@ CLI::Validator one_of(const std::vector<std::string>& names);
 // For options that take a whole number of 64 bits, such as a seed: CLI11 takes -1 for the largest one.
 CLI::Validator whole_number();
 
+// For options that take a whole number from `least` to `most`.
+CLI::Validator whole_number_between(int least, int most);
+
 // Names of the axes of a machine, for messages and choices.
 template <class Machine>
 std::vector<std::string> axis_names(const Machine& machine) {

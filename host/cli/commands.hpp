@@ -25,6 +25,8 @@ void add_experiments(CLI::App& simulate, const Invocation& invocation);
 void add_replay(CLI::App& simulate, const Invocation& invocation);
 // Records of one axis, below `stiction simulate`.
 void add_commissioning(CLI::App& simulate, const Invocation& invocation);
+// A motion through the simulated axis, below `stiction simulate`.
+void add_cam_run(CLI::App& simulate, const Invocation& invocation);
 void add_compare(CLI::App& program, const Invocation& invocation);
 void add_machine(CLI::App& program, const Invocation& invocation);
 // A machine file from data sheets, below `stiction machine`.
@@ -32,6 +34,12 @@ void add_machine_new(CLI::App& machine, const Invocation& invocation);
 void add_identify(CLI::App& program, const Invocation& invocation);
 void add_diagnose(CLI::App& program, const Invocation& invocation);
 void add_tune_friction(CLI::App& program, const Invocation& invocation);
+// Lift laws, motion files and tables of electronic cams.
+void add_cam(CLI::App& program, const Invocation& invocation);
+// Laws compared for one stroke, formats of other makers, and the page of a motion, below `stiction cam`.
+void add_cam_rank(CLI::App& cam);
+void add_cam_exchange(CLI::App& cam);
+void add_cam_design(CLI::App& cam, const Invocation& invocation);
 // Scripts for the shells, made from the commands that `program` has when it runs.
 void add_completion(CLI::App& program);
 void add_convert(CLI::App& program);

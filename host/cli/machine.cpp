@@ -7,6 +7,7 @@
 #include "firmware/machine/file/machine_notes.hpp"
 #include "host/cli/choices.hpp"
 #include "host/cli/commands.hpp"
+#include "host/cli/errors.hpp"
 #include "host/cli/machine_options.hpp"
 #include "host/report/machine_sheet.hpp"
 #include "sim/machine_file.hpp"

@@ -20,6 +20,7 @@
 #include "host/log/log.hpp"
 #include "host/log/message.hpp"
 #include "host/simulate/circle.hpp"
+#include "sim/cam/law.hpp"
 
 namespace stiction::host {
 namespace {
@@ -81,6 +82,7 @@ int run(int argc, char** argv) {
   add_identify(program, invocation);
   add_diagnose(program, invocation);
   add_tune_friction(program, invocation);
+  add_cam(program, invocation);
   add_convert(program);
   add_inspect(program);
   add_completion(program);
@@ -110,6 +112,8 @@ int run(int argc, char** argv) {
   } catch (const machine::ConfigurationError& error) {
     return bad_input(error);
   } catch (const LogError& error) {
+    return bad_input(error);
+  } catch (const sim::cam::CamError& error) {
     return bad_input(error);
   } catch (const InfeasibleMotion& error) {
     return bad_input(error);

@@ -104,6 +104,7 @@ void add_simulate(CLI::App& program, const Invocation& invocation) {
   add_experiments(*simulate, invocation);
   add_replay(*simulate, invocation);
   add_commissioning(*simulate, invocation);
+  add_cam_run(*simulate, invocation);
   add_frequency_response(*simulate, invocation);
 }
 

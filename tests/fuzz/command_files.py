@@ -29,7 +29,8 @@ def limit(seconds):
 def collect(program, root, corpora, folder, patience):
     """Files by kind: "machine", "run" (logs that a command can work with), "log", "other". Runs are made in `folder`,
     each in at most `patience` seconds of its own."""
-    files = {"machine": sorted((program.parents[1] / "share/stiction/machines").glob("*.toml")), "log": [], "other": []}
+    files = {"machine": sorted((program.parents[1] / "share/stiction/machines").glob("*.toml")), "log": [], "other": [],
+             "motion": sorted((root / "examples/cams").glob("*.toml")) + sorted((root / "tests/fuzz/seeds/cam_motion").glob("*.toml"))}
     for base in [root / "tests/fuzz/seeds", corpora]:
         for kind, suffix in SUFFIXES.items():
             found = sorted((base / kind).glob("*"))[:200] if (base / kind).is_dir() else []

@@ -33,6 +33,8 @@ WORDS = ["", " ", "X", "Y", "Z", "*", "x", "all", "none", "circle", "lugre", "ma
          "parabolic", "classical", "linear_ramp", "lugre,classical", "lugre,,lugre", "cw", "both", "peak", "rms",
          "corrected", "printed", "corrected,corrected", "current", "position,velocity", "-", "--", "-1", "a" * 3000,
          "ü", "\n", "%s%n", "../..", "/"]
+# Units of the quantities that an option takes, by what the help calls them.
+QUANTITIES = {"SPEED": "rpm", "STROKE": "deg", "ANGLE": "deg", "OFFSET": "deg"}
 MODELS = ["lugre", "maxwell_slip", "coulomb_viscous", "classical", "linear_ramp", "parabolic", "all", "lugre,classical"]
 SENSIBLE = {"m/min": ["2", "8", "16", "48"], "mm": ["20", "90"], "Hz": ["2", "10"], "A": ["0.5", "3"]}
 FAULT = 99  # the sanitizers' exit code
@@ -144,6 +146,10 @@ class Drawer:
             return self.output([""] if takes == "DIR" else [".csv", ".csv", ".mat", ".txt", ""])
         if name in ("IN", "map"):
             return self.file(self.draw.choice(["run", "log", "other"]) if name == "IN" else "other")
+        if takes == "MOTION":
+            return self.file("motion")
+        if takes in QUANTITIES:
+            return self.quantity(QUANTITIES[takes])
         if takes == "LOG" or name in ("LOG", "from"):
             return self.file(self.draw.choice(["run", "run", "log"]))
         if takes == "KEY=VALUE":

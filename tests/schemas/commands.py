@@ -52,6 +52,14 @@ compare --reference circle --machine mcfv5050ln,other.toml --friction lugre --ou
 tune-friction records/circle.csv --machine emps --no-pulse --out tuned --json
 tune-friction --machine mcfv5050ln --axis X --feed '16 m/min' --no-pulse --json
 identify --reference circle --machine mcfv5050ln --json
+simulate cam --machine servo-joint --cam indexing.toml --speed '20 rpm' --cycles 1 --out cam-run --json
+simulate cam --machine screw-linear-scale --cam shear.toml --name carriage --speed '0.2 m/s' --cycles 1 --json
+cam laws --json
+cam check indexing.toml --json
+cam check indexing.toml --machine servo-joint --speed '20 rpm' --json
+cam rank --stroke '90 deg' --rise '180 deg' --speed '20 rpm' --machine servo-joint --json
+cam rank --stroke '40 mm' --rise '180 deg' --speed '60 rpm' --machine screw-linear-scale --json
+cam design indexing.toml --machine servo-joint --speed '20 rpm' --out cam --json
 """.strip().splitlines()
 
 # Exit code 1, no JSON on standard output, a result folder all the same.
@@ -77,6 +85,10 @@ def prepare(folder):
     (folder / "other.toml").write_text(shipped.read_text(encoding="utf-8"), encoding="utf-8")
     endless = SOURCE / "tests/axes/machines/endless_355_113_cascade.toml"
     (folder / "endless.toml").write_text(endless.read_text(encoding="utf-8"), encoding="utf-8")
+    motion = SOURCE / "examples/cams/indexing.toml"
+    (folder / "indexing.toml").write_text(motion.read_text(encoding="utf-8"), encoding="utf-8")
+    shear = SOURCE / "examples/cams/flying_shear.toml"
+    (folder / "shear.toml").write_text(shear.read_text(encoding="utf-8"), encoding="utf-8")
     (folder / "steady.csv").write_text(STEADY, encoding="utf-8")
     made = SOURCE / "tests/fuzz/seeds/response_file/made.xml"
     (folder / "test.xml").write_text(made.read_text(encoding="utf-8"), encoding="utf-8")

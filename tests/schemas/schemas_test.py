@@ -24,7 +24,7 @@ import phrases  # of what users read
 SCHEMAS = commands.SOURCE / "docs/schemas"
 
 # Suffixes of keys, the longest first, and the units as descriptions have them.
-UNITS = {"_N_m": "N m", "_N_m_per_A": "N m/A", "_N_m_per_V": "N m/V", "_N_s_per_m": "N s/m", "_A_s_per_m": "A s/m", "_V_s_per_m": "V s/m", "_m_per_s2": "m/s²", "_mm_per_min": "mm/min",
+UNITS = {"_deg_per_s2": "°/s²", "_deg_per_s": "°/s", "_mm_per_s2": "mm/s²", "_N_m": "N m", "_N_m_per_A": "N m/A", "_N_m_per_V": "N m/V", "_N_s_per_m": "N s/m", "_A_s_per_m": "A s/m", "_V_s_per_m": "V s/m", "_m_per_s2": "m/s²", "_mm_per_min": "mm/min",
          "_rad_per_s2": "rad/s²", "_rad_per_s": "rad/s", "_m_per_min": "m/min", "_mm_per_s": "mm/s", "_m_per_s": "m/s", "_N_per_mm": "N/mm", "_N_per_m": "N/m",
          "_N_per_s": "N/s", "_N_per_A": "N/A", "_N_per_V": "N/V", "_N_per_N": "N/N", "_V_per_A": "V/A",
          "_percent": "%", "_revolutions": "revolutions", "_per_s": "1/s", "_deg": "deg", "_kg": "kg", "_Hz": "Hz",

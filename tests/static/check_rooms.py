@@ -99,6 +99,11 @@ ROOMS = {
         "firmware/machine/*": "set-points cross the border to the drive's formats within the limits of a machine",
         f"{FIRMWARE}/*": "and end in the cascade's types",
     },
+    "sim/cam": {
+        "sim/number": "a motion gives the same table everywhere",
+        "firmware/machine/*": "motion files have the units and the messages of machine files",
+        f"{FIRMWARE}/*": "a motion becomes the drive's table",
+    },
     "host/algebra": {},
     "host/log": {
         "host/algebra": "set-points are smoothed by least squares",

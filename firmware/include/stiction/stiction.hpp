@@ -10,6 +10,7 @@
 #include "stiction/drive/remote_axis.hpp"              // set-points from a bus: csp and pp of CiA 402
 #include "stiction/drive/servo_drive.hpp"              // states, supervision, homing, stops around the cascade
 #include "stiction/drive/ticker.hpp"                   // fast and slow ticks
+#include "stiction/motion/cam_table.hpp"               // an electronic cam as polynomials
 #include "stiction/motion/endless_phase.hpp"           // whole turns and the exact rest of an endless axis
 #include "stiction/motion/position_profile.hpp"        // moves with limited jerk
 #include "stiction/motion/set_point_interpolator.hpp"  // from targets each cycle to a set-point each tick

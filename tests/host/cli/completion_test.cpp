@@ -21,7 +21,7 @@ class Completion : public Cli {
 
 TEST_F(Completion, BashCompletesCommandsAndOptions) {
   EXPECT_EQ(offered("si"), "simulate ");
-  EXPECT_EQ(offered("simulate c"), "circle commissioning constant-velocity ");
+  EXPECT_EQ(offered("simulate c"), "cam circle commissioning constant-velocity ");
   EXPECT_EQ(offered("machine \"\""), "check list new reference ");
   EXPECT_EQ(offered("simulate circle --ma"), "--machine ");
   EXPECT_EQ(offered("simulate impact --dir"), " ") << "an option of a different experiment";

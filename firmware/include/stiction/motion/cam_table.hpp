@@ -1,0 +1,212 @@
+// The table of an electronic cam: the slave's motion over one cycle of the master as quintic polynomials, 40 bytes
+// each. `stiction cam table` makes it from a motion file; the bytes are the same on every host. All numbers are
+// integers with the least significant byte first:
+//
+//   header, 64 bytes: "SCAM", version, kinds of master and slave, flags, scales, count of segments, cycle, rise of a
+//   cycle, and the largest errors of position, speed and acceleration that whoever made it has proven;
+//   segments, 40 bytes each: start in 2^-32 cycles, reciprocal of the length, position at the start, five coefficients
+//   of one exponent; the CRC-32 of everything before it, 4 bytes.
+//
+// Reading checks everything that evaluation relies on, so that no bytes make a shift or a sum that is not defined.
+// Evaluation has fixed work: a search of as many steps as the count has bits, and Horner's scheme three times.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "stiction/number/crc.hpp"
+
+namespace stiction {
+
+// CRC-32/MPEG-2: each flipped bit is seen, and each burst of up to 32.
+using Crc32 = Crc<std::uint32_t, 0x04C11DB7, 0xFFFFFFFF>;
+
+enum class CamTableProblem : std::uint8_t {
+  none,
+  too_short,     // no whole header and checksum
+  no_table,      // it does not begin as a cam table
+  version,       // of a different version of the format
+  size,          // more or fewer bytes than the count of segments makes
+  checksum,      // a byte was changed
+  kind,          // a master or slave that is neither linear nor rotary, or unknown flags
+  scale,         // scales beyond what evaluation can shift by
+  segment_order  // segments that do not begin at 0 and rise
+};
+
+class CamTable {
+ public:
+  static constexpr std::uint16_t version = 1;
+  static constexpr std::size_t header_size = 64, segment_size = 40, checksum_size = 4;
+  // 2^-40 rad or m, of the cycle in the header.
+  static constexpr int cycle_bits = 40;
+  static constexpr std::uint32_t most_segments = 65536;
+
+  // Linear or rotary: m or rad.
+  enum class Kind : std::uint8_t { linear, rotary };
+
+  struct Header {
+    Kind master{}, slave{};
+    bool periodic = false;
+    std::int8_t position_bits = 0;      // positions are in 2^-position_bits of the slave's unit
+    std::int8_t speed_bits = 0;         // the same for a cycle: 2^-speed_bits of the unit for each cycle
+    std::int8_t acceleration_bits = 0;  // and for its square
+    std::uint32_t count = 0;
+    std::int64_t cycle = 0;  // 2^-cycle_bits of the master's unit
+    std::int64_t rise = 0;   // of a cycle, as a position
+    // Proven: no phase differs from the motion in double precision by more, in the units of the outputs.
+    std::int64_t position_bound = 0, speed_bound = 0, acceleration_bound = 0;
+  };
+
+  // t = (phase - start) * reciprocal / 2^down, in 2^-32 of the segment; position = c0 + (c1 t + ... + c5 t^5) /
+  // 2^shift, with the coefficients in 2^-24 of themselves.
+  struct Segment {
+    std::uint32_t start = 0;       // 2^-32 cycles
+    std::uint32_t reciprocal = 0;  // 2^(32 + down) / length, from 2^31
+    std::uint8_t down = 0;         // 0 to 31
+    std::uint8_t shift = 0;        // 0 to 62
+    std::int64_t c0 = 0;
+    std::int32_t c[5] = {};
+  };
+
+  struct Output {
+    std::int64_t position = 0, speed = 0, acceleration = 0;  // in the header's scales, over the phase in cycles
+  };
+
+  // What is wrong with `bytes`; where nothing is, `table` looks at them, and they must stay as long as it does.
+  static constexpr CamTableProblem read(std::span<const std::uint8_t> bytes, CamTable& table) {
+    if (bytes.size() < header_size + checksum_size) return CamTableProblem::too_short;
+    if (bytes[0] != 'S' || bytes[1] != 'C' || bytes[2] != 'A' || bytes[3] != 'M') return CamTableProblem::no_table;
+    if (number(bytes, 4, 2) != version) return CamTableProblem::version;
+    CamTable read;
+    read.bytes_ = bytes;
+    Header& h = read.header_;
+    h.count = static_cast<std::uint32_t>(number(bytes, 12, 4));
+    if (h.count == 0 || h.count > most_segments || bytes.size() != header_size + segment_size * h.count + checksum_size)
+      return CamTableProblem::size;
+    const std::size_t end = bytes.size() - checksum_size;
+    if (Crc32{}.add(bytes, end).value() != number(bytes, end, 4)) return CamTableProblem::checksum;
+    if (bytes[6] > 1 || bytes[7] > 1 || bytes[8] > 1) return CamTableProblem::kind;
+    read.fill_header();
+    const auto problem = read.check_segments();
+    if (problem == CamTableProblem::none) table = read;
+    return problem;
+  }
+
+  constexpr const Header& header() const { return header_; }
+
+  constexpr Segment segment(std::uint32_t k) const {
+    const std::size_t at = header_size + segment_size * k;
+    Segment s;
+    s.start = static_cast<std::uint32_t>(number(bytes_, at, 4));
+    s.reciprocal = static_cast<std::uint32_t>(number(bytes_, at + 4, 4));
+    s.c0 = static_cast<std::int64_t>(number(bytes_, at + 8, 8));
+    for (std::size_t n = 0; n < 5; ++n) s.c[n] = static_cast<std::int32_t>(number(bytes_, at + 16 + 4 * n, 4));
+    s.down = bytes_[at + 36];
+    s.shift = bytes_[at + 37];
+    return s;
+  }
+
+  // The segment that holds `phase`, in 2^-32 cycles.
+  constexpr std::uint32_t find(std::uint32_t phase) const {
+    std::uint32_t k = 0;
+    for (std::uint32_t step = std::bit_floor(header_.count); step != 0; step >>= 1)
+      if (k + step < header_.count && number(bytes_, header_size + segment_size * (k + step), 4) <= phase) k += step;
+    return k;
+  }
+
+  // Position, speed and acceleration at `phase`, in 2^-32 cycles.
+  constexpr Output evaluate(std::uint32_t phase) const { return evaluate(header_, segment(find(phase)), phase); }
+
+  // The same within a `segment` of a table with that `header`; `phase` lies in it.
+  static constexpr Output evaluate(const Header& header, const Segment& segment, std::uint32_t phase) {
+    const std::uint64_t product = std::uint64_t{phase - segment.start} * segment.reciprocal;
+    const auto t = static_cast<std::uint32_t>(product >> segment.down);
+    std::int64_t y = 0, v = 0, a = 0;
+    for (int n = 4; n >= 0; --n) {
+      const std::int64_t c = std::int64_t{segment.c[n]} * (1 << extra_bits);
+      y = high(y, t) + c;
+      v = (n < 4 ? high(v, t) : 0) + c * (n + 1);
+      if (n >= 1) a = (n < 4 ? high(a, t) : 0) + c * ((n + 1) * n);
+    }
+    y = high(y, t);
+    const std::int64_t speed = high(v, segment.reciprocal);
+    const std::int64_t acceleration = high(high(a, segment.reciprocal), segment.reciprocal);
+    return {segment.c0 + rounded(y, segment.shift), rounded(speed, speed_shift(header, segment)),
+            rounded(acceleration, acceleration_shift(header, segment))};
+  }
+
+  // By how much the products of a `segment` are shifted to the outputs of a table with that `header`.
+  static constexpr int speed_shift(const Header& header, const Segment& segment) {
+    return header.position_bits + segment.shift + segment.down - 32 - header.speed_bits;
+  }
+  static constexpr int acceleration_shift(const Header& header, const Segment& segment) {
+    return header.position_bits + segment.shift + 2 * segment.down - 64 - header.acceleration_bits;
+  }
+
+  // Of the coefficients while they are multiplied.
+  static constexpr int extra_bits = 24;
+
+ private:
+  // `size` bytes from `at`, the least significant first.
+  static constexpr std::uint64_t number(std::span<const std::uint8_t> bytes, std::size_t at, std::size_t size) {
+    std::uint64_t value = 0;
+    for (std::size_t k = size; k-- > 0;) value = value << 8 | bytes[at + k];
+    return value;
+  }
+
+  // value * factor / 2^32, rounded down: two products of 32 bits. |value| < 2^62.
+  static constexpr std::int64_t high(std::int64_t value, std::uint32_t factor) {
+    const std::int64_t upper = (value >> 32) * std::int64_t{factor};
+    const std::uint64_t lower = std::uint64_t{static_cast<std::uint32_t>(value)} * factor;
+    return upper + static_cast<std::int64_t>(lower >> 32);
+  }
+
+  // To nearest; what is shifted out of a word is nothing.
+  static constexpr std::int64_t rounded(std::int64_t value, int shift) {
+    if (shift > 62) return 0;
+    return shift == 0 ? value : ((value >> (shift - 1)) + 1) >> 1;
+  }
+
+  constexpr void fill_header() {
+    Header& h = header_;
+    h.master = static_cast<Kind>(bytes_[6]);
+    h.slave = static_cast<Kind>(bytes_[7]);
+    h.periodic = bytes_[8] == 1;
+    h.position_bits = static_cast<std::int8_t>(bytes_[9]);
+    h.speed_bits = static_cast<std::int8_t>(bytes_[10]);
+    h.acceleration_bits = static_cast<std::int8_t>(bytes_[11]);
+    h.cycle = static_cast<std::int64_t>(number(bytes_, 16, 8));
+    h.rise = static_cast<std::int64_t>(number(bytes_, 24, 8));
+    h.position_bound = static_cast<std::int64_t>(number(bytes_, 32, 8));
+    h.speed_bound = static_cast<std::int64_t>(number(bytes_, 40, 8));
+    h.acceleration_bound = static_cast<std::int64_t>(number(bytes_, 48, 8));
+  }
+
+  constexpr CamTableProblem check_segments() const {
+    constexpr std::int64_t most = std::int64_t{1} << 61;
+    const auto within = [](std::int64_t value) { return value >= -most && value <= most; };
+    if (header_.cycle <= 0 || !within(header_.rise)) return CamTableProblem::scale;
+    for (std::uint32_t k = 0; k < header_.count; ++k)
+      if (k == 0 ? segment(k).start != 0 : segment(k).start <= segment(k - 1).start)
+        return CamTableProblem::segment_order;
+    for (std::uint32_t k = 0; k < header_.count; ++k) {
+      const Segment s = segment(k);
+      const auto shifts = [](int shift) { return shift >= 0 && shift <= 127; };
+      const std::uint64_t length =
+          (k + 1 < header_.count ? std::uint64_t{segment(k + 1).start} : std::uint64_t{1} << 32) - s.start;
+      // Up to the segment's end t stays within a word.
+      const bool in_word = s.down <= 31 && ((length - 1) * s.reciprocal >> s.down) >> 32 == 0;
+      if (!in_word || !within(s.c0) || s.shift > 62 || !shifts(speed_shift(header_, s)) ||
+          !shifts(acceleration_shift(header_, s)))
+        return CamTableProblem::scale;
+    }
+    return CamTableProblem::none;
+  }
+
+  std::span<const std::uint8_t> bytes_{};
+  Header header_{};
+};
+
+}  // namespace stiction

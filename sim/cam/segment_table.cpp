@@ -1,0 +1,211 @@
+#include "sim/cam/segment_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "sim/cam/check.hpp"
+#include "sim/cam/segment_fit.hpp"
+
+namespace stiction::sim::cam {
+namespace {
+
+// A part that is halved has at least so many phases.
+constexpr std::uint64_t shortest_part = 4096;
+constexpr std::uint64_t whole_cycle = std::uint64_t{1} << 32;
+
+// The first phase at or behind a place: no phase then lies in a segment of the piece before it.
+std::uint64_t phase_of(double place, double cycle) {
+  const double scaled = place / cycle * 0x1p32;
+  auto phase = static_cast<std::uint64_t>(scaled);
+  if (static_cast<double>(phase) < scaled) ++phase;
+  return std::min(phase, whole_cycle);
+}
+
+// The phases of a piece; where it is shorter than one, the piece has none.
+std::vector<Part> pieces_of(const Motion& motion) {
+  std::vector<Part> parts;
+  const double begin = motion.curve.begin(), cycle = motion.cam.cycle();
+  for (const Piece& piece : motion.curve.pieces()) {
+    const std::uint64_t from = parts.empty() ? 0 : parts.back().end;
+    const std::uint64_t to = &piece == &motion.curve.pieces().back() ? whole_cycle : phase_of(piece.end - begin, cycle);
+    if (to > from) parts.push_back({&piece, from, to});
+  }
+  return parts;
+}
+
+// Positions use 47 bits, so that their rounding is far below that of 32-bit coefficients.
+int position_bits_of(const Motion& motion) {
+  const auto range = extremes(motion.curve, 0);
+  const double largest = std::max({absolute(range.lowest.value), absolute(range.highest.value), 1e-9});
+  int bits = 47;
+  while (largest * power_of_two(bits) < 0x1p46 && bits < 100) ++bits;
+  while (largest * power_of_two(bits) >= 0x1p47 && bits > 0) --bits;
+  return bits;
+}
+
+void require_continuous(const Motion& motion) {
+  for (const auto& found : jumps_of(motion))
+    if (found.jump.order < 2)
+      throw CamError(
+          fmt::format("found a jump of the {} {} at the master's {}; expected a motion that a drive can follow",
+                      derivative_name(found.jump.order), name_of(found.where), found.jump.place));
+  if (absolute(motion.curve.begin()) > 0.0)
+    throw CamError("found a cycle that does not begin at 0; expected one that does");
+}
+
+class TableWriter {
+ public:
+  void number(std::uint64_t value, int size) {
+    for (int k = 0; k < size; ++k) bytes.push_back(static_cast<std::uint8_t>(value >> (8 * k)));
+  }
+  void number(std::int64_t value, int size) { number(static_cast<std::uint64_t>(value), size); }
+  std::vector<std::uint8_t> bytes;
+};
+
+// The finest scale of speed or acceleration that no segment's products are coarser than, and whose peak still fits.
+int output_bits(const std::vector<FittedSegment>& fitted, int position_bits, int order) {
+  int bits = 100;
+  for (const auto& [segment, bound] : fitted)
+    bits = std::min(bits, order == 1 ? position_bits + segment.shift + segment.down - 32
+                                     : position_bits + segment.shift + 2 * segment.down - 64);
+  return bits;
+}
+
+std::int64_t in_units(double bound, int bits) { return static_cast<std::int64_t>(bound * power_of_two(bits)) + 1; }
+
+SegmentTable written(const Motion& motion, const std::vector<FittedSegment>& fitted, int position_bits) {
+  SegmentTable table;
+  table.segments = static_cast<std::uint32_t>(fitted.size());
+  const int speed_bits = std::clamp(output_bits(fitted, position_bits, 1), -100, 100);
+  const int acceleration_bits = std::clamp(output_bits(fitted, position_bits, 2), -100, 100);
+  for (const auto& [segment, bound] : fitted) {
+    table.bound.position = std::max(table.bound.position, bound.position);
+    table.bound.speed = std::max(table.bound.speed, bound.speed + power_of_two(-speed_bits));
+    table.bound.acceleration =
+        std::max(table.bound.acceleration, bound.acceleration + 2.0 * power_of_two(-acceleration_bits));
+  }
+  TableWriter out;
+  for (const char c : {'S', 'C', 'A', 'M'}) out.bytes.push_back(static_cast<std::uint8_t>(c));
+  out.number(std::uint64_t{CamTable::version}, 2);
+  out.number(std::uint64_t{motion.cam.master == Coordinate::rotary}, 1);
+  out.number(std::uint64_t{motion.cam.slave == Coordinate::rotary}, 1);
+  out.number(std::uint64_t{motion.cam.periodic}, 1);
+  for (const int bits : {position_bits, speed_bits, acceleration_bits}) out.number(std::int64_t{bits}, 1);
+  out.number(std::uint64_t{table.segments}, 4);
+  const auto nearest = [](double value) { return static_cast<std::int64_t>(value + (value < 0.0 ? -0.5 : 0.5)); };
+  out.number(nearest(motion.cam.cycle() * power_of_two(CamTable::cycle_bits)), 8);
+  const double rise = motion.curve.derivative(motion.curve.end(), 0, Side::left) - motion.curve(0.0);
+  out.number(nearest(rise * power_of_two(position_bits)), 8);
+  out.number(in_units(table.bound.position, position_bits), 8);
+  out.number(in_units(table.bound.speed, speed_bits), 8);
+  out.number(in_units(table.bound.acceleration, acceleration_bits), 8);
+  out.number(std::uint64_t{0}, 8);
+  for (const auto& [segment, bound] : fitted) {
+    out.number(std::uint64_t{segment.start}, 4);
+    out.number(std::uint64_t{segment.reciprocal}, 4);
+    out.number(segment.c0, 8);
+    for (const std::int32_t c : segment.c) out.number(std::int64_t{c}, 4);
+    out.number(std::uint64_t{segment.down}, 1);
+    out.number(std::uint64_t{segment.shift}, 1);
+    out.number(std::uint64_t{0}, 2);
+  }
+  out.number(std::uint64_t{Crc32{}.add(out.bytes, out.bytes.size()).value()}, 4);
+  table.bytes = std::move(out.bytes);
+  return table;
+}
+
+// Halves `part` until its error is within the tolerance.
+void add_within(const Part& part, double cycle, int position_bits, double tolerance, std::vector<FittedSegment>& all) {
+  const FittedSegment fitted = fit_segment(part, cycle, position_bits, tolerance);
+  if (fitted.bound.position <= tolerance) {
+    all.push_back(fitted);
+    return;
+  }
+  const std::uint64_t length = part.end - part.begin;
+  if (length < shortest_part || all.size() >= CamTable::most_segments)
+    throw CamError(fmt::format("found a tolerance of {}; expected one that {} segments of 32-bit coefficients can keep",
+                               tolerance, CamTable::most_segments));
+  const std::uint64_t middle = part.begin + length / 2;
+  add_within({part.piece, part.begin, middle}, cycle, position_bits, tolerance, all);
+  add_within({part.piece, middle, part.end}, cycle, position_bits, tolerance, all);
+}
+
+struct DividedPart {
+  Part part;
+  TableBound smooth;
+};
+
+// What the errors of a table are compared with: a billionth of the range of positions, and 10^-5 of the largest
+// acceleration over cycles, which is the harder of both where a motion is uneven.
+TableBound wanted_of(const Motion& motion) {
+  const auto sizes = derivative_sizes(motion.curve);
+  const double cycle = motion.cam.cycle();
+  return {1e-9 * sizes[0] + 1e-300, 0.0, 1e-5 * sizes[2] * cycle * cycle + 1e-300};
+}
+
+// Halves the part whose error is the largest of what is `wanted`, so that the errors of all become alike. False where
+// none needs it, or it is too short for that.
+bool halve_worst(std::vector<DividedPart>& parts, const TableBound& wanted, double cycle) {
+  const auto error = [&](const DividedPart& part) {
+    return std::max(part.smooth.position / wanted.position, part.smooth.acceleration / wanted.acceleration);
+  };
+  const auto worst = std::max_element(parts.begin(), parts.end(),
+                                      [&](const DividedPart& a, const DividedPart& b) { return error(a) < error(b); });
+  const Part whole = worst->part;
+  if (whole.end - whole.begin < shortest_part || error(*worst) < 0.01) return false;
+  const std::uint64_t middle = whole.begin + (whole.end - whole.begin) / 2;
+  const Part second{whole.piece, middle, whole.end};
+  worst->part.end = middle;
+  worst->smooth = smooth_error(worst->part, cycle);
+  parts.insert(worst + 1, {second, smooth_error(second, cycle)});
+  return true;
+}
+
+}  // namespace
+
+SegmentTable table_within(const Motion& motion, double tolerance) {
+  if (!(tolerance > 0.0)) throw CamError(fmt::format("found a tolerance of {}; expected more than 0", tolerance));
+  require_continuous(motion);
+  const int bits = position_bits_of(motion);
+  std::vector<FittedSegment> fitted;
+  for (const Part& part : pieces_of(motion)) add_within(part, motion.cam.cycle(), bits, tolerance, fitted);
+  return written(motion, fitted, bits);
+}
+
+SegmentTable table_of_parts(const Motion& motion, int parts) {
+  require_continuous(motion);
+  const int bits = position_bits_of(motion);
+  const double cycle = motion.cam.cycle();
+  const TableBound wanted = wanted_of(motion);
+  std::vector<std::vector<DividedPart>> segments(motion.segments.size());
+  for (const Part& piece : pieces_of(motion)) {
+    const auto at = static_cast<std::size_t>(piece.piece - motion.curve.pieces().data());
+    segments[motion.segment_of(at)].push_back({piece, smooth_error(piece, cycle)});
+  }
+  std::vector<FittedSegment> fitted;
+  for (std::size_t k = 0; k < segments.size(); ++k) {
+    auto& of_segment = segments[k];
+    while (motion.cam.segments[k].law != "linear" && of_segment.size() < static_cast<std::size_t>(parts))
+      if (!halve_worst(of_segment, wanted, cycle)) break;
+    for (const DividedPart& part : of_segment) fitted.push_back(fit_segment(part.part, cycle, bits));
+  }
+  return written(motion, fitted, bits);
+}
+
+std::string_view words_of(CamTableProblem problem) {
+  constexpr std::string_view words[] = {
+      "a whole table",
+      "fewer bytes than a table has",
+      "a file of a different kind",
+      "a table of a different version of the format",
+      "a table with bytes missing or added",
+      "a table with a changed byte",
+      "a table for an unknown kind of axis",
+      "a table with scales that no drive can use",
+      "a table whose segments do not follow each other",
+  };
+  return words[static_cast<std::size_t>(problem)];
+}
+
+}  // namespace stiction::sim::cam

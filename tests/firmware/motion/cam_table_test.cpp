@@ -1,0 +1,170 @@
+// The cam table as the drive reads and evaluates it, on tables that are written by hand: what is refused, and numbers
+// that can be computed on paper.
+#include "stiction/motion/cam_table.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace stiction {
+namespace {
+
+struct HandMade {
+  CamTable::Header header;
+  std::vector<CamTable::Segment> segments;
+};
+
+void put(std::vector<std::uint8_t>& bytes, std::uint64_t value, int size) {
+  for (int k = 0; k < size; ++k) bytes.push_back(static_cast<std::uint8_t>(value >> (8 * k)));
+}
+
+std::vector<std::uint8_t> bytes_of(const HandMade& table) {
+  std::vector<std::uint8_t> bytes{'S', 'C', 'A', 'M'};
+  const auto& h = table.header;
+  put(bytes, CamTable::version, 2);
+  for (const auto value : {static_cast<int>(h.master), static_cast<int>(h.slave), static_cast<int>(h.periodic),
+                           int{h.position_bits}, int{h.speed_bits}, int{h.acceleration_bits}})
+    put(bytes, static_cast<std::uint64_t>(value), 1);
+  put(bytes, table.segments.size(), 4);
+  for (const auto value : {h.cycle, h.rise, h.position_bound, h.speed_bound, h.acceleration_bound, std::int64_t{0}})
+    put(bytes, static_cast<std::uint64_t>(value), 8);
+  for (const auto& s : table.segments) {
+    put(bytes, s.start, 4);
+    put(bytes, s.reciprocal, 4);
+    put(bytes, static_cast<std::uint64_t>(s.c0), 8);
+    for (const std::int32_t c : s.c) put(bytes, static_cast<std::uint64_t>(std::int64_t{c}), 4);
+    put(bytes, s.down, 1);
+    put(bytes, s.shift, 1);
+    put(bytes, 0, 2);
+  }
+  put(bytes, Crc32{}.add(bytes, bytes.size()).value(), 4);
+  return bytes;
+}
+
+// Two halves of a cycle: a line from 0 to 1, and 1 - t^2. Positions in 2^-30, so that a coefficient of 2^30 is 1.
+HandMade line_and_parabola() {
+  HandMade table;
+  table.header.master = table.header.slave = CamTable::Kind::rotary;
+  table.header.periodic = true;
+  table.header.position_bits = 30;
+  table.header.speed_bits = 20;
+  table.header.acceleration_bits = 10;
+  table.header.cycle = std::int64_t{6} << CamTable::cycle_bits;
+  table.segments.resize(2);
+  for (auto& s : table.segments) {
+    s.reciprocal = 0x80000000u;  // 2^62 / 2^31
+    s.down = 30;
+    s.shift = CamTable::extra_bits;
+  }
+  table.segments[0].c[0] = 1 << 30;
+  table.segments[1].start = 0x80000000u;
+  table.segments[1].c0 = std::int64_t{1} << 30;
+  table.segments[1].c[1] = -(1 << 30);
+  return table;
+}
+
+CamTableProblem problem_of(const HandMade& table) {
+  CamTable read;
+  return CamTable::read(bytes_of(table), read);
+}
+
+TEST(CamTable, EvaluatesItsPolynomials) {
+  const auto bytes = bytes_of(line_and_parabola());
+  CamTable table;
+  ASSERT_EQ(CamTable::read(bytes, table), CamTableProblem::none);
+  EXPECT_EQ(table.header().cycle, std::int64_t{6} << CamTable::cycle_bits);
+  for (const double share : {0.0, 0.125, 0.25, 0.4999}) {
+    const auto out = table.evaluate(static_cast<std::uint32_t>(share * 0x1p32));
+    EXPECT_NEAR(static_cast<double>(out.position) * 0x1p-30, 2 * share, 2e-9);
+    EXPECT_NEAR(static_cast<double>(out.speed) * 0x1p-20, 2.0, 2e-6);  // over the cycle
+    EXPECT_EQ(out.acceleration, 0);
+  }
+  for (const double share : {0.5, 0.625, 0.75, 0.9999}) {
+    const double t = 2 * share - 1.0;
+    const auto out = table.evaluate(static_cast<std::uint32_t>(share * 0x1p32));
+    EXPECT_NEAR(static_cast<double>(out.position) * 0x1p-30, 1.0 - t * t, 2e-9);
+    EXPECT_NEAR(static_cast<double>(out.speed) * 0x1p-20, -4.0 * t, 2e-6);
+    EXPECT_NEAR(static_cast<double>(out.acceleration) * 0x1p-10, -8.0, 2e-3);
+  }
+}
+
+TEST(CamTable, FindsTheSegmentOfEachPhase) {
+  HandMade table = line_and_parabola();
+  const auto first = table.segments[0];
+  table.segments.clear();
+  // 100 segments of uneven lengths, constant each.
+  std::vector<std::uint32_t> starts;
+  std::uint32_t start = 0;
+  for (std::uint32_t k = 0; k < 100; ++k, start += 20'000'000u + k * 300'000u) {
+    auto segment = first;
+    segment.start = start;
+    segment.c[0] = 0;
+    segment.c0 = k;
+    // At least as long as the longest is here: t stays below 1.
+    segment.down = 31;
+    segment.reciprocal = 0x80000000u;
+    starts.push_back(start);
+    table.segments.push_back(segment);
+  }
+  const auto bytes = bytes_of(table);
+  CamTable read;
+  ASSERT_EQ(CamTable::read(bytes, read), CamTableProblem::none);
+  for (std::uint32_t k = 0; k < 100; ++k) {
+    EXPECT_EQ(read.find(starts[k]), k);
+    if (k > 0) {
+      EXPECT_EQ(read.find(starts[k] - 1), k - 1);
+    }
+    EXPECT_EQ(read.evaluate(starts[k] + 5).position, k);
+  }
+  EXPECT_EQ(read.find(UINT32_MAX), 99u);
+}
+
+TEST(CamTable, RefusesWhatEvaluationCannotDo) {
+  EXPECT_EQ(problem_of(line_and_parabola()), CamTableProblem::none);
+  const auto with = [](auto&& change) {
+    HandMade table = line_and_parabola();
+    change(table);
+    return problem_of(table);
+  };
+  EXPECT_EQ(with([](auto& t) { t.segments.clear(); }), CamTableProblem::size);
+  EXPECT_EQ(with([](auto& t) { t.header.master = static_cast<CamTable::Kind>(2); }), CamTableProblem::kind);
+  EXPECT_EQ(with([](auto& t) { t.header.slave = static_cast<CamTable::Kind>(9); }), CamTableProblem::kind);
+  EXPECT_EQ(with([](auto& t) { t.header.cycle = 0; }), CamTableProblem::scale);
+  EXPECT_EQ(with([](auto& t) { t.header.rise = INT64_MAX; }), CamTableProblem::scale);
+  EXPECT_EQ(with([](auto& t) { t.segments[0].start = 1; }), CamTableProblem::segment_order);
+  EXPECT_EQ(with([](auto& t) { t.segments[1].start = 0; }), CamTableProblem::segment_order);
+  EXPECT_EQ(with([](auto& t) { t.segments[1].down = 32; }), CamTableProblem::scale);
+  EXPECT_EQ(with([](auto& t) { t.segments[1].down = 20; }), CamTableProblem::scale);  // t beyond a word
+  EXPECT_EQ(with([](auto& t) { t.segments[1].shift = 63; }), CamTableProblem::scale);
+  EXPECT_EQ(with([](auto& t) { t.segments[1].c0 = INT64_MIN; }), CamTableProblem::scale);
+  EXPECT_EQ(with([](auto& t) { t.header.speed_bits = 100; }), CamTableProblem::scale);
+  EXPECT_EQ(with([](auto& t) { t.header.acceleration_bits = 100; }), CamTableProblem::scale);
+  EXPECT_EQ(with([](auto& t) { t.header.speed_bits = -100; }), CamTableProblem::scale);
+}
+
+TEST(CamTable, AnOutputThatIsShiftedOutOfAWordIsZero) {
+  HandMade table = line_and_parabola();
+  table.header.speed_bits = -20;  // shifts by 72
+  table.header.acceleration_bits = -10;
+  const auto bytes = bytes_of(table);
+  CamTable read;
+  ASSERT_EQ(CamTable::read(bytes, read), CamTableProblem::none);
+  EXPECT_EQ(read.evaluate(7).speed, 0);
+}
+
+TEST(CamTable, LargestCoefficientsDoNotOverflow) {
+  HandMade table = line_and_parabola();
+  for (auto& s : table.segments)
+    for (auto& c : s.c) c = INT32_MIN;
+  const auto bytes = bytes_of(table);
+  CamTable read;
+  ASSERT_EQ(CamTable::read(bytes, read), CamTableProblem::none);
+  const auto out = read.evaluate(0x7fffffffu);
+  EXPECT_NEAR(static_cast<double>(out.position), -5.0 * 0x1p31, 100.0);
+  EXPECT_LT(out.speed, 0);
+  EXPECT_LT(out.acceleration, 0);
+}
+
+}  // namespace
+}  // namespace stiction

@@ -1,0 +1,88 @@
+// A cam through the simulated axis: what it follows, what it takes, and what the log has.
+#include "host/simulate/cam_run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "firmware/machine/file/machine_file.hpp"
+#include "sim/machine_file.hpp"
+#include "stiction/number/fixed_signals.hpp"
+
+namespace stiction::host {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+machine::Machine joint() { return sim::read_machine(machine::find_machine("servo-joint")); }
+
+sim::cam::Motion there_and_back() {
+  sim::cam::Cam cam{.name = "a"};
+  cam.segments = {{.length = 2.5, .stroke = 0.8, .law = "modified_sine"},
+                  {.length = 0.6},
+                  {.length = 2.5, .stroke = -0.8, .law = "modified_sine"},
+                  {.length = 2 * pi - 5.6}};
+  return sim::cam::compose(cam);
+}
+
+CamRunSettings at(double speed) {
+  CamRunSettings settings;
+  settings.master_speed = speed;
+  settings.cycles = 1;
+  return settings;
+}
+
+TEST(CamRun, FollowsMoreCloselyWithFeedforward) {
+  const auto motion = there_and_back();
+  auto settings = at(2.0);
+  const auto with = run_cam<FixedSignals>(joint(), motion, settings);
+  settings.feedforward = false;
+  const auto without = run_cam<FixedSignals>(joint(), motion, settings);
+  EXPECT_LT(with.error.peak, 0.1 * without.error.peak);
+  // Without feedforward a position controller is late by speed over gain.
+  const double speed = 0.8 * 1.7596 / 2.5 * 2.0;
+  EXPECT_NEAR(without.error.peak, speed / 41.6667, 0.15 * speed / 41.6667);
+  ASSERT_EQ(with.segments.size(), 4u);
+  EXPECT_GT(without.segments[0].mean, without.segments[1].mean);
+}
+
+TEST(CamRun, TheMotorGivesWhatLoadRotorFrictionAndWeightTake) {
+  const auto motion = there_and_back();
+  const auto run = run_cam<FixedSignals>(joint(), motion, at(2.0));
+  // Weight 11.77 N m sin(0.8) at the top, friction 2.2 N m, 1.9 N m for 0.6533 kg m^2, and the loops at the reversal.
+  const double weight = 11.77 * std::sin(0.8), least = weight - 2.2 - 1.0, most = weight + 2.2 + 5.0;
+  EXPECT_GT(run.peak_effort, least);
+  EXPECT_LT(run.peak_effort, most);
+  // The weight gives back what it takes; friction does not.
+  EXPECT_NEAR(run.energy, 2.2 * 1.6 + 0.6 * 2.0 * 2 * 0.64 / 2.5 * 1.26, 1.0);
+}
+
+TEST(CamRun, TheLogHasMasterAndTable) {
+  auto settings = at(2.0);
+  settings.table = 7.0;
+  const auto run = run_cam<FixedSignals>(joint(), there_and_back(), settings);
+  const auto& axis = run.log.axes.front();
+  ASSERT_EQ(axis.master.size(), run.log.t.size());
+  EXPECT_NEAR(axis.master.front(), 0.0, 1e-3);
+  EXPECT_NEAR(axis.master.back(), 2 * pi, 1e-3);
+  EXPECT_EQ(axis.table.front(), 7.0);
+  // The set-points are the motion at the master.
+  const auto motion = there_and_back();
+  for (std::size_t k = 0; k < axis.x_set.size(); k += 997)
+    EXPECT_NEAR(axis.x_set[k], motion.curve(axis.master[k]), 1e-6);
+}
+
+TEST(CamRun, AMasterOfNoiseOrStepsDisturbsTheFeedforward) {
+  auto settings = at(2.0);
+  const auto ideal = run_cam<FixedSignals>(joint(), there_and_back(), settings);
+  settings.master = MasterSignal::steps;
+  const auto steps = run_cam<FixedSignals>(joint(), there_and_back(), settings);
+  settings.master = MasterSignal::noisy;
+  const auto noisy = run_cam<FixedSignals>(joint(), there_and_back(), settings);
+  EXPECT_GT(steps.error.mean, ideal.error.mean);
+  EXPECT_GT(noisy.error.mean, ideal.error.mean);
+}
+
+}  // namespace
+}  // namespace stiction::host
