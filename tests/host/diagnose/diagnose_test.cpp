@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -146,6 +147,26 @@ TEST(Diagnosis, finds_where_along_the_stroke_the_friction_is_higher) {
   figure("diagnosis of position_dependent_friction",
          fmt::format("{} knots, {:.2g} N off at most (24 N hidden)", at.size(), worst));
   EXPECT_LT(worst, 2.4);  // 10 %
+}
+
+// 18 N more on 6 mm of the guide, as a squared cosine: no shape that is looked for.
+TEST(Diagnosis, names_a_tight_spot_by_its_place) {
+  constexpr double place = 0.083, half = 3e-3;  // m
+  const auto spot = [&](double x) {
+    return std::abs(x - place) < half ? 18.0 * std::pow(std::cos(0.5 * std::numbers::pi * (x - place) / half), 2) : 0.0;
+  };
+  const auto verdict = verdict_of({.force = [&](const Point& p) { return spot(p.x) * p.level; }}, 7, 0, 2);
+  ASSERT_EQ(names_of(verdict), "position_dependent_friction") << rejections_of(verdict);
+  const auto& found = verdict.findings.front().values;
+  const auto &at = found.at("position"), &level = found.at("force");
+  const auto highest = std::max_element(level.begin(), level.end());
+  const double where = at[static_cast<std::size_t>(highest - level.begin())];
+  figure("diagnosis of a tight spot of 18 N on 6 mm",
+         fmt::format("{:.2g} mm off its place, {:.3g} N", 1e3 * std::abs(where - place), *highest));
+  EXPECT_NEAR(where, place, half);
+  EXPECT_NEAR(*highest, 18.0, 6.0);  // a third: of knots that stand where the scan put them
+  EXPECT_EQ(level.front(), 0.0);
+  EXPECT_EQ(level.back(), 0.0);
 }
 
 // Trajectory 1 runs from 0 to 0.15 m, trajectory 0, held out, to 0.25 m: what lies beyond says nothing of the profile.
