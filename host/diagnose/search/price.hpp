@@ -13,9 +13,8 @@ constexpr double sure = 3.0;
 // Of the strongest term's log evidence: so much may be left of how that one was described.
 constexpr double of_strongest = 0.02;
 
-// Number of independent values of a candidate's nonlinear parameter that were tried. `candidate`: index in
-// candidates().
-// `shape`: which of its values.
+// Number of independent values of a candidate's nonlinear parameter that were tried. `context`: of the search;
+// `candidate`: index in candidates(); `shape`: the value, which tells a place from a knot.
 inline double trials_of(const SearchContext& context, std::size_t candidate, double shape) {
   const auto& of = candidates()[candidate];
   if (of.local(shape)) return of.places(context).trials;
@@ -24,7 +23,7 @@ inline double trials_of(const SearchContext& context, std::size_t candidate, dou
 }
 
 // Log odds beforehand that the candidate is there with one value of its nonlinear parameter: one of all is as likely as
-// none, each value as likely as the next.
+// none, each value as likely as the next. `context`, `candidate` and `shape`: as above.
 inline double log_prior_of(const SearchContext& context, std::size_t candidate, double shape) {
   return -std::log(static_cast<double>(candidates().size()) * trials_of(context, candidate, shape));
 }

@@ -179,15 +179,9 @@ void Search::name(const ActiveSet& set, std::size_t term, Term& as) {
   auto options = options_beside(others, of_others);
   for (std::size_t k = 0; k < std::min(refined_each, options.size()); ++k)
     options[k] = refined(options[k], others, of_others);
-  const double of_none = with_own_spectrum(others), own = worth(set, term);
-  const auto worth_of = [&](const Option& option) {
-    auto set_with = others;
-    set_with.push_back(option.atom);
-    return std::min(with_own_spectrum(set_with) - of_none, option.score);
-  };
-  for (auto& option : options) option.score = option.score > own - 30.0 ? worth_of(option) : option.score;
+  const double own = score(set) - score(others);
   const double blur = std::max(1.0, of_strongest * own / sure);
-  double sum = 1.0 + std::exp(-own / blur);
+  double sum = 1.0 + std::exp(-worth(set, term) / blur);
   for (const auto& option : options)
     if (option.atom->candidate != set[term]->candidate) sum += std::exp((option.score - own) / blur);
   as.nats = own;

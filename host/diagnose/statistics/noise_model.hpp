@@ -17,7 +17,7 @@ Whitening noise_of(const Eigen::VectorXd& residual, std::span<const std::size_t>
 // The log likelihood of that noise, nats, but for a constant: what tells two residuals of the same rows apart.
 double noise_log_likelihood(const Eigen::VectorXd& residual, std::span<const std::size_t> logs);
 // The same with rows that count as another noise has it, which `known` makes white: only the spectrum is the residual's
-// own.
+// own. `residual` and `logs`: as above.
 double noise_log_likelihood(const Eigen::VectorXd& residual, std::span<const std::size_t> logs, const Whitening& known);
 
 }  // namespace stiction::host
