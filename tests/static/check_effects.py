@@ -21,6 +21,7 @@ BY_CLASS = {
     "host/identify/refinement.cpp": "the fit has the constant force of the file as a parameter",
     "host/diagnose/diagnose.cpp": "a record's delay is taken out before the drive's commands are judged; a smooth "
                                       "force without a name extends the machine as a table",
+    "host/diagnose/judge/finding_evidence.cpp": "a smooth force without a name extends the machine as a table",
     "host/diagnose/verdict/verdict.hpp": "a table of the machine file names no cause",
     "host/diagnose/judge/closed_loop.cpp": "the other axis must be simulated where it acts on this one",
     "host/diagnose/record/inverse_dynamics.cpp": "the force that bends an elastic mode of the machine file is expected",
