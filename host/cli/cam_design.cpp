@@ -10,9 +10,9 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/experiment_output.hpp"
+#include "host/cli/experiment_result_output.hpp"
 #include "host/cli/output.hpp"
 #include "host/cli/report_origin.hpp"
-#include "host/report/experiment_report.hpp"
 
 namespace stiction::host {
 namespace {
@@ -94,21 +94,13 @@ void run_design(const DesignOptions& options, const Invocation& invocation) {
   design.duty = duty_of(design.motion, design.load, speed);
   const auto result = design_result(design);
   const auto json = experiment_json(result, machine);
-  if (!options.out.empty()) {
-    PendingFolder folder(options.out, invocation.command);
-    folder.write("report.html",
-                 experiment_report_html(
-                     {invocation.command_line, invocation.version, machine, result,
-                      report_origin(options.machine.machine, std::vector<std::string>{options.motion.motion})}));
-    folder.write("result.json", json.dump(2) + "\n");
-    folder.commit();
-  }
+  write_experiment_folder(options.out, invocation, machine, result,
+                          report_origin(options.machine.machine, std::vector{options.motion.motion}), json);
   if (options.json) {
     fmt::print("{}\n", json.dump(2));
     return;
   }
-  fmt::print("{}", experiment_text(result, machine));
-  if (!options.out.empty()) fmt::print("\nreport: {}/report.html\n", options.out);
+  print_experiment(result, machine, {}, options.out);
 }
 
 }  // namespace

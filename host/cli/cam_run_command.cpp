@@ -11,11 +11,11 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/experiment_output.hpp"
+#include "host/cli/experiment_result_output.hpp"
 #include "host/cli/output.hpp"
 #include "host/cli/progress.hpp"
 #include "host/cli/report_origin.hpp"
 #include "host/log/csv_log.hpp"
-#include "host/report/experiment_report.hpp"
 #include "host/simulate/cam_run_result.hpp"
 #include "host/simulate/control_run.hpp"
 #include "sim/cam/check.hpp"
@@ -111,22 +111,13 @@ void run_cam_command(const CamRunOptions& options, const Invocation& invocation)
     file.write(csv_log_text(log));
     file.commit();
   }
-  if (!options.out.empty()) {
-    PendingFolder folder(options.out, invocation.command);
-    folder.write("report.html",
-                 experiment_report_html(
-                     {invocation.command_line, invocation.version, machine, result,
-                      report_origin(options.machine.machine, std::vector<std::string>{options.motion.motion})}));
-    folder.write("result.json", json.dump(2) + "\n");
-    folder.commit();
-  }
+  write_experiment_folder(options.out, invocation, machine, result,
+                          report_origin(options.machine.machine, std::vector{options.motion.motion}), json);
   if (options.json) {
     fmt::print("{}\n", json.dump(2));
     return;
   }
-  fmt::print("{}", experiment_text(result, machine));
-  if (!options.log.empty()) fmt::print("\nlog: {}\n", options.log);
-  if (!options.out.empty()) fmt::print("\nreport: {}/report.html\n", options.out);
+  print_experiment(result, machine, written(options.log), options.out);
 }
 
 }  // namespace

@@ -10,12 +10,12 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/experiment_output.hpp"
+#include "host/cli/experiment_result_output.hpp"
 #include "host/cli/machine_options.hpp"
 #include "host/cli/output.hpp"
 #include "host/cli/progress.hpp"
 #include "host/cli/report_origin.hpp"
 #include "host/log/csv_log.hpp"
-#include "host/report/experiment_report.hpp"
 #include "host/simulate/experiments.hpp"
 #include "sim/plant/friction/coulomb_viscous.hpp"
 
@@ -131,21 +131,14 @@ void run(const Experiment& experiment, const ExperimentOptions& options, const I
       during("simulating " + std::string(experiment.name), [&] { return run_experiment(experiment, input); });
   logs.commit();
   const auto json = experiment_json(result, input.machine);
-  if (!options.out.empty()) {
-    PendingFolder folder(options.out, invocation.command);
-    folder.write("report.html", experiment_report_html({invocation.command_line, invocation.version, input.machine,
-                                                        result, report_origin(options.machine.machine)}));
-    folder.write("result.json", json.dump(2) + "\n");
-    folder.commit();
-  }
+  write_experiment_folder(options.out, invocation, input.machine, result, report_origin(options.machine.machine), json);
   if (options.json) {
     fmt::print("{}\n", json.dump(2));
     return;
   }
-  fmt::print("{}", experiment_text(result, input.machine));
-  for (const auto& place : logs.places())
-    fmt::print("{}log: {}\n", &place == &logs.places().front() ? "\n" : "", place.string());
-  if (!options.out.empty()) fmt::print("\nreport: {}/report.html\n", options.out);
+  std::vector<std::string> places;
+  for (const auto& place : logs.places()) places.push_back(place.string());
+  print_experiment(result, input.machine, places, options.out);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "host/cli/choices.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/experiment_output.hpp"
+#include "host/cli/experiment_result_output.hpp"
 #include "host/cli/log_input.hpp"
 #include "host/cli/machine_options.hpp"
 #include "host/cli/output.hpp"
@@ -22,7 +23,6 @@
 #include "host/log/own_units.hpp"
 #include "host/log/read_log.hpp"
 #include "host/log/shown_units.hpp"
-#include "host/report/experiment_report.hpp"
 #include "host/response/response_result.hpp"
 #include "host/simulate/expected_figures.hpp"
 #include "host/simulate/frequency_response.hpp"
@@ -223,20 +223,12 @@ void run(const Options& options, const Invocation& invocation) {
     throw UsageError(error.what());
   }
   const auto json = experiment_json(result, machine);
-  if (!options.out.empty()) {
-    PendingFolder folder(options.out, invocation.command);
-    folder.write("report.html",
-                 experiment_report_html({invocation.command_line, invocation.version, machine, result, origin}));
-    folder.write("result.json", json.dump(2) + "\n");
-    folder.commit();
-  }
+  write_experiment_folder(options.out, invocation, machine, result, origin, json);
   if (options.json) {
     fmt::print("{}\n", json.dump(2));
     return;
   }
-  fmt::print("{}", experiment_text(result, machine));
-  if (!options.out.empty()) fmt::print("\nreport: {}/report.html\n", options.out);
-  if (!options.log.empty()) fmt::print("\nlog: {}\n", options.log);
+  print_experiment(result, machine, written(options.log), options.out);
 }
 
 }  // namespace

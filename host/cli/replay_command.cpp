@@ -11,13 +11,13 @@
 #include "host/cli/choices.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/experiment_output.hpp"
+#include "host/cli/experiment_result_output.hpp"
 #include "host/cli/log_input.hpp"
 #include "host/cli/output.hpp"
 #include "host/cli/progress.hpp"
 #include "host/cli/report_origin.hpp"
 #include "host/log/csv_log.hpp"
 #include "host/log/mat_log.hpp"
-#include "host/report/experiment_report.hpp"
 #include "host/simulate/friction_choice.hpp"
 #include "host/simulate/replay.hpp"
 #include "host/simulate/replay_result.hpp"
@@ -87,21 +87,14 @@ void run_replay(const ReplayOptions& options, const Invocation& invocation, cons
       replay_result(log, cases, fixed ? FixedSignals::name : machine::DoubleSignals::name, options.axis);
   const auto& machine = cases.front().machine;
   const auto json = json_of ? json_of(log, cases, result) : experiment_json(result, machine);
-  if (!options.out.empty()) {
-    PendingFolder folder(options.out, invocation.command);
-    folder.write("report.html", experiment_report_html({invocation.command_line, invocation.version, machine, result,
-                                                        report_origin(options.machine.machine, std::vector{log})}));
-    folder.write("result.json", json.dump(2) + "\n");
-    folder.commit();
-  }
+  write_experiment_folder(options.out, invocation, machine, result,
+                          report_origin(options.machine.machine, std::vector{log}), json);
   progress.reset();
   if (options.json) {
     fmt::print("{}\n", json.dump(2));
     return;
   }
-  fmt::print("{}", experiment_text(result, machine));
-  if (!options.log.empty()) fmt::print("\nlog: {}\n", options.log);
-  if (!options.out.empty()) fmt::print("\nreport: {}/report.html\n", options.out);
+  print_experiment(result, machine, written(options.log), options.out);
 }
 
 void add_replay(CLI::App& simulate, const Invocation& invocation) {

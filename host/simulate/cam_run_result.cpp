@@ -44,6 +44,13 @@ void add_case(const CamRunCase& c, const CamUnits& units, sim::ExperimentResult&
   add("energy", "J", "energy of a cycle", c.run.energy);
 }
 
+// "2.85 °", where "2850 m°" is hard to read.
+std::string length_of(double error, const CamUnits& units) {
+  const bool way = units.error_unit == "um", large = std::abs(error) >= 1000.0;
+  return large ? fmt::format("{:.3g} {}", error / 1000.0, way ? "mm" : "°")
+               : fmt::format("{:.3g} {}", error, way ? "µm" : "m°");
+}
+
 sim::Series series_of(const CamRunCase& c, const std::vector<double>& values, double x, double y) {
   sim::Series series{.name = c.label, .x = {}, .y = {}};
   for (std::size_t k = 0; k < values.size(); ++k) {
@@ -82,8 +89,8 @@ sim::ExperimentResult cam_run_result(const sim::cam::Motion& motion, const machi
       result.findings.push_back(fmt::format("A fault stops the axis {}: {}.", c.label, c.stopped));
   for (const auto& c : cases)
     if (c.stopped.empty())
-      result.findings.push_back(fmt::format("The following error is {:.3g} {} at most, at {:.4g} {} of the master, {}.",
-                                            c.run.error.peak * units.error, units.error_unit == "um" ? "µm" : "m°",
+      result.findings.push_back(fmt::format("The following error is {} at most, at {:.4g} {} of the master, {}.",
+                                            length_of(c.run.error.peak * units.error, units),
                                             c.run.error.place * units.master,
                                             motion.cam.master == sim::cam::Coordinate::rotary ? "°" : "mm", c.label));
   return result;
