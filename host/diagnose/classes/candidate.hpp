@@ -76,14 +76,8 @@ struct Candidate {
   // Whether it matters little at a value what disturbs those runs; null: at none.
   bool (*coarse)(const SearchContext&, double shape) = nullptr;
   double trials = 1.0;  // independent values that a grid without a scan tries
-  // The places among which a local one is looked for, beside the grid; null for others. Place k is the scanned value
-  // first_place + k.
+  // The places among which a local one is looked for, beside the grid (PlaceScan::value_of); null for others.
   const PlaceScan& (*places)(const SearchContext&) = nullptr;
-  static constexpr double first_place = 1000.0;
-  bool local(double shape_at) const { return places != nullptr && shape_at >= first_place; }
-  const Place& place(const SearchContext& context, double shape_at) const {
-    return places(context).places[static_cast<std::size_t>(shape_at - first_place)];
-  }
   // Of a force outside of the vocabulary: what it looks like. It takes part in the search so that no name is forced
   // upon what none fits; found, it is no finding but the signature of what stays unexplained. Null for an effect.
   std::string (*looks_like)(const SearchContext&, double shape, const Eigen::VectorXd& coefficients) = nullptr;

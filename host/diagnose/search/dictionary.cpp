@@ -44,7 +44,7 @@ std::vector<double> Dictionary::values_of(const Candidate& candidate, bool scann
   std::vector<double> found;
   if (scanned && candidate.places != nullptr)
     for (std::size_t k = candidate.places(scene_).first_new; k < candidate.places(scene_).places.size(); ++k)
-      found.push_back(Candidate::first_place + static_cast<double>(k));
+      found.push_back(PlaceScan::value_of(k));
   return found;
 }
 

@@ -17,7 +17,7 @@ constexpr double of_strongest = 0.02;
 // `candidate`: index in candidates(); `shape`: the value, which tells a place from a knot.
 inline double trials_of(const SearchContext& context, std::size_t candidate, double shape) {
   const auto& of = candidates()[candidate];
-  if (of.local(shape)) return of.places(context).trials;
+  if (of.places != nullptr && PlaceScan::is_place(shape)) return of.places(context).trials;
   if (of.scan != nullptr) return static_cast<double>(std::max<std::size_t>(of.scan(context).trials, 1));
   return std::max(of.trials, of.shape ? 3.0 : 1.0);
 }

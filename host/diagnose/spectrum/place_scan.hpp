@@ -22,6 +22,14 @@ struct PlaceScan {
   std::vector<Place> places;
   std::size_t first_new = 0;  // of the last scan
   double trials = 1.0;        // independent places that were looked at
+
+  // A place as the value of a candidate's nonlinear parameter, behind what the candidate's own grid has.
+  static double value_of(std::size_t place) { return behind_grids + static_cast<double>(place); }
+  static bool is_place(double value) { return value >= behind_grids; }
+  const Place& at(double value) const { return places[static_cast<std::size_t>(value - behind_grids)]; }
+
+ private:
+  static constexpr double behind_grids = 1000.0;
 };
 
 // Adds the places between `lowest` and `highest` (m) at which a force that is `carrier` (of the rows) times a triangle

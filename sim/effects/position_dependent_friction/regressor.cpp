@@ -32,8 +32,8 @@ constexpr int knots_of_a_spot = 5;  // the outer two without a level
 
 // Where the knots stand; `index` of a shape, or of a tight spot.
 std::vector<double> knots_of(const SearchContext& context, double index) {
-  if (index >= Candidate::first_place) {
-    const auto& spot = spots(context).places[static_cast<std::size_t>(index - Candidate::first_place)];
+  if (PlaceScan::is_place(index)) {
+    const auto& spot = spots(context).at(index);
     std::vector<double> places;
     for (int k = 0; k < knots_of_a_spot; ++k)
       places.push_back(spot.at + spot.foot * (2.0 * k / (knots_of_a_spot - 1) - 1.0));
@@ -57,14 +57,14 @@ Columns columns(const SearchContext& context, const Motion& motion, double index
     hats[k - 1][i] = (1.0 - share) * level[i];
     hats[k][i] = share * level[i];
   }
-  if (index >= Candidate::first_place) hats = {hats.begin() + 1, hats.end() - 1};
+  if (PlaceScan::is_place(index)) hats = {hats.begin() + 1, hats.end() - 1};
   return hats;
 }
 void describe(const SearchContext& context, double index, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
               Finding& finding) {
   std::vector<double> force(w.data(), w.data() + w.size()), error;
   for (Eigen::Index k = 0; k < w.size(); ++k) error.push_back(std::sqrt(c(k, k)));
-  if (index >= Candidate::first_place)
+  if (PlaceScan::is_place(index))
     for (auto* values : {&force, &error}) {
       values->insert(values->begin(), 0.0);
       values->push_back(0.0);

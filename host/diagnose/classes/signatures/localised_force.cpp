@@ -11,7 +11,7 @@ namespace stiction::host::signatures::localised_force {
 namespace {
 
 const PlaceScan& places(const SearchContext& context) { return context.pushes; }
-const Place& place_of(const SearchContext& context, double number) { return shape.place(context, number); }
+const Place& place_of(const SearchContext& context, double number) { return places(context).at(number); }
 std::vector<double> grid(const SearchContext&) { return {}; }
 Columns columns(const SearchContext& context, const Motion& motion, double number) {
   const auto& place = place_of(context, number);
