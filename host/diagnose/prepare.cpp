@@ -136,8 +136,10 @@ void take_motion(Prepared& prepared, const DiagnoseInput& input, Verdict& verdic
   }
 }
 
-// The file's friction along the simulated motion instead of the measured one, where that leaves less to explain.
+// The file's friction along the simulated motion instead of the measured one, where the direction of the measured one
+// tells it and the residual is likelier so.
 FrictionAlong take_friction(Prepared& prepared) {
+  if (!sticks_rigidly(prepared.axis)) return FrictionAlong::own_motion;
   const auto along_simulated = [&](const Record& record) -> Eigen::VectorXd {
     const auto friction = [&](const Motion& motion) { return friction_along(prepared.axis, motion); };
     return record.target + (record.rows.stacked(friction) - record.regressors.stacked(friction))

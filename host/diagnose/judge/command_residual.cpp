@@ -23,6 +23,8 @@ namespace {
 
 // Odds of the loss ratio, against as many parameters as there are.
 constexpr double loss_ratio = 20.0;
+// Of a change: where the file's own run shows so much of it, it is the replay's.
+constexpr double of_own_run = 0.5;
 constexpr double least_command_gain = 0.01;  // of the cross-validated residual
 // Slower than this the residual is the integrator's, which adds up the position quantizer's rounding and does not know
 // where the record began.
@@ -49,7 +51,7 @@ class Commands {
       logged.push_back(earlier(values, record_delay / log.period));
       if (record_delay != 0.0) rates.push_back(rate_of(logged.back(), log.period));
     }
-    logged_ = rows_of(logged) - of_own_run();
+    logged_ = rows_of(logged);
     if (!rates.empty()) nuisances_.push_back(rows_of(rates));
   }
 
@@ -57,46 +59,31 @@ class Commands {
   const Eigen::VectorXd& logged() const { return logged_; }
   // What a parameter must stand beside: what is left of a record's delay, which is known to microseconds only.
   const std::vector<Eigen::VectorXd>& nuisances() const { return nuisances_; }
+  template <class S>
+  Eigen::VectorXd replayed(const machine::AxisModel& axis) const {
+    std::vector<std::vector<double>> all;
+    for (const auto& log : records_.logs) all.push_back(replay_command<S>(timing_, axis, log, channels_of(log, axis_)));
+    return rows_of(all);
+  }
   // By the firmware's numbers, where they hold the axis.
-  Eigen::VectorXd as_driven(const machine::AxisModel& axis) const { return as_driven(axis, records_.logs); }
+  Eigen::VectorXd as_driven(const machine::AxisModel& axis) const {
+    return axis.beyond_formats.empty() ? replayed<FixedSignals>(axis) : replayed<machine::DoubleSignals>(axis);
+  }
   // What the command changes by with each parameter, per its unit. In doubles: the drive's rounding has no slope.
   std::vector<Eigen::VectorXd> slopes(const machine::AxisModel& axis, const Places& places) const {
     std::vector<Eigen::VectorXd> all;
-    const auto base = replayed<machine::DoubleSignals>(axis, records_.logs);
+    const auto base = replayed<machine::DoubleSignals>(axis);
     for (const auto place : places) {
       const auto& parameter = command_parameters()[place];
       const double step = parameter.step(axis, timing_);
       auto changed = axis;
       parameter.set(changed, *parameter.value(axis) + step);
-      all.push_back((replayed<machine::DoubleSignals>(changed, records_.logs) - base) / step);
+      all.push_back((replayed<machine::DoubleSignals>(changed) - base) / step);
     }
     return all;
   }
 
  private:
-  template <class S>
-  Eigen::VectorXd replayed(const machine::AxisModel& axis, std::span<const Log> logs) const {
-    std::vector<std::vector<double>> all;
-    for (const auto& log : logs) all.push_back(replay_command<S>(timing_, axis, log, channels_of(log, axis_)));
-    return rows_of(all);
-  }
-  Eigen::VectorXd as_driven(const machine::AxisModel& axis, std::span<const Log> logs) const {
-    return axis.beyond_formats.empty() ? replayed<FixedSignals>(axis, logs)
-                                       : replayed<machine::DoubleSignals>(axis, logs);
-  }
-  // What a replay over the samples of a log leaves of a run whose controller is the file's: of positions between them
-  // it knows nothing.
-  Eigen::VectorXd of_own_run() const {
-    std::vector<std::vector<double>> commands;
-    for (const auto& log : records_.simulated) {
-      const auto& channels = channels_of(log, axis_);
-      const auto command = recorded_command(channels, axis_);
-      if (!command) break;
-      commands.push_back(channels.*(command->values));
-    }
-    if (commands.size() != records_.logs.size()) return Eigen::VectorXd::Zero(records_.rows.rows());
-    return rows_of(commands) - as_driven(axis_, records_.simulated);
-  }
   static std::vector<double> earlier(const std::vector<double>& values, double samples) {
     if (samples == 0.0) return values;
     std::vector<double> moved(values.size());
@@ -138,6 +125,7 @@ struct CommandTerm {
   std::size_t place;
   double value = 0.0, deviation = 0.0;
   double explains = 0.0, p_value = 1.0;
+  double in_own_run = 0.0;  // change that the file's own runs seem to have
 };
 
 machine::AxisModel with_terms(machine::AxisModel axis, const std::vector<CommandTerm>& terms,
@@ -296,6 +284,24 @@ std::vector<CommandTerm> refined(const Commands& commands, const machine::AxisMo
   return terms;
 }
 
+bool usable(const CommandRecords& records, const machine::AxisModel& axis) {
+  return std::all_of(records.logs.begin(), records.logs.end(),
+                     [&](const Log& log) { return recorded_command(channels_of(log, axis), axis).has_value(); });
+}
+
+// Sets by how much each parameter of `terms` seems to differ in the file's own runs of these records: a replay knows no
+// positions between the samples, and a smaller gain makes less noise of the encoder's steps.
+void look_at_own_runs(const CommandRecords& records, const machine::Timing& timing, const machine::AxisModel& axis,
+                      std::vector<CommandTerm>& terms) {
+  const CommandRecords own{records.simulated, records.rows, {}};
+  if (terms.empty() || own.logs.size() != records.logs.size() || !usable(own, axis)) return;
+  Places places;
+  for (const auto& term : terms) places.push_back(term.place);
+  const Commands commands(own, timing, axis, 0.0);
+  const auto fit = select(commands, axis, commands.logged() - commands.as_driven(axis), places).fit(all_of(places));
+  for (std::size_t k = 0; k < terms.size(); ++k) terms[k].in_own_run = fit.coefficients[static_cast<Eigen::Index>(k)];
+}
+
 Finding finding_of(const machine::AxisModel& file, sim::EffectId effect, const std::vector<CommandTerm>& terms) {
   Finding finding(effect);
   finding.axis = file.name;
@@ -311,11 +317,6 @@ Finding finding_of(const machine::AxisModel& file, sim::EffectId effect, const s
     finding.p_value = std::min(finding.p_value, term.p_value);
   }
   return finding;
-}
-
-bool usable(const CommandRecords& records, const machine::AxisModel& axis) {
-  return std::all_of(records.logs.begin(), records.logs.end(),
-                     [&](const Log& log) { return recorded_command(channels_of(log, axis), axis).has_value(); });
 }
 
 // The current's record that is late looks like a delay in the loop, but shows in the residual force too.
@@ -375,9 +376,11 @@ void find_and_judge(Verdict& verdict, const DiagnoseInput& input, const CommandR
                     100.0 * rms(left) / rms(commands.logged()), slowest));
     return;
   }
+  look_at_own_runs(training, timing, axis, terms);
   std::erase_if(terms, [&](const CommandTerm& term) {
     const auto& p = command_parameters()[term.place];
     const double change = term.value - *p.value(axis);
+    if (term.in_own_run / change > of_own_run) return true;
     if (p.is_delay) return change <= 0.0 || is_record_delay(delay, change);
     return std::abs(change) < least_change * *p.value(axis);
   });

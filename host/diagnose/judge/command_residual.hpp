@@ -1,8 +1,7 @@
 // The second residual: what the drive commanded, less what the file's controller gives for the recorded set-points and
 // positions (command_replay.hpp). A wrong gain or integral time and a delay in the loop show here and leave nothing in
-// the residual force. What a replay over samples makes of the file's own run is taken out. Their regressors are
-// differences of such replays with one parameter changed; selection as in search.hpp, then Gauss-Newton on the replay
-// itself.
+// the residual force. Regressors are differences of such replays with one parameter changed; selection as in
+// search.hpp, then Gauss-Newton on the replay itself. A change that the file's own run seems to have too is no cause.
 #pragma once
 
 #include <span>

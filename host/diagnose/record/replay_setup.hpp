@@ -54,8 +54,8 @@ WithoutNoise without_noise(const machine::Machine& machine, std::size_t axis, co
 enum class QuantizerLimitCycle { simulated, smoothed };
 
 // The motion along which the file's friction is computed where the residual force is: that of the record or run itself,
-// or the one that the file's simulation of the record makes. An encoder's noise makes the direction of the first
-// chatter near standstill; what acts on the machine makes the second reverse elsewhere.
+// or, of a law without a contact, the one that the file's simulation of the record makes. An encoder's noise makes the
+// direction of the first chatter near standstill; what acts on the machine makes the second reverse elsewhere.
 enum class FrictionAlong { own_motion, simulated_motion };
 
 // What an effect does to the residual force of a replayed log, through the control loop. Motions are known by the

@@ -53,9 +53,12 @@ class Search : private Dictionary {
   bool move_one(ActiveSet& set);
   bool merge(ActiveSet& set);
   void improve(ActiveSet& set);
-  double leftover(const ActiveSet& set) const;
+  struct Worth {  // nats
+    double by_one_noise, by_own_spectrum;
+  };
+  Worth worth(const ActiveSet& set, std::size_t term) const;
+  Worth leftover(const ActiveSet& set) const;
   void name(const ActiveSet& set, std::size_t term, Term& as);
-  double worth(const ActiveSet& set, std::size_t term) const;
   void prune(ActiveSet& set);
   double explained_by(const ActiveSet& set, std::size_t term) const;
   std::vector<Term> terms_of(const ActiveSet& set);
@@ -83,17 +86,28 @@ std::vector<Dictionary::Option> Search::refined_best(const ActiveSet& set, const
   return options;
 }
 
+// What a term is worth against none: by the noise that the set leaves, and by the spectra that it leaves with the term
+// and without it. By the first alone a force that wanders would be worth all that it takes from the noise's slow end.
+Search::Worth Search::worth(const ActiveSet& set, std::size_t term) const {
+  const auto others = without(set, term);
+  return {score(set) - score(others), with_own_spectrum(set) - with_own_spectrum(others)};
+}
+
 // What a further term has to be worth beside the strongest: so much may be left of how that one was described.
-double Search::leftover(const ActiveSet& set) const {
-  double strongest = 0.0;
-  for (std::size_t k = 0; k < set.size(); ++k) strongest = std::max(strongest, worth(set, k));
-  return of_strongest * strongest;
+Search::Worth Search::leftover(const ActiveSet& set) const {
+  Worth strongest{0.0, 0.0};
+  for (std::size_t k = 0; k < set.size(); ++k) {
+    const auto own = worth(set, k);
+    strongest = {std::max(strongest.by_one_noise, own.by_one_noise),
+                 std::max(strongest.by_own_spectrum, own.by_own_spectrum)};
+  }
+  return {of_strongest * strongest.by_one_noise, of_strongest * strongest.by_own_spectrum};
 }
 
 bool Search::grow(ActiveSet& set) {
   const auto of_set = posterior(set);
   const auto options = refined_best(set, of_set);
-  if (!options.empty() && options.front().score > leftover(set)) {
+  if (!options.empty() && options.front().score > leftover(set).by_one_noise) {
     set.push_back(options.front().atom);
     return true;
   }
@@ -102,7 +116,7 @@ bool Search::grow(ActiveSet& set) {
 
 // Terms can mask one another: two that together are worth their price.
 bool Search::grow_by_pair(ActiveSet& set, const std::vector<Option>& options) {
-  double most = leftover(set);
+  double most = leftover(set).by_one_noise;
   ActiveSet best;
   for (std::size_t i = 0; i < std::min(paired, options.size()); ++i) {
     auto with_one = set;
@@ -181,7 +195,7 @@ void Search::name(const ActiveSet& set, std::size_t term, Term& as) {
     options[k] = refined(options[k], others, of_others);
   const double own = score(set) - score(others);
   const double blur = std::max(1.0, of_strongest * own / sure);
-  double sum = 1.0 + std::exp(-worth(set, term) / blur);
+  double sum = 1.0 + std::exp(-std::min(own, worth(set, term).by_own_spectrum) / blur);
   for (const auto& option : options)
     if (option.atom->candidate != set[term]->candidate) sum += std::exp((option.score - own) / blur);
   as.nats = own;
@@ -235,24 +249,24 @@ Dictionary::ActiveSet Search::searched_from(bool absorbed) {
   return set;
 }
 
-// What a term is worth: against none, either set judged by the noise that it leaves. By the noise that is left with it
-// alone, a force that wanders would be worth all that it takes from the noise's slow end.
-double Search::worth(const ActiveSet& set, std::size_t term) const {
-  const auto others = without(set, term);
-  return std::min(with_own_spectrum(set) - with_own_spectrum(others), score(set) - score(others));
-}
-
 // Drops what is not worth its price.
 void Search::prune(ActiveSet& set) {
   for (;;) {
-    const auto least = leftover(set) + sure;
+    const auto left = leftover(set);
     std::size_t weakest = set.size();
-    double lowest = least;
-    for (std::size_t k = 0; k < set.size(); ++k)
-      if (const double own = worth(set, k); own < lowest) lowest = own, weakest = k;
+    double lowest = sure;
+    for (std::size_t k = 0; k < set.size(); ++k) {
+      const auto own = worth(set, k);
+      const double beyond = std::min(own.by_one_noise - left.by_one_noise, own.by_own_spectrum - left.by_own_spectrum);
+      if (beyond < lowest) lowest = beyond, weakest = k;
+    }
     if (weakest == set.size()) return;
-    discard(set[weakest]->candidate,
-            fmt::format("log odds against its absence of {:.1f}; expected at least {:.1f}", lowest, least), true);
+    discard(
+        set[weakest]->candidate,
+        fmt::format("log odds against its absence, above the remainder of stronger findings: {:.1f}; expected at "
+                    "least {:.1f}",
+                    lowest, sure),
+        true);
     set = without(set, weakest);
     whiten(set, false);
     improve(set);
