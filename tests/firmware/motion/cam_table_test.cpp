@@ -132,15 +132,45 @@ TEST(CamTable, RefusesWhatEvaluationCannotDo) {
   EXPECT_EQ(with([](auto& t) { t.header.slave = static_cast<CamTable::Kind>(9); }), CamTableProblem::kind);
   EXPECT_EQ(with([](auto& t) { t.header.cycle = 0; }), CamTableProblem::scale);
   EXPECT_EQ(with([](auto& t) { t.header.rise = INT64_MAX; }), CamTableProblem::scale);
+  EXPECT_EQ(with([](auto& t) { t.header.rise = INT64_MIN; }), CamTableProblem::scale);
   EXPECT_EQ(with([](auto& t) { t.segments[0].start = 1; }), CamTableProblem::segment_order);
   EXPECT_EQ(with([](auto& t) { t.segments[1].start = 0; }), CamTableProblem::segment_order);
   EXPECT_EQ(with([](auto& t) { t.segments[1].down = 32; }), CamTableProblem::scale);
   EXPECT_EQ(with([](auto& t) { t.segments[1].down = 20; }), CamTableProblem::scale);  // t beyond a word
   EXPECT_EQ(with([](auto& t) { t.segments[1].shift = 63; }), CamTableProblem::scale);
   EXPECT_EQ(with([](auto& t) { t.segments[1].c0 = INT64_MIN; }), CamTableProblem::scale);
+  EXPECT_EQ(with([](auto& t) { t.segments[1].c0 = INT64_MAX; }), CamTableProblem::scale);
   EXPECT_EQ(with([](auto& t) { t.header.speed_bits = 100; }), CamTableProblem::scale);
   EXPECT_EQ(with([](auto& t) { t.header.acceleration_bits = 100; }), CamTableProblem::scale);
   EXPECT_EQ(with([](auto& t) { t.header.speed_bits = -100; }), CamTableProblem::scale);
+  EXPECT_EQ(with([](auto& t) { t.header.acceleration_bits = -100; }), CamTableProblem::scale);
+}
+
+// The problem of line_and_parabola() with other bytes: `change` takes them without their checksum, which is then made.
+template <class Change>
+CamTableProblem problem_of_bytes(Change change) {
+  auto bytes = bytes_of(line_and_parabola());
+  bytes.resize(bytes.size() - CamTable::checksum_size);
+  change(bytes);
+  put(bytes, Crc32{}.add(bytes, bytes.size()).value(), 4);
+  CamTable read;
+  return CamTable::read(bytes, read);
+}
+
+TEST(CamTable, RefusesBytesThatAreNoTable) {
+  EXPECT_EQ(problem_of_bytes([](auto&) {}), CamTableProblem::none);
+  EXPECT_EQ(problem_of_bytes([](auto& b) { b.resize(CamTable::header_size - 1); }), CamTableProblem::too_short);
+  for (std::size_t k = 0; k < 4; ++k)
+    EXPECT_EQ(problem_of_bytes([k](auto& b) { b[k] ^= 1; }), CamTableProblem::no_table) << k;
+  EXPECT_EQ(problem_of_bytes([](auto& b) { b[4] = 2; }), CamTableProblem::version);
+  EXPECT_EQ(problem_of_bytes([](auto& b) { b[8] = 2; }), CamTableProblem::kind);
+  EXPECT_EQ(problem_of_bytes([](auto& b) { b.push_back(0); }), CamTableProblem::size);
+  EXPECT_EQ(problem_of_bytes([](auto& b) { b[12] = 3; }), CamTableProblem::size);
+  EXPECT_EQ(problem_of_bytes([](auto& b) { b[14] = 2; }), CamTableProblem::size);  // 131074 segments
+  auto bytes = bytes_of(line_and_parabola());
+  bytes[70] ^= 4;
+  CamTable read;
+  EXPECT_EQ(CamTable::read(bytes, read), CamTableProblem::checksum);
 }
 
 TEST(CamTable, AnOutputThatIsShiftedOutOfAWordIsZero) {
