@@ -13,7 +13,7 @@ namespace {
 
 // Of a file without a contact: seven large reversals do not identify one, since sgn(v) and a contact then fit each
 // other. One that is there already is told from a longer one by a reversal each way.
-constexpr int least_reversals = 10, least_with_contact = 2;
+constexpr int least_reversals = 2, least_with_contact = 2;
 constexpr double longest = 3e-3;  // m
 
 // 0 for friction that follows the speed alone.
