@@ -120,35 +120,37 @@ LINEAR = ["x_set[m]", "v_set[m/s]", "a_set[m/s^2]", "x[m]", "F[N]", "F_ext[N]"]
 ROTARY = ["x_set[rad]", "v_set[rad/s]", "a_set[rad/s^2]", "x[rad]", "T[N m]", "T_ext[N m]"]
 
 
-def write_set_points(place, axis, points, rotary, draw=None):
-    """A log for `simulate replay`; with `draw` there is a force on the carriage, as guides and wipers give it."""
+def write_set_points(place, axis, points, rotary, draw=None, share=1.0):
+    """A log for `simulate replay`; with `draw` there is a force on the carriage, as guides and wipers give it, `share`
+    of the usual one."""
     with open(place, "w", newline="", encoding="utf-8") as file:
         out = csv.writer(file)
         names = (ROTARY if rotary else LINEAR)[:6 if draw else 5]  # a log must have a motor's signal
         push = [0.0] * len(points)
         if draw:
-            push = [a + b for a, b in zip(coloured(draw, SLOW, SLOW_CORNER, len(points)),
-                                          coloured(draw, FAST, FAST_CORNER, len(points)))]
+            push = [a + b for a, b in zip(coloured(draw, share * SLOW, SLOW_CORNER, len(points)),
+                                          coloured(draw, share * FAST, FAST_CORNER, len(points)))]
         out.writerow(["t[s]"] + [f"{axis}.{name}" for name in names])
         for k, (x, v, a) in enumerate(points):
             row = [f"{k * PERIOD:.6f}", repr(x), repr(v), repr(a), repr(x), "0"]
             out.writerow(row + ([repr(push[k])] if draw else []))
 
 
-def strip(simulated, place, axis, noise, draw):
+def strip(simulated, place, axis, noise, draw, every=1, set_points=True):
     """What a drive would have recorded of a simulated log: set-points, position and the motor's signal, to which noise
-    (in its unit) is added. The force on the carriage is nobody's knowledge."""
+    (in its unit) is added; of `every` so many rows the first. The force on the carriage is nobody's knowledge."""
     with open(simulated, newline="", encoding="utf-8") as file:
         lines = [line for line in file if not line.startswith("#")]
     rows = list(csv.reader(lines))
-    channels = (*LINEAR[:4], *ROTARY[:4], "i[A]", "u[V]")
+    first = 0 if set_points else 3
+    channels = (*LINEAR[first:4], *ROTARY[first:4], "i[A]", "u[V]")
     wanted = ["t[s]"] + [f"{axis}.{channel}" for channel in channels]
     kept = [rows[0].index(name) for name in wanted if name in rows[0]]
     motor = [rows[0].index(name) for name in wanted[-2:] if name in rows[0]]
     with open(place, "w", newline="", encoding="utf-8") as file:
         out = csv.writer(file)
         out.writerow([rows[0][k] for k in kept])
-        for row in rows[1:]:
+        for row in rows[1::every]:
             for k in motor:
                 row[k] = repr(float(row[k]) + noise * draw.gauss(0.0, 1.0))
             out.writerow([row[k] for k in kept])

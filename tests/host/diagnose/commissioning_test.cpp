@@ -49,26 +49,6 @@ TEST(Commissioning, names_what_is_hidden) {
   EXPECT_GE(right, 9);
 }
 
-// The steps of a coarse encoder make the replay's command restless, and a smaller gain would make it less so: the
-// file's own run says as much of them.
-TEST(Commissioning, takes_the_steps_of_a_coarse_encoder_for_no_gain) {
-  std::string named;
-  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    host::DiagnoseInput input;
-    input.machine = demonstration_machine();
-    auto& axis = input.machine.axes.front();
-    axis.encoder.velocity = machine::VelocitySource::ideal;
-    axis.encoder.increment = 5e-6;
-    axis.encoder.noise = axis.position_controller.increment = 0.0;
-    input.closed_loop = input.next_measurement = false;
-    for (auto& record : host::record_commissioning(input.machine, 0, seed))
-      (record.held_out ? input.held_out : input.logs).push_back(std::move(record.log));
-    for (const auto& finding : host::diagnose(input).findings)
-      if (finding.in_command) named += " " + finding.effect.name();
-  }
-  EXPECT_EQ(named, "");
-}
-
 // A contact that gives is softer in the drive's hands than any regressor of the planned motion says: without the steps
 // in closed loop its stiffness is 58 % off.
 TEST(Commissioning, finds_a_contact_in_closed_loop) {
