@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "firmware/machine/model/motor_force.hpp"
+#include "host/diagnose/record/followed_set_points.hpp"
 #include "host/diagnose/record/inverse_dynamics.hpp"
 #include "host/diagnose/record/record_checks.hpp"
 #include "host/diagnose/record/record_rows.hpp"
@@ -111,16 +112,31 @@ void take_rows(Prepared& prepared, Verdict& verdict) {
   if (const auto note = suspected_file(rows, prepared.training.expected); !note.empty()) verdict.notes.push_back(note);
 }
 
+// The first record that has none; empty where all have.
+std::string without_set_points(const Prepared& prepared) {
+  for (const auto* record : {&prepared.training, &prepared.held_out})
+    for (const auto& log : record->logs)
+      if (channels_of(log, prepared.axis).x_set.empty()) return log.source;
+  return "";
+}
+
 // The motion of the columns: the file's simulation of the records, where it goes their way; else the measured one.
 void take_motion(Prepared& prepared, const DiagnoseInput& input, Verdict& verdict) {
   Record* const records[] = {&prepared.training, &prepared.held_out};
   std::vector<WithoutNoise> simulated;
-  for (const auto* record : records) {
-    simulated.push_back(without_noise(input.machine, input.axis, record->logs));
+  for (auto* record : records) {
+    record->driven = with_set_points(input.machine, input.axis, record->logs);
+    simulated.push_back(without_noise(input.machine, input.axis, record->driven));
     if (simulated.back().motion.empty()) break;
   }
   prepared.known_motion = !simulated.back().motion.empty();
-  if (!prepared.known_motion) verdict.notes.push_back(why_motion_is_measured(input));
+  if (!prepared.known_motion)
+    verdict.notes.push_back(why_motion_is_measured(input));
+  else if (const auto source = without_set_points(prepared); !source.empty())
+    verdict.notes.push_back(fmt::format(
+        "{}: no set-points. The simulation is driven so that it moves as recorded, up to twice the bandwidth of the "
+        "position loop; the gains of the drive and position errors cannot be judged. Log x_set.",
+        source));
   for (std::size_t k = 0; k < std::size(records); ++k) {
     auto& record = *records[k];
     record.regressors = record.rows;
@@ -165,7 +181,7 @@ void take_responses(Prepared& prepared, const DiagnoseInput& input) {
   if (!prepared.known_motion) return;
   const auto friction = take_friction(prepared);
   auto &training = prepared.training, &held_out = prepared.held_out;
-  const auto logs = joined(training.logs, held_out.logs);
+  const auto logs = joined(training.driven, held_out.driven);
   const auto simulated = joined(training.simulated, held_out.simulated);
   const auto disturbed_by = [&prepared, &input, logs, simulated, friction](const Eigen::VectorXd& force) {
     const auto& rows = prepared.training.rows;
@@ -200,11 +216,11 @@ std::unique_ptr<Prepared> prepare(const DiagnoseInput& input, Verdict& verdict) 
   prepared->axis = sim::plant_axis(input.machine.axes.at(input.axis));
   auto& motor = prepared->axis.motor;
   motor.force_constant = machine::acting_force_constant(motor);  // true values are told against what acts
-  prepared->settings = wide_band();
   verdict.axis = prepared->axis.name;
   verdict.units = ShownUnits(prepared->axis.coordinate);
   verdict.machine = input.machine.id + ".toml";
   take_logs(*prepared, input, verdict);
+  prepared->settings = wide_band(joined(prepared->training.logs, prepared->held_out.logs));
   take_rows(*prepared, verdict);
   prepared->context = context_of(prepared->axis, prepared->training.rows, prepared->settings);
   prepared->context.timing = input.machine.timing;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "host/identify/determined.hpp"
 #include "host/identify/fit_support.hpp"
@@ -50,6 +51,11 @@ const AxisLog& channels_of(const Log& log, const machine::AxisModel& axis) {
   std::string names;
   for (const auto& channels : log.axes) names += (names.empty() ? "" : ", ") + channels.axis;
   throw LogError(fmt::format("{}: found channels of {}; expected those of axis {}", log.source, names, axis.name));
+}
+
+AxisLog& channels_of(Log& log, const machine::AxisModel& axis) {
+  const auto& found = channels_of(std::as_const(log), axis);
+  return log.axes[static_cast<std::size_t>(&found - log.axes.data())];
 }
 
 const IdentifiedParameter* Identification::find(std::string_view name) const {

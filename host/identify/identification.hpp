@@ -78,6 +78,7 @@ struct IdentifyOptions {
 
 // The log's channels of that axis, or those without an axis' name. Throws LogError when it has neither.
 const AxisLog& channels_of(const Log& log, const machine::AxisModel& axis);
+AxisLog& channels_of(Log& log, const machine::AxisModel& axis);
 
 // `axis`: of the machine that the logs belong to; each log's channels of that axis, or those without an axis' name.
 // Throws LogError for logs that cannot be used (suitability.hpp). `options`: friction model, amperes, bootstrap.

@@ -1,5 +1,6 @@
 #include "host/diagnose/record/record_rows.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "host/diagnose/record/inverse_dynamics.hpp"
@@ -8,10 +9,17 @@
 
 namespace stiction::host {
 
-SignalSettings wide_band() {
+SignalSettings wide_band(std::span<const Log> logs) {
+  double rate = 0.0;  // Hz, of the slowest log
+  for (const auto& log : logs) rate = rate == 0.0 ? 1.0 / log.period : std::min(rate, 1.0 / log.period);
   SignalSettings s;
   s.row_rate = 250.0;  // 0 to 100 Hz, in which the share of an effect is counted
   s.cutoff = 250.0;    // of the position alone, so well above: what it took off m a at 100 Hz the force still has
+  if (rate == 0.0) return s;
+  // A slower log's rows hold frequencies up to a tenth of its rate. Rows that come faster than that needs say little of
+  // their own, and what they say above the filter's edge is rounding, which whitening would take for evidence.
+  s.row_rate = std::min(s.row_rate, 0.25 * rate);
+  s.cutoff = std::min(s.cutoff, 0.2 * rate);
   return s;
 }
 

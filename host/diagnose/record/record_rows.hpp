@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <span>
 #include <vector>
 
 #include "firmware/machine/model/machine.hpp"
@@ -10,8 +11,9 @@
 
 namespace stiction::host {
 
-// The band of a diagnosis: 0 to 100 Hz, in which the share of an effect is counted.
-SignalSettings wide_band();
+// The band of a diagnosis: 0 to 100 Hz, in which the share of an effect is counted, and no further than a tenth of the
+// rate of the slowest of `logs`.
+SignalSettings wide_band(std::span<const Log> logs);
 
 // Samples `begin` to before `end` of `log`.
 Log part_of(const Log& log, std::size_t begin, std::size_t end);

@@ -42,8 +42,9 @@ Log record(double duration = 20.0) {
 }
 
 NoiseFloor floor_of(const Log& log, const machine::AxisModel& axis) {
-  const auto rows = rows_of({log}, axis, wide_band());
-  return noise_floor({log}, axis, wide_band(), Eigen::VectorXd::Ones(rows.rows()), {}, expected_force(rows, axis), 1);
+  const auto settings = wide_band({&log, 1});
+  const auto rows = rows_of({log}, axis, settings);
+  return noise_floor({log}, axis, settings, Eigen::VectorXd::Ones(rows.rows()), {}, expected_force(rows, axis), 1);
 }
 
 // N rms: the second derivative of white noise of `deviation` (m) up to the edge, times the mass.

@@ -43,8 +43,9 @@ host::Log stopping() {
 
 TEST(Standstill, LeavesOutWhatStandsAsFarAsTheFilterReaches) {
   const auto axis = rigid_axis();
-  const auto settings = host::wide_band();
-  const auto rows = host::rows_of({stopping()}, axis, settings);
+  const std::vector<host::Log> logs{stopping()};
+  const auto settings = host::wide_band(logs);
+  const auto rows = host::rows_of(logs, axis, settings);
   const auto moves = host::moving_rows(rows, axis, settings.cutoff);
   const double reach = 2.0 / settings.cutoff, row = rows.period(0);
   int at_rest = 0;
@@ -62,8 +63,9 @@ TEST(Standstill, LeavesOutWhatStandsAsFarAsTheFilterReaches) {
 
 TEST(Standstill, OfALawWithAContactCountsLikeMotion) {
   const auto axis = bench_machine().axes.front();
-  const auto settings = host::wide_band();
-  const auto moves = host::moving_rows(host::rows_of({stopping()}, axis, settings), axis, settings.cutoff);
+  const std::vector<host::Log> logs{stopping()};
+  const auto settings = host::wide_band(logs);
+  const auto moves = host::moving_rows(host::rows_of(logs, axis, settings), axis, settings.cutoff);
   EXPECT_EQ(moves.minCoeff(), 1.0);
 }
 

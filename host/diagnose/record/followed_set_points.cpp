@@ -1,0 +1,105 @@
+#include "host/diagnose/record/followed_set_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "host/diagnose/record/replay_setup.hpp"
+#include "host/identify/filter.hpp"
+#include "host/identify/identification.hpp"
+#include "host/simulate/control_run.hpp"
+
+namespace stiction::host {
+namespace {
+
+constexpr int order = 4;
+constexpr int rounds = 6;
+constexpr double highest_edge = 0.8;  // of half the log's rate
+// Of the position loop's bandwidth. Faster motion is the loop's answer to what disturbs the axis: regressors of it
+// would carry the disturbance that they are regressed on.
+constexpr double followed = 2.0;
+
+std::vector<double> less(std::vector<double> one, const std::vector<double>& other) {
+  std::transform(one.begin(), one.end(), other.begin(), one.begin(), std::minus<>());
+  return one;
+}
+
+double mean_square(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value * value;
+  return sum / static_cast<double>(values.size());
+}
+
+// One record in its course.
+class Follower {
+ public:
+  Follower(const machine::Machine& machine, std::size_t axis, const Log& log)
+      : machine_(machine), axis_(axis), log_(log) {
+    const double bandwidth = machine.axes[axis].position_controller.gain / (2.0 * std::numbers::pi);  // Hz
+    lowpass_ = butterworth(order, std::min(2.0 * followed * bandwidth * log.period, highest_edge));
+    wanted_ = smoothed(channels().x);
+  }
+
+  // The set positions of the round that came nearest; empty where none could be simulated.
+  std::vector<double> learned() {
+    std::vector<double> best, set = wanted_;
+    double least = INFINITY;
+    for (int round = 0; round < rounds; ++round) {
+      const auto missing = missing_with(set);
+      if (missing.empty()) break;
+      if (const double square = mean_square(missing); square < least)
+        least = square, best = set;
+      else
+        break;
+      add(set, missing);
+    }
+    return best;
+  }
+
+ private:
+  AxisLog& channels() { return channels_of(log_, machine_.axes[axis_]); }
+  std::vector<double> smoothed(const std::vector<double>& values) const {
+    return filter_both_ways(lowpass_, values, default_padding(lowpass_));
+  }
+
+  // m, of the recorded motion beyond the simulated one; empty where the machine cannot follow.
+  std::vector<double> missing_with(const std::vector<double>& set) {
+    channels().x_set = set;
+    try {
+      auto setup = replay_setup_of(machine_, axis_, {log_});
+      setup.machine.axes.front().encoder.noise = 0.0;
+      return smoothed(less(wanted_, simulated_positions(setup).front()));
+    } catch (const FaultTripped&) {
+      return {};
+    }
+  }
+
+  // A position loop without velocity feedforward lags by the reciprocal of its gain.
+  void add(std::vector<double>& set, const std::vector<double>& missing) const {
+    const auto& axis = machine_.axes[axis_];
+    const double lead = (1.0 - axis.feedforward.velocity) / axis.position_controller.gain;
+    const auto speed = central_difference(missing, log_.period);
+    for (std::size_t i = 0; i < set.size(); ++i) set[i] += missing[i] + lead * speed[i];
+  }
+
+  const machine::Machine& machine_;
+  std::size_t axis_;
+  Log log_;
+  Lowpass lowpass_;
+  std::vector<double> wanted_;  // m
+};
+
+}  // namespace
+
+std::vector<Log> with_set_points(const machine::Machine& machine, std::size_t axis, std::vector<Log> logs) {
+  const auto& model = machine.axes[axis];
+  if (model.unknown_controller() || !model.cascaded()) return logs;
+  for (auto& log : logs) {
+    auto& channels = channels_of(log, model);
+    if (channels.x_set.empty()) channels.x_set = Follower(machine, axis, log).learned();
+  }
+  return logs;
+}
+
+}  // namespace stiction::host

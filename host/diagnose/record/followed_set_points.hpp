@@ -1,0 +1,19 @@
+// Set-points for records that have none: those with which the file's machine moves as the record did. They come by
+// learning: what the simulated motion lacks of the recorded one is added to what it is driven with (Arimoto, Kawamura,
+// Miyazaki, J. Robotic Systems 1, 1984), with the lead that the position loop takes away. The motor's signal has no
+// part in it, so that an effect in the record stays in its residual force.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "firmware/machine/model/machine.hpp"
+#include "host/log/log.hpp"
+
+namespace stiction::host {
+
+// The `logs` with set positions (m) of the axis where they have none; as they are where the controller of the axis is
+// not known or its simulation cannot follow. `machine` of the file; `axis`: its index.
+std::vector<Log> with_set_points(const machine::Machine& machine, std::size_t axis, std::vector<Log> logs);
+
+}  // namespace stiction::host
