@@ -261,12 +261,11 @@ void Search::prune(ActiveSet& set) {
       if (beyond < lowest) lowest = beyond, weakest = k;
     }
     if (weakest == set.size()) return;
-    discard(
-        set[weakest]->candidate,
-        fmt::format("log odds against its absence, above the remainder of stronger findings: {:.1f}; expected at "
-                    "least {:.1f}",
-                    lowest, sure),
-        true);
+    discard(set[weakest]->candidate,
+            fmt::format("log odds against its absence, above the remainder of stronger findings: {:.1f}; expected at "
+                        "least {:.1f}",
+                        lowest, sure),
+            true);
     set = without(set, weakest);
     whiten(set, false);
     improve(set);
