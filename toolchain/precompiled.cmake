@@ -9,11 +9,17 @@ function(stiction_precompiled name)
   target_link_libraries(stiction_precompiled_${name} PRIVATE ${ARGN})
   target_precompile_headers(stiction_precompiled_${name} PRIVATE ${PROJECT_SOURCE_DIR}/toolchain/precompiled/${name}.hpp)
 endfunction()
-# stiction_reads(TARGET NAME): the target's sources begin with that header.
+# stiction_reads(TARGET NAME): the target's sources begin with that header. Joined, a programme's commands are so few
+# units that they read CLI11 in less time than its header takes to be made.
 function(stiction_reads target name)
+  if(STICTION_JOIN AND name STREQUAL "commands")
+    set(name standard)
+  endif()
   target_precompile_headers(${target} REUSE_FROM stiction_precompiled_${name})
 endfunction()
 
 stiction_precompiled(standard fmt::fmt)
 stiction_precompiled(desk fmt::fmt nlohmann_json::nlohmann_json Eigen3::Eigen)
-stiction_precompiled(commands fmt::fmt nlohmann_json::nlohmann_json Eigen3::Eigen CLI11::CLI11)
+if(NOT STICTION_JOIN)
+  stiction_precompiled(commands fmt::fmt nlohmann_json::nlohmann_json Eigen3::Eigen CLI11::CLI11)
+endif()

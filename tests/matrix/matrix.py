@@ -85,20 +85,26 @@ class Matrix:
                 print_report(report)
         return reports
 
-    # One page of each kind a machine; of those that one command writes for several kinds of experiments, the first.
+    # One page of each kind a machine; of those that one command writes for several kinds of experiments, the first. As
+    # many at a time as cells: they take as long as the commands.
     def open_pages(self, reports):
         chosen = {}
         for report in reports:
             for script, page in report.pages:
                 chosen.setdefault((report.cell.machine, script), (report.cell, page))
-        for (_, script), (cell, page) in chosen.items():
-            if script is None:
-                yield tally.Failure(str(cell), "page", "a page of no known kind", str(page))
-                continue
-            opened = subprocess.run([self.options.node, HERE.parent / "host/report" / script, page], text=True,
-                                    capture_output=True, check=False)
-            if opened.returncode != 0:
-                yield tally.Failure(str(cell), f"page {page.parent.name}", "does not open", opened.stderr.strip())
+        with concurrent.futures.ThreadPoolExecutor(self.options.jobs) as pool:
+            pages = [(script, cell, page) for (_, script), (cell, page) in chosen.items()]
+            verdicts = pool.map(lambda page: self.open_page(*page), pages)
+            return [failure for failure in verdicts if failure]
+
+    def open_page(self, script, cell, page):
+        if script is None:
+            return tally.Failure(str(cell), "page", "a page of no known kind", str(page))
+        opened = subprocess.run([self.options.node, HERE.parent / "host/report" / script, page], text=True,
+                                capture_output=True, check=False)
+        if opened.returncode != 0:
+            return tally.Failure(str(cell), f"page {page.parent.name}", "does not open", opened.stderr.strip())
+        return None
 
 
 def print_report(report):
