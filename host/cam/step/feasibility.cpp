@@ -75,32 +75,46 @@ StepCount count_steps(const StepMechanism& m, const StepLift& lift) {
   return {m.rollers / paths, paths};
 }
 
-void require_buildable(const StepMechanism& m, const SampledLift& lift, const std::array<StepProfile, 2>& profiles) {
-  const double c = m.roller_radius;
+namespace {
+
+// Every sample of every path near the cam, until `refuses` throws.
+template <class Refuses>
+void for_each_sample(const StepMechanism& m, const SampledLift& lift, const std::array<StepProfile, 2>& profiles,
+                     Refuses refuses) {
   for (const StepProfile& profile : profiles)
     for (int k = 0; k < m.rollers; ++k)
       for (std::size_t i = 0; i < lift.psi.size(); ++i) {
         const RollerPoint p = roller_at(m, m.base(profile.row) + k * m.pitch(), lift.psi[i], lift.states[i]);
-        if (std::fabs(around_zero(p.arm_angle)) > 0.5 * std::numbers::pi) continue;
-        const Point contact = p.contact(c);
-        const bool turns_back = p.turning <= 0.0, undercut = c * p.curvature >= 1.0;
-        if (!turns_back && !undercut) continue;
-        if (!turns_back && std::abs(contact) > profile.radius_at(std::arg(contact)) + on_profile) continue;
-        const auto place =
-            fmt::format("at {:.5g}° of the cam, roller {} of row {} {:.4g}° from the line between the axes",
-                        lift.psi[i] / degree, k + 1, profile.row + 1, around_zero(p.arm_angle) / degree);
-        if (turns_back)
-          throw CamError(
-              fmt::format("found a pitch path that turns back, phi' = {:.4g}, {}; expected more than 0: a "
-                          "smaller stroke, a longer rise, a law with less peak speed or a shorter arm. The "
-                          "lift's speed there is {:.4g}, and {:.4g} is the most",
-                          p.turning, place, std::fabs(p.arm_speed), (m.axis_distance - m.arm) / m.arm));
-        throw CamError(
-            fmt::format("found an undercut profile, the pitch path's radius of {:.4g} mm is not above the "
-                        "roller's {:.4g} mm, {}; expected a larger one: thinner rollers, a longer rise or a "
-                        "law with less acceleration",
-                        1e3 / p.curvature, 1e3 * c, place));
+        if (std::fabs(around_zero(p.arm_angle)) > 0.25 * turn) continue;
+        refuses(profile, p, [&] {
+          return fmt::format("at {:.5g}° of the cam, roller {} of row {} {:.4g}° from the line between the axes",
+                             lift.psi[i] / degree, k + 1, profile.row + 1, around_zero(p.arm_angle) / degree);
+        });
       }
+}
+
+}  // namespace
+
+void require_buildable(const StepMechanism& m, const SampledLift& lift, const std::array<StepProfile, 2>& profiles) {
+  const double c = m.roller_radius;
+  for_each_sample(m, lift, profiles, [&](const StepProfile&, const RollerPoint& p, auto place) {
+    if (p.turning > 0.0) return;
+    throw CamError(
+        fmt::format("found a pitch path that turns back, phi' = {:.4g}, {}; expected more than 0: a smaller "
+                    "stroke, a longer rise, a law with less peak speed or a shorter arm. The lift's speed there "
+                    "is {:.4g}; on the line between the axes {:.4g} is the most",
+                    p.turning, place(), std::fabs(p.arm_speed), (m.axis_distance - m.arm) / m.arm));
+  });
+  for_each_sample(m, lift, profiles, [&](const StepProfile& profile, const RollerPoint& p, auto place) {
+    if (c * p.curvature < 1.0) return;
+    const Point contact = p.contact(c);
+    if (std::abs(contact) > profile.radius_at(std::arg(contact)) + on_profile) return;
+    throw CamError(
+        fmt::format("found an undercut profile, the pitch path's radius of {:.4g} mm is not above the roller's "
+                    "{:.4g} mm, {}; expected a larger one: thinner rollers, a longer rise or a law with less "
+                    "acceleration",
+                    1e3 / p.curvature, 1e3 * c, place()));
+  });
 }
 
 void require_held(const StepMechanism& m, const std::vector<ContactSet>& contacts) {

@@ -61,7 +61,7 @@ Circle circle_through(Point a, Point b, Point c) {
   const double twice = 2.0 * cross(b - a, c - a);
   if (std::fabs(twice) < 1e-18) return {{}, 0.0, true};
   const Point ab = b - a, ac = c - a;
-  const Point centre = a + Point(0.0, 1.0) * (ab * std::norm(ac) - ac * std::norm(ab)) / (-twice);
+  const Point centre = a + Point(0.0, 1.0) * (ab * std::norm(ac) - ac * std::norm(ab)) / twice;
   return {centre, std::abs(centre - a), false};
 }
 

@@ -97,14 +97,13 @@ TEST(StepProject, RefusesWhatCannotBeBuilt) {
   EXPECT_FALSE(says(with([](auto& p) { p.mechanism.roller_radius = 36.7e-3; }), "hit each other"));
   EXPECT_TRUE(says(with([](auto& p) { p.mechanism.hub_radius = 40.0e-3; }), "the hub has 40 mm"));
   EXPECT_EQ(with([](auto& p) { p.mechanism.hub_radius = 39.9e-3; }), "");
-  // phi' = 1 - v' b / (a - b): 1.76 / 2 of 180 degrees, and beyond 1 below 159 degrees.
-  EXPECT_TRUE(says(with([](auto& p) { p.cam = step_motion(90, 120); }), "at "));
-  EXPECT_TRUE(says(with([](auto& p) {
-                     p.cam = step_motion(90, 120);
-                     p.mechanism.roller_radius = 1e-3;
-                   }),
-                   "turns back"));
-  EXPECT_TRUE(says(with([](auto& p) { p.cam = step_motion(90, 145); }), "undercut"));
+  // The peak speed of 1.76 times stroke over rise against (a - b) / b = 1.02: from 155 degrees on it can be built;
+  // below, contact is lost, the profile is undercut, and at last the path turns back.
+  const auto of_rise = [&](double rise) { return with([&](auto& p) { p.cam = step_motion(90, rise); }); };
+  EXPECT_EQ(of_rise(155), "");
+  EXPECT_TRUE(says(of_rise(150), "no contact with cam 1 at 164"));
+  EXPECT_TRUE(says(of_rise(140), "undercut"));
+  EXPECT_TRUE(says(of_rise(130), "turns back"));
 }
 
 TEST(StepProject, RefusesAWheelThatIsNotSmallerThanTheHollows) {
