@@ -71,10 +71,23 @@ def corner(row):
     return angles[int(np.argmax([radius(row, a) for a in angles]))]
 
 
+def arc_points(arc):
+    """Points of an arc or a line of a drawing, from its start; ezdxf's own paths make cubic curves of arcs."""
+    if arc.dxftype() == "LINE":
+        return [complex(*arc.dxf.start.vec2), complex(*arc.dxf.end.vec2)]
+    begin, end = arc.dxf.start_angle, arc.dxf.end_angle
+    angles = np.radians(begin + (end - begin) % 360 * np.linspace(0, 1, 17))
+    return complex(*arc.dxf.center.vec2) + arc.dxf.radius * np.exp(1j * angles)
+
+
 def outline(drawing, layer):
     """The curves of a layer, each as points."""
     curves = []
     for entity in drawing.modelspace().query(f'*[layer=="{layer}"]'):
+        if entity.dxftype() == "POLYLINE":
+            assert entity.is_closed
+            curves += [np.array(arc_points(arc)) for arc in entity.virtual_entities()]
+            continue
         path = ezdxf.path.make_path(entity)
         curves.append(np.array([p.x + 1j * p.y for p in path.flattening(2e-5, segments=16)]))
     return curves
