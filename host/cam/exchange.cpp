@@ -94,6 +94,14 @@ ExchangeError exchange_error(const sim::cam::Motion& motion, const std::string& 
       include(error.position, piece.derivative(x, 0) - motion.curve.derivative(at, 0, side), at);
       include(error.acceleration, piece.derivative(x, 2) - motion.curve.derivative(at, 2, side), at);
     }
+  // Lines have their acceleration in the steps of the speed.
+  const auto& pieces = curve.pieces();
+  for (std::size_t k = 0; k < pieces.size() && format.importer == Importer::linear; ++k) {
+    if (k == 0 && !(motion.cam.periodic && closes(rows))) continue;
+    const auto& before = pieces[(k + pieces.size() - 1) % pieces.size()];
+    include(error.speed_step, pieces[k].derivative(pieces[k].begin, 1) - before.derivative(before.end, 1),
+            begin + pieces[k].begin);
+  }
   // The places that were not looked at lie at most 1/64 of a lobe away from one that was: 1 % covers them.
   error.position.value *= 1.01;
   error.acceleration.value *= 1.01;

@@ -74,6 +74,7 @@ std::string_view looks_like(const std::string& text);
 struct ExchangeError {
   sim::cam::Peak position, acceleration;  // of the slave and over the master's square; places of the master
   double acceleration_peak = 0.0;         // of the motion, for comparison
+  sim::cam::Peak speed_step;              // of an importer that joins by lines: the largest one, at a point
 };
 // What the importer of `format` makes of the `text` of a file that was exported from `motion` with those `settings`.
 ExchangeError exchange_error(const sim::cam::Motion& motion, const std::string& text, const ExchangeFormat& format,

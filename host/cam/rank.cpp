@@ -27,9 +27,10 @@ RankedLaw ranked(const Law& law, const RankTask& task, const AxisLoad& load) {
   RankedLaw row;
   row.law = &law;
   const auto unit = sim::cam::unit_curve(law);
+  const double length = law.kind == sim::cam::LawKind::rise ? task.rise : 2.0 * task.rise;
   sim::cam::Cam cam{.name = "rise", .periodic = false};
-  cam.segments = {{.length = task.rise, .stroke = task.stroke, .law = std::string(law.name)}};
-  sim::cam::Motion motion{cam, unit.placed({.stretch = task.rise, .gain = task.stroke}), {{0, unit.pieces().size()}}};
+  cam.segments = {{.length = length, .stroke = task.stroke, .law = std::string(law.name)}};
+  sim::cam::Motion motion{cam, unit.placed({.stretch = length, .gain = task.stroke}), {{0, unit.pieces().size()}}};
   const Duty duty = duty_of(motion, load, task.master_speed);
   row.speed = duty.extremes[1].magnitude();
   row.acceleration = duty.extremes[2].magnitude();
@@ -37,7 +38,7 @@ RankedLaw ranked(const Law& law, const RankTask& task, const AxisLoad& load) {
   row.effort = std::fabs(duty.effort.motor.value);
   row.broken = duty.broken();
   row.jumps = sim::cam::characteristics(law, sim::cam::default_values(law), unit).jerks_without_bound();
-  const double time = task.rise / task.master_speed;
+  const double time = length / task.master_speed;
   row.residual = std::fabs(task.stroke) * largest_residual(unit, task.lowest * time, task.highest * time);
   return row;
 }
@@ -80,6 +81,16 @@ void recommend(Ranking& ranking, const AxisLoad& load) {
                               : "No law is recommended: those that keep the limits jump in their acceleration.";
 }
 
+void recommend_from_rest_to_rest(Ranking& ranking, RankTask task, const AxisLoad& load) {
+  task.task = "R-R";
+  const Ranking rests = rank_laws(task, load);
+  ranking.reason = "Of the laws from rest to rest: " + rests.reason;
+  if (!rests.recommended) return;
+  const auto is_it = [&](const RankedLaw& row) { return row.law == rests.laws[*rests.recommended].law; };
+  const auto found = std::find_if(ranking.laws.begin(), ranking.laws.end(), is_it);
+  ranking.recommended = static_cast<std::size_t>(found - ranking.laws.begin());
+}
+
 }  // namespace
 
 FrequencyBand usual_band(const AxisLoad& load, double rise_time) {
@@ -92,14 +103,18 @@ Ranking rank_laws(const RankTask& task, const AxisLoad& load) {
   for (const Law& law : sim::cam::laws()) {
     const bool complete = std::all_of(law.parameters.begin(), law.parameters.end(),
                                       [](const auto& parameter) { return parameter.fallback.has_value(); });
-    if (law.kind != sim::cam::LawKind::rise || !complete) continue;
-    if (task_of(law) == task.task) ranking.laws.push_back(ranked(law, task, load));
+    if (!complete) continue;
+    if (task.task == every_task || (law.kind == sim::cam::LawKind::rise && task_of(law) == task.task))
+      ranking.laws.push_back(ranked(law, task, load));
   }
   mark_front(ranking.laws);
   std::stable_sort(ranking.laws.begin(), ranking.laws.end(), [](const RankedLaw& a, const RankedLaw& b) {
     return a.residual != b.residual ? a.residual < b.residual : a.effort < b.effort;
   });
-  recommend(ranking, load);
+  if (task.task == every_task)
+    recommend_from_rest_to_rest(ranking, task, load);
+  else
+    recommend(ranking, load);
   return ranking;
 }
 

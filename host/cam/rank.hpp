@@ -17,8 +17,11 @@ struct RankTask {
   double rise = 0.0;                   // of the master, above 0
   double master_speed = 0.0;           // above 0
   double lowest = 0.0, highest = 0.0;  // Hz, the band of natural frequencies
-  std::string task = "R-R";
+  std::string task = "R-R";            // of VDI 2143, or every_task
 };
+
+// Compares the laws of all tasks and the rise-return ones, whose way back takes as long as the rise.
+inline constexpr std::string_view every_task = "all";
 
 struct RankedLaw {
   const sim::cam::Law* law = nullptr;
@@ -43,8 +46,9 @@ struct FrequencyBand {
 };
 FrequencyBand usual_band(const AxisLoad& load, double rise_time);
 
-// Ranks all laws of a task on an axis with that `load`. A law may ask for at most this share more torque than the least
-// of those without a jump to be recommended.
+// Ranks all laws of a `task` on an axis with that `load`. Of every task, one from rest to rest is recommended: a stroke
+// by itself begins and ends at rest. A law may ask for at most this share more torque than the least of those without a
+// jump to be recommended.
 inline constexpr double effort_margin = 0.25;
 Ranking rank_laws(const RankTask& task, const AxisLoad& load);
 

@@ -73,7 +73,11 @@ void add_rank_options(CLI::App& cam) {
                    "natural frequencies for the residual oscillation, such as \"8 Hz, 12 Hz\" [20 % around the elastic "
                    "axis' own, or 1 to 5 periods in the rise]")
       ->type_name("BAND");
-  command->add_option("--task", o->task, "task of VDI 2143 [R-R]")->check(one_of(cam_tasks()))->type_name("TASK");
+  auto tasks = cam_tasks();
+  tasks.emplace_back(every_task);
+  command->add_option("--task", o->task, "task of VDI 2143, or all of them with the rise-return laws [R-R]")
+      ->check(one_of(tasks))
+      ->type_name("TASK");
   command->add_flag("--json", o->json, "print the result as JSON on standard output");
   command->callback([o] { run_rank(*o); });
 }

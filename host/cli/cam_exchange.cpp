@@ -120,11 +120,12 @@ void run_export(const ExportOptions& options) {
              joins[static_cast<std::size_t>(format.importer)]);
   fmt::print("error of the position: at most {:.3g} {}, at {}\n", std::abs(error.position.value), unit,
              where(error.position.place));
-  if (format.importer == Importer::linear)
-    fmt::print("between the points there is no acceleration; it is in the steps of the speed at each of them\n");
-  else
-    fmt::print("error of the acceleration: at most {:.3g} % of its peak, at {}\n",
-               100.0 * std::abs(error.acceleration.value) / error.acceleration_peak, where(error.acceleration.place));
+  fmt::print("error of the acceleration: at most {:.3g} % of its peak, at {}{}\n",
+             100.0 * std::abs(error.acceleration.value) / error.acceleration_peak, where(error.acceleration.place),
+             format.importer == Importer::linear ? ", since lines have none" : "");
+  if (format.importer != Importer::linear) return;
+  fmt::print("step of the speed at a point: at most {:.3g} {}, at {}\n", std::abs(error.speed_step.value),
+             fmt::format("{}/{}", unit, unit_of(cam.master)), where(error.speed_step.place));
 }
 
 struct ImportOptions {

@@ -264,6 +264,7 @@ bool is_on(const Track& track, double x, double cycle, double speed, bool was_on
   const double wider = was_on ? track.hysteresis : 0.0;
   const double place = wrapped(x);
   return std::any_of(track.windows.begin(), track.windows.end(), [&](const Track::Window& window) {
+    if (wrapped(window.first) == wrapped(window.last)) return true;
     const double first = wrapped(window.first + speed * track.on_compensation - wider);
     const double last = wrapped(window.last + speed * track.off_compensation + wider);
     return first <= last ? place >= first && place < last : place >= first || place < last;

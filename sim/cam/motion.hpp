@@ -33,7 +33,7 @@ struct Segment {
 };
 
 // Cam switches after PLCopen: on from each first to its last position of the master; first > last is on around the
-// seam.
+// seam, and from one place around to the same one always.
 struct Track {
   struct Window {
     double first = 0.0, last = 0.0;

@@ -74,6 +74,32 @@ int output_bits(const std::vector<FittedSegment>& fitted, int position_bits, int
 
 std::int64_t in_units(double bound, int bits) { return static_cast<std::int64_t>(bound * power_of_two(bits)) + 1; }
 
+// A time in the 2^-24 s of a track's compensation.
+std::int64_t compensation_of(double seconds, const Track& track) {
+  const double scaled = seconds * 0x1p24;
+  if (!(absolute(scaled) < 0x1p31))
+    throw CamError(
+        fmt::format("found a compensation of {} s of the track {}; expected less than 128 s", seconds, track.name));
+  return static_cast<std::int64_t>(scaled + (scaled < 0.0 ? -0.5 : 0.5));
+}
+
+// Tracks and their windows behind the segments. A window from one place around to the same one is always on.
+void write_tracks(const Cam& cam, TableWriter& out) {
+  const double cycle = cam.cycle();
+  std::size_t first = 0;
+  for (const Track& track : cam.tracks) {
+    out.number(std::uint64_t{first}, 2);
+    out.number(std::uint64_t{track.windows.size()}, 2);
+    out.number(std::min(phase_of(track.hysteresis, cycle), whole_cycle / 2), 4);
+    out.number(compensation_of(track.on_compensation, track), 4);
+    out.number(compensation_of(track.off_compensation, track), 4);
+    first += track.windows.size();
+  }
+  for (const Track& track : cam.tracks)
+    for (const Track::Window& window : track.windows)
+      for (const double place : {window.first, window.last}) out.number(phase_of(place, cycle) % whole_cycle, 4);
+}
+
 SegmentTable written(const Motion& motion, const std::vector<FittedSegment>& fitted, int position_bits) {
   SegmentTable table;
   table.segments = static_cast<std::uint32_t>(fitted.size());
@@ -100,7 +126,13 @@ SegmentTable written(const Motion& motion, const std::vector<FittedSegment>& fit
   out.number(in_units(table.bound.position, position_bits), 8);
   out.number(in_units(table.bound.speed, speed_bits), 8);
   out.number(in_units(table.bound.acceleration, acceleration_bits), 8);
-  out.number(std::uint64_t{0}, 8);
+  std::size_t windows = 0;
+  for (const Track& track : motion.cam.tracks) windows += track.windows.size();
+  if (std::max(motion.cam.tracks.size(), windows) > 0xffff)
+    throw CamError(fmt::format("found {} windows of switch tracks; expected up to 65535", windows));
+  out.number(std::uint64_t{motion.cam.tracks.size()}, 2);
+  out.number(std::uint64_t{windows}, 2);
+  out.number(std::uint64_t{0}, 4);
   for (const auto& [segment, bound] : fitted) {
     out.number(std::uint64_t{segment.start}, 4);
     out.number(std::uint64_t{segment.reciprocal}, 4);
@@ -110,6 +142,7 @@ SegmentTable written(const Motion& motion, const std::vector<FittedSegment>& fit
     out.number(std::uint64_t{segment.shift}, 1);
     out.number(std::uint64_t{0}, 2);
   }
+  write_tracks(motion.cam, out);
   out.number(std::uint64_t{Crc32{}.add(out.bytes, out.bytes.size()).value()}, 4);
   table.bytes = std::move(out.bytes);
   return table;
@@ -204,6 +237,7 @@ std::string_view words_of(CamTableProblem problem) {
       "a table for an unknown kind of axis",
       "a table with scales that no drive can use",
       "a table whose segments do not follow each other",
+      "a table whose switch tracks do not share their windows",
   };
   return words[static_cast<std::size_t>(problem)];
 }

@@ -19,6 +19,8 @@ void evaluate(const CamTable& table) {
     }
   }
   sink ^= table.evaluate(UINT32_MAX).position;
+  for (std::uint32_t k = 0; k < table.header().tracks && k < 20; ++k)
+    sink ^= table.is_on(k, k * 2654435769u, INT32_MIN, true) + table.is_on(k, k, INT32_MAX, false);
 }
 
 void write(std::vector<std::uint8_t>& bytes, std::size_t at, std::uint32_t value) {
@@ -40,6 +42,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   bytes[4] = CamTable::version, bytes[5] = 0;
   for (const std::size_t kind : {6, 7, 8}) bytes[kind] &= 1;
   write(bytes, 12, static_cast<std::uint32_t>(count));
+  // Up to three tracks of a window each, of the last segment's bytes.
+  const std::uint32_t tracks = bytes[56] % 4u;
+  write(bytes, 56, tracks | tracks << 16);
+  bytes.resize(bytes.size() + tracks * (CamTable::track_size + CamTable::window_size), bytes.back());
+  const std::size_t behind = CamTable::header_size + count * CamTable::segment_size;
+  for (std::uint32_t k = 0; k < tracks; ++k) write(bytes, behind + CamTable::track_size * k, k | 1u << 16);
   write(bytes, CamTable::header_size, 0);
   const auto checksum = Crc32{}.add(bytes, bytes.size()).value();
   bytes.resize(bytes.size() + CamTable::checksum_size);

@@ -148,6 +148,8 @@ class Drawer:
             return self.file(self.draw.choice(["run", "log", "other"]) if name == "IN" else "other")
         if takes == "MOTION":
             return self.file("motion")
+        if takes == "PROJECT":
+            return self.file("project")
         if takes in QUANTITIES:
             return self.quantity(QUANTITIES[takes])
         if takes == "LOG" or name in ("LOG", "from"):

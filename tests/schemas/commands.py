@@ -60,6 +60,7 @@ cam check indexing.toml --machine servo-joint --speed '20 rpm' --json
 cam rank --stroke '90 deg' --rise '180 deg' --speed '20 rpm' --machine servo-joint --json
 cam rank --stroke '40 mm' --rise '180 deg' --speed '60 rpm' --machine screw-linear-scale --json
 cam design indexing.toml --machine servo-joint --speed '20 rpm' --out cam --json
+cam step step_cam.toml --out shop --json
 """.strip().splitlines()
 
 # Exit code 1, no JSON on standard output, a result folder all the same.
@@ -87,6 +88,8 @@ def prepare(folder):
     (folder / "endless.toml").write_text(endless.read_text(encoding="utf-8"), encoding="utf-8")
     motion = SOURCE / "examples/cams/indexing.toml"
     (folder / "indexing.toml").write_text(motion.read_text(encoding="utf-8"), encoding="utf-8")
+    for name in ("step_cam.toml", "quarter_turn.toml"):
+        (folder / name).write_text((SOURCE / "examples/cams" / name).read_text(encoding="utf-8"), encoding="utf-8")
     shear = SOURCE / "examples/cams/flying_shear.toml"
     (folder / "shear.toml").write_text(shear.read_text(encoding="utf-8"), encoding="utf-8")
     (folder / "steady.csv").write_text(STEADY, encoding="utf-8")

@@ -215,6 +215,12 @@ ROOMS = {
         "firmware/machine/*": "as its file describes it",
         f"{FIRMWARE}/*": "in the tables that the drive interpolates",
     },
+    "host/cam/step": {
+        "host/cam": "a step cam is compared with an electronic one",
+        "sim/cam": "its lift is a motion",
+        "sim/*": "of the laws of the simulation",
+        "firmware/machine/*": "and its project a file with units",
+    },
     "host/plant": {
         "firmware/version": "a programme says which it is",
         "hal/*": "the simulated machine behind a real bus speaks the backends' frames",
@@ -244,6 +250,7 @@ ROOMS = {
         "host/tune": "tunes the drive",
         "host/sheet": "makes machine files",
         "host/cam": "makes profiles",
+        "host/cam/step": "and step cams",
         "host/report": "and shows the results",
         "sim/*": "for the machine it is given",
         "firmware/machine/*": "as its file describes it",

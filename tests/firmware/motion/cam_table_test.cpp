@@ -13,6 +13,8 @@ namespace {
 struct HandMade {
   CamTable::Header header;
   std::vector<CamTable::Segment> segments;
+  std::vector<CamTable::Track> tracks{};
+  std::vector<CamTable::Window> windows{};
 };
 
 void put(std::vector<std::uint8_t>& bytes, std::uint64_t value, int size) {
@@ -27,8 +29,11 @@ std::vector<std::uint8_t> bytes_of(const HandMade& table) {
                            int{h.position_bits}, int{h.speed_bits}, int{h.acceleration_bits}})
     put(bytes, static_cast<std::uint64_t>(value), 1);
   put(bytes, table.segments.size(), 4);
-  for (const auto value : {h.cycle, h.rise, h.position_bound, h.speed_bound, h.acceleration_bound, std::int64_t{0}})
+  for (const auto value : {h.cycle, h.rise, h.position_bound, h.speed_bound, h.acceleration_bound})
     put(bytes, static_cast<std::uint64_t>(value), 8);
+  put(bytes, table.tracks.size(), 2);
+  put(bytes, table.windows.size(), 2);
+  put(bytes, 0, 4);
   for (const auto& s : table.segments) {
     put(bytes, s.start, 4);
     put(bytes, s.reciprocal, 4);
@@ -38,6 +43,14 @@ std::vector<std::uint8_t> bytes_of(const HandMade& table) {
     put(bytes, s.shift, 1);
     put(bytes, 0, 2);
   }
+  for (const auto& t : table.tracks) {
+    put(bytes, t.first_window, 2);
+    put(bytes, t.windows, 2);
+    put(bytes, t.hysteresis, 4);
+    put(bytes, static_cast<std::uint32_t>(t.on_compensation), 4);
+    put(bytes, static_cast<std::uint32_t>(t.off_compensation), 4);
+  }
+  for (const auto& w : table.windows) put(bytes, w.on, 4), put(bytes, w.off, 4);
   put(bytes, Crc32{}.add(bytes, bytes.size()).value(), 4);
   return bytes;
 }
@@ -162,7 +175,8 @@ TEST(CamTable, RefusesBytesThatAreNoTable) {
   EXPECT_EQ(problem_of_bytes([](auto& b) { b.resize(CamTable::header_size - 1); }), CamTableProblem::too_short);
   for (std::size_t k = 0; k < 4; ++k)
     EXPECT_EQ(problem_of_bytes([k](auto& b) { b[k] ^= 1; }), CamTableProblem::no_table) << k;
-  EXPECT_EQ(problem_of_bytes([](auto& b) { b[4] = 2; }), CamTableProblem::version);
+  EXPECT_EQ(problem_of_bytes([](auto& b) { b[4] = 1; }), CamTableProblem::version);  // an older one
+  EXPECT_EQ(problem_of_bytes([](auto& b) { b[5] = 1; }), CamTableProblem::version);
   EXPECT_EQ(problem_of_bytes([](auto& b) { b[8] = 2; }), CamTableProblem::kind);
   EXPECT_EQ(problem_of_bytes([](auto& b) { b.push_back(0); }), CamTableProblem::size);
   EXPECT_EQ(problem_of_bytes([](auto& b) { b[12] = 3; }), CamTableProblem::size);
@@ -171,6 +185,47 @@ TEST(CamTable, RefusesBytesThatAreNoTable) {
   bytes[70] ^= 4;
   CamTable read;
   EXPECT_EQ(CamTable::read(bytes, read), CamTableProblem::checksum);
+}
+
+// Two tracks of a cycle of 2^32: one on from 100 to 200 and around the seam, one that is always on. A compensation of
+// -2^-10 s at 2^-10 cycles/s is -2^-20 cycles, so 4096 phases earlier.
+HandMade with_tracks() {
+  HandMade table = line_and_parabola();
+  table.tracks = {{0, 2, 10, 0, 0}, {2, 1, 0, 0, 0}, {3, 1, 0, -(1 << 14), 1 << 14}};
+  table.windows = {{100, 200}, {0xfffffff0u, 8}, {7, 7}, {100'000, 200'000}};
+  return table;
+}
+
+TEST(CamTable, SwitchesItsTracks) {
+  const auto bytes = bytes_of(with_tracks());
+  CamTable table;
+  ASSERT_EQ(CamTable::read(bytes, table), CamTableProblem::none);
+  EXPECT_EQ(table.header().tracks, 3);
+  EXPECT_EQ(table.segment(1).start, 0x80000000u);
+  for (const std::uint32_t on : {100u, 199u, 0xfffffff0u, 0u, 7u}) EXPECT_TRUE(table.is_on(0, on, 0, false)) << on;
+  for (const std::uint32_t off : {99u, 200u, 0xffffffefu, 8u}) EXPECT_FALSE(table.is_on(0, off, 0, false)) << off;
+  for (const std::uint32_t kept : {90u, 209u, 0xffffffe6u, 17u}) EXPECT_TRUE(table.is_on(0, kept, 0, true)) << kept;
+  for (const std::uint32_t left : {89u, 210u, 18u}) EXPECT_FALSE(table.is_on(0, left, 0, true)) << left;
+  for (const std::uint32_t any : {0u, 7u, 0x80000000u}) EXPECT_TRUE(table.is_on(1, any, 0, false));
+  constexpr std::int32_t speed = 1 << 14;
+  EXPECT_FALSE(table.is_on(2, 100'000 - 4097, speed, false));
+  EXPECT_TRUE(table.is_on(2, 100'000 - 4096, speed, false));
+  EXPECT_TRUE(table.is_on(2, 200'000 + 4095, speed, false));
+  EXPECT_FALSE(table.is_on(2, 200'000 + 4096, speed, false));
+  EXPECT_FALSE(table.is_on(2, 100'000, -speed, false));  // backwards the switch is late where it was early
+}
+
+TEST(CamTable, RefusesTracksThatDoNotShareTheWindows) {
+  EXPECT_EQ(problem_of(with_tracks()), CamTableProblem::none);
+  const auto with = [](auto&& change) {
+    HandMade table = with_tracks();
+    change(table);
+    return problem_of(table);
+  };
+  EXPECT_EQ(with([](auto& t) { t.tracks[1].windows = 0; }), CamTableProblem::track_windows);
+  EXPECT_EQ(with([](auto& t) { t.tracks[1].first_window = 1; }), CamTableProblem::track_windows);
+  EXPECT_EQ(with([](auto& t) { t.windows.pop_back(); }), CamTableProblem::track_windows);
+  EXPECT_EQ(with([](auto& t) { t.windows.push_back({}); }), CamTableProblem::track_windows);
 }
 
 TEST(CamTable, AnOutputThatIsShiftedOutOfAWordIsZero) {

@@ -133,6 +133,21 @@ TEST(CamRank, MarksTheParetoFrontAndRecommendsALawOfIt) {
     EXPECT_LE(ranking.laws[k - 1].residual, ranking.laws[k].residual);
 }
 
+TEST(CamRank, ComparesTheLawsOfAllTasksAtOnce) {
+  RankTask task{.stroke = 1.5, .rise = pi, .master_speed = 4 * pi, .lowest = 5.0, .highest = 20.0, .task = "all"};
+  const auto ranking = rank_laws(task, bare_load());
+  EXPECT_EQ(ranking.laws.size(), 84u);  // without the two whose coefficients are the user's
+  ASSERT_TRUE(ranking.recommended);
+  const auto& best = *ranking.laws[*ranking.recommended].law;
+  EXPECT_EQ(task_of(best), "R-R");
+  EXPECT_EQ(best.kind, sim::cam::LawKind::rise);
+  // The way back of sin^2 takes as long as the rise: its peak speed is that of half a harmonic each way.
+  for (const auto& row : ranking.laws)
+    if (row.law->number == 73) {
+      EXPECT_NEAR(row.speed, 1.5 * pi / 2 / pi * 4 * pi, 1e-9);
+    }
+}
+
 TEST(CamRank, RecommendsNoneWhereEachBreaksALimit) {
   AxisLoad load = bare_load();
   load.max_speed = 0.1;

@@ -93,6 +93,26 @@ TEST(CamExchange, TheToldErrorHoldsAtPlacesThatWereNotLookedAt) {
   }
 }
 
+// Lines through points that are h apart: the speed steps by what the acceleration sums up to over h, at most h times
+// its peak, and between the points all of the acceleration is missing.
+TEST(CamExchange, LinesHaveTheAccelerationInStepsOfTheSpeed) {
+  sim::cam::Cam cam{.name = "sine"};
+  cam.segments = {{.length = std::numbers::pi, .stroke = 1.0, .law = "sloping_sine"},
+                  {.length = std::numbers::pi, .stroke = -1.0, .law = "sloping_sine"}};
+  const auto motion = sim::cam::compose(cam);
+  for (const auto* name : {"sew", "isg"}) {
+    const auto& format = exchange_format(name);
+    ExchangeSettings settings;
+    settings.points = 361;
+    if (format.most_points < 361) settings.points = 360;
+    const auto error = exchange_error(motion, exported(motion, format, settings), format, settings);
+    const double peak = 2.0 / std::numbers::pi, h = 2.0 * std::numbers::pi / (*settings.points - 1);
+    EXPECT_NEAR(error.acceleration_peak, peak, 1e-9);
+    EXPECT_NEAR(std::fabs(error.acceleration.value), peak, 0.02 * peak) << name;
+    EXPECT_NEAR(std::fabs(error.speed_step.value), h * peak, 2e-3 * h * peak) << name;
+  }
+}
+
 TEST(CamExchange, MorePointsMakeTheErrorSmallerButForTheRounding) {
   const auto motion = any_motion(2);
   const auto& format = exchange_format("codesys-xy");

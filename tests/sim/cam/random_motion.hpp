@@ -43,6 +43,19 @@ class RandomMotion {
     return closed(cam);
   }
 
+  // The name of a law from rest to rest without a jump of the acceleration.
+  std::string smooth_law() {
+    static const std::vector<std::string> names = [] {
+      std::vector<std::string> found;
+      for (const Law& law : laws())
+        if (law.kind == LawKind::rise && law.start == End::rest && law.end == End::rest && law.number != 2 &&
+            law.number != 3 && law.number != 5)
+          found.emplace_back(law.name);
+      return found;
+    }();
+    return names[whole(names.size())];
+  }
+
  private:
   Cam empty() {
     Cam cam;
@@ -58,18 +71,6 @@ class RandomMotion {
     last.stroke = 0.0;
     last.stroke = cam.start - cam.position_of(cam.segments.size());
     return cam;
-  }
-
-  std::string smooth_law() {
-    static const std::vector<std::string> names = [] {
-      std::vector<std::string> found;
-      for (const Law& law : laws())
-        if (law.kind == LawKind::rise && law.start == End::rest && law.end == End::rest && law.number != 2 &&
-            law.number != 3 && law.number != 5)
-          found.emplace_back(law.name);
-      return found;
-    }();
-    return names[whole(names.size())];
   }
 
   std::mt19937_64 engine_;

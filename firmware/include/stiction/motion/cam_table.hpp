@@ -5,7 +5,9 @@
 //   header, 64 bytes: "SCAM", version, kinds of master and slave, flags, scales, count of segments, cycle, rise of a
 //   cycle, and the largest errors of position, speed and acceleration that whoever made it has proven;
 //   segments, 40 bytes each: start in 2^-32 cycles, reciprocal of the length, position at the start, five coefficients
-//   of one exponent; the CRC-32 of everything before it, 4 bytes.
+//   of one exponent;
+//   switch tracks, 16 bytes each, and their windows, 8 bytes each;
+//   the CRC-32 of everything before it, 4 bytes.
 //
 // Reading checks everything that evaluation relies on, so that no bytes make a shift or a sum that is not defined.
 // Evaluation has fixed work: a search of as many steps as the count has bits, and Horner's scheme three times.
@@ -25,20 +27,21 @@ using Crc32 = Crc<std::uint32_t, 0x04C11DB7, 0xFFFFFFFF>;
 
 enum class CamTableProblem : std::uint8_t {
   none,
-  too_short,     // no whole header and checksum
-  no_table,      // it does not begin as a cam table
-  version,       // of a different version of the format
-  size,          // more or fewer bytes than the count of segments makes
-  checksum,      // a byte was changed
-  kind,          // a master or slave that is neither linear nor rotary, or unknown flags
-  scale,         // scales beyond what evaluation can shift by
-  segment_order  // segments that do not begin at 0 and rise
+  too_short,      // no whole header and checksum
+  no_table,       // it does not begin as a cam table
+  version,        // of a different version of the format
+  size,           // more or fewer bytes than the counts of segments, tracks and windows make
+  checksum,       // a byte was changed
+  kind,           // a master or slave that is neither linear nor rotary, or unknown flags
+  scale,          // scales beyond what evaluation can shift by
+  segment_order,  // segments that do not begin at 0 and rise
+  track_windows   // tracks that do not share the windows among them, each at least one
 };
 
 class CamTable {
  public:
-  static constexpr std::uint16_t version = 1;
-  static constexpr std::size_t header_size = 64, segment_size = 40, checksum_size = 4;
+  static constexpr std::uint16_t version = 2;
+  static constexpr std::size_t header_size = 64, segment_size = 40, track_size = 16, window_size = 8, checksum_size = 4;
   // 2^-40 rad or m, of the cycle in the header.
   static constexpr int cycle_bits = 40;
   static constexpr std::uint32_t most_segments = 65536;
@@ -53,8 +56,9 @@ class CamTable {
     std::int8_t speed_bits = 0;         // the same for a cycle: 2^-speed_bits of the unit for each cycle
     std::int8_t acceleration_bits = 0;  // and for its square
     std::uint32_t count = 0;
-    std::int64_t cycle = 0;  // 2^-cycle_bits of the master's unit
-    std::int64_t rise = 0;   // of a cycle, as a position
+    std::uint16_t tracks = 0, windows = 0;  // windows: of all tracks
+    std::int64_t cycle = 0;                 // 2^-cycle_bits of the master's unit
+    std::int64_t rise = 0;                  // of a cycle, as a position
     // Proven: no phase differs from the motion in double precision by more, in the units of the outputs.
     std::int64_t position_bound = 0, speed_bound = 0, acceleration_bound = 0;
   };
@@ -70,6 +74,19 @@ class CamTable {
     std::int32_t c[5] = {};
   };
 
+  // A cam switch (PLCopen: MC_DigitalCamSwitch): on in each of its windows.
+  struct Track {
+    std::uint16_t first_window = 0, windows = 0;
+    std::uint32_t hysteresis = 0;      // 2^-32 cycles: by so much a window is wider while the switch is on
+    std::int32_t on_compensation = 0;  // 2^-24 s; negative switches earlier
+    std::int32_t off_compensation = 0;
+  };
+
+  // From `on` to before `off`, in 2^-32 cycles; around the seam where `on` is larger, always where both are equal.
+  struct Window {
+    std::uint32_t on = 0, off = 0;
+  };
+
   struct Output {
     std::int64_t position = 0, speed = 0, acceleration = 0;  // in the header's scales, over the phase in cycles
   };
@@ -83,13 +100,17 @@ class CamTable {
     read.bytes_ = bytes;
     Header& h = read.header_;
     h.count = static_cast<std::uint32_t>(number(bytes, 12, 4));
-    if (h.count == 0 || h.count > most_segments || bytes.size() != header_size + segment_size * h.count + checksum_size)
+    h.tracks = static_cast<std::uint16_t>(number(bytes, 56, 2));
+    h.windows = static_cast<std::uint16_t>(number(bytes, 58, 2));
+    if (h.count == 0 || h.count > most_segments ||
+        bytes.size() != read.windows_at() + window_size * h.windows + checksum_size)
       return CamTableProblem::size;
     const std::size_t end = bytes.size() - checksum_size;
     if (Crc32{}.add(bytes, end).value() != number(bytes, end, 4)) return CamTableProblem::checksum;
     if (bytes[6] > 1 || bytes[7] > 1 || bytes[8] > 1) return CamTableProblem::kind;
     read.fill_header();
-    const auto problem = read.check_segments();
+    auto problem = read.check_segments();
+    if (problem == CamTableProblem::none) problem = read.check_tracks();
     if (problem == CamTableProblem::none) table = read;
     return problem;
   }
@@ -106,6 +127,40 @@ class CamTable {
     s.down = bytes_[at + 36];
     s.shift = bytes_[at + 37];
     return s;
+  }
+
+  constexpr Track track(std::uint32_t k) const {
+    const std::size_t at = tracks_at() + track_size * k;
+    Track t;
+    t.first_window = static_cast<std::uint16_t>(number(bytes_, at, 2));
+    t.windows = static_cast<std::uint16_t>(number(bytes_, at + 2, 2));
+    t.hysteresis = static_cast<std::uint32_t>(number(bytes_, at + 4, 4));
+    t.on_compensation = static_cast<std::int32_t>(number(bytes_, at + 8, 4));
+    t.off_compensation = static_cast<std::int32_t>(number(bytes_, at + 12, 4));
+    return t;
+  }
+
+  constexpr Window window(std::uint32_t k) const {
+    const std::size_t at = windows_at() + window_size * k;
+    return {static_cast<std::uint32_t>(number(bytes_, at, 4)), static_cast<std::uint32_t>(number(bytes_, at + 4, 4))};
+  }
+
+  // Whether track `k` is on at `phase`, in 2^-32 cycles, at the master's `speed` in 2^-24 cycles/s; `was_on` before,
+  // for the hysteresis. The work grows with the windows of the track.
+  constexpr bool is_on(std::uint32_t k, std::uint32_t phase, std::int32_t speed, bool was_on) const {
+    const Track t = track(k);
+    const std::uint32_t wider = was_on ? t.hysteresis : 0;
+    const auto way = [speed](std::int32_t time) {
+      return static_cast<std::uint32_t>((std::int64_t{speed} * time) >> 16);
+    };
+    bool on = false;
+    for (std::uint32_t n = 0; n < t.windows; ++n) {
+      const Window w = window(std::uint32_t{t.first_window} + n);
+      const std::uint32_t first = w.on + way(t.on_compensation) - wider;
+      const std::uint32_t last = w.off + way(t.off_compensation) + wider;
+      on = on || w.on == w.off || phase - first < last - first;
+    }
+    return on;
   }
 
   // The segment that holds `phase`, in 2^-32 cycles.
@@ -156,6 +211,9 @@ class CamTable {
     return value;
   }
 
+  constexpr std::size_t tracks_at() const { return header_size + segment_size * header_.count; }
+  constexpr std::size_t windows_at() const { return tracks_at() + track_size * header_.tracks; }
+
   // value * factor / 2^32, rounded down: two products of 32 bits. |value| < 2^62.
   static constexpr std::int64_t high(std::int64_t value, std::uint32_t factor) {
     const std::int64_t upper = (value >> 32) * std::int64_t{factor};
@@ -203,6 +261,16 @@ class CamTable {
         return CamTableProblem::scale;
     }
     return CamTableProblem::none;
+  }
+
+  constexpr CamTableProblem check_tracks() const {
+    std::uint32_t next = 0;
+    for (std::uint32_t k = 0; k < header_.tracks; ++k) {
+      const Track t = track(k);
+      if (t.first_window != next || t.windows == 0) return CamTableProblem::track_windows;
+      next += t.windows;
+    }
+    return next == header_.windows ? CamTableProblem::none : CamTableProblem::track_windows;
   }
 
   std::span<const std::uint8_t> bytes_{};

@@ -1,0 +1,98 @@
+// `stiction cam step`: two cam profiles from a project, relieved by rule, as files that a shop loads.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "host/cam/step/shop_files.hpp"
+#include "host/cli/cam_step_output.hpp"
+#include "host/cli/choices.hpp"
+#include "host/cli/commands.hpp"
+#include "host/cli/errors.hpp"
+#include "host/cli/output.hpp"
+
+namespace stiction::host {
+namespace {
+
+// Between radii that are measured, rad.
+constexpr double inspection_spacing = 5.0 * step::degree;
+
+struct StepOptions {
+  std::string project, out, columns, separator = ",", decimal = ".";
+  bool json = false;
+};
+
+step::TableLayout layout_of(const StepOptions& o) {
+  step::TableLayout layout;
+  if (!o.columns.empty()) layout.columns = split_list(o.columns);
+  for (const auto& column : layout.columns) {
+    std::vector<std::string> known;
+    for (const auto& each : step::table_columns()) known.emplace_back(each.name);
+    require_known("--columns", column, "a column", known);
+  }
+  const std::string separator = o.separator == "tab" ? "\t" : o.separator;
+  if (separator.size() != 1)
+    throw UsageError(fmt::format("--separator: found '{}'; expected one character", o.separator));
+  if (o.decimal != "." && o.decimal != ",")
+    throw UsageError(fmt::format("--decimal: found '{}'; expected a point or a comma", o.decimal));
+  if (separator == o.decimal)
+    throw UsageError(fmt::format("--separator: found '{}', the decimal mark; expected a different one", o.separator));
+  layout.separator = separator[0];
+  layout.decimal = o.decimal[0];
+  return layout;
+}
+
+void write_files(StepResult& result, const StepOptions& options, const Invocation& invocation) {
+  const step::TableLayout layout = layout_of(options);
+  const step::FileOrigin origin{"stiction " + invocation.version, result.project.name};
+  PendingFolder folder(options.out, invocation.command);
+  const auto write = [&](const std::string& name, const std::string& text) {
+    folder.write(name, text);
+    result.files.emplace_back(name, fmt::format("{:08x}", step::checksum_of(text)));
+  };
+  write("cams_r12.dxf", dxf_text(result.project, result.made, step::DxfVersion::r12, origin));
+  write("cams_r2000.dxf", dxf_text(result.project, result.made, step::DxfVersion::r2000, origin));
+  for (const auto& profile : result.made.profiles) {
+    const auto cam = profile.row + 1;
+    write(fmt::format("cam_{}.csv", cam), coordinates_text(result.project, profile, layout, origin));
+    write(fmt::format("inspection_{}.csv", cam),
+          inspection_text(result.project, profile, inspection_spacing, layout, origin));
+  }
+  folder.write("result.json", step_json(result).dump(2) + "\n");
+  folder.commit();
+}
+
+void run_step(const StepOptions& options, const Invocation& invocation) {
+  const auto project = step::read_step_project(options.project);
+  try {
+    const auto made = synthesize(project);
+    StepResult result = step_result(project, made);
+    if (!options.out.empty()) write_files(result, options, invocation);
+    if (options.json)
+      fmt::print("{}\n", step_json(result).dump(2));
+    else
+      fmt::print("{}{}", step_text(result), options.out.empty() ? "" : fmt::format("Files: {}\n", options.out));
+  } catch (const sim::cam::CamError& error) {
+    throw UsageError(fmt::format("{}: {}", options.project, error.what()));
+  }
+}
+
+}  // namespace
+
+void add_cam_step(CLI::App& cam, const Invocation& invocation) {
+  auto* command = cam.add_subcommand("step", "make both profiles of a step cam from a project, relieved, for a shop");
+  auto o = std::make_shared<StepOptions>();
+  command->add_option("PROJECT", o->project, "project of a step cam (TOML)")->required()->type_name("PROJECT");
+  add_out(*command, o->out,
+          "write drawings (DXF), manufacturing coordinates and inspection tables (CSV) into this folder");
+  std::string help = "columns of the coordinates, in their order [angle, radius, wheel_angle, wheel_radius, normal]:";
+  for (const auto& column : step::table_columns())
+    help += fmt::format("{} {}: {}", &column == &step::table_columns().front() ? "" : ";", column.name, column.text);
+  command->add_option("--columns", o->columns, help)->type_name("COLUMNS");
+  command->add_option("--separator", o->separator, "of the tables: one character, or tab [,]")->type_name("CHARACTER");
+  command->add_option("--decimal", o->decimal, "of the tables: decimal mark, a point or a comma [.]")
+      ->type_name("MARK");
+  command->add_flag("--json", o->json, "print the figures as JSON on standard output");
+  command->callback([o, &invocation] { run_step(*o, invocation); });
+}
+
+}  // namespace stiction::host
