@@ -35,6 +35,7 @@ SearchContext context_of(const machine::AxisModel& axis, const LogRows& rows, co
     for (const double force : force_along(axis, motion))
       context.highest_force = std::max(context.highest_force, std::abs(force));
     context.duration = std::max(context.duration, motion.t.back() - motion.t.front());
+    context.log_period = std::max(context.log_period, motion.period);
     for (std::size_t i = 0; i < motion.x.size(); ++i) {
       context.highest_speed = std::max(context.highest_speed, std::abs(motion.v[i]));
       context.lowest_position = std::min(context.lowest_position, motion.x[i]);

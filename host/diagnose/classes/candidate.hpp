@@ -32,6 +32,7 @@ struct SearchContext {
   bool force_is_current = false;  // in every record: current (or voltage) times the file's force constant
   bool other_axis = false;        // its motion is in every record
   double duration = 0.0;          // s, of the longest record
+  double log_period = 0.0;        // s, of the slowest record
   machine::Timing timing{};       // of the drive
   // Found as the search goes: lines over position, over position in proportion to the force and to the speed, over
   // time, over the encoder's signal.
