@@ -148,6 +148,10 @@ def main():
             assert len(result["files"]) == 6
             for made in result["files"]:
                 assert check_checksum(folder / name / made["name"]) == made["crc32"]
+        (folder / "odd.toml").write_text(text.replace("rollers = 4", "rollers = 6"), encoding="utf-8")
+        done = subprocess.run([stiction, "cam", "step", "odd.toml", "--out", "odd"], cwd=folder, capture_output=True, text=True)
+        assert done.returncode == 2 and "odd.toml: found a stroke of 90" in done.stderr, done.stderr
+        assert not (folder / "odd").exists()
         worst = [check_drawing(folder / "bare" / "cams_r12.dxf", "AC1009"),
                  check_drawing(folder / "bare" / "cams_r2000.dxf", "AC1015")]
         rows = [line for line in (folder / "step/cam_1.csv").read_text(encoding="utf-8").splitlines()
