@@ -94,7 +94,8 @@ class Follower {
 
 std::vector<Log> with_set_points(const machine::Machine& machine, std::size_t axis, std::vector<Log> logs) {
   const auto& model = machine.axes[axis];
-  if (model.unknown_controller() || !model.cascaded()) return logs;
+  const bool follows = model.cascaded() && model.position_controller.gain > 0.0;
+  if (model.unknown_controller() || !follows) return logs;
   for (auto& log : logs) {
     auto& channels = channels_of(log, model);
     if (channels.x_set.empty()) channels.x_set = Follower(machine, axis, log).learned();
