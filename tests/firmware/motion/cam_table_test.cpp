@@ -228,6 +228,16 @@ TEST(CamTable, RefusesTracksThatDoNotShareTheWindows) {
   EXPECT_EQ(with([](auto& t) { t.windows.push_back({}); }), CamTableProblem::track_windows);
 }
 
+TEST(CamTable, APolynomialWithoutAShiftKeepsAllItsBits) {
+  HandMade table = line_and_parabola();
+  for (auto& s : table.segments) s.shift = 0;
+  table.segments[0].c[0] = 1;
+  const auto bytes = bytes_of(table);
+  CamTable read;
+  ASSERT_EQ(CamTable::read(bytes, read), CamTableProblem::none);
+  EXPECT_EQ(read.evaluate(0x40000000u).position, 1 << (CamTable::extra_bits - 1));  // half of the first segment
+}
+
 TEST(CamTable, AnOutputThatIsShiftedOutOfAWordIsZero) {
   HandMade table = line_and_parabola();
   table.header.speed_bits = -20;  // shifts by 72
