@@ -10,6 +10,7 @@
 #include "host/cli/cam_options.hpp"
 #include "host/cli/choices.hpp"
 #include "host/cli/commands.hpp"
+#include "host/cli/csv_marks.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/output.hpp"
 #include "sim/cam/motion_file.hpp"
@@ -62,15 +63,9 @@ CsvLayout csv_layout(const ExchangeOptions& o) {
   if (sorted != "xy" && sorted != "vxy" && sorted != "avxy")
     throw UsageError(
         fmt::format("--columns: found '{}'; expected x and y, with v or with v and a, each once", o.columns));
-  const std::string separator = o.separator == "tab" ? "\t" : o.separator;
-  if (separator.size() != 1)
-    throw UsageError(fmt::format("--separator: found '{}'; expected one character", o.separator));
-  if (o.decimal != "." && o.decimal != ",")
-    throw UsageError(fmt::format("--decimal: found '{}'; expected a point or a comma", o.decimal));
-  if (separator == o.decimal)
-    throw UsageError(fmt::format("--separator: found '{}', the decimal mark; expected a different one", o.separator));
-  layout.separator = separator[0];
-  layout.decimal = o.decimal[0];
+  const auto [separator, decimal] = csv_marks(o.separator, o.decimal);
+  layout.separator = separator;
+  layout.decimal = decimal;
   layout.header = !o.no_header;
   return layout;
 }

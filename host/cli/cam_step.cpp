@@ -7,6 +7,7 @@
 #include "host/cli/cam_step_output.hpp"
 #include "host/cli/choices.hpp"
 #include "host/cli/commands.hpp"
+#include "host/cli/csv_marks.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/output.hpp"
 
@@ -29,15 +30,9 @@ step::TableLayout layout_of(const StepOptions& o) {
     for (const auto& each : step::table_columns()) known.emplace_back(each.name);
     require_known("--columns", column, "a column", known);
   }
-  const std::string separator = o.separator == "tab" ? "\t" : o.separator;
-  if (separator.size() != 1)
-    throw UsageError(fmt::format("--separator: found '{}'; expected one character", o.separator));
-  if (o.decimal != "." && o.decimal != ",")
-    throw UsageError(fmt::format("--decimal: found '{}'; expected a point or a comma", o.decimal));
-  if (separator == o.decimal)
-    throw UsageError(fmt::format("--separator: found '{}', the decimal mark; expected a different one", o.separator));
-  layout.separator = separator[0];
-  layout.decimal = o.decimal[0];
+  const auto [separator, decimal] = csv_marks(o.separator, o.decimal);
+  layout.separator = separator;
+  layout.decimal = decimal;
   return layout;
 }
 

@@ -72,6 +72,8 @@ class Follower {
       return smoothed(less(wanted_, simulated_positions(setup).front()));
     } catch (const FaultTripped&) {
       return {};
+    } catch (const LogError&) {  // faster than the file allows
+      return {};
     }
   }
 

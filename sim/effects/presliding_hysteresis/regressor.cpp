@@ -11,10 +11,8 @@
 namespace stiction::host::effects::presliding_hysteresis {
 namespace {
 
-// Of a file without a contact: seven large reversals do not identify one, since sgn(v) and a contact then fit each
-// other. One that is there already is told from a longer one by a reversal each way.
-constexpr int least_reversals = 2, least_with_contact = 2;
-constexpr double longest = 3e-3;  // m
+constexpr int least_reversals = 2;  // one each way
+constexpr double longest = 3e-3;    // m
 
 // 0 for friction that follows the speed alone.
 double distance_of(const SearchContext& context) {
@@ -29,8 +27,7 @@ double distance_with(const SearchContext& context, double longer) {
 
 std::vector<double> grid(const SearchContext& context) {
   const double file = distance_of(context);
-  if (!(coulomb_of(context.axis) > 0.0) || context.reversals < (file > 0.0 ? least_with_contact : least_reversals))
-    return {};
+  if (!(coulomb_of(context.axis) > 0.0) || context.reversals < least_reversals) return {};
   if (!(file > 0.0)) return geometric(1e-6, 3e-3, 14);
   std::vector<double> longer;
   for (const double share : {-0.75, -0.5, -0.25, -0.1, -0.03, 0.03, 0.08, 0.2}) longer.push_back(share * file);
