@@ -134,6 +134,17 @@ SetPoints::SetPoints(const Log& log, const AxisLog& axis)
   if (acceleration_is_logged_) a_ = axis.a_set;
 }
 
+// What the mean acceleration between two samples, which the velocities tell, is beyond that of a line. A smooth motion
+// bends as its second differences at both samples say; more than the larger one is a jump in between.
+double SetPoints::bow(std::size_t k) const {
+  const double mean = (v_[k + 1] - v_[k]) / period_ - 0.5 * (a_[k] + a_[k + 1]);
+  const auto bend = [&](std::size_t at) {
+    return at == 0 || at + 1 >= a_.size() ? 0.0 : a_[at + 1] - 2.0 * a_[at] + a_[at - 1];
+  };
+  const auto [least, most] = std::minmax({bend(k), bend(k + 1), 0.0});
+  return std::clamp(mean, -most / 12.0, -least / 12.0);
+}
+
 sim::AxisSetPoint SetPoints::at(double t) const {
   double place = (t - begin_) / period_;
   // A tick that falls on a sample takes it as it is: a millionth of a step is the rounding of the two clocks. A cast,
@@ -156,7 +167,7 @@ sim::AxisSetPoint SetPoints::at(double t) const {
                                                                s * (6.0 * dx - 3.0 * (v0 + v1) + 0.5 * (a1 - a0))))));
   const double dv = v1 - v0;
   const double v = v0 + s * (a0 + s * ((3.0 * dv - 2.0 * a0 - a1) + s * (a0 + a1 - 2.0 * dv)));
-  return {x, v / h, a_[k] + s * (a_[k + 1] - a_[k])};
+  return {x, v / h, a_[k] + s * (a_[k + 1] - a_[k]) + 6.0 * bow(k) * s * (1.0 - s)};
 }
 
 }  // namespace stiction::host

@@ -84,6 +84,40 @@ TEST(SetPoints, TakeTheLogsOwnVelocityAndAcceleration) {
   EXPECT_EQ(set.at(log.t[300]).acceleration, log.axes[0].a_set[300]);
 }
 
+// A log of 4 ms with all three channels. A straight line between two accelerations would be (w h)^2 / 8 off, 0.32 %.
+TEST(SetPoints, BowTheAccelerationOfASmoothMotionBetweenSlowSamples) {
+  constexpr double rate = 40.0;  // rad/s
+  auto log = sampled(0, circle);
+  log.period = 4e-3;
+  for (int k = 0; k < 500; ++k) {
+    const double t = k * log.period;
+    log.t.push_back(t);
+    log.axes[0].x_set.push_back(1e-3 * std::sin(rate * t));
+    log.axes[0].v_set.push_back(1e-3 * rate * std::cos(rate * t));
+    log.axes[0].a_set.push_back(-1e-3 * rate * rate * std::sin(rate * t));
+  }
+  const SetPoints set(log, log.axes[0]);
+  ASSERT_TRUE(set.acceleration_is_logged());
+  for (double t = 0.01; t < 1.98; t += 62.5e-6)
+    EXPECT_NEAR(set.at(t).acceleration, -1e-3 * rate * rate * std::sin(rate * t), 2e-4 * 1e-3 * rate * rate) << t;
+}
+
+// The velocities alone would want 75 % of the step too little before it.
+TEST(SetPoints, BowNoAccelerationAcrossAStep) {
+  auto log = sampled(100, [](double t) { return t < 0.0509 ? 0.0 : 0.5 * (t - 0.0509) * (t - 0.0509); });
+  for (const double t : log.t) {
+    log.axes[0].v_set.push_back(std::max(t - 0.0509, 0.0));
+    log.axes[0].a_set.push_back(t < 0.0509 ? 0.0 : 1.0);
+  }
+  const SetPoints set(log, log.axes[0]);
+  ASSERT_TRUE(set.velocity_is_logged());
+  ASSERT_TRUE(set.acceleration_is_logged());
+  for (double t = 0.0; t < 0.095; t += 62.5e-6) {
+    EXPECT_GT(set.at(t).acceleration, -0.05);
+    EXPECT_LT(set.at(t).acceleration, 1.13);
+  }
+}
+
 TEST(SetPoints, PassOverAVelocityThatIsNotThatOfThePosition) {
   auto log = sampled(1000, circle);
   for (const double t : log.t) log.axes[0].v_set.push_back(1.1 * omega * radius * std::cos(omega * t));
