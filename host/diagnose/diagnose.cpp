@@ -188,6 +188,7 @@ Verdict diagnose(const DiagnoseInput& input) {
   const auto &training = prepared->training, &held_out = prepared->held_out;
   begin(1);
   auto found = search(*prepared, verdict);
+  verdict.exact_records = found.exact_records;
   begin(2);
   const HeldOutData unseen{held_out.regressors, held_out.target, prepared->context, input.seed};
   const auto explained = explain(*prepared, std::move(found), unseen, begin, verdict);

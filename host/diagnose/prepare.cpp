@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "firmware/machine/model/motor_force.hpp"
+#include "host/diagnose/exact_records.hpp"
 #include "host/diagnose/record/followed_set_points.hpp"
 #include "host/diagnose/record/inverse_dynamics.hpp"
 #include "host/diagnose/record/record_checks.hpp"
@@ -99,17 +100,12 @@ void take_logs(Prepared& prepared, const DiagnoseInput& input, Verdict& verdict)
 }
 
 void take_rows(Prepared& prepared, Verdict& verdict) {
-  for (auto* record : {&prepared.training, &prepared.held_out})
-    record->rows = rows_of(record->logs, prepared.axis, prepared.settings);
+  for (auto* record : {&prepared.training, &prepared.held_out}) measure(*record, prepared.axis, prepared.settings);
   const auto& rows = prepared.training.rows;
   if (const double duration = excitation_of(rows).duration; duration < shortest)
     throw LogError(fmt::format("{}: found {:.3g} s of training data; expected at least {:g} s",
                                sources_of(rows.motions()), duration, shortest));
-  for (auto* record : {&prepared.training, &prepared.held_out}) {
-    record->expected = expected_force(record->rows, prepared.axis);
-    refuse_other_units(record->rows, record->expected);
-    record->target = record->rows.force - record->expected;
-  }
+  for (auto* record : {&prepared.training, &prepared.held_out}) refuse_other_units(record->rows, record->expected);
   if (const auto note = suspected_file(rows, prepared.training.expected); !note.empty()) verdict.notes.push_back(note);
 }
 
@@ -123,34 +119,21 @@ std::string without_set_points(const Prepared& prepared) {
 
 // The motion of the columns: the file's simulation of the records, where it goes their way; else the measured one.
 void take_motion(Prepared& prepared, const DiagnoseInput& input, Verdict& verdict) {
-  Record* const records[] = {&prepared.training, &prepared.held_out};
-  std::vector<WithoutNoise> simulated;
-  for (auto* record : records) {
-    record->driven = with_set_points(input.machine, input.axis, record->logs);
-    simulated.push_back(without_noise(input.machine, input.axis, record->driven));
-    if (simulated.back().motion.empty()) break;
-  }
-  prepared.known_motion = !simulated.back().motion.empty();
+  const auto training = drive(prepared.training, input.machine, input.axis);
+  const auto held_out = training.empty() ? std::vector<Log>{} : drive(prepared.held_out, input.machine, input.axis);
+  prepared.known_motion = !held_out.empty();
   if (!prepared.known_motion)
     verdict.notes.push_back(why_motion_is_measured(input));
-  else if (const auto source = without_set_points(prepared); !source.empty())
+  else if (const auto source = without_set_points(prepared); !source.empty()) {
+    prepared.context.known_up_to =
+        followed_up_to(input.machine.axes[input.axis], prepared.training.logs.front().period);
     verdict.notes.push_back(fmt::format(
         "{}: no set-points. The simulation is driven so that it moves as recorded, up to twice the bandwidth of the "
         "position loop; the gains of the drive and position errors cannot be judged. Log x_set.",
         source));
-  for (std::size_t k = 0; k < std::size(records); ++k) {
-    auto& record = *records[k];
-    record.regressors = record.rows;
-    if (prepared.known_motion) {
-      record.regressors = rows_of(simulated[k].motion, prepared.axis, prepared.settings);
-      record.simulated = std::move(simulated[k].replayed);
-      record.target -= own_residual(record.simulated, record.logs, prepared.axis, prepared.settings);
-    }
-    const Eigen::VectorXd moves = moving_rows(record.rows, prepared.axis, prepared.settings.cutoff);
-    record.regressors.weigh(
-        moves.cwiseProduct(moving_rows(record.regressors, prepared.axis, prepared.settings.cutoff)));
-    record.target = record.target.cwiseProduct(record.regressors.counts());
   }
+  regress_on(prepared.training, held_out.empty() ? held_out : training, prepared.axis, prepared.settings);
+  regress_on(prepared.held_out, held_out, prepared.axis, prepared.settings);
 }
 
 // The file's friction along the simulated motion instead of the measured one, where the direction of the measured one
@@ -195,6 +178,14 @@ void take_responses(Prepared& prepared, const DiagnoseInput& input) {
   prepared.context.disturb = [&prepared, disturbed_by](const Eigen::VectorXd& force) {
     prepared.context.response = disturbed_by(force);
   };
+  if (without_set_points(prepared).empty())
+    prepared.context.exact_records = [&prepared, disturbed_by](const Eigen::VectorXd& force) {
+      return exact_records(prepared.training, disturbed_by(force));
+    };
+  else
+    prepared.context.exact_records = [&prepared, &input](const Eigen::VectorXd& force) {
+      return exact_records_to_follow(prepared, input, force);
+    };
   prepared.context.disturb(training.target);
   auto own = disturbed_by(training.target);
   const auto of_disturbance = [&own](const Record& record) -> Eigen::VectorXd {

@@ -7,22 +7,11 @@
 
 #include "host/diagnose/classes/candidate.hpp"
 #include "host/diagnose/record/diagnose_input.hpp"
+#include "host/diagnose/record/record.hpp"
 #include "host/diagnose/record/replay_setup.hpp"
 #include "host/diagnose/verdict/verdict.hpp"
-#include "host/identify/log_rows.hpp"
 
 namespace stiction::host {
-
-// Logs of one use, training or held-out, as rows.
-struct Record {
-  std::vector<Log> logs;       // of linear axes, their time from each one's start
-  std::vector<Log> driven;     // the same with set-points for the simulation where they have none
-  LogRows rows;                // as measured
-  LogRows regressors;          // of the motion that columns are made of: the simulated one where there is one
-  Eigen::VectorXd expected;    // N, what the file says of the measured motion
-  Eigen::VectorXd target;      // N, what the file does not make of the force; rows at rest do not count
-  std::vector<Log> simulated;  // the file's own runs of these logs; empty where it cannot follow
-};
 
 struct Prepared {
   machine::AxisModel axis;

@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <array>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,10 +16,19 @@
 #include "host/diagnose/spectrum/line_scan.hpp"
 #include "host/diagnose/spectrum/place_scan.hpp"
 #include "host/diagnose/verdict/verdict.hpp"
+#include "host/identify/log_rows.hpp"
 #include "host/identify/motion.hpp"
 #include "sim/effects/effect_descriptor.hpp"
 
 namespace stiction::host {
+
+// One record of a machine that is exactly as its file says.
+struct ExactRecord {
+  Eigen::VectorXd target;             // N, of the rows: what the file does not make of its force
+  std::optional<LogRows> regressors;  // where they are not those of the record that it is like
+};
+// One of many draws, by its number; none where the machine cannot follow under the forces that were drawn.
+using ExactRecords = std::function<std::optional<ExactRecord>(std::size_t)>;
 
 // What the candidates may know: the axis as its file has it and what the training records cover. SI units.
 struct SearchContext {
@@ -33,7 +43,9 @@ struct SearchContext {
   bool other_axis = false;        // its motion is in every record
   double duration = 0.0;          // s, of the longest record
   double log_period = 0.0;        // s, of the slowest record
-  machine::Timing timing{};       // of the drive
+  // Hz, up to where the motion of the regressors holds that of the records; infinite with set-points.
+  double known_up_to = std::numeric_limits<double>::infinity();
+  machine::Timing timing{};  // of the drive
   // Found as the search goes: lines over position, over position in proportion to the force and to the speed, over
   // time, over the encoder's signal.
   LineScan pitches{}, modulation{}, by_speed{}, times{}, signals_of_encoder{};
@@ -44,6 +56,10 @@ struct SearchContext {
   std::function<std::vector<double>(const Motion&, const machine::Effect&, std::size_t most_runs)> response;
   // From now on under forces like this one (N, of the rows): what of the residual force no cause explains.
   std::function<void(const Eigen::VectorXd&)> disturb;
+  // Of exact machines under forces like this one (N, of the rows): exact_records.hpp. Empty: no simulation.
+  std::function<ExactRecords(const Eigen::VectorXd&)> exact_records;
+  // Of each candidate, nats: its price beyond what all of them have (calibration.hpp). Empty: none.
+  std::vector<double> prices;
   double stroke() const { return highest_position - lowest_position; }
 };
 

@@ -11,6 +11,7 @@
 #include "host/diagnose/record/command_replay.hpp"
 #include "host/diagnose/statistics/evidence.hpp"
 #include "host/diagnose/statistics/fisher.hpp"
+#include "host/diagnose/statistics/level.hpp"
 #include "host/diagnose/statistics/most_odds.hpp"
 #include "host/identify/filter.hpp"
 #include "host/identify/identification.hpp"
@@ -22,7 +23,6 @@ namespace stiction::host {
 namespace {
 
 // Odds of the loss ratio, against as many parameters as there are.
-constexpr double loss_ratio = 20.0;
 // Of a change: where the file's own run shows so much of it, it is the replay's.
 constexpr double of_own_run = 0.5;
 constexpr double least_command_gain = 0.01;  // of the cross-validated residual

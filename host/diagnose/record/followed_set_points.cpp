@@ -19,6 +19,7 @@ constexpr double highest_edge = 0.8;  // of half the log's rate
 // Of the position loop's bandwidth. Faster motion is the loop's answer to what disturbs the axis: regressors of it
 // would carry the disturbance that they are regressed on.
 constexpr double followed = 2.0;
+constexpr double missed = 0.01;  // of the stroke, rms: the machine does not go this way
 
 std::vector<double> less(std::vector<double> one, const std::vector<double>& other) {
   std::transform(one.begin(), one.end(), other.begin(), one.begin(), std::minus<>());
@@ -36,12 +37,11 @@ class Follower {
  public:
   Follower(const machine::Machine& machine, std::size_t axis, const Log& log)
       : machine_(machine), axis_(axis), log_(log) {
-    const double bandwidth = machine.axes[axis].position_controller.gain / (2.0 * std::numbers::pi);  // Hz
-    lowpass_ = butterworth(order, std::min(2.0 * followed * bandwidth * log.period, highest_edge));
+    lowpass_ = butterworth(order, 2.0 * followed_up_to(machine.axes[axis], log.period) * log.period);
     wanted_ = smoothed(channels().x);
   }
 
-  // The set positions of the round that came nearest; empty where none could be simulated.
+  // The set positions of the round that came nearest; empty where none could be simulated, or did not come near.
   std::vector<double> learned() {
     std::vector<double> best, set = wanted_;
     double least = INFINITY;
@@ -54,6 +54,9 @@ class Follower {
         break;
       add(set, missing);
     }
+    const auto [low, high] = std::minmax_element(wanted_.begin(), wanted_.end());
+    const double increment = machine_.axes[axis_].encoder.increment;
+    if (!(std::sqrt(least) < std::max(missed * (*high - *low), increment))) return {};
     return best;
   }
 
@@ -103,6 +106,11 @@ std::vector<Log> with_set_points(const machine::Machine& machine, std::size_t ax
     if (channels.x_set.empty()) channels.x_set = Follower(machine, axis, log).learned();
   }
   return logs;
+}
+
+double followed_up_to(const machine::AxisModel& axis, double period) {
+  const double bandwidth = axis.position_controller.gain / (2.0 * std::numbers::pi);
+  return std::min(followed * bandwidth, 0.5 * highest_edge / period);
 }
 
 }  // namespace stiction::host

@@ -16,4 +16,8 @@ namespace stiction::host {
 // not known or its simulation cannot follow. `machine` of the file; `axis`: its index.
 std::vector<Log> with_set_points(const machine::Machine& machine, std::size_t axis, std::vector<Log> logs);
 
+// Hz, up to where such set-points hold the motion of the `axis`: twice the bandwidth of its position loop, as far as
+// logs with `period` (s) reach.
+double followed_up_to(const machine::AxisModel& axis, double period);
+
 }  // namespace stiction::host

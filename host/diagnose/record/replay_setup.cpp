@@ -17,8 +17,9 @@
 namespace stiction::host {
 namespace {
 
-// Of the stroke: a simulated position that is further away, rms, is another motion.
-constexpr double another_way = 0.01;
+// Of the stroke: a simulated position that is further away, rms, is another motion. Within an increment of the encoder
+// there is no telling: a record of a few increments, or of none, goes every way.
+constexpr double another_way = 0.03;
 constexpr double fine = 0.01;              // of the position controller's increment
 constexpr std::size_t answers_kept = 6;    // of each log: a grid has two of backlash
 constexpr std::size_t usual_runs = 2;      // a third one is half as much work again and names no more of a small gap
@@ -26,13 +27,13 @@ constexpr std::size_t most_runs_ever = 8;  // of a swing that keeps its phase fo
 constexpr std::size_t runs_of_disturbance = 4;
 constexpr double much_chance = 0.25;  // of the disturbance's square
 
-bool same_way(const std::vector<double>& simulated, const std::vector<double>& measured) {
+bool same_way(const std::vector<double>& simulated, const std::vector<double>& measured, double increment) {
   double mean = 0.0, square = 0.0;
   const double n = static_cast<double>(measured.size());
   for (std::size_t i = 0; i < measured.size(); ++i) mean += (simulated[i] - measured[i]) / n;
   for (std::size_t i = 0; i < measured.size(); ++i) square += std::pow(simulated[i] - measured[i] - mean, 2) / n;
   const auto [low, high] = std::minmax_element(measured.begin(), measured.end());
-  return std::sqrt(square) < another_way * (*high - *low);
+  return std::sqrt(square) < std::max(another_way * (*high - *low), increment);
 }
 
 // So fine that the axis does not hunt in it, but no finer than the drive's number format holds.
@@ -114,7 +115,7 @@ WithoutNoise without_noise(const machine::Machine& machine, std::size_t axis, co
     for (std::size_t k = 0; k < logs.size(); ++k) {
       const auto& measured = channels_of(logs[k], machine.axes[axis]);
       const auto& position = without.replayed[k].axes.front().x;
-      if (!same_way(position, measured.x)) return {};
+      if (!same_way(position, measured.x, machine.axes[axis].encoder.increment)) return {};
       without.motion[k].axes[static_cast<std::size_t>(&measured - logs[k].axes.data())].x = position;
     }
     return without;
@@ -233,6 +234,16 @@ std::vector<double> EffectResponse::of_disturbance(const Motion& motion) {
   } catch (const FaultTripped&) {
     return std::vector<double>(motion.t.size(), 0.0);
   }
+}
+
+std::vector<double> EffectResponse::drawn(const Motion& motion, std::size_t run) {
+  const auto k = index_of(motion);
+  auto& record = records_[k];
+  const auto& own = silent(record);
+  const auto log = disturbed(k, most_runs_ever * records_.size() + run * records_.size());
+  auto force = residual(record, replayed_like(machine_, log), record.log.axes.front().external_force);
+  for (std::size_t i = 0; i < force.size(); ++i) force[i] -= own[i];
+  return force;
 }
 
 std::vector<double> EffectResponse::operator()(const Motion& motion, const machine::Effect& effect,

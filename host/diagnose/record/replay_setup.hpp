@@ -89,6 +89,9 @@ class EffectResponse {
   // it ends or begins, friction that it smoothes. Zeros without disturbance.
   // Throws std::out_of_range for a motion of another log.
   std::vector<double> of_disturbance(const Motion& motion);
+  // N at the motion's rate: the residual of the machine as it is under one draw of the disturbance, that force
+  // included. `run`: which draw. Throws std::out_of_range for a motion of another log, FaultTripped.
+  std::vector<double> drawn(const Motion& motion, std::size_t run);
 
  private:
   struct Record {

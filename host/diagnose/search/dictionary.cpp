@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "host/diagnose/classes/candidate_columns.hpp"
 #include "host/diagnose/search/context_lines.hpp"
@@ -207,6 +208,46 @@ std::optional<Dictionary::Option> Dictionary::best_of(std::size_t candidate, con
     if (possible(*option, beside, of_beside, gain.size)) best = Option{option.get(), odds};
   }
   return best;
+}
+
+// The candidate's options along another motion, behind all columns.
+std::vector<Group> Dictionary::columns_along(const LogRows& regressors, std::size_t candidate) {
+  std::vector<CandidateAt> trials;
+  for (const auto& option : options_)
+    if (option->candidate == candidate) trials.push_back({&candidates()[candidate], option->shape});
+  std::vector<Group> groups;
+  for (const auto& columns : group_columns(regressors, scene_, trials)) groups.push_back(add_group(evidence_, columns));
+  return groups;
+}
+
+std::vector<double> Dictionary::names_in(const ExactRecord& record, const std::vector<std::size_t>& names,
+                                         const ActiveSet& beside) {
+  const Eigen::VectorXd own = evidence_.target();
+  evidence_.retarget(record.target);
+  const auto of_set = posterior(beside);
+  std::vector<double> odds;
+  for (const auto c : names) {
+    odds.push_back(-std::numeric_limits<double>::infinity());
+    if (candidates()[c].periodic) continue;
+    const auto first = evidence_.columns();
+    std::vector<Group> along;
+    if (record.regressors && !candidates()[c].replays) along = columns_along(*record.regressors, c);
+    std::size_t k = 0;
+    for (const auto& option : options_) {
+      if (option->candidate != c) continue;
+      Atom atom{c, option->shape, along.empty() ? option->group : along[k++], option->log_prior};
+      const auto gain = of_set.gain_of(atom.group);
+      if (gain.nats + atom.log_prior > odds.back() && possible(atom, beside, of_set, gain.size))
+        odds.back() = gain.nats + atom.log_prior;
+    }
+    evidence_.truncate(first);
+  }
+  evidence_.retarget(own);
+  return odds;
+}
+
+void Dictionary::price_again() {
+  for (const auto& option : options_) option->log_prior = log_prior_of(scene_, option->candidate, option->shape);
 }
 
 std::optional<Dictionary::Option> Dictionary::at_shape(std::size_t candidate, double shape, const ActiveSet& beside,

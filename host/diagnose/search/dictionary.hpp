@@ -56,6 +56,12 @@ class Dictionary {
   // The candidate's atom with the highest odds `beside` a set, of which `of_beside` is the posterior; none where none
   // is possible.
   std::optional<Option> best_of(std::size_t candidate, const ActiveSet& beside, const Posterior& of_beside) const;
+  // Log odds of the best of each of the candidates `names`, as best_of() beside a set, were this the record; minus
+  // infinity where none is possible. Those that are scanned for are left out: their trials are counted.
+  std::vector<double> names_in(const ExactRecord& record, const std::vector<std::size_t>& names,
+                               const ActiveSet& beside);
+  // Each option's price anew, as the context has them now.
+  void price_again();
   // The `option` with its nonlinear parameter between the values of the grid; `beside` and `of_beside` as above.
   Option refined(Option option, const ActiveSet& beside, const Posterior& of_beside);
 
@@ -74,6 +80,7 @@ class Dictionary {
   bool possible(const Atom& atom, const ActiveSet& beside, const Posterior& of_beside, double size) const;
   std::optional<Option> at_shape(std::size_t candidate, double shape, const ActiveSet& beside,
                                  const Posterior& of_beside);
+  std::vector<Group> columns_along(const LogRows& regressors, std::size_t candidate);
   Eigen::VectorXd settled_residual(const ActiveSet& set) const;
   Eigen::VectorXd absorbed_by_all(const ActiveSet& set) const;
 

@@ -5,11 +5,12 @@
 #include <cmath>
 
 #include "host/diagnose/classes/candidate.hpp"
+#include "host/diagnose/statistics/level.hpp"
 
 namespace stiction::host {
 
-// A loss ratio of 20: as log odds, what a name must have against all that has none.
-constexpr double sure = 3.0;
+// What a name must have against all that has none: nats.
+inline const double sure = std::log(loss_ratio);
 // Of the strongest term's log evidence: so much may be left of how that one was described.
 constexpr double of_strongest = 0.02;
 
@@ -23,9 +24,11 @@ inline double trials_of(const SearchContext& context, std::size_t candidate, dou
 }
 
 // Log odds beforehand that the candidate is there with one value of its nonlinear parameter: one of all is as likely as
-// none, each value as likely as the next. `context`, `candidate` and `shape`: as above.
+// none, each value as likely as the next; less what records of the exact machine say for it. `context`, `candidate` and
+// `shape`: as above.
 inline double log_prior_of(const SearchContext& context, std::size_t candidate, double shape) {
-  return -std::log(static_cast<double>(candidates().size()) * trials_of(context, candidate, shape));
+  const double price = context.prices.empty() ? 0.0 : context.prices[candidate];
+  return -std::log(static_cast<double>(candidates().size()) * trials_of(context, candidate, shape)) - price;
 }
 
 }  // namespace stiction::host

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <set>
 
+#include "host/diagnose/search/calibration.hpp"
 #include "host/diagnose/search/dictionary.hpp"
 #include "host/diagnose/search/price.hpp"
 #include "host/diagnose/search/refinement.hpp"
@@ -17,10 +19,11 @@ namespace {
 
 constexpr std::size_t most_terms = 10;
 constexpr std::size_t most_rounds = 40;
-constexpr std::size_t refined_each = 5;           // of the best options, before one of them is taken
-constexpr std::size_t paired = 10;                // of the best options, where none is worth its price alone
-constexpr double better = 0.5;                    // nats: less is no reason to move
-constexpr double least_probability = 1.0 / 21.0;  // what odds of the loss ratio exclude
+constexpr std::size_t refined_each = 5;  // of the best options, before one of them is taken
+constexpr std::size_t paired = 10;       // of the best options, where none is worth its price alone
+constexpr double better = 0.5;           // nats: less is no reason to move
+constexpr double telling = 20.0;         // odds that exclude a name in the place of another
+constexpr double least_probability = 1.0 / (1.0 + telling);
 
 // Why a refined term is no effect that a machine can have.
 std::optional<std::string> impossible(const SearchContext& context, const Term& term) {
@@ -43,6 +46,8 @@ class Search : private Dictionary {
   using Dictionary::Dictionary;
 
   SearchResult run();
+  // With the prices of records of the exact machine, where a name came out that has one.
+  SearchResult run_calibrated();
 
  private:
   std::vector<Option> options_beside(const ActiveSet& set, const Posterior& of_set) const;
@@ -64,6 +69,7 @@ class Search : private Dictionary {
   std::vector<Term> terms_of(const ActiveSet& set);
   void discard(std::size_t candidate, std::string why, bool nearly);
 
+  ActiveSet found_;
   std::vector<Discarded> discarded_;
   std::set<std::size_t> refused_;  // candidates that an axis cannot have as these records want them
 };
@@ -194,7 +200,7 @@ void Search::name(const ActiveSet& set, std::size_t term, Term& as) {
   for (std::size_t k = 0; k < std::min(refined_each, options.size()); ++k)
     options[k] = refined(options[k], others, of_others);
   const double own = score(set) - score(others);
-  const double blur = std::max(1.0, of_strongest * own / sure);
+  const double blur = std::max(1.0, of_strongest * own / std::log(telling));
   double sum = 1.0 + std::exp(-std::min(own, worth(set, term).by_own_spectrum) / blur);
   for (const auto& option : options)
     if (option.atom->candidate != set[term]->candidate) sum += std::exp((option.score - own) / blur);
@@ -272,7 +278,43 @@ void Search::prune(ActiveSet& set) {
   }
 }
 
+// Without a name that the exact machine's records have too another may come out, which is looked at in turn.
+SearchResult Search::run_calibrated() {
+  auto result = run();
+  std::optional<Calibration> calibration;
+  std::set<std::size_t> known;
+  while (scene_.exact_records) {
+    ActiveSet without_name;
+    std::vector<std::size_t> names;
+    for (const auto* atom : found_)
+      if (candidates()[atom->candidate].outside())
+        without_name.push_back(atom);
+      else if (known.insert(atom->candidate).second)
+        names.push_back(atom->candidate);
+    if (names.empty()) break;
+    if (!calibration) calibration.emplace(scene_, result.residual.cwiseProduct(rows_.counts()));
+    const auto prices =
+        calibration->prices([&](const ExactRecord& record) { return names_in(record, names, without_name); });
+    if (std::none_of(prices.begin(), prices.end(), [](double price) { return price > 0.0; })) break;
+    scene_.prices.resize(candidates().size(), 0.0);
+    for (std::size_t k = 0; k < names.size(); ++k) scene_.prices[names[k]] = prices[k];
+    price_again();
+    result = run();
+  }
+  if (calibration) result.exact_records = calibration->records();
+  for (const auto c : known)
+    if (!scene_.prices.empty() && scene_.prices[c] > 0.0 &&
+        std::none_of(result.terms.begin(), result.terms.end(), [&](const Term& term) { return term.candidate == c; }))
+      result.discarded.push_back(
+          {c, fmt::format("records of the machine as its file says, under forces like the residual, show it too: of {} "
+                          "that were simulated one in a hundred has log odds above {:.1f}",
+                          result.exact_records, scene_.prices[c] + sure)});
+  return result;
+}
+
 SearchResult Search::run() {
+  discarded_.clear();
+  refused_.clear();
   auto set = searched_from(true);
   const double of_first = with_own_noise(set);
   auto other = searched_from(false);
@@ -296,6 +338,7 @@ SearchResult Search::run() {
     improve(set);
     for (std::size_t round = 0; round < most_rounds && set.size() < most_terms && grow(set); ++round) improve(set);
   }
+  found_ = set;
   for (const auto& d : discarded_)
     if (std::none_of(result.terms.begin(), result.terms.end(),
                      [&](const Term& term) { return term.candidate == d.candidate; }) &&
@@ -312,7 +355,7 @@ SearchResult Search::run() {
 }  // namespace
 
 SearchResult search_causes(const LogRows& rows, const Eigen::VectorXd& target, SearchContext& context) {
-  return Search(rows, target, context).run();
+  return Search(rows, target, context).run_calibrated();
 }
 
 }  // namespace stiction::host

@@ -41,6 +41,7 @@ struct SearchResult {
   Eigen::VectorXd residual;  // N, of the rows, with all terms
   double correlation = 1.0;  // rows
   std::size_t blocks = 0;
+  std::size_t exact_records = 0;  // simulated, of the machine as its file says, to see what is named in those; 0: none
 };
 
 // `target`: the residual force of the rows. `context` gets the pitches that were found.

@@ -17,19 +17,32 @@ void BlockProducts::truncate(std::size_t first) {
   of_blocks_.clear();
 }
 
+void BlockProducts::replace(std::size_t index, Eigen::VectorXd column) {
+  columns_[index] = std::move(column);
+  for (std::size_t other = 0; other < columns_.size(); ++other)
+    if (const auto place = places_[std::max(index, other)][std::min(index, other)]; place != unknown)
+      multiply(index, other, place);
+}
+
 std::size_t BlockProducts::known(std::size_t one, std::size_t other) const {
   auto& place = places_[std::max(one, other)][std::min(one, other)];
   if (place != unknown) return place;
   place = totals_.size();
-  double total = 0.0;
-  for (const auto& block : blocks_) {
-    const auto begin = static_cast<Eigen::Index>(block.begin);
-    const auto length = static_cast<Eigen::Index>(block.end - block.begin);
-    of_blocks_.push_back(columns_[one].segment(begin, length).dot(columns_[other].segment(begin, length)));
-    total += of_blocks_.back();
-  }
-  totals_.push_back(total);
+  totals_.push_back(0.0);
+  of_blocks_.resize(of_blocks_.size() + blocks_.size());
+  multiply(one, other, place);
   return place;
+}
+
+void BlockProducts::multiply(std::size_t one, std::size_t other, std::size_t place) const {
+  totals_[place] = 0.0;
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    const auto begin = static_cast<Eigen::Index>(blocks_[b].begin);
+    const auto length = static_cast<Eigen::Index>(blocks_[b].end - blocks_[b].begin);
+    const double product = columns_[one].segment(begin, length).dot(columns_[other].segment(begin, length));
+    of_blocks_[place * blocks_.size() + b] = product;
+    totals_[place] += product;
+  }
 }
 
 }  // namespace stiction::host

@@ -16,6 +16,8 @@ class BlockProducts {
 
   const Eigen::VectorXd& column(std::size_t index) const { return columns_[index]; }
   void add(Eigen::VectorXd column);
+  // Another column in the place of one.
+  void replace(std::size_t index, Eigen::VectorXd column);
   // Drops all columns from `first` on.
   void truncate(std::size_t first);
 
@@ -30,6 +32,8 @@ class BlockProducts {
   static constexpr std::size_t unknown = static_cast<std::size_t>(-1);
   // Place of a pair in the products.
   std::size_t known(std::size_t one, std::size_t other) const;
+  // Works out a pair's products and keeps them at that place.
+  void multiply(std::size_t one, std::size_t other, std::size_t place) const;
 
   std::vector<RowBlock> blocks_;
   std::vector<Eigen::VectorXd> columns_;

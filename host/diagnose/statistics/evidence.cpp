@@ -41,6 +41,11 @@ void Evidence::truncate(Eigen::Index first) {
   white_.truncate(place(first));
 }
 
+void Evidence::retarget(Eigen::VectorXd target) {
+  target_ = std::move(target);
+  white_.replace(of_target, whitening_(target_));
+}
+
 void Evidence::whiten(Whitening whitening, std::size_t correlated) {
   whitening_ = std::move(whitening);
   clusters_.clear();

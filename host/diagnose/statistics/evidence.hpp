@@ -28,6 +28,9 @@ class Evidence {
   // belong together still: the clusters of covariances are no shorter (0: whole blocks).
   void whiten(Whitening whitening, std::size_t correlated = 0);
 
+  // Looks at another target (N, in all rows) in the place of this one, through the same whitening.
+  void retarget(Eigen::VectorXd target);
+
   std::size_t rows() const { return static_cast<std::size_t>(target_.size()); }
   Eigen::Index columns() const { return static_cast<Eigen::Index>(columns_.size()); }
   std::size_t blocks() const { return blocks_.size(); }

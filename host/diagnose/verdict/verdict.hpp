@@ -189,6 +189,7 @@ struct Verdict {
   std::optional<NoiseFloor> noise_floor;
   std::optional<Agreement> agreement;
   std::vector<Finding> findings;  // by what each explains, the largest first
+  std::size_t exact_records = 0;  // of the machine as its file says, in which the names were looked for too
   std::vector<Rejected> rejected;
   Unexplained unexplained;
   std::vector<std::string> questions;      // on amperes, lengths, signs and shifts of the logs: to be answered first

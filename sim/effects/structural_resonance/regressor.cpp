@@ -7,6 +7,7 @@
 
 #include "host/diagnose/classes/effect_regressor.hpp"
 #include "host/diagnose/record/inverse_dynamics.hpp"
+#include "host/diagnose/record/noise_floor.hpp"
 
 namespace stiction::host::effects::structural_resonance {
 namespace {
@@ -28,13 +29,22 @@ Columns columns(const SearchContext& context, const Motion& motion, double ratio
 // two samples of an acceleration takes off it, at every frequency w_m: (w_m period)^2 / 12. Above it, at 551 Hz in logs
 // of 1 ms, a mode is not told from set-points that nobody knows between the samples.
 double least_bend(const SearchContext& context) { return context.log_period * context.log_period / 12.0; }
+// What a mode adds to the acceleration grows with the square of the frequency, (w_m / w)^2; what the low-pass of
+// learned set-points takes off it with the eighth power, (w_m / w_e)^8. They meet where a mode adds (w_e / w)^(8/3);
+// less than inverse dynamics can be off by, with and without the mode, is no mode: one of more than thirteen times the
+// edge w_e.
+double most_frequency(const SearchContext& context) {
+  return context.known_up_to * std::pow(2.0 * resolution_of_dynamics, -3.0 / 8.0);
+}
+double frequency_of(const Eigen::VectorXd& w) { return 0.5 / (std::numbers::pi * std::sqrt(w[0])); }
 double damping_of(const Eigen::VectorXd& w) { return 0.5 * w[1] / (w[0] * std::sqrt(w[0])); }
 bool possible(const SearchContext& context, double, const Eigen::VectorXd& w) {
-  return w[0] > least_bend(context) && damping_of(w) > least_damping && damping_of(w) < largest_damping;
+  return w[0] > least_bend(context) && frequency_of(w) < most_frequency(context) && damping_of(w) > least_damping &&
+         damping_of(w) < largest_damping;
 }
 void describe(const SearchContext& context, double ratio, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
               Finding& finding) {
-  const double frequency = 0.5 / (std::numbers::pi * std::sqrt(w[0]));
+  const double frequency = frequency_of(w);
   const Eigen::Vector2d slope(-1.5 * damping_of(w) / w[0], 0.5 / (w[0] * std::sqrt(w[0])));
   add_key(context, finding, "frequency", {frequency}, {0.5 * frequency / w[0] * std::sqrt(c(0, 0))});
   add_key(context, finding, "damping_ratio", {std::clamp(damping_of(w), 0.0, 1.0)},

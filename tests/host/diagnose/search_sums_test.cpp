@@ -114,3 +114,17 @@ TEST(SearchSums, a_fit_is_that_of_the_rows_whatever_was_asked_before) {
   EXPECT_NEAR(evidence.fit({0, 1}).left, direct({a, c}, whitening), tolerance);
   EXPECT_NEAR(evidence.fit({0, 1}, {true, true, true}).left, evidence.fit({0, 1}).left, tolerance);
 }
+
+TEST(SearchSums, another_target_has_the_products_of_its_own) {
+  const Eigen::Index rows = 600;
+  std::vector<RowBlock> blocks{{0, 200}, {200, 450}, {450, 600}};
+  const auto one = drawn(rows, 1), other = drawn(rows, 2), column = drawn(rows, 3), late = drawn(rows, 4);
+  Evidence evidence(one, blocks), direct(other, blocks);
+  evidence.add({column, late});
+  direct.add({column, late});
+  EXPECT_NE(evidence.fit({0}).coefficients[0], direct.fit({0}).coefficients[0]);
+  evidence.retarget(other);  // one product is known already, the other is not
+  EXPECT_EQ(evidence.total(), direct.total());
+  EXPECT_EQ(evidence.fit({0, 1}).coefficients, direct.fit({0, 1}).coefficients);
+  EXPECT_EQ(evidence.held_out({0, 1}), direct.held_out({0, 1}));
+}

@@ -1,0 +1,35 @@
+// Logs of one use, training or held-out, on their way to the residual force: as measured, beside the file's own run of
+// them, and along the motion that regressors are made of.
+#pragma once
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "firmware/machine/model/machine.hpp"
+#include "host/identify/log_rows.hpp"
+#include "host/log/log.hpp"
+
+namespace stiction::host {
+
+struct Record {
+  std::vector<Log> logs;       // of linear axes, their time from each one's start
+  std::vector<Log> driven;     // the same with set-points for the simulation where they have none
+  LogRows rows;                // as measured
+  LogRows regressors;          // of the motion that columns are made of: the simulated one where there is one
+  Eigen::VectorXd expected;    // N, what the file says of the measured motion
+  Eigen::VectorXd target;      // N, what the file does not make of the force; rows at rest do not count
+  std::vector<Log> simulated;  // the file's own runs of these logs; empty where it cannot follow
+};
+
+// Gives the `record` with its logs the rows as measured, and what the file says of them and leaves. `axis` of the file
+// as the plant has it; `settings` of the rows. Throws LogError.
+void measure(Record& record, const machine::AxisModel& axis, const SignalSettings& settings);
+// Drives the file's machine through the logs of the `record`; returns them with the motion that it makes. Empty where
+// it cannot follow, or goes another way. `machine` of the file; `axis`: its index.
+std::vector<Log> drive(Record& record, const machine::Machine& machine, std::size_t axis);
+// Regressors are of this `motion` (drive()) from now on, or, where it is empty, of the measured one; the target is less
+// what the file leaves of its own run; rows at standstill do not count. `record`, `axis` and `settings` as above.
+void regress_on(Record& record, const std::vector<Log>& motion, const machine::AxisModel& axis,
+                const SignalSettings& settings);
+
+}  // namespace stiction::host

@@ -1,0 +1,27 @@
+// What the analysis itself makes of records in which nothing is hidden: the machine exactly as its file says, over the
+// same set-points, under forces with the spectrum of what was left of the record. A candidate that stands out there,
+// through the control loop, the encoder's steps or a slow clock, has to be worth as much more before it is a cause.
+#pragma once
+
+#include <Eigen/Dense>
+#include <functional>
+#include <vector>
+
+#include "host/diagnose/classes/candidate.hpp"
+
+namespace stiction::host {
+
+class Calibration {
+ public:
+  // `context`: with exact_records(); `noise`: N, of the rows, what no cause explains of the record.
+  Calibration(const SearchContext& context, const Eigen::VectorXd& noise);
+
+  std::size_t records() const { return records_.size(); }  // 0: none can be simulated
+  // Nats, 0 and more, of each name of which `odds_in` tells the log odds in a record.
+  std::vector<double> prices(const std::function<std::vector<double>(const ExactRecord&)>& odds_in) const;
+
+ private:
+  std::vector<ExactRecord> records_;
+};
+
+}  // namespace stiction::host
