@@ -25,7 +25,7 @@ SearchContext context_of(double gain, std::size_t followed = 1000) {
   return context;
 }
 
-const Eigen::Vector3d noise(1.0, -2.0, 2.0);
+const Eigen::Vector3d left_over(1.0, -2.0, 2.0);
 
 }  // namespace
 
@@ -33,7 +33,7 @@ const Eigen::Vector3d noise(1.0, -2.0, 2.0);
 TEST(Calibration, asks_nothing_where_exact_records_have_little_odds) {
   std::mt19937_64 random(1);
   std::exponential_distribution<double> tail;
-  const Calibration calibration(context_of(1.0), noise);
+  const Calibration calibration(context_of(1.0), left_over);
   EXPECT_EQ(calibration.records(), 24U);
   const auto prices = calibration.prices([&](const ExactRecord&) { return std::vector{-4.0 + tail(random)}; });
   EXPECT_EQ(prices, std::vector{0.0});
@@ -43,7 +43,7 @@ TEST(Calibration, asks_nothing_where_exact_records_have_little_odds) {
 TEST(Calibration, prices_a_name_by_the_tail_of_its_odds) {
   std::mt19937_64 random(2);
   std::exponential_distribution<double> tail;
-  const Calibration calibration(context_of(1.0), noise);
+  const Calibration calibration(context_of(1.0), left_over);
   const double expected = 50.0 + std::log(100.0 * static_cast<double>(candidates().size())) - sure;
   double mean = 0.0;
   constexpr int times = 200;
@@ -53,12 +53,12 @@ TEST(Calibration, prices_a_name_by_the_tail_of_its_odds) {
 }
 
 TEST(Calibration, knows_nothing_of_few_records) {
-  EXPECT_EQ(Calibration(context_of(1.0, 7), noise).records(), 0U);
-  EXPECT_EQ(Calibration(context_of(1.0, 8), noise).records(), 8U);
+  EXPECT_EQ(Calibration(context_of(1.0, 7), left_over).records(), 0U);
+  EXPECT_EQ(Calibration(context_of(1.0, 8), left_over).records(), 8U);
 }
 
 TEST(Calibration, does_not_price_what_no_exact_record_can_have) {
-  const Calibration calibration(context_of(1.0), noise);
+  const Calibration calibration(context_of(1.0), left_over);
   const auto prices = calibration.prices([](const ExactRecord&) {
     return std::vector{-std::numeric_limits<double>::infinity(), 30.0};
   });
@@ -69,9 +69,9 @@ TEST(Calibration, does_not_price_what_no_exact_record_can_have) {
 // The loop's answer and the encoder's steps add to what is drawn.
 TEST(Calibration, draws_forces_under_which_the_exact_machine_leaves_as_much) {
   for (const double gain : {0.5, 1.0, 4.0}) {
-    const Calibration calibration(context_of(gain), noise);
+    const Calibration calibration(context_of(gain), left_over);
     calibration.prices([&](const ExactRecord& record) {
-      EXPECT_NEAR(record.target.norm(), std::min(gain, 1.0) * noise.norm(), 1e-12);
+      EXPECT_NEAR(record.target.norm(), std::min(gain, 1.0) * left_over.norm(), 1e-12);
       return std::vector<double>{};
     });
   }
