@@ -14,6 +14,9 @@ import { axesWithoutUnit, confusableSeries, cutOff, poorContrasts } from './page
 const { chromium } = createRequire(new URL('../../../host/report/web/package.json', import.meta.url))('playwright-core');
 
 const PATIENCE = 120000;  // ms; a page is slow on a machine that compiles, or runs the other tests, at the same time
+// ms for all that is asked of a page, some 20 s of computing. Now and then a browser stops answering for good, and the
+// questions to the page have no limit of their own: a second browser is asked then. A page that hangs does so in both.
+const ATTEMPT = 300000;
 
 const problems = [];
 export function expect(holds, message) {
@@ -139,6 +142,13 @@ async function checkTools(page) {
   expect(rows.length >= 2 && rows.every(row => row.split(',').length === header.split(',').length), `${points.name} has ${rows.length} rows, not all as long as the header`);
 }
 
+// What `work` resolves to, or undefined when that takes longer than `limit` ms.
+async function within(limit, work) {
+  let timer;
+  const late = new Promise(done => { timer = setTimeout(done, limit); });
+  return Promise.race([work, late]).finally(() => clearTimeout(timer));
+}
+
 // Opens the page of the command line, runs `checks`(page, the page's data, what else the command line says), and ends
 // the process.
 export async function openPage(script, more, checks) {
@@ -160,11 +170,20 @@ export async function openPage(script, more, checks) {
     if (options.screenshot) await page.screenshot({ path: options.screenshot, fullPage: true });
     if (options.pdf) await page.pdf({ path: options.pdf, preferCSSPageSize: true, printBackground: true });
   };
-  try {
+  const attempt = async () => {
     const browser = await chromium.launch({ executablePath: process.env.CHROMIUM || '/usr/bin/chromium', timeout: PATIENCE,
       args: ['--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
              '--disable-component-update', '--disable-sync', '--disable-dev-shm-usage'] });  // /dev/shm is small in containers
     await open(browser).finally(() => browser.close());
+    return true;
+  };
+  try {
+    // A browser that does not answer may not close either; the end of this process ends it.
+    const answers = await within(ATTEMPT, attempt());
+    if (!answers) {
+      console.error(`${script}: ${file}: the browser has not answered for ${ATTEMPT / 1000} s, at ${problems.length} problems; a second one is asked`);
+      expect(await within(ATTEMPT, attempt()), `a second browser has not answered for ${ATTEMPT / 1000} s`);
+    }
   } catch (error) {
     problems.push(error.message);
   }
