@@ -10,6 +10,7 @@ import dataclasses
 import os
 import pathlib
 import re
+import shlex
 import subprocess
 import sys
 
@@ -29,12 +30,12 @@ ln -s /data /share/stiction/machines
 ip link add vcan0 type vcan
 ip link set vcan0 mtu 72 up
 echo -1 >/proc/sys/kernel/sched_rt_runtime_us
-# NAME PLANT DRIVE: both until the drive has ended; LOAD: a command beside the loop.
+# run NAME: the functions plant and drive until the drive has ended, LOAD beside the loop.
 run() {
-  chrt -f 70 $2 >$1.plant 2>&1 &
+  plant >$1.plant 2>&1 &
   plant=$!
   while kill -0 $plant 2>/dev/null && [ ! -s $1.plant ]; do sleep 0.01; done
-  $3 >$1.drive 2>&1 &
+  drive >$1.drive 2>&1 &
   drive=$!
   if [ -n "$LOAD" ]; then
     while kill -0 $drive 2>/dev/null && ! grep -q 'has begun' $1.drive; do sleep 0.01; done
@@ -45,17 +46,15 @@ run() {
   watch=$!
   wait $drive
   echo $? >$1.status
-  kill $watch $load $plant 2>/dev/null
+  kill $watch $plant 2>/dev/null
+  [ -z "$LOAD" ] || killall -9 ${LOAD%% *}
   wait $plant $load 2>/dev/null
   LOAD= load=
+  echo "$(cut -d ' ' -f 1 /proc/uptime) s: $1 ended with $(cat $1.status)"
+  [ "$(cat $1.status)" = 0 ] || grep -h -e fault -e found -e ended $1.drive | head -n 3
 }
 """
 LOAD = "hackbench -g 1 -f 4 -l 1000000000"
-
-
-def spaced(*options):
-    """Options of a shell's variable that is split at spaces: none may hold one."""
-    return " ".join(str(option).replace(" ", "") for option in options)
 
 
 @dataclasses.dataclass
@@ -71,18 +70,20 @@ class Run:
     def script(self):
         if self.bus == "can":
             machine = ["--machine", "mcfv5050ln", "--set", f"timing.fast_period={self.period}"]
-            plant = ["--bus", "can:vcan0", "--at", "X=90mm"]
+            plant = ["--bus", "can:vcan0", "--at", "X=90 mm"]
             drive = ["--hal", "can", "--set", "drive.can.interface=vcan0"]
         else:
             machine = ["--machine", "emps"]
             plant = ["--bus", "modbus:127.0.0.1:15020"]
             drive = ["--hal", "modbus", "--set", f"timing.fast_period={self.period}", "--set",
-                     f"timing.slow_period={self.period}", "--set", "axis.X.max_velocity=0.04m/s", "--set",
-                     "axis.X.velocity_controller.gain=30V*s/m", "--set", "axis.X.position_controller.gain=3/s", "--set",
+                     f"timing.slow_period={self.period}", "--set", "axis.X.max_velocity=0.04 m/s", "--set",
+                     "axis.X.velocity_controller.gain=30 V s/m", "--set", "axis.X.position_controller.gain=3 1/s", "--set",
                      "drive.modbus_client.device=127.0.0.1:15020"]
         task = list(self.task) + (["--trace", "trace.csv"] if self.trace else [])
         text = f"LOAD='{self.load}'\n" if self.load else ""
-        text += f"run {self.name} '{spaced('stiction-plant', *machine, *plant)}' '{spaced('stictiond', *machine, *drive, *task)}'\n"
+        text += f"plant() {{ exec {shlex.join(['chrt', '-f', '70', 'stiction-plant', *machine, *plant])}; }}\n"
+        text += f"drive() {{ exec {shlex.join(['stictiond', *machine, *drive, *task])}; }}\n"
+        text += f"run {self.name}\n"
         if self.trace:
             text += f"sha256sum trace.csv >{self.name}.sum\nrm -f trace.csv\n"
         return text
@@ -99,7 +100,7 @@ class Result:
         missed = re.search(r"^missed ticks (\d+)$", self.drive, re.M)
         self.missed = int(missed[1]) if missed else None
         checksum = folder / f"{name}.sum"
-        self.trace = checksum.read_text().split()[0] if checksum.exists() else None
+        self.trace = checksum.read_text() if checksum.exists() else ""
 
     def why(self):
         """The first line that says what went wrong."""
@@ -135,10 +136,10 @@ def main():
     parser.add_argument("--starts", type=int, default=5, help="starts of the drive over each bus")
     options = parser.parse_args()
 
-    first = [Run("idle", "can", "125us", ("--circle", "48m/min"), trace=True)]
-    rest = [Run("loaded", "can", "125us", ("--circle", "48m/min"), load=LOAD), Run("slower", "can", "250us", ("--hold", "1"))]
+    first = [Run("idle", "can", "125 us", ("--circle", "48 m/min"), trace=True)]
+    rest = [Run("loaded", "can", "125 us", ("--circle", "48 m/min"), load=LOAD), Run("slower", "can", "250 us", ("--hold", "1"))]
     starts = {bus: [Run(f"{bus}{k}", bus, period, ("--hold", hold)) for k in range(options.starts)]
-              for bus, period, hold in (("can", "125us", "0.05"), ("modbus", "10ms", "0.5"))}
+              for bus, period, hold in (("can", "125 us", "0.05"), ("modbus", "10 ms", "0.5"))}
     timers = "".join(f"cyclictest -N -q -m -p 80 -i {period} -l 4000 -h 30000 | grep -v ' 000000$' >cyclic{period}\n"
                      for period in (125, 250))
     whole = first + rest + starts["can"] + starts["modbus"]
@@ -179,7 +180,7 @@ def main():
         row("lateness 99.9 % at 250 us over cyclictest's", f"{slower.times['lateness'][1]:.2f} us, {ratio:.2f} of it", "<= 1.2", ratio <= 1.2)
     else:
         row("held at 250 us: status", str(slower.status), "0", False)
-    same = idle.trace is not None and idle.trace == again.trace
+    same = idle.trace != "" and idle.trace == again.trace
     row("the circle in a second boot: trace", "equal" if same else "different", "equal", same)
     if idle.times and again.times:
         apart = [abs(a - b) for a, b in zip(idle.times["lateness"][:2], again.times["lateness"][:2])]
