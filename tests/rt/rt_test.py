@@ -38,7 +38,7 @@ run() {
   drive >$1.drive 2>&1 &
   drive=$!
   if [ -n "$LOAD" ]; then
-    while kill -0 $drive 2>/dev/null && ! grep -q 'has begun' $1.drive; do sleep 0.01; done
+    while kill -0 $drive 2>/dev/null && ! grep -qs 'has begun' $1.drive; do sleep 0.01; done
     $LOAD >/dev/null 2>&1 &
     load=$!
   fi
@@ -69,7 +69,9 @@ class Run:
 
     def script(self):
         if self.bus == "can":
-            machine = ["--machine", "mcfv5050ln", "--set", f"timing.fast_period={self.period}"]
+            # The delay of the set-points is a multiple of every period here.
+            machine = ["--machine", "mcfv5050ln", "--set", f"timing.fast_period={self.period}", "--set",
+                       "timing.set_point_delay=500 us"]
             plant = ["--bus", "can:vcan0", "--at", "X=90 mm"]
             drive = ["--hal", "can", "--set", "drive.can.interface=vcan0"]
         else:
