@@ -21,7 +21,15 @@ inline constexpr std::array<const char*, 6> loop_part_names{"wait", "read", "tra
 template <class Time>
 class BasicLoopTiming {
  public:
-  explicit BasicLoopTiming(Time time = {}) : time_(time), last_ns_(time_.now_ns()) {}
+  explicit BasicLoopTiming(Time time = {}) : time_(time) { restart(); }
+
+  // The loop begins now; what was measured before is forgotten. Before other threads read the figures.
+  void restart() {
+    for (auto& part : parts_) part.clear();
+    work_.clear();
+    woke_ns_ = 0;
+    last_ns_ = time_.now_ns();
+  }
 
   // The time since the last call of this or finish() went into `part`.
   void lap(LoopPart part) {
@@ -42,7 +50,7 @@ class BasicLoopTiming {
 
  private:
   [[no_unique_address]] Time time_;
-  std::int64_t last_ns_;
+  std::int64_t last_ns_ = 0;
   std::int64_t woke_ns_ = 0;  // 0: the loop has not begun
   std::array<TimeHistogram, loop_part_names.size()> parts_;
   TimeHistogram work_;
@@ -59,6 +67,11 @@ class TimedBackend {
   TimedBackend(B& backend, BasicLoopTiming<Time>& timing) : backend_(backend), timing_(timing) {}
 
   std::size_t axis_count() const { return backend_.axis_count(); }
+
+  void begin() requires KernelTimeBackend<B> {
+    backend_.begin();
+    timing_.restart();
+  }
 
   std::int64_t wait_for_tick() {
     timing_.finish();

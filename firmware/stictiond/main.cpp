@@ -31,16 +31,17 @@ constexpr int exit_done = 0, exit_fault = 1;
 
 int status_of(const RunResult& result) { return result.faulted ? exit_fault : exit_done; }
 
-int run_simulated(const DriveConfiguration& configuration, const DriveOptions& options) {
+int run_simulated(RealTime& real_time, const DriveConfiguration& configuration, const DriveOptions& options) {
   const std::vector<double> rest(configuration.machine.axes.size());
   const auto start = options.circle.empty() ? rest : task_of(options, configuration, rest).motion.start();
   hal::SimulatedBackend<FixedSignals> simulated(configuration.machine, start);
-  if (options.unpaced) return status_of(run(simulated, nullptr, configuration, options, "simulated, in its own time"));
+  if (options.unpaced)
+    return status_of(run(real_time, simulated, nullptr, configuration, options, "simulated, in its own time"));
   hal::PacedBackend backend(simulated, configuration.period_ns);
-  return status_of(run(backend, &backend.clock(), configuration, options, "simulated"));
+  return status_of(run(real_time, backend, &backend.clock(), configuration, options, "simulated"));
 }
 
-int run_can(const DriveConfiguration& configuration, const DriveOptions& options) {
+int run_can(RealTime& real_time, const DriveConfiguration& configuration, const DriveOptions& options) {
   hal::check(can_bus_budget(configuration));
   const auto config = can_config(configuration);
   hal::TickClock clock(configuration.period_ns);
@@ -56,9 +57,10 @@ int run_can(const DriveConfiguration& configuration, const DriveOptions& options
   if (has_gpio_lines(configuration.setup, configuration.machine)) {
     hal::BesideLines both(backend, configuration.setup.gpio->chip, input_bias(configuration.setup),
                           gpio_lines(configuration.setup, configuration.machine));
-    result = run(both, &clock, configuration, options, title + " and lines of " + configuration.setup.gpio->chip);
+    result =
+        run(real_time, both, &clock, configuration, options, title + " and lines of " + configuration.setup.gpio->chip);
   } else {
-    result = run(backend, &clock, configuration, options, title);
+    result = run(real_time, backend, &clock, configuration, options, title);
   }
   for (std::size_t i = 0; i < configuration.names.size(); ++i) {
     const auto& n = backend.counts(i);
@@ -71,16 +73,17 @@ int run_can(const DriveConfiguration& configuration, const DriveOptions& options
   return status_of(result);
 }
 
-int run_gpio(const DriveConfiguration& configuration, const DriveOptions& options) {
+int run_gpio(RealTime& real_time, const DriveConfiguration& configuration, const DriveOptions& options) {
   hal::GpioBackend backend(gpio_configuration(configuration.setup, configuration.machine), configuration.period_ns);
-  const auto result = run(backend, &backend.clock(), configuration, options, "gpio " + configuration.setup.gpio->chip);
+  const auto result =
+      run(real_time, backend, &backend.clock(), configuration, options, "gpio " + configuration.setup.gpio->chip);
   for (std::size_t i = 0; i < configuration.names.size(); ++i)
     fmt::print("axis {}: at least {} edges lost; last fault of the encoder tracks: {}\n", configuration.names[i],
                backend.lost_edges(i), name_of(backend.last_encoder_fault(i)));
   return status_of(result);
 }
 
-int run_modbus(const DriveConfiguration& configuration, const DriveOptions& options) {
+int run_modbus(RealTime& real_time, const DriveConfiguration& configuration, const DriveOptions& options) {
   const auto& setup = configuration.setup;
   if (!setup.modbus_client)
     throw StartRefused(fmt::format("{}: found no table [drive.modbus_client]; expected one with the device",
@@ -102,7 +105,7 @@ int run_modbus(const DriveConfiguration& configuration, const DriveOptions& opti
   hal::TickClock clock(configuration.period_ns);
   hal::ModbusClient client(config);
   hal::ModbusBackend backend(client, clock);
-  return status_of(run(backend, &clock, configuration, options, "modbus " + config.device));
+  return status_of(run(real_time, backend, &clock, configuration, options, "modbus " + config.device));
 }
 
 int print_budgets(const DriveConfiguration& configuration) {
@@ -150,10 +153,13 @@ int serve(const DriveOptions& options) {
   }
   check_remote(configuration);
   hal::catch_stop_signals();
-  if (options.hal == "can") return run_can(configuration, options);
-  if (options.hal == "gpio") return run_gpio(configuration, options);
-  if (options.hal == "modbus") return run_modbus(configuration, options);
-  return run_simulated(configuration, options);
+  const auto& wanted = configuration.setup.real_time;
+  RealTime real_time({.priority = wanted.priority, .cpu = wanted.cpu});
+  real_time.prepare_process();
+  if (options.hal == "can") return run_can(real_time, configuration, options);
+  if (options.hal == "gpio") return run_gpio(real_time, configuration, options);
+  if (options.hal == "modbus") return run_modbus(real_time, configuration, options);
+  return run_simulated(real_time, configuration, options);
 }
 
 }  // namespace

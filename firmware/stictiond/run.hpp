@@ -85,17 +85,13 @@ void serve_modbus(const hal::DriveLoop<B>& loop, Programme<B>& programme, double
   while (const auto asked = modbus.take_motion()) ask(*asked, period, programme.remote()[asked->axis]);
 }
 
-// `clock`: the one that the backend waits for; null: it has a time of its own. `backend`: power stages and encoders;
-// `configuration`: of the drive; `options`: of the command line; `title`: one line for the service manager. Throws
-// StartRefused, MotionError.
+// `clock`: the one that the backend waits for; null: it has a time of its own. `real_time`: of the process, which has
+// been prepared before the backend was made, so that the threads of that have its stacks too; `backend`: power stages
+// and encoders; `configuration`: of the drive; `options`: of the command line; `title`: one line for the service
+// manager. Throws StartRefused, MotionError.
 template <hal::Backend B>
-RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& configuration, const DriveOptions& options,
-              const std::string& title) {
-  const RealTimeRequest request{.priority = configuration.setup.real_time.priority,
-                                .cpu = configuration.setup.real_time.cpu};
-  RealTime real_time;
-  auto steps = real_time.prepare_process(request);
-
+RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const DriveConfiguration& configuration,
+              const DriveOptions& options, const std::string& title) {
   hal::LoopTiming timing;
   hal::TimedBackend<B> timed(backend, timing);
   hal::DriveLoop<hal::TimedBackend<B>> loop(timed, configuration.axes, configuration.drives, configuration.ticker,
@@ -143,19 +139,18 @@ RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& confi
                                  for (const auto& line : modbus->serve()) log_to_standard_error(LogLevel::notice, line);
                                }},
                           starvation_ns);
-    for (auto& step : real_time.prepare_thread(request)) steps.push_back(std::move(step));
-    if (any_refused(steps)) {
+    real_time.prepare_thread();
+    if (any_refused(real_time.steps())) {
       // The simulated machine may be late; real axes may not.
-      if (options.hal != "simulated" && request.priority > 0)
+      if (options.hal != "simulated" && configuration.setup.real_time.priority > 0)
         throw StartRefused(
             "found no real-time conditions; expected every step below, or drive.real_time.priority = 0 for a test "
             "without power\n" +
-            text_of(steps));
-      fmt::print(stderr, "{}", text_of(steps));
+            text_of(real_time.steps()));
+      fmt::print(stderr, "{}", text_of(real_time.steps()));
     }
     notify.ready(title);
-    if (clock != nullptr) clock->restart();  // what came before took its time
-    loop.restart_watch();
+    loop.begin();  // every thread has been made, and what came before took its time
     programme.tick(false);
     log.push(loop.now_ns(), LogLevel::info, "the loop has begun");
     if (task.serve && !can && !modbus)

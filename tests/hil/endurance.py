@@ -66,7 +66,7 @@ def script(minutes, every, seed):
 def logged_faults(text):
     """(tick of the machine, number) of each fault that the drive logged."""
     begin = float(re.search(r"([\d.]+) s: the loop has begun", text)[1])
-    return [(round((float(when) - begin) / PERIOD) + 2, int(number))
+    return [(round((float(when) - begin) / PERIOD) + 3, int(number))
             for when, number in re.findall(r"([\d.]+) s: axis \d+: fault (\d+) ", text)]
 
 

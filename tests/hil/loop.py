@@ -89,8 +89,8 @@ class Result:
         self.begin = float(begin[1]) if begin else None
 
     def faults(self):
-        """(tick, axis, number) of each that the drive logged; at what it calls its begin comes the machine's tick 2."""
-        return [(round((float(time) - self.begin) / PERIOD) + 2, int(axis), int(number))
+        """(tick, axis, number) of each that the drive logged; at what it calls its begin comes the machine's tick 3."""
+        return [(round((float(time) - self.begin) / PERIOD) + 3, int(axis), int(number))
                 for time, axis, number in re.findall(r"([\d.]+) s: axis (\d+): fault (\d+) ", self.drive)]
 
     def counts(self, axis):

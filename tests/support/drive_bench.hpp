@@ -29,6 +29,7 @@ inline machine::DriveSetup drive_setup(const machine::Machine& machine) {
   for (const auto& axis : machine.axes) {
     auto& of_axis = setup.axes[axis.name];
     const double limit = axis.inverter.current_limit * axis.motor.count;
+    of_axis.encoder_jump = 5e-6;
     of_axis.current_sum = limit / 20.0;
     of_axis.runaway_current = limit / 5.0;
     of_axis.negative_end = -axis.travel / 2.0;

@@ -20,6 +20,8 @@ write_row() {
   echo "$suite: $verdict in $SECONDS s; ${what:-nothing ran}${found:+; $found}"
 }
 trap write_row EXIT
+# A suite that is ended from outside has not passed.
+trap 'exit 143' TERM
 
 say() { echo "$suite: $*"; }
 

@@ -78,7 +78,7 @@ SupervisionConfig<S> supervision_of(const Timing& timing, const AxisModel& axis,
   const bool force_source = axis.motor.model == MotorModel::force;
   c.period_ns = fast_period_ns(timing);
   c.frozen_distance = convert.template operator()<typename S::Distance>(setup.frozen_distance, "frozen_distance");
-  c.encoder_jump = convert.template operator()<typename S::Distance>(setup.encoder_jump, "encoder_jump");
+  c.encoder_jump = convert.template operator()<typename S::Distance>(setup.encoder_jump.value(), "encoder_jump");
   c.phases_sum = axis.motor.model == MotorModel::synchronous;
   c.current_measured = !force_source;
   // A force source has no current: its voltage command stands for it.

@@ -11,8 +11,20 @@
 namespace stiction::machine {
 namespace {
 
-DriveAxisSetup with_defaults(DriveAxisSetup setup, const AxisModel& axis) {
+// What is no jump of the encoder (m): between samples a time T apart an acceleration a leaves up to a T^2 beside the
+// displacement that the speed predicts. Twice that of the motor's largest force, for friction that changes its sign and
+// stamps that are not exact. 0.1 um at 62.5 us on the cross table, where 5 um hold; 0.7 mm at 10 ms on the EMPS.
+double encoder_jump_of(const AxisModel& axis, const Timing& timing) {
+  constexpr double least = 5e-6;
+  const double amplitude = axis.motor.model == MotorModel::force ? axis.inverter.voltage_limit
+                                                                 : axis.inverter.current_limit * axis.motor.count;
+  const double acceleration = amplitude * axis.motor.force_constant / axis.mass;
+  return std::max(least, 2.0 * acceleration * timing.fast_period * timing.fast_period);
+}
+
+DriveAxisSetup with_defaults(DriveAxisSetup setup, const AxisModel& axis, const Timing& timing) {
   const double limit = axis.inverter.current_limit * axis.motor.count;
+  if (!setup.encoder_jump) setup.encoder_jump = encoder_jump_of(axis, timing);
   if (!setup.current_sum) setup.current_sum = limit / 20.0;
   if (!setup.runaway_current) setup.runaway_current = limit / 5.0;
   if (!setup.negative_end) setup.negative_end = -axis.travel / 2.0;
@@ -49,7 +61,8 @@ DriveSetup drive_setup_of(const Document& document, const Machine& machine) {
   for (const AxisModel& axis : machine.axes)
     if (!setup.axes.contains(axis.name))
       setup.axes[axis.name] = reader_of(axis).read<DriveAxisSetup>(toml::table{}, join_key("drive.axis", axis.name));
-  for (const AxisModel& axis : machine.axes) setup.axes[axis.name] = with_defaults(setup.axes[axis.name], axis);
+  for (const AxisModel& axis : machine.axes)
+    setup.axes[axis.name] = with_defaults(setup.axes[axis.name], axis, machine.timing);
   return setup;
 }
 

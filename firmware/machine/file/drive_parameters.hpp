@@ -212,8 +212,14 @@ struct Table<DriveAxisSetup> : EmptyTable<DriveAxisSetup> {
        "time that the brake takes to open or to close"},
       {"frozen_distance", "m", positive(0.1), &DriveAxisSetup::frozen_distance, 100e-6,
        "displacement of the set-point within which the encoder must show a different position"},
-      {"encoder_jump", "m", positive(0.1), &DriveAxisSetup::encoder_jump, 5e-6,
-       "deviation of a position from the one that the speed predicts"},
+      {"encoder_jump",
+       "m",
+       positive(0.1),
+       &DriveAxisSetup::encoder_jump,
+       {},
+       "deviation of a position from the one that the speed predicts; left out: twice the displacement in the square "
+       "of a "
+       "fast period at the acceleration of the motor's largest force, at least 0.005 mm"},
       {"current_sum",
        "A",
        positive(),

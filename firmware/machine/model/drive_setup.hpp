@@ -92,7 +92,7 @@ struct DriveAxisSetup {
   double quick_stop_deceleration = 10.0;             // m/s^2
   double brake_time = 0.0;                           // s, that the brake takes to open or to close
   double frozen_distance = 100e-6;                   // m
-  double encoder_jump = 5e-6;                        // m
+  std::optional<double> encoder_jump;                // m; none: what the motor's force can make of it, at least 5 um
   std::optional<double> current_sum;                 // A; none: a twentieth of the current limit
   std::optional<double> runaway_current;             // A; none: a fifth of the current limit
   double target_window = 10e-6;                      // m, about a target, within which it is reached
