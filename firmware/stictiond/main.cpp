@@ -1,5 +1,5 @@
 // The program `stictiond`: the drive on a Linux industrial PC.
-// Exit status: 0 the task is done, 1 a fault stopped it, 2 the start was refused.
+// Exit statuses: hal/program.hpp.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -26,8 +26,7 @@
 namespace stiction::drive {
 namespace {
 
-using hal::exit_refused;
-constexpr int exit_done = 0, exit_fault = 1;
+using hal::exit_done, hal::exit_fault, hal::exit_refused;
 
 int status_of(const RunResult& result) { return result.faulted ? exit_fault : exit_done; }
 
@@ -123,6 +122,7 @@ int print_budgets(const DriveConfiguration& configuration) {
 }
 
 int serve(const DriveOptions& options) {
+  hal::install_signal_reactions();
   if (options.faults) {
     fmt::print("{}", fault_page());
     return exit_done;
@@ -149,7 +149,6 @@ int serve(const DriveOptions& options) {
     return exit_done;
   }
   check_remote(configuration);
-  hal::catch_stop_signals();
   if (options.hal == "can") return run_can(configuration, options);
   if (options.hal == "gpio") return run_gpio(configuration, options);
   if (options.hal == "modbus") return run_modbus(configuration, options);

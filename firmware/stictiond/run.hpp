@@ -2,6 +2,7 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <optional>
@@ -11,6 +12,8 @@
 #include "firmware/machine/configuration/conversion.hpp"
 #include "firmware/stictiond/can_server.hpp"
 #include "firmware/stictiond/configuration.hpp"
+#include "firmware/stictiond/log_output.hpp"
+#include "firmware/stictiond/loop_watchdog.hpp"
 #include "firmware/stictiond/modbus_motion.hpp"
 #include "firmware/stictiond/modbus_publisher.hpp"
 #include "firmware/stictiond/programme.hpp"
@@ -19,7 +22,9 @@
 #include "firmware/stictiond/service_notify.hpp"
 #include "firmware/stictiond/service_thread.hpp"
 #include "firmware/stictiond/sync_follower.hpp"
+#include "hal/gated_backend.hpp"
 #include "hal/loop_timing.hpp"
+#include "hal/power_cut.hpp"
 #include "hal/program.hpp"
 #include "hal/tick_clock.hpp"
 
@@ -97,14 +102,18 @@ RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& confi
   auto steps = real_time.prepare_process(request);
 
   hal::LoopTiming timing;
-  hal::TimedBackend<B> timed(backend, timing);
-  hal::DriveLoop<hal::TimedBackend<B>> loop(timed, configuration.axes, configuration.drives, configuration.ticker,
-                                            configuration.compensations);
+  const hal::PowerCut::Entry entry(hal::power_cut, backend);
+  hal::GatedBackend<B> gated(backend, hal::power_cut);
+  hal::TimedBackend<hal::GatedBackend<B>> timed(gated, timing);
+  hal::DriveLoop<hal::TimedBackend<hal::GatedBackend<B>>> loop(timed, configuration.axes, configuration.drives,
+                                                               configuration.ticker, configuration.compensations);
   std::vector<double> positions;
   for (const auto& feedback : loop.loop().feedback()) positions.push_back(machine::to_si(feedback.position));
   const Task task = task_of(options, configuration, positions);
   Trace trace(configuration.names.size(), options.trace.empty() ? 0 : task.motion.ticks());
   LogRing log;
+  LogOutput output(STDERR_FILENO, journal_listens());
+  const LogSink say = [&output](LogLevel level, std::string_view text) { output.put(level, text); };
   const auto remote = remote_axes(configuration);
   Programme programme(loop, task, remote, log, options.trace.empty() ? nullptr : &trace);
   std::optional<ModbusPublisher> modbus;
@@ -125,24 +134,26 @@ RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& confi
   ControllerClock controller_clock(configuration);
 
   ServiceNotify notify;
-  constexpr std::int64_t starvation_ns = 100'000'000;
+  // One in a time of its own has no clock that it could be late by.
+  std::optional<LoopWatchdog> watchdog;
+  if (clock != nullptr) watchdog.emplace([&] { return programme.progress(); }, hal::power_cut, request.priority);
   {
-    ServiceThread service(log, log_to_standard_error, notify,
-                          {.progress = [&] { return programme.progress(); },
-                           .status = [&] { return title; },
-                           .starved =
-                               [] {
-                                 log_to_standard_error(LogLevel::error,
-                                                       fmt::format("fault {} '{}': the loop has stopped",
-                                                                   static_cast<int>(Fault::watchdog_starved),
-                                                                   stiction::name_of(Fault::watchdog_starved)));
-                               },
-                           .round =
-                               [&] {
-                                 if (!modbus) return;
-                                 for (const auto& line : modbus->serve()) log_to_standard_error(LogLevel::notice, line);
-                               }},
-                          starvation_ns);
+    ServiceThread service(
+        log, say, notify,
+        {.progress = [&] { return programme.progress(); },
+         .status = [&] { return title; },
+         .starved =
+             [&] {
+               say(LogLevel::error,
+                   fmt::format("fault {} '{}': the loop makes no progress, the power is off",
+                               static_cast<int>(Fault::watchdog_starved), stiction::name_of(Fault::watchdog_starved)));
+             },
+         .round =
+             [&] {
+               if (!modbus) return;
+               for (const auto& line : modbus->serve()) say(LogLevel::notice, line);
+             }},
+        LoopWatchdog::limit_ns);
     for (auto& step : real_time.prepare_thread(request)) steps.push_back(std::move(step));
     if (any_refused(steps)) {
       // The simulated machine may be late; real axes may not.
@@ -151,9 +162,10 @@ RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& confi
             "found no real-time conditions; expected every step below, or drive.real_time.priority = 0 for a test "
             "without power\n" +
             text_of(steps));
-      fmt::print(stderr, "{}", text_of(steps));
+      for (const RealTimeStep& step : steps) say(LogLevel::info, text_of(std::span(&step, 1)));
     }
     notify.ready(title);
+    hal::start_is_over = true;
     if (clock != nullptr) clock->restart();  // what came before took its time
     loop.restart_watch();
     programme.tick(false);
@@ -164,7 +176,8 @@ RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& confi
                "axes remain off");
     while (!programme.over()) {
       const bool begins = can && loop.loop().slow() && can->receive(loop.now_ns(), programme.remote());
-      programme.tick(hal::stop_wanted != 0);  // by a signal: a controlled stop, then the end
+      tick_under_watch(programme, loop, hal::power_cut,
+                       hal::stop_wanted != 0);  // by a signal: a controlled stop, then the end
       if (begins) {
         answer_controller(loop, programme, *can, shown);
         if (clock != nullptr) controller_clock.follow(can->sync_age_ns(), *clock, log, loop.now_ns());

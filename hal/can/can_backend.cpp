@@ -146,6 +146,10 @@ void CanBackend::write(std::span<const Command<Signals>> command) {
   for (std::size_t i = 0; i < nodes_.size(); ++i) send(encode_command(format_, nodes_[i].id, tick_, command[i]));
 }
 
+void CanBackend::cut_power() noexcept {
+  for (const Node& node : nodes_) nodes_socket_.send(encode_command(format_, node.id, tick_, {}));
+}
+
 bool CanBackend::find_nodes(int ticks, std::vector<int>& silent) {
   std::vector<Feedback<Signals>> feedback(nodes_.size());
   for (int i = 0; i < ticks; ++i) {

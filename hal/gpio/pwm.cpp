@@ -128,7 +128,8 @@ void PwmBridge::open(Channel& channel, std::int64_t period_ns) {
   set_attribute(channel.folder / "duty_cycle", 0);
   set_attribute(channel.folder / "period", period_ns);
   const std::array<Voltage, 3> zero{};
-  channel.duty_ns = map_.duty_ns(static_cast<std::size_t>(&channel - channels_.data()), zero);
+  channel.rest_ns = map_.duty_ns(static_cast<std::size_t>(&channel - channels_.data()), zero);
+  channel.duty_ns = channel.rest_ns;
   set_attribute(channel.folder / "duty_cycle", channel.duty_ns);
   channel.duty_file = ::open((channel.folder / "duty_cycle").c_str(), O_WRONLY | O_CLOEXEC);
   if (channel.duty_file < 0) throw GpioError(fmt::format("PWM {}: {}", channel.folder.string(), std::strerror(errno)));
@@ -150,6 +151,10 @@ void PwmBridge::close(Channel& channel) {
 
 void PwmBridge::close_all() {
   for (auto& channel : channels_) close(channel);
+}
+
+void PwmBridge::rest() const noexcept {
+  for (const auto& channel : channels_) write_number(channel.duty_file, channel.rest_ns);
 }
 
 void PwmBridge::write(std::span<const Voltage, 3> voltage) {

@@ -43,6 +43,8 @@ class PwmBridge {
   PwmBridge& operator=(const PwmBridge&) = delete;
 
   void write(std::span<const FixedSignals::Voltage, 3> voltage);
+  // The duties of no voltage, beside the thread that writes and in a signal handler.
+  void rest() const noexcept;
   bool failed() const { return failed_; }  // whether a write was ever refused
 
  private:
@@ -51,6 +53,7 @@ class PwmBridge {
     int number = 0;
     int duty_file = -1;
     std::int64_t duty_ns = 0;
+    std::int64_t rest_ns = 0;  // of no voltage
     bool exported_here = false;
   };
 
