@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <exception>
 #include <string>
 
@@ -45,7 +46,10 @@ int run_program(int argc, char** argv, const ProgramName& program, Serve serve) 
       fmt::print(stderr, "{}: {}; see {} --help\n", program.name, error.what(), program.name);
       return exit_refused;
     }
-    return serve(options);
+    const int status = serve(options);
+    if (std::fflush(stdout) == 0) return status;
+    say_if_heard((std::string(program.name) + ": standard output did not take all of it\n").c_str(), patience_ms);
+    return start_is_over && status == exit_done ? exit_failed : status;
   } catch (const std::exception& error) {
     say_if_heard((std::string(program.name) + ": " + error.what() + "\n").c_str(), patience_ms);
   } catch (...) {

@@ -20,20 +20,13 @@ std::atomic<void (*)(int) noexcept> words_at_the_end{nullptr};
 
 void want_stop(int) { stop_wanted = 1; }
 
-const SignalRow* row_of(int signal) {
-  const auto* row = std::find_if(signal_table.begin(), signal_table.end(),
-                                 [signal](const SignalRow& each) { return each.number == signal; });
-  return row == signal_table.end() ? nullptr : row;
-}
-
 // The default is in force again and the signal comes once more, so that the process ends by it, for whoever waits for
 // it and for a core dump.
 void end_by(int signal) {
   power_cut.cut();
   if (const auto words = words_at_the_end.load(); words != nullptr) words(signal);
-  const SignalRow* row = row_of(signal);
   say_if_heard("the power is off: the programme ends by ", 0);
-  say_if_heard(row == nullptr ? "a signal" : row->name, 0);
+  say_if_heard(name_of_signal(signal), 0);
   say_if_heard("\n", 0);
   ::raise(signal);
 }
@@ -74,6 +67,12 @@ void react(int number, SignalReaction reaction) {
 }
 
 }  // namespace
+
+const char* name_of_signal(int signal) noexcept {
+  for (const SignalRow& row : signal_table)
+    if (row.number == signal) return row.name;
+  return "a signal";
+}
 
 void install_signal_reactions(void (*last_words)(int signal) noexcept) {
   words_at_the_end = last_words;

@@ -54,6 +54,9 @@ inline constexpr std::array<SignalRow, 25> signal_table{{
 // Set by the signals whose reaction is `stop`, from install_signal_reactions() on.
 inline volatile std::sig_atomic_t stop_wanted = 0;
 
+// "SIGSEGV"; "a signal" for one that is not in the table. Async-signal-safe.
+const char* name_of_signal(int signal) noexcept;
+
 // Of the process, before it starts threads. Where an exception is uncaught, or a signal ends the process, the power
 // is cut first (power_cut) and one line goes to standard error, if that takes it at once. `last_words`: called in the
 // signal's handler with its number, after the power is off; may be null; only what is async-signal-safe.

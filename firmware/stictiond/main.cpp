@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "firmware/stictiond/configuration.hpp"
@@ -15,6 +16,7 @@
 #include "firmware/stictiond/real_time_check.hpp"
 #include "firmware/stictiond/remote_setup.hpp"
 #include "firmware/stictiond/run.hpp"
+#include "firmware/stictiond/run_record.hpp"
 #include "firmware/version/version.hpp"
 #include "hal/gpio/beside_lines.hpp"
 #include "hal/gpio/gpio_backend.hpp"
@@ -30,16 +32,17 @@ using hal::exit_done, hal::exit_fault, hal::exit_refused;
 
 int status_of(const RunResult& result) { return result.faulted ? exit_fault : exit_done; }
 
-int run_simulated(const DriveConfiguration& configuration, const DriveOptions& options) {
+int run_simulated(const DriveConfiguration& configuration, const DriveOptions& options, RunRecord& record) {
   const std::vector<double> rest(configuration.machine.axes.size());
   const auto start = options.circle.empty() ? rest : task_of(options, configuration, rest).motion.start();
   hal::SimulatedBackend<FixedSignals> simulated(configuration.machine, start);
-  if (options.unpaced) return status_of(run(simulated, nullptr, configuration, options, "simulated, in its own time"));
+  if (options.unpaced)
+    return status_of(run(simulated, nullptr, configuration, options, "simulated, in its own time", record));
   hal::PacedBackend backend(simulated, configuration.period_ns);
-  return status_of(run(backend, &backend.clock(), configuration, options, "simulated"));
+  return status_of(run(backend, &backend.clock(), configuration, options, "simulated", record));
 }
 
-int run_can(const DriveConfiguration& configuration, const DriveOptions& options) {
+int run_can(const DriveConfiguration& configuration, const DriveOptions& options, RunRecord& record) {
   hal::check(can_bus_budget(configuration));
   const auto config = can_config(configuration);
   hal::TickClock clock(configuration.period_ns);
@@ -55,9 +58,10 @@ int run_can(const DriveConfiguration& configuration, const DriveOptions& options
   if (has_gpio_lines(configuration.setup, configuration.machine)) {
     hal::BesideLines both(backend, configuration.setup.gpio->chip, input_bias(configuration.setup),
                           gpio_lines(configuration.setup, configuration.machine));
-    result = run(both, &clock, configuration, options, title + " and lines of " + configuration.setup.gpio->chip);
+    result =
+        run(both, &clock, configuration, options, title + " and lines of " + configuration.setup.gpio->chip, record);
   } else {
-    result = run(backend, &clock, configuration, options, title);
+    result = run(backend, &clock, configuration, options, title, record);
   }
   for (std::size_t i = 0; i < configuration.names.size(); ++i) {
     const auto& n = backend.counts(i);
@@ -70,16 +74,19 @@ int run_can(const DriveConfiguration& configuration, const DriveOptions& options
   return status_of(result);
 }
 
-int run_gpio(const DriveConfiguration& configuration, const DriveOptions& options) {
-  hal::GpioBackend backend(gpio_configuration(configuration.setup, configuration.machine), configuration.period_ns);
-  const auto result = run(backend, &backend.clock(), configuration, options, "gpio " + configuration.setup.gpio->chip);
+int run_gpio(const DriveConfiguration& configuration, const DriveOptions& options, RunRecord& record) {
+  hal::GpioBackend backend(
+      gpio_configuration(configuration.setup, configuration.machine, record.broken_off().has_value()),
+      configuration.period_ns);
+  const auto result =
+      run(backend, &backend.clock(), configuration, options, "gpio " + configuration.setup.gpio->chip, record);
   for (std::size_t i = 0; i < configuration.names.size(); ++i)
     fmt::print("axis {}: at least {} edges lost; last fault of the encoder tracks: {}\n", configuration.names[i],
                backend.lost_edges(i), name_of(backend.last_encoder_fault(i)));
   return status_of(result);
 }
 
-int run_modbus(const DriveConfiguration& configuration, const DriveOptions& options) {
+int run_modbus(const DriveConfiguration& configuration, const DriveOptions& options, RunRecord& record) {
   const auto& setup = configuration.setup;
   if (!setup.modbus_client)
     throw StartRefused(fmt::format("{}: found no table [drive.modbus_client]; expected one with the device",
@@ -101,7 +108,7 @@ int run_modbus(const DriveConfiguration& configuration, const DriveOptions& opti
   hal::TickClock clock(configuration.period_ns);
   hal::ModbusClient client(config);
   hal::ModbusBackend backend(client, clock);
-  return status_of(run(backend, &clock, configuration, options, "modbus " + config.device));
+  return status_of(run(backend, &clock, configuration, options, "modbus " + config.device, record));
 }
 
 int print_budgets(const DriveConfiguration& configuration) {
@@ -121,8 +128,20 @@ int print_budgets(const DriveConfiguration& configuration) {
   return refused ? exit_refused : exit_done;
 }
 
+// What a killed run left: to have the lines and to give them back makes them inactive and stops the PWM.
+int put_to_rest(const DriveConfiguration& configuration, const DriveOptions& options) {
+  const auto& [setup, machine] = std::tie(configuration.setup, configuration.machine);
+  if (options.hal == "gpio") {
+    const hal::GpioBackend backend(gpio_configuration(setup, machine, true), configuration.period_ns);
+  } else if (options.hal == "can" && has_gpio_lines(setup, machine)) {
+    hal::Lines lines(setup.gpio->chip, input_bias(setup));
+    const hal::GpioInputsOutputs io(lines, gpio_lines(setup, machine));
+  }
+  return exit_done;
+}
+
 int serve(const DriveOptions& options) {
-  hal::install_signal_reactions();
+  hal::install_signal_reactions(RunRecord::note_signal);
   if (options.faults) {
     fmt::print("{}", fault_page());
     return exit_done;
@@ -148,11 +167,13 @@ int serve(const DriveOptions& options) {
     fmt::print("{}", text_of(measured, configuration.period_ns));
     return exit_done;
   }
+  if (options.rest) return put_to_rest(configuration, options);
   check_remote(configuration);
-  if (options.hal == "can") return run_can(configuration, options);
-  if (options.hal == "gpio") return run_gpio(configuration, options);
-  if (options.hal == "modbus") return run_modbus(configuration, options);
-  return run_simulated(configuration, options);
+  RunRecord record(options.parameters);
+  if (options.hal == "can") return run_can(configuration, options, record);
+  if (options.hal == "gpio") return run_gpio(configuration, options, record);
+  if (options.hal == "modbus") return run_modbus(configuration, options, record);
+  return run_simulated(configuration, options, record);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <span>
 #include <string>
@@ -92,6 +93,9 @@ class ModbusRegisters {
   // started with.
   void store(const std::filesystem::path& file, const std::filesystem::path& machine_file,
              machine::ReadOptions options = {}) const;
+  // The same as a job for another thread, with all that it needs in it. Parameters as above.
+  std::function<void()> prepared_store(const std::filesystem::path& file, const std::filesystem::path& machine_file,
+                                       machine::ReadOptions options = {}) const;
 
  private:
   std::string machine_id_;

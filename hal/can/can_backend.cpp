@@ -124,9 +124,13 @@ void CanBackend::take(const Received& received) {
   }
   std::uint32_t counter = 0;
   NodeFeedback state = node->arriving;
-  if (!decode_feedback(format_, address.kind, received.frame, counter, state))
+  if (!decode_feedback(format_, address.kind, received.frame, counter, state)) {
     node->check.take_damaged();
-  else if (node->check.take(address.kind == Kind::current ? 1 : 0, counter, received.received_ns))
+    return;
+  }
+  // Who hears a node is on the bus: a link that was taken down and up again reports no restart.
+  bus_off_ = false;
+  if (node->check.take(address.kind == Kind::current ? 1 : 0, counter, received.received_ns))
     node->arriving = state;
 }
 

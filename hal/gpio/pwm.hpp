@@ -57,7 +57,7 @@ class PwmBridge {
     bool exported_here = false;
   };
 
-  void open(Channel& channel, std::int64_t period_ns);
+  void open(Channel& channel, const PwmConfig& config);
   void close(Channel& channel);
   void close_all();
 

@@ -6,7 +6,7 @@ import signal
 import unittest
 
 from drive_process import PATIENCE, Drive, comes_true
-from power_stage import PowerStage, WRITE
+from power_stage import ON_A_LINE, WRITE, PowerStage
 
 STOP = [signal.SIGTERM, signal.SIGINT, signal.SIGQUIT, signal.SIGHUP, signal.SIGPWR, signal.SIGXCPU]
 IGNORED = [signal.SIGPIPE, signal.SIGXFSZ, signal.SIGUSR1, signal.SIGUSR2, signal.SIGALRM, signal.SIGVTALRM,
@@ -14,9 +14,6 @@ IGNORED = [signal.SIGPIPE, signal.SIGXFSZ, signal.SIGUSR1, signal.SIGUSR2, signa
 FATAL = [signal.SIGSEGV, signal.SIGBUS, signal.SIGFPE, signal.SIGILL, signal.SIGABRT, signal.SIGSYS, signal.SIGTRAP]
 UNTOUCHED = {signal.SIGKILL, signal.SIGSTOP,                          # cannot be caught
              signal.SIGCHLD, signal.SIGCONT, signal.SIGURG, signal.SIGWINCH}  # end and stop nothing by default
-# The axis stands still; its loop of 10 ms is no faster than the simplest line.
-ON_A_LINE = ("--set", "timing.fast_period=10 ms", "--set", "timing.slow_period=10 ms", "--set", "axis.X.max_velocity=0.04 m/s",
-             "--set", "drive.real_time.priority=0")
 
 
 class Signals(unittest.TestCase):
