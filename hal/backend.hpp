@@ -36,6 +36,14 @@ concept Backend = requires(B backend, std::span<Feedback<typename B::Signals>> f
   { backend.write(command) } -> std::same_as<void>;
 };
 
+// What a backend that keeps the kernel's time gives beyond that; in logical time preparation takes none.
+template <class B>
+concept KernelTimeBackend = Backend<B> && requires(B backend) {
+  // The next tick is the loop's first: what passed before it, of time or of the world, is neither late nor missed nor
+  // lost. Called between two ticks, with the power off; power stages must get no command by it.
+  { backend.begin() } -> std::same_as<void>;
+};
+
 // What a backend over wires gives beyond that; the simulated one has no wires.
 template <class B>
 concept WiredBackend = Backend<B> &&

@@ -39,13 +39,16 @@ class ControlLoop {
         compensation_signals_(compensations.size()) {
     axes_.reserve(configs.size());
     for (const auto& config : configs) axes_.emplace_back(config);
+    for (const auto& config : compensations) compensations_.emplace_back(config);
+    start();
+  }
+
+  // Makes the first tick again, now: the axes are at rest where they are found. Only before tick().
+  void start() {
     now_ns_ = backend_.wait_for_tick();
     backend_.read(feedback_);
     for (std::size_t i = 0; i < axes_.size(); ++i) axes_[i].start(feedback_[i]);
-    for (const auto& config : compensations) {
-      compensations_.emplace_back(config);
-      compensations_.back().start(feedback_[compensations_.size() - 1].position);
-    }
+    for (std::size_t i = 0; i < compensations_.size(); ++i) compensations_[i].start(feedback_[i].position);
   }
 
   // Controls this tick with one set-point an axis, then waits for the next.

@@ -46,7 +46,7 @@ class DriveLoop {
         set_(drives.size()) {
     drives_.reserve(drives.size());
     for (const auto& config : drives) drives_.emplace_back(config);
-    for (std::size_t i = 0; i < drives_.size(); ++i) drives_[i].start(loop_.feedback()[i], loop_.axes()[i]);
+    start_drives();
   }
 
   std::size_t axis_count() const { return drives_.size(); }
@@ -62,8 +62,17 @@ class DriveLoop {
     for (auto& trip : trips_) trip = fault;
   }
 
-  // Before the first tick() of a loop in real time: what the start took is no lateness.
-  void restart_watch() { watch_.restart(); }
+  // The loop begins now, after a preparation since construction that may have taken as long as it liked: makes the
+  // first tick again where the backend keeps the kernel's time, so that the first tick() has a time and feedback of
+  // now, and what the preparation took is no lateness. Once, before the first tick().
+  void begin() {
+    if constexpr (KernelTimeBackend<B>) {
+      backend_.begin();
+      loop_.start();
+      start_drives();
+    }
+    watch_.restart();
+  }
 
   // One tick with a set-point an axis (csp, of the machine's coordinates), then waits for the next.
   void tick(std::span<const SetPoint<S>> set_points) {
@@ -117,6 +126,10 @@ class DriveLoop {
   std::uint64_t dropped_events() const { return dropped_; }
 
  private:
+  void start_drives() {
+    for (std::size_t i = 0; i < drives_.size(); ++i) drives_[i].start(loop_.feedback()[i], loop_.axes()[i]);
+  }
+
   Fault backend_fault(std::size_t axis) {
     if constexpr (WiredBackend<B>) return backend_.fault(axis);
     return Fault::none;

@@ -21,6 +21,7 @@ class GatedBackend {
   GatedBackend(B& backend, const PowerCut& cut) : backend_(backend), cut_(cut), off_(backend.axis_count()) {}
 
   std::size_t axis_count() const { return backend_.axis_count(); }
+  void begin() requires KernelTimeBackend<B> { backend_.begin(); }
   std::int64_t wait_for_tick() { return backend_.wait_for_tick(); }
   void read(std::span<Feedback<Signals>> feedback) { backend_.read(feedback); }
   void write(std::span<const Command<Signals>> command) { backend_.write(cut_.is_cut() ? off_ : command); }

@@ -23,6 +23,14 @@ class BasicLoopTiming {
  public:
   explicit BasicLoopTiming(Time time = {}) : time_(time), last_ns_(time_.now_ns()) {}
 
+  // The loop begins now; what was measured before is forgotten. Before other threads read the figures.
+  void restart() {
+    for (auto& part : parts_) part.clear();
+    work_.clear();
+    woke_ns_ = 0;
+    last_ns_ = time_.now_ns();
+  }
+
   // The time since the last call of this or finish() went into `part`.
   void lap(LoopPart part) {
     const std::int64_t now = time_.now_ns();
@@ -59,6 +67,11 @@ class TimedBackend {
   TimedBackend(B& backend, BasicLoopTiming<Time>& timing) : backend_(backend), timing_(timing) {}
 
   std::size_t axis_count() const { return backend_.axis_count(); }
+
+  void begin() requires KernelTimeBackend<B> {
+    backend_.begin();
+    timing_.restart();
+  }
 
   std::int64_t wait_for_tick() {
     timing_.finish();

@@ -21,6 +21,8 @@ class PacedBackend {
 
   std::size_t axis_count() const { return backend_.axis_count(); }
 
+  void begin() { clock_.restart(); }
+
   // Time is the backend's own. Ticks that the clock missed pass in the backend's world too, its commands held.
   std::int64_t wait_for_tick() {
     clock_.wait();

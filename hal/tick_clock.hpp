@@ -35,7 +35,8 @@ class BasicTickClock {
   // starts again at the new time, at once.
   std::int64_t wait() {
     std::int64_t now = time_.now_ns();
-    if (!started_) start(now);
+    first_ = !started_;
+    if (first_) start(now);
     bool jumped = jumped_since_last(now);
     if (!jumped) {
       time_.sleep_until(next_ns_);
@@ -62,8 +63,20 @@ class BasicTickClock {
   // All ticks to come are so much later (ns, a small part of the period): of a loop that follows another clock.
   void shift(std::int64_t later_ns) { next_ns_ += later_ns; }
 
-  // The next wait() starts the clock again: after work between two ticks that may take as long as it likes.
-  void restart() { started_ = false; }
+  // The next wait() starts the clock again, and its figures count from there: after work between two ticks that may
+  // take as long as it likes. Before other threads read the figures.
+  void restart() {
+    started_ = false;
+    fault_ = Fault::none;
+    lateness_ns_ = 0;
+    missed_now_ = 0;
+    missed_.store(0, std::memory_order_relaxed);
+    jumps_.store(0, std::memory_order_relaxed);
+    lateness_.clear();
+  }
+
+  // Whether the last wait() was the first of all, or the first after restart().
+  bool first_tick() const { return first_; }
 
   std::int64_t period_ns() const { return period_ns_; }
   // Of the last tick: a missed deadline where it and the one before began later than a period (or two were left out at
@@ -71,7 +84,7 @@ class BasicTickClock {
   Fault fault() const { return fault_; }
   std::int64_t lateness_ns() const { return lateness_ns_; }    // of the last tick, after its nominal time
   std::uint64_t missed_before() const { return missed_now_; }  // ticks missed right before the last one
-  std::uint64_t missed() const { return missed_.load(std::memory_order_relaxed); }  // ticks, since the start
+  std::uint64_t missed() const { return missed_.load(std::memory_order_relaxed); }  // ticks, since the (re)start
   std::uint64_t jumps() const { return jumps_.load(std::memory_order_relaxed); }    // of the clock
   const TimeHistogram& lateness() const { return lateness_; }                       // of every tick, jumps left out
 
@@ -104,6 +117,7 @@ class BasicTickClock {
   std::int64_t period_ns_;
   [[no_unique_address]] Time time_;
   bool started_ = false;
+  bool first_ = false;
   std::int64_t next_ns_ = 0;
   std::int64_t last_ns_ = 0;  // when the last tick began
   std::int64_t lateness_ns_ = 0;

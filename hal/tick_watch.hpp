@@ -31,10 +31,15 @@ class TickWatch {
     return late_ > late_ticks_allowed ? Fault::missed_deadline : Fault::none;
   }
 
-  // The next step is the first again: after work between two ticks that may take as long as it likes.
-  constexpr void restart() { started_ = false; }
+  // The next step is the first again, and its figures count from there: after work between two ticks that may take as
+  // long as it likes.
+  constexpr void restart() {
+    started_ = false;
+    late_ = 0;
+    missed_ = 0;
+  }
 
-  constexpr std::uint64_t missed() const { return missed_; }  // ticks since the start
+  constexpr std::uint64_t missed() const { return missed_; }  // ticks since the (re)start
 
  private:
   std::int64_t period_ns_;

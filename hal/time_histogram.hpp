@@ -64,6 +64,14 @@ class TimeHistogram {
     if (time_ns < minimum_ns_.load(std::memory_order_relaxed)) minimum_ns_.store(time_ns, std::memory_order_relaxed);
   }
 
+  // Forgets every time. By the thread that measures, while no other reads.
+  void clear() {
+    for (auto& count : counts_) count.store(0, std::memory_order_relaxed);
+    sum_ns_.store(0, std::memory_order_relaxed);
+    minimum_ns_.store(none_yet_minimum, std::memory_order_relaxed);
+    maximum_ns_.store(none_yet_maximum, std::memory_order_relaxed);
+  }
+
   // By any thread. Every count as it was at some moment during the call.
   TimeCounts read() const {
     TimeCounts result;
@@ -85,10 +93,12 @@ class TimeHistogram {
     counter.store(counter.load(std::memory_order_relaxed) + increment, std::memory_order_relaxed);
   }
 
+  static constexpr std::int64_t none_yet_minimum = INT64_MAX, none_yet_maximum = -1;
+
   std::array<std::atomic<std::uint64_t>, time_bins::count> counts_{};
   std::atomic<std::int64_t> sum_ns_ = 0;
-  std::atomic<std::int64_t> minimum_ns_ = INT64_MAX;
-  std::atomic<std::int64_t> maximum_ns_ = -1;
+  std::atomic<std::int64_t> minimum_ns_ = none_yet_minimum;
+  std::atomic<std::int64_t> maximum_ns_ = none_yet_maximum;
 };
 
 }  // namespace stiction::hal

@@ -32,17 +32,19 @@ using hal::exit_done, hal::exit_fault, hal::exit_refused;
 
 int status_of(const RunResult& result) { return result.faulted ? exit_fault : exit_done; }
 
-int run_simulated(const DriveConfiguration& configuration, const DriveOptions& options, RunRecord& record) {
+int run_simulated(RealTime& real_time, const DriveConfiguration& configuration, const DriveOptions& options,
+                  RunRecord& record) {
   const std::vector<double> rest(configuration.machine.axes.size());
   const auto start = options.circle.empty() ? rest : task_of(options, configuration, rest).motion.start();
   hal::SimulatedBackend<FixedSignals> simulated(configuration.machine, start);
   if (options.unpaced)
-    return status_of(run(simulated, nullptr, configuration, options, "simulated, in its own time", record));
+    return status_of(run(real_time, simulated, nullptr, configuration, options, "simulated, in its own time", record));
   hal::PacedBackend backend(simulated, configuration.period_ns);
-  return status_of(run(backend, &backend.clock(), configuration, options, "simulated", record));
+  return status_of(run(real_time, backend, &backend.clock(), configuration, options, "simulated", record));
 }
 
-int run_can(const DriveConfiguration& configuration, const DriveOptions& options, RunRecord& record) {
+int run_can(RealTime& real_time, const DriveConfiguration& configuration, const DriveOptions& options,
+            RunRecord& record) {
   hal::check(can_bus_budget(configuration));
   const auto config = can_config(configuration);
   hal::TickClock clock(configuration.period_ns);
@@ -58,10 +60,10 @@ int run_can(const DriveConfiguration& configuration, const DriveOptions& options
   if (has_gpio_lines(configuration.setup, configuration.machine)) {
     hal::BesideLines both(backend, configuration.setup.gpio->chip, input_bias(configuration.setup),
                           gpio_lines(configuration.setup, configuration.machine));
-    result =
-        run(both, &clock, configuration, options, title + " and lines of " + configuration.setup.gpio->chip, record);
+    result = run(real_time, both, &clock, configuration, options,
+                 title + " and lines of " + configuration.setup.gpio->chip, record);
   } else {
-    result = run(backend, &clock, configuration, options, title, record);
+    result = run(real_time, backend, &clock, configuration, options, title, record);
   }
   for (std::size_t i = 0; i < configuration.names.size(); ++i) {
     const auto& n = backend.counts(i);
@@ -74,19 +76,21 @@ int run_can(const DriveConfiguration& configuration, const DriveOptions& options
   return status_of(result);
 }
 
-int run_gpio(const DriveConfiguration& configuration, const DriveOptions& options, RunRecord& record) {
+int run_gpio(RealTime& real_time, const DriveConfiguration& configuration, const DriveOptions& options,
+             RunRecord& record) {
   hal::GpioBackend backend(
       gpio_configuration(configuration.setup, configuration.machine, record.broken_off().has_value()),
       configuration.period_ns);
-  const auto result =
-      run(backend, &backend.clock(), configuration, options, "gpio " + configuration.setup.gpio->chip, record);
+  const auto result = run(real_time, backend, &backend.clock(), configuration, options,
+                          "gpio " + configuration.setup.gpio->chip, record);
   for (std::size_t i = 0; i < configuration.names.size(); ++i)
     fmt::print("axis {}: at least {} edges lost; last fault of the encoder tracks: {}\n", configuration.names[i],
                backend.lost_edges(i), name_of(backend.last_encoder_fault(i)));
   return status_of(result);
 }
 
-int run_modbus(const DriveConfiguration& configuration, const DriveOptions& options, RunRecord& record) {
+int run_modbus(RealTime& real_time, const DriveConfiguration& configuration, const DriveOptions& options,
+               RunRecord& record) {
   const auto& setup = configuration.setup;
   if (!setup.modbus_client)
     throw StartRefused(fmt::format("{}: found no table [drive.modbus_client]; expected one with the device",
@@ -108,7 +112,7 @@ int run_modbus(const DriveConfiguration& configuration, const DriveOptions& opti
   hal::TickClock clock(configuration.period_ns);
   hal::ModbusClient client(config);
   hal::ModbusBackend backend(client, clock);
-  return status_of(run(backend, &clock, configuration, options, "modbus " + config.device, record));
+  return status_of(run(real_time, backend, &clock, configuration, options, "modbus " + config.device, record));
 }
 
 int print_budgets(const DriveConfiguration& configuration) {
@@ -169,11 +173,15 @@ int serve(const DriveOptions& options) {
   }
   if (options.rest) return put_to_rest(configuration, options);
   check_remote(configuration);
+  const auto& wanted = configuration.setup.real_time;
+  RealTime real_time({.priority = wanted.priority, .cpu = wanted.cpu});
+  real_time.prepare_process();
+  check_room(options, configuration, !any_refused(real_time.steps()));
   RunRecord record(options.parameters);
-  if (options.hal == "can") return run_can(configuration, options, record);
-  if (options.hal == "gpio") return run_gpio(configuration, options, record);
-  if (options.hal == "modbus") return run_modbus(configuration, options, record);
-  return run_simulated(configuration, options, record);
+  if (options.hal == "can") return run_can(real_time, configuration, options, record);
+  if (options.hal == "gpio") return run_gpio(real_time, configuration, options, record);
+  if (options.hal == "modbus") return run_modbus(real_time, configuration, options, record);
+  return run_simulated(real_time, configuration, options, record);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <malloc.h>
+#include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -40,6 +41,17 @@ RealTimeStep keep_heap(std::size_t bytes) {
   for (std::size_t i = 0; i < bytes; i += page_bytes) byte[i] = 0;
   std::free(block);  // NOLINT(cppcoreguidelines-no-malloc)
   return {"heap", StepOutcome::done, fmt::format("{} KiB touched; never trimmed and never mapped again", bytes / 1024)};
+}
+
+// The C library's default for threads that are made without a size of their own, as std::thread does.
+RealTimeStep bound_thread_stacks(std::size_t bytes) {
+  constexpr const char* name = "threads";
+  pthread_attr_t attributes;
+  int error = ::pthread_getattr_default_np(&attributes);
+  if (error == 0) error = ::pthread_attr_setstacksize(&attributes, bytes);
+  if (error == 0) error = ::pthread_setattr_default_np(&attributes);
+  if (error == 0) return {name, StepOutcome::done, fmt::format("{} KiB of stack for each to come", bytes / 1024)};
+  return refused(name, error, fmt::format("the C library must allow threads with stacks of {} KiB", bytes / 1024));
 }
 
 RealTimeStep lock_memory() {
@@ -125,13 +137,18 @@ RealTimeStep RealTime::hold_latency() {
   return refused(name, errno, fmt::format("give the drive's group write access to {} by a udev rule", latency_device));
 }
 
-std::vector<RealTimeStep> RealTime::prepare_process(const RealTimeRequest& request) {
-  return {keep_heap(request.heap_bytes), lock_memory(), hold_latency()};
+void RealTime::prepare_process() {
+  steps_.push_back(keep_heap(request_.heap_bytes));
+  steps_.push_back(bound_thread_stacks(request_.thread_stack_bytes));
+  steps_.push_back(lock_memory());
+  steps_.push_back(hold_latency());
 }
 
-std::vector<RealTimeStep> RealTime::prepare_thread(const RealTimeRequest& request) {
-  return {prefault_stack(request.stack_bytes), bind_processor(request.cpu), end_timer_slack(),
-          raise_priority(request.priority)};
+void RealTime::prepare_thread() {
+  steps_.push_back(prefault_stack(request_.stack_bytes));
+  steps_.push_back(bind_processor(request_.cpu));
+  steps_.push_back(end_timer_slack());
+  steps_.push_back(raise_priority(request_.priority));
 }
 
 }  // namespace stiction::drive

@@ -16,6 +16,9 @@ struct RealTimeRequest {
   int cpu = -1;       // processor of the loop; -1: any
   std::size_t stack_bytes = 256 * 1024;
   std::size_t heap_bytes = 8 * 1024 * 1024;
+  // Of every thread that is made later. With locked memory the kernel fills the whole of it when it makes the thread,
+  // which takes 3 ms for 1 MiB and 16 ms for the usual 8 MiB.
+  std::size_t thread_stack_bytes = 1024 * 1024;
 };
 
 enum class StepOutcome : std::uint8_t {
@@ -37,26 +40,33 @@ std::string text_of(std::span<const RealTimeStep> steps);
 // Whether something that was asked for was not had.
 bool any_refused(std::span<const RealTimeStep> steps);
 
-// Keeps what the process holds for real time (/dev/cpu_dma_latency) until it ends.
+// Keeps what the process holds for real time (/dev/cpu_dma_latency) until it ends, and what became of each step.
 class RealTime {
  public:
-  RealTime() = default;
+  // Does nothing yet. `request`: what the loop needs.
+  explicit RealTime(const RealTimeRequest& request) : request_(request) {}
   ~RealTime();
   RealTime(const RealTime&) = delete;
   RealTime& operator=(const RealTime&) = delete;
   RealTime(RealTime&&) = delete;
   RealTime& operator=(RealTime&&) = delete;
 
-  // Of the whole process, before it starts threads: allocator, heap, locked memory, latency of the processor's sleep.
-  std::vector<RealTimeStep> prepare_process(const RealTimeRequest& request);
+  // Of the whole process, before it starts threads: allocator, heap, stacks of threads to come, locked memory, latency
+  // of the processor's sleep.
+  void prepare_process();
 
   // Of the calling thread, which becomes the loop's: stack, processor, priority. Threads that it starts later are
   // ordinary ones again, but stay on its processor.
-  std::vector<RealTimeStep> prepare_thread(const RealTimeRequest& request);
+  void prepare_thread();
+
+  // What was done so far, in its order.
+  std::span<const RealTimeStep> steps() const { return steps_; }
 
  private:
   RealTimeStep hold_latency();
 
+  RealTimeRequest request_;
+  std::vector<RealTimeStep> steps_;
   int latency_ = -1;
 };
 

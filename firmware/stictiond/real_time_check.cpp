@@ -176,9 +176,10 @@ std::string text_of(std::span<const RealTimeFinding> findings) {
 JitterMeasurement measure_jitter(std::int64_t period_ns, std::uint64_t ticks, const RealTimeRequest& request) {
   JitterMeasurement result;
   std::thread([&] {
-    RealTime real_time;
-    result.steps = real_time.prepare_process(request);
-    for (auto& step : real_time.prepare_thread(request)) result.steps.push_back(std::move(step));
+    RealTime real_time(request);
+    real_time.prepare_process();
+    real_time.prepare_thread();
+    result.steps.assign(real_time.steps().begin(), real_time.steps().end());
     hal::TickClock clock(period_ns);
     for (std::uint64_t i = 0; i < ticks; ++i) clock.wait();
     result.lateness = clock.lateness().read();

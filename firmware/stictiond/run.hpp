@@ -104,17 +104,13 @@ void show_on_modbus(const hal::DriveLoop<B>& loop, Programme<B>& programme, doub
   });
 }
 
-// `clock`: the one that the backend waits for; null: it has a time of its own. `backend`: power stages and encoders;
-// `configuration`: of the drive; `options`: of the command line; `title`: one line for the service manager; `record`:
-// of this run, for the next one. Throws StartRefused, MotionError.
+// `clock`: the one that the backend waits for; null: it has a time of its own. `real_time`: of the process, which has
+// been prepared before the backend was made, so that the threads of that have its stacks too; `backend`: power stages
+// and encoders; `configuration`: of the drive; `options`: of the command line; `title`: one line for the service
+// manager; `record`: of this run, for the next one. Throws StartRefused, MotionError.
 template <hal::Backend B>
-RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& configuration, const DriveOptions& options,
-              const std::string& title, RunRecord& record) {
-  const RealTimeRequest request{.priority = configuration.setup.real_time.priority,
-                                .cpu = configuration.setup.real_time.cpu};
-  RealTime real_time;
-  auto steps = real_time.prepare_process(request);
-
+RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const DriveConfiguration& configuration,
+              const DriveOptions& options, const std::string& title, RunRecord& record) {
   hal::LoopTiming timing;
   const hal::PowerCut::Entry entry(hal::power_cut, backend);
   hal::GatedBackend<B> gated(backend, hal::power_cut);
@@ -123,7 +119,6 @@ RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& confi
                                                                configuration.ticker, configuration.compensations);
   std::vector<double> positions;
   for (const auto& feedback : loop.loop().feedback()) positions.push_back(machine::to_si(feedback.position));
-  check_room(options, configuration, !any_refused(steps));
   const Task task = task_of(options, configuration, positions);
   if (!options.trace.empty())
     check_trace_file(options.trace, task.motion.ticks() * configuration.axes.size() * row_bytes);
@@ -158,7 +153,8 @@ RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& confi
   ServiceNotify notify;
   // One in a time of its own has no clock that it could be late by.
   std::optional<LoopWatchdog> watchdog;
-  if (clock != nullptr) watchdog.emplace([&] { return programme.progress(); }, hal::power_cut, request.priority);
+  if (clock != nullptr)
+    watchdog.emplace([&] { return programme.progress(); }, hal::power_cut, configuration.setup.real_time.priority);
   {
     ServiceThread service(
         log, say, notify,
@@ -176,23 +172,22 @@ RunResult run(B& backend, hal::TickClock* clock, const DriveConfiguration& confi
                for (const auto& line : modbus->serve()) say(LogLevel::notice, line);
              }},
         LoopWatchdog::limit_ns);
-    for (auto& step : real_time.prepare_thread(request)) steps.push_back(std::move(step));
-    if (any_refused(steps)) {
+    real_time.prepare_thread();
+    if (any_refused(real_time.steps())) {
       // The simulated machine may be late; real axes may not.
-      if (options.hal != "simulated" && request.priority > 0)
+      if (options.hal != "simulated" && configuration.setup.real_time.priority > 0)
         throw StartRefused(
             "found no real-time conditions; expected every step below, or drive.real_time.priority = 0 for a test "
             "without power\n" +
-            text_of(steps));
-      for (const RealTimeStep& step : steps) say(LogLevel::info, text_of(std::span(&step, 1)));
+            text_of(real_time.steps()));
+      for (const RealTimeStep& step : real_time.steps()) say(LogLevel::info, text_of(std::span(&step, 1)));
     }
     notify.ready(title);
     hal::start_is_over = true;
     record.begin();
-    if (clock != nullptr) clock->restart();  // what came before took its time
-    loop.restart_watch();
-    programme.tick(false);
     if (record.broken_off()) say(LogLevel::warning, "the last run did not end in order, but " + *record.broken_off());
+    loop.begin();  // every thread has been made, and what came before took its time
+    programme.tick(false);
     log.push(loop.now_ns(), LogLevel::info, "the loop has begun");
     if (task.serve && !can && !modbus)
       log.push(loop.now_ns(), LogLevel::warning,

@@ -38,6 +38,7 @@ class CanBackend {
   CanBackend(const CanBackendConfig& config, TickClock& clock);
 
   std::size_t axis_count() const { return nodes_.size(); }
+  void begin() { clock_.restart(); }
   std::int64_t wait_for_tick();
   void read(std::span<Feedback<Signals>> feedback);
   void read_inputs(std::span<DigitalInputs<Signals>> inputs) const;
@@ -84,6 +85,6 @@ class CanBackend {
   BusCounts bus_;
 };
 
-static_assert(WiredBackend<CanBackend>);
+static_assert(WiredBackend<CanBackend> && KernelTimeBackend<CanBackend>);
 
 }  // namespace stiction::hal::can

@@ -29,6 +29,8 @@ class BesideLines {
 
   std::size_t axis_count() const { return backend_.axis_count(); }
 
+  void begin() requires KernelTimeBackend<B> { backend_.begin(); }
+
   std::int64_t wait_for_tick() {
     const std::int64_t now_ns = backend_.wait_for_tick();
     lines_.poll(now_ns);

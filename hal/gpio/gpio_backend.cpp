@@ -35,11 +35,10 @@ GpioBackend::~GpioBackend() {
 std::int64_t GpioBackend::wait_for_tick() {
   const std::int64_t now_ns = clock_.wait();
   lines_.poll(now_ns);
-  if (!started_) {
+  if (clock_.first_tick()) {
     // What moved while the programme was getting ready is not a fault of the encoder.
     for (auto& axis : axes_) axis->encoder.restart();
     lines_.poll(now_ns);
-    started_ = true;
   }
   for (std::size_t i = 0; i < axes_.size(); ++i)
     axes_[i]->encoder.update(now_ns, io_.index_edges(i), io_.index_queue_was_full(i));

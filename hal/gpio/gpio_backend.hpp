@@ -29,6 +29,7 @@ class GpioBackend {
   GpioBackend& operator=(const GpioBackend&) = delete;
 
   std::size_t axis_count() const { return axes_.size(); }
+  void begin() { clock_.restart(); }
   std::int64_t wait_for_tick();
   void read(std::span<Feedback<Signals>> feedback) const;
   void write(std::span<const Command<Signals>> command);
@@ -64,9 +65,8 @@ class GpioBackend {
   Lines lines_;
   GpioInputsOutputs io_;
   std::vector<std::unique_ptr<Axis>> axes_;
-  bool started_ = false;
 };
 
-static_assert(WiredBackend<GpioBackend> && BrakeBackend<GpioBackend>);
+static_assert(WiredBackend<GpioBackend> && BrakeBackend<GpioBackend> && KernelTimeBackend<GpioBackend>);
 
 }  // namespace stiction::hal

@@ -26,6 +26,8 @@ class ModbusBackend {
 
   std::size_t axis_count() const { return commands_.size(); }
 
+  void begin() { clock_.restart(); }
+
   std::int64_t wait_for_tick() { return now_ns_ = clock_.wait(); }
 
   void read(std::span<Feedback<Signals>> feedback) {
@@ -87,6 +89,6 @@ class ModbusBackend {
   std::vector<PowerStageFeedback> newest_;
 };
 
-static_assert(WiredBackend<ModbusBackend>);
+static_assert(WiredBackend<ModbusBackend> && KernelTimeBackend<ModbusBackend>);
 
 }  // namespace stiction::hal

@@ -43,10 +43,10 @@ int run(std::int64_t period_ns, double seconds, const drive::RealTimeRequest& re
   std::array<AxisConfig<S>, 2> configs;
   for (std::size_t i = 0; i < 2; ++i) configs[i] = machine::configure_axis<S>(machine.timing, machine.axes[i]);
 
-  drive::RealTime real_time;
-  auto steps = real_time.prepare_process(request);
-  for (auto& step : real_time.prepare_thread(request)) steps.push_back(std::move(step));
-  if (drive::any_refused(steps)) fmt::print(stderr, "{}", drive::text_of(steps));
+  drive::RealTime real_time(request);
+  real_time.prepare_process();
+  real_time.prepare_thread();
+  if (drive::any_refused(real_time.steps())) fmt::print(stderr, "{}", drive::text_of(real_time.steps()));
 
   Simulated simulated(machine, start);
   Paced paced(simulated, period_ns);

@@ -27,7 +27,8 @@ TEST(MotionMailbox, GivesTheNewestOfEachCommandOnce) {
   EXPECT_TRUE(taken(mailbox).empty());
   for (int i = 0; i < 100'000; ++i) put(mailbox, {{0, What::target, 1e-6 * i}, {1, What::velocity, 0.1}});
   put(mailbox, {{0, What::controlword, 0x1f}});
-  EXPECT_EQ(taken(mailbox), (Taken{{0, What::controlword, 0x1f}, {0, What::target, 1e-6 * 99'999}, {1, What::velocity, 0.1}}));
+  EXPECT_EQ(taken(mailbox),
+            (Taken{{0, What::controlword, 0x1f}, {0, What::target, 1e-6 * 99'999}, {1, What::velocity, 0.1}}));
   EXPECT_TRUE(taken(mailbox).empty());
 }
 
@@ -52,8 +53,7 @@ TEST(MotionMailbox, LosesNoStopBesideARunningLoop) {
   std::atomic<int> seen{0};
   std::atomic<bool> done{false};
   std::thread loop([&] {
-    while (!done)
-      mailbox.take([&](const MotionWrite& write) { seen += drive::MotionMailbox::stops(write) ? 1 : 0; });
+    while (!done) mailbox.take([&](const MotionWrite& write) { seen += drive::MotionMailbox::stops(write) ? 1 : 0; });
   });
   for (int i = 0; i < rounds; ++i) {
     put(mailbox, {{0, What::controlword, 0xf}});

@@ -35,9 +35,10 @@ std::string steps_in_child(const drive::RealTimeRequest& request, bool unprivile
       ::setrlimit(RLIMIT_MEMLOCK, &none);
       if (::geteuid() == 0 && ::setuid(65534) != 0) ::_exit(2);
     }
-    drive::RealTime real_time;
-    auto steps = real_time.prepare_process(request);
-    for (auto& step : real_time.prepare_thread(request)) steps.push_back(std::move(step));
+    drive::RealTime real_time(request);
+    real_time.prepare_process();
+    real_time.prepare_thread();
+    const auto steps = real_time.steps();
     std::string text = drive::text_of(steps);
     // What the kernel says of it.
     text += (::sched_getscheduler(0) & ~SCHED_RESET_ON_FORK) == SCHED_FIFO ? "is SCHED_FIFO\n" : "is ordinary\n";
@@ -65,6 +66,7 @@ TEST(RealTime, SaysWhatToDoForEachStepThatIsRefused) {
   const auto text = steps_in_child({.priority = 80, .cpu = 1023}, true);
   EXPECT_TRUE(has(text, "heap         done")) << text;
   EXPECT_TRUE(has(text, "stack        done")) << text;
+  EXPECT_TRUE(has(text, "threads      done      1024 KiB")) << text;
   EXPECT_TRUE(has(text, "priority     refused   Operation not permitted")) << text;
   EXPECT_TRUE(has(text, "LimitRTPRIO=80")) << text;
   EXPECT_TRUE(has(text, "memory lock  refused")) << text;
