@@ -21,7 +21,7 @@ inline constexpr std::array<const char*, 6> loop_part_names{"wait", "read", "tra
 template <class Time>
 class BasicLoopTiming {
  public:
-  explicit BasicLoopTiming(Time time = {}) : time_(time), last_ns_(time_.now_ns()) {}
+  explicit BasicLoopTiming(Time time = {}) : time_(time) { last_ns_ = time_.now_ns(); }
 
   // The loop begins now; what was measured before is forgotten. Before other threads read the figures.
   void restart() {
@@ -50,7 +50,7 @@ class BasicLoopTiming {
 
  private:
   [[no_unique_address]] Time time_;
-  std::int64_t last_ns_;
+  std::int64_t last_ns_ = 0;
   std::int64_t woke_ns_ = 0;  // 0: the loop has not begun
   std::array<TimeHistogram, loop_part_names.size()> parts_;
   TimeHistogram work_;

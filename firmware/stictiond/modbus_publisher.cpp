@@ -15,6 +15,12 @@ namespace {
 constexpr std::array<const char*, 6> motion_names{"controlword",      "mode of operation",    "target position",
                                                   "profile velocity", "profile acceleration", "profile deceleration"};
 
+std::vector<std::string> names_of(const machine::Machine& machine) {
+  std::vector<std::string> names;
+  for (const machine::AxisModel& axis : machine.axes) names.push_back(axis.name);
+  return names;
+}
+
 std::int64_t now_ns() { return hal::MonotonicTime().now_ns(); }
 
 // What a client sees of a loop that makes no progress.
@@ -31,11 +37,12 @@ void mark_stale(PublishedState& state) {
 
 ModbusPublisher::ModbusPublisher(const machine::Machine& machine, const machine::DriveSetup& setup, ModbusStore store,
                                  Beside beside, Stale stale, bool moves_itself)
-    : registers_(machine, setup),
+    : registers_(machine, setup, store.begun),
       store_(std::move(store)),
       beside_(std::move(beside)),
       stale_(std::move(stale)),
       moves_itself_(moves_itself),
+      axis_names_(names_of(machine)),
       server_(
           registers_.map(), modbus_server_config(setup),
           [this](std::span<double> values) {
@@ -44,10 +51,7 @@ ModbusPublisher::ModbusPublisher(const machine::Machine& machine, const machine:
             if (stale_ && stale_()) mark_stale(state);
             registers_.put_values(state, values);
           },
-          this) {
-  for (const machine::AxisModel& axis : machine.axes) axis_names_.push_back(axis.name);
-  if (store_.begun) registers_.set_written(*store_.begun);
-}
+          this) {}
 
 hal::WriteVerdict ModbusPublisher::take(std::span<const hal::RegisterWrite> writes) {
   std::vector<MotionWrite> motions;

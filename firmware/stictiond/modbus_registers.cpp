@@ -233,7 +233,8 @@ std::size_t count_before_motion(std::size_t axes) { return 3 + drive_rows.size()
 
 }  // namespace
 
-ModbusRegisters::ModbusRegisters(const machine::Machine& machine, const machine::DriveSetup& setup)
+ModbusRegisters::ModbusRegisters(const machine::Machine& machine, const machine::DriveSetup& setup,
+                                 const std::optional<ParameterSet>& begun)
     : machine_id_(machine.id),
       axis_count_(checked_axis_count(machine)),
       parameters_(drive_parameters(machine, setup)),
@@ -241,6 +242,7 @@ ModbusRegisters::ModbusRegisters(const machine::Machine& machine, const machine:
       first_parameter_(count_before_motion(axis_count_) + axis_count_ * motion_rows.size()),
       written_{machine.id, {}} {
   for (const auto& p : parameters_) values_.push_back(p.value.value_or(std::numeric_limits<double>::quiet_NaN()));
+  if (begun) set_written(*begun);
 }
 
 void ModbusRegisters::put_values(const PublishedState& state, std::span<double> values) const {
@@ -321,7 +323,7 @@ std::string modbus_register_page() {
       "there is no such register or it is read-only, 3 if a value is out of range or half of a "
       "32-bit value, 4 if the control loop makes no progress or parameters could not be stored, 6 if parameters come "
       "faster than 50 a second after the first 256. A refused request writes nothing. Commands that move an axis are "
-      "never refused for what is written beside them; of several values for one register the loop takes the newest, "
+      "never refused because of other writes; of several values for one register the loop takes the newest, "
       "and "
       "a controlword that stops an axis before those that follow it.\n\n"
       "## Input registers (function 4)\n\n"

@@ -130,8 +130,7 @@ void CanBackend::take(const Received& received) {
   }
   // Who hears a node is on the bus: a link that was taken down and up again reports no restart.
   bus_off_ = false;
-  if (node->check.take(address.kind == Kind::current ? 1 : 0, counter, received.received_ns))
-    node->arriving = state;
+  if (node->check.take(address.kind == Kind::current ? 1 : 0, counter, received.received_ns)) node->arriving = state;
 }
 
 void CanBackend::watch_bus() {
