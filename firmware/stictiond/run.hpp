@@ -151,17 +151,18 @@ RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const Driv
 
   const double period = configuration.machine.timing.fast_period;
   ServiceNotify notify;
-  // One in a time of its own has no clock that it could be late by.
-  std::optional<LoopWatchdog> watchdog;
-  if (clock != nullptr)
-    watchdog.emplace([&] { return programme.progress(); }, hal::power_cut, configuration.setup.real_time.priority);
   {
+    // One in a time of its own has no clock that it could be late by.
+    std::optional<LoopWatchdog> watchdog;
+    if (clock != nullptr)
+      watchdog.emplace([&] { return programme.progress(); }, hal::power_cut, configuration.setup.real_time.priority);
     ServiceThread service(
         log, say, notify,
         {.progress = [&] { return programme.progress(); },
          .status = [&] { return title; },
          .starved =
              [&] {
+               if (!hal::power_cut.is_cut()) return;  // it has not begun, or has no clock
                say(LogLevel::error,
                    fmt::format("fault {} '{}': the loop makes no progress, the power is off",
                                static_cast<int>(Fault::watchdog_starved), stiction::name_of(Fault::watchdog_starved)));
@@ -171,7 +172,7 @@ RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const Driv
                if (!modbus) return;
                for (const auto& line : modbus->serve()) say(LogLevel::notice, line);
              }},
-        LoopWatchdog::limit_ns);
+        2 * LoopWatchdog::limit_ns);  // behind the watchdog, which acts and does not speak
     real_time.prepare_thread();
     if (any_refused(real_time.steps())) {
       // The simulated machine may be late; real axes may not.
