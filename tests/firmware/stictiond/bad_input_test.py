@@ -10,7 +10,7 @@ import subprocess
 import tempfile
 import unittest
 
-from drive_process import CONTROLWORD, Client, Drive
+from drive_process import Client, Drive, comes_true
 
 DONE, FAULT, REFUSED, FAILED = 0, 1, 2, 3
 VELOCITY_GAIN, STORE, PASSWORD = 1004, 0, 0x5354
@@ -87,7 +87,7 @@ class BadInput(unittest.TestCase):
         for number, said in ((signal.SIGKILL, "but while running"), (signal.SIGSEGV, "but by SIGSEGV")):
             with Drive("--parameters", str(self.folder), log=subprocess.DEVNULL) as drive:
                 client = drive.client()
-                client.write(CONTROLWORD, 6)
+                self.assertTrue(comes_true(lambda: client.state() != 0), "the loop has not begun")
                 client.close()
                 self.assertEqual(drive.end(number), -number)
             for text in (f"the last run did not end in order, {said}", ""):
