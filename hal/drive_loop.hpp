@@ -100,6 +100,7 @@ class DriveLoop {
   DriveState state(std::size_t axis) const { return drives_[axis].state(); }
   std::uint16_t statusword(std::size_t axis) const { return drives_[axis].statusword(); }
   Fault fault(std::size_t axis) const { return drives_[axis].fault(); }
+  const DigitalInputs<S>& inputs(std::size_t axis) const { return inputs_[axis]; }
   bool faulted() const {
     for (const auto& drive : drives_)
       if (drive.fault() != Fault::none) return true;

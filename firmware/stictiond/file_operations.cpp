@@ -1,11 +1,13 @@
 #include "firmware/stictiond/file_operations.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
 #include <cstdio>
+#include <stdexcept>
 #include <system_error>
 
 namespace stiction::drive {
@@ -25,6 +27,13 @@ class Descriptor {
     if (descriptor_ >= 0) ::close(descriptor_);
   }
 
+  // A folder, a FIFO or a device in the place of a file would hold up or take what is read and written.
+  const Descriptor& of_a_file() const {
+    struct stat status {};
+    if (::fstat(descriptor_, &status) != 0) fail(file_, "cannot be looked at");
+    if (S_ISREG(status.st_mode)) return *this;
+    throw std::runtime_error(file_.string() + ": found something that is no file; expected a file");
+  }
   bool is_open() const { return descriptor_ >= 0; }
   const Descriptor& or_fail(const char* what) const {
     if (!is_open()) fail(file_, what);
@@ -54,24 +63,27 @@ class Descriptor {
 };
 
 class SystemFiles : public FileOperations {
+  // A symbolic link in the place of a new file leads to a file of a different owner; a FIFO has no reader.
+  static constexpr int own = O_NOFOLLOW | O_NONBLOCK;
+
  public:
   std::optional<std::string> read(const std::filesystem::path& file) override {
-    const Descriptor descriptor(file, O_RDONLY);
+    const Descriptor descriptor(file, O_RDONLY | O_NONBLOCK);  // which does not wait for a FIFO's writer
     if (!descriptor.is_open() && errno == ENOENT) return {};
-    descriptor.or_fail("cannot be opened");
+    descriptor.or_fail("cannot be opened").of_a_file();
     std::string bytes;
     std::array<char, 4096> block;
     while (const std::size_t got = descriptor.read(block.data(), block.size())) bytes.append(block.data(), got);
     return bytes;
   }
   void create(const std::filesystem::path& file) override {
-    Descriptor(file, O_WRONLY | O_CREAT | O_TRUNC).or_fail("cannot be created");
+    Descriptor(file, O_WRONLY | O_CREAT | O_TRUNC | own).or_fail("cannot be created").of_a_file();
   }
   void append(const std::filesystem::path& file, std::string_view bytes) override {
-    Descriptor(file, O_WRONLY | O_APPEND).or_fail("cannot be written").write(bytes);
+    Descriptor(file, O_WRONLY | O_APPEND | own).or_fail("cannot be written").write(bytes);
   }
   void sync(const std::filesystem::path& file) override {
-    Descriptor(file, O_WRONLY).or_fail("cannot be brought to the disk").sync();
+    Descriptor(file, O_WRONLY | own).or_fail("cannot be brought to the disk").sync();
   }
   void sync_folder(const std::filesystem::path& folder) override {
     Descriptor(folder, O_RDONLY | O_DIRECTORY).or_fail("cannot be brought to the disk").sync();

@@ -8,7 +8,8 @@
 
 namespace stiction::drive {
 
-// All throw std::system_error, whose what() says what could not be done.
+// All throw std::system_error, whose what() says what could not be done, or std::runtime_error where a folder, FIFO or
+// device is in the place of a file. What is created or written is never reached through a symbolic link.
 class FileOperations {
  public:
   virtual ~FileOperations() = default;

@@ -29,7 +29,7 @@ hal::AxisLines lines_of(const std::string& axis, const machine::LineSetup& setup
 }
 
 hal::GpioAxisConfig configuration_of(const machine::AxisModel& axis, const machine::LineSetup& setup,
-                                     const machine::GpioSetup& gpio) {
+                                     const machine::GpioSetup& gpio, bool takes_over) {
   if (axis.motor.model != machine::MotorModel::force)
     throw hal::GpioError(
         fmt::format("axis {}: its current controllers need the phase currents, which GPIO does not carry; "
@@ -46,7 +46,8 @@ hal::GpioAxisConfig configuration_of(const machine::AxisModel& axis, const machi
               .first_channel = setup.pwm_channel,
               .half_bridges = 2,
               .period_ns = ns(gpio.pwm_period),
-              .dc_link = gpio.dc_link}};
+              .dc_link = gpio.dc_link,
+              .takes_over = takes_over}};
 }
 
 }  // namespace
@@ -70,13 +71,14 @@ bool has_gpio_lines(const machine::DriveSetup& setup, const machine::Machine& ma
          });
 }
 
-hal::GpioBackendConfig gpio_configuration(const machine::DriveSetup& setup, const machine::Machine& machine) {
+hal::GpioBackendConfig gpio_configuration(const machine::DriveSetup& setup, const machine::Machine& machine,
+                                          bool takes_over) {
   if (!setup.gpio) throw hal::GpioError("the machine file has no table [drive.gpio]; name the gpiochip there");
   if (!setup.gpio->pwm_chip)
     throw hal::GpioError("[drive.gpio] names no pwm_chip; expected a folder of /sys/class/pwm");
   hal::GpioBackendConfig config{.chip = setup.gpio->chip, .bias = input_bias(setup), .axes = {}};
   for (const auto& axis : machine.axes)
-    config.axes.push_back(configuration_of(axis, setup.axes.at(axis.name).line, *setup.gpio));
+    config.axes.push_back(configuration_of(axis, setup.axes.at(axis.name).line, *setup.gpio, takes_over));
   return config;
 }
 

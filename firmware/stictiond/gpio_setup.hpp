@@ -18,7 +18,9 @@ std::vector<hal::AxisLines> gpio_lines(const machine::DriveSetup& setup, const m
 bool has_gpio_lines(const machine::DriveSetup& setup, const machine::Machine& machine);
 
 // A machine on GPIO alone. Throws hal::GpioError where [drive.gpio] is missing, or where an axis has current
-// controllers: GPIO carries no current.
-hal::GpioBackendConfig gpio_configuration(const machine::DriveSetup& setup, const machine::Machine& machine);
+// controllers: GPIO carries no current. `setup`, `machine`: of the
+// machine file; `takes_over`: PWM channels that run are what a run that was killed left.
+hal::GpioBackendConfig gpio_configuration(const machine::DriveSetup& setup, const machine::Machine& machine,
+                                          bool takes_over = false);
 
 }  // namespace stiction::drive

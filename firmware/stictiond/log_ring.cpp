@@ -3,8 +3,7 @@
 #include <fmt/args.h>
 #include <fmt/format.h>
 
-#include <cstdio>
-#include <cstdlib>
+#include <string>
 
 namespace stiction::drive {
 namespace {
@@ -21,19 +20,6 @@ std::string text_of(const LogRecord& record) {
          fmt::vformat(record.text.text(), values);
 }
 
-const char* word_of(LogLevel level) {
-  switch (level) {
-    case LogLevel::error:
-      return "error: ";
-    case LogLevel::warning:
-      return "warning: ";
-    case LogLevel::notice:
-    case LogLevel::info:
-      break;
-  }
-  return "";
-}
-
 }  // namespace
 
 std::size_t LogReader::drain() {
@@ -47,14 +33,6 @@ std::size_t LogReader::drain() {
     lost_said_ = lost;
   }
   return taken;
-}
-
-void log_to_standard_error(LogLevel level, std::string_view text) {
-  static const bool journal = std::getenv("JOURNAL_STREAM") != nullptr;
-  if (journal)
-    fmt::print(stderr, "<{}>{}\n", static_cast<int>(level), text);
-  else
-    fmt::print(stderr, "stictiond: {}{}\n", word_of(level), text);
 }
 
 }  // namespace stiction::drive

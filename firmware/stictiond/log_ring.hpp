@@ -108,8 +108,4 @@ class LogReader {
   std::uint64_t lost_said_ = 0;
 };
 
-// A line on standard error; with the level in front as the journal reads it ("<4>") where that listens there
-// ($JOURNAL_STREAM), and in words for a person.
-void log_to_standard_error(LogLevel level, std::string_view text);
-
 }  // namespace stiction::drive

@@ -1,9 +1,10 @@
 // The program `stictiond`: the drive on a Linux industrial PC.
-// Exit status: 0 the task is done, 1 a fault stopped it, 2 the start was refused.
+// Exit statuses: hal/program.hpp.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "firmware/stictiond/configuration.hpp"
@@ -15,6 +16,7 @@
 #include "firmware/stictiond/real_time_check.hpp"
 #include "firmware/stictiond/remote_setup.hpp"
 #include "firmware/stictiond/run.hpp"
+#include "firmware/stictiond/run_record.hpp"
 #include "firmware/version/version.hpp"
 #include "hal/gpio/beside_lines.hpp"
 #include "hal/gpio/gpio_backend.hpp"
@@ -26,22 +28,23 @@
 namespace stiction::drive {
 namespace {
 
-using hal::exit_refused;
-constexpr int exit_done = 0, exit_fault = 1;
+using hal::exit_done, hal::exit_fault, hal::exit_refused;
 
 int status_of(const RunResult& result) { return result.faulted ? exit_fault : exit_done; }
 
-int run_simulated(RealTime& real_time, const DriveConfiguration& configuration, const DriveOptions& options) {
+int run_simulated(RealTime& real_time, const DriveConfiguration& configuration, const DriveOptions& options,
+                  RunRecord& record) {
   const std::vector<double> rest(configuration.machine.axes.size());
   const auto start = options.circle.empty() ? rest : task_of(options, configuration, rest).motion.start();
   hal::SimulatedBackend<FixedSignals> simulated(configuration.machine, start);
   if (options.unpaced)
-    return status_of(run(real_time, simulated, nullptr, configuration, options, "simulated, in its own time"));
+    return status_of(run(real_time, simulated, nullptr, configuration, options, "simulated, in its own time", record));
   hal::PacedBackend backend(simulated, configuration.period_ns);
-  return status_of(run(real_time, backend, &backend.clock(), configuration, options, "simulated"));
+  return status_of(run(real_time, backend, &backend.clock(), configuration, options, "simulated", record));
 }
 
-int run_can(RealTime& real_time, const DriveConfiguration& configuration, const DriveOptions& options) {
+int run_can(RealTime& real_time, const DriveConfiguration& configuration, const DriveOptions& options,
+            RunRecord& record) {
   hal::check(can_bus_budget(configuration));
   const auto config = can_config(configuration);
   hal::TickClock clock(configuration.period_ns);
@@ -57,10 +60,10 @@ int run_can(RealTime& real_time, const DriveConfiguration& configuration, const 
   if (has_gpio_lines(configuration.setup, configuration.machine)) {
     hal::BesideLines both(backend, configuration.setup.gpio->chip, input_bias(configuration.setup),
                           gpio_lines(configuration.setup, configuration.machine));
-    result =
-        run(real_time, both, &clock, configuration, options, title + " and lines of " + configuration.setup.gpio->chip);
+    result = run(real_time, both, &clock, configuration, options,
+                 title + " and lines of " + configuration.setup.gpio->chip, record);
   } else {
-    result = run(real_time, backend, &clock, configuration, options, title);
+    result = run(real_time, backend, &clock, configuration, options, title, record);
   }
   for (std::size_t i = 0; i < configuration.names.size(); ++i) {
     const auto& n = backend.counts(i);
@@ -73,17 +76,21 @@ int run_can(RealTime& real_time, const DriveConfiguration& configuration, const 
   return status_of(result);
 }
 
-int run_gpio(RealTime& real_time, const DriveConfiguration& configuration, const DriveOptions& options) {
-  hal::GpioBackend backend(gpio_configuration(configuration.setup, configuration.machine), configuration.period_ns);
-  const auto result =
-      run(real_time, backend, &backend.clock(), configuration, options, "gpio " + configuration.setup.gpio->chip);
+int run_gpio(RealTime& real_time, const DriveConfiguration& configuration, const DriveOptions& options,
+             RunRecord& record) {
+  hal::GpioBackend backend(
+      gpio_configuration(configuration.setup, configuration.machine, record.broken_off().has_value()),
+      configuration.period_ns);
+  const auto result = run(real_time, backend, &backend.clock(), configuration, options,
+                          "gpio " + configuration.setup.gpio->chip, record);
   for (std::size_t i = 0; i < configuration.names.size(); ++i)
     fmt::print("axis {}: at least {} edges lost; last fault of the encoder tracks: {}\n", configuration.names[i],
                backend.lost_edges(i), name_of(backend.last_encoder_fault(i)));
   return status_of(result);
 }
 
-int run_modbus(RealTime& real_time, const DriveConfiguration& configuration, const DriveOptions& options) {
+int run_modbus(RealTime& real_time, const DriveConfiguration& configuration, const DriveOptions& options,
+               RunRecord& record) {
   const auto& setup = configuration.setup;
   if (!setup.modbus_client)
     throw StartRefused(fmt::format("{}: found no table [drive.modbus_client]; expected one with the device",
@@ -105,7 +112,7 @@ int run_modbus(RealTime& real_time, const DriveConfiguration& configuration, con
   hal::TickClock clock(configuration.period_ns);
   hal::ModbusClient client(config);
   hal::ModbusBackend backend(client, clock);
-  return status_of(run(real_time, backend, &clock, configuration, options, "modbus " + config.device));
+  return status_of(run(real_time, backend, &clock, configuration, options, "modbus " + config.device, record));
 }
 
 int print_budgets(const DriveConfiguration& configuration) {
@@ -125,7 +132,20 @@ int print_budgets(const DriveConfiguration& configuration) {
   return refused ? exit_refused : exit_done;
 }
 
+// What a killed run left: to have the lines and to give them back makes them inactive and stops the PWM.
+int put_to_rest(const DriveConfiguration& configuration, const DriveOptions& options) {
+  const auto& [setup, machine] = std::tie(configuration.setup, configuration.machine);
+  if (options.hal == "gpio") {
+    const hal::GpioBackend backend(gpio_configuration(setup, machine, true), configuration.period_ns);
+  } else if (options.hal == "can" && has_gpio_lines(setup, machine)) {
+    hal::Lines lines(setup.gpio->chip, input_bias(setup));
+    const hal::GpioInputsOutputs io(lines, gpio_lines(setup, machine));
+  }
+  return exit_done;
+}
+
 int serve(const DriveOptions& options) {
+  hal::install_signal_reactions(RunRecord::note_signal);
   if (options.faults) {
     fmt::print("{}", fault_page());
     return exit_done;
@@ -151,15 +171,17 @@ int serve(const DriveOptions& options) {
     fmt::print("{}", text_of(measured, configuration.period_ns));
     return exit_done;
   }
+  if (options.rest) return put_to_rest(configuration, options);
   check_remote(configuration);
-  hal::catch_stop_signals();
   const auto& wanted = configuration.setup.real_time;
   RealTime real_time({.priority = wanted.priority, .cpu = wanted.cpu});
   real_time.prepare_process();
-  if (options.hal == "can") return run_can(real_time, configuration, options);
-  if (options.hal == "gpio") return run_gpio(real_time, configuration, options);
-  if (options.hal == "modbus") return run_modbus(real_time, configuration, options);
-  return run_simulated(real_time, configuration, options);
+  check_room(options, configuration, !any_refused(real_time.steps()));
+  RunRecord record(options.parameters);
+  if (options.hal == "can") return run_can(real_time, configuration, options, record);
+  if (options.hal == "gpio") return run_gpio(real_time, configuration, options, record);
+  if (options.hal == "modbus") return run_modbus(real_time, configuration, options, record);
+  return run_simulated(real_time, configuration, options, record);
 }
 
 }  // namespace

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <exception>
 
 #include "firmware/stictiond/modbus_setup.hpp"
+#include "hal/tick_clock.hpp"
+#include "stiction/drive/state_machine.hpp"
 
 namespace stiction::drive {
 namespace {
@@ -12,62 +15,108 @@ namespace {
 constexpr std::array<const char*, 6> motion_names{"controlword",      "mode of operation",    "target position",
                                                   "profile velocity", "profile acceleration", "profile deceleration"};
 
+std::vector<std::string> names_of(const machine::Machine& machine) {
+  std::vector<std::string> names;
+  for (const machine::AxisModel& axis : machine.axes) names.push_back(axis.name);
+  return names;
+}
+
+std::int64_t now_ns() { return hal::MonotonicTime().now_ns(); }
+
+// What a client sees of a loop that makes no progress.
+void mark_stale(PublishedState& state) {
+  constexpr std::uint16_t gone = statusword::state_bits | statusword::voltage_bit;
+  state.fault = Fault::watchdog_starved;
+  for (PublishedAxis& axis : state.axes) {
+    axis.statusword = static_cast<std::uint16_t>((axis.statusword & ~gone) | statusword::fault_bit);
+    axis.fault = Fault::watchdog_starved;
+  }
+}
+
 }  // namespace
 
 ModbusPublisher::ModbusPublisher(const machine::Machine& machine, const machine::DriveSetup& setup, ModbusStore store,
-                                 Beside beside)
-    : registers_(machine, setup),
+                                 Beside beside, Stale stale, bool moves_itself)
+    : registers_(machine, setup, store.begun),
       store_(std::move(store)),
       beside_(std::move(beside)),
-      server_(registers_.map(), modbus_server_config(setup), [this](std::span<double> values) {
-        PublishedState state = snapshot_.latest();
-        if (beside_) beside_(state);
-        registers_.put_values(state, values);
-      }) {
-  for (const machine::AxisModel& axis : machine.axes) axis_names_.push_back(axis.name);
-  if (store_.begun) registers_.set_written(*store_.begun);
-}
+      stale_(std::move(stale)),
+      moves_itself_(moves_itself),
+      axis_names_(names_of(machine)),
+      server_(
+          registers_.map(), modbus_server_config(setup),
+          [this](std::span<double> values) {
+            PublishedState state = snapshot_.latest();
+            if (beside_) beside_(state);
+            if (stale_ && stale_()) mark_stale(state);
+            registers_.put_values(state, values);
+          },
+          this) {}
 
-std::optional<MotionWrite> ModbusPublisher::take_motion() {
-  const auto write = motion_.take();
-  if (!write) return {};
-  return std::get<MotionWrite>(registers_.meaning_of(*write));
-}
-
-std::vector<std::string> ModbusPublisher::serve() {
-  std::vector<std::string> lines;
-  // All at once: a target and the bit that it is taken by may come in one request.
-  std::vector<hal::RegisterWrite> motions;
-  while (const auto write = server_.take_write()) {
-    const DriveWrite meaning = registers_.meaning_of(*write);
-    if (const auto* parameter = std::get_if<ParameterWrite>(&meaning)) {
-      registers_.remember(*parameter);
-      lines.push_back(fmt::format("Modbus: {} = {}, which takes effect at the next start if it is stored",
-                                  parameter->key, parameter->value));
-    } else if (const auto* motion = std::get_if<MotionWrite>(&meaning)) {
-      motions.push_back(*write);
-      lines.push_back(describe(*motion));
-    } else {
-      lines.push_back(describe_store());
-    }
+hal::WriteVerdict ModbusPublisher::take(std::span<const hal::RegisterWrite> writes) {
+  std::vector<MotionWrite> motions;
+  std::vector<ParameterWrite> parameters;
+  bool store = false;
+  for (const hal::RegisterWrite& write : writes) {
+    DriveWrite meaning = registers_.meaning_of(write);
+    if (const auto* motion = std::get_if<MotionWrite>(&meaning))
+      motions.push_back(*motion);
+    else if (auto* parameter = std::get_if<ParameterWrite>(&meaning))
+      parameters.push_back(std::move(*parameter));
+    else
+      store = true;
   }
-  if (!motion_.push(motions)) lines.push_back("Modbus: command dropped: the loop has not yet taken the previous ones");
-  return lines;
+  if (moves_itself_ && !std::all_of(motions.begin(), motions.end(), MotionMailbox::stops))
+    return {.refused = hal::ModbusException::illegal_function};
+  if (!motions.empty() && stale_ && stale_()) return {.refused = hal::ModbusException::device_failure};
+  if (!parameters.empty() && !parameter_limit_.take(now_ns())) return {.refused = hal::ModbusException::busy};
+  // All at once: a target and the bit that it is taken by may come in one request.
+  if (!motions.empty()) motion_.put(motions);
+  for (const MotionWrite& motion : motions) said_->say(describe(motion), now_ns());
+  for (const ParameterWrite& parameter : parameters) {
+    registers_.remember(parameter);
+    said_->say(fmt::format("Modbus: {} = {}, which takes effect at the next start if it is stored", parameter.key,
+                           parameter.value),
+               now_ns());
+  }
+  return store ? ask_store() : hal::WriteVerdict{};
 }
+
+hal::WriteVerdict ModbusPublisher::ask_store() {
+  if (store_.file.empty()) {
+    said_->say("Modbus: parameters are not stored: the drive was started without --parameters", now_ns());
+    return {.refused = hal::ModbusException::device_failure};
+  }
+  auto store = registers_.prepared_store(store_.file, store_.machine_file, store_.options);
+  const auto ticket = disk_.ask([store = std::move(store), said = said_, file = store_.file.string()] {
+    try {
+      store();
+    } catch (const std::exception& error) {
+      said->say(fmt::format("Modbus: parameters are not stored: {}", error.what()), now_ns());
+      throw;
+    }
+    said->say(fmt::format("Modbus: parameters stored in {}", file), now_ns());
+  });
+  return {.put_off = ticket};
+}
+
+std::optional<hal::WriteVerdict> ModbusPublisher::outcome(std::uint64_t ticket) {
+  switch (disk_.outcome(ticket)) {
+    case StoreThread::Outcome::under_way:
+      return {};
+    case StoreThread::Outcome::stored:
+      return hal::WriteVerdict{};
+    case StoreThread::Outcome::failed:
+      break;
+  }
+  return hal::WriteVerdict{.refused = hal::ModbusException::device_failure};
+}
+
+std::vector<std::string> ModbusPublisher::serve() { return said_->take(now_ns()); }
 
 std::string ModbusPublisher::describe(const MotionWrite& write) const {
   return fmt::format("Modbus: axis {}: {} {}", axis_names_[write.axis],
                      motion_names[static_cast<std::size_t>(write.what)], write.value);
-}
-
-std::string ModbusPublisher::describe_store() {
-  if (store_.file.empty()) return "Modbus: parameters are not stored: the drive was started without --parameters";
-  try {
-    registers_.store(store_.file, store_.machine_file, store_.options);
-  } catch (const std::exception& error) {
-    return fmt::format("Modbus: parameters are not stored: {}", error.what());
-  }
-  return fmt::format("Modbus: parameters stored in {}", store_.file.string());
 }
 
 }  // namespace stiction::drive

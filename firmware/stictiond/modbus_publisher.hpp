@@ -1,17 +1,23 @@
-// The drive on a plant's network: publishes the loop's state over Modbus and takes what clients write. Three threads
+// The drive on a plant's network: publishes the loop's state over Modbus and takes what clients write. Four threads
 // meet here and none waits for another: the loop hands over its state and takes motion commands, the server's answers
-// clients, the service thread keeps parameters and says what was written.
+// clients and remembers parameters, the store's brings them to the disk, the service thread says what was written.
 #pragma once
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "firmware/machine/configuration/conversion.hpp"
 #include "firmware/stictiond/modbus_registers.hpp"
+#include "firmware/stictiond/motion_mailbox.hpp"
+#include "firmware/stictiond/rate_limit.hpp"
+#include "firmware/stictiond/said_lines.hpp"
+#include "firmware/stictiond/store_thread.hpp"
 #include "hal/modbus/server.hpp"
 #include "hal/snapshot.hpp"
 #include "stiction/drive/axis_signals.hpp"
@@ -26,15 +32,21 @@ struct ModbusStore {
   std::optional<ParameterSet> begun;  // what was stored then
 };
 
-class ModbusPublisher {
+class ModbusPublisher : private hal::WriteTaker {
  public:
   // What the loop does not know itself (deadlines, the trace's rows); asked in the server's thread at each request.
   using Beside = std::function<void(PublishedState&)>;
+  // Whether the loop makes no progress: what it published last is then shown as a fault and no command is taken. As
+  // above.
+  using Stale = std::function<bool()>;
+  // Requests that write parameters: as many at once, and a second.
+  static constexpr double parameter_burst = 256, parameters_per_second = 50;
 
   // Listens when this returns. Throws ModbusError. `machine`, `setup`: as configured; `store`: files for stored
-  // parameters, empty for none; `beside`: further registers of the caller.
+  // parameters, empty for none; `beside`: further registers of the caller; `stale`: null for a loop in its own time;
+  // `moves_itself`: the programme moves the axes, and clients can only stop them.
   ModbusPublisher(const machine::Machine& machine, const machine::DriveSetup& setup, ModbusStore store,
-                  Beside beside = {});
+                  Beside beside = {}, Stale stale = {}, bool moves_itself = false);
 
   // The loop's side, wait-free.
   // `signals` of the tick; the peaks and the mean square are kept here. `status` gives statusword, mode, fault and
@@ -62,22 +74,30 @@ class ModbusPublisher {
     }
     snapshot_.publish(next);
   }
-  // What a client commands, oldest first; none comes where the machine file does not allow motion.
-  std::optional<MotionWrite> take_motion();
+  // Once a tick: `act` is called with each command of clients that is new (MotionMailbox::take); none comes where the
+  // machine file does not allow motion.
+  template <class Act>
+  void take_motion(Act act) {
+    motion_.take(act);
+  }
 
-  // The service thread's side: takes what was written, stores parameters, and returns a line for the log for each
-  // thing done or refused.
+  // The service thread's side: a line for the log for each thing done or refused since the last call.
   std::vector<std::string> serve();
 
   const hal::ModbusServer& server() const { return server_; }
 
  private:
+  // The server's side.
+  hal::WriteVerdict take(std::span<const hal::RegisterWrite> writes) override;
+  std::optional<hal::WriteVerdict> outcome(std::uint64_t ticket) override;
+  hal::WriteVerdict ask_store();
   std::string describe(const MotionWrite& write) const;
-  std::string describe_store();
 
   ModbusRegisters registers_;
   ModbusStore store_;
   Beside beside_;
+  Stale stale_;
+  bool moves_itself_;
   std::vector<std::string> axis_names_;
   // The loop's own.
   PublishedState loop_state_;
@@ -85,7 +105,10 @@ class ModbusPublisher {
   std::uint64_t rows_ = 0;
   std::int64_t first_ns_ = 0;
   hal::Snapshot<PublishedState> snapshot_;
-  hal::WriteQueue motion_;
+  MotionMailbox motion_;
+  RateLimit parameter_limit_{parameter_burst, parameters_per_second};  // the server's own
+  std::shared_ptr<SaidLines> said_ = std::make_shared<SaidLines>();
+  StoreThread disk_;
   hal::ModbusServer server_;  // last: its thread uses all of the others
 };
 

@@ -233,7 +233,8 @@ std::size_t count_before_motion(std::size_t axes) { return 3 + drive_rows.size()
 
 }  // namespace
 
-ModbusRegisters::ModbusRegisters(const machine::Machine& machine, const machine::DriveSetup& setup)
+ModbusRegisters::ModbusRegisters(const machine::Machine& machine, const machine::DriveSetup& setup,
+                                 const std::optional<ParameterSet>& begun)
     : machine_id_(machine.id),
       axis_count_(checked_axis_count(machine)),
       parameters_(drive_parameters(machine, setup)),
@@ -241,6 +242,7 @@ ModbusRegisters::ModbusRegisters(const machine::Machine& machine, const machine:
       first_parameter_(count_before_motion(axis_count_) + axis_count_ * motion_rows.size()),
       written_{machine.id, {}} {
   for (const auto& p : parameters_) values_.push_back(p.value.value_or(std::numeric_limits<double>::quiet_NaN()));
+  if (begun) set_written(*begun);
 }
 
 void ModbusRegisters::put_values(const PublishedState& state, std::span<double> values) const {
@@ -288,10 +290,19 @@ void ModbusRegisters::set_written(const ParameterSet& set) {
 
 void ModbusRegisters::store(const std::filesystem::path& file, const std::filesystem::path& machine_file,
                             machine::ReadOptions options) const {
-  const ParameterSet set = written();
-  for (auto& assignment : assignments_of(set, machine_id_, parameters_)) options.set.push_back(std::move(assignment));
-  machine::read_machine(machine_file, machine::shipped_vocabulary(), options);
-  write_parameters(file, set);
+  prepared_store(file, machine_file, std::move(options))();
+}
+
+std::function<void()> ModbusRegisters::prepared_store(const std::filesystem::path& file,
+                                                      const std::filesystem::path& machine_file,
+                                                      machine::ReadOptions options) const {
+  return
+      [file, machine_file, options = std::move(options), set = written(), id = machine_id_, parameters = parameters_] {
+        machine::ReadOptions checked = options;
+        for (auto& assignment : assignments_of(set, id, parameters)) checked.set.push_back(std::move(assignment));
+        machine::read_machine(machine_file, machine::shipped_vocabulary(), checked);
+        write_parameters(file, set);
+      };
 }
 
 std::string modbus_register_page() {
@@ -308,13 +319,19 @@ std::string modbus_register_page() {
       "registers of the drive and of its first axis. For each further axis, in the order of the machine file, add {} "
       "to the addresses of state and commands and {} to those of parameters.\n\n"
       "A write request is refused with exception 1 if a register moves an axis and `[drive.modbus_server] motion` is "
-      "not `\"allowed\"`, 2 if there is no such register or it is read-only, 3 if a value is out of range or half of a "
-      "32-bit value, 6 if earlier writes have not been processed yet. A refused request writes nothing.\n\n"
+      "not `\"allowed\"` or the programme moves the axes itself (`--circle`, `--hold`) and the write is no stop, 2 if "
+      "there is no such register or it is read-only, 3 if a value is out of range or half of a "
+      "32-bit value, 4 if the control loop makes no progress or parameters could not be stored, 6 if parameters come "
+      "faster than 50 a second after the first 256. A refused request writes nothing. Commands that move an axis are "
+      "never refused because of other writes; of several values for one register the loop takes the newest, "
+      "and "
+      "a controlword that stops an axis before those that follow it.\n\n"
       "## Input registers (function 4)\n\n"
       "{}\n"
       "## Holding registers (functions 3, 6, 16, 23)\n\n"
       "A parameter that the machine file leaves out reads as not-a-number. A written value can be read back at once, "
-      "is stored by `store_parameters`, and takes effect at the next start.\n\n"
+      "is stored by `store_parameters`, whose answer comes when it is on the disk, and takes effect at the next "
+      "start.\n\n"
       "{}",
       modbus_schema, modbus_schema, axis_stride, parameters_stride, hal::register_table(input),
       hal::register_table(holding));

@@ -4,7 +4,9 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
@@ -72,7 +74,9 @@ using DriveWrite = std::variant<MotionWrite, ParameterWrite, StoreParameters>;
 class ModbusRegisters {
  public:
   // Throws std::invalid_argument for more axes than most_published_axes.
-  ModbusRegisters(const machine::Machine& machine, const machine::DriveSetup& setup);
+  // `machine`, `setup`: as configured; `begun`: parameters that were stored before, to begin with.
+  ModbusRegisters(const machine::Machine& machine, const machine::DriveSetup& setup,
+                  const std::optional<ParameterSet>& begun = {});
 
   const hal::RegisterMap& map() const { return map_; }
   // One value a register: the state's and the parameters', those that were written included. From the server's thread.
@@ -92,6 +96,9 @@ class ModbusRegisters {
   // started with.
   void store(const std::filesystem::path& file, const std::filesystem::path& machine_file,
              machine::ReadOptions options = {}) const;
+  // The same as a job for another thread, with all that it needs in it. `file`, `machine_file`, `options`: as above.
+  std::function<void()> prepared_store(const std::filesystem::path& file, const std::filesystem::path& machine_file,
+                                       machine::ReadOptions options = {}) const;
 
  private:
   std::string machine_id_;

@@ -13,6 +13,16 @@ struct DriveOptions {
   std::vector<std::string> set;
   std::optional<double> hold;  // s
   bool unpaced = false, budget = false, check_realtime = false, dbc = false, faults = false, modbus_registers = false;
+  bool rest = false;
+
+  static constexpr double longest_hold = 31'536'000.0;  // s, a year
+
+  // Empty for a time that an axis can be held for; else why `text` is none.
+  static std::string hold_rejection(const std::string& text) {
+    double seconds = 0.0;
+    if (CLI::detail::lexical_cast(text, seconds) && seconds > 0.0 && seconds <= longest_hold) return {};
+    return "found " + text + "; expected a number of seconds above 0 and at most 31536000, a year";
+  }
 
   void add_to(CLI::App& program) {
     program.add_option("--machine", machine, "machine file, or the name of a shipped machine")->type_name("MACHINE");
@@ -31,12 +41,13 @@ struct DriveOptions {
                     "enable the axes, hold them for this many seconds, stop and exit; without --circle and --hold the "
                     "axes remain off until a client of [drive.can_server] or [drive.modbus_server] enables them")
         ->type_name("SECONDS")
-        ->check(CLI::PositiveNumber);
+        ->check(CLI::Validator(hold_rejection, ""));
     program.add_flag("--unpaced", unpaced, "run the simulated machine as fast as possible, without deadlines");
     program.add_option("--trace", trace, "write every signal of every tick of the motion as a log")->type_name("FILE");
     program.add_flag("--budget", budget, "print the load of the buses and exit");
     program.add_flag("--check-realtime", check_realtime,
                      "check whether this computer is fit for the loop, print the result and exit");
+    program.add_flag("--rest", rest, "put lines and PWM of a run that was killed to rest and exit");
     program.add_flag("--faults", faults, "print the table of faults and exit");
     program.add_flag("--modbus-registers", modbus_registers, "print the Modbus registers as Markdown and exit");
     program.add_flag("--dbc", dbc, "print the frames of the CAN bus as a DBC file and exit");

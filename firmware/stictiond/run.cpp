@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "firmware/machine/file/units.hpp"
+#include "sim/experiment/circle_path.hpp"
 
 namespace stiction::drive {
 
@@ -23,16 +24,42 @@ std::string describe_timing(const hal::LoopTiming& timing, const hal::TimeHistog
   return text + fmt::format("missed ticks {}\n", missed);
 }
 
+void show_timing(const hal::TickClock& clock, const hal::LoopTiming& timing, PublishedState& state) {
+  state.missed_deadlines = static_cast<std::uint32_t>(clock.missed());
+  state.largest_lateness = static_cast<double>(clock.lateness().read().maximum) * 1e-9;
+  state.largest_work = static_cast<double>(timing.work().read().maximum) * 1e-9;
+}
+
+namespace {
+
+// m/s
+double feed_of(const DriveOptions& options) {
+  try {
+    return machine::parse_quantity(options.circle, "m/s");
+  } catch (const machine::UnitError& error) {
+    throw MotionError(
+        fmt::format("--circle: found '{}' ({}); expected a feed such as \"16 m/min\"", options.circle, error.what()));
+  }
+}
+
+}  // namespace
+
+void check_room(const DriveOptions& options, const DriveConfiguration& configuration, bool locked) {
+  if (options.circle.empty()) return;
+  const double feed = feed_of(options);
+  if (!(feed > 0.0)) return;  // refused by the motion itself
+  constexpr std::size_t set_bytes = sizeof(Motion::Set), signal_bytes = sizeof(AxisSignals<FixedSignals>);
+  const double ticks =
+      sim::CirclePath::lap_end * sim::CircleSettings{}.radius / feed / configuration.machine.timing.fast_period;
+  const double bytes = static_cast<double>(set_bytes + (options.trace.empty() ? 0 : signal_bytes));
+  check_memory(ticks * bytes * static_cast<double>(configuration.axes.size()), locked);
+}
+
 Task task_of(const DriveOptions& options, const DriveConfiguration& configuration, std::span<const double> positions) {
   const auto& machine = configuration.machine;
   Task task{.approach = Motion(machine.axes.size()), .motion = Motion(machine.axes.size())};
   if (!options.circle.empty()) {
-    try {
-      task.motion = Motion::circle(machine, machine::parse_quantity(options.circle, "m/s"));
-    } catch (const machine::UnitError& error) {
-      throw MotionError(
-          fmt::format("--circle: found '{}' ({}); expected a feed such as \"16 m/min\"", options.circle, error.what()));
-    }
+    task.motion = Motion::circle(machine, feed_of(options));
     task.approach = task.motion.approach(machine, positions);
   } else if (options.hold) {
     task.idle_ticks = static_cast<std::uint64_t>(std::ceil(*options.hold / machine.timing.fast_period));

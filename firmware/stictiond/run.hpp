@@ -2,6 +2,7 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <optional>
@@ -11,15 +12,21 @@
 #include "firmware/machine/configuration/conversion.hpp"
 #include "firmware/stictiond/can_server.hpp"
 #include "firmware/stictiond/configuration.hpp"
+#include "firmware/stictiond/log_output.hpp"
+#include "firmware/stictiond/loop_watchdog.hpp"
 #include "firmware/stictiond/modbus_motion.hpp"
 #include "firmware/stictiond/modbus_publisher.hpp"
 #include "firmware/stictiond/programme.hpp"
 #include "firmware/stictiond/real_time.hpp"
 #include "firmware/stictiond/remote_setup.hpp"
+#include "firmware/stictiond/run_record.hpp"
 #include "firmware/stictiond/service_notify.hpp"
 #include "firmware/stictiond/service_thread.hpp"
 #include "firmware/stictiond/sync_follower.hpp"
+#include "firmware/stictiond/trace_room.hpp"
+#include "hal/gated_backend.hpp"
 #include "hal/loop_timing.hpp"
+#include "hal/power_cut.hpp"
 #include "hal/program.hpp"
 #include "hal/tick_clock.hpp"
 
@@ -32,6 +39,15 @@ struct RunResult {
 // What the loop did with its time, for people. `timing`: durations of reading, control and writing; `lateness`: of the
 // ticks; `missed`: number of ticks that began later than a period.
 std::string describe_timing(const hal::LoopTiming& timing, const hal::TimeHistogram& lateness, std::uint64_t missed);
+
+// What the loop did with its time, for a client. `clock`: of the loop; `timing`: durations; `state`: is filled.
+void show_timing(const hal::TickClock& clock, const hal::LoopTiming& timing, PublishedState& state);
+
+// Throws StartRefused where the motion and its trace do not fit into memory. `options`, `configuration`: as below;
+// `locked`: whether memory is locked.
+void check_room(const DriveOptions& options, const DriveConfiguration& configuration, bool locked);
+
+inline constexpr std::uint64_t row_bytes = 256;  // of a trace's file, for one axis in one tick, at most
 
 // The task of the options. `positions`: where the axes stand (m). Throws MotionError. `options`: of the command line;
 // `configuration`: of the drive.
@@ -70,49 +86,62 @@ void answer_controller(const hal::DriveLoop<B>& loop, const Programme<B>& progra
   can.send(shown);
 }
 
-// The axes for others to see, and what these ask of them. Wait-free. `loop`, `programme`: whose state is published and
-// whose axes are commanded; `period`: of the fast tick, s; `modbus`: the server.
+// The axes for others to see. Wait-free. `loop`, `programme`: whose state is published; `period`: of the fast tick, s;
+// `modbus`: the server.
 template <hal::Backend B>
-void serve_modbus(const hal::DriveLoop<B>& loop, Programme<B>& programme, double period, ModbusPublisher& modbus) {
+void show_on_modbus(const hal::DriveLoop<B>& loop, Programme<B>& programme, double period, ModbusPublisher& modbus) {
   Fault fault = Fault::none;
   for (std::size_t i = 0; i < loop.axis_count(); ++i)
     if (loop.fault(i) != Fault::none) fault = loop.fault(i);
   modbus.publish(loop.loop().signals(), loop.now_ns(), fault, [&](std::size_t i, PublishedAxis& axis) {
     axis.statusword = programme.statusword(i);
     axis.fault = loop.fault(i);
+    const auto& inputs = loop.inputs(i);
+    axis.limit_negative = inputs.limit_negative;
+    axis.limit_positive = inputs.limit_positive;
+    axis.home = inputs.home;
     show_asked(programme.remote()[i], period, axis);
   });
-  while (const auto asked = modbus.take_motion()) ask(*asked, period, programme.remote()[asked->axis]);
 }
 
 // `clock`: the one that the backend waits for; null: it has a time of its own. `real_time`: of the process, which has
 // been prepared before the backend was made, so that the threads of that have its stacks too; `backend`: power stages
 // and encoders; `configuration`: of the drive; `options`: of the command line; `title`: one line for the service
-// manager. Throws StartRefused, MotionError.
+// manager; `record`: of this run, for the next one. Throws StartRefused, MotionError.
 template <hal::Backend B>
 RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const DriveConfiguration& configuration,
-              const DriveOptions& options, const std::string& title) {
+              const DriveOptions& options, const std::string& title, RunRecord& record) {
   hal::LoopTiming timing;
-  hal::TimedBackend<B> timed(backend, timing);
-  hal::DriveLoop<hal::TimedBackend<B>> loop(timed, configuration.axes, configuration.drives, configuration.ticker,
-                                            configuration.compensations);
+  const hal::PowerCut::Entry entry(hal::power_cut, backend);
+  hal::GatedBackend<B> gated(backend, hal::power_cut);
+  hal::TimedBackend<hal::GatedBackend<B>> timed(gated, timing);
+  hal::DriveLoop<hal::TimedBackend<hal::GatedBackend<B>>> loop(timed, configuration.axes, configuration.drives,
+                                                               configuration.ticker, configuration.compensations);
   std::vector<double> positions;
   for (const auto& feedback : loop.loop().feedback()) positions.push_back(machine::to_si(feedback.position));
   const Task task = task_of(options, configuration, positions);
+  if (!options.trace.empty())
+    check_trace_file(options.trace, task.motion.ticks() * configuration.axes.size() * row_bytes);
   Trace trace(configuration.names.size(), options.trace.empty() ? 0 : task.motion.ticks());
   LogRing log;
+  LogOutput output(STDERR_FILENO, journal_listens());
+  const LogSink say = [&output](LogLevel level, std::string_view text) { output.put(level, text); };
   const auto remote = remote_axes(configuration);
   Programme programme(loop, task, remote, log, options.trace.empty() ? nullptr : &trace);
   std::optional<ModbusPublisher> modbus;
   if (configuration.setup.modbus_server)
-    modbus.emplace(configuration.machine, configuration.setup,
-                   ModbusStore{.file = parameter_file(options),
-                               .machine_file = configuration.file,
-                               .options = {"", configuration.assignments},
-                               .begun = configuration.stored},
-                   [clock](PublishedState& state) {
-                     if (clock != nullptr) state.missed_deadlines = static_cast<std::uint32_t>(clock->missed());
-                   });
+    modbus.emplace(
+        configuration.machine, configuration.setup,
+        ModbusStore{.file = parameter_file(options),
+                    .machine_file = configuration.file,
+                    .options = {"", configuration.assignments},
+                    .begun = configuration.stored},
+        [&](PublishedState& state) {
+          state.trace_rows = static_cast<std::uint32_t>(trace.rows());
+          state.trace_lost = static_cast<std::uint32_t>(trace.lost());
+          if (clock != nullptr) show_timing(*clock, timing, state);
+        },
+        [] { return hal::power_cut.is_cut(); }, !task.serve);
 
   // Only who serves takes set-points: a motion of its own is the programme's alone.
   std::optional<CanServer> can;
@@ -120,25 +149,30 @@ RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const Driv
   std::vector<ShownAxis> shown(configuration.names.size());
   ControllerClock controller_clock(configuration);
 
+  const double period = configuration.machine.timing.fast_period;
   ServiceNotify notify;
-  constexpr std::int64_t starvation_ns = 100'000'000;
   {
-    ServiceThread service(log, log_to_standard_error, notify,
-                          {.progress = [&] { return programme.progress(); },
-                           .status = [&] { return title; },
-                           .starved =
-                               [] {
-                                 log_to_standard_error(LogLevel::error,
-                                                       fmt::format("fault {} '{}': the loop has stopped",
-                                                                   static_cast<int>(Fault::watchdog_starved),
-                                                                   stiction::name_of(Fault::watchdog_starved)));
-                               },
-                           .round =
-                               [&] {
-                                 if (!modbus) return;
-                                 for (const auto& line : modbus->serve()) log_to_standard_error(LogLevel::notice, line);
-                               }},
-                          starvation_ns);
+    // One in a time of its own has no clock that it could be late by.
+    std::optional<LoopWatchdog> watchdog;
+    if (clock != nullptr)
+      watchdog.emplace([&] { return programme.progress(); }, hal::power_cut, configuration.setup.real_time.priority);
+    ServiceThread service(
+        log, say, notify,
+        {.progress = [&] { return programme.progress(); },
+         .status = [&] { return title; },
+         .starved =
+             [&] {
+               if (!hal::power_cut.is_cut()) return;  // it has not begun, or has no clock
+               say(LogLevel::error,
+                   fmt::format("fault {} '{}': the loop makes no progress, the power is off",
+                               static_cast<int>(Fault::watchdog_starved), stiction::name_of(Fault::watchdog_starved)));
+             },
+         .round =
+             [&] {
+               if (!modbus) return;
+               for (const auto& line : modbus->serve()) say(LogLevel::notice, line);
+             }},
+        2 * LoopWatchdog::limit_ns);  // behind the watchdog, which acts and does not speak
     real_time.prepare_thread();
     if (any_refused(real_time.steps())) {
       // The simulated machine may be late; real axes may not.
@@ -147,9 +181,12 @@ RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const Driv
             "found no real-time conditions; expected every step below, or drive.real_time.priority = 0 for a test "
             "without power\n" +
             text_of(real_time.steps()));
-      fmt::print(stderr, "{}", text_of(real_time.steps()));
+      for (const RealTimeStep& step : real_time.steps()) say(LogLevel::info, text_of(std::span(&step, 1)));
     }
     notify.ready(title);
+    hal::start_is_over = true;
+    record.begin();
+    if (record.broken_off()) say(LogLevel::warning, "the last run did not end in order, but " + *record.broken_off());
     loop.begin();  // every thread has been made, and what came before took its time
     programme.tick(false);
     log.push(loop.now_ns(), LogLevel::info, "the loop has begun");
@@ -157,16 +194,23 @@ RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const Driv
       log.push(loop.now_ns(), LogLevel::warning,
                "found neither [drive.can_server] nor [drive.modbus_server]: no client can command a motion, so the "
                "axes remain off");
+    bool stop_asked = false;  // by a client, of a motion that is the programme's own
     while (!programme.over()) {
+      if (modbus)
+        modbus->take_motion([&](const MotionWrite& asked) {
+          if (task.serve) return ask(asked, period, programme.remote()[asked.axis]);
+          stop_asked = true;  // all that is let through then
+        });
       const bool begins = can && loop.loop().slow() && can->receive(loop.now_ns(), programme.remote());
-      programme.tick(hal::stop_wanted != 0);  // by a signal: a controlled stop, then the end
+      tick_under_watch(programme, loop, hal::power_cut,
+                       stop_asked || hal::stop_wanted != 0);  // by a signal: a controlled stop, then the end
       if (begins) {
         answer_controller(loop, programme, *can, shown);
         if (clock != nullptr) controller_clock.follow(can->sync_age_ns(), *clock, log, loop.now_ns());
       }
-      if (modbus && loop.loop().slow())
-        serve_modbus(loop, programme, configuration.machine.timing.fast_period, *modbus);
+      if (modbus && loop.loop().slow()) show_on_modbus(loop, programme, period, *modbus);
     }
+    record.end();
     notify.stopping("the axes are off");
   }
   if (!options.trace.empty())

@@ -17,10 +17,7 @@ constexpr std::int64_t status_interval_ns = 1'000'000'000;
 
 ServiceThread::Round::Round(LogRing& ring, LogSink sink, ServiceNotify& notify, ServiceQuestions questions,
                             std::int64_t starvation_ns)
-    : reader_(ring, std::move(sink)),
-      notify_(notify),
-      questions_(std::move(questions)),
-      watch_(notify.watchdog_ns().value_or(starvation_ns)) {}
+    : reader_(ring, std::move(sink)), notify_(notify), questions_(std::move(questions)), watch_(starvation_ns) {}
 
 void ServiceThread::Round::operator()(std::int64_t now_ns) {
   const std::uint64_t progress = questions_.progress();

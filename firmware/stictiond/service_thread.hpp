@@ -25,7 +25,7 @@ struct ServiceQuestions {
 
 class ServiceThread {
  public:
-  // `starvation_ns`: the watchdog's time where the manager watches none. `ring`: messages of the loop; `sink`: where
+  // `starvation_ns`: for which the loop may stand still. `ring`: messages of the loop; `sink`: where
   // they are written; `notify`: the service manager; `questions`: asked in each round.
   ServiceThread(LogRing& ring, LogSink sink, ServiceNotify& notify, ServiceQuestions questions,
                 std::int64_t starvation_ns);

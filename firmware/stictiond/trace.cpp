@@ -8,7 +8,7 @@ void Trace::write(const std::filesystem::path& file, const std::vector<std::stri
                   std::span<const std::string> comments) const {
   machine::TraceWriter writer(file, axes, comments);
   const std::span<const AxisSignals<FixedSignals>> all(signals_);
-  for (std::size_t i = 0; i < used_; ++i) writer.write(times_ns_[i], all.subspan(i * axes_, axes_));
+  for (std::size_t i = 0; i < rows(); ++i) writer.write(times_ns_[i], all.subspan(i * axes_, axes_));
   writer.close();
 }
 

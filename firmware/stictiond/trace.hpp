@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -19,10 +20,19 @@ class Trace {
   Trace(std::size_t axes, std::size_t ticks) : axes_(axes), signals_(axes * ticks), times_ns_(ticks) {}
 
   void add(std::int64_t since_start_ns, std::span<const AxisSignals<FixedSignals>> signals) {
-    if (used_ == times_ns_.size()) return;
-    std::copy(signals.begin(), signals.end(), signals_.begin() + static_cast<std::ptrdiff_t>(used_ * axes_));
-    times_ns_[used_++] = since_start_ns;
+    const std::size_t used = rows();
+    if (used == times_ns_.size()) {
+      lost_.store(lost() + 1, std::memory_order_relaxed);
+      return;
+    }
+    std::copy(signals.begin(), signals.end(), signals_.begin() + static_cast<std::ptrdiff_t>(used * axes_));
+    times_ns_[used] = since_start_ns;
+    used_.store(used + 1, std::memory_order_relaxed);
   }
+
+  // By any thread.
+  std::size_t rows() const { return used_.load(std::memory_order_relaxed); }    // that were kept
+  std::uint64_t lost() const { return lost_.load(std::memory_order_relaxed); }  // that found no room
 
   // A log as docs/formats.md describes it. Throws std::runtime_error when it cannot be written. `file`: to write;
   // `axes`: their names, in the order of the loop; `comments`: leading lines "key: value".
@@ -31,7 +41,8 @@ class Trace {
 
  private:
   std::size_t axes_;
-  std::size_t used_ = 0;
+  std::atomic<std::size_t> used_ = 0;
+  std::atomic<std::uint64_t> lost_ = 0;
   std::vector<AxisSignals<FixedSignals>> signals_;
   std::vector<std::int64_t> times_ns_;
 };

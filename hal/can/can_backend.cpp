@@ -124,10 +124,13 @@ void CanBackend::take(const Received& received) {
   }
   std::uint32_t counter = 0;
   NodeFeedback state = node->arriving;
-  if (!decode_feedback(format_, address.kind, received.frame, counter, state))
+  if (!decode_feedback(format_, address.kind, received.frame, counter, state)) {
     node->check.take_damaged();
-  else if (node->check.take(address.kind == Kind::current ? 1 : 0, counter, received.received_ns))
-    node->arriving = state;
+    return;
+  }
+  // Who hears a node is on the bus: a link that was taken down and up again reports no restart.
+  bus_off_ = false;
+  if (node->check.take(address.kind == Kind::current ? 1 : 0, counter, received.received_ns)) node->arriving = state;
 }
 
 void CanBackend::watch_bus() {
@@ -144,6 +147,10 @@ void CanBackend::read_inputs(std::span<DigitalInputs<Signals>> inputs) const {
 
 void CanBackend::write(std::span<const Command<Signals>> command) {
   for (std::size_t i = 0; i < nodes_.size(); ++i) send(encode_command(format_, nodes_[i].id, tick_, command[i]));
+}
+
+void CanBackend::cut_power() noexcept {
+  for (const Node& node : nodes_) nodes_socket_.send(encode_command(format_, node.id, tick_, {}));
 }
 
 bool CanBackend::find_nodes(int ticks, std::vector<int>& silent) {

@@ -65,6 +65,12 @@ class BesideLines {
   Fault fault(std::size_t axis) { return backend_.fault(axis); }
   void set_brake(std::size_t axis, bool released) { io_.set_brake(axis, released); }
 
+  // Every line goes inactive, which engages the brakes, then the other bus is told.
+  void cut_power() noexcept {
+    lines_.cut();
+    backend_.cut_power();
+  }
+
   B& backend() { return backend_; }
   const GpioInputsOutputs& lines() const { return io_; }
 

@@ -46,6 +46,8 @@ struct PwmConfig {
   int half_bridges = 2;   // 2: a full bridge for one voltage; 3: three phases
   std::int64_t period_ns = 62'500;
   double dc_link = 0.0;  // V between the rails
+  // A channel that runs is what a run that was killed left: it is stopped and taken over. False: it is left alone.
+  bool takes_over = false;
 };
 
 struct GpioAxisConfig {

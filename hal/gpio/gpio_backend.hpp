@@ -45,6 +45,12 @@ class GpioBackend {
 
   void set_brake(std::size_t axis, bool released) { io_.set_brake(axis, released); }
 
+  // Every line goes inactive, which engages the brakes, and the voltages go to rest.
+  void cut_power() noexcept {
+    lines_.cut();
+    for (auto& axis : axes_) axis->bridge.rest();
+  }
+
   TickClock& clock() { return clock_; }
 
  private:

@@ -209,4 +209,8 @@ void Lines::set(std::size_t output, bool active) {
     line.active = active;
 }
 
+void Lines::cut() noexcept {
+  for (const auto& output : outputs_) ::gpiod_line_set_value(output.line, 0);
+}
+
 }  // namespace stiction::hal

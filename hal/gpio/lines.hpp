@@ -54,6 +54,10 @@ class Lines {
 
   void set(std::size_t output, bool active);  // a system call only when it changes
 
+  // Every output goes inactive, whatever was set last. Beside the thread that sets them, and in a signal handler: the
+  // library's call is one ioctl over memory of the stack.
+  void cut() noexcept;
+
   // Whether the chip stopped answering: nothing that it said counts any more.
   bool failed() const { return failed_; }
 

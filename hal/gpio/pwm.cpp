@@ -99,7 +99,7 @@ PwmBridge::PwmBridge(const PwmConfig& config) : chip_(config.chip), map_(config)
       auto& channel = channels_.emplace_back();
       channel.number = config.first_channel + i;
       channel.folder = chip_ / ("pwm" + std::to_string(channel.number));
-      open(channel, config.period_ns);
+      open(channel, config);
     }
     for (auto& channel : channels_) set_attribute(channel.folder / "enable", 1);
   } catch (...) {
@@ -110,7 +110,7 @@ PwmBridge::PwmBridge(const PwmConfig& config) : chip_(config.chip), map_(config)
 
 PwmBridge::~PwmBridge() { close_all(); }
 
-void PwmBridge::open(Channel& channel, std::int64_t period_ns) {
+void PwmBridge::open(Channel& channel, const PwmConfig& config) {
   using namespace std::chrono_literals;
   if (!fs::exists(channel.folder)) {
     set_attribute(chip_ / "export", channel.number);
@@ -120,15 +120,18 @@ void PwmBridge::open(Channel& channel, std::int64_t period_ns) {
       std::this_thread::sleep_for(10ms);
   }
   const auto enable = channel.folder / "enable";
+  if (config.takes_over) set_attribute(enable, 0);
   if (attribute(enable) != 0)
-    throw GpioError(
-        fmt::format("PWM {}: the channel is already running; stop the programme that drives it, or write 0 to {}",
-                    channel.folder.string(), enable.string()));
+    throw GpioError(fmt::format(
+        "PWM {}: the channel is already running; stop the programme that drives it; where a drive was killed, "
+        "stictiond --rest puts it to rest",
+        channel.folder.string()));
   // A duty may not be longer than the period at any time.
   set_attribute(channel.folder / "duty_cycle", 0);
-  set_attribute(channel.folder / "period", period_ns);
+  set_attribute(channel.folder / "period", config.period_ns);
   const std::array<Voltage, 3> zero{};
-  channel.duty_ns = map_.duty_ns(static_cast<std::size_t>(&channel - channels_.data()), zero);
+  channel.rest_ns = map_.duty_ns(static_cast<std::size_t>(&channel - channels_.data()), zero);
+  channel.duty_ns = channel.rest_ns;
   set_attribute(channel.folder / "duty_cycle", channel.duty_ns);
   channel.duty_file = ::open((channel.folder / "duty_cycle").c_str(), O_WRONLY | O_CLOEXEC);
   if (channel.duty_file < 0) throw GpioError(fmt::format("PWM {}: {}", channel.folder.string(), std::strerror(errno)));
@@ -150,6 +153,10 @@ void PwmBridge::close(Channel& channel) {
 
 void PwmBridge::close_all() {
   for (auto& channel : channels_) close(channel);
+}
+
+void PwmBridge::rest() const noexcept {
+  for (const auto& channel : channels_) write_number(channel.duty_file, channel.rest_ns);
 }
 
 void PwmBridge::write(std::span<const Voltage, 3> voltage) {

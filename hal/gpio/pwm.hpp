@@ -43,6 +43,8 @@ class PwmBridge {
   PwmBridge& operator=(const PwmBridge&) = delete;
 
   void write(std::span<const FixedSignals::Voltage, 3> voltage);
+  // The duties of no voltage, beside the thread that writes and in a signal handler.
+  void rest() const noexcept;
   bool failed() const { return failed_; }  // whether a write was ever refused
 
  private:
@@ -51,10 +53,11 @@ class PwmBridge {
     int number = 0;
     int duty_file = -1;
     std::int64_t duty_ns = 0;
+    std::int64_t rest_ns = 0;  // of no voltage
     bool exported_here = false;
   };
 
-  void open(Channel& channel, std::int64_t period_ns);
+  void open(Channel& channel, const PwmConfig& config);
   void close(Channel& channel);
   void close_all();
 

@@ -1,6 +1,8 @@
 #include "hal/modbus/client.hpp"
 
 #include <fmt/format.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -9,7 +11,9 @@
 #include <ctime>
 
 #include "hal/bus_budget.hpp"
+#include "hal/modbus/off_request.hpp"
 #include "hal/modbus/serial_line.hpp"
+#include "hal/power_cut.hpp"
 
 namespace stiction::hal {
 namespace {
@@ -50,6 +54,18 @@ class ModbusClient::Line {
                                       device_, modbus_strerror(errno)));
     }
     set_timeout(start_timeout);
+    for (const int unit : config.units)
+      off_requests_.push_back(off_request(unit, serial_ ? ModbusTransport::rtu : ModbusTransport::tcp));
+    descriptor_ = modbus_get_socket(context_.get());
+  }
+
+  void switch_off() const noexcept {
+    for (const auto& request : off_requests_) {
+      // What the line does not take at once is lost: nothing may wait here.
+      [[maybe_unused]] const ssize_t sent =
+          serial_ ? ::write(descriptor_, request.data(), request.size())
+                  : ::send(descriptor_, request.data(), request.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    }
   }
 
   void set_timeout(double seconds) {
@@ -101,6 +117,7 @@ class ModbusClient::Line {
   bool reconnect() {
     modbus_close(context_.get());
     broken_ = modbus_connect(context_.get()) != 0;
+    descriptor_ = modbus_get_socket(context_.get());
     return !broken_;
   }
   std::string failure(int unit) const {
@@ -112,6 +129,8 @@ class ModbusClient::Line {
   std::string device_;
   bool serial_;
   ModbusContext context_;
+  std::vector<OffRequest> off_requests_;
+  std::atomic<int> descriptor_{-1};  // another thread or a signal handler writes to it
   std::int64_t silence_ns_ = 0;
   double timeout_ = 0.0;
   bool broken_ = false;
@@ -135,6 +154,8 @@ ModbusClient::~ModbusClient() {
   stop_.store(true, std::memory_order_relaxed);
   if (thread_.joinable()) thread_.join();
 }
+
+void ModbusClient::cut_power() noexcept { line_->switch_off(); }
 
 void ModbusClient::command(std::span<const PowerStageCommand> commands) {
   auto& next = commands_.next();
@@ -164,10 +185,9 @@ void ModbusClient::run() {
 void ModbusClient::exchange_all() {
   const auto& commands = commands_.latest();
   stale_commands_ = commands_.is_new() ? 0 : stale_commands_ + 1;
-  const bool stale = stale_commands_ >= misses_until_fault;
+  const bool off = stale_commands_ >= misses_until_fault || power_cut.is_cut();
   ++cycle_;
-  for (std::size_t axis = 0; axis < newest_.size(); ++axis)
-    exchange(axis, stale ? PowerStageCommand{} : commands[axis]);
+  for (std::size_t axis = 0; axis < newest_.size(); ++axis) exchange(axis, off ? PowerStageCommand{} : commands[axis]);
   feedback_.next() = newest_;
   feedback_.publish();
 }

@@ -46,6 +46,10 @@ class ModbusClient {
   // The newest of every axis; from one thread.
   std::span<const PowerStageFeedback> feedback() { return feedback_.latest(); }
 
+  // Sends every unit the command to switch off at once, beside the exchange under way, whose answer may be lost by it;
+  // the exchanges that follow say the same until the power cut is released (hal/power_cut.hpp). Async-signal-safe.
+  void cut_power() noexcept;
+
   // What went wrong last, for the log: "/dev/ttyS0, unit 1: no answer within 8 ms"; empty: nothing yet. Takes a lock:
   // not for the loop.
   std::string last_error() const;

@@ -41,11 +41,22 @@ int ModbusConnection::receive(std::span<const std::uint8_t> bytes) {
     if (!length || *length > rest.size()) break;
     const auto answer = responder_->answer(rest.first(*length));
     out_.insert(out_.end(), answer.begin(), answer.end());
+    ticket_ = responder_->put_off();
+    if (is_waiting()) waiting_.assign(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(*length));
     rest = rest.subspan(*length);
     ++answered;
   }
   in_.erase(in_.begin(), in_.end() - static_cast<std::ptrdiff_t>(rest.size()));
   return answered;
+}
+
+int ModbusConnection::resume() {
+  if (!is_waiting()) return 0;
+  const auto answer = responder_->late_answer(waiting_, ticket_);
+  if (!answer) return 0;
+  ticket_ = 0;
+  out_.insert(out_.end(), answer->begin(), answer->end());
+  return 1 + receive({});
 }
 
 void ModbusConnection::sent(std::size_t bytes) {

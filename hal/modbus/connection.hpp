@@ -20,8 +20,11 @@ class ModbusConnection {
 
   // What came was no request, and where the next one begins is not known: the connection is to be closed.
   bool is_lost() const { return lost_; }
-  // Whether so much is unread that no more requests are taken.
-  bool is_full() const { return out_.size() > most_unread; }
+  // Whether no more requests are taken: so much is unread, or the last one waits for what it asked for.
+  bool is_full() const { return out_.size() > most_unread || is_waiting(); }
+  // Whether a request was put off; resume() answers it once it is done, and then those that came behind it.
+  bool is_waiting() const { return ticket_ != 0; }
+  int resume();
 
   std::span<const std::uint8_t> unsent() const { return out_; }
   void sent(std::size_t bytes);
@@ -31,6 +34,8 @@ class ModbusConnection {
 
   ModbusResponder* responder_;
   std::vector<std::uint8_t> in_, out_;
+  std::vector<std::uint8_t> waiting_;  // the request that was put off
+  std::uint64_t ticket_ = 0;
   bool lost_ = false;
 };
 

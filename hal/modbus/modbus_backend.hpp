@@ -66,6 +66,9 @@ class ModbusBackend {
 
   void set_brake(std::size_t axis, bool released) { commands_[axis].release_brake = released; }
 
+  // Tells every stage to switch off, beside the exchanges.
+  void cut_power() noexcept { client_.cut_power(); }
+
   // frames_lost as long as a slave brings nothing new.
   Fault fault(std::size_t axis) const { return newest_[axis].fault; }
 

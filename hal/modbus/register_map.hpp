@@ -50,7 +50,8 @@ enum class ModbusException : std::uint8_t {
   illegal_function = 1,  // the register moves an axis, and that is not allowed
   illegal_address = 2,   // there is no such register, or it is not for writing
   illegal_value = 3,     // out of range, not a number, or half of a 32-bit value
-  busy = 6,              // earlier writes have not been taken yet
+  device_failure = 4,    // what was asked failed, or the control loop makes no progress
+  busy = 6,              // earlier writes have not been taken yet, or parameters come too fast
 };
 
 class RegisterMap {

@@ -94,13 +94,13 @@ struct ModbusResponder::Library {
 };
 
 ModbusResponder::ModbusResponder(ModbusTransport transport, const RegisterMap& map, RegisterValues values,
-                                 bool motion_allowed, int unit, WriteQueue& queue)
+                                 bool motion_allowed, int unit, WriteTaker& taker)
     : transport_(transport),
       map_(map),
       refresh_(std::move(values)),
       motion_allowed_(motion_allowed),
       unit_(unit),
-      queue_(queue),
+      taker_(taker),
       values_(map.registers().size()),
       library_(std::make_unique<Library>(transport, map, unit)) {}
 
@@ -116,10 +116,25 @@ std::vector<std::uint8_t> ModbusResponder::answer(std::span<const std::uint8_t> 
     if (request[end] != (crc & 0xff) || request[end + 1] != crc >> 8) return {};
     if (request[0] != unit_) return {};  // nor broadcasts: they cannot be refused
   }
+  put_off_ = 0;
+  const auto refusal = refusal_of(request.subspan(header, end - header));
+  if (put_off_ != 0) return {};
+  return reply(request, refusal);
+}
+
+std::optional<std::vector<std::uint8_t>> ModbusResponder::late_answer(std::span<const std::uint8_t> request,
+                                                                      std::uint64_t ticket) {
+  const auto verdict = taker_.outcome(ticket);
+  if (!verdict) return {};
+  return reply(request, verdict->refused);
+}
+
+std::vector<std::uint8_t> ModbusResponder::reply(std::span<const std::uint8_t> request,
+                                                 std::optional<ModbusException> refusal) {
   // libmodbus takes a buffer of the longest request, whatever the length that it is told.
   std::array<std::uint8_t, MODBUS_MAX_ADU_LENGTH> bytes{};
   std::copy(request.begin(), request.end(), bytes.begin());
-  if (const auto refusal = refusal_of(request.subspan(header, end - header)); refusal) {
+  if (refusal) {
     modbus_reply_exception(library_->context, bytes.data(), static_cast<unsigned>(*refusal));
     return library_->sent();
   }
@@ -160,8 +175,9 @@ std::optional<ModbusException> ModbusResponder::take_writes(std::size_t address,
     words.push_back(static_cast<std::uint16_t>(word_at(bytes, at)));
   const auto writes = map_.writes_of(address, words, motion_allowed_);
   if (const auto* exception = std::get_if<ModbusException>(&writes)) return *exception;
-  if (!queue_.push(std::get<std::vector<RegisterWrite>>(writes))) return ModbusException::busy;
-  return {};
+  const WriteVerdict verdict = taker_.take(std::get<std::vector<RegisterWrite>>(writes));
+  put_off_ = verdict.put_off;
+  return verdict.refused;
 }
 
 std::uint16_t modbus_crc(std::span<const std::uint8_t> bytes) {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "hal/modbus/register_map.hpp"
-#include "hal/modbus/write_queue.hpp"
+#include "hal/modbus/write_taker.hpp"
 
 namespace stiction::hal {
 
@@ -25,11 +25,11 @@ using RegisterValues = std::function<void(std::span<double>)>;
 
 class ModbusResponder {
  public:
-  // `unit`: that this slave has on RTU; over TCP every unit is answered. `queue` takes what clients write. `transport`:
-  // RTU or TCP; `map`: the registers, must outlive this; `values`: asked for each answer; `motion_allowed`: registers
-  // that move an axis may be written.
+  // `unit`: that this slave has on RTU; over TCP every unit is answered. `taker` takes what clients write and must
+  // outlive this. `transport`: RTU or TCP; `map`: the registers, must outlive this; `values`: asked for each answer;
+  // `motion_allowed`: registers that move an axis may be written.
   ModbusResponder(ModbusTransport transport, const RegisterMap& map, RegisterValues values, bool motion_allowed,
-                  int unit, WriteQueue& queue);
+                  int unit, WriteTaker& taker);
   ~ModbusResponder();
   ModbusResponder(const ModbusResponder&) = delete;
   ModbusResponder& operator=(const ModbusResponder&) = delete;
@@ -37,10 +37,15 @@ class ModbusResponder {
   // The answer to one whole request, framing and all; empty where a slave is silent (RTU: damaged, or for another
   // unit).
   std::vector<std::uint8_t> answer(std::span<const std::uint8_t> request);
+  // The ticket by which the last answer() put its request off and gave no answer; 0: it did not.
+  std::uint64_t put_off() const { return put_off_; }
+  // The answer to a request that was put off; none: what it asked for is not done. `request`, `ticket`: as they were.
+  std::optional<std::vector<std::uint8_t>> late_answer(std::span<const std::uint8_t> request, std::uint64_t ticket);
 
  private:
   struct Library;  // libmodbus' context and mapping
 
+  std::vector<std::uint8_t> reply(std::span<const std::uint8_t> request, std::optional<ModbusException> refusal);
   std::optional<ModbusException> refusal_of(std::span<const std::uint8_t> pdu);
   std::optional<ModbusException> take_writes(std::size_t address, std::span<const std::uint8_t> bytes);
 
@@ -49,7 +54,8 @@ class ModbusResponder {
   RegisterValues refresh_;
   bool motion_allowed_;
   int unit_;
-  WriteQueue& queue_;
+  WriteTaker& taker_;
+  std::uint64_t put_off_ = 0;
   std::vector<double> values_;
   std::unique_ptr<Library> library_;
 };

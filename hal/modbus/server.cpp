@@ -27,7 +27,7 @@ class ModbusServer::Endpoint {
  public:
   Endpoint(ModbusServer& server, const ModbusServerConfig& config, RegisterValues values, ModbusTransport transport)
       : server_(server),
-        responder_(transport, server.map_, std::move(values), config.motion_allowed, config.unit, server.queue_) {}
+        responder_(transport, server.map_, std::move(values), config.motion_allowed, config.unit, *server.taker_) {}
   virtual ~Endpoint() = default;
   Endpoint(const Endpoint&) = delete;
   Endpoint& operator=(const Endpoint&) = delete;
@@ -131,12 +131,17 @@ class ModbusServer::TcpEndpoint : public Endpoint {
     while (true) {
       polled = {{server_.stop_, POLLIN, 0}, {listener_.get(), POLLIN, 0}};
       for (const Client& client : clients_) polled.push_back({client.socket.get(), events_of(client), 0});
-      if (::poll(polled.data(), polled.size(), -1) < 0) continue;  // a signal
+      const bool waiting = std::any_of(clients_.begin(), clients_.end(),
+                                       [](const Client& client) { return client.connection.is_waiting(); });
+      if (::poll(polled.data(), polled.size(), waiting ? put_off_ms : -1) < 0) continue;  // a signal
       if (polled[0].revents != 0) return;
       auto client = clients_.begin();
       for (std::size_t i = 2; i < polled.size(); ++i) {
         const auto next = std::next(client);
-        if (polled[i].revents != 0 && !serve_client(*client)) clients_.erase(client);
+        count(server_.requests_, client->connection.resume());
+        const bool served = polled[i].revents != 0 || !client->connection.unsent().empty();
+        const bool gone = (polled[i].revents & (POLLERR | POLLHUP)) != 0 && client->connection.is_waiting();
+        if (gone || (served && !serve_client(*client))) clients_.erase(client);
         client = next;
       }
       if (polled[1].revents != 0) accept_client();
@@ -147,9 +152,7 @@ class ModbusServer::TcpEndpoint : public Endpoint {
   struct Client {
     Socket socket;
     ModbusConnection connection;
-    std::uint64_t heard = 0;  // count of requests when it was last heard
-    Client(int descriptor, ModbusResponder& responder, std::uint64_t now)
-        : socket(descriptor), connection(responder), heard(now) {}
+    Client(int descriptor, ModbusResponder& responder) : socket(descriptor), connection(responder) {}
   };
 
   static short events_of(const Client& client) {
@@ -161,14 +164,21 @@ class ModbusServer::TcpEndpoint : public Endpoint {
   void accept_client() {
     const int descriptor = ::accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
     if (descriptor < 0) return;
-    const int on = 1;
-    ::setsockopt(descriptor, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
     if (clients_.size() >= most_clients_) {
-      clients_.erase(std::min_element(clients_.begin(), clients_.end(),
-                                      [](const Client& a, const Client& b) { return a.heard < b.heard; }));
+      ::close(descriptor);
       count(server_.dropped_);
+      return;
     }
-    clients_.emplace_back(descriptor, responder_, ++clock_);
+    const auto set = [descriptor](int level, int option, int value) {
+      ::setsockopt(descriptor, level, option, &value, sizeof value);
+    };
+    set(IPPROTO_TCP, TCP_NODELAY, 1);
+    // A client whose computer is gone gives its place back within a minute.
+    set(SOL_SOCKET, SO_KEEPALIVE, 1);
+    set(IPPROTO_TCP, TCP_KEEPIDLE, 30);
+    set(IPPROTO_TCP, TCP_KEEPINTVL, 10);
+    set(IPPROTO_TCP, TCP_KEEPCNT, 3);
+    clients_.emplace_back(descriptor, responder_);
     count(server_.connections_);
   }
 
@@ -191,9 +201,7 @@ class ModbusServer::TcpEndpoint : public Endpoint {
     return true;
   }
   void answer(Client& client, std::span<const std::uint8_t> bytes) {
-    const int answered = client.connection.receive(bytes);
-    if (answered > 0) client.heard = ++clock_;
-    count(server_.requests_, answered);
+    count(server_.requests_, client.connection.receive(bytes));
   }
   bool send(Client& client) {
     while (!client.connection.unsent().empty()) {
@@ -208,8 +216,8 @@ class ModbusServer::TcpEndpoint : public Endpoint {
 
   Socket listener_;
   std::size_t most_clients_;
+  static constexpr int put_off_ms = 5;  // from one look at what was put off to the next
   std::list<Client> clients_;
-  std::uint64_t clock_ = 0;
 };
 
 class ModbusServer::SerialEndpoint : public Endpoint {
@@ -223,13 +231,17 @@ class ModbusServer::SerialEndpoint : public Endpoint {
     ::fcntl(line, F_SETFL, ::fcntl(line, F_GETFL) | O_NONBLOCK);
     while (true) {
       std::array<pollfd, 2> polled{{{server_.stop_, POLLIN, 0}, {line, POLLIN, 0}}};
-      const int ready = ::poll(polled.data(), polled.size(), in_.empty() ? -1 : silence_ms);
+      const int ready = ::poll(polled.data(), polled.size(), in_.empty() && ticket_ == 0 ? -1 : silence_ms);
       if (ready < 0) continue;
       if (polled[0].revents != 0) return;
       if (ready == 0) {
-        hear_silence(line);
+        if (ticket_ != 0)
+          answer_late(line);
+        else
+          hear_silence(line);
         continue;
       }
+      ticket_ = 0;  // its master has given up waiting
       std::array<std::uint8_t, longest_modbus_request> bytes;
       const ssize_t got = ::read(line, bytes.data(), bytes.size());
       if (got > 0)
@@ -250,12 +262,21 @@ class ModbusServer::SerialEndpoint : public Endpoint {
     silent_ms_ += silence_ms;
     if (in_.size() >= 4 && is_whole()) {
       const auto answer = responder_.answer(in_);
+      ticket_ = responder_.put_off();
+      if (ticket_ != 0) waiting_ = in_;
       in_.clear();
       send(line, answer);
       if (!answer.empty()) count(server_.requests_);
     } else if (silent_ms_ >= patience_ms) {
       forget();
     }
+  }
+  void answer_late(int line) {
+    const auto answer = responder_.late_answer(waiting_, ticket_);
+    if (!answer) return;
+    ticket_ = 0;
+    send(line, *answer);
+    count(server_.requests_);
   }
   bool is_whole() const {
     const std::uint16_t crc = modbus_crc(std::span(in_).first(in_.size() - 2));
@@ -276,11 +297,13 @@ class ModbusServer::SerialEndpoint : public Endpoint {
 
   ModbusContext line_;
   std::vector<std::uint8_t> in_;
+  std::vector<std::uint8_t> waiting_;  // the request that was put off
+  std::uint64_t ticket_ = 0;
   int silent_ms_ = 0;
 };
 
-ModbusServer::ModbusServer(RegisterMap map, const ModbusServerConfig& config, RegisterValues values)
-    : map_(std::move(map)) {
+ModbusServer::ModbusServer(RegisterMap map, const ModbusServerConfig& config, RegisterValues values, WriteTaker* taker)
+    : map_(std::move(map)), taker_(taker == nullptr ? &queue_taker_ : taker) {
   if (is_serial_device(config.address))
     endpoint_ = std::make_unique<SerialEndpoint>(*this, config, std::move(values));
   else

@@ -21,20 +21,21 @@ struct ModbusServerConfig {
   bool motion_allowed = false;  // whether registers that move an axis are taken
   int unit = 1;                 // on RTU
   int baud_rate = 115200;       // of RTU, 8E1
-  int most_clients = 32;        // a further one takes the place of the one that was silent longest
+  int most_clients = 32;        // a further one is turned away: a master is not thrown out by who comes later
 };
 
 struct ModbusServerCounts {
   std::uint64_t requests = 0;
   std::uint64_t connections = 0;
-  std::uint64_t dropped = 0;  // connections closed here, and on RTU bytes that made no request
+  std::uint64_t dropped = 0;  // connections closed here or turned away, and on RTU bytes that made no request
 };
 
 class ModbusServer {
  public:
   // Listens when this returns. `values` is called in the server's thread. Throws ModbusError. `map`: the registers;
-  // `config`: address, unit and whether motion is allowed.
-  ModbusServer(RegisterMap map, const ModbusServerConfig& config, RegisterValues values);
+  // `config`: address, unit and whether motion is allowed; `taker`: what clients write goes there, in the server's
+  // thread, and must outlive this; null: to take_write().
+  ModbusServer(RegisterMap map, const ModbusServerConfig& config, RegisterValues values, WriteTaker* taker = nullptr);
   ~ModbusServer();
   ModbusServer(const ModbusServer&) = delete;
   ModbusServer& operator=(const ModbusServer&) = delete;
@@ -52,6 +53,8 @@ class ModbusServer {
 
   RegisterMap map_;
   WriteQueue queue_;
+  QueueTaker queue_taker_{queue_};
+  WriteTaker* taker_;
   int port_ = 0;
   std::atomic<std::uint64_t> requests_{0}, connections_{0}, dropped_{0};
   int stop_ = -1;  // eventfd

@@ -20,7 +20,7 @@ namespace stiction::host {
 namespace {
 
 int serve(const PlantOptions& options) {
-  hal::catch_stop_signals();
+  hal::install_signal_reactions();
   const auto file = machine::find_machine(options.machine);
   const auto machine = sim::read_machine(file, {options.experiment, options.set});
   const auto setup = machine::read_drive_setup(file, machine, {options.experiment, options.set});

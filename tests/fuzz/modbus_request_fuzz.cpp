@@ -58,7 +58,8 @@ void check_writes(hal::WriteQueue& queue, bool motion_allowed) {
 
 void as_tcp(std::span<const std::uint8_t> bytes, std::size_t piece, bool motion_allowed) {
   hal::WriteQueue queue;
-  hal::ModbusResponder responder(hal::ModbusTransport::tcp, map(), values, motion_allowed, 1, queue);
+  hal::QueueTaker taker(queue);
+  hal::ModbusResponder responder(hal::ModbusTransport::tcp, map(), values, motion_allowed, 1, taker);
   hal::ModbusConnection connection(responder);
   std::vector<std::uint8_t> out;
   while (!bytes.empty() && !connection.is_lost()) {
@@ -84,7 +85,8 @@ void as_tcp(std::span<const std::uint8_t> bytes, std::size_t piece, bool motion_
 
 void as_rtu(std::span<const std::uint8_t> bytes, bool motion_allowed) {
   hal::WriteQueue queue;
-  hal::ModbusResponder responder(hal::ModbusTransport::rtu, map(), values, motion_allowed, 1, queue);
+  hal::QueueTaker taker(queue);
+  hal::ModbusResponder responder(hal::ModbusTransport::rtu, map(), values, motion_allowed, 1, taker);
   std::vector<std::uint8_t> frame(
       bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(bytes.size(), 300)));
   responder.answer(frame);  // as it came

@@ -43,6 +43,12 @@ std::vector<std::string> lines_of(drive::ModbusPublisher& publisher) {
   return lines;
 }
 
+std::vector<drive::MotionWrite> motions_of(drive::ModbusPublisher& publisher) {
+  std::vector<drive::MotionWrite> motions;
+  publisher.take_motion([&](const drive::MotionWrite& write) { motions.push_back(write); });
+  return motions;
+}
+
 TEST(ModbusPublisher, ShowsTheLoopsStateToAClient) {
   drive::ModbusPublisher publisher(cross_table(), setup_with(false), {},
                                    [](drive::PublishedState& state) { state.missed_deadlines = 3; });
@@ -107,19 +113,62 @@ TEST(ModbusPublisher, HandsMotionToTheLoopOnlyWhereItIsAllowed) {
     EXPECT_EQ(client.receive().size(), allowed ? 12U : 9U);
     if (!allowed) {
       EXPECT_TRUE(publisher.serve().empty());
-      EXPECT_FALSE(publisher.take_motion());
+      EXPECT_TRUE(motions_of(publisher).empty());
       continue;
     }
     EXPECT_EQ(lines_of(publisher), (std::vector<std::string>{"Modbus: axis Y: controlword 15"}));
-    const auto motion = publisher.take_motion();
-    ASSERT_TRUE(motion);
-    EXPECT_EQ(motion->axis, 1U);
-    EXPECT_EQ(motion->value, 15.0);
+    const auto motions = motions_of(publisher);
+    ASSERT_EQ(motions.size(), 1U);
+    EXPECT_EQ(motions[0].axis, 1U);
+    EXPECT_EQ(motions[0].value, 15.0);
     client.send(request({6, 0, 201, 0, 7}));  // a mode that the drive does not have
     const auto answer = client.receive();
     ASSERT_EQ(answer.size(), 9U);
     EXPECT_EQ(answer[8], 3);
   }
+}
+
+// The loop takes a stop in its next tick, after 10 000 requests of parameters as before the first.
+TEST(ModbusPublisher, HandsAStopOverWhateverElseIsWritten) {
+  drive::ModbusPublisher publisher(cross_table(), setup_with(true), {});
+  const RawClient flooding(publisher.server().port()), stopping(publisher.server().port());
+  int busy = 0;
+  for (int i = 0; i < 10'000; ++i) {
+    flooding.send(request({16, 3, 0xec, 0, 2, 4, 0x44, 0x09, 0x80, 0}));
+    busy += flooding.receive().size() == 9 ? 1 : 0;
+    if (i % 10 != 0) continue;
+    stopping.send(request({6, 0, 100, 0, static_cast<std::uint8_t>(i % 20 == 0 ? 15 : 6)}));
+    ASSERT_EQ(stopping.receive().size(), 12U);
+    const auto motions = motions_of(publisher);
+    ASSERT_EQ(motions.size(), 1U);
+    EXPECT_EQ(motions[0].value, i % 20 == 0 ? 15.0 : 6.0);
+  }
+  EXPECT_GT(busy, 0);  // parameters were limited
+  EXPECT_LT(busy, 10'000 - 256 + 1);
+}
+
+// A state that is no longer true is a fault, and no command is answered "done" that the loop does not take.
+TEST(ModbusPublisher, ShowsALoopThatMakesNoProgressAsFault51) {
+  std::atomic<bool> stale{false};
+  drive::ModbusPublisher publisher(cross_table(), setup_with(true), {}, {}, [&] { return stale.load(); });
+  std::array<AxisSignals<FixedSignals>, 2> signals{};
+  publisher.publish<FixedSignals>(signals, 0, Fault::none,
+                                  [](std::size_t, drive::PublishedAxis& shown) { shown.statusword = 0x1237; });
+  const RawClient client(publisher.server().port());
+  const auto word = [&](std::uint8_t address) {
+    client.send(request({4, 0, address, 0, 1}));
+    const auto answer = client.receive();
+    return answer.size() == 11 ? answer[9] << 8 | answer[10] : -1;
+  };
+  EXPECT_EQ(word(100), 0x1237);
+  stale = true;
+  EXPECT_EQ(word(3), 51);
+  EXPECT_EQ(word(100), 0x1208);
+  EXPECT_EQ(word(202), 51);
+  client.send(request({6, 0, 100, 0, 0}));
+  const auto answer = client.receive();
+  ASSERT_EQ(answer.size(), 9U);
+  EXPECT_EQ(answer[8], 4);
 }
 
 TEST(ModbusSetup, TakesTheUnitsOfTheAxesFromTheirNodes) {

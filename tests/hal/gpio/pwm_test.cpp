@@ -179,6 +179,15 @@ TEST_F(PwmFolder, RefusesAChannelThatRunsAlreadyAndLeavesItRunning) {
   EXPECT_EQ(get("pwm1/enable"), "1");
 }
 
+TEST_F(PwmFolder, TakesAChannelOverThatAKilledRunLeftRunning) {
+  add_channel(0);
+  add_channel(1, "1");
+  auto recovering = config(2);
+  recovering.takes_over = true;
+  { const hal::PwmBridge bridge(recovering); }
+  EXPECT_EQ(get("pwm1/enable"), "0");
+}
+
 TEST_F(PwmFolder, SaysWhatIsWrongWithAConfigurationAndWhatToDo) {
   using ::testing::HasSubstr;
   auto other = config(2);
