@@ -158,7 +158,10 @@ class Plc {
   void run(int cycles) {
     for (int k = 0; k < cycles; ++k) {
       table_.cycle();
-      drive::serve_modbus(table_.loop, table_.programme, table_.configuration.machine.timing.fast_period, *publisher_);
+      const double period = table_.configuration.machine.timing.fast_period;
+      publisher_->take_motion(
+          [&](const drive::MotionWrite& asked) { drive::ask(asked, period, table_.programme.remote()[asked.axis]); });
+      drive::show_on_modbus(table_.loop, table_.programme, period, *publisher_);
     }
   }
   ServedTable& table() { return table_; }
