@@ -82,6 +82,7 @@ bool CanBackend::complete() const {
 void CanBackend::read(std::span<Feedback<Signals>> feedback) {
   Received received;
   unknown_id_now_ = 0;
+  bus_off_now_ = false;
   // From when the tick really began: a late tick waits as long for its answers as any other.
   const std::int64_t deadline = now_ns_ + clock_.lateness_ns() + answer_ns_;
   std::uint32_t left = most_taken;
@@ -95,7 +96,7 @@ void CanBackend::read(std::span<Feedback<Signals>> feedback) {
     node.fault = node.watch.step({.valid = node.check.complete(),
                                   .disturbed = node.check.bad_in_tick(),
                                   .foreign = unknown_id_now_,
-                                  .bus_off = bus_off_});
+                                  .bus_off = bus_off_ || bus_off_now_});
     if (node.check.complete()) {
       node.state = node.arriving;
       node.state.feedback.position_time_ns += now_ns_;
@@ -110,7 +111,7 @@ void CanBackend::read(std::span<Feedback<Signals>> feedback) {
 void CanBackend::take(const Received& received) {
   if (received.error) {
     ++bus_.error_frames;
-    if ((received.frame.id & CAN_ERR_BUSOFF) != 0) bus_off_ = true;
+    if ((received.frame.id & CAN_ERR_BUSOFF) != 0) bus_off_ = bus_off_now_ = true;
     if ((received.frame.id & CAN_ERR_RESTARTED) != 0) bus_off_ = false;
     return;
   }

@@ -81,6 +81,7 @@ class CanBackend {
   bool started_ = false;
   std::int64_t now_ns_ = 0;
   bool bus_off_ = false;
+  bool bus_off_now_ = false;          // in this tick, whether or not the controller is back within it
   std::uint32_t unknown_id_now_ = 0;  // in this tick
   BusCounts bus_;
 };

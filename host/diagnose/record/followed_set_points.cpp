@@ -36,10 +36,11 @@ double mean_square(const std::vector<double>& values) {
 class Follower {
  public:
   Follower(const machine::Machine& machine, std::size_t axis, const Log& log)
-      : machine_(machine), axis_(axis), log_(log) {
-    lowpass_ = butterworth(order, 2.0 * followed_up_to(machine.axes[axis], log.period) * log.period);
-    wanted_ = smoothed(channels().x);
-  }
+      : machine_(machine),
+        axis_(axis),
+        log_(log),
+        lowpass_(butterworth(order, 2.0 * followed_up_to(machine.axes[axis], log.period) * log.period)),
+        wanted_(smoothed(channels().x)) {}
 
   // The set positions of the round that came nearest; empty where none could be simulated, or did not come near.
   std::vector<double> learned() {

@@ -15,7 +15,7 @@ using drive::MotionWrite;
 using What = MotionWrite::What;
 using Taken = std::vector<std::tuple<std::size_t, What, double>>;
 
-void put(drive::MotionMailbox& mailbox, std::vector<MotionWrite> writes) { mailbox.put(writes); }
+void put(drive::MotionMailbox& mailbox, const std::vector<MotionWrite>& writes) { mailbox.put(writes); }
 Taken taken(drive::MotionMailbox& mailbox) {
   Taken all;
   mailbox.take([&](const MotionWrite& write) { all.emplace_back(write.axis, write.what, write.value); });

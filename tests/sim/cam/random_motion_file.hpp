@@ -20,11 +20,9 @@ class RandomMotionFile {
     file += fmt::format("cycle = \"{} deg\"\n", cycle);
     if (linear_) file += "slave = \"linear\"\n";
     const std::size_t segments = 3 + random_.whole(5);
-    double end = 0.0;
     for (std::size_t k = 0; k < segments; ++k) {
       const bool last = k + 1 == segments;
       const double length = random_.between(0.6, 1.2) * cycle / static_cast<double>(segments + 1);
-      end += length;
       file += "[[cam.drawn.segment]]\n";
       if (!last && random_.whole(5) == 0) {
         file += points(length);
