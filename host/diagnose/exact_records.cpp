@@ -7,64 +7,93 @@
 #include <utility>
 
 #include "host/diagnose/record/disturbance.hpp"
+#include "host/diagnose/record/record_rows.hpp"
 #include "host/identify/identification.hpp"
 #include "host/simulate/control_run.hpp"
 
 namespace stiction::host {
 namespace {
 
-// The logs as the machine of the file makes them under a draw of the forces, without their set-points.
-std::vector<Log> recorded(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& driven,
-                          const Disturbance& disturbance, std::size_t draw) {
-  auto setup = replay_setup_of(machine, axis, driven);
-  for (std::size_t k = 0; k < setup.logs.size(); ++k) {
-    auto& force = setup.logs[k].axes.front().external_force;
-    force.resize(setup.logs[k].t.size(), 0.0);
-    const auto drawn = disturbance.drawn(setup.logs[k].t, draw * setup.logs.size() + k);
-    std::transform(force.begin(), force.end(), drawn.begin(), force.begin(), std::plus<>());
+class Maker {
+ public:
+  Maker(const Prepared& prepared, const DiagnoseInput& input, const Eigen::VectorXd& force)
+      : prepared_(prepared),
+        machine_(input.machine),
+        axis_(input.axis),
+        disturbance_(force, rows().logs(), rows().period(0)),
+        to_follow_(std::any_of(training().logs.begin(), training().logs.end(),
+                               [&](const Log& log) { return channels_of(log, prepared.axis).x_set.empty(); })) {
+    if (!to_follow_) own_ = own_residual(training().simulated, training().logs, prepared.axis, prepared.settings);
   }
-  auto logs = replays(setup);
-  for (std::size_t k = 0; k < logs.size(); ++k) {
-    auto& channels = logs[k].axes.front();
-    const auto& original = channels_of(driven[k], machine.axes[axis]);
-    logs[k].source = driven[k].source;
-    channels.external_force = original.external_force;
-    for (auto* set : {&channels.x_set, &channels.v_set, &channels.a_set}) set->clear();
+
+  std::optional<ExactRecord> operator()(std::size_t draw) const {
+    try {
+      Record record;
+      record.logs = recorded(draw);
+      measure(record, prepared_.axis, prepared_.settings);
+      if (!prepare(record)) return std::nullopt;
+      if (training().friction == FrictionAlong::simulated_motion)
+        record.target = along_regressors(record, prepared_.axis);
+      if (training().of_disturbance.size() > 0) record.target -= training().of_disturbance;
+      ExactRecord made{std::move(record.target), std::nullopt};
+      if (to_follow_) made.regressors = std::move(record.regressors);
+      return made;
+    } catch (const FaultTripped&) {
+      return std::nullopt;
+    }
   }
-  return logs;
-}
+
+ private:
+  const Record& training() const { return prepared_.training; }
+  const LogRows& rows() const { return training().rows; }
+
+  // The logs as the machine of the file makes them under a draw of the forces, with the set-points that the record has.
+  std::vector<Log> recorded(std::size_t draw) const {
+    auto setup = replay_setup_of(machine_, axis_, training().driven);
+    for (std::size_t k = 0; k < setup.logs.size(); ++k) {
+      auto& force = setup.logs[k].axes.front().external_force;
+      force.resize(setup.logs[k].t.size(), 0.0);
+      const auto drawn = disturbance_.drawn(setup.logs[k].t, draw * setup.logs.size() + k);
+      std::transform(force.begin(), force.end(), drawn.begin(), force.begin(), std::plus<>());
+    }
+    auto logs = replays(setup);
+    for (std::size_t k = 0; k < logs.size(); ++k) {
+      auto& channels = logs[k].axes.front();
+      const auto& original = channels_of(training().logs[k], prepared_.axis);
+      logs[k].source = training().logs[k].source;
+      channels.external_force = original.external_force;
+      if (original.x_set.empty())
+        for (auto* set : {&channels.x_set, &channels.v_set, &channels.a_set}) set->clear();
+    }
+    return logs;
+  }
+
+  // Gives regressors to the `record`, and takes what the file leaves of its own run off the target; false where the
+  // machine cannot follow it.
+  bool prepare(Record& record) const {
+    if (to_follow_) {
+      const auto motion = drive(record, machine_, axis_);
+      if (motion.empty()) return false;
+      regress_on(record, motion, prepared_.axis, prepared_.settings);
+    } else {
+      record.regressors = training().regressors;
+      record.target = (record.target - own_).cwiseProduct(record.regressors.counts());
+    }
+    return true;
+  }
+
+  const Prepared& prepared_;
+  const machine::Machine& machine_;
+  std::size_t axis_;
+  Disturbance disturbance_;
+  bool to_follow_;
+  Eigen::VectorXd own_;  // N, of the rows, where the file's own run is the same in every draw
+};
 
 }  // namespace
 
-ExactRecords exact_records(const Record& training, EffectResponse disturbed) {
-  return [&training, exact = std::make_shared<EffectResponse>(std::move(disturbed))](
-             std::size_t draw) -> std::optional<ExactRecord> {
-    const auto of_motion = [&](const Motion& motion) { return exact->drawn(motion, draw); };
-    try {
-      return ExactRecord{training.regressors.stacked(of_motion).cwiseProduct(training.regressors.counts()), {}};
-    } catch (const FaultTripped&) {
-      return std::nullopt;
-    }
-  };
-}
-
-ExactRecords exact_records_to_follow(const Prepared& prepared, const DiagnoseInput& input,
-                                     const Eigen::VectorXd& force) {
-  const auto& rows = prepared.training.rows;
-  return [&prepared, &input, disturbance = Disturbance(force, rows.logs(), rows.period(0))](
-             std::size_t draw) -> std::optional<ExactRecord> {
-    try {
-      Record record;
-      record.logs = recorded(input.machine, input.axis, prepared.training.driven, disturbance, draw);
-      measure(record, prepared.axis, prepared.settings);
-      const auto motion = drive(record, input.machine, input.axis);
-      if (motion.empty()) return std::nullopt;
-      regress_on(record, motion, prepared.axis, prepared.settings);
-      return ExactRecord{std::move(record.target), std::move(record.regressors)};
-    } catch (const FaultTripped&) {
-      return std::nullopt;
-    }
-  };
+ExactRecords exact_records(const Prepared& prepared, const DiagnoseInput& input, const Eigen::VectorXd& force) {
+  return [maker = std::make_shared<Maker>(prepared, input, force)](std::size_t draw) { return (*maker)(draw); };
 }
 
 }  // namespace stiction::host

@@ -138,20 +138,16 @@ void take_motion(Prepared& prepared, const DiagnoseInput& input, Verdict& verdic
 
 // The file's friction along the simulated motion instead of the measured one, where the direction of the measured one
 // tells it and the residual is likelier so.
-FrictionAlong take_friction(Prepared& prepared) {
-  if (!sticks_rigidly(prepared.axis)) return FrictionAlong::own_motion;
-  const auto along_simulated = [&](const Record& record) -> Eigen::VectorXd {
-    const auto friction = [&](const Motion& motion) { return friction_along(prepared.axis, motion); };
-    return record.target + (record.rows.stacked(friction) - record.regressors.stacked(friction))
-                               .cwiseProduct(record.regressors.counts());
-  };
-  auto& training = prepared.training;
-  auto target = along_simulated(training);
-  if (noise_log_likelihood(target, training.rows.logs()) <= noise_log_likelihood(training.target, training.rows.logs()))
-    return FrictionAlong::own_motion;
-  training.target = std::move(target);
-  prepared.held_out.target = along_simulated(prepared.held_out);
-  return FrictionAlong::simulated_motion;
+void take_friction(Prepared& prepared) {
+  if (!sticks_rigidly(prepared.axis)) return;
+  const auto& training = prepared.training;
+  if (noise_log_likelihood(along_regressors(training, prepared.axis), training.rows.logs()) <=
+      noise_log_likelihood(training.target, training.rows.logs()))
+    return;
+  for (auto* record : {&prepared.training, &prepared.held_out}) {
+    record->target = along_regressors(*record, prepared.axis);
+    record->friction = FrictionAlong::simulated_motion;
+  }
 }
 
 template <class T>
@@ -163,8 +159,9 @@ std::vector<T> joined(std::vector<T> first, const std::vector<T>& second) {
 // The simulations in which causes are tried, and what the residual force itself does to the file's own residual.
 void take_responses(Prepared& prepared, const DiagnoseInput& input) {
   if (!prepared.known_motion) return;
-  const auto friction = take_friction(prepared);
+  take_friction(prepared);
   auto &training = prepared.training, &held_out = prepared.held_out;
+  const auto friction = training.friction;
   const auto logs = joined(training.driven, held_out.driven);
   const auto simulated = joined(training.simulated, held_out.simulated);
   const auto disturbed_by = [&prepared, &input, logs, simulated, friction](const Eigen::VectorXd& force) {
@@ -178,14 +175,9 @@ void take_responses(Prepared& prepared, const DiagnoseInput& input) {
   prepared.context.disturb = [&prepared, disturbed_by](const Eigen::VectorXd& force) {
     prepared.context.response = disturbed_by(force);
   };
-  if (without_set_points(prepared).empty())
-    prepared.context.exact_records = [&prepared, disturbed_by](const Eigen::VectorXd& force) {
-      return exact_records(prepared.training, disturbed_by(force));
-    };
-  else
-    prepared.context.exact_records = [&prepared, &input](const Eigen::VectorXd& force) {
-      return exact_records_to_follow(prepared, input, force);
-    };
+  prepared.context.exact_records = [&prepared, &input](const Eigen::VectorXd& force) {
+    return exact_records(prepared, input, force);
+  };
   prepared.context.disturb(training.target);
   auto own = disturbed_by(training.target);
   const auto of_disturbance = [&own](const Record& record) -> Eigen::VectorXd {
@@ -193,12 +185,13 @@ void take_responses(Prepared& prepared, const DiagnoseInput& input) {
         .cwiseProduct(record.regressors.counts());
   };
   // Where the record is quieter than what is left of it would make it, the runs in silence are the nearer ones.
-  const Eigen::VectorXd disturbed = training.target - of_disturbance(training);
-  if (noise_log_likelihood(disturbed, training.rows.logs()) <=
+  const Eigen::VectorXd off = of_disturbance(training);
+  if (noise_log_likelihood(training.target - off, training.rows.logs()) <=
       noise_log_likelihood(training.target, training.rows.logs()))
     return;
-  training.target = disturbed;
-  held_out.target -= of_disturbance(held_out);
+  training.of_disturbance = off;
+  held_out.of_disturbance = of_disturbance(held_out);
+  for (auto* record : {&training, &held_out}) record->target -= record->of_disturbance;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "host/diagnose/record/followed_set_points.hpp"
+#include "host/diagnose/record/inverse_dynamics.hpp"
 #include "host/diagnose/record/record_rows.hpp"
 #include "host/diagnose/record/replay_setup.hpp"
 #include "host/identify/standstill.hpp"
@@ -34,6 +35,12 @@ void regress_on(Record& record, const std::vector<Log>& motion, const machine::A
   const Eigen::VectorXd moves = moving_rows(record.rows, axis, settings.cutoff);
   record.regressors.weigh(moves.cwiseProduct(moving_rows(record.regressors, axis, settings.cutoff)));
   record.target = record.target.cwiseProduct(record.regressors.counts());
+}
+
+Eigen::VectorXd along_regressors(const Record& record, const machine::AxisModel& axis) {
+  const auto friction = [&](const Motion& motion) { return friction_along(axis, motion); };
+  return record.target +
+         (record.rows.stacked(friction) - record.regressors.stacked(friction)).cwiseProduct(record.regressors.counts());
 }
 
 }  // namespace stiction::host

@@ -11,6 +11,11 @@
 
 namespace stiction::host {
 
+// The motion along which the file's friction is computed where the residual force is: that of the record or run itself,
+// or, of a law without a contact, the one that the file's simulation of the record makes. An encoder's noise makes the
+// direction of the first chatter near standstill; what acts on the machine makes the second reverse elsewhere.
+enum class FrictionAlong { own_motion, simulated_motion };
+
 struct Record {
   std::vector<Log> logs;       // of linear axes, their time from each one's start
   std::vector<Log> driven;     // the same with set-points for the simulation where they have none
@@ -19,6 +24,10 @@ struct Record {
   Eigen::VectorXd expected;    // N, what the file says of the measured motion
   Eigen::VectorXd target;      // N, what the file does not make of the force; rows at rest do not count
   std::vector<Log> simulated;  // the file's own runs of these logs; empty where it cannot follow
+  FrictionAlong friction = FrictionAlong::own_motion;  // in the target
+  // N, what the residual force itself does to what the file leaves of its own run; the target is less that. Empty:
+  // nothing was taken off.
+  Eigen::VectorXd of_disturbance;
 };
 
 // Gives the `record` with its logs the rows as measured, and what the file says of them and leaves. `axis` of the file
@@ -31,5 +40,8 @@ std::vector<Log> drive(Record& record, const machine::Machine& machine, std::siz
 // what the file leaves of its own run; rows at standstill do not count. `record`, `axis` and `settings` as above.
 void regress_on(Record& record, const std::vector<Log>& motion, const machine::AxisModel& axis,
                 const SignalSettings& settings);
+// The target of the `record`, which has regressors, with the file's friction along the motion of those. `axis` as
+// above.
+Eigen::VectorXd along_regressors(const Record& record, const machine::AxisModel& axis);
 
 }  // namespace stiction::host

@@ -236,16 +236,6 @@ std::vector<double> EffectResponse::of_disturbance(const Motion& motion) {
   }
 }
 
-std::vector<double> EffectResponse::drawn(const Motion& motion, std::size_t run) {
-  const auto k = index_of(motion);
-  auto& record = records_[k];
-  const auto& own = silent(record);
-  const auto log = disturbed(k, most_runs_ever * records_.size() + run * records_.size());
-  auto force = residual(record, replayed_like(machine_, log), record.log.axes.front().external_force);
-  for (std::size_t i = 0; i < force.size(); ++i) force[i] -= own[i];
-  return force;
-}
-
 std::vector<double> EffectResponse::operator()(const Motion& motion, const machine::Effect& effect,
                                                std::size_t most_runs) {
   return together(motion, {&effect, 1}, most_runs);

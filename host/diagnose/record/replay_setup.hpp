@@ -8,6 +8,7 @@
 
 #include "firmware/machine/model/machine.hpp"
 #include "host/diagnose/record/disturbance.hpp"
+#include "host/diagnose/record/record.hpp"
 #include "host/identify/motion.hpp"
 #include "host/log/log.hpp"
 
@@ -53,11 +54,6 @@ WithoutNoise without_noise(const machine::Machine& machine, std::size_t axis, co
 // that all records have in common.
 enum class QuantizerLimitCycle { simulated, smoothed };
 
-// The motion along which the file's friction is computed where the residual force is: that of the record or run itself,
-// or, of a law without a contact, the one that the file's simulation of the record makes. An encoder's noise makes the
-// direction of the first chatter near standstill; what acts on the machine makes the second reverse elsewhere.
-enum class FrictionAlong { own_motion, simulated_motion };
-
 // What an effect does to the residual force of a replayed log, through the control loop. Motions are known by the
 // source and the first time of the logs.
 class EffectResponse {
@@ -89,9 +85,6 @@ class EffectResponse {
   // it ends or begins, friction that it smoothes. Zeros without disturbance.
   // Throws std::out_of_range for a motion of another log.
   std::vector<double> of_disturbance(const Motion& motion);
-  // N at the motion's rate: the residual of the machine as it is under one draw of the disturbance, that force
-  // included. `run`: which draw. Throws std::out_of_range for a motion of another log, FaultTripped.
-  std::vector<double> drawn(const Motion& motion, std::size_t run);
 
  private:
   struct Record {

@@ -57,7 +57,7 @@ class Dictionary {
   // is possible.
   std::optional<Option> best_of(std::size_t candidate, const ActiveSet& beside, const Posterior& of_beside) const;
   // Log odds of the best of each of the candidates `names`, as best_of() beside a set, were this the record; minus
-  // infinity where none is possible. Those that are scanned for are left out: their trials are counted.
+  // infinity where none is possible. Lines and places are looked for in that record.
   std::vector<double> names_in(const ExactRecord& record, const std::vector<std::size_t>& names,
                                const ActiveSet& beside);
   // Each option's price anew, as the context has them now.
@@ -77,10 +77,11 @@ class Dictionary {
   void add_options(bool scanned);
   void give_columns(const std::vector<Atom*>& options);
   void respond_under(const Eigen::VectorXd& noise);
-  bool possible(const Atom& atom, const ActiveSet& beside, const Posterior& of_beside, double size) const;
+  bool possible(const SearchContext& context, const Atom& atom, const ActiveSet& beside, const Posterior& of_beside,
+                double size) const;
   std::optional<Option> at_shape(std::size_t candidate, double shape, const ActiveSet& beside,
                                  const Posterior& of_beside);
-  std::vector<Group> columns_along(const LogRows& regressors, std::size_t candidate);
+  std::vector<Atom> tried_in(const ExactRecord& record, std::size_t candidate, const SearchContext& context);
   Eigen::VectorXd settled_residual(const ActiveSet& set) const;
   Eigen::VectorXd absorbed_by_all(const ActiveSet& set) const;
 
