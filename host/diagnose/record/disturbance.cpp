@@ -10,12 +10,19 @@ namespace {
 constexpr double piece = 0.25;  // s
 constexpr double bursts = 2.0;  // the square of all over that of the quieter half, which noise does not reach
 
+// A row of 0 does not count: the axis stood there.
+Eigen::Index counted(const Eigen::VectorXd& residual) { return (residual.array() != 0.0).count(); }
+
+double square_of(const Eigen::VectorXd& residual) {
+  return residual.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(counted(residual), 1));
+}
+
 struct Pieces {
   Eigen::VectorXd residual;
   std::vector<std::size_t> begins;
 };
 
-// The quieter half of a residual.
+// The quieter half of a residual, of what counts.
 Pieces quieter_half(const Eigen::VectorXd& residual, std::span<const std::size_t> logs, double period) {
   std::vector<Eigen::VectorXd> all;
   for (std::size_t k = 0; k < logs.size(); ++k) {
@@ -25,12 +32,13 @@ Pieces quieter_half(const Eigen::VectorXd& residual, std::span<const std::size_t
     for (std::size_t p = 0; p < count; ++p) {
       const std::size_t first = logs[k] + length * p / count, last = logs[k] + length * (p + 1) / count;
       all.emplace_back(residual.segment(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(last - first)));
+      if (2 * counted(all.back()) < all.back().size()) all.pop_back();
     }
   }
+  if (all.empty()) return {residual, {logs.begin(), logs.end()}};
   const auto middle = all.begin() + static_cast<std::ptrdiff_t>((all.size() + 1) / 2);
-  std::nth_element(all.begin(), middle - 1, all.end(), [](const auto& a, const auto& b) {
-    return a.squaredNorm() * static_cast<double>(b.size()) < b.squaredNorm() * static_cast<double>(a.size());
-  });
+  std::nth_element(all.begin(), middle - 1, all.end(),
+                   [](const auto& a, const auto& b) { return square_of(a) < square_of(b); });
   Pieces pieces;
   for (auto each = all.begin(); each != middle; ++each) {
     pieces.begins.push_back(static_cast<std::size_t>(pieces.residual.size()));
@@ -46,14 +54,11 @@ Disturbance::Disturbance(const Eigen::VectorXd& residual, std::span<const std::s
     : period_(period) {
   Pieces noise{residual, {logs.begin(), logs.end()}};
   const auto quiet = quieter_half(residual, logs, period);
-  const auto mean_square = [](const Eigen::VectorXd& v) {
-    return v.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(v.size(), 1));
-  };
-  if (mean_square(residual) > bursts * mean_square(quiet.residual)) noise = quiet;
-  mean_square_ = mean_square(noise.residual);
+  if (square_of(residual) > bursts * square_of(quiet.residual)) noise = quiet;
+  mean_square_ = square_of(noise.residual);
   spectrum_ = Whitening(noise.residual, noise.begins);
-  const auto white = spectrum_(noise.residual);
-  deviation_ = std::sqrt(white.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(white.size(), 1)));
+  deviation_ = std::sqrt(spectrum_(noise.residual).squaredNorm() /
+                         static_cast<double>(std::max<Eigen::Index>(counted(noise.residual), 1)));
 }
 
 std::vector<double> Disturbance::drawn(std::span<const double> t, std::uint64_t seed) const {

@@ -15,8 +15,8 @@ class Disturbance {
  public:
   // None.
   Disturbance() = default;
-  // `residual`: N, in rows of several logs, `period` s apart; `logs`: first row of each. Of one that comes in bursts,
-  // its quieter half: what bursts is an effect.
+  // `residual`: N, in rows of several logs, 0 in those that do not count, `period` s apart; `logs`: first row of each.
+  // Of one that comes in bursts, its quieter half: what bursts is an effect.
   Disturbance(const Eigen::VectorXd& residual, std::span<const std::size_t> logs, double period);
 
   explicit operator bool() const { return deviation_ > 0.0; }
