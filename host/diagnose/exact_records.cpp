@@ -50,6 +50,7 @@ class Maker {
   // The logs as the machine of the file makes them under a draw of the forces, with the set-points that the record has.
   std::vector<Log> recorded(std::size_t draw) const {
     auto setup = replay_setup_of(machine_, axis_, training().driven);
+    without_windings(setup.machine.axes.front());
     for (std::size_t k = 0; k < setup.logs.size(); ++k) {
       auto& force = setup.logs[k].axes.front().external_force;
       force.resize(setup.logs[k].t.size(), 0.0);

@@ -30,8 +30,15 @@ struct ExactRecord {
 // One of many draws, by its number; none where the machine cannot follow under the forces that were drawn.
 using ExactRecords = std::function<std::optional<ExactRecord>(std::size_t)>;
 
+// What a search has found so far of lines: over position, over position in proportion to the force and to the speed,
+// over time, over the encoder's signal; and of places of friction, and of a force.
+struct Scans {
+  LineScan pitches{}, modulation{}, by_speed{}, times{}, signals_of_encoder{};
+  PlaceScan tight_spots{}, pushes{};
+};
+
 // What the candidates may know: the axis as its file has it and what the training records cover. SI units.
-struct SearchContext {
+struct SearchContext : Scans {
   machine::AxisModel axis;
   SignalSettings signals;
   double highest_speed = 0.0;
@@ -46,10 +53,6 @@ struct SearchContext {
   // Hz, up to where the motion of the regressors holds that of the records; infinite with set-points.
   double known_up_to = std::numeric_limits<double>::infinity();
   machine::Timing timing{};  // of the drive
-  // Found as the search goes: lines over position, over position in proportion to the force and to the speed, over
-  // time, over the encoder's signal.
-  LineScan pitches{}, modulation{}, by_speed{}, times{}, signals_of_encoder{};
-  PlaceScan tight_spots{}, pushes{};  // of friction, and of a force
   // The residual force (N, at the motion's rate) that a motion's set-points leave in simulation where the machine has
   // the effect, less that where it has not: what the effect does through the control loop. `most_runs`: of how many
   // runs under different forces the common part is taken, at most. Empty: no set-points.

@@ -42,11 +42,6 @@ double fine_increment(double increment) {
   return std::max(fine * increment, std::min(increment, finest));
 }
 
-// The equivalent motor takes a third of the time, and moves the axis the same but for how it hunts.
-void without_windings(machine::AxisModel& axis) {
-  if (axis.motor.model == machine::MotorModel::synchronous) axis.motor.model = machine::MotorModel::dc;
-}
-
 bool same(std::span<const machine::Effect> one, std::span<const machine::Effect> other) {
   return std::equal(
       one.begin(), one.end(), other.begin(), other.end(),
@@ -61,6 +56,10 @@ Log replayed_like(const machine::Machine& machine, const Log& log) {
 }
 
 }  // namespace
+
+void without_windings(machine::AxisModel& axis) {
+  if (axis.motor.model == machine::MotorModel::synchronous) axis.motor.model = machine::MotorModel::dc;
+}
 
 ReplaySetup replay_setup_of(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
                             bool coupled) {

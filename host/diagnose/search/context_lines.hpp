@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <span>
 
 #include "host/diagnose/classes/candidate.hpp"
 #include "host/diagnose/statistics/whitening.hpp"
@@ -14,5 +15,8 @@ namespace stiction::host {
 // motor's pole pitches are always among them. `context`: whose lines are set.
 void find_lines(const LogRows& rows, const Eigen::VectorXd& residual, const Whitening& whitening,
                 SearchContext& context);
+// Only those among which one of `names` (of candidates()) is looked for. Others: as above.
+void find_lines_of(std::span<const std::size_t> names, const LogRows& rows, const Eigen::VectorXd& residual,
+                   const Whitening& whitening, SearchContext& context);
 
 }  // namespace stiction::host

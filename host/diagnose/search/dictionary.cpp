@@ -185,14 +185,13 @@ double Dictionary::score(const ActiveSet& set) const {
 }
 
 // Whether the weights of all have signs and sizes that the effects can have.
-bool Dictionary::possible(const SearchContext& context, const Atom& atom, const ActiveSet& beside,
-                          const Posterior& of_beside, double size) const {
+bool Dictionary::possible(const Atom& atom, const ActiveSet& beside, const Posterior& of_beside, double size) const {
   const auto weights = of_beside.weights_with(atom.group, size);
   Eigen::Index at = 0;
   const auto holds = [&](const Atom& each) {
     const auto count = static_cast<Eigen::Index>(each.group.columns.size());
     at += count;
-    return candidates()[each.candidate].possible(context, each.shape, weights.segment(at - count, count));
+    return candidates()[each.candidate].possible(scene_, each.shape, weights.segment(at - count, count));
   };
   return std::all_of(beside.begin(), beside.end(), [&](const Atom* each) { return holds(*each); }) && holds(atom);
 }
@@ -206,14 +205,14 @@ std::optional<Dictionary::Option> Dictionary::best_of(std::size_t candidate, con
     const auto gain = of_beside.gain_of(option->group);
     const double odds = gain.nats + option->log_prior;
     if (best && odds <= best->score) continue;
-    if (possible(scene_, *option, beside, of_beside, gain.size)) best = Option{option.get(), odds};
+    if (possible(*option, beside, of_beside, gain.size)) best = Option{option.get(), odds};
   }
   return best;
 }
 
 // What is tried of a candidate in a record other than that of the search: the options that are there, or, where lines
 // and places are looked for in what is left or the motion is another one, trials of its own behind all columns.
-std::vector<Atom> Dictionary::tried_in(const ExactRecord& record, std::size_t candidate, const SearchContext& context) {
+std::vector<Atom> Dictionary::tried_in(const ExactRecord& record, std::size_t candidate) {
   const auto& of = candidates()[candidate];
   const bool scanned = of.scan != nullptr || of.places != nullptr;
   std::vector<Atom> tried;
@@ -221,16 +220,16 @@ std::vector<Atom> Dictionary::tried_in(const ExactRecord& record, std::size_t ca
     if (option->candidate == candidate && !scanned) tried.push_back(*option);
   if (!scanned && (!record.regressors || of.replays)) return tried;
   if (scanned)
-    for (const double value : of.grid(context)) tried.push_back({candidate, value, {}, 0.0});
+    for (const double value : of.grid(scene_)) tried.push_back({candidate, value, {}, 0.0});
   if (of.places != nullptr)
-    for (std::size_t k = of.places(context).first_new; k < of.places(context).places.size(); ++k)
+    for (std::size_t k = of.places(scene_).first_new; k < of.places(scene_).places.size(); ++k)
       tried.push_back({candidate, PlaceScan::value_of(k), {}, 0.0});
   std::vector<CandidateAt> trials;
   for (const auto& atom : tried) trials.push_back({&of, atom.shape});
-  const auto groups = group_columns(record.regressors ? *record.regressors : rows_, context, trials);
+  const auto groups = group_columns(record.regressors ? *record.regressors : rows_, scene_, trials);
   for (std::size_t k = 0; k < tried.size(); ++k) {
     tried[k].group = add_group(evidence_, groups[k]);
-    tried[k].log_prior = log_prior_of(context, candidate, tried[k].shape);
+    tried[k].log_prior = log_prior_of(scene_, candidate, tried[k].shape);
   }
   return tried;
 }
@@ -240,22 +239,21 @@ std::vector<double> Dictionary::names_in(const ExactRecord& record, const std::v
   const Eigen::VectorXd own = evidence_.target();
   evidence_.retarget(record.target);
   const auto of_set = posterior(beside);
-  SearchContext context = scene_;
-  if (std::any_of(names.begin(), names.end(),
-                  [](std::size_t c) { return candidates()[c].scan != nullptr || candidates()[c].places != nullptr; }))
-    find_lines(record.regressors ? *record.regressors : rows_, residual(beside), evidence_.whitening(), context);
+  const Scans scanned = scene_;
+  find_lines_of(names, record.regressors ? *record.regressors : rows_, residual(beside), evidence_.whitening(), scene_);
   std::vector<double> odds;
   for (const auto c : names) {
     odds.push_back(-std::numeric_limits<double>::infinity());
     const auto first = evidence_.columns();
-    for (const auto& atom : tried_in(record, c, context)) {
+    for (const auto& atom : tried_in(record, c)) {
       const auto gain = of_set.gain_of(atom.group);
-      if (gain.nats + atom.log_prior > odds.back() && possible(context, atom, beside, of_set, gain.size))
+      if (gain.nats + atom.log_prior > odds.back() && possible(atom, beside, of_set, gain.size))
         odds.back() = gain.nats + atom.log_prior;
     }
     evidence_.truncate(first);
   }
   evidence_.retarget(own);
+  static_cast<Scans&>(scene_) = scanned;
   return odds;
 }
 
@@ -269,7 +267,7 @@ std::optional<Dictionary::Option> Dictionary::at_shape(std::size_t candidate, do
   const auto first = evidence_.columns();
   give_columns({atom.get()});
   const auto gain = of_beside.gain_of(atom->group);
-  if (!possible(scene_, *atom, beside, of_beside, gain.size)) {
+  if (!possible(*atom, beside, of_beside, gain.size)) {
     evidence_.truncate(first);
     plain_.truncate(first);
     return std::nullopt;

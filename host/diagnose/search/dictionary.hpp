@@ -77,11 +77,10 @@ class Dictionary {
   void add_options(bool scanned);
   void give_columns(const std::vector<Atom*>& options);
   void respond_under(const Eigen::VectorXd& noise);
-  bool possible(const SearchContext& context, const Atom& atom, const ActiveSet& beside, const Posterior& of_beside,
-                double size) const;
+  bool possible(const Atom& atom, const ActiveSet& beside, const Posterior& of_beside, double size) const;
   std::optional<Option> at_shape(std::size_t candidate, double shape, const ActiveSet& beside,
                                  const Posterior& of_beside);
-  std::vector<Atom> tried_in(const ExactRecord& record, std::size_t candidate, const SearchContext& context);
+  std::vector<Atom> tried_in(const ExactRecord& record, std::size_t candidate);
   Eigen::VectorXd settled_residual(const ActiveSet& set) const;
   Eigen::VectorXd absorbed_by_all(const ActiveSet& set) const;
 
