@@ -2,6 +2,7 @@
 
 import dataclasses
 import json
+import pathlib
 import re
 
 import machines
@@ -14,6 +15,9 @@ PAGES = [("polar", "open_report.mjs"), ("unexplained", "open_diagnosis.mjs"), ("
 
 FEED, OTHER_FEED = "16 m/min", "10 m/min"  # README's, and of the held-out circle
 OFF = 0.2  # of Coulomb friction
+# What an experiment must be told.
+MOTION_FILE = pathlib.Path(__file__).parents[2] / "examples/cams/indexing.toml"
+NEEDED = {"cam": ("--cam", MOTION_FILE, "--speed", "20 rpm", "--cycles", "1")}
 
 EXACT = "nothing named on an exact file"
 NAMED = "Coulomb friction 20 % off: named, or a declared alias"
@@ -123,7 +127,7 @@ class Walk:
                          may_refuse=not has_rows, out=f"{name}-reference")
         for experiment in self.program.experiments:
             if experiment not in ("replay", "commissioning"):  # they belong to an axis
-                self.simulate(experiment)
+                self.simulate(experiment, *NEEDED.get(experiment, ()))
 
     def simulate(self, experiment, *more):
         step, out = f"simulate {experiment}", f"simulate-{experiment}"
