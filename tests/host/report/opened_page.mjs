@@ -2,7 +2,7 @@
 // any page (nothing is loaded from outside, the console is silent, page_checks.mjs holds in light, dark, on a narrow
 // screen and on paper), and the verdict.
 // usage: node SCRIPT.mjs FILE.html [--screenshot FILE.png] [--width PIXELS] [--pdf FILE.pdf] [MORE...]
-// The browser is $CHROMIUM, else /usr/bin/chromium. Exit 0: all holds; 1: a message says what does not; 2: usage.
+// The browser is $CHROMIUM, else /usr/bin/chromium-headless-shell. Exit 0: all holds; 1: a message says what does not; 2: usage.
 import { existsSync, readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { resolve } from 'node:path';
@@ -175,7 +175,7 @@ export async function openPage(script, more, checks) {
   // this process ends it.
   const attempt = async () => {
     try {
-      const browser = await chromium.launch({ executablePath: process.env.CHROMIUM || '/usr/bin/chromium', timeout: PATIENCE,
+      const browser = await chromium.launch({ executablePath: process.env.CHROMIUM || '/usr/bin/chromium-headless-shell', timeout: PATIENCE,
         args: ['--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
                '--disable-component-update', '--disable-sync', '--disable-dev-shm-usage'] });  // /dev/shm is small in containers
       await open(browser).finally(() => browser.close());
