@@ -23,7 +23,12 @@ class Maker {
         disturbance_(force, rows().logs(), rows().period(0)),
         to_follow_(std::any_of(training().logs.begin(), training().logs.end(),
                                [&](const Log& log) { return channels_of(log, prepared.axis).x_set.empty(); })) {
-    if (!to_follow_) own_ = own_residual(training().simulated, training().logs, prepared.axis, prepared.settings);
+    // What the file leaves of its own run is told by the motor that the draws have.
+    without_windings(machine_.axes[axis_]);
+    if (to_follow_) return;
+    const auto silent = without_noise(machine_, axis_, training().driven).replayed;
+    own_ =
+        own_residual(silent.empty() ? training().simulated : silent, training().logs, prepared.axis, prepared.settings);
   }
 
   std::optional<ExactRecord> operator()(std::size_t draw) const {
@@ -50,7 +55,6 @@ class Maker {
   // The logs as the machine of the file makes them under a draw of the forces, with the set-points that the record has.
   std::vector<Log> recorded(std::size_t draw) const {
     auto setup = replay_setup_of(machine_, axis_, training().driven);
-    without_windings(setup.machine.axes.front());
     for (std::size_t k = 0; k < setup.logs.size(); ++k) {
       auto& force = setup.logs[k].axes.front().external_force;
       force.resize(setup.logs[k].t.size(), 0.0);
@@ -84,7 +88,7 @@ class Maker {
   }
 
   const Prepared& prepared_;
-  const machine::Machine& machine_;
+  machine::Machine machine_;  // of the file
   std::size_t axis_;
   Disturbance disturbance_;
   bool to_follow_;

@@ -12,8 +12,10 @@
 namespace stiction::host {
 namespace {
 
-constexpr std::size_t records_drawn = 24;
+constexpr std::size_t records_kept = 24;  // and looked at in any case
+constexpr std::size_t most_drawn = 120;
 constexpr std::size_t fewest_drawn = 8;  // from which a tail is told
+constexpr double margin = 2.0;           // standard errors of a price, within which more are drawn
 constexpr int sizing_rounds = 2;         // in which the force that is drawn finds its size
 
 // Forces under which the exact machine leaves about as much as the record does: the encoder's steps and the loop's
@@ -28,36 +30,58 @@ Eigen::VectorXd sized(const SearchContext& context, Eigen::VectorXd noise) {
   return noise;
 }
 
+struct Limit {
+  double odds, error;  // with its standard error
+};
+
 // Log odds that are exceeded with a probability of `chance`: behind the median they fall off exponentially, as twice
-// the log of a likelihood ratio does (Wilks 1938).
-double exceeded_with(double chance, std::vector<double> odds) {
+// the log of a likelihood ratio does (Wilks 1938). The mean of such values is known to its part in their root.
+Limit exceeded_with(double chance, std::vector<double> odds) {
   const auto middle = odds.begin() + static_cast<std::ptrdiff_t>(odds.size() / 2);
   std::nth_element(odds.begin(), middle, odds.end());
-  const double above = std::accumulate(middle, odds.end(), 0.0) / static_cast<double>(odds.end() - middle) - *middle;
-  return *middle + above * std::log(0.5 / chance);
+  const auto count = static_cast<double>(odds.end() - middle);
+  const double above = std::accumulate(middle, odds.end(), 0.0) / count - *middle;
+  const double behind = above * std::log(0.5 / chance);
+  return {*middle + behind, behind / std::sqrt(count)};
 }
 
 }  // namespace
 
-Calibration::Calibration(const SearchContext& context, const Eigen::VectorXd& noise) {
-  const auto drawn = context.exact_records(sized(context, noise));
-  for (std::size_t draw = 0; draw < records_drawn; ++draw)
-    if (auto record = drawn(draw)) records_.push_back(std::move(*record));
-  if (records_.size() < fewest_drawn) records_.clear();
+Calibration::Calibration(const SearchContext& context, const Eigen::VectorXd& noise)
+    : drawn_(context.exact_records(sized(context, noise))) {
+  for (std::size_t draw = 0; draw < records_kept; ++draw)
+    if (auto record = drawn_(draw)) kept_.push_back(std::move(*record));
+  if (kept_.size() < fewest_drawn) kept_.clear();
+  records_ = kept_.size();
 }
 
-std::vector<double> Calibration::prices(const std::function<std::vector<double>(const ExactRecord&)>& odds_in) const {
-  std::vector<std::vector<double>> odds;
-  for (const auto& record : records_) {
+std::vector<double> Calibration::prices(const std::function<std::vector<double>(const ExactRecord&)>& odds_in,
+                                        const std::vector<double>& own) {
+  std::vector<std::vector<double>> odds(own.size());
+  const auto look_at = [&](const ExactRecord& record) {
     const auto of_record = odds_in(record);
-    odds.resize(of_record.size());
     for (std::size_t k = 0; k < odds.size(); ++k)
       if (std::isfinite(of_record[k])) odds[k].push_back(of_record[k]);
-  }
+  };
+  for (const auto& record : kept_) look_at(record);
   const double chance = level_of_design / static_cast<double>(candidates().size());
-  std::vector<double> prices(odds.size(), 0.0);
-  for (std::size_t k = 0; k < odds.size(); ++k)
-    if (odds[k].size() >= fewest_drawn) prices[k] = std::max(exceeded_with(chance, odds[k]) - sure, 0.0);
+  std::vector<double> prices(own.size(), 0.0);
+  // Whether the records that were drawn tell each name's side.
+  const auto told = [&] {
+    bool all = true;
+    for (std::size_t k = 0; k < odds.size(); ++k) {
+      if (odds[k].size() < fewest_drawn) continue;
+      const auto limit = exceeded_with(chance, odds[k]);
+      prices[k] = std::max(limit.odds - sure, 0.0);
+      all = all && (own[k] < sure || std::abs(own[k] - limit.odds) > margin * limit.error);
+    }
+    return all;
+  };
+  std::size_t looked_at = kept_.size();
+  for (std::size_t draw = records_kept; !told() && !kept_.empty() && draw < most_drawn;)
+    for (const auto end = draw + records_kept; draw < end; ++draw)
+      if (const auto record = drawn_(draw)) look_at(*record), ++looked_at;
+  records_ = std::max(records_, looked_at);
   return prices;
 }
 

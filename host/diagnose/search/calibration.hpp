@@ -16,12 +16,16 @@ class Calibration {
   // `context`: with exact_records(); `noise`: N, of the rows, what no cause explains of the record.
   Calibration(const SearchContext& context, const Eigen::VectorXd& noise);
 
-  std::size_t records() const { return records_.size(); }  // 0: none can be simulated
-  // Nats, 0 and more, of each name of which `odds_in` tells the log odds in a record.
-  std::vector<double> prices(const std::function<std::vector<double>(const ExactRecord&)>& odds_in) const;
+  std::size_t records() const { return records_; }  // that were looked at at most; 0: none can be simulated
+  // Nats, 0 and more, of each name of which `odds_in` tells the log odds in a record; `own`: in the record itself. More
+  // records are drawn where these do not tell on which side of its price a name is.
+  std::vector<double> prices(const std::function<std::vector<double>(const ExactRecord&)>& odds_in,
+                             const std::vector<double>& own);
 
  private:
-  std::vector<ExactRecord> records_;
+  ExactRecords drawn_;
+  std::vector<ExactRecord> kept_;  // the first ones
+  std::size_t records_ = 0;
 };
 
 }  // namespace stiction::host

@@ -293,8 +293,8 @@ SearchResult Search::run_calibrated() {
         names.push_back(atom->candidate);
     if (names.empty()) break;
     if (!calibration) calibration.emplace(scene_, result.residual.cwiseProduct(rows_.counts()));
-    const auto prices =
-        calibration->prices([&](const ExactRecord& record) { return names_in(record, names, without_name); });
+    const auto odds_in = [&](const ExactRecord& record) { return names_in(record, names, without_name); };
+    const auto prices = calibration->prices(odds_in, odds_in({evidence_.target(), {}}));
     if (std::none_of(prices.begin(), prices.end(), [](double price) { return price > 0.0; })) break;
     scene_.prices.resize(candidates().size(), 0.0);
     for (std::size_t k = 0; k < names.size(); ++k) scene_.prices[names[k]] = prices[k];
