@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "host/diagnose/record/disturbance.hpp"
+#include "host/diagnose/record/followed_set_points.hpp"
 #include "host/diagnose/record/record_rows.hpp"
 #include "host/identify/identification.hpp"
 #include "host/simulate/control_run.hpp"
@@ -21,12 +22,15 @@ class Maker {
         machine_(input.machine),
         axis_(input.axis),
         disturbance_(force, rows().logs(), rows().period(0)),
-        to_follow_(std::any_of(training().logs.begin(), training().logs.end(),
-                               [&](const Log& log) { return channels_of(log, prepared.axis).x_set.empty(); })) {
+        driven_(prepared.known_motion ? training().driven
+                                      : with_recorded_set_points(input.machine.axes[input.axis], training().logs)),
+        own_motion_(!prepared.known_motion ||
+                    std::any_of(training().logs.begin(), training().logs.end(),
+                                [&](const Log& log) { return channels_of(log, prepared.axis).x_set.empty(); })) {
     // What the file leaves of its own run is told by the motor that the draws have.
     without_windings(machine_.axes[axis_]);
-    if (to_follow_) return;
-    const auto silent = without_noise(machine_, axis_, training().driven).replayed;
+    if (own_motion_) return;
+    const auto silent = without_noise(machine_, axis_, driven_).replayed;
     own_ =
         own_residual(silent.empty() ? training().simulated : silent, training().logs, prepared.axis, prepared.settings);
   }
@@ -41,7 +45,7 @@ class Maker {
         record.target = along_regressors(record, prepared_.axis);
       if (training().of_disturbance.size() > 0) record.target -= training().of_disturbance;
       ExactRecord made{std::move(record.target), std::nullopt};
-      if (to_follow_) made.regressors = std::move(record.regressors);
+      if (own_motion_) made.regressors = std::move(record.regressors);
       return made;
     } catch (const FaultTripped&) {
       return std::nullopt;
@@ -54,7 +58,7 @@ class Maker {
 
   // The logs as the machine of the file makes them under a draw of the forces, with the set-points that the record has.
   std::vector<Log> recorded(std::size_t draw) const {
-    auto setup = replay_setup_of(machine_, axis_, training().driven);
+    auto setup = replay_setup_of(machine_, axis_, driven_);
     for (std::size_t k = 0; k < setup.logs.size(); ++k) {
       auto& force = setup.logs[k].axes.front().external_force;
       force.resize(setup.logs[k].t.size(), 0.0);
@@ -76,9 +80,9 @@ class Maker {
   // Gives regressors to the `record`, and takes what the file leaves of its own run off the target; false where the
   // machine cannot follow it.
   bool prepare(Record& record) const {
-    if (to_follow_) {
-      const auto motion = drive(record, machine_, axis_);
-      if (motion.empty()) return false;
+    if (own_motion_) {
+      const auto motion = prepared_.known_motion ? drive(record, machine_, axis_) : std::vector<Log>{};
+      if (prepared_.known_motion && motion.empty()) return false;
       regress_on(record, motion, prepared_.axis, prepared_.settings);
     } else {
       record.regressors = training().regressors;
@@ -91,8 +95,9 @@ class Maker {
   machine::Machine machine_;  // of the file
   std::size_t axis_;
   Disturbance disturbance_;
-  bool to_follow_;
-  Eigen::VectorXd own_;  // N, of the rows, where the file's own run is the same in every draw
+  std::vector<Log> driven_;  // with set-points
+  bool own_motion_;          // whether each draw has regressors of its own
+  Eigen::VectorXd own_;      // N, of the rows, where the file's own run is the same in every draw
 };
 
 }  // namespace

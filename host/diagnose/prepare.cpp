@@ -156,6 +156,17 @@ std::vector<T> joined(std::vector<T> first, const std::vector<T>& second) {
   return first;
 }
 
+// Records of the exact machine, where its drive is known and has something to go by.
+void take_exact_records(Prepared& prepared, const DiagnoseInput& input) {
+  const auto& axis = input.machine.axes[input.axis];
+  const bool follows = axis.cascaded() && axis.position_controller.gain > 0.0;
+  if (!follows && !without_set_points(prepared).empty()) return;
+  if (!why_not_simulated(input.machine, input.axis, prepared.training.logs).empty()) return;
+  prepared.context.exact_records = [&prepared, &input](const Eigen::VectorXd& force) {
+    return exact_records(prepared, input, force);
+  };
+}
+
 // The simulations in which causes are tried, and what the residual force itself does to the file's own residual.
 void take_responses(Prepared& prepared, const DiagnoseInput& input) {
   if (!prepared.known_motion) return;
@@ -174,9 +185,6 @@ void take_responses(Prepared& prepared, const DiagnoseInput& input) {
                                     limit_cycle == QuantizerLimitCycle::simulated ? simulated : std::vector<Log>{});
   prepared.context.disturb = [&prepared, disturbed_by](const Eigen::VectorXd& force) {
     prepared.context.response = disturbed_by(force);
-  };
-  prepared.context.exact_records = [&prepared, &input](const Eigen::VectorXd& force) {
-    return exact_records(prepared, input, force);
   };
   prepared.context.disturb(training.target);
   auto own = disturbed_by(training.target);
@@ -211,6 +219,7 @@ std::unique_ptr<Prepared> prepare(const DiagnoseInput& input, Verdict& verdict) 
   prepared->context.timing = input.machine.timing;
   take_motion(*prepared, input, verdict);
   prepared->context.highest_residual = prepared->training.target.cwiseAbs().maxCoeff();
+  take_exact_records(*prepared, input);
   take_responses(*prepared, input);
   return prepared;
 }

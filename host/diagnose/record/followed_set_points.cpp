@@ -32,6 +32,10 @@ double mean_square(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
+Lowpass lowpass_of(const machine::AxisModel& axis, double period) {
+  return butterworth(order, 2.0 * followed_up_to(axis, period) * period);
+}
+
 // One record in its course.
 class Follower {
  public:
@@ -39,7 +43,7 @@ class Follower {
       : machine_(machine),
         axis_(axis),
         log_(log),
-        lowpass_(butterworth(order, 2.0 * followed_up_to(machine.axes[axis], log.period) * log.period)),
+        lowpass_(lowpass_of(machine.axes[axis], log.period)),
         wanted_(smoothed(channels().x)) {}
 
   // The set positions of the round that came nearest; empty where none could be simulated, or did not come near.
@@ -97,6 +101,16 @@ class Follower {
 };
 
 }  // namespace
+
+std::vector<Log> with_recorded_set_points(const machine::AxisModel& axis, std::vector<Log> logs) {
+  for (auto& log : logs) {
+    auto& channels = channels_of(log, axis);
+    if (!channels.x_set.empty()) continue;
+    const auto lowpass = lowpass_of(axis, log.period);
+    channels.x_set = filter_both_ways(lowpass, channels.x, default_padding(lowpass));
+  }
+  return logs;
+}
 
 std::vector<Log> with_set_points(const machine::Machine& machine, std::size_t axis, std::vector<Log> logs) {
   const auto& model = machine.axes[axis];

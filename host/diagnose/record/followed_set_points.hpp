@@ -16,6 +16,10 @@ namespace stiction::host {
 // not known or its simulation cannot follow. `machine` of the file; `axis`: its index.
 std::vector<Log> with_set_points(const machine::Machine& machine, std::size_t axis, std::vector<Log> logs);
 
+// The `logs` with the recorded positions, slowly, for set positions (m) where they have none: how about the axis went.
+// `axis` of the file, with a position loop.
+std::vector<Log> with_recorded_set_points(const machine::AxisModel& axis, std::vector<Log> logs);
+
 // Hz, up to where such set-points hold the motion of the `axis`: twice the bandwidth of its position loop, as far as
 // logs with `period` (s) reach.
 double followed_up_to(const machine::AxisModel& axis, double period);

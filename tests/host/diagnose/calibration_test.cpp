@@ -33,9 +33,9 @@ const Eigen::Vector3d left_over(1.0, -2.0, 2.0);
 TEST(Calibration, asks_nothing_where_exact_records_have_little_odds) {
   std::mt19937_64 random(1);
   std::exponential_distribution<double> tail;
-  const Calibration calibration(context_of(1.0), left_over);
+  Calibration calibration(context_of(1.0), left_over);
   EXPECT_EQ(calibration.records(), 24U);
-  const auto prices = calibration.prices([&](const ExactRecord&) { return std::vector{-4.0 + tail(random)}; });
+  const auto prices = calibration.prices([&](const ExactRecord&) { return std::vector{-4.0 + tail(random)}; }, {30.0});
   EXPECT_EQ(prices, std::vector{0.0});
 }
 
@@ -43,13 +43,29 @@ TEST(Calibration, asks_nothing_where_exact_records_have_little_odds) {
 TEST(Calibration, prices_a_name_by_the_tail_of_its_odds) {
   std::mt19937_64 random(2);
   std::exponential_distribution<double> tail;
-  const Calibration calibration(context_of(1.0), left_over);
+  Calibration calibration(context_of(1.0), left_over);
   const double expected = 50.0 + std::log(100.0 * static_cast<double>(candidates().size())) - sure;
   double mean = 0.0;
   constexpr int times = 200;
   for (int k = 0; k < times; ++k)
-    mean += calibration.prices([&](const ExactRecord&) { return std::vector{50.0 + tail(random)}; })[0] / times;
+    mean +=
+        calibration.prices([&](const ExactRecord&) { return std::vector{50.0 + tail(random)}; }, {1000.0})[0] / times;
   EXPECT_NEAR(mean, expected, 0.05 * expected);
+}
+
+// The price is about 58 nats, and known from 24 records to some 2.5.
+TEST(Calibration, draws_more_records_where_a_name_is_near_its_price) {
+  std::mt19937_64 random(3);
+  std::exponential_distribution<double> tail;
+  const auto looked_at = [&](double own) {
+    Calibration calibration(context_of(1.0), left_over);
+    calibration.prices([&](const ExactRecord&) { return std::vector{50.0 + tail(random)}; }, {own});
+    return calibration.records();
+  };
+  EXPECT_EQ(looked_at(1000.0), 24U);
+  EXPECT_EQ(looked_at(3.0), 24U);
+  EXPECT_GT(looked_at(59.0), 24U);
+  EXPECT_LE(looked_at(59.0), 120U);
 }
 
 TEST(Calibration, knows_nothing_of_few_records) {
@@ -58,10 +74,12 @@ TEST(Calibration, knows_nothing_of_few_records) {
 }
 
 TEST(Calibration, does_not_price_what_no_exact_record_can_have) {
-  const Calibration calibration(context_of(1.0), left_over);
-  const auto prices = calibration.prices([](const ExactRecord&) {
-    return std::vector{-std::numeric_limits<double>::infinity(), 30.0};
-  });
+  Calibration calibration(context_of(1.0), left_over);
+  const auto prices = calibration.prices(
+      [](const ExactRecord&) {
+        return std::vector{-std::numeric_limits<double>::infinity(), 30.0};
+      },
+      {50.0, 50.0});
   EXPECT_EQ(prices[0], 0.0);
   EXPECT_EQ(prices[1], 30.0 - sure);
 }
@@ -69,10 +87,12 @@ TEST(Calibration, does_not_price_what_no_exact_record_can_have) {
 // The loop's answer and the encoder's steps add to what is drawn.
 TEST(Calibration, draws_forces_under_which_the_exact_machine_leaves_as_much) {
   for (const double gain : {0.5, 1.0, 4.0}) {
-    const Calibration calibration(context_of(gain), left_over);
-    calibration.prices([&](const ExactRecord& record) {
-      EXPECT_NEAR(record.target.norm(), std::min(gain, 1.0) * left_over.norm(), 1e-12);
-      return std::vector<double>{};
-    });
+    Calibration calibration(context_of(gain), left_over);
+    calibration.prices(
+        [&](const ExactRecord& record) {
+          EXPECT_NEAR(record.target.norm(), std::min(gain, 1.0) * left_over.norm(), 1e-12);
+          return std::vector<double>{};
+        },
+        {});
   }
 }

@@ -73,6 +73,22 @@ TEST(Disturbance, OfBurstsIsAsStrongAsWhatIsBetweenThem) {
   EXPECT_NEAR(std::sqrt(square / static_cast<double>(t.size())), 1.75, 0.25);
 }
 
+// Rows of 0 do not count: the axis stood there for two seconds of three.
+TEST(Disturbance, IsAsStrongAsTheResidualWhereTheAxisMoves) {
+  constexpr double period = 4e-3;
+  auto residual = wandering(30000, 1);
+  for (Eigen::Index i = 0; i < residual.size(); ++i)
+    if (i % 750 < 500) residual[i] = 0.0;
+  const std::vector<std::size_t> logs{0, 15000};
+  std::vector<double> t;
+  for (int i = 0; i < 20000; ++i) t.push_back(period * i);
+  const Disturbance disturbance(residual, logs, period);
+  double square = 0.0;
+  for (const double force : disturbance.drawn(t, 1)) square += force * force;
+  EXPECT_NEAR(std::sqrt(square / static_cast<double>(t.size())), 2.0, 0.2);
+  EXPECT_NEAR(disturbance.mean_square(), 4.0, 0.4);
+}
+
 TEST(Disturbance, OfNothingIsNone) {
   EXPECT_FALSE(Disturbance());
   const std::vector<double> t{0.0, 1e-3};
