@@ -15,7 +15,8 @@ namespace stiction::host {
 // motor's pole pitches are always among them. `context`: whose lines are set.
 void find_lines(const LogRows& rows, const Eigen::VectorXd& residual, const Whitening& whitening,
                 SearchContext& context);
-// Only those among which one of `names` (of candidates()) is looked for. Others: as above.
+// Only those among which one of `names` (of candidates()) is looked for; `rows`, `residual`, `whitening` and `context`:
+// as above.
 void find_lines_of(std::span<const std::size_t> names, const LogRows& rows, const Eigen::VectorXd& residual,
                    const Whitening& whitening, SearchContext& context);
 
