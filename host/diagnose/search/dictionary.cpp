@@ -234,20 +234,19 @@ std::vector<Atom> Dictionary::tried_in(const ExactRecord& record, std::size_t ca
   return tried;
 }
 
-std::vector<double> Dictionary::names_in(const ExactRecord& record, const std::vector<std::size_t>& names,
-                                         const ActiveSet& beside) {
+std::vector<double> Dictionary::names_in(const ExactRecord& record, const std::vector<std::size_t>& names) {
   const Eigen::VectorXd own = evidence_.target();
   evidence_.retarget(record.target);
-  const auto of_set = posterior(beside);
+  const auto of_none = posterior({});
   const Scans scanned = scene_;
-  find_lines_of(names, record.regressors ? *record.regressors : rows_, residual(beside), evidence_.whitening(), scene_);
+  find_lines_of(names, record.regressors ? *record.regressors : rows_, record.target, evidence_.whitening(), scene_);
   std::vector<double> odds;
   for (const auto c : names) {
     odds.push_back(-std::numeric_limits<double>::infinity());
     const auto first = evidence_.columns();
     for (const auto& atom : tried_in(record, c)) {
-      const auto gain = of_set.gain_of(atom.group);
-      if (gain.nats + atom.log_prior > odds.back() && possible(atom, beside, of_set, gain.size))
+      const auto gain = of_none.gain_of(atom.group);
+      if (gain.nats + atom.log_prior > odds.back() && possible(atom, {}, of_none, gain.size))
         odds.back() = gain.nats + atom.log_prior;
     }
     evidence_.truncate(first);

@@ -56,10 +56,9 @@ class Dictionary {
   // The candidate's atom with the highest odds `beside` a set, of which `of_beside` is the posterior; none where none
   // is possible.
   std::optional<Option> best_of(std::size_t candidate, const ActiveSet& beside, const Posterior& of_beside) const;
-  // Log odds of the best of each of the candidates `names`, as best_of() beside a set, were this the record; minus
+  // Log odds of the best of each of the candidates `names`, as best_of() beside none, were this the `record`; minus
   // infinity where none is possible. Lines and places are looked for in that record.
-  std::vector<double> names_in(const ExactRecord& record, const std::vector<std::size_t>& names,
-                               const ActiveSet& beside);
+  std::vector<double> names_in(const ExactRecord& record, const std::vector<std::size_t>& names);
   // Each option's price anew, as the context has them now.
   void price_again();
   // The `option` with its nonlinear parameter between the values of the grid; `beside` and `of_beside` as above.

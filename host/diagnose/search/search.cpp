@@ -284,16 +284,13 @@ SearchResult Search::run_calibrated() {
   std::optional<Calibration> calibration;
   std::set<std::size_t> known;
   while (scene_.exact_records) {
-    ActiveSet without_name;
+    // What has no name is priced as well: it would take the place of a name that has a price, unless it had one too.
     std::vector<std::size_t> names;
     for (const auto* atom : found_)
-      if (candidates()[atom->candidate].outside())
-        without_name.push_back(atom);
-      else if (known.insert(atom->candidate).second)
-        names.push_back(atom->candidate);
+      if (known.insert(atom->candidate).second) names.push_back(atom->candidate);
     if (names.empty()) break;
     if (!calibration) calibration.emplace(scene_, result.residual.cwiseProduct(rows_.counts()));
-    const auto odds_in = [&](const ExactRecord& record) { return names_in(record, names, without_name); };
+    const auto odds_in = [&](const ExactRecord& record) { return names_in(record, names); };
     const auto prices = calibration->prices(odds_in, odds_in({evidence_.target(), {}}));
     if (std::none_of(prices.begin(), prices.end(), [](double price) { return price > 0.0; })) break;
     scene_.prices.resize(candidates().size(), 0.0);
