@@ -79,6 +79,19 @@ Eigen::VectorXd LogRows::sampled(const std::function<std::vector<double>(const M
   return all;
 }
 
+std::vector<std::vector<double>> LogRows::transposed(const Eigen::VectorXd& weight) const {
+  const Eigen::VectorXd counted = weight.cwiseProduct(counts_);
+  std::vector<std::vector<double>> all;
+  for (std::size_t k = 0; k < motions_.size(); ++k)
+    all.push_back(weighed(motions_[k],
+                          filters_[k].transposed({&counted[static_cast<Eigen::Index>(logs_[k])], filters_[k].rows()})));
+  return all;
+}
+
+void LogRows::read_as(const LogRows& measured) {
+  for (std::size_t k = 0; k < motions_.size(); ++k) motions_[k].read = measured.motions_[k].read;
+}
+
 Eigen::VectorXd LogRows::of_log(std::size_t log, const std::vector<double>& column) const {
   Eigen::VectorXd all = Eigen::VectorXd::Zero(force.size());
   const auto rows = filters_[log](weighed(motions_[log], column));

@@ -86,6 +86,7 @@ Motion motion_of(const Log& log, const AxisLog& channels, const machine::AxisMod
   const double cutoff = std::min(settings.cutoff, highest_position_edge / log.period);
   const auto lowpass = butterworth(position_order, 2.0 * cutoff * log.period);
   motion.x = filter_both_ways(lowpass, channels.x, scaled_padding(lowpass, 1e-3 / log.period));
+  motion.read = channels.x;
   motion.constant = shape_of_constant(axis, motion.x);
   motion.v = central_difference(motion.x, log.period, settings.difference_points);
   motion.a = central_difference(motion.v, log.period, settings.difference_points);
@@ -98,8 +99,9 @@ Motion motion_of(const Log& log, const AxisLog& channels, const machine::AxisMod
 }
 
 RowFilter::RowFilter(const Motion& motion, const SignalSettings& settings)
-    : begin_(samples(settings.skip_start, motion.period)),
-      end_(motion.t.size()),
+    : samples_(motion.t.size()),
+      begin_(samples(settings.skip_start, motion.period)),
+      end_(samples_),
       ratio_(row_ratio(motion.period, settings)),
       period_(static_cast<double>(ratio_) * motion.period) {
   const std::size_t skipped_end = samples(settings.skip_end, motion.period);
@@ -129,6 +131,15 @@ std::vector<std::vector<double>> RowFilter::operator()(const std::vector<std::ve
   std::vector<std::vector<double>> rows;
   for (const auto& column : filter_both_ways(lowpass_, all, padding_)) rows.push_back(every(column, ratio_));
   return rows;
+}
+
+std::vector<double> RowFilter::transposed(std::span<const double> rows) const {
+  std::vector<double> all(end_ - begin_, 0.0);
+  for (std::size_t k = 0; k < rows.size(); ++k) all[k * ratio_] = rows[k];
+  all = filter_both_ways(lowpass_, all, padding_);
+  all.insert(all.begin(), begin_, 0.0);
+  all.resize(samples_, 0.0);
+  return all;
 }
 
 std::vector<double> RowFilter::sampled(std::span<const double> column) const { return every(kept(column), ratio_); }

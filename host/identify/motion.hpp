@@ -46,6 +46,9 @@ struct Motion {
   double speed_noise = 0.0, acceleration_noise = 0.0;  // m/s, m/s^2 rms in the rows, of the encoder
   bool recorded_speed = false;                         // v and a are of the recorded speed
   std::vector<double> constant{};                      // what the constant force goes with, -1 to 1; empty: 1
+  // m, at each sample as the encoder had it: not filtered, and of the record where `x` is a simulation's; empty: as
+  // `x`.
+  std::vector<double> read{};
   std::string speed_objection{};  // what spoke against a recorded speed that would be quieter; empty: nothing
 };
 
@@ -77,6 +80,8 @@ class RowFilter {
   std::vector<double> operator()(std::span<const double> column) const;
   // Those of several columns at once, which takes less time.
   std::vector<std::vector<double>> operator()(const std::vector<std::vector<double>>& columns) const;
+  // The transpose of that but at the ends, which are at rest: weights of samples from those of rows.
+  std::vector<double> transposed(std::span<const double> rows) const;
   // The column filtered at the log's own rate.
   std::vector<double> whole(std::span<const double> column) const {
     return filter_both_ways(lowpass_, kept(column), padding_);
@@ -87,7 +92,7 @@ class RowFilter {
  private:
   std::span<const double> kept(std::span<const double> column) const;
 
-  std::size_t begin_, end_, ratio_, padding_ = 0, rows_ = 0;
+  std::size_t samples_, begin_, end_, ratio_, padding_ = 0, rows_ = 0;
   double period_;
   Lowpass lowpass_;  // of every column, at every rate
 };

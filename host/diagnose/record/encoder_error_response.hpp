@@ -1,35 +1,79 @@
-// What a small error of the measured position makes of the force that a log shows, by frequency: the drive closes its
-// loop on what it reads. Below half the log's rate the carriage follows the current and the residual force is that of
-// the acceleration that was not there. Above it the drive answers with currents that the log's samples fold down.
+// What a small error of the measured position makes of the force that a log shows. The drive closes its loop on what it
+// reads. Below half the log's rate the carriage follows the current, and the residual force is that of the acceleration
+// that was not there. Above it the drive answers with currents that the log's samples fold down.
 #pragma once
 
 #include <complex>
+#include <vector>
 
 #include "firmware/machine/model/machine.hpp"
+#include "host/identify/motion.hpp"
 
 namespace stiction::host {
 
+// By frequency.
 class EncoderErrorResponse {
  public:
-  // `log_period`: s, of the log's samples. `axis` and `timing`: of the machine file.
-  EncoderErrorResponse(const machine::AxisModel& axis, const machine::Timing& timing, double log_period);
+  // `axis` and `timing`: of the machine file.
+  EncoderErrorResponse(const machine::AxisModel& axis, const machine::Timing& timing);
 
-  // Residual force (N) for an error of 1 m at `frequency` (Hz, not negative), as the log's samples show it.
-  std::complex<double> operator()(double frequency) const;
-  double mass() const { return axis_.mass; }  // kg
-  // The frequency (Hz) at which the log shows it.
-  double shown_at(double frequency) const;
-  // The drive's answer alone, N per m: position by velocity estimate, PI, notch and current loop in the steps of the
-  // fast tick (discretised as the firmware's), with the carriage's own motion. The position loop, weak there, is left
-  // out. 0 for an axis without a velocity controller.
+  // The drive's answer (N per m of error) at `frequency` (Hz, not negative): speed() to the error's speed.
   std::complex<double> drive(double frequency) const;
+  // N per m/s: PI, notch and current loop in the steps of the fast tick (discretised as the firmware's), with the
+  // carriage's own motion. The position loop, weak there, is left out. 0 for an axis without a velocity controller.
+  std::complex<double> of_speed(double frequency) const;
+  // The speed (1/s) that the drive makes of a position.
+  std::complex<double> speed(double frequency) const;
 
  private:
   std::complex<double> current_loop(std::complex<double> back) const;
 
   machine::AxisModel axis_;
   double tick_;
-  double log_period_;
+};
+
+// The same along a record, tick by tick: between two samples of a log an axis passes many signal periods, and which of
+// them the drive answers to is seen by where it was at each tick.
+class SeenEncoderError {
+ public:
+  // `motion`: of the record, with the position that it reads; `axis` and `timing`: of the machine file;
+  // `difference_points`: by which the motion was derived; `cutoff`: Hz, of its position's filter.
+  SeenEncoderError(const Motion& motion, const machine::AxisModel& axis, const machine::Timing& timing,
+                   int difference_points, double cutoff);
+
+  // Columns of the residual force (N per m, at the motion's rate) for the errors cos(2 pi x / period) and
+  // sin(2 pi x / period); `period`: m.
+  std::vector<std::vector<double>> columns(double period) const;
+
+  // By frequency (Hz), at a steady speed: the column (N per m) of a wave, and the frequency at which the log shows it.
+  std::complex<double> response(double frequency) const;
+  double shown_at(double frequency) const;
+
+  // Where the axis was at each tick, m.
+  const std::vector<double>& places() const { return places_; }
+  // The transpose of columns(): the sum over samples of `weight` (one a sample) times the column of an error e(x) is
+  // the sum over ticks of `position` times e plus `slope` times de/dx.
+  struct Weights {
+    std::vector<double> position, slope;
+  };
+  Weights transposed(const std::vector<double>& weight) const;
+
+ private:
+  std::vector<double> inverse_dynamics(const std::vector<double>& error) const;
+  // Of the difference that a speed is made of.
+  std::size_t ticks_back() const { return velocity_ == machine::VelocitySource::mean_difference ? 2 : 1; }
+
+  EncoderErrorResponse drive_;
+  std::size_t samples_, ticks_in_sample_;
+  double period_, tick_;  // s, of samples and ticks
+  bool answers_;          // ticks are finer than samples
+  machine::VelocitySource velocity_;
+  double mass_, viscous_;  // kg, N s/m
+  int difference_points_;
+  double cutoff_;
+  std::vector<double> places_, speeds_;  // m, m/s, of each tick
+  std::vector<double> answer_;           // N per m/s of the error's speed, from `reach_` ticks later to as many earlier
+  std::size_t reach_ = 0;
 };
 
 }  // namespace stiction::host

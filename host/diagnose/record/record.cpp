@@ -30,6 +30,7 @@ void regress_on(Record& record, const std::vector<Log>& motion, const machine::A
     record.simulated.clear();
   } else {
     record.regressors = rows_of(motion, axis, settings);
+    record.regressors.read_as(record.rows);
     record.target -= own_residual(record.simulated, record.logs, axis, settings);
   }
   const Eigen::VectorXd moves = moving_rows(record.rows, axis, settings.cutoff);

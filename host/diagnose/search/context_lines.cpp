@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "host/diagnose/record/inverse_dynamics.hpp"
+#include "host/diagnose/spectrum/signal_scan.hpp"
 
 namespace stiction::host {
 namespace {
@@ -29,7 +30,7 @@ void scan(const LogRows& rows, const Eigen::VectorXd& residual, const Whitening&
   if (wanted(&context.times)) context.times = scan_times(rows, whitening(residual), lines_tried);
   if (wanted(&context.signals_of_encoder))
     context.signals_of_encoder =
-        scan_signal_periods(rows, residual, whitening, context.axis, context.timing, lines_tried);
+        scan_signal_periods(rows, residual, whitening, context.axis, context.timing, context.signals, lines_tried);
   const auto over_stroke = [&](PlaceScan& scan, const Eigen::VectorXd& of) {
     if (wanted(&scan))
       scan_places(rows, residual, whitening, of, context.lowest_position, context.highest_position, scan);

@@ -1,6 +1,5 @@
-// Lines in a residual: over position (order tracking), by itself or in proportion to the expected force; over time; and
-// over the encoder's signal, whose error grows with the speed squared. What stands out is worth a try as a candidate's
-// period.
+// Lines in a residual: over position (order tracking), by itself or in proportion to the expected force; and over time.
+// What stands out is worth a try as a candidate's period.
 #pragma once
 
 #include <Eigen/Dense>
@@ -8,7 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "firmware/machine/model/machine.hpp"
 #include "host/diagnose/statistics/whitening.hpp"
 #include "host/identify/log_rows.hpp"
 
@@ -30,11 +28,5 @@ LineScan scan_times(const LogRows& rows, const Eigen::VectorXd& residual, std::s
 // 1/(2 stroke): an entry 2 % off the true pitch is never found. `residual` force (N); `count`: of lines at most.
 LineScan scan_pitches(const LogRows& rows, const Eigen::VectorXd& residual, const Whitening& whitening,
                       const Eigen::VectorXd& carrier, std::span<const double> known, std::size_t count);
-
-// Signal periods (m) of the encoder, 2 um to 1 mm: where the rows are slow enough to see them, and where the samples of
-// the log fold the drive's answer down (encoder_error_response.hpp). The count knows the signal: one phase in all
-// records. `residual` force (N), looked at through `whitening`; `axis` and `timing` of the machine file.
-LineScan scan_signal_periods(const LogRows& rows, const Eigen::VectorXd& residual, const Whitening& whitening,
-                             const machine::AxisModel& axis, const machine::Timing& timing, std::size_t count);
 
 }  // namespace stiction::host

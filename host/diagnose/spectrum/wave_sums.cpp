@@ -26,6 +26,19 @@ double spread(double narrowness, double order, double cells) {
   return std::sqrt(std::numbers::pi / narrowness) * std::exp(-angle * angle / narrowness);
 }
 
+// Of WavePower: tens of megabytes, which cost as much to get anew as to fill.
+struct Room {
+  std::vector<double> grid;
+  std::vector<Complex> spectrum;
+  Eigen::FFT<double> fft{
+      Eigen::FFT<double>::impl_type(),
+      static_cast<Eigen::FFT<double>::Flag>(Eigen::FFT<double>::Unscaled | Eigen::FFT<double>::HalfSpectrum)};
+};
+Room& room() {
+  thread_local Room room;
+  return room;
+}
+
 }  // namespace
 
 std::size_t power_of_two(std::size_t at_least) {
@@ -77,6 +90,38 @@ Complex WaveSums::one(std::size_t order) const {
 Complex WaveSums::other(std::size_t order) const {
   return size_[1] * Complex(0.0, -0.5) * (spectrum_[order] - std::conj(mirrored(order))) /
          spread(narrowness(reach), static_cast<double>(order), static_cast<double>(cells_));
+}
+
+WavePower::WavePower(double step, std::size_t highest) : step_(step), cells_(power_of_two(4 * highest)) {}
+
+void WavePower::transform(const Eigen::VectorXd& place, const Eigen::VectorXd& weight, const Eigen::VectorXd& slope) {
+  auto& [grid, spectrum, fft] = room();
+  grid.assign(cells_, 0.0);
+  const double narrow = narrowness(reach), cells_per_metre = step_ * static_cast<double>(cells_);
+  std::array<double, 2 * reach> bell{};
+  for (std::size_t i = 0; i < bell.size(); ++i) {
+    const double away = static_cast<double>(i) + 1.0 - static_cast<double>(reach);
+    bell[i] = std::exp(-narrow * away * away);
+  }
+  for (Eigen::Index i = 0; i < place.size(); ++i) {
+    if (weight[i] == 0.0 && slope[i] == 0.0) continue;
+    const double at = place[i] * cells_per_metre, cell = std::floor(at), past = at - cell;
+    // exp(-narrow (away - past)^2), away a number of cells, in its three factors.
+    const double by_step = std::exp(2.0 * narrow * past);
+    double factor = std::exp(-narrow * past * past - 2.0 * narrow * past * (static_cast<double>(reach) - 1.0));
+    const double rise = 2.0 * narrow * cells_per_metre * slope[i];
+    double* const first = &grid[static_cast<std::size_t>(cell)];
+    for (std::size_t k = 0; k < bell.size(); ++k, factor *= by_step) {
+      const double away = static_cast<double>(k) + 1.0 - static_cast<double>(reach) - past;
+      first[k] += bell[k] * factor * (weight[i] + rise * away);
+    }
+  }
+  fft.fwd(spectrum, grid);
+}
+
+double WavePower::at(std::size_t order) const {
+  const double spread_by = spread(narrowness(reach), static_cast<double>(order), static_cast<double>(cells_));
+  return std::norm(room().spectrum[order]) / (spread_by * spread_by);
 }
 
 double PhasorBank::gain() {

@@ -43,6 +43,26 @@ class WaveSums {
   std::vector<std::complex<double>> grid_, spectrum_;  // of the one plus i times the other
 };
 
+// The square of | sum over rows of (weight + slope d/dx) exp(2 pi i order x) |, for all orders 0, step, 2 step, ..: of
+// a great many at once, to a part in 1e5 of the largest. As above, but that each place is spread by itself, and the
+// slope is spread as the bell curve's own.
+class WavePower {
+ public:
+  // `highest`: order, counted in steps.
+  WavePower(double step, std::size_t highest);
+
+  // `place`: m, from 0 to half of 1/step; `weight` and `slope` of each.
+  void transform(const Eigen::VectorXd& place, const Eigen::VectorXd& weight, const Eigen::VectorXd& slope);
+  // At an order that counts steps.
+  double at(std::size_t order) const;
+
+ private:
+  static constexpr std::size_t reach = 6;  // cells to either side
+
+  double step_;
+  std::size_t cells_;
+};
+
 // Waves of many rows from order to order, in packets of rows; what there is none of has weight 0.
 class PhasorBank {
  public:
