@@ -3,7 +3,10 @@
 // that was not there. Above it the drive answers with currents that the log's samples fold down.
 #pragma once
 
+#include <Eigen/Dense>
 #include <complex>
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include "firmware/machine/model/machine.hpp"
@@ -36,8 +39,8 @@ class EncoderErrorResponse {
 // them the drive answers to is seen by where it was at each tick.
 class SeenEncoderError {
  public:
-  // `motion`: of the record, with the position that it reads; `axis` and `timing`: of the machine file;
-  // `difference_points`: by which the motion was derived; `cutoff`: Hz, of its position's filter.
+  // `motion`: of the record, with the position that it reads, which has to live as long; `axis` and `timing`: of the
+  // machine file; `difference_points`: by which the motion was derived; `cutoff`: Hz, of its position's filter.
   SeenEncoderError(const Motion& motion, const machine::AxisModel& axis, const machine::Timing& timing,
                    int difference_points, double cutoff);
 
@@ -49,30 +52,39 @@ class SeenEncoderError {
   std::complex<double> response(double frequency) const;
   double shown_at(double frequency) const;
 
-  // Where the axis was at each tick, m.
-  const std::vector<double>& places() const { return places_; }
-  // The transpose of columns(): the sum over samples of `weight` (one a sample) times the column of an error e(x) is
-  // the sum over ticks of `position` times e plus `slope` times de/dx.
+  // The transpose of columns(), and where the axis was: the sum over samples of `weight` (one a sample) times the
+  // column of an error e(x) is the sum over ticks of `position` times e plus `slope` times de/dx at `place` (m).
   struct Weights {
-    std::vector<double> position, slope;
+    Eigen::VectorXd place, position, slope;
   };
   Weights transposed(const std::vector<double>& weight) const;
 
  private:
+  std::size_t ticks() const;
+  // Place (m) and speed (m/s) at a stretch of ticks.
+  struct Way {
+    Eigen::VectorXd place, speed;
+  };
+  Way way(std::size_t first, std::size_t count) const;
+  // What the drive answers in the samples from `first` to before `last`.
+  void add_answer(std::size_t first, std::size_t last, double period, std::vector<double>& to_cosine,
+                  std::vector<double>& to_sine) const;
+  // Whether all ticks are there that a sample's answer needs.
+  bool answered(std::size_t sample) const;
   std::vector<double> inverse_dynamics(const std::vector<double>& error) const;
   // Of the difference that a speed is made of.
   std::size_t ticks_back() const { return velocity_ == machine::VelocitySource::mean_difference ? 2 : 1; }
 
   EncoderErrorResponse drive_;
-  std::size_t samples_, ticks_in_sample_;
+  std::span<const double> read_;  // m, of each sample
+  std::size_t ticks_in_sample_;
   double period_, tick_;  // s, of samples and ticks
   bool answers_;          // ticks are finer than samples
   machine::VelocitySource velocity_;
   double mass_, viscous_;  // kg, N s/m
   int difference_points_;
   double cutoff_;
-  std::vector<double> places_, speeds_;  // m, m/s, of each tick
-  std::vector<double> answer_;           // N per m/s of the error's speed, from `reach_` ticks later to as many earlier
+  Eigen::VectorXd answer_;  // N per m/s of the error's speed, from `reach_` ticks earlier to as many later
   std::size_t reach_ = 0;
 };
 
