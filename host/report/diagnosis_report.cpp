@@ -93,7 +93,8 @@ std::string on_part(const Finding& finding, const ShownQuantity& deviation) {
                              deviation_text(*finding.part_error, deviation), deviation.unit));
 }
 
-json cause_json(const Finding& finding, const ShownQuantity& deviation) {
+json cause_json(const Finding& finding, const Verdict& verdict) {
+  const auto& deviation = verdict.units.deviation;
   const auto& effect = *finding.effect;
   json parameters = json::array(), confused = json::array();
   for (const auto& parameter : finding.parameters) add_rows(parameters, parameter);
@@ -111,6 +112,8 @@ json cause_json(const Finding& finding, const ShownQuantity& deviation) {
           {"gain_interval",
            fmt::format("{} to {}", gain_percent(finding.holdout.ci95[1]), gain_percent(finding.holdout.ci95[0]))},
           {"part", finding.part_error ? json(deviation_text(*finding.part_error, deviation)) : json(nullptr)},
+          {"small_below",
+           verdict.is_small(finding) ? json(deviation_text(*verdict.small_below, deviation)) : json(nullptr)},
           {"parameters", parameters},
           {"evidence", typeset(finding.evidence)},
           {"figures", figures_of(finding)},
@@ -234,12 +237,13 @@ std::string diagnosis_report_html(const DiagnosisReport& report) {
     if (!chart.title.empty()) record = chart.title;
     charts.push_back(chart_json(chart, "before-after", record));
   }
-  for (const auto& finding : verdict.findings) {
+  for (const std::size_t place : told_by_position(verdict.findings)) {
+    const auto& finding = verdict.findings[place];
     for (const auto& chart : finding.charts) {
       charts.push_back(chart_json(chart, fmt::format("cause-charts-{}", causes.size()), ""));
       all.push_back(chart);
     }
-    causes.push_back(cause_json(finding, verdict.units.deviation));
+    causes.push_back(cause_json(finding, verdict));
   }
   if (verdict.next)
     for (const auto& chart : verdict.next->charts) {

@@ -16,6 +16,10 @@
 namespace stiction::host {
 namespace {
 
+// Of the simulation's position error, rms: what a cause does to the position below that, or below the encoder's
+// increment, is small.
+constexpr double small_share = 0.01;
+
 constexpr double ignored = 0.25;  // s at a log's start, in which contact and loop come from a state that is not known
 
 // rms over all logs of the difference, less its mean in each: the encoders' zeros are not a cause's doing.
@@ -124,6 +128,8 @@ void judge_in_closed_loop(Verdict& verdict, const machine::Machine& machine, std
                     setup.logs.front().source, fault.what()));
   }
   verdict.baseline.position_error_rms = difference_rms(measured, baseline, setup.logs);
+  verdict.small_below =
+      std::max(setup.machine.axes.front().encoder.increment, small_share * *verdict.baseline.position_error_rms);
   try {
     const auto all = verdict.findings.empty() ? baseline : with(verdict.findings);
     verdict.extended.position_error_rms = difference_rms(measured, all, setup.logs);

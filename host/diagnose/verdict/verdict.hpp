@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <vector>
@@ -80,6 +81,20 @@ inline std::size_t named_causes(const std::vector<Finding>& findings) {
 // The order in which they are told: causes before what has no name, and each by what it explains.
 inline bool told_before(const Finding& one, const Finding& other) {
   return one.names_cause() != other.names_cause() ? one.names_cause() : one.explains > other.explains;
+}
+
+// The order in which a page tells them, as places in `findings`: causes before what has no name, and each by what it
+// does to the position, then by what it explains.
+inline std::vector<std::size_t> told_by_position(const std::vector<Finding>& findings) {
+  std::vector<std::size_t> order(findings.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t one, std::size_t other) {
+    const Finding &a = findings[one], &b = findings[other];
+    if (a.names_cause() != b.names_cause()) return a.names_cause();
+    const double of_a = a.part_error.value_or(0.0), of_b = b.part_error.value_or(0.0);
+    return of_a != of_b ? of_a > of_b : a.explains > b.explains;
+  });
+  return order;
 }
 
 // Of the residual in which it shows, on held-out data: with it over without it, rms.
@@ -189,6 +204,8 @@ struct Verdict {
   std::optional<NoiseFloor> noise_floor;
   std::optional<Agreement> agreement;
   std::vector<Finding> findings;  // by what each explains, the largest first
+  // m: a cause that changes the position error by less is small. None: no closed loop.
+  std::optional<double> small_below;
   std::size_t exact_records = 0;  // of the machine as its file says, in which the names were looked for too
   std::vector<Rejected> rejected;
   Unexplained unexplained;
@@ -198,6 +215,10 @@ struct Verdict {
   std::optional<NextMeasurement> next;     // none: nothing is open
   std::optional<ReferenceRows> reference;  // of a diagnosis of the machine file's own rows
   std::vector<sim::Chart> before_after;  // measured against simulated, before and after; residual by position, speed..
+
+  bool is_small(const Finding& finding) const {
+    return small_below && finding.part_error && *finding.part_error < *small_below;
+  }
 };
 
 }  // namespace stiction::host

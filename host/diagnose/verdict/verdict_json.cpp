@@ -24,7 +24,8 @@ Json figures(const ResidualFigures& f, const Verdict& verdict) {
   return out;
 }
 
-Json finding_json(const Finding& f, const ShownUnits& units) {
+Json finding_json(const Finding& f, const Verdict& verdict) {
+  const auto& units = verdict.units;
   Json parameters = Json::object(), errors = Json::object();
   for (const auto& p : f.parameters) {
     parameters[p.name()] = number_or_list(p.values, p.list);
@@ -43,6 +44,7 @@ Json finding_json(const Finding& f, const ShownUnits& units) {
       {"confused_with", confused}};
   if (f.in_command) out["residual"] = "command";
   if (f.part_error) out[named("part_error", units.deviation)] = units.deviation(*f.part_error);
+  if (f.part_error && verdict.small_below) out["small"] = verdict.is_small(f);
   return out;
 }
 
@@ -135,7 +137,7 @@ void add_agreement(Json& out, const Verdict& verdict) {
 
 Json verdict_json(const Verdict& verdict) {
   Json findings = Json::array(), rejected = Json::array();
-  for (const auto& f : verdict.findings) findings.push_back(finding_json(f, verdict.units));
+  for (const auto& f : verdict.findings) findings.push_back(finding_json(f, verdict));
   for (const auto& r : verdict.rejected) rejected.push_back({{"effect", r.effect.name()}, {"why", r.why}});
   Json out{{"schema", "stiction.verdict/1"},
            {"machine", verdict.machine},

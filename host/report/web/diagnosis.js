@@ -45,12 +45,13 @@ function valueLines(cause) {
 function explained(cause) {
   return [element('div', {}, element('strong', {}, `${cause.explains} %`), ` of the ${cause.residual}`),
           element('div', {}, `${minus(cause.gain)} % less on held-out data (95 %: ${minus(cause.gain_interval)} %)`),
-          ...(cause.part ? [element('div', {}, `up to ${cause.part} ${DATA.residuals.position_unit} of position error`)] : [])];
+          ...(cause.part ? [element('div', {}, `up to ${cause.part} ${DATA.residuals.position_unit} of position error` +
+              (cause.small_below ? ` (small: below ${cause.small_below} ${DATA.residuals.position_unit})` : ''))] : [])];
 }
 
 function drawSummary() {
   const { baseline, extended, noise, force_unit, position_unit } = DATA.residuals;
-  document.getElementById('summary-what').textContent = DATA.causes.length ? 'sorted by explained variance' : 'none found';
+  document.getElementById('summary-what').textContent = DATA.causes.length ? DATA.causes.some((cause) => cause.part) ? 'sorted by what each does to the position' : 'sorted by explained variance' : 'none found';
   const rows = DATA.causes.map((cause, i) => classed('first', [
     { text: element('a', { href: `#cause-${i}` }, `${i + 1}  ${cause.title}`), head: true, class: 'text wrap' }, text(cause.axis, { class: 'text', label: 'Axis' }),
     text(thumbnail(i), { class: 'text', label: 'Plot' }), text(valueLines(cause), { class: 'text wrap', label: 'Value ± uncertainty (95 %)' }),

@@ -178,5 +178,20 @@ TEST(Origin, TakesTheDateOfAReproducibleBuild) {
   ::unsetenv("SOURCE_DATE_EPOCH");
 }
 
+// What explains least of the force here moves the axis most.
+TEST(DiagnosisReport, TellsFirstWhatMovesTheAxisMostAndWhatIsSmall) {
+  auto verdict = synthetic_diagnosis().verdict;
+  ASSERT_EQ(verdict.findings.size(), 2u);
+  verdict.findings[1].part_error = 2.0 * *verdict.findings[0].part_error;
+  EXPECT_EQ(told_by_position(verdict.findings), (std::vector<std::size_t>{1, 0}));
+  EXPECT_FALSE(verdict.is_small(verdict.findings[0]));
+  verdict.small_below = 1.5 * *verdict.findings[0].part_error;
+  EXPECT_TRUE(verdict.is_small(verdict.findings[0]));
+  EXPECT_FALSE(verdict.is_small(verdict.findings[1]));
+  for (auto& finding : verdict.findings) finding.part_error.reset();
+  EXPECT_EQ(told_by_position(verdict.findings), (std::vector<std::size_t>{0, 1}));
+  EXPECT_FALSE(verdict.is_small(verdict.findings[0]));
+}
+
 }  // namespace
 }  // namespace stiction::host
