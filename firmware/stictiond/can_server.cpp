@@ -35,12 +35,6 @@ std::int32_t to_units(double value, double unit) {
   return static_cast<std::int32_t>(std::lround(std::clamp(value / unit, -most, most)));
 }
 
-bool known(std::int8_t mode) {
-  return mode == static_cast<std::int8_t>(OperationMode::profile_position) ||
-         mode == static_cast<std::int8_t>(OperationMode::homing) ||
-         mode == static_cast<std::int8_t>(OperationMode::cyclic_position);
-}
-
 }  // namespace
 
 CanServer::CanServer(const CanServerConfig& config, LogRing& log)
@@ -90,7 +84,7 @@ void ControllerFrames::ask(std::int64_t now_ns, std::size_t axis, Pdo pdo, const
     return ask_offsets(axis, data, remote);
   }
   if (pdo == Pdo::mode) {
-    if (!known(data.mode)) {
+    if (!is_supported(data.mode)) {
       ++counts_.refused;
       return;
     }

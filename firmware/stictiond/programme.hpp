@@ -66,9 +66,10 @@ class Programme {
 
   // Where others ask for what the axes do while the programme serves; without it they stay off.
   std::span<RemoteAxis> remote() { return remote_; }
-  // As others see it: what serves adds its bits to the drive's.
+  // As others see it: what serves adds its bits to the drive's, and that a bus is obeyed.
   std::uint16_t statusword(std::size_t axis) const {
-    return phase_ == Phase::remote ? remote_[axis].statusword(loop_.statusword(axis)) : loop_.statusword(axis);
+    if (phase_ != Phase::remote) return loop_.statusword(axis);
+    return static_cast<std::uint16_t>(remote_[axis].statusword(loop_.statusword(axis)) | statusword::remote_bit);
   }
 
   Phase phase() const { return phase_; }
@@ -90,6 +91,7 @@ class Programme {
     for (std::size_t i = 0; i < loop_.axis_count(); ++i) {
       const bool homes = phase_ == Phase::home && !loop_.drive(i).referenced();
       loop_.set_mode(i, homes ? OperationMode::homing : OperationMode::cyclic_position);
+      loop_.set_braking(i, false);
       std::uint16_t word = off ? controlword::shutdown : controlword_to_enable(loop_.state(i));
       if (phase_ == Phase::faulted) word = controlword::shutdown;
       if (homes) word |= controlword::homing_start_bit;
@@ -104,6 +106,7 @@ class Programme {
       hold_[i] = remote.tick(loop_.drive(i));
       loop_.set_controlword(i, remote.controlword());
       loop_.set_mode(i, remote.mode());
+      loop_.set_braking(i, remote.brakes());
       loop_.set_velocity_offset(i, remote.velocity_offset());
       if (const Fault fault = remote.fault(); fault != Fault::none) loop_.trip(i, fault);
     }

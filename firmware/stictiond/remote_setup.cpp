@@ -60,18 +60,25 @@ RemoteAxisConfig remote_axis(const DriveConfiguration& c, const machine::AxisMod
                     "of at most {:g} mm between set-points, which means a period up to {:g} ms",
                     cycle * 1e3, of_axis, axis.max_velocity, most * 1e3, most / way * cycle * 1e3));
   RemoteAxisConfig config;
+  // Twice, as a controller's profile of limited jerk has peaks between its targets; and a window, as it begins with the
+  // measured position.
+  const double change = 2.0 * axis.max_acceleration * cycle * cycle + setup.target_window;
   config.interpolation = SetPointInterpolator::configure(
-      c.period_ns, ticks, held<SetPointInterpolator::Way>(std::min(way, most), of_axis + ".max_velocity"));
+      c.period_ns, ticks, held<SetPointInterpolator::Way>(std::min(way, most), of_axis + ".max_velocity"),
+      held<SetPointInterpolator::Way>(std::min(change, most), of_axis + ".max_acceleration"));
   config.streamed = c.setup.can_server.has_value();
   config.low = held<S::Position>(setup.negative_end.value(), of_drive + ".negative_end");
   config.high = held<S::Position>(setup.positive_end.value(), of_drive + ".positive_end");
   config.profile = {S::seconds(c.period_ns), S::rate(c.period_ns),
                     smoothing_bits(setup.profile_jerk_time, timing.fast_period)};
-  const double change = axis.max_acceleration * timing.fast_period;
+  const double tick_change = axis.max_acceleration * timing.fast_period;
   const auto fastest_change =
-      std::max(held<S::Velocity>(change, of_axis + ".max_acceleration"), S::Velocity::from_raw(1));
+      std::max(held<S::Velocity>(tick_change, of_axis + ".max_acceleration"), S::Velocity::from_raw(1));
   config.fastest = {
       {}, held<S::Velocity>(axis.max_velocity, of_axis + ".max_velocity"), fastest_change, fastest_change};
+  if (setup.stops.halt == 2)
+    config.halting =
+        held<S::Velocity>(setup.quick_stop_deceleration * timing.fast_period, of_drive + ".quick_stop_deceleration");
   config.target_window = held<S::Position>(setup.target_window, of_drive + ".target_window");
   return config;
 }

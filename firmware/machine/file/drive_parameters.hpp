@@ -133,11 +133,13 @@ struct Table<RealTimeSetup> : EmptyTable<RealTimeSetup> {
   }};
 };
 
-inline constexpr std::array<Choice<HomingMethod>, 6> homing_methods{{
+inline constexpr std::array<Choice<HomingMethod>, 8> homing_methods{{
     {"none", HomingMethod::none, "the encoder is absolute"},
     {"here", HomingMethod::here, "the present position (CiA 402 method 35)"},
     {"limit-negative", HomingMethod::limit_negative, "the negative limit switch (17)"},
     {"limit-positive", HomingMethod::limit_positive, "the positive limit switch (18)"},
+    {"home-positive", HomingMethod::home_positive, "the home switch, searched for in +x (19)"},
+    {"home-negative", HomingMethod::home_negative, "the home switch, searched for in -x (21)"},
     {"index-negative", HomingMethod::index_negative, "the next index in -x (33)"},
     {"index-positive", HomingMethod::index_positive, "the next index in +x (34)"},
 }};
@@ -152,6 +154,44 @@ struct Table<HomingSetup> : EmptyTable<HomingSetup> {
       {"creep_speed", "m/s", positive(0.1), &HomingSetup::creep_speed, 0.002, "speed off the switch or to the index"},
       {"offset", "m", any_value(), &HomingSetup::offset, 0.0, "position of the mark"},
   }};
+};
+
+// As many as stop_option_table has; the test of the table holds both together.
+inline constexpr std::array<Choice<std::int8_t>, 5> quick_stop_codes{{
+    {"off", 0, "power off at once, the axis coasts (code 0)"},
+    {"slow-down", 1, "slow_down_deceleration, then power off (1)"},
+    {"quick-stop", 2, "quick_stop_deceleration, then power off (2)"},
+    {"slow-down-held", 5, "slow_down_deceleration, then held under power (5)"},
+    {"quick-stop-held", 6, "quick_stop_deceleration, then held under power (6)"},
+}};
+inline constexpr std::array<Choice<std::int8_t>, 2> disable_codes{{
+    {"off", 0, "power off at once, the axis coasts (code 0)"},
+    {"slow-down", 1, "slow_down_deceleration, then power off (1)"},
+}};
+inline constexpr std::array<Choice<std::int8_t>, 2> halt_codes{{
+    {"slow-down", 1, "slow_down_deceleration; a profile its own deceleration (code 1)"},
+    {"quick-stop", 2, "quick_stop_deceleration (2)"},
+}};
+inline constexpr std::array<Choice<std::int8_t>, 3> fault_reaction_codes{{
+    {"off", 0, "power off at once, the axis coasts (code 0)"},
+    {"slow-down", 1, "slow_down_deceleration, then power off (1)"},
+    {"quick-stop", 2, "quick_stop_deceleration, then power off (2)"},
+}};
+
+template <>
+struct Table<StopCodes> : EmptyTable<StopCodes> {
+  static constexpr std::string_view text = "how the axis stops: option codes of CiA 402";
+  static constexpr std::tuple choices{
+      ChoiceParameter<StopCodes, std::int8_t>{"quick_stop", &StopCodes::quick_stop, quick_stop_codes, 2,
+                                              "605Ah, by bit 2 of the controlword or a fault of a different axis"},
+      ChoiceParameter<StopCodes, std::int8_t>{"shutdown", &StopCodes::shutdown, disable_codes, 1,
+                                              "605Bh, from operation enabled to ready to switch on"},
+      ChoiceParameter<StopCodes, std::int8_t>{"disable_operation", &StopCodes::disable_operation, disable_codes, 1,
+                                              "605Ch, from operation enabled to switched on"},
+      ChoiceParameter<StopCodes, std::int8_t>{"halt", &StopCodes::halt, halt_codes, 1,
+                                              "605Dh, by bit 8 of the controlword"},
+      ChoiceParameter<StopCodes, std::int8_t>{"fault_reaction", &StopCodes::fault_reaction, fault_reaction_codes, 2,
+                                              "605Eh, of a fault that ends in a controlled stop"}};
 };
 
 inline constexpr Range line_numbers{-1, 1023};
@@ -198,7 +238,7 @@ struct Table<LineSetup> : EmptyTable<LineSetup> {
 template <>
 struct Table<DriveAxisSetup> : EmptyTable<DriveAxisSetup> {
   static constexpr std::string_view text = "one axis as the drive's programme runs it";
-  static constexpr std::array<Parameter<DriveAxisSetup>, 12> parameters{{
+  static constexpr std::array<Parameter<DriveAxisSetup>, 13> parameters{{
       {"node", "1", {0, 127}, &DriveAxisSetup::node, 0.0, "node of its power stage and encoder on the bus; 0: none"},
       {"server_node",
        "1",
@@ -208,6 +248,12 @@ struct Table<DriveAxisSetup> : EmptyTable<DriveAxisSetup> {
        "node of the axis on the bus of [drive.can_server]; 0: none"},
       {"quick_stop_deceleration", "m/s^2", positive(500.0), &DriveAxisSetup::quick_stop_deceleration, 10.0,
        "deceleration of a controlled stop"},
+      {"slow_down_deceleration",
+       "m/s^2",
+       positive(500.0),
+       &DriveAxisSetup::slow_down_deceleration,
+       {},
+       "deceleration of a stop by the slow-down ramp, at most that of a controlled stop; left out: the same"},
       {"brake_time", "s", not_negative(10.0), &DriveAxisSetup::brake_time, 0.0,
        "time that the brake takes to open or to close"},
       {"frozen_distance", "m", positive(0.1), &DriveAxisSetup::frozen_distance, 100e-6,
@@ -241,6 +287,7 @@ struct Table<DriveAxisSetup> : EmptyTable<DriveAxisSetup> {
   }};
   static constexpr std::tuple subtables{
       Subtable<DriveAxisSetup, HomingSetup>{"homing", &DriveAxisSetup::homing, Presence::optional},
+      Subtable<DriveAxisSetup, StopCodes>{"stops", &DriveAxisSetup::stops, Presence::optional},
       Subtable<DriveAxisSetup, LineSetup>{"line", &DriveAxisSetup::line, Presence::optional}};
 };
 

@@ -2,10 +2,13 @@
 // simulation knows nothing of it.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "stiction/drive/stop_options.hpp"
 
 namespace stiction::machine {
 
@@ -60,9 +63,18 @@ struct RealTimeSetup {
   int cpu = -1;       // the loop's own; -1: any
 };
 
-enum class HomingMethod { none, here, limit_negative, limit_positive, index_negative, index_positive };
+enum class HomingMethod {
+  none,
+  here,
+  limit_negative,
+  limit_positive,
+  home_positive,
+  home_negative,
+  index_negative,
+  index_positive
+};
 
-// CiA 402 methods 35, 17, 18, 33, 34.
+// CiA 402 methods 35, 17, 18, 19, 21, 33, 34.
 struct HomingSetup {
   HomingMethod method = HomingMethod::none;
   double search_speed = 0.02;  // m/s
@@ -90,6 +102,7 @@ struct DriveAxisSetup {
   int node = 0;                                      // of the axis' power stage and encoder on the bus; 0: none
   int server_node = 0;                               // of the axis where [drive.can_server] serves it; 0: none
   double quick_stop_deceleration = 10.0;             // m/s^2
+  std::optional<double> slow_down_deceleration;      // m/s^2; none: quick_stop_deceleration
   double brake_time = 0.0;                           // s, that the brake takes to open or to close
   double frozen_distance = 100e-6;                   // m
   std::optional<double> encoder_jump;                // m; none: what the motor's force can make of it, at least 5 um
@@ -99,6 +112,7 @@ struct DriveAxisSetup {
   double profile_jerk_time = 16e-3;                  // s, by which a profile's acceleration comes and goes
   std::optional<double> negative_end, positive_end;  // m, of the travel, before the switches; none: half the travel
   HomingSetup homing;
+  StopCodes stops;
   LineSetup line;
 };
 
