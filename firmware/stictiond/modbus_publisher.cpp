@@ -12,8 +12,9 @@
 namespace stiction::drive {
 namespace {
 
-constexpr std::array<const char*, 6> motion_names{"controlword",      "mode of operation",    "target position",
-                                                  "profile velocity", "profile acceleration", "profile deceleration"};
+constexpr std::array<const char*, MotionWrite::kinds> motion_names{
+    "controlword",          "mode of operation",    "target position", "profile velocity",
+    "profile acceleration", "profile deceleration", "target velocity"};
 
 std::vector<std::string> names_of(const machine::Machine& machine) {
   std::vector<std::string> names;
@@ -42,6 +43,7 @@ ModbusPublisher::ModbusPublisher(const machine::Machine& machine, const machine:
       beside_(std::move(beside)),
       stale_(std::move(stale)),
       moves_itself_(moves_itself),
+      motion_allowed_(modbus_server_config(setup).motion_allowed),
       axis_names_(names_of(machine)),
       server_(
           registers_.map(), modbus_server_config(setup),
@@ -69,6 +71,7 @@ hal::WriteVerdict ModbusPublisher::take(std::span<const hal::RegisterWrite> writ
   if (moves_itself_ && !std::all_of(motions.begin(), motions.end(), MotionMailbox::stops))
     return {.refused = hal::ModbusException::illegal_function};
   if (!motions.empty() && stale_ && stale_()) return {.refused = hal::ModbusException::device_failure};
+  if (!motions.empty() && owned_by_others(motions)) return {.refused = hal::ModbusException::busy};
   if (!parameters.empty() && !parameter_limit_.take(now_ns())) return {.refused = hal::ModbusException::busy};
   // All at once: a target and the bit that it is taken by may come in one request.
   if (!motions.empty()) motion_.put(motions);
@@ -80,6 +83,17 @@ hal::WriteVerdict ModbusPublisher::take(std::span<const hal::RegisterWrite> writ
                now_ns());
   }
   return store ? ask_store() : hal::WriteVerdict{};
+}
+
+// As the loop showed it last. What changes meanwhile the loop judges itself.
+bool ModbusPublisher::owned_by_others(std::span<const MotionWrite> motions) {
+  const PublishedState& state = snapshot_.latest();
+  for (const MotionWrite& write : motions) {
+    const PublishedAxis& axis = state.axes[write.axis];
+    const bool owned = axis.owner != CommandSource::none && axis.owner != CommandSource::modbus;
+    if (owned && !MotionMailbox::stops(write)) return true;
+  }
+  return false;
 }
 
 hal::WriteVerdict ModbusPublisher::ask_store() {

@@ -49,8 +49,9 @@ class ModbusPublisher : private hal::WriteTaker {
                   Beside beside = {}, Stale stale = {}, bool moves_itself = false);
 
   // The loop's side, wait-free.
-  // `signals` of the tick; the peaks and the mean square are kept here. `status` gives statusword, mode, fault and
-  // inputs of an axis: status(axis, PublishedAxis&). `now_ns`: time of the tick; `fault`: of programme or bus.
+  // `signals` of the tick; the peaks and the mean square are kept here. `status` gives positions, statusword, mode,
+  // fault and inputs of an axis: status(axis, PublishedAxis&). `now_ns`: time of the tick; `fault`: of programme or
+  // bus.
   template <class S, class Status>
   void publish(std::span<const AxisSignals<S>> signals, std::int64_t now_ns, Fault fault, Status status) {
     if (first_ns_ == 0) first_ns_ = now_ns;
@@ -61,8 +62,6 @@ class ModbusPublisher : private hal::WriteTaker {
     for (std::size_t i = 0; i < signals.size() && i < next.axes.size(); ++i) {
       PublishedAxis& axis = next.axes[i];
       const AxisSignals<S>& s = signals[i];
-      axis.position = machine::to_si(s.x);
-      axis.set_position = machine::to_si(s.x_set);
       axis.velocity = machine::to_si(s.v);
       axis.current = machine::to_si(s.i);
       axis.following_error = machine::to_si(s.e);
@@ -84,6 +83,7 @@ class ModbusPublisher : private hal::WriteTaker {
   // The service thread's side: a line for the log for each thing done or refused since the last call.
   std::vector<std::string> serve();
 
+  bool motion_allowed() const { return motion_allowed_; }  // whether commands that move an axis are taken
   const hal::ModbusServer& server() const { return server_; }
 
  private:
@@ -91,13 +91,14 @@ class ModbusPublisher : private hal::WriteTaker {
   hal::WriteVerdict take(std::span<const hal::RegisterWrite> writes) override;
   std::optional<hal::WriteVerdict> outcome(std::uint64_t ticket) override;
   hal::WriteVerdict ask_store();
+  bool owned_by_others(std::span<const MotionWrite> motions);
   std::string describe(const MotionWrite& write) const;
 
   ModbusRegisters registers_;
   ModbusStore store_;
   Beside beside_;
   Stale stale_;
-  bool moves_itself_;
+  bool moves_itself_, motion_allowed_;
   std::vector<std::string> axis_names_;
   // The loop's own.
   PublishedState loop_state_;

@@ -15,12 +15,12 @@
 #include "firmware/machine/file/machine_file.hpp"
 #include "firmware/stictiond/parameters.hpp"
 #include "hal/modbus/register_map.hpp"
-#include "stiction/drive/faults.hpp"
+#include "stiction/drive/remote_axis.hpp"
 
 namespace stiction::drive {
 
 inline constexpr std::uint16_t modbus_identification = 0x5344;  // "SD"
-inline constexpr std::uint16_t modbus_schema = 2;               // of the registers; changes with any address
+inline constexpr std::uint16_t modbus_schema = 3;               // of the registers; changes with any address
 inline constexpr std::size_t most_published_axes = 8;
 
 struct PublishedAxis {
@@ -37,10 +37,14 @@ struct PublishedAxis {
   double peak_following_error = 0.0;  // m
   double peak_current = 0.0;          // A
   double rms_current = 0.0;           // A
+  // Who commands it.
+  CommandSource owner = CommandSource::none, held_by = CommandSource::none;
+  std::uint16_t owner_token = 0;
+  Refusal refusal = Refusal::none;
   // What was asked for last, by whomever.
   std::uint16_t controlword = 0;
   double target = 0.0;                                            // m
-  double profile_velocity = 0.0;                                  // m/s
+  double profile_velocity = 0.0, target_velocity = 0.0;           // m/s
   double profile_acceleration = 0.0, profile_deceleration = 0.0;  // m/s^2
 };
 
@@ -58,7 +62,8 @@ struct PublishedState {
 
 // What a client wrote.
 struct MotionWrite {
-  enum class What : std::uint8_t { controlword, mode, target, velocity, acceleration, deceleration };
+  enum class What : std::uint8_t { controlword, mode, target, velocity, acceleration, deceleration, target_velocity };
+  static constexpr std::size_t kinds = 7;
   std::size_t axis = 0;
   What what = What::controlword;
   double value = 0.0;  // SI units

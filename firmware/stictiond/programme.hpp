@@ -6,6 +6,7 @@
 
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -45,7 +46,8 @@ class Programme {
         trace_(trace),
         hold_(loop.axis_count()),
         remote_(remote.begin(), remote.end()),
-        dropped_(loop.axis_count()) {
+        dropped_(loop.axis_count()),
+        said_refusals_(loop.axis_count()) {
     if (task.serve) enter(Phase::remote);
   }
 
@@ -57,7 +59,9 @@ class Programme {
     const auto sets = phase_ == Phase::remote ? serve() : set_points();
     const std::int64_t now_ns = loop_.now_ns();
     loop_.tick(sets);
-    if (phase_ == Phase::motion && trace_ != nullptr) trace_->add(now_ns - motion_began_ns_, loop_.loop().signals());
+    if (phase_ == Phase::motion && trace_ != nullptr)
+      trace_->add(now_ns - motion_began_ns_, loop_.loop().signals(),
+                  [this](std::size_t i) { return loop_.drive(i).origin(); });
     log_events();
     ++tick_;
     advance();
@@ -176,9 +180,10 @@ class Programme {
   void log_events() {
     hal::AxisEvent<S> event;
     while (loop_.next_event(event))
-      log_.push(
-          event.event.time_ns, LogLevel::error, "axis {}: fault {} '{}' while {}",
-          {event.axis, static_cast<int>(event.event.fault), stiction::name_of(event.event.fault), name_of(phase_)});
+      log_.push(event.event.time_ns, LogLevel::error, "axis {}: fault {} '{}' while {} at {} nm",
+                {event.axis, static_cast<int>(event.event.fault), stiction::name_of(event.event.fault), name_of(phase_),
+                 nanometres(event.event.position)});
+    for (std::size_t i = 0; i < remote_.size(); ++i) say_refused(i);
     const auto compensations = loop_.loop().compensations();
     for (std::size_t i = 0; i < compensations.size(); ++i) {
       if (compensations[i].dropped() && !dropped_[i])
@@ -190,6 +195,28 @@ class Programme {
     }
   }
 
+  // Of the machine's coordinates, rounded.
+  static std::int64_t nanometres(typename S::Position x) {
+    return static_cast<std::int64_t>(std::llround(static_cast<double>(x.raw()) * (1e9 / 0x1p40)));
+  }
+
+  // At most ten a second: a controller repeats what is refused.
+  void say_refused(std::size_t axis) {
+    constexpr std::int64_t pause_ns = 100'000'000;
+    auto& said = said_refusals_[axis];
+    const auto refusal = remote_[axis].refusal();
+    if (refusal == said.refusal || loop_.now_ns() - said.time_ns < pause_ns) return;
+    said = {refusal, loop_.now_ns()};
+    if (refusal == Refusal::none) return;
+    log_.push(loop_.now_ns(), LogLevel::warning, "axis {}: {}; it is refused",
+              {axis, refusal_table[static_cast<std::size_t>(refusal)].text});
+  }
+
+  struct SaidRefusal {
+    Refusal refusal = Refusal::none;
+    std::int64_t time_ns = INT64_MIN / 2;
+  };
+
   hal::DriveLoop<B>& loop_;
   const Task& task_;
   LogRing& log_;
@@ -197,6 +224,7 @@ class Programme {
   std::vector<SetPoint<S>> hold_;
   std::vector<RemoteAxis> remote_;
   std::vector<char> dropped_;  // learned tables
+  std::vector<SaidRefusal> said_refusals_;
   Phase phase_ = Phase::enable;
   std::uint64_t in_phase_ = 0;  // ticks
   std::uint64_t tick_ = 0;

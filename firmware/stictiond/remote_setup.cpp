@@ -79,6 +79,13 @@ RemoteAxisConfig remote_axis(const DriveConfiguration& c, const machine::AxisMod
   if (setup.stops.halt == 2)
     config.halting =
         held<S::Velocity>(setup.quick_stop_deceleration * timing.fast_period, of_drive + ".quick_stop_deceleration");
+  const auto ticks_of = [&](double time) { return static_cast<std::uint32_t>(std::ceil(time / timing.fast_period)); };
+  config.owner.reaction = static_cast<AbortReaction>(setup.stops.commander_lost);
+  const auto timeout_of = [&](CommandSource source) -> std::uint32_t& {
+    return config.owner.timeout_ticks[static_cast<std::size_t>(source)];
+  };
+  if (c.setup.can_server) timeout_of(CommandSource::can) = ticks_of(c.setup.can_server->commander_timeout);
+  if (c.setup.modbus_server) timeout_of(CommandSource::modbus) = ticks_of(c.setup.modbus_server->commander_timeout);
   config.target_window = held<S::Position>(setup.target_window, of_drive + ".target_window");
   return config;
 }
@@ -116,6 +123,7 @@ CanServerConfig can_server_config(const DriveConfiguration& c) {
   config.all_frames = server.all_frames;
   config.cycle_ticks = cycle_ticks(c);
   config.motion_allowed = server.motion_allowed;
+  config.heartbeat_node = server.heartbeat_node;
   config.follows_sync = server.sync_followed;
   config.sends_sync = !on_one_bus(c.setup) && !server.sync_followed;
   if (server.sync_followed && on_one_bus(c.setup))

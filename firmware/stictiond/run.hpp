@@ -73,17 +73,21 @@ class ControllerClock {
   bool said_ = false;
 };
 
-// The axes for a motion controller to see. `loop`, `programme`: whose state is sent; `can`: the server; `shown`: space
-// for one entry per axis.
+// Bit 9 of a bus that is not obeyed is not set.
+inline std::uint16_t statusword_on(std::uint16_t word, bool obeyed) {
+  return obeyed ? word : static_cast<std::uint16_t>(word & ~statusword::remote_bit);
+}
+
+// The axes for a motion controller to see, in the machine's coordinates. `loop`, `programme`: whose state is shown;
+// `obeyed`: whether its commands are; `shown`: space for one entry per axis.
 template <hal::Backend B>
-void answer_controller(const hal::DriveLoop<B>& loop, const Programme<B>& programme, CanServer& can,
-                       std::span<ShownAxis> shown) {
+void show_on_can(const hal::DriveLoop<B>& loop, const Programme<B>& programme, bool obeyed,
+                 std::span<ShownAxis> shown) {
   for (std::size_t i = 0; i < shown.size(); ++i) {
     const auto& signals = loop.loop().signals()[i];
-    shown[i] = {programme.statusword(i), machine::to_si(loop.drive(i).position()), machine::to_si(signals.v),
-                machine::to_si(signals.e)};
+    shown[i] = {statusword_on(programme.statusword(i), obeyed), machine::to_si(loop.drive(i).position()),
+                machine::to_si(signals.v), machine::to_si(signals.e)};
   }
-  can.send(shown);
 }
 
 // The axes for others to see. Wait-free. `loop`, `programme`: whose state is published; `period`: of the fast tick, s;
@@ -94,7 +98,10 @@ void show_on_modbus(const hal::DriveLoop<B>& loop, Programme<B>& programme, doub
   for (std::size_t i = 0; i < loop.axis_count(); ++i)
     if (loop.fault(i) != Fault::none) fault = loop.fault(i);
   modbus.publish(loop.loop().signals(), loop.now_ns(), fault, [&](std::size_t i, PublishedAxis& axis) {
-    axis.statusword = programme.statusword(i);
+    // Of the machine, as on CAN: homing has moved the zero of the encoder.
+    axis.position = machine::to_si(loop.drive(i).position());
+    axis.set_position = machine::to_si(loop.drive(i).set_position());
+    axis.statusword = statusword_on(programme.statusword(i), modbus.motion_allowed());
     axis.fault = loop.fault(i);
     const auto& inputs = loop.inputs(i);
     axis.limit_negative = inputs.limit_negative;
@@ -205,7 +212,8 @@ RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const Driv
       tick_under_watch(programme, loop, hal::power_cut,
                        stop_asked || hal::stop_wanted != 0);  // by a signal: a controlled stop, then the end
       if (begins) {
-        answer_controller(loop, programme, *can, shown);
+        show_on_can(loop, programme, can->motion_allowed(), shown);
+        can->send(shown);
         if (clock != nullptr) controller_clock.follow(can->sync_age_ns(), *clock, log, loop.now_ns());
       }
       if (modbus && loop.loop().slow()) show_on_modbus(loop, programme, period, *modbus);

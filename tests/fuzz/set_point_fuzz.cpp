@@ -30,6 +30,7 @@ struct Drive {
   S::Position position() const { return at; }
   S::Velocity set_velocity() const { return v; }
   bool referenced() const { return true; }
+  bool powered() const { return following; }
   bool standing() const { return v == S::Velocity{}; }
   bool follows() const { return following; }
   Fault fault() const { return seen; }
@@ -89,6 +90,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   drive::ControllerFrames frames(config, *log);
   std::array<RemoteAxis, 1> axes{RemoteAxis(axis_config((how >> 1) % 9))};
+  axes[0].ask(controlword::shutdown);  // an axis takes targets from its owner
   Drive drive;
   std::int64_t now_ns = 0;
   // Each frame: which PDO, or any identifier; what the drive does; size and data. A cycle behind it.

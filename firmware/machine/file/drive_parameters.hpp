@@ -46,7 +46,7 @@ struct Table<CanServerSetup> : EmptyTable<CanServerSetup> {
   static constexpr std::string_view text = "CAN bus on which a motion controller gives the axes their set-points";
   static constexpr std::array<TextParameter<CanServerSetup>, 1> texts{
       {{"interface", &CanServerSetup::interface, "name of the network interface; may be that of [drive.can]"}}};
-  static constexpr std::array<Parameter<CanServerSetup>, 4> parameters{{
+  static constexpr std::array<Parameter<CanServerSetup>, 6> parameters{{
       {"bit_rate", "bit/s", {1e4, 1e6}, &CanServerSetup::bit_rate, 1e6, "bit rate of arbitration"},
       {"data_bit_rate",
        "bit/s",
@@ -66,6 +66,16 @@ struct Table<CanServerSetup> : EmptyTable<CanServerSetup> {
        &CanServerSetup::position_increment,
        1e-9,
        "a unit of target and actual position; a unit of velocity is 1000 of them a second"},
+      {"commander_timeout", "s", not_negative(60.0), &CanServerSetup::commander_timeout, 0.5,
+       "time without a frame for an axis, or a heartbeat, after which the controller that commands it is lost; 0: it "
+       "is "
+       "not watched"},
+      {"heartbeat_node",
+       "1",
+       {0, 127},
+       &CanServerSetup::heartbeat_node,
+       0.0,
+       "node of the controller, whose heartbeats at 700h + node count for all axes; 0: its frames alone count"},
   }};
   static constexpr std::tuple choices{
       ChoiceParameter<CanServerSetup, bool>{"sync", &CanServerSetup::sync_followed, server_syncs, false,
@@ -116,9 +126,12 @@ struct Table<ModbusServerSetup> : EmptyTable<ModbusServerSetup> {
   static constexpr std::string_view text = "data that the drive publishes to a PLC or an operator panel over Modbus";
   static constexpr std::array<TextParameter<ModbusServerSetup>, 1> texts{
       {{"address", &ModbusServerSetup::address, "HOST:PORT to listen on, or a serial device for RTU"}}};
-  static constexpr std::array<Parameter<ModbusServerSetup>, 2> parameters{{
+  static constexpr std::array<Parameter<ModbusServerSetup>, 3> parameters{{
       {"baud_rate", "1", {1200, 1000000}, &ModbusServerSetup::baud_rate, 115200.0, "bits a second of RTU, 8E1"},
       {"unit", "1", {1, 247}, &ModbusServerSetup::unit, 1.0, "address of the drive on RTU"},
+      {"commander_timeout", "s", not_negative(60.0), &ModbusServerSetup::commander_timeout, 1.0,
+       "time without a write to a register that moves an axis, after which the client that commands it is lost; 0: it "
+       "is not watched"},
   }};
   static constexpr std::tuple choices{ChoiceParameter<ModbusServerSetup, bool>{
       "motion", &ModbusServerSetup::motion_allowed, motion_permissions, false, "commands that move an axis"}};
@@ -178,6 +191,13 @@ inline constexpr std::array<Choice<std::int8_t>, 3> fault_reaction_codes{{
     {"quick-stop", 2, "quick_stop_deceleration, then power off (2)"},
 }};
 
+inline constexpr std::array<Choice<std::int8_t>, 4> commander_lost_codes{{
+    {"none", 0, "nothing, the axis goes on (code 0)"},
+    {"fault", 1, "fault 53, a controlled stop; a reset is needed afterwards (1)"},
+    {"off", 2, "power off at once, the axis coasts (2)"},
+    {"quick-stop", 3, "a quick stop, without a fault (3)"},
+}};
+
 template <>
 struct Table<StopCodes> : EmptyTable<StopCodes> {
   static constexpr std::string_view text = "how the axis stops: option codes of CiA 402";
@@ -191,7 +211,9 @@ struct Table<StopCodes> : EmptyTable<StopCodes> {
       ChoiceParameter<StopCodes, std::int8_t>{"halt", &StopCodes::halt, halt_codes, 1,
                                               "605Dh, by bit 8 of the controlword"},
       ChoiceParameter<StopCodes, std::int8_t>{"fault_reaction", &StopCodes::fault_reaction, fault_reaction_codes, 2,
-                                              "605Eh, of a fault that ends in a controlled stop"}};
+                                              "605Eh, of a fault that ends in a controlled stop"},
+      ChoiceParameter<StopCodes, std::int8_t>{"commander_lost", &StopCodes::commander_lost, commander_lost_codes, 1,
+                                              "6007h, when nothing more is heard of who commands the axis"}};
 };
 
 inline constexpr Range line_numbers{-1, 1023};

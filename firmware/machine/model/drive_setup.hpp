@@ -27,6 +27,8 @@ struct CanServerSetup {
   double position_increment = 1e-9;     // m, a unit of 607Ah and 6064h
   bool sync_followed = false;           // the controller sends SYNC, and the drive's clock follows it
   bool all_frames = true;               // offsets, velocities and following errors too
+  double commander_timeout = 0.5;       // s without a frame of the controller that commands; 0: not watched
+  int heartbeat_node = 0;               // of the controller; 0: none
   bool motion_allowed = false;          // whether set-points and controlwords are taken
 };
 
@@ -51,10 +53,11 @@ struct ModbusClientSetup {
 
 // What the drive publishes to a PLC or an operator panel.
 struct ModbusServerSetup {
-  std::string address;          // "HOST:PORT" to listen on, or a serial device for RTU
-  int baud_rate = 115200;       // of RTU
-  int unit = 1;                 // on RTU
-  bool motion_allowed = false;  // whether commands that move an axis are taken
+  std::string address;             // "HOST:PORT" to listen on, or a serial device for RTU
+  int baud_rate = 115200;          // of RTU
+  int unit = 1;                    // on RTU
+  double commander_timeout = 1.0;  // s without a write of the client that commands; 0: not watched
+  bool motion_allowed = false;     // whether commands that move an axis are taken
 };
 
 // What the loop does when it begins late.

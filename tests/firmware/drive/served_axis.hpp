@@ -38,8 +38,9 @@ struct ServedAxis {
     c.standstill_way = si<S::Position>(4e-6);
     return c;
   }
-  static RemoteAxisConfig remote_config(const StopCodes& stops) {
+  static RemoteAxisConfig remote_config(const StopCodes& stops, const CommandOwner::Config& owner) {
     RemoteAxisConfig c;
+    c.owner = owner;
     const double cycle = cycle_ticks * tick;
     c.interpolation =
         SetPointInterpolator::configure(tick_ns, cycle_ticks, si<SetPointInterpolator::Way>(most_speed * cycle),
@@ -55,8 +56,9 @@ struct ServedAxis {
     return c;
   }
 
-  explicit ServedAxis(const StopCodes& stops = {}, HomingMethod method = HomingMethod::none, double at = 0.0)
-      : remote(remote_config(stops)), drive(drive_config(stops, method)), axis(cascade()), x(at) {
+  explicit ServedAxis(const StopCodes& stops = {}, HomingMethod method = HomingMethod::none, double at = 0.0,
+                      const CommandOwner::Config& owner = {})
+      : remote(remote_config(stops, owner)), drive(drive_config(stops, method)), axis(cascade()), x(at) {
     drive.start(feedback(), axis);
   }
 
@@ -142,7 +144,7 @@ struct ServedAxis {
 
   RemoteAxis remote;
   ServoDrive<S> drive;
-  Axis<S> axis;
+  stiction::Axis<S> axis;
   double x, v = 0.0;                               // m, m/s
   double set_speed = 0.0, set_speed_before = 0.0;  // m/s
   double streamed = 0.0, streamed_speed = 0.0;     // m, m/s

@@ -87,13 +87,15 @@ class Client:
 
 
 class Drive:
-    """The process. `log`: a file descriptor or subprocess.PIPE for standard error; `options`: further ones."""
+    """The process. `log`: a file descriptor or subprocess.PIPE for standard error; `options`: further ones; `settings`: of
+    a drive that serves. Its clients are not watched: they do not write each second of the drive's own time."""
 
     def __init__(self, *options, log=subprocess.PIPE, out=subprocess.PIPE, hal=("simulated", "--unpaced"),
-                 command=(), machine="emps", serve=True, **more):
+                 command=(), machine="emps", serve=True, settings=(), **more):
         self.port = free_port()
         served = ("--set", f"drive.modbus_server.address=127.0.0.1:{self.port}",
-                  "--set", "drive.modbus_server.motion=allowed") if serve else ()
+                  "--set", "drive.modbus_server.motion=allowed", "--set", "drive.modbus_server.commander_timeout=0 s",
+                  *settings) if serve else ()
         self.process = subprocess.Popen(
             [*command, BIN / "stictiond", "--machine", machine, "--hal", *hal, *served, *options],
             stdout=out, stderr=log, **more)

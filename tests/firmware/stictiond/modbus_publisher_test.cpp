@@ -55,9 +55,9 @@ TEST(ModbusPublisher, ShowsTheLoopsStateToAClient) {
   std::array<AxisSignals<FixedSignals>, 2> signals{};
   const auto status = [](std::size_t axis, drive::PublishedAxis& shown) {
     shown.statusword = axis == 0 ? 0x1237 : 0x0218;
+    shown.position = axis == 0 ? 0.0 : 0.25;
   };
-  signals[1].x = FixedSignals::Position::from_raw(std::int64_t{1} << 38);  // 0.25 m
-  signals[1].i = FixedSignals::Current::from_raw(-(3 << 20));              // -3 A
+  signals[1].i = FixedSignals::Current::from_raw(-(3 << 20));  // -3 A
   publisher.publish<FixedSignals>(signals, 5'000'000'000, Fault::none, status);
   signals[1].i = FixedSignals::Current::from_raw(1 << 20);
   publisher.publish<FixedSignals>(signals, 7'500'000'000, Fault::bus_off, status);
@@ -71,7 +71,7 @@ TEST(ModbusPublisher, ShowsTheLoopsStateToAClient) {
       found.push_back(static_cast<std::uint16_t>(answer[at] << 8 | answer[at + 1]));
     return found;
   };
-  EXPECT_EQ(read(0, 8), (std::vector<std::uint16_t>{0x5344, 2, 2, 34, 0, 2, 0, 3}));
+  EXPECT_EQ(read(0, 8), (std::vector<std::uint16_t>{0x5344, 3, 2, 34, 0, 2, 0, 3}));
   EXPECT_EQ(read(100, 1), (std::vector<std::uint16_t>{0x1237}));
   const auto second = read(200, 20);
   ASSERT_EQ(second.size(), 20U);
@@ -145,6 +145,31 @@ TEST(ModbusPublisher, HandsAStopOverWhateverElseIsWritten) {
   }
   EXPECT_GT(busy, 0);  // parameters were limited
   EXPECT_LT(busy, 10'000 - 256 + 1);
+}
+
+// An axis that CAN commands takes a stop over Modbus and nothing else.
+TEST(ModbusPublisher, RefusesWhatAnOwnerOnADifferentBusHasToSay) {
+  drive::ModbusPublisher publisher(cross_table(), setup_with(true), {});
+  std::array<AxisSignals<FixedSignals>, 2> signals{};
+  publisher.publish<FixedSignals>(signals, 0, Fault::none, [](std::size_t axis, drive::PublishedAxis& shown) {
+    shown.owner = axis == 0 ? CommandSource::can : CommandSource::modbus;
+    shown.owner_token = 7;
+  });
+  const RawClient client(publisher.server().port());
+  const auto code_of = [&](std::uint8_t address, std::uint8_t value) {
+    client.send(request({6, 0, address, 0, value}));
+    const auto answer = client.receive();
+    return answer.size() == 9 ? int{answer[8]} : 0;
+  };
+  for (const int stop : {0, 2, 6, 7}) EXPECT_EQ(code_of(100, static_cast<std::uint8_t>(stop)), 0);
+  EXPECT_EQ(code_of(100, 15), 6);
+  EXPECT_EQ(code_of(101, 1), 6);
+  EXPECT_EQ(code_of(200, 15), 0);
+  client.send(request({4, 0, 121, 0, 2}));
+  const auto answer = client.receive();
+  ASSERT_EQ(answer.size(), 13U);
+  EXPECT_EQ(answer[10], 1);  // CAN
+  EXPECT_EQ(answer[12], 7);
 }
 
 // A state that is no longer true is a fault, and no command is answered "done" that the loop does not take.

@@ -20,6 +20,7 @@
 #include <array>
 #include <cstdint>
 
+#include "stiction/drive/command_owner.hpp"
 #include "stiction/drive/servo_drive.hpp"
 #include "stiction/motion/position_profile.hpp"
 #include "stiction/motion/set_point_interpolator.hpp"
@@ -52,6 +53,7 @@ struct RemoteAxisConfig {
   PositionProfile::Config profile{};
   PositionProfile::Move fastest{};  // limits of a move; also what a move has that nobody gave values for
   S::Position target_window{};      // about the target, within which it is reached
+  CommandOwner::Config owner{};     // watch over who commands
   S::Velocity halting{};            // change of the speed in a tick by which a profile halts at least (605Dh)
 };
 
@@ -61,10 +63,20 @@ class RemoteAxis {
   static constexpr int cycles_bridged = 2;
 
   explicit constexpr RemoteAxis(const RemoteAxisConfig& config)
-      : config_(config), interpolator_(config.interpolation), profile_(config.profile), asked_move_(config.fastest) {}
+      : config_(config),
+        owner_(config.owner),
+        interpolator_(config.interpolation),
+        profile_(config.profile),
+        asked_move_(config.fastest) {}
 
+  // A controlword of a source; holds until changed. False: refused, as a different one owns the axis.
+  constexpr bool ask(std::uint16_t controlword, CommandSource source = CommandSource::can) {
+    return owner_.command(source, controlword);
+  }
+  // Who commands it. Sources whose values owner().accepts() not are to be kept off by who calls what follows.
+  constexpr const CommandOwner& owner() const { return owner_; }
+  constexpr void hear(CommandSource source) { owner_.hear(source); }
   // What is asked for; holds until changed.
-  constexpr void ask(std::uint16_t controlword) { controlword_ = controlword; }
   constexpr void ask(OperationMode mode) { asked_mode_ = mode; }
   // pp. `valid`: the bus gave a number that the formats hold; no move goes to another one.
   constexpr void ask_target(S::Position target, bool valid = true) {
@@ -119,7 +131,7 @@ class RemoteAxis {
       refusal_ = offered_valid_ && within_window(offered_, x_) ? Refusal::none : Refusal::no_reference;
       refused_ = refusal_ != Refusal::none;
     }
-    if (!following_ || !is_cyclic(mode_) || !config_.streamed) return;
+    if (!following_ || !is_cyclic(mode_) || !streams()) return;
     if (wants_speed) {
       valid_ = !came || offered_valid_;
       return;
@@ -134,6 +146,8 @@ class RemoteAxis {
   // The set-point of the coming tick. `drive`: a ServoDrive, or what tells the same of one, as the last tick left it.
   template <class Drive>
   constexpr SetPoint<S> tick(const Drive& drive) {
+    owner_.tick(drive.powered());
+    controlword_ = owner_.word();
     const auto stands = drive.set_position();
     const bool follows = drive.follows();
     const bool at_rest = drive.set_velocity() == S::Velocity{} && (!follows || source_rests());
@@ -149,14 +163,14 @@ class RemoteAxis {
     faulted_ = drive.fault() == Fault::set_points_lost;
     x_ = drive.position();
     const bool leaves = asked_mode_ != mode_ && mode_ != OperationMode::profile_position;
-    brakes_ = leaves || (mode_ == OperationMode::cyclic_position && config_.streamed && !referenced_);
+    brakes_ = leaves || (mode_ == OperationMode::cyclic_position && streams() && !referenced_);
     const bool edge = take_edge() && follows;
     if (mode_ == OperationMode::profile_position) return move_set_point(edge);
     if (mode_ == OperationMode::profile_velocity || mode_ == OperationMode::cyclic_velocity) return speed_set_point();
     return csp_set_point();
   }
 
-  constexpr std::uint16_t controlword() const { return controlword_; }
+  constexpr std::uint16_t controlword() const { return owner_.word(); }
   constexpr OperationMode mode() const { return mode_; }                       // 6061h
   constexpr const PositionProfile::Move& move() const { return asked_move_; }  // the values asked for
   constexpr S::Velocity speed() const { return asked_speed_; }                 // 60FFh
@@ -169,7 +183,8 @@ class RemoteAxis {
 
   // Of the coming tick; as long as its cause does.
   constexpr Fault fault() const {
-    const bool wanted = config_.streamed && is_cyclic(mode_) && (following_ || faulted_);
+    if (owner_.fault() != Fault::none) return owner_.fault();
+    const bool wanted = is_cyclic(mode_) && (faulted_ || (streams() && following_));
     return wanted && missed_ > cycles_bridged ? Fault::set_points_lost : Fault::none;
   }
 
@@ -188,6 +203,8 @@ class RemoteAxis {
   static constexpr bool is_cyclic(OperationMode mode) {
     return mode == OperationMode::cyclic_position || mode == OperationMode::cyclic_velocity;
   }
+  // A PLC gives no targets each cycle: in csp its axis holds. One that nobody owns is being stopped.
+  constexpr bool streams() const { return config_.streamed && owner_.owner() == CommandSource::can; }
   constexpr bool halted() const { return (controlword_ & controlword::halt_bit) != 0; }
   // Homing tells by the drive's set-point alone.
   constexpr bool source_rests() const {
@@ -320,6 +337,7 @@ class RemoteAxis {
   }
 
   RemoteAxisConfig config_;
+  CommandOwner owner_;
   SetPointInterpolator interpolator_;
   PositionProfile profile_;
   PositionProfile::Move asked_move_;

@@ -54,9 +54,10 @@ constexpr std::optional<StopOption> stop_option(StopObject object, std::int8_t c
   return std::nullopt;
 }
 
-// The codes of an axis; each is one of stop_option_table.
+// The codes of an axis; each but the last one is of stop_option_table.
 struct StopCodes {
   std::int8_t quick_stop = 2, shutdown = 1, disable_operation = 1, halt = 1, fault_reaction = 2;
+  std::int8_t commander_lost = 1;  // 6007h, AbortReaction of command_owner.hpp
 };
 
 }  // namespace stiction
