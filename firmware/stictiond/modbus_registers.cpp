@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "firmware/machine/file/description.hpp"
-#include "firmware/machine/model/shipped_vocabulary.hpp"
 
 namespace stiction::drive {
 namespace {
@@ -36,7 +35,7 @@ struct StateRow {
 double number_of(Fault fault) { return static_cast<double>(fault); }
 
 using Drive = PublishedState;
-constexpr std::array<StateRow<Drive>, 7> drive_rows{{
+constexpr std::array<StateRow<Drive>, 9> drive_rows{{
     {3, uint16, 1, "fault", "1", "number of the fault of programme or bus; 0: none",
      [](const Drive& s) { return number_of(s.fault); }},
     {4, uint32, 1, "seconds", "s", "time since the loop began", [](const Drive& s) -> double { return s.seconds; }},
@@ -49,6 +48,12 @@ constexpr std::array<StateRow<Drive>, 7> drive_rows{{
      [](const Drive& s) -> double { return s.trace_rows; }},
     {14, uint32, 1, "trace_lost", "1", "rows of the trace that were lost",
      [](const Drive& s) -> double { return s.trace_lost; }},
+    {16, uint32, 1, "commissioning_time", "s", "time for which parameters may still be written; 0: they are refused",
+     [](const Drive& s) -> double { return s.commissioning_seconds; }},
+    {18, uint16, 1, "store_result", "1",
+     "how the last request to store ended; 0: none, 1: stored, 2: under way, 3: the set would refuse a start, 4: the "
+     "disk did not take it",
+     [](const Drive& s) { return static_cast<double>(s.store_result); }},
 }};
 
 using Axis = PublishedAxis;
@@ -315,21 +320,20 @@ void ModbusRegisters::set_written(const ParameterSet& set) {
     if (const auto found = set.values.find(parameters_[i].key); found != set.values.end()) values_[i] = found->second;
 }
 
-void ModbusRegisters::store(const std::filesystem::path& file, const std::filesystem::path& machine_file,
-                            machine::ReadOptions options) const {
-  prepared_store(file, machine_file, std::move(options))();
+std::string ModbusRegisters::rejection_of(const ParameterWrite& write) const {
+  for (const auto& parameter : parameters_)
+    if (parameter.key == write.key) return drive::rejection_of(parameter, write.value);
+  return {};
 }
 
-std::function<void()> ModbusRegisters::prepared_store(const std::filesystem::path& file,
-                                                      const std::filesystem::path& machine_file,
-                                                      machine::ReadOptions options) const {
-  return
-      [file, machine_file, options = std::move(options), set = written(), id = machine_id_, parameters = parameters_] {
-        machine::ReadOptions checked = options;
-        for (auto& assignment : assignments_of(set, id, parameters)) checked.set.push_back(std::move(assignment));
-        machine::read_machine(machine_file, machine::shipped_vocabulary(), checked);
-        write_parameters(file, set);
-      };
+void ModbusRegisters::take_back(const std::optional<ParameterSet>& set) {
+  {
+    const std::lock_guard lock(mutex_);
+    written_ = {machine_id_, {}};
+    for (std::size_t i = 0; i < parameters_.size(); ++i)
+      values_[i] = parameters_[i].value.value_or(std::numeric_limits<double>::quiet_NaN());
+  }
+  if (set) set_written(*set);
 }
 
 std::string modbus_register_page() {
@@ -361,9 +365,14 @@ std::string modbus_register_page() {
       "## Input registers (function 4)\n\n"
       "{}\n"
       "## Holding registers (functions 3, 6, 16, 23)\n\n"
-      "A parameter that the machine file leaves out reads as not-a-number. A written value can be read back at once, "
-      "is stored by `store_parameters`, whose answer comes when it is on the disk, and takes effect at the next "
-      "start.\n\n"
+      "Parameters and `store_parameters` are refused with exception 1 until the operator of the drive's computer opens "
+      "the "
+      "commissioning window (SIGUSR1), which closes by itself after `commissioning_time`. A limit is only made tighter "
+      "than it is (exception 3). The log says which parameter, limit and value were refused. A parameter that the "
+      "machine file leaves out reads as not-a-number. A written value can be read back at once, is stored by "
+      "`store_parameters`, whose answer comes when it is on the disk, and takes effect at the next start. Before it is "
+      "stored everything that a start would build is built of the set; where that is refused (exception 4, "
+      "`store_result`) the values that were written since the last set are dropped.\n\n"
       "{}",
       modbus_schema, modbus_schema, axis_stride, parameters_stride, hal::register_table(input),
       hal::register_table(holding));

@@ -48,15 +48,20 @@ struct PublishedAxis {
   double profile_acceleration = 0.0, profile_deceleration = 0.0;  // m/s^2
 };
 
+// How the last request to store ended.
+enum class StoreResult : std::uint8_t { none, stored, under_way, rejected, not_written };
+
 // What the loop hands over, as often as it likes, through hal::Snapshot<PublishedState>.
 struct PublishedState {
   std::uint32_t seconds = 0;  // that the loop has run
   Fault fault = Fault::none;  // of the programme or the bus
   std::uint32_t missed_deadlines = 0;
-  double largest_lateness = 0.0;  // s, of a tick's begin
-  double largest_work = 0.0;      // s, of a tick
-  std::uint32_t trace_rows = 0;   // recorded
-  std::uint32_t trace_lost = 0;   // not recorded, because the trace was full
+  double largest_lateness = 0.0;            // s, of a tick's begin
+  double largest_work = 0.0;                // s, of a tick
+  std::uint32_t trace_rows = 0;             // recorded
+  std::uint32_t trace_lost = 0;             // not recorded, because the trace was full
+  std::uint32_t commissioning_seconds = 0;  // that clients may write parameters
+  StoreResult store_result = StoreResult::none;
   std::array<PublishedAxis, most_published_axes> axes{};
 };
 
@@ -89,21 +94,16 @@ class ModbusRegisters {
 
   // The meaning of a client's write to one of the map's registers that are for writing. Allocates for a parameter.
   DriveWrite meaning_of(const hal::RegisterWrite& write) const;
+  // Why a client may not write it; empty: it may.
+  std::string rejection_of(const ParameterWrite& write) const;
   // A parameter that was written: shown from now on.
   void remember(const ParameterWrite& write);
   // All parameters that were written, or came from the store.
   ParameterSet written() const;
   // Begins with the stored set.
   void set_written(const ParameterSet& set);
-  // Keeps what was written. Reads the machine file with it first, as a check of every value; `options` are those that
-  // the drive was started with. Throws machine::MachineFileError where the reader refuses it, std::system_error where
-  // it cannot be written; what was stored before then holds. `file`: to write; `machine_file`: that the drive was
-  // started with.
-  void store(const std::filesystem::path& file, const std::filesystem::path& machine_file,
-             machine::ReadOptions options = {}) const;
-  // The same as a job for another thread, with all that it needs in it. `file`, `machine_file`, `options`: as above.
-  std::function<void()> prepared_store(const std::filesystem::path& file, const std::filesystem::path& machine_file,
-                                       machine::ReadOptions options = {}) const;
+  // Forgets what was written since the last set: of `set`, or of the machine file alone.
+  void take_back(const std::optional<ParameterSet>& set);
 
  private:
   std::string machine_id_;
@@ -115,6 +115,9 @@ class ModbusRegisters {
   ParameterSet written_;
   std::vector<double> values_;
 };
+
+// Builds everything that a start builds of a set; throws what refuses it.
+using SetCheck = std::function<void(const ParameterSet&)>;
 
 // The registers of a machine with one axis as a page of Markdown.
 std::string modbus_register_page();

@@ -51,12 +51,16 @@ class Programme {
     if (task.serve) enter(Phase::remote);
   }
 
+  // A fault of every axis from the coming tick to the end: nothing is enabled.
+  void keep_off(Fault fault) { kept_off_ = fault; }
+
   // One tick. `stop_wanted`: a controlled stop, then the end.
   void tick(bool stop_wanted) {
     if (stop_wanted && phase_ < Phase::stop) enter(Phase::stop);
     if (loop_.faulted() && phase_ != Phase::remote && phase_ < Phase::faulted) enter(Phase::faulted);
     if (phase_ != Phase::remote) choose_controlwords();
     const auto sets = phase_ == Phase::remote ? serve() : set_points();
+    if (kept_off_ != Fault::none) loop_.trip(kept_off_);
     const std::int64_t now_ns = loop_.now_ns();
     loop_.tick(sets);
     if (phase_ == Phase::motion && trace_ != nullptr)
@@ -226,6 +230,7 @@ class Programme {
   std::vector<char> dropped_;  // learned tables
   std::vector<SaidRefusal> said_refusals_;
   Phase phase_ = Phase::enable;
+  Fault kept_off_ = Fault::none;
   std::uint64_t in_phase_ = 0;  // ticks
   std::uint64_t tick_ = 0;
   std::atomic<std::uint64_t> progress_ = 0;

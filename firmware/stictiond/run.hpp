@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <optional>
 #include <string>
 #include <vector>
@@ -140,9 +141,9 @@ RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const Driv
     modbus.emplace(
         configuration.machine, configuration.setup,
         ModbusStore{.file = parameter_file(options),
-                    .machine_file = configuration.file,
-                    .options = {"", configuration.assignments},
-                    .begun = configuration.stored},
+                    .check = [options](const ParameterSet& set) { check_whole(options, set); },
+                    .begun = configuration.stored,
+                    .file_holds = !configuration.rejected_parameters},
         [&](PublishedState& state) {
           state.trace_rows = static_cast<std::uint32_t>(trace.rows());
           state.trace_lost = static_cast<std::uint32_t>(trace.lost());
@@ -176,7 +177,11 @@ RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const Driv
              },
          .round =
              [&] {
+               const int asked = hal::signal_asked;
+               hal::signal_asked = 0;
                if (!modbus) return;
+               if (asked == SIGUSR1) modbus->open_commissioning();
+               if (asked == SIGUSR2) modbus->close_commissioning();
                for (const auto& line : modbus->serve()) say(LogLevel::notice, line);
              }},
         2 * LoopWatchdog::limit_ns);  // behind the watchdog, which acts and does not speak
@@ -193,6 +198,13 @@ RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const Driv
     notify.ready(title);
     hal::start_is_over = true;
     record.begin();
+    if (configuration.rejected_parameters) {
+      say(LogLevel::error,
+          "the stored parameters are not used, but the set before them; the axes remain off (fault 50) "
+          "until the next start with parameters that can be used: " +
+              *configuration.rejected_parameters);
+      programme.keep_off(Fault::parameters_damaged);
+    }
     if (record.broken_off()) say(LogLevel::warning, "the last run did not end in order, but " + *record.broken_off());
     loop.begin();  // every thread has been made, and what came before took its time
     programme.tick(false);

@@ -126,12 +126,14 @@ struct Table<ModbusServerSetup> : EmptyTable<ModbusServerSetup> {
   static constexpr std::string_view text = "data that the drive publishes to a PLC or an operator panel over Modbus";
   static constexpr std::array<TextParameter<ModbusServerSetup>, 1> texts{
       {{"address", &ModbusServerSetup::address, "HOST:PORT to listen on, or a serial device for RTU"}}};
-  static constexpr std::array<Parameter<ModbusServerSetup>, 3> parameters{{
+  static constexpr std::array<Parameter<ModbusServerSetup>, 4> parameters{{
       {"baud_rate", "1", {1200, 1000000}, &ModbusServerSetup::baud_rate, 115200.0, "bits a second of RTU, 8E1"},
       {"unit", "1", {1, 247}, &ModbusServerSetup::unit, 1.0, "address of the drive on RTU"},
       {"commander_timeout", "s", not_negative(60.0), &ModbusServerSetup::commander_timeout, 1.0,
        "time without a write to a register that moves an axis, after which the client that commands it is lost; 0: it "
        "is not watched"},
+      {"commissioning_time", "s", not_negative(86400.0), &ModbusServerSetup::commissioning_time, 900.0,
+       "time for which SIGUSR1 lets clients write parameters; 0: never"},
   }};
   static constexpr std::tuple choices{ChoiceParameter<ModbusServerSetup, bool>{
       "motion", &ModbusServerSetup::motion_allowed, motion_permissions, false, "commands that move an axis"}};

@@ -53,11 +53,12 @@ struct ModbusClientSetup {
 
 // What the drive publishes to a PLC or an operator panel.
 struct ModbusServerSetup {
-  std::string address;             // "HOST:PORT" to listen on, or a serial device for RTU
-  int baud_rate = 115200;          // of RTU
-  int unit = 1;                    // on RTU
-  double commander_timeout = 1.0;  // s without a write of the client that commands; 0: not watched
-  bool motion_allowed = false;     // whether commands that move an axis are taken
+  std::string address;                // "HOST:PORT" to listen on, or a serial device for RTU
+  int baud_rate = 115200;             // of RTU
+  int unit = 1;                       // on RTU
+  double commissioning_time = 900.0;  // s for which an operator lets clients write parameters; 0: never
+  double commander_timeout = 1.0;     // s without a write of the client that commands; 0: not watched
+  bool motion_allowed = false;        // whether commands that move an axis are taken
 };
 
 // What the loop does when it begins late.

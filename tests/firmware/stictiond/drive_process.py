@@ -5,6 +5,7 @@ The axis runs in its own time (`--unpaced`), so that no load of this machine mak
 
 import os
 import pathlib
+import signal as signals
 import socket
 import struct
 import subprocess
@@ -12,7 +13,7 @@ import time
 
 BIN = pathlib.Path(os.environ["STICTION_BIN"])
 PATIENCE = 60.0  # s, for what another process must do; far more than a busy machine needs
-CONTROLWORD, STATUSWORD = 100, 100
+CONTROLWORD, STATUSWORD, COMMISSIONING_TIME = 100, 100, 16
 ENABLED, STATE_MASK = 0x27, 0x6F
 
 
@@ -124,6 +125,11 @@ class Drive:
             return True
         assert comes_true(connects), "the drive does not listen"
         return found[0]
+
+    def open_commissioning(self, client):
+        """As an operator: clients may write parameters."""
+        self.process.send_signal(signals.SIGUSR1)
+        assert comes_true(lambda: client.read(COMMISSIONING_TIME, 2)[1] > 0), "the window does not open"
 
     def end(self, signal=None):
         """Its exit status, after `signal`; raises subprocess.TimeoutExpired where it does not end."""
