@@ -103,6 +103,11 @@ void ControllerFrames::ask(std::int64_t now_ns, std::size_t axis, Pdo pdo, const
   ++counts_.taken;
   if (owned) return;  // a stop alone
   if (pdo == Pdo::mode) remote.ask(static_cast<OperationMode>(data.mode));
+  if (pdo == Pdo::speed) {
+    const auto speed = machine::to_signal<S::Velocity>(data.speed * velocity_increments * config_.increment);
+    const bool valid = data.speed != std::numeric_limits<std::int32_t>::min() && speed.has_value();
+    return remote.offer_speed(speed.value_or(S::Velocity{}), valid);
+  }
   if (pdo != Pdo::target) return;
   const auto target = machine::to_signal<S::Position>(data.target * config_.increment);
   const bool number = data.target != std::numeric_limits<std::int32_t>::min() && target.has_value();

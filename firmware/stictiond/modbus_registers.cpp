@@ -79,7 +79,7 @@ constexpr std::array<StateRow<Axis>, 18> axis_rows{{
     {18, float32, 1, "rms_current", "A", "of the trace", [](const Axis& a) { return a.rms_current; }},
     {20, uint16, 1, "error_code", "1", "603Fh, of the axis' fault; 0: none",
      [](const Axis& a) -> double { return error_code_of(a.fault); }},
-    {21, uint16, 1, "owner", "1", "who commands the axis; 0: nobody, 1: CAN, 2: Modbus",
+    {21, uint16, 1, "owner", "1", "who commands the axis; 0: none, 1: CAN, 2: Modbus",
      [](const Axis& a) { return static_cast<double>(a.owner); }},
     {22, uint16, 1, "owner_token", "1", "changes with each change of the owner",
      [](const Axis& a) -> double { return a.owner_token; }},

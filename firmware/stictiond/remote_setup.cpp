@@ -166,7 +166,8 @@ std::vector<hal::CyclicFrame> can_server_frames(const DriveConfiguration& config
   if (config.sends_sync || config.follows_sync) frames.push_back(frame("server sync", 0, 1));
   constexpr std::array<const char*, 5> names{"mode", "target", "offsets", "state", "motion"};
   for (const auto& row : hal::can::pdo_table)
-    if (row.pdo != hal::can::Pdo::mode && (row.positions || config.all_frames))  // the mode is sent when it changes
+    // The mode is sent when it changes, and a speed in the place of a target.
+    if (row.pdo != hal::can::Pdo::mode && row.pdo != hal::can::Pdo::speed && (row.positions || config.all_frames))
       frames.push_back(frame(names[static_cast<std::size_t>(row.pdo)], row.size, axes));
   return frames;
 }

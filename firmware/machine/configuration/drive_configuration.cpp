@@ -150,7 +150,8 @@ ServoDriveConfig<S> configure_drive(const Timing& timing, const AxisModel& axis,
                     "quick_stop_deceleration, {:g} m/s^2",
                     axis.name, slow_down, setup.quick_stop_deceleration));
   c.slow_down = convert.template resolved<typename S::Velocity>(slow_down * period, "slow_down_deceleration");
-  c.stops = setup.stops;
+  const auto& stops = setup.stops;
+  c.stops = {stops.quick_stop, stops.shutdown, stops.disable_operation, stops.halt, stops.fault_reaction};
   c.supervision = supervision_of<S>(timing, axis, setup, convert);
   c.homing = homing_of<S>(timing, setup, convert);
   c.standstill_speed = c.supervision.least_speed;

@@ -201,20 +201,20 @@ inline constexpr std::array<Choice<std::int8_t>, 4> commander_lost_codes{{
 }};
 
 template <>
-struct Table<StopCodes> : EmptyTable<StopCodes> {
+struct Table<StopSetup> : EmptyTable<StopSetup> {
   static constexpr std::string_view text = "how the axis stops: option codes of CiA 402";
   static constexpr std::tuple choices{
-      ChoiceParameter<StopCodes, std::int8_t>{"quick_stop", &StopCodes::quick_stop, quick_stop_codes, 2,
+      ChoiceParameter<StopSetup, std::int8_t>{"quick_stop", &StopSetup::quick_stop, quick_stop_codes, 2,
                                               "605Ah, by bit 2 of the controlword or a fault of a different axis"},
-      ChoiceParameter<StopCodes, std::int8_t>{"shutdown", &StopCodes::shutdown, disable_codes, 1,
+      ChoiceParameter<StopSetup, std::int8_t>{"shutdown", &StopSetup::shutdown, disable_codes, 1,
                                               "605Bh, from operation enabled to ready to switch on"},
-      ChoiceParameter<StopCodes, std::int8_t>{"disable_operation", &StopCodes::disable_operation, disable_codes, 1,
+      ChoiceParameter<StopSetup, std::int8_t>{"disable_operation", &StopSetup::disable_operation, disable_codes, 1,
                                               "605Ch, from operation enabled to switched on"},
-      ChoiceParameter<StopCodes, std::int8_t>{"halt", &StopCodes::halt, halt_codes, 1,
+      ChoiceParameter<StopSetup, std::int8_t>{"halt", &StopSetup::halt, halt_codes, 1,
                                               "605Dh, by bit 8 of the controlword"},
-      ChoiceParameter<StopCodes, std::int8_t>{"fault_reaction", &StopCodes::fault_reaction, fault_reaction_codes, 2,
+      ChoiceParameter<StopSetup, std::int8_t>{"fault_reaction", &StopSetup::fault_reaction, fault_reaction_codes, 2,
                                               "605Eh, of a fault that ends in a controlled stop"},
-      ChoiceParameter<StopCodes, std::int8_t>{"commander_lost", &StopCodes::commander_lost, commander_lost_codes, 1,
+      ChoiceParameter<StopSetup, std::int8_t>{"commander_lost", &StopSetup::commander_lost, commander_lost_codes, 1,
                                               "6007h, when nothing more is heard of who commands the axis"}};
 };
 
@@ -311,7 +311,7 @@ struct Table<DriveAxisSetup> : EmptyTable<DriveAxisSetup> {
   }};
   static constexpr std::tuple subtables{
       Subtable<DriveAxisSetup, HomingSetup>{"homing", &DriveAxisSetup::homing, Presence::optional},
-      Subtable<DriveAxisSetup, StopCodes>{"stops", &DriveAxisSetup::stops, Presence::optional},
+      Subtable<DriveAxisSetup, StopSetup>{"stops", &DriveAxisSetup::stops, Presence::optional},
       Subtable<DriveAxisSetup, LineSetup>{"line", &DriveAxisSetup::line, Presence::optional}};
 };
 

@@ -8,8 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "stiction/drive/stop_options.hpp"
-
 namespace stiction::machine {
 
 struct CanSetup {
@@ -86,6 +84,11 @@ struct HomingSetup {
   double offset = 0.0;         // m, the position of the mark
 };
 
+// Option codes of CiA 402: 605Ah to 605Eh and 6007h.
+struct StopSetup {
+  std::int8_t quick_stop = 2, shutdown = 1, disable_operation = 1, halt = 1, fault_reaction = 2, commander_lost = 1;
+};
+
 // Which level of a line says yes.
 enum class ActiveLevel { high, low };
 
@@ -116,7 +119,7 @@ struct DriveAxisSetup {
   double profile_jerk_time = 16e-3;                  // s, by which a profile's acceleration comes and goes
   std::optional<double> negative_end, positive_end;  // m, of the travel, before the switches; none: half the travel
   HomingSetup homing;
-  StopCodes stops;
+  StopSetup stops;
   LineSetup line;
 };
 

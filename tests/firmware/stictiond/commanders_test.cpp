@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -129,6 +130,29 @@ TEST(Commanders, OnADifferentBusSetNoTargetsModesOrOffsets) {
   const auto before = machine::to_si(table.programme.remote()[1].move().target);
   over_modbus(table, {1, drive::MotionWrite::What::target, 0.05});
   EXPECT_EQ(machine::to_si(table.programme.remote()[1].move().target), before) << "CAN does";
+}
+
+// csv and pv: 60FFh in 1000 increments a second.
+TEST(Commanders, GiveSpeedsOverCan) {
+  for (const auto mode : {OperationMode::cyclic_velocity, OperationMode::profile_velocity}) {
+    ServedTable table;
+    ASSERT_TRUE(table.enable(0));
+    table.cycle([&] { table.mode(0, mode, enabled_word); });
+    const auto speeds = [&](int cycles, std::int32_t units) {
+      for (int k = 0; k < cycles; ++k)
+        table.cycle([&] { table.send(Pdo::speed, 0, {.controlword = enabled_word, .speed = units}); });
+    };
+    speeds(5, 0);
+    speeds(200, -50'000);
+    EXPECT_NEAR(table.set_velocity(0), -0.05, 1e-7);
+    EXPECT_EQ(table.loop.fault(0), Fault::none);
+    speeds(1, std::numeric_limits<std::int32_t>::min());
+    table.cycle();
+    const bool cyclic = mode == OperationMode::cyclic_velocity;
+    EXPECT_EQ(table.loop.fault(0), cyclic ? Fault::set_point : Fault::none);
+    EXPECT_EQ(table.programme.remote()[0].refusal(), cyclic ? Refusal::none : Refusal::no_number);
+    EXPECT_EQ((table.statusword(0) & statusword::warning_bit) != 0, !cyclic);
+  }
 }
 
 TEST(Commanders, GiveASpeedOverModbus) {

@@ -110,16 +110,21 @@ class RemoteAxis {
   }
   // csv: the same, and a speed of pv as well.
   constexpr void offer_speed(S::Velocity speed, bool valid) {
-    ask_speed(speed);
+    if (valid) ask_speed(speed);
     came_ |= 1u << speed_bit;
-    offered_valid_ = valid;
+    speed_valid_ = valid;
   }
 
   // When a cycle begins, with what came for it.
   constexpr void begin_cycle() {
     const bool wants_speed = mode_ == OperationMode::cyclic_velocity;
     const bool came = (came_ >> (wants_speed ? speed_bit : position_bit) & 1u) != 0;
+    const bool came_speed = (came_ >> speed_bit & 1u) != 0;
     came_ = 0;
+    if (came_speed && mode_ == OperationMode::profile_velocity) {
+      refusal_ = speed_valid_ ? Refusal::none : Refusal::no_number;  // the speed before it holds
+      refused_ = !speed_valid_;
+    }
     if (!came && missed_ <= cycles_bridged) ++missed_;
     if (came) missed_ = 0;
     if (offset_age_ <= cycles_bridged)
@@ -133,7 +138,7 @@ class RemoteAxis {
     }
     if (!following_ || !is_cyclic(mode_) || !streams()) return;
     if (wants_speed) {
-      valid_ = !came || offered_valid_;
+      valid_ = !came || speed_valid_;
       return;
     }
     if (!came) return interpolator_.extrapolate();
@@ -350,7 +355,7 @@ class RemoteAxis {
   unsigned came_ = 0;   // in this cycle
   int missed_ = 0;      // cycles in a row without one
   int offset_age_ = 0;  // cycles
-  bool offered_valid_ = false, valid_ = true;
+  bool offered_valid_ = false, speed_valid_ = false, valid_ = true;
   // pp, pv, csv
   PositionProfile::Move waiting_{};
   PositionProfile::Point point_{};

@@ -182,7 +182,8 @@ class ServoDrive {
 
   // A code that the table does not have is refused where it is configured; here it takes the power off at once.
   static constexpr StopOption way_of(StopObject object, std::int8_t code) {
-    return stop_option(object, code).value_or(StopOption{object, code, StopRamp::none});
+    const auto* row = stop_option(object, code);
+    return row == nullptr ? StopOption{object, code, StopRamp::none} : *row;
   }
 
   constexpr typename Supervision<S>::Seen seen(const Feedback<S>& feedback, const DigitalInputs<S>& inputs,

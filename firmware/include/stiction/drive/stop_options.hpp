@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 
 namespace stiction {
 
@@ -47,17 +46,16 @@ inline constexpr std::array<StopOption, 14> stop_option_table{{
     {StopObject::fault_reaction, 2, StopRamp::quick_stop},
 }};
 
-// What `code` of `object` means; none where the drive does not have it.
-constexpr std::optional<StopOption> stop_option(StopObject object, std::int8_t code) {
+// What `code` of `object` means; null where the drive does not have it.
+constexpr const StopOption* stop_option(StopObject object, std::int8_t code) {
   for (const auto& row : stop_option_table)
-    if (row.object == object && row.code == code) return row;
-  return std::nullopt;
+    if (row.object == object && row.code == code) return &row;
+  return nullptr;
 }
 
-// The codes of an axis; each but the last one is of stop_option_table.
+// The codes of an axis; each is one of stop_option_table.
 struct StopCodes {
   std::int8_t quick_stop = 2, shutdown = 1, disable_operation = 1, halt = 1, fault_reaction = 2;
-  std::int8_t commander_lost = 1;  // 6007h, AbortReaction of command_owner.hpp
 };
 
 }  // namespace stiction
