@@ -337,6 +337,90 @@ TEST(Speeds, OfBeforeDoNotMoveAModeThatIsTakenLater) {
   EXPECT_NEAR(a.x, at, 1e-9);
 }
 
+TEST(ProfileMovesOfAnAxis, WaitForTheOneBeforeUnlessTheyAreToBeMadeAtOnce) {
+  auto a = enabled_in(OperationMode::profile_position);
+  offer(a, 0.05);
+  EXPECT_TRUE(a.shows(statusword::acknowledge_bit));
+  offer(a, 0.1);
+  EXPECT_TRUE(a.shows(statusword::acknowledge_bit)) << "it waits";
+  offer(a, 0.2);  // no room
+  offer(a, 0.05, controlword::relative_bit);
+  a.run(20'000);
+  EXPECT_NEAR(a.x, 0.1, 1e-9);
+  EXPECT_TRUE(a.shows(statusword::target_bit));
+  offer(a, 0.3);
+  a.run(200);
+  a.remote.ask_deceleration(si<FixedSignals::Velocity>(1.0 * tick));
+  offer(a, 0.15, controlword::at_once_bit);
+  EXPECT_GE(a.remote.move().deceleration, FixedSignals::Velocity::from_raw(1));
+  a.run(20'000);
+  EXPECT_NEAR(a.x, 0.15, 1e-9);
+  EXPECT_EQ(a.drive.fault(), Fault::none);
+}
+
+TEST(ProfileMovesOfAnAxis, KeepTheirValuesWithinTheLimitsOfTheMachine) {
+  ServedAxis a;
+  using V = FixedSignals::Velocity;
+  for (const auto& [asked, held] :
+       {std::pair{V{}, V::from_raw(1)}, std::pair{si<V>(7.9), si<V>(ServedAxis::most_speed)}}) {
+    a.remote.ask_velocity(asked);
+    EXPECT_EQ(a.remote.move().velocity, held);
+  }
+  a.remote.ask_acceleration(si<V>(7.9));
+  EXPECT_EQ(a.remote.move().acceleration, si<V>(ServedAxis::acceleration * tick));
+  a.remote.ask_target({}, false);
+  auto b = enabled_in(OperationMode::profile_position);
+  b.remote.ask_target({}, false);
+  b.remote.ask(offer_word);
+  b.run(2);
+  EXPECT_EQ(b.remote.refusal(), Refusal::no_number);
+  b.remote.ask(on_word);
+  b.run(2);
+  EXPECT_FALSE(b.shows(statusword::limit_bit));
+}
+
+TEST(ProfileMovesOfAnAxis, HaltAndGoOn) {
+  auto a = enabled_in(OperationMode::profile_position);
+  offer(a, 0.3);
+  a.run(1000);
+  a.remote.ask(on_word | controlword::halt_bit);
+  a.run(2000);
+  EXPECT_EQ(a.set_speed, 0.0);
+  EXPECT_TRUE(a.shows(statusword::target_bit)) << "it has halted";
+  EXPECT_LT(a.x, 0.2);
+  a.remote.ask(on_word);
+  a.run(20'000);
+  EXPECT_NEAR(a.x, 0.3, 1e-9);
+}
+
+TEST(Offsets, AreAddedInCspAndForgottenWithTheirCycles) {
+  auto a = enabled_in(OperationMode::cyclic_position);
+  using V = FixedSignals::Velocity;
+  const auto current = si<FixedSignals::Current>(1.0);
+  a.remote.ask_offsets(si<V>(0.01), current);
+  a.stream(ServedAxis::cycle_ticks, 0.0);
+  EXPECT_EQ(a.remote.velocity_offset(), si<V>(0.01));
+  EXPECT_EQ(a.remote.tick(a.drive).injection, current);
+  a.stream(4 * ServedAxis::cycle_ticks, 0.0);
+  EXPECT_EQ(a.remote.velocity_offset(), V{});
+  a.remote.ask(OperationMode::profile_velocity);
+  a.remote.ask_offsets(si<V>(0.01), current);
+  a.run(3);
+  EXPECT_EQ(a.remote.velocity_offset(), V{}) << "of csp alone";
+}
+
+TEST(Speeds, OfAProfileThatAreNoNumberAreRefusedAndTheOneBeforeHolds) {
+  auto a = enabled_in(OperationMode::profile_velocity);
+  a.stream(2000, 0.1);
+  a.remote.offer_speed({}, false);
+  a.run(ServedAxis::cycle_ticks + 1);
+  EXPECT_EQ(a.remote.refusal(), Refusal::no_number);
+  EXPECT_TRUE(a.shows(statusword::warning_bit));
+  EXPECT_NEAR(a.set_speed, 0.1, 4e-9);  // a unit of velocity
+  a.stream(2 * ServedAxis::cycle_ticks, 0.1);
+  EXPECT_FALSE(a.shows(statusword::warning_bit));
+}
+
 TEST(Refusals, HaveASentenceEach) {
   for (std::size_t i = 0; i < refusal_table.size(); ++i) {
     EXPECT_EQ(static_cast<std::size_t>(refusal_table[i].refusal), i);
