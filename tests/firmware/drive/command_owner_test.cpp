@@ -191,6 +191,8 @@ TEST(Stops, WinAgainstEnablingWordsOfOthersInAnyOrderAndAtAnyRate) {
 TEST(Owners, AreOneAtATimeWithATokenThatTellsEachChange) {
   ServedAxis a;
   EXPECT_EQ(a.remote.owner().owner(), none);
+  EXPECT_EQ(a.remote.owner().held_by(), none);
+  EXPECT_TRUE(a.remote.owner().accepts(modbus));
   a.stream(100, 0.0);
   EXPECT_FALSE(a.remote.ask(controlword::enable_operation, can)) << "only shutdown or switch on lead an idle axis";
   EXPECT_TRUE(a.remote.ask(controlword::shutdown, can));
@@ -215,6 +217,10 @@ TEST(Owners, OfAnIdleAxisAreRefusedWhileADifferentSourceHoldsIt) {
   a.remote.ask(controlword::quick_stop, modbus);
   a.remote.ask(controlword::disable_voltage, can);
   EXPECT_EQ(a.remote.controlword(), controlword::disable_voltage) << "the one that stops most";
+  ServedAxis b;
+  b.remote.ask(controlword::disable_voltage, modbus);
+  b.remote.ask(controlword::quick_stop, can);
+  EXPECT_EQ(b.remote.controlword(), controlword::disable_voltage) << "whoever gave it";
   a.remote.ask(controlword::shutdown, can);
   EXPECT_EQ(a.remote.owner().owner(), none);
   a.run(10);

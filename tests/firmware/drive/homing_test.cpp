@@ -80,6 +80,10 @@ TEST(Homing, ThatIsInterruptedKeepsWhatHasEnded) {
   EXPECT_EQ(a.run(2), Phase::done);
   a.homing.interrupt();
   EXPECT_EQ(a.homing.phase(), Phase::done);
+  Axis failed(HomingMethod::limit_negative);
+  EXPECT_EQ(failed.run(400000), Phase::failed);
+  failed.homing.interrupt();
+  EXPECT_EQ(failed.homing.phase(), Phase::failed);
   Axis b(HomingMethod::limit_negative);
   b.run(10);
   b.homing.interrupt();

@@ -72,6 +72,9 @@ TEST(References, WithoutThemCyclicTargetsAreRefusedAndTheAxisHolds) {
   EXPECT_EQ(a.x, 0.0);
   EXPECT_TRUE(a.shows(statusword::limit_bit));
   EXPECT_EQ(a.remote.refusal(), Refusal::no_reference);
+  a.remote.offer({}, false);
+  a.run(ServedAxis::cycle_ticks);
+  EXPECT_EQ(a.remote.refusal(), Refusal::no_reference);
   EXPECT_EQ(a.drive.fault(), Fault::none);
   EXPECT_EQ(a.drive.state(), operation_enabled);
   home(a);
@@ -222,6 +225,8 @@ std::vector<WrongStream> wrong_streams() {
        Fault::set_points_lost},
       {"a jump ahead", cyclic_position, jump(0.5e-3), Fault::set_point},
       {"a jump back", cyclic_position, jump(-0.5e-3), Fault::set_point},
+      {"further than a cycle at max_velocity", cyclic_position, jump(5e-3), Fault::set_point},
+      {"the same back", cyclic_position, jump(-5e-3), Fault::set_point},
       {"no number", cyclic_position,
        [](ServedAxis& a, int k) {
          a.send(0.2);
@@ -313,6 +318,27 @@ TEST(Speeds, BrakeBeforeTheEndWhateverIsAskedOnTheWay) {
   EXPECT_NEAR(a.x, end, 1e-9);
 }
 
+TEST(Speeds, HaltByTheQuickRampWhereTheCodeSaysSo) {
+  StopCodes codes;
+  codes.halt = 2;
+  ServedAxis a(codes);
+  ASSERT_TRUE(a.enable());
+  a.remote.ask(OperationMode::profile_velocity);
+  a.remote.ask_deceleration(si<FixedSignals::Velocity>(1.0 * tick));
+  a.stream(64, 0.0);
+  EXPECT_TRUE(a.shows(statusword::target_bit));
+  a.stream(1000, 0.2);
+  a.remote.ask(on_word | controlword::halt_bit);
+  int ticks = 0;
+  for (; ticks < 4000 && a.set_speed != 0.0; ++ticks) a.step();
+  EXPECT_NEAR(ticks * tick, 0.2 / ServedAxis::quick_deceleration, 66 * tick);
+  a.step();
+  EXPECT_TRUE(a.shows(statusword::target_bit)) << "it has halted";
+  a.remote.ask(controlword::disable_voltage);
+  a.run(3);
+  EXPECT_FALSE(a.shows(statusword::target_bit)) << "without power no speed is reached";
+}
+
 TEST(Speeds, WithoutAZeroHaveNoEnds) {
   auto a = enabled_in(OperationMode::profile_velocity, 0.0, HomingMethod::here);
   a.remote.ask_speed(si<FixedSignals::Velocity>(1.0));
@@ -345,7 +371,10 @@ TEST(ProfileMovesOfAnAxis, WaitForTheOneBeforeUnlessTheyAreToBeMadeAtOnce) {
   EXPECT_TRUE(a.shows(statusword::acknowledge_bit)) << "it waits";
   offer(a, 0.2);  // no room
   offer(a, 0.05, controlword::relative_bit);
-  a.run(20'000);
+  for (int i = 0; i < 20'000; ++i) {
+    a.step();
+    EXPECT_TRUE(a.x > 0.1 - 1e-5 || !a.shows(statusword::target_bit));
+  }
   EXPECT_NEAR(a.x, 0.1, 1e-9);
   EXPECT_TRUE(a.shows(statusword::target_bit));
   offer(a, 0.3);
@@ -355,7 +384,39 @@ TEST(ProfileMovesOfAnAxis, WaitForTheOneBeforeUnlessTheyAreToBeMadeAtOnce) {
   EXPECT_GE(a.remote.move().deceleration, FixedSignals::Velocity::from_raw(1));
   a.run(20'000);
   EXPECT_NEAR(a.x, 0.15, 1e-9);
+  offer(a, 0.16, controlword::at_once_bit);  // at rest
+  a.run(20'000);
+  EXPECT_NEAR(a.x, 0.16, 1e-9);
   EXPECT_EQ(a.drive.fault(), Fault::none);
+}
+
+// As much of a drive as the axis asks for, to stand where no axis with a set-point does.
+struct Beside {
+  FixedSignals::Position at{}, measured{};
+  FixedSignals::Position set_position() const { return at; }
+  FixedSignals::Position position() const { return measured; }
+  FixedSignals::Velocity set_velocity() const { return {}; }
+  Fault fault() const { return Fault::none; }
+  bool follows() const { return true; }
+  bool powered() const { return true; }
+  bool referenced() const { return true; }
+  bool standing() const { return true; }
+};
+
+TEST(ProfileMovesOfAnAxis, AreNotReachedWhereTheAxisIsOutsideOfItsWindow) {
+  for (const double off : {5e-6, 15e-6, -15e-6}) {
+    auto config = ServedAxis::remote_config({}, {});
+    config.streamed = false;
+    RemoteAxis axis(config);
+    axis.ask(OperationMode::profile_position);
+    const Beside drive{{}, si<FixedSignals::Position>(off)};
+    for (int i = 0; i < 200; ++i) {
+      if (i % 16 == 0) axis.begin_cycle();
+      axis.tick(drive);
+    }
+    EXPECT_EQ(axis.mode(), OperationMode::profile_position);
+    EXPECT_EQ((axis.statusword(0) & statusword::target_bit) != 0, off == 5e-6);
+  }
 }
 
 TEST(ProfileMovesOfAnAxis, KeepTheirValuesWithinTheLimitsOfTheMachine) {

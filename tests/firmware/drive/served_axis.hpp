@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "stiction/drive/remote_axis.hpp"
 #include "tests/firmware/drive/axis_bench.hpp"
@@ -61,6 +62,10 @@ struct ServedAxis {
       : remote(remote_config(stops, owner)), drive(drive_config(stops, method)), axis(cascade()), x(at) {
     drive.start(feedback(), axis);
   }
+  ServedAxis(const ServoDriveConfig<S>& drive_configuration, const AxisConfig<S>& cascade_configuration)
+      : remote(remote_config({}, {})), drive(drive_configuration), axis(cascade_configuration), x(0.0) {
+    drive.start(feedback(), axis);
+  }
 
   static AxisConfig<S> cascade() {
     auto c = bench_config<S>();
@@ -72,7 +77,7 @@ struct ServedAxis {
     Feedback<S> f;
     f.position = S::Position::from_raw(std::llround(x * 0x1p40));
     f.position_time_ns = now_ns;
-    f.position_valid = true;
+    f.position_valid = position_valid;
     f.fault = stage_fault;
     return f;
   }
@@ -88,6 +93,9 @@ struct ServedAxis {
     demand.brake = remote.brakes();
     demand.causes[0] = remote.fault();
     demand.causes[1] = trip;
+    if (direct_mode) demand = {remote.controlword(), *direct_mode, {drive.set_position(), {}, {}}};
+    if (direct_mode) demand.set_point.valid = set_point_valid;
+    demand.causes[2] = direct_mode ? trip : Fault::none;
     const auto set = drive.before(demand, feedback(), inputs, now_ns, axis);
     AxisSignals<S> signals;
     axis.tick(set, feedback(), now_ns, ticks % ticks_per_slow_tick == 0, signals);
@@ -95,7 +103,7 @@ struct ServedAxis {
     set_speed_before = set_speed;
     set_speed = machine::to_si(set.velocity);
     if (drive.powered()) {
-      const double to = machine::to_si(set.position);
+      const double to = machine::to_si(set.position) + (ticks / 8 % 2 == 0 ? wobble : -wobble);
       v = (to - x) / tick;
       x = to;
     } else {
@@ -148,7 +156,9 @@ struct ServedAxis {
   double x, v = 0.0;                               // m, m/s
   double set_speed = 0.0, set_speed_before = 0.0;  // m/s
   double streamed = 0.0, streamed_speed = 0.0;     // m, m/s
-  bool stage_fault = false, coasts = true;
+  bool stage_fault = false, coasts = true, position_valid = true, set_point_valid = true;
+  std::optional<OperationMode> direct_mode;  // of a source that is not the bus; its set-point stays where it is
+  double wobble = 0.0;                       // m, to and fro each eight ticks
   Fault trip = Fault::none;
   DigitalInputs<S> inputs{};
   std::int64_t now_ns = 0;

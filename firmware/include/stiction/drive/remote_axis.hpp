@@ -211,10 +211,8 @@ class RemoteAxis {
   // A PLC gives no targets each cycle: in csp its axis holds. One that nobody owns is being stopped.
   constexpr bool streams() const { return config_.streamed && owner_.owner() == CommandSource::can; }
   constexpr bool halted() const { return (controlword_ & controlword::halt_bit) != 0; }
-  // Homing tells by the drive's set-point alone.
   constexpr bool source_rests() const {
-    if (mode_ == OperationMode::cyclic_position) return interpolator_.at_rest();
-    return mode_ == OperationMode::homing || profile_.at_rest();
+    return mode_ == OperationMode::cyclic_position ? interpolator_.at_rest() : profile_.at_rest();
   }
 
   constexpr void forget_asked() {
