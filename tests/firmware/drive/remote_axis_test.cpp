@@ -334,6 +334,7 @@ TEST(Speeds, HaltByTheQuickRampWhereTheCodeSaysSo) {
   EXPECT_NEAR(ticks * tick, 0.2 / ServedAxis::quick_deceleration, 66 * tick);
   a.step();
   EXPECT_TRUE(a.shows(statusword::target_bit)) << "it has halted";
+  a.remote.ask_speed({});
   a.remote.ask(controlword::disable_voltage);
   a.run(3);
   EXPECT_FALSE(a.shows(statusword::target_bit)) << "without power no speed is reached";
@@ -416,6 +417,21 @@ TEST(ProfileMovesOfAnAxis, AreNotReachedWhereTheAxisIsOutsideOfItsWindow) {
     }
     EXPECT_EQ(axis.mode(), OperationMode::profile_position);
     EXPECT_EQ((axis.statusword(0) & statusword::target_bit) != 0, off == 5e-6);
+  }
+}
+
+// Without a controller on CAN csp holds, and no targets are missed.
+TEST(Targets, ThatNoBusStreamsAreNotMissed) {
+  auto config = ServedAxis::remote_config({}, {});
+  config.streamed = false;
+  RemoteAxis axis(config);
+  axis.ask(controlword::shutdown);
+  const Beside drive{};
+  for (int i = 0; i < 200; ++i) {
+    if (i % 16 == 0) axis.begin_cycle();
+    EXPECT_EQ(axis.tick(drive).velocity, FixedSignals::Velocity{});
+    EXPECT_EQ(axis.fault(), Fault::none);
+    EXPECT_FALSE(axis.brakes());
   }
 }
 

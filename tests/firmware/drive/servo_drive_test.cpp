@@ -180,6 +180,7 @@ TEST(ServoDrive, WaitsForItsBrake) {
     a.stream(1, 0.0);
   }
   EXPECT_NEAR(closing, 50, 2);
+  EXPECT_FALSE(a.drive.brake_released());
 }
 
 TEST(ServoDrive, KnowsTheForceOfEveryKindOfMotor) {
