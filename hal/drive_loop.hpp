@@ -54,6 +54,8 @@ class DriveLoop {
   // Hold until changed.
   void set_controlword(std::size_t axis, std::uint16_t word) { demands_[axis].controlword = word; }
   void set_mode(std::size_t axis, OperationMode mode) { demands_[axis].mode = mode; }
+  // To standstill under power in place of the set-points.
+  void set_braking(std::size_t axis, bool brakes) { demands_[axis].brake = brakes; }
   void set_velocity_offset(std::size_t axis, typename S::Velocity offset) { demands_[axis].velocity_offset = offset; }
   // A fault that the programme sees (Detector::programme), in the coming tick. As long as its cause holds it is to be
   // repeated each tick: no reset is taken in a tick with one.

@@ -19,6 +19,7 @@ namespace {
 std::atomic<void (*)(int) noexcept> words_at_the_end{nullptr};
 
 void want_stop(int) { stop_wanted = 1; }
+void note_asked(int signal) { signal_asked = signal; }
 
 // The default is in force again and the signal comes once more, so that the process ends by it, for whoever waits for
 // it and for a core dump.
@@ -56,6 +57,9 @@ void react(int number, SignalReaction reaction) {
       break;
     case SignalReaction::ignore:
       action.sa_handler = SIG_IGN;
+      break;
+    case SignalReaction::ask:
+      action.sa_handler = note_asked;
       break;
     case SignalReaction::cut:
       action.sa_handler = end_by;

@@ -12,6 +12,7 @@ namespace stiction::hal {
 enum class SignalReaction : std::uint8_t {
   stop,    // a controlled stop, then the end
   ignore,  // nothing
+  ask,     // signal_asked says so; what comes of it is the programme's
   cut,     // the power is taken off beside the loop, then the process ends by the signal
 };
 
@@ -32,8 +33,8 @@ inline constexpr std::array<SignalRow, 25> signal_table{{
     {SIGXCPU, "SIGXCPU", SignalReaction::stop, "at a limit of processor time"},
     {SIGPIPE, "SIGPIPE", SignalReaction::ignore, "when a reader is gone"},
     {SIGXFSZ, "SIGXFSZ", SignalReaction::ignore, "at a limit of a file's size"},
-    {SIGUSR1, "SIGUSR1", SignalReaction::ignore, "by a person or a script"},
-    {SIGUSR2, "SIGUSR2", SignalReaction::ignore, "by a person or a script"},
+    {SIGUSR1, "SIGUSR1", SignalReaction::ask, "by an operator who opens the commissioning window"},
+    {SIGUSR2, "SIGUSR2", SignalReaction::ask, "by an operator who closes it"},
     {SIGALRM, "SIGALRM", SignalReaction::ignore, "by a timer"},
     {SIGVTALRM, "SIGVTALRM", SignalReaction::ignore, "by a timer"},
     {SIGPROF, "SIGPROF", SignalReaction::ignore, "by a profiler"},
@@ -53,6 +54,9 @@ inline constexpr std::array<SignalRow, 25> signal_table{{
 
 // Set by the signals whose reaction is `stop`, from install_signal_reactions() on.
 inline volatile std::sig_atomic_t stop_wanted = 0;
+
+// The last of those whose reaction is `ask`; 0: none since it was taken.
+inline volatile std::sig_atomic_t signal_asked = 0;
 
 // "SIGSEGV"; "a signal" for one that is not in the table. Async-signal-safe.
 const char* name_of_signal(int signal) noexcept;

@@ -19,6 +19,7 @@ using S = FixedSignals;
 constexpr double velocity_increments = 1000.0;  // of position a second in a unit of velocity
 constexpr double torque_units = 1000.0;         // in the current limit
 constexpr std::int64_t second_ns = 1'000'000'000;
+constexpr std::uint32_t heartbeat_id = 0x700;  // CiA 301
 
 std::vector<hal::can::Filter> filters(const CanServerConfig& config) {
   std::vector<hal::can::Filter> wanted;
@@ -26,6 +27,8 @@ std::vector<hal::can::Filter> filters(const CanServerConfig& config) {
     for (const auto& row : hal::can::pdo_table)
       if (row.received && (row.positions || config.all_frames))
         wanted.push_back({row.id + static_cast<std::uint32_t>(node), CAN_SFF_MASK});
+  if (config.heartbeat_node != 0)
+    wanted.push_back({heartbeat_id + static_cast<std::uint32_t>(config.heartbeat_node), CAN_SFF_MASK});
   if (config.follows_sync) wanted.push_back({hal::can::sync_id, CAN_SFF_MASK});
   return wanted;
 }
@@ -33,12 +36,6 @@ std::vector<hal::can::Filter> filters(const CanServerConfig& config) {
 std::int32_t to_units(double value, double unit) {
   constexpr double most = std::numeric_limits<std::int32_t>::max();
   return static_cast<std::int32_t>(std::lround(std::clamp(value / unit, -most, most)));
-}
-
-bool known(std::int8_t mode) {
-  return mode == static_cast<std::int8_t>(OperationMode::profile_position) ||
-         mode == static_cast<std::int8_t>(OperationMode::homing) ||
-         mode == static_cast<std::int8_t>(OperationMode::cyclic_position);
 }
 
 }  // namespace
@@ -63,6 +60,10 @@ bool CanServer::receive(std::int64_t now_ns, std::span<RemoteAxis> axes) {
 }
 
 void ControllerFrames::take(std::int64_t now_ns, const hal::can::Frame& frame, std::span<RemoteAxis> axes) {
+  if (is_heartbeat(frame)) {
+    for (auto& axis : axes) axis.hear(CommandSource::can);
+    return;
+  }
   const auto address = hal::can::pdo_address_of(frame);
   const auto found = std::find(config_.nodes.begin(), config_.nodes.end(), address.node);
   if (address.verdict == PdoVerdict::unknown || found == config_.nodes.end()) return;
@@ -85,19 +86,28 @@ void ControllerFrames::ask(std::int64_t now_ns, std::size_t axis, Pdo pdo, const
     if (pdo != Pdo::offsets) say_refused(now_ns, axis, data.controlword);
     return;
   }
+  const bool owned = !remote.owner().accepts(CommandSource::can);
+  if ((pdo == Pdo::offsets && owned) || (pdo == Pdo::mode && !is_supported(data.mode))) {
+    ++counts_.refused;
+    return;
+  }
   if (pdo == Pdo::offsets) {
     ++counts_.taken;
+    remote.hear(CommandSource::can);
     return ask_offsets(axis, data, remote);
   }
-  if (pdo == Pdo::mode) {
-    if (!known(data.mode)) {
-      ++counts_.refused;
-      return;
-    }
-    remote.ask(static_cast<OperationMode>(data.mode));
+  if (!remote.ask(data.controlword, CommandSource::can)) {
+    ++counts_.refused;
+    return say_owned(now_ns, axis, data.controlword, remote);
   }
   ++counts_.taken;
-  remote.ask(data.controlword);
+  if (owned) return;  // a stop alone
+  if (pdo == Pdo::mode) remote.ask(static_cast<OperationMode>(data.mode));
+  if (pdo == Pdo::speed) {
+    const auto speed = machine::to_signal<S::Velocity>(data.speed * velocity_increments * config_.increment);
+    const bool valid = data.speed != std::numeric_limits<std::int32_t>::min() && speed.has_value();
+    return remote.offer_speed(speed.value_or(S::Velocity{}), valid);
+  }
   if (pdo != Pdo::target) return;
   const auto target = machine::to_signal<S::Position>(data.target * config_.increment);
   const bool number = data.target != std::numeric_limits<std::int32_t>::min() && target.has_value();
@@ -111,6 +121,23 @@ void ControllerFrames::ask_offsets(std::size_t axis, const hal::can::ControllerD
   const auto current = machine::to_signal<S::Current>(std::clamp(data.torque_offset / torque_units, -1.0, 1.0) * limit);
   // One that no format holds adds nothing.
   remote.ask_offsets(velocity.value_or(S::Velocity{}), current.value_or(S::Current{}));
+}
+
+bool ControllerFrames::is_heartbeat(const hal::can::Frame& frame) const {
+  const auto node = static_cast<std::uint32_t>(config_.heartbeat_node);
+  return node != 0 && frame.id == heartbeat_id + node && frame.size == 1;
+}
+
+// One a second and axis.
+void ControllerFrames::say_owned(std::int64_t now_ns, std::size_t axis, std::uint16_t controlword,
+                                 const RemoteAxis& remote) {
+  auto& said = nodes_[axis].owned_said_ns;
+  if (said != INT64_MIN && now_ns - said < second_ns) return;
+  said = now_ns;
+  log_.push(now_ns, LogLevel::warning,
+            "CAN: axis {}: found controlword {:#06x}, but its commander is {} and a stop of {} holds it; expected "
+            "shutdown (6) first, after both have given it up; it is refused",
+            {axis, controlword, name_of(remote.owner().owner()), name_of(remote.owner().held_by())});
 }
 
 void ControllerFrames::say_refused(std::int64_t now_ns, std::size_t axis, std::uint16_t controlword) {

@@ -26,6 +26,7 @@ struct CanServerConfig {
   std::uint32_t cycle_ticks = 1;      // slow ticks from one cycle to the next
   bool all_frames = true;             // offsets, velocities and following errors beside what positions need
   bool motion_allowed = false;
+  int heartbeat_node = 0;     // of the controller; 0: none
   bool sends_sync = true;     // false: another one does on this bus
   bool follows_sync = false;  // of the controller
 };
@@ -33,7 +34,7 @@ struct CanServerConfig {
 struct CanServerCounts {
   std::uint64_t taken = 0;       // frames that were taken
   std::uint64_t wrong_size = 0;  // of an axis' identifiers with another length
-  std::uint64_t refused = 0;     // because motion is not allowed, or the mode is not there
+  std::uint64_t refused = 0;     // because motion is not allowed, the mode is not there, or a different one commands
 };
 
 // What the controller sees of an axis.
@@ -59,9 +60,12 @@ class ControllerFrames {
   struct Node {
     std::uint16_t refused_word = 0;    // the last one that was said to be refused
     std::int64_t said_ns = INT64_MIN;  // a wrong size
+    std::int64_t owned_said_ns = INT64_MIN;
   };
 
   void say_refused(std::int64_t now_ns, std::size_t axis, std::uint16_t controlword);
+  void say_owned(std::int64_t now_ns, std::size_t axis, std::uint16_t controlword, const RemoteAxis& remote);
+  bool is_heartbeat(const hal::can::Frame& frame) const;
   void ask(std::int64_t now_ns, std::size_t axis, hal::can::Pdo pdo, const hal::can::ControllerData& data,
            RemoteAxis& remote);
   void ask_offsets(std::size_t axis, const hal::can::ControllerData& data, RemoteAxis& remote) const;
@@ -87,6 +91,7 @@ class CanServer {
   // How old the controller's SYNC was when the last cycle began, ns; none came, or it is not followed: nothing.
   std::optional<std::int64_t> sync_age_ns() const { return sync_age_ns_; }
   const CanServerCounts& counts() const { return frames_.counts(); }
+  bool motion_allowed() const { return frames_.config().motion_allowed; }
   std::uint64_t send_failed() const { return send_failed_; }  // frames that the kernel did not take
 
  private:

@@ -18,26 +18,28 @@ std::filesystem::path parameter_file(const DriveOptions& options) {
                                     : std::filesystem::path(options.parameters) / "parameters";
 }
 
-DriveConfiguration read_configuration(const DriveOptions& options) {
-  const auto file = machine::find_machine(options.machine);
-  machine::ReadOptions read{options.circle.empty() ? "" : "circle", options.set};
-  auto machine = machine::read_machine(file, machine::shipped_vocabulary(), read);
-  if (machine.axes.empty())
-    throw StartRefused(fmt::format("{}: found no axis; expected a table [axis.NAME]", file.string()));
+namespace {
+
+void check_axes(const machine::Machine& machine, const std::string& file) {
+  if (machine.axes.empty()) throw StartRefused(fmt::format("{}: found no axis; expected a table [axis.NAME]", file));
   for (const auto& axis : machine.axes) {
     if (!axis.cascaded())
-      throw StartRefused(
-          fmt::format("{}: found axis {} with a controller that is not the cascade; expected the cascade alone",
-                      file.string(), axis.name));
+      throw StartRefused(fmt::format(
+          "{}: found axis {} with a controller that is not the cascade; expected the cascade alone", file, axis.name));
     if (axis.coordinate.rotary())
       throw StartRefused(
           fmt::format("{}: found the rotary axis {}; expected linear axes, in whose units the drive "
                       "speaks with its controllers",
-                      file.string(), axis.name));
+                      file, axis.name));
   }
+}
+
+DriveConfiguration build(const DriveOptions& options, std::optional<ParameterSet> stored) {
+  const auto file = machine::find_machine(options.machine);
+  machine::ReadOptions read{options.circle.empty() ? "" : "circle", options.set};
+  auto machine = machine::read_machine(file, machine::shipped_vocabulary(), read);
+  check_axes(machine, file.string());
   auto setup = machine::read_drive_setup(file, machine, read);
-  std::optional<ParameterSet> stored;
-  if (!options.parameters.empty()) stored = read_parameters(parameter_file(options));
   if (stored) {
     // What the command line says stands above what was stored.
     auto assignments = assignments_of(*stored, machine.id, drive_parameters(machine, setup));
@@ -51,6 +53,7 @@ DriveConfiguration read_configuration(const DriveOptions& options) {
       .file = file,
       .assignments = options.set,
       .stored = std::move(stored),
+      .rejected_parameters = {},
       .machine = std::move(machine),
       .setup = std::move(setup),
       .names = {},
@@ -69,6 +72,37 @@ DriveConfiguration read_configuration(const DriveOptions& options) {
   c.drives = machine::configure_drives<FixedSignals>(c.machine, c.setup);
   c.compensations = machine::configure_compensations<FixedSignals>(c.machine);
   return configuration;
+}
+
+}  // namespace
+
+void check_whole(const DriveOptions& options, const ParameterSet& set) { check_remote(build(options, set)); }
+
+DriveConfiguration read_configuration(const DriveOptions& options) {
+  auto alone = build(options, {});
+  if (options.parameters.empty()) return alone;
+  const auto file = parameter_file(options);
+  std::optional<std::string> rejected;
+  for (const auto& candidate : {file, previous_of(file)}) {
+    try {
+      auto stored = read_parameters(candidate);
+      // Without a file the machine file holds, whatever a set before says.
+      if (!stored && !rejected) return alone;
+      if (!stored) break;
+      auto configuration = build(options, std::move(stored));
+      check_remote(configuration);
+      configuration.rejected_parameters = rejected;
+      return configuration;
+    } catch (const NoParameterFile&) {
+      throw;  // a folder, a pipe or a link in its place is the operator's to remove
+    } catch (const std::system_error&) {
+      throw;
+    } catch (const std::exception& error) {
+      if (!rejected) rejected = error.what();
+    }
+  }
+  alone.rejected_parameters = rejected;
+  return alone;
 }
 
 hal::can::CanBackendConfig can_config(const DriveConfiguration& configuration) {

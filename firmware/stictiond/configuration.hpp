@@ -31,6 +31,8 @@ struct DriveConfiguration {
   std::filesystem::path file;            // of the machine
   std::vector<std::string> assignments;  // over it, from the command line
   std::optional<ParameterSet> stored;    // over it as well: what was stored on this machine
+  // Why the file of the parameters was not used; `stored` is then the set before it. The axes stay off, fault 50.
+  std::optional<std::string> rejected_parameters;
   machine::Machine machine;
   machine::DriveSetup setup;
   std::vector<std::string> names;  // of the axes
@@ -44,9 +46,13 @@ struct DriveConfiguration {
 // Where the parameters of this machine are stored; empty without --parameters.
 std::filesystem::path parameter_file(const DriveOptions& options);
 
-// Reads the machine file, and over it the parameters stored on this machine. Throws StartRefused,
-// machine::MachineFileError, machine::ConfigurationError, ParametersDamaged.
+// Reads the machine file, and over it the parameters stored on this machine; where these are damaged or would refuse
+// the start, those before them. Throws StartRefused, machine::MachineFileError, machine::ConfigurationError.
 DriveConfiguration read_configuration(const DriveOptions& options);
+
+// Builds all that a start with a set builds, and throws what would refuse it. `options`: of the start; `set`: in the
+// place of the stored one.
+void check_whole(const DriveOptions& options, const ParameterSet& set);
 
 // Throw StartRefused where the machine file does not say what the bus needs.
 hal::can::CanBackendConfig can_config(const DriveConfiguration& configuration);

@@ -38,12 +38,17 @@ std::string fault_page(std::int64_t period_ns) {
       "latched; "
       "a reset is accepted only after its cause has gone, and the axis must then be enabled again. The other axes of a "
       "machine make a controlled stop. A second fault during a controlled stop switches the power off at once. "
-      "Detection times count in ticks of the fast loop from the first sample that violates the condition.\n\n"
-      "| number | fault | condition | seen by | within | reaction |\n| --- | --- | --- | --- | --- | --- |\n";
+      "Detection times count in ticks of the fast loop from the first sample that violates the condition. 603Fh is the "
+      "error code of CiA 402; codes from FF00h are the manufacturer's, FF00h plus the number. A fault that loses the "
+      "reference leaves an axis that has to be homed before it takes an absolute target. A controlled stop is made as "
+      "`drive.axis.NAME.stops.fault_reaction` says (605Eh).\n\n"
+      "| number | 603Fh | fault | condition | seen by | within | reaction | reference |\n"
+      "| --- | --- | --- | --- | --- | --- | --- | --- |\n";
   for (const auto& row : fault_table)
-    page += fmt::format("| {} | {} | {} | {} | {} | {} |\n", static_cast<int>(row.fault), row.name, cell(row.condition),
-                        detectors[static_cast<std::size_t>(row.detector)], detection(row, period_ns),
-                        reactions[static_cast<std::size_t>(row.reaction)]);
+    page += fmt::format("| {} | {:04X}h | {} | {} | {} | {} | {} | {} |\n", static_cast<int>(row.fault), row.error_code,
+                        row.name, cell(row.condition), detectors[static_cast<std::size_t>(row.detector)],
+                        detection(row, period_ns), reactions[static_cast<std::size_t>(row.reaction)],
+                        row.loses_reference ? "lost" : "kept");
   return page;
 }
 

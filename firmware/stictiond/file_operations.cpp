@@ -7,7 +7,6 @@
 #include <array>
 #include <cerrno>
 #include <cstdio>
-#include <stdexcept>
 #include <system_error>
 
 namespace stiction::drive {
@@ -32,7 +31,7 @@ class Descriptor {
     struct stat status {};
     if (::fstat(descriptor_, &status) != 0) fail(file_, "cannot be looked at");
     if (S_ISREG(status.st_mode)) return *this;
-    throw std::runtime_error(file_.string() + ": found something that is no file; expected a file");
+    throw NoParameterFile(file_.string() + ": found something that is no file; expected a file");
   }
   bool is_open() const { return descriptor_ >= 0; }
   const Descriptor& or_fail(const char* what) const {
@@ -63,17 +62,23 @@ class Descriptor {
 };
 
 class SystemFiles : public FileOperations {
-  // A symbolic link in the place of a new file leads to a file of a different owner; a FIFO has no reader.
+  static constexpr std::size_t longest_read = 1 << 20;
+  // A symbolic link in the place of a file leads to a file of a different owner; a FIFO has no reader or writer.
   static constexpr int own = O_NOFOLLOW | O_NONBLOCK;
 
  public:
   std::optional<std::string> read(const std::filesystem::path& file) override {
-    const Descriptor descriptor(file, O_RDONLY | O_NONBLOCK);  // which does not wait for a FIFO's writer
+    const Descriptor descriptor(file, O_RDONLY | own);
     if (!descriptor.is_open() && errno == ENOENT) return {};
     descriptor.or_fail("cannot be opened").of_a_file();
     std::string bytes;
     std::array<char, 4096> block;
-    while (const std::size_t got = descriptor.read(block.data(), block.size())) bytes.append(block.data(), got);
+    // One more than is read back by anybody, so that its reader says what is wrong with it.
+    while (bytes.size() <= longest_read) {
+      const std::size_t got = descriptor.read(block.data(), block.size());
+      if (got == 0) break;
+      bytes.append(block.data(), got);
+    }
     return bytes;
   }
   void create(const std::filesystem::path& file) override {

@@ -3,18 +3,25 @@
 
 #include <filesystem>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
 namespace stiction::drive {
 
-// All throw std::system_error, whose what() says what could not be done, or std::runtime_error where a folder, FIFO or
-// device is in the place of a file. What is created or written is never reached through a symbolic link.
+// Something that is no file is in its place. what() names it.
+class NoParameterFile : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// All throw std::system_error, whose what() says what could not be done, or NoParameterFile where a folder, FIFO or
+// device is in the place of a file. No file is reached through a symbolic link.
 class FileOperations {
  public:
   virtual ~FileOperations() = default;
 
-  // The bytes of a file; none where there is no file.
+  // The bytes of a file, somewhat more than 1 MiB of them at most; none where there is no file.
   virtual std::optional<std::string> read(const std::filesystem::path& file) = 0;
   // Makes the file, or empties it.
   virtual void create(const std::filesystem::path& file) = 0;

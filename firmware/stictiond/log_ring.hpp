@@ -46,7 +46,7 @@ class LogValue {
 struct LogRecord {
   std::int64_t time_ns = 0;
   LogText text;
-  std::array<LogValue, 4> values{};
+  std::array<LogValue, 5> values{};
   LogLevel level = LogLevel::info;
 };
 
@@ -67,8 +67,8 @@ class LogRing {
   }
 
   // From the loop, wait-free. `time_ns`: on the loop's clock; `level`: of the message; `text`: a literal with at most
-  // four {}; `values`: what goes into them. False when the ring is full: the message is counted as lost.
-  bool push(std::int64_t time_ns, LogLevel level, LogText text, std::array<LogValue, 4> values = {}) {
+  // five {}; `values`: what goes into them. False when the ring is full: the message is counted as lost.
+  bool push(std::int64_t time_ns, LogLevel level, LogText text, std::array<LogValue, 5> values = {}) {
     return push({time_ns, text, values, level});
   }
 

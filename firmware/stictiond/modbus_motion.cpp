@@ -8,9 +8,14 @@ void ask(const MotionWrite& write, double period, RemoteAxis& axis) {
   using enum MotionWrite::What;
   using S = FixedSignals;
   const auto speed = [](double value) { return machine::to_signal<S::Velocity>(value).value_or(S::Velocity{}); };
+  if (write.what == controlword) {
+    axis.ask(static_cast<std::uint16_t>(write.value), CommandSource::modbus);
+    return;
+  }
+  // A value of who does not command is none; the publisher has answered so.
+  if (!axis.owner().accepts(CommandSource::modbus)) return;
+  axis.hear(CommandSource::modbus);
   switch (write.what) {
-    case controlword:
-      return axis.ask(static_cast<std::uint16_t>(write.value));
     case mode:
       return axis.ask(static_cast<OperationMode>(static_cast<std::int8_t>(write.value)));
     case target: {
@@ -23,12 +28,21 @@ void ask(const MotionWrite& write, double period, RemoteAxis& axis) {
       return axis.ask_acceleration(speed(write.value * period));
     case deceleration:
       return axis.ask_deceleration(speed(write.value * period));
+    case target_velocity:
+      return axis.ask_speed(speed(write.value));
+    case controlword:
+      return;
   }
 }
 
 void show_asked(const RemoteAxis& axis, double period, PublishedAxis& shown) {
   const auto& move = axis.move();
   shown.controlword = axis.controlword();
+  shown.owner = axis.owner().owner();
+  shown.held_by = axis.owner().held_by();
+  shown.owner_token = axis.owner().token();
+  shown.refusal = axis.refusal();
+  shown.target_velocity = machine::to_si(axis.speed());
   shown.mode = static_cast<std::int16_t>(axis.mode());
   shown.target = machine::to_si(move.target);
   shown.profile_velocity = machine::to_si(move.velocity);

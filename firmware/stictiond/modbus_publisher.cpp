@@ -12,8 +12,9 @@
 namespace stiction::drive {
 namespace {
 
-constexpr std::array<const char*, 6> motion_names{"controlword",      "mode of operation",    "target position",
-                                                  "profile velocity", "profile acceleration", "profile deceleration"};
+constexpr std::array<const char*, MotionWrite::kinds> motion_names{
+    "controlword",          "mode of operation",    "target position", "profile velocity",
+    "profile acceleration", "profile deceleration", "target velocity"};
 
 std::vector<std::string> names_of(const machine::Machine& machine) {
   std::vector<std::string> names;
@@ -42,16 +43,50 @@ ModbusPublisher::ModbusPublisher(const machine::Machine& machine, const machine:
       beside_(std::move(beside)),
       stale_(std::move(stale)),
       moves_itself_(moves_itself),
+      motion_allowed_(modbus_server_config(setup).motion_allowed),
       axis_names_(names_of(machine)),
+      window_(setup.modbus_server.value().commissioning_time),
+      stored_(std::make_shared<Stored>(store_.file_holds)),
+      kept_(store_.begun),
       server_(
           registers_.map(), modbus_server_config(setup),
           [this](std::span<double> values) {
             PublishedState state = snapshot_.latest();
             if (beside_) beside_(state);
+            state.commissioning_seconds = window_.seconds_left(now_ns());
+            state.store_result = stored_->result.load();
             if (stale_ && stale_()) mark_stale(state);
             registers_.put_values(state, values);
           },
           this) {}
+
+void ModbusPublisher::open_commissioning() {
+  window_.open(now_ns());
+  said_->say(fmt::format("Modbus: clients may write parameters for {:g} s", window_.length_s()), now_ns());
+}
+
+void ModbusPublisher::close_commissioning() {
+  window_.close();
+  said_->say("Modbus: clients may not write parameters any more", now_ns());
+}
+
+std::optional<hal::ModbusException> ModbusPublisher::rejection_of(std::span<const ParameterWrite> parameters,
+                                                                  bool store) {
+  if ((store || !parameters.empty()) && !window_.is_open(now_ns())) {
+    said_->say(
+        fmt::format("Modbus: {} is refused: the commissioning window is closed; expected that an operator of this "
+                    "computer opens it (SIGUSR1)",
+                    parameters.empty() ? "store_parameters" : parameters.front().key),
+        now_ns());
+    return hal::ModbusException::illegal_function;
+  }
+  for (const auto& parameter : parameters)
+    if (const auto reason = registers_.rejection_of(parameter); !reason.empty()) {
+      said_->say("Modbus: " + reason, now_ns());
+      return hal::ModbusException::illegal_value;
+    }
+  return {};
+}
 
 hal::WriteVerdict ModbusPublisher::take(std::span<const hal::RegisterWrite> writes) {
   std::vector<MotionWrite> motions;
@@ -69,7 +104,9 @@ hal::WriteVerdict ModbusPublisher::take(std::span<const hal::RegisterWrite> writ
   if (moves_itself_ && !std::all_of(motions.begin(), motions.end(), MotionMailbox::stops))
     return {.refused = hal::ModbusException::illegal_function};
   if (!motions.empty() && stale_ && stale_()) return {.refused = hal::ModbusException::device_failure};
+  if (!motions.empty() && owned_by_others(motions)) return {.refused = hal::ModbusException::busy};
   if (!parameters.empty() && !parameter_limit_.take(now_ns())) return {.refused = hal::ModbusException::busy};
+  if (const auto rejected = rejection_of(parameters, store)) return {.refused = *rejected};
   // All at once: a target and the bit that it is taken by may come in one request.
   if (!motions.empty()) motion_.put(motions);
   for (const MotionWrite& motion : motions) said_->say(describe(motion), now_ns());
@@ -82,21 +119,40 @@ hal::WriteVerdict ModbusPublisher::take(std::span<const hal::RegisterWrite> writ
   return store ? ask_store() : hal::WriteVerdict{};
 }
 
+// As the loop showed it last. What changes meanwhile the loop judges itself.
+bool ModbusPublisher::owned_by_others(std::span<const MotionWrite> motions) {
+  const PublishedState& state = snapshot_.latest();
+  for (const MotionWrite& write : motions) {
+    const PublishedAxis& axis = state.axes[write.axis];
+    const bool owned = axis.owner != CommandSource::none && axis.owner != CommandSource::modbus;
+    if (owned && !MotionMailbox::stops(write)) return true;
+  }
+  return false;
+}
+
 hal::WriteVerdict ModbusPublisher::ask_store() {
   if (store_.file.empty()) {
     said_->say("Modbus: parameters are not stored: the drive was started without --parameters", now_ns());
     return {.refused = hal::ModbusException::device_failure};
   }
-  auto store = registers_.prepared_store(store_.file, store_.machine_file, store_.options);
-  const auto ticket = disk_.ask([store = std::move(store), said = said_, file = store_.file.string()] {
-    try {
-      store();
-    } catch (const std::exception& error) {
-      said->say(fmt::format("Modbus: parameters are not stored: {}", error.what()), now_ns());
-      throw;
-    }
-    said->say(fmt::format("Modbus: parameters stored in {}", file), now_ns());
-  });
+  asked_ = registers_.written();
+  stored_->result = StoreResult::under_way;
+  const auto ticket =
+      disk_.ask([set = *asked_, check = store_.check, said = said_, stored = stored_, file = store_.file.string()] {
+        auto ends = StoreResult::rejected;
+        try {
+          if (check) check(set);
+          ends = StoreResult::not_written;
+          write_parameters(file, set, stored->file_holds ? KeepAsPrevious::the_file : KeepAsPrevious::what_is_there);
+        } catch (const std::exception& error) {
+          stored->result = ends;
+          said->say(fmt::format("Modbus: parameters are not stored: {}", error.what()), now_ns());
+          throw;
+        }
+        stored->file_holds = true;
+        stored->result = StoreResult::stored;
+        said->say(fmt::format("Modbus: parameters stored in {}", file), now_ns());
+      });
   return {.put_off = ticket};
 }
 
@@ -105,8 +161,11 @@ std::optional<hal::WriteVerdict> ModbusPublisher::outcome(std::uint64_t ticket) 
     case StoreThread::Outcome::under_way:
       return {};
     case StoreThread::Outcome::stored:
+      kept_ = asked_;
       return hal::WriteVerdict{};
     case StoreThread::Outcome::failed:
+      // A value that refuses a start would refuse every set that follows.
+      if (stored_->result == StoreResult::rejected) registers_.take_back(kept_);
       break;
   }
   return hal::WriteVerdict{.refused = hal::ModbusException::device_failure};

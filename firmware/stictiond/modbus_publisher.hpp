@@ -13,6 +13,7 @@
 #include <string>
 
 #include "firmware/machine/configuration/conversion.hpp"
+#include "firmware/stictiond/commissioning_window.hpp"
 #include "firmware/stictiond/modbus_registers.hpp"
 #include "firmware/stictiond/motion_mailbox.hpp"
 #include "firmware/stictiond/rate_limit.hpp"
@@ -26,10 +27,10 @@ namespace stiction::drive {
 
 // Where written parameters are kept, and what checks them.
 struct ModbusStore {
-  std::filesystem::path file;  // of the parameter store; empty: nothing is kept
-  std::filesystem::path machine_file;
-  machine::ReadOptions options;       // those that the drive was started with
-  std::optional<ParameterSet> begun;  // what was stored then
+  std::filesystem::path file;         // of the parameter store; empty: nothing is kept
+  SetCheck check;                     // of a set before it is stored; null: none
+  std::optional<ParameterSet> begun;  // the set in force at the start
+  bool file_holds = true;             // false: the file was refused then, and the set before it is the good one
 };
 
 class ModbusPublisher : private hal::WriteTaker {
@@ -49,8 +50,9 @@ class ModbusPublisher : private hal::WriteTaker {
                   Beside beside = {}, Stale stale = {}, bool moves_itself = false);
 
   // The loop's side, wait-free.
-  // `signals` of the tick; the peaks and the mean square are kept here. `status` gives statusword, mode, fault and
-  // inputs of an axis: status(axis, PublishedAxis&). `now_ns`: time of the tick; `fault`: of programme or bus.
+  // `signals` of the tick; the peaks and the mean square are kept here. `status` gives positions, statusword, mode,
+  // fault and inputs of an axis: status(axis, PublishedAxis&). `now_ns`: time of the tick; `fault`: of programme or
+  // bus.
   template <class S, class Status>
   void publish(std::span<const AxisSignals<S>> signals, std::int64_t now_ns, Fault fault, Status status) {
     if (first_ns_ == 0) first_ns_ = now_ns;
@@ -61,8 +63,6 @@ class ModbusPublisher : private hal::WriteTaker {
     for (std::size_t i = 0; i < signals.size() && i < next.axes.size(); ++i) {
       PublishedAxis& axis = next.axes[i];
       const AxisSignals<S>& s = signals[i];
-      axis.position = machine::to_si(s.x);
-      axis.set_position = machine::to_si(s.x_set);
       axis.velocity = machine::to_si(s.v);
       axis.current = machine::to_si(s.i);
       axis.following_error = machine::to_si(s.e);
@@ -81,9 +81,14 @@ class ModbusPublisher : private hal::WriteTaker {
     motion_.take(act);
   }
 
+  // By an operator: lets clients write parameters, for the time that the machine file says, or no longer. Any thread.
+  void open_commissioning();
+  void close_commissioning();
+
   // The service thread's side: a line for the log for each thing done or refused since the last call.
   std::vector<std::string> serve();
 
+  bool motion_allowed() const { return motion_allowed_; }  // whether commands that move an axis are taken
   const hal::ModbusServer& server() const { return server_; }
 
  private:
@@ -91,13 +96,15 @@ class ModbusPublisher : private hal::WriteTaker {
   hal::WriteVerdict take(std::span<const hal::RegisterWrite> writes) override;
   std::optional<hal::WriteVerdict> outcome(std::uint64_t ticket) override;
   hal::WriteVerdict ask_store();
+  std::optional<hal::ModbusException> rejection_of(std::span<const ParameterWrite> parameters, bool store);
+  bool owned_by_others(std::span<const MotionWrite> motions);
   std::string describe(const MotionWrite& write) const;
 
   ModbusRegisters registers_;
   ModbusStore store_;
   Beside beside_;
   Stale stale_;
-  bool moves_itself_;
+  bool moves_itself_, motion_allowed_;
   std::vector<std::string> axis_names_;
   // The loop's own.
   PublishedState loop_state_;
@@ -107,6 +114,15 @@ class ModbusPublisher : private hal::WriteTaker {
   hal::Snapshot<PublishedState> snapshot_;
   MotionMailbox motion_;
   RateLimit parameter_limit_{parameter_burst, parameters_per_second};  // the server's own
+  CommissioningWindow window_;
+  // What a job of the store says of itself; it may outlive this.
+  struct Stored {
+    explicit Stored(bool holds) : file_holds(holds) {}
+    std::atomic<StoreResult> result = StoreResult::none;
+    std::atomic<bool> file_holds;
+  };
+  std::shared_ptr<Stored> stored_;
+  std::optional<ParameterSet> kept_, asked_;  // the set on the disk; the one that was asked for last
   std::shared_ptr<SaidLines> said_ = std::make_shared<SaidLines>();
   StoreThread disk_;
   hal::ModbusServer server_;  // last: its thread uses all of the others

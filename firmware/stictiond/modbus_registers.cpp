@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "firmware/machine/file/description.hpp"
-#include "firmware/machine/model/shipped_vocabulary.hpp"
 
 namespace stiction::drive {
 namespace {
@@ -36,7 +35,7 @@ struct StateRow {
 double number_of(Fault fault) { return static_cast<double>(fault); }
 
 using Drive = PublishedState;
-constexpr std::array<StateRow<Drive>, 7> drive_rows{{
+constexpr std::array<StateRow<Drive>, 9> drive_rows{{
     {3, uint16, 1, "fault", "1", "number of the fault of programme or bus; 0: none",
      [](const Drive& s) { return number_of(s.fault); }},
     {4, uint32, 1, "seconds", "s", "time since the loop began", [](const Drive& s) -> double { return s.seconds; }},
@@ -49,10 +48,16 @@ constexpr std::array<StateRow<Drive>, 7> drive_rows{{
      [](const Drive& s) -> double { return s.trace_rows; }},
     {14, uint32, 1, "trace_lost", "1", "rows of the trace that were lost",
      [](const Drive& s) -> double { return s.trace_lost; }},
+    {16, uint32, 1, "commissioning_time", "s", "time for which parameters may still be written; 0: they are refused",
+     [](const Drive& s) -> double { return s.commissioning_seconds; }},
+    {18, uint16, 1, "store_result", "1",
+     "how the last request to store ended; 0: none, 1: stored, 2: under way, 3: the set would refuse a start, 4: the "
+     "disk did not take it",
+     [](const Drive& s) { return static_cast<double>(s.store_result); }},
 }};
 
 using Axis = PublishedAxis;
-constexpr std::array<StateRow<Axis>, 12> axis_rows{{
+constexpr std::array<StateRow<Axis>, 18> axis_rows{{
     {0, uint16, 1, "statusword", "1", "CiA 402, 6041h", [](const Axis& a) -> double { return a.statusword; }},
     {1, int16, 1, "mode", "1", "mode of operation shown, 6061h", [](const Axis& a) -> double { return a.mode; }},
     {2, uint16, 1, "fault", "1", "number of the axis' fault; 0: none",
@@ -72,6 +77,18 @@ constexpr std::array<StateRow<Axis>, 12> axis_rows{{
      [](const Axis& a) { return a.peak_following_error; }},
     {16, float32, 1, "peak_current", "A", "largest of the trace", [](const Axis& a) { return a.peak_current; }},
     {18, float32, 1, "rms_current", "A", "of the trace", [](const Axis& a) { return a.rms_current; }},
+    {20, uint16, 1, "error_code", "1", "603Fh, of the axis' fault; 0: none",
+     [](const Axis& a) -> double { return error_code_of(a.fault); }},
+    {21, uint16, 1, "owner", "1", "who commands the axis; 0: none, 1: CAN, 2: Modbus",
+     [](const Axis& a) { return static_cast<double>(a.owner); }},
+    {22, uint16, 1, "owner_token", "1", "changes with each change of the owner",
+     [](const Axis& a) -> double { return a.owner_token; }},
+    {23, uint16, 1, "held_by", "1", "whose stop holds the axis; numbers of owner",
+     [](const Axis& a) { return static_cast<double>(a.held_by); }},
+    {24, uint16, 1, "refusal", "1",
+     "why the last target was refused; 0: it was not, 1: no number, 2: beyond an end, 3: the zero is not known",
+     [](const Axis& a) { return static_cast<double>(a.refusal); }},
+    {26, uint32, 1, "supported_modes", "1", "6502h", [](const Axis&) -> double { return supported_mode_bits(); }},
 }};
 
 struct MotionRow {
@@ -83,7 +100,7 @@ struct MotionRow {
   const char* text;
   MotionWrite::What what;
   double (*value)(const Axis&);
-  std::array<double, 3> choices{};  // all 0: every number
+  std::array<double, 4> choices{};  // all 0: every number
   // Limits what may be written to what the axis can; null: every number.
   void (*limit)(const machine::AxisModel&, Register&) = nullptr;
 };
@@ -94,11 +111,16 @@ void up_to(double high, Register& r) {
   r.high = high;
 }
 void to_velocity(const machine::AxisModel& axis, Register& r) { up_to(axis.max_velocity, r); }
+// To both sides.
+void to_speed(const machine::AxisModel& axis, Register& r) {
+  r.low = -axis.max_velocity;
+  r.high = axis.max_velocity;
+}
 void to_acceleration(const machine::AxisModel& axis, Register& r) { up_to(axis.max_acceleration, r); }
 // Set-points of every tick do not come over this bus; what can be asked for is what a drive does by itself. A target
 // beyond the travel is refused by the axis, as it may be relative: bit 11 of the statusword.
 using What = MotionWrite::What;
-constexpr std::array<MotionRow, 6> motion_rows{{
+constexpr std::array<MotionRow, MotionWrite::kinds> motion_rows{{
     {0, uint16, 1, "controlword", "1", "CiA 402, 6040h; reads as the last accepted value", What::controlword,
      [](const Axis& a) -> double { return a.controlword; }},
     {1,
@@ -106,10 +128,10 @@ constexpr std::array<MotionRow, 6> motion_rows{{
      1,
      "mode_of_operation",
      "1",
-     "6060h; 1: profile position, 6: homing, 8: cyclic position",
+     "6060h; 1: profile position, 3: profile velocity, 6: homing, 8: cyclic position",
      What::mode,
      [](const Axis& a) -> double { return a.mode; },
-     {1, 6, 8}},
+     {1, 3, 6, 8}},
     {2, int32, position_scale, "target_position", "m",
      "607Ah; accepted when bit 4 of the controlword rises; bit 5: at once, bit 6: relative", What::target,
      [](const Axis& a) { return a.target; }},
@@ -143,6 +165,16 @@ constexpr std::array<MotionRow, 6> motion_rows{{
      [](const Axis& a) { return a.profile_deceleration; },
      {},
      to_acceleration},
+    {10,
+     int32,
+     1e-6,
+     "target_velocity",
+     "m/s",
+     "60FFh, of profile velocity",
+     What::target_velocity,
+     [](const Axis& a) { return a.target_velocity; },
+     {},
+     to_speed},
 }};
 
 template <class Row>
@@ -288,21 +320,20 @@ void ModbusRegisters::set_written(const ParameterSet& set) {
     if (const auto found = set.values.find(parameters_[i].key); found != set.values.end()) values_[i] = found->second;
 }
 
-void ModbusRegisters::store(const std::filesystem::path& file, const std::filesystem::path& machine_file,
-                            machine::ReadOptions options) const {
-  prepared_store(file, machine_file, std::move(options))();
+std::string ModbusRegisters::rejection_of(const ParameterWrite& write) const {
+  for (const auto& parameter : parameters_)
+    if (parameter.key == write.key) return drive::rejection_of(parameter, write.value);
+  return {};
 }
 
-std::function<void()> ModbusRegisters::prepared_store(const std::filesystem::path& file,
-                                                      const std::filesystem::path& machine_file,
-                                                      machine::ReadOptions options) const {
-  return
-      [file, machine_file, options = std::move(options), set = written(), id = machine_id_, parameters = parameters_] {
-        machine::ReadOptions checked = options;
-        for (auto& assignment : assignments_of(set, id, parameters)) checked.set.push_back(std::move(assignment));
-        machine::read_machine(machine_file, machine::shipped_vocabulary(), checked);
-        write_parameters(file, set);
-      };
+void ModbusRegisters::take_back(const std::optional<ParameterSet>& set) {
+  {
+    const std::lock_guard lock(mutex_);
+    written_ = {machine_id_, {}};
+    for (std::size_t i = 0; i < parameters_.size(); ++i)
+      values_[i] = parameters_[i].value.value_or(std::numeric_limits<double>::quiet_NaN());
+  }
+  if (set) set_written(*set);
 }
 
 std::string modbus_register_page() {
@@ -322,16 +353,26 @@ std::string modbus_register_page() {
       "not `\"allowed\"` or the programme moves the axes itself (`--circle`, `--hold`) and the write is no stop, 2 if "
       "there is no such register or it is read-only, 3 if a value is out of range or half of a "
       "32-bit value, 4 if the control loop makes no progress or parameters could not be stored, 6 if parameters come "
-      "faster than 50 a second after the first 256. A refused request writes nothing. Commands that move an axis are "
+      "faster than 50 a second after the first 256 or a different source commands the axis (input register owner) and "
+      "the write is no stop. A refused request writes nothing. Commands that move an axis are "
       "never refused because of other writes; of several values for one register the loop takes the newest, "
       "and "
-      "a controlword that stops an axis before those that follow it.\n\n"
+      "a controlword that stops an axis before those that follow it. An axis belongs to the source that leads it to "
+      "ready "
+      "to switch on, until this one disables the voltage or is lost (`commander_timeout`). A stop is taken from every "
+      "source; one of a source that is not the owner holds the axis until the same source writes 15. Positions are "
+      "those of the machine, counted from the zero that homing found.\n\n"
       "## Input registers (function 4)\n\n"
       "{}\n"
       "## Holding registers (functions 3, 6, 16, 23)\n\n"
-      "A parameter that the machine file leaves out reads as not-a-number. A written value can be read back at once, "
-      "is stored by `store_parameters`, whose answer comes when it is on the disk, and takes effect at the next "
-      "start.\n\n"
+      "Parameters and `store_parameters` are refused with exception 1 until the operator of the drive's computer opens "
+      "the "
+      "commissioning window (SIGUSR1), which closes by itself after `commissioning_time`. A limit is only made tighter "
+      "than it is (exception 3). The log says which parameter, limit and value were refused. A parameter that the "
+      "machine file leaves out reads as not-a-number. A written value can be read back at once, is stored by "
+      "`store_parameters`, whose answer comes when it is on the disk, and takes effect at the next start. Before it is "
+      "stored everything that a start would build is built of the set; where that is refused (exception 4, "
+      "`store_result`) the values that were written since the last set are dropped.\n\n"
       "{}",
       modbus_schema, modbus_schema, axis_stride, parameters_stride, hal::register_table(input),
       hal::register_table(holding));

@@ -15,12 +15,12 @@
 #include "firmware/machine/file/machine_file.hpp"
 #include "firmware/stictiond/parameters.hpp"
 #include "hal/modbus/register_map.hpp"
-#include "stiction/drive/faults.hpp"
+#include "stiction/drive/remote_axis.hpp"
 
 namespace stiction::drive {
 
 inline constexpr std::uint16_t modbus_identification = 0x5344;  // "SD"
-inline constexpr std::uint16_t modbus_schema = 2;               // of the registers; changes with any address
+inline constexpr std::uint16_t modbus_schema = 3;               // of the registers; changes with any address
 inline constexpr std::size_t most_published_axes = 8;
 
 struct PublishedAxis {
@@ -37,28 +37,38 @@ struct PublishedAxis {
   double peak_following_error = 0.0;  // m
   double peak_current = 0.0;          // A
   double rms_current = 0.0;           // A
+  // Who commands it.
+  CommandSource owner = CommandSource::none, held_by = CommandSource::none;
+  std::uint16_t owner_token = 0;
+  Refusal refusal = Refusal::none;
   // What was asked for last, by whomever.
   std::uint16_t controlword = 0;
   double target = 0.0;                                            // m
-  double profile_velocity = 0.0;                                  // m/s
+  double profile_velocity = 0.0, target_velocity = 0.0;           // m/s
   double profile_acceleration = 0.0, profile_deceleration = 0.0;  // m/s^2
 };
+
+// How the last request to store ended.
+enum class StoreResult : std::uint8_t { none, stored, under_way, rejected, not_written };
 
 // What the loop hands over, as often as it likes, through hal::Snapshot<PublishedState>.
 struct PublishedState {
   std::uint32_t seconds = 0;  // that the loop has run
   Fault fault = Fault::none;  // of the programme or the bus
   std::uint32_t missed_deadlines = 0;
-  double largest_lateness = 0.0;  // s, of a tick's begin
-  double largest_work = 0.0;      // s, of a tick
-  std::uint32_t trace_rows = 0;   // recorded
-  std::uint32_t trace_lost = 0;   // not recorded, because the trace was full
+  double largest_lateness = 0.0;            // s, of a tick's begin
+  double largest_work = 0.0;                // s, of a tick
+  std::uint32_t trace_rows = 0;             // recorded
+  std::uint32_t trace_lost = 0;             // not recorded, because the trace was full
+  std::uint32_t commissioning_seconds = 0;  // that clients may write parameters
+  StoreResult store_result = StoreResult::none;
   std::array<PublishedAxis, most_published_axes> axes{};
 };
 
 // What a client wrote.
 struct MotionWrite {
-  enum class What : std::uint8_t { controlword, mode, target, velocity, acceleration, deceleration };
+  enum class What : std::uint8_t { controlword, mode, target, velocity, acceleration, deceleration, target_velocity };
+  static constexpr std::size_t kinds = 7;
   std::size_t axis = 0;
   What what = What::controlword;
   double value = 0.0;  // SI units
@@ -84,21 +94,16 @@ class ModbusRegisters {
 
   // The meaning of a client's write to one of the map's registers that are for writing. Allocates for a parameter.
   DriveWrite meaning_of(const hal::RegisterWrite& write) const;
+  // Why a client may not write it; empty: it may.
+  std::string rejection_of(const ParameterWrite& write) const;
   // A parameter that was written: shown from now on.
   void remember(const ParameterWrite& write);
   // All parameters that were written, or came from the store.
   ParameterSet written() const;
   // Begins with the stored set.
   void set_written(const ParameterSet& set);
-  // Keeps what was written. Reads the machine file with it first, as a check of every value; `options` are those that
-  // the drive was started with. Throws machine::MachineFileError where the reader refuses it, std::system_error where
-  // it cannot be written; what was stored before then holds. `file`: to write; `machine_file`: that the drive was
-  // started with.
-  void store(const std::filesystem::path& file, const std::filesystem::path& machine_file,
-             machine::ReadOptions options = {}) const;
-  // The same as a job for another thread, with all that it needs in it. `file`, `machine_file`, `options`: as above.
-  std::function<void()> prepared_store(const std::filesystem::path& file, const std::filesystem::path& machine_file,
-                                       machine::ReadOptions options = {}) const;
+  // Forgets what was written since the last set: of `set`, or of the machine file alone.
+  void take_back(const std::optional<ParameterSet>& set);
 
  private:
   std::string machine_id_;
@@ -110,6 +115,9 @@ class ModbusRegisters {
   ParameterSet written_;
   std::vector<double> values_;
 };
+
+// Builds everything that a start builds of a set; throws what refuses it.
+using SetCheck = std::function<void(const ParameterSet&)>;
 
 // The registers of a machine with one axis as a page of Markdown.
 std::string modbus_register_page();

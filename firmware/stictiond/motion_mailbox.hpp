@@ -42,7 +42,7 @@ class MotionMailbox {
   }
 
  private:
-  static constexpr std::size_t kinds = 6;
+  static constexpr std::size_t kinds = MotionWrite::kinds;
   static constexpr auto word_kind = static_cast<std::size_t>(MotionWrite::What::controlword);
 
   struct Order {

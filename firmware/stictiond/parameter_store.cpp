@@ -132,13 +132,14 @@ std::optional<ParameterSet> read_parameters(const std::filesystem::path& file, F
   return decode(*bytes, file.string());
 }
 
-void write_parameters(const std::filesystem::path& file, const ParameterSet& set, FileOperations& files) {
+void write_parameters(const std::filesystem::path& file, const ParameterSet& set, KeepAsPrevious keep,
+                      FileOperations& files) {
   const std::string bytes = encode(set);
   const std::filesystem::path fresh = file.string() + ".new";
   files.create(fresh);
   files.append(fresh, bytes);
   files.sync(fresh);
-  if (files.read(file)) {
+  if (keep == KeepAsPrevious::the_file && files.read(file)) {
     files.remove(previous_of(file));
     files.link(file, previous_of(file));
   }

@@ -37,10 +37,14 @@ ParameterSet decode(std::string_view bytes, const std::string& file);
 // None where there is no file: the machine file alone holds. Throws ParametersDamaged and std::system_error.
 std::optional<ParameterSet> read_parameters(const std::filesystem::path& file, FileOperations& files = system_files());
 
+// What FILE.previous is after a write: the file of before, or what it was already, as the file was refused.
+enum class KeepAsPrevious { the_file, what_is_there };
+
 // Returns when the set is on the disk. One writer at a time. Throws std::system_error; the old set then still holds.
-// `file`: of the set; `set`: to write; `files`: operations of the file system, which tests interrupt.
+// `file`: of the set; `set`: to write; `keep`: the set before; `files`: operations of the file system, which tests
+// interrupt.
 void write_parameters(const std::filesystem::path& file, const ParameterSet& set,
-                      FileOperations& files = system_files());
+                      KeepAsPrevious keep = KeepAsPrevious::the_file, FileOperations& files = system_files());
 
 // Where the set before is kept.
 std::filesystem::path previous_of(const std::filesystem::path& file);

@@ -83,6 +83,24 @@ std::vector<DriveParameter> drive_parameters(const machine::Machine& machine, co
   return parameters;
 }
 
+std::string rejection_of(const DriveParameter& parameter, double value) {
+  for (const auto& limit : limit_parameters) {
+    if (!parameter.key.ends_with("." + std::string(limit.key))) continue;
+    if (!parameter.value)
+      return fmt::format(
+          "{}: found {:g} {}; expected a value in the machine file first: a limit that has none there cannot be judged",
+          parameter.key, value, parameter.unit);
+    const bool down = limit.tightens == Tightens::down;
+    if (down ? value <= *parameter.value : value >= *parameter.value) return {};
+    return fmt::format(
+        "{}: found {:g} {}; expected at {} {:g} {}, the limit in force: over a bus limits are only made tighter. "
+        "Change "
+        "the machine file to loosen it",
+        parameter.key, value, parameter.unit, down ? "most" : "least", *parameter.value, parameter.unit);
+  }
+  return {};
+}
+
 std::vector<std::string> assignments_of(const ParameterSet& set, const std::string& machine_id,
                                         const std::vector<DriveParameter>& parameters) {
   if (set.machine != machine_id)

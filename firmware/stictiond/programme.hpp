@@ -6,6 +6,7 @@
 
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -45,9 +46,13 @@ class Programme {
         trace_(trace),
         hold_(loop.axis_count()),
         remote_(remote.begin(), remote.end()),
-        dropped_(loop.axis_count()) {
+        dropped_(loop.axis_count()),
+        said_refusals_(loop.axis_count()) {
     if (task.serve) enter(Phase::remote);
   }
+
+  // A fault of every axis from the coming tick to the end: nothing is enabled.
+  void keep_off(Fault fault) { kept_off_ = fault; }
 
   // One tick. `stop_wanted`: a controlled stop, then the end.
   void tick(bool stop_wanted) {
@@ -55,9 +60,12 @@ class Programme {
     if (loop_.faulted() && phase_ != Phase::remote && phase_ < Phase::faulted) enter(Phase::faulted);
     if (phase_ != Phase::remote) choose_controlwords();
     const auto sets = phase_ == Phase::remote ? serve() : set_points();
+    if (kept_off_ != Fault::none) loop_.trip(kept_off_);
     const std::int64_t now_ns = loop_.now_ns();
     loop_.tick(sets);
-    if (phase_ == Phase::motion && trace_ != nullptr) trace_->add(now_ns - motion_began_ns_, loop_.loop().signals());
+    if (phase_ == Phase::motion && trace_ != nullptr)
+      trace_->add(now_ns - motion_began_ns_, loop_.loop().signals(),
+                  [this](std::size_t i) { return loop_.drive(i).origin(); });
     log_events();
     ++tick_;
     advance();
@@ -66,9 +74,10 @@ class Programme {
 
   // Where others ask for what the axes do while the programme serves; without it they stay off.
   std::span<RemoteAxis> remote() { return remote_; }
-  // As others see it: what serves adds its bits to the drive's.
+  // As others see it: what serves adds its bits to the drive's, and that a bus is obeyed.
   std::uint16_t statusword(std::size_t axis) const {
-    return phase_ == Phase::remote ? remote_[axis].statusword(loop_.statusword(axis)) : loop_.statusword(axis);
+    if (phase_ != Phase::remote) return loop_.statusword(axis);
+    return static_cast<std::uint16_t>(remote_[axis].statusword(loop_.statusword(axis)) | statusword::remote_bit);
   }
 
   Phase phase() const { return phase_; }
@@ -90,6 +99,7 @@ class Programme {
     for (std::size_t i = 0; i < loop_.axis_count(); ++i) {
       const bool homes = phase_ == Phase::home && !loop_.drive(i).referenced();
       loop_.set_mode(i, homes ? OperationMode::homing : OperationMode::cyclic_position);
+      loop_.set_braking(i, false);
       std::uint16_t word = off ? controlword::shutdown : controlword_to_enable(loop_.state(i));
       if (phase_ == Phase::faulted) word = controlword::shutdown;
       if (homes) word |= controlword::homing_start_bit;
@@ -104,6 +114,7 @@ class Programme {
       hold_[i] = remote.tick(loop_.drive(i));
       loop_.set_controlword(i, remote.controlword());
       loop_.set_mode(i, remote.mode());
+      loop_.set_braking(i, remote.brakes());
       loop_.set_velocity_offset(i, remote.velocity_offset());
       if (const Fault fault = remote.fault(); fault != Fault::none) loop_.trip(i, fault);
     }
@@ -173,9 +184,10 @@ class Programme {
   void log_events() {
     hal::AxisEvent<S> event;
     while (loop_.next_event(event))
-      log_.push(
-          event.event.time_ns, LogLevel::error, "axis {}: fault {} '{}' while {}",
-          {event.axis, static_cast<int>(event.event.fault), stiction::name_of(event.event.fault), name_of(phase_)});
+      log_.push(event.event.time_ns, LogLevel::error, "axis {}: fault {} '{}' while {} at {} nm",
+                {event.axis, static_cast<int>(event.event.fault), stiction::name_of(event.event.fault), name_of(phase_),
+                 nanometres(event.event.position)});
+    for (std::size_t i = 0; i < remote_.size(); ++i) say_refused(i);
     const auto compensations = loop_.loop().compensations();
     for (std::size_t i = 0; i < compensations.size(); ++i) {
       if (compensations[i].dropped() && !dropped_[i])
@@ -187,6 +199,28 @@ class Programme {
     }
   }
 
+  // Of the machine's coordinates, rounded.
+  static std::int64_t nanometres(typename S::Position x) {
+    return static_cast<std::int64_t>(std::llround(static_cast<double>(x.raw()) * (1e9 / 0x1p40)));
+  }
+
+  // At most ten a second: a controller repeats what is refused.
+  void say_refused(std::size_t axis) {
+    constexpr std::int64_t pause_ns = 100'000'000;
+    auto& said = said_refusals_[axis];
+    const auto refusal = remote_[axis].refusal();
+    if (refusal == said.refusal || loop_.now_ns() - said.time_ns < pause_ns) return;
+    said = {refusal, loop_.now_ns()};
+    if (refusal == Refusal::none) return;
+    log_.push(loop_.now_ns(), LogLevel::warning, "axis {}: {}; it is refused",
+              {axis, refusal_table[static_cast<std::size_t>(refusal)].text});
+  }
+
+  struct SaidRefusal {
+    Refusal refusal = Refusal::none;
+    std::int64_t time_ns = INT64_MIN / 2;
+  };
+
   hal::DriveLoop<B>& loop_;
   const Task& task_;
   LogRing& log_;
@@ -194,7 +228,9 @@ class Programme {
   std::vector<SetPoint<S>> hold_;
   std::vector<RemoteAxis> remote_;
   std::vector<char> dropped_;  // learned tables
+  std::vector<SaidRefusal> said_refusals_;
   Phase phase_ = Phase::enable;
+  Fault kept_off_ = Fault::none;
   std::uint64_t in_phase_ = 0;  // ticks
   std::uint64_t tick_ = 0;
   std::atomic<std::uint64_t> progress_ = 0;

@@ -60,18 +60,32 @@ RemoteAxisConfig remote_axis(const DriveConfiguration& c, const machine::AxisMod
                     "of at most {:g} mm between set-points, which means a period up to {:g} ms",
                     cycle * 1e3, of_axis, axis.max_velocity, most * 1e3, most / way * cycle * 1e3));
   RemoteAxisConfig config;
+  // Twice, as a controller's profile of limited jerk has peaks between its targets; and a window, as it begins with the
+  // measured position.
+  const double change = 2.0 * axis.max_acceleration * cycle * cycle + setup.target_window;
   config.interpolation = SetPointInterpolator::configure(
-      c.period_ns, ticks, held<SetPointInterpolator::Way>(std::min(way, most), of_axis + ".max_velocity"));
+      c.period_ns, ticks, held<SetPointInterpolator::Way>(std::min(way, most), of_axis + ".max_velocity"),
+      held<SetPointInterpolator::Way>(std::min(change, most), of_axis + ".max_acceleration"));
   config.streamed = c.setup.can_server.has_value();
   config.low = held<S::Position>(setup.negative_end.value(), of_drive + ".negative_end");
   config.high = held<S::Position>(setup.positive_end.value(), of_drive + ".positive_end");
   config.profile = {S::seconds(c.period_ns), S::rate(c.period_ns),
                     smoothing_bits(setup.profile_jerk_time, timing.fast_period)};
-  const double change = axis.max_acceleration * timing.fast_period;
+  const double tick_change = axis.max_acceleration * timing.fast_period;
   const auto fastest_change =
-      std::max(held<S::Velocity>(change, of_axis + ".max_acceleration"), S::Velocity::from_raw(1));
+      std::max(held<S::Velocity>(tick_change, of_axis + ".max_acceleration"), S::Velocity::from_raw(1));
   config.fastest = {
       {}, held<S::Velocity>(axis.max_velocity, of_axis + ".max_velocity"), fastest_change, fastest_change};
+  if (setup.stops.halt == 2)
+    config.halting =
+        held<S::Velocity>(setup.quick_stop_deceleration * timing.fast_period, of_drive + ".quick_stop_deceleration");
+  const auto ticks_of = [&](double time) { return static_cast<std::uint32_t>(std::ceil(time / timing.fast_period)); };
+  config.owner.reaction = static_cast<AbortReaction>(setup.stops.commander_lost);
+  const auto timeout_of = [&](CommandSource source) -> std::uint32_t& {
+    return config.owner.timeout_ticks[static_cast<std::size_t>(source)];
+  };
+  if (c.setup.can_server) timeout_of(CommandSource::can) = ticks_of(c.setup.can_server->commander_timeout);
+  if (c.setup.modbus_server) timeout_of(CommandSource::modbus) = ticks_of(c.setup.modbus_server->commander_timeout);
   config.target_window = held<S::Position>(setup.target_window, of_drive + ".target_window");
   return config;
 }
@@ -109,6 +123,7 @@ CanServerConfig can_server_config(const DriveConfiguration& c) {
   config.all_frames = server.all_frames;
   config.cycle_ticks = cycle_ticks(c);
   config.motion_allowed = server.motion_allowed;
+  config.heartbeat_node = server.heartbeat_node;
   config.follows_sync = server.sync_followed;
   config.sends_sync = !on_one_bus(c.setup) && !server.sync_followed;
   if (server.sync_followed && on_one_bus(c.setup))
@@ -151,7 +166,8 @@ std::vector<hal::CyclicFrame> can_server_frames(const DriveConfiguration& config
   if (config.sends_sync || config.follows_sync) frames.push_back(frame("server sync", 0, 1));
   constexpr std::array<const char*, 5> names{"mode", "target", "offsets", "state", "motion"};
   for (const auto& row : hal::can::pdo_table)
-    if (row.pdo != hal::can::Pdo::mode && (row.positions || config.all_frames))  // the mode is sent when it changes
+    // The mode is sent when it changes, and a speed in the place of a target.
+    if (row.pdo != hal::can::Pdo::mode && row.pdo != hal::can::Pdo::speed && (row.positions || config.all_frames))
       frames.push_back(frame(names[static_cast<std::size_t>(row.pdo)], row.size, axes));
   return frames;
 }

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <optional>
 #include <string>
 #include <vector>
@@ -73,17 +74,21 @@ class ControllerClock {
   bool said_ = false;
 };
 
-// The axes for a motion controller to see. `loop`, `programme`: whose state is sent; `can`: the server; `shown`: space
-// for one entry per axis.
+// Bit 9 of a bus that is not obeyed is not set.
+inline std::uint16_t statusword_on(std::uint16_t word, bool obeyed) {
+  return obeyed ? word : static_cast<std::uint16_t>(word & ~statusword::remote_bit);
+}
+
+// The axes for a motion controller to see, in the machine's coordinates. `loop`, `programme`: whose state is shown;
+// `obeyed`: whether its commands are; `shown`: space for one entry per axis.
 template <hal::Backend B>
-void answer_controller(const hal::DriveLoop<B>& loop, const Programme<B>& programme, CanServer& can,
-                       std::span<ShownAxis> shown) {
+void show_on_can(const hal::DriveLoop<B>& loop, const Programme<B>& programme, bool obeyed,
+                 std::span<ShownAxis> shown) {
   for (std::size_t i = 0; i < shown.size(); ++i) {
     const auto& signals = loop.loop().signals()[i];
-    shown[i] = {programme.statusword(i), machine::to_si(loop.drive(i).position()), machine::to_si(signals.v),
-                machine::to_si(signals.e)};
+    shown[i] = {statusword_on(programme.statusword(i), obeyed), machine::to_si(loop.drive(i).position()),
+                machine::to_si(signals.v), machine::to_si(signals.e)};
   }
-  can.send(shown);
 }
 
 // The axes for others to see. Wait-free. `loop`, `programme`: whose state is published; `period`: of the fast tick, s;
@@ -94,7 +99,10 @@ void show_on_modbus(const hal::DriveLoop<B>& loop, Programme<B>& programme, doub
   for (std::size_t i = 0; i < loop.axis_count(); ++i)
     if (loop.fault(i) != Fault::none) fault = loop.fault(i);
   modbus.publish(loop.loop().signals(), loop.now_ns(), fault, [&](std::size_t i, PublishedAxis& axis) {
-    axis.statusword = programme.statusword(i);
+    // Of the machine, as on CAN: homing has moved the zero of the encoder.
+    axis.position = machine::to_si(loop.drive(i).position());
+    axis.set_position = machine::to_si(loop.drive(i).set_position());
+    axis.statusword = statusword_on(programme.statusword(i), modbus.motion_allowed());
     axis.fault = loop.fault(i);
     const auto& inputs = loop.inputs(i);
     axis.limit_negative = inputs.limit_negative;
@@ -133,9 +141,9 @@ RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const Driv
     modbus.emplace(
         configuration.machine, configuration.setup,
         ModbusStore{.file = parameter_file(options),
-                    .machine_file = configuration.file,
-                    .options = {"", configuration.assignments},
-                    .begun = configuration.stored},
+                    .check = [options](const ParameterSet& set) { check_whole(options, set); },
+                    .begun = configuration.stored,
+                    .file_holds = !configuration.rejected_parameters},
         [&](PublishedState& state) {
           state.trace_rows = static_cast<std::uint32_t>(trace.rows());
           state.trace_lost = static_cast<std::uint32_t>(trace.lost());
@@ -169,7 +177,11 @@ RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const Driv
              },
          .round =
              [&] {
+               const int asked = hal::signal_asked;
+               hal::signal_asked = 0;
                if (!modbus) return;
+               if (asked == SIGUSR1) modbus->open_commissioning();
+               if (asked == SIGUSR2) modbus->close_commissioning();
                for (const auto& line : modbus->serve()) say(LogLevel::notice, line);
              }},
         2 * LoopWatchdog::limit_ns);  // behind the watchdog, which acts and does not speak
@@ -186,6 +198,13 @@ RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const Driv
     notify.ready(title);
     hal::start_is_over = true;
     record.begin();
+    if (configuration.rejected_parameters) {
+      say(LogLevel::error,
+          "the stored parameters are not used, but the set before them; the axes remain off (fault 50) "
+          "until the next start with parameters that can be used: " +
+              *configuration.rejected_parameters);
+      programme.keep_off(Fault::parameters_damaged);
+    }
     if (record.broken_off()) say(LogLevel::warning, "the last run did not end in order, but " + *record.broken_off());
     loop.begin();  // every thread has been made, and what came before took its time
     programme.tick(false);
@@ -205,7 +224,8 @@ RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const Driv
       tick_under_watch(programme, loop, hal::power_cut,
                        stop_asked || hal::stop_wanted != 0);  // by a signal: a controlled stop, then the end
       if (begins) {
-        answer_controller(loop, programme, *can, shown);
+        show_on_can(loop, programme, can->motion_allowed(), shown);
+        can->send(shown);
         if (clock != nullptr) controller_clock.follow(can->sync_age_ns(), *clock, log, loop.now_ns());
       }
       if (modbus && loop.loop().slow()) show_on_modbus(loop, programme, period, *modbus);

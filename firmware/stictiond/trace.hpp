@@ -19,13 +19,21 @@ class Trace {
   // Room for `ticks`; what comes after them is not kept.
   Trace(std::size_t axes, std::size_t ticks) : axes_(axes), signals_(axes * ticks), times_ns_(ticks) {}
 
-  void add(std::int64_t since_start_ns, std::span<const AxisSignals<FixedSignals>> signals) {
+  // `since_start_ns`: time of the tick; `signals`: of the axes; `origin(i)`: of the machine's coordinates, which the
+  // trace is in, in those of the encoder.
+  template <class Origin>
+  void add(std::int64_t since_start_ns, std::span<const AxisSignals<FixedSignals>> signals, Origin origin) {
     const std::size_t used = rows();
     if (used == times_ns_.size()) {
       lost_.store(lost() + 1, std::memory_order_relaxed);
       return;
     }
-    std::copy(signals.begin(), signals.end(), signals_.begin() + static_cast<std::ptrdiff_t>(used * axes_));
+    for (std::size_t i = 0; i < signals.size(); ++i) {
+      auto& kept = signals_[used * axes_ + i];
+      kept = signals[i];
+      kept.x = FixedSignals::Position::from_raw(kept.x.raw() - origin(i).raw());
+      kept.x_set = FixedSignals::Position::from_raw(kept.x_set.raw() - origin(i).raw());
+    }
     times_ns_[used] = since_start_ns;
     used_.store(used + 1, std::memory_order_relaxed);
   }

@@ -117,7 +117,8 @@ std::vector<ServerMessage> server_messages(double increment) {
            {{"statusword", 0, 16, false, 0, ""}, {"actual_position", 16, 32, true, 0, "m", increment}}},
           {"motion",
            Pdo::motion,
-           {{"actual_velocity", 0, 32, true, 0, "m/s", speed}, {"following_error", 32, 32, true, 0, "m", increment}}}};
+           {{"actual_velocity", 0, 32, true, 0, "m/s", speed}, {"following_error", 32, 32, true, 0, "m", increment}}},
+          {"speed", Pdo::speed, {controlword, {"target_velocity", 16, 32, true, 0, "m/s", speed}}}};
 }
 
 // A DBC file as it grows.

@@ -45,6 +45,7 @@ ControllerData decode_pdo(Pdo pdo, const Frame& frame) {
   data.controlword = get<std::uint16_t>(frame, 0);
   if (pdo == Pdo::mode) data.mode = get<std::int8_t>(frame, 2);
   if (pdo == Pdo::target) data.target = get<std::int32_t>(frame, 2);
+  if (pdo == Pdo::speed) data.speed = get<std::int32_t>(frame, 2);
   return data;
 }
 
@@ -58,6 +59,7 @@ Frame encode_pdo(Pdo pdo, int node, const ControllerData& data) {
   put(frame, data.controlword);
   if (pdo == Pdo::mode) put(frame, data.mode);
   if (pdo == Pdo::target) put(frame, data.target);
+  if (pdo == Pdo::speed) put(frame, data.speed);
   return frame;
 }
 

@@ -4,6 +4,8 @@
 //
 //   RPDO2 300h + node  3 B  6040h controlword, 6060h mode of operation
 //   RPDO3 400h + node  6 B  6040h controlword, 607Ah target position
+//         100h + node  6 B  6040h controlword, 60FFh target velocity; not of the predefined set, whose RPDO1 is a
+//         node's
 //   RPDO4 500h + node  6 B  60B1h velocity offset, 60B2h torque offset
 //   TPDO3 380h + node  6 B  6041h statusword, 6064h position actual value
 //   TPDO4 480h + node  8 B  606Ch velocity actual value, 60F4h following error
@@ -21,7 +23,7 @@
 
 namespace stiction::hal::can {
 
-enum class Pdo : std::uint8_t { mode, target, offsets, position, motion };
+enum class Pdo : std::uint8_t { mode, target, offsets, position, motion, speed };
 
 struct PdoDescription {
   Pdo pdo;
@@ -30,12 +32,13 @@ struct PdoDescription {
   bool received;      // by the drive
   bool positions;     // one of those without which no position is commanded
 };
-inline constexpr std::array<PdoDescription, 5> pdo_table{{
+inline constexpr std::array<PdoDescription, 6> pdo_table{{
     {Pdo::mode, 0x300, 3, true, true},
     {Pdo::target, 0x400, 6, true, true},
     {Pdo::offsets, 0x500, 6, true, false},
     {Pdo::position, 0x380, 6, false, true},
     {Pdo::motion, 0x480, 8, false, false},
+    {Pdo::speed, 0x100, 6, true, true},
 }};
 constexpr const PdoDescription& description_of(Pdo pdo) { return pdo_table[static_cast<std::size_t>(pdo)]; }
 
@@ -50,9 +53,10 @@ static_assert(apart_from_nodes());
 
 // What a PDO to the drive asks for; the objects that its kind carries.
 struct ControllerData {
-  std::uint16_t controlword = 0;     // 6040h: mode, target
+  std::uint16_t controlword = 0;     // 6040h: mode, target, speed
   std::int8_t mode = 0;              // 6060h: mode
   std::int32_t target = 0;           // 607Ah: target
+  std::int32_t speed = 0;            // 60FFh: speed
   std::int32_t velocity_offset = 0;  // 60B1h: offsets
   std::int16_t torque_offset = 0;    // 60B2h: offsets
 };

@@ -23,10 +23,15 @@ using S = FixedSignals;
 // As much of a drive as the axis asks for; its carriage is its set-point.
 struct Drive {
   S::Position at{};
+  S::Velocity v{};
   bool following = false;
   Fault seen = Fault::none;
   S::Position set_position() const { return at; }
   S::Position position() const { return at; }
+  S::Velocity set_velocity() const { return v; }
+  bool referenced() const { return true; }
+  bool powered() const { return following; }
+  bool standing() const { return v == S::Velocity{}; }
   bool follows() const { return following; }
   Fault fault() const { return seen; }
 };
@@ -59,8 +64,10 @@ void run_cycle(RemoteAxis& axis, Drive& drive) {
     if (axis.mode() == OperationMode::cyclic_position && word != 0) finding("bits of pp in csp");
     drive.seen = axis.fault();
     if (drive.seen != Fault::none || !set.valid) drive.following = false;
+    if (!drive.following) drive.v = {};
     if (!drive.following) continue;
     drive.at = set.position;
+    drive.v = set.velocity;
     const double x = machine::to_si(set.position);
     const bool profile = axis.mode() == OperationMode::profile_position;
     // Between targets of csp the polynomial may swing beyond the last one.
@@ -83,6 +90,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   drive::ControllerFrames frames(config, *log);
   std::array<RemoteAxis, 1> axes{RemoteAxis(axis_config((how >> 1) % 9))};
+  axes[0].ask(controlword::shutdown);  // an axis takes targets from its owner
   Drive drive;
   std::int64_t now_ns = 0;
   // Each frame: which PDO, or any identifier; what the drive does; size and data. A cycle behind it.

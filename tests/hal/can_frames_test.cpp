@@ -216,6 +216,7 @@ TEST(ProcessData, IsReadAsItWasWrittenAndAsTheDbcDescribesIt) {
     sent.controlword = static_cast<std::uint16_t>(random());
     sent.mode = static_cast<std::int8_t>(random());
     sent.target = static_cast<std::int32_t>(random());
+    sent.speed = static_cast<std::int32_t>(random());
     sent.velocity_offset = static_cast<std::int32_t>(random());
     sent.torque_offset = static_cast<std::int16_t>(random());
     for (const auto& row : pdo_table) {
@@ -236,6 +237,9 @@ TEST(ProcessData, IsReadAsItWasWrittenAndAsTheDbcDescribesIt) {
       EXPECT_EQ(found.controlword, sent.controlword);
       EXPECT_EQ(signals.at("controlword").read(frame), sent.controlword);
       EXPECT_EQ(found.mode, row.pdo == Pdo::mode ? sent.mode : 0);
+      EXPECT_EQ(found.speed, row.pdo == Pdo::speed ? sent.speed : 0);
+      EXPECT_NEAR(row.pdo == Pdo::speed ? signals.at("target_velocity").read(frame) : 0.0,
+                  found.speed * 1e3 * increment, 1e-9);
       if (row.pdo != Pdo::target) continue;
       EXPECT_EQ(found.target, sent.target);
       EXPECT_NEAR(signals.at("target_position").read(frame), sent.target * increment, 1e-12);

@@ -67,7 +67,7 @@ TEST(DriveStop, OnCommandTakesTheTimeOfItsDecelerationAndEndsWithoutPower) {
 }
 
 TEST(DriveStop, IsHeldUnderPowerWhereTheOptionSaysSoAndGoesOnFromThere) {
-  auto bench = moving_bench({}, [](auto& drive) { drive.states.hold_after_quick_stop = true; });
+  auto bench = moving_bench({}, [](auto& drive) { drive.stops.quick_stop = 6; });
   bench.want = Bench::Want::quick_stop;
   bench.run(8000);
   for (std::size_t k = 0; k < 2; ++k) {

@@ -244,6 +244,7 @@ std::vector<FaultCase> cases_of_backend_and_programme() {
       programme(Fault::parameters_damaged, "told by the programme"),
       programme(Fault::watchdog_starved, "told by the programme"),
       programme(Fault::set_points_lost, "told by the programme"),
+      programme(Fault::commander_lost, "told by the programme"),
   };
 }
 

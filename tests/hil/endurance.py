@@ -34,7 +34,8 @@ MACHINE = ["--machine", "emps", "--set", "drive.can.interface=vcan0", "--set", "
 DRIVE = ["axis.X.travel=60 m", "drive.axis.X.homing.method=index-positive", "drive.axis.X.homing.creep_speed=0.05 m/s",
          "drive.axis.X.quick_stop_deceleration=1 m/s^2",  # what the machine can
          "drive.axis.X.encoder_jump=20 um",  # 1 m/s^2 leaves 1 um from one tick to the next
-         f"drive.modbus_server.address=127.0.0.1:{PORT}", "drive.modbus_server.motion=allowed"]
+         f"drive.modbus_server.address=127.0.0.1:{PORT}", "drive.modbus_server.motion=allowed",
+         "drive.modbus_server.commander_timeout=0 s"]
 SCRIPT = loop.BUS + """
 {plant} >plant.txt 2>&1 &
 plant=$!

@@ -66,7 +66,8 @@ def script(name, faults=(), task=("--hold", "4"), beside=""):
 
 
 def served():
-    task = ["--set", f"drive.modbus_server.address=127.0.0.1:{PORT}", "--set", "drive.modbus_server.motion=allowed"]
+    task = ["--set", f"drive.modbus_server.address=127.0.0.1:{PORT}", "--set", "drive.modbus_server.motion=allowed",
+            "--set", "drive.modbus_server.commander_timeout=0 s"]
     return script("served", ["tracks-together,at=4 s"], task, SERVED.format(peer=HERE / "endurance_peer.py", port=PORT))
 
 

@@ -33,7 +33,8 @@ python3 {folder}/motion_controller.py vcan1 1 --own-clock 0.00100015 --warm-up 5
 kill -TERM $(pidof stictiond)) &
 """
 # The lines of docs/drive.md; on the nodes' own bus.
-SHARED = (*ALLOWED, "--set", "drive.can_server.interface=vcan0", "--set", "drive.can_server.data_bit_rate=8e6 bit/s")
+SHARED = (*ALLOWED, "--set", "drive.can_server.commander_timeout=0 s", "--set", "drive.can_server.interface=vcan0",
+          "--set", "drive.can_server.data_bit_rate=8e6 bit/s")
 BY_HAND = """(
 sleep 0.2
 candump -L vcan0,381:7FF >by_hand.log & dump=$!

@@ -63,6 +63,10 @@ stiction::HomingMethod method_of(HomingMethod method) {
       return stiction::HomingMethod::limit_negative;
     case HomingMethod::limit_positive:
       return stiction::HomingMethod::limit_positive;
+    case HomingMethod::home_positive:
+      return stiction::HomingMethod::home_positive;
+    case HomingMethod::home_negative:
+      return stiction::HomingMethod::home_negative;
     case HomingMethod::index_negative:
       return stiction::HomingMethod::index_negative;
     case HomingMethod::index_positive:
@@ -139,9 +143,20 @@ ServoDriveConfig<S> configure_drive(const Timing& timing, const AxisModel& axis,
                                                                   "quick_stop_deceleration");
   c.ramp.half_period = S::seconds(fast_period_ns(timing) / 2);
   c.ramp.rate = S::rate(fast_period_ns(timing));
+  const double slow_down = setup.slow_down_deceleration.value_or(setup.quick_stop_deceleration);
+  if (slow_down > setup.quick_stop_deceleration)
+    throw ConfigurationError(
+        fmt::format("drive.axis.{}.slow_down_deceleration: found {:g} m/s^2; expected at most "
+                    "quick_stop_deceleration, {:g} m/s^2",
+                    axis.name, slow_down, setup.quick_stop_deceleration));
+  c.slow_down = convert.template resolved<typename S::Velocity>(slow_down * period, "slow_down_deceleration");
+  const auto& stops = setup.stops;
+  c.stops = {stops.quick_stop, stops.shutdown, stops.disable_operation, stops.halt, stops.fault_reaction};
   c.supervision = supervision_of<S>(timing, axis, setup, convert);
   c.homing = homing_of<S>(timing, setup, convert);
   c.standstill_speed = c.supervision.least_speed;
+  c.standstill_way = convert.template operator()<typename S::Position>(
+      standstill_speed * ServoDrive<S>::self_test_ticks * period, "supervision");
   c.stop_margin_ticks = convert.ticks(stop_margin, period, "quick_stop_deceleration");
   c.brake_ticks = convert.ticks(setup.brake_time, period, "brake_time");
   return c;

@@ -46,7 +46,7 @@ struct Table<CanServerSetup> : EmptyTable<CanServerSetup> {
   static constexpr std::string_view text = "CAN bus on which a motion controller gives the axes their set-points";
   static constexpr std::array<TextParameter<CanServerSetup>, 1> texts{
       {{"interface", &CanServerSetup::interface, "name of the network interface; may be that of [drive.can]"}}};
-  static constexpr std::array<Parameter<CanServerSetup>, 4> parameters{{
+  static constexpr std::array<Parameter<CanServerSetup>, 6> parameters{{
       {"bit_rate", "bit/s", {1e4, 1e6}, &CanServerSetup::bit_rate, 1e6, "bit rate of arbitration"},
       {"data_bit_rate",
        "bit/s",
@@ -66,6 +66,16 @@ struct Table<CanServerSetup> : EmptyTable<CanServerSetup> {
        &CanServerSetup::position_increment,
        1e-9,
        "a unit of target and actual position; a unit of velocity is 1000 of them a second"},
+      {"commander_timeout", "s", not_negative(60.0), &CanServerSetup::commander_timeout, 0.5,
+       "time without a frame for an axis, or a heartbeat, after which the controller that commands it is lost; 0: it "
+       "is "
+       "not watched"},
+      {"heartbeat_node",
+       "1",
+       {0, 127},
+       &CanServerSetup::heartbeat_node,
+       0.0,
+       "node of the controller, whose heartbeats at 700h + node count for all axes; 0: its frames alone count"},
   }};
   static constexpr std::tuple choices{
       ChoiceParameter<CanServerSetup, bool>{"sync", &CanServerSetup::sync_followed, server_syncs, false,
@@ -116,9 +126,14 @@ struct Table<ModbusServerSetup> : EmptyTable<ModbusServerSetup> {
   static constexpr std::string_view text = "data that the drive publishes to a PLC or an operator panel over Modbus";
   static constexpr std::array<TextParameter<ModbusServerSetup>, 1> texts{
       {{"address", &ModbusServerSetup::address, "HOST:PORT to listen on, or a serial device for RTU"}}};
-  static constexpr std::array<Parameter<ModbusServerSetup>, 2> parameters{{
+  static constexpr std::array<Parameter<ModbusServerSetup>, 4> parameters{{
       {"baud_rate", "1", {1200, 1000000}, &ModbusServerSetup::baud_rate, 115200.0, "bits a second of RTU, 8E1"},
       {"unit", "1", {1, 247}, &ModbusServerSetup::unit, 1.0, "address of the drive on RTU"},
+      {"commander_timeout", "s", not_negative(60.0), &ModbusServerSetup::commander_timeout, 1.0,
+       "time without a write to a register that moves an axis, after which the client that commands it is lost; 0: it "
+       "is not watched"},
+      {"commissioning_time", "s", not_negative(86400.0), &ModbusServerSetup::commissioning_time, 900.0,
+       "time for which SIGUSR1 lets clients write parameters; 0: never"},
   }};
   static constexpr std::tuple choices{ChoiceParameter<ModbusServerSetup, bool>{
       "motion", &ModbusServerSetup::motion_allowed, motion_permissions, false, "commands that move an axis"}};
@@ -133,11 +148,13 @@ struct Table<RealTimeSetup> : EmptyTable<RealTimeSetup> {
   }};
 };
 
-inline constexpr std::array<Choice<HomingMethod>, 6> homing_methods{{
+inline constexpr std::array<Choice<HomingMethod>, 8> homing_methods{{
     {"none", HomingMethod::none, "the encoder is absolute"},
     {"here", HomingMethod::here, "the present position (CiA 402 method 35)"},
     {"limit-negative", HomingMethod::limit_negative, "the negative limit switch (17)"},
     {"limit-positive", HomingMethod::limit_positive, "the positive limit switch (18)"},
+    {"home-positive", HomingMethod::home_positive, "the home switch, searched for in +x (19)"},
+    {"home-negative", HomingMethod::home_negative, "the home switch, searched for in -x (21)"},
     {"index-negative", HomingMethod::index_negative, "the next index in -x (33)"},
     {"index-positive", HomingMethod::index_positive, "the next index in +x (34)"},
 }};
@@ -152,6 +169,53 @@ struct Table<HomingSetup> : EmptyTable<HomingSetup> {
       {"creep_speed", "m/s", positive(0.1), &HomingSetup::creep_speed, 0.002, "speed off the switch or to the index"},
       {"offset", "m", any_value(), &HomingSetup::offset, 0.0, "position of the mark"},
   }};
+};
+
+// As many as stop_option_table has; the test of the table holds both together.
+inline constexpr std::array<Choice<std::int8_t>, 5> quick_stop_codes{{
+    {"off", 0, "power off at once, the axis coasts (code 0)"},
+    {"slow-down", 1, "slow_down_deceleration, then power off (1)"},
+    {"quick-stop", 2, "quick_stop_deceleration, then power off (2)"},
+    {"slow-down-held", 5, "slow_down_deceleration, then held under power (5)"},
+    {"quick-stop-held", 6, "quick_stop_deceleration, then held under power (6)"},
+}};
+inline constexpr std::array<Choice<std::int8_t>, 2> disable_codes{{
+    {"off", 0, "power off at once, the axis coasts (code 0)"},
+    {"slow-down", 1, "slow_down_deceleration, then power off (1)"},
+}};
+inline constexpr std::array<Choice<std::int8_t>, 2> halt_codes{{
+    {"slow-down", 1, "slow_down_deceleration; a profile its own deceleration (code 1)"},
+    {"quick-stop", 2, "quick_stop_deceleration (2)"},
+}};
+inline constexpr std::array<Choice<std::int8_t>, 3> fault_reaction_codes{{
+    {"off", 0, "power off at once, the axis coasts (code 0)"},
+    {"slow-down", 1, "slow_down_deceleration, then power off (1)"},
+    {"quick-stop", 2, "quick_stop_deceleration, then power off (2)"},
+}};
+
+inline constexpr std::array<Choice<std::int8_t>, 4> commander_lost_codes{{
+    {"none", 0, "nothing, the axis goes on (code 0)"},
+    {"fault", 1, "fault 53, a controlled stop; a reset is needed afterwards (1)"},
+    {"off", 2, "power off at once, the axis coasts (2)"},
+    {"quick-stop", 3, "a quick stop, without a fault (3)"},
+}};
+
+template <>
+struct Table<StopSetup> : EmptyTable<StopSetup> {
+  static constexpr std::string_view text = "how the axis stops: option codes of CiA 402";
+  static constexpr std::tuple choices{
+      ChoiceParameter<StopSetup, std::int8_t>{"quick_stop", &StopSetup::quick_stop, quick_stop_codes, 2,
+                                              "605Ah, by bit 2 of the controlword or a fault of a different axis"},
+      ChoiceParameter<StopSetup, std::int8_t>{"shutdown", &StopSetup::shutdown, disable_codes, 1,
+                                              "605Bh, from operation enabled to ready to switch on"},
+      ChoiceParameter<StopSetup, std::int8_t>{"disable_operation", &StopSetup::disable_operation, disable_codes, 1,
+                                              "605Ch, from operation enabled to switched on"},
+      ChoiceParameter<StopSetup, std::int8_t>{"halt", &StopSetup::halt, halt_codes, 1,
+                                              "605Dh, by bit 8 of the controlword"},
+      ChoiceParameter<StopSetup, std::int8_t>{"fault_reaction", &StopSetup::fault_reaction, fault_reaction_codes, 2,
+                                              "605Eh, of a fault that ends in a controlled stop"},
+      ChoiceParameter<StopSetup, std::int8_t>{"commander_lost", &StopSetup::commander_lost, commander_lost_codes, 1,
+                                              "6007h, when nothing more is heard of who commands the axis"}};
 };
 
 inline constexpr Range line_numbers{-1, 1023};
@@ -198,7 +262,7 @@ struct Table<LineSetup> : EmptyTable<LineSetup> {
 template <>
 struct Table<DriveAxisSetup> : EmptyTable<DriveAxisSetup> {
   static constexpr std::string_view text = "one axis as the drive's programme runs it";
-  static constexpr std::array<Parameter<DriveAxisSetup>, 12> parameters{{
+  static constexpr std::array<Parameter<DriveAxisSetup>, 13> parameters{{
       {"node", "1", {0, 127}, &DriveAxisSetup::node, 0.0, "node of its power stage and encoder on the bus; 0: none"},
       {"server_node",
        "1",
@@ -208,6 +272,12 @@ struct Table<DriveAxisSetup> : EmptyTable<DriveAxisSetup> {
        "node of the axis on the bus of [drive.can_server]; 0: none"},
       {"quick_stop_deceleration", "m/s^2", positive(500.0), &DriveAxisSetup::quick_stop_deceleration, 10.0,
        "deceleration of a controlled stop"},
+      {"slow_down_deceleration",
+       "m/s^2",
+       positive(500.0),
+       &DriveAxisSetup::slow_down_deceleration,
+       {},
+       "deceleration of a stop by the slow-down ramp, at most that of a controlled stop; left out: the same"},
       {"brake_time", "s", not_negative(10.0), &DriveAxisSetup::brake_time, 0.0,
        "time that the brake takes to open or to close"},
       {"frozen_distance", "m", positive(0.1), &DriveAxisSetup::frozen_distance, 100e-6,
@@ -241,6 +311,7 @@ struct Table<DriveAxisSetup> : EmptyTable<DriveAxisSetup> {
   }};
   static constexpr std::tuple subtables{
       Subtable<DriveAxisSetup, HomingSetup>{"homing", &DriveAxisSetup::homing, Presence::optional},
+      Subtable<DriveAxisSetup, StopSetup>{"stops", &DriveAxisSetup::stops, Presence::optional},
       Subtable<DriveAxisSetup, LineSetup>{"line", &DriveAxisSetup::line, Presence::optional}};
 };
 

@@ -2,6 +2,7 @@
 // simulation knows nothing of it.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -24,6 +25,8 @@ struct CanServerSetup {
   double position_increment = 1e-9;     // m, a unit of 607Ah and 6064h
   bool sync_followed = false;           // the controller sends SYNC, and the drive's clock follows it
   bool all_frames = true;               // offsets, velocities and following errors too
+  double commander_timeout = 0.5;       // s without a frame of the controller that commands; 0: not watched
+  int heartbeat_node = 0;               // of the controller; 0: none
   bool motion_allowed = false;          // whether set-points and controlwords are taken
 };
 
@@ -48,10 +51,12 @@ struct ModbusClientSetup {
 
 // What the drive publishes to a PLC or an operator panel.
 struct ModbusServerSetup {
-  std::string address;          // "HOST:PORT" to listen on, or a serial device for RTU
-  int baud_rate = 115200;       // of RTU
-  int unit = 1;                 // on RTU
-  bool motion_allowed = false;  // whether commands that move an axis are taken
+  std::string address;                // "HOST:PORT" to listen on, or a serial device for RTU
+  int baud_rate = 115200;             // of RTU
+  int unit = 1;                       // on RTU
+  double commissioning_time = 900.0;  // s for which an operator lets clients write parameters; 0: never
+  double commander_timeout = 1.0;     // s without a write of the client that commands; 0: not watched
+  bool motion_allowed = false;        // whether commands that move an axis are taken
 };
 
 // What the loop does when it begins late.
@@ -60,14 +65,28 @@ struct RealTimeSetup {
   int cpu = -1;       // the loop's own; -1: any
 };
 
-enum class HomingMethod { none, here, limit_negative, limit_positive, index_negative, index_positive };
+enum class HomingMethod {
+  none,
+  here,
+  limit_negative,
+  limit_positive,
+  home_positive,
+  home_negative,
+  index_negative,
+  index_positive
+};
 
-// CiA 402 methods 35, 17, 18, 33, 34.
+// CiA 402 methods 35, 17, 18, 19, 21, 33, 34.
 struct HomingSetup {
   HomingMethod method = HomingMethod::none;
   double search_speed = 0.02;  // m/s
   double creep_speed = 0.002;  // m/s, away from the switch or to the index
   double offset = 0.0;         // m, the position of the mark
+};
+
+// Option codes of CiA 402: 605Ah to 605Eh and 6007h.
+struct StopSetup {
+  std::int8_t quick_stop = 2, shutdown = 1, disable_operation = 1, halt = 1, fault_reaction = 2, commander_lost = 1;
 };
 
 // Which level of a line says yes.
@@ -90,6 +109,7 @@ struct DriveAxisSetup {
   int node = 0;                                      // of the axis' power stage and encoder on the bus; 0: none
   int server_node = 0;                               // of the axis where [drive.can_server] serves it; 0: none
   double quick_stop_deceleration = 10.0;             // m/s^2
+  std::optional<double> slow_down_deceleration;      // m/s^2; none: quick_stop_deceleration
   double brake_time = 0.0;                           // s, that the brake takes to open or to close
   double frozen_distance = 100e-6;                   // m
   std::optional<double> encoder_jump;                // m; none: what the motor's force can make of it, at least 5 um
@@ -99,6 +119,7 @@ struct DriveAxisSetup {
   double profile_jerk_time = 16e-3;                  // s, by which a profile's acceleration comes and goes
   std::optional<double> negative_end, positive_end;  // m, of the travel, before the switches; none: half the travel
   HomingSetup homing;
+  StopSetup stops;
   LineSetup line;
 };
 

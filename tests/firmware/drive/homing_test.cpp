@@ -30,6 +30,7 @@ struct Axis {
       DigitalInputs<S> in;
       in.limit_negative = x <= negative;
       in.limit_positive = x >= positive;
+      in.home = x <= home_below || x >= home_above;
       in.index = (before < index) != (x < index);
       in.index_position = si<S::Position>(index);
       before = x;
@@ -44,6 +45,7 @@ struct Axis {
   Ramp::Config ramp{si<S::Velocity>(deceleration * tick), S::seconds(tick_ns / 2), S::rate(tick_ns)};
   Ramp::State set{};
   SaturationCounter saturations;
+  double home_below = -9.0, home_above = 9.0;
   double negative = -1.0, positive = 1.0, index = 2.0, before = 0.0, fastest = 0.0;
 };
 
@@ -58,6 +60,34 @@ TEST(Homing, FindsWhereASwitchOpensAndStandsBesideIt) {
     EXPECT_LT(std::abs(machine::to_si(a.set.position) - mark), 1e-6);  // 0.2 um to stop, and a tick
     EXPECT_NEAR(a.fastest, search, 1e-6);
   }
+}
+
+// Methods 19 and 21, from outside of the switch and from on it.
+TEST(Homing, FindsWhereAHomeSwitchOpens) {
+  for (const bool down : {true, false})
+    for (const bool on_it : {true, false}) {
+      Axis a(down ? HomingMethod::home_negative : HomingMethod::home_positive);
+      const double mark = (on_it ? 1.0 : -1.0) * (down ? 0.003 : -0.003);
+      (down ? a.home_below : a.home_above) = mark;
+      EXPECT_EQ(a.run(160000), Phase::done);
+      EXPECT_NEAR(machine::to_si(a.homing.origin()), mark - 0.3, creep * tick);
+      EXPECT_FALSE(a.homing.seeks_negative() || a.homing.seeks_positive());
+    }
+}
+
+TEST(Homing, ThatIsInterruptedKeepsWhatHasEnded) {
+  Axis a(HomingMethod::here);
+  EXPECT_EQ(a.run(2), Phase::done);
+  a.homing.interrupt();
+  EXPECT_EQ(a.homing.phase(), Phase::done);
+  Axis failed(HomingMethod::limit_negative);
+  EXPECT_EQ(failed.run(400000), Phase::failed);
+  failed.homing.interrupt();
+  EXPECT_EQ(failed.homing.phase(), Phase::failed);
+  Axis b(HomingMethod::limit_negative);
+  b.run(10);
+  b.homing.interrupt();
+  EXPECT_EQ(b.homing.phase(), Phase::idle);
 }
 
 TEST(Homing, FindsAnIndexAtCreepSpeed) {

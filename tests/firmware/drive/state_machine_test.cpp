@@ -39,7 +39,7 @@ StateMachine machine_in(DriveState state, bool hold) {
       {operation_enabled, {0x06, 0x07, 0x0f}},
       {quick_stop_active, {0x06, 0x07, 0x0f, 0x02}},
   };
-  for (const auto word : ways.at(state)) to(word);
+  for (const auto word : ways.at(state)) to(word, {.standing = true});
   return m;
 }
 
@@ -62,7 +62,7 @@ Expected expected(DriveState from, std::uint16_t word, const Conditions& c, bool
   if (from == not_ready_to_switch_on && c.initialised) return {1, switch_on_disabled};
   if (from == switch_on_disabled && shutdown) return {2, ready_to_switch_on};
   if (from == ready_to_switch_on && (switch_on || enable)) return {3, switched_on};
-  if (from == switched_on && enable) return {4, operation_enabled};
+  if (from == switched_on && enable && c.standing) return {4, operation_enabled};
   if (from == operation_enabled && switch_on && c.stop_ended) return {5, switched_on};
   if (from == switched_on && shutdown) return {6, ready_to_switch_on};
   if (from == ready_to_switch_on && (quick_stop || disable_voltage)) return {7, switch_on_disabled};
@@ -87,8 +87,9 @@ TEST(StateMachine, TakesEveryTransitionOfTheStandardAndNoOther) {
   for (const bool hold : {false, true})
     for (const auto from : states)
       for (std::uint16_t word = 0; word < 0x200; ++word)
-        for (int bits = 0; bits < 32; ++bits) {
-          const Conditions c{(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, (bits & 8) != 0, (bits & 16) != 0};
+        for (int bits = 0; bits < 64; ++bits) {
+          const Conditions c{(bits & 1) != 0, (bits & 2) != 0,  (bits & 4) != 0,
+                             (bits & 8) != 0, (bits & 16) != 0, (bits & 32) != 0};
           auto machine = machine_in(from, hold);
           ASSERT_EQ(machine.state(), from);
           const int taken = machine.step(word, c);
@@ -98,7 +99,7 @@ TEST(StateMachine, TakesEveryTransitionOfTheStandardAndNoOther) {
           seen.insert(taken);
           ++cases;
         }
-  EXPECT_EQ(cases, 2 * 8 * 512 * 32);
+  EXPECT_EQ(cases, 2 * 8 * 512 * 64);
   for (int number = 0; number <= 16; ++number) EXPECT_TRUE(seen.contains(number)) << "transition " << number;
 }
 
@@ -134,7 +135,8 @@ TEST(StateMachine, IsLedToOperationEnabledFromEveryState) {
   for (const auto from : states) {
     auto machine = machine_in(from, false);
     for (int i = 0; i < 8; ++i)
-      machine.step(controlword_to_enable(machine.state(), i % 2 == 1), {.initialised = true, .stop_ended = true});
+      machine.step(controlword_to_enable(machine.state(), i % 2 == 1),
+                   {.initialised = true, .stop_ended = true, .standing = true});
     EXPECT_EQ(machine.state(), operation_enabled) << "from " << static_cast<int>(from);
   }
 }

@@ -70,11 +70,42 @@ class BadInput(unittest.TestCase):
         (self.folder / "parameters.new").symlink_to(other)
         with Drive("--parameters", str(self.folder), log=subprocess.DEVNULL) as drive:
             client = drive.client()
+            drive.open_commissioning(client)
             client.write_float(VELOCITY_GAIN, 550)
             with self.assertRaises(Client.Refused):
                 client.write(STORE, PASSWORD)
             client.close()
         self.assertEqual(other.read_text(), "of a different owner")
+
+    def test_parameters_are_refused_until_an_operator_opens_the_window_and_nothing_is_stored(self):
+        with Drive("--parameters", str(self.folder), log=subprocess.DEVNULL) as drive:
+            client = drive.client()
+            for write in (lambda: client.write_float(VELOCITY_GAIN, 550), lambda: client.write(STORE, PASSWORD)):
+                with self.assertRaises(Client.Refused) as refused:
+                    write()
+                self.assertEqual(refused.exception.args, (1,))
+            drive.open_commissioning(client)
+            client.write_float(VELOCITY_GAIN, 550)
+            drive.process.send_signal(signal.SIGUSR2)
+            self.assertTrue(comes_true(lambda: client.read(16, 2)[1] == 0))
+            with self.assertRaises(Client.Refused):
+                client.write(STORE, PASSWORD)
+            client.close()
+        self.assertFalse((self.folder / "parameters").exists())
+
+    def test_a_stored_set_that_is_damaged_leaves_the_axes_off_with_fault_50(self):
+        (self.folder / "parameters").write_text("stiction.parameters/1\nlength 1\n")
+        status, said = self.run_drive("--parameters", str(self.folder), "--hold", "0.01")
+        self.assertEqual(status, FAULT, said)
+        self.assertIn("the axes remain off (fault 50)", said)
+        with Drive("--parameters", str(self.folder), log=subprocess.DEVNULL) as drive:
+            client = drive.client()
+            self.assertTrue(comes_true(lambda: client.read(102)[0] == 50))
+            for word in (6, 7, 15, 0, 0x80, 6, 7, 15):
+                client.write(100, word)
+                self.assertEqual(client.state() & 0x4F, 0x08)
+            self.assertEqual(client.read(120)[0], 0x6320)
+            client.close()
 
     def test_a_second_drive_of_the_same_folder_is_refused(self):
         with Drive("--parameters", str(self.folder), log=subprocess.DEVNULL) as first:

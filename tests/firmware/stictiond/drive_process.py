@@ -5,6 +5,7 @@ The axis runs in its own time (`--unpaced`), so that no load of this machine mak
 
 import os
 import pathlib
+import signal as signals
 import socket
 import struct
 import subprocess
@@ -12,7 +13,7 @@ import time
 
 BIN = pathlib.Path(os.environ["STICTION_BIN"])
 PATIENCE = 60.0  # s, for what another process must do; far more than a busy machine needs
-CONTROLWORD, STATUSWORD = 100, 100
+CONTROLWORD, STATUSWORD, COMMISSIONING_TIME = 100, 100, 16
 ENABLED, STATE_MASK = 0x27, 0x6F
 
 
@@ -87,13 +88,15 @@ class Client:
 
 
 class Drive:
-    """The process. `log`: a file descriptor or subprocess.PIPE for standard error; `options`: further ones."""
+    """The process. `log`: a file descriptor or subprocess.PIPE for standard error; `options`: further ones; `settings`: of
+    a drive that serves. Its clients are not watched: they do not write each second of the drive's own time."""
 
     def __init__(self, *options, log=subprocess.PIPE, out=subprocess.PIPE, hal=("simulated", "--unpaced"),
-                 command=(), machine="emps", serve=True, **more):
+                 command=(), machine="emps", serve=True, settings=(), **more):
         self.port = free_port()
         served = ("--set", f"drive.modbus_server.address=127.0.0.1:{self.port}",
-                  "--set", "drive.modbus_server.motion=allowed") if serve else ()
+                  "--set", "drive.modbus_server.motion=allowed", "--set", "drive.modbus_server.commander_timeout=0 s",
+                  *settings) if serve else ()
         self.process = subprocess.Popen(
             [*command, BIN / "stictiond", "--machine", machine, "--hal", *hal, *served, *options],
             stdout=out, stderr=log, **more)
@@ -122,6 +125,11 @@ class Drive:
             return True
         assert comes_true(connects), "the drive does not listen"
         return found[0]
+
+    def open_commissioning(self, client):
+        """As an operator: clients may write parameters."""
+        self.process.send_signal(signals.SIGUSR1)
+        assert comes_true(lambda: client.read(COMMISSIONING_TIME, 2)[1] > 0), "the window does not open"
 
     def end(self, signal=None):
         """Its exit status, after `signal`; raises subprocess.TimeoutExpired where it does not end."""

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -135,25 +136,56 @@ TEST(ModbusRegisters, TellMotionFromParameters) {
   }
 }
 
-TEST(ModbusRegisters, StoreWhatTheMachineFileTakesAndNothingElse) {
-  const auto folder = std::filesystem::temp_directory_path() / ("stiction-modbus-" + std::to_string(::getpid()));
-  std::filesystem::create_directories(folder);
-  const auto file = folder / "parameters";
+TEST(ModbusRegisters, TakeBackWhatWasWrittenSinceTheLastSet) {
   auto registers = registers_of_cross_table();
-  registers.remember({"axis.X.velocity_controller.gain", 550.0});
-  registers.store(file, machine_file);
-  const auto stored = drive::read_parameters(file);
-  ASSERT_TRUE(stored);
-  EXPECT_EQ(stored->values.at("axis.X.velocity_controller.gain"), 550.0);
+  const auto gain = index_of(registers, "axis.X.velocity_controller.gain");
+  const auto frequency = index_of(registers, "axis.X.notch.frequency");
+  const drive::ParameterSet kept{registers.written().machine, {{"axis.X.velocity_controller.gain", 550.0}}};
+  registers.remember({"axis.X.velocity_controller.gain", 520.0});
+  registers.remember({"axis.X.notch.frequency", 9000.0});
+  registers.take_back(kept);
+  EXPECT_EQ(registers.written(), kept);
+  EXPECT_EQ(read_all(registers, {}).values[gain], 550.0);
+  EXPECT_NE(read_all(registers, {}).values[frequency], 9000.0);
+  registers.take_back({});
+  EXPECT_TRUE(registers.written().values.empty());
+  EXPECT_EQ(read_all(registers, {}).values[gain], 600.0);
+}
 
-  auto next = registers_of_cross_table();
-  next.set_written(*stored);
-  EXPECT_EQ(read_all(next, {}).values[index_of(next, "axis.X.velocity_controller.gain")], 550.0);
-  // Above half of the fast loop's rate, which no range of the register says.
-  next.remember({"axis.X.notch.frequency", 9000.0});
-  EXPECT_THROW(next.store(file, machine_file), machine::MachineFileError);
-  EXPECT_EQ(drive::read_parameters(file), stored);
-  std::filesystem::remove_all(folder);
+// Each limit, a little to both sides of what is in force.
+TEST(DriveParameters, OfLimitsAreOnlyMadeTighterOverABus) {
+  const auto machine = cross_table({"axis.X.supervision.following_error=2 mm", "axis.X.supervision.over_current=80 A",
+                                    "axis.X.supervision.over_speed=1.5 m/s"});
+  auto setup = machine::read_drive_setup(machine_file, machine);
+  setup.axes.at("X").slow_down_deceleration = 5.0;
+  setup.axes.at("X").brake_time = 0.1;
+  int tried = 0;
+  for (const auto& p : drive::drive_parameters(machine, setup)) {
+    if (p.key.find(".X.") == std::string::npos || !p.value) continue;
+    const auto limit = std::find_if(drive::limit_parameters.begin(), drive::limit_parameters.end(),
+                                    [&](const auto& row) { return p.key.ends_with("." + std::string(row.key)); });
+    const double more = *p.value + std::abs(*p.value) * 0.01, less = *p.value - std::abs(*p.value) * 0.01;
+    EXPECT_EQ(drive::rejection_of(p, *p.value), "");
+    if (limit == drive::limit_parameters.end()) {
+      EXPECT_EQ(drive::rejection_of(p, more) + drive::rejection_of(p, less), "");
+      continue;
+    }
+    const bool down = limit->tightens == drive::Tightens::down;
+    EXPECT_EQ(drive::rejection_of(p, down ? less : more), "") << p.key;
+    const auto said = drive::rejection_of(p, down ? more : less);
+    EXPECT_NE(said.find(p.key), std::string::npos) << said;
+    EXPECT_NE(said.find(down ? "expected at most" : "expected at least"), std::string::npos) << said;
+    ++tried;
+  }
+  EXPECT_EQ(tried, static_cast<int>(drive::limit_parameters.size()));
+}
+
+TEST(DriveParameters, OfALimitThatTheFileLeavesOutAreRefused) {
+  drive::DriveParameter p;
+  p.key = "axis.X.supervision.over_speed";
+  p.unit = "m/s";
+  const auto said = drive::rejection_of(p, 1.0);
+  EXPECT_NE(said.find("expected a value in the machine file first"), std::string::npos) << said;
 }
 
 // Printed by modbus_register_page(); what it should be lies beside the figures after a failure.

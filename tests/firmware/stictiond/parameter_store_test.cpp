@@ -34,14 +34,14 @@ template <class Write>
 Outcome lose_power(int cuts, Write write) {
   std::mt19937_64 random(20260107);
   LosingDisk whole;
-  drive::write_parameters(store, numbered_set(0), whole);
+  drive::write_parameters(store, numbered_set(0), drive::KeepAsPrevious::the_file, whole);
   const std::size_t first = whole.steps_done();
-  drive::write_parameters(store, numbered_set(1), whole);
+  drive::write_parameters(store, numbered_set(1), drive::KeepAsPrevious::the_file, whole);
   const std::size_t one = whole.steps_done() - first;
   Outcome outcome;
   for (int cut = 0; cut < cuts; ++cut) {
     LosingDisk disk;
-    drive::write_parameters(store, numbered_set(0), disk);
+    drive::write_parameters(store, numbered_set(0), drive::KeepAsPrevious::the_file, disk);
     disk.power_for(random() % (3 * one));
     int done = 0;
     try {
@@ -61,7 +61,7 @@ Outcome lose_power(int cuts, Write write) {
       else
         ++outcome.mixed;
       // What the cut left lying about does not disturb the next write.
-      drive::write_parameters(store, numbered_set(100), disk);
+      drive::write_parameters(store, numbered_set(100), drive::KeepAsPrevious::the_file, disk);
       EXPECT_EQ(drive::read_parameters(store, disk), numbered_set(100));
     } catch (const ParametersDamaged&) {
       ++outcome.damaged;
@@ -72,8 +72,9 @@ Outcome lose_power(int cuts, Write write) {
 
 TEST(ParameterStore, KeepsTheOldOrTheNewSetWholeWhereverThePowerGoes) {
   constexpr int cuts = 1000;
-  const Outcome outcome =
-      lose_power(cuts, [](LosingDisk& disk, const ParameterSet& set) { drive::write_parameters(store, set, disk); });
+  const Outcome outcome = lose_power(cuts, [](LosingDisk& disk, const ParameterSet& set) {
+    drive::write_parameters(store, set, drive::KeepAsPrevious::the_file, disk);
+  });
   figure("power loss while parameters are written",
          fmt::format("{} cut points: {} whole, {} mixed, {} lost, {} damaged (bound: all whole)", cuts, outcome.whole,
                      outcome.mixed, outcome.lost, outcome.damaged));
@@ -87,7 +88,7 @@ TEST(ParameterStore, KeepsNothingOrTheFirstSetWhole) {
     LosingDisk disk;
     disk.power_for(random() % 700);
     try {
-      drive::write_parameters(store, numbered_set(1), disk);
+      drive::write_parameters(store, numbered_set(1), drive::KeepAsPrevious::the_file, disk);
     } catch (const PowerLost&) {
     }
     disk.power_on(random);
@@ -125,6 +126,48 @@ TEST(ParameterStore, WritesAndReadsOnARealDiskAndKeepsTheSetBefore) {
     EXPECT_EQ(drive::read_parameters(file), numbered_set(number));
   }
   EXPECT_EQ(drive::read_parameters(drive::previous_of(file)), numbered_set(2));
+  std::filesystem::remove_all(folder);
+}
+
+// A file that was refused does not take the place of the good set before it, wherever the power goes.
+TEST(ParameterStore, KeepsTheGoodSetBeforeWhereTheFileWasRefused) {
+  std::mt19937_64 random(7);
+  int cut = 0;
+  for (int writes = 0; writes < 1000; ++writes) {
+    LosingDisk disk;
+    drive::write_parameters(store, numbered_set(1), drive::KeepAsPrevious::the_file, disk);
+    drive::write_parameters(store, numbered_set(2), drive::KeepAsPrevious::the_file, disk);  // 1 is the set before
+    disk.power_for(random() % 600);
+    try {
+      drive::write_parameters(store, numbered_set(3), drive::KeepAsPrevious::what_is_there, disk);
+    } catch (const PowerLost&) {
+      ++cut;
+    }
+    disk.power_on(random);
+    EXPECT_EQ(drive::read_parameters(drive::previous_of(store), disk), numbered_set(1));
+    const auto found = drive::read_parameters(store, disk);
+    EXPECT_TRUE(found == numbered_set(2) || found == numbered_set(3));
+  }
+  EXPECT_GT(cut, 300);
+}
+
+// A file that grows without end is not read into memory.
+TEST(ParameterStore, ReadsNoMoreThanASetCanHave) {
+  const auto folder = std::filesystem::temp_directory_path() / ("stiction-large-" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  const auto file = folder / "parameters";
+  std::ofstream(file).put('x');
+  std::filesystem::resize_file(file, std::uintmax_t{1} << 33);  // 8 GiB without a block
+  EXPECT_LT(drive::system_files().read(file)->size(), std::size_t{2} << 20);
+  try {
+    drive::read_parameters(file);
+    FAIL() << "taken";
+  } catch (const ParametersDamaged& error) {
+    EXPECT_NE(std::string(error.what()).find("expected at most 1048576"), std::string::npos) << error.what();
+  }
+  std::filesystem::remove(file);
+  std::filesystem::create_symlink("/etc/hostname", file);
+  EXPECT_THROW(drive::read_parameters(file), std::system_error) << "a link is not followed";
   std::filesystem::remove_all(folder);
 }
 

@@ -72,7 +72,7 @@ TEST(RemoteSetup, SharesTheBusOfTheNodesWithTheSameBitRatesAndWithoutASecondSync
               HasSubstr("found drive.can_server.sync = \"followed\" on the interface of [drive.can], can0"));
   const auto config = drive::can_config(c);
   EXPECT_THAT(config.others, ::testing::IsSupersetOf({0x40bu, 0x38cu, 0x50bu, 0x48cu, 0x30bu}));
-  EXPECT_EQ(config.others.size(), 10U);
+  EXPECT_EQ(config.others.size(), 12U);
   EXPECT_EQ(drive::can_bus_budget(c).rows.size(), 3U + 4U);
   const auto apart = configuration(served);
   EXPECT_TRUE(drive::can_server_config(apart).sends_sync);

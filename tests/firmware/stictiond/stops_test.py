@@ -38,6 +38,7 @@ class Stops(unittest.TestCase):
         drive = self.drive("--parameters", str(self.folder), env={**os.environ, "LD_PRELOAD": HELD_FSYNC, "HELD_FSYNC": str(held)})
         storing, stopping = self.client(drive), self.client(drive)
         stopping.enable()
+        drive.open_commissioning(storing)
         storing.write_float(VELOCITY_GAIN, 550)
         storing.send(bytes([6, 0, STORE, PASSWORD >> 8, PASSWORD & 0xFF]))
         for round in range(20):
@@ -56,11 +57,15 @@ class Stops(unittest.TestCase):
         self.assertEqual(drive.end(signal.SIGTERM), 0)
 
     def test_parameters_that_cannot_be_stored_are_answered_so(self):
-        client = self.client(self.drive())
+        drive = self.drive()
+        client = self.client(drive)
+        drive.open_commissioning(client)
         with self.assertRaises(Client.Refused) as refused:  # without --parameters
             client.write(STORE, PASSWORD)
         self.assertEqual(refused.exception.args, (SLAVE_FAILURE,))
-        client = self.client(self.drive("--parameters", str(self.folder)))
+        drive = self.drive("--parameters", str(self.folder))
+        client = self.client(drive)
+        drive.open_commissioning(client)
         (self.folder / "parameters.new").mkdir()
         client.write_float(VELOCITY_GAIN, 550)
         with self.assertRaises(Client.Refused) as refused:
@@ -71,6 +76,7 @@ class Stops(unittest.TestCase):
         drive = self.drive()
         stopping = self.client(drive)
         stopping.enable()
+        drive.open_commissioning(stopping)
         end, refused = threading.Event(), set()
 
         def flood(client):

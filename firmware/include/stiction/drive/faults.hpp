@@ -38,6 +38,7 @@ enum class Fault : std::uint8_t {
   parameters_damaged = 50,
   watchdog_starved = 51,
   set_points_lost = 52,
+  commander_lost = 53,
 };
 
 enum class Detector : std::uint8_t { axis, supervision, backend, programme };
@@ -52,60 +53,72 @@ struct FaultDescription {
   Fault fault;
   const char* name;
   const char* condition;
-  int detection_ticks;  // of the fast loop, from the first violating sample; 0: depends on the signal
+  int detection_ticks;       // of the fast loop, from the first violating sample; 0: depends on the signal
+  std::uint16_t error_code;  // 603Fh, and of an emergency message: IEC 61800-7-201 and CiA 301
   Detector detector = Detector::axis;
   Reaction reaction = Reaction::disable;
+  bool loses_reference = false;  // the encoder may have lost its place: what counts from homing on is not to be used
 };
 
 // Reset of all: a fault reset, taken only when the cause has gone, then a new start of the axis.
-inline constexpr std::array<FaultDescription, 24> fault_table{{
-    {Fault::following_error, "following error", "|x_set - x| above supervision.following_error", 1},
-    {Fault::over_current, "over-current", "|i| above supervision.over_current", 1},
-    {Fault::over_speed, "over-speed", "|v| above supervision.over_speed", 1},
-    {Fault::position_lost, "position lost", "no valid encoder position in three ticks in a row", 3},
-    {Fault::drive_input, "drive fault input", "the power stage or the encoder reports a fault", 1},
+inline constexpr std::array<FaultDescription, 25> fault_table{{
+    {Fault::following_error, "following error", "|x_set - x| above supervision.following_error", 1, 0x8611},
+    {Fault::over_current, "over-current", "|i| above supervision.over_current", 1, 0x2310},
+    {Fault::over_speed, "over-speed", "|v| above supervision.over_speed", 1, 0x8400},
+    {Fault::position_lost, "position lost", "no valid encoder position in three ticks in a row", 3, 0x7305,
+     Detector::axis, Reaction::disable, true},
+    {Fault::drive_input, "drive fault input", "the power stage or the encoder reports a fault", 1, 0x5400,
+     Detector::axis, Reaction::disable, true},
     {Fault::set_point, "set-point",
-     "a set-point that is not a number or exceeds the number format; from a bus: beyond the travel or max_velocity", 1},
+     "a set-point that is not a number or exceeds the number format; from a bus: beyond the travel, max_velocity or "
+     "max_acceleration",
+     1, 0x8612, Detector::axis, Reaction::quick_stop},
     {Fault::limit_cycle, "limit cycle",
-     "current or voltage goes from one limit to the other more than 12 times in 125 ms", 0},
+     "current or voltage goes from one limit to the other more than 12 times in 125 ms", 0, 0x8a00},
     {Fault::encoder_frozen, "encoder frozen",
-     "new samples repeat exactly the same position while the set-point moved by frozen_distance", 0,
-     Detector::supervision},
+     "new samples repeat exactly the same position while the set-point moved by frozen_distance", 0, 0x7305,
+     Detector::supervision, Reaction::disable, true},
     {Fault::encoder_jump, "encoder jump",
-     "the position differs by more than encoder_jump from the one that the speed predicts", 1, Detector::supervision},
+     "the position differs by more than encoder_jump from the one that the speed predicts", 1, 0x7305,
+     Detector::supervision, Reaction::disable, true},
     {Fault::current_offset, "current sensor offset",
-     "|i_A + i_B + i_C|, or one phase current without power, is above current_sum for 16 ticks in a row", 16,
+     "|i_A + i_B + i_C|, or one phase current without power, is above current_sum for 16 ticks in a row", 16, 0x7200,
      Detector::supervision},
     {Fault::runaway, "runaway",
      "the speed rises within 16 ticks against a force above runaway_current, by more than half of the change that this "
      "force would cause",
-     16, Detector::supervision},
-    {Fault::limit_switch, "limit switch", "a limit switch is reached while the axis moves towards it", 1,
+     16, 0x7302, Detector::supervision},
+    {Fault::limit_switch, "limit switch", "a limit switch is reached while the axis moves towards it", 1, 0xff14,
      Detector::supervision, Reaction::quick_stop},
     {Fault::limit_switch_stuck, "limit switch stuck",
-     "both limit switches are active at once, one is active far inside its end, or none is active beyond it", 1,
+     "both limit switches are active at once, one is active far inside its end, or none is active beyond it", 1, 0xff15,
      Detector::supervision, Reaction::quick_stop},
-    {Fault::homing, "homing", "the switch or index was not found within the travel or the time", 0,
+    {Fault::homing, "homing", "the switch or index was not found within the travel or the time", 0, 0xff16,
      Detector::supervision, Reaction::quick_stop},
-    {Fault::frames_lost, "frames lost", "no valid frame of a node in three ticks in a row", 3, Detector::backend},
+    {Fault::frames_lost, "frames lost", "no valid frame of a node in three ticks in a row", 3, 0x8100,
+     Detector::backend, Reaction::disable, true},
     {Fault::frames_disturbed, "frames disturbed",
-     "more than 10 frames were late, duplicated, out of order, stale or damaged within a second", 1, Detector::backend,
-     Reaction::quick_stop},
-    {Fault::bus_off, "bus off", "the CAN controller left the bus", 1, Detector::backend},
-    {Fault::bus_overload, "bus overload", "more than 16 frames with an unknown identifier arrived within 16 ticks", 16,
+     "more than 10 frames were late, duplicated, out of order, stale or damaged within a second", 1, 0x8100,
      Detector::backend, Reaction::quick_stop},
+    {Fault::bus_off, "bus off", "the CAN controller left the bus", 1, 0x8140, Detector::backend, Reaction::disable,
+     true},
+    {Fault::bus_overload, "bus overload", "more than 16 frames with an unknown identifier arrived within 16 ticks", 16,
+     0x8110, Detector::backend, Reaction::quick_stop},
     {Fault::encoder_signal, "encoder signal",
-     "quadrature edges came faster than quadrature_rate, an edge was lost, or both tracks changed at once", 1,
-     Detector::backend},
-    {Fault::missed_deadline, "missed deadline", "two ticks in a row began later than a period", 2, Detector::programme,
-     Reaction::quick_stop},
+     "quadrature edges came faster than quadrature_rate, an edge was lost, or both tracks changed at once", 1, 0x7305,
+     Detector::backend, Reaction::disable, true},
+    {Fault::missed_deadline, "missed deadline", "two ticks in a row began later than a period", 2, 0xff30,
+     Detector::programme, Reaction::quick_stop},
     {Fault::clock_jump, "clock jump", "the clock went back, or advanced by more than 100 ms between two ticks", 1,
-     Detector::programme},
+     0xff31, Detector::programme},
     {Fault::parameters_damaged, "parameters damaged", "version, length or checksum of the parameter file is wrong", 0,
-     Detector::programme, Reaction::refuse_start},
-    {Fault::watchdog_starved, "watchdog starved", "the loop made no progress within the watchdog time", 0,
+     0x6320, Detector::programme, Reaction::refuse_start},
+    {Fault::watchdog_starved, "watchdog starved", "the loop made no progress within the watchdog time", 0, 0x6010,
      Detector::programme},
     {Fault::set_points_lost, "set-points lost", "no new set-point arrived from the bus in three cycles in a row", 0,
+     0x8700, Detector::programme, Reaction::quick_stop},
+    {Fault::commander_lost, "commander lost",
+     "no command or heartbeat of the axis' owner came within commander_timeout while the axis had power", 0, 0x8130,
      Detector::programme, Reaction::quick_stop},
 }};
 
@@ -113,6 +126,12 @@ constexpr const FaultDescription* description_of(Fault fault) {
   for (const auto& row : fault_table)
     if (row.fault == fault) return &row;
   return nullptr;
+}
+
+// 603Fh; 0: no fault.
+constexpr std::uint16_t error_code_of(Fault fault) {
+  const auto* row = description_of(fault);
+  return row == nullptr ? 0 : row->error_code;
 }
 
 constexpr const char* name_of(Fault fault) {

@@ -16,6 +16,8 @@ enum class HomingMethod : std::int8_t {
   none = 0,             // the encoder is absolute
   limit_negative = 17,  // onto the negative limit switch and off it again: where it opens
   limit_positive = 18,
+  home_positive = 19,   // onto a home switch in +x and off it again in -x: where it opens; on it: off it
+  home_negative = 21,   // the same in -x
   index_negative = 33,  // the next index mark in -x
   index_positive = 34,
   here = 35,  // where the axis stands
@@ -61,26 +63,26 @@ class Homing {
     state_ = {};
     state_.begin = position;
     state_.mark = position;
-    const bool to_switch =
-        config_.method == HomingMethod::limit_negative || config_.method == HomingMethod::limit_positive;
     state_.phase = config_.method == HomingMethod::none   ? Phase::done
                    : config_.method == HomingMethod::here ? Phase::settle
-                   : to_switch                            ? Phase::search
-                                                          : Phase::leave;
+                   : to_index()                           ? Phase::leave
+                                                          : Phase::search;
   }
 
   constexpr void stop() { state_.phase = Phase::idle; }
+  // Stops a search; what has ended is kept.
+  constexpr void interrupt() {
+    if (state_.phase != Phase::done && state_.phase != Phase::failed) stop();
+  }
 
   // The speed to which the set-point is to go in this tick. `set`: the set-point of the last tick. `measured`:
   // position, m; `inputs`: switches and index of this tick. Returns m/s.
   constexpr Velocity step(const typename Ramp::State& set, Position measured, const DigitalInputs<S>& inputs) {
-    const bool negative_end = config_.method == HomingMethod::limit_negative;
-    const bool to_index =
-        config_.method == HomingMethod::index_negative || config_.method == HomingMethod::index_positive;
-    const bool at_switch = negative_end ? inputs.limit_negative : inputs.limit_positive;
+    const bool at_home = config_.method == HomingMethod::home_negative || config_.method == HomingMethod::home_positive;
+    const bool at_switch = at_home ? inputs.home : to_negative() ? inputs.limit_negative : inputs.limit_positive;
     // A switch that bounces while the axis still runs onto it marks nothing.
-    const bool leaving = negative_end ? set.velocity > Velocity{} : set.velocity < Velocity{};
-    const bool marked = to_index ? inputs.index : leaving && !at_switch;
+    const bool leaving = to_negative() ? set.velocity > Velocity{} : set.velocity < Velocity{};
+    const bool marked = to_index() ? inputs.index : leaving && !at_switch;
     SaturationCounter none;  // ends in `failed`, as it is beyond every way
     const auto way = narrow<Position>(measured - state_.begin, none);
     const bool too_far = way > config_.longest_way || way < -config_.longest_way;
@@ -91,7 +93,7 @@ class Homing {
     } else if (state_.phase == Phase::search && at_switch) {
       state_.phase = Phase::leave;
     } else if (state_.phase == Phase::leave && marked) {
-      state_.mark = to_index ? inputs.index_position : measured;
+      state_.mark = to_index() ? inputs.index_position : measured;
       state_.phase = Phase::settle;
     } else if (state_.phase == Phase::settle && set.velocity == Velocity{}) {
       state_.origin = narrow<Position>(state_.mark - config_.offset, none);
@@ -111,13 +113,19 @@ class Homing {
     return config_.method == method && (state_.phase == Phase::search || state_.phase == Phase::leave);
   }
 
+  constexpr bool to_negative() const {
+    return config_.method == HomingMethod::limit_negative || config_.method == HomingMethod::index_negative ||
+           config_.method == HomingMethod::home_negative;
+  }
+  constexpr bool to_index() const {
+    return config_.method == HomingMethod::index_negative || config_.method == HomingMethod::index_positive;
+  }
+
   constexpr Velocity target() const {
-    const bool to_negative =
-        config_.method == HomingMethod::limit_negative || config_.method == HomingMethod::index_negative;
-    const bool back = config_.method == HomingMethod::limit_negative || config_.method == HomingMethod::limit_positive;
-    if (state_.phase == Phase::search) return to_negative ? opposite(config_.search_speed) : config_.search_speed;
+    if (state_.phase == Phase::search) return to_negative() ? opposite(config_.search_speed) : config_.search_speed;
     if (state_.phase != Phase::leave) return {};
-    return to_negative != back ? opposite(config_.creep_speed) : config_.creep_speed;
+    // Off a switch it goes back.
+    return to_negative() == to_index() ? opposite(config_.creep_speed) : config_.creep_speed;
   }
 
   HomingConfig<S> config_;

@@ -1,19 +1,26 @@
 // An axis that others command over a bus, from what they ask for to its set-point in each tick: cyclic synchronous
-// position (csp) from targets that come each cycle, profile position (pp) from one target at a time, both as CiA 402
-// (IEC 61800-7-201) has them. What asks is judged here, whatever bus it came over.
+// position and velocity (csp, csv) from targets that come each cycle, profile position and velocity (pp, pv) from one
+// target at a time, as CiA 402 (IEC 61800-7-201) has them. What asks is judged here, whatever bus it came over.
 //
 // csp: while the drive does not follow, the interpolator stands where the drive's set-point does, so that a controller
 // must begin with target = position. A target that is none, lies beyond the ends of the travel or is further from the
-// one before than max_velocity allows is an invalid set-point (fault set_point). Two cycles in a row without a target
-// are bridged with the acceleration that the motion has; the third is the fault set_points_lost.
+// one before than max_velocity and max_acceleration allow is an invalid set-point (fault set_point). Two cycles in a
+// row without a target are bridged with the acceleration that the motion has; the third is the fault set_points_lost.
 // pp: a rising edge of bit 4 offers the target with the profile's values that stand beside it. Bit 5: at once, else
 // behind the move under way, one of which waits. A move taken in motion brakes no less than the one before. What lies
-// beyond the ends is not acknowledged.
-// Another mode is taken when the set-point stands, or while the drive does not follow.
+// beyond the ends is not acknowledged, and no absolute target is where the zero of the axis is not known.
+// pv, csv: a move towards the end of the travel with the speed asked for, so that the axis brakes before the end; csv
+// with the machine's limits, without smoothing, and with the watch of csp over its cycles. Without a zero there are no
+// ends.
+// An axis beyond an end may go back in every mode, and no further out.
+// Another mode is taken when the set-point stands, or while the drive does not follow. A move of pp is ended first;
+// every other mode brakes.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
+#include "stiction/drive/command_owner.hpp"
 #include "stiction/drive/servo_drive.hpp"
 #include "stiction/motion/position_profile.hpp"
 #include "stiction/motion/set_point_interpolator.hpp"
@@ -21,14 +28,33 @@
 
 namespace stiction {
 
+// Why the last target was not taken; bits 7 and 11 of the statusword say that it was not.
+enum class Refusal : std::uint8_t { none, no_number, beyond_end, no_reference };
+struct RefusalDescription {
+  Refusal refusal;
+  const char* text;
+};
+inline constexpr std::array<RefusalDescription, 4> refusal_table{{
+    {Refusal::none, "nothing is refused"},
+    {Refusal::no_number, "found a target that is no number; expected one that the units of the bus hold"},
+    {Refusal::beyond_end,
+     "found a target beyond negative_end or positive_end; expected one within them, or nearer to them than the axis "
+     "is"},
+    {Refusal::no_reference,
+     "found an absolute target of an axis whose zero is not known; expected homing first (mode 6), or a relative move "
+     "or a speed"},
+}};
+
 struct RemoteAxisConfig {
   using S = FixedSignals;
-  SetPointInterpolator::Config interpolation{};  // with the way that max_velocity allows in a cycle
+  SetPointInterpolator::Config interpolation{};  // with the ways that the limits of the axis allow in a cycle
   bool streamed = false;                         // targets of csp come from outside; else csp holds where it is
   S::Position low{}, high{};                     // of targets: the ends of the travel
   PositionProfile::Config profile{};
   PositionProfile::Move fastest{};  // limits of a move; also what a move has that nobody gave values for
   S::Position target_window{};      // about the target, within which it is reached
+  CommandOwner::Config owner{};     // watch over who commands
+  S::Velocity halting{};            // change of the speed in a tick by which a profile halts at least (605Dh)
 };
 
 class RemoteAxis {
@@ -37,10 +63,20 @@ class RemoteAxis {
   static constexpr int cycles_bridged = 2;
 
   explicit constexpr RemoteAxis(const RemoteAxisConfig& config)
-      : config_(config), interpolator_(config.interpolation), profile_(config.profile), asked_move_(config.fastest) {}
+      : config_(config),
+        owner_(config.owner),
+        interpolator_(config.interpolation),
+        profile_(config.profile),
+        asked_move_(config.fastest) {}
 
+  // A controlword of a source; holds until changed. False: refused, as a different one owns the axis.
+  constexpr bool ask(std::uint16_t controlword, CommandSource source = CommandSource::can) {
+    return owner_.command(source, controlword);
+  }
+  // Who commands it. Sources whose values owner().accepts() not are to be kept off by who calls what follows.
+  constexpr const CommandOwner& owner() const { return owner_; }
+  constexpr void hear(CommandSource source) { owner_.hear(source); }
   // What is asked for; holds until changed.
-  constexpr void ask(std::uint16_t controlword) { controlword_ = controlword; }
   constexpr void ask(OperationMode mode) { asked_mode_ = mode; }
   // pp. `valid`: the bus gave a number that the formats hold; no move goes to another one.
   constexpr void ask_target(S::Position target, bool valid = true) {
@@ -55,6 +91,11 @@ class RemoteAxis {
   constexpr void ask_deceleration(S::Velocity change) {
     asked_move_.deceleration = within(change, config_.fastest.deceleration);
   }
+  // pv: 60FFh, held to the machine's limit.
+  constexpr void ask_speed(S::Velocity v) {
+    const auto most = config_.fastest.velocity, least = opposite(most);
+    asked_speed_ = v > most ? most : v < least ? least : v;
+  }
   // csp: as cyclic as the targets are, forgotten after as many cycles.
   constexpr void ask_offsets(S::Velocity velocity, S::Current current) {
     velocity_offset_ = velocity;
@@ -64,76 +105,121 @@ class RemoteAxis {
   // csp: a target of this cycle; the newest counts. `valid`: the bus gave a number that the formats hold.
   constexpr void offer(S::Position target, bool valid) {
     offered_ = target;
+    came_ |= 1u << position_bit;
     offered_valid_ = valid;
-    if (offers_ < cycles_bridged + 1) ++offers_;
+  }
+  // csv: the same, and a speed of pv as well.
+  constexpr void offer_speed(S::Velocity speed, bool valid) {
+    if (valid) ask_speed(speed);
+    came_ |= 1u << speed_bit;
+    speed_valid_ = valid;
   }
 
   // When a cycle begins, with what came for it.
   constexpr void begin_cycle() {
-    const bool came = offers_ > 0;
-    const int cycles = came && offers_ > missed_ ? offers_ : missed_ + 1;  // that the way may have taken
+    const bool wants_speed = mode_ == OperationMode::cyclic_velocity;
+    const bool came = (came_ >> (wants_speed ? speed_bit : position_bit) & 1u) != 0;
+    const bool came_speed = (came_ >> speed_bit & 1u) != 0;
+    came_ = 0;
+    if (came_speed && mode_ == OperationMode::profile_velocity) {
+      refusal_ = speed_valid_ ? Refusal::none : Refusal::no_number;  // the speed before it holds
+      refused_ = !speed_valid_;
+    }
     if (!came && missed_ <= cycles_bridged) ++missed_;
     if (came) missed_ = 0;
-    offers_ = 0;
     if (offset_age_ <= cycles_bridged)
       ++offset_age_;
     else
       forget_offsets();
-    if (!following_ || mode_ != OperationMode::cyclic_position || !config_.streamed) return;
+    // Held without a zero, it refuses what is not where it stands.
+    if (came && mode_ == OperationMode::cyclic_position && !referenced_) {
+      refusal_ = offered_valid_ && within_window(offered_, x_) ? Refusal::none : Refusal::no_reference;
+      refused_ = refusal_ != Refusal::none;
+    }
+    if (!following_ || !is_cyclic(mode_) || !streams()) return;
+    if (wants_speed) {
+      valid_ = !came || speed_valid_;
+      return;
+    }
     if (!came) return interpolator_.extrapolate();
-    valid_ = offered_valid_ && reachable(offered_) && near(offered_, cycles);
+    valid_ = offered_valid_ && allowed(offered_, interpolator_.target()) && interpolator_.can_take(offered_);
     // What is refused does not become a reference.
     if (!valid_) return interpolator_.extrapolate();
-    received_ = offered_;
     interpolator_.take(offered_);
   }
 
   // The set-point of the coming tick. `drive`: a ServoDrive, or what tells the same of one, as the last tick left it.
   template <class Drive>
   constexpr SetPoint<S> tick(const Drive& drive) {
+    owner_.tick(drive.powered());
+    controlword_ = owner_.word();
     const auto stands = drive.set_position();
     const bool follows = drive.follows();
-    const bool at_rest = mode_ == OperationMode::cyclic_position ? interpolator_.at_rest() : profile_.at_rest();
-    const bool changes = asked_mode_ != mode_ && (!follows || at_rest);
+    const bool at_rest = drive.set_velocity() == S::Velocity{} && (!follows || source_rests());
+    const bool changes = asked_mode_ != mode_ && at_rest;
+    referenced_ = drive.referenced();
+    standing_ = drive.standing();
+    // Behind a change too: a speed of before is none of the mode that follows.
     if (changes) mode_ = asked_mode_;
+    if (changes) forget_asked();
     // Another one begins where the last one ended.
     if (!follows || changes || !following_) begin(stands);
     following_ = follows;
     faulted_ = drive.fault() == Fault::set_points_lost;
     x_ = drive.position();
+    const bool leaves = asked_mode_ != mode_ && mode_ != OperationMode::profile_position;
+    brakes_ = leaves || (mode_ == OperationMode::cyclic_position && streams() && !referenced_);
     const bool edge = take_edge() && follows;
-    if (mode_ != OperationMode::profile_position) return csp_set_point();
-    if (edge) offer_move();
-    if (waits_ && profile_.arrived()) go(waiting_);
-    const auto point = profile_.step((controlword_ & controlword::halt_bit) != 0);
-    return {point.position, point.velocity, point.acceleration};
+    if (mode_ == OperationMode::profile_position) return move_set_point(edge);
+    if (mode_ == OperationMode::profile_velocity || mode_ == OperationMode::cyclic_velocity) return speed_set_point();
+    return csp_set_point();
   }
 
-  constexpr std::uint16_t controlword() const { return controlword_; }
+  constexpr std::uint16_t controlword() const { return owner_.word(); }
   constexpr OperationMode mode() const { return mode_; }                       // 6061h
   constexpr const PositionProfile::Move& move() const { return asked_move_; }  // the values asked for
+  constexpr S::Velocity speed() const { return asked_speed_; }                 // 60FFh
+  constexpr Refusal refusal() const { return refusal_; }  // of the last target, until one is taken or bit 4 falls
+  // Whether the drive is to brake to standstill in the coming tick, in place of its set-point.
+  constexpr bool brakes() const { return brakes_; }
   constexpr S::Velocity velocity_offset() const {
     return mode_ == OperationMode::cyclic_position ? velocity_offset_ : S::Velocity{};
   }
 
   // Of the coming tick; as long as its cause does.
   constexpr Fault fault() const {
-    const bool wanted = config_.streamed && mode_ == OperationMode::cyclic_position && (following_ || faulted_);
+    if (owner_.fault() != Fault::none) return owner_.fault();
+    const bool wanted = is_cyclic(mode_) && (faulted_ || (streams() && following_));
     return wanted && missed_ > cycles_bridged ? Fault::set_points_lost : Fault::none;
   }
 
-  // The drive's, with the bits of pp.
+  // The drive's, with the bits of the mode.
   constexpr std::uint16_t statusword(std::uint16_t of_drive) const {
-    if (mode_ != OperationMode::profile_position) return of_drive;
-    const bool halted = (controlword_ & controlword::halt_bit) != 0;
-    const bool near_target = !exceeds_window();
-    if (halted ? profile_.at_rest() : profile_.arrived() && !waits_ && near_target) of_drive |= statusword::target_bit;
-    if (acknowledged_ || waits_) of_drive |= statusword::acknowledge_bit;
-    if (refused_) of_drive |= statusword::limit_bit;
+    if (refused_) of_drive |= statusword::limit_bit | statusword::warning_bit;
+    if (mode_ == OperationMode::profile_position) of_drive |= bits_of_move();
+    if (mode_ == OperationMode::profile_velocity) of_drive |= bits_of_speed();
+    if (at_end_) of_drive |= statusword::limit_bit;
     return of_drive;
   }
 
  private:
+  static constexpr unsigned position_bit = 0, speed_bit = 1;  // of came_
+
+  static constexpr bool is_cyclic(OperationMode mode) {
+    return mode == OperationMode::cyclic_position || mode == OperationMode::cyclic_velocity;
+  }
+  // A PLC gives no targets each cycle: in csp its axis holds. One that nobody owns is being stopped.
+  constexpr bool streams() const { return config_.streamed && owner_.owner() == CommandSource::can; }
+  constexpr bool halted() const { return (controlword_ & controlword::halt_bit) != 0; }
+  constexpr bool source_rests() const {
+    return mode_ == OperationMode::cyclic_position ? interpolator_.at_rest() : profile_.at_rest();
+  }
+
+  constexpr void forget_asked() {
+    asked_speed_ = {};
+    refused_ = false;
+    refusal_ = Refusal::none;
+  }
   constexpr void forget_offsets() {
     velocity_offset_ = {};
     current_offset_ = {};
@@ -144,21 +230,21 @@ class RemoteAxis {
 
   constexpr void begin(S::Position position) {
     interpolator_.start(position);
-    profile_.start(position);
-    received_ = position;
+    profile_.start(position, mode_ != OperationMode::cyclic_velocity);
+    point_ = {position, {}, {}};
     valid_ = true;
-    waits_ = acknowledged_ = refused_ = false;
+    waits_ = acknowledged_ = at_end_ = false;
   }
 
-  constexpr bool reachable(S::Position target) const { return target >= config_.low && target <= config_.high; }
-  constexpr bool near(S::Position target, int cycles) const {
-    const auto way = target.raw() - received_.raw();  // both within the travel
-    const auto most = config_.interpolation.largest_way.raw() * cycles;
-    return way <= most && way >= -most;
+  // Within the ends, or not further out than where it is.
+  constexpr bool allowed(S::Position target, S::Position from) const {
+    const bool below = target < config_.low && target<from, above = target> config_.high && target > from;
+    return !below && !above;
   }
-  constexpr bool exceeds_window() const {
-    const auto off = x_.raw() - profile_.move().target.raw();
-    return off > config_.target_window.raw() || off < -config_.target_window.raw();
+  static constexpr S::Velocity larger(S::Velocity a, S::Velocity b) { return a < b ? b : a; }
+  constexpr bool within_window(S::Position a, S::Position b) const {
+    const auto off = a.raw() - b.raw();
+    return off <= config_.target_window.raw() && off >= -config_.target_window.raw();
   }
 
   constexpr SetPoint<S> csp_set_point() {
@@ -169,27 +255,81 @@ class RemoteAxis {
     return set;
   }
 
+  constexpr SetPoint<S> profile_set_point(bool halt) {
+    point_ = profile_.step(halt, config_.halting);
+    SetPoint<S> set{point_.position, point_.velocity, point_.acceleration};
+    set.valid = valid_;
+    return set;
+  }
+
+  constexpr SetPoint<S> move_set_point(bool edge) {
+    if (edge) offer_move();
+    if (waits_ && profile_.arrived()) go(waiting_);
+    return profile_set_point(halted());
+  }
+
+  // A cyclic speed changes by the machine's limits, one of pv by its profile.
+  constexpr SetPoint<S> speed_set_point() {
+    auto move = mode_ == OperationMode::cyclic_velocity ? config_.fastest : asked_move_;
+    const bool down = asked_speed_<S::Velocity{}, up = asked_speed_> S::Velocity{};
+    const auto beyond = down ? point_.position <= config_.low : up && point_.position >= config_.high;
+    at_end_ = referenced_ && beyond;
+    move.velocity = down ? opposite(asked_speed_) : asked_speed_;
+    move.target = referenced_ ? (down ? config_.low : config_.high) : far(down);
+    // While it halts the move stays the one that it brakes from.
+    const bool halt = halted() || at_end_ || !(down || up);
+    if (!profile_.at_rest()) move.deceleration = larger(move.deceleration, profile_.move().deceleration);
+    if (!halt && !(move == profile_.move())) profile_.go(move);
+    return profile_set_point(halt);
+  }
+  // Where nothing says how far the travel goes.
+  constexpr S::Position far(bool down) const {
+    constexpr std::int64_t way = std::int64_t{60} << 40;  // m; the profile holds 128 m from one end to the other
+    return S::Position::from_raw(profile_.base().raw() + (down ? -way : way));
+  }
+
+  constexpr std::uint16_t bits_of_move() const {
+    std::uint16_t bits = 0;
+    const bool near_target = within_window(x_, profile_.move().target);
+    if (halted() ? profile_.at_rest() : profile_.arrived() && !waits_ && near_target) bits |= statusword::target_bit;
+    if (acknowledged_ || waits_) bits |= statusword::acknowledge_bit;
+    return bits;
+  }
+  constexpr std::uint16_t bits_of_speed() const {
+    std::uint16_t bits = 0;
+    const auto wanted = halted() || at_end_ ? S::Velocity{} : asked_speed_;
+    if (point_.velocity == wanted && following_) bits |= statusword::target_bit;
+    if (standing_) bits |= statusword::speed_zero_bit;
+    return bits;
+  }
+
   constexpr bool take_edge() {
     const bool bit = (controlword_ & controlword::new_set_point_bit) != 0;
     const bool edge = bit && !bit_before_;
     bit_before_ = bit;
-    if (!bit) acknowledged_ = refused_ = false;
+    if (!bit) acknowledged_ = false;
+    if (!bit && mode_ == OperationMode::profile_position) refused_ = false;
     return edge;
   }
 
   constexpr void offer_move() {
     auto move = asked_move_;
-    if ((controlword_ & controlword::relative_bit) != 0) {
+    const bool relative = (controlword_ & controlword::relative_bit) != 0;
+    if (relative) {
       const auto& before = waits_ ? waiting_ : profile_.move();
       move.target = narrow<S::Position>(before.target + asked_move_.target, saturations_);
     }
-    refused_ = !has_target_ || !reachable(move.target);
+    refusal_ = !has_target_                                            ? Refusal::no_number
+               : !referenced_ && !relative                             ? Refusal::no_reference
+               : referenced_ && !allowed(move.target, point_.position) ? Refusal::beyond_end
+                                                                       : Refusal::none;
+    refused_ = refusal_ != Refusal::none;
     if (refused_) return;
     const bool at_once = (controlword_ & controlword::at_once_bit) != 0;
-    if (at_once && !profile_.at_rest() && move.deceleration < profile_.move().deceleration)
-      move.deceleration = profile_.move().deceleration;  // else it might not stop before the end of the travel
+    // Else it might not stop before the end of the travel.
+    if (at_once && !profile_.at_rest()) move.deceleration = larger(move.deceleration, profile_.move().deceleration);
     if (at_once || profile_.arrived()) return go(move);
-    if (waits_) return;  // no room: not acknowledged anew
+    if (waits_) return;  // no room: not acknowledged again
     waiting_ = move;
     waits_ = true;
   }
@@ -200,24 +340,29 @@ class RemoteAxis {
   }
 
   RemoteAxisConfig config_;
+  CommandOwner owner_;
   SetPointInterpolator interpolator_;
   PositionProfile profile_;
   PositionProfile::Move asked_move_;
   std::uint16_t controlword_ = controlword::disable_voltage;
   OperationMode asked_mode_ = OperationMode::cyclic_position, mode_ = OperationMode::cyclic_position;
-  S::Velocity velocity_offset_{};
+  S::Velocity velocity_offset_{}, asked_speed_{};
   S::Current current_offset_{};
-  // csp
-  S::Position offered_{}, received_{};
-  int offers_ = 0, missed_ = 0;  // in this cycle; cycles in a row without one
-  int offset_age_ = 0;           // cycles
-  bool offered_valid_ = false, valid_ = true;
-  // pp
+  // csp, csv
+  S::Position offered_{};
+  unsigned came_ = 0;   // in this cycle
+  int missed_ = 0;      // cycles in a row without one
+  int offset_age_ = 0;  // cycles
+  bool offered_valid_ = false, speed_valid_ = false, valid_ = true;
+  // pp, pv, csv
   PositionProfile::Move waiting_{};
-  bool has_target_ = false, bit_before_ = false, acknowledged_ = false, waits_ = false, refused_ = false;
+  PositionProfile::Point point_{};
+  bool has_target_ = false, bit_before_ = false, acknowledged_ = false, waits_ = false;
+  bool at_end_ = false, brakes_ = false, refused_ = false;
+  Refusal refusal_ = Refusal::none;
   // The drive in the last tick.
   S::Position x_{};
-  bool following_ = false, faulted_ = false;
+  bool following_ = false, faulted_ = false, referenced_ = true, standing_ = true;
   SaturationCounter saturations_;
 };
 

@@ -4,8 +4,10 @@
 // machine's, which homing shifts.
 //
 // While the power stage is off the set-point follows the measured position, so that an enabled axis begins where it
-// stands. A fault whose reaction is a quick stop ends in a stop by the ramp; any other fault on the way takes the power
-// off at once, and so does a stop that is not over stop_margin_ticks after its set-point came to rest.
+// stands; an axis that moves is not enabled. A fault whose reaction is a quick stop ends in a stop by the ramp; any
+// other fault on the way takes the power off at once, and so does a stop that is not over stop_margin_ticks after its
+// set-point came to rest. Whatever is asked for, the speed of the set-point changes by the ramps here or by those of
+// its source (remote_axis.hpp), or the power goes: homing that is left in motion brakes before the next mode is taken.
 #pragma once
 
 #include <array>
@@ -15,6 +17,7 @@
 #include "stiction/drive/axis.hpp"
 #include "stiction/drive/homing.hpp"
 #include "stiction/drive/state_machine.hpp"
+#include "stiction/drive/stop_options.hpp"
 #include "stiction/drive/supervision.hpp"
 #include "stiction/motion/velocity_ramp.hpp"
 
@@ -22,13 +25,17 @@ namespace stiction {
 
 template <class S>
 struct ServoDriveConfig {
-  StateMachine::Config states{};
-  typename VelocityRamp<S>::Config ramp{};  // of stops and of homing
+  StopCodes stops{};
+  typename VelocityRamp<S>::Config ramp{};  // of quick stops and of homing
+  typename S::Velocity slow_down{};         // change of the speed in a tick of the slow-down ramp; at most that of ramp
   SupervisionConfig<S> supervision{};
   HomingConfig<S> homing{};
   typename S::Velocity standstill_speed{};  // of the measured speed, below which a stop is over
-  std::uint32_t stop_margin_ticks = 1600;   // 100 ms at 62.5 us
-  std::uint32_t brake_ticks = 0;            // that the brake takes to open or to close; 0: none
+  // Way in self_test_ticks, up to which an axis is at rest and may be enabled. Not by a speed: 50 nm of noise are 1
+  // mm/s in a tick, and a coarse encoder stands still for most ticks.
+  typename S::Position standstill_way{};
+  std::uint32_t stop_margin_ticks = 1600;  // 100 ms at 62.5 us
+  std::uint32_t brake_ticks = 0;           // that the brake takes to open or to close; 0: none
 };
 
 // What is asked of an axis in a tick.
@@ -39,6 +46,7 @@ struct DriveDemand {
   SetPoint<S> set_point{};                 // csp and pp, of the machine's coordinates
   typename S::Velocity velocity_offset{};  // 60B1h, added to the set speed while the drive follows
   std::array<Fault, 3> causes{};           // what programme, clock and backend see in this tick
+  bool brake = false;                      // to standstill under power, whatever set_point says
   bool quick_stop = false;                 // another axis has a fault
 };
 
@@ -65,13 +73,16 @@ class ServoDrive {
   static constexpr std::uint8_t standstill_ticks = 160;
 
   explicit constexpr ServoDrive(const ServoDriveConfig<S>& config)
-      : config_(config), machine_(config.states), supervision_(config.supervision), homing_(config.homing) {
+      : config_(config),
+        machine_({.hold_after_quick_stop = way_of(StopObject::quick_stop, config.stops.quick_stop).held}),
+        supervision_(config.supervision),
+        homing_(config.homing) {
     referenced_ = config.homing.method == HomingMethod::none;
   }
 
   // Takes the power off and begins with the self-test. Before the first tick, with its feedback.
   constexpr void start(const Feedback<S>& feedback, Axis<S>& axis) {
-    measured_ = feedback.position;
+    measured_ = rested_at_ = feedback.position;
     last_ = {feedback.position, {}};
     axis.start(feedback);
     axis.stop();
@@ -84,14 +95,18 @@ class ServoDrive {
                                const DigitalInputs<S>& inputs, std::int64_t now_ns, Axis<S>& axis) {
     events_ = {};
     fault_raised_ = false;
+    supplied_ = !feedback.fault;
     const Fault supervised = supervision_.step(seen(feedback, inputs, now_ns, axis));
     if (supervision_.fresh()) measured_ = feedback.position;
+    watch_rest();
     const bool unfound = homing_.phase() == Homing<S>::Phase::failed;
     bool present = cause_holds(demand, feedback, axis);
     // One by one: a cause that stays must not hide another one.
     for (const Fault fault : demand.causes) present |= raise(fault, now_ns, axis);
     present |= raise(supervised, now_ns, axis);
     present |= raise(unfound ? Fault::homing : Fault::none, now_ns, axis);
+    // Before the cascade sees it, so that a ramp takes the place of what is no set-point.
+    raise(follows_ && !demand.set_point.valid ? Fault::set_point : Fault::none, now_ns, axis);
     self_test_ = present ? 0 : self_test_ < self_test_ticks ? static_cast<std::uint8_t>(self_test_ + 1) : self_test_;
     advance_states(demand, feedback, present, axis);
     return set_point(demand, inputs);
@@ -121,20 +136,19 @@ class ServoDrive {
   constexpr Position position() const { return to_machine(measured_); }
   // Where the set-point stands, machine's coordinates: where a source of set-points begins after enabling or homing.
   constexpr Position set_position() const { return to_machine(last_.position); }
+  constexpr Velocity set_velocity() const { return last_.velocity; }
+  constexpr bool standing() const { return rest_ticks_ == self_test_ticks; }  // measured
   // Of the last call, before() or after(): the first fault and the one on top of it; Fault::none: nothing happened.
   constexpr const std::array<DriveEvent<S>, 2>& events() const { return events_; }
   constexpr typename Homing<S>::Phase homing_phase() const { return homing_.phase(); }
 
   constexpr std::uint16_t statusword() const {
-    std::uint16_t word = statusword::of(machine_.state()) | statusword::remote_bit;
-    if (powered_) word |= statusword::voltage_bit;
-    if (mode_ == OperationMode::homing) {
-      using Phase = typename Homing<S>::Phase;
-      if (homing_.phase() == Phase::done) word |= statusword::homed_bit | statusword::target_bit;
-      if (homing_.phase() == Phase::failed) word |= statusword::homing_error_bit;
-    } else if (follows_ && mode_ == OperationMode::cyclic_position) {
-      word |= statusword::follows_bit;
-    }
+    std::uint16_t word = statusword::of(machine_.state());
+    if (supplied_) word |= statusword::voltage_bit;
+    if (!referenced_) word |= statusword::unreferenced_bit;
+    if (mode_ == OperationMode::homing) return static_cast<std::uint16_t>(word | homing_bits());
+    const bool cyclic = mode_ == OperationMode::cyclic_position || mode_ == OperationMode::cyclic_velocity;
+    if (follows_ && cyclic) word |= statusword::follows_bit;
     return word;
   }
 
@@ -142,6 +156,34 @@ class ServoDrive {
   constexpr Position to_machine(Position x) const {
     SaturationCounter none;
     return narrow<Position>(x - origin_, none);
+  }
+
+  constexpr void watch_rest() {
+    const auto way = measured_.raw() - rested_at_.raw();
+    if (way > config_.standstill_way.raw() || way < -config_.standstill_way.raw()) {
+      rested_at_ = measured_;
+      rest_ticks_ = 0;
+    } else if (rest_ticks_ < self_test_ticks) {
+      ++rest_ticks_;
+    }
+  }
+
+  // Bits 13, 12 and 10 of homing: error, attained, at rest.
+  constexpr std::uint16_t homing_bits() const {
+    using Phase = typename Homing<S>::Phase;
+    const auto phase = homing_.phase();
+    std::uint16_t bits = 0;
+    if (phase == Phase::done) bits |= statusword::homed_bit;
+    if (phase == Phase::failed) bits |= statusword::homing_error_bit;
+    const bool ended = phase == Phase::idle || phase == Phase::done || phase == Phase::failed;
+    if (ended && last_.velocity == Velocity{}) bits |= statusword::target_bit;
+    return bits;
+  }
+
+  // A code that the table does not have is refused where it is configured; here it takes the power off at once.
+  static constexpr StopOption way_of(StopObject object, std::int8_t code) {
+    const auto* row = stop_option(object, code);
+    return row == nullptr ? StopOption{object, code, StopRamp::none} : *row;
   }
 
   constexpr typename Supervision<S>::Seen seen(const Feedback<S>& feedback, const DigitalInputs<S>& inputs,
@@ -186,9 +228,10 @@ class ServoDrive {
     events_[following ? 1 : 0] = {fault, following, now_ns, position(), last_.velocity};
     (following ? following_ : fault_) = fault;
     const auto* row = description_of(fault);
+    const auto way = way_of(StopObject::fault_reaction, config_.stops.fault_reaction);
     const bool stops = !following && row != nullptr && row->reaction == Reaction::quick_stop && powered_;
-    if (stops) {
-      stopping_ = true;
+    if (stops && way.ramp != StopRamp::none) {
+      begin_stop(way, axis);
     } else {
       axis.trip(fault, now_ns);
       power_off(axis);
@@ -196,22 +239,35 @@ class ServoDrive {
     return true;
   }
 
+  // A stop that is under way is never made slower.
+  constexpr void begin_stop(const StopOption& way, Axis<S>& axis) {
+    if (way.ramp == StopRamp::none) return power_off(axis);
+    fast_ = way.ramp == StopRamp::quick_stop || (stopping_ && fast_);
+    stopping_ = true;
+  }
+
   constexpr void power_off(Axis<S>& axis) {
     axis.stop();
     homing_.stop();
     powered_ = false;
     stopping_ = false;
+    fast_ = false;
     follows_ = false;
   }
 
   constexpr void advance_states(const DriveDemand<S>& demand, const Feedback<S>& feedback, bool present,
                                 Axis<S>& axis) {
-    mode_ = demand.mode;
+    // Homing has set-points of its own, which no other source continues.
+    leaves_homing_ = powered_ && mode_ == OperationMode::homing && demand.mode != mode_ && last_.velocity != Velocity{};
+    if (!leaves_homing_) mode_ = demand.mode;
     controlword_ = demand.controlword;
     const auto before = machine_.state();
     if (before == DriveState::operation_enabled) {
       const auto command = command_of(demand.controlword);
-      stopping_ |= command == DriveCommand::shutdown || command == DriveCommand::switch_on;
+      if (command == DriveCommand::shutdown)
+        begin_stop(way_of(StopObject::shutdown, config_.stops.shutdown), axis);
+      else if (command == DriveCommand::switch_on)
+        begin_stop(way_of(StopObject::disable_operation, config_.stops.disable_operation), axis);
       // A stop once begun is finished: by its end the set-points have gone on.
       if (stopping_ && command == DriveCommand::enable_operation)
         controlword_ = static_cast<std::uint16_t>(controlword_ & ~controlword::enable_operation_bit);
@@ -220,19 +276,20 @@ class ServoDrive {
                                                     .fault = fault_raised_,
                                                     .quick_stop = demand.quick_stop,
                                                     .stop_ended = stop_ended(),
+                                                    .standing = standing(),
                                                     .cause_present = present});
     switch (taken) {
       case 4:
         power_on(feedback, axis);
         break;
       case 11:
-        stopping_ = true;
+        begin_stop(way_of(StopObject::quick_stop, config_.stops.quick_stop), axis);
         break;
       case 15:
         forget(feedback, axis);
         break;
       case 16:
-        stopping_ = false;
+        stopping_ = fast_ = false;
         stop_ticks_ = 0;
         brake_closing_ = false;
         hold_ticks_ = config_.brake_ticks;
@@ -249,7 +306,7 @@ class ServoDrive {
   constexpr void power_on(const Feedback<S>& feedback, Axis<S>& axis) {
     restart(feedback, axis);
     powered_ = true;
-    stopping_ = false;
+    stopping_ = fast_ = false;
     brake_closing_ = false;
     hold_ticks_ = config_.brake_ticks;
     stop_ticks_ = 0;
@@ -273,8 +330,8 @@ class ServoDrive {
 
   // Whether the encoder may have lost its place.
   static constexpr bool lost_by(Fault fault) {
-    return fault == Fault::encoder_frozen || fault == Fault::encoder_jump || fault == Fault::position_lost ||
-           fault == Fault::encoder_signal;
+    const auto* row = description_of(fault);
+    return row != nullptr && row->loses_reference;
   }
 
   // The set-point has come to rest and the carriage stands, or the margin is over; then the brake has closed.
@@ -298,10 +355,14 @@ class ServoDrive {
       last_ = {measured_, {}};
       return {last_.position, {}, {}};
     }
-    if (stopping_ || machine_.state() != DriveState::operation_enabled) return ramped({});
+    if (stopping_ || machine_.state() != DriveState::operation_enabled) return ramped({}, stopping_ && !fast_);
     if (hold_ticks_ != 0) {  // the brake opens
       --hold_ticks_;
       return ramped({});
+    }
+    if (demand.brake || leaves_homing_ || halted()) {
+      homing_.interrupt();  // a mark that is passed while it brakes is none
+      return ramped({}, way_of(StopObject::halt, config_.stops.halt).ramp == StopRamp::slow_down);
     }
     if (mode_ == OperationMode::homing) return ramped(homing_speed(inputs));
     homing_.stop();
@@ -313,8 +374,16 @@ class ServoDrive {
     return set;
   }
 
-  constexpr SetPoint<S> ramped(Velocity target) {
-    const auto acceleration = Ramp::step(config_.ramp, last_, target, saturations_);
+  // Sources of profiles brake by themselves, in their own deceleration.
+  constexpr bool halted() const {
+    const bool here = mode_ == OperationMode::homing || mode_ == OperationMode::cyclic_position;
+    return here && (controlword_ & controlword::halt_bit) != 0;
+  }
+
+  constexpr SetPoint<S> ramped(Velocity target, bool slowly = false) {
+    auto ramp = config_.ramp;
+    if (slowly) ramp.change = config_.slow_down;
+    const auto acceleration = Ramp::step(ramp, last_, target, saturations_);
     return {last_.position, last_.velocity, acceleration};
   }
 
@@ -344,9 +413,11 @@ class ServoDrive {
   Fault fault_ = Fault::none, following_ = Fault::none;
   bool fault_raised_ = false;
   bool powered_ = false, stopping_ = false, brake_closing_ = false, follows_ = false, referenced_ = false;
-  std::uint8_t self_test_ = 0, standing_ = 0;
+  bool fast_ = false;  // the stop, by the quick-stop ramp
+  bool leaves_homing_ = false, supplied_ = true;
+  std::uint8_t self_test_ = 0, standing_ = 0, rest_ticks_ = 0;
   std::uint32_t hold_ticks_ = 0, stop_ticks_ = 0;
-  Position measured_{}, origin_{};
+  Position measured_{}, rested_at_{}, origin_{};
   Velocity v_{};
   typename S::Current i_set_{};  // of the last tick
   typename Ramp::State last_{};  // the set-point of the last tick, the encoder's coordinates

@@ -22,9 +22,26 @@ enum class DriveState : std::uint8_t {
 // Modes of operation 6060h that the drive has.
 enum class OperationMode : std::int8_t {
   profile_position = 1,  // pp: the drive moves to a target by itself (remote_axis.hpp)
+  profile_velocity = 3,  // pv: the drive goes to a speed by itself
   homing = 6,
   cyclic_position = 8,  // csp: a set-point each tick
+  cyclic_velocity = 9,  // csv: a speed each cycle
 };
+
+// 6502h, a bit a mode: bit 0 is mode 1.
+inline constexpr std::array<OperationMode, 5> supported_modes{
+    OperationMode::profile_position, OperationMode::profile_velocity, OperationMode::homing,
+    OperationMode::cyclic_position, OperationMode::cyclic_velocity};
+constexpr bool is_supported(int mode) {
+  for (const auto known : supported_modes)
+    if (static_cast<int>(known) == mode) return true;
+  return false;
+}
+constexpr std::uint32_t supported_mode_bits() {
+  std::uint32_t bits = 0;
+  for (const auto known : supported_modes) bits |= 1u << (static_cast<unsigned>(known) - 1);
+  return bits;
+}
 
 // Bits of 6040h, and the words that give the commands.
 namespace controlword {
@@ -56,8 +73,8 @@ constexpr DriveCommand command_of(std::uint16_t word) {
 class StateMachine {
  public:
   struct Config {
-    // Quick stop option code 605Ah. False: 2, the power goes off behind the stop; true: 6, the axis is held and may be
-    // enabled again from there (transition 16).
+    // Quick stop option code 605Ah. False: 0 to 2, the power goes off behind the stop; true: 5 and 6, the axis is held
+    // and may be enabled again from there (transition 16).
     bool hold_after_quick_stop = false;
   };
 
@@ -67,6 +84,7 @@ class StateMachine {
     bool fault = false;          // one was seen in this tick
     bool quick_stop = false;     // demanded by the drive itself, as by bit 2 of the controlword
     bool stop_ended = false;     // a controlled stop is over, or none is under way
+    bool standing = false;       // the axis is at rest: none that coasts is enabled
     bool cause_present = false;  // what led to the fault still holds: no reset
   };
 
@@ -88,7 +106,7 @@ class StateMachine {
     if (conditions.quick_stop && command != DriveCommand::disable_voltage) command = DriveCommand::quick_stop;
     const unsigned open = (conditions.initialised ? initialised : 0u) | (conditions.fault ? faulted : 0u) |
                           (conditions.stop_ended ? stop_ended : 0u) | (reset ? reset_taken : 0u) |
-                          (config_.hold_after_quick_stop ? held : let_go);
+                          (conditions.standing ? standing : 0u) | (config_.hold_after_quick_stop ? held : let_go);
     Transition taken{};
     for (const auto& row : table) {
       const bool holds = row.from == state_.state && (row.commands & static_cast<unsigned>(command)) != 0 &&
@@ -107,7 +125,8 @@ class StateMachine {
     unsigned gates = 0;     // what must hold beside
   };
 
-  static constexpr unsigned initialised = 1, faulted = 2, stop_ended = 4, reset_taken = 8, held = 16, let_go = 32;
+  static constexpr unsigned initialised = 1, faulted = 2, stop_ended = 4, reset_taken = 8, held = 16, let_go = 32,
+                            standing = 64;
   static constexpr unsigned disable_voltage = 1, quick_stop = 2, shutdown = 4, switch_on = 8, enable = 16, any = 31;
 
   // Those of a fault come first: nothing else happens in its tick.
@@ -123,7 +142,7 @@ class StateMachine {
       {1, DriveState::not_ready_to_switch_on, DriveState::switch_on_disabled, any, initialised},
       {2, DriveState::switch_on_disabled, DriveState::ready_to_switch_on, shutdown, 0},
       {3, DriveState::ready_to_switch_on, DriveState::switched_on, switch_on | enable, 0},
-      {4, DriveState::switched_on, DriveState::operation_enabled, enable, 0},
+      {4, DriveState::switched_on, DriveState::operation_enabled, enable, standing},
       {5, DriveState::operation_enabled, DriveState::switched_on, switch_on, stop_ended},
       {6, DriveState::switched_on, DriveState::ready_to_switch_on, shutdown, 0},
       {7, DriveState::ready_to_switch_on, DriveState::switch_on_disabled, quick_stop | disable_voltage, 0},
@@ -142,12 +161,16 @@ class StateMachine {
 
 // Bits of 6041h.
 namespace statusword {
-inline constexpr std::uint16_t fault_bit = 1u << 3, voltage_bit = 1u << 4, remote_bit = 1u << 9, target_bit = 1u << 10,
-                               limit_bit = 1u << 11;
-inline constexpr std::uint16_t follows_bit = 1u << 12;       // csp: the drive follows the set-points
+// voltage: the power stage reports no fault of its supply; warning: a command was refused, the state is as it was;
+// remote: the controlword of a bus is obeyed.
+inline constexpr std::uint16_t fault_bit = 1u << 3, voltage_bit = 1u << 4, warning_bit = 1u << 7, remote_bit = 1u << 9,
+                               target_bit = 1u << 10, limit_bit = 1u << 11;
+inline constexpr std::uint16_t follows_bit = 1u << 12;       // csp, csv: the drive follows the set-points
 inline constexpr std::uint16_t acknowledge_bit = 1u << 12;   // pp: the new target was taken
 inline constexpr std::uint16_t homed_bit = 1u << 12;         // homing: attained
+inline constexpr std::uint16_t speed_zero_bit = 1u << 12;    // pv: the axis is at rest
 inline constexpr std::uint16_t homing_error_bit = 1u << 13;  // homing
+inline constexpr std::uint16_t unreferenced_bit = 1u << 14;  // of the manufacturer: the zero of the axis is not known
 inline constexpr std::uint16_t state_bits = 0x6f;            // bits 0 to 3, 5, 6 tell the state
 
 // Bits 0 to 3, 5 and 6.

@@ -41,6 +41,7 @@ class PositionProfile {
     S::Velocity velocity{};
     S::Velocity acceleration{};
     S::Velocity deceleration{};
+    bool operator==(const Move&) const = default;
   };
   struct Point {
     S::Position position{};
@@ -50,8 +51,10 @@ class PositionProfile {
 
   explicit constexpr PositionProfile(const Config& config) : config_(config) {}
 
-  // Stands at `position`, with nothing to do. Positions must stay within 128 m of it.
-  constexpr void start(S::Position position) {
+  // Stands at `position`, with nothing to do. Positions must stay within 128 m of it. `smoothed`: with the second
+  // stage.
+  constexpr void start(S::Position position, bool smoothed = true) {
+    smoothing_bits_ = smoothed ? config_.smoothing_bits : 0;
     base_ = position;
     move_ = {position, {}, {}, {}};
     way_ = 0;
@@ -71,28 +74,30 @@ class PositionProfile {
     resting_ticks_ = 0;
   }
 
-  // The set-point of the coming tick. `halted`: it brakes and stands, and goes on to the target afterwards.
-  constexpr Point step(bool halted) {
-    if (move_.velocity > S::Velocity{}) advance(halted);
+  // The set-point of the coming tick. `halted`: it brakes and stands, and goes on to the target afterwards;
+  // `halting`: change of the speed in a tick by which it then brakes where that is more than the move's own.
+  constexpr Point step(bool halted, S::Velocity halting = {}) {
+    if (move_.velocity > S::Velocity{}) advance(halted, halting);
     resting_ticks_ = v_ != 0 ? 0 : resting_ticks_ < length() ? resting_ticks_ + 1 : length();
     return smooth();
   }
 
   constexpr const Move& move() const { return move_; }
+  constexpr S::Position base() const { return base_; }  // where it started
   constexpr bool at_rest() const { return resting_ticks_ == length(); }
   constexpr bool arrived() const { return at_rest() && way_ == way_to_target(); }
 
  private:
-  constexpr std::uint32_t length() const { return 1u << config_.smoothing_bits; }
+  constexpr std::uint32_t length() const { return 1u << smoothing_bits_; }
   constexpr std::int64_t way_to_target() const { return move_.target.raw() - base_.raw(); }
 
-  constexpr void advance(bool halted) {
+  constexpr void advance(bool halted, S::Velocity halting) {
     const std::int64_t left = way_to_target() - way_;
     const bool back = left < 0;
     const std::int64_t towards = back ? -v_ : v_;
     const std::int64_t up = move_.acceleration.raw(), down = move_.deceleration.raw();
     if (halted) {
-      run(braked(v_, down));
+      run(braked(v_, halting.raw() > down ? halting.raw() : down));
     } else if (towards < 0) {
       run(braked(v_, down));
     } else {
@@ -158,7 +163,7 @@ class PositionProfile {
     v_sum_ += v_ - gone.v;
     const std::int64_t change = v_ - gone.v;  // over all of the window
     const auto mean_change = S::Velocity::from_bounded_raw(shifted(change));
-    const std::int64_t rest = change - (static_cast<std::int64_t>(mean_change.raw()) << config_.smoothing_bits);
+    const std::int64_t rest = change - (static_cast<std::int64_t>(mean_change.raw()) << smoothing_bits_);
     Point point;
     point.position = S::Position::from_raw(base_.raw() + shifted(way_sum_));
     point.velocity = S::Velocity::from_bounded_raw(shifted(v_sum_));
@@ -166,15 +171,14 @@ class PositionProfile {
     const auto fine = narrow<Wide<32, std::uint64_t{1} << 37>>(mean_change * config_.rate, saturations_);
     const auto remainder = S::Velocity::from_bounded_raw(rest) * config_.rate;
     point.acceleration = narrow<S::Acceleration>(
-        fine + Wide<32, std::uint64_t{1} << 37>::from_raw(remainder.raw() >> (6 + config_.smoothing_bits)),
-        saturations_);
+        fine + Wide<32, std::uint64_t{1} << 37>::from_raw(remainder.raw() >> (6 + smoothing_bits_)), saturations_);
     return point;
   }
   // To the nearest, ties away from zero.
   constexpr std::int64_t shifted(std::int64_t sum) const {
-    if (config_.smoothing_bits == 0) return sum;
-    const std::int64_t half = std::int64_t{1} << (config_.smoothing_bits - 1);
-    return (sum + half - (sum < 0 ? 1 : 0)) >> config_.smoothing_bits;
+    if (smoothing_bits_ == 0) return sum;
+    const std::int64_t half = std::int64_t{1} << (smoothing_bits_ - 1);
+    return (sum + half - (sum < 0 ? 1 : 0)) >> smoothing_bits_;
   }
 
   struct Entry {
@@ -182,6 +186,7 @@ class PositionProfile {
   };
 
   Config config_;
+  int smoothing_bits_ = 0;  // of config_, or 0
   S::Position base_{};
   Move move_{};
   std::uint64_t braking_ = 1;      // deceleration that is planned with, 2^-28 m/s a tick

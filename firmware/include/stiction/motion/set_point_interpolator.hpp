@@ -50,12 +50,15 @@ class SetPointInterpolator {
     std::uint64_t tick_share = 1u << 31;  // of a cycle, 2^52 / ticks
     CycleRate rate{};                     // 1 / cycle
     Way largest_way{};                    // of a cycle, to which extrapolation keeps
+    Way largest_change{};                 // of the way from cycle to cycle
   };
   // `period_ns`: of a tick; `ticks`: of a cycle, above 0; `largest_way`: displacement in a cycle to which extrapolation
-  // is limited.
-  static constexpr Config configure(std::int64_t period_ns, std::uint32_t ticks, Way largest_way) {
+  // is limited; `largest_change`: of that from cycle to cycle, for can_take().
+  static constexpr Config configure(std::int64_t period_ns, std::uint32_t ticks, Way largest_way,
+                                    Way largest_change = Way::from_raw((std::int64_t{1} << 34) - 1)) {
     return {ticks, (std::uint64_t{1} << 52) / ticks,
-            CycleRate::from_raw(static_cast<std::int32_t>(S::rate(period_ns * ticks).raw())), largest_way};
+            CycleRate::from_raw(static_cast<std::int32_t>(S::rate(period_ns * ticks).raw())), largest_way,
+            largest_change};
   }
 
   struct Point {
@@ -73,6 +76,13 @@ class SetPointInterpolator {
     way_ = {};
     e0_ = e1_ = a0_ = a1_ = {};
     tick_ = 0;
+  }
+
+  // Whether the way to `target` is one that a cycle may have, after the one before. Positions within 2000 km.
+  constexpr bool can_take(S::Position target) const {
+    const auto way = target.raw() - target_.raw(), change = way - d1_.raw();
+    const auto most = config_.largest_way.raw(), most_change = config_.largest_change.raw();
+    return way <= most && way >= -most && change <= most_change && change >= -most_change;
   }
 
   // Once each config.ticks ticks, before step(): the target of the end of the cycle that begins.

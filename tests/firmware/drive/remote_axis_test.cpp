@@ -1,0 +1,509 @@
+// What an axis takes from a bus and what it refuses: references, ends of the travel, speeds, targets that come wrong.
+#include "stiction/drive/remote_axis.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tests/firmware/drive/served_axis.hpp"
+
+namespace stiction::test {
+namespace {
+
+using enum DriveState;
+constexpr std::uint16_t on_word = controlword::enable_operation, offer_word = on_word | controlword::new_set_point_bit;
+constexpr double end = ServedAxis::end;
+
+ServedAxis enabled_in(OperationMode mode, double at = 0.0, HomingMethod method = HomingMethod::none) {
+  ServedAxis a({}, method, at);
+  EXPECT_TRUE(a.enable());
+  a.remote.ask(mode);
+  a.remote.ask(on_word);
+  a.stream(64, 0.0);
+  EXPECT_EQ(a.remote.mode(), mode);
+  return a;
+}
+
+void offer(ServedAxis& a, double target, std::uint16_t bits = 0) {
+  a.remote.ask(on_word);
+  a.step();
+  a.remote.ask_target(si<FixedSignals::Position>(target));
+  a.remote.ask(static_cast<std::uint16_t>(offer_word | bits));
+  a.step();
+}
+
+void home(ServedAxis& a) {
+  a.remote.ask(OperationMode::homing);
+  a.remote.ask(on_word | controlword::homing_start_bit);
+  a.stream(200, 0.0);
+  ASSERT_TRUE(a.drive.referenced());
+}
+
+TEST(References, WithoutThemAbsoluteMovesAreRefusedWithABitAndAReason) {
+  auto a = enabled_in(OperationMode::profile_position, 0.0, HomingMethod::here);
+  EXPECT_TRUE(a.shows(statusword::unreferenced_bit));
+  offer(a, 0.1);
+  EXPECT_FALSE(a.shows(statusword::acknowledge_bit));
+  EXPECT_TRUE(a.shows(statusword::limit_bit));
+  EXPECT_TRUE(a.shows(statusword::warning_bit));
+  EXPECT_EQ(a.remote.refusal(), Refusal::no_reference);
+  a.run(500);
+  EXPECT_EQ(a.x, 0.0);
+  // A relative one is taken, by any way: nothing says where the ends are.
+  offer(a, 0.6, controlword::relative_bit);
+  EXPECT_TRUE(a.shows(statusword::acknowledge_bit));
+  EXPECT_EQ(a.remote.refusal(), Refusal::none);
+  a.run(20'000);
+  EXPECT_NEAR(a.x, 0.6, 1e-9);
+}
+
+TEST(References, WithoutThemCyclicTargetsAreRefusedAndTheAxisHolds) {
+  auto a = enabled_in(OperationMode::cyclic_position, 0.0, HomingMethod::here);
+  EXPECT_FALSE(a.shows(statusword::follows_bit));
+  EXPECT_FALSE(a.shows(statusword::limit_bit)) << "a target where it stands asks for nothing";
+  for (int i = 0; i < 500; ++i) {
+    if (i % ServedAxis::cycle_ticks == 0) a.remote.offer(si<FixedSignals::Position>(0.01), true);
+    a.step();
+  }
+  EXPECT_EQ(a.x, 0.0);
+  EXPECT_TRUE(a.shows(statusword::limit_bit));
+  EXPECT_EQ(a.remote.refusal(), Refusal::no_reference);
+  a.remote.offer({}, false);
+  a.run(ServedAxis::cycle_ticks);
+  EXPECT_EQ(a.remote.refusal(), Refusal::no_reference);
+  EXPECT_EQ(a.drive.fault(), Fault::none);
+  EXPECT_EQ(a.drive.state(), operation_enabled);
+  home(a);
+  a.remote.ask(OperationMode::cyclic_position);
+  a.remote.ask(on_word);
+  a.stream(32, 0.0);
+  a.stream(2000, 0.1);
+  EXPECT_TRUE(a.shows(statusword::follows_bit));
+  EXPECT_GT(a.x, 5e-3);
+}
+
+// Each fault of the table that may take the encoder's place: refused again until it is homed again.
+TEST(References, AreLostByEveryFaultThatTheTableSays) {
+  int lost = 0;
+  for (const auto& row : fault_table) {
+    SCOPED_TRACE(row.name);
+    auto a = enabled_in(OperationMode::homing, 0.0, HomingMethod::here);
+    home(a);
+    a.trip = row.fault;
+    a.step();
+    a.trip = Fault::none;
+    EXPECT_EQ(a.drive.fault(), row.fault);
+    a.remote.ask(controlword::disable_voltage);
+    a.run(3000);
+    a.remote.ask(controlword::fault_reset);
+    a.run(2);
+    ASSERT_EQ(a.drive.fault(), Fault::none);
+    EXPECT_EQ(a.drive.referenced(), !row.loses_reference);
+    lost += row.loses_reference ? 1 : 0;
+    a.remote.ask(OperationMode::profile_position);
+    ASSERT_TRUE(a.enable());
+    a.stream(64, 0.0);
+    offer(a, 0.1);
+    EXPECT_EQ(a.shows(statusword::acknowledge_bit), !row.loses_reference);
+    EXPECT_EQ(a.remote.refusal(), row.loses_reference ? Refusal::no_reference : Refusal::none);
+  }
+  EXPECT_GE(lost, 4);
+}
+
+constexpr double beyond = end + 1e-6;
+
+TEST(Ends, OneMicrometreBeyondThemAProfileMoveGoesBackAndNotOut) {
+  for (const double side : {1.0, -1.0}) {
+    auto a = enabled_in(OperationMode::profile_position, side * beyond);
+    offer(a, side * (beyond + 1e-3));
+    EXPECT_EQ(a.remote.refusal(), Refusal::beyond_end);
+    EXPECT_TRUE(a.shows(statusword::limit_bit));
+    offer(a, side * 0.4);
+    EXPECT_EQ(a.remote.refusal(), Refusal::none);
+    a.run(20'000);
+    EXPECT_NEAR(a.x, side * 0.4, 1e-9);
+    EXPECT_EQ(a.drive.fault(), Fault::none);
+  }
+}
+
+TEST(Ends, OneMicrometreBeyondThemSpeedsGoBackAndNotOut) {
+  for (const auto mode : {OperationMode::profile_velocity, OperationMode::cyclic_velocity})
+    for (const double side : {1.0, -1.0}) {
+      auto a = enabled_in(mode, side * beyond);
+      a.stream(1000, side * 0.1);
+      EXPECT_NEAR(a.x, side * beyond, 1e-9) << "not further out";
+      EXPECT_TRUE(a.shows(statusword::limit_bit));
+      a.stream(3000, side * -0.1);
+      EXPECT_LT(side * a.x, end - 5e-3);
+      EXPECT_FALSE(a.shows(statusword::limit_bit));
+      EXPECT_EQ(a.drive.fault(), Fault::none);
+      // And to the end again, where it stops by itself.
+      a.stream(10'000, side * 0.1);
+      EXPECT_NEAR(a.x, side * end, 1e-9);
+      EXPECT_EQ(a.set_speed, 0.0);
+      EXPECT_TRUE(a.shows(statusword::limit_bit));
+      EXPECT_EQ(a.drive.fault(), Fault::none);
+    }
+}
+
+TEST(Ends, OneMicrometreBeyondThemCyclicTargetsGoBackAndNotOut) {
+  for (const double side : {1.0, -1.0}) {
+    auto back = enabled_in(OperationMode::cyclic_position, side * beyond);
+    EXPECT_EQ(back.drive.state(), operation_enabled) << "with the target where it stands";
+    back.stream(3000, side * -0.1);
+    EXPECT_LT(side * back.x, end - 5e-3);
+    EXPECT_EQ(back.drive.fault(), Fault::none);
+    auto out = enabled_in(OperationMode::cyclic_position, side * beyond);
+    out.stream(100, side * 0.1);
+    EXPECT_EQ(out.drive.fault(), Fault::set_point);
+    EXPECT_LT(side * out.x, beyond + 1e-3);
+  }
+}
+
+TEST(Ends, HomingSearchesBeyondThem) {
+  ServedAxis a({}, HomingMethod::limit_positive, beyond);
+  ASSERT_TRUE(a.enable());
+  a.remote.ask(OperationMode::homing);
+  a.remote.ask(on_word | controlword::homing_start_bit);
+  for (int i = 0; i < 20'000 && !a.drive.referenced(); ++i) {
+    a.inputs.limit_positive = a.x > beyond + 2e-3;
+    a.step();
+  }
+  EXPECT_TRUE(a.drive.referenced());
+  EXPECT_EQ(a.drive.fault(), Fault::none);
+}
+
+// Targets that come too often, too late, twice or from elsewhere: the fault, and no step of the set speed.
+struct WrongStream {
+  std::string name;
+  OperationMode mode;
+  std::function<void(ServedAxis&, int cycle)> send;
+  Fault fault;
+};
+
+std::vector<WrongStream> wrong_streams() {
+  using enum OperationMode;
+  const auto well = [](ServedAxis& a) { a.send(0.2); };
+  const auto jump = [](double by) {
+    return [by](ServedAxis& a, int k) {
+      a.send(0.2);
+      if (k == 40) a.remote.offer(si<FixedSignals::Position>(a.streamed + by), true);
+    };
+  };
+  return {
+      {"three targets a cycle, 0.2 m/s each", cyclic_position,
+       [well](ServedAxis& a, int) {
+         for (int i = 0; i < 3; ++i) well(a);
+       },
+       Fault::set_point},
+      {"one doubled", cyclic_position,
+       [well](ServedAxis& a, int k) {
+         well(a);
+         if (k == 40) well(a);
+       },
+       Fault::set_point},
+      {"the same target twice", cyclic_position,
+       [well](ServedAxis& a, int) {
+         well(a);
+         a.remote.offer(si<FixedSignals::Position>(a.streamed), true);
+       },
+       Fault::none},
+      {"two too late", cyclic_position,
+       [](ServedAxis& a, int k) {
+         a.streamed += k == 40 || k == 41 ? 0.2 * ServedAxis::cycle_ticks * tick : 0.0;
+         if (k != 40 && k != 41) a.send(0.2);
+       },
+       Fault::none},
+      {"three too late", cyclic_position,
+       [](ServedAxis& a, int k) {
+         if (k < 40 || k > 42) a.send(0.2);
+       },
+       Fault::set_points_lost},
+      {"a jump ahead", cyclic_position, jump(0.5e-3), Fault::set_point},
+      {"a jump back", cyclic_position, jump(-0.5e-3), Fault::set_point},
+      {"further than a cycle at max_velocity", cyclic_position, jump(5e-3), Fault::set_point},
+      {"the same back", cyclic_position, jump(-5e-3), Fault::set_point},
+      {"no number", cyclic_position,
+       [](ServedAxis& a, int k) {
+         a.send(0.2);
+         if (k == 40) a.remote.offer({}, false);
+       },
+       Fault::set_point},
+      {"speeds too late", cyclic_velocity,
+       [](ServedAxis& a, int k) {
+         if (k < 40) a.send(0.2);
+       },
+       Fault::set_points_lost},
+      {"two speeds too late", cyclic_velocity,
+       [](ServedAxis& a, int k) {
+         if (k != 40 && k != 41) a.send(0.2);
+       },
+       Fault::none},
+      {"a speed that jumps", cyclic_velocity, [](ServedAxis& a, int k) { a.send(k % 40 < 20 ? 0.2 : -0.2); },
+       Fault::none},
+      {"a speed beyond every limit", cyclic_velocity, [](ServedAxis& a, int k) { a.send(k < 5 ? 7.9 : 0.0); },
+       Fault::none},
+      {"many speeds a cycle", cyclic_velocity,
+       [](ServedAxis& a, int) {
+         for (const double v : {7.0, -7.0, 0.2}) a.send(v);
+       },
+       Fault::none},
+      {"a speed that is no number", cyclic_velocity,
+       [](ServedAxis& a, int k) {
+         a.send(0.2);
+         if (k == 40) a.remote.offer_speed({}, false);
+       },
+       Fault::set_point},
+  };
+}
+
+TEST(WrongStreams, EndInTheFaultThatIsStatedAndNoStepOfTheSetSpeed) {
+  for (const auto& c : wrong_streams()) {
+    SCOPED_TRACE(c.name);
+    auto a = enabled_in(c.mode);
+    double largest = 0.0;
+    for (int k = 0; k < 100; ++k) {
+      c.send(a, k);
+      for (int i = 0; i < ServedAxis::cycle_ticks; ++i) {
+        a.step();
+        largest = std::max(largest, a.step_of_speed());
+      }
+    }
+    EXPECT_EQ(a.drive.fault(), c.fault) << name_of(a.drive.fault());
+    // Within a cycle the interpolation rounds a change of two accelerations, its peak is 1.8 of the mean.
+    EXPECT_LE(largest, 4.0 * ServedAxis::acceleration * tick + 1e-6);
+    a.run(4000);
+    EXPECT_EQ(a.set_speed, c.fault == Fault::none ? a.set_speed : 0.0);
+  }
+}
+
+TEST(Speeds, AreReachedByTheProfilesRampsAndKeptToTheMachinesLimits) {
+  auto a = enabled_in(OperationMode::profile_velocity, -0.4);
+  a.remote.ask_acceleration(si<FixedSignals::Velocity>(2.0 * tick));
+  a.remote.ask_deceleration(si<FixedSignals::Velocity>(4.0 * tick));
+  a.remote.ask_speed(si<FixedSignals::Velocity>(0.5));
+  double fastest = 0.0, step = 0.0;
+  int up = 0;
+  for (; up < 10'000 && !a.shows(statusword::target_bit); ++up) {
+    a.step();
+    step = std::max(step, a.step_of_speed());
+  }
+  EXPECT_NEAR(up * tick, 0.25 + 64 * tick, 5 * tick);
+  EXPECT_LE(step, 2.0 * tick + 1e-8);
+  a.remote.ask_speed({});
+  int down = 0;
+  for (; down < 10'000 && a.set_speed != 0.0; ++down) a.step();
+  EXPECT_NEAR(down * tick, 0.125 + 64 * tick, 5 * tick);
+  a.remote.ask_speed(si<FixedSignals::Velocity>(-7.5));
+  for (int i = 0; i < 20'000; ++i) {
+    a.step();
+    fastest = std::max(fastest, std::abs(a.set_speed));
+  }
+  EXPECT_LE(fastest, ServedAxis::most_speed + 1e-9);
+  EXPECT_NEAR(a.x, -end, 1e-9);
+  EXPECT_EQ(machine::to_si(a.remote.speed()), -ServedAxis::most_speed);
+}
+
+// A deceleration that is made smaller in motion does not carry the axis beyond its end.
+TEST(Speeds, BrakeBeforeTheEndWhateverIsAskedOnTheWay) {
+  auto a = enabled_in(OperationMode::profile_velocity);
+  a.remote.ask_speed(si<FixedSignals::Velocity>(1.0));
+  while (a.x < 0.3) a.step();
+  a.remote.ask_deceleration(si<FixedSignals::Velocity>(0.5 * tick));
+  a.run(20'000);
+  EXPECT_NEAR(a.x, end, 1e-9);
+}
+
+TEST(Speeds, HaltByTheQuickRampWhereTheCodeSaysSo) {
+  StopCodes codes;
+  codes.halt = 2;
+  ServedAxis a(codes);
+  ASSERT_TRUE(a.enable());
+  a.remote.ask(OperationMode::profile_velocity);
+  a.remote.ask_deceleration(si<FixedSignals::Velocity>(1.0 * tick));
+  a.stream(64, 0.0);
+  EXPECT_TRUE(a.shows(statusword::target_bit));
+  a.stream(1000, 0.2);
+  a.remote.ask(on_word | controlword::halt_bit);
+  int ticks = 0;
+  for (; ticks < 4000 && a.set_speed != 0.0; ++ticks) a.step();
+  EXPECT_NEAR(ticks * tick, 0.2 / ServedAxis::quick_deceleration, 66 * tick);
+  a.step();
+  EXPECT_TRUE(a.shows(statusword::target_bit)) << "it has halted";
+  a.remote.ask_speed({});
+  a.remote.ask(controlword::disable_voltage);
+  a.run(3);
+  EXPECT_FALSE(a.shows(statusword::target_bit)) << "without power no speed is reached";
+}
+
+TEST(Speeds, WithoutAZeroHaveNoEnds) {
+  auto a = enabled_in(OperationMode::profile_velocity, 0.0, HomingMethod::here);
+  a.remote.ask_speed(si<FixedSignals::Velocity>(1.0));
+  a.run(16'000);
+  EXPECT_GT(a.x, 0.9);
+  a.remote.ask_speed(si<FixedSignals::Velocity>(-1.0));
+  a.run(40'000);
+  EXPECT_LT(a.x, -0.9);
+  EXPECT_FALSE(a.shows(statusword::limit_bit));
+}
+
+TEST(Speeds, OfBeforeDoNotMoveAModeThatIsTakenLater) {
+  auto a = enabled_in(OperationMode::profile_velocity);
+  a.remote.ask_speed(si<FixedSignals::Velocity>(0.2));
+  a.run(500);
+  a.remote.ask(OperationMode::profile_position);
+  a.run(3000);
+  a.remote.ask(OperationMode::profile_velocity);
+  const double at = a.x;
+  a.run(3000);
+  EXPECT_EQ(a.remote.mode(), OperationMode::profile_velocity);
+  EXPECT_NEAR(a.x, at, 1e-9);
+}
+
+TEST(ProfileMovesOfAnAxis, WaitForTheOneBeforeUnlessTheyAreToBeMadeAtOnce) {
+  auto a = enabled_in(OperationMode::profile_position);
+  offer(a, 0.05);
+  EXPECT_TRUE(a.shows(statusword::acknowledge_bit));
+  offer(a, 0.1);
+  EXPECT_TRUE(a.shows(statusword::acknowledge_bit)) << "it waits";
+  offer(a, 0.2);  // no room
+  offer(a, 0.05, controlword::relative_bit);
+  for (int i = 0; i < 20'000; ++i) {
+    a.step();
+    EXPECT_TRUE(a.x > 0.1 - 1e-5 || !a.shows(statusword::target_bit));
+  }
+  EXPECT_NEAR(a.x, 0.1, 1e-9);
+  EXPECT_TRUE(a.shows(statusword::target_bit));
+  offer(a, 0.3);
+  a.run(200);
+  a.remote.ask_deceleration(si<FixedSignals::Velocity>(1.0 * tick));
+  offer(a, 0.15, controlword::at_once_bit);
+  EXPECT_GE(a.remote.move().deceleration, FixedSignals::Velocity::from_raw(1));
+  a.run(20'000);
+  EXPECT_NEAR(a.x, 0.15, 1e-9);
+  offer(a, 0.16, controlword::at_once_bit);  // at rest
+  a.run(20'000);
+  EXPECT_NEAR(a.x, 0.16, 1e-9);
+  EXPECT_EQ(a.drive.fault(), Fault::none);
+}
+
+// As much of a drive as the axis asks for, to stand where no axis with a set-point does.
+struct Beside {
+  FixedSignals::Position at{}, measured{};
+  FixedSignals::Position set_position() const { return at; }
+  FixedSignals::Position position() const { return measured; }
+  FixedSignals::Velocity set_velocity() const { return {}; }
+  Fault fault() const { return Fault::none; }
+  bool follows() const { return true; }
+  bool powered() const { return true; }
+  bool referenced() const { return true; }
+  bool standing() const { return true; }
+};
+
+TEST(ProfileMovesOfAnAxis, AreNotReachedWhereTheAxisIsOutsideOfItsWindow) {
+  for (const double off : {5e-6, 15e-6, -15e-6}) {
+    auto config = ServedAxis::remote_config({}, {});
+    config.streamed = false;
+    RemoteAxis axis(config);
+    axis.ask(OperationMode::profile_position);
+    const Beside drive{{}, si<FixedSignals::Position>(off)};
+    for (int i = 0; i < 200; ++i) {
+      if (i % 16 == 0) axis.begin_cycle();
+      axis.tick(drive);
+    }
+    EXPECT_EQ(axis.mode(), OperationMode::profile_position);
+    EXPECT_EQ((axis.statusword(0) & statusword::target_bit) != 0, off == 5e-6);
+  }
+}
+
+// Without a controller on CAN csp holds, and no targets are missed.
+TEST(Targets, ThatNoBusStreamsAreNotMissed) {
+  auto config = ServedAxis::remote_config({}, {});
+  config.streamed = false;
+  RemoteAxis axis(config);
+  axis.ask(controlword::shutdown);
+  const Beside drive{};
+  for (int i = 0; i < 200; ++i) {
+    if (i % 16 == 0) axis.begin_cycle();
+    EXPECT_EQ(axis.tick(drive).velocity, FixedSignals::Velocity{});
+    EXPECT_EQ(axis.fault(), Fault::none);
+    EXPECT_FALSE(axis.brakes());
+  }
+}
+
+TEST(ProfileMovesOfAnAxis, KeepTheirValuesWithinTheLimitsOfTheMachine) {
+  ServedAxis a;
+  using V = FixedSignals::Velocity;
+  for (const auto& [asked, held] :
+       {std::pair{V{}, V::from_raw(1)}, std::pair{si<V>(7.9), si<V>(ServedAxis::most_speed)}}) {
+    a.remote.ask_velocity(asked);
+    EXPECT_EQ(a.remote.move().velocity, held);
+  }
+  a.remote.ask_acceleration(si<V>(7.9));
+  EXPECT_EQ(a.remote.move().acceleration, si<V>(ServedAxis::acceleration * tick));
+  a.remote.ask_target({}, false);
+  auto b = enabled_in(OperationMode::profile_position);
+  b.remote.ask_target({}, false);
+  b.remote.ask(offer_word);
+  b.run(2);
+  EXPECT_EQ(b.remote.refusal(), Refusal::no_number);
+  b.remote.ask(on_word);
+  b.run(2);
+  EXPECT_FALSE(b.shows(statusword::limit_bit));
+}
+
+TEST(ProfileMovesOfAnAxis, HaltAndGoOn) {
+  auto a = enabled_in(OperationMode::profile_position);
+  offer(a, 0.3);
+  a.run(1000);
+  a.remote.ask(on_word | controlword::halt_bit);
+  a.run(2000);
+  EXPECT_EQ(a.set_speed, 0.0);
+  EXPECT_TRUE(a.shows(statusword::target_bit)) << "it has halted";
+  EXPECT_LT(a.x, 0.2);
+  a.remote.ask(on_word);
+  a.run(20'000);
+  EXPECT_NEAR(a.x, 0.3, 1e-9);
+}
+
+TEST(Offsets, AreAddedInCspAndForgottenWithTheirCycles) {
+  auto a = enabled_in(OperationMode::cyclic_position);
+  using V = FixedSignals::Velocity;
+  const auto current = si<FixedSignals::Current>(1.0);
+  a.remote.ask_offsets(si<V>(0.01), current);
+  a.stream(ServedAxis::cycle_ticks, 0.0);
+  EXPECT_EQ(a.remote.velocity_offset(), si<V>(0.01));
+  EXPECT_EQ(a.remote.tick(a.drive).injection, current);
+  a.stream(4 * ServedAxis::cycle_ticks, 0.0);
+  EXPECT_EQ(a.remote.velocity_offset(), V{});
+  a.remote.ask(OperationMode::profile_velocity);
+  a.remote.ask_offsets(si<V>(0.01), current);
+  a.run(3);
+  EXPECT_EQ(a.remote.velocity_offset(), V{}) << "of csp alone";
+}
+
+TEST(Speeds, OfAProfileThatAreNoNumberAreRefusedAndTheOneBeforeHolds) {
+  auto a = enabled_in(OperationMode::profile_velocity);
+  a.stream(2000, 0.1);
+  a.remote.offer_speed({}, false);
+  a.run(ServedAxis::cycle_ticks + 1);
+  EXPECT_EQ(a.remote.refusal(), Refusal::no_number);
+  EXPECT_TRUE(a.shows(statusword::warning_bit));
+  EXPECT_NEAR(a.set_speed, 0.1, 4e-9);  // a unit of velocity
+  a.stream(2 * ServedAxis::cycle_ticks, 0.1);
+  EXPECT_FALSE(a.shows(statusword::warning_bit));
+}
+
+TEST(Refusals, HaveASentenceEach) {
+  for (std::size_t i = 0; i < refusal_table.size(); ++i) {
+    EXPECT_EQ(static_cast<std::size_t>(refusal_table[i].refusal), i);
+    EXPECT_NE(std::string(refusal_table[i].text), "");
+  }
+}
+
+}  // namespace
+}  // namespace stiction::test

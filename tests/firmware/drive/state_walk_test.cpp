@@ -1,0 +1,379 @@
+// CiA 402 walked: every state, controlword, mode and motion, against the tables of IEC 61800-7-201 written out here as
+// data. Whatever is asked for, the speed of the set-point changes by no more than a limit in a tick, or the power goes.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tests/firmware/drive/served_axis.hpp"
+
+namespace stiction::test {
+namespace {
+
+using enum DriveState;
+
+// "Table of commands": bits 7, 3, 2, 1, 0 of the controlword. An x of the standard is a bit that is not in the mask.
+enum class Word { shutdown, switch_on, enable_operation, disable_voltage, quick_stop };
+struct CommandRow {
+  Word word;
+  std::uint16_t mask, value;
+};
+constexpr std::array<CommandRow, 5> command_rows{{
+    {Word::shutdown, 0x07, 0x06},
+    {Word::switch_on, 0x0f, 0x07},
+    {Word::enable_operation, 0x0f, 0x0f},
+    {Word::disable_voltage, 0x02, 0x00},
+    {Word::quick_stop, 0x06, 0x02},
+}};
+
+// Where a command leads in the end, with what comes on the way: transitions 2 to 12, 15 and 16.
+struct WayRow {
+  DriveState from;
+  Word word;
+  DriveState to;
+  bool ramp = false;  // a controlled stop before
+  bool held = false;  // of a quick stop that is held (605Ah: 5, 6)
+};
+constexpr std::array<WayRow, 30> way_rows{{
+    {switch_on_disabled, Word::shutdown, ready_to_switch_on},
+    {switch_on_disabled, Word::switch_on, switch_on_disabled},
+    {switch_on_disabled, Word::enable_operation, switch_on_disabled},
+    {switch_on_disabled, Word::disable_voltage, switch_on_disabled},
+    {switch_on_disabled, Word::quick_stop, switch_on_disabled},
+    {ready_to_switch_on, Word::shutdown, ready_to_switch_on},
+    {ready_to_switch_on, Word::switch_on, switched_on},
+    {ready_to_switch_on, Word::enable_operation, operation_enabled},
+    {ready_to_switch_on, Word::disable_voltage, switch_on_disabled},
+    {ready_to_switch_on, Word::quick_stop, switch_on_disabled},
+    {switched_on, Word::shutdown, ready_to_switch_on},
+    {switched_on, Word::switch_on, switched_on},
+    {switched_on, Word::enable_operation, operation_enabled},
+    {switched_on, Word::disable_voltage, switch_on_disabled},
+    {switched_on, Word::quick_stop, switch_on_disabled},
+    {operation_enabled, Word::shutdown, ready_to_switch_on, true},
+    {operation_enabled, Word::switch_on, switched_on, true},
+    {operation_enabled, Word::enable_operation, operation_enabled},
+    {operation_enabled, Word::disable_voltage, switch_on_disabled},
+    {operation_enabled, Word::quick_stop, switch_on_disabled, true},
+    {quick_stop_active, Word::shutdown, ready_to_switch_on, true},  // 12, and 2 by the same word
+    {quick_stop_active, Word::switch_on, switch_on_disabled, true},
+    {quick_stop_active, Word::enable_operation, switch_on_disabled, true},
+    {quick_stop_active, Word::disable_voltage, switch_on_disabled},
+    {quick_stop_active, Word::quick_stop, switch_on_disabled, true},
+    {DriveState::fault, Word::shutdown, DriveState::fault},
+    {DriveState::fault, Word::switch_on, DriveState::fault},
+    {DriveState::fault, Word::enable_operation, DriveState::fault},
+    {DriveState::fault, Word::disable_voltage, DriveState::fault},
+    {DriveState::fault, Word::quick_stop, DriveState::fault},
+}};
+
+constexpr std::array<DriveState, 6> walked_states{switch_on_disabled, ready_to_switch_on, switched_on,
+                                                  operation_enabled,  quick_stop_active,  DriveState::fault};
+constexpr auto& walked_modes = supported_modes;
+constexpr std::array<double, 3> walked_speeds{0.0, 0.2, -0.2};  // m/s
+
+// The most that a limit of the axis lets the set speed change in a tick, and rounding: profiles and streams keep
+// max_acceleration, whose interpolated peaks are below twice of it.
+constexpr double largest_step = 2.0 * ServedAxis::acceleration * tick + 1e-6;
+
+// In a mode and moving in it, as a bus gets it there.
+ServedAxis moving(OperationMode mode, double speed, const StopCodes& stops = {}) {
+  const auto method = mode != OperationMode::homing ? HomingMethod::none
+                      : speed < 0.0                 ? HomingMethod::limit_negative
+                                                    : HomingMethod::limit_positive;
+  ServedAxis a(stops, method);
+  EXPECT_TRUE(a.enable());
+  a.remote.ask(mode);
+  a.stream(64, 0.0);
+  EXPECT_EQ(a.remote.mode(), mode);
+  std::uint16_t word = controlword::enable_operation;
+  if (speed != 0.0 && mode == OperationMode::homing) word |= controlword::homing_start_bit;
+  if (speed != 0.0 && mode == OperationMode::profile_position) {
+    a.remote.ask_target(si<FixedSignals::Position>(speed > 0.0 ? 0.45 : -0.45));
+    a.remote.ask_velocity(si<FixedSignals::Velocity>(std::abs(speed)));
+    word |= controlword::new_set_point_bit;
+  }
+  a.remote.ask(word);
+  a.stream(800, speed);
+  EXPECT_NEAR(a.set_speed, speed, 1e-5) << "mode " << static_cast<int>(mode);
+  return a;
+}
+
+// The same, in a state.
+std::optional<ServedAxis> in_state(DriveState state, OperationMode mode, double speed, const StopCodes& stops) {
+  auto a = moving(mode, speed, stops);
+  if (state == operation_enabled) return a;
+  if (state == quick_stop_active) {
+    a.remote.ask(controlword::quick_stop);
+    a.step();
+    if (a.drive.state() != quick_stop_active) return {};
+    return a;
+  }
+  a.remote.ask(controlword::disable_voltage);  // the axis coasts on
+  a.run(2);
+  if (state == ready_to_switch_on || state == switched_on) a.remote.ask(controlword::shutdown);
+  a.run(2);
+  if (state == switched_on) a.remote.ask(controlword::switch_on);
+  if (state == DriveState::fault) a.trip = Fault::clock_jump;
+  a.run(2);
+  a.trip = Fault::none;
+  if (a.drive.state() != state) return {};
+  return a;
+}
+
+const CommandRow& row_of(std::uint16_t word) {
+  for (const auto& row : command_rows)
+    if ((word & row.mask) == row.value) return row;
+  ADD_FAILURE() << "a word of no command: " << word;
+  return command_rows[0];
+}
+
+const WayRow& way_of(DriveState from, Word word) {
+  for (const auto& row : way_rows)
+    if (row.from == from && row.word == word) return row;
+  ADD_FAILURE() << "no row";
+  return way_rows[0];
+}
+
+// Follows a controlword until nothing changes any more.
+void check(ServedAxis a, DriveState from, std::uint16_t word, double speed) {
+  const auto& row = way_of(from, row_of(word).word);
+  const bool reset = from == DriveState::fault && (word & controlword::fault_reset_bit) != 0;
+  // 15, and what the word asks for from there.
+  const auto to = reset ? way_of(switch_on_disabled, row_of(word).word).to : row.to;
+  a.remote.ask(word);
+  double largest = 0.0;
+  bool powered_moving = false;
+  const bool was_powered = a.drive.powered();
+  // 0.2 m/s at 5 m/s^2 are 640 ticks; a standstill of 160; a jerk of 64.
+  for (int i = 0; i < 1100; ++i) {
+    const bool before = a.drive.powered();
+    const double v_before = a.v;
+    a.stream(1, speed);
+    if (before && a.drive.powered()) largest = std::max(largest, a.step_of_speed());
+    if (row.ramp && !a.drive.powered() && std::abs(a.v) > 2e-3) powered_moving = true;
+    // An axis that coasts is not enabled.
+    const bool enabled_in_motion = !before && a.drive.powered() && std::abs(v_before) > 2e-3;
+    ASSERT_FALSE(enabled_in_motion);
+  }
+  ASSERT_LE(largest, largest_step);
+  ASSERT_FALSE(powered_moving) << "the power went before the stop was over";
+  const bool coasts = !was_powered && speed != 0.0;
+  if (to == operation_enabled && coasts) {
+    ASSERT_EQ(a.drive.state(), switched_on) << "enabled in motion";
+    return;
+  }
+  ASSERT_EQ(a.drive.state(), to);
+  ASSERT_EQ(a.drive.powered(), to == operation_enabled);
+  const bool halts = to == operation_enabled && (word & controlword::halt_bit) != 0;
+  ASSERT_TRUE(!halts || a.set_speed == 0.0) << "halt";
+}
+
+TEST(StateWalk, EveryStateControlwordModeAndMotionIsAsTheStandardsTables) {
+  int cases = 0;
+  for (const auto mode : walked_modes)
+    for (const double speed : walked_speeds)
+      for (const auto state : walked_states) {
+        const auto begin = in_state(state, mode, speed, {});
+        ASSERT_TRUE(begin) << "state " << static_cast<int>(state) << " mode " << static_cast<int>(mode);
+        for (std::uint16_t word = 0; word < 0x200; ++word) {
+          // Bits 4 to 6 offer a target in pp and homing alone; elsewhere they are walked with bit 4 clear and set.
+          const bool of_mode = mode == OperationMode::profile_position || mode == OperationMode::homing;
+          if (!of_mode && (word & 0x60) != 0) continue;
+          SCOPED_TRACE(::testing::Message() << "state " << static_cast<int>(state) << " mode " << static_cast<int>(mode)
+                                            << " speed " << speed << " word " << word);
+          check(*begin, state, word, speed);
+          ++cases;
+          if (HasFatalFailure()) return;
+        }
+      }
+  EXPECT_EQ(cases, 6 * 3 * (2 * 512 + 3 * 128));
+}
+
+// Any mode left for any other one, in any motion: it brakes within a limit, and then is the other one.
+TEST(StateWalk, AModeIsLeftByARampAndTheNextBeginsAtRest) {
+  for (const auto from : walked_modes)
+    for (const auto to : walked_modes)
+      for (const double speed : walked_speeds) {
+        if (from == to) continue;
+        SCOPED_TRACE(::testing::Message()
+                     << static_cast<int>(from) << " to " << static_cast<int>(to) << " at " << speed);
+        auto a = moving(from, speed);
+        a.remote.ask(to);
+        a.remote.ask(controlword::enable_operation);
+        double largest = 0.0;
+        for (int i = 0; i < 60'000 && a.remote.mode() != to; ++i) {
+          a.stream(1, from == OperationMode::cyclic_velocity || from == OperationMode::cyclic_position ? speed : 0.0);
+          largest = std::max(largest, a.step_of_speed());
+        }
+        EXPECT_EQ(a.remote.mode(), to);
+        EXPECT_NEAR(a.set_speed, 0.0, 1e-9);
+        for (int i = 0; i < 200; ++i) {
+          a.stream(1, 0.0);
+          largest = std::max(largest, a.step_of_speed());
+        }
+        EXPECT_LE(largest, largest_step);
+        EXPECT_EQ(a.drive.fault(), Fault::none) << name_of(a.drive.fault());
+        EXPECT_EQ(a.drive.state(), operation_enabled);
+        EXPECT_EQ(a.set_speed, 0.0);
+      }
+}
+
+// 605Ah to 605Eh: the deceleration of each code, and where the axis is afterwards.
+struct StopCase {
+  StopObject object;
+  std::int8_t code;
+  std::uint16_t word;   // that begins the stop
+  double deceleration;  // m/s^2; 0: none, the power goes at once
+  DriveState to;
+};
+std::vector<StopCase> stop_cases() {
+  constexpr double slow = ServedAxis::slow_deceleration, quick = ServedAxis::quick_deceleration;
+  constexpr std::uint16_t halt = controlword::enable_operation | controlword::halt_bit;
+  return {
+      {StopObject::quick_stop, 0, 0x02, 0.0, switch_on_disabled},
+      {StopObject::quick_stop, 1, 0x02, slow, switch_on_disabled},
+      {StopObject::quick_stop, 2, 0x02, quick, switch_on_disabled},
+      {StopObject::quick_stop, 5, 0x02, slow, quick_stop_active},
+      {StopObject::quick_stop, 6, 0x02, quick, quick_stop_active},
+      {StopObject::shutdown, 0, 0x06, 0.0, ready_to_switch_on},
+      {StopObject::shutdown, 1, 0x06, slow, ready_to_switch_on},
+      {StopObject::disable_operation, 0, 0x07, 0.0, switched_on},
+      {StopObject::disable_operation, 1, 0x07, slow, switched_on},
+      {StopObject::halt, 1, halt, slow, operation_enabled},
+      {StopObject::halt, 2, halt, quick, operation_enabled},
+      {StopObject::fault_reaction, 0, 0x0f, 0.0, DriveState::fault},
+      {StopObject::fault_reaction, 1, 0x0f, slow, DriveState::fault},
+      {StopObject::fault_reaction, 2, 0x0f, quick, DriveState::fault},
+  };
+}
+
+StopCodes codes_of(StopObject object, std::int8_t code) {
+  StopCodes codes;
+  if (object == StopObject::quick_stop) codes.quick_stop = code;
+  if (object == StopObject::shutdown) codes.shutdown = code;
+  if (object == StopObject::disable_operation) codes.disable_operation = code;
+  if (object == StopObject::halt) codes.halt = code;
+  if (object == StopObject::fault_reaction) codes.fault_reaction = code;
+  return codes;
+}
+
+TEST(StopCodesOfAnAxis, BrakeAsTheirTableSaysInEveryModeAndEndWhereItSays) {
+  for (const auto& c : stop_cases())
+    for (const auto mode : walked_modes) {
+      SCOPED_TRACE(::testing::Message() << std::hex << static_cast<int>(c.object) << " code " << int{c.code} << " mode "
+                                        << static_cast<int>(mode));
+      // A profile halts in its own deceleration, which is that of the axis here, unless a quicker one is asked for.
+      const bool profile = mode == OperationMode::profile_position || mode == OperationMode::profile_velocity ||
+                           mode == OperationMode::cyclic_velocity;
+      const double expected = c.object == StopObject::halt && profile ? ServedAxis::acceleration : c.deceleration;
+      auto a = moving(mode, 0.2, codes_of(c.object, c.code));
+      a.remote.ask(c.word);
+      if (c.object == StopObject::fault_reaction) a.trip = Fault::missed_deadline;
+      int ticks = 0;
+      bool off_in_motion = false;
+      for (; ticks < 4000 && a.set_speed != 0.0 && !off_in_motion; ++ticks) {
+        a.stream(1, 0.2);
+        a.trip = Fault::none;
+        off_in_motion = !a.drive.powered();
+      }
+      EXPECT_EQ(off_in_motion, c.deceleration == 0.0);
+      EXPECT_NEAR(ticks * tick, expected > 0.0 ? 0.2 / expected : 0.0, 66 * tick);
+      a.coasts = false;
+      a.stream(2000, 0.2);
+      EXPECT_EQ(a.drive.state(), c.to);
+      EXPECT_EQ(a.drive.powered(), c.to == operation_enabled || c.to == quick_stop_active);
+    }
+}
+
+TEST(StopCodesOfAnAxis, AreRefusedWhereTheDriveHasNoSuchRamp) {
+  std::size_t known = 0;
+  for (int object = 0x605a; object <= 0x605e; ++object)
+    for (int code = -128; code < 128; ++code)
+      known += stop_option(static_cast<StopObject>(object), static_cast<std::int8_t>(code)) != nullptr ? 1 : 0;
+  EXPECT_EQ(known, stop_option_table.size());
+  EXPECT_EQ(known, stop_cases().size());
+  for (const int code : {3, 4, 7, 8})
+    EXPECT_EQ(stop_option(StopObject::quick_stop, static_cast<std::int8_t>(code)), nullptr);
+  // What is configured all the same coasts and does not hold.
+  auto a = moving(OperationMode::cyclic_position, 0.2, codes_of(StopObject::quick_stop, 3));
+  a.remote.ask(controlword::quick_stop);
+  a.step();
+  EXPECT_FALSE(a.drive.powered());
+}
+
+TEST(StopCodesOfAnAxis, AStopUnderWayIsMadeFasterAndNeverSlower) {
+  auto a = moving(OperationMode::cyclic_position, 0.2);
+  a.remote.ask(controlword::shutdown);
+  a.run(10);
+  a.remote.ask(controlword::quick_stop);
+  a.run(2);
+  EXPECT_NEAR(a.step_of_speed(), ServedAxis::quick_deceleration * tick, 1e-8);
+  a.trip = Fault::missed_deadline;  // its reaction is the same ramp
+  a.run(2);
+  EXPECT_NEAR(a.step_of_speed(), ServedAxis::quick_deceleration * tick, 1e-8);
+}
+
+// 603Fh: a code of the standard or of CiA 301 for each fault, and none without one.
+TEST(ErrorCodes, AreThoseOfTheStandard) {
+  const std::vector<std::pair<Fault, int>> codes{{Fault::none, 0},
+                                                 {Fault::following_error, 0x8611},
+                                                 {Fault::over_current, 0x2310},
+                                                 {Fault::position_lost, 0x7305},
+                                                 {Fault::encoder_jump, 0x7305},
+                                                 {Fault::bus_off, 0x8140},
+                                                 {Fault::commander_lost, 0x8130},
+                                                 {Fault::set_points_lost, 0x8700},
+                                                 {Fault::parameters_damaged, 0x6320}};
+  for (const auto& [fault, code] : codes) EXPECT_EQ(error_code_of(fault), code) << name_of(fault);
+  // FF00h and on are the manufacturer's: they carry the number of the fault.
+  for (const auto& row : fault_table) {
+    EXPECT_NE(row.error_code, 0) << row.name;
+    EXPECT_TRUE(row.error_code < 0xff00 || (row.error_code & 0xff) == static_cast<int>(row.fault)) << row.name;
+  }
+}
+
+// Bits 4, 9 to 12 and 14, mode by mode.
+TEST(Statuswords, SayWhatTheStandardMeansByTheirBits) {
+  ServedAxis a;
+  EXPECT_TRUE(a.shows(statusword::voltage_bit)) << "supplied, before it is enabled";
+  ASSERT_TRUE(a.enable());
+  a.stage_fault = true;
+  a.step();
+  EXPECT_FALSE(a.shows(statusword::voltage_bit));
+
+  auto csv = moving(OperationMode::cyclic_velocity, 0.2);
+  EXPECT_TRUE(csv.shows(statusword::follows_bit));
+  auto pv = moving(OperationMode::profile_velocity, 0.2);
+  EXPECT_TRUE(pv.shows(statusword::target_bit)) << "speed reached";
+  EXPECT_FALSE(pv.shows(statusword::speed_zero_bit));
+  pv.remote.ask_speed({});
+  pv.run(10);
+  EXPECT_FALSE(pv.shows(statusword::target_bit));
+  pv.run(1000);
+  EXPECT_TRUE(pv.shows(statusword::target_bit));
+  EXPECT_TRUE(pv.shows(statusword::speed_zero_bit));
+
+  ServedAxis homing({}, HomingMethod::here);
+  EXPECT_TRUE(homing.shows(statusword::unreferenced_bit));
+  ASSERT_TRUE(homing.enable());
+  homing.remote.ask(OperationMode::homing);
+  homing.stream(10, 0.0);
+  EXPECT_EQ(homing.statusword() & 0x3400, 0x0400) << "not started";
+  homing.remote.ask(controlword::enable_operation | controlword::homing_start_bit);
+  homing.stream(10, 0.0);
+  EXPECT_EQ(homing.statusword() & 0x3400, 0x1400) << "completed";
+  EXPECT_FALSE(homing.shows(statusword::unreferenced_bit));
+  homing.remote.ask(controlword::enable_operation | controlword::homing_start_bit | controlword::halt_bit);
+  homing.stream(10, 0.0);
+  EXPECT_EQ(homing.statusword() & 0x3400, 0x1400) << "a halt behind it takes nothing away";
+
+  auto search = moving(OperationMode::homing, 0.2);
+  EXPECT_EQ(search.statusword() & 0x3400, 0) << "in progress";
+}
+
+}  // namespace
+}  // namespace stiction::test
