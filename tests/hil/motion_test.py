@@ -23,12 +23,12 @@ python3 {folder}/motion_controller.py vcan1 1 >controller.csv 2>controller.txt
 kill $dump
 kill -TERM $(pidof stictiond)) &
 """
-# A controller whose clock is 150 ppm slow and whose SYNC the drive follows: warming up and three moves are 6650
-# cycles, in which the clocks would drift apart by one.
+# A controller whose clock is 150 ppm slow and whose SYNC the drive follows. The drive's clock may be changed by 200 ppm
+# (SyncFollower::largest_share), so that it gains 50 ppm: half a cycle, the furthest that it can begin apart, takes 10 s.
 OWN_CLOCK = (*ALLOWED, "--set", "drive.can_server.sync=followed")
 FOLLOWED = """(
 sleep 0.2
-python3 {folder}/motion_controller.py vcan1 1 --own-clock 0.00100015 --warm-up 5000 --moves 3 --break-off 550 --listen 20 \
+python3 {folder}/motion_controller.py vcan1 1 --own-clock 0.00100015 --warm-up 11000 --moves 3 --break-off 550 --listen 20 \
   >own_clock.csv 2>own_clock.txt
 kill -TERM $(pidof stictiond)) &
 """
