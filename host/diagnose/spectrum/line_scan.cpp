@@ -89,9 +89,10 @@ LineScan scan_times(const LogRows& rows, const Eigen::VectorXd& residual, std::s
   const auto lowest = static_cast<std::size_t>(lowest_frequency / step) + 1;
   const auto highest = std::min(power.size(), static_cast<std::size_t>(band / rows.period(0) / step));
   if (highest <= lowest) return scan;
-  power = {power.begin() + static_cast<std::ptrdiff_t>(lowest), power.begin() + static_cast<std::ptrdiff_t>(highest)};
-  for (const auto k : outstanding(std::move(power), count, 8))
-    scan.periods.push_back(1.0 / (step * static_cast<double>(lowest + k)));
+  const auto lines = outstanding(
+      {power.begin() + static_cast<std::ptrdiff_t>(lowest), power.begin() + static_cast<std::ptrdiff_t>(highest)},
+      count, 8);
+  for (const auto k : lines) scan.periods.push_back(1.0 / (step * static_cast<double>(lowest + k)));
   scan.trials = static_cast<std::size_t>(scan.extent * band / rows.period(0)) + 1;
   return scan;
 }

@@ -16,7 +16,7 @@
 namespace stiction {
 
 enum class CommandSource : std::uint8_t { none, can, modbus };
-inline constexpr std::array<const char*, 3> command_source_names{"none", "CAN", "Modbus"};
+inline constexpr const char* command_source_names[]{"none", "CAN", "Modbus"};
 constexpr const char* name_of(CommandSource source) { return command_source_names[static_cast<std::size_t>(source)]; }
 
 // Abort connection option code 6007h.
