@@ -26,7 +26,7 @@ void keep_residuals(Identification& result, const LogRows& rows, const FrictionF
   result.residual_rms = fit.residual.norm() / std::sqrt(n);
   for (std::size_t k = 0; k < rows.motions().size(); ++k) {
     const auto begin = static_cast<Eigen::Index>(rows.logs()[k]);
-    const auto end = k + 1 < rows.logs().size() ? static_cast<Eigen::Index>(rows.logs()[k + 1]) : rows.rows();
+    const auto end = static_cast<Eigen::Index>(rows.end(k));
     const auto part = [&](const Eigen::VectorXd& v) { return std::vector<double>(v.begin() + begin, v.begin() + end); };
     result.residuals.push_back({rows.motions()[k].source, part(rows.time), part(rows.velocity), part(fit.residual)});
   }

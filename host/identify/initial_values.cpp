@@ -26,7 +26,7 @@ struct Reversal {
 std::vector<Reversal> reversals_of(const LogRows& rows, const Eigen::VectorXd& sliding) {
   std::vector<Reversal> reversals;
   for (std::size_t log = 0; log < rows.logs().size(); ++log) {
-    const std::size_t end = log + 1 < rows.logs().size() ? rows.logs()[log + 1] : static_cast<std::size_t>(rows.rows());
+    const std::size_t end = rows.end(log);
     std::optional<Eigen::Index> last;
     for (auto i = static_cast<Eigen::Index>(rows.logs()[log]); i < static_cast<Eigen::Index>(end); ++i) {
       if (sliding[i] == 0.0) continue;

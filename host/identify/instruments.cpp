@@ -51,7 +51,7 @@ NoisyEquations equations_of(const LogRows& rows, const Eigen::MatrixXd& columns)
   for (std::size_t k = 0; k < rows.motions().size(); ++k) {
     const auto& motion = rows.motions()[k];
     const auto begin = static_cast<Eigen::Index>(rows.logs()[k]);
-    const auto end = k + 1 < rows.logs().size() ? static_cast<Eigen::Index>(rows.logs()[k + 1]) : rows.rows();
+    const auto end = static_cast<Eigen::Index>(rows.end(k));
     const Eigen::ArrayXd share = rows.weight.segment(begin, end - begin).array().square();
     e.all_noise += share.sum() * std::pow(motion.acceleration_noise, 2);
     if (!motion.set_a.empty()) continue;

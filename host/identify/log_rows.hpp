@@ -16,6 +16,9 @@ class LogRows {
 
   const std::vector<Motion>& motions() const { return motions_; }
   const std::vector<std::size_t>& logs() const { return logs_; }  // first row of each
+  std::size_t end(std::size_t log) const {                        // past its last row
+    return log + 1 < logs_.size() ? logs_[log + 1] : static_cast<std::size_t>(rows());
+  }
   Eigen::Index rows() const { return force.size(); }
   double period(std::size_t log) const { return filters_[log].period(); }  // s, from row to row
 

@@ -55,7 +55,7 @@ std::vector<double> speeds_of(const LogRows& rows, double highest) {
   const auto sliding = fitting::steady_sliding(rows);
   std::vector<double> time_in, sum_in;
   for (std::size_t log = 0; log < rows.logs().size(); ++log) {
-    const std::size_t end = log + 1 < rows.logs().size() ? rows.logs()[log + 1] : static_cast<std::size_t>(rows.rows());
+    const std::size_t end = rows.end(log);
     for (std::size_t i = rows.logs()[log]; i < end; ++i) {
       const double v = std::abs(rows.velocity[static_cast<Eigen::Index>(i)]);
       if (sliding[static_cast<Eigen::Index>(i)] == 0.0 || v == 0.0) continue;

@@ -102,7 +102,7 @@ Equations equations(const LogRows& rows, const std::vector<double>& d, const std
   Eigen::VectorXd weight = rows.sampled(settled);
   for (std::size_t k = 0; k < rows.logs().size(); ++k) {
     const auto begin = static_cast<Index>(rows.logs()[k]);
-    const auto end = k + 1 < rows.logs().size() ? static_cast<Index>(rows.logs()[k + 1]) : rows.rows();
+    const auto end = static_cast<Index>(rows.end(k));
     const double count = weight.segment(begin, end - begin).sum();
     if (count > 0.0) weight.segment(begin, end - begin) /= count * static_cast<double>(rows.logs().size());
   }

@@ -84,7 +84,7 @@ TEST(blind_truth, answers_a_subdivision_error_at_speed_as_the_diagnosis_expects)
               std::polar(1.0, -2.0 * std::numbers::pi * b.x[k] / signal);
   answer /= error * count;
   const host::EncoderErrorResponse response(axis, machine.timing);
-  const auto expected = response.drive(speed / signal);
+  const auto expected = response.speed(speed / signal) * response.of_speed(speed / signal);
   test::figure("answer to a subdivision error at 1.3 kHz, off the diagnosis' expectation",
                fmt::format("{:.1f} % (bound 2 %)", 100.0 * std::abs(answer - expected) / std::abs(expected)));
   EXPECT_LT(std::abs(answer - expected), 0.02 * std::abs(expected));

@@ -36,7 +36,7 @@ std::vector<Eigen::VectorXd> by_record(const LogRows& rows, const std::vector<Ei
   std::vector<Eigen::VectorXd> own;
   for (std::size_t r = 0; r < rows.logs().size(); ++r) {
     const auto begin = static_cast<Eigen::Index>(rows.logs()[r]);
-    const auto end = r + 1 < rows.logs().size() ? static_cast<Eigen::Index>(rows.logs()[r + 1]) : rows.rows();
+    const auto end = static_cast<Eigen::Index>(rows.end(r));
     for (const auto& column : shared) {
       own.emplace_back(Eigen::VectorXd::Zero(rows.rows()));
       own.back().segment(begin, end - begin) = column.segment(begin, end - begin);

@@ -22,7 +22,7 @@ std::vector<Rows> records_of(const LogRows& rows) {
   std::vector<Rows> records;
   for (std::size_t k = 0; k < rows.logs().size(); ++k) {
     const auto begin = static_cast<Eigen::Index>(rows.logs()[k]);
-    const auto end = k + 1 < rows.logs().size() ? static_cast<Eigen::Index>(rows.logs()[k + 1]) : rows.rows();
+    const auto end = static_cast<Eigen::Index>(rows.end(k));
     records.push_back({begin, end - begin});
   }
   return records;

@@ -101,8 +101,6 @@ Complex EncoderErrorResponse::of_speed(double frequency) const {
   return -law / (1.0 - law * speed(frequency) / (axis_.mass * w * w));
 }
 
-Complex EncoderErrorResponse::drive(double frequency) const { return speed(frequency) * of_speed(frequency); }
-
 SeenEncoderError::SeenEncoderError(const Motion& motion, const machine::AxisModel& axis, const machine::Timing& timing,
                                    int difference_points, double cutoff)
     : drive_(axis, timing),

@@ -20,12 +20,11 @@ class EncoderErrorResponse {
   // `axis` and `timing`: of the machine file.
   EncoderErrorResponse(const machine::AxisModel& axis, const machine::Timing& timing);
 
-  // The drive's answer (N per m of error) at `frequency` (Hz, not negative): speed() to the error's speed.
-  std::complex<double> drive(double frequency) const;
-  // N per m/s: PI, notch and current loop in the steps of the fast tick (discretised as the firmware's), with the
-  // carriage's own motion. The position loop, weak there, is left out. 0 for an axis without a velocity controller.
+  // The drive's answer to an error's speed, N per m/s at `frequency` (Hz, not negative): PI, notch and current loop in
+  // the steps of the fast tick (discretised as the firmware's), with the carriage's own motion. The position loop, weak
+  // there, is left out. 0 for an axis without a velocity controller.
   std::complex<double> of_speed(double frequency) const;
-  // The speed (1/s) that the drive makes of a position.
+  // The speed (1/s) that the drive makes of a position at `frequency`.
   std::complex<double> speed(double frequency) const;
 
  private:

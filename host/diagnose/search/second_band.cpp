@@ -22,7 +22,7 @@ Eigen::VectorXd below_edge(const LogRows& rows, const Eigen::VectorXd& column) {
   Eigen::VectorXd filtered(column.size());
   for (std::size_t k = 0; k < rows.logs().size(); ++k) {
     const std::size_t begin = rows.logs()[k];
-    const std::size_t end = k + 1 < rows.logs().size() ? rows.logs()[k + 1] : static_cast<std::size_t>(rows.rows());
+    const std::size_t end = rows.end(k);
     const auto lowpass = butterworth(filter_order, 2.0 * edge * rows.period(k));
     const auto part = filter_both_ways(lowpass, {column.data() + begin, end - begin}, default_padding(lowpass));
     std::copy(part.begin(), part.end(), filtered.data() + begin);

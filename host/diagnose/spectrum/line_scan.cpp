@@ -14,7 +14,6 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double lowest_frequency = 1.0;  // Hz; below it a record of some seconds holds drift, not a line
-constexpr double band = 0.4;              // of the rows' rate
 constexpr std::size_t surroundings =
     64;  // lines apart, about as many to either side, whose median is the noise around one
 constexpr double most_cycles = 400.0;    // of the stroke
@@ -45,16 +44,12 @@ std::vector<std::size_t> outstanding(std::vector<double> power, std::size_t coun
   return chosen;
 }
 
-std::size_t record_end(const LogRows& rows, std::size_t record) {
-  return record + 1 < rows.logs().size() ? rows.logs()[record + 1] : static_cast<std::size_t>(rows.rows());
-}
-
 // |W|^2 of a whitening over the rows' frequencies up to the band's end, in a table.
 class WhitenedGain {
  public:
-  WhitenedGain(const Whitening& whitening, double row_period) : step_(band / steps / row_period) {
+  WhitenedGain(const Whitening& whitening, double row_period) : step_(rows_band / steps / row_period) {
     for (std::size_t k = 0; k <= steps; ++k)
-      table_.push_back(whitening.gain_square(band * static_cast<double>(k) / static_cast<double>(steps)));
+      table_.push_back(whitening.gain_square(rows_band * static_cast<double>(k) / static_cast<double>(steps)));
   }
   // Hz, up to the band's end.
   double at(double frequency) const { return table_[std::min(static_cast<std::size_t>(frequency / step_), steps)]; }
@@ -69,8 +64,7 @@ class WhitenedGain {
 
 LineScan scan_times(const LogRows& rows, const Eigen::VectorXd& residual, std::size_t count) {
   std::size_t longest = 0;
-  for (std::size_t r = 0; r < rows.logs().size(); ++r)
-    longest = std::max(longest, record_end(rows, r) - rows.logs()[r]);
+  for (std::size_t r = 0; r < rows.logs().size(); ++r) longest = std::max(longest, rows.end(r) - rows.logs()[r]);
   LineScan scan;
   scan.extent = static_cast<double>(longest) * rows.period(0);
   if (scan.extent * lowest_frequency < 1.0) return scan;
@@ -78,7 +72,7 @@ LineScan scan_times(const LogRows& rows, const Eigen::VectorXd& residual, std::s
   std::vector<double> power(points / 2, 0.0);
   Eigen::FFT<double> fft;
   for (std::size_t r = 0; r < rows.logs().size(); ++r) {
-    const std::size_t begin = rows.logs()[r], length = record_end(rows, r) - begin;
+    const std::size_t begin = rows.logs()[r], length = rows.end(r) - begin;
     std::vector<Complex> padded(points), spectrum;
     for (std::size_t i = 0; i < length; ++i) padded[i] = residual[static_cast<Eigen::Index>(begin + i)];
     fft.fwd(spectrum, padded);
@@ -87,13 +81,13 @@ LineScan scan_times(const LogRows& rows, const Eigen::VectorXd& residual, std::s
   }
   const double step = 1.0 / (static_cast<double>(points) * rows.period(0));
   const auto lowest = static_cast<std::size_t>(lowest_frequency / step) + 1;
-  const auto highest = std::min(power.size(), static_cast<std::size_t>(band / rows.period(0) / step));
+  const auto highest = std::min(power.size(), static_cast<std::size_t>(rows_band / rows.period(0) / step));
   if (highest <= lowest) return scan;
   const auto lines = outstanding(
       {power.begin() + static_cast<std::ptrdiff_t>(lowest), power.begin() + static_cast<std::ptrdiff_t>(highest)},
       count, 8);
   for (const auto k : lines) scan.periods.push_back(1.0 / (step * static_cast<double>(lowest + k)));
-  scan.trials = static_cast<std::size_t>(scan.extent * band / rows.period(0)) + 1;
+  scan.trials = static_cast<std::size_t>(scan.extent * rows_band / rows.period(0)) + 1;
   return scan;
 }
 
@@ -117,7 +111,7 @@ LineScan scan_pitches(const LogRows& rows, const Eigen::VectorXd& residual, cons
     double seen = 0.0;
     for (Eigen::Index i = 0; i < x.size(); ++i) {
       const double speed = std::abs(rows.velocity[i]);
-      if (speed * top > band / rows.period(0))
+      if (speed * top > rows_band / rows.period(0))
         moment[i] = square[i] = 0.0;
       else
         seen += square[i], square[i] *= whitened.at(speed * middle);

@@ -12,6 +12,9 @@
 
 namespace stiction::host {
 
+// Of the rows' rate: how far lines show in them.
+inline constexpr double rows_band = 0.4;
+
 struct LineScan {
   std::vector<double> periods;  // s or m, the strongest first
   std::size_t trials = 0;       // independent periods that were looked at

@@ -21,7 +21,6 @@ constexpr double least_increments = 4.0;                    // in a signal that 
 constexpr double longest_signal = 1e-3;                     // m, of inductive and magnetic scales
 constexpr double fewest_signals = 200.0;                    // a turn
 constexpr std::size_t most_signals = std::size_t{1} << 19;  // steps of an order, which take 32 MB
-constexpr double shown_band = 0.4;                          // of the rows' rate
 constexpr double slowest_seen = 4.0;                        // Hz, at which a row moves along the signal at all
 constexpr double log_step = 4e-4;                           // between neighbours of the tables below
 constexpr std::size_t smoothed = 25;                        // of them to either side: 1 % of an order
@@ -36,7 +35,7 @@ double fast_share(double cycles) { return 1.0 - 1.0 / (1.0 + std::pow(cycles / s
 Eigen::VectorXd fast_part(const LogRows& rows, Eigen::VectorXd values) {
   for (std::size_t r = 0; r < rows.logs().size(); ++r) {
     const std::size_t begin = rows.logs()[r];
-    const std::size_t end = r + 1 < rows.logs().size() ? rows.logs()[r + 1] : static_cast<std::size_t>(rows.rows());
+    const std::size_t end = rows.end(r);
     const auto lowpass = butterworth(slow_order, 2.0 * slow);
     const std::vector<double> all(values.data() + begin, values.data() + end);
     const auto slow_part = filter_both_ways(lowpass, all, default_padding(lowpass));
@@ -55,8 +54,8 @@ Eigen::VectorXd telling_rows(const LogRows& rows, double longest) {
   const double least = steady * rows.acceleration.cwiseAbs().maxCoeff();
   Eigen::VectorXd telling = rows.counts();
   for (std::size_t r = 0; r < rows.logs().size(); ++r) {
-    const std::size_t end = r + 1 < rows.logs().size() ? rows.logs()[r + 1] : static_cast<std::size_t>(rows.rows());
-    const double fastest = crawl * longest * shown_band / rows.period(r);
+    const std::size_t end = rows.end(r);
+    const double fastest = crawl * longest * rows_band / rows.period(r);
     for (auto i = static_cast<Eigen::Index>(rows.logs()[r]); i < static_cast<Eigen::Index>(end); ++i)
       if (std::abs(rows.velocity[i]) > fastest && std::abs(rows.acceleration[i]) < least) telling[i] = 0.0;
   }
@@ -83,7 +82,7 @@ class ColumnSquares {
     all_.assign(orders, 0.0);
     for (std::size_t r = 0; r < rows.logs().size(); ++r) {
       const auto begin = static_cast<Eigen::Index>(rows.logs()[r]);
-      const auto end = r + 1 < rows.logs().size() ? static_cast<Eigen::Index>(rows.logs()[r + 1]) : rows.rows();
+      const auto end = static_cast<Eigen::Index>(rows.end(r));
       std::vector<double> of_speeds(points, 0.0), of_frequencies(points, 0.0);
       for (Eigen::Index i = begin; i < end; ++i) {
         const double weight = (whitening.weight().size() > 0 ? whitening.weight()[i] : 1.0) * telling[i];
@@ -95,7 +94,7 @@ class ColumnSquares {
         const double frequency = slowest * lowest * std::exp(log_step * static_cast<double>(k));
         if (frequency < slowest_seen) continue;
         const double shown = seen.shown_at(frequency);
-        if (shown <= shown_band / rows.period(r))
+        if (shown <= rows_band / rows.period(r))
           of_frequencies[k] = std::norm(seen.response(frequency) * fast_share(shown * rows.period(r))) *
                               whitening.gain_square(shown * rows.period(r));
       }

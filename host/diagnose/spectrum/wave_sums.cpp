@@ -124,21 +124,4 @@ double WavePower::at(std::size_t order) const {
   return std::norm(room().spectrum[order]) / (spread_by * spread_by);
 }
 
-double PhasorBank::gain() {
-  Packet moment_real = Packet::Zero(), moment_imag = Packet::Zero(), twice_real = Packet::Zero(),
-         twice_imag = Packet::Zero(), square = Packet::Zero();
-  for (auto& p : packets_) {
-    const Packet real_square = p.real * p.real, imag_square = p.imag * p.imag;
-    moment_real += p.moment * p.real;
-    moment_imag += p.moment * p.imag;
-    twice_real += p.square * (real_square - imag_square);
-    twice_imag += p.square * (p.real * p.imag);
-    square += p.square * (real_square + imag_square);
-    const Packet real = p.real * p.turn_real - p.imag * p.turn_imag;
-    p.imag = p.real * p.turn_imag + p.imag * p.turn_real;
-    p.real = real;
-  }
-  return gain_of({moment_real.sum(), moment_imag.sum()}, {twice_real.sum(), 2.0 * twice_imag.sum()}, square.sum());
-}
-
 }  // namespace stiction::host

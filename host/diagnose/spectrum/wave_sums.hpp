@@ -63,31 +63,4 @@ class WavePower {
   std::size_t cells_;
 };
 
-// Waves of many rows from order to order, in packets of rows; what there is none of has weight 0.
-class PhasorBank {
- public:
-  void clear() { packets_.clear(), rows_ = 0; }
-  // `moment`: the residual's factor of the wave, `square`: the factor of the wave's square; `turn`: to the next order.
-  void add(double moment, double square, std::complex<double> wave, std::complex<double> turn) {
-    const auto i = static_cast<Eigen::Index>(rows_++ % size);
-    if (i == 0) packets_.emplace_back();
-    auto& p = packets_.back();
-    p.moment[i] = moment, p.square[i] = square;
-    p.real[i] = wave.real(), p.imag[i] = wave.imag();
-    p.turn_real[i] = turn.real(), p.turn_imag[i] = turn.imag();
-  }
-  // Of this order; goes on to the next.
-  double gain();
-
- private:
-  static constexpr int size = 4;
-  using Packet = Eigen::Array<double, size, 1>;
-  struct Rows {
-    Packet moment = Packet::Zero(), square = Packet::Zero(), real = Packet::Zero(), imag = Packet::Zero(),
-           turn_real = Packet::Zero(), turn_imag = Packet::Zero();
-  };
-  std::vector<Rows> packets_;
-  std::size_t rows_ = 0;
-};
-
 }  // namespace stiction::host

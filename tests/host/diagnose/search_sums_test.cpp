@@ -55,24 +55,6 @@ TEST(SearchSums, waves_over_a_place_are_those_of_each_row) {
   }
 }
 
-TEST(SearchSums, turning_waves_take_what_a_fit_takes) {
-  const Eigen::Index rows = 333;  // no whole number of packets
-  const auto residual = drawn(rows, 3), place = drawn(rows, 4);
-  const double first = 0.7, step = 0.01;
-  PhasorBank waves;
-  for (Eigen::Index i = 0; i < rows; ++i) waves.add(residual[i], 1.0, wave(first * place[i]), wave(step * place[i]));
-  for (int k = 0; k < 40; ++k) {
-    Eigen::MatrixXd columns(rows, 2);
-    for (Eigen::Index i = 0; i < rows; ++i) {
-      const auto w = wave((first + step * k) * place[i]);
-      columns.row(i) << w.real(), w.imag();
-    }
-    const Eigen::VectorXd coefficients = columns.householderQr().solve(residual);
-    const double taken = residual.squaredNorm() - (residual - columns * coefficients).squaredNorm();
-    EXPECT_NEAR(waves.gain(), taken, 1e-10 * residual.squaredNorm());  // rounding of 40 turns
-  }
-}
-
 TEST(SearchSums, several_columns_are_filtered_to_the_bit_as_each_by_itself) {
   const auto lowpass = chebyshev(8, 0.05, 0.2);
   for (const std::size_t count : {1U, 2U, 4U, 7U}) {

@@ -238,7 +238,8 @@ class RemoteAxis {
 
   // Within the ends, or not further out than where it is.
   constexpr bool allowed(S::Position target, S::Position from) const {
-    const bool below = target < config_.low && target<from, above = target> config_.high && target > from;
+    const bool below = target < config_.low && target < from;
+    const bool above = target > config_.high && target > from;
     return !below && !above;
   }
   static constexpr S::Velocity larger(S::Velocity a, S::Velocity b) { return a < b ? b : a; }
@@ -271,7 +272,9 @@ class RemoteAxis {
   // A cyclic speed changes by the machine's limits, one of pv by its profile.
   constexpr SetPoint<S> speed_set_point() {
     auto move = mode_ == OperationMode::cyclic_velocity ? config_.fastest : asked_move_;
-    const bool down = asked_speed_<S::Velocity{}, up = asked_speed_> S::Velocity{};
+    constexpr S::Velocity still{};
+    const bool down = asked_speed_ < still;
+    const bool up = asked_speed_ > still;
     const auto beyond = down ? point_.position <= config_.low : up && point_.position >= config_.high;
     at_end_ = referenced_ && beyond;
     move.velocity = down ? opposite(asked_speed_) : asked_speed_;
