@@ -115,7 +115,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const int cycles = 1 + (length & 7) * ((what & 128) != 0 ? 20 : 1);
     for (int i = 0; i < cycles; ++i) run_cycle(axes[0], drive);
     now_ns += 1'000'000;
-    if (!config.motion_allowed && (axes[0].controlword() != 0 || frames.counts().taken != 0))
+    if (!config.motion_allowed && (axes[0].controlword() != controlword::shutdown || frames.counts().taken != 0))
       finding("taken without permission");
   }
   return 0;
