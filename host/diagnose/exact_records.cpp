@@ -81,7 +81,8 @@ class Maker {
   // machine cannot follow it.
   bool prepare(Record& record) const {
     if (own_motion_) {
-      const auto motion = prepared_.known_motion ? drive(record, machine_, axis_) : std::vector<Log>{};
+      const auto motion =
+          prepared_.known_motion ? drive(record, machine_, axis_, Following::as_near_as_it_comes) : std::vector<Log>{};
       if (prepared_.known_motion && motion.empty()) return false;
       regress_on(record, motion, prepared_.axis, prepared_.settings);
     } else {

@@ -9,6 +9,7 @@
 #include "host/diagnose/exact_records.hpp"
 #include "host/diagnose/record/followed_set_points.hpp"
 #include "host/diagnose/record/inverse_dynamics.hpp"
+#include "host/diagnose/record/noise_floor.hpp"
 #include "host/diagnose/record/record_checks.hpp"
 #include "host/diagnose/record/record_rows.hpp"
 #include "host/diagnose/statistics/noise_model.hpp"
@@ -219,6 +220,7 @@ std::unique_ptr<Prepared> prepare(const DiagnoseInput& input, Verdict& verdict) 
   prepared->context.timing = input.machine.timing;
   take_motion(*prepared, input, verdict);
   prepared->context.highest_residual = prepared->training.target.cwiseAbs().maxCoeff();
+  prepared->context.resolved_force = resolution_of_dynamics * rms(prepared->training.expected);
   take_exact_records(*prepared, input);
   take_responses(*prepared, input);
   return prepared;

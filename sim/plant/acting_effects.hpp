@@ -32,7 +32,8 @@ class ActingEffects {
       if (axis.elastic())
         throw EffectError(StructuralResonance::name, "it on an axis with transmission.stiffness", "one of them");
       const StructuralResonance mode(parameters, axis.mass);
-      mode_.emplace(Shaft{mode.load_mass, mode.motor_mass, mode.stiffness, mode.damping}, step);
+      mode_.emplace(Shaft{mode.measured_mass, mode.other_mass, mode.stiffness, mode.damping}, step);
+      motor_on_carriage_ = mode.motor_measured;
     }
     if (axis.elastic()) mode_.emplace(Shaft::of(axis), step);
     if (axis.gravity) {
@@ -53,15 +54,14 @@ class ActingEffects {
 
   bool any() const { return !forces_.empty() || play_ || !reading_.empty() || mode_ || saturation_ || coupled(); }
   bool coupled() const { return coupling_mass_ != 0.0; }  // with the other axis
-  // What moves with the encoder: of an axis with an elastic mode the load alone.
+  // What moves with the encoder: of an axis with an elastic mode the measured part alone.
   Body carriage(const machine::AxisModel& axis) const { return {mode_ ? mode_->load_mass() : axis.mass, step_}; }
 
   // Of the other axis, m/s^2; held until changed.
   void set_other_acceleration(double acceleration) { coupling_force_ = coupling_mass_ * acceleration; }
 
-  // Of the motor against the carriage: m, m/s.
   // m/s, in the last step.
-  double motor_lead_rate_change() const { return mode_ ? mode_->rate_change() : 0.0; }
+  double motor_lead_rate_change() const { return motor_apart() ? mode_->rate_change() : 0.0; }
   // From now on the shaft's damping is that of the middle of a step.
   void step_finely() {
     if (mode_) mode_->step_finely();
@@ -70,17 +70,19 @@ class ActingEffects {
   void set_motor_friction(std::function<double(double, double)> friction) {
     mode_->set_motor_friction(std::move(friction));
   }
-  double motor_lead() const { return mode_ ? mode_->motor_lead() : 0.0; }
-  double motor_lead_rate() const { return mode_ ? mode_->motor_lead_rate() : 0.0; }
+  // Of the motor against the carriage: m, m/s.
+  double motor_lead() const { return motor_apart() ? mode_->motor_lead() : 0.0; }
+  double motor_lead_rate() const { return motor_apart() ? mode_->motor_lead_rate() : 0.0; }
   // Force (N) of a motor whose force is proportional to its current but for the effects.
   double motor_force(double linear) const { return saturation_ ? saturation_->of_linear(linear) : linear; }
   // The same the other way about.
   double linear_force(double force) const { return saturation_ ? saturation_->linear_for(force) : force; }
-  // What of the motor's force (N) reaches the carriage during one step; ends with follow().
+  // What of the motor's force (N) reaches the carriage during one step, with the shaft's; ends with follow().
   double transmitted(double motor_force) {
     if (!mode_) return motor_force;
-    motor_force_ = motor_force;
-    return transmitted_ = mode_->force();
+    on_other_body_ = motor_on_carriage_ ? 0.0 : motor_force;
+    shaft_force_ = mode_->force();
+    return motor_on_carriage_ ? motor_force + shaft_force_ : shaft_force_;
   }
 
   // Forces on the carriage during one step, N, positive in +x: those that are friction, and the others.
@@ -111,7 +113,7 @@ class ActingEffects {
   // The carriage is at `position` (m) with `velocity` (m/s) at the end of a step that changed it by `change`. Returns
   // by how much the velocity behind the play changed: what the encoder's mount stands on.
   double follow(double position, double velocity, double change) {
-    if (mode_) mode_->advance(motor_force_, transmitted_, velocity, change);
+    if (mode_) mode_->advance(on_other_body_, shaft_force_, velocity, change);
     if (!play_) {
       follower_ = position;
       return change;
@@ -140,12 +142,14 @@ class ActingEffects {
     std::unique_ptr<CarriageForce> force;
     bool is_friction;
   };
+  bool motor_apart() const { return mode_ && !motor_on_carriage_; }
 
   double step_;
   std::optional<TwoMasses> mode_;
   std::optional<ForceSaturation> saturation_;
   double coupling_mass_ = 0.0, coupling_force_ = 0.0;
-  double motor_force_ = 0.0, transmitted_ = 0.0;
+  double on_other_body_ = 0.0, shaft_force_ = 0.0;  // N
+  bool motor_on_carriage_ = false;
   double start_;
   std::int64_t steps_ = 0;
   CarriageState state_{};

@@ -45,6 +45,7 @@ struct SearchContext : Scans {
   int reversals = 0;
   double lowest_position = 0.0, highest_position = 0.0;
   double highest_force = 0.0;     // N, expected
+  double resolved_force = 0.0;    // N rms, by which the inverse dynamics may be off
   double highest_residual = 0.0;  // N, what the file does not make of the force
   bool force_is_current = false;  // in every record: current (or voltage) times the file's force constant
   bool other_axis = false;        // its motion is in every record
@@ -81,7 +82,10 @@ struct Candidate {
   // of the vocabulary: those of a force_map; null where no table holds it.
   void (*describe)(const SearchContext&, double shape, const Eigen::VectorXd& coefficients,
                    const Eigen::MatrixXd& covariance, Finding&) = nullptr;
-  bool shape = false;           // whether the scanned parameter is one of the effect's own
+  bool shape = false;  // whether the scanned parameter is one of the effect's own
+  // It goes with acceleration as the inverse dynamics' own errors do: what is no larger than those is none
+  // (resolution_of_dynamics).
+  bool like_dynamics = false;
   bool at_weight = false;       // the scanned value is where the law is linearised: at best the weight itself
   bool names_constant = false;  // what it names is not a nuisance of its own evaluation
   bool names_coulomb = false;
@@ -109,7 +113,9 @@ struct Candidate {
 
 // The vocabulary in its order; behind it what is outside of it.
 std::span<const Candidate> candidates();
-// Its place there; none where the effect does not show in the residual force.
+// Whether the candidates at the places `a` and `b` there are of one name: two arrangements of one effect.
+bool one_cause(std::size_t a, std::size_t b);
+// The first place of the effect there; none where it does not show in the residual force.
 std::optional<std::size_t> candidate_index(sim::EffectId effect);
 
 namespace effects {

@@ -22,8 +22,9 @@ std::span<const Candidate> candidates() {
   static const std::vector<Candidate> table = [] {
     std::vector<Candidate> made;
     for (const sim::EffectId effect : sim::all_effects())
-      if (const auto* regressor = regressor_of(effect); regressor != nullptr && regressor->force.columns != nullptr)
-        made.emplace_back(regressor->force).effect = effect;
+      if (const auto* regressor = regressor_of(effect))
+        for (const auto* force : {&regressor->force, &regressor->other_force})
+          if (force->columns != nullptr) made.emplace_back(*force).effect = effect;
     for (const Candidate& shape :
          {signatures::localised_force::shape, signatures::ripple_with_speed::shape,
           signatures::force_after_reversal::shape, signatures::force_after_reversal::shape_on_way_back,
@@ -33,6 +34,11 @@ std::span<const Candidate> candidates() {
     return made;
   }();
   return table;
+}
+
+bool one_cause(std::size_t a, std::size_t b) {
+  const auto &one = candidates()[a], &other = candidates()[b];
+  return a == b || (one.effect && one.effect == other.effect);
 }
 
 std::optional<std::size_t> candidate_index(sim::EffectId effect) {

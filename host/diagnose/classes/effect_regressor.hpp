@@ -12,6 +12,7 @@ namespace stiction::host {
 
 struct EffectRegressor {
   Candidate force{};                            // in the residual force; without columns: it does not show there
+  Candidate other_force{};                      // of another arrangement of the same parts; without columns: none
   std::span<const CommandParameter> command{};  // in the command residual
   std::string_view not_looked_for{};            // why, where it is looked for in neither
 };

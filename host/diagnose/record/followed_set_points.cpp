@@ -46,8 +46,9 @@ class Follower {
         lowpass_(lowpass_of(machine.axes[axis], log.period)),
         wanted_(smoothed(channels().x)) {}
 
-  // The set positions of the round that came nearest; empty where none could be simulated, or did not come near.
-  std::vector<double> learned() {
+  // The set positions of the round that came nearest; empty where none could be simulated, or, by `how`, did not come
+  // near.
+  std::vector<double> learned(Following how) {
     std::vector<double> best, set = wanted_;
     double least = INFINITY;
     for (int round = 0; round < rounds; ++round) {
@@ -59,6 +60,7 @@ class Follower {
         break;
       add(set, missing);
     }
+    if (how == Following::as_near_as_it_comes) return best;
     const auto [low, high] = std::minmax_element(wanted_.begin(), wanted_.end());
     const double increment = machine_.axes[axis_].encoder.increment;
     if (!(std::sqrt(least) < std::max(missed * (*high - *low), increment))) return {};
@@ -112,13 +114,14 @@ std::vector<Log> with_recorded_set_points(const machine::AxisModel& axis, std::v
   return logs;
 }
 
-std::vector<Log> with_set_points(const machine::Machine& machine, std::size_t axis, std::vector<Log> logs) {
+std::vector<Log> with_set_points(const machine::Machine& machine, std::size_t axis, std::vector<Log> logs,
+                                 Following how) {
   const auto& model = machine.axes[axis];
   const bool follows = model.cascaded() && model.position_controller.gain > 0.0;
   if (model.unknown_controller() || !follows) return logs;
   for (auto& log : logs) {
     auto& channels = channels_of(log, model);
-    if (channels.x_set.empty()) channels.x_set = Follower(machine, axis, log).learned();
+    if (channels.x_set.empty()) channels.x_set = Follower(machine, axis, log).learned(how);
   }
   return logs;
 }

@@ -12,9 +12,14 @@
 
 namespace stiction::host {
 
+// Whether a simulation has to go the way of the record. A draw of the exact machine that sticks elsewhere is a draw all
+// the same.
+enum class Following { as_recorded, as_near_as_it_comes };
+
 // The `logs` with set positions (m) of the axis where they have none; as they are where the controller of the axis is
-// not known or its simulation cannot follow. `machine` of the file; `axis`: its index.
-std::vector<Log> with_set_points(const machine::Machine& machine, std::size_t axis, std::vector<Log> logs);
+// not known or its simulation cannot follow, by `how`. `machine` of the file; `axis`: its index.
+std::vector<Log> with_set_points(const machine::Machine& machine, std::size_t axis, std::vector<Log> logs,
+                                 Following how = Following::as_recorded);
 
 // The `logs` with the recorded positions, slowly, for set positions (m) where they have none: how about the axis went.
 // `axis` of the file, with a position loop.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "host/identify/filter.hpp"
+#include "host/diagnose/record/elastic_mode.hpp"
 #include "sim/effects/presliding_hysteresis/presliding_hysteresis.hpp"
 #include "sim/effects/structural_resonance/structural_resonance.hpp"
 #include "sim/plant/acting_effects.hpp"
@@ -49,27 +49,15 @@ std::vector<double> by_contact(const typename Law::Parameters& parameters, doubl
 
 void add_mode(const sim::StructuralResonance::Parameters& mode, const machine::AxisModel& axis, const Motion& motion,
               std::vector<double>& force) {
-  const auto columns = mode_columns(axis.mass, mode.mass_ratio, motion, force);
-  const double w = 2.0 * std::numbers::pi * mode.frequency;
+  auto load = force;
+  for (std::size_t i = 0; i < load.size(); ++i) load[i] -= axis.mass * motion.a[i];
+  const auto columns =
+      mode_columns({mode.frequency, mode.damping_ratio, mode.mass_ratio, mode.motor_measured != 0}, axis, motion, load);
   for (std::size_t i = 0; i < force.size(); ++i)
-    force[i] += (columns.bend[i] + 2.0 * mode.damping_ratio / w * columns.damping[i]) / (w * w);
+    force[i] += columns[0][i] + (columns.size() > 1 ? columns[1][i] / mode.mass_ratio : 0.0);
 }
 
 }  // namespace
-
-ModeColumns mode_columns(double mass, double ratio, const Motion& motion, const std::vector<double>& force) {
-  constexpr int points = 7;
-  const auto rate = [&](const std::vector<double>& values) {
-    return central_difference(values, motion.period, points);
-  };
-  // With its inertia the load's force is M a + load/r, for the load's share of the mass.
-  auto bent = force;
-  for (std::size_t i = 0; i < bent.size(); ++i) bent[i] = mass * motion.a[i] + (force[i] - mass * motion.a[i]) / ratio;
-  ModeColumns columns{rate(rate(bent)), {}};
-  columns.damping = rate(columns.bend);
-  for (double& v : columns.damping) v = -v;
-  return columns;
-}
 
 std::vector<double> friction_along(const machine::AxisModel& axis, const Motion& motion) {
   return sim::with_law_in_use(axis.friction, [&]<class Law>(const typename Law::Parameters& p) {

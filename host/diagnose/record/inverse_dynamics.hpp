@@ -16,17 +16,6 @@ namespace stiction::host {
 std::vector<double> friction_along(const machine::AxisModel& axis, const Motion& motion);
 std::vector<double> force_along(const machine::AxisModel& axis, const Motion& motion);  // m a + friction
 
-// What bending an elastic mode between motor and load (structural_resonance) adds to the motor's force, to second order
-// in frequency over the mode's, w: (bend + 2 zeta/w damping) / w^2, where r is the load's share of the mass M and
-// `load` its own force, friction and surroundings. The inverse dynamics has no resonance: the denominator of the exact
-// 1 / (w^2 + 2 zeta w s) stays near w^2 wherever damping is small.
-struct ModeColumns {
-  std::vector<double> bend;     // M d^4x/dt^4 + d^2(load)/dt^2 / r, N/s^2
-  std::vector<double> damping;  // -d(bend)/dt, N/s^3
-};
-// `force`: what a rigid axis needs, N; `ratio`: r. `mass` in kg; `motion` of the load.
-ModeColumns mode_columns(double mass, double ratio, const Motion& motion, const std::vector<double>& force);
-
 // The force with `changed` less the force with `axis`, over `by`. `motion`: the one that both make.
 std::vector<double> force_change(const machine::AxisModel& axis, const machine::AxisModel& changed,
                                  const Motion& motion, double by);

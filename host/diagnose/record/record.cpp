@@ -1,14 +1,43 @@
 #include "host/diagnose/record/record.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "host/diagnose/record/followed_set_points.hpp"
 #include "host/diagnose/record/inverse_dynamics.hpp"
 #include "host/diagnose/record/record_rows.hpp"
 #include "host/diagnose/record/replay_setup.hpp"
+#include "host/identify/identification.hpp"
 #include "host/identify/standstill.hpp"
 
 namespace stiction::host {
+namespace {
+
+// Of a record without set-points the simulated motion is not known above its followed_up_to(): it reverses elsewhere
+// than the measured one, and the file's friction differs between the two. Where it does so by more than what is left of
+// the record elsewhere, a column of friction would describe that difference. 1: known; 0: not.
+Eigen::VectorXd known_friction(const Record& record, const machine::AxisModel& axis, double cutoff) {
+  Eigen::VectorXd known = Eigen::VectorXd::Ones(record.target.size());
+  if (std::none_of(record.logs.begin(), record.logs.end(),
+                   [&](const Log& log) { return channels_of(log, axis).x_set.empty(); }))
+    return known;
+  constexpr double of_normal = 0.6745;  // its deviations' median over its standard deviation
+  const auto friction = [&](const Motion& motion) { return friction_along(axis, motion); };
+  const Eigen::VectorXd off = record.rows.stacked(friction) - record.regressors.stacked(friction);
+  Eigen::VectorXd sizes = record.target.cwiseAbs();
+  const auto middle = sizes.begin() + sizes.size() / 2;
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  const auto beside = static_cast<Eigen::Index>(std::ceil(0.5 / cutoff / record.rows.period(0)));
+  for (Eigen::Index i = 0; i < off.size(); ++i)
+    if (std::abs(off[i]) > *middle / of_normal) {
+      const auto first = std::max<Eigen::Index>(i - beside, 0), end = std::min(i + beside + 1, off.size());
+      known.segment(first, end - first).setZero();
+    }
+  return known;
+}
+
+}  // namespace
 
 void measure(Record& record, const machine::AxisModel& axis, const SignalSettings& settings) {
   record.rows = rows_of(record.logs, axis, settings);
@@ -16,10 +45,19 @@ void measure(Record& record, const machine::AxisModel& axis, const SignalSetting
   record.target = record.rows.force - record.expected;
 }
 
-std::vector<Log> drive(Record& record, const machine::Machine& machine, std::size_t axis) {
-  record.driven = with_set_points(machine, axis, record.logs);
-  auto without = without_noise(machine, axis, record.driven);
+std::vector<Log> drive(Record& record, const machine::Machine& machine, std::size_t axis, Following how) {
+  record.driven = with_set_points(machine, axis, record.logs, how);
+  auto without = without_noise(machine, axis, record.driven, how);
   record.simulated = std::move(without.replayed);
+  constexpr double elsewhere = 0.382;  // of an increment: the smaller part of the golden section
+  const auto& model = machine.axes[axis];
+  record.read_elsewhere.clear();
+  if (!record.simulated.empty() && model.encoder.increment > 0.0) {
+    auto moved = record.driven;
+    for (auto& log : moved)
+      for (double& x : channels_of(log, model).x_set) x += elsewhere * model.encoder.increment;
+    record.read_elsewhere = without_noise(machine, axis, moved, how).replayed;
+  }
   return std::move(without.motion);
 }
 
@@ -31,10 +69,12 @@ void regress_on(Record& record, const std::vector<Log>& motion, const machine::A
   } else {
     record.regressors = rows_of(motion, axis, settings);
     record.regressors.read_as(record.rows);
-    record.target -= own_residual(record.simulated, record.logs, axis, settings);
+    const auto& own = record.read_elsewhere.empty() ? record.simulated : record.read_elsewhere;
+    record.target -= own_residual(own, record.logs, axis, settings);
   }
-  const Eigen::VectorXd moves = moving_rows(record.rows, axis, settings.cutoff);
-  record.regressors.weigh(moves.cwiseProduct(moving_rows(record.regressors, axis, settings.cutoff)));
+  const Eigen::VectorXd moves = moving_rows(record.rows, axis, settings.cutoff)
+                                    .cwiseProduct(moving_rows(record.regressors, axis, settings.cutoff));
+  record.regressors.weigh(motion.empty() ? moves : moves.cwiseProduct(known_friction(record, axis, settings.cutoff)));
   record.target = record.target.cwiseProduct(record.regressors.counts());
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "firmware/machine/model/machine.hpp"
+#include "host/diagnose/record/followed_set_points.hpp"
 #include "host/identify/log_rows.hpp"
 #include "host/log/log.hpp"
 
@@ -24,6 +25,9 @@ struct Record {
   Eigen::VectorXd expected;    // N, what the file says of the measured motion
   Eigen::VectorXd target;      // N, what the file does not make of the force; rows at rest do not count
   std::vector<Log> simulated;  // the file's own runs of these logs; empty where it cannot follow
+  // The same on another part of the encoder's increment. What the file leaves of its own run is taken of these: the
+  // increments of a run that it shared with the regressors would look like a mode of the machine.
+  std::vector<Log> read_elsewhere;
   FrictionAlong friction = FrictionAlong::own_motion;  // in the target
   // N, what the residual force itself does to what the file leaves of its own run; the target is less that. Empty:
   // nothing was taken off.
@@ -34,10 +38,12 @@ struct Record {
 // as the plant has it; `settings` of the rows. Throws LogError.
 void measure(Record& record, const machine::AxisModel& axis, const SignalSettings& settings);
 // Drives the file's machine through the logs of the `record`; returns them with the motion that it makes. Empty where
-// it cannot follow, or goes another way. `machine` of the file; `axis`: its index.
-std::vector<Log> drive(Record& record, const machine::Machine& machine, std::size_t axis);
+// it cannot follow, or, by `how`, goes another way. `machine` of the file; `axis`: its index.
+std::vector<Log> drive(Record& record, const machine::Machine& machine, std::size_t axis,
+                       Following how = Following::as_recorded);
 // Regressors are of this `motion` (drive()) from now on, or, where it is empty, of the measured one; the target is less
-// what the file leaves of its own run; rows at standstill do not count. `record`, `axis` and `settings` as above.
+// what the file leaves of its own run; rows at standstill do not count, nor, without set-points, those in which the
+// file's friction differs between the two motions. `record`, `axis` and `settings` as above.
 void regress_on(Record& record, const std::vector<Log>& motion, const machine::AxisModel& axis,
                 const SignalSettings& settings);
 // The target of the `record`, which has regressors, with the file's friction along the motion of those. `axis` as

@@ -105,7 +105,8 @@ std::vector<std::vector<double>> simulated_positions(const ReplaySetup& setup) {
   return all;
 }
 
-WithoutNoise without_noise(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs) {
+WithoutNoise without_noise(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
+                           Following how) {
   auto setup = replay_setup_of(machine, axis, logs);
   if (setup.logs.size() != logs.size() || !why_not_simulated(machine, axis, logs).empty()) return {};
   setup.machine.axes.front().encoder.noise = 0.0;
@@ -114,7 +115,8 @@ WithoutNoise without_noise(const machine::Machine& machine, std::size_t axis, co
     for (std::size_t k = 0; k < logs.size(); ++k) {
       const auto& measured = channels_of(logs[k], machine.axes[axis]);
       const auto& position = without.replayed[k].axes.front().x;
-      if (!same_way(position, measured.x, machine.axes[axis].encoder.increment)) return {};
+      if (how == Following::as_recorded && !same_way(position, measured.x, machine.axes[axis].encoder.increment))
+        return {};
       without.motion[k].axes[static_cast<std::size_t>(&measured - logs[k].axes.data())].x = position;
     }
     return without;

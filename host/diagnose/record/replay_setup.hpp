@@ -8,6 +8,7 @@
 
 #include "firmware/machine/model/machine.hpp"
 #include "host/diagnose/record/disturbance.hpp"
+#include "host/diagnose/record/followed_set_points.hpp"
 #include "host/diagnose/record/record.hpp"
 #include "host/identify/motion.hpp"
 #include "host/log/log.hpp"
@@ -48,8 +49,9 @@ struct WithoutNoise {
 // on, through the control loop (Gilson, Garnier, Young, Van den Hof 2011); one of this motion does not. Empty when a
 // log has no set-points, when the machine cannot follow them, when it goes another way than the measured one, or when a
 // test signal cannot act in the simulation.
-// `axis`: its index.
-WithoutNoise without_noise(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs);
+// `axis`: its index; `how`: whether another way is allowed.
+WithoutNoise without_noise(const machine::Machine& machine, std::size_t axis, const std::vector<Log>& logs,
+                           Following how = Following::as_recorded);
 
 // Within an increment of its position controller an axis hunts. Near reversals a replay does so as the record did, and
 // friction's contact follows it; elsewhere noise made the record hunt at other instants, and the difference is an error

@@ -40,7 +40,12 @@ Dictionary::Dictionary(const LogRows& rows, const Eigen::VectorXd& target, Searc
 
 // The values of the candidate's nonlinear parameter that are known from the start, or those that the scan of a residual
 // found last.
+// An axis that has an effect already cannot have a second one of those that act but once.
 std::vector<double> Dictionary::values_of(const Candidate& candidate, bool scanned) const {
+  if (candidate.effect && !(*candidate.effect)->several &&
+      std::any_of(scene_.axis.effects.begin(), scene_.axis.effects.end(),
+                  [&](const machine::Effect& known) { return known.name == (*candidate.effect)->name; }))
+    return {};
   if (candidate.periodic == scanned) return candidate.grid(scene_);
   std::vector<double> found;
   if (scanned && candidate.places != nullptr)
@@ -140,14 +145,15 @@ ColumnIndices Dictionary::columns_of(const ActiveSet& set) {
   return all;
 }
 
-// Whether the candidate is in the set, or another shape that looks alike: two of them would describe one thing twice.
+// Whether the candidate is in the set, or another of its name or a shape that looks alike: two of them would describe
+// one thing twice.
 // Of waves there may be several: harmonics, two pitches, two tones.
 bool Dictionary::has(const ActiveSet& set, std::size_t candidate) {
   if (candidates()[candidate].periodic)
     return std::count_if(set.begin(), set.end(), [&](const auto* o) { return o->candidate == candidate; }) >=
            most_waves;
   return std::any_of(set.begin(), set.end(), [&, alike = candidates()[candidate].looks_like](const auto* o) {
-    return o->candidate == candidate || (alike != nullptr && candidates()[o->candidate].looks_like == alike);
+    return one_cause(o->candidate, candidate) || (alike != nullptr && candidates()[o->candidate].looks_like == alike);
   });
 }
 
@@ -184,6 +190,14 @@ double Dictionary::score(const ActiveSet& set) const {
   return odds;
 }
 
+// Whether its force is larger than what the inverse dynamics is off by.
+bool Dictionary::resolved(const Atom& atom, const Eigen::VectorXd& weights) const {
+  Eigen::VectorXd force = Eigen::VectorXd::Zero(rows_.rows());
+  for (std::size_t c = 0; c < atom.group.columns.size(); ++c)
+    force += weights[static_cast<Eigen::Index>(c)] * evidence_.column(atom.group.columns[c]);
+  return rms(force) > scene_.resolved_force;
+}
+
 // Whether the weights of all have signs and sizes that the effects can have.
 bool Dictionary::possible(const Atom& atom, const ActiveSet& beside, const Posterior& of_beside, double size) const {
   const auto weights = of_beside.weights_with(atom.group, size);
@@ -191,7 +205,9 @@ bool Dictionary::possible(const Atom& atom, const ActiveSet& beside, const Poste
   const auto holds = [&](const Atom& each) {
     const auto count = static_cast<Eigen::Index>(each.group.columns.size());
     at += count;
-    return candidates()[each.candidate].possible(scene_, each.shape, weights.segment(at - count, count));
+    const auto& of = candidates()[each.candidate];
+    const Eigen::VectorXd own = weights.segment(at - count, count);
+    return of.possible(scene_, each.shape, own) && (!of.like_dynamics || resolved(each, own));
   };
   return std::all_of(beside.begin(), beside.end(), [&](const Atom* each) { return holds(*each); }) && holds(atom);
 }

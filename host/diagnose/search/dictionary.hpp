@@ -77,6 +77,7 @@ class Dictionary {
   void give_columns(const std::vector<Atom*>& options);
   void respond_under(const Eigen::VectorXd& noise);
   bool possible(const Atom& atom, const ActiveSet& beside, const Posterior& of_beside, double size) const;
+  bool resolved(const Atom& atom, const Eigen::VectorXd& weights) const;
   std::optional<Option> at_shape(std::size_t candidate, double shape, const ActiveSet& beside,
                                  const Posterior& of_beside);
   std::vector<Atom> tried_in(const ExactRecord& record, std::size_t candidate);

@@ -203,13 +203,13 @@ void Search::name(const ActiveSet& set, std::size_t term, Term& as) {
   const double blur = std::max(1.0, of_strongest * own / std::log(telling));
   double sum = 1.0 + std::exp(-std::min(own, worth(set, term).by_own_spectrum) / blur);
   for (const auto& option : options)
-    if (option.atom->candidate != set[term]->candidate) sum += std::exp((option.score - own) / blur);
+    if (!one_cause(option.atom->candidate, set[term]->candidate)) sum += std::exp((option.score - own) / blur);
   as.nats = own;
   as.probability = 1.0 / sum;
   for (const auto& option : options) {
     const double probability = std::exp((option.score - own) / blur) / sum;
     const auto c = option.atom->candidate;
-    if (c != set[term]->candidate && probability > least_probability) as.alternatives.push_back({c, probability});
+    if (!one_cause(c, set[term]->candidate) && probability > least_probability) as.alternatives.push_back({c, probability});
   }
 }
 

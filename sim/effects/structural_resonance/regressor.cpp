@@ -1,60 +1,114 @@
-// An elastic mode between motor and measured position: the force that bends it, ModeColumns. The load's share r of the
-// mass is scanned: it shows in the friction at reversals alone, where a weight of its own would take up whatever else a
-// reversal leaves. The weights are 1/w^2 and 2 zeta/w^3.
+// An elastic mode, of a motor that drives the part that is not measured, or of a body behind the measured one
+// (elastic_mode.hpp). Where the motion is a simulation's the mode is seen through the drive, whose velocity loop closes
+// near such modes, so each frequency to try has columns of its own. They differ by less than the steps of the grid, and
+// in size as the square of the frequency: the weight tells it between two of them.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "host/diagnose/classes/effect_regressor.hpp"
+#include "host/diagnose/record/elastic_mode.hpp"
 #include "host/diagnose/record/inverse_dynamics.hpp"
 #include "host/diagnose/record/noise_floor.hpp"
 
 namespace stiction::host::effects::structural_resonance {
 namespace {
 
-constexpr double largest_ratio = 0.99;
-// Of the estimated damping ratio: far outside of what a mode has, the fifth derivative follows something else.
-constexpr double least_damping = -0.5, largest_damping = 1.5;
+constexpr double least_frequency = 12.0, step = 1.25;  // Hz; from one to the next
+constexpr int steps = 22;                              // to 1300 Hz
+// Of what shows a mode's damping is the least: columns have one that joints of machines have.
+constexpr double usual_damping = 0.08, usual_ratio = 0.5;
+constexpr double least_ratio = 0.02;
+// Of a weight that says nothing of the frequency between two steps of the grid, which are sqrt(1.25^2 - 1) apart.
+constexpr double beyond_a_step = 1.6;
+
+// s^2: by how much of an acceleration's second derivative a mode adds to it, at frequencies below its own. As much is
+// taken off an acceleration by the straight line between two samples, period^2 / 12: 551 Hz in logs of 1 ms. Less is
+// not told from set-points that nobody knows between the samples. What a mode adds to the acceleration grows with the
+// square of the frequency, (w_m / w)^2; what the low-pass of learned set-points takes off it with the eighth power,
+// (w_m / w_e)^8. They meet where a mode adds (w_e / w)^(8/3); less than inverse dynamics can be off by, with and
+// without the mode, is no mode: one of more than thirteen times the edge w_e.
+double least_bend(const SearchContext& context) {
+  const double most = 2.0 * std::numbers::pi * context.known_up_to * std::pow(2.0 * resolution_of_dynamics, -3.0 / 8.0);
+  return std::max(context.log_period * context.log_period / 12.0, 1.0 / (most * most));
+}
+double bend_of(double frequency) { return std::pow(2.0 * std::numbers::pi * frequency, -2.0); }
 
 std::vector<double> grid(const SearchContext& context) {
   if (context.axis.elastic()) return {};  // the plant has one mode, that of the file's shaft
-  return {0.2, 0.35, 0.55, 0.85};
-}
-Columns columns(const SearchContext& context, const Motion& motion, double ratio) {
-  const auto mode =
-      mode_columns(context.axis.mass, std::min(ratio, largest_ratio), motion, force_along(context.axis, motion));
-  return {mode.bend, mode.damping};
-}
-// s^2, 1/w^2 of the mode that adds to the acceleration in the share w_m^2 / w^2, as much as the straight line between
-// two samples of an acceleration takes off it, at every frequency w_m: (w_m period)^2 / 12. Above it, at 551 Hz in logs
-// of 1 ms, a mode is not told from set-points that nobody knows between the samples.
-double least_bend(const SearchContext& context) { return context.log_period * context.log_period / 12.0; }
-// What a mode adds to the acceleration grows with the square of the frequency, (w_m / w)^2; what the low-pass of
-// learned set-points takes off it with the eighth power, (w_m / w_e)^8. They meet where a mode adds (w_e / w)^(8/3);
-// less than inverse dynamics can be off by, with and without the mode, is no mode: one of more than thirteen times the
-// edge w_e.
-double most_frequency(const SearchContext& context) {
-  return context.known_up_to * std::pow(2.0 * resolution_of_dynamics, -3.0 / 8.0);
-}
-double frequency_of(const Eigen::VectorXd& w) { return 0.5 / (std::numbers::pi * std::sqrt(w[0])); }
-double damping_of(const Eigen::VectorXd& w) { return 0.5 * w[1] / (w[0] * std::sqrt(w[0])); }
-bool possible(const SearchContext& context, double, const Eigen::VectorXd& w) {
-  return w[0] > least_bend(context) && frequency_of(w) < most_frequency(context) && damping_of(w) > least_damping &&
-         damping_of(w) < largest_damping;
-}
-void describe(const SearchContext& context, double ratio, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
-              Finding& finding) {
-  const double frequency = frequency_of(w);
-  const Eigen::Vector2d slope(-1.5 * damping_of(w) / w[0], 0.5 / (w[0] * std::sqrt(w[0])));
-  add_key(context, finding, "frequency", {frequency}, {0.5 * frequency / w[0] * std::sqrt(c(0, 0))});
-  add_key(context, finding, "damping_ratio", {std::clamp(damping_of(w), 0.0, 1.0)},
-          {std::sqrt(slope.dot(c.topLeftCorner(2, 2) * slope))});
-  add_key(context, finding, "mass_ratio", {std::min(ratio, largest_ratio)}, {std::sqrt(c(2, 2))});
+  auto all = geometric(least_frequency, least_frequency * std::pow(step, steps - 1), steps);
+  std::erase_if(all, [&](double frequency) { return bend_of(frequency) * step * step < least_bend(context); });
+  return all;
 }
 
+Columns columns_of(const SearchContext& context, const Motion& motion, const ElasticMode& mode) {
+  auto load = force_along(context.axis, motion);
+  for (std::size_t i = 0; i < load.size(); ++i) load[i] -= context.axis.mass * motion.a[i];
+  return context.response ? mode_columns_in_loop(mode, context.axis, motion, load)
+                          : mode_columns(mode, context.axis, motion, load);
+}
+
+void add_keys(const SearchContext& context, Finding& finding, const ElasticMode& mode, double of_frequency,
+              double of_ratio) {
+  add_key(context, finding, "frequency", {mode.frequency}, {of_frequency});
+  add_key(context, finding, "damping_ratio", {mode.damping_ratio}, {mode.damping_ratio});
+  add_key(context, finding, "mass_ratio", {mode.mass_ratio}, {of_ratio});
+  if (mode.motor_measured) add_key(context, finding, "motor_measured", {1.0}, {});
+}
+
+// Weights: (scanned over own frequency)^2, and the same over r.
+namespace before {
+
+Columns columns(const SearchContext& context, const Motion& motion, double frequency) {
+  return columns_of(context, motion, {frequency, usual_damping, usual_ratio, false});
+}
+double frequency_of(double frequency, const Eigen::VectorXd& w) { return frequency / std::sqrt(w[0]); }
+bool possible(const SearchContext& context, double frequency, const Eigen::VectorXd& w) {
+  return w[0] > 1.0 / beyond_a_step && w[0] < beyond_a_step && w[0] * bend_of(frequency) > least_bend(context);
+}
+void describe(const SearchContext& context, double frequency, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
+              Finding& finding) {
+  const double own = frequency_of(frequency, w), ratio = w[1] > w[0] ? w[0] / w[1] : 1.0 - least_ratio;
+  add_keys(context, finding, {own, usual_damping, std::max(ratio, least_ratio), false},
+           0.5 * own / w[0] * std::sqrt(c(0, 0)), ratio / std::max(w[1], w[0]) * std::sqrt(c(1, 1)));
+}
+
+}  // namespace before
+
+// The scanned frequency is that of the body behind, the measured part held; the weight is its share of the mass over
+// the usual one.
+namespace behind {
+
+ElasticMode mode_of(double frequency, double ratio) {
+  const double root = std::sqrt(ratio);
+  return {frequency / root, usual_damping / root, ratio, true};
+}
+double ratio_of(const Eigen::VectorXd& w) { return 1.0 - (1.0 - usual_ratio) * w[0]; }
+Columns columns(const SearchContext& context, const Motion& motion, double frequency) {
+  return columns_of(context, motion, mode_of(frequency, usual_ratio));
+}
+bool possible(const SearchContext& context, double frequency, const Eigen::VectorXd& w) {
+  const double ratio = ratio_of(w);
+  return ratio > least_ratio && ratio < 1.0 - least_ratio && (1.0 - ratio) * bend_of(frequency) > least_bend(context);
+}
+void describe(const SearchContext& context, double frequency, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
+              Finding& finding) {
+  const auto mode = mode_of(frequency, ratio_of(w));
+  add_keys(context, finding, mode, 0.5 * (step - 1.0) * mode.frequency, (1.0 - usual_ratio) * std::sqrt(c(0, 0)));
+}
+
+}  // namespace behind
 }  // namespace
 
-extern const EffectRegressor regressor{
-    .force = {.grid = grid, .columns = columns, .possible = possible, .describe = describe, .shape = true}};
+extern const EffectRegressor regressor{.force = {.grid = grid,
+                                                 .columns = before::columns,
+                                                 .possible = before::possible,
+                                                 .describe = before::describe,
+                                                 .like_dynamics = true, .trials = 4.0},
+                                       .other_force = {.grid = grid,
+                                                       .columns = behind::columns,
+                                                       .possible = behind::possible,
+                                                       .describe = behind::describe,
+                                                       .like_dynamics = true, .trials = 4.0}};
 
 }  // namespace stiction::host::effects::structural_resonance

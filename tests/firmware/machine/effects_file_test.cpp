@@ -148,7 +148,7 @@ TEST(Effects, HaveTheNamesKeysAndSuffixesOfTheVocabulary) {
             "force_constant_mismatch: force_constant_N_per_A\n"
             "force_saturation: current_A\n"
             "backlash: width_m\n"
-            "structural_resonance: frequency_Hz damping_ratio mass_ratio\n"
+            "structural_resonance: frequency_Hz damping_ratio mass_ratio motor_measured\n"
             "encoder_subdivision_error: period_m cosine_m[] sine_m[]\n"
             "time_skew: delay_s loop_delay_s\n"
             "cross_axis_coupling: mass_kg\n"

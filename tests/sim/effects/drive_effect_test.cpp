@@ -57,12 +57,17 @@ TEST(ForceSaturation, TheForceFollowsTheHyperbolicTangentOfTheCurrentInBothSigns
   for (const double force : {1.0, 100.0, -190.0}) EXPECT_NEAR(law.of_linear(law.linear_for(force)), force, 1e-9);
 }
 
-// Amplitude and phase of the load's acceleration over the motor's force against
-//   (w^2 + 2 zeta w s) / (M (s^2 + 2 zeta w s + w^2)).
-TEST(StructuralResonance, TheLoadAnswersTheMotorAsTwoMassesOnASpringDo) {
-  const double f0 = 60.0, zeta = 0.05, w = 2.0 * std::numbers::pi * f0;
-  machine::AxisModel axis = frictionless(with_effects(
-      {{"structural_resonance", {{"frequency", {f0}}, {"damping_ratio", {zeta}}, {"mass_ratio", {0.3}}}}}));
+// Amplitude and phase of the measured part's acceleration over the motor's force against
+//   (w^2 + 2 zeta w s) / (M (s^2 + 2 zeta w s + w^2))
+// where the motor drives the other part, and 1 / (m + o g / (o + g)) where it drives this one: m and o the masses,
+// g = (k + d s) / s^2 the mass that the spring is like.
+void expect_two_masses_on_a_spring(bool motor_measured) {
+  const double f0 = 60.0, zeta = 0.05, ratio = 0.3, w = 2.0 * std::numbers::pi * f0;
+  machine::AxisModel axis = frictionless(with_effects({{"structural_resonance",
+                                                        {{"frequency", {f0}},
+                                                         {"damping_ratio", {zeta}},
+                                                         {"mass_ratio", {ratio}},
+                                                         {"motor_measured", {motor_measured ? 1.0 : 0.0}}}}}));
   for (const double f : {5.0, 30.0, 60.0, 90.0}) {
     AxisPlant plant(timing, axis, 0.0, 1);
     const double omega = 2.0 * std::numbers::pi * f;
@@ -76,13 +81,19 @@ TEST(StructuralResonance, TheLoadAnswersTheMotorAsTwoMassesOnASpringDo) {
       plant.advance_tick();
     }
     const std::complex<double> s(0.0, omega);
-    const auto expected = (w * w + 2.0 * zeta * w * s) / (axis.mass * s * (s * s + 2.0 * zeta * w * s + w * w));
+    const double own = ratio * axis.mass, other = axis.mass - own;
+    const auto spring = own * other / axis.mass * (w * w + 2.0 * zeta * w * s) / (s * s);
+    const auto expected = motor_measured
+                              ? 1.0 / (s * (own + other * spring / (other + spring)))
+                              : (w * w + 2.0 * zeta * w * s) / (axis.mass * s * (s * s + 2.0 * zeta * w * s + w * w));
     const auto found = speed / (10.0 * count / 2.0);
     // The force is held over a tick, half of it late.
     const auto held = expected * std::polar(1.0, -0.5 * omega * tick);
     EXPECT_LT(std::abs(found - held), 0.01 * std::abs(held)) << f << " Hz";
   }
 }
+TEST(StructuralResonance, TheLoadAnswersTheMotorAsTwoMassesOnASpringDo) { expect_two_masses_on_a_spring(false); }
+TEST(StructuralResonance, TheMotorsPartAnswersAsWithABodyOnASpringBehindIt) { expect_two_masses_on_a_spring(true); }
 
 TEST(StructuralResonance, MotionAndFrictionOfASteadyPassAreThoseOfTheWholeAxis) {
   const machine::AxisModel axis = with_effects(
