@@ -60,6 +60,15 @@ ordered_json profile_json(const StepResult& result, const step::StepProfile& pro
           {"arcs", arcs}};
 }
 
+// Each axis of symmetry with the two points of the first profile that it goes through.
+ordered_json axes_json(const step::StepSynthesis& made) {
+  ordered_json axes = ordered_json::array();
+  const auto radius = [&](double angle) { return 1e3 * made.cut[0].radius_at(angle); };
+  for (const double axis : made.symmetry.axes)
+    axes.push_back({{"axis_deg", axis / degree}, {"radii_mm", {radius(axis), radius(axis + 0.5 * step::turn)}}});
+  return axes;
+}
+
 ordered_json shares_json(const step::ContactShares& shares) {
   return {{"two_percent", 100.0 * shares.two},
           {"three_percent", 100.0 * shares.three},
@@ -130,7 +139,8 @@ ordered_json step_json(const StepResult& result) {
           {"symmetry",
            {{"mirrored", made.symmetry.holds()},
             {"axis_deg", made.symmetry.axis / degree},
-            {"distance_um", 1e6 * made.symmetry.distance}}},
+            {"distance_um", 1e6 * made.symmetry.distance},
+            {"axes", axes_json(made)}}},
           {"contacts",
            {{"cut", shares_json(made.shares(made.unrelieved))}, {"relieved", shares_json(made.shares(made.contacts))}}},
           {"worst_pressure_angle_deg", worst_pressure_angle(made) / degree},
@@ -182,10 +192,14 @@ std::string step_text(const StepResult& result) {
                             arc.valley ? "valley" : "peak", step::wrapped(arc.arc.begin) / degree,
                             step::wrapped(arc.arc.end) / degree, 1e3 * arc.shape.depth, arc.shape.blend / degree);
   }
-  text += made.symmetry.holds()
-              ? fmt::format("Cam 2 is cam 1 mirrored about {:.4f}°, the zero pin's line\n", made.symmetry.axis / degree)
-              : fmt::format("Cam 2 has a profile of its own: mirrored, cam 1 differs from it by {:.4g} mm at best\n",
-                            1e3 * made.symmetry.distance);
+  text +=
+      made.symmetry.holds()
+          ? fmt::format("Cam 2 is cam 1 mirrored about {:.4f}°, the zero pin's line{}\n", made.symmetry.axis / degree,
+                        made.symmetry.axes.size() > 1
+                            ? fmt::format("; {} more axes would do", made.symmetry.axes.size() - 1)
+                            : "")
+          : fmt::format("Cam 2 has a profile of its own: mirrored, cam 1 differs from it by {:.4g} mm at best\n",
+                        1e3 * made.symmetry.distance);
   text += fmt::format("Contacts: two in {:.2f} %, three in {:.2f} % of the turn; after relief two in {:.2f} %\n",
                       100.0 * cut.two, 100.0 * cut.three, 100.0 * relieved.two);
   text += fmt::format("Worst pressure angle of the needed contacts: {:.2f}°\n", worst_pressure_angle(made) / degree);

@@ -11,9 +11,12 @@ namespace {
 
 using sim::cam::CamError;
 
-// Rollers with so large a gap may still be pressed, m: what the preload closes and a roller gives.
-double gap_in_reach(const StepLoad& load) {
-  return load.stiffness > 0.0 ? contact_gap + 2.0 * load.preload : contact_gap;
+// Rollers with so large a gap may still be pressed, m: what the preload closes and a roller gives, with every tolerance
+// on the side that presses.
+double gap_in_reach(const StepProject& project) {
+  const StepTolerances& t = project.tolerances;
+  if (!(project.load.stiffness > 0.0)) return contact_gap;
+  return contact_gap + 2.0 * (project.load.preload + t.axis_distance + t.roller + t.arm + t.profile + t.preload);
 }
 
 std::vector<ContactSet> contacts_of(const ContactSearch& search, int steps, double gap) {
@@ -82,7 +85,7 @@ void relieve_again(StepSynthesis& made, const StepProject& project) {
   for (std::size_t cam = 0; cam < 2; ++cam) made.profiles[cam] = relieved(made.cut[cam], made.arcs, project.relief.law);
   require_wheel(project, made.profiles);
   made.contacts = contacts_of(ContactSearch(m, made.lift, made.profiles, project.relief.lead_in), project.steps,
-                              gap_in_reach(project.load));
+                              gap_in_reach(project));
   made.forces.clear();
   for (const ContactSet& set : made.contacts) made.forces.push_back(forces_at(m, made.lift, project.load, set));
 }
