@@ -56,6 +56,13 @@ void write_files(StepResult& result, const StepOptions& options, const Invocatio
   folder.commit();
 }
 
+std::string files_text(const std::string& out) {
+  return fmt::format(
+      "Files: {0}\nSTEP solids of both cams: `toolchain/step {0}` of the source tree installs OpenCASCADE (190 MB) and "
+      "writes them there\n",
+      out);
+}
+
 void run_step(const StepOptions& options, const Invocation& invocation) {
   const auto project = step::read_step_project(options.project);
   try {
@@ -65,7 +72,7 @@ void run_step(const StepOptions& options, const Invocation& invocation) {
     if (options.json)
       fmt::print("{}\n", step_json(result).dump(2));
     else
-      fmt::print("{}{}", step_text(result), options.out.empty() ? "" : fmt::format("Files: {}\n", options.out));
+      fmt::print("{}{}", step_text(result), options.out.empty() ? "" : files_text(options.out));
   } catch (const sim::cam::CamError& error) {
     throw UsageError(fmt::format("{}: {}", options.project, error.what()));
   }

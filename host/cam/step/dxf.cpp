@@ -206,6 +206,7 @@ std::string dxf_text(const StepProject& project, const StepSynthesis& made, DxfV
   const StepMechanism& m = project.mechanism;
   DxfWriter dxf(version);
   auto lines = detail::head_lines(project, "drawing", origin);
+  lines.insert(lines.end() - 1, fmt::format("rollers: {:.6g} mm wide", 1e3 * m.roller_width));
   lines.insert(
       lines.end() - 1,
       made.symmetry.holds()
