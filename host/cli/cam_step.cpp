@@ -52,13 +52,17 @@ void write_files(StepResult& result, const StepOptions& options, const Invocatio
     write(fmt::format("inspection_{}.csv", cam),
           inspection_text(result.project, profile, inspection_spacing, layout, origin));
   }
+  Origin sources;
+  sources.sources.push_back(options.project);
+  folder.write("report.html", step_page(result, invocation.command_line, invocation.version, sources));
   folder.write("result.json", step_json(result).dump(2) + "\n");
   folder.commit();
 }
 
 std::string files_text(const std::string& out) {
   return fmt::format(
-      "Files: {0}\nSTEP solids of both cams: `toolchain/step {0}` of the source tree installs OpenCASCADE (190 MB) and "
+      "Files: {0}, page: {0}/report.html\nSTEP solids of both cams: `toolchain/step {0}` of the source tree installs "
+      "OpenCASCADE (190 MB) and "
       "writes them there\n",
       out);
 }
@@ -84,8 +88,10 @@ void add_cam_step(CLI::App& cam, const Invocation& invocation) {
   auto* command = cam.add_subcommand("step", "make both profiles of a step cam from a project, relieved, for a shop");
   auto o = std::make_shared<StepOptions>();
   command->add_option("PROJECT", o->project, "project of a step cam (TOML)")->required()->type_name("PROJECT");
-  add_out(*command, o->out,
-          "write drawings (DXF), manufacturing coordinates and inspection tables (CSV) into this folder");
+  add_out(
+      *command, o->out,
+      "write drawings (DXF), manufacturing coordinates and inspection tables (CSV) and report.html, which shows the "
+      "mechanism at any angle, into this folder");
   std::string help = "columns of the coordinates, in their order [angle, radius, wheel_angle, wheel_radius, normal]:";
   for (const auto& column : step::table_columns())
     help += fmt::format("{} {}: {}", &column == &step::table_columns().front() ? "" : ";", column.name, column.text);

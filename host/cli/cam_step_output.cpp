@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "host/cam/duty.hpp"
+#include "host/report/step_cam_report.hpp"
 
 namespace stiction::host {
 namespace {
@@ -231,6 +232,44 @@ std::string step_text(const StepResult& result) {
       speed_text(c.electronic_speed));
   for (const auto& note : made.notes) text += note + "\n";
   return text;
+}
+
+std::string step_page(const StepResult& result, const std::string& command, const std::string& version,
+                      const Origin& origin) {
+  const auto& made = result.made;
+  const auto& peaks = result.peaks;
+  const auto& t = result.tolerance;
+  const auto& c = result.comparison;
+  const auto cut = made.shares(made.unrelieved), relieved = made.shares(made.contacts);
+  const auto number = [](double value, int digits) { return fmt::format("{:.{}f}", value, digits); };
+  const auto speed = [&](double value) { return std::isfinite(value) ? number(value / rpm, 1) : std::string("any"); };
+  StepCamReport report{command, version, result.project, made, {}, origin};
+  auto& figures = report.figures;
+  for (const auto& profile : made.profiles)
+    figures.push_back({fmt::format("radius of cam {}", profile.row + 1),
+                       fmt::format("{:.4f} to {:.4f}", 1e3 * profile.least_radius, 1e3 * profile.largest_radius),
+                       "mm"});
+  figures.push_back(
+      {"two, three contacts before relief", fmt::format("{:.2f}, {:.2f}", 100.0 * cut.two, 100.0 * cut.three), "%"});
+  figures.push_back({"exactly two contacts after relief", number(100.0 * relieved.two, 2), "%"});
+  figures.push_back({"worst pressure angle of needed contacts", number(worst_pressure_angle(made) / degree, 2), "°"});
+  figures.push_back({"largest contact force", number(peaks.force, 1), "N"});
+  figures.push_back({fmt::format("largest Hertz pressure, at {:.2f}°", peaks.pressure_psi / degree),
+                     number(1e-6 * peaks.pressure, 1), "MPa"});
+  figures.push_back({"largest torque of the carousel, of the cam shaft",
+                     fmt::format("{:.4g}, {:.4g}", peaks.output_torque, peaks.input_torque), "N m"});
+  figures.push_back({"largest load of the bearings", number(peaks.bearing, 1), "N"});
+  if (result.project.load.largest_pressure)
+    figures.push_back({"highest speed for the stated pressure", speed(result.speed_for_pressure), "r/min"});
+  if (result.project.load.preload > 0.0)
+    figures.push_back(
+        {"highest speed before a needed contact lifts off", speed(result.speed_before_lift_off), "r/min"});
+  figures.push_back({"play of the carousel within the tolerances, below 0: pressed",
+                     fmt::format("{:.1f} to {:.1f}", 1e6 * t.play.low, 1e6 * t.play.high), "µm"});
+  figures.push_back({"peak of the Hertz pressure within them",
+                     fmt::format("{:.1f} to {:.1f}", 1e-6 * t.pressure.low, 1e-6 * t.pressure.high), "MPa"});
+  figures.push_back({"torque of an electronic cam with the same motion", number(c.motor_torque, 2), "N m"});
+  return step_cam_report_html(report);
 }
 
 }  // namespace stiction::host

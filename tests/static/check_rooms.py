@@ -233,6 +233,7 @@ ROOMS = {
     # Above the tools whose results it shows; none of them knows how it is shown.
     "host/report": {
         "host/cam": "profiles,",
+        "host/cam/step": "step cams,",
         "host/diagnose/*": "causes,",
         "host/identify": "models,",
         "host/response": "frequency responses",
