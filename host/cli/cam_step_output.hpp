@@ -34,7 +34,7 @@ struct StepResult {
 // All figures of `made`, a synthesis of `project`; both must stay as long as the result does.
 StepResult step_result(const step::StepProject& project, const step::StepSynthesis& made);
 
-// Its page. `command`: the command line, `version` of stiction, `origin`: the source files.
+// The page of `result`. `command`: the command line, `version` of stiction, `origin`: the source files.
 std::string step_page(const StepResult& result, const std::string& command, const std::string& version,
                       const Origin& origin);
 
