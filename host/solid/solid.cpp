@@ -36,7 +36,7 @@ constexpr double joint = 1e-6;
 
 gp_Pnt place_of(const std::array<double, 2>& point, double z = 0.0) { return {point[0], point[1], z}; }
 
-Handle(Geom_BSplineCurve) curve_of(const Spline& spline) {
+opencascade::handle<Geom_BSplineCurve> curve_of(const Spline& spline) {
   TColgp_Array1OfPnt poles(1, static_cast<int>(spline.points.size()));
   for (std::size_t k = 0; k < spline.points.size(); ++k) poles(static_cast<int>(k) + 1) = place_of(spline.points[k]);
   std::vector<double> knots;

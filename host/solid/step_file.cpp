@@ -20,7 +20,9 @@ namespace {
 // In place of the checksum until it is known.
 constexpr std::string_view mark = "########";
 
-Handle(TCollection_HAsciiString) words(const std::string& text) { return new TCollection_HAsciiString(text.c_str()); }
+opencascade::handle<TCollection_HAsciiString> words(const std::string& text) {
+  return new TCollection_HAsciiString(text.c_str());
+}
 
 std::string content(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
@@ -51,7 +53,7 @@ void write_step(const TopoDS_Shape& shape, const std::string& name, const std::v
   if (writer.Transfer(shape, STEPControl_ManifoldSolidBrep) != IFSelect_RetDone)
     throw std::runtime_error(file + ": found a shape that cannot be written; expected a solid");
   APIHeaderSection_MakeHeader header(writer.Model());
-  Handle(Interface_HArray1OfHAsciiString) lines =
+  opencascade::handle<Interface_HArray1OfHAsciiString> lines =
       new Interface_HArray1OfHAsciiString(1, static_cast<int>(head.size()) + 1);
   for (std::size_t k = 0; k < head.size(); ++k) lines->SetValue(static_cast<int>(k) + 1, words(head[k]));
   lines->SetValue(lines->Upper(), words(fmt::format("CRC-32 of the other lines: {}", mark)));
