@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "host/cam/step/shop_files.hpp"
+#include "host/cli/cam_spring_output.hpp"
 #include "host/cli/cam_step_output.hpp"
 #include "host/cli/choices.hpp"
 #include "host/cli/commands.hpp"
@@ -36,36 +37,82 @@ step::TableLayout layout_of(const StepOptions& o) {
   return layout;
 }
 
+// Files of a folder with their checksums.
+class ShopFolder {
+ public:
+  ShopFolder(const StepOptions& options, const Invocation& invocation, const std::string& project)
+      : origin{"stiction " + invocation.version, project}, folder_(options.out, invocation.command) {}
+
+  void write(const std::string& name, const std::string& text) {
+    folder_.write(name, text);
+    files.emplace_back(name, fmt::format("{:08x}", step::checksum_of(text)));
+  }
+  void write_tables(const step::StepProject& project, const step::StepProfile& profile,
+                    const step::TableLayout& layout) {
+    const auto cam = profile.row + 1;
+    write(fmt::format("cam_{}.csv", cam), coordinates_text(project, profile, layout, origin));
+    write(fmt::format("inspection_{}.csv", cam), inspection_text(project, profile, inspection_spacing, layout, origin));
+  }
+  // Without a checksum of its own.
+  void write_plain(const std::string& name, const std::string& text) { folder_.write(name, text); }
+  void commit() { folder_.commit(); }
+
+  const step::FileOrigin origin;
+  std::vector<std::pair<std::string, std::string>> files;
+
+ private:
+  PendingFolder folder_;
+};
+
 void write_files(StepResult& result, const StepOptions& options, const Invocation& invocation) {
   const step::TableLayout layout = layout_of(options);
-  const step::FileOrigin origin{"stiction " + invocation.version, result.project.name};
-  PendingFolder folder(options.out, invocation.command);
-  const auto write = [&](const std::string& name, const std::string& text) {
-    folder.write(name, text);
-    result.files.emplace_back(name, fmt::format("{:08x}", step::checksum_of(text)));
-  };
-  write("cams_r12.dxf", dxf_text(result.project, result.made, step::DxfVersion::r12, origin));
-  write("cams_r2000.dxf", dxf_text(result.project, result.made, step::DxfVersion::r2000, origin));
-  for (const auto& profile : result.made.profiles) {
-    const auto cam = profile.row + 1;
-    write(fmt::format("cam_{}.csv", cam), coordinates_text(result.project, profile, layout, origin));
-    write(fmt::format("inspection_{}.csv", cam),
-          inspection_text(result.project, profile, inspection_spacing, layout, origin));
-  }
-  folder.write("result.json", step_json(result).dump(2) + "\n");
+  ShopFolder folder(options, invocation, result.project.name);
+  folder.write("cams_r12.dxf", dxf_text(result.project, result.made, step::DxfVersion::r12, folder.origin));
+  folder.write("cams_r2000.dxf", dxf_text(result.project, result.made, step::DxfVersion::r2000, folder.origin));
+  for (const auto& profile : result.made.profiles) folder.write_tables(result.project, profile, layout);
+  result.files = folder.files;
+  Origin sources;
+  sources.sources.push_back(options.project);
+  folder.write_plain("report.html", step_page(result, invocation.command_line, invocation.version, sources));
+  folder.write_plain("result.json", step_json(result).dump(2) + "\n");
   folder.commit();
+}
+
+void run_spring(const step::StepProject& project, const StepOptions& options, const Invocation& invocation) {
+  const auto made = synthesize_spring_cam(project);
+  std::vector<std::pair<std::string, std::string>> files;
+  if (!options.out.empty()) {
+    ShopFolder folder(options, invocation, project.name);
+    folder.write_tables(project, made.profile, layout_of(options));
+    files = folder.files;
+    folder.write_plain("result.json", spring_json(project, made, files).dump(2) + "\n");
+    folder.commit();
+  }
+  if (options.json)
+    fmt::print("{}\n", spring_json(project, made, files).dump(2));
+  else
+    fmt::print("{}{}", spring_text(project, made), options.out.empty() ? "" : fmt::format("Files: {}\n", options.out));
+}
+
+std::string files_text(const std::string& out) {
+  return fmt::format(
+      "Files: {0}, page: {0}/report.html\nSTEP solids of both cams: `toolchain/step {0}` of the source tree installs "
+      "OpenCASCADE (190 MB) and "
+      "writes them there\n",
+      out);
 }
 
 void run_step(const StepOptions& options, const Invocation& invocation) {
   const auto project = step::read_step_project(options.project);
   try {
+    if (project.spring) return run_spring(project, options, invocation);
     const auto made = synthesize(project);
     StepResult result = step_result(project, made);
     if (!options.out.empty()) write_files(result, options, invocation);
     if (options.json)
       fmt::print("{}\n", step_json(result).dump(2));
     else
-      fmt::print("{}{}", step_text(result), options.out.empty() ? "" : fmt::format("Files: {}\n", options.out));
+      fmt::print("{}{}", step_text(result), options.out.empty() ? "" : files_text(options.out));
   } catch (const sim::cam::CamError& error) {
     throw UsageError(fmt::format("{}: {}", options.project, error.what()));
   }
@@ -74,11 +121,14 @@ void run_step(const StepOptions& options, const Invocation& invocation) {
 }  // namespace
 
 void add_cam_step(CLI::App& cam, const Invocation& invocation) {
-  auto* command = cam.add_subcommand("step", "make both profiles of a step cam from a project, relieved, for a shop");
+  auto* command = cam.add_subcommand(
+      "step", "make both profiles of a step cam from a project, relieved, for a shop, or a single cam with a spring");
   auto o = std::make_shared<StepOptions>();
   command->add_option("PROJECT", o->project, "project of a step cam (TOML)")->required()->type_name("PROJECT");
-  add_out(*command, o->out,
-          "write drawings (DXF), manufacturing coordinates and inspection tables (CSV) into this folder");
+  add_out(
+      *command, o->out,
+      "write drawings (DXF), manufacturing coordinates and inspection tables (CSV) and report.html, which shows the "
+      "mechanism at any angle, into this folder");
   std::string help = "columns of the coordinates, in their order [angle, radius, wheel_angle, wheel_radius, normal]:";
   for (const auto& column : step::table_columns())
     help += fmt::format("{} {}: {}", &column == &step::table_columns().front() ? "" : ";", column.name, column.text);

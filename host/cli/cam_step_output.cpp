@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "host/cam/duty.hpp"
+#include "host/report/step_cam_report.hpp"
 
 namespace stiction::host {
 namespace {
@@ -58,6 +59,15 @@ ordered_json profile_json(const StepResult& result, const step::StepProfile& pro
           {"largest_radius_mm", 1e3 * profile.largest_radius},
           {"vertices", vertices},
           {"arcs", arcs}};
+}
+
+// Each axis of symmetry with the two points of the first profile that it goes through.
+ordered_json axes_json(const step::StepSynthesis& made) {
+  ordered_json axes = ordered_json::array();
+  const auto radius = [&](double angle) { return 1e3 * made.cut[0].radius_at(angle); };
+  for (const double axis : made.symmetry.axes)
+    axes.push_back({{"axis_deg", axis / degree}, {"radii_mm", {radius(axis), radius(axis + 0.5 * step::turn)}}});
+  return axes;
 }
 
 ordered_json shares_json(const step::ContactShares& shares) {
@@ -130,7 +140,8 @@ ordered_json step_json(const StepResult& result) {
           {"symmetry",
            {{"mirrored", made.symmetry.holds()},
             {"axis_deg", made.symmetry.axis / degree},
-            {"distance_um", 1e6 * made.symmetry.distance}}},
+            {"distance_um", 1e6 * made.symmetry.distance},
+            {"axes", axes_json(made)}}},
           {"contacts",
            {{"cut", shares_json(made.shares(made.unrelieved))}, {"relieved", shares_json(made.shares(made.contacts))}}},
           {"worst_pressure_angle_deg", worst_pressure_angle(made) / degree},
@@ -182,10 +193,14 @@ std::string step_text(const StepResult& result) {
                             arc.valley ? "valley" : "peak", step::wrapped(arc.arc.begin) / degree,
                             step::wrapped(arc.arc.end) / degree, 1e3 * arc.shape.depth, arc.shape.blend / degree);
   }
-  text += made.symmetry.holds()
-              ? fmt::format("Cam 2 is cam 1 mirrored about {:.4f}°, the zero pin's line\n", made.symmetry.axis / degree)
-              : fmt::format("Cam 2 has a profile of its own: mirrored, cam 1 differs from it by {:.4g} mm at best\n",
-                            1e3 * made.symmetry.distance);
+  text +=
+      made.symmetry.holds()
+          ? fmt::format("Cam 2 is cam 1 mirrored about {:.4f}°, the zero pin's line{}\n", made.symmetry.axis / degree,
+                        made.symmetry.axes.size() > 1
+                            ? fmt::format("; {} more axes would do", made.symmetry.axes.size() - 1)
+                            : "")
+          : fmt::format("Cam 2 has a profile of its own: mirrored, cam 1 differs from it by {:.4g} mm at best\n",
+                        1e3 * made.symmetry.distance);
   text += fmt::format("Contacts: two in {:.2f} %, three in {:.2f} % of the turn; after relief two in {:.2f} %\n",
                       100.0 * cut.two, 100.0 * cut.three, 100.0 * relieved.two);
   text += fmt::format("Worst pressure angle of the needed contacts: {:.2f}°\n", worst_pressure_angle(made) / degree);
@@ -217,6 +232,44 @@ std::string step_text(const StepResult& result) {
       speed_text(c.electronic_speed));
   for (const auto& note : made.notes) text += note + "\n";
   return text;
+}
+
+std::string step_page(const StepResult& result, const std::string& command, const std::string& version,
+                      const Origin& origin) {
+  const auto& made = result.made;
+  const auto& peaks = result.peaks;
+  const auto& t = result.tolerance;
+  const auto& c = result.comparison;
+  const auto cut = made.shares(made.unrelieved), relieved = made.shares(made.contacts);
+  const auto number = [](double value, int digits) { return fmt::format("{:.{}f}", value, digits); };
+  const auto speed = [&](double value) { return std::isfinite(value) ? number(value / rpm, 1) : std::string("any"); };
+  StepCamReport report{command, version, result.project, made, {}, origin};
+  auto& figures = report.figures;
+  for (const auto& profile : made.profiles)
+    figures.push_back({fmt::format("radius of cam {}", profile.row + 1),
+                       fmt::format("{:.4f} to {:.4f}", 1e3 * profile.least_radius, 1e3 * profile.largest_radius),
+                       "mm"});
+  figures.push_back(
+      {"two, three contacts before relief", fmt::format("{:.2f}, {:.2f}", 100.0 * cut.two, 100.0 * cut.three), "%"});
+  figures.push_back({"exactly two contacts after relief", number(100.0 * relieved.two, 2), "%"});
+  figures.push_back({"worst pressure angle of needed contacts", number(worst_pressure_angle(made) / degree, 2), "°"});
+  figures.push_back({"largest contact force", number(peaks.force, 1), "N"});
+  figures.push_back({fmt::format("largest Hertz pressure, at {:.2f}°", peaks.pressure_psi / degree),
+                     number(1e-6 * peaks.pressure, 1), "MPa"});
+  figures.push_back({"largest torque of the carousel, of the cam shaft",
+                     fmt::format("{:.4g}, {:.4g}", peaks.output_torque, peaks.input_torque), "N m"});
+  figures.push_back({"largest load of the bearings", number(peaks.bearing, 1), "N"});
+  if (result.project.load.largest_pressure)
+    figures.push_back({"highest speed for the stated pressure", speed(result.speed_for_pressure), "r/min"});
+  if (result.project.load.preload > 0.0)
+    figures.push_back(
+        {"highest speed before a needed contact lifts off", speed(result.speed_before_lift_off), "r/min"});
+  figures.push_back({"play of the carousel within the tolerances, below 0: pressed",
+                     fmt::format("{:.1f} to {:.1f}", 1e6 * t.play.low, 1e6 * t.play.high), "µm"});
+  figures.push_back({"peak of the Hertz pressure within them",
+                     fmt::format("{:.1f} to {:.1f}", 1e-6 * t.pressure.low, 1e-6 * t.pressure.high), "MPa"});
+  figures.push_back({"torque of an electronic cam with the same motion", number(c.motor_torque, 2), "N m"});
+  return step_cam_report_html(report);
 }
 
 }  // namespace stiction::host

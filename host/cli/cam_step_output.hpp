@@ -8,6 +8,7 @@
 #include "host/cam/step/lead_in.hpp"
 #include "host/cam/step/synthesis.hpp"
 #include "host/cam/step/tolerance.hpp"
+#include "host/report/origin.hpp"
 
 namespace stiction::host {
 
@@ -32,6 +33,10 @@ struct StepResult {
 
 // All figures of `made`, a synthesis of `project`; both must stay as long as the result does.
 StepResult step_result(const step::StepProject& project, const step::StepSynthesis& made);
+
+// The page of `result`. `command`: the command line, `version` of stiction, `origin`: the source files.
+std::string step_page(const StepResult& result, const std::string& command, const std::string& version,
+                      const Origin& origin);
 
 // "stiction.cam-step/1", and as text.
 nlohmann::ordered_json step_json(const StepResult& result);

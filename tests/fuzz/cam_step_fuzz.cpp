@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "host/cam/step/spring_cam.hpp"
 #include "host/cam/step/synthesis.hpp"
 
 namespace stiction::fuzz {
@@ -21,7 +22,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     auto project = host::step::parse_step_project("project.toml", text, motion);
     project.steps = 720;
-    host::step::synthesize(project);
+    if (project.spring)
+      host::step::synthesize_spring_cam(project);
+    else
+      host::step::synthesize(project);
   } catch (const std::runtime_error&) {
   }
   return 0;

@@ -30,7 +30,7 @@ def collect(program, root, corpora, folder, patience):
     """Files by kind: "machine", "run" (logs that a command can work with), "log", "other". Runs are made in `folder`,
     each in at most `patience` seconds of its own."""
     files = {"machine": sorted((program.parents[1] / "share/stiction/machines").glob("*.toml")), "log": [], "other": [],
-             "project": [root / "examples/cams/step_cam.toml"],
+             "project": [root / "examples/cams/step_cam.toml", root / "examples/cams/spring_cam.toml"],
              "motion": sorted((root / "examples/cams").glob("*.toml")) + sorted((root / "tests/fuzz/seeds/cam_motion").glob("*.toml"))}
     for base in [root / "tests/fuzz/seeds", corpora]:
         for kind, suffix in SUFFIXES.items():

@@ -61,6 +61,7 @@ cam rank --stroke '90 deg' --rise '180 deg' --speed '20 rpm' --machine servo-joi
 cam rank --stroke '40 mm' --rise '180 deg' --speed '60 rpm' --machine screw-linear-scale --json
 cam design indexing.toml --machine servo-joint --speed '20 rpm' --out cam --json
 cam step step_cam.toml --out shop --json
+cam step spring_cam.toml --out spring --json
 """.strip().splitlines()
 
 # Exit code 1, no JSON on standard output, a result folder all the same.
@@ -88,7 +89,7 @@ def prepare(folder):
     (folder / "endless.toml").write_text(endless.read_text(encoding="utf-8"), encoding="utf-8")
     motion = SOURCE / "examples/cams/indexing.toml"
     (folder / "indexing.toml").write_text(motion.read_text(encoding="utf-8"), encoding="utf-8")
-    for name in ("step_cam.toml", "quarter_turn.toml"):
+    for name in ("step_cam.toml", "quarter_turn.toml", "spring_cam.toml", "swing.toml"):
         (folder / name).write_text((SOURCE / "examples/cams" / name).read_text(encoding="utf-8"), encoding="utf-8")
     shear = SOURCE / "examples/cams/flying_shear.toml"
     (folder / "shear.toml").write_text(shear.read_text(encoding="utf-8"), encoding="utf-8")

@@ -221,6 +221,8 @@ ROOMS = {
         "sim/*": "of the laws of the simulation",
         "firmware/machine/*": "and its project a file with units",
     },
+    # A programme of its own, which needs OpenCASCADE; it reads what `stiction cam step` has written.
+    "host/solid": {},
     "host/plant": {
         "firmware/version": "a programme says which it is",
         "hal/*": "the simulated machine behind a real bus speaks the backends' frames",
@@ -231,6 +233,7 @@ ROOMS = {
     # Above the tools whose results it shows; none of them knows how it is shown.
     "host/report": {
         "host/cam": "profiles,",
+        "host/cam/step": "step cams,",
         "host/diagnose/*": "causes,",
         "host/identify": "models,",
         "host/response": "frequency responses",

@@ -205,7 +205,16 @@ std::string dxf_text(const StepProject& project, const StepSynthesis& made, DxfV
                      const FileOrigin& origin) {
   const StepMechanism& m = project.mechanism;
   DxfWriter dxf(version);
-  dxf.head(detail::head_lines(project, "drawing", origin));
+  auto lines = detail::head_lines(project, "drawing", origin);
+  lines.insert(lines.end() - 1, fmt::format("rollers: {:.6g} mm wide", 1e3 * m.roller_width));
+  lines.insert(
+      lines.end() - 1,
+      made.symmetry.holds()
+          ? fmt::format("zero pin: on the axis about which cam 2 is the mirrored cam 1, at {:.4f} deg and half "
+                        "a turn from it",
+                        made.symmetry.axis / degree)
+          : "zero pin: at the zero; the cams have profiles of their own and are not mirrored");
+  dxf.head(lines);
   for (const StepProfile& profile : made.profiles) {
     const std::string cam = fmt::format("{}", profile.row + 1);
     if (version == DxfVersion::r12)
@@ -221,7 +230,8 @@ std::string dxf_text(const StepProject& project, const StepSynthesis& made, DxfV
       dxf.circle("ROLLERS_" + cam, roller_at(m, m.base(profile.row) + k * m.pitch(), 0.0, made.lift.at(0.0)).centre,
                  m.roller_radius);
   }
-  dxf.line("ZERO_PIN", {}, {1.1 * made.profiles[0].largest_radius, 0.0});
+  const Point pin = std::polar(1.1 * made.profiles[0].largest_radius, made.symmetry.holds() ? made.symmetry.axis : 0.0);
+  dxf.line("ZERO_PIN", -pin, pin);
   return detail::with_checksum(dxf.finish());
 }
 

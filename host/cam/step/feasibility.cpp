@@ -79,7 +79,7 @@ namespace {
 
 // Every sample of every path near the cam, until `refuses` throws.
 template <class Refuses>
-void for_each_sample(const StepMechanism& m, const SampledLift& lift, const std::array<StepProfile, 2>& profiles,
+void for_each_sample(const StepMechanism& m, const SampledLift& lift, std::span<const StepProfile> profiles,
                      Refuses refuses) {
   for (const StepProfile& profile : profiles)
     for (int k = 0; k < m.rollers; ++k)
@@ -95,7 +95,7 @@ void for_each_sample(const StepMechanism& m, const SampledLift& lift, const std:
 
 }  // namespace
 
-void require_buildable(const StepMechanism& m, const SampledLift& lift, const std::array<StepProfile, 2>& profiles) {
+void require_buildable(const StepMechanism& m, const SampledLift& lift, std::span<const StepProfile> profiles) {
   const double c = m.roller_radius;
   for_each_sample(m, lift, profiles, [&](const StepProfile&, const RollerPoint& p, auto place) {
     if (p.turning > 0.0) return;

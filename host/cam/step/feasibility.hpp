@@ -1,7 +1,7 @@
 // Whether a step cam can be built, with the place, the numbers and what would help where it cannot.
 #pragma once
 
-#include <array>
+#include <span>
 #include <vector>
 
 #include "host/cam/step/contacts.hpp"
@@ -19,8 +19,7 @@ StepCount count_steps(const StepMechanism& mechanism, const StepLift& lift);
 
 // Whether paths of `mechanism` with that `lift` turn back or are undercut where one of its `profiles` needs them.
 // Throws sim::cam::CamError.
-void require_buildable(const StepMechanism& mechanism, const SampledLift& lift,
-                       const std::array<StepProfile, 2>& profiles);
+void require_buildable(const StepMechanism& mechanism, const SampledLift& lift, std::span<const StepProfile> profiles);
 
 // Whether both cams of `mechanism` touch at every angle and hold the carousel both ways, of its `contacts` over a turn.
 // Throws sim::cam::CamError.

@@ -181,7 +181,7 @@ StepProject parsed(const std::string& file, const std::string& text, const Motio
   const machine::Document document(file, text);
   const QuantityTable root(document, document.root(), "");
   root.allow({"schema", "motion", "cam", "table", "mechanism", "cam_material", "roller_material", "load", "relief",
-              "wheel_radius", "tolerance", "electronic", "steps", "chord"});
+              "wheel_radius", "tolerance", "electronic", "spring", "steps", "chord"});
   const auto schema = root.text("schema", "version of the format");
   if (schema != project_schema)
     root.fail("schema", schema ? fmt::format("\"{}\"", *schema) : "no such key", fmt::format("\"{}\"", project_schema));
@@ -199,6 +199,14 @@ StepProject parsed(const std::string& file, const std::string& text, const Motio
     table->allow({"rotor", "largest_torque"});
     project.electronic = ElectronicCam{not_negative(*table, "rotor", "kg m^2", "of the motor at the axis"),
                                        not_negative(*table, "largest_torque", "N m", "of the motor at the axis")};
+  }
+  if (const auto table = root.subtable("spring", "the spring of a single cam")) {
+    table->allow({"rate", "preload"});
+    if (root.has("relief")) root.fail("relief", "relief of a single cam", "none: pairs of cams have it");
+    if (project.load.stiffness > 0.0)
+      root.fail("spring", "a spring and a stiffness in [load]", "one of them: a stiffness is of a pair of cams");
+    project.spring = ReturnSpring{not_negative(*table, "rate", "N m/rad", "about the arm's axis"),
+                                  not_negative(*table, "preload", "N m", "where the lift is 0")};
   }
   project.steps = whole(root, "steps", 720, 36000, 3600, "of a turn");
   project.chord = root.has("chord") ? required(root, "chord", "m", "largest distance of files from the profile") : 1e-6;

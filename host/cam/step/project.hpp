@@ -25,6 +25,12 @@ struct ElectronicCam {
   double largest_torque = 0.0;  // N m, at the axis; 0: not stated
 };
 
+// A spring that holds the one roller of a single cam on it; no spring: a pair of cams holds the carousel.
+struct ReturnSpring {
+  double rate = 0.0;     // N m/rad, about the arm's axis
+  double preload = 0.0;  // N m, where the lift is 0
+};
+
 struct StepProject {
   std::string name;
   std::optional<sim::cam::Cam> cam;        // of a motion file,
@@ -35,6 +41,7 @@ struct StepProject {
   double wheel_radius = 0.0;  // m, of the grinding wheel; 0: not stated
   StepTolerances tolerances;
   std::optional<ElectronicCam> electronic{};
+  std::optional<ReturnSpring> spring{};
   int steps = 3600;     // of the manufacturing angle and of the cam's angle, in a turn
   double chord = 1e-6;  // m, of arcs and splines in files
 };

@@ -41,6 +41,12 @@ void apply(const ReliefOverride& change, const StepProfile& profile, const Coupl
         fmt::format("found a relief vertex at {:.4g}° of cam {}, in no arc without needed contacts; expected "
                     "an angle in one",
                     change.angle / degree, change.cam + 1));
+  if (found->changed_at)
+    throw CamError(
+        fmt::format("found relief vertices at {:.4g}° and {:.4g}° of cam {} that overlap, both in {}; expected one for "
+                    "an arc",
+                    *found->changed_at / degree, change.angle / degree, change.cam + 1, name_of(*found)));
+  found->changed_at = change.angle;
   if (change.depth) found->shape.depth = *change.depth;
   if (change.blend) found->shape.blend = *change.blend;
   if (change.begin) found->arc.begin = *change.begin;
@@ -148,7 +154,7 @@ std::vector<ReliefArc> relief_arcs(const std::array<StepProfile, 2>& profiles, c
   for (int cam = 0; cam < 2; ++cam)
     for (const ProfileArc& arc : couplings[static_cast<std::size_t>(cam)].redundant) {
       const bool valley = is_valley(profiles[static_cast<std::size_t>(cam)], arc);
-      arcs.push_back({cam, arc, valley, false, false, valley ? settings.valley : settings.peak});
+      arcs.push_back({cam, arc, valley, false, false, valley ? settings.valley : settings.peak, std::nullopt});
     }
   for (const ReliefOverride& change : settings.overrides)
     apply(change, profiles[static_cast<std::size_t>(change.cam)], couplings[static_cast<std::size_t>(change.cam)],
@@ -158,10 +164,6 @@ std::vector<ReliefArc> relief_arcs(const std::array<StepProfile, 2>& profiles, c
     arc.begins_at_corner = profile.has_corner(arc.arc.begin, 1.01 * profile.step());
     arc.ends_at_corner = profile.has_corner(arc.arc.end, 1.01 * profile.step());
     if (arc.shape.depth != 0.0) require_sound(arc, profile, hub);
-    for (const ReliefArc& other : arcs)
-      if (&other != &arc && other.cam == arc.cam && holds(arc.arc, other.arc.begin))
-        throw CamError(
-            fmt::format("found {} over {}; expected arcs that do not overlap", name_of(arc), name_of(other)));
   }
   return arcs;
 }

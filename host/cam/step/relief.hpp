@@ -43,10 +43,11 @@ struct ReliefArc {
   // Whether an end is a corner of the profile: there rollers are led in, and the arc has its whole depth up to it.
   bool begins_at_corner = false, ends_at_corner = false;
   ReliefShape shape;
+  std::optional<double> changed_at;  // rad, where the vertex is that changed it
 };
 
 // The arcs of the `profiles` that relief lowers: those of both `couplings`, with the shapes of `settings`. `hub`:
-// radius of the hub, m. Throws sim::cam::CamError for an override of no arc, for arcs that overlap, for an arc that
+// radius of the hub, m. Throws sim::cam::CamError for an override of no arc, for two of one arc, for an arc that
 // holds needed contacts, for negative depths and blends, for a law that is no rise from rest, and for a depth that
 // reaches the hub.
 std::vector<ReliefArc> relief_arcs(const std::array<StepProfile, 2>& profiles, const std::array<Coupling, 2>& couplings,

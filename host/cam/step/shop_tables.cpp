@@ -48,7 +48,7 @@ std::vector<std::string> detail::head_lines(const StepProject& project, std::str
       fmt::format("{} of the step cam {}", what, origin.project),
       fmt::format("made by {}", origin.program),
       "units: mm and degrees",
-      "zero: the line from the cam's axis to the carousel's at the start of the cycle, on which the zero pin is",
+      "zero: the line from the cam's axis to the carousel's at the start of the cycle",
       fmt::format("direction: angles grow counterclockwise, seen from the side of cam 1; the cam turns clockwise and "
                   "the carousel {}clockwise",
                   project.mechanism.against ? "counter" : ""),

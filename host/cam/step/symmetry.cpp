@@ -35,32 +35,59 @@ double distance_about(double axis, const std::array<StepProfile, 2>& profiles, s
   return largest;
 }
 
+// The nearest axis between `low` and `high`, rad: the distance grows to both sides of it, so thirds; then the multiple
+// of half a step beside it, where that is not worse by a rounding.
+Symmetry nearest_between(double low, double high, const std::array<StepProfile, 2>& profiles) {
+  const std::size_t each = std::max<std::size_t>(1, profiles[0].points.size() / 240);
+  for (int k = 0; k < 70; ++k) {
+    const double left = low + (high - low) / 3, right = high - (high - low) / 3;
+    if (distance_about(left, profiles, each) < distance_about(right, profiles, each))
+      high = right;
+    else
+      low = left;
+  }
+  const double axis = 0.5 * (low + high), step = 0.5 * profiles[0].step();
+  Symmetry best{axis, distance_about(axis, profiles, 1), {}};
+  const double rounded = step * std::round(axis / step);
+  if (const double d = distance_about(rounded, profiles, 1); d <= best.distance) best = {rounded, d, {}};
+  best.axis -= 0.5 * turn * std::floor(best.axis / (0.5 * turn));
+  return best;
+}
+
+// How fast the radius changes at the most, m/rad.
+double steepest(const StepProfile& profile) {
+  double most = 0.0;
+  for (const ProfilePoint& point : profile.points) {
+    const Point round = Point(0.0, 1.0) * std::polar(1.0, point.angle);
+    const double along = std::fabs(dot(point.normal, std::polar(1.0, point.angle)));
+    most = std::max(most, point.radius * std::fabs(dot(point.normal, round)) / std::max(along, 1e-3));
+  }
+  return most;
+}
+
 }  // namespace
 
 Symmetry symmetry_of(const std::array<StepProfile, 2>& profiles) {
   constexpr int coarse = 360;
   const auto count = profiles[0].points.size();
   const double spacing = 0.5 * turn / coarse;
-  Symmetry best{0.0, infinity};
+  std::vector<double> distances;
   for (int k = 0; k < coarse; ++k)
-    if (const double d = distance_about(k * spacing, profiles, std::max<std::size_t>(1, count / 120));
-        d < best.distance)
-      best = {k * spacing, d};
-  // The distance grows to both sides of the axis: thirds.
-  double low = best.axis - spacing, high = best.axis + spacing;
-  for (int k = 0; k < 70; ++k) {
-    const double left = low + (high - low) / 3, right = high - (high - low) / 3;
-    const std::size_t each = std::max<std::size_t>(1, count / 240);
-    (distance_about(left, profiles, each) < distance_about(right, profiles, each) ? high : low) =
-        distance_about(left, profiles, each) < distance_about(right, profiles, each) ? right : left;
+    distances.push_back(distance_about(k * spacing, profiles, std::max<std::size_t>(1, count / 120)));
+  // An axis that holds lies within half a spacing of one that is off by no more than the mirrored radius changes there.
+  const double least = *std::min_element(distances.begin(), distances.end());
+  const double reach = std::max(least, steepest(profiles[1]) * spacing);
+  Symmetry best{0.0, infinity, {}};
+  for (int k = 0; k < coarse; ++k) {
+    const auto at = [&](int j) { return distances[static_cast<std::size_t>((j + coarse) % coarse)]; };
+    if (at(k) > reach || at(k) > at(k - 1) || at(k) >= at(k + 1)) continue;
+    const Symmetry found = nearest_between((k - 1) * spacing, (k + 1) * spacing, profiles);
+    if (found.distance <= mirrored_within) best.axes.push_back(found.axis);
+    if (found.distance < best.distance) best.axis = found.axis, best.distance = found.distance;
   }
-  best.axis = 0.5 * (low + high);
-  // An axis on the grid is not worse by a rounding.
-  const double step = 0.5 * profiles[0].step();
-  const double rounded = step * std::round(best.axis / step);
-  best.distance = distance_about(best.axis, profiles, 1);
-  if (const double d = distance_about(rounded, profiles, 1); d <= best.distance) best = {rounded, d};
-  best.axis -= 0.5 * turn * std::floor(best.axis / (0.5 * turn));
+  std::sort(best.axes.begin(), best.axes.end());
+  // The first of several that hold, whichever is the nearest by a rounding.
+  if (best.holds()) best.axis = best.axes.front();
   return best;
 }
 

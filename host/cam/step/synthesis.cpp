@@ -11,9 +11,12 @@ namespace {
 
 using sim::cam::CamError;
 
-// Rollers with so large a gap may still be pressed, m: what the preload closes and a roller gives.
-double gap_in_reach(const StepLoad& load) {
-  return load.stiffness > 0.0 ? contact_gap + 2.0 * load.preload : contact_gap;
+// Rollers with so large a gap may still be pressed, m: what the preload closes and a roller gives, with every tolerance
+// on the side that presses.
+double gap_in_reach(const StepProject& project) {
+  const StepTolerances& t = project.tolerances;
+  if (!(project.load.stiffness > 0.0)) return contact_gap;
+  return contact_gap + 2.0 * (project.load.preload + t.axis_distance + t.roller + t.arm + t.profile + t.preload);
 }
 
 std::vector<ContactSet> contacts_of(const ContactSearch& search, int steps, double gap) {
@@ -28,16 +31,6 @@ void include(LeastRadii& least, double curvature, double angle, int cam) {
     least.convex = radius, least.convex_angle = angle, least.convex_cam = cam;
   if (curvature < 0.0 && radius < least.concave)
     least.concave = radius, least.concave_angle = angle, least.concave_cam = cam;
-}
-
-// A wheel grinds a hollow only where it is smaller.
-void require_wheel(const StepProject& project, const std::array<StepProfile, 2>& profiles) {
-  const LeastRadii least = least_radii(profiles);
-  if (project.wheel_radius < least.concave) return;
-  throw CamError(fmt::format(
-      "found a grinding wheel of {:.5g} mm; expected less than {:.5g} mm, the concave radius of cam "
-      "{} at {:.5g}°",
-      1e3 * project.wheel_radius, 1e3 * least.concave, least.concave_cam + 1, least.concave_angle / degree));
 }
 
 }  // namespace
@@ -80,14 +73,23 @@ void relieve_again(StepSynthesis& made, const StepProject& project) {
   const StepMechanism& m = project.mechanism;
   made.arcs = relief_arcs(made.cut, made.couplings, project.relief, m.hub_radius);
   for (std::size_t cam = 0; cam < 2; ++cam) made.profiles[cam] = relieved(made.cut[cam], made.arcs, project.relief.law);
-  require_wheel(project, made.profiles);
+  require_wheel(project.wheel_radius, made.profiles);
   made.contacts = contacts_of(ContactSearch(m, made.lift, made.profiles, project.relief.lead_in), project.steps,
-                              gap_in_reach(project.load));
+                              gap_in_reach(project));
   made.forces.clear();
   for (const ContactSet& set : made.contacts) made.forces.push_back(forces_at(m, made.lift, project.load, set));
 }
 
-LeastRadii least_radii(const std::array<StepProfile, 2>& profiles) {
+void require_wheel(double wheel_radius, std::span<const StepProfile> profiles) {
+  const LeastRadii least = least_radii(profiles);
+  if (wheel_radius < least.concave) return;
+  throw CamError(
+      fmt::format("found a grinding wheel of {:.5g} mm; expected less than {:.5g} mm, the concave radius of cam "
+                  "{} at {:.5g}°",
+                  1e3 * wheel_radius, 1e3 * least.concave, least.concave_cam + 1, least.concave_angle / degree));
+}
+
+LeastRadii least_radii(std::span<const StepProfile> profiles) {
   LeastRadii least{infinity, infinity};
   for (const StepProfile& profile : profiles)
     for (const ProfilePoint& point : profile.points) include(least, point.curvature, point.angle, profile.row);

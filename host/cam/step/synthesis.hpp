@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -49,8 +50,12 @@ struct LeastRadii {
   double convex_angle = 0.0, concave_angle = 0.0;
   int convex_cam = 0, concave_cam = 0;
 };
-LeastRadii least_radii(const std::array<StepProfile, 2>& profiles);
+LeastRadii least_radii(std::span<const StepProfile> profiles);
 // The same of the places that the carousel needs, before relief.
 LeastRadii least_radii(const std::vector<ContactSet>& contacts);
+
+// Whether a wheel of `wheel_radius`, m, is smaller than the hollows of `profiles`. Throws sim::cam::CamError with the
+// place.
+void require_wheel(double wheel_radius, std::span<const StepProfile> profiles);
 
 }  // namespace stiction::host::step

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace stiction::host::step {
 namespace {
@@ -62,18 +63,64 @@ Range play_at(const ContactSet& set, const StepTolerances& tolerances, double ne
 }
 
 double peak_pressure(const StepMechanism& mechanism, const StepLift& lift, const StepLoad& load,
-                     const std::vector<ContactSet>& sets, const Deviation& by) {
+                     const std::vector<ContactSet>& sets, const Deviation& by, const std::vector<double>& more) {
   StepMechanism built = mechanism;
   built.arm += by.arm;
   built.roller_radius += by.roller;
   double peak = 0.0;
+  std::size_t next = 0;
   for (const ContactSet& set : sets) {
     ContactSet moved = set;
-    for (Contact& contact : moved.contacts) contact.gap += gap_change(contact, set.psi, by);
+    for (Contact& contact : moved.contacts) {
+      contact.gap += gap_change(contact, set.psi, by);
+      if (!more.empty()) contact.gap += more[next++];
+    }
     for (const ContactForce& each : forces_at(built, lift, load, moved).contacts) peak = std::max(peak, each.pressure);
   }
   return peak;
 }
+
+namespace {
+
+// What the first order leaves out of each gap, all contacts of `sets` in their order, times `sign`.
+std::vector<double> remainders(const std::vector<ContactSet>& sets, const StepTolerances& tolerances,
+                               double roller_radius, double sign) {
+  std::vector<double> all;
+  for (const ContactSet& set : sets)
+    for (const Contact& contact : set.contacts)
+      all.push_back(sign * remainder_of(contact, set.psi, tolerances, roller_radius));
+  return all;
+}
+
+Deviation corner_of(unsigned corner, const std::array<double, 5>& widths) {
+  std::array<double, 5> by{};
+  for (std::size_t k = 0; k < 5; ++k) by[k] = (corner >> k & 1u) != 0 ? widths[k] : -widths[k];
+  return deviation_of(by);
+}
+
+// The lowest and the highest peak of all corners of the tolerances, found on some places of the turn and computed on
+// all of them. Between corners the forces are monotonous but for levers, normals and curvatures, which change by no
+// more than the tolerances over the shortest length of the mechanism, the roller's radius: that share is added.
+Range peaks_of_corners(const StepMechanism& mechanism, const StepLift& lift, const StepLoad& load,
+                       const std::vector<ContactSet>& sets, const std::vector<ContactSet>& some,
+                       const StepTolerances& tolerances) {
+  const auto widths = half_widths(tolerances);
+  unsigned lowest = 0, highest = 0;
+  Range found{infinity, -infinity};
+  for (unsigned corner = 0; corner < 32; ++corner) {
+    const double peak = peak_pressure(mechanism, lift, load, some, corner_of(corner, widths));
+    if (peak < found.low) found.low = peak, lowest = corner;
+    if (peak > found.high) found.high = peak, highest = corner;
+  }
+  const auto enclosed = [&](unsigned corner, double sign) {
+    return peak_pressure(mechanism, lift, load, sets, corner_of(corner, widths),
+                         remainders(sets, tolerances, mechanism.roller_radius, sign));
+  };
+  const double share = std::accumulate(widths.begin(), widths.end(), 0.0) / mechanism.roller_radius;
+  return {enclosed(lowest, 1.0) * (1.0 - share), enclosed(highest, -1.0) * (1.0 + share)};
+}
+
+}  // namespace
 
 ToleranceResult tolerance_of(const StepMechanism& mechanism, const StepLift& lift, const StepLoad& load,
                              const std::vector<ContactSet>& sets, const StepTolerances& tolerances) {
@@ -97,16 +144,11 @@ ToleranceResult tolerance_of(const StepMechanism& mechanism, const StepLift& lif
         sum += sensitivities(*contact, sets[widest].psi)[k] / std::fabs(contact->push);
     result.play_share[k] = std::fabs(sum) * widths[k];
   }
-  // A sixteenth of the turn's places, and those around the peak: the corners do not move it far.
+  // Places enough to tell the corners apart.
+  const std::size_t each = std::max<std::size_t>(1, sets.size() / 225);
   std::vector<ContactSet> some;
-  for (std::size_t k = 0; k < sets.size(); k += 16) some.push_back(sets[k]);
-  result.pressure = {infinity, 0.0};
-  for (unsigned corner = 0; corner < 32; ++corner) {
-    std::array<double, 5> by{};
-    for (std::size_t k = 0; k < 5; ++k) by[k] = (corner >> k & 1u) != 0 ? widths[k] : -widths[k];
-    const double peak = peak_pressure(mechanism, lift, load, some, deviation_of(by));
-    result.pressure = {std::min(result.pressure.low, peak), std::max(result.pressure.high, peak)};
-  }
+  for (std::size_t k = 0; k < sets.size(); k += each) some.push_back(sets[k]);
+  result.pressure = peaks_of_corners(mechanism, lift, load, sets, some, tolerances);
   for (std::size_t k = 0; k < 5; ++k) {
     std::array<double, 5> by{};
     by[k] = widths[k];

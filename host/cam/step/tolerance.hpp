@@ -3,8 +3,8 @@
 //
 // A deviation moves a roller by d against its cam: the gap changes by -d n, and by at most d_t^2 kappa / 2 besides, d_t
 // along the profile and kappa the curvature of the pitch path. Both are enclosed, so the interval of the play holds
-// every combination; that of the pressure is taken at all 32 corners of the box of tolerances, between which the forces
-// of springs in contact are monotonous.
+// every combination; that of the pressure is taken at the lowest and the highest of all 32 corners of the box of
+// tolerances, between which the forces of springs in contact are monotonous, with the same enclosure of the gaps.
 #pragma once
 
 #include <array>
@@ -50,9 +50,9 @@ struct ToleranceResult {
 ToleranceResult tolerance_of(const StepMechanism& mechanism, const StepLift& lift, const StepLoad& load,
                              const std::vector<ContactSet>& sets, const StepTolerances& tolerances);
 
-// The peak of the Hertz pressure of that drive over the turn with the deviations `by`, Pa.
-// `mechanism`, `lift`, `load` and `sets` as above.
+// The peak of the Hertz pressure of that drive over the turn with the deviations `by`, Pa. `mechanism`, `lift`, `load`
+// and `sets` as above; `more`: m, added to the gap of each contact in their order, or empty.
 double peak_pressure(const StepMechanism& mechanism, const StepLift& lift, const StepLoad& load,
-                     const std::vector<ContactSet>& sets, const Deviation& by);
+                     const std::vector<ContactSet>& sets, const Deviation& by, const std::vector<double>& more = {});
 
 }  // namespace stiction::host::step

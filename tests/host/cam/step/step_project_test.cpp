@@ -4,6 +4,7 @@
 
 #include "host/cam/step/shop_files.hpp"
 #include "tests/host/cam/step/step_case.hpp"
+#include "tests/support/figure.hpp"
 
 namespace stiction::host::step {
 namespace {
@@ -139,14 +140,6 @@ TEST(StepProject, RefusesReliefThatCannotBe) {
   EXPECT_TRUE(says(problem(project), "blend law"));
 }
 
-TEST(StepProject, ReliefVerticesMayNotOverlap) {
-  StepProject project = relieved_case();
-  // Around the whole cam the valley would come to the peak; on the way there are needed contacts, so that is said
-  // first.
-  project.relief.overrides = {{.cam = 0, .angle = 150.0 * degree, .end = 215.0 * degree}};
-  EXPECT_NE(problem(project), "");
-}
-
 MeasuredLift table(int rows, double unit = degree) {
   const auto lift = lift_of(step_motion(90, 180));
   MeasuredLift table;
@@ -176,6 +169,131 @@ TEST(StepProject, ChecksMeasuredTables) {
   project.measured = table(360);
   project.measured->psi[100] = project.measured->psi[99];
   EXPECT_NE(problem(project), "");
+}
+
+// A refusal with the place and reason that it says, and what is said of a project that just passes beside it. `later`:
+// that one is refused by a check behind this one, because no mechanism passes there: contact is lost long before a
+// profile is undercut or a path turns back, and those two say why.
+struct Refusal {
+  const char* what;
+  std::string refused, words, beside;
+  bool later = false;
+};
+
+std::vector<Refusal> refusals_of_mechanisms() {
+  const auto with = [](const StepProject& from, auto&& change) {
+    StepProject project = from;
+    change(project);
+    return problem(project);
+  };
+  // Each of these is the last one of a search by halves.
+  const auto of = [&](double a, double b, double c, int n, double rise) {
+    return problem(step_project(a, b, c, n, 360.0 / n, rise));
+  };
+  const auto first = [&](auto&& change) { return with(first_case(), change); };
+  const auto relief = [&](auto&& change) { return with(relieved_case(), change); };
+  const double hollow = least_radii(synthesize(first_case()).profiles).concave;
+  return {
+      {"stroke", first([](auto& p) { p.mechanism.rollers = 6; }), "90° with 6 rollers a row, 3/2 pitches",
+       problem(step_project(105, 52, 8, 6, 60, 180))},
+      {"stroke that stays", first([](auto& p) { p.cam->segments[1].stroke = 0.0; }), "a step above 0",
+       of(105, 52, 13, 4, 180)},
+      {"rollers that hit each other", of(64.41, 34.87, 15.14, 7, 146.1), "hit each other",
+       of(64.41, 34.87, 15.09, 7, 146.1)},
+      {"rollers that hit the hub", first([](auto& p) { p.mechanism.hub_radius = 40.0e-3; }), "the hub has 40 mm",
+       first([](auto& p) { p.mechanism.hub_radius = 39.99e-3; })},
+      {"sense of rotation", first([](auto& p) { p.mechanism.against = false; }), "has to turn against the cam",
+       of(105, 52, 13, 4, 180)},
+      {"a cam without contact", of(105, 52, 13, 4, 154.6), "no contact with cam 1 at 169", of(105, 52, 13, 4, 154.7)},
+      {"a carousel that is not held", of(70.68, 25.96, 8.84, 8, 53.7), "no contact that pushes the carousel on",
+       of(70.68, 25.96, 8.84, 8, 53.8)},
+      {"a path that turns back", of(105, 52, 13, 4, 130), "turns back, phi' =", of(105, 52, 13, 4, 140), true},
+      {"an undercut", of(105, 52, 13, 4, 140), "undercut", of(105, 52, 13, 4, 150), true},
+      {"a wheel", first([&](auto& p) { p.wheel_radius = 1.0001 * hollow; }), "the concave radius of cam",
+       first([&](auto& p) { p.wheel_radius = 0.9999 * hollow; })},
+      {"relief beyond the hub",
+       relief([](auto& p) { p.mechanism.hub_radius = 39e-3, p.relief.valley.depth = 1.01e-3; }), "above the hub",
+       relief([](auto& p) { p.mechanism.hub_radius = 39e-3, p.relief.valley.depth = 0.99e-3; })},
+      {"relief of needed contacts",
+       relief([](auto& p) { p.relief.overrides = {{.cam = 0, .angle = 150 * degree, .begin = 132.9 * degree}}; }),
+       "at 132.9° of the valley of cam 1",
+       relief([](auto& p) { p.relief.overrides = {{.cam = 0, .angle = 150 * degree, .begin = 133.2 * degree}}; })},
+      {"a vertex in no arc", relief([](auto& p) { p.relief.overrides = {{.cam = 0, .angle = 132.9 * degree}}; }),
+       "132.9° of cam 1, in no arc",
+       relief([](auto& p) { p.relief.overrides = {{.cam = 0, .angle = 133.2 * degree}}; })},
+      {"overlapping vertices", relief([](auto& p) {
+         p.relief.overrides = {{.cam = 0, .angle = 150 * degree}, {.cam = 0, .angle = 160 * degree}};
+       }),
+       "vertices at 150° and 160° of cam 1 that overlap", relief([](auto& p) {
+         p.relief.overrides = {{.cam = 0, .angle = 150 * degree}, {.cam = 0, .angle = 215 * degree}};
+       })},
+      {"a blend of less than two steps", relief([](auto& p) { p.relief.peak.blend = 0.19 * degree; }),
+       "two steps of the profile", relief([](auto& p) { p.relief.peak.blend = 0.21 * degree; })},
+      {"a law that is no rise from rest", relief([](auto& p) { p.relief.law = "linear"; }), "blend law",
+       relief([](auto& p) { p.relief.law = "sloping_sine"; })},
+  };
+}
+
+std::vector<Refusal> refusals_of_tables() {
+  const auto with = [](const MeasuredLift& measured) {
+    StepProject project = first_case();
+    project.cam.reset();
+    project.measured = measured;
+    return problem(project);
+  };
+  const auto note = [](double factor) {
+    StepProject project = first_case();
+    project.cam.reset();
+    project.measured = table(360);
+    project.measured->speed[200] *= factor;
+    const auto notes = synthesize(project).notes;
+    return notes.empty() ? std::string() : notes.front();
+  };
+  MeasuredLift back = table(360), on = table(360);
+  back.psi[100] = back.psi[99];
+  on.psi[100] = 0.5 * (on.psi[99] + on.psi[101]);
+  return {
+      {"a short table", with(table(358)), "found a table of 359 rows; expected at least 360", with(table(359))},
+      {"degrees for radians", with(table(360, 1.0)), "look like degrees", with(table(360))},
+      {"a table that goes back", with(back), "", with(on)},
+      // It is said, not refused: the column is not used.
+      {"a speed that is none", note(1.002), "at 200°", note(1.0005)},
+  };
+}
+
+std::vector<Refusal> refusals_of_files() {
+  const std::string sound = problem(text_with()), pressed = "preload = \"10 um\"\n";
+  const auto line = [](const std::string& what, const std::string& by) {
+    return problem(replaced(text_with(), what, by));
+  };
+  return {
+      {"a newer schema", line("step-cam/1", "step-cam/2"), "p.toml:1: schema: found", sound},
+      {"a material without modulus", line("modulus = \"210 GPa\"\n", ""), "cam_material.modulus", sound},
+      {"Poisson's ratio", line("poisson = 0.3", "poisson = 0.5"), "cam_material.poisson",
+       line("poisson = 0.3", "poisson = 0.499")},
+      {"a negative width", line("\"12 mm\"", "\"-12 mm\""), "roller_width: found", line("\"12 mm\"", "\"0.1 mm\"")},
+      {"an unknown key", problem(text_with("teeth = 3\n")), "mechanism.teeth", sound},
+      {"a wrong unit", line("\"105 mm\"", "\"105 kg\""), "axis_distance", line("\"105 mm\"", "\"10.5 cm\"")},
+      {"preload of rigid rollers", problem(text_with("", pressed)), "stiffness",
+       problem(text_with("", pressed + "stiffness = \"100 N/um\"\n"))},
+      {"a negative depth", problem(text_with("", "[relief]\ndepth = \"-1 um\"\nblend = \"4 deg\"\n")), "relief.depth",
+       problem(text_with("", "[relief]\ndepth = \"0 mm\"\nblend = \"4 deg\"\n"))},
+  };
+}
+
+TEST(StepProject, EveryRefusalHasANeighbourThatPasses) {
+  std::size_t refused = 0, passed = 0;
+  auto all = refusals_of_mechanisms();
+  for (const auto& more : {refusals_of_tables(), refusals_of_files()}) all.insert(all.end(), more.begin(), more.end());
+  for (const Refusal& each : all) {
+    const bool said = !each.refused.empty() && says(each.refused, each.words);
+    const bool beside = each.later ? !each.beside.empty() && !says(each.beside, each.words) : each.beside.empty();
+    EXPECT_TRUE(said) << each.what << ": " << each.refused;
+    EXPECT_TRUE(beside) << each.what << ": " << each.beside;
+    refused += said, passed += beside;
+  }
+  test::figure("step cams: refusals with place and reason, neighbours that pass",
+               fmt::format("{} of {}, {} of {}", refused, all.size(), passed, all.size()));
 }
 
 TEST(StepProject, FilesHoldTheirOwnChecksum) {

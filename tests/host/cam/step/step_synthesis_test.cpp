@@ -2,11 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
 #include "host/cam/step/lead_in.hpp"
-#include "host/cam/step/tolerance.hpp"
 #include "tests/host/cam/step/step_case.hpp"
+#include "tests/support/figure.hpp"
 
 namespace stiction::host::step {
 namespace {
@@ -26,21 +25,19 @@ struct Published {
   double least, largest;  // mm
   double three;           // % of the turn with three contacts
   double pressure_angle;  // deg
-  double arcs[4];         // deg, of cam 1
-  double arc_tolerance;   // deg
 };
 
 // Prototypes that cut by discs against rays at steps of a fortieth of a degree: the largest radius is that of such a
-// ray, and the exact corner between two is up to 5 um farther out. The arcs of the last three are printed to half a
-// degree, and end up to a degree later than here.
+// ray, and the exact corner between two is up to 5 um farther out. For the arcs see step_contacts_test.cpp.
 constexpr Published published_cases[] = {
-    {105, 52, 13, 4, 90, 180, 40.000, 81.385, 29.8, 48.24, {133.2, 167.9, 211.8, 219.3}, 0.3},
-    {105, 45, 12, 3, 120, 200, 48.000, 94.746, 24.9, 41.18, {133.5, 163.0, 212.5, 220.5}, 1.1},
-    {80, 40, 10, 4, 90, 180, 30.000, 62.032, 30.1, 47.92, {132.5, 169.0, 211.5, 221.0}, 1.1},
-    {130, 62, 16, 4, 90, 150, 52.000, 102.640, 28.5, 49.43, {138.5, 172.0, 208.0, 218.5}, 1.1},
+    {105, 52, 13, 4, 90, 180, 40.000, 81.385, 29.8, 48.24},
+    {105, 45, 12, 3, 120, 200, 48.000, 94.746, 24.9, 41.18},
+    {80, 40, 10, 4, 90, 180, 30.000, 62.032, 30.1, 47.92},
+    {130, 62, 16, 4, 90, 150, 52.000, 102.640, 28.5, 49.43},
 };
 
 TEST(StepSynthesis, HasTheFiguresOfIndependentPrototypes) {
+  double radius = 0.0, three = 0.0, angle = 0.0;
   for (const auto& row : published_cases) {
     const StepProject project = step_project(row.a, row.b, row.c, row.rollers, row.stroke, row.rise);
     const StepSynthesis made = synthesize(project);
@@ -53,11 +50,13 @@ TEST(StepSynthesis, HasTheFiguresOfIndependentPrototypes) {
     EXPECT_NEAR(100.0 * shares.three, row.three, 0.3);
     EXPECT_EQ(shares.other, 0.0);
     EXPECT_NEAR(worst_pressure_angle(made.unrelieved), row.pressure_angle, 0.02);
-    const auto& arcs = made.couplings[0].redundant;
-    ASSERT_EQ(arcs.size(), 2u);
-    const double found[] = {arcs[0].begin, arcs[0].end, arcs[1].begin, arcs[1].end};
-    for (int k = 0; k < 4; ++k) EXPECT_NEAR(found[k] / degree, row.arcs[k], row.arc_tolerance) << row.a << " " << k;
+    radius = std::max(
+        {radius, std::fabs(1e3 * made.cut[0].least_radius - row.least), std::fabs(1e3 * largest - row.largest)});
+    three = std::max(three, std::fabs(100.0 * shares.three - row.three));
+    angle = std::max(angle, std::fabs(worst_pressure_angle(made.unrelieved) - row.pressure_angle));
   }
+  test::figure("step cams: four cases against prototypes: radius, pressure angle, share of three",
+               fmt::format("{:.4f} mm, {:.3f} deg, {:.2f} % (bounds 0.001 mm, 0.02 deg, 0.3 %)", radius, angle, three));
 }
 
 TEST(StepSynthesis, HasThePublishedCurvaturesOfNeededPlaces) {
@@ -66,22 +65,38 @@ TEST(StepSynthesis, HasThePublishedCurvaturesOfNeededPlaces) {
   const LeastRadii radii = least_radii(synthesize(project).unrelieved);
   EXPECT_NEAR(1e3 * radii.convex, 19.13, 0.05);
   EXPECT_NEAR(1e3 * radii.concave, 28.69, 0.05);
+  test::figure("step cams: least convex, least concave radius where needed",
+               fmt::format("{:.3f}, {:.3f} mm (19.13, 28.69 mm +- 0.05)", 1e3 * radii.convex, 1e3 * radii.concave));
 }
 
-// M_D = I w^2 stroke / rise^2 Ca and M_H = I w^2 stroke^2 / rise^3 C_M, with Ca of the modified sine in closed form and
-// C_M from the law; force and pressure of the prototype.
+// M_D = I w^2 stroke / rise^2 Ca and M_H = I w^2 stroke^2 / rise^3 C_M, both of the modified sine in closed form: its
+// middle part has y' = k (1 - 3 cos t) and y'' = 4 k pi sin t with k = pi / (pi + 4), and y' y'' has its peak where
+// 6 cos^2 t - cos t = 3. Force and pressure of the prototype.
 TEST(StepSynthesis, HasTheForcesOfClosedFormsAndPrototype) {
   constexpr double pi = std::numbers::pi;
   StepProject project = first_case();
   project.steps = 2880;
   const StepSynthesis made = synthesize(project);
   const ForcePeaks peaks = peaks_of(made.forces, project.load.speed);
-  const double w = project.load.speed, stroke = pi / 2;
-  // The peak of the acceleration is at an eighth of the rise, which is a step of the turn.
-  EXPECT_NEAR(peaks.output_torque, 0.02 * w * w * stroke / (pi * pi) * 4 * pi * pi / (pi + 4), 1e-9 * 17.4);
-  EXPECT_NEAR(peaks.input_torque, 8.573, 0.001);
+  const double w = project.load.speed, stroke = pi / 2, k = pi / (pi + 4), cosine = (1.0 - std::sqrt(73.0)) / 12.0;
+  const double output = 0.02 * w * w * stroke / (pi * pi) * 4 * pi * k;
+  const double input = 0.02 * w * w * stroke * stroke / (pi * pi * pi) * 4 * pi * k * k * (1.0 - 3.0 * cosine) *
+                       std::sqrt(1.0 - cosine * cosine);
+  // The peak of the acceleration is at an eighth of the rise, which is a step of the turn; that of M_H is not.
+  EXPECT_NEAR(peaks.output_torque / output, 1.0, 1e-9);
+  const double psi = pi / 2 + (std::acos(cosine) - pi / 3) * 3.0 / 4.0;
+  const StepForces there = forces_at(project.mechanism, made.lift, project.load,
+                                     ContactSearch(project.mechanism, made.lift, made.profiles).at(psi));
+  EXPECT_NEAR(std::fabs(there.input_torque) / input, 1.0, 1e-9);
+  EXPECT_NEAR(peaks.input_torque / input, 1.0, 1e-4);
+  test::figure("step cams: M_D and M_H over their closed forms, less 1",
+               fmt::format("{:.1g}, {:.1g} (bound 1e-9)", std::fabs(peaks.output_torque / output - 1.0),
+                           std::fabs(std::fabs(there.input_torque) / input - 1.0)));
   EXPECT_NEAR(peaks.force, 424.8, 0.002 * 424.8);
   EXPECT_NEAR(1e-6 * peaks.pressure, 326.7, 0.002 * 326.7);
+  test::figure(
+      "step cams: largest contact force, Hertz pressure",
+      fmt::format("{:.2f} N, {:.2f} MPa (424.8 N, 326.7 MPa within 0.2 %)", peaks.force, 1e-6 * peaks.pressure));
   EXPECT_NEAR(peaks.pressure_psi / degree, 251.75, 0.13);
   EXPECT_NEAR(peaks.pressure_angle / degree, 40.8, 0.1);
   for (const StepForces& at : made.forces)
@@ -109,12 +124,45 @@ TEST(StepSynthesis, ElasticContactsBalanceTheCarousel) {
 }
 
 TEST(StepSynthesis, TheSecondCamIsTheMirroredFirstOneOnlyOfASymmetricLift) {
-  EXPECT_LE(synthesize(first_case()).symmetry.distance, 1e-9);
+  const Symmetry symmetric = synthesize(first_case()).symmetry;
+  EXPECT_LE(symmetric.distance, 1e-9);
+  ASSERT_EQ(symmetric.axes.size(), 1u);
+  EXPECT_NEAR(std::sin(symmetric.axis), 0.0, 1e-12);
   StepProject uneven = first_case();
   uneven.cam = step_motion(90, 180, "modified_sine", 0.4);
   const StepSynthesis made = synthesize(uneven);
   EXPECT_FALSE(made.symmetry.holds());
   EXPECT_NEAR(1e3 * made.symmetry.distance, 2.2, 0.05);
+  // So it is where the rollers do not rest symmetrically.
+  StepProject turned = first_case();
+  turned.mechanism.dwell_position += 1.0 * degree;
+  EXPECT_FALSE(synthesize(turned).symmetry.holds());
+  test::figure("step cams: mirrored cam 1 against cam 2, symmetric lift and lambda 0.4",
+               fmt::format("{:.1g}, {:.3f} mm (bounds 1e-6 mm, 2.2 mm)", 1e3 * symmetric.distance,
+                           1e3 * made.symmetry.distance));
+}
+
+// The axis goes through the middle of the dwell, wherever it is in the turn, and with two steps in a turn there are
+// two.
+TEST(StepSynthesis, ZeroPinsAreOnEveryAxisOfSymmetry) {
+  for (const double late : {-17.3, 24.0, 61.7}) {
+    StepProject project = first_case();
+    project.cam->segments[0].length += late * degree;
+    project.cam->segments[2].length -= late * degree;
+    const Symmetry found = synthesize(project).symmetry;
+    ASSERT_EQ(found.axes.size(), 1u) << late;
+    EXPECT_NEAR(std::sin(found.axis - late * degree), 0.0, 1e-7) << late;
+  }
+  StepProject twice = step_project(105, 45, 8, 8, 90, 90);
+  twice.cam->segments = {{.length = 45 * degree},
+                         {.length = 90 * degree, .stroke = 45 * degree, .law = "modified_sine"},
+                         {.length = 90 * degree},
+                         {.length = 90 * degree, .stroke = 45 * degree, .law = "modified_sine"},
+                         {.length = 45 * degree}};
+  const StepSynthesis made = synthesize(twice);
+  EXPECT_EQ(made.count.turns, 4);
+  ASSERT_EQ(made.symmetry.axes.size(), 2u);
+  EXPECT_NEAR(made.symmetry.axes[1] - made.symmetry.axes[0], 0.25 * turn, 1e-9);
 }
 
 // Gaps by brute force: each roller's centre against every point and corner of a profile.
@@ -164,6 +212,10 @@ TEST(StepSynthesis, ReliefLeavesTwoContactsAndTheNeededOnesWhereTheyWere) {
             made.lift.at(psi));
         moved = std::max(moved, after.gap_of(contact.cam, p, 1e-4) - contact.gap);
       }
+    test::figure(
+        fmt::format("step cams: relief, lead-in {:g} deg: needed contacts moved, pressure angle changed", lead_in),
+        fmt::format("{:.3f} um, {:.1g} deg (bounds 0.05 um, unchanged)", 1e6 * std::max(0.0, moved),
+                    std::fabs(worst_pressure_angle(made.contacts) - worst_pressure_angle(made.unrelieved))));
     EXPECT_GE(two, 0.97 * checked) << lead_in;
     EXPECT_GE(made.shares(made.contacts).two, 0.97) << lead_in;
     EXPECT_LE(moved, 0.05e-6) << lead_in;
@@ -178,42 +230,14 @@ TEST(StepSynthesis, ALateRollerIsLedInWithoutAStepInBothDirections) {
   const StepSynthesis made = synthesize(project);
   const auto all = lead_ins(project.mechanism, made.lift, made.cut, made.profiles, 2e-5);
   ASSERT_EQ(all.size(), 4u);  // a corner on each cam, both directions
+  double share = 0.0;
   for (const auto& each : all) {
+    share = std::max(share, each.relieved / each.cut);
     EXPECT_GT(each.cut, 1.5e-5);
     EXPECT_LE(each.relieved, 0.1 * each.cut) << each.cam << " " << each.forwards;
   }
-}
-
-// 10 000 mechanisms within the tolerances, each with its rollers moved as a whole against the profile.
-TEST(StepSynthesis, ToleranceIntervalsHoldAllSamplesAndAreNotWide) {
-  StepProject project = relieved_case();
-  const StepSynthesis made = synthesize(project);
-  const ContactSearch search(project.mechanism, made.lift, made.profiles);
-  std::mt19937_64 engine(5);
-  const auto drawn = [&] { return 2e-5 * (static_cast<double>(engine() >> 11) * 0x1p-53 - 0.5); };
-  for (const double psi : {0.3, 2.2, 3.1, 4.4}) {
-    const ContactSet set = search.at(psi);
-    const Range interval = play_at(set, project.tolerances, 0.0, 13e-3);
-    double low = infinity, high = -infinity;
-    for (int k = 0; k < 10'000; ++k) {
-      StepMechanism built = project.mechanism;
-      const double preload = drawn(), profile = drawn(), roller = drawn();
-      built.axis_distance += drawn() - preload;
-      built.arm += drawn();
-      double play = 0.0;
-      for (const int way : {1, -1}) {
-        const Contact& contact = *set.pushing(way);
-        const RollerPoint p =
-            roller_at(built, built.base(contact.cam) + contact.roller * built.pitch(), psi, made.lift.at(psi));
-        // The profile lies where it is; the roller comes from where its centre is now.
-        play += (search.gap_of(contact.cam, p, 1e-4) - roller - profile) / std::fabs(contact.push);
-      }
-      low = std::min(low, play), high = std::max(high, play);
-    }
-    EXPECT_LE(interval.low, low) << psi;
-    EXPECT_GE(interval.high, high) << psi;
-    EXPECT_LE(interval.width(), 1.3 * (high - low)) << psi;
-  }
+  test::figure("step cams: roller 0.02 mm late over each corner, step of the force over the unrelieved one",
+               fmt::format("{:.3f} (bound 0.1)", share));
 }
 
 }  // namespace
