@@ -186,7 +186,9 @@ class Axis {
     s.i_feedforward = narrow<typename S::Current>(config_.current_feedforward * set.acceleration, saturations);
     const auto i_added = saturated_sum(s.i_feedforward, set.injection, saturations);
     const auto i_wanted = saturated_sum(s.i_notch, i_added, saturations);
-    auto i_set = limit(i_wanted, config_.current_limit);
+    // A current that is given is one more limit of the cascade's: the integrator follows it and takes over from it.
+    const auto& most = set.limits_current ? set.most_current : config_.current_limit;
+    auto i_set = limit(set.by_current ? set.injection : i_wanted, most);
     s.i_set = i_set.value;
     s.limiting.current = i_set.limiting();
     VelocityPi<S>::track(config_.velocity, state_.velocity_pi, pi.beyond_format, i_wanted, i_set.value, saturations);
