@@ -201,7 +201,7 @@ TEST(TorqueMode, GivesTheSpeedOfEachPlace) {
   slow.deceleration = si<S::Velocity>(2.0 * tick);
   EXPECT_NEAR(current_at(slow, 0.0), 12.0, 1e-3) << "0.02 m/s, far from the ends";
   EXPECT_NEAR(current_at(slow, -100.0), 12.0, 1e-3);
-  EXPECT_NEAR(current_at(slow, 0.4985), 12.0, 1e-3) << "the proportional law allows more";
+  EXPECT_NEAR(current_at(slow, 0.4991), 12.0, 1e-3) << "the proportional law allows more";
   EXPECT_NEAR(current_at(slow, 0.4999), 600.0 * 1e-4 / 512 / tick, 0.01) << "31 1/s of 0.1 mm";
   EXPECT_NEAR(current_at(slow, 200.0), -12.0, 1e-3) << "back to where it is held";
   // On the curve of 2 m/s^2: v^2 = 2 a (x - a / (2 k^2)), k = 31.25 1/s.
