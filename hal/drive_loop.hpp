@@ -38,7 +38,7 @@ class DriveLoop {
   DriveLoop(B& backend, std::span<const AxisConfig<S>> axes, std::span<const ServoDriveConfig<S>> drives, Ticker ticker,
             std::span<const FrictionCompensationConfig<S>> compensations = {})
       : backend_(backend),
-        loop_(backend, axes, ticker, compensations, FaultScope::own_axis),
+        loop_(backend, behind_the_drives(axes, drives), ticker, compensations, FaultScope::own_axis),
         watch_(ticker.period_ns()),
         demands_(drives.size()),
         trips_(drives.size(), Fault::none),
@@ -128,6 +128,17 @@ class DriveLoop {
   std::uint64_t dropped_events() const { return dropped_; }
 
  private:
+  // The cascade's own limit of the following error is for what the drive's stop does not end (servo_drive.hpp).
+  static std::vector<AxisConfig<S>> behind_the_drives(std::span<const AxisConfig<S>> axes,
+                                                      std::span<const ServoDriveConfig<S>> drives) {
+    std::vector<AxisConfig<S>> configs(axes.begin(), axes.end());
+    SaturationCounter meant;
+    for (std::size_t i = 0; i < configs.size(); ++i)
+      configs[i].following_error_fault =
+          saturated_sum(configs[i].following_error_fault, drives[i].following_error, meant);
+    return configs;
+  }
+
   void start_drives() {
     for (std::size_t i = 0; i < drives_.size(); ++i) drives_[i].start(loop_.feedback()[i], loop_.axes()[i]);
   }

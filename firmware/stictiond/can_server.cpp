@@ -18,6 +18,7 @@ using S = FixedSignals;
 
 constexpr double velocity_increments = 1000.0;  // of position a second in a unit of velocity
 constexpr double torque_units = 1000.0;         // in the current limit
+constexpr std::uint16_t most_torque = 1000;     // in torque units
 constexpr std::int64_t second_ns = 1'000'000'000;
 constexpr std::uint32_t heartbeat_id = 0x700;  // CiA 301
 
@@ -25,7 +26,7 @@ std::vector<hal::can::Filter> filters(const CanServerConfig& config) {
   std::vector<hal::can::Filter> wanted;
   for (const int node : config.nodes)
     for (const auto& row : hal::can::pdo_table)
-      if (row.received && (row.positions || config.all_frames))
+      if (row.received && row.level <= config.frames)
         wanted.push_back({row.id + static_cast<std::uint32_t>(node), CAN_SFF_MASK});
   if (config.heartbeat_node != 0)
     wanted.push_back({heartbeat_id + static_cast<std::uint32_t>(config.heartbeat_node), CAN_SFF_MASK});
@@ -36,6 +37,11 @@ std::vector<hal::can::Filter> filters(const CanServerConfig& config) {
 std::int32_t to_units(double value, double unit) {
   constexpr double most = std::numeric_limits<std::int32_t>::max();
   return static_cast<std::int32_t>(std::lround(std::clamp(value / unit, -most, most)));
+}
+
+std::int16_t to_thousandths(double share) {
+  constexpr double most = std::numeric_limits<std::int16_t>::max();
+  return static_cast<std::int16_t>(std::lround(std::clamp(share * torque_units, -most, most)));
 }
 
 }  // namespace
@@ -108,6 +114,12 @@ void ControllerFrames::ask(std::int64_t now_ns, std::size_t axis, Pdo pdo, const
     const bool valid = data.speed != std::numeric_limits<std::int32_t>::min() && speed.has_value();
     return remote.offer_speed(speed.value_or(S::Velocity{}), valid);
   }
+  if (pdo == Pdo::torque) {
+    const double unit = config_.current_limit[axis] / torque_units;
+    remote.ask_most_torque(machine::to_signal<S::Current>(std::min(data.most_torque, most_torque) * unit).value());
+    return remote.offer_torque(
+        machine::to_signal<S::Current>(std::clamp<int>(data.torque, -most_torque, most_torque) * unit).value());
+  }
   if (pdo != Pdo::target) return;
   const auto target = machine::to_signal<S::Position>(data.target * config_.increment);
   const bool number = data.target != std::numeric_limits<std::int32_t>::min() && target.has_value();
@@ -156,9 +168,11 @@ void CanServer::send(std::span<const ShownAxis> axes) {
     const auto& axis = axes[i];
     const double unit = config.increment;
     send(hal::can::encode_position(config.nodes[i], axis.statusword, to_units(axis.position, unit)));
-    if (!config.all_frames) continue;
-    send(hal::can::encode_motion(config.nodes[i], to_units(axis.velocity, unit * velocity_increments),
-                                 to_units(axis.following_error, unit)));
+    if (config.frames >= hal::can::description_of(Pdo::motion).level)
+      send(hal::can::encode_motion(config.nodes[i], to_units(axis.velocity, unit * velocity_increments),
+                                   to_units(axis.following_error, unit)));
+    if (config.frames >= hal::can::description_of(Pdo::actual_torque).level)
+      send(hal::can::encode_torque(config.nodes[i], to_thousandths(axis.current / config.current_limit[i])));
   }
 }
 

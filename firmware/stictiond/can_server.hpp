@@ -24,7 +24,7 @@ struct CanServerConfig {
   std::vector<double> current_limit;  // A, of each axis
   double increment = 1e-9;            // m
   std::uint32_t cycle_ticks = 1;      // slow ticks from one cycle to the next
-  bool all_frames = true;             // offsets, velocities and following errors beside what positions need
+  int frames = 1;                     // level of the frames that are exchanged (process_data.hpp)
   bool motion_allowed = false;
   int heartbeat_node = 0;     // of the controller; 0: none
   bool sends_sync = true;     // false: another one does on this bus
@@ -41,6 +41,7 @@ struct CanServerCounts {
 struct ShownAxis {
   std::uint16_t statusword = 0;
   double position = 0.0, velocity = 0.0, following_error = 0.0;  // m, m/s, m
+  double current = 0.0;                                          // A, that makes the force
 };
 
 // What the controller's frames ask of the axes, frame by frame; without a socket.

@@ -8,8 +8,11 @@ void ask(const MotionWrite& write, double period, RemoteAxis& axis) {
   using enum MotionWrite::What;
   using S = FixedSignals;
   const auto speed = [](double value) { return machine::to_signal<S::Velocity>(value).value_or(S::Velocity{}); };
+  const auto current = [&](double share) {
+    return machine::to_signal<S::Current>(share * machine::to_si(axis.rated_torque())).value_or(S::Current{});
+  };
   if (write.what == controlword) {
-    axis.ask(static_cast<std::uint16_t>(write.value), CommandSource::modbus);
+    axis.ask(static_cast<std::uint16_t>(write.value), CommandSource::modbus, write.of_other);
     return;
   }
   // A value of who does not command is none; the publisher has answered so.
@@ -30,6 +33,10 @@ void ask(const MotionWrite& write, double period, RemoteAxis& axis) {
       return axis.ask_deceleration(speed(write.value * period));
     case target_velocity:
       return axis.ask_speed(speed(write.value));
+    case target_torque:
+      return axis.ask_torque(current(write.value));
+    case max_torque:
+      return axis.ask_most_torque(current(write.value));
     case controlword:
       return;
   }
@@ -43,6 +50,10 @@ void show_asked(const RemoteAxis& axis, double period, PublishedAxis& shown) {
   shown.owner_token = axis.owner().token();
   shown.refusal = axis.refusal();
   shown.target_velocity = machine::to_si(axis.speed());
+  const double rated = machine::to_si(axis.rated_torque());
+  shown.torque = shown.current / rated;
+  shown.target_torque = machine::to_si(axis.torque()) / rated;
+  shown.max_torque = machine::to_si(axis.most_torque()) / rated;
   shown.mode = static_cast<std::int16_t>(axis.mode());
   shown.target = machine::to_si(move.target);
   shown.profile_velocity = machine::to_si(move.velocity);

@@ -13,8 +13,8 @@ namespace stiction::drive {
 namespace {
 
 constexpr std::array<const char*, MotionWrite::kinds> motion_names{
-    "controlword",          "mode of operation",    "target position", "profile velocity",
-    "profile acceleration", "profile deceleration", "target velocity"};
+    "controlword",          "mode of operation", "target position", "profile velocity", "profile acceleration",
+    "profile deceleration", "target velocity",   "target torque",   "max torque"};
 
 std::vector<std::string> names_of(const machine::Machine& machine) {
   std::vector<std::string> names;
@@ -55,6 +55,7 @@ ModbusPublisher::ModbusPublisher(const machine::Machine& machine, const machine:
             if (beside_) beside_(state);
             state.commissioning_seconds = window_.seconds_left(now_ns());
             state.store_result = stored_->result.load();
+            show_clients(state);
             if (stale_ && stale_()) mark_stale(state);
             registers_.put_values(state, values);
           },
@@ -104,12 +105,13 @@ hal::WriteVerdict ModbusPublisher::take(std::span<const hal::RegisterWrite> writ
   if (moves_itself_ && !std::all_of(motions.begin(), motions.end(), MotionMailbox::stops))
     return {.refused = hal::ModbusException::illegal_function};
   if (!motions.empty() && stale_ && stale_()) return {.refused = hal::ModbusException::device_failure};
-  if (!motions.empty() && owned_by_others(motions)) return {.refused = hal::ModbusException::busy};
   if (!parameters.empty() && !parameter_limit_.take(now_ns())) return {.refused = hal::ModbusException::busy};
   if (const auto rejected = rejection_of(parameters, store)) return {.refused = *rejected};
+  const bool taken = judge(motions);
   // All at once: a target and the bit that it is taken by may come in one request.
   if (!motions.empty()) motion_.put(motions);
   for (const MotionWrite& motion : motions) said_->say(describe(motion), now_ns());
+  if (!taken) return {.refused = hal::ModbusException::busy};
   for (const ParameterWrite& parameter : parameters) {
     registers_.remember(parameter);
     said_->say(fmt::format("Modbus: {} = {}, which takes effect at the next start if it is stored", parameter.key,
@@ -119,15 +121,36 @@ hal::WriteVerdict ModbusPublisher::take(std::span<const hal::RegisterWrite> writ
   return store ? ask_store() : hal::WriteVerdict{};
 }
 
-// As the loop showed it last. What changes meanwhile the loop judges itself.
-bool ModbusPublisher::owned_by_others(std::span<const MotionWrite> motions) {
+// One that is refused refuses all but a stop, which is taken from everybody. What the drive is to do is left in
+// `motions`.
+bool ModbusPublisher::judge(std::vector<MotionWrite>& motions) {
+  const auto passed = judged(motions);
+  if (!passed) std::erase_if(motions, [](const MotionWrite& write) { return !MotionMailbox::stops(write); });
+  motions = passed ? *passed : judged(motions).value();
+  return passed.has_value();
+}
+
+std::optional<std::vector<MotionWrite>> ModbusPublisher::judged(std::span<const MotionWrite> motions) {
+  using Verdict = ModbusClients::Verdict;
   const PublishedState& state = snapshot_.latest();
-  for (const MotionWrite& write : motions) {
-    const PublishedAxis& axis = state.axes[write.axis];
-    const bool owned = axis.owner != CommandSource::none && axis.owner != CommandSource::modbus;
-    if (owned && !MotionMailbox::stops(write)) return true;
+  auto after = clients_;
+  std::vector<MotionWrite> passed;
+  for (MotionWrite write : motions) {
+    const auto verdict = after.judge(client_, write, state.axes[write.axis]);
+    if (verdict == Verdict::refused) return {};
+    write.of_other = verdict == Verdict::pass_as_stop;
+    if (verdict != Verdict::ignored) passed.push_back(write);
   }
-  return false;
+  clients_ = std::move(after);
+  return passed;
+}
+
+void ModbusPublisher::show_clients(PublishedState& state) const {
+  state.client = client_;
+  for (std::size_t i = 0; i < state.axes.size(); ++i) {
+    state.axes[i].owner_client = clients_.owner(i);
+    state.axes[i].owner_token = static_cast<std::uint16_t>(state.axes[i].owner_token + clients_.changes(i));
+  }
 }
 
 hal::WriteVerdict ModbusPublisher::ask_store() {

@@ -14,6 +14,7 @@
 
 #include "firmware/machine/configuration/conversion.hpp"
 #include "firmware/stictiond/commissioning_window.hpp"
+#include "firmware/stictiond/modbus_clients.hpp"
 #include "firmware/stictiond/modbus_registers.hpp"
 #include "firmware/stictiond/motion_mailbox.hpp"
 #include "firmware/stictiond/rate_limit.hpp"
@@ -93,11 +94,15 @@ class ModbusPublisher : private hal::WriteTaker {
 
  private:
   // The server's side.
+  void begin_request(std::uint16_t client) override { client_ = client; }
+  void forget(std::uint16_t client) override { clients_.forget(client); }
+  void show_clients(PublishedState& state) const;
   hal::WriteVerdict take(std::span<const hal::RegisterWrite> writes) override;
   std::optional<hal::WriteVerdict> outcome(std::uint64_t ticket) override;
   hal::WriteVerdict ask_store();
   std::optional<hal::ModbusException> rejection_of(std::span<const ParameterWrite> parameters, bool store);
-  bool owned_by_others(std::span<const MotionWrite> motions);
+  bool judge(std::vector<MotionWrite>& motions);
+  std::optional<std::vector<MotionWrite>> judged(std::span<const MotionWrite> motions);
   std::string describe(const MotionWrite& write) const;
 
   ModbusRegisters registers_;
@@ -113,7 +118,9 @@ class ModbusPublisher : private hal::WriteTaker {
   std::int64_t first_ns_ = 0;
   hal::Snapshot<PublishedState> snapshot_;
   MotionMailbox motion_;
-  RateLimit parameter_limit_{parameter_burst, parameters_per_second};  // the server's own
+  ModbusClients clients_;     // the server's own, as are the next two
+  std::uint16_t client_ = 0;  // whose request it answers
+  RateLimit parameter_limit_{parameter_burst, parameters_per_second};
   CommissioningWindow window_;
   // What a job of the store says of itself; it may outlive this.
   struct Stored {

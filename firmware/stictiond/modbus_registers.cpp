@@ -35,7 +35,7 @@ struct StateRow {
 double number_of(Fault fault) { return static_cast<double>(fault); }
 
 using Drive = PublishedState;
-constexpr std::array<StateRow<Drive>, 9> drive_rows{{
+constexpr std::array<StateRow<Drive>, 10> drive_rows{{
     {3, uint16, 1, "fault", "1", "number of the fault of programme or bus; 0: none",
      [](const Drive& s) { return number_of(s.fault); }},
     {4, uint32, 1, "seconds", "s", "time since the loop began", [](const Drive& s) -> double { return s.seconds; }},
@@ -54,10 +54,12 @@ constexpr std::array<StateRow<Drive>, 9> drive_rows{{
      "how the last request to store ended; 0: none, 1: stored, 2: under way, 3: the set would refuse a start, 4: the "
      "disk did not take it",
      [](const Drive& s) { return static_cast<double>(s.store_result); }},
+    {19, uint16, 1, "client", "1", "number of the connection over which this is read",
+     [](const Drive& s) -> double { return s.client; }},
 }};
 
 using Axis = PublishedAxis;
-constexpr std::array<StateRow<Axis>, 18> axis_rows{{
+constexpr std::array<StateRow<Axis>, 20> axis_rows{{
     {0, uint16, 1, "statusword", "1", "CiA 402, 6041h", [](const Axis& a) -> double { return a.statusword; }},
     {1, int16, 1, "mode", "1", "mode of operation shown, 6061h", [](const Axis& a) -> double { return a.mode; }},
     {2, uint16, 1, "fault", "1", "number of the axis' fault; 0: none",
@@ -88,7 +90,13 @@ constexpr std::array<StateRow<Axis>, 18> axis_rows{{
     {24, uint16, 1, "refusal", "1",
      "why the last target was refused; 0: it was not, 1: no number, 2: beyond an end, 3: the zero is not known",
      [](const Axis& a) { return static_cast<double>(a.refusal); }},
+    {25, int16, 1e-3, "torque", "1", "6077h, of the current limit", [](const Axis& a) { return a.torque; }},
     {26, uint32, 1, "supported_modes", "1", "6502h", [](const Axis&) -> double { return supported_mode_bits(); }},
+    {28, uint16, 1, "owner_client", "1",
+     "client of the connection that commands the axis; 0: none, 65535: it has ended, and the next one that commands "
+     "the "
+     "axis takes its place",
+     [](const Axis& a) -> double { return a.owner_client; }},
 }};
 
 struct MotionRow {
@@ -100,7 +108,7 @@ struct MotionRow {
   const char* text;
   MotionWrite::What what;
   double (*value)(const Axis&);
-  std::array<double, 4> choices{};  // all 0: every number
+  std::array<double, 5> choices{};  // all 0: every number
   // Limits what may be written to what the axis can; null: every number.
   void (*limit)(const machine::AxisModel&, Register&) = nullptr;
 };
@@ -116,6 +124,11 @@ void to_speed(const machine::AxisModel& axis, Register& r) {
   r.low = -axis.max_velocity;
   r.high = axis.max_velocity;
 }
+void to_torque(const machine::AxisModel&, Register& r) {
+  r.low = -1.0;
+  r.high = 1.0;
+}
+void to_max_torque(const machine::AxisModel&, Register& r) { up_to(1.0, r); }
 void to_acceleration(const machine::AxisModel& axis, Register& r) { up_to(axis.max_acceleration, r); }
 // Set-points of every tick do not come over this bus; what can be asked for is what a drive does by itself. A target
 // beyond the travel is refused by the axis, as it may be relative: bit 11 of the statusword.
@@ -128,10 +141,10 @@ constexpr std::array<MotionRow, MotionWrite::kinds> motion_rows{{
      1,
      "mode_of_operation",
      "1",
-     "6060h; 1: profile position, 3: profile velocity, 6: homing, 8: cyclic position",
+     "6060h; 1: profile position, 3: profile velocity, 6: homing, 8: cyclic position, 10: cyclic torque",
      What::mode,
      [](const Axis& a) -> double { return a.mode; },
-     {1, 3, 6, 8}},
+     {1, 3, 6, 8, 10}},
     {2, int32, position_scale, "target_position", "m",
      "607Ah; accepted when bit 4 of the controlword rises; bit 5: at once, bit 6: relative", What::target,
      [](const Axis& a) { return a.target; }},
@@ -175,6 +188,26 @@ constexpr std::array<MotionRow, MotionWrite::kinds> motion_rows{{
      [](const Axis& a) { return a.target_velocity; },
      {},
      to_speed},
+    {12,
+     int16,
+     1e-3,
+     "target_torque",
+     "1",
+     "6071h, of cyclic torque, in parts of the current limit",
+     What::target_torque,
+     [](const Axis& a) { return a.target_torque; },
+     {},
+     to_torque},
+    {13,
+     uint16,
+     1e-3,
+     "max_torque",
+     "1",
+     "6072h, of every mode, in parts of the current limit; initial value and maximum: 1",
+     What::max_torque,
+     [](const Axis& a) { return a.max_torque; },
+     {},
+     to_max_torque},
 }};
 
 template <class Row>

@@ -20,7 +20,7 @@
 namespace stiction::drive {
 
 inline constexpr std::uint16_t modbus_identification = 0x5344;  // "SD"
-inline constexpr std::uint16_t modbus_schema = 3;               // of the registers; changes with any address
+inline constexpr std::uint16_t modbus_schema = 4;               // of the registers; changes with any address
 inline constexpr std::size_t most_published_axes = 8;
 
 struct PublishedAxis {
@@ -40,11 +40,13 @@ struct PublishedAxis {
   // Who commands it.
   CommandSource owner = CommandSource::none, held_by = CommandSource::none;
   std::uint16_t owner_token = 0;
+  std::uint16_t owner_client = 0;  // of Modbus
   Refusal refusal = Refusal::none;
   // What was asked for last, by whomever.
   std::uint16_t controlword = 0;
   double target = 0.0;                                            // m
   double profile_velocity = 0.0, target_velocity = 0.0;           // m/s
+  double torque = 0.0, target_torque = 0.0, max_torque = 0.0;     // of the current limit
   double profile_acceleration = 0.0, profile_deceleration = 0.0;  // m/s^2
 };
 
@@ -62,16 +64,28 @@ struct PublishedState {
   std::uint32_t trace_lost = 0;             // not recorded, because the trace was full
   std::uint32_t commissioning_seconds = 0;  // that clients may write parameters
   StoreResult store_result = StoreResult::none;
+  std::uint16_t client = 0;  // number of the connection that asks
   std::array<PublishedAxis, most_published_axes> axes{};
 };
 
 // What a client wrote.
 struct MotionWrite {
-  enum class What : std::uint8_t { controlword, mode, target, velocity, acceleration, deceleration, target_velocity };
-  static constexpr std::size_t kinds = 7;
+  enum class What : std::uint8_t {
+    controlword,
+    mode,
+    target,
+    velocity,
+    acceleration,
+    deceleration,
+    target_velocity,
+    target_torque,
+    max_torque
+  };
+  static constexpr std::size_t kinds = 9;
   std::size_t axis = 0;
   What what = What::controlword;
-  double value = 0.0;  // SI units
+  double value = 0.0;     // SI units; torques as shares of the current limit
+  bool of_other = false;  // a stop of a client that the axis does not belong to (modbus_clients.hpp)
 };
 struct ParameterWrite {
   std::string key;

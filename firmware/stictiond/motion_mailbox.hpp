@@ -24,7 +24,7 @@ class MotionMailbox {
   void put(std::span<const MotionWrite> writes) {
     for (const MotionWrite& write : writes) {
       AxisOrders& axis = orders_[write.axis];
-      const Order order{write.value, ++serial_};
+      const Order order{write.value, ++serial_, write.of_other};
       axis.newest[static_cast<std::size_t>(write.what)] = order;
       if (stops(write)) axis.stop = order;
     }
@@ -48,6 +48,7 @@ class MotionMailbox {
   struct Order {
     double value = 0.0;
     std::uint64_t serial = 0;  // 0: never given
+    bool of_other = false;
   };
   struct AxisOrders {
     std::array<Order, kinds> newest{};
@@ -66,7 +67,7 @@ class MotionMailbox {
       }
       if (order.serial <= taken[kind]) continue;
       taken[kind] = order.serial;
-      act(MotionWrite{axis, static_cast<MotionWrite::What>(kind), order.value});
+      act(MotionWrite{axis, static_cast<MotionWrite::What>(kind), order.value, order.of_other});
     }
   }
 

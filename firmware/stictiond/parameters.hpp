@@ -35,7 +35,7 @@ struct LimitParameter {
   Tightens tightens;
 };
 // What protects the machine: over a bus these values are only made tighter than they are.
-inline constexpr std::array<LimitParameter, 12> limit_parameters{{
+inline constexpr std::array<LimitParameter, 15> limit_parameters{{
     {"supervision.following_error", Tightens::down},
     {"supervision.over_current", Tightens::down},
     {"supervision.over_speed", Tightens::down},
@@ -46,6 +46,9 @@ inline constexpr std::array<LimitParameter, 12> limit_parameters{{
     {"encoder_jump", Tightens::down},
     {"current_sum", Tightens::down},
     {"runaway_current", Tightens::down},
+    {"following_error_timeout", Tightens::down},
+    {"max_motor_speed", Tightens::down},
+    {"torque_slope", Tightens::down},
     {"negative_end", Tightens::up},
     {"positive_end", Tightens::down},
 }};

@@ -9,6 +9,7 @@
 #include "firmware/machine/configuration/axis_configuration.hpp"
 #include "firmware/machine/configuration/conversion.hpp"
 #include "hal/can/can_socket.hpp"
+#include "stiction/design/axis_parameters.hpp"
 
 namespace stiction::drive {
 namespace {
@@ -17,6 +18,14 @@ using S = FixedSignals;
 
 // Of the way that max_velocity allows in a cycle: targets are rounded, and clocks differ.
 constexpr double way_tolerance = 1.01;
+// In which a current in cst reaches its limit where the file does not say otherwise: slow beside a current loop, fast
+// beside a mass.
+constexpr double torque_rise_time = 10e-3;  // s
+
+// Of all motors; V of a force source.
+double current_limit(const machine::AxisModel& axis) {
+  return axis.motor.driven_by_volts() ? axis.inverter.voltage_limit : axis.inverter.current_limit * axis.motor.count;
+}
 
 template <class T>
 T held(double value, const std::string& key) {
@@ -44,6 +53,38 @@ std::uint32_t cycle_ticks(const DriveConfiguration& c) {
 int smoothing_bits(double jerk_time, double period) {
   const double ticks = std::max(jerk_time / period, 1.0);
   return std::min(static_cast<int>(std::lround(std::log2(ticks))), PositionProfile::most_smoothing_bits);
+}
+
+// The position loop towards an end is half as fast as the axis' own at most, so that it does not swing beyond it.
+int stiffness_bits(double position_gain, double period) {
+  return std::clamp(static_cast<int>(std::lround(std::log2(2.0 / (position_gain * period)))), 1, 16);
+}
+
+TorqueMode::Config torque_mode(const DriveConfiguration& c, const machine::AxisModel& axis,
+                               const machine::DriveAxisSetup& setup) {
+  const std::string of_axis = "axis." + axis.name, of_drive = "drive.axis." + axis.name;
+  const double period = c.machine.timing.fast_period, limit = current_limit(axis);
+  const double speed = setup.max_motor_speed.value_or(axis.max_velocity);
+  if (speed > axis.max_velocity)
+    throw StartRefused(fmt::format("{}.max_motor_speed: found {:g} m/s; expected at most {}.max_velocity, {:g} m/s",
+                                   of_drive, speed, of_axis, axis.max_velocity));
+  const double slope = setup.torque_slope.value_or(limit / torque_rise_time) * period;
+  const double braking = std::min(axis.max_acceleration, setup.quick_stop_deceleration) * period;
+  TorqueMode::Config config;
+  config.most = held<S::Current>(limit, of_axis + ".inverter.current_limit");
+  config.slope = std::clamp(held<S::Current>(std::min(slope, limit), of_drive + ".torque_slope"),
+                            S::Current::from_raw(1), config.most);
+  config.speed = held<S::Velocity>(speed, of_drive + ".max_motor_speed");
+  config.deceleration =
+      std::max(held<S::Velocity>(braking, of_drive + ".quick_stop_deceleration"), S::Velocity::from_raw(1));
+  config.speed_of_current = held<TorqueMode::SpeedOfCurrent>(axis.motor.force_constant / axis.mass * period,
+                                                             of_axis + ".motor.force_constant");
+  config.gain = held<S::VelocityGain>(axis.velocity_controller.gain, of_axis + ".velocity_controller.gain");
+  config.stiffness_bits = stiffness_bits(axis.position_controller.gain, period);
+  config.low = held<S::Position>(setup.negative_end.value(), of_drive + ".negative_end");
+  config.high = held<S::Position>(setup.positive_end.value(), of_drive + ".positive_end");
+  config.rate = S::rate(c.period_ns);
+  return config;
 }
 
 RemoteAxisConfig remote_axis(const DriveConfiguration& c, const machine::AxisModel& axis,
@@ -76,6 +117,10 @@ RemoteAxisConfig remote_axis(const DriveConfiguration& c, const machine::AxisMod
       std::max(held<S::Velocity>(tick_change, of_axis + ".max_acceleration"), S::Velocity::from_raw(1));
   config.fastest = {
       {}, held<S::Velocity>(axis.max_velocity, of_axis + ".max_velocity"), fastest_change, fastest_change};
+  config.step_limit = {fastest_change, S::seconds(c.period_ns / 2), S::rate(c.period_ns),
+                       held<S::Position>(axis.supervision.following_error.value_or(design::default_following_error),
+                                         of_axis + ".supervision.following_error")};
+  config.torque = torque_mode(c, axis, setup);
   if (setup.stops.halt == 2)
     config.halting =
         held<S::Velocity>(setup.quick_stop_deceleration * timing.fast_period, of_drive + ".quick_stop_deceleration");
@@ -120,7 +165,7 @@ CanServerConfig can_server_config(const DriveConfiguration& c) {
   config.interface = server.interface;
   config.format = server.data_bit_rate ? hal::can::Format::fd : hal::can::Format::classical;
   config.increment = server.position_increment;
-  config.all_frames = server.all_frames;
+  config.frames = static_cast<int>(server.frames);
   config.cycle_ticks = cycle_ticks(c);
   config.motion_allowed = server.motion_allowed;
   config.heartbeat_node = server.heartbeat_node;
@@ -143,7 +188,7 @@ CanServerConfig can_server_config(const DriveConfiguration& c) {
           fmt::format("{}: found drive.axis.{}.server_node = {} a second time; expected a node of its own",
                       c.machine.id, axis.name, node));
     config.nodes.push_back(node);
-    config.current_limit.push_back(axis.inverter.current_limit * axis.motor.count);
+    config.current_limit.push_back(current_limit(axis));
   }
   if (on_one_bus(c.setup) &&
       (server.bit_rate != c.setup.can->bit_rate || server.data_bit_rate != c.setup.can->data_bit_rate))
@@ -164,10 +209,10 @@ std::vector<hal::CyclicFrame> can_server_frames(const DriveConfiguration& config
   std::vector<hal::CyclicFrame> frames;
   const auto axes = static_cast<int>(config.nodes.size());
   if (config.sends_sync || config.follows_sync) frames.push_back(frame("server sync", 0, 1));
-  constexpr std::array<const char*, 5> names{"mode", "target", "offsets", "state", "motion"};
+  constexpr std::array<const char*, 8> names{"mode", "target", "offsets", "state", "motion", "", "", "torque"};
   for (const auto& row : hal::can::pdo_table)
-    // The mode is sent when it changes, and a speed in the place of a target.
-    if (row.pdo != hal::can::Pdo::mode && row.pdo != hal::can::Pdo::speed && (row.positions || config.all_frames))
+    // The mode is sent when it changes, and a speed or a torque in the place of a target.
+    if (row.cyclic && row.level <= config.frames)
       frames.push_back(frame(names[static_cast<std::size_t>(row.pdo)], row.size, axes));
   return frames;
 }

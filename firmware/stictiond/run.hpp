@@ -87,7 +87,7 @@ void show_on_can(const hal::DriveLoop<B>& loop, const Programme<B>& programme, b
   for (std::size_t i = 0; i < shown.size(); ++i) {
     const auto& signals = loop.loop().signals()[i];
     shown[i] = {statusword_on(programme.statusword(i), obeyed), machine::to_si(loop.drive(i).position()),
-                machine::to_si(signals.v), machine::to_si(signals.e)};
+                machine::to_si(signals.v), machine::to_si(signals.e), machine::to_si(signals.i)};
   }
 }
 

@@ -118,7 +118,11 @@ std::vector<ServerMessage> server_messages(double increment) {
           {"motion",
            Pdo::motion,
            {{"actual_velocity", 0, 32, true, 0, "m/s", speed}, {"following_error", 32, 32, true, 0, "m", increment}}},
-          {"speed", Pdo::speed, {controlword, {"target_velocity", 16, 32, true, 0, "m/s", speed}}}};
+          {"speed", Pdo::speed, {controlword, {"target_velocity", 16, 32, true, 0, "m/s", speed}}},
+          {"torque",
+           Pdo::torque,
+           {controlword, {"target_torque", 16, 16, true, 0, "%", 0.1}, {"max_torque", 32, 16, false, 0, "%", 0.1}}},
+          {"actual_torque", Pdo::actual_torque, {{"actual_torque", 0, 16, true, 0, "%", 0.1}}}};
 }
 
 // A DBC file as it grows.

@@ -46,6 +46,8 @@ ControllerData decode_pdo(Pdo pdo, const Frame& frame) {
   if (pdo == Pdo::mode) data.mode = get<std::int8_t>(frame, 2);
   if (pdo == Pdo::target) data.target = get<std::int32_t>(frame, 2);
   if (pdo == Pdo::speed) data.speed = get<std::int32_t>(frame, 2);
+  if (pdo == Pdo::torque) data.torque = get<std::int16_t>(frame, 2);
+  if (pdo == Pdo::torque) data.most_torque = get<std::uint16_t>(frame, 4);
   return data;
 }
 
@@ -60,6 +62,8 @@ Frame encode_pdo(Pdo pdo, int node, const ControllerData& data) {
   if (pdo == Pdo::mode) put(frame, data.mode);
   if (pdo == Pdo::target) put(frame, data.target);
   if (pdo == Pdo::speed) put(frame, data.speed);
+  if (pdo == Pdo::torque) put(frame, data.torque);
+  if (pdo == Pdo::torque) put(frame, data.most_torque);
   return frame;
 }
 
@@ -67,6 +71,12 @@ Frame encode_position(int node, std::uint16_t statusword, std::int32_t position)
   Frame frame = of(Pdo::position, node);
   put(frame, statusword);
   put(frame, position);
+  return frame;
+}
+
+Frame encode_torque(int node, std::int16_t torque) {
+  Frame frame = of(Pdo::actual_torque, node);
+  put(frame, torque);
   return frame;
 }
 

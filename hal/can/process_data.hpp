@@ -6,9 +6,12 @@
 //   RPDO3 400h + node  6 B  6040h controlword, 607Ah target position
 //         100h + node  6 B  6040h controlword, 60FFh target velocity; not of the predefined set, whose RPDO1 is a
 //         node's
+//         680h + node  6 B  6040h controlword, 6071h target torque, 6072h max torque
 //   RPDO4 500h + node  6 B  60B1h velocity offset, 60B2h torque offset
 //   TPDO3 380h + node  6 B  6041h statusword, 6064h position actual value
 //   TPDO4 480h + node  8 B  606Ch velocity actual value, 60F4h following error
+//         580h + node  2 B  6077h torque actual value; of the predefined set the answer of an SDO, which the drive has
+//         not
 //   SYNC  080h         0 B  begins a cycle; sent by the drive
 //
 // Units: positions and following error in increments, velocities in 1000 increments a second, torque in thousandths of
@@ -23,22 +26,25 @@
 
 namespace stiction::hal::can {
 
-enum class Pdo : std::uint8_t { mode, target, offsets, position, motion, speed };
+enum class Pdo : std::uint8_t { mode, target, offsets, position, motion, speed, torque, actual_torque };
 
 struct PdoDescription {
   Pdo pdo;
   std::uint32_t id;   // plus the node
   std::uint8_t size;  // bytes
   bool received;      // by the drive
-  bool positions;     // one of those without which no position is commanded
+  int level;          // from which on it is exchanged; 0: no position is commanded without it
+  bool cyclic;        // each cycle, and not in the place of a different one
 };
-inline constexpr std::array<PdoDescription, 6> pdo_table{{
-    {Pdo::mode, 0x300, 3, true, true},
-    {Pdo::target, 0x400, 6, true, true},
-    {Pdo::offsets, 0x500, 6, true, false},
-    {Pdo::position, 0x380, 6, false, true},
-    {Pdo::motion, 0x480, 8, false, false},
-    {Pdo::speed, 0x100, 6, true, true},
+inline constexpr std::array<PdoDescription, 8> pdo_table{{
+    {Pdo::mode, 0x300, 3, true, 0, false},
+    {Pdo::target, 0x400, 6, true, 0, true},
+    {Pdo::offsets, 0x500, 6, true, 1, true},
+    {Pdo::position, 0x380, 6, false, 0, true},
+    {Pdo::motion, 0x480, 8, false, 1, true},
+    {Pdo::speed, 0x100, 6, true, 0, false},
+    {Pdo::torque, 0x680, 6, true, 0, false},
+    {Pdo::actual_torque, 0x580, 2, false, 2, true},
 }};
 constexpr const PdoDescription& description_of(Pdo pdo) { return pdo_table[static_cast<std::size_t>(pdo)]; }
 
@@ -53,12 +59,14 @@ static_assert(apart_from_nodes());
 
 // What a PDO to the drive asks for; the objects that its kind carries.
 struct ControllerData {
-  std::uint16_t controlword = 0;     // 6040h: mode, target, speed
+  std::uint16_t controlword = 0;     // 6040h: mode, target, speed, torque
   std::int8_t mode = 0;              // 6060h: mode
   std::int32_t target = 0;           // 607Ah: target
   std::int32_t speed = 0;            // 60FFh: speed
   std::int32_t velocity_offset = 0;  // 60B1h: offsets
   std::int16_t torque_offset = 0;    // 60B2h: offsets
+  std::int16_t torque = 0;           // 6071h: torque
+  std::uint16_t most_torque = 0;     // 6072h: torque
 };
 
 enum class PdoVerdict : std::uint8_t { good, unknown, wrong_size };
@@ -75,10 +83,11 @@ ControllerData decode_pdo(Pdo pdo, const Frame& frame);
 
 // Frames by their objects. `pdo`: which one; `node`: of the axis, 1 to 127; `data`: what a controller sends;
 // `statusword`: of CiA 402; `position`: in position increments; `velocity`: in 1000 of them per second;
-// `following_error`: in position increments.
+// `following_error`: in position increments; `torque`: in thousandths of the current limit.
 Frame encode_pdo(Pdo pdo, int node, const ControllerData& data);  // as a controller sends it
 Frame encode_position(int node, std::uint16_t statusword, std::int32_t position);
 Frame encode_motion(int node, std::int32_t velocity, std::int32_t following_error);
+Frame encode_torque(int node, std::int16_t torque);
 inline constexpr Frame plain_sync{sync_id, 0, {}};
 
 }  // namespace stiction::hal::can

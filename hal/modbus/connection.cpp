@@ -39,7 +39,7 @@ int ModbusConnection::receive(std::span<const std::uint8_t> bytes) {
     }
     const auto length = length_of_request(rest);
     if (!length || *length > rest.size()) break;
-    const auto answer = responder_->answer(rest.first(*length));
+    const auto answer = responder_->answer(rest.first(*length), client_);
     out_.insert(out_.end(), answer.begin(), answer.end());
     ticket_ = responder_->put_off();
     if (is_waiting()) waiting_.assign(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(*length));
@@ -52,7 +52,7 @@ int ModbusConnection::receive(std::span<const std::uint8_t> bytes) {
 
 int ModbusConnection::resume() {
   if (!is_waiting()) return 0;
-  const auto answer = responder_->late_answer(waiting_, ticket_);
+  const auto answer = responder_->late_answer(waiting_, ticket_, client_);
   if (!answer) return 0;
   ticket_ = 0;
   out_.insert(out_.end(), answer->begin(), answer->end());

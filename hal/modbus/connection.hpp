@@ -13,7 +13,9 @@ namespace stiction::hal {
 
 class ModbusConnection {
  public:
-  explicit ModbusConnection(ModbusResponder& responder) : responder_(&responder) {}
+  // `responder`: of all connections, must outlive this; `client`: the number of this one.
+  explicit ModbusConnection(ModbusResponder& responder, std::uint16_t client = 1)
+      : responder_(&responder), client_(client) {}
 
   // Answers every request that is whole now, also of those kept before; returns how many.
   int receive(std::span<const std::uint8_t> bytes);
@@ -26,6 +28,7 @@ class ModbusConnection {
   bool is_waiting() const { return ticket_ != 0; }
   int resume();
 
+  std::uint16_t client() const { return client_; }
   std::span<const std::uint8_t> unsent() const { return out_; }
   void sent(std::size_t bytes);
 
@@ -33,6 +36,7 @@ class ModbusConnection {
   static constexpr std::size_t most_unread = 16 * longest_modbus_request;
 
   ModbusResponder* responder_;
+  std::uint16_t client_;
   std::vector<std::uint8_t> in_, out_;
   std::vector<std::uint8_t> waiting_;  // the request that was put off
   std::uint64_t ticket_ = 0;

@@ -106,7 +106,7 @@ ModbusResponder::ModbusResponder(ModbusTransport transport, const RegisterMap& m
 
 ModbusResponder::~ModbusResponder() = default;
 
-std::vector<std::uint8_t> ModbusResponder::answer(std::span<const std::uint8_t> request) {
+std::vector<std::uint8_t> ModbusResponder::answer(std::span<const std::uint8_t> request, std::uint16_t client) {
   const bool tcp = transport_ == ModbusTransport::tcp;
   const std::size_t header = tcp ? tcp_header : rtu_header;
   const std::size_t end = request.size() - (tcp ? 0 : rtu_crc);
@@ -117,13 +117,15 @@ std::vector<std::uint8_t> ModbusResponder::answer(std::span<const std::uint8_t> 
     if (request[0] != unit_) return {};  // nor broadcasts: they cannot be refused
   }
   put_off_ = 0;
+  taker_.begin_request(client);
   const auto refusal = refusal_of(request.subspan(header, end - header));
   if (put_off_ != 0) return {};
   return reply(request, refusal);
 }
 
 std::optional<std::vector<std::uint8_t>> ModbusResponder::late_answer(std::span<const std::uint8_t> request,
-                                                                      std::uint64_t ticket) {
+                                                                      std::uint64_t ticket, std::uint16_t client) {
+  taker_.begin_request(client);
   const auto verdict = taker_.outcome(ticket);
   if (!verdict) return {};
   return reply(request, verdict->refused);

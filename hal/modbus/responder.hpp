@@ -35,12 +35,14 @@ class ModbusResponder {
   ModbusResponder& operator=(const ModbusResponder&) = delete;
 
   // The answer to one whole request, framing and all; empty where a slave is silent (RTU: damaged, or for another
-  // unit).
-  std::vector<std::uint8_t> answer(std::span<const std::uint8_t> request);
+  // unit). `client`: number of the connection that it came over.
+  std::vector<std::uint8_t> answer(std::span<const std::uint8_t> request, std::uint16_t client = 1);
   // The ticket by which the last answer() put its request off and gave no answer; 0: it did not.
   std::uint64_t put_off() const { return put_off_; }
-  // The answer to a request that was put off; none: what it asked for is not done. `request`, `ticket`: as they were.
-  std::optional<std::vector<std::uint8_t>> late_answer(std::span<const std::uint8_t> request, std::uint64_t ticket);
+  // The answer to a request that was put off; none: what it asked for is not done. `request`, `ticket`, `client`: as
+  // they were.
+  std::optional<std::vector<std::uint8_t>> late_answer(std::span<const std::uint8_t> request, std::uint64_t ticket,
+                                                       std::uint16_t client = 1);
 
  private:
   struct Library;  // libmodbus' context and mapping

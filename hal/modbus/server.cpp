@@ -141,7 +141,10 @@ class ModbusServer::TcpEndpoint : public Endpoint {
         count(server_.requests_, client->connection.resume());
         const bool served = polled[i].revents != 0 || !client->connection.unsent().empty();
         const bool gone = (polled[i].revents & (POLLERR | POLLHUP)) != 0 && client->connection.is_waiting();
-        if (gone || (served && !serve_client(*client))) clients_.erase(client);
+        if (gone || (served && !serve_client(*client))) {
+          server_.taker_->forget(client->connection.client());
+          clients_.erase(client);
+        }
         client = next;
       }
       if (polled[1].revents != 0) accept_client();
@@ -152,8 +155,22 @@ class ModbusServer::TcpEndpoint : public Endpoint {
   struct Client {
     Socket socket;
     ModbusConnection connection;
-    Client(int descriptor, ModbusResponder& responder) : socket(descriptor), connection(responder) {}
+    Client(int descriptor, ModbusResponder& responder, std::uint16_t number)
+        : socket(descriptor), connection(responder, number) {}
   };
+
+  // Of the connections in their order, so that a number comes again late, and never of one that is there.
+  std::uint16_t free_number() {
+    const auto taken = [this](std::uint16_t number) {
+      return number == 0 || std::any_of(clients_.begin(), clients_.end(), [number](const Client& client) {
+               return client.connection.client() == number;
+             });
+    };
+    do {
+      ++last_number_;
+    } while (taken(last_number_));
+    return last_number_;
+  }
 
   static short events_of(const Client& client) {
     const int in = client.connection.is_full() ? 0 : POLLIN;
@@ -178,7 +195,7 @@ class ModbusServer::TcpEndpoint : public Endpoint {
     set(IPPROTO_TCP, TCP_KEEPIDLE, 30);
     set(IPPROTO_TCP, TCP_KEEPINTVL, 10);
     set(IPPROTO_TCP, TCP_KEEPCNT, 3);
-    clients_.emplace_back(descriptor, responder_);
+    clients_.emplace_back(descriptor, responder_, free_number());
     count(server_.connections_);
   }
 
@@ -218,6 +235,7 @@ class ModbusServer::TcpEndpoint : public Endpoint {
   std::size_t most_clients_;
   static constexpr int put_off_ms = 5;  // from one look at what was put off to the next
   std::list<Client> clients_;
+  std::uint16_t last_number_ = 0;
 };
 
 class ModbusServer::SerialEndpoint : public Endpoint {

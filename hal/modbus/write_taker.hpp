@@ -23,6 +23,11 @@ class WriteTaker {
   WriteTaker(const WriteTaker&) = delete;
   WriteTaker& operator=(const WriteTaker&) = delete;
 
+  // Whose request is answered now: take() and the values that are asked for are of it, until the next call. `client`:
+  // number of its connection, from 1 on, of one at a time.
+  virtual void begin_request([[maybe_unused]] std::uint16_t client) {}
+  // A connection has ended.
+  virtual void forget([[maybe_unused]] std::uint16_t client) {}
   // The writes of one request, together or not at all. `writes`: in the order of their registers.
   virtual WriteVerdict take(std::span<const RegisterWrite> writes) = 0;
   // Whether what was put off is done, and how it ended; none: not yet. `ticket`: of take().

@@ -25,10 +25,13 @@ struct Drive {
   S::Position at{};
   S::Velocity v{};
   bool following = false;
+  bool stepped = false;  // it has followed in the tick before too
   Fault seen = Fault::none;
   S::Position set_position() const { return at; }
   S::Position position() const { return at; }
   S::Velocity set_velocity() const { return v; }
+  S::Velocity velocity() const { return v; }
+  S::Current set_current() const { return {}; }
   bool referenced() const { return true; }
   bool powered() const { return following; }
   bool standing() const { return v == S::Velocity{}; }
@@ -41,7 +44,8 @@ T signal(double value) {
   return *machine::to_signal<T>(value);
 }
 
-constexpr double travel = 0.3;  // m, to both sides
+constexpr double travel = 0.3;         // m, to both sides
+constexpr double most_current = 70.0;  // A
 
 RemoteAxisConfig axis_config(int smoothing_bits) {
   RemoteAxisConfig config;
@@ -53,6 +57,16 @@ RemoteAxisConfig axis_config(int smoothing_bits) {
   config.fastest = {
       {}, signal<S::Velocity>(1.33), signal<S::Velocity>(20.0 * 62.5e-6), signal<S::Velocity>(20.0 * 62.5e-6)};
   config.target_window = signal<S::Position>(10e-6);
+  config.step_limit = {config.fastest.acceleration, S::seconds(31'250), S::rate(62'500), signal<S::Position>(2e-3)};
+  config.torque.most = signal<S::Current>(most_current);
+  config.torque.slope = signal<S::Current>(0.5);
+  config.torque.speed = config.fastest.velocity;
+  config.torque.deceleration = signal<S::Velocity>(10.0 * 62.5e-6);
+  config.torque.speed_of_current = signal<TorqueMode::SpeedOfCurrent>(0.4 * 62.5e-6);
+  config.torque.gain = signal<S::VelocityGain>(600.0);
+  config.torque.low = config.low;
+  config.torque.high = config.high;
+  config.torque.rate = S::rate(62'500);
   return config;
 }
 
@@ -65,7 +79,21 @@ void run_cycle(RemoteAxis& axis, Drive& drive) {
     drive.seen = axis.fault();
     if (drive.seen != Fault::none || !set.valid) drive.following = false;
     if (!drive.following) drive.v = {};
+    const bool stepped = drive.stepped && drive.following;
+    drive.stepped = drive.following;
     if (!drive.following) continue;
+    if (set.by_current) {
+      // The carriage follows its current, so that what holds it within speed and travel is seen.
+      if (std::abs(machine::to_si(set.injection)) > most_current) finding("a current beyond the limit");
+      const double v = machine::to_si(drive.v) + 0.4 * 62.5e-6 * machine::to_si(set.injection);
+      if (std::abs(v) > 1.5) finding("a speed that no current is to make");
+      drive.v = signal<S::Velocity>(v);
+      drive.at = S::Position::from_raw(drive.at.raw() + std::llround(v * 62.5e-6 * 0x1p40));
+      if (std::abs(machine::to_si(drive.at)) > travel + 6e-3) finding("a current that drives beyond the travel");
+      continue;
+    }
+    const auto change = set.velocity.raw() - drive.v.raw();
+    if (stepped && std::abs(change) > 20.0 * 62.5e-6 * 0x1p28 + 2.0) finding("a step of the set speed");
     drive.at = set.position;
     drive.v = set.velocity;
     const double x = machine::to_si(set.position);

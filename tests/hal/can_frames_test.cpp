@@ -219,6 +219,8 @@ TEST(ProcessData, IsReadAsItWasWrittenAndAsTheDbcDescribesIt) {
     sent.speed = static_cast<std::int32_t>(random());
     sent.velocity_offset = static_cast<std::int32_t>(random());
     sent.torque_offset = static_cast<std::int16_t>(random());
+    sent.torque = static_cast<std::int16_t>(random());
+    sent.most_torque = static_cast<std::uint16_t>(random());
     for (const auto& row : pdo_table) {
       if (!row.received) continue;
       const Frame frame = encode_pdo(row.pdo, 5, sent);
@@ -240,12 +242,19 @@ TEST(ProcessData, IsReadAsItWasWrittenAndAsTheDbcDescribesIt) {
       EXPECT_EQ(found.speed, row.pdo == Pdo::speed ? sent.speed : 0);
       EXPECT_NEAR(row.pdo == Pdo::speed ? signals.at("target_velocity").read(frame) : 0.0,
                   found.speed * 1e3 * increment, 1e-9);
+      EXPECT_EQ(found.torque, row.pdo == Pdo::torque ? sent.torque : 0);
+      EXPECT_EQ(found.most_torque, row.pdo == Pdo::torque ? sent.most_torque : 0);
+      EXPECT_NEAR(row.pdo == Pdo::torque ? signals.at("target_torque").read(frame) : 0.0, found.torque * 0.1, 1e-9);
+      EXPECT_NEAR(row.pdo == Pdo::torque ? signals.at("max_torque").read(frame) : 0.0, found.most_torque * 0.1, 1e-9);
       if (row.pdo != Pdo::target) continue;
       EXPECT_EQ(found.target, sent.target);
       EXPECT_NEAR(signals.at("target_position").read(frame), sent.target * increment, 1e-12);
     }
     const Frame state = encode_position(5, sent.controlword, sent.target);
     EXPECT_NEAR(dbc.at(state.id).at("actual_position").read(state), sent.target * increment, 1e-12);
+    const Frame torque = encode_torque(5, sent.torque_offset);
+    EXPECT_NEAR(dbc.at(torque.id).at("actual_torque").read(torque), sent.torque_offset * 0.1, 1e-9);
+    EXPECT_EQ(pdo_address_of(torque).verdict, PdoVerdict::unknown) << "the drive's own";
     const Frame motion = encode_motion(5, sent.velocity_offset, sent.target);
     EXPECT_NEAR(dbc.at(motion.id).at("actual_velocity").read(motion), sent.velocity_offset * 1e3 * increment, 1e-9);
     EXPECT_EQ(pdo_address_of(motion).verdict, PdoVerdict::unknown) << "the drive's own";

@@ -149,15 +149,19 @@ class FaultOfTheTable : public ::testing::TestWithParam<FaultCase> {
     // The reaction as stated, also of the other axis.
     const bool stops = row.reaction == Reaction::quick_stop;
     EXPECT_EQ(bench.powered(axis), stops);
-    double way_allowed = stops ? v * v / (2.0 * 10.0) : mass[axis] * v * v / (2.0 * coulomb[axis]);
+    // The ramp is the set-point's, which a carriage that is held back lags behind.
+    const double ramp_from = std::max(std::abs(v), std::abs(machine::to_si(bench.loop.drive(axis).set_velocity())));
+    double way_allowed = stops ? ramp_from * ramp_from / (2.0 * 10.0) : mass[axis] * v * v / (2.0 * coulomb[axis]);
     const double begin = bench.simulated.plant(axis).position();
     bench.tick();
     EXPECT_FALSE(bench.loop.state(1 - axis) == DriveState::operation_enabled);
     for (int i = 0; i < 32000; ++i) bench.tick();
     EXPECT_EQ(bench.loop.state(axis), DriveState::fault);
     // A carriage without power coasts, at least Coulomb friction brakes it; a stop keeps its ramp within the following
-    // error that is allowed.
-    EXPECT_LE(std::abs(bench.simulated.plant(axis).position() - begin), way_allowed + 2e-3);
+    // error that is allowed; where this was exceeded, the carriage makes up for all of it and overshoots by a
+    // twentieth.
+    const double lag = c.fault == Fault::following_error ? 2.1e-3 : 2e-3;
+    EXPECT_LE(std::abs(bench.simulated.plant(axis).position() - begin), way_allowed + lag);
     outcome.way = std::abs(bench.simulated.plant(axis).position() - violated_at);
 
     // Nothing moves, whatever the controlword asks for. Bristles come to rest from a few um with 9.5 Hz and a damping

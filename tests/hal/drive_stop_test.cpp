@@ -224,7 +224,8 @@ TEST(DriveStop, IsNoneForAFaultThatTheTableDoesNotHave) {
   EXPECT_FALSE(bench.powered(0));
 }
 
-// The wrong force brakes first, which is no runaway yet: one of two rows sees it, whichever comes first.
+// The wrong force brakes first, which is no runaway yet: one of two rows sees it, whichever comes first. A following
+// error begins a stop, which the same motor cannot make: the power goes at twice the window, 4 mm, or by the runaway.
 TEST(DriveStop, FollowsAMotorOfTheWrongSignInMotionBeforeItRunsAway) {
   double way = 0.0, time = 0.0;
   std::array<int, 2> seen{};
@@ -237,8 +238,10 @@ TEST(DriveStop, FollowsAMotorOfTheWrongSignInMotionBeforeItRunsAway) {
       const auto target = [&] { return machine::to_si(bench.next_set_points()[axis].position); };
       int ticks = 0;
       double apart = 0.0;
-      for (; ticks < 8000 && bench.loop.fault(axis) == Fault::none; ++ticks) {
-        apart = std::abs(target() - bench.simulated.plant(axis).position());
+      for (; ticks < 8000 && bench.powered(axis); ++ticks) {
+        const bool stopping = bench.loop.fault(axis) != Fault::none;
+        const double set = stopping ? machine::to_si(bench.loop.drive(axis).set_position()) : target();
+        apart = std::max(apart, std::abs(set - bench.simulated.plant(axis).position()));
         bench.tick();
       }
       const auto fault = bench.loop.fault(axis);
@@ -249,7 +252,7 @@ TEST(DriveStop, FollowsAMotorOfTheWrongSignInMotionBeforeItRunsAway) {
       time = std::max(time, ticks * bench.period);
       EXPECT_NE(x, 0.0);
     }
-  EXPECT_LT(way, 2.1e-3);
+  EXPECT_LT(way, 4.1e-3);
   figure("motor of the wrong sign in motion at 24 m/min, 32 moments",
          fmt::format("{} as runaway, {} as following error; at most {:.1f} ms and {:.2f} mm off the path", seen[0],
                      seen[1], time * 1e3, way * 1e3));

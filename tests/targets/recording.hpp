@@ -63,9 +63,11 @@ void each_field(AxisConfig<FixedSignals>& config, Field&& field) {
 template <class Field>
 void each_field(Sample& sample, Field&& field) {
   auto& [set, feedback, digest] = sample;
-  auto& [set_position, set_velocity, acceleration, set_valid, injection] = set;
+  auto& [set_position, set_velocity, acceleration, set_valid, injection, by_current, limits_current, most_current] =
+      set;
   auto& [position, position_time_ns, position_valid, velocity, current, fault] = feedback;
   field(set_position), field(set_velocity), field(acceleration), field(set_valid), field(injection);
+  field(by_current), field(limits_current), field(most_current);
   field(position), field(position_time_ns), field(position_valid), field(velocity);
   for (auto& i : current) field(i);
   field(fault), field(digest);

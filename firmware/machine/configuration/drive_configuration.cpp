@@ -8,6 +8,7 @@
 
 #include "firmware/machine/configuration/conversion.hpp"
 #include "firmware/machine/configuration/double_signals.hpp"
+#include "stiction/design/axis_parameters.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
 namespace stiction::machine {
@@ -150,6 +151,12 @@ ServoDriveConfig<S> configure_drive(const Timing& timing, const AxisModel& axis,
                     "quick_stop_deceleration, {:g} m/s^2",
                     axis.name, slow_down, setup.quick_stop_deceleration));
   c.slow_down = convert.template resolved<typename S::Velocity>(slow_down * period, "slow_down_deceleration");
+  c.most_change = convert.template operator()<typename S::Velocity>(
+      std::max(axis.max_acceleration, setup.quick_stop_deceleration) * period, "quick_stop_deceleration");
+  if (c.most_change < c.ramp.change) c.most_change = c.ramp.change;
+  c.following_error = convert.template operator()<typename S::Distance>(
+      axis.supervision.following_error.value_or(design::default_following_error), "following_error_timeout");
+  c.following_error_ticks = convert.ticks(setup.following_error_timeout, period, "following_error_timeout");
   const auto& stops = setup.stops;
   c.stops = {stops.quick_stop, stops.shutdown, stops.disable_operation, stops.halt, stops.fault_reaction};
   c.supervision = supervision_of<S>(timing, axis, setup, convert);

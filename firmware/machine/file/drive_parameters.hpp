@@ -36,9 +36,11 @@ inline constexpr std::array<Choice<bool>, 2> server_syncs{{
     {"followed", true, "by the controller each period: the drive's clock follows it"},
 }};
 
-inline constexpr std::array<Choice<bool>, 2> server_frames{{
-    {"positions", false, "controlwords and targets, statuswords and positions: half of the bus's load"},
-    {"all", true, "in addition offsets of velocity and torque, velocities and following errors"},
+inline constexpr std::array<Choice<ServerFrames>, 3> server_frames{{
+    {"positions", ServerFrames::positions,
+     "controlwords and targets, statuswords and positions: half of the bus's load"},
+    {"all", ServerFrames::all, "in addition offsets of velocity and torque, velocities and following errors"},
+    {"torques", ServerFrames::torques, "in addition actual torques"},
 }};
 
 template <>
@@ -80,8 +82,8 @@ struct Table<CanServerSetup> : EmptyTable<CanServerSetup> {
   static constexpr std::tuple choices{
       ChoiceParameter<CanServerSetup, bool>{"sync", &CanServerSetup::sync_followed, server_syncs, false,
                                             "sender of SYNC, 80h, which gives the clock"},
-      ChoiceParameter<CanServerSetup, bool>{"frames", &CanServerSetup::all_frames, server_frames, true,
-                                            "frames that are exchanged in each period in addition to SYNC"},
+      ChoiceParameter<CanServerSetup, ServerFrames>{"frames", &CanServerSetup::frames, server_frames, ServerFrames::all,
+                                                    "frames that are exchanged in each period in addition to SYNC"},
       ChoiceParameter<CanServerSetup, bool>{"motion", &CanServerSetup::motion_allowed, motion_permissions, false,
                                             "controlwords and set-points that a motion controller sends"}};
 };
@@ -262,7 +264,7 @@ struct Table<LineSetup> : EmptyTable<LineSetup> {
 template <>
 struct Table<DriveAxisSetup> : EmptyTable<DriveAxisSetup> {
   static constexpr std::string_view text = "one axis as the drive's programme runs it";
-  static constexpr std::array<Parameter<DriveAxisSetup>, 13> parameters{{
+  static constexpr std::array<Parameter<DriveAxisSetup>, 16> parameters{{
       {"node", "1", {0, 127}, &DriveAxisSetup::node, 0.0, "node of its power stage and encoder on the bus; 0: none"},
       {"server_node",
        "1",
@@ -302,6 +304,23 @@ struct Table<DriveAxisSetup> : EmptyTable<DriveAxisSetup> {
        &DriveAxisSetup::runaway_current,
        {},
        "current from which speed must follow force; left out: a fifth of the current limit"},
+      {"following_error_timeout", "s", not_negative(1.0), &DriveAxisSetup::following_error_timeout, 0.0,
+       "6066h: time for which supervision.following_error (6065h) may be exceeded before a controlled stop; above "
+       "twice "
+       "of it the power goes at once"},
+      {"max_motor_speed",
+       "m/s",
+       positive(),
+       &DriveAxisSetup::max_motor_speed,
+       {},
+       "6080h: speed within which the axis is held in cyclic synchronous torque, at most max_velocity; left out: "
+       "max_velocity"},
+      {"torque_slope",
+       "A/s",
+       positive(),
+       &DriveAxisSetup::torque_slope,
+       {},
+       "6087h: change of the set current in cyclic synchronous torque; left out: the current limit in 10 ms"},
       {"target_window", "m", positive(1e-2), &DriveAxisSetup::target_window, 10e-6,
        "distance from a profile's target at which it is reached"},
       {"profile_jerk_time", "s", not_negative(1.0), &DriveAxisSetup::profile_jerk_time, 16e-3,

@@ -16,6 +16,9 @@ struct CanSetup {
   std::optional<double> data_bit_rate;  // 1/s, CAN FD; none: classical frames
 };
 
+// What is exchanged with it each period; each has those of the one before.
+enum class ServerFrames { positions, all, torques };
+
 // Where a motion controller on a CAN bus sends target positions (CiA 402 csp and pp).
 struct CanServerSetup {
   std::string interface;                // may be that of CanSetup
@@ -24,10 +27,10 @@ struct CanServerSetup {
   std::optional<double> period;         // s, of the targets; none: the machine's slow period
   double position_increment = 1e-9;     // m, a unit of 607Ah and 6064h
   bool sync_followed = false;           // the controller sends SYNC, and the drive's clock follows it
-  bool all_frames = true;               // offsets, velocities and following errors too
-  double commander_timeout = 0.5;       // s without a frame of the controller that commands; 0: not watched
-  int heartbeat_node = 0;               // of the controller; 0: none
-  bool motion_allowed = false;          // whether set-points and controlwords are taken
+  ServerFrames frames = ServerFrames::all;
+  double commander_timeout = 0.5;  // s without a frame of the controller that commands; 0: not watched
+  int heartbeat_node = 0;          // of the controller; 0: none
+  bool motion_allowed = false;     // whether set-points and controlwords are taken
 };
 
 // Of the chip's inputs, inside the chip.
@@ -115,6 +118,9 @@ struct DriveAxisSetup {
   std::optional<double> encoder_jump;                // m; none: what the motor's force can make of it, at least 5 um
   std::optional<double> current_sum;                 // A; none: a twentieth of the current limit
   std::optional<double> runaway_current;             // A; none: a fifth of the current limit
+  double following_error_timeout = 0.0;              // s, 6066h
+  std::optional<double> max_motor_speed;             // m/s, 6080h, in cst; none: max_velocity
+  std::optional<double> torque_slope;                // A/s, 6087h, in cst; none: the current limit in 10 ms
   double target_window = 10e-6;                      // m, about a target, within which it is reached
   double profile_jerk_time = 16e-3;                  // s, by which a profile's acceleration comes and goes
   std::optional<double> negative_end, positive_end;  // m, of the travel, before the switches; none: half the travel

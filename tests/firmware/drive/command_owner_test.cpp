@@ -8,6 +8,7 @@
 #include <random>
 
 #include "tests/firmware/drive/served_axis.hpp"
+#include "tests/support/figure.hpp"
 
 namespace stiction::test {
 namespace {
@@ -59,7 +60,7 @@ TEST(Commander, GoneInAnyModeIsAStopWithinItsTimeAndTheRamp) {
   for (const auto mode : supported_modes)
     for (const auto source : {can, modbus}) {
       SCOPED_TRACE(::testing::Message() << "mode " << static_cast<int>(mode) << ", " << name_of(source));
-      const bool streamed = mode == OperationMode::cyclic_position || mode == OperationMode::cyclic_velocity;
+      const bool streamed = is_cyclic(mode);
       if (mode == OperationMode::cyclic_position && source == modbus) continue;  // holds
       auto a = commanded(mode, source, watched());
       int ticks = 0;
@@ -185,6 +186,7 @@ TEST(Stops, WinAgainstEnablingWordsOfOthersInAnyOrderAndAtAnyRate) {
     EXPECT_FALSE(a.drive.powered());
     EXPECT_TRUE(lead(a, other)) << "case " << k;
   }
+  figure("stop over one bus against enabling words over the other", std::to_string(won) + " of 1000 won (bound all)");
   EXPECT_EQ(won, 1000);
 }
 
@@ -209,6 +211,23 @@ TEST(Owners, AreOneAtATimeWithATokenThatTellsEachChange) {
   EXPECT_EQ(a.remote.owner().token(), 2);
   EXPECT_TRUE(lead(a, modbus));
   EXPECT_EQ(a.remote.owner().owner(), modbus);
+}
+
+// A source with several commanders: of the ones that the axis does not belong to a word stops it, and nothing else.
+TEST(Owners, OfASourceWithSeveralAreStoppedByTheOthersOfIt) {
+  for (const std::uint16_t word : {controlword::shutdown, controlword::quick_stop}) {
+    ServedAxis a;
+    ASSERT_TRUE(lead(a, modbus));
+    EXPECT_TRUE(a.remote.ask(word, modbus, true));
+    EXPECT_EQ(a.remote.owner().owner(), none);
+    EXPECT_EQ(a.remote.owner().held_by(), modbus);
+    a.run(400);
+    EXPECT_FALSE(a.drive.powered());
+    EXPECT_TRUE(a.remote.ask(controlword::shutdown, modbus, true)) << "once more; it leads nothing";
+    EXPECT_EQ(a.remote.owner().owner(), none);
+    EXPECT_FALSE(a.remote.ask(controlword::enable_operation, modbus));
+    EXPECT_TRUE(lead(a, modbus));
+  }
 }
 
 TEST(Owners, OfAnIdleAxisAreRefusedWhileADifferentSourceHoldsIt) {

@@ -62,6 +62,23 @@ TEST(FrictionCompensation, TestSignalAndInvalidMarkAreNotHeldBack) {
   EXPECT_FALSE(set.valid);
 }
 
+// cst: the current is the one that is asked for.
+TEST(FrictionCompensation, AddsNothingToACurrentThatIsGiven) {
+  FrictionCompensation<S> stage(config(CompensationKind::friction, 10));
+  stage.start({});
+  FrictionCompensationSignals<S> terms;
+  double added = 0.0;
+  for (int k = 0; k < 40; ++k) {
+    auto set = set_point(k < 5 ? 0.0 : 10e-6);
+    set.injection = signal<S::Current>(1.5);
+    set.by_current = true;
+    stage.step(set, terms);
+    EXPECT_EQ(to_si(set.injection), 1.5);
+    added = std::max(added, to_si(terms.current));
+  }
+  EXPECT_GT(added, 0.9) << "what it would have added";
+}
+
 // The tick in which the current begins to come, counted from the set-point's arrival at the axis.
 int lead(double lag) {
   auto c = config(CompensationKind::friction, 10);

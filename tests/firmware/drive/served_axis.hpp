@@ -17,6 +17,7 @@ struct ServedAxis {
 
   static constexpr double quick_deceleration = 10.0, slow_deceleration = 5.0, acceleration = 20.0;  // m/s^2
   static constexpr double most_speed = 1.25, end = 0.5;                                             // m/s, m
+  static constexpr double most_current = 40.0, acceleration_of_current = 0.4;                       // A, m/s^2 per A
   static constexpr double search_speed = 0.2;                                                       // m/s
   static constexpr int cycle_ticks = 16;
 
@@ -25,6 +26,7 @@ struct ServedAxis {
     c.stops = stops;
     c.ramp = {si<S::Velocity>(quick_deceleration * tick), S::seconds(tick_ns / 2), S::rate(tick_ns)};
     c.slow_down = si<S::Velocity>(slow_deceleration * tick);
+    c.most_change = si<S::Velocity>(acceleration * tick);
     c.supervision.period_ns = tick_ns;
     c.supervision.frozen_distance = si<S::Distance>(0.1);
     c.supervision.encoder_jump = si<S::Distance>(10e-6);
@@ -53,7 +55,24 @@ struct ServedAxis {
     const auto change = si<S::Velocity>(acceleration * tick);
     c.fastest = {{}, si<S::Velocity>(most_speed), change, change};
     c.target_window = si<S::Position>(10e-6);
+    c.step_limit = {change, S::seconds(tick_ns / 2), S::rate(tick_ns), si<S::Position>(2e-3)};
+    c.torque = torque_config();
     if (stops.halt == 2) c.halting = si<S::Velocity>(quick_deceleration * tick);
+    return c;
+  }
+
+  // m/s^2 per A is that of the cascade's feedforward; slope: the limit in 1 ms.
+  static TorqueMode::Config torque_config() {
+    TorqueMode::Config c;
+    c.most = si<S::Current>(most_current);
+    c.slope = si<S::Current>(most_current / 16.0);
+    c.speed = si<S::Velocity>(most_speed);
+    c.deceleration = si<S::Velocity>(quick_deceleration * tick);
+    c.speed_of_current = si<TorqueMode::SpeedOfCurrent>(acceleration_of_current * tick);
+    c.gain = si<S::VelocityGain>(600.0);
+    c.low = si<S::Position>(-end);
+    c.high = si<S::Position>(end);
+    c.rate = S::rate(tick_ns);
     return c;
   }
 
@@ -91,6 +110,7 @@ struct ServedAxis {
     demand.controlword = remote.controlword();
     demand.mode = remote.mode();
     demand.brake = remote.brakes();
+    demand.velocity_offset = remote.velocity_offset();
     demand.causes[0] = remote.fault();
     demand.causes[1] = trip;
     if (direct_mode) demand = {remote.controlword(), *direct_mode, {drive.set_position(), {}, {}}};
@@ -102,8 +122,18 @@ struct ServedAxis {
     drive.after(signals, axis);
     set_speed_before = set_speed;
     set_speed = machine::to_si(set.velocity);
-    if (drive.powered()) {
-      const double to = machine::to_si(set.position) + (ticks / 8 % 2 == 0 ? wobble : -wobble);
+    current = machine::to_si(signals.i_set);
+    by_current = set.by_current;
+    lead_by_current |= by_current;
+    if (jammed) {
+      v = 0.0;
+    } else if (drive.powered() && by_current) {
+      v += (current + load) * acceleration_of_current * tick;
+      x += v * tick;
+    } else if (drive.powered()) {
+      // A current finds the carriage where it is, and what takes over from it goes on from there.
+      const double lead = lead_by_current ? machine::to_si(set.velocity) * tick : 0.0;
+      const double to = machine::to_si(set.position) - lag + lead + (ticks / 8 % 2 == 0 ? wobble : -wobble);
       v = (to - x) / tick;
       x = to;
     } else {
@@ -134,6 +164,7 @@ struct ServedAxis {
     streamed += streamed_speed * cycle_ticks * tick;
     remote.offer(si<S::Position>(streamed), true);
     remote.offer_speed(si<S::Velocity>(speed), true);
+    remote.offer_torque(si<S::Current>(torque.value_or(std::clamp(1000.0 * (speed - v), -most_current, most_current))));
   }
 
   // Led to operation enabled, at rest; false where it does not get there.
@@ -153,9 +184,14 @@ struct ServedAxis {
   RemoteAxis remote;
   ServoDrive<S> drive;
   stiction::Axis<S> axis;
-  double x, v = 0.0;                               // m, m/s
-  double set_speed = 0.0, set_speed_before = 0.0;  // m/s
-  double streamed = 0.0, streamed_speed = 0.0;     // m, m/s
+  double x, v = 0.0;                                 // m, m/s
+  double set_speed = 0.0, set_speed_before = 0.0;    // m/s
+  double current = 0.0, load = 0.0;                  // A, of the motor and of a force from outside
+  bool by_current = false, lead_by_current = false;  // the last set-point; any before it
+  std::optional<double> torque;                      // A, streamed in cst; else what leads to the speed
+  double streamed = 0.0, streamed_speed = 0.0;       // m, m/s
+  bool jammed = false;                               // the carriage does not move
+  double lag = 0.0;                                  // m, of the carriage behind its set-point
   bool stage_fault = false, coasts = true, position_valid = true, set_point_valid = true;
   std::optional<OperationMode> direct_mode;  // of a source that is not the bus; its set-point stays where it is
   double wobble = 0.0;                       // m, to and fro each eight ticks

@@ -202,7 +202,7 @@ TEST(ServoDrive, HasTheModesThatItsBitsSay) {
   for (int mode = -1; mode < 12; ++mode)
     if (is_supported(mode)) bits |= 1u << (mode - 1);
   EXPECT_EQ(bits, supported_mode_bits());
-  EXPECT_EQ(bits, 0b1'1010'0101u);
+  EXPECT_EQ(bits, 0b11'1010'0101u);
 }
 
 }  // namespace

@@ -5,10 +5,12 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <random>
 #include <string>
 #include <vector>
 
 #include "tests/firmware/drive/served_axis.hpp"
+#include "tests/support/figure.hpp"
 
 namespace stiction::test {
 namespace {
@@ -75,9 +77,8 @@ constexpr std::array<DriveState, 6> walked_states{switch_on_disabled, ready_to_s
 constexpr auto& walked_modes = supported_modes;
 constexpr std::array<double, 3> walked_speeds{0.0, 0.2, -0.2};  // m/s
 
-// The most that a limit of the axis lets the set speed change in a tick, and rounding: profiles and streams keep
-// max_acceleration, whose interpolated peaks are below twice of it.
-constexpr double largest_step = 2.0 * ServedAxis::acceleration * tick + 1e-6;
+// The most that a limit of the axis lets the set speed change in a tick, and the roundings of two speeds.
+constexpr double largest_step = ServedAxis::acceleration * tick + 0x1p-27;
 
 // In a mode and moving in it, as a bus gets it there.
 ServedAxis moving(OperationMode mode, double speed, const StopCodes& stops = {}) {
@@ -145,7 +146,6 @@ void check(ServedAxis a, DriveState from, std::uint16_t word, double speed) {
   // 15, and what the word asks for from there.
   const auto to = reset ? way_of(switch_on_disabled, row_of(word).word).to : row.to;
   a.remote.ask(word);
-  double largest = 0.0;
   bool powered_moving = false;
   const bool was_powered = a.drive.powered();
   // 0.2 m/s at 5 m/s^2 are 640 ticks; a standstill of 160; a jerk of 64.
@@ -153,13 +153,13 @@ void check(ServedAxis a, DriveState from, std::uint16_t word, double speed) {
     const bool before = a.drive.powered();
     const double v_before = a.v;
     a.stream(1, speed);
-    if (before && a.drive.powered()) largest = std::max(largest, a.step_of_speed());
+    const bool steady = before && a.drive.powered();
+    ASSERT_TRUE(!steady || a.step_of_speed() <= largest_step) << "tick " << i << ": " << a.step_of_speed();
     if (row.ramp && !a.drive.powered() && std::abs(a.v) > 2e-3) powered_moving = true;
     // An axis that coasts is not enabled.
     const bool enabled_in_motion = !before && a.drive.powered() && std::abs(v_before) > 2e-3;
     ASSERT_FALSE(enabled_in_motion);
   }
-  ASSERT_LE(largest, largest_step);
   ASSERT_FALSE(powered_moving) << "the power went before the stop was over";
   const bool coasts = !was_powered && speed != 0.0;
   if (to == operation_enabled && coasts) {
@@ -190,7 +190,7 @@ TEST(StateWalk, EveryStateControlwordModeAndMotionIsAsTheStandardsTables) {
           if (HasFatalFailure()) return;
         }
       }
-  EXPECT_EQ(cases, 6 * 3 * (2 * 512 + 3 * 128));
+  EXPECT_EQ(cases, 6 * 3 * (2 * 512 + 4 * 128));
 }
 
 // Any mode left for any other one, in any motion: it brakes within a limit, and then is the other one.
@@ -210,7 +210,9 @@ TEST(StateWalk, AModeIsLeftByARampAndTheNextBeginsAtRest) {
           largest = std::max(largest, a.step_of_speed());
         }
         EXPECT_EQ(a.remote.mode(), to);
-        EXPECT_NEAR(a.set_speed, 0.0, 1e-9);
+        // In cst the speed that is shown is the axis' own.
+        const double still = to == OperationMode::cyclic_torque ? 1e-4 : 1e-9;
+        EXPECT_NEAR(a.set_speed, 0.0, still);
         for (int i = 0; i < 200; ++i) {
           a.stream(1, 0.0);
           largest = std::max(largest, a.step_of_speed());
@@ -218,8 +220,82 @@ TEST(StateWalk, AModeIsLeftByARampAndTheNextBeginsAtRest) {
         EXPECT_LE(largest, largest_step);
         EXPECT_EQ(a.drive.fault(), Fault::none) << name_of(a.drive.fault());
         EXPECT_EQ(a.drive.state(), operation_enabled);
-        EXPECT_EQ(a.set_speed, 0.0);
+        EXPECT_NEAR(a.set_speed, 0.0, still);
       }
+}
+
+// What is begun and taken back on the way: a halt, a mode, an enabling word, offsets.
+TEST(StateWalk, WhatIsTakenBackInTheMiddleOfARampMakesNoStep) {
+  constexpr std::uint16_t on = controlword::enable_operation;
+  for (const auto mode : walked_modes)
+    for (const double speed : walked_speeds)
+      for (const int word : {0x10f, 0x02, 0x06, 0x07})
+        for (const auto other : walked_modes)
+          for (const int after : {1, 20, 150}) {
+            SCOPED_TRACE(::testing::Message() << "mode " << static_cast<int>(mode) << " speed " << speed << " word "
+                                              << word << " other " << static_cast<int>(other) << " after " << after);
+            auto a = moving(mode, speed);
+            double largest = 0.0;
+            const auto follow = [&](int count) {
+              for (int i = 0; i < count; ++i) {
+                a.remote.ask_offsets(si<FixedSignals::Velocity>(i % 64 < 32 ? 0.05 : 0.0), {});
+                a.stream(1, speed);
+                if (a.drive.powered()) largest = std::max(largest, a.step_of_speed());
+              }
+            };
+            a.remote.ask(static_cast<std::uint16_t>(word));
+            a.remote.ask(other);
+            follow(after);
+            a.remote.ask(on);
+            a.remote.ask(mode);
+            follow(400);
+            ASSERT_LE(largest, largest_step);
+          }
+}
+
+// Whatever comes in whatever order, drawn: words, modes, targets near and far, offsets, faults of either reaction.
+TEST(StateWalk, NoDrawnSequenceStepsTheSetSpeed) {
+  std::mt19937_64 draw(27);
+  const auto in = [&](double low, double high) { return std::uniform_real_distribution(low, high)(draw); };
+  constexpr std::array<std::uint16_t, 9> words{0x0f, 0x0f, 0x1f, 0x10f, 0x02, 0x06, 0x07, 0x80, 0x3f};
+  constexpr int walks = 400, ticks_of_walk = 3000;
+  double largest = 0.0;
+  int powered_ticks = 0, moving_ticks = 0;
+  for (int walk = 0; walk < walks; ++walk) {
+    ServedAxis a({}, walk % 2 == 0 ? HomingMethod::none : HomingMethod::here);
+    ASSERT_TRUE(a.enable());
+    double speed = 0.0;
+    for (int i = 0; i < ticks_of_walk; ++i) {
+      const auto one_in = [&](double n) { return in(0.0, n) < 1.0; };
+      if (one_in(100)) speed = in(-1.5, 1.5);
+      if (one_in(100)) a.remote.ask(words[draw() % words.size()]);
+      if (one_in(150)) a.remote.ask(walked_modes[draw() % walked_modes.size()]);
+      if (one_in(200)) a.remote.ask_target(si<FixedSignals::Position>(in(-0.6, 0.6)), !one_in(10));
+      if (one_in(200)) a.remote.ask_deceleration(si<FixedSignals::Velocity>(in(0.0, 50.0) * tick));
+      if (one_in(200)) a.remote.ask_acceleration(si<FixedSignals::Velocity>(in(0.0, 50.0) * tick));
+      if (one_in(200)) a.remote.ask_velocity(si<FixedSignals::Velocity>(in(0.0, 2.0)));
+      if (one_in(50)) a.remote.ask_offsets(si<FixedSignals::Velocity>(in(-0.5, 0.5)), {});
+      a.trip = one_in(2000) ? Fault::missed_deadline : Fault::none;
+      const bool wrong = one_in(3000);
+      a.stream(1, speed);
+      if (wrong) a.remote.offer(si<FixedSignals::Position>(a.streamed + in(-1e-3, 1e-3)), true);
+      if (!a.drive.powered()) {
+        a.v = 0.0;
+        if (one_in(20)) a.remote.ask(controlword_to_enable(a.drive.state(), true));
+        continue;
+      }
+      ++powered_ticks;
+      if (a.set_speed != 0.0) ++moving_ticks;
+      largest = std::max(largest, a.step_of_speed());
+      ASSERT_LE(largest, largest_step) << "walk " << walk << " tick " << i << " mode "
+                                       << static_cast<int>(a.remote.mode()) << " from " << a.set_speed_before << " to "
+                                       << a.set_speed;
+    }
+  }
+  EXPECT_GT(powered_ticks, walks * ticks_of_walk / 4);
+  EXPECT_GT(moving_ticks, walks * ticks_of_walk / 8);
+  figure("400 drawn sequences in every mode: largest change of the set speed in a tick, over max_acceleration",
+         std::to_string(largest / (ServedAxis::acceleration * tick)) + " (bound 1.00001)");
 }
 
 // 605Ah to 605Eh: the deceleration of each code, and where the axis is afterwards.

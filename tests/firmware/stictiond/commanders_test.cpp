@@ -155,6 +155,72 @@ TEST(Commanders, GiveSpeedsOverCan) {
   }
 }
 
+// cst on the cross table's X: 70 A, 94 N/A, 225 kg and 90 N of friction; 6071h and 6072h in thousandths.
+TEST(Commanders, GiveTorquesOverCanWithinSpeedAndTravel) {
+  ServedTable table({"drive.axis.X.max_motor_speed=0.3 m/s"});
+  ASSERT_TRUE(table.enable(0));
+  table.cycle([&] { table.mode(0, OperationMode::cyclic_torque, enabled_word); });
+  double fastest = 0.0, farthest = 0.0, largest = 0.0;
+  const auto torques = [&](int cycles, std::int16_t torque, std::uint16_t most) {
+    for (int k = 0; k < cycles; ++k) {
+      table.cycle(
+          [&] { table.send(Pdo::torque, 0, {.controlword = enabled_word, .torque = torque, .most_torque = most}); });
+      fastest = std::max(fastest, std::abs(table.set_velocity(0)));
+      farthest = std::max(farthest, std::abs(table.position(0)));
+      largest = std::max(largest, std::abs(machine::to_si(table.loop.loop().signals()[0].i_set)));
+    }
+  };
+  torques(5, 0, 1000);
+  EXPECT_NE(table.statusword(0) & statusword::follows_bit, 0);
+  torques(60, 100, 1000);  // 7 A, 658 N: 2.52 m/s^2 less a rise of 1 ms
+  EXPECT_NEAR(table.set_velocity(0), 2.52 * 59.5e-3, 0.02);
+  EXPECT_NEAR(machine::to_si(table.loop.loop().signals()[0].i_set), 7.0, 1e-3);
+  std::vector<drive::ShownAxis> shown(2);
+  drive::show_on_can(table.loop, table.programme, true, shown);
+  EXPECT_NEAR(shown[0].current, 7.0, 0.2);
+  torques(2500, 600, 300);  // to the end, with 21 A at most
+  EXPECT_LE(largest, 21.0 + 1e-3);
+  EXPECT_LE(fastest, 0.31);
+  EXPECT_GE(fastest, 0.25);
+  EXPECT_NEAR(table.position(0), 0.25, 1e-3);
+  EXPECT_LE(farthest, 0.2510);
+  EXPECT_NE(table.statusword(0) & statusword::limit_bit, 0);
+  EXPECT_EQ(table.loop.fault(0), Fault::none) << name_of(table.loop.fault(0));
+  torques(300, -100, 1000);
+  EXPECT_LT(table.position(0), 0.2);
+  // Left as every other mode: it brakes.
+  table.cycle([&] { table.mode(0, OperationMode::profile_velocity, enabled_word); });
+  for (int i = 0; i < 100; ++i) table.cycle([&] { table.mode(0, OperationMode::profile_velocity, enabled_word); });
+  EXPECT_EQ(table.programme.remote()[0].mode(), OperationMode::profile_velocity);
+  EXPECT_EQ(table.set_velocity(0), 0.0);
+  EXPECT_EQ(table.loop.fault(0), Fault::none);
+}
+
+TEST(Commanders, GiveATorqueOverModbusThatHolds) {
+  ServedTable table({"drive.axis.X.max_motor_speed=0.3 m/s", "drive.modbus_server.address=127.0.0.1:0",
+                     "drive.modbus_server.commander_timeout=0 s"});
+  for (const int word : {6, 7, 15}) {
+    over_modbus(table, {0, drive::MotionWrite::What::controlword, static_cast<double>(word)});
+    for (int i = 0; i < 20; ++i) table.cycle();
+  }
+  over_modbus(table, {0, drive::MotionWrite::What::mode, 10});
+  for (int i = 0; i < 5; ++i) table.cycle();
+  over_modbus(table, {0, drive::MotionWrite::What::target_torque, -0.1});
+  for (int i = 0; i < 60; ++i) table.cycle();
+  EXPECT_NEAR(table.set_velocity(0), -2.52 * 0.06, 0.03);
+  drive::PublishedAxis shown;
+  shown.current = machine::to_si(table.loop.loop().signals()[0].i);
+  show_asked(table.programme.remote()[0], table.configuration.machine.timing.fast_period, shown);
+  EXPECT_NEAR(shown.torque, -0.1, 2e-3);
+  EXPECT_NEAR(shown.target_torque, -0.1, 1e-6);
+  EXPECT_NEAR(shown.max_torque, 1.0, 1e-6);
+  over_modbus(table, {0, drive::MotionWrite::What::max_torque, 0.05});
+  for (int i = 0; i < 20; ++i) table.cycle();
+  EXPECT_NEAR(machine::to_si(table.loop.loop().signals()[0].i_set), -3.5, 1e-3);
+  EXPECT_NE(table.statusword(0) & statusword::limit_bit, 0);
+  EXPECT_EQ(table.loop.fault(0), Fault::none);
+}
+
 TEST(Commanders, GiveASpeedOverModbus) {
   ServedTable table;
   for (const int word : {6, 7, 15}) {

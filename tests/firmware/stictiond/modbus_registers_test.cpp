@@ -159,6 +159,9 @@ TEST(DriveParameters, OfLimitsAreOnlyMadeTighterOverABus) {
   auto setup = machine::read_drive_setup(machine_file, machine);
   setup.axes.at("X").slow_down_deceleration = 5.0;
   setup.axes.at("X").brake_time = 0.1;
+  setup.axes.at("X").following_error_timeout = 0.02;
+  setup.axes.at("X").max_motor_speed = 1.0;
+  setup.axes.at("X").torque_slope = 500.0;
   int tried = 0;
   for (const auto& p : drive::drive_parameters(machine, setup)) {
     if (p.key.find(".X.") == std::string::npos || !p.value) continue;

@@ -72,7 +72,7 @@ TEST(RemoteSetup, SharesTheBusOfTheNodesWithTheSameBitRatesAndWithoutASecondSync
               HasSubstr("found drive.can_server.sync = \"followed\" on the interface of [drive.can], can0"));
   const auto config = drive::can_config(c);
   EXPECT_THAT(config.others, ::testing::IsSupersetOf({0x40bu, 0x38cu, 0x50bu, 0x48cu, 0x30bu}));
-  EXPECT_EQ(config.others.size(), 12U);
+  EXPECT_EQ(config.others.size(), 16U);
   EXPECT_EQ(drive::can_bus_budget(c).rows.size(), 3U + 4U);
   const auto apart = configuration(served);
   EXPECT_TRUE(drive::can_server_config(apart).sends_sync);
@@ -88,6 +88,32 @@ TEST(RemoteSetup, TakesLimitsFromTheMachine) {
   EXPECT_EQ(axes[0].profile.smoothing_bits, 8);  // 320 ticks: 256 are nearer than 512
   EXPECT_TRUE(axes[0].streamed);
   EXPECT_FALSE(drive::remote_axes(configuration({}))[0].streamed);
+}
+
+TEST(RemoteSetup, TakesTheLimitsOfTorqueFromTheMachine) {
+  // X of the cross table: 70 A, 94 N/A, 225 kg, 600 A s/m, gain 83.3 1/s, 80 m/min, 10 m/s^2 of a controlled stop.
+  const auto torque = drive::remote_axes(configuration(served))[0].torque;
+  EXPECT_NEAR(machine::to_si(torque.most), 70.0, 1e-5);
+  EXPECT_NEAR(machine::to_si(torque.slope), 70.0 / 160.0, 1e-5) << "10 ms";
+  EXPECT_NEAR(machine::to_si(torque.speed), 80.0 / 60.0, 1e-8);
+  EXPECT_NEAR(machine::to_si(torque.deceleration), 10.0 * 62.5e-6, 1e-8);
+  EXPECT_NEAR(machine::to_si(torque.speed_of_current) / (94.0 / 225.0 * 62.5e-6), 1.0, 1e-2);
+  EXPECT_NEAR(machine::to_si(torque.gain), 600.0, 1e-3);
+  EXPECT_EQ(torque.stiffness_bits, 9) << "31 1/s, less than half of the axis' own";
+  const auto set = drive::remote_axes(
+      configuration(with({"drive.axis.X.torque_slope=500 A/s", "drive.axis.X.max_motor_speed=0.5 m/s"})))[0];
+  EXPECT_NEAR(machine::to_si(set.torque.slope), 500.0 * 62.5e-6, 1e-5);
+  EXPECT_NEAR(machine::to_si(set.torque.speed), 0.5, 1e-8);
+  EXPECT_THAT(
+      refusal(with({"drive.axis.X.max_motor_speed=2 m/s"})),
+      HasSubstr("drive.axis.X.max_motor_speed: found 2 m/s; expected at most axis.X.max_velocity, 1.33333 m/s"));
+}
+
+TEST(RemoteSetup, SendsActualTorquesWhereTheyAreAskedFor) {
+  const auto frames = [](const std::vector<std::string>& set) {
+    return drive::can_server_frames(configuration(set)).size();
+  };
+  EXPECT_EQ(frames(with({"drive.can_server.frames=torques"})), frames(served) + 1);
 }
 
 TEST(RemoteSetup, DescribesItsFramesInTheDbc) {

@@ -3,7 +3,11 @@
 
 import os
 import pathlib
+import random
+import resource
 import signal
+import socket
+import struct
 import subprocess
 import tempfile
 import threading
@@ -12,6 +16,7 @@ import unittest
 from drive_process import CONTROLWORD, ENABLED, Client, Drive, comes_true
 
 VELOCITY_GAIN, STORE, PASSWORD = 1004, 0, 0x5354
+STORE_RESULT, STORED, NOT_WRITTEN = 18, 1, 4
 SLAVE_FAILURE, BUSY, ILLEGAL_FUNCTION = 4, 6, 1
 HELD_FSYNC = os.environ["STICTION_HELD_FSYNC"]
 
@@ -72,6 +77,57 @@ class Stops(unittest.TestCase):
             client.write(STORE, PASSWORD)
         self.assertEqual(refused.exception.args, (SLAVE_FAILURE,))
 
+    def store(self, drive, client, gain):
+        """How a request to store ended: STORED or NOT_WRITTEN, as its answer and the register both say."""
+        client.write_float(VELOCITY_GAIN, gain)
+        try:
+            client.write(STORE, PASSWORD)
+            answered = STORED
+        except Client.Refused as refused:
+            self.assertEqual(refused.args, (SLAVE_FAILURE,))
+            answered = NOT_WRITTEN
+        self.assertEqual(client.read(STORE_RESULT)[0], answered)
+        return answered
+
+    def test_a_file_that_the_system_lets_grow_no_further_is_told_and_the_set_before_is_kept(self):
+        """RLIMIT_FSIZE, which the kernel enforces in write(): the file ends anywhere in the set."""
+        drive = self.drive("--parameters", str(self.folder))
+        client = self.client(drive)
+        drive.open_commissioning(client)
+        self.assertEqual(self.store(drive, client, 550), STORED)
+        whole = (self.folder / "parameters").read_bytes()
+        for most in (0, 1, len(whole) // 2, len(whole) - 1):
+            resource.prlimit(drive.process.pid, resource.RLIMIT_FSIZE, (most, resource.RLIM_INFINITY))
+            self.assertEqual(self.store(drive, client, 560), NOT_WRITTEN, f"{most} bytes")
+            self.assertEqual((self.folder / "parameters").read_bytes(), whole)
+        resource.prlimit(drive.process.pid, resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
+        self.assertEqual(self.store(drive, client, 560), STORED)
+        self.assertIn("velocity_controller.gain 560", (self.folder / "parameters").read_text())
+
+    def test_a_full_disk_is_told_and_the_set_before_is_kept(self):
+        """A tmpfs of four pages in a mount namespace of the drive, filled to its last page (ENOSPC)."""
+        mounted = ("unshare", "--user", "--map-root-user", "--mount", "sh", "-c",
+                   'mount -t tmpfs -o size=16k tmpfs "$0" && exec "$@"', str(self.folder))
+        if subprocess.run([*mounted, "true"], check=False, stderr=subprocess.DEVNULL).returncode != 0:
+            self.skipTest("this kernel gives no mount namespace to a user")
+        drive = self.drive("--parameters", str(self.folder), command=mounted)
+        client = self.client(drive)
+        disk = pathlib.Path(f"/proc/{drive.process.pid}/root{self.folder}")
+        drive.open_commissioning(client)
+        self.assertEqual(self.store(drive, client, 550), STORED)
+        whole = (disk / "parameters").read_bytes()
+        filling = disk / "filling"
+        with self.assertRaises(OSError):
+            with open(filling, "wb", buffering=0) as file:
+                while True:
+                    file.write(bytes(4096))
+        for _ in range(3):
+            self.assertEqual(self.store(drive, client, 560), NOT_WRITTEN)
+            self.assertEqual((disk / "parameters").read_bytes(), whole)
+        filling.unlink()
+        self.assertEqual(self.store(drive, client, 560), STORED)
+        self.assertIn("velocity_controller.gain 560", (disk / "parameters").read_text())
+
     def test_stops_beside_clients_that_write_as_fast_as_they_can(self):
         drive = self.drive()
         stopping = self.client(drive)
@@ -107,6 +163,89 @@ class Stops(unittest.TestCase):
         with self.assertRaises(OSError):
             clients[32].state()
         self.assertEqual(clients[0].state(), 0x40)
+
+    def test_the_first_master_is_served_beside_32_that_send_requests_wrong_in_every_field(self):
+        """With the window for parameters open; the field and its value are drawn from a fixed seed."""
+        drive = self.drive("--parameters", str(self.folder))
+        master = self.client(drive)
+        master.enable()
+        drive.open_commissioning(master)
+        end, sent = threading.Event(), [0] * 32
+
+        def malformed(draw):
+            pdu = draw.choice([
+                struct.pack(">BHH", draw.choice((3, 4)), draw.randrange(65536), draw.randrange(65536)),
+                struct.pack(">BHH", 6, draw.randrange(65536), draw.randrange(65536)),
+                struct.pack(">BHHB", 16, draw.randrange(1300), draw.randrange(65536), draw.randrange(256)) + draw.randbytes(draw.randrange(250)),
+                struct.pack(">BHHHHB", 23, *(draw.randrange(65536) for _ in range(4)), draw.randrange(256)) + draw.randbytes(draw.randrange(240)),
+                bytes([draw.randrange(256)]) + draw.randbytes(draw.randrange(20))])
+            # Controlwords and the request to store are not malformed: the master's axis is not to be stopped by them.
+            if pdu[0] in (6, 16, 23):
+                pdu = pdu[:1] + struct.pack(">H", 1000 + draw.randrange(64536)) + pdu[3:]
+                pdu = pdu[:5] + struct.pack(">H", 1000 + draw.randrange(64536)) + pdu[7:] if pdu[0] == 23 else pdu
+            length = draw.choice((len(pdu) + 1, len(pdu) + 1, len(pdu) + 1, draw.randrange(65536)))
+            return struct.pack(">HHHB", draw.randrange(65536), draw.choice((0, 0, 0, draw.randrange(65536))), length,
+                               draw.randrange(256)) + pdu
+
+        def flood(number):
+            draw = random.Random(number)
+            while not end.is_set():
+                try:
+                    with socket.create_connection(("127.0.0.1", drive.port), timeout=10) as client:
+                        client.settimeout(0.01)
+                        for _ in range(draw.randrange(1, 200)):
+                            client.sendall(malformed(draw))
+                            sent[number] += 1
+                            if end.is_set():
+                                break
+                        client.recv(4096)
+                except OSError:
+                    continue  # closed by the drive, as what came was no request
+        floods = [threading.Thread(target=flood, args=(number,)) for number in range(32)]
+        for thread in floods:
+            thread.start()
+        try:
+            for round in range(50):
+                master.write(CONTROLWORD, 7)
+                self.assertTrue(comes_true(lambda: master.state() == 0x23), f"stop {round} was not obeyed")
+                master.write(CONTROLWORD, 15)
+                self.assertTrue(comes_true(lambda: master.state() == ENABLED))
+            self.assertTrue(comes_true(lambda: min(sent) > 20), f"sent {sent}")
+        finally:
+            end.set()
+            for thread in floods:
+                thread.join()
+        self.assertEqual(master.state(), ENABLED)
+        self.assertEqual(drive.end(signal.SIGTERM), 0)
+
+    def test_one_connection_commands_and_the_others_stop_alone(self):
+        drive = self.drive()
+        first, second = self.client(drive), self.client(drive)
+        first.enable()
+        owner, token, held = first.read(121, 3)
+        self.assertEqual((owner, held), (2, 0))
+        self.assertEqual(first.read(128), first.read(19), "the owner's connection is the first one's")
+        self.assertNotEqual(second.read(128), second.read(19))
+        for register, value in ((CONTROLWORD, 15), (CONTROLWORD + 1, 1), (CONTROLWORD + 12, 100)):
+            with self.assertRaises(Client.Refused) as refused:
+                second.write(register, value)
+            self.assertEqual(refused.exception.args, (BUSY,))
+        self.assertEqual(first.state(), ENABLED)
+        second.write(CONTROLWORD, 6)
+        self.assertTrue(comes_true(lambda: first.state() != ENABLED))
+        with self.assertRaises(Client.Refused):
+            first.write(CONTROLWORD, 15)
+        self.assertTrue(comes_true(lambda: first.read(123)[0] == 2), "held by a stop over Modbus")
+        self.assertNotEqual(first.read(122)[0], token)
+        second.write(CONTROLWORD, 15)  # lifts it and moves nothing
+        self.assertTrue(comes_true(lambda: first.read(123)[0] == 0))
+        first.enable()
+        # Gone, and the axis is that of the next one that commands it.
+        first.close()
+        self.assertTrue(comes_true(lambda: second.read(128)[0] == 0xFFFF))
+        second.write(CONTROLWORD, 7)
+        self.assertEqual(second.read(128), second.read(19))
+        self.assertEqual(drive.end(signal.SIGTERM), 0)
 
     def test_a_stop_ends_a_motion_of_the_programme_and_other_commands_are_refused(self):
         drive = self.drive("--hold", "1000000")

@@ -128,7 +128,7 @@ constexpr AxisConfig<S> configure_axis(const Design& axis, Problems& problems) {
   c.voltage_limit = convert.template operator()<typename S::Voltage>(axis.inverter.voltage_limit,
                                                                      {"inverter.voltage_limit", "", "V"});
   c.following_error_fault = convert.template operator()<typename S::Distance>(
-      axis.supervision.following_error == 0.0 ? 2e-3 : axis.supervision.following_error,
+      axis.supervision.following_error == 0.0 ? default_following_error : axis.supervision.following_error,
       {"supervision.following_error", "", "m"});
   c.over_current_fault = convert.template operator()<typename S::Current>(
       axis.supervision.over_current == 0.0 ? 1.2 * current_limit : axis.supervision.over_current,

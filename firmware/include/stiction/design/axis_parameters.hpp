@@ -50,9 +50,11 @@ struct FeedforwardParameters {
   double current = 0.0;   // of mass * acceleration / force constant; 1: full
 };
 
+inline constexpr double default_following_error = 2e-3;  // m
+
 // Limits whose violation is a fault (the motion stops), unlike the limits of inverter and axis, which only limit.
 struct SupervisionParameters {
-  double following_error = 0.0;  // m; 0: 2 mm
+  double following_error = 0.0;  // m; 0: default_following_error
   double over_current = 0.0;     // A of the whole axis; 0: 1.2 times the current limit
   double over_speed = 0.0;       // m/s; 0: 1.2 times max_velocity
 };

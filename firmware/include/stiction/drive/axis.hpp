@@ -138,7 +138,10 @@ class Axis {
     SpeedDelay<S>::push(state_.set_speeds, set.velocity);
     s.v_set_delayed = SpeedDelay<S>::read(
         state_.set_speeds, S::ticks(now_ns - state_.velocity.time_ns, config_.inverse_period), saturations);
-    control_velocity(set, now_ns, s);
+    if (set.by_current || set.limits_current) [[unlikely]]
+      control_to_order(set, now_ns, s);
+    else
+      control_velocity(set, now_ns, s);
 
     Command<S> command;
     s.i_integral = state_.velocity_pi.integral;
@@ -174,25 +177,7 @@ class Axis {
   // of the tick, read and written.
   [[gnu::always_inline]] constexpr void control_velocity(const SetPoint<S>& set, std::int64_t now_ns,
                                                          AxisSignals<S>& s) {
-    auto& saturations = state_.saturations;
-    auto v_ref = limit_sum(config_.position_gain * s.e_held + config_.velocity_feedforward * s.v_set_delayed,
-                           config_.velocity_limit);
-    s.v_ref = v_ref.value;
-    s.limiting.velocity = v_ref.limiting();
-    s.v_error = saturated_difference(s.v_ref, s.v, saturations);
-    auto pi = VelocityPi<S>::step(config_.velocity, state_.velocity_pi, s.v_error, saturations);
-    s.i_pi = pi.output;
-    s.i_notch = Notch<S>::step(config_.notch, state_.notch, s.i_pi, saturations);
-    s.i_feedforward = narrow<typename S::Current>(config_.current_feedforward * set.acceleration, saturations);
-    const auto i_added = saturated_sum(s.i_feedforward, set.injection, saturations);
-    const auto i_wanted = saturated_sum(s.i_notch, i_added, saturations);
-    auto i_set = limit(i_wanted, config_.current_limit);
-    s.i_set = i_set.value;
-    s.limiting.current = i_set.limiting();
-    VelocityPi<S>::track(config_.velocity, state_.velocity_pi, pi.beyond_format, i_wanted, i_set.value, saturations);
-    LimitCycle::advance_window(state_.cycle_ticks_left, config_.limit_cycle_window_ticks, state_.current_cycle,
-                               state_.voltage_cycle);
-    watch_cycle(state_.current_cycle, i_set.side, now_ns);
+    cascade<false>(set, now_ns, s);
   }
 
   // Every threshold that stops the axis. `feedback`: of this tick; `s`: its signals; `now_ns`: its time. Latches the
@@ -210,6 +195,37 @@ class Axis {
  private:
   using Current = typename S::Current;
   using Voltage = typename S::Voltage;
+
+  // The same where the set-point orders the current itself or its limit. A function of its own: nearly every tick does
+  // without, and what it takes is not in theirs.
+  [[gnu::noinline]] constexpr void control_to_order(const SetPoint<S>& set, std::int64_t now_ns, AxisSignals<S>& s) {
+    cascade<true>(set, now_ns, s);
+  }
+
+  template <bool ordered>
+  [[gnu::always_inline]] constexpr void cascade(const SetPoint<S>& set, std::int64_t now_ns, AxisSignals<S>& s) {
+    auto& saturations = state_.saturations;
+    auto v_ref = limit_sum(config_.position_gain * s.e_held + config_.velocity_feedforward * s.v_set_delayed,
+                           config_.velocity_limit);
+    s.v_ref = v_ref.value;
+    s.limiting.velocity = v_ref.limiting();
+    s.v_error = saturated_difference(s.v_ref, s.v, saturations);
+    auto pi = VelocityPi<S>::step(config_.velocity, state_.velocity_pi, s.v_error, saturations);
+    s.i_pi = pi.output;
+    s.i_notch = Notch<S>::step(config_.notch, state_.notch, s.i_pi, saturations);
+    s.i_feedforward = narrow<typename S::Current>(config_.current_feedforward * set.acceleration, saturations);
+    const auto i_added = saturated_sum(s.i_feedforward, set.injection, saturations);
+    const auto i_wanted = saturated_sum(s.i_notch, i_added, saturations);
+    // A current that is given is one more limit of the cascade's: the integrator follows it and takes over from it.
+    const bool given = ordered && set.by_current, limited = ordered && set.limits_current;
+    auto i_set = limit(given ? set.injection : i_wanted, limited ? set.most_current : config_.current_limit);
+    s.i_set = i_set.value;
+    s.limiting.current = i_set.limiting();
+    VelocityPi<S>::track(config_.velocity, state_.velocity_pi, pi.beyond_format, i_wanted, i_set.value, saturations);
+    LimitCycle::advance_window(state_.cycle_ticks_left, config_.limit_cycle_window_ticks, state_.current_cycle,
+                               state_.voltage_cycle);
+    watch_cycle(state_.current_cycle, i_set.side, now_ns);
+  }
 
   constexpr void watch_cycle(LimitCycle::State& cycle, int side, std::int64_t now_ns) {
     if (LimitCycle::step(cycle, side)) trip(Fault::limit_cycle, now_ns);

@@ -36,13 +36,15 @@ class CommandOwner {
 
   explicit constexpr CommandOwner(const Config& config) : config_(config) {}
 
-  // A controlword of a source. False: it is refused, as it would enable an axis that is not its own.
-  constexpr bool command(CommandSource source, std::uint16_t word) {
+  // Takes a controlword. False: it is refused, as it would enable an axis that is not the source's own. `source`: who
+  // gives it; `word`: 6040h; `of_other`: the source has several commanders, and this one is not the one that the axis
+  // belongs to; it can stop it alone.
+  constexpr bool command(CommandSource source, std::uint16_t word, bool of_other = false) {
     hear(source);
     lost_ = false;
     const auto command = command_of(word);
     const auto at = static_cast<std::size_t>(source);
-    if (source == owner_) {
+    if (source == owner_ && !of_other) {
       word_ = word;
       return true;
     }
@@ -53,7 +55,7 @@ class CommandOwner {
       if (idle) word_ = static_cast<std::uint16_t>(word & controlword::fault_reset_bit);
       return false;
     }
-    const bool leads = command == DriveCommand::shutdown || command == DriveCommand::switch_on;
+    const bool leads = !of_other && (command == DriveCommand::shutdown || command == DriveCommand::switch_on);
     if (idle && leads && others_hold(source)) return false;
     holds_[at] = {word, !(idle && leads)};
     word_ = idle && leads ? word : controlword::disable_voltage;

@@ -13,6 +13,9 @@ struct SetPoint {
   typename S::Acceleration acceleration{};
   bool valid = true;  // false: the source had a value that is not a number or that the formats cannot hold
   typename S::Current injection{};  // a test signal added to the set current
+  bool by_current = false;          // the set current is `injection` alone; position and speed are those that are shown
+  bool limits_current = false;      // the set current is held to most_current in place of the axis' own limit
+  typename S::Current most_current{};
 };
 
 template <class S>

@@ -62,7 +62,10 @@ struct FaultDescription {
 
 // Reset of all: a fault reset, taken only when the cause has gone, then a new start of the axis.
 inline constexpr std::array<FaultDescription, 25> fault_table{{
-    {Fault::following_error, "following error", "|x_set - x| above supervision.following_error", 1, 0x8611},
+    {Fault::following_error, "following error",
+     "|x_set - x| above supervision.following_error for longer than drive.axis.NAME.following_error_timeout; above "
+     "twice of it the power is off in the same tick",
+     1, 0x8611, Detector::axis, Reaction::quick_stop},
     {Fault::over_current, "over-current", "|i| above supervision.over_current", 1, 0x2310},
     {Fault::over_speed, "over-speed", "|v| above supervision.over_speed", 1, 0x8400},
     {Fault::position_lost, "position lost", "no valid encoder position in three ticks in a row", 3, 0x7305,

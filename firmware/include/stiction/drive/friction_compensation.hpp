@@ -137,7 +137,7 @@ class FrictionCompensation {
   constexpr void add(SetPoint<S>& set, typename S::Current newest, Signals& terms) {
     current_.push(newest);
     terms.current = read_between<S>(current_, config_.lag_ticks, config_.lag_fraction);
-    set.injection = saturated_sum(set.injection, terms.current, saturations_);
+    if (!set.by_current) set.injection = saturated_sum(set.injection, terms.current, saturations_);
   }
 
   Config config_;

@@ -1,20 +1,21 @@
 // An axis that others command over a bus, from what they ask for to its set-point in each tick: cyclic synchronous
-// position and velocity (csp, csv) from targets that come each cycle, profile position and velocity (pp, pv) from one
-// target at a time, as CiA 402 (IEC 61800-7-201) has them. What asks is judged here, whatever bus it came over.
+// position, velocity and torque (csp, csv, cst) from targets that come each cycle, profile position and velocity (pp,
+// pv) from one target at a time, as CiA 402 (IEC 61800-7-201) has them. What asks is judged here, whatever bus it came
+// over.
 //
 // csp: while the drive does not follow, the interpolator stands where the drive's set-point does, so that a controller
 // must begin with target = position. A target that is none, lies beyond the ends of the travel or is further from the
 // one before than max_velocity and max_acceleration allow is an invalid set-point (fault set_point). Two cycles in a
 // row without a target are bridged with the acceleration that the motion has; the third is the fault set_points_lost.
-// pp: a rising edge of bit 4 offers the target with the profile's values that stand beside it. Bit 5: at once, else
-// behind the move under way, one of which waits. A move taken in motion brakes no less than the one before. What lies
-// beyond the ends is not acknowledged, and no absolute target is where the zero of the axis is not known.
-// pv, csv: a move towards the end of the travel with the speed asked for, so that the axis brakes before the end; csv
-// with the machine's limits, without smoothing, and with the watch of csp over its cycles. Without a zero there are no
-// ends.
-// An axis beyond an end may go back in every mode, and no further out.
-// Another mode is taken when the set-point stands, or while the drive does not follow. A move of pp is ended first;
-// every other mode brakes.
+// What the interpolated targets ask of the set speed beyond max_acceleration is made up for later
+// (speed_step_limit.hpp); a lag of more than the window of the following error is an invalid set-point as well. pp: a
+// rising edge of bit 4 offers the target with the profile's values that stand beside it. Bit 5: at once, else behind
+// the move under way, one of which waits. A move taken in motion brakes no less than the one before. What lies beyond
+// the ends is not acknowledged, and no absolute target is where the zero of the axis is not known. pv, csv: a move
+// towards the end of the travel with the speed asked for, so that the axis brakes before the end; csv with the
+// machine's limits, without smoothing, and with the watch of csp over its cycles. Without a zero there are no ends. An
+// axis beyond an end may go back in every mode, and no further out. Another mode is taken when the set-point stands, or
+// while the drive does not follow. A move of pp is ended first; every other mode brakes.
 #pragma once
 
 #include <array>
@@ -22,8 +23,10 @@
 
 #include "stiction/drive/command_owner.hpp"
 #include "stiction/drive/servo_drive.hpp"
+#include "stiction/drive/torque_mode.hpp"
 #include "stiction/motion/position_profile.hpp"
 #include "stiction/motion/set_point_interpolator.hpp"
+#include "stiction/motion/speed_step_limit.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
 namespace stiction {
@@ -51,10 +54,12 @@ struct RemoteAxisConfig {
   bool streamed = false;                         // targets of csp come from outside; else csp holds where it is
   S::Position low{}, high{};                     // of targets: the ends of the travel
   PositionProfile::Config profile{};
-  PositionProfile::Move fastest{};  // limits of a move; also what a move has that nobody gave values for
-  S::Position target_window{};      // about the target, within which it is reached
-  CommandOwner::Config owner{};     // watch over who commands
-  S::Velocity halting{};            // change of the speed in a tick by which a profile halts at least (605Dh)
+  PositionProfile::Move fastest{};      // limits of a move; also what a move has that nobody gave values for
+  S::Position target_window{};          // about the target, within which it is reached
+  TorqueMode::Config torque{};          // cst
+  CommandOwner::Config owner{};         // watch over who commands
+  S::Velocity halting{};                // change of the speed in a tick by which a profile halts at least (605Dh)
+  SpeedStepLimit::Config step_limit{};  // csp: of the speed that the targets make
 };
 
 class RemoteAxis {
@@ -66,12 +71,15 @@ class RemoteAxis {
       : config_(config),
         owner_(config.owner),
         interpolator_(config.interpolation),
+        step_limit_(config.step_limit),
         profile_(config.profile),
+        torque_(config.torque),
         asked_move_(config.fastest) {}
 
-  // A controlword of a source; holds until changed. False: refused, as a different one owns the axis.
-  constexpr bool ask(std::uint16_t controlword, CommandSource source = CommandSource::can) {
-    return owner_.command(source, controlword);
+  // A controlword of a source; holds until changed. False: refused, as a different one owns the axis. `of_other`: as of
+  // CommandOwner::command().
+  constexpr bool ask(std::uint16_t controlword, CommandSource source = CommandSource::can, bool of_other = false) {
+    return owner_.command(source, controlword, of_other);
   }
   // Who commands it. Sources whose values owner().accepts() not are to be kept off by who calls what follows.
   constexpr const CommandOwner& owner() const { return owner_; }
@@ -96,7 +104,11 @@ class RemoteAxis {
     const auto most = config_.fastest.velocity, least = opposite(most);
     asked_speed_ = v > most ? most : v < least ? least : v;
   }
-  // csp: as cyclic as the targets are, forgotten after as many cycles.
+  // cst: 6071h.
+  constexpr void ask_torque(S::Current current) { asked_torque_ = current; }
+  // 6072h, held to the current limit of the axis.
+  constexpr void ask_most_torque(S::Current current) { torque_.limit_to(current); }
+  // csp, and the current in cst: as cyclic as the targets are, forgotten after as many cycles.
   constexpr void ask_offsets(S::Velocity velocity, S::Current current) {
     velocity_offset_ = velocity;
     current_offset_ = current;
@@ -105,21 +117,25 @@ class RemoteAxis {
   // csp: a target of this cycle; the newest counts. `valid`: the bus gave a number that the formats hold.
   constexpr void offer(S::Position target, bool valid) {
     offered_ = target;
-    came_ |= 1u << position_bit;
+    came_ |= bit_of(OperationMode::cyclic_position);
     offered_valid_ = valid;
   }
   // csv: the same, and a speed of pv as well.
   constexpr void offer_speed(S::Velocity speed, bool valid) {
     if (valid) ask_speed(speed);
-    came_ |= 1u << speed_bit;
+    came_ |= bit_of(OperationMode::cyclic_velocity);
     speed_valid_ = valid;
+  }
+  // cst: the same of a current; every number that a bus can send is one.
+  constexpr void offer_torque(S::Current current) {
+    ask_torque(current);
+    came_ |= bit_of(OperationMode::cyclic_torque);
   }
 
   // When a cycle begins, with what came for it.
   constexpr void begin_cycle() {
-    const bool wants_speed = mode_ == OperationMode::cyclic_velocity;
-    const bool came = (came_ >> (wants_speed ? speed_bit : position_bit) & 1u) != 0;
-    const bool came_speed = (came_ >> speed_bit & 1u) != 0;
+    const bool came = (came_ & bit_of(is_cyclic(mode_) ? mode_ : OperationMode::cyclic_position)) != 0;
+    const bool came_speed = (came_ & bit_of(OperationMode::cyclic_velocity)) != 0;
     came_ = 0;
     if (came_speed && mode_ == OperationMode::profile_velocity) {
       refusal_ = speed_valid_ ? Refusal::none : Refusal::no_number;  // the speed before it holds
@@ -137,8 +153,8 @@ class RemoteAxis {
       refused_ = refusal_ != Refusal::none;
     }
     if (!following_ || !is_cyclic(mode_) || !streams()) return;
-    if (wants_speed) {
-      valid_ = !came || speed_valid_;
+    if (mode_ != OperationMode::cyclic_position) {
+      valid_ = mode_ == OperationMode::cyclic_torque || !came || speed_valid_;
       return;
     }
     if (!came) return interpolator_.extrapolate();
@@ -163,22 +179,30 @@ class RemoteAxis {
     if (changes) mode_ = asked_mode_;
     if (changes) forget_asked();
     // Another one begins where the last one ended.
-    if (!follows || changes || !following_) begin(stands);
+    if (!follows || changes || !following_) {
+      begin(stands);
+      torque_.start(drive.set_current(), drive.position());
+    }
     following_ = follows;
     faulted_ = drive.fault() == Fault::set_points_lost;
     x_ = drive.position();
     const bool leaves = asked_mode_ != mode_ && mode_ != OperationMode::profile_position;
     brakes_ = leaves || (mode_ == OperationMode::cyclic_position && streams() && !referenced_);
+    v_ = drive.velocity();
     const bool edge = take_edge() && follows;
-    if (mode_ == OperationMode::profile_position) return move_set_point(edge);
-    if (mode_ == OperationMode::profile_velocity || mode_ == OperationMode::cyclic_velocity) return speed_set_point();
-    return csp_set_point();
+    auto set = set_point_of_mode(edge);
+    set.limits_current = torque_.is_limited();
+    set.most_current = torque_.most();
+    return set;
   }
 
   constexpr std::uint16_t controlword() const { return owner_.word(); }
   constexpr OperationMode mode() const { return mode_; }                       // 6061h
   constexpr const PositionProfile::Move& move() const { return asked_move_; }  // the values asked for
   constexpr S::Velocity speed() const { return asked_speed_; }                 // 60FFh
+  constexpr S::Current torque() const { return asked_torque_; }                // 6071h
+  constexpr S::Current most_torque() const { return torque_.most(); }          // 6072h
+  constexpr S::Current rated_torque() const { return config_.torque.most; }    // of which torques are thousandths
   constexpr Refusal refusal() const { return refusal_; }  // of the last target, until one is taken or bit 4 falls
   // Whether the drive is to brake to standstill in the coming tick, in place of its set-point.
   constexpr bool brakes() const { return brakes_; }
@@ -198,25 +222,26 @@ class RemoteAxis {
     if (refused_) of_drive |= statusword::limit_bit | statusword::warning_bit;
     if (mode_ == OperationMode::profile_position) of_drive |= bits_of_move();
     if (mode_ == OperationMode::profile_velocity) of_drive |= bits_of_speed();
-    if (at_end_) of_drive |= statusword::limit_bit;
+    const bool held_back = mode_ == OperationMode::cyclic_torque && following_ && torque_.held_back();
+    if (at_end_ || held_back) of_drive |= statusword::limit_bit;
     return of_drive;
   }
 
  private:
-  static constexpr unsigned position_bit = 0, speed_bit = 1;  // of came_
-
-  static constexpr bool is_cyclic(OperationMode mode) {
-    return mode == OperationMode::cyclic_position || mode == OperationMode::cyclic_velocity;
-  }
+  // Of came_.
+  static constexpr unsigned bit_of(OperationMode mode) { return 1u << static_cast<unsigned>(mode); }
   // A PLC gives no targets each cycle: in csp its axis holds. One that nobody owns is being stopped.
   constexpr bool streams() const { return config_.streamed && owner_.owner() == CommandSource::can; }
   constexpr bool halted() const { return (controlword_ & controlword::halt_bit) != 0; }
   constexpr bool source_rests() const {
-    return mode_ == OperationMode::cyclic_position ? interpolator_.at_rest() : profile_.at_rest();
+    if (mode_ == OperationMode::cyclic_torque) return false;
+    if (mode_ != OperationMode::cyclic_position) return profile_.at_rest();
+    return interpolator_.at_rest();  // a rest of its lag is given up
   }
 
   constexpr void forget_asked() {
     asked_speed_ = {};
+    asked_torque_ = {};
     refused_ = false;
     refusal_ = Refusal::none;
   }
@@ -230,6 +255,7 @@ class RemoteAxis {
 
   constexpr void begin(S::Position position) {
     interpolator_.start(position);
+    step_limit_.start(position);
     profile_.start(position, mode_ != OperationMode::cyclic_velocity);
     point_ = {position, {}, {}};
     valid_ = true;
@@ -248,10 +274,35 @@ class RemoteAxis {
     return off <= config_.target_window.raw() && off >= -config_.target_window.raw();
   }
 
-  constexpr SetPoint<S> csp_set_point() {
-    const auto point = interpolator_.step();
-    SetPoint<S> set{point.position, point.velocity, point.acceleration};
+  constexpr SetPoint<S> set_point_of_mode(bool edge) {
+    switch (mode_) {
+      case OperationMode::profile_position:
+        return move_set_point(edge);
+      case OperationMode::profile_velocity:
+      case OperationMode::cyclic_velocity:
+        return speed_set_point();
+      case OperationMode::cyclic_torque:
+        return torque_set_point();
+      default:
+        return csp_set_point();
+    }
+  }
+
+  // Position and speed are the drive's to show.
+  constexpr SetPoint<S> torque_set_point() {
+    SetPoint<S> set{point_.position, {}, {}};
+    const auto target = saturated_sum(asked_torque_, current_offset_, saturations_);
+    if (following_) set.injection = torque_.step(target, {x_, v_, referenced_});
+    set.by_current = following_;
     set.valid = valid_;
+    return set;
+  }
+
+  constexpr SetPoint<S> csp_set_point() {
+    const auto wanted = interpolator_.step();
+    const auto point = step_limit_.step({wanted.position, wanted.velocity, wanted.acceleration});
+    SetPoint<S> set{point.position, point.velocity, point.acceleration};
+    set.valid = valid_ && step_limit_.follows();
     set.injection = current_offset_;
     return set;
   }
@@ -278,9 +329,10 @@ class RemoteAxis {
     const auto beyond = down ? point_.position <= config_.low : up && point_.position >= config_.high;
     at_end_ = referenced_ && beyond;
     move.velocity = down ? opposite(asked_speed_) : asked_speed_;
+    move.deceleration = planned(move.deceleration);
     move.target = referenced_ ? (down ? config_.low : config_.high) : far(down);
-    // While it halts the move stays the one that it brakes from.
-    const bool halt = halted() || at_end_ || !(down || up);
+    // While it halts the move stays the one that it brakes from; a motion begins where the drive follows.
+    const bool halt = halted() || at_end_ || !(down || up) || !following_;
     if (!profile_.at_rest()) move.deceleration = larger(move.deceleration, profile_.move().deceleration);
     if (!halt && !(move == profile_.move())) profile_.go(move);
     return profile_set_point(halt);
@@ -317,6 +369,7 @@ class RemoteAxis {
 
   constexpr void offer_move() {
     auto move = asked_move_;
+    move.deceleration = planned(move.deceleration);
     const bool relative = (controlword_ & controlword::relative_bit) != 0;
     if (relative) {
       const auto& before = waits_ ? waiting_ : profile_.move();
@@ -336,6 +389,11 @@ class RemoteAxis {
     waiting_ = move;
     waits_ = true;
   }
+  // Less where the end of a braking would take more than is asked for (position_profile.hpp).
+  constexpr S::Velocity planned(S::Velocity deceleration) const {
+    if (profile_.keeps_deceleration()) return deceleration;
+    return S::Velocity::from_bounded_raw(deceleration.raw() - (deceleration.raw() >> 3));
+  }
   constexpr void go(const PositionProfile::Move& move) {
     profile_.go(move);
     acknowledged_ = bit_before_;
@@ -345,13 +403,15 @@ class RemoteAxis {
   RemoteAxisConfig config_;
   CommandOwner owner_;
   SetPointInterpolator interpolator_;
+  SpeedStepLimit step_limit_;
   PositionProfile profile_;
+  TorqueMode torque_;
   PositionProfile::Move asked_move_;
   std::uint16_t controlword_ = controlword::disable_voltage;
   OperationMode asked_mode_ = OperationMode::cyclic_position, mode_ = OperationMode::cyclic_position;
   S::Velocity velocity_offset_{}, asked_speed_{};
-  S::Current current_offset_{};
-  // csp, csv
+  S::Current current_offset_{}, asked_torque_{};
+  // csp, csv, cst
   S::Position offered_{};
   unsigned came_ = 0;   // in this cycle
   int missed_ = 0;      // cycles in a row without one
@@ -365,6 +425,7 @@ class RemoteAxis {
   Refusal refusal_ = Refusal::none;
   // The drive in the last tick.
   S::Position x_{};
+  S::Velocity v_{};
   bool following_ = false, faulted_ = false, referenced_ = true, standing_ = true;
   SaturationCounter saturations_;
 };

@@ -7,13 +7,15 @@
 // stands; an axis that moves is not enabled. A fault whose reaction is a quick stop ends in a stop by the ramp; any
 // other fault on the way takes the power off at once, and so does a stop that is not over stop_margin_ticks after its
 // set-point came to rest. Whatever is asked for, the speed of the set-point changes by the ramps here or by those of
-// its source (remote_axis.hpp), or the power goes: homing that is left in motion brakes before the next mode is taken.
+// its source (remote_axis.hpp), or the power goes: what is left or halted in motion brakes to rest before anything else
+// is followed, and an offset of the speed comes and goes with what of most_change the set-point leaves.
 #pragma once
 
 #include <array>
 #include <cstdint>
 
 #include "stiction/control/commutation.hpp"
+#include "stiction/control/limit.hpp"
 #include "stiction/drive/axis.hpp"
 #include "stiction/drive/homing.hpp"
 #include "stiction/drive/state_machine.hpp"
@@ -28,12 +30,18 @@ struct ServoDriveConfig {
   StopCodes stops{};
   typename VelocityRamp<S>::Config ramp{};  // of quick stops and of homing
   typename S::Velocity slow_down{};         // change of the speed in a tick of the slow-down ramp; at most that of ramp
+  typename S::Velocity most_change{};       // of the set speed in a tick, offset and all; at least that of ramp
   SupervisionConfig<S> supervision{};
   HomingConfig<S> homing{};
   typename S::Velocity standstill_speed{};  // of the measured speed, below which a stop is over
   // Way in self_test_ticks, up to which an axis is at rest and may be enabled. Not by a speed: 50 nm of noise are 1
   // mm/s in a tick, and a coarse encoder stands still for most ticks.
   typename S::Position standstill_way{};
+  // 6065h and 6066h: the following error that is a fault when it has been exceeded for more than so many ticks; 0: not
+  // watched. That fault ends in a stop by 605Eh, as the encoder is trusted; the limit of the cascade, AxisConfig::
+  // following_error_fault, is for what no stop can end and is to be larger.
+  typename S::Distance following_error{};
+  std::uint32_t following_error_ticks = 0;
   std::uint32_t stop_margin_ticks = 1600;  // 100 ms at 62.5 us
   std::uint32_t brake_ticks = 0;           // that the brake takes to open or to close; 0: none
 };
@@ -83,6 +91,7 @@ class ServoDrive {
   // Takes the power off and begins with the self-test. Before the first tick, with its feedback.
   constexpr void start(const Feedback<S>& feedback, Axis<S>& axis) {
     measured_ = rested_at_ = feedback.position;
+    measured_ns_ = feedback.position_time_ns;
     last_ = {feedback.position, {}};
     axis.start(feedback);
     axis.stop();
@@ -95,9 +104,13 @@ class ServoDrive {
                                const DigitalInputs<S>& inputs, std::int64_t now_ns, Axis<S>& axis) {
     events_ = {};
     fault_raised_ = false;
+    now_ns_ = now_ns;
     supplied_ = !feedback.fault;
     const Fault supervised = supervision_.step(seen(feedback, inputs, now_ns, axis));
-    if (supervision_.fresh()) measured_ = feedback.position;
+    if (supervision_.fresh()) {
+      measured_ = feedback.position;
+      measured_ns_ = feedback.position_time_ns;
+    }
     watch_rest();
     const bool unfound = homing_.phase() == Homing<S>::Phase::failed;
     bool present = cause_holds(demand, feedback, axis);
@@ -119,11 +132,17 @@ class ServoDrive {
                                                              : standing_;
     v_ = signals.v;
     i_set_ = signals.i_set;
+    limited_ = powered_ && limits_current_ && signals.limiting.current;
     events_ = {};
     fault_raised_ = false;
-    if (axis.fault() == fault_ || axis.fault() == Fault::none) return;
-    raise(axis.fault(), axis.fault_time_ns(), axis);
-    machine_.step(controlword_, {.fault = fault_raised_});
+    const bool lags = lags_too_long(signals.e);
+    if (axis.fault() != Fault::none) {
+      if (axis.fault() != fault_) raise(axis.fault(), axis.fault_time_ns(), axis);
+      if (powered_) power_off(axis);  // the cascade has done so
+    } else if (lags) {
+      raise(Fault::following_error, now_ns_, axis);
+    }
+    if (fault_raised_) machine_.step(controlword_, {.fault = true});
   }
 
   constexpr DriveState state() const { return machine_.state(); }
@@ -137,6 +156,8 @@ class ServoDrive {
   // Where the set-point stands, machine's coordinates: where a source of set-points begins after enabling or homing.
   constexpr Position set_position() const { return to_machine(last_.position); }
   constexpr Velocity set_velocity() const { return last_.velocity; }
+  constexpr Velocity velocity() const { return v_; }                          // measured
+  constexpr typename S::Current set_current() const { return i_set_; }        // of the last tick
   constexpr bool standing() const { return rest_ticks_ == self_test_ticks; }  // measured
   // Of the last call, before() or after(): the first fault and the one on top of it; Fault::none: nothing happened.
   constexpr const std::array<DriveEvent<S>, 2>& events() const { return events_; }
@@ -147,8 +168,8 @@ class ServoDrive {
     if (supplied_) word |= statusword::voltage_bit;
     if (!referenced_) word |= statusword::unreferenced_bit;
     if (mode_ == OperationMode::homing) return static_cast<std::uint16_t>(word | homing_bits());
-    const bool cyclic = mode_ == OperationMode::cyclic_position || mode_ == OperationMode::cyclic_velocity;
-    if (follows_ && cyclic) word |= statusword::follows_bit;
+    if (follows_ && is_cyclic(mode_)) word |= statusword::follows_bit;
+    if (limited_) word |= statusword::limit_bit;
     return word;
   }
 
@@ -156,6 +177,14 @@ class ServoDrive {
   constexpr Position to_machine(Position x) const {
     SaturationCounter none;
     return narrow<Position>(x - origin_, none);
+  }
+
+  constexpr bool lags_too_long(typename S::Distance e) {
+    const bool lags =
+        powered_ && config_.following_error != typename S::Distance{} && exceeds(e, config_.following_error);
+    const bool too_long = lags && lag_ticks_ >= config_.following_error_ticks;
+    lag_ticks_ = lags && !too_long ? lag_ticks_ + 1 : 0;
+    return too_long;
   }
 
   constexpr void watch_rest() {
@@ -337,7 +366,7 @@ class ServoDrive {
   // The set-point has come to rest and the carriage stands, or the margin is over; then the brake has closed.
   constexpr bool stop_ended() {
     if (!stopping_) return true;
-    if (last_.velocity != Velocity{}) return false;
+    if (last_.velocity != Velocity{} || offset_ != Velocity{}) return false;
     if (!brake_closing_) {
       ++stop_ticks_;
       brake_closing_ = standing_ == standstill_ticks || stop_ticks_ > config_.stop_margin_ticks;
@@ -349,10 +378,33 @@ class ServoDrive {
     return false;
   }
 
+  // The set-point of whoever leads, and the offset on top of it.
   constexpr SetPoint<S> set_point(const DriveDemand<S>& demand, const DigitalInputs<S>& inputs) {
+    const auto before = last_.velocity;
+    auto set = leading_set_point(demand, inputs);
+    limits_current_ = set.limits_current;
+    const auto change = saturated_difference(last_.velocity, before, saturations_);
+    const auto left = config_.most_change - (change < Velocity{} ? opposite(change) : change);
+    advance_offset(follows_ ? demand.velocity_offset : Velocity{}, narrow<Velocity>(left, saturations_));
+    set.velocity = saturated_sum(set.velocity, offset_, saturations_);
+    return set;
+  }
+
+  // By what the set-point leaves of the change that a tick may have.
+  constexpr void advance_offset(Velocity wanted, Velocity left) {
+    if (!powered_) {
+      offset_ = {};
+      return;
+    }
+    const auto most = left > Velocity{} ? left : Velocity{};
+    offset_ = saturated_sum(offset_, clamped(saturated_difference(wanted, offset_, saturations_), most), saturations_);
+  }
+
+  constexpr SetPoint<S> leading_set_point(const DriveDemand<S>& demand, const DigitalInputs<S>& inputs) {
     follows_ = false;
     if (!powered_) {
       last_ = {measured_, {}};
+      brakes_ = false;
       return {last_.position, {}, {}};
     }
     if (stopping_ || machine_.state() != DriveState::operation_enabled) return ramped({}, stopping_ && !fast_);
@@ -360,7 +412,10 @@ class ServoDrive {
       --hold_ticks_;
       return ramped({});
     }
-    if (demand.brake || leaves_homing_ || halted()) {
+    // Once begun it goes on to rest, as a source of set-points begins there.
+    const bool wanted = demand.brake || leaves_homing_ || halted();
+    brakes_ = wanted || (brakes_ && last_.velocity != Velocity{});
+    if (brakes_) {
       homing_.interrupt();  // a mark that is passed while it brakes is none
       return ramped({}, way_of(StopObject::halt, config_.stops.halt).ramp == StopRamp::slow_down);
     }
@@ -368,15 +423,22 @@ class ServoDrive {
     homing_.stop();
     follows_ = true;
     SetPoint<S> set = demand.set_point;
-    set.position = narrow<Position>(set.position + origin_, saturations_);
+    if (set.by_current) {
+      // Where the axis is, so that a ramp begins there.
+      const auto since = narrow<Position>(v_ * S::seconds(now_ns_ - measured_ns_), saturations_);
+      set.position = narrow<Position>(measured_ + since, saturations_);
+      set.velocity = v_;
+    } else {
+      set.position = narrow<Position>(set.position + origin_, saturations_);
+    }
     last_ = {set.position, set.velocity};
-    set.velocity = saturated_sum(set.velocity, demand.velocity_offset, saturations_);
     return set;
   }
 
   // Sources of profiles brake by themselves, in their own deceleration.
   constexpr bool halted() const {
-    const bool here = mode_ == OperationMode::homing || mode_ == OperationMode::cyclic_position;
+    const bool here = mode_ == OperationMode::homing || mode_ == OperationMode::cyclic_position ||
+                      mode_ == OperationMode::cyclic_torque;
     return here && (controlword_ & controlword::halt_bit) != 0;
   }
 
@@ -414,13 +476,16 @@ class ServoDrive {
   bool fault_raised_ = false;
   bool powered_ = false, stopping_ = false, brake_closing_ = false, follows_ = false, referenced_ = false;
   bool fast_ = false;  // the stop, by the quick-stop ramp
-  bool leaves_homing_ = false, supplied_ = true;
+  bool leaves_homing_ = false, brakes_ = false, supplied_ = true;
   std::uint8_t self_test_ = 0, standing_ = 0, rest_ticks_ = 0;
-  std::uint32_t hold_ticks_ = 0, stop_ticks_ = 0;
+  bool limits_current_ = false, limited_ = false;
+  std::uint32_t hold_ticks_ = 0, stop_ticks_ = 0, lag_ticks_ = 0;
+  std::int64_t now_ns_ = 0, measured_ns_ = 0;
   Position measured_{}, rested_at_{}, origin_{};
   Velocity v_{};
   typename S::Current i_set_{};  // of the last tick
   typename Ramp::State last_{};  // the set-point of the last tick, the encoder's coordinates
+  Velocity offset_{};            // on top of its speed
   std::array<DriveEvent<S>, 2> events_{};
   SaturationCounter saturations_;
 };

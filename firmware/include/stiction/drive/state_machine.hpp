@@ -26,12 +26,18 @@ enum class OperationMode : std::int8_t {
   homing = 6,
   cyclic_position = 8,  // csp: a set-point each tick
   cyclic_velocity = 9,  // csv: a speed each cycle
+  cyclic_torque = 10,   // cst: a current each cycle (torque_mode.hpp)
 };
 
 // 6502h, a bit a mode: bit 0 is mode 1.
-inline constexpr std::array<OperationMode, 5> supported_modes{
+inline constexpr std::array<OperationMode, 6> supported_modes{
     OperationMode::profile_position, OperationMode::profile_velocity, OperationMode::homing,
-    OperationMode::cyclic_position, OperationMode::cyclic_velocity};
+    OperationMode::cyclic_position,  OperationMode::cyclic_velocity,  OperationMode::cyclic_torque};
+// Targets each cycle: the drive follows them, and misses them.
+constexpr bool is_cyclic(OperationMode mode) {
+  return mode == OperationMode::cyclic_position || mode == OperationMode::cyclic_velocity ||
+         mode == OperationMode::cyclic_torque;
+}
 constexpr bool is_supported(int mode) {
   for (const auto known : supported_modes)
     if (static_cast<int>(known) == mode) return true;
@@ -165,7 +171,7 @@ namespace statusword {
 // remote: the controlword of a bus is obeyed.
 inline constexpr std::uint16_t fault_bit = 1u << 3, voltage_bit = 1u << 4, warning_bit = 1u << 7, remote_bit = 1u << 9,
                                target_bit = 1u << 10, limit_bit = 1u << 11;
-inline constexpr std::uint16_t follows_bit = 1u << 12;       // csp, csv: the drive follows the set-points
+inline constexpr std::uint16_t follows_bit = 1u << 12;       // csp, csv, cst: the drive follows them
 inline constexpr std::uint16_t acknowledge_bit = 1u << 12;   // pp: the new target was taken
 inline constexpr std::uint16_t homed_bit = 1u << 12;         // homing: attained
 inline constexpr std::uint16_t speed_zero_bit = 1u << 12;    // pv: the axis is at rest

@@ -5,8 +5,9 @@
 //    before plus the acceleration, the profile's velocity, and the one from which it can still brake. Braking by d a
 //    tick from speed y, and one tick's way of it left at its end, takes the way y (y + d) / (2 d) in ticks of speed; so
 //      y = sqrt(2 d R + d^2 / 4) - d / 2
-//    for what is left, R, and after a tick at that speed it is y - d. The last tick goes to the target exactly. Braking
-//    is planned with a 64th less than allowed: without that reserve a unit of rounding early on is 50 nm at the end.
+//    for what is left, R, and after a tick at that speed it is y - d. The last tick goes to the target exactly, up to
+//    d / 8 slower than the one before minus d, which the second stage hides from k = 3 on. Braking is planned with a
+//    64th less than allowed: without that reserve a unit of rounding early on is 50 nm at the end.
 // 2. The mean over the last 2^k ticks bounds the jerk, to (acceleration + deceleration) / (2^k ticks) where one follows
 //    on the other and to one of them elsewhere, and takes 2^k - 1 ticks longer;
 //    velocity and acceleration are means of those of the trapezoid and keep its limits (the chain of moving averages of
@@ -20,8 +21,10 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "stiction/motion/ticks_of_speed.hpp"
 #include "stiction/number/fixed.hpp"
 #include "stiction/number/fixed_signals.hpp"
+#include "stiction/number/square_root.hpp"
 
 namespace stiction {
 
@@ -29,6 +32,7 @@ class PositionProfile {
  public:
   using S = FixedSignals;
   static constexpr int most_smoothing_bits = 10;
+  static constexpr int exact_smoothing_bits = 3;  // from which on a braking keeps its deceleration to its last tick
 
   struct Config {
     S::Seconds period{};
@@ -83,6 +87,7 @@ class PositionProfile {
   }
 
   constexpr const Move& move() const { return move_; }
+  constexpr bool keeps_deceleration() const { return smoothing_bits_ >= exact_smoothing_bits; }
   constexpr S::Position base() const { return base_; }  // where it started
   constexpr bool at_rest() const { return resting_ticks_ == length(); }
   constexpr bool arrived() const { return at_rest() && way_ == way_to_target(); }
@@ -101,9 +106,10 @@ class PositionProfile {
     } else if (towards < 0) {
       run(braked(v_, down));
     } else {
-      const auto ticks_of_speed = to_speed(static_cast<std::uint64_t>(back ? -left : left));
-      const std::int64_t fastest = least(least(towards + up, move_.velocity.raw()), braking_speed(ticks_of_speed));
-      const auto last = static_cast<std::int64_t>(ticks_of_speed);
+      const auto way = static_cast<std::uint64_t>(back ? -left : left);
+      const auto speeds = ticks_of_speed(way, config_.rate);
+      const std::int64_t fastest = least(least(towards + up, move_.velocity.raw()), braking_speed(speeds));
+      const auto last = static_cast<std::int64_t>(speeds);
       // At the end of a braking the last speed is up to an eighth more than d below the one before.
       if (last <= down && last <= towards + up && towards - last <= down + (down >> 2)) {
         v_ = back ? -last : last;
@@ -127,31 +133,11 @@ class PositionProfile {
   }
   static constexpr std::int64_t least(std::int64_t a, std::int64_t b) { return a < b ? a : b; }
 
-  // A way of 40 fraction bits over the period, a speed of 28; exact to one unit, for ways below 128 m.
-  constexpr std::uint64_t to_speed(std::uint64_t way) const {
-    const auto rate = static_cast<std::uint64_t>(config_.rate.raw());
-    const std::uint64_t upper = way >> 20, lower = way & 0xfffff;
-    return (upper * rate + ((lower * rate) >> 20)) >> 2;
-  }
-  constexpr std::int64_t braking_speed(std::uint64_t ticks_of_speed) const {
-    if (ticks_of_speed >= one_braking_) return move_.velocity.raw();
+  constexpr std::int64_t braking_speed(std::uint64_t speeds) const {
+    if (speeds >= one_braking_) return move_.velocity.raw();
     const std::uint64_t d = braking_;
-    return static_cast<std::int64_t>(root(2 * d * ticks_of_speed + d * d / 4) - d / 2);
+    return static_cast<std::int64_t>(square_root(2 * d * speeds + d * d / 4) - d / 2);
   }
-  // Of the square below x, bit by bit.
-  static constexpr std::uint64_t root(std::uint64_t x) {
-    std::uint64_t result = 0;
-    for (std::uint64_t bit = std::uint64_t{1} << 62; bit != 0; bit >>= 2) {
-      const std::uint64_t with = result + bit;
-      result >>= 1;
-      if (x >= with) {
-        x -= with;
-        result += bit;
-      }
-    }
-    return result;
-  }
-
   constexpr Point smooth() {
     // Before the buffer is full, what leaves it is the standstill before.
     const bool full = filled_ == length();

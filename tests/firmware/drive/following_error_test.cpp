@@ -1,0 +1,110 @@
+// 6065h and 6066h: a carriage that is held while its set-point goes on.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+
+#include "tests/firmware/drive/served_axis.hpp"
+
+namespace stiction::test {
+namespace {
+
+constexpr double error_window = 2e-3, lagging_speed = 0.2;  // m, m/s
+
+ServedAxis with_window(std::uint32_t timeout_ticks, const StopCodes& stops = {}) {
+  auto drive = ServedAxis::drive_config(stops, HomingMethod::none);
+  drive.following_error = si<FixedSignals::Distance>(error_window);
+  drive.following_error_ticks = timeout_ticks;
+  auto cascade = ServedAxis::cascade();
+  cascade.following_error_fault = si<FixedSignals::Distance>(2.0 * error_window);
+  ServedAxis a(drive, cascade);
+  EXPECT_TRUE(a.enable());
+  a.stream(64, 0.0);
+  return a;
+}
+
+// The lag grows by 5 um a tick, which no encoder that jumps does.
+void slip(ServedAxis& a) {
+  a.lag += 5e-6;
+  a.stream(1, lagging_speed);
+}
+double error_of(const ServedAxis& a) { return machine::to_si(a.drive.set_position()) - a.x; }
+
+// Ticks with more than the window up to the fault; the carriage shows where it is a tick later.
+int ticks_to_the_fault(ServedAxis& a) {
+  a.stream(800, lagging_speed);
+  int beyond = 0;
+  for (int i = 0; i < 2000 && a.drive.fault() == Fault::none; ++i) {
+    const double x = a.x;
+    slip(a);
+    beyond += machine::to_si(a.drive.set_position()) - x > error_window ? 1 : 0;
+  }
+  return beyond;
+}
+
+TEST(FollowingError, BeyondItsWindowIsAStopByTheRampWhereTheEncoderIsTrusted) {
+  auto a = with_window(0);
+  EXPECT_EQ(ticks_to_the_fault(a), 1);
+  EXPECT_EQ(a.drive.fault(), Fault::following_error);
+  EXPECT_TRUE(a.drive.powered());
+  EXPECT_EQ(a.drive.state(), DriveState::fault_reaction_active);
+  double largest = 0.0;
+  for (int i = 0; i < 4000; ++i) {
+    a.step();
+    largest = a.drive.powered() ? std::max(largest, a.step_of_speed()) : largest;
+  }
+  EXPECT_LE(largest, ServedAxis::quick_deceleration * tick + 1e-8);
+  EXPECT_EQ(a.drive.state(), DriveState::fault);
+  EXPECT_FALSE(a.drive.powered());
+  EXPECT_NEAR(a.v, 0.0, 1e-9);
+}
+
+TEST(FollowingError, MayBeExceededForItsTimeAndNoLonger) {
+  auto a = with_window(100);
+  EXPECT_EQ(ticks_to_the_fault(a), 101);
+  EXPECT_TRUE(a.drive.powered());
+  // For less, over and over: it begins again each time.
+  auto b = with_window(100);
+  b.stream(800, lagging_speed);
+  for (int k = 0; k < 5; ++k) {
+    for (int i = 0; i < 440; ++i) slip(b);  // to 2.2 mm
+    EXPECT_GT(error_of(b), error_window);
+    for (int i = 0; i < 440; ++i) {
+      b.lag -= 5e-6;
+      b.stream(1, lagging_speed);
+    }
+  }
+  EXPECT_EQ(b.drive.fault(), Fault::none);
+}
+
+TEST(FollowingError, OfTwiceItsWindowTakesThePowerInTheSameTick) {
+  auto a = with_window(16'000);
+  ticks_to_the_fault(a);
+  EXPECT_EQ(a.drive.fault(), Fault::following_error);
+  EXPECT_FALSE(a.drive.powered());
+  EXPECT_NEAR(a.lag, 2.0 * error_window, 5.0 * lagging_speed * tick);
+  a.step();
+  EXPECT_EQ(a.drive.state(), DriveState::fault);
+  // The same in the stop that the window began.
+  auto b = with_window(0);
+  ticks_to_the_fault(b);
+  ASSERT_TRUE(b.drive.powered());
+  int ticks = 0;
+  for (; ticks < 400 && b.drive.powered(); ++ticks) {
+    b.lag += 8e-6;
+    b.step();
+  }
+  EXPECT_FALSE(b.drive.powered());
+  EXPECT_LT(ticks, 0.2 / ServedAxis::quick_deceleration / tick) << "before the stop is over";
+  b.step();
+  EXPECT_EQ(b.drive.state(), DriveState::fault);
+}
+
+TEST(FollowingError, CoastsWhere605EhSaysSo) {
+  auto a = with_window(0, {.fault_reaction = 0});
+  ticks_to_the_fault(a);
+  EXPECT_FALSE(a.drive.powered());
+}
+
+}  // namespace
+}  // namespace stiction::test
