@@ -23,13 +23,13 @@ struct ElasticMode {
 };
 
 // Columns of the motor's force (N, at the motion's rate) beyond a rigid axis': what goes with the acceleration, and, of
-// a motor that drives the other part, what goes with the forces at the measured one, to be weighed by 1 / r. `axis`:
-// whose mass M is; `load`: f, N along the motion.
-// `motion` of the measured part:
+// a motor that drives the other part, what goes with the forces at the measured one, to be weighed by 1 / r. `mode`: of
+// which r is fixed where it is in the loop or behind; `axis`: whose mass M is; `motion` of the measured part; `load`:
+// f, N along the motion.
 std::vector<std::vector<double>> mode_columns(const ElasticMode& mode, const machine::AxisModel& axis,
                                               const Motion& motion, const std::vector<double>& load);
-// or simulated without the mode, in the linear control of the axis: P position and PI velocity, a current that follows.
-// Zeros where that control does not stand the mode.
+// The same of a `motion` that was simulated without the `mode`, in the linear control of the `axis`: P position and PI
+// velocity, a current that follows. Zeros where that control does not stand the mode. `load`: as above.
 std::vector<std::vector<double>> mode_columns_in_loop(const ElasticMode& mode, const machine::AxisModel& axis,
                                                       const Motion& motion, const std::vector<double>& load);
 

@@ -8,7 +8,8 @@ EffectDescriptor structural_resonance() {
   return described<StructuralResonance>({
       .order = 180,
       .title = "Elastic mode",
-      .meaning = "An elastic part between motor and encoder oscillates: coupling, screw or mount.",
+      .meaning = "An elastic part between motor and encoder oscillates (coupling, screw or mount), or a body behind "
+                 "both does.",
       .advice = "Set a notch at its frequency or reduce the velocity gain; make jerk times multiples of its period; "
                 "stiffen the joint, or measure closer to the motor.",
       .aliases = {},

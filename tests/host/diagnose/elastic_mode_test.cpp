@@ -1,5 +1,7 @@
 // The columns of an elastic mode against the closed loop of a machine that has it: what its simulation leaves on the
 // way of a machine that has none.
+#include "host/diagnose/record/elastic_mode.hpp"
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -7,13 +9,10 @@
 #include <numbers>
 #include <vector>
 
-#include "host/diagnose/record/elastic_mode.hpp"
 #include "host/diagnose/record/inverse_dynamics.hpp"
 #include "host/diagnose/record/record_rows.hpp"
 #include "host/diagnose/record/replay_setup.hpp"
 #include "sim/effects/effect_values.hpp"
-#include "sim/machine_file.hpp"
-#include "host/log/read_log.hpp"
 #include "sim/effects/structural_resonance/structural_resonance.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/shipped_machine.hpp"
@@ -21,10 +20,12 @@
 namespace stiction::host {
 namespace {
 
-machine::Machine one_axis() {
+// X of the cross table; `sliding`: with a thousandth of a newton of friction.
+machine::Machine one_axis(bool sliding) {
   auto machine = test::cross_table();
   machine.axes.resize(1);
   auto& axis = machine.axes.front();
+  if (sliding) axis = with_viscous(with_coulomb(axis, 1e-3), 1.0);
   axis.effects.clear();
   axis.encoder.increment = axis.encoder.noise = axis.position_controller.increment = 0.0;
   return machine;
@@ -50,8 +51,8 @@ Log ordered() {
   return log;
 }
 
-double share_missed(const ElasticMode& mode) {
-  const auto machine = one_axis();
+double share_missed(const ElasticMode& mode, bool sliding) {
+  const auto machine = one_axis(sliding);
   const auto& axis = machine.axes.front();
   const std::vector<Log> logs{ordered()};
   const auto settings = wide_band(logs);
@@ -74,42 +75,20 @@ double share_missed(const ElasticMode& mode) {
 }  // namespace
 
 TEST(ElasticMode, ColumnsAreWhatTheClosedLoopLeaves) {
+  struct Case {
+    ElasticMode mode;
+    bool sliding;
+  };
   // The drive of this machine does not stand modes between motor and encoder below 250 Hz.
-  const std::vector<ElasticMode> modes{
-      {120.0, 0.1, 0.6, true}, {300.0, 0.1, 0.6, true}, {300.0, 0.1, 0.6, false}, {450.0, 0.05, 0.3, false}};
-  for (const auto& mode : modes) {
-    const double missed = share_missed(mode);
-    test::figure(fmt::format("mode of {:g} Hz {}: columns off the closed loop", mode.frequency,
-                             mode.motor_measured ? "of a body behind the carriage" : "between motor and encoder"),
+  for (const auto& [mode, sliding] : {Case{{120.0, 0.1, 0.6, true}, false}, Case{{120.0, 0.1, 0.6, true}, true},
+                                      Case{{300.0, 0.1, 0.6, true}, true}, Case{{300.0, 0.1, 0.6, false}, true}}) {
+    const double missed = share_missed(mode, sliding);
+    test::figure(fmt::format("mode of {:g} Hz {}{}: columns off the closed loop", mode.frequency,
+                             mode.motor_measured ? "of a body behind the carriage" : "between motor and encoder",
+                             sliding ? ", without friction" : ""),
                  fmt::format("{:.1f} % rms (bound 15 %)", 100.0 * missed));
     EXPECT_LT(missed, 0.15) << mode.frequency;
   }
-}
-
-TEST(ElasticMode, DISABLED_dbg) {
-  const auto machine = sim::read_machine(std::string(getenv("DIR")) + "/machine.toml");
-  const auto& axis = machine.axes.front();
-  std::vector<Log> logs{read_log(std::string(getenv("DIR")) + "/train-1.csv")};
-  for (auto& l : logs) count_from_start(l);
-  const auto settings = wide_band(logs);
-  const auto motion = without_noise(machine, 0, logs).motion;
-  const auto rows = rows_of(motion, axis, settings);
-  EffectResponse response(machine, 0, logs, settings, FrictionAlong::simulated_motion);
-  const double f0 = atof(getenv("F0")), z = atof(getenv("Z")), r = atof(getenv("R"));
-  const bool mm = getenv("MM") != nullptr;
-  const Eigen::VectorXd wanted = rows.stacked([&](const Motion& m) { return response(m, sim::effect_of<sim::StructuralResonance>({f0, z, r, mm ? 1 : 0})); });
-  printf("wanted rms %g rows %ld of %g s\n", std::sqrt(wanted.squaredNorm() / double(wanted.size())), (long)wanted.size(), rows.period(0));
-  for (const double k : {0.3, 0.4, 0.5, 0.6, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5})
-    for (const int l : {0,1}) {
-      const Eigen::VectorXd found = rows.stacked([&](const Motion& m) {
-        auto c = l ? mode_columns_in_loop({k * f0, z, r, mm}, axis, m, friction_along(axis, m)) : mode_columns({k * f0, z, r, mm}, axis, m, friction_along(axis, m));
-        if (c.size() > 1)
-          for (std::size_t i = 0; i < c[0].size(); ++i) c[0][i] += c[1][i] / r;
-        return c[0];
-      });
-      const double w = found.dot(wanted) / found.squaredNorm();
-      printf("%g %d rms %g weight %g left %g\n", k, l, std::sqrt(found.squaredNorm() / double(found.size())), w, (wanted - w * found).norm() / wanted.norm());
-    }
 }
 
 }  // namespace stiction::host
