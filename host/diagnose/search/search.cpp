@@ -209,7 +209,8 @@ void Search::name(const ActiveSet& set, std::size_t term, Term& as) {
   for (const auto& option : options) {
     const double probability = std::exp((option.score - own) / blur) / sum;
     const auto c = option.atom->candidate;
-    if (!one_cause(c, set[term]->candidate) && probability > least_probability) as.alternatives.push_back({c, probability});
+    if (!one_cause(c, set[term]->candidate) && probability > least_probability)
+      as.alternatives.push_back({c, probability});
   }
 }
 

@@ -104,11 +104,13 @@ extern const EffectRegressor regressor{.force = {.grid = grid,
                                                  .columns = before::columns,
                                                  .possible = before::possible,
                                                  .describe = before::describe,
-                                                 .like_dynamics = true, .trials = 4.0},
+                                                 .like_dynamics = true,
+                                                 .trials = 4.0},
                                        .other_force = {.grid = grid,
                                                        .columns = behind::columns,
                                                        .possible = behind::possible,
                                                        .describe = behind::describe,
-                                                       .like_dynamics = true, .trials = 4.0}};
+                                                       .like_dynamics = true,
+                                                       .trials = 4.0}};
 
 }  // namespace stiction::host::effects::structural_resonance
