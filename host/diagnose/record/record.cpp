@@ -69,8 +69,15 @@ void regress_on(Record& record, const std::vector<Log>& motion, const machine::A
   } else {
     record.regressors = rows_of(motion, axis, settings);
     record.regressors.read_as(record.rows);
-    const auto& own = record.read_elsewhere.empty() ? record.simulated : record.read_elsewhere;
-    record.target -= own_residual(own, record.logs, axis, settings);
+    // A record that reads the simulation's own increments is less by itself: of independent ones each run leaves alike.
+    constexpr double alike = 0.5;  // of the square
+    const Eigen::VectorXd shared = record.target - own_residual(record.simulated, record.logs, axis, settings);
+    if (!record.read_elsewhere.empty()) {
+      record.target -= own_residual(record.read_elsewhere, record.logs, axis, settings);
+      if (shared.squaredNorm() < alike * record.target.squaredNorm()) record.target = shared;
+    } else {
+      record.target = shared;
+    }
   }
   const Eigen::VectorXd moves = moving_rows(record.rows, axis, settings.cutoff)
                                     .cwiseProduct(moving_rows(record.regressors, axis, settings.cutoff));
