@@ -43,6 +43,9 @@ class ModbusClients {
       if (shown.owner == CommandSource::modbus) take(axis, client, shown);
       return Verdict::pass;
     }
+    // Who resets an axis that belongs to nobody sends the mode with the word; it moves nothing.
+    if (write.what == MotionWrite::What::mode && axis.holders.size() == 1 && axis.holders.front() == client)
+      return Verdict::pass;
     if (!word) return Verdict::refused;
     return lift(axis, client);
   }
