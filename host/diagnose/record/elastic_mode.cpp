@@ -50,9 +50,8 @@ std::vector<double> filtered(const std::vector<double>& values, double period,
 }
 
 // The deviations from the simulated motion, in which carriage and drive are at rest: x of the measured part, z of the
-// other one against it. Forces are over the whole mass; the motor's deviation is -C x. With z the spring pulls, k z,
-// and without sticking
-//   r x'' = spring - C x [- (1 - r) x'' ..]: below.
+// other one against it. Forces are over the whole mass; the motor's deviation is -C x. Integrated by the semi-implicit
+// Euler method, velocities before places.
 class ModeInLoop {
  public:
   ModeInLoop(const ElasticMode& mode, const machine::AxisModel& axis, const Motion& motion)
