@@ -150,19 +150,19 @@ def main():
         return 2
     campaign = Campaign(options)
     known = kept(options.results)
-    cases = []
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        runs = {number: pool.submit(campaign.run_case, number) for number in range(options.cases)
-                if campaign.key(number) not in known}
-        for number in range(options.cases):
-            case = runs[number].result() if number in runs else known[campaign.key(number)]
-            cases.append(case)
-            if number in runs:
-                print(f"{len(cases):>4} of {options.cases}  {case['machine']}/{case['axis']}/{case['model']}: "
-                      + (case.get("error") or ", ".join(case["names"]) or "no name"), flush=True)
-                if options.results and "error" not in case:
-                    with open(options.results, "a", encoding="utf-8") as file:
-                        file.write(json.dumps(case) + "\n")
+        runs = [pool.submit(campaign.run_case, number) for number in range(options.cases)
+                if campaign.key(number) not in known]
+        # As they come: a long case must not keep those behind it from the file.
+        for done, run in enumerate(concurrent.futures.as_completed(runs), len(known) + 1):
+            case = run.result()
+            known[case["key"]] = case
+            print(f"{done:>4} of {options.cases}  {case['machine']}/{case['axis']}/{case['model']}: "
+                  + (case.get("error") or ", ".join(case["names"]) or "no name"), flush=True)
+            if options.results and "error" not in case:
+                with open(options.results, "a", encoding="utf-8") as file:
+                    file.write(json.dumps(case) + "\n")
+    cases = [known[campaign.key(number)] for number in range(options.cases)]
     print(report(cases))
     return 1 if any("error" in case for case in cases) else 0
 
