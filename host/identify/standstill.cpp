@@ -9,7 +9,8 @@
 namespace stiction::host {
 namespace {
 
-constexpr double reach = 2.0;  // of the filter, in periods of its cut-off, to either side
+constexpr double reach = 2.0;                // of the filter, in periods of its cut-off, to either side
+constexpr double distances_to_forget = 2.0;  // of a contact, each of which leaves a tenth
 
 double jump_of(const machine::AxisModel& axis) { return sim::steady_friction(axis.friction)(0.0, 1.0); }
 
@@ -27,6 +28,22 @@ Eigen::VectorXd moving_rows(const LogRows& rows, const machine::AxisModel& axis,
       for (Eigen::Index k = std::max<Eigen::Index>(i - beside, 0); k <= std::min(i + beside, rows.rows() - 1); ++k)
         moves[k] = 0.0;
   return moves;
+}
+
+Eigen::VectorXd rows_after_first_slide(const LogRows& rows, const machine::AxisModel& axis) {
+  Eigen::VectorXd after = Eigen::VectorXd::Ones(rows.rows());
+  const auto contact = sim::contact_of(axis.friction);
+  if (!contact) return after;
+  const double slide = distances_to_forget * contact->distance;
+  const Eigen::VectorXd position = rows.stacked([](const Motion& motion) { return motion.x; });
+  for (std::size_t k = 0; k < rows.logs().size(); ++k) {
+    const auto first = static_cast<Eigen::Index>(rows.logs()[k]);
+    const auto end = k + 1 < rows.logs().size() ? static_cast<Eigen::Index>(rows.logs()[k + 1]) : rows.rows();
+    auto slid = first;
+    while (slid < end && std::abs(position[slid] - position[first]) < slide) ++slid;
+    if (slid < end) after.segment(first, slid - first).setZero();
+  }
+  return after;
 }
 
 }  // namespace stiction::host

@@ -1,5 +1,5 @@
-// Rows in which friction is a reaction: at a standstill, of a law without a contact, the motor's force is anything up
-// to the law's jump at zero speed, and no motion tells it.
+// Rows in which no motion tells the friction. At a standstill, of a law without a contact, it is a reaction: the motor's
+// force is anything up to the law's jump at zero speed. At the start of a record a contact is as it was left before.
 #pragma once
 
 #include <Eigen/Dense>
@@ -16,5 +16,9 @@ bool sticks_rigidly(const machine::AxisModel& axis);
 // the mass within what the position's filter (`cutoff`, Hz) resolves, an axis cannot be told from one that stands; as
 // far as that filter reaches, the rows on each side have a share in it.
 Eigen::VectorXd moving_rows(const LogRows& rows, const machine::AxisModel& axis, double cutoff);
+
+// 1 for each of `rows` in which a contact of `axis` has forgotten how it was left before the record: behind the first
+// slide of each log, else 0. All 1 where there is no contact, or in a log that never slides.
+Eigen::VectorXd rows_after_first_slide(const LogRows& rows, const machine::AxisModel& axis);
 
 }  // namespace stiction::host

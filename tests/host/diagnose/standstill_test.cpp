@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "host/diagnose/record/record_rows.hpp"
 #include "sim/plant/friction/coulomb_viscous.hpp"
+#include "sim/plant/friction/dahl.hpp"
 #include "sim/plant/friction/parameters.hpp"
 #include "tests/host/diagnose/synthetic_log.hpp"
 
@@ -67,6 +69,30 @@ TEST(Standstill, OfALawWithAContactCountsLikeMotion) {
   const auto settings = host::wide_band(logs);
   const auto moves = host::moving_rows(host::rows_of(logs, axis, settings), axis, settings.cutoff);
   EXPECT_EQ(moves.minCoeff(), 1.0);
+}
+
+// Dahl's contact has a hundredth of its start left where exp(-stiffness s / level) has fallen to that.
+TEST(Standstill, CountsAContactFromItsFirstSlideOn) {
+  auto axis = bench_machine().axes.front();
+  const sim::DahlParameters contact{20.0, 2e4, 100.0};  // N, N/m, N s/m
+  axis.friction.use = "dahl";
+  sim::set_parameters<sim::Dahl<>>(axis.friction, contact);
+  const double forgotten = contact.coulomb / contact.stiffness * std::log(100.0);  // 4.6 mm
+  auto shivering = stopping();
+  for (std::size_t k = 0; k < shivering.t.size(); ++k)
+    shivering.axes.front().x[k] = 0.5 * forgotten * std::sin(0.01 * static_cast<double>(k));
+  const std::vector<host::Log> logs{stopping(), shivering};
+  const auto settings = host::wide_band(logs);
+  const auto rows = host::rows_of(logs, axis, settings);
+  const auto counts = host::rows_after_first_slide(rows, axis);
+  const auto second = static_cast<Eigen::Index>(rows.logs()[1]);
+  for (Eigen::Index i = 0; i < second; ++i) {
+    const double way = 0.1 * rows.time[i];  // m
+    if (std::abs(way - forgotten) < 0.1 * forgotten) continue;
+    EXPECT_EQ(counts[i], way > forgotten ? 1.0 : 0.0) << rows.time[i];
+  }
+  EXPECT_EQ(counts.tail(rows.rows() - second).minCoeff(), 1.0);  // it never slides
+  EXPECT_EQ(host::rows_after_first_slide(rows, rigid_axis()).minCoeff(), 1.0);
 }
 
 }  // namespace stiction::test
