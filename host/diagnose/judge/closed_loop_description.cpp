@@ -39,21 +39,32 @@ class Description {
   ClosedLoopDescription grown(std::vector<Term> named, std::vector<Term> unnamed) {
     ClosedLoopDescription description;
     auto waiting = std::move(named);
-    const auto strongest =
-        std::max_element(waiting.begin(), waiting.end(), [](const Term& a, const Term& b) { return a.nats < b.nats; });
-    const double leftover = of_strongest * strongest->nats;
-    description.terms.push_back(std::move(*strongest));
-    waiting.erase(strongest);
+    double leftover = 0.0;
+    auto left = target_;
+    // The first is the strongest that explains anything.
+    while (description.terms.empty() && !waiting.empty()) {
+      const auto strongest = std::max_element(waiting.begin(), waiting.end(),
+                                              [](const Term& a, const Term& b) { return a.nats < b.nats; });
+      leftover = of_strongest * strongest->nats;
+      description.terms.push_back(std::move(*strongest));
+      waiting.erase(strongest);
+      left = describe(description);
+      if (likelihood(left) - likelihood(target_) >= sure) break;
+      std::move(description.terms.begin(), description.terms.end(), std::back_inserter(description.remainders));
+      description.terms.clear();
+      description.findings.clear();
+      left = target_;
+    }
     std::move(unnamed.begin(), unnamed.end(), std::back_inserter(waiting));
     for (;;) {
-      const auto left = describe(description);
       const auto next = most_needed(waiting, left, leftover);
       if (next == waiting.size()) break;
       const bool has_name = !candidates()[waiting[next].candidate].outside();
       (has_name ? description.terms : description.unnamed).push_back(std::move(waiting[next]));
       waiting.erase(waiting.begin() + static_cast<std::ptrdiff_t>(next));
+      left = describe(description);
     }
-    description.remainders = std::move(waiting);
+    std::move(waiting.begin(), waiting.end(), std::back_inserter(description.remainders));
     return description;
   }
 
@@ -64,6 +75,9 @@ class Description {
 
   std::vector<RowBlock> blocks() const {
     return blocks_of(rows_.velocity, rows_.logs(), static_cast<std::size_t>(rows_.rows() / 60 + 1));
+  }
+  double likelihood(const Eigen::VectorXd& residual) const {
+    return noise_log_likelihood(residual.cwiseProduct(rows_.counts()), rows_.logs());
   }
   Evidence evidence_of(const Eigen::VectorXd& residual, const Eigen::VectorXd& noise) const {
     Evidence evidence(residual, blocks());
