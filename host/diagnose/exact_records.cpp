@@ -30,9 +30,8 @@ class Maker {
     // What the file leaves of its own run is told by the motor that the draws have.
     without_windings(machine_.axes[axis_]);
     if (own_motion_) return;
-    const auto silent = without_noise(machine_, axis_, driven_).replayed;
-    own_ =
-        own_residual(silent.empty() ? training().simulated : silent, training().logs, prepared.axis, prepared.settings);
+    own_ = mean_own_residual(runs_of_target(training(), machine_, axis_), training().logs, prepared.axis,
+                             prepared.settings);
   }
 
   std::optional<ExactRecord> operator()(std::size_t draw) const {
@@ -81,8 +80,9 @@ class Maker {
   // machine cannot follow it.
   bool prepare(Record& record) const {
     if (own_motion_) {
-      const auto motion =
-          prepared_.known_motion ? drive(record, machine_, axis_, Following::as_near_as_it_comes) : std::vector<Log>{};
+      const auto motion = prepared_.known_motion
+                              ? drive(record, machine_, axis_, Following::as_near_as_it_comes, driven_)
+                              : std::vector<Log>{};
       if (prepared_.known_motion && motion.empty()) return false;
       regress_on(record, motion, prepared_.axis, prepared_.settings);
     } else {

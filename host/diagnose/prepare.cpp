@@ -7,7 +7,6 @@
 
 #include "firmware/machine/model/motor_force.hpp"
 #include "host/diagnose/exact_records.hpp"
-#include "host/diagnose/record/followed_set_points.hpp"
 #include "host/diagnose/record/inverse_dynamics.hpp"
 #include "host/diagnose/record/noise_floor.hpp"
 #include "host/diagnose/record/record_checks.hpp"
@@ -53,7 +52,7 @@ std::string why_motion_is_measured(const DiagnoseInput& input) {
   const auto refused = why_not_simulated(input.machine, input.axis, all);
   return fmt::format(
       "{} The regressors were computed from the measured motion, which contains the response of the control loop to "
-      "the disturbances.{}",
+      "the disturbances, so that elastic modes cannot be judged.{}",
       refused.empty() ? "The logs have no set-points, or the simulation could not follow them." : refused + ".",
       refused.empty() ? " Log x_set." : "");
 }
@@ -123,16 +122,14 @@ void take_motion(Prepared& prepared, const DiagnoseInput& input, Verdict& verdic
   const auto training = drive(prepared.training, input.machine, input.axis);
   const auto held_out = training.empty() ? std::vector<Log>{} : drive(prepared.held_out, input.machine, input.axis);
   prepared.known_motion = !held_out.empty();
+  prepared.context.disturbed_motion = !prepared.known_motion || !without_set_points(prepared).empty();
   if (!prepared.known_motion)
     verdict.notes.push_back(why_motion_is_measured(input));
-  else if (const auto source = without_set_points(prepared); !source.empty()) {
-    prepared.context.known_up_to =
-        followed_up_to(input.machine.axes[input.axis], prepared.training.logs.front().period);
+  else if (const auto source = without_set_points(prepared); !source.empty())
     verdict.notes.push_back(fmt::format(
         "{}: no set-points. The simulation is driven so that it moves as recorded, up to twice the bandwidth of the "
-        "position loop; the gains of the drive and position errors cannot be judged. Log x_set.",
+        "position loop; elastic modes, the gains of the drive and position errors cannot be judged. Log x_set.",
         source));
-  }
   regress_on(prepared.training, held_out.empty() ? held_out : training, prepared.axis, prepared.settings);
   regress_on(prepared.held_out, held_out, prepared.axis, prepared.settings);
 }
@@ -155,6 +152,15 @@ template <class T>
 std::vector<T> joined(std::vector<T> first, const std::vector<T>& second) {
   first.insert(first.end(), second.begin(), second.end());
   return first;
+}
+
+// Runs of the training logs and of those held out, as runs of all; as many as both have.
+std::vector<std::vector<Log>> joined_runs(const std::vector<std::vector<Log>>& training,
+                                          const std::vector<std::vector<Log>>& held_out) {
+  std::vector<std::vector<Log>> runs;
+  for (std::size_t k = 0; k < std::min(training.size(), held_out.size()); ++k)
+    runs.push_back(joined(training[k], held_out[k]));
+  return runs;
 }
 
 // Records of the exact machine, where its drive is known and has something to go by.
@@ -188,7 +194,13 @@ void take_responses(Prepared& prepared, const DiagnoseInput& input) {
     prepared.context.response = disturbed_by(force);
   };
   prepared.context.disturb(training.target);
-  auto own = disturbed_by(training.target);
+  // By the motor and on the parts of the encoder's increment that cancel with what the target is less.
+  auto machine = input.machine;
+  without_windings(machine.axes[input.axis]);
+  EffectResponse own(machine, input.axis, logs, prepared.settings, friction,
+                     Disturbance(training.target, training.rows.logs(), training.rows.period(0)), simulated);
+  own.take_silence(
+      joined_runs(runs_of_target(training, machine, input.axis), runs_of_target(held_out, machine, input.axis)));
   const auto of_disturbance = [&own](const Record& record) -> Eigen::VectorXd {
     return record.regressors.stacked([&own](const Motion& motion) { return own.of_disturbance(motion); })
         .cwiseProduct(record.regressors.counts());

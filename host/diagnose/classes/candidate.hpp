@@ -51,8 +51,8 @@ struct SearchContext : Scans {
   bool other_axis = false;        // its motion is in every record
   double duration = 0.0;          // s, of the longest record
   double log_period = 0.0;        // s, of the slowest record
-  // Hz, up to where the motion of the regressors holds that of the records; infinite with set-points.
-  double known_up_to = std::numeric_limits<double>::infinity();
+  // Whether what disturbs the axis is in the motion of the regressors: where that is measured, or learned from it.
+  bool disturbed_motion = false;
   machine::Timing timing{};  // of the drive
   // The residual force (N, at the motion's rate) that a motion's set-points leave in simulation where the machine has
   // the effect, less that where it has not: what the effect does through the control loop. `most_runs`: of how many

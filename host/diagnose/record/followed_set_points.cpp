@@ -14,7 +14,7 @@ namespace stiction::host {
 namespace {
 
 constexpr int order = 4;
-constexpr int rounds = 6;
+constexpr int rounds = 6, rounds_from_known = 3;
 constexpr double highest_edge = 0.8;  // of half the log's rate
 // Of the position loop's bandwidth. Faster motion is the loop's answer to what disturbs the axis: regressors of it
 // would carry the disturbance that they are regressed on.
@@ -46,12 +46,12 @@ class Follower {
         lowpass_(lowpass_of(machine.axes[axis], log.period)),
         wanted_(smoothed(channels().x)) {}
 
-  // The set positions of the round that came nearest; empty where none could be simulated, or, by `how`, did not come
-  // near.
-  std::vector<double> learned(Following how) {
-    std::vector<double> best, set = wanted_;
+  // The set positions of the round that came nearest, of which the first is `begin` (m), or, empty, the motion; empty
+  // where none could be simulated, or, by `how`, did not come near.
+  std::vector<double> learned(Following how, const std::vector<double>& begin) {
+    std::vector<double> best, set = begin.empty() ? wanted_ : begin;
     double least = INFINITY;
-    for (int round = 0; round < rounds; ++round) {
+    for (int round = 0; round < (begin.empty() ? rounds : rounds_from_known); ++round) {
       const auto missing = missing_with(set);
       if (missing.empty()) break;
       if (const double square = mean_square(missing); square < least)
@@ -115,13 +115,15 @@ std::vector<Log> with_recorded_set_points(const machine::AxisModel& axis, std::v
 }
 
 std::vector<Log> with_set_points(const machine::Machine& machine, std::size_t axis, std::vector<Log> logs,
-                                 Following how) {
+                                 Following how, const std::vector<Log>& made_by) {
   const auto& model = machine.axes[axis];
   const bool follows = model.cascaded() && model.position_controller.gain > 0.0;
   if (model.unknown_controller() || !follows) return logs;
-  for (auto& log : logs) {
-    auto& channels = channels_of(log, model);
-    if (channels.x_set.empty()) channels.x_set = Follower(machine, axis, log).learned(how);
+  for (std::size_t k = 0; k < logs.size(); ++k) {
+    auto& channels = channels_of(logs[k], model);
+    if (!channels.x_set.empty()) continue;
+    const auto begin = made_by.empty() ? std::vector<double>{} : channels_of(made_by[k], model).x_set;
+    channels.x_set = Follower(machine, axis, logs[k]).learned(how, begin);
   }
   return logs;
 }

@@ -17,9 +17,10 @@ namespace stiction::host {
 enum class Following { as_recorded, as_near_as_it_comes };
 
 // The `logs` with set positions (m) of the axis where they have none; as they are where the controller of the axis is
-// not known or its simulation cannot follow, by `how`. `machine` of the file; `axis`: its index.
+// not known or its simulation cannot follow, by `how`. `machine` of the file; `axis`: its index; `made_by`: logs with
+// set-points that made those of an exact machine: learning begins near its end there. Empty: with the motion itself.
 std::vector<Log> with_set_points(const machine::Machine& machine, std::size_t axis, std::vector<Log> logs,
-                                 Following how = Following::as_recorded);
+                                 Following how = Following::as_recorded, const std::vector<Log>& made_by = {});
 
 // The `logs` with the recorded positions, slowly, for set positions (m) where they have none: how about the axis went.
 // `axis` of the file, with a position loop.

@@ -14,6 +14,8 @@
 namespace stiction::host {
 namespace {
 
+constexpr int parts_of_increment = 4;  // the increments of as many runs leave half of what those of one do
+
 // Of a record without set-points the simulated motion is not known above its followed_up_to(): it reverses elsewhere
 // than the measured one, and the file's friction differs between the two. Where it does so by more than what is left of
 // the record elsewhere, a column of friction would describe that difference. 1: known; 0: not.
@@ -37,6 +39,21 @@ Eigen::VectorXd known_friction(const Record& record, const machine::AxisModel& a
   return known;
 }
 
+// Runs without noise over the parts of an encoder's increment; empty on an axis that has none.
+std::vector<std::vector<Log>> runs_elsewhere(const machine::Machine& machine, std::size_t axis,
+                                             const std::vector<Log>& driven, Following how) {
+  const auto& model = machine.axes[axis];
+  std::vector<std::vector<Log>> runs;
+  if (!(model.encoder.increment > 0.0)) return runs;
+  for (int part = 0; part < parts_of_increment; ++part) {
+    auto moved = driven;
+    for (auto& log : moved)
+      for (double& x : channels_of(log, model).x_set) x += (part + 0.5) / parts_of_increment * model.encoder.increment;
+    if (auto run = without_noise(machine, axis, moved, how).replayed; !run.empty()) runs.push_back(std::move(run));
+  }
+  return runs;
+}
+
 }  // namespace
 
 void measure(Record& record, const machine::AxisModel& axis, const SignalSettings& settings) {
@@ -45,19 +62,22 @@ void measure(Record& record, const machine::AxisModel& axis, const SignalSetting
   record.target = record.rows.force - record.expected;
 }
 
-std::vector<Log> drive(Record& record, const machine::Machine& machine, std::size_t axis, Following how) {
-  record.driven = with_set_points(machine, axis, record.logs, how);
+std::vector<std::vector<Log>> runs_of_target(const Record& record, const machine::Machine& machine, std::size_t axis) {
+  const bool elsewhere = !record.simulated_elsewhere.empty();
+  auto runs = elsewhere ? runs_elsewhere(machine, axis, record.driven, Following::as_recorded)
+                        : std::vector<std::vector<Log>>{without_noise(machine, axis, record.driven).replayed};
+  std::erase_if(runs, [](const auto& run) { return run.empty(); });
+  if (!runs.empty()) return runs;
+  return elsewhere ? record.simulated_elsewhere : std::vector<std::vector<Log>>{record.simulated};
+}
+
+std::vector<Log> drive(Record& record, const machine::Machine& machine, std::size_t axis, Following how,
+                       const std::vector<Log>& made_by) {
+  record.driven = with_set_points(machine, axis, record.logs, how, made_by);
   auto without = without_noise(machine, axis, record.driven, how);
   record.simulated = std::move(without.replayed);
-  constexpr double elsewhere = 0.382;  // of an increment: the smaller part of the golden section
-  const auto& model = machine.axes[axis];
-  record.read_elsewhere.clear();
-  if (!record.simulated.empty() && model.encoder.increment > 0.0) {
-    auto moved = record.driven;
-    for (auto& log : moved)
-      for (double& x : channels_of(log, model).x_set) x += elsewhere * model.encoder.increment;
-    record.read_elsewhere = without_noise(machine, axis, moved, how).replayed;
-  }
+  record.simulated_elsewhere.clear();
+  if (!record.simulated.empty()) record.simulated_elsewhere = runs_elsewhere(machine, axis, record.driven, how);
   return std::move(without.motion);
 }
 
@@ -66,21 +86,23 @@ void regress_on(Record& record, const std::vector<Log>& motion, const machine::A
   record.regressors = record.rows;
   if (motion.empty()) {
     record.simulated.clear();
+    record.simulated_elsewhere.clear();
   } else {
     record.regressors = rows_of(motion, axis, settings);
     record.regressors.read_as(record.rows);
     // A record that reads the simulation's own increments is less by itself: of independent ones each run leaves alike.
     constexpr double alike = 0.5;  // of the square
     const Eigen::VectorXd shared = record.target - own_residual(record.simulated, record.logs, axis, settings);
-    if (!record.read_elsewhere.empty()) {
-      record.target -= own_residual(record.read_elsewhere, record.logs, axis, settings);
-      if (shared.squaredNorm() < alike * record.target.squaredNorm()) record.target = shared;
-    } else {
-      record.target = shared;
-    }
+    Eigen::VectorXd apart = shared;
+    if (!record.simulated_elsewhere.empty())
+      apart = record.target - mean_own_residual(record.simulated_elsewhere, record.logs, axis, settings);
+    if (shared.squaredNorm() < alike * apart.squaredNorm()) record.simulated_elsewhere.clear();
+    record.target = record.simulated_elsewhere.empty() ? shared : apart;
   }
-  const Eigen::VectorXd moves = moving_rows(record.rows, axis, settings.cutoff)
-                                    .cwiseProduct(moving_rows(record.regressors, axis, settings.cutoff));
+  Eigen::VectorXd moves = Eigen::VectorXd::Ones(record.target.size());
+  for (const auto* rows : {&record.rows, &record.regressors})
+    moves =
+        moves.cwiseProduct(moving_rows(*rows, axis, settings.cutoff)).cwiseProduct(rows_after_first_slide(*rows, axis));
   record.regressors.weigh(motion.empty() ? moves : moves.cwiseProduct(known_friction(record, axis, settings.cutoff)));
   record.target = record.target.cwiseProduct(record.regressors.counts());
 }

@@ -25,9 +25,9 @@ struct Record {
   Eigen::VectorXd expected;    // N, what the file says of the measured motion
   Eigen::VectorXd target;      // N, what the file does not make of the force; rows at rest do not count
   std::vector<Log> simulated;  // the file's own runs of these logs; empty where it cannot follow
-  // The same on another part of the encoder's increment. What the file leaves of its own run is taken of these: the
-  // increments of a run that it shared with the regressors would look like a mode of the machine.
-  std::vector<Log> read_elsewhere;
+  // The same on other parts of the encoder's increment, where what the file leaves of its own runs was taken of these:
+  // a run shares its increments with the regressors, which would look like a mode of the machine.
+  std::vector<std::vector<Log>> simulated_elsewhere;
   FrictionAlong friction = FrictionAlong::own_motion;  // in the target
   // N, what the residual force itself does to what the file leaves of its own run; the target is less that. Empty:
   // nothing was taken off.
@@ -37,10 +37,14 @@ struct Record {
 // Gives the `record` with its logs the rows as measured, and what the file says of them and leaves. `axis` of the file
 // as the plant has it; `settings` of the rows. Throws LogError.
 void measure(Record& record, const machine::AxisModel& axis, const SignalSettings& settings);
+// Runs of the `record` without noise by this `machine`, like those whose residual its target is less; those themselves
+// where it goes another way. `axis`: its index in the machine.
+std::vector<std::vector<Log>> runs_of_target(const Record& record, const machine::Machine& machine, std::size_t axis);
 // Drives the file's machine through the logs of the `record`; returns them with the motion that it makes. Empty where
-// it cannot follow, or, by `how`, goes another way. `machine` of the file; `axis`: its index.
+// it cannot follow, or, by `how`, goes another way. `machine` of the file; `axis`: its index; `made_by`: as for
+// with_set_points().
 std::vector<Log> drive(Record& record, const machine::Machine& machine, std::size_t axis,
-                       Following how = Following::as_recorded);
+                       Following how = Following::as_recorded, const std::vector<Log>& made_by = {});
 // Regressors are of this `motion` (drive()) from now on, or, where it is empty, of the measured one; the target is less
 // what the file leaves of its own run; rows at standstill do not count, nor, without set-points, those in which the
 // file's friction differs between the two motions. `record`, `axis` and `settings` as above.

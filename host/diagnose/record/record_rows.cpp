@@ -70,4 +70,11 @@ Eigen::VectorXd own_residual(const std::vector<Log>& replayed, const std::vector
   return rows.force - expected_force(rows, axis);
 }
 
+Eigen::VectorXd mean_own_residual(const std::vector<std::vector<Log>>& runs, const std::vector<Log>& logs,
+                                  const machine::AxisModel& axis, const SignalSettings& settings) {
+  Eigen::VectorXd sum = own_residual(runs.front(), logs, axis, settings);
+  for (std::size_t k = 1; k < runs.size(); ++k) sum += own_residual(runs[k], logs, axis, settings);
+  return sum / static_cast<double>(runs.size());
+}
+
 }  // namespace stiction::host

@@ -194,6 +194,18 @@ void EffectResponse::take_silent(Record& record, const Log& replayed) const {
                                    motion_of(replayed, replayed.axes.front(), axis, Amperes::amplitude, settings_));
 }
 
+void EffectResponse::take_silence(std::span<const std::vector<Log>> runs) {
+  for (std::size_t k = 0; k < records_.size(); ++k) {
+    std::vector<double> sum(records_[k].log.t.size(), 0.0);
+    for (const auto& run : runs) {
+      take_silent(records_[k], run[k]);
+      std::transform(sum.begin(), sum.end(), records_[k].silent.begin(), sum.begin(), std::plus<>());
+    }
+    for (double& force : sum) force /= static_cast<double>(runs.size());
+    records_[k].silent = std::move(sum);
+  }
+}
+
 const std::vector<double>& EffectResponse::without(std::size_t index, std::size_t run) {
   auto& record = records_[index];
   const auto& in_silence = silent(record);

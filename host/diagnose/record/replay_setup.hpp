@@ -79,6 +79,9 @@ class EffectResponse {
                  const SignalSettings& settings, FrictionAlong friction, const Disturbance& disturbance,
                  const std::vector<Log>& replayed = {});
 
+  // In silence from now on: the mean of these `runs`, each of all logs in their order.
+  void take_silence(std::span<const std::vector<Log>> runs);
+
   // N at the motion's rate: with the effect less without; zeros where the machine cannot follow with it. Of no more
   // than `most_runs`. Throws sim::EffectError, std::out_of_range for a motion of another log.
   std::vector<double> operator()(const Motion& motion, const machine::Effect& effect,

@@ -1,8 +1,12 @@
 #include "host/diagnose/search/calibration.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <future>
 #include <numeric>
+#include <optional>
+#include <thread>
 #include <utility>
 
 #include "host/diagnose/search/price.hpp"
@@ -49,10 +53,25 @@ Limit exceeded_with(double chance, std::vector<double> odds) {
 
 Calibration::Calibration(const SearchContext& context, const Eigen::VectorXd& noise)
     : drawn_(context.exact_records(sized(context, noise))) {
-  for (std::size_t draw = 0; draw < records_kept; ++draw)
-    if (auto record = drawn_(draw)) kept_.push_back(std::move(*record));
+  kept_ = draw(0, records_kept);
   if (kept_.size() < fewest_drawn) kept_.clear();
   records_ = kept_.size();
+}
+
+std::vector<ExactRecord> Calibration::draw(std::size_t begin, std::size_t end) const {
+  std::vector<std::optional<ExactRecord>> drawn(end - begin);
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&] {
+    for (std::size_t k = next++; k < drawn.size(); k = next++) drawn[k] = drawn_(begin + k);
+  };
+  std::vector<std::future<void>> workers;
+  for (unsigned k = 0; k < std::max(std::thread::hardware_concurrency(), 1U); ++k)
+    workers.push_back(std::async(std::launch::async, work));
+  for (auto& worker : workers) worker.get();
+  std::vector<ExactRecord> records;
+  for (auto& record : drawn)
+    if (record) records.push_back(std::move(*record));
+  return records;
 }
 
 std::vector<double> Calibration::prices(const std::function<std::vector<double>(const ExactRecord&)>& odds_in,
@@ -78,9 +97,8 @@ std::vector<double> Calibration::prices(const std::function<std::vector<double>(
     return all;
   };
   std::size_t looked_at = kept_.size();
-  for (std::size_t draw = records_kept; !told() && !kept_.empty() && draw < most_drawn;)
-    for (const auto end = draw + records_kept; draw < end; ++draw)
-      if (const auto record = drawn_(draw)) look_at(*record), ++looked_at;
+  for (std::size_t drawn = records_kept; !told() && !kept_.empty() && drawn < most_drawn; drawn += records_kept)
+    for (const auto& record : draw(drawn, drawn + records_kept)) look_at(record), ++looked_at;
   records_ = std::max(records_, looked_at);
   return prices;
 }

@@ -279,7 +279,9 @@ void Search::prune(ActiveSet& set) {
   }
 }
 
-// Without a name that the exact machine's records have too another may come out, which is looked at in turn.
+// Without a name that the exact machine's records have too another may come out, which is looked at in turn. Where the
+// regressors move as the disturbed axis does a name can be what a disturbance does to them, so that all of the target
+// is taken for one: the rest beside that name has lost just this part.
 SearchResult Search::run_calibrated() {
   auto result = run();
   std::optional<Calibration> calibration;
@@ -290,7 +292,10 @@ SearchResult Search::run_calibrated() {
     for (const auto* atom : found_)
       if (known.insert(atom->candidate).second) names.push_back(atom->candidate);
     if (names.empty()) break;
-    if (!calibration) calibration.emplace(scene_, result.residual.cwiseProduct(rows_.counts()));
+    if (!calibration) {
+      const auto& noise = scene_.disturbed_motion ? evidence_.target() : result.residual;
+      calibration.emplace(scene_, noise.cwiseProduct(rows_.counts()));
+    }
     const auto odds_in = [&](const ExactRecord& record) { return names_in(record, names); };
     const auto prices = calibration->prices(odds_in, odds_in({evidence_.target(), {}}));
     if (std::none_of(prices.begin(), prices.end(), [](double price) { return price > 0.0; })) break;

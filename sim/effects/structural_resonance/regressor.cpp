@@ -24,18 +24,14 @@ constexpr double beyond_a_step = 1.6;
 
 // s^2: by how much of an acceleration's second derivative a mode adds to it, at frequencies below its own. As much is
 // taken off an acceleration by the straight line between two samples, period^2 / 12: 551 Hz in logs of 1 ms. Less is
-// not told from set-points that nobody knows between the samples. What a mode adds to the acceleration grows with the
-// square of the frequency, (w_m / w)^2; what the low-pass of learned set-points takes off it with the eighth power,
-// (w_m / w_e)^8. They meet where a mode adds (w_e / w)^(8/3); less than inverse dynamics can be off by, with and
-// without the mode, is no mode: one of more than thirteen times the edge w_e.
-double least_bend(const SearchContext& context) {
-  const double most = 2.0 * std::numbers::pi * context.known_up_to * std::pow(2.0 * resolution_of_dynamics, -3.0 / 8.0);
-  return std::max(context.log_period * context.log_period / 12.0, 1.0 / (most * most));
-}
+// not told from set-points that nobody knows between the samples.
+double least_bend(const SearchContext& context) { return context.log_period * context.log_period / 12.0; }
 double bend_of(double frequency) { return std::pow(2.0 * std::numbers::pi * frequency, -2.0); }
 
 std::vector<double> grid(const SearchContext& context) {
   if (context.axis.elastic()) return {};  // the plant has one mode, that of the file's shaft
+  // A mode lives on the fastest motion, in which the loop answers what disturbs the axis; learned set-points lack it.
+  if (context.disturbed_motion) return {};
   auto all = geometric(least_frequency, least_frequency * std::pow(step, steps - 1), steps);
   std::erase_if(all, [&](double frequency) { return bend_of(frequency) * step * step < least_bend(context); });
   return all;

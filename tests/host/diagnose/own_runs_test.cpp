@@ -1,0 +1,127 @@
+// What a record is held against: runs of its machine, and what of a search's terms such runs bear out.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "host/diagnose/classes/candidate.hpp"
+#include "host/diagnose/judge/closed_loop_description.hpp"
+#include "host/diagnose/record/record.hpp"
+#include "host/diagnose/record/record_rows.hpp"
+#include "host/diagnose/record/replay_setup.hpp"
+#include "sim/effects/presliding_hysteresis/presliding_hysteresis.hpp"
+#include "sim/effects/structural_resonance/structural_resonance.hpp"
+#include "tests/support/shipped_machine.hpp"
+
+namespace stiction::host {
+namespace {
+
+constexpr double coarse_increment = 5e-6;  // m, of the encoder
+
+// X of the cross table with friction that follows the speed alone.
+machine::Machine coarse_axis() {
+  auto machine = test::cross_table();
+  machine.axes.resize(1);
+  auto& axis = machine.axes.front();
+  axis.friction.use = "coulomb_viscous";
+  axis.effects.clear();
+  axis.encoder.noise = axis.position_controller.increment = 0.0;
+  axis.encoder.increment = coarse_increment;
+  return machine;
+}
+
+// Set-points to and fro over some 30 mm.
+Log there_and_back() {
+  Log log;
+  log.source = "moves";
+  log.period = 1e-3;
+  log.axes.resize(1);
+  auto& axis = log.axes.front();
+  for (int k = 0; k < 6000; ++k) {
+    const double t = k * log.period;
+    log.t.push_back(t);
+    axis.x_set.push_back(0.013 * std::min(1.0, t) * (std::sin(4.1 * t) + 0.3 * std::sin(11.0 * t)));
+    axis.x.push_back(axis.x_set.back());
+    axis.i.push_back(0.0);
+  }
+  return log;
+}
+
+// The record of such an axis whose encoder was switched on elsewhere within an increment.
+Log recorded_elsewhere(const machine::Machine& machine) {
+  const auto log = there_and_back();
+  auto moved = log;
+  for (double& x : moved.axes.front().x_set) x += 0.29 * coarse_increment;
+  auto record = without_noise(machine, 0, {moved}).replayed.front();
+  record.source = log.source;
+  record.axes.front().x_set = log.axes.front().x_set;
+  return record;
+}
+
+}  // namespace
+
+// Of two runs with independent increments the difference has twice the square of one; of one and the mean of four 5/4.
+TEST(OwnRuns, LeaveFewerIncrementsOnAverage) {
+  const auto machine = coarse_axis();
+  const auto& axis = machine.axes.front();
+  Record record;
+  record.logs = {recorded_elsewhere(machine)};
+  const auto settings = wide_band(record.logs);
+  measure(record, axis, settings);
+  const Eigen::VectorXd raw = record.target;
+  const auto motion = drive(record, machine, 0);
+  ASSERT_FALSE(motion.empty());
+  regress_on(record, motion, axis, settings);
+  const Eigen::VectorXd of_one =
+      (raw - own_residual(record.simulated, record.logs, axis, settings)).cwiseProduct(record.regressors.counts());
+  EXPECT_LT(record.target.squaredNorm(), 0.8 * of_one.squaredNorm());
+}
+
+// A law without a contact seen from a run whose presliding is of nanometres: what its column explains, no run shows.
+TEST(OwnRuns, BearOutNoTermThatTheyDoNotShow) {
+  const auto machine = coarse_axis();
+  Record record;
+  record.logs = {recorded_elsewhere(machine)};
+  const auto settings = wide_band(record.logs);
+  const auto& axis = machine.axes.front();
+  measure(record, axis, settings);
+  const auto motion = drive(record, machine, 0);
+  ASSERT_FALSE(motion.empty());
+  regress_on(record, motion, axis, settings);
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  const Eigen::VectorXd noise = Eigen::VectorXd::NullaryExpr(record.target.size(), [&] {
+                                  return normal(random);
+                                }).cwiseProduct(record.regressors.counts());
+  std::vector<EffectResponse> responses;
+  responses.emplace_back(machine, 0, record.driven, settings, FrictionAlong::own_motion);
+  SearchContext context;
+  context.axis = axis;
+  context.signals = settings;
+  context.reversals = 8;
+  Term term;
+  term.candidate = *candidate_index(sim::id_of<sim::PreslidingHysteresis>());
+  term.shape = 1e-8;
+  term.coefficients = Eigen::VectorXd::Constant(1, 1e-8);
+  term.covariance = Eigen::MatrixXd::Constant(1, 1, 1e-18);
+  term.nats = 200.0;
+  const auto description = describe_in_closed_loop({term}, {}, responses, record.regressors, noise, noise, context);
+  EXPECT_TRUE(description.terms.empty());
+  EXPECT_TRUE(description.findings.empty());
+  EXPECT_EQ(description.remainders.size(), 1U);
+}
+
+// The fastest motion of an axis without set-points is the loop's answer to what disturbs it, in which a mode would
+// live.
+TEST(OwnRuns, AskForNoModeWhereTheMotionIsDisturbed) {
+  SearchContext context;
+  context.axis = coarse_axis().axes.front();
+  context.log_period = 1e-3;
+  const auto& mode = candidates()[*candidate_index(sim::id_of<sim::StructuralResonance>())];
+  EXPECT_FALSE(mode.grid(context).empty());
+  context.disturbed_motion = true;
+  EXPECT_TRUE(mode.grid(context).empty());
+}
+
+}  // namespace stiction::host
