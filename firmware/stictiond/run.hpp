@@ -221,8 +221,11 @@ RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const Driv
           stop_asked = true;  // all that is let through then
         });
       const bool begins = can && loop.loop().slow() && can->receive(loop.now_ns(), programme.remote());
+      const bool suspended = clock != nullptr && clock->was_suspended();
+      if (suspended) log.push(loop.now_ns(), LogLevel::error, "the computer was suspended");
       tick_under_watch(programme, loop, hal::power_cut,
-                       stop_asked || hal::stop_wanted != 0);  // by a signal: a controlled stop, then the end
+                       stop_asked || hal::stop_wanted != 0,  // by a signal: a controlled stop, then the end
+                       suspended);
       if (begins) {
         show_on_can(loop, programme, can->motion_allowed(), shown);
         can->send(shown);

@@ -121,6 +121,37 @@ TEST(TickClock, StartsAgainWhenToldTo) {
   EXPECT_EQ(s.clock.missed(), 0u);
 }
 
+// CLOCK_MONOTONIC stands still while the computer sleeps: only the other clock tells.
+TEST(TickClock, SeesThatTheComputerWasSuspendedOnceASuspension) {
+  Started s;
+  s.wait_late(0);
+  for (const std::int64_t suspended_ns : {1'000'000LL, 8 * 3'600'000'000'000LL}) {
+    s.time.suspended_ns += suspended_ns;
+    s.wait_late(10);
+    EXPECT_TRUE(s.clock.was_suspended()) << suspended_ns;
+    EXPECT_EQ(s.clock.fault(), Fault::clock_jump);
+    s.wait_late(0);
+    EXPECT_FALSE(s.clock.was_suspended());
+    EXPECT_EQ(s.clock.fault(), Fault::none);
+  }
+  EXPECT_EQ(s.clock.jumps(), 2u);
+  EXPECT_EQ(s.clock.missed(), 0u);
+}
+
+TEST(TickClock, TakesNoDelayBetweenItsReadingsForASuspension) {
+  FakeClock time;
+  time.suspended_ns = 3'600'000'000'000;  // before the start of the programme
+  for (const std::int64_t work_ns : {0, 30, 20'000}) {
+    time.work_per_reading_ns = work_ns;
+    Clock clock{period_ns, {&time}};
+    for (int i = 0; i < 100; ++i) {
+      time.work_per_reading_ns = i % 3 == 0 ? work_ns : 0;
+      clock.wait();
+      ASSERT_FALSE(clock.was_suspended()) << i;
+    }
+  }
+}
+
 TEST(TickClock, CountsHowLateEveryTickBegan) {
   Started s;
   for (const std::int64_t late : {10, 10, 3000, 70'000}) s.wait_late(late);
