@@ -57,12 +57,13 @@ class BasicTickClock {
     if (jumped) {
       add(jumps_, 1);
       late_in_a_row_ = 0;
+      lateness_ns_ = 0;
       fault_ = Fault::clock_jump;
       next_ns_ = now;
     } else {
+      lateness_.add(now - next_ns_);
       count_missed(now - next_ns_);
       fault_ = late_in_a_row_ > late_ticks_borne ? Fault::missed_deadline : Fault::none;
-      lateness_.add(lateness_ns_);
     }
     last_ns_ = now;
     const std::int64_t tick_ns = next_ns_;
@@ -94,7 +95,7 @@ class BasicTickClock {
   Fault fault() const { return fault_; }
   // Whether the computer was suspended before the last tick; its time then shows no jump, as the clock stood still.
   bool was_suspended() const { return suspended_; }
-  std::int64_t lateness_ns() const { return lateness_ns_; }    // of the last tick, after its nominal time
+  std::int64_t lateness_ns() const { return lateness_ns_; }    // of the last tick, after the time that wait() gave
   std::uint64_t missed_before() const { return missed_now_; }  // ticks missed right before the last one
   std::uint64_t missed() const { return missed_.load(std::memory_order_relaxed); }  // ticks, since the (re)start
   std::uint64_t jumps() const { return jumps_.load(std::memory_order_relaxed); }    // of the clock
@@ -117,6 +118,7 @@ class BasicTickClock {
       late_in_a_row_ = 0;
       return;
     }
+    lateness_ns_ = late % period_ns_;
     missed_now_ = static_cast<std::uint64_t>(late / period_ns_);
     late_in_a_row_ += missed_now_;
     add(missed_, missed_now_);

@@ -54,6 +54,16 @@ TEST(TickClock, LetsALateTickTakeThePlaceOfThoseMissed) {
   EXPECT_EQ(s.clock.missed(), 5u);
 }
 
+// Who waits for answers from the tick's time on would otherwise wait for the missed ticks once more, and be late again.
+TEST(TickClock, CountsTheLatenessOfATickFromTheTimeThatItGives) {
+  Started s;
+  for (const std::int64_t late_ns : {0L, 100L, period_ns - 1, period_ns, 5 * period_ns + 100}) {
+    const std::int64_t tick_ns = s.wait_late(late_ns);
+    EXPECT_EQ(tick_ns + s.clock.lateness_ns(), s.time.now_ns) << late_ns;
+  }
+  EXPECT_EQ(s.clock.lateness().read().maximum, 5 * period_ns + 100);
+}
+
 TEST(TickClock, BearsOneMissedTick) {
   Started s;
   s.wait_late(period_ns);
