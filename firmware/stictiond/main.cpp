@@ -59,7 +59,7 @@ int run_can(RealTime& real_time, const DriveConfiguration& configuration, const 
   RunResult result;
   if (has_gpio_lines(configuration.setup, configuration.machine)) {
     hal::BesideLines both(backend, configuration.setup.gpio->chip, input_bias(configuration.setup),
-                          gpio_lines(configuration.setup, configuration.machine));
+                          gpio_lines(configuration.setup, configuration.machine), watchdog_config(configuration.setup));
     result = run(real_time, both, &clock, configuration, options,
                  title + " and lines of " + configuration.setup.gpio->chip, record);
   } else {
