@@ -19,6 +19,7 @@ import sys
 ROOT = pathlib.Path(__file__).parents[2]
 BIN = pathlib.Path(os.environ.get("STICTION_BIN", ROOT / "build/release/bin"))
 FOLDER = pathlib.Path(os.environ.get("STICTION_RT_DIR", ROOT / "build/rt"))
+SCRIPT_SIZE = 1 << 17  # characters; that of 100 starts has 80 000
 TWO_AXES = FOLDER / "two_axes.toml"
 PROGRAMMES = [BIN / "stictiond", BIN / "stiction-plant", BIN / "can_adapter_test"]
 TOOLS = ["/usr/bin/cyclictest", "/usr/bin/hackbench", "/usr/bin/chrt", shutil.which("ip", path="/bin:/sbin:/usr/bin:/usr/sbin")]
@@ -33,6 +34,8 @@ ln -s /data /share/stiction/machines
 ip link add vcan0 type vcan
 ip link set vcan0 mtu 72 up
 echo -1 >/proc/sys/kernel/sched_rt_runtime_us
+# What the kernel puts off until after its start.
+sleep 5
 # run NAME: the functions plant and drive until the drive has ended, LOAD beside the loop.
 run() {
   plant >$1.plant 2>&1 &
@@ -165,7 +168,9 @@ def boot(name, script):
     """Runs a script of the guest's in a boot of its own; the folder of its results."""
     folder = FOLDER / name
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "guest.sh").write_text(PREPARE + script)
+    # All boots begin alike to the instruction, so their scripts have one size.
+    text = PREPARE + script
+    (folder / "guest.sh").write_text(text + "#" * (SCRIPT_SIZE - len(text)))
     done = subprocess.run([ROOT / "toolchain/rt/run", folder, folder / "guest.sh", *PROGRAMMES, *TOOLS, *DATA, TWO_AXES],
                           capture_output=True, text=True, check=False)
     if done.returncode != 0:
