@@ -171,8 +171,10 @@ def boot(name, script):
     # All boots begin alike to the instruction, so their scripts have one size.
     text = PREPARE + script
     (folder / "guest.sh").write_text(text + "#" * (SCRIPT_SIZE - len(text)))
+    # Counted time takes as long as the computer is busy with other things; this only ends what hangs.
+    limit = {"RT_TIMEOUT": os.environ.get("RT_TIMEOUT", "3600")}
     done = subprocess.run([ROOT / "toolchain/rt/run", folder, folder / "guest.sh", *PROGRAMMES, *TOOLS, *DATA, TWO_AXES],
-                          capture_output=True, text=True, check=False)
+                          capture_output=True, text=True, check=False, env={**os.environ, **limit})
     if done.returncode != 0:
         sys.exit(f"rt: the boot '{name}' ended with {done.returncode}; expected 0\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
     return folder / "out"
