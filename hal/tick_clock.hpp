@@ -14,10 +14,13 @@ namespace stiction::hal {
 // The kernel's time, ns. Tests put another in its place, so that none depends on the machine's load.
 struct MonotonicTime {
   std::int64_t now_ns() const;
+  // The same, and the time in which the computer was suspended beside it (CLOCK_BOOTTIME).
+  std::int64_t with_suspension_ns() const;
   void sleep_until(std::int64_t time_ns) const;
 };
 
-// Time: now_ns() and sleep_until(time_ns). One thread waits; missed(), jumps() and lateness() may be read by others.
+// Time: now_ns(), with_suspension_ns() and sleep_until(time_ns). One thread waits; missed(), jumps() and lateness() may
+// be read by others.
 template <class Time>
 class BasicTickClock {
  public:
@@ -32,27 +35,35 @@ class BasicTickClock {
 
   // Sleeps until the next tick and returns its nominal time (ns). The first call starts the clock. A tick that begins
   // more than a period late takes the place of those that were due meanwhile: they are missed. After a jump the clock
-  // starts again at the new time, at once.
+  // starts again at the new time, at once; a computer that was suspended has let time pass that now_ns() does not show,
+  // and counts as a jump.
   std::int64_t wait() {
     std::int64_t now = time_.now_ns();
     first_ = !started_;
+    suspended_ = false;
     if (first_) start(now);
     bool jumped = jumped_since_last(now);
     if (!jumped) {
       time_.sleep_until(next_ns_);
+      // In this order: without a suspension the distance is at most that of the start, however long this thread waits
+      // between the two readings.
+      const std::int64_t with_suspension = time_.with_suspension_ns();
       now = time_.now_ns();
-      jumped = jumped_since_last(now);
+      suspended_ = with_suspension - now > suspension_ns_;
+      if (suspended_) suspension_ns_ = time_.with_suspension_ns() - now;
+      jumped = suspended_ || jumped_since_last(now);
     }
     missed_now_ = 0;
     if (jumped) {
       add(jumps_, 1);
       late_in_a_row_ = 0;
+      lateness_ns_ = 0;
       fault_ = Fault::clock_jump;
       next_ns_ = now;
     } else {
+      lateness_.add(now - next_ns_);
       count_missed(now - next_ns_);
       fault_ = late_in_a_row_ > late_ticks_borne ? Fault::missed_deadline : Fault::none;
-      lateness_.add(lateness_ns_);
     }
     last_ns_ = now;
     const std::int64_t tick_ns = next_ns_;
@@ -82,7 +93,9 @@ class BasicTickClock {
   // Of the last tick: a missed deadline where it and the one before began later than a period (or two were left out at
   // once), a clock jump, or none. The next tick in time has none again.
   Fault fault() const { return fault_; }
-  std::int64_t lateness_ns() const { return lateness_ns_; }    // of the last tick, after its nominal time
+  // Whether the computer was suspended before the last tick; its time then shows no jump, as the clock stood still.
+  bool was_suspended() const { return suspended_; }
+  std::int64_t lateness_ns() const { return lateness_ns_; }    // of the last tick, after the time that wait() gave
   std::uint64_t missed_before() const { return missed_now_; }  // ticks missed right before the last one
   std::uint64_t missed() const { return missed_.load(std::memory_order_relaxed); }  // ticks, since the (re)start
   std::uint64_t jumps() const { return jumps_.load(std::memory_order_relaxed); }    // of the clock
@@ -94,6 +107,7 @@ class BasicTickClock {
     last_ns_ = now;
     next_ns_ = now + period_ns_;
     late_in_a_row_ = 0;
+    suspension_ns_ = time_.with_suspension_ns() - now;  // and what passed between the two readings
   }
 
   bool jumped_since_last(std::int64_t now) const { return now < last_ns_ || now - last_ns_ > jump_ns; }
@@ -104,6 +118,7 @@ class BasicTickClock {
       late_in_a_row_ = 0;
       return;
     }
+    lateness_ns_ = late % period_ns_;
     missed_now_ = static_cast<std::uint64_t>(late / period_ns_);
     late_in_a_row_ += missed_now_;
     add(missed_, missed_now_);
@@ -121,6 +136,8 @@ class BasicTickClock {
   std::int64_t next_ns_ = 0;
   std::int64_t last_ns_ = 0;  // when the last tick began
   std::int64_t lateness_ns_ = 0;
+  std::int64_t suspension_ns_ = 0;  // since the computer's start, at most
+  bool suspended_ = false;
   std::uint64_t missed_now_ = 0;
   std::uint64_t late_in_a_row_ = 0;
   Fault fault_ = Fault::none;

@@ -55,11 +55,19 @@ bool CanServer::receive(std::int64_t now_ns, std::span<RemoteAxis> axes) {
   if (!begins) return false;
   hal::can::Received received;
   sync_age_ns_.reset();
-  for (std::uint32_t i = 0; i < most_taken && socket_.receive(received, 0); ++i) {
+  std::uint32_t taken = 0;
+  for (; taken < most_taken && socket_.receive(received, 0); ++taken) {
     if (received.frame.id == hal::can::sync_id)
       sync_age_ns_ = hal::MonotonicTime().now_ns() - received.received_ns;
     else
       frames_.take(now_ns, received.frame, axes);
+  }
+  // A controller that is silent for a second has stopped its axes by the watch over it, or commands none.
+  if (taken > 0) {
+    look_again_ns_ = now_ns + second_ns;
+  } else if (now_ns >= look_again_ns_) {
+    look_again_ns_ = now_ns + second_ns;
+    socket_.find_again();
   }
   for (auto& axis : axes) axis.begin_cycle();
   return true;

@@ -101,6 +101,7 @@ class CanServer {
   ControllerFrames frames_;
   hal::can::CanSocket socket_;
   std::uint32_t slow_ticks_ = 0;
+  std::int64_t look_again_ns_ = INT64_MIN;  // for an adapter, not before
   std::uint64_t send_failed_ = 0;
   std::optional<std::int64_t> sync_age_ns_;
 };

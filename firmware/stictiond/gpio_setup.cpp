@@ -57,6 +57,11 @@ hal::Bias input_bias(const machine::DriveSetup& setup) {
   return setup.gpio ? biases[static_cast<std::size_t>(setup.gpio->bias)] : hal::Bias::as_is;
 }
 
+hal::WatchdogConfig watchdog_config(const machine::DriveSetup& setup) {
+  if (!setup.gpio) return {};
+  return {.line = line(setup.gpio->watchdog), .period_ns = ns(setup.gpio->watchdog_period)};
+}
+
 std::vector<hal::AxisLines> gpio_lines(const machine::DriveSetup& setup, const machine::Machine& machine) {
   std::vector<hal::AxisLines> lines;
   for (const auto& axis : machine.axes) lines.push_back(lines_of(axis.name, setup.axes.at(axis.name).line));
@@ -65,6 +70,7 @@ std::vector<hal::AxisLines> gpio_lines(const machine::DriveSetup& setup, const m
 
 bool has_gpio_lines(const machine::DriveSetup& setup, const machine::Machine& machine) {
   const auto lines = gpio_lines(setup, machine);
+  if (watchdog_config(setup).line.wired()) return true;
   return setup.gpio && std::any_of(lines.begin(), lines.end(), [](const hal::AxisLines& axis) {
            return axis.enable.wired() || axis.brake.wired() || axis.fault.wired() || axis.limit_negative.wired() ||
                   axis.limit_positive.wired() || axis.home.wired() || axis.index.wired();
@@ -76,7 +82,8 @@ hal::GpioBackendConfig gpio_configuration(const machine::DriveSetup& setup, cons
   if (!setup.gpio) throw hal::GpioError("the machine file has no table [drive.gpio]; name the gpiochip there");
   if (!setup.gpio->pwm_chip)
     throw hal::GpioError("[drive.gpio] names no pwm_chip; expected a folder of /sys/class/pwm");
-  hal::GpioBackendConfig config{.chip = setup.gpio->chip, .bias = input_bias(setup), .axes = {}};
+  hal::GpioBackendConfig config{
+      .chip = setup.gpio->chip, .bias = input_bias(setup), .axes = {}, .watchdog = watchdog_config(setup)};
   for (const auto& axis : machine.axes)
     config.axes.push_back(configuration_of(axis, setup.axes.at(axis.name).line, *setup.gpio, takes_over));
   return config;

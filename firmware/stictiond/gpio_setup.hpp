@@ -11,10 +11,13 @@ namespace stiction::drive {
 
 hal::Bias input_bias(const machine::DriveSetup& setup);
 
+// The pulse for a watchdog outside of the computer. `setup`: of the machine file.
+hal::WatchdogConfig watchdog_config(const machine::DriveSetup& setup);
+
 // Enable, brake, fault and switches of every axis, in the machine's order.
 std::vector<hal::AxisLines> gpio_lines(const machine::DriveSetup& setup, const machine::Machine& machine);
 
-// Whether any of them is wired to the chip of [drive.gpio].
+// Whether any of them, or the pulse for a watchdog, is wired to the chip of [drive.gpio].
 bool has_gpio_lines(const machine::DriveSetup& setup, const machine::Machine& machine);
 
 // A machine on GPIO alone. Throws hal::GpioError where [drive.gpio] is missing, or where an axis has current

@@ -58,11 +58,14 @@ class LoopWatchdog {
 };
 
 // One tick of a programme over a loop that may have been cut since the last one: the loop then trips fault 51 for every
-// axis, and the gate opens again once they are off; they remain so until the fault is reset. `programme`, `loop`: of
-// the tick; `cut`: of the process; `stop_wanted`: a controlled stop, then the end.
+// axis, and the gate opens again once they are off; they remain so until the fault is reset. After a suspension of the
+// computer it trips fault 49. `programme`, `loop`: of the tick; `cut`: of the process; `stop_wanted`: a controlled
+// stop, then the end; `suspended`: whether the computer was suspended since the last tick, which no time of a tick
+// shows.
 template <class Programme, class Loop>
-void tick_under_watch(Programme& programme, Loop& loop, hal::PowerCut& cut, bool stop_wanted) {
+void tick_under_watch(Programme& programme, Loop& loop, hal::PowerCut& cut, bool stop_wanted, bool suspended) {
   const bool was_cut = cut.is_cut();
+  if (suspended) loop.trip(Fault::clock_jump);
   if (was_cut) loop.trip(Fault::watchdog_starved);
   programme.tick(stop_wanted);
   if (was_cut) cut.release();

@@ -17,6 +17,7 @@
 #include "firmware/stictiond/remote_setup.hpp"
 #include "firmware/stictiond/run.hpp"
 #include "firmware/stictiond/run_record.hpp"
+#include "firmware/stictiond/udev_rules.hpp"
 #include "firmware/version/version.hpp"
 #include "hal/gpio/beside_lines.hpp"
 #include "hal/gpio/gpio_backend.hpp"
@@ -59,7 +60,7 @@ int run_can(RealTime& real_time, const DriveConfiguration& configuration, const 
   RunResult result;
   if (has_gpio_lines(configuration.setup, configuration.machine)) {
     hal::BesideLines both(backend, configuration.setup.gpio->chip, input_bias(configuration.setup),
-                          gpio_lines(configuration.setup, configuration.machine));
+                          gpio_lines(configuration.setup, configuration.machine), watchdog_config(configuration.setup));
     result = run(real_time, both, &clock, configuration, options,
                  title + " and lines of " + configuration.setup.gpio->chip, record);
   } else {
@@ -132,6 +133,14 @@ int print_budgets(const DriveConfiguration& configuration) {
   return refused ? exit_refused : exit_done;
 }
 
+// On the machine itself: the chip's device is looked up.
+int print_udev_rules(const DriveConfiguration& configuration) {
+  const auto& gpio = configuration.setup.gpio;
+  if (!gpio) throw StartRefused("found no table [drive.gpio]; expected one with the chip that the rules are for");
+  fmt::print("{}", udev_rules(*gpio, hal::chip_name(gpio->chip), "/sys"));
+  return exit_done;
+}
+
 // What a killed run left: to have the lines and to give them back makes them inactive and stops the PWM.
 int put_to_rest(const DriveConfiguration& configuration, const DriveOptions& options) {
   const auto& [setup, machine] = std::tie(configuration.setup, configuration.machine);
@@ -158,6 +167,7 @@ int serve(const DriveOptions& options) {
     throw StartRefused("found no --machine; expected a machine file or a shipped machine's name");
   const auto configuration = read_configuration(options);
   if (options.budget) return print_budgets(configuration);
+  if (options.udev) return print_udev_rules(configuration);
   if (options.dbc) {
     fmt::print("{}", dbc_page(configuration));
     return exit_done;

@@ -13,7 +13,7 @@ struct DriveOptions {
   std::vector<std::string> set;
   std::optional<double> hold;  // s
   bool unpaced = false, budget = false, check_realtime = false, dbc = false, faults = false, modbus_registers = false;
-  bool rest = false;
+  bool rest = false, udev = false;
 
   static constexpr double longest_hold = 31'536'000.0;  // s, a year
 
@@ -48,6 +48,8 @@ struct DriveOptions {
     program.add_flag("--check-realtime", check_realtime,
                      "check whether this computer is fit for the loop, print the result and exit");
     program.add_flag("--rest", rest, "put lines and PWM of a run that was killed to rest and exit");
+    program.add_flag("--udev", udev,
+                     "print the rules for udev that give the drive's group the chips of the machine and exit");
     program.add_flag("--faults", faults, "print the table of faults and exit");
     program.add_flag("--modbus-registers", modbus_registers, "print the Modbus registers as Markdown and exit");
     program.add_flag("--dbc", dbc, "print the frames of the CAN bus as a DBC file and exit");

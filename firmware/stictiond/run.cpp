@@ -1,6 +1,7 @@
 #include "firmware/stictiond/run.hpp"
 
 #include <fmt/format.h>
+#include <time.h>
 
 #include <cmath>
 
@@ -9,18 +10,28 @@
 
 namespace stiction::drive {
 
-std::string describe_timing(const hal::LoopTiming& timing, const hal::TimeHistogram& lateness, std::uint64_t missed) {
-  std::string text = fmt::format("{:<10} {:>12} {:>12} {:>12}\n", "time, us", "median", "99.9 %", "largest");
+std::int64_t processor_time_ns() {
+  timespec used{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
+  return used.tv_sec * 1'000'000'000 + used.tv_nsec;
+}
+
+std::string describe_timing(const hal::LoopTiming& timing, const hal::TimeHistogram& lateness, std::uint64_t missed,
+                            double processor_ns) {
+  std::string text =
+      fmt::format("{:<10} {:>12} {:>12} {:>12} {:>12}\n", "time, us", "median", "99.9 %", "largest", "mean");
   const auto row = [&](const char* name, const hal::TimeHistogram& histogram) {
     const auto counts = histogram.read();
-    text +=
-        fmt::format("{:<10} {:>12.2f} {:>12.2f} {:>12.2f}\n", name, static_cast<double>(counts.quantile(0.5)) * 1e-3,
-                    static_cast<double>(counts.quantile(0.999)) * 1e-3, static_cast<double>(counts.maximum) * 1e-3);
+    text += fmt::format("{:<10} {:>12.2f} {:>12.2f} {:>12.2f} {:>12.3f}\n", name,
+                        static_cast<double>(counts.quantile(0.5)) * 1e-3,
+                        static_cast<double>(counts.quantile(0.999)) * 1e-3, static_cast<double>(counts.maximum) * 1e-3,
+                        counts.mean * 1e-3);
   };
   row("lateness", lateness);
   row("work", timing.work());
   for (const auto part : {hal::LoopPart::read, hal::LoopPart::control, hal::LoopPart::write})
     row(hal::loop_part_names[static_cast<std::size_t>(part)], timing.part(part));
+  text += fmt::format("processor time of the loop's thread {:.3f} us a tick\n", processor_ns * 1e-3);
   return text + fmt::format("missed ticks {}\n", missed);
 }
 

@@ -38,8 +38,13 @@ struct RunResult {
 };
 
 // What the loop did with its time, for people. `timing`: durations of reading, control and writing; `lateness`: of the
-// ticks; `missed`: number of ticks that began later than a period.
-std::string describe_timing(const hal::LoopTiming& timing, const hal::TimeHistogram& lateness, std::uint64_t missed);
+// ticks; `missed`: number of ticks that began later than a period; `processor_ns`: that the loop's thread ran in a
+// tick, without waiting, in the mean.
+std::string describe_timing(const hal::LoopTiming& timing, const hal::TimeHistogram& lateness, std::uint64_t missed,
+                            double processor_ns);
+
+// Of the calling thread, ns.
+std::int64_t processor_time_ns();
 
 // What the loop did with its time, for a client. `clock`: of the loop; `timing`: durations; `state`: is filled.
 void show_timing(const hal::TickClock& clock, const hal::LoopTiming& timing, PublishedState& state);
@@ -158,6 +163,7 @@ RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const Driv
   ControllerClock controller_clock(configuration);
 
   const double period = configuration.machine.timing.fast_period;
+  double processor_ns = 0.0;
   ServiceNotify notify;
   {
     // One in a time of its own has no clock that it could be late by.
@@ -208,6 +214,7 @@ RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const Driv
     if (record.broken_off()) say(LogLevel::warning, "the last run did not end in order, but " + *record.broken_off());
     loop.begin();  // every thread has been made, and what came before took its time
     programme.tick(false);
+    const std::int64_t processor_begin_ns = processor_time_ns();
     log.push(loop.now_ns(), LogLevel::info, "the loop has begun");
     if (task.serve && !can && !modbus)
       log.push(loop.now_ns(), LogLevel::warning,
@@ -221,8 +228,11 @@ RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const Driv
           stop_asked = true;  // all that is let through then
         });
       const bool begins = can && loop.loop().slow() && can->receive(loop.now_ns(), programme.remote());
+      const bool suspended = clock != nullptr && clock->was_suspended();
+      if (suspended) log.push(loop.now_ns(), LogLevel::error, "the computer was suspended");
       tick_under_watch(programme, loop, hal::power_cut,
-                       stop_asked || hal::stop_wanted != 0);  // by a signal: a controlled stop, then the end
+                       stop_asked || hal::stop_wanted != 0,  // by a signal: a controlled stop, then the end
+                       suspended);
       if (begins) {
         show_on_can(loop, programme, can->motion_allowed(), shown);
         can->send(shown);
@@ -230,6 +240,8 @@ RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const Driv
       }
       if (modbus && loop.loop().slow()) show_on_modbus(loop, programme, period, *modbus);
     }
+    processor_ns =
+        static_cast<double>(processor_time_ns() - processor_begin_ns) / static_cast<double>(programme.progress());
     record.end();
     notify.stopping("the axes are off");
   }
@@ -239,7 +251,7 @@ RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const Driv
   if (can)
     fmt::print("controller: {} frames accepted, {} refused, {} of a wrong length, {} answers not sent\n",
                can->counts().taken, can->counts().refused, can->counts().wrong_size, can->send_failed());
-  if (clock != nullptr) fmt::print("{}", describe_timing(timing, clock->lateness(), clock->missed()));
+  if (clock != nullptr) fmt::print("{}", describe_timing(timing, clock->lateness(), clock->missed(), processor_ns));
   return {programme.faulted()};
 }
 

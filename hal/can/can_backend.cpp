@@ -16,6 +16,9 @@ constexpr std::uint32_t most_taken = 64;
 // sixteen.
 constexpr std::uint32_t most_watched = FrameWatch::foreign_allowed + 1;
 
+// How often an adapter that may have been unplugged is looked for.
+constexpr std::int64_t look_round_ns = 100'000'000;
+
 // The nodes' own identifiers.
 std::vector<Filter> own_frames(const CanBackendConfig& config) {
   std::vector<Filter> filters;
@@ -90,6 +93,7 @@ void CanBackend::read(std::span<Feedback<Signals>> feedback) {
   // What is in the queue beyond the answers belongs to no tick to come.
   while (left > 0 && nodes_socket_.receive(received, 0)) take(received), --left;
   watch_bus();
+  look_for_adapter();
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     auto& node = nodes_[i];
     node.check.end();
@@ -140,6 +144,17 @@ void CanBackend::watch_bus() {
     ++bus_.unknown_id;
     ++unknown_id_now_;
   }
+}
+
+// While the frames of every node are lost, or the controller is off the bus, which has switched the axes off.
+void CanBackend::look_for_adapter() {
+  const bool all_lost = std::all_of(nodes_.begin(), nodes_.end(), [](const Node& node) {
+    return node.fault == Fault::frames_lost || node.fault == Fault::bus_off;
+  });
+  if (!all_lost || now_ns_ < look_again_ns_) return;
+  look_again_ns_ = now_ns_ + look_round_ns;
+  nodes_socket_.find_again();
+  watch_socket_.find_again();
 }
 
 void CanBackend::read_inputs(std::span<DigitalInputs<Signals>> inputs) const {

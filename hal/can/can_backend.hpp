@@ -67,6 +67,7 @@ class CanBackend {
   void send(const Frame& frame);
   void take(const Received& received);
   void watch_bus();
+  void look_for_adapter();
   bool complete() const;
 
   Format format_;
@@ -80,6 +81,7 @@ class CanBackend {
   std::uint32_t tick_ = 0;
   bool started_ = false;
   std::int64_t now_ns_ = 0;
+  std::int64_t look_again_ns_ = 0;  // for an adapter, not before
   bool bus_off_ = false;
   bool bus_off_now_ = false;          // in this tick, whether or not the controller is back within it
   std::uint32_t unknown_id_now_ = 0;  // in this tick

@@ -1,5 +1,6 @@
 #include "hal/can/can_socket.hpp"
 
+#include <fcntl.h>
 #include <linux/can.h>
 #include <linux/can/error.h>
 #include <linux/can/raw.h>
@@ -14,6 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <ctime>
 #include <filesystem>
@@ -77,20 +79,18 @@ void set(int descriptor, const std::string& interface, int level, int option, co
 }  // namespace
 
 CanSocket::CanSocket(const std::string& interface, Format format, std::span<const Filter> filters, bool errors)
-    : format_(format) {
+    : index_file_("/sys/class/net/" + interface + "/ifindex"), format_(format) {
   if (interface.empty() || interface.size() >= IFNAMSIZ)
     fail(interface, "found a name of " + std::to_string(interface.size()) + " characters; expected 1 to 15");
-  const unsigned index = index_of(interface);
+  index_ = static_cast<int>(index_of(interface));
   descriptor_ = ::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_RAW);
   if (descriptor_ < 0)
     fail(interface,
          std::string("no CAN socket: ") + std::strerror(errno) + "; expected a kernel with CAN (modprobe can_raw)");
   try {
     expect_up(descriptor_, interface, format);
-    std::vector<can_filter> wanted;
     for (const auto& f : filters)
-      wanted.push_back({f.id | (f.inverted ? CAN_INV_FILTER : 0u), f.mask | CAN_EFF_FLAG | CAN_RTR_FLAG});
-    set(descriptor_, interface, SOL_CAN_RAW, CAN_RAW_FILTER, wanted.data(), wanted.size() * sizeof(can_filter));
+      filters_.push_back({f.id | (f.inverted ? CAN_INV_FILTER : 0u), f.mask | CAN_EFF_FLAG | CAN_RTR_FLAG});
     const int on = 1;
     const bool all = std::any_of(filters.begin(), filters.end(), [](const Filter& f) { return f.inverted; });
     if (all) set(descriptor_, interface, SOL_CAN_RAW, CAN_RAW_JOIN_FILTERS, &on, sizeof on);
@@ -100,11 +100,7 @@ CanSocket::CanSocket(const std::string& interface, Format format, std::span<cons
     set(descriptor_, interface, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &classes, sizeof classes);
     set(descriptor_, interface, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on);
     set(descriptor_, interface, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
-    sockaddr_can address{};
-    address.can_family = AF_CAN;
-    address.can_ifindex = static_cast<int>(index);
-    if (::bind(descriptor_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
-      fail(interface, std::string("cannot be bound: ") + std::strerror(errno));
+    if (!bind(index_)) fail(interface, std::string("cannot be bound: ") + std::strerror(errno));
   } catch (...) {
     ::close(descriptor_);
     throw;
@@ -112,6 +108,34 @@ CanSocket::CanSocket(const std::string& interface, Format format, std::span<cons
 }
 
 CanSocket::~CanSocket() { ::close(descriptor_); }
+
+// The kernel drops the filters together with an interface that goes (net/can/raw.c, raw_notify).
+bool CanSocket::bind(int index) const {
+  if (::setsockopt(descriptor_, SOL_CAN_RAW, CAN_RAW_FILTER, filters_.data(),
+                   static_cast<socklen_t>(filters_.size() * sizeof(can_filter))) != 0)
+    return false;
+  sockaddr_can address{};
+  address.can_family = AF_CAN;
+  address.can_ifindex = index;
+  return ::bind(descriptor_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+}
+
+// The kernel never gives an index twice: one with the same number is the same interface. Read from sysfs, as the ioctl
+// for it (SIOCGIFINDEX) has the kernel look for a module where there is no interface, which held the loop up for
+// seconds.
+bool CanSocket::find_again() {
+  const int file = ::open(index_file_.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return false;
+  std::array<char, 16> digits{};
+  const ssize_t size = ::read(file, digits.data(), digits.size());
+  ::close(file);
+  int index = 0;
+  if (size <= 0 || std::from_chars(digits.data(), digits.data() + size, index).ec != std::errc{}) return false;
+  if (index == index_) return true;
+  if (!bind(index)) return false;
+  index_ = index;
+  return true;
+}
 
 bool CanSocket::send(const Frame& frame) {
   canfd_frame wire{};

@@ -2,11 +2,14 @@
 // Nothing here waits but receive(), which waits in ppoll() until a deadline.
 #pragma once
 
+#include <linux/can.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "hal/can/frames.hpp"
 
@@ -46,12 +49,23 @@ class CanSocket {
   // The next frame; waits for it until `deadline_ns` on CLOCK_MONOTONIC (0: does not wait). False when none came.
   bool receive(Received& received, std::int64_t deadline_ns);
 
+  // True where the interface is that of the start, or one with its name has taken its place and is bound now: an
+  // adapter that is unplugged takes its interface with it, and a socket of that hears nothing when the adapter is back.
+  // For who has heard nothing for a while and whose axes are off: it costs a few system calls, and to bind waits for
+  // others that change interfaces. Allocates nothing.
+  bool find_again();
+
   std::uint64_t lost_in_kernel() const { return lost_in_kernel_; }  // frames that the socket's queue had no room for
 
  private:
   bool take(Received& received);
 
+  bool bind(int index) const;
+
   int descriptor_ = -1;
+  std::string index_file_;  // of the interface
+  int index_ = 0;           // of the interface that is bound
+  std::vector<can_filter> filters_;
   Format format_;
   std::uint64_t lost_in_kernel_ = 0;
 };

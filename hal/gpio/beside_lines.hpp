@@ -20,9 +20,10 @@ class BesideLines {
   static_assert(std::same_as<typename B::Signals, Signals>);
 
   // `backend` must outlive this. `axes`: one an axis of it, in its order. Throws GpioError. `chip`: name or path of the
-  // gpiochip; `bias`: of its inputs.
-  BesideLines(B& backend, const std::string& chip, Bias bias, std::span<const AxisLines> axes)
-      : backend_(backend), lines_(chip, bias), io_(lines_, axes), latches_(axes.size()) {
+  // gpiochip; `bias`: of its inputs; `watchdog`: of the pulse.
+  BesideLines(B& backend, const std::string& chip, Bias bias, std::span<const AxisLines> axes,
+              const WatchdogConfig& watchdog = {})
+      : backend_(backend), lines_(chip, bias), io_(lines_, axes, watchdog), latches_(axes.size()) {
     if (axes.size() != backend.axis_count())
       throw GpioError("lines for a different number of axes than the machine has");
   }
@@ -32,9 +33,9 @@ class BesideLines {
   void begin() requires KernelTimeBackend<B> { backend_.begin(); }
 
   std::int64_t wait_for_tick() {
-    const std::int64_t now_ns = backend_.wait_for_tick();
-    lines_.poll(now_ns);
-    return now_ns;
+    now_ns_ = backend_.wait_for_tick();
+    lines_.poll(now_ns_);
+    return now_ns_;
   }
 
   void read(std::span<Feedback<Signals>> feedback) {
@@ -52,6 +53,7 @@ class BesideLines {
     backend_.write(command);
     for (std::size_t i = 0; i < command.size(); ++i)
       if (command[i].enable) io_.set_enable(i, true);
+    io_.pulse(now_ns_);
   }
 
   void read_inputs(std::span<DigitalInputs<Signals>> inputs) {
@@ -89,6 +91,7 @@ class BesideLines {
   Lines lines_;
   GpioInputsOutputs io_;
   std::vector<IndexLatch> latches_;
+  std::int64_t now_ns_ = 0;
 };
 
 }  // namespace stiction::hal

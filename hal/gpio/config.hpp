@@ -30,6 +30,12 @@ struct AxisLines {
   LineConfig limit_negative, limit_positive, home, index;
 };
 
+// A line for the whole machine: out, the pulse for a watchdog outside of the computer.
+struct WatchdogConfig {
+  LineConfig line;
+  std::int64_t period_ns = 10'000'000;  // from one edge to the next
+};
+
 struct QuadratureConfig {
   LineConfig a, b;         // A leads B in the positive direction
   double increment = 0.0;  // m from one edge of the tracks to the next
@@ -60,6 +66,7 @@ struct GpioBackendConfig {
   std::string chip;  // path, name, label or number of the gpiochip
   Bias bias = Bias::as_is;
   std::vector<GpioAxisConfig> axes;
+  WatchdogConfig watchdog{};
 };
 
 }  // namespace stiction::hal

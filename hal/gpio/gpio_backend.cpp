@@ -24,7 +24,7 @@ std::vector<AxisLines> checked_lines(const GpioBackendConfig& config) {
 }  // namespace
 
 GpioBackend::GpioBackend(const GpioBackendConfig& config, std::int64_t period_ns)
-    : clock_(period_ns), lines_(config.chip, config.bias), io_(lines_, checked_lines(config)) {
+    : clock_(period_ns), lines_(config.chip, config.bias), io_(lines_, checked_lines(config), config.watchdog) {
   for (const auto& axis : config.axes) axes_.push_back(std::make_unique<Axis>(lines_, axis));
 }
 
@@ -33,7 +33,7 @@ GpioBackend::~GpioBackend() {
 }
 
 std::int64_t GpioBackend::wait_for_tick() {
-  const std::int64_t now_ns = clock_.wait();
+  const std::int64_t now_ns = now_ns_ = clock_.wait();
   lines_.poll(now_ns);
   if (clock_.first_tick()) {
     // What moved while the programme was getting ready is not a fault of the encoder.
@@ -63,6 +63,7 @@ void GpioBackend::write(std::span<const Command<Signals>> command) {
     axes_[i]->bridge.write(command[i].enable ? command[i].voltage : zero);
     if (command[i].enable) io_.set_enable(i, true);
   }
+  io_.pulse(now_ns_);
 }
 
 void GpioBackend::read_inputs(std::span<DigitalInputs<Signals>> inputs) {

@@ -65,6 +65,7 @@ class GpioBackend {
   Lines lines_;
   GpioInputsOutputs io_;
   std::vector<std::unique_ptr<Axis>> axes_;
+  std::int64_t now_ns_ = 0;
 };
 
 static_assert(WiredBackend<GpioBackend> && BrakeBackend<GpioBackend> && KernelTimeBackend<GpioBackend>);

@@ -2,7 +2,9 @@
 
 namespace stiction::hal {
 
-GpioInputsOutputs::GpioInputsOutputs(Lines& lines, std::span<const AxisLines> axes) : lines_(lines) {
+GpioInputsOutputs::GpioInputsOutputs(Lines& lines, std::span<const AxisLines> axes, const WatchdogConfig& watchdog)
+    : lines_(lines), pulse_(watchdog.period_ns) {
+  if (watchdog.line.wired()) watchdog_ = lines.add_output(watchdog.line, "watchdog");
   for (const auto& wired : axes) {
     const auto name = [&](const char* what) { return "axis " + wired.name + " " + what; };
     const auto input = [&](const LineConfig& line, const char* what) {

@@ -9,6 +9,7 @@
 
 #include "hal/gpio/config.hpp"
 #include "hal/gpio/lines.hpp"
+#include "hal/gpio/watchdog_pulse.hpp"
 #include "stiction/drive/exchange.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
@@ -16,8 +17,9 @@ namespace stiction::hal {
 
 class GpioInputsOutputs {
  public:
-  // Reserves the lines of every axis, outputs inactive. `lines` must outlive this. Throws GpioError.
-  GpioInputsOutputs(Lines& lines, std::span<const AxisLines> axes);
+  // Reserves the lines of every axis and that of the watchdog, outputs inactive. `lines` must outlive this; `axes`: one
+  // an axis of the machine; `watchdog`: of the pulse. Throws GpioError.
+  GpioInputsOutputs(Lines& lines, std::span<const AxisLines> axes, const WatchdogConfig& watchdog = {});
 
   // From the last Lines::poll. Lines that are not wired leave the inputs as they are.
   void read_inputs(std::size_t axis, DigitalInputs<FixedSignals>& inputs) const;
@@ -34,6 +36,11 @@ class GpioInputsOutputs {
   // From the next set_enable() on. A drive engages its brake while the power still holds the axis.
   void set_brake(std::size_t axis, bool released) { axes_[axis].released = released; }
 
+  // At the end of each tick: the pulse for a watchdog outside of the computer. `now_ns`: time of the tick.
+  void pulse(std::int64_t now_ns) {
+    if (watchdog_) lines_.set(*watchdog_, pulse_.step(now_ns));
+  }
+
  private:
   using Place = std::optional<std::size_t>;
   struct Axis {
@@ -43,6 +50,8 @@ class GpioInputsOutputs {
 
   Lines& lines_;
   std::vector<Axis> axes_;
+  Place watchdog_;
+  WatchdogPulse pulse_;
 };
 
 }  // namespace stiction::hal

@@ -49,7 +49,7 @@ gpiod_chip* open_chip(const std::string& name) {
   if (found.denied)
     throw GpioError(
         fmt::format("gpiochip \"{}\": no permission; {}. Run as a member of the group that owns the device, or install "
-                    "the udev rule of the package",
+                    "the rules that stictiond --udev prints",
                     name, found.text));
   throw GpioError(fmt::format("gpiochip \"{}\": {}; {}. Set drive.gpio.chip to one of them", name, error, found.text));
 }
@@ -64,6 +64,11 @@ int flags_of(const LineConfig& line, Bias bias) {
 std::int64_t ns_of(const timespec& time) { return time.tv_sec * std::int64_t{1'000'000'000} + time.tv_nsec; }
 
 }  // namespace
+
+std::string chip_name(const std::string& chip) {
+  const std::unique_ptr<gpiod_chip, void (*)(gpiod_chip*)> opened(open_chip(chip), ::gpiod_chip_close);
+  return ::gpiod_chip_name(opened.get());
+}
 
 Lines::Lines(const std::string& chip, Bias bias) : chip_(open_chip(chip), ::gpiod_chip_close), bias_(bias) {
   chip_name_ = fmt::format("{} \"{}\"", ::gpiod_chip_name(chip_.get()), ::gpiod_chip_label(chip_.get()));

@@ -29,6 +29,9 @@ class GpioError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// The kernel's name of a chip, such as gpiochip0. `chip`: path, name, label or number. Throws GpioError.
+std::string chip_name(const std::string& chip);
+
 class Lines {
  public:
   // `chip`: path, name, label or number. Throws GpioError.

@@ -49,6 +49,7 @@ void CanNodes::serve(const std::function<bool()>& stop) {
   while (!stop()) {
     if (!socket_.receive(received, monotonic_ns() + silence_ns)) {
       on_silence();
+      socket_.find_again();
       continue;
     }
     const auto address = hal::can::address_of(received.frame, config_.format);

@@ -54,6 +54,16 @@ TEST(TickClock, LetsALateTickTakeThePlaceOfThoseMissed) {
   EXPECT_EQ(s.clock.missed(), 5u);
 }
 
+// Who waits for answers from the tick's time on would otherwise wait for the missed ticks once more, and be late again.
+TEST(TickClock, CountsTheLatenessOfATickFromTheTimeThatItGives) {
+  Started s;
+  for (const std::int64_t late_ns : {0L, 100L, period_ns - 1, period_ns, 5 * period_ns + 100}) {
+    const std::int64_t tick_ns = s.wait_late(late_ns);
+    EXPECT_EQ(tick_ns + s.clock.lateness_ns(), s.time.now_ns) << late_ns;
+  }
+  EXPECT_EQ(s.clock.lateness().read().maximum, 5 * period_ns + 100);
+}
+
 TEST(TickClock, BearsOneMissedTick) {
   Started s;
   s.wait_late(period_ns);
@@ -119,6 +129,37 @@ TEST(TickClock, StartsAgainWhenToldTo) {
   EXPECT_EQ(s.clock.wait(), start + period_ns);
   EXPECT_EQ(s.clock.fault(), Fault::none);
   EXPECT_EQ(s.clock.missed(), 0u);
+}
+
+// CLOCK_MONOTONIC stands still while the computer sleeps: only the other clock tells.
+TEST(TickClock, SeesThatTheComputerWasSuspendedOnceASuspension) {
+  Started s;
+  s.wait_late(0);
+  for (const std::int64_t suspended_ns : {1'000'000LL, 8 * 3'600'000'000'000LL}) {
+    s.time.suspended_ns += suspended_ns;
+    s.wait_late(10);
+    EXPECT_TRUE(s.clock.was_suspended()) << suspended_ns;
+    EXPECT_EQ(s.clock.fault(), Fault::clock_jump);
+    s.wait_late(0);
+    EXPECT_FALSE(s.clock.was_suspended());
+    EXPECT_EQ(s.clock.fault(), Fault::none);
+  }
+  EXPECT_EQ(s.clock.jumps(), 2u);
+  EXPECT_EQ(s.clock.missed(), 0u);
+}
+
+TEST(TickClock, TakesNoDelayBetweenItsReadingsForASuspension) {
+  FakeClock time;
+  time.suspended_ns = 3'600'000'000'000;  // before the start of the programme
+  for (const std::int64_t work_ns : {0, 30, 20'000}) {
+    time.work_per_reading_ns = work_ns;
+    Clock clock{period_ns, {&time}};
+    for (int i = 0; i < 100; ++i) {
+      time.work_per_reading_ns = i % 3 == 0 ? work_ns : 0;
+      clock.wait();
+      ASSERT_FALSE(clock.was_suspended()) << i;
+    }
+  }
 }
 
 TEST(TickClock, CountsHowLateEveryTickBegan) {

@@ -88,6 +88,8 @@ struct Table<CanServerSetup> : EmptyTable<CanServerSetup> {
                                             "controlwords and set-points that a motion controller sends"}};
 };
 
+inline constexpr Range line_numbers{-1, 1023};
+
 inline constexpr std::array<Choice<InputBias>, 4> input_biases{{
     {"as-is", InputBias::as_is, "as the board's firmware left it"},
     {"pull-up", InputBias::pull_up, "to the supply"},
@@ -104,7 +106,15 @@ struct Table<GpioSetup> : EmptyTable<GpioSetup> {
   }};
   static constexpr std::tuple choices{ChoiceParameter<GpioSetup, InputBias>{
       "bias", &GpioSetup::bias, input_biases, InputBias::as_is, "resistor inside the chip at every input"}};
-  static constexpr std::array<Parameter<GpioSetup>, 2> parameters{{
+  static constexpr std::array<Parameter<GpioSetup>, 4> parameters{{
+      {"watchdog", "1", line_numbers, &GpioSetup::watchdog, -1.0,
+       "line of the pulse for a watchdog outside of the computer, by its number; -1: not wired"},
+      {"watchdog_period",
+       "s",
+       {62.5e-6, 1.0},
+       &GpioSetup::watchdog_period,
+       10e-3,
+       "time from one edge of that pulse to the next, as long as the loop goes on"},
       {"pwm_period", "s", {1e-6, 1e-2}, &GpioSetup::pwm_period, 62.5e-6, "period of the PWM"},
       {"dc_link", "V", not_negative(1500.0), &GpioSetup::dc_link, 0.0,
        "voltage between the rails of the half bridges behind the PWM; 0: none"},
@@ -219,8 +229,6 @@ struct Table<StopSetup> : EmptyTable<StopSetup> {
       ChoiceParameter<StopSetup, std::int8_t>{"commander_lost", &StopSetup::commander_lost, commander_lost_codes, 1,
                                               "6007h, when nothing more is heard of who commands the axis"}};
 };
-
-inline constexpr Range line_numbers{-1, 1023};
 
 inline constexpr std::array<Choice<ActiveLevel>, 2> active_levels{{
     {"high", ActiveLevel::high, "the line is high while the signal is active"},

@@ -42,6 +42,8 @@ struct GpioSetup {
   double pwm_period = 62.5e-6;          // s
   double dc_link = 0.0;                 // V between the rails of the half bridges behind the PWM
   InputBias bias = InputBias::as_is;
+  int watchdog = -1;               // line of the pulse for a watchdog outside of the computer; -1: not wired
+  double watchdog_period = 10e-3;  // s, from one edge of it to the next
 };
 
 // Where the drive is a Modbus client: a slow power stage or remote inputs and outputs.

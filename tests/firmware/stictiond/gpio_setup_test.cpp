@@ -24,6 +24,8 @@ pwm_chip = "/sys/class/pwm/pwmchip0"
 pwm_period = "50 us"
 dc_link = "48 V"
 bias = "pull-down"
+watchdog = 9
+watchdog_period = "2 ms"
 [drive.axis.B.line]
 enable = 7
 brake = 8
@@ -67,6 +69,8 @@ TEST(GpioSetup, CarriesEveryKeyOfTheMachineFileToTheBackend) {
   const auto config = drive::gpio_configuration(setup, machine);
   EXPECT_EQ(config.chip, "servo-lines");
   EXPECT_EQ(config.bias, hal::Bias::pull_down);
+  EXPECT_EQ(config.watchdog.line.offset, 9);
+  EXPECT_EQ(config.watchdog.period_ns, 2'000'000);
   ASSERT_EQ(config.axes.size(), 1u);
   const auto& [lines, encoder, pwm] = config.axes[0];
   EXPECT_EQ(lines.name, "B");
@@ -91,6 +95,13 @@ TEST(GpioSetup, FindsNoLinesWhereNoneAreNamed) {
   const auto [machine, setup] = read(machine::test::small_machine);
   EXPECT_FALSE(drive::has_gpio_lines(setup, machine));
   EXPECT_THAT(refusal({machine, setup}), ::testing::HasSubstr("no table [drive.gpio]"));
+}
+
+TEST(GpioSetup, TakesALineForAWatchdogAlone) {
+  const auto [machine, setup] =
+      read(std::string(machine::test::small_machine) + "[drive.gpio]\nchip = \"lines\"\nwatchdog = 2\n");
+  EXPECT_TRUE(drive::has_gpio_lines(setup, machine));
+  EXPECT_EQ(drive::watchdog_config(setup).line.offset, 2);
 }
 
 TEST(GpioSetup, RefusesAnAxisWhoseCurrentIsControlledInTheDrive) {

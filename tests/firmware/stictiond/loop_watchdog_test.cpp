@@ -110,8 +110,15 @@ TEST(TickUnderWatch, TripsTheFaultBeforeTheGateOpensAgain) {
   hal::PowerCut cut;
   Asked asked{cut, {}};
   cut.cut();
-  for (int i = 0; i < 2; ++i) drive::tick_under_watch(asked, asked, cut, false);
+  for (int i = 0; i < 2; ++i) drive::tick_under_watch(asked, asked, cut, false, false);
   EXPECT_EQ(asked.order, (std::vector<std::string>{"watchdog starved", "tick, gate closed", "tick"}));
+}
+
+TEST(TickUnderWatch, TripsAClockJumpInTheFirstTickAfterASuspension) {
+  hal::PowerCut cut;
+  Asked asked{cut, {}};
+  for (const bool suspended : {false, true, false}) drive::tick_under_watch(asked, asked, cut, false, suspended);
+  EXPECT_EQ(asked.order, (std::vector<std::string>{"tick", "clock jump", "tick", "tick"}));
 }
 
 }  // namespace
