@@ -100,6 +100,47 @@ TEST(FollowingError, OfTwiceItsWindowTakesThePowerInTheSameTick) {
   EXPECT_EQ(b.drive.state(), DriveState::fault);
 }
 
+// Bit 13, mode by mode: of pp, pv and csp in the standard, reserved in csv; of a search it means the search itself,
+// which this fault interrupts (bits 13, 12, 10: 0, 0, 1). It stays with the fault and goes with its reset.
+TEST(FollowingError, IsBit13OfTheStatuswordInTheModesThatHaveIt) {
+  struct Row {
+    OperationMode mode;
+    bool shown;
+  };
+  for (const auto& row : {Row{OperationMode::profile_position, true}, Row{OperationMode::profile_velocity, true},
+                          Row{OperationMode::cyclic_position, true}, Row{OperationMode::cyclic_velocity, false},
+                          Row{OperationMode::homing, false}}) {
+    SCOPED_TRACE(static_cast<int>(row.mode));
+    const bool homing = row.mode == OperationMode::homing;
+    auto drive = ServedAxis::drive_config({}, homing ? HomingMethod::limit_positive : HomingMethod::none);
+    drive.following_error = si<FixedSignals::Distance>(error_window);
+    ServedAxis a(drive, ServedAxis::cascade());
+    ASSERT_TRUE(a.enable());
+    a.remote.ask(row.mode);
+    a.remote.ask_target(si<FixedSignals::Position>(0.45));
+    a.remote.ask_velocity(si<FixedSignals::Velocity>(lagging_speed));
+    a.stream(64, 0.0);
+    // Of pp and homing the same bit begins the motion.
+    a.remote.ask(controlword::enable_operation | controlword::new_set_point_bit);
+    ticks_to_the_fault(a);
+    ASSERT_EQ(a.drive.fault(), Fault::following_error);
+    EXPECT_EQ(a.shows(0x2000), row.shown) << "in the tick of the fault";
+    a.coasts = false;
+    a.stream(4000, 0.0);
+    ASSERT_EQ(a.drive.state(), DriveState::fault);
+    EXPECT_EQ(a.shows(0x2000), row.shown) << "without power";
+    if (homing) {
+      EXPECT_EQ(a.statusword() & 0x3400, 0x0400) << "a search is interrupted";
+    }
+    a.remote.ask(controlword::disable_voltage);
+    a.step();
+    a.remote.ask(controlword::fault_reset);
+    a.step();
+    ASSERT_EQ(a.drive.state(), DriveState::switch_on_disabled);
+    EXPECT_FALSE(a.shows(0x2000)) << "behind the reset";
+  }
+}
+
 TEST(FollowingError, CoastsWhere605EhSaysSo) {
   auto a = with_window(0, {.fault_reaction = 0});
   ticks_to_the_fault(a);

@@ -169,6 +169,7 @@ class ServoDrive {
     if (!referenced_) word |= statusword::unreferenced_bit;
     if (mode_ == OperationMode::homing) return static_cast<std::uint16_t>(word | homing_bits());
     if (follows_ && is_cyclic(mode_)) word |= statusword::follows_bit;
+    if (shows_following_error()) word |= statusword::following_error_bit;
     if (limited_) word |= statusword::limit_bit;
     return word;
   }
@@ -197,13 +198,21 @@ class ServoDrive {
     }
   }
 
-  // Bits 13, 12 and 10 of homing: error, attained, at rest.
+  // As long as the fault is latched: without power the error itself is none.
+  constexpr bool shows_following_error() const {
+    const bool has_bit = mode_ == OperationMode::profile_position || mode_ == OperationMode::profile_velocity ||
+                         mode_ == OperationMode::cyclic_position;
+    return has_bit && (fault_ == Fault::following_error || following_ == Fault::following_error);
+  }
+
+  // Bits 13, 12 and 10 of homing: error, attained, at rest. The error stays until the reset; a search that a different
+  // fault ends is interrupted, as the standard calls it, and shows none.
   constexpr std::uint16_t homing_bits() const {
     using Phase = typename Homing<S>::Phase;
     const auto phase = homing_.phase();
     std::uint16_t bits = 0;
     if (phase == Phase::done) bits |= statusword::homed_bit;
-    if (phase == Phase::failed) bits |= statusword::homing_error_bit;
+    if (phase == Phase::failed || fault_ == Fault::homing) bits |= statusword::homing_error_bit;
     const bool ended = phase == Phase::idle || phase == Phase::done || phase == Phase::failed;
     if (ended && last_.velocity == Velocity{}) bits |= statusword::target_bit;
     return bits;
