@@ -190,6 +190,22 @@ TEST(FollowingError, IsBit13OfTheStatuswordInTheModesThatHaveIt) {
   }
 }
 
+TEST(FollowingError, IsBit13AlsoWhereItCameInTheStopOfADifferentFault) {
+  auto a = with_window(0);
+  a.stream(800, lagging_speed);
+  a.trip = Fault::missed_deadline;
+  a.step();
+  a.trip = Fault::none;
+  EXPECT_FALSE(a.shows(0x2000));
+  for (int i = 0; i < 300 && a.drive.powered(); ++i) {
+    a.lag += 9e-6;
+    a.step();
+  }
+  EXPECT_FALSE(a.drive.powered());
+  EXPECT_EQ(a.drive.fault(), Fault::missed_deadline);
+  EXPECT_TRUE(a.shows(0x2000));
+}
+
 TEST(FollowingError, CoastsWhere605EhSaysSo) {
   auto a = with_window(0, {.fault_reaction = 0});
   ticks_to_the_fault(a);
