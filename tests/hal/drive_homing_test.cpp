@@ -123,6 +123,7 @@ TEST(DriveHoming, OfASwitchThatIsStuckClosedEndsInAFault) {
   EXPECT_NE(bench.loop.statusword(0) & statusword::homing_error_bit, 0);
   bench.run(8000);
   EXPECT_FALSE(bench.powered(0));
+  EXPECT_EQ(bench.loop.statusword(0) & 0x3400, 0x2400) << "homing error, at rest: until the reset";
 }
 
 TEST(DriveHoming, IntoTheOtherSwitchStopsThere) {

@@ -100,6 +100,112 @@ TEST(FollowingError, OfTwiceItsWindowTakesThePowerInTheSameTick) {
   EXPECT_EQ(b.drive.state(), DriveState::fault);
 }
 
+// A force of up to 40 A, and an axis that answers to one above 20 A by more than 2 mm/s in 15 ticks the other way.
+ServedAxis forced(double runaway_current = 5.0) {
+  auto drive = ServedAxis::drive_config({}, HomingMethod::none);
+  drive.following_error = si<FixedSignals::Distance>(error_window);
+  drive.supervision.runaway_current = si<FixedSignals::Current>(runaway_current);
+  drive.supervision.runaway_rise = si<FixedSignals::Velocity>(0.5e-3);
+  auto cascade = ServedAxis::cascade();
+  cascade.current_loop = CurrentLoop::none;  // its set current is the force
+  ServedAxis a(drive, cascade);
+  EXPECT_TRUE(a.enable());
+  a.stream(864, lagging_speed);
+  return a;
+}
+// Behind the set-point by a tick's `rate` (m) more than a tick ago.
+void slip_faster(ServedAxis& a, double& rate) {
+  rate += 12e-9;
+  a.lag += rate;
+  a.stream(1, lagging_speed);
+}
+
+TEST(FollowingError, OfAnAxisThatAcceleratesAgainstTheForceIsNoStopAsNoneCouldEnd) {
+  for (const bool strong : {true, false}) {
+    auto a = forced(strong ? 5.0 : 1000.0);
+    double rate = 0.0;
+    for (int i = 0; i < 2000 && a.drive.fault() == Fault::none; ++i) slip_faster(a, rate);
+    EXPECT_EQ(a.drive.fault(), Fault::following_error);
+    EXPECT_NEAR(a.lag, error_window, 3.0 * lagging_speed * tick) << "at the window";
+    EXPECT_EQ(a.drive.powered(), !strong);
+  }
+}
+
+TEST(FollowingError, TakesThePowerInItsStopWhereTheAxisAcceleratesAgainstTheForce) {
+  for (const bool strong : {true, false}) {
+    auto a = forced(strong ? 5.0 : 1000.0);
+    ticks_to_the_fault(a);
+    ASSERT_TRUE(a.drive.powered()) << "it falls behind at one speed";
+    double rate = 5e-6;
+    int ticks = 0;
+    for (; ticks < 60 && a.drive.powered(); ++ticks) {
+      a.lag += rate += 12e-9;
+      a.step();
+    }
+    EXPECT_EQ(a.drive.powered(), !strong);
+    EXPECT_LE(ticks, strong ? 50 : 60) << "31 ticks, and those to a change of 2 mm/s";
+    EXPECT_EQ(a.drive.fault(), Fault::following_error);
+    EXPECT_EQ(a.drive.state(), strong ? DriveState::fault : DriveState::fault_reaction_active);
+  }
+}
+
+// Bit 13, mode by mode: of pp, pv and csp in the standard, reserved in csv; of a search it means the search itself,
+// which this fault interrupts (bits 13, 12, 10: 0, 0, 1). It stays with the fault and goes with its reset.
+TEST(FollowingError, IsBit13OfTheStatuswordInTheModesThatHaveIt) {
+  struct Row {
+    OperationMode mode;
+    bool shown;
+  };
+  for (const auto& row : {Row{OperationMode::profile_position, true}, Row{OperationMode::profile_velocity, true},
+                          Row{OperationMode::cyclic_position, true}, Row{OperationMode::cyclic_velocity, false},
+                          Row{OperationMode::homing, false}}) {
+    SCOPED_TRACE(static_cast<int>(row.mode));
+    const bool homing = row.mode == OperationMode::homing;
+    auto drive = ServedAxis::drive_config({}, homing ? HomingMethod::limit_positive : HomingMethod::none);
+    drive.following_error = si<FixedSignals::Distance>(error_window);
+    ServedAxis a(drive, ServedAxis::cascade());
+    ASSERT_TRUE(a.enable());
+    a.remote.ask(row.mode);
+    a.remote.ask_target(si<FixedSignals::Position>(0.45));
+    a.remote.ask_velocity(si<FixedSignals::Velocity>(lagging_speed));
+    a.stream(64, 0.0);
+    // Of pp and homing the same bit begins the motion.
+    a.remote.ask(controlword::enable_operation | controlword::new_set_point_bit);
+    ticks_to_the_fault(a);
+    ASSERT_EQ(a.drive.fault(), Fault::following_error);
+    EXPECT_EQ(a.shows(0x2000), row.shown) << "in the tick of the fault";
+    a.coasts = false;
+    a.stream(4000, 0.0);
+    ASSERT_EQ(a.drive.state(), DriveState::fault);
+    EXPECT_EQ(a.shows(0x2000), row.shown) << "without power";
+    if (homing) {
+      EXPECT_EQ(a.statusword() & 0x3400, 0x0400) << "a search is interrupted";
+    }
+    a.remote.ask(controlword::disable_voltage);
+    a.step();
+    a.remote.ask(controlword::fault_reset);
+    a.step();
+    ASSERT_EQ(a.drive.state(), DriveState::switch_on_disabled);
+    EXPECT_FALSE(a.shows(0x2000)) << "behind the reset";
+  }
+}
+
+TEST(FollowingError, IsBit13AlsoWhereItCameInTheStopOfADifferentFault) {
+  auto a = with_window(0);
+  a.stream(800, lagging_speed);
+  a.trip = Fault::missed_deadline;
+  a.step();
+  a.trip = Fault::none;
+  EXPECT_FALSE(a.shows(0x2000));
+  for (int i = 0; i < 300 && a.drive.powered(); ++i) {
+    a.lag += 9e-6;
+    a.step();
+  }
+  EXPECT_FALSE(a.drive.powered());
+  EXPECT_EQ(a.drive.fault(), Fault::missed_deadline);
+  EXPECT_TRUE(a.shows(0x2000));
+}
+
 TEST(FollowingError, CoastsWhere605EhSaysSo) {
   auto a = with_window(0, {.fault_reaction = 0});
   ticks_to_the_fault(a);

@@ -46,6 +46,8 @@ TEST(ServoDrive, SearchesItsTravelAndThenFailsWithTheBitsOfHoming) {
     a.step();
   }
   EXPECT_TRUE(moving) << "an error, and not at rest yet";
+  EXPECT_FALSE(a.drive.powered());
+  EXPECT_EQ(a.drive.statusword() & 0x3400, 0x2400) << "the error stays, at rest and without power";
 }
 
 TEST(ServoDrive, HoldsBehindAQuickStopAndGoesOnFromThere) {

@@ -224,7 +224,7 @@ int accelerated(Watched<S>& w, double v, double a, double current, int ticks = 2
   double x = 0.0;
   for (int i = 0; i < 4; ++i) w.at(x += v * tick);
   w.supervision.restart();
-  for (int i = 0; i < 4; ++i) w.at(x += v * tick);
+  for (int i = 0; i < 40; ++i) w.at(x += v * tick);
   w.current(current);
   for (int i = 1; i <= ticks; ++i) {
     v += a * tick;
@@ -241,6 +241,66 @@ TYPED_TEST(SupervisionOf, SeesASpeedThatRisesAgainstTheForceInSixteenTicks) {
   for (const double sign : {1.0, -1.0}) {
     Watched<TypeParam> w;
     EXPECT_EQ(accelerated(w, -0.1 * sign, -5.85 * sign, 14.1 * sign), 16);
+  }
+}
+
+// Whichever way the axis moves: a motor of the wrong sign brakes at first.
+TYPED_TEST(SupervisionOf, TellsAForceThatTheAxisAcceleratesAgainst) {
+  struct Case {
+    double v, a, i;
+    bool resisted;
+  };
+  for (const auto& c : {Case{0.5, -5.85, 14.1, true}, Case{-0.5, 5.85, -14.1, true},   // a wrong sign, braking
+                        Case{0.5, 5.85, 14.1, false}, Case{0.5, -5.85, -14.1, false},  // as the force says
+                        Case{0.5, -5.85, 13.9, false},                                 // too weak to tell
+                        Case{0.5, 0.0, 50.0, false},                                   // against friction
+                        Case{0.5, -2.5, 30.0, false}}) {                               // and a little more
+    Watched<TypeParam> w;
+    accelerated(w, c.v, c.a, c.i, 31);
+    EXPECT_FALSE(w.supervision.resisted()) << "31 ticks behind the eighth, in which half of the change is reached";
+    Watched<TypeParam> longer;
+    accelerated(longer, c.v, c.a, c.i, 40);
+    EXPECT_EQ(longer.supervision.resisted(), c.resisted) << c.v << ' ' << c.a << ' ' << c.i;
+  }
+}
+
+// 100 kN s/m before a force of 2 kN, on the masses of the cross table: the control gets the axis in hand again.
+TYPED_TEST(SupervisionOf, TellsNoResistanceThatAbatesAsTheAxisSlowsDown) {
+  for (const double mass : {225.0, 520.0})
+    for (const double sign : {1.0, -1.0}) {
+      Watched<TypeParam> w;
+      double x = 0.0, v = 0.4 * sign;
+      accelerated(w, v, 0.0, 0.0, 1);
+      w.supervision.restart();
+      for (int i = 0; i < 40; ++i) w.at(x += v * tick);
+      w.current(30.0 * sign);
+      for (int i = 0; i < 400; ++i) {
+        v += (2e3 * sign - 1e5 * v) / mass * tick;
+        w.at(x += v * tick);
+        EXPECT_FALSE(w.supervision.resisted()) << i;
+      }
+    }
+}
+
+TYPED_TEST(SupervisionOf, BeginsTheRowOfAForceAgainWhereItsSignChangesOrThePowerGoes) {
+  for (const bool off : {false, true}) {
+    Watched<TypeParam> w;
+    double x = 0.0, v = 0.5;
+    w.supervision.restart();
+    const auto slower = [&](double current, bool powered) {
+      w.seen.powered = powered;
+      w.current(current);
+      v -= 5.85 * tick;
+      w.at(x += v * tick);
+    };
+    for (int i = 0; i < 40; ++i) slower(0.0, true);
+    for (int i = 0; i < 30; ++i) slower(14.1, true);
+    slower(off ? 14.1 : -14.1, !off);
+    for (int i = 1; i <= 31; ++i) {
+      EXPECT_FALSE(w.supervision.resisted()) << i;
+      slower(14.1, true);
+    }
+    EXPECT_TRUE(w.supervision.resisted());
   }
 }
 

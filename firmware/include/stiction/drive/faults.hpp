@@ -64,7 +64,8 @@ struct FaultDescription {
 inline constexpr std::array<FaultDescription, 25> fault_table{{
     {Fault::following_error, "following error",
      "|x_set - x| above supervision.following_error for longer than drive.axis.NAME.following_error_timeout; above "
-     "twice of it the power is off in the same tick",
+     "twice of it, or where a force above runaway_current meets an acceleration the other way that does not abate, the "
+     "power is off in the same tick",
      1, 0x8611, Detector::axis, Reaction::quick_stop},
     {Fault::over_current, "over-current", "|i| above supervision.over_current", 1, 0x2310},
     {Fault::over_speed, "over-speed", "|v| above supervision.over_speed", 1, 0x8400},

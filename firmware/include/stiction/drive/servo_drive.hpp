@@ -5,7 +5,8 @@
 //
 // While the power stage is off the set-point follows the measured position, so that an enabled axis begins where it
 // stands; an axis that moves is not enabled. A fault whose reaction is a quick stop ends in a stop by the ramp; any
-// other fault on the way takes the power off at once, and so does a stop that is not over stop_margin_ticks after its
+// other fault on the way takes the power off at once, as does a following error that the control itself drives up
+// (Supervision::resisted), and so does a stop that is not over stop_margin_ticks after its
 // set-point came to rest. Whatever is asked for, the speed of the set-point changes by the ramps here or by those of
 // its source (remote_axis.hpp), or the power goes: what is left or halted in motion brakes to rest before anything else
 // is followed, and an offset of the speed comes and goes with what of most_change the set-point leaves.
@@ -118,6 +119,8 @@ class ServoDrive {
     for (const Fault fault : demand.causes) present |= raise(fault, now_ns, axis);
     present |= raise(supervised, now_ns, axis);
     present |= raise(unfound ? Fault::homing : Fault::none, now_ns, axis);
+    // What the control drives up cannot be braked by it, from the beginning of the stop (raise) or on the way.
+    if (stopping_ && fault_ == Fault::following_error && supervision_.resisted()) power_off(axis);
     // Before the cascade sees it, so that a ramp takes the place of what is no set-point.
     raise(follows_ && !demand.set_point.valid ? Fault::set_point : Fault::none, now_ns, axis);
     self_test_ = present ? 0 : self_test_ < self_test_ticks ? static_cast<std::uint8_t>(self_test_ + 1) : self_test_;
@@ -169,6 +172,7 @@ class ServoDrive {
     if (!referenced_) word |= statusword::unreferenced_bit;
     if (mode_ == OperationMode::homing) return static_cast<std::uint16_t>(word | homing_bits());
     if (follows_ && is_cyclic(mode_)) word |= statusword::follows_bit;
+    if (shows_following_error()) word |= statusword::following_error_bit;
     if (limited_) word |= statusword::limit_bit;
     return word;
   }
@@ -197,13 +201,21 @@ class ServoDrive {
     }
   }
 
-  // Bits 13, 12 and 10 of homing: error, attained, at rest.
+  // As long as the fault is latched: without power the error itself is none.
+  constexpr bool shows_following_error() const {
+    const bool has_bit = mode_ == OperationMode::profile_position || mode_ == OperationMode::profile_velocity ||
+                         mode_ == OperationMode::cyclic_position;
+    return has_bit && (fault_ == Fault::following_error || following_ == Fault::following_error);
+  }
+
+  // Bits 13, 12 and 10 of homing: error, attained, at rest. The error stays until the reset; a search that a different
+  // fault ends is interrupted, as the standard calls it, and shows none.
   constexpr std::uint16_t homing_bits() const {
     using Phase = typename Homing<S>::Phase;
     const auto phase = homing_.phase();
     std::uint16_t bits = 0;
     if (phase == Phase::done) bits |= statusword::homed_bit;
-    if (phase == Phase::failed) bits |= statusword::homing_error_bit;
+    if (phase == Phase::failed || fault_ == Fault::homing) bits |= statusword::homing_error_bit;
     const bool ended = phase == Phase::idle || phase == Phase::done || phase == Phase::failed;
     if (ended && last_.velocity == Velocity{}) bits |= statusword::target_bit;
     return bits;
@@ -258,7 +270,8 @@ class ServoDrive {
     (following ? following_ : fault_) = fault;
     const auto* row = description_of(fault);
     const auto way = way_of(StopObject::fault_reaction, config_.stops.fault_reaction);
-    const bool stops = !following && row != nullptr && row->reaction == Reaction::quick_stop && powered_;
+    const bool stops = !following && row != nullptr && row->reaction == Reaction::quick_stop && powered_ &&
+                       !(fault == Fault::following_error && supervision_.resisted());
     if (stops && way.ramp != StopRamp::none) {
       begin_stop(way, axis);
     } else {
