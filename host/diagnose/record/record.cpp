@@ -39,19 +39,38 @@ Eigen::VectorXd known_friction(const Record& record, const machine::AxisModel& a
   return known;
 }
 
-// Runs without noise over the parts of an encoder's increment; empty on an axis that has none.
+// Runs without noise over the parts of an encoder's increment, taken back by those parts; empty on an axis that has
+// none.
 std::vector<std::vector<Log>> runs_elsewhere(const machine::Machine& machine, std::size_t axis,
                                              const std::vector<Log>& driven, Following how) {
   const auto& model = machine.axes[axis];
   std::vector<std::vector<Log>> runs;
   if (!(model.encoder.increment > 0.0)) return runs;
   for (int part = 0; part < parts_of_increment; ++part) {
+    const double by = (part + 0.5) / parts_of_increment * model.encoder.increment;
     auto moved = driven;
     for (auto& log : moved)
-      for (double& x : channels_of(log, model).x_set) x += (part + 0.5) / parts_of_increment * model.encoder.increment;
-    if (auto run = without_noise(machine, axis, moved, how).replayed; !run.empty()) runs.push_back(std::move(run));
+      for (double& x : channels_of(log, model).x_set) x += by;
+    auto run = without_noise(machine, axis, moved, how).replayed;
+    if (run.empty()) continue;
+    for (auto& log : run)
+      for (double& x : log.axes.front().x) x -= by;
+    runs.push_back(std::move(run));
   }
   return runs;
+}
+
+// The logs of `motion` with the mean positions of these runs. A record may read the increments of the run on its own
+// part of one, and hunt as that does, which is in its residual force.
+std::vector<Log> moved_on_average(std::vector<Log> motion, const std::vector<std::vector<Log>>& runs,
+                                  const machine::AxisModel& axis) {
+  for (std::size_t k = 0; k < motion.size(); ++k) {
+    auto& x = channels_of(motion[k], axis).x;
+    std::fill(x.begin(), x.end(), 0.0);
+    for (const auto& run : runs)
+      for (std::size_t i = 0; i < x.size(); ++i) x[i] += run[k].axes.front().x[i] / static_cast<double>(runs.size());
+  }
+  return motion;
 }
 
 }  // namespace
@@ -88,8 +107,6 @@ void regress_on(Record& record, const std::vector<Log>& motion, const machine::A
     record.simulated.clear();
     record.simulated_elsewhere.clear();
   } else {
-    record.regressors = rows_of(motion, axis, settings);
-    record.regressors.read_as(record.rows);
     // A record that reads the simulation's own increments is less by itself: of independent ones each run leaves alike.
     constexpr double alike = 0.5;  // of the square
     const Eigen::VectorXd shared = record.target - own_residual(record.simulated, record.logs, axis, settings);
@@ -98,6 +115,10 @@ void regress_on(Record& record, const std::vector<Log>& motion, const machine::A
       apart = record.target - mean_own_residual(record.simulated_elsewhere, record.logs, axis, settings);
     if (shared.squaredNorm() < alike * apart.squaredNorm()) record.simulated_elsewhere.clear();
     record.target = record.simulated_elsewhere.empty() ? shared : apart;
+    record.regressors = rows_of(
+        record.simulated_elsewhere.empty() ? motion : moved_on_average(motion, record.simulated_elsewhere, axis), axis,
+        settings);
+    record.regressors.read_as(record.rows);
   }
   Eigen::VectorXd moves = Eigen::VectorXd::Ones(record.target.size());
   for (const auto* rows : {&record.rows, &record.regressors})

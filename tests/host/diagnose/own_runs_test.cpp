@@ -78,6 +78,26 @@ TEST(OwnRuns, LeaveFewerIncrementsOnAverage) {
   EXPECT_LT(record.target.squaredNorm(), 0.8 * of_one.squaredNorm());
 }
 
+// Columns are made of the mean of the four runs, which is nearer to the motion of an axis with an ideal encoder than
+// the one on the record's own increments.
+TEST(OwnRuns, MoveOnAverageAsWithoutIncrements) {
+  const auto machine = coarse_axis();
+  auto ideal = machine;
+  ideal.axes.front().encoder.increment = 0.0;
+  const auto& axis = machine.axes.front();
+  Record record;
+  record.logs = {recorded_elsewhere(machine)};
+  const auto settings = wide_band(record.logs);
+  measure(record, axis, settings);
+  const auto motion = drive(record, machine, 0);
+  ASSERT_FALSE(motion.empty());
+  regress_on(record, motion, axis, settings);
+  const auto acceleration = [](const LogRows& rows) { return rows.stacked([](const Motion& one) { return one.a; }); };
+  const Eigen::VectorXd wanted = acceleration(rows_of(without_noise(ideal, 0, record.driven).motion, axis, settings));
+  const double one = (acceleration(rows_of(motion, axis, settings)) - wanted).norm();
+  EXPECT_LT((acceleration(LogRows(record.regressors.motions(), settings)) - wanted).norm(), 0.6 * one);
+}
+
 // A law without a contact seen from a run whose presliding is of nanometres: what its column explains, no run shows.
 TEST(OwnRuns, BearOutNoTermThatTheyDoNotShow) {
   const auto machine = coarse_axis();
