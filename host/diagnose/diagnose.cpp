@@ -104,7 +104,8 @@ Explained explain(Prepared& prepared, SearchResult found, const HeldOutData& hel
   for (const auto& each : withdrawn) reject(verdict, each.candidate, each.why);
   if (!withdrawn.empty()) described = describe(std::move(described.terms), std::move(described.unnamed));
   for (const auto& remainder : remainders)
-    reject(verdict, remainder.candidate, "described in closed loop beside the other findings it explains nothing");
+    reject(verdict, remainder.candidate,
+           "described in closed loop together with the other findings it explains nothing");
   Explained explained{std::move(found), std::move(described.findings), std::move(described.unnamed), {}, {}};
   explained.found.terms = std::move(described.terms);
   explained.inside = less(training.target, prepared, explained.unnamed);

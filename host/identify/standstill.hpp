@@ -1,5 +1,6 @@
-// Rows in which no motion tells the friction. At a standstill, of a law without a contact, it is a reaction: the motor's
-// force is anything up to the law's jump at zero speed. At the start of a record a contact is as it was left before.
+// Rows in which no motion tells the friction. At a standstill, of a law without a contact, it is a reaction: the
+// motor's force is anything up to the law's jump at zero speed. At the start of a record a contact is as it was left
+// before.
 #pragma once
 
 #include <Eigen/Dense>

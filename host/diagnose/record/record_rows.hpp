@@ -31,7 +31,7 @@ Eigen::VectorXd expected_force(const LogRows& rows, const machine::AxisModel& ax
 // `replayed`: the simulation's records; `logs`: those that it repeats; `axis`: of the file; `settings` of the rows.
 Eigen::VectorXd own_residual(const std::vector<Log>& replayed, const std::vector<Log>& logs,
                              const machine::AxisModel& axis, const SignalSettings& settings);
-// The mean of that over several `runs`, each of all `logs`.
+// The mean of that over several `runs`, each of all `logs`; `axis` and `settings` as above.
 Eigen::VectorXd mean_own_residual(const std::vector<std::vector<Log>>& runs, const std::vector<Log>& logs,
                                   const machine::AxisModel& axis, const SignalSettings& settings);
 
