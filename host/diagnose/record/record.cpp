@@ -1,6 +1,7 @@
 #include "host/diagnose/record/record.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -14,7 +15,10 @@
 namespace stiction::host {
 namespace {
 
-constexpr int parts_of_increment = 4;  // the increments of as many runs leave half of what those of one do
+// Of an encoder's increment, from the record's set-points on: of the run whose motion makes the columns, and of those
+// whose residual is taken off the record's. No two share their increments, nor has the record those of the columns.
+constexpr double part_of_columns = 0.375;
+constexpr std::array parts_of_residual{0.125, 0.625, 0.875};
 
 // Of a record without set-points the simulated motion is not known above its followed_up_to(): it reverses elsewhere
 // than the measured one, and the file's friction differs between the two. Where it does so by more than what is left of
@@ -39,37 +43,33 @@ Eigen::VectorXd known_friction(const Record& record, const machine::AxisModel& a
   return known;
 }
 
-// Runs without noise over the parts of an encoder's increment, taken back by those parts; empty on an axis that has
-// none.
+// The run without noise of the logs with set-points a `part` of an encoder's increment further on, taken back by it;
+// empty where it goes another way, by `how`.
+std::vector<Log> run_elsewhere(const machine::Machine& machine, std::size_t axis, std::vector<Log> driven, double part,
+                               Following how) {
+  const auto& model = machine.axes[axis];
+  const double by = part * model.encoder.increment;
+  for (auto& log : driven)
+    for (double& x : channels_of(log, model).x_set) x += by;
+  auto run = without_noise(machine, axis, driven, how).replayed;
+  for (auto& log : run)
+    for (double& x : log.axes.front().x) x -= by;
+  return run;
+}
+
+// Those whose residual is taken off the record's; none on an axis without increments.
 std::vector<std::vector<Log>> runs_elsewhere(const machine::Machine& machine, std::size_t axis,
                                              const std::vector<Log>& driven, Following how) {
-  const auto& model = machine.axes[axis];
   std::vector<std::vector<Log>> runs;
-  if (!(model.encoder.increment > 0.0)) return runs;
-  for (int part = 0; part < parts_of_increment; ++part) {
-    const double by = (part + 0.5) / parts_of_increment * model.encoder.increment;
-    auto moved = driven;
-    for (auto& log : moved)
-      for (double& x : channels_of(log, model).x_set) x += by;
-    auto run = without_noise(machine, axis, moved, how).replayed;
-    if (run.empty()) continue;
-    for (auto& log : run)
-      for (double& x : log.axes.front().x) x -= by;
-    runs.push_back(std::move(run));
-  }
+  if (!(machine.axes[axis].encoder.increment > 0.0)) return runs;
+  for (const double part : parts_of_residual)
+    if (auto run = run_elsewhere(machine, axis, driven, part, how); !run.empty()) runs.push_back(std::move(run));
   return runs;
 }
 
-// The logs of `motion` with the mean positions of these runs. A record may read the increments of the run on its own
-// part of one, and hunt as that does, which is in its residual force.
-std::vector<Log> moved_on_average(std::vector<Log> motion, const std::vector<std::vector<Log>>& runs,
-                                  const machine::AxisModel& axis) {
-  for (std::size_t k = 0; k < motion.size(); ++k) {
-    auto& x = channels_of(motion[k], axis).x;
-    std::fill(x.begin(), x.end(), 0.0);
-    for (const auto& run : runs)
-      for (std::size_t i = 0; i < x.size(); ++i) x[i] += run[k].axes.front().x[i] / static_cast<double>(runs.size());
-  }
+// The logs of `motion` with the positions of a run.
+std::vector<Log> moved_as(std::vector<Log> motion, const std::vector<Log>& run, const machine::AxisModel& axis) {
+  for (std::size_t k = 0; k < motion.size(); ++k) channels_of(motion[k], axis).x = run[k].axes.front().x;
   return motion;
 }
 
@@ -96,7 +96,11 @@ std::vector<Log> drive(Record& record, const machine::Machine& machine, std::siz
   auto without = without_noise(machine, axis, record.driven, how);
   record.simulated = std::move(without.replayed);
   record.simulated_elsewhere.clear();
+  record.moved_elsewhere.clear();
   if (!record.simulated.empty()) record.simulated_elsewhere = runs_elsewhere(machine, axis, record.driven, how);
+  if (!record.simulated_elsewhere.empty())
+    record.moved_elsewhere = run_elsewhere(machine, axis, record.driven, part_of_columns, how);
+  if (record.moved_elsewhere.empty()) record.simulated_elsewhere.clear();
   return std::move(without.motion);
 }
 
@@ -106,6 +110,7 @@ void regress_on(Record& record, const std::vector<Log>& motion, const machine::A
   if (motion.empty()) {
     record.simulated.clear();
     record.simulated_elsewhere.clear();
+    record.moved_elsewhere.clear();
   } else {
     // A record that reads the simulation's own increments is less by itself: of independent ones each run leaves alike.
     constexpr double alike = 0.5;  // of the square
@@ -116,8 +121,7 @@ void regress_on(Record& record, const std::vector<Log>& motion, const machine::A
     if (shared.squaredNorm() < alike * apart.squaredNorm()) record.simulated_elsewhere.clear();
     record.target = record.simulated_elsewhere.empty() ? shared : apart;
     record.regressors = rows_of(
-        record.simulated_elsewhere.empty() ? motion : moved_on_average(motion, record.simulated_elsewhere, axis), axis,
-        settings);
+        record.simulated_elsewhere.empty() ? motion : moved_as(motion, record.moved_elsewhere, axis), axis, settings);
     record.regressors.read_as(record.rows);
   }
   Eigen::VectorXd moves = Eigen::VectorXd::Ones(record.target.size());

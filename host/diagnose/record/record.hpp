@@ -25,9 +25,11 @@ struct Record {
   Eigen::VectorXd expected;    // N, what the file says of the measured motion
   Eigen::VectorXd target;      // N, what the file does not make of the force; rows at rest do not count
   std::vector<Log> simulated;  // the file's own runs of these logs; empty where it cannot follow
-  // The same on other parts of the encoder's increment, where what the file leaves of its own runs was taken of these:
-  // a run shares its increments with the regressors, which would look like a mode of the machine.
+  // The same on other parts of the encoder's increment: those of which was taken what the file leaves of its own runs,
+  // and the one with the motion of the regressors. Both empty: simulated is both. Two that share their increments have
+  // something in common that looks like a mode of the machine, and a quiet record may share those of simulated.
   std::vector<std::vector<Log>> simulated_elsewhere;
+  std::vector<Log> moved_elsewhere;
   FrictionAlong friction = FrictionAlong::own_motion;  // in the target
   // N, what the residual force itself does to what the file leaves of its own run; the target is less that. Empty:
   // nothing was taken off.

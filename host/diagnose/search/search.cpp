@@ -297,7 +297,11 @@ SearchResult Search::run_calibrated() {
       calibration.emplace(scene_, noise.cwiseProduct(rows_.counts()));
     }
     const auto odds_in = [&](const ExactRecord& record) { return names_in(record, names); };
-    const auto prices = calibration->prices(odds_in, odds_in({evidence_.target(), {}}));
+    const auto own = odds_in({evidence_.target(), {}});
+    auto prices = calibration->prices(odds_in, own);
+    // Of noise that is all of the target the price is no part of what a name is worth: beyond it, it is paid.
+    for (std::size_t k = 0; k < names.size(); ++k)
+      if (scene_.disturbed_motion && own[k] - prices[k] > sure) prices[k] = 0.0;
     if (std::none_of(prices.begin(), prices.end(), [](double price) { return price > 0.0; })) break;
     scene_.prices.resize(candidates().size(), 0.0);
     for (std::size_t k = 0; k < names.size(); ++k) scene_.prices[names[k]] = prices[k];

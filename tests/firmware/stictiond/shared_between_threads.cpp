@@ -38,7 +38,6 @@ bool ring_keeps_order() {
   drive::LogRecord record;
   for (bool end = false; !end;) {
     while (rounds < full_rounds && ring->lost() == lost) std::this_thread::yield();
-    lost = ring->lost();
     end = written;
     while (ring->pop(record)) {
       right = right && record.time_ns > last && record.values[0].number() == record.time_ns &&
@@ -46,6 +45,7 @@ bool ring_keeps_order() {
       last = record.time_ns;
       ++read;
     }
+    lost = ring->lost();  // after it was empty: what is lost from now on finds it full again
     ++rounds;
   }
   writer.join();
