@@ -62,7 +62,7 @@ TEST_F(LargeLog, IsConvertedAndInspectedInBoundedMemoryWithProgress) {
 TEST_F(LargeLog, ShowsHowMuchOfItWasRead) {
   const std::string slowed = "'" STICTION_PROGRAM
                              "' convert run.csv again.csv & p=$!; while kill -STOP $p; do sleep 0.3; kill -CONT $p; "
-                             "sleep 0.1; done; wait $p\n";
+                             "sleep 0.04; done; wait $p\n";
   write_text_file(folder_ / "slowed", slowed);
   ASSERT_EQ(run("script -qec \"sh ./slowed\" typescript </dev/null >/dev/null"), 0);
   const auto shown = read_text_file(folder_ / "typescript");
