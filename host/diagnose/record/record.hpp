@@ -47,9 +47,10 @@ std::vector<std::vector<Log>> runs_of_target(const Record& record, const machine
 // with_set_points().
 std::vector<Log> drive(Record& record, const machine::Machine& machine, std::size_t axis,
                        Following how = Following::as_recorded, const std::vector<Log>& made_by = {});
-// Regressors are of this `motion` (drive()) from now on, or, where it is empty, of the measured one; the target is less
-// what the file leaves of its own run; rows at standstill do not count, nor, without set-points, those in which the
-// file's friction differs between the two motions. `record`, `axis` and `settings` as above.
+// Regressors are of this `motion` (drive()) from now on, where the record reads its increments, or of that on others;
+// where it is empty, of the measured one. The target is less what the file leaves of its own runs; rows at standstill
+// and before the first slide do not count, nor, without set-points, those in which the file's friction differs between
+// the two motions. `record`, `axis` and `settings` as above.
 void regress_on(Record& record, const std::vector<Log>& motion, const machine::AxisModel& axis,
                 const SignalSettings& settings);
 // The target of the `record`, which has regressors, with the file's friction along the motion of those. `axis` as
