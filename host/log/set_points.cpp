@@ -14,6 +14,14 @@ namespace {
 
 using Values = std::vector<double>;
 
+// Increments over the period squared, rms: what the second derivative of a spline or quintic makes of rounding.
+constexpr double second_derivative_of_rounding = 1.7;
+// Of a quintic's acceleration, over the way that it has beyond the cubic's and over the period squared.
+constexpr double most_of_way = 5.77;
+// Of the accelerations, rms: what the way adds to half of them where the channels belong to each other. A velocity that
+// is a tenth of a sample late adds more than half of them.
+constexpr double inconsistent = 0.02;
+
 // The step of the grid that all values lie on; 0 when they lie on none. Rounding shows in the second differences: they
 // are whole steps and change all the time, where those of a constant acceleration are equal too but stay.
 double grid_of(const Values& x) {
@@ -116,8 +124,7 @@ SetPoints::SetPoints(const Log& log, const AxisLog& axis)
                                log.source, prefix));
   }
   increment_ = grid_of(x_);
-  // What the spline's second derivative makes of rounding: 1.7 increments over the period squared, rms.
-  if (x_.size() > 5 && 1.7 * increment_ > acceleration_noise * period_ * period_) {
+  if (x_.size() > 5 && second_derivative_of_rounding * increment_ > acceleration_noise * period_ * period_) {
     const int half = half_window(increment_, period_, x_.size());
     smooth(x_, v_, a_, half, period_);
     smoothing_ = 2.0 * half * period_;
@@ -132,17 +139,29 @@ SetPoints::SetPoints(const Log& log, const AxisLog& axis)
     smoothing_ = 0.0;
   }
   if (acceleration_is_logged_) a_ = axis.a_set;
+  way_agrees_ = way_agrees();
 }
 
-// What the mean acceleration between two samples, which the velocities tell, is beyond that of a line. A smooth motion
-// bends as its second differences at both samples say; more than the larger one is a jump in between.
-double SetPoints::bow(std::size_t k) const {
-  const double mean = (v_[k + 1] - v_[k]) / period_ - 0.5 * (a_[k] + a_[k + 1]);
-  const auto bend = [&](std::size_t at) {
-    return at == 0 || at + 1 >= a_.size() ? 0.0 : a_[at + 1] - 2.0 * a_[at] + a_[at - 1];
-  };
-  const auto [least, most] = std::minmax({bend(k), bend(k + 1), 0.0});
-  return std::clamp(mean, -most / 12.0, -least / 12.0);
+// m, beyond what the cubic of the velocities makes of the way from sample k to the next.
+double SetPoints::beyond_velocity(std::size_t k) const {
+  return x_[k + 1] - x_[k] - period_ * (0.5 * (v_[k] + v_[k + 1]) + period_ * (a_[k] - a_[k + 1]) / 12.0);
+}
+
+// Whether what the way adds to the acceleration between samples is small but at few of them, where it jumps.
+bool SetPoints::way_agrees() const {
+  if (x_.size() < 2 || second_derivative_of_rounding * increment_ > acceleration_noise * period_ * period_)
+    return false;
+  Values added;
+  double square = 0.0;
+  for (std::size_t k = 0; k + 1 < x_.size(); ++k) {
+    if (a_[k] == 0.0 && a_[k + 1] == 0.0) continue;
+    added.push_back(most_of_way * std::abs(beyond_velocity(k)) / (period_ * period_));
+    square += a_[k] * a_[k];
+  }
+  if (added.empty()) return false;
+  const auto middle = added.begin() + static_cast<std::ptrdiff_t>(added.size() / 2);
+  std::nth_element(added.begin(), middle, added.end());
+  return *middle <= inconsistent * std::sqrt(square / static_cast<double>(added.size()));
 }
 
 sim::AxisSetPoint SetPoints::at(double t) const {
@@ -160,14 +179,19 @@ sim::AxisSetPoint SetPoints::at(double t) const {
   const auto k = static_cast<std::size_t>(place);
   const double s = place - static_cast<double>(k), h = period_;
   if (s == 0.0) return {x_[k], v_[k], a_[k]};
-  const double dx = x_[k + 1] - x_[k], v0 = v_[k] * h, v1 = v_[k + 1] * h;
-  const double a0 = a_[k] * h * h, a1 = a_[k + 1] * h * h;
-  const double x = x_[k] + s * (v0 + s * (0.5 * a0 + s * ((10.0 * dx - 6.0 * v0 - 4.0 * v1 - 1.5 * a0 + 0.5 * a1) +
-                                                          s * ((-15.0 * dx + 8.0 * v0 + 7.0 * v1 + 1.5 * a0 - a1) +
-                                                               s * (6.0 * dx - 3.0 * (v0 + v1) + 0.5 * (a1 - a0))))));
-  const double dv = v1 - v0;
-  const double v = v0 + s * (a0 + s * ((3.0 * dv - 2.0 * a0 - a1) + s * (a0 + a1 - 2.0 * dv)));
-  return {x, v / h, a_[k] + s * (a_[k + 1] - a_[k]) + 6.0 * bow(k) * s * (1.0 - s)};
+  const double v0 = v_[k] * h, v1 = v_[k + 1] * h, a0 = a_[k] * h * h, a1 = a_[k + 1] * h * h;
+  const double dx = x_[k + 1] - x_[k], beyond = beyond_velocity(k);
+  const auto quintic = [&](double way) {
+    const double c3 = 10.0 * way - 6.0 * v0 - 4.0 * v1 - 1.5 * a0 + 0.5 * a1;
+    const double c4 = -15.0 * way + 8.0 * v0 + 7.0 * v1 + 1.5 * a0 - a1;
+    const double c5 = 6.0 * way - 3.0 * (v0 + v1) + 0.5 * (a1 - a0);
+    return sim::AxisSetPoint{x_[k] + s * (v0 + s * (0.5 * a0 + s * (c3 + s * (c4 + s * c5)))),
+                             (v0 + s * (a0 + s * (3.0 * c3 + s * (4.0 * c4 + s * 5.0 * c5)))) / h,
+                             (a0 + s * (6.0 * c3 + s * (12.0 * c4 + s * 20.0 * c5))) / (h * h)};
+  };
+  auto point = quintic(way_agrees_ ? dx : dx - beyond);
+  if (!way_agrees_) point.position = quintic(dx).position;
+  return point;
 }
 
 }  // namespace stiction::host

@@ -1,10 +1,10 @@
 // Set-points of a log at any time, for a controller that runs faster than the log was written.
 //
-// Between two samples the position is the quintic through position, velocity and acceleration at both, the velocity the
-// cubic through velocity and acceleration, the acceleration a line with so much of a bow that it agrees with the
-// velocities, as far as the accelerations before and behind bend too. Position and velocity are exact for the motion
-// that the next faster channel describes, and none rings where the acceleration jumps, as the derivatives of the
-// quintic would. Without the bow a log of 4 ms has an error of acceleration that looks like friction that lags.
+// Between two samples the motion is the quintic through position, velocity and acceleration at both: where acceleration
+// or jerk jump in between, its derivatives swing about them, but leave the machine with the momentum and at the place
+// that the log has at the next sample. An acceleration that does not is an error that looks like friction that lags or
+// like a delay. Where the way is too coarse for that, or contradicts the velocities (one channel is late), velocity and
+// acceleration are derivatives of the cubic through velocity and acceleration alone.
 //
 // Velocity and acceleration that the log does not have come from x_set: those of the cubic spline through it (twice
 // continuously differentiable; where the acceleration jumps it overshoots by 13 % of the jump for one sample). Set
@@ -43,11 +43,12 @@ class SetPoints {
   double smoothing() const { return smoothing_; }  // s, the window's width; 0: not smoothed
 
  private:
-  double bow(std::size_t k) const;  // m/s^2, of the acceleration between sample k and the next
+  double beyond_velocity(std::size_t k) const;
+  bool way_agrees() const;
 
   double begin_, period_;
   std::vector<double> x_, v_, a_;
-  bool velocity_is_logged_ = false, acceleration_is_logged_ = false;
+  bool velocity_is_logged_ = false, acceleration_is_logged_ = false, way_agrees_ = false;
   double increment_ = 0.0, smoothing_ = 0.0;
 };
 
