@@ -6,9 +6,9 @@
 #include <optional>
 #include <utility>
 
-#include "host/diagnose/record/disturbance.hpp"
 #include "host/diagnose/record/followed_set_points.hpp"
 #include "host/diagnose/record/record_rows.hpp"
+#include "host/diagnose/record/redrawn_residual.hpp"
 #include "host/identify/identification.hpp"
 #include "host/simulate/control_run.hpp"
 
@@ -21,9 +21,8 @@ class Maker {
       : prepared_(prepared),
         machine_(input.machine),
         axis_(input.axis),
-        disturbance_(force, rows().logs(), rows().period(0)),
-        driven_(prepared.known_motion ? training().driven
-                                      : with_recorded_set_points(input.machine.axes[input.axis], training().logs)),
+        disturbance_(force, rows().logs(), rows().time, rows().period(0)),
+        driven_(with_recorded_set_points(input.machine.axes[input.axis], training().logs, prepared.settings.cutoff)),
         own_motion_(!prepared.known_motion ||
                     std::any_of(training().logs.begin(), training().logs.end(),
                                 [&](const Log& log) { return channels_of(log, prepared.axis).x_set.empty(); })) {
@@ -61,7 +60,7 @@ class Maker {
     for (std::size_t k = 0; k < setup.logs.size(); ++k) {
       auto& force = setup.logs[k].axes.front().external_force;
       force.resize(setup.logs[k].t.size(), 0.0);
-      const auto drawn = disturbance_.drawn(setup.logs[k].t, draw * setup.logs.size() + k);
+      const auto drawn = disturbance_.drawn(k, setup.logs[k].t, draw * setup.logs.size() + k);
       std::transform(force.begin(), force.end(), drawn.begin(), force.begin(), std::plus<>());
     }
     auto logs = replays(setup);
@@ -81,7 +80,7 @@ class Maker {
   bool prepare(Record& record) const {
     if (own_motion_) {
       const auto motion = prepared_.known_motion
-                              ? drive(record, machine_, axis_, Following::as_near_as_it_comes, driven_)
+                              ? drive(record, machine_, axis_, Following::as_near_as_it_comes, training().driven)
                               : std::vector<Log>{};
       if (prepared_.known_motion && motion.empty()) return false;
       regress_on(record, motion, prepared_.axis, prepared_.settings);
@@ -95,7 +94,7 @@ class Maker {
   const Prepared& prepared_;
   machine::Machine machine_;  // of the file
   std::size_t axis_;
-  Disturbance disturbance_;
+  RedrawnResidual disturbance_;
   std::vector<Log> driven_;  // with set-points
   bool own_motion_;          // whether each draw has regressors of its own
   Eigen::VectorXd own_;      // N, of the rows, where the file's own run is the same in every draw

@@ -52,7 +52,7 @@ std::string why_motion_is_measured(const DiagnoseInput& input) {
   const auto refused = why_not_simulated(input.machine, input.axis, all);
   return fmt::format(
       "{} The regressors were computed from the measured motion, which contains the response of the control loop to "
-      "the disturbances, so that elastic modes cannot be judged.{}",
+      "the disturbances, so that elastic modes and delays cannot be judged.{}",
       refused.empty() ? "The logs have no set-points, or the simulation could not follow them." : refused + ".",
       refused.empty() ? " Log x_set." : "");
 }
@@ -122,6 +122,7 @@ void take_motion(Prepared& prepared, const DiagnoseInput& input, Verdict& verdic
   const auto training = drive(prepared.training, input.machine, input.axis);
   const auto held_out = training.empty() ? std::vector<Log>{} : drive(prepared.held_out, input.machine, input.axis);
   prepared.known_motion = !held_out.empty();
+  prepared.context.measured_motion = !prepared.known_motion;
   prepared.context.disturbed_motion = !prepared.known_motion || !without_set_points(prepared).empty();
   if (!prepared.known_motion)
     verdict.notes.push_back(why_motion_is_measured(input));

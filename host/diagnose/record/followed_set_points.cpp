@@ -104,11 +104,11 @@ class Follower {
 
 }  // namespace
 
-std::vector<Log> with_recorded_set_points(const machine::AxisModel& axis, std::vector<Log> logs) {
+std::vector<Log> with_recorded_set_points(const machine::AxisModel& axis, std::vector<Log> logs, double cutoff) {
   for (auto& log : logs) {
     auto& channels = channels_of(log, axis);
     if (!channels.x_set.empty()) continue;
-    const auto lowpass = lowpass_of(axis, log.period);
+    const auto lowpass = butterworth(order, std::min(2.0 * cutoff * log.period, highest_edge));
     channels.x_set = filter_both_ways(lowpass, channels.x, default_padding(lowpass));
   }
   return logs;

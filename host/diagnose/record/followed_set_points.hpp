@@ -22,9 +22,9 @@ enum class Following { as_recorded, as_near_as_it_comes };
 std::vector<Log> with_set_points(const machine::Machine& machine, std::size_t axis, std::vector<Log> logs,
                                  Following how = Following::as_recorded, const std::vector<Log>& made_by = {});
 
-// The `logs` with the recorded positions, slowly, for set positions (m) where they have none: how about the axis went.
-// `axis` of the file, with a position loop.
-std::vector<Log> with_recorded_set_points(const machine::AxisModel& axis, std::vector<Log> logs);
+// The `logs` with the recorded positions up to `cutoff` (Hz) for set positions (m) where they have none: how about the
+// axis went. `axis` of the file.
+std::vector<Log> with_recorded_set_points(const machine::AxisModel& axis, std::vector<Log> logs, double cutoff);
 
 // Hz, up to where such set-points hold the motion of the `axis`: twice the bandwidth of its position loop, as far as
 // logs with `period` (s) reach.

@@ -1,0 +1,31 @@
+// Forces that a residual could as well have been: its innovations with signs that are drawn for each stretch of time,
+// coloured as the residual is (the wild bootstrap of an autoregression: Wu 1986; Goncalves, Kilian 2004). Where the
+// residual is large these are, and for as long: set-points between the samples of a slow log are known least where the
+// axis begins and ends to accelerate, and a cause that acts just there has to say more than that.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "host/diagnose/statistics/whitening.hpp"
+
+namespace stiction::host {
+
+class RedrawnResidual {
+ public:
+  // `residual`: N, in rows of several logs, 0 in those that do not count, `period` s apart; `logs`: first row of each;
+  // `time`: s, of each row, from its log's start.
+  RedrawnResidual(Eigen::VectorXd residual, std::span<const std::size_t> logs, Eigen::VectorXd time, double period);
+
+  // N at the times `t` (s, rising) of a `log`: one draw of many, by `seed`; linear between rows.
+  std::vector<double> drawn(std::size_t log, std::span<const double> t, std::uint64_t seed) const;
+
+ private:
+  Whitening spectrum_;
+  std::vector<Eigen::VectorXd> innovations_;  // N, of each log
+  std::vector<double> begins_;                // s, of its first row
+  double period_;                             // s
+};
+
+}  // namespace stiction::host
