@@ -9,7 +9,6 @@
 
 #include "host/diagnose/classes/candidate_columns.hpp"
 #include "host/diagnose/describe/diagnosis_charts.hpp"
-#include "host/diagnose/describe/residual_diagnostics.hpp"
 #include "host/diagnose/judge/closed_loop.hpp"
 #include "host/diagnose/judge/closed_loop_description.hpp"
 #include "host/diagnose/judge/command_residual.hpp"
@@ -61,7 +60,6 @@ struct Explained {
   std::vector<Finding> findings;  // of its terms, with parameters
   std::vector<Term> unnamed;
   Eigen::VectorXd inside;  // N, the target less the unnamed
-  bool withdrew = false;
 };
 
 SearchResult search(Prepared& prepared, Verdict& verdict) {
@@ -110,7 +108,6 @@ Explained explain(Prepared& prepared, SearchResult found, const HeldOutData& hel
   explained.found.terms = std::move(described.terms);
   explained.inside = less(training.target, prepared, explained.unnamed);
   explained.found.residual = less(explained.inside, prepared, explained.found.terms);
-  explained.withdrew = !withdrawn.empty();
   return explained;
 }
 
@@ -153,12 +150,7 @@ void say_what_is_left(Verdict& verdict, const Prepared& prepared, const Explaine
   const auto& training = prepared.training;
   const auto& found = explained.found;
   for (const auto& discarded : found.discarded) reject(verdict, discarded.candidate, discarded.why);
-  const bool searched = found.blocks > 0;
-  if (!explained.unnamed.empty())
-    verdict.unexplained = unexplained_by(prepared.context, explained.unnamed);
-  else if (searched && !explained.withdrew)
-    verdict.unexplained = signature_of(training.regressors, found.residual, training.target.squaredNorm(),
-                                       found.correlation, verdict.units);
+  if (!explained.unnamed.empty()) verdict.unexplained = unexplained_by(prepared.context, explained.unnamed);
   add_charts(verdict, training.rows, training.target, found.residual);
 }
 
@@ -167,14 +159,16 @@ double rms_about_mean(const Eigen::VectorXd& values, const Eigen::VectorXd& coun
   return std::sqrt(centred.cwiseProduct(counts).squaredNorm() / static_cast<double>(std::max<long>(values.size(), 1)));
 }
 
-void judge_agreement(Verdict& verdict, const Record& held_out, const Prepared& prepared, std::uint64_t seed) {
+void judge_agreement(Verdict& verdict, const Record& held_out, const Prepared& prepared, std::uint64_t seed,
+                     double disturbed_position) {
   const auto& counts = held_out.regressors.counts();
   const auto floor =
       noise_floor(held_out.logs, prepared.axis, prepared.settings, counts, held_out.simulated, held_out.expected, seed);
   verdict.noise_floor = floor;
-  verdict.agreement = agreement_of({verdict.extended.force_rms, verdict.extended.position_error_rms, floor.force(),
-                                    floor.position, rms_about_mean(held_out.rows.force, counts)},
-                                   verdict.closed_loop_withheld, verdict.units);
+  verdict.agreement = agreement_of(
+      {verdict.extended.force_rms, verdict.extended.position_error_rms, floor.force(), floor.position,
+       rms_about_mean(held_out.rows.force, counts), verdict.unexplained.signature.has_value(), disturbed_position},
+      verdict.closed_loop_withheld, verdict.units);
 }
 
 }  // namespace
@@ -202,8 +196,13 @@ Verdict diagnose(const DiagnoseInput& input) {
   judge_drive(verdict, input, *prepared, explained.found);
   say_what_is_left(verdict, *prepared, explained);
   begin(5);
-  if (input.closed_loop) judge_in_closed_loop(verdict, input.machine, input.axis, held_out.logs);
-  judge_agreement(verdict, held_out, *prepared, input.seed);
+  double disturbed_position = 0.0;
+  if (input.closed_loop) {
+    const auto& rows = training.regressors;
+    const Disturbance disturbance(explained.found.residual.cwiseProduct(rows.counts()), rows.logs(), rows.period(0));
+    disturbed_position = judge_in_closed_loop(verdict, input.machine, input.axis, held_out.logs, disturbance);
+  }
+  judge_agreement(verdict, held_out, *prepared, input.seed, disturbed_position);
   return verdict;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 
 #include "host/diagnose/describe/diagnosis_charts.hpp"
 #include "host/diagnose/record/replay_setup.hpp"
@@ -42,6 +43,21 @@ double largest_difference(const std::vector<std::vector<double>>& a, const std::
     for (std::size_t i = first; i < a[k].size(); ++i) largest = std::max(largest, std::abs(a[k][i] - b[k][i]));
   }
   return largest;
+}
+
+// m rms, between `silent` positions and those under a draw of the disturbance; 0 where the machine cannot follow.
+double moved_by(const Disturbance& disturbance, ReplaySetup setup, const std::vector<std::vector<double>>& silent) {
+  for (std::size_t k = 0; k < setup.logs.size(); ++k) {
+    auto& force = setup.logs[k].axes.front().external_force;
+    const auto drawn = disturbance.drawn(setup.logs[k].t, k);
+    force.resize(drawn.size(), 0.0);
+    std::transform(force.begin(), force.end(), drawn.begin(), force.begin(), std::plus<>());
+  }
+  try {
+    return difference_rms(simulated_positions(setup), silent, setup.logs);
+  } catch (const FaultTripped&) {
+    return 0.0;
+  }
 }
 
 // Position error of the held-out log whose baseline is furthest off, over time, first shown around the worst instant;
@@ -99,8 +115,8 @@ machine::Machine extended_machine(machine::Machine machine, const std::vector<Fi
   return machine;
 }
 
-void judge_in_closed_loop(Verdict& verdict, const machine::Machine& machine, std::size_t axis,
-                          const std::vector<Log>& held_out) {
+double judge_in_closed_loop(Verdict& verdict, const machine::Machine& machine, std::size_t axis,
+                            const std::vector<Log>& held_out, const Disturbance& disturbance) {
   const auto& known = machine.axes[axis].effects;
   const bool coupled =
       std::any_of(known.begin(), known.end(),
@@ -108,9 +124,9 @@ void judge_in_closed_loop(Verdict& verdict, const machine::Machine& machine, std
       std::any_of(verdict.findings.begin(), verdict.findings.end(),
                   [](const Finding& finding) { return sim::is_a<sim::CrossAxisCoupling>(finding.effect); });
   auto setup = replay_setup_of(machine, axis, held_out, coupled);
-  if (setup.logs.empty()) return;
+  if (setup.logs.empty()) return 0.0;
   verdict.closed_loop_withheld = why_not_simulated(machine, axis, held_out, coupled);
-  if (!verdict.closed_loop_withheld.empty()) return;
+  if (!verdict.closed_loop_withheld.empty()) return 0.0;
   std::vector<std::vector<double>> measured;
   for (const auto& log : setup.logs) measured.push_back(log.axes.front().x);
   const auto with = [&](const std::vector<Finding>& findings) {
@@ -147,6 +163,7 @@ void judge_in_closed_loop(Verdict& verdict, const machine::Machine& machine, std
     verdict.notes.push_back(fmt::format(
         "The simulation of the extended machine file could not follow the held-out set-points ({}).", fault.what()));
   }
+  return disturbance ? moved_by(disturbance, setup, baseline) : 0.0;
 }
 
 }  // namespace stiction::host

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "firmware/machine/model/machine.hpp"
+#include "host/diagnose/record/disturbance.hpp"
 #include "host/diagnose/verdict/verdict.hpp"
 #include "host/log/log.hpp"
 
@@ -15,8 +16,9 @@ machine::Machine extended_machine(machine::Machine machine, const std::vector<Fi
 
 // Fills in position errors, their ratios by finding and what each does to the position. Without set-points nothing is
 // changed. A machine that cannot follow the set-points is a LogError without causes and a note with them. `verdict`:
-// with its findings on `axis`, the index in `machine`; `held_out`: logs that were not used.
-void judge_in_closed_loop(Verdict& verdict, const machine::Machine& machine, std::size_t axis,
-                          const std::vector<Log>& held_out);
+// with its findings on `axis`, the index in `machine`; `held_out`: logs that were not used; `disturbance`: what acts on
+// the axis beside. Returns what that makes of the position, m rms.
+double judge_in_closed_loop(Verdict& verdict, const machine::Machine& machine, std::size_t axis,
+                            const std::vector<Log>& held_out, const Disturbance& disturbance = {});
 
 }  // namespace stiction::host

@@ -21,6 +21,8 @@ struct Remainder {
   double noise_force_rms = 0.0;              // N, NoiseFloor::force()
   double noise_position_rms = 0.0;           // m, NoiseFloor::position
   double record_force_rms = 0.0;             // N, of the record's force about its mean
+  bool repeats = false;                      // whether something without a name was found in it
+  double disturbed_position_rms = 0.0;       // m, what forces like the residual make of the position in closed loop
 };
 
 struct Agreement {
@@ -28,8 +30,10 @@ struct Agreement {
   std::string reason;  // a clause for readers, with the figures
 };
 
-// The floor is an estimate and the residual a sample: a residual up to 1.25 times the floor is noise, a position error
-// up to twice its own. Where the floor is more than 0.3 of the force, agreement would say nothing. `rest`: figures of
+// The floor is an estimate and the residual a sample: a residual up to 1.25 times the floor is noise of the sensors.
+// What is beyond it and repeats with nothing (place, speed, acceleration, force, time, reversals) is what disturbs the
+// axis, noise as well. A position error up to twice what both make is noise. Where they are more than 0.3 of the force,
+// agreement would say nothing. `rest`: figures of
 // the axis; `withheld`: why there is no position error, for the reason; empty: there are no set-points; `units`: of the
 // axis, for the reason.
 Agreement agreement_of(const Remainder& rest, const std::string& withheld, const ShownUnits& units);

@@ -95,9 +95,16 @@ TEST(DiagnosisSentence, TellsAgreementFromAResidualWithoutAKnownCause) {
     verdict.agreement = agreement_of(rest, withheld, {});
     return diagnosis_sentence(verdict);
   };
-  EXPECT_EQ(with({5.0, 0.3e-6, 1.08, 0.2e-6, 50.0}),
+  EXPECT_EQ(with({5.0, 0.3e-6, 1.08, 0.2e-6, 50.0, true}),
             "Simulation and machine do not agree, and no known cause explains the difference: 5 N rms of residual "
             "force where noise alone leaves 1.08 N.");
+  // What repeats with nothing disturbs the axis, and moves it.
+  const auto disturbed = with({5.0, 0.9e-6, 1.08, 0.2e-6, 50.0, false, 0.6e-6});
+  EXPECT_TRUE(disturbed.starts_with("The simulation agrees with the data within their noise")) << disturbed;
+  EXPECT_NE(disturbed.find("the rest, 10 % of the force, repeats with nothing"), std::string::npos) << disturbed;
+  EXPECT_TRUE(with({5.0, 0.9e-6, 1.08, 0.2e-6, 50.0, false, 0.3e-6}).starts_with("Simulation and machine do not"));
+  // But not as much as 46 % of the force.
+  EXPECT_TRUE(with({23.0, 0.3e-6, 1.08, 0.2e-6, 50.0}).starts_with("Simulation and machine do not agree"));
   EXPECT_TRUE(with({1.2, 3e-6, 1.08, 0.2e-6, 50.0}).starts_with("Simulation and machine do not agree"));
   // A floor of 46 % of the force.
   EXPECT_TRUE(
