@@ -104,7 +104,7 @@ Explained explain(Prepared& prepared, SearchResult found, const HeldOutData& hel
   for (const auto& remainder : remainders)
     reject(verdict, remainder.candidate,
            "described in closed loop together with the other findings it explains nothing");
-  Explained explained{std::move(found), std::move(described.findings), std::move(described.unnamed), {}, {}};
+  Explained explained{std::move(found), std::move(described.findings), std::move(described.unnamed), {}};
   explained.found.terms = std::move(described.terms);
   explained.inside = less(training.target, prepared, explained.unnamed);
   explained.found.residual = less(explained.inside, prepared, explained.found.terms);
