@@ -6,14 +6,28 @@
 namespace stiction::host {
 namespace {
 
-constexpr double stretch = 0.25;  // s, of one sign
+// Less the mean of each log's rows that count.
+Eigen::VectorXd about_means(Eigen::VectorXd residual, std::span<const std::size_t> logs) {
+  for (std::size_t k = 0; k < logs.size(); ++k) {
+    const auto begin = static_cast<Eigen::Index>(logs[k]);
+    const auto end = k + 1 < logs.size() ? static_cast<Eigen::Index>(logs[k + 1]) : residual.size();
+    auto rows = residual.segment(begin, end - begin);
+    const auto count = (rows.array() != 0.0).count();
+    if (count == 0) continue;
+    const double mean = rows.sum() / static_cast<double>(count);
+    rows = (rows.array() != 0.0).select(rows.array() - mean, 0.0).matrix().eval();
+  }
+  return residual;
+}
 
 }  // namespace
 
-RedrawnResidual::RedrawnResidual(Eigen::VectorXd residual, std::span<const std::size_t> logs, Eigen::VectorXd time,
-                                 double period)
-    : spectrum_(residual, logs), period_(period) {
-  const Eigen::VectorXd white = spectrum_(residual);
+RedrawnResidual::RedrawnResidual(const Eigen::VectorXd& residual, std::span<const std::size_t> logs,
+                                 const Eigen::VectorXd& time, double period)
+    : period_(period) {
+  const Eigen::VectorXd noise = about_means(residual, logs);
+  spectrum_ = Whitening(noise, logs);
+  const Eigen::VectorXd white = spectrum_(noise);
   for (std::size_t k = 0; k < logs.size(); ++k) {
     const auto begin = static_cast<Eigen::Index>(logs[k]);
     const auto end = k + 1 < logs.size() ? static_cast<Eigen::Index>(logs[k + 1]) : white.size();
@@ -28,13 +42,8 @@ std::vector<double> RedrawnResidual::drawn(std::size_t log, std::span<const doub
   std::mt19937_64 random(seed);
   std::bernoulli_distribution negative;
   Eigen::VectorXd white = innovations;
-  const auto rows = std::max<Eigen::Index>(1, static_cast<Eigen::Index>(stretch / period_));
-  // The first stretch ends anywhere, so that no row is always at the border of two.
-  for (Eigen::Index begin = -static_cast<Eigen::Index>(random() % static_cast<std::uint64_t>(rows));
-       begin < white.size(); begin += rows) {
-    const auto first = std::max<Eigen::Index>(begin, 0), end = std::min(begin + rows, white.size());
-    if (negative(random)) white.segment(first, end - first) *= -1.0;
-  }
+  for (double& innovation : white)
+    if (negative(random)) innovation = -innovation;
   const Eigen::VectorXd force = spectrum_.coloured(white);
   std::vector<double> values;
   for (const double time : t) {

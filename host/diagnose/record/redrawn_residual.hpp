@@ -1,7 +1,8 @@
-// Forces that a residual could as well have been: its innovations with signs that are drawn for each stretch of time,
-// coloured as the residual is (the wild bootstrap of an autoregression: Wu 1986; Goncalves, Kilian 2004). Where the
-// residual is large these are, and for as long: set-points between the samples of a slow log are known least where the
-// axis begins and ends to accelerate, and a cause that acts just there has to say more than that.
+// Forces that a residual could as well have been: its innovations with signs that are drawn, coloured as the residual
+// is (the wild bootstrap of an autoregression: Wu 1986; Goncalves, Kilian 2004). Where the residual is large these are
+// too: set-points between the samples of a slow log are known least where the axis begins and ends to accelerate, and a
+// cause that acts just there has to say more than that. Of a force that stays the loop leaves no motion: the mean of a
+// log is no disturbance.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +17,8 @@ class RedrawnResidual {
  public:
   // `residual`: N, in rows of several logs, 0 in those that do not count, `period` s apart; `logs`: first row of each;
   // `time`: s, of each row, from its log's start.
-  RedrawnResidual(Eigen::VectorXd residual, std::span<const std::size_t> logs, Eigen::VectorXd time, double period);
+  RedrawnResidual(const Eigen::VectorXd& residual, std::span<const std::size_t> logs, const Eigen::VectorXd& time,
+                  double period);
 
   // N at the times `t` (s, rising) of a `log`: one draw of many, by `seed`; linear between rows.
   std::vector<double> drawn(std::size_t log, std::span<const double> t, std::uint64_t seed) const;
