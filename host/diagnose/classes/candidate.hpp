@@ -54,7 +54,7 @@ struct SearchContext : Scans {
   // Whether what disturbs the axis is in the motion of the regressors: where that is measured, or learned from it.
   bool disturbed_motion = false;
   bool measured_motion = false;  // the loop's answer too, as late as it comes
-  machine::Timing timing{};  // of the drive
+  machine::Timing timing{};      // of the drive
   // The residual force (N, at the motion's rate) that a motion's set-points leave in simulation where the machine has
   // the effect, less that where it has not: what the effect does through the control loop. `most_runs`: of how many
   // runs under different forces the common part is taken, at most. Empty: no set-points.

@@ -1,5 +1,5 @@
 // Forces that a residual could as well have been: its innovations with signs that are drawn, coloured as the residual
-// is (the wild bootstrap of an autoregression: Wu 1986; Goncalves, Kilian 2004). Where the residual is large these are
+// is (the wild bootstrap of an autoregression: Wu 1986; Gonçalves, Kilian 2004). Where the residual is large these are
 // too: set-points between the samples of a slow log are known least where the axis begins and ends to accelerate, and a
 // cause that acts just there has to say more than that. Of a force that stays the loop leaves no motion: the mean of a
 // log is no disturbance.
