@@ -139,7 +139,7 @@ SetPoints::SetPoints(const Log& log, const AxisLog& axis)
     smoothing_ = 0.0;
   }
   if (acceleration_is_logged_) a_ = axis.a_set;
-  way_agrees_ = way_agrees();
+  way_agrees_ = smoothing_ == 0.0 && way_agrees();
 }
 
 // m, beyond what the cubic of the velocities makes of the way from sample k to the next.
@@ -191,6 +191,8 @@ sim::AxisSetPoint SetPoints::at(double t) const {
   };
   auto point = quintic(way_agrees_ ? dx : dx - beyond);
   if (!way_agrees_) point.position = quintic(dx).position;
+  // Speeds that were smoothed have noise of their own, which must not swing the acceleration.
+  if (smoothing_ > 0.0) point.acceleration = a_[k] + s * (a_[k + 1] - a_[k]);
   return point;
 }
 
