@@ -60,6 +60,7 @@ struct Explained {
   std::vector<Finding> findings;  // of its terms, with parameters
   std::vector<Term> unnamed;
   Eigen::VectorXd inside;  // N, the target less the unnamed
+  bool withdrew = false;
 };
 
 SearchResult search(Prepared& prepared, Verdict& verdict) {
@@ -104,7 +105,8 @@ Explained explain(Prepared& prepared, SearchResult found, const HeldOutData& hel
   for (const auto& remainder : remainders)
     reject(verdict, remainder.candidate,
            "described in closed loop together with the other findings it explains nothing");
-  Explained explained{std::move(found), std::move(described.findings), std::move(described.unnamed), {}};
+  Explained explained{
+      std::move(found), std::move(described.findings), std::move(described.unnamed), {}, !withdrawn.empty()};
   explained.found.terms = std::move(described.terms);
   explained.inside = less(training.target, prepared, explained.unnamed);
   explained.found.residual = less(explained.inside, prepared, explained.found.terms);
@@ -159,16 +161,22 @@ double rms_about_mean(const Eigen::VectorXd& values, const Eigen::VectorXd& coun
   return std::sqrt(centred.cwiseProduct(counts).squaredNorm() / static_cast<double>(std::max<long>(values.size(), 1)));
 }
 
-void judge_agreement(Verdict& verdict, const Record& held_out, const Prepared& prepared, std::uint64_t seed,
+// What was found and withdrawn is still there, and what the held-out records have beyond the training ones was looked
+// for in neither: both are no disturbance.
+void judge_agreement(Verdict& verdict, const Prepared& prepared, const Explained& explained, std::uint64_t seed,
                      double disturbed_position) {
+  const auto& held_out = prepared.held_out;
   const auto& counts = held_out.regressors.counts();
   const auto floor =
       noise_floor(held_out.logs, prepared.axis, prepared.settings, counts, held_out.simulated, held_out.expected, seed);
   verdict.noise_floor = floor;
-  verdict.agreement = agreement_of(
-      {verdict.extended.force_rms, verdict.extended.position_error_rms, floor.force(), floor.position,
-       rms_about_mean(held_out.rows.force, counts), verdict.unexplained.signature.has_value(), disturbed_position},
-      verdict.closed_loop_withheld, verdict.units);
+  const double known = std::hypot(floor.force(), rms(explained.found.residual));
+  const bool repeats = verdict.unexplained.signature.has_value() || explained.withdrew ||
+                       verdict.extended.force_rms > force_margin * known;
+  verdict.agreement =
+      agreement_of({verdict.extended.force_rms, verdict.extended.position_error_rms, floor.force(), floor.position,
+                    rms_about_mean(held_out.rows.force, counts), repeats, disturbed_position},
+                   verdict.closed_loop_withheld, verdict.units);
 }
 
 }  // namespace
@@ -202,7 +210,7 @@ Verdict diagnose(const DiagnoseInput& input) {
     const Disturbance disturbance(explained.found.residual.cwiseProduct(rows.counts()), rows.logs(), rows.period(0));
     disturbed_position = judge_in_closed_loop(verdict, input.machine, input.axis, held_out.logs, disturbance);
   }
-  judge_agreement(verdict, held_out, *prepared, input.seed, disturbed_position);
+  judge_agreement(verdict, *prepared, explained, input.seed, disturbed_position);
   return verdict;
 }
 

@@ -7,8 +7,8 @@
 namespace stiction::host {
 namespace {
 
-constexpr double force_margin = 1.25, position_margin = 2.0;  // over what noise leaves
-constexpr double drowned = 0.3;                               // of the force
+constexpr double position_margin = 2.0;  // over what noise leaves
+constexpr double drowned = 0.3;          // of the force
 
 }  // namespace
 

@@ -30,12 +30,14 @@ struct Agreement {
   std::string reason;  // a clause for readers, with the figures
 };
 
-// The floor is an estimate and the residual a sample: a residual up to 1.25 times the floor is noise of the sensors.
-// What is beyond it and repeats with nothing (place, speed, acceleration, force, time, reversals) is what disturbs the
-// axis, noise as well. A position error up to twice what both make is noise. Where they are more than 0.3 of the force,
-// agreement would say nothing. `rest`: figures of
-// the axis; `withheld`: why there is no position error, for the reason; empty: there are no set-points; `units`: of the
-// axis, for the reason.
+// Over what noise leaves: the floor is an estimate and the residual a sample.
+inline constexpr double force_margin = 1.25;
+
+// A residual up to force_margin times the floor is noise of the sensors. What is beyond it and repeats with nothing
+// (place, speed, acceleration, force, time, reversals) is what disturbs the axis, noise as well. A position error up to
+// twice what both make is noise. Where they are more than 0.3 of the force, agreement would say nothing. `rest`:
+// figures of the axis; `withheld`: why there is no position error, for the reason; empty: there are no set-points;
+// `units`: of the axis, for the reason.
 Agreement agreement_of(const Remainder& rest, const std::string& withheld, const ShownUnits& units);
 
 }  // namespace stiction::host
