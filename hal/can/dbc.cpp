@@ -106,23 +106,22 @@ struct ServerMessage {
 
 std::vector<ServerMessage> server_messages(double increment) {
   const double speed = 1000.0 * increment;
-  const Signal controlword{"controlword", 0, 16, false, 0, ""};
+  const Signal controlword{"controlword", 0, 16, false, 0, ""}, statusword{"statusword", 0, 16, false, 0, ""};
+  const Signal position{"actual_position", 16, 32, true, 0, "m", increment};
   return {{"mode", Pdo::mode, {controlword, {"mode_of_operation", 16, 8, true, 0, ""}}},
           {"target", Pdo::target, {controlword, {"target_position", 16, 32, true, 0, "m", increment}}},
           {"offsets",
            Pdo::offsets,
            {{"velocity_offset", 0, 32, true, 0, "m/s", speed}, {"torque_offset", 32, 16, true, 0, "%", 0.1}}},
-          {"state",
-           Pdo::position,
-           {{"statusword", 0, 16, false, 0, ""}, {"actual_position", 16, 32, true, 0, "m", increment}}},
+          {"state", Pdo::position, {statusword, position}},
+          {"state", Pdo::position_and_torque, {statusword, position, {"actual_torque", 48, 16, true, 0, "%", 0.1}}},
           {"motion",
            Pdo::motion,
            {{"actual_velocity", 0, 32, true, 0, "m/s", speed}, {"following_error", 32, 32, true, 0, "m", increment}}},
           {"speed", Pdo::speed, {controlword, {"target_velocity", 16, 32, true, 0, "m/s", speed}}},
           {"torque",
            Pdo::torque,
-           {controlword, {"target_torque", 16, 16, true, 0, "%", 0.1}, {"max_torque", 32, 16, false, 0, "%", 0.1}}},
-          {"actual_torque", Pdo::actual_torque, {{"actual_torque", 0, 16, true, 0, "%", 0.1}}}};
+           {controlword, {"target_torque", 16, 16, true, 0, "%", 0.1}, {"max_torque", 32, 16, false, 0, "%", 0.1}}}};
 }
 
 // A DBC file as it grows.
@@ -153,7 +152,8 @@ struct Writer {
     for (const auto& axis : bus.axes)
       for (const auto& m : server_messages(increment)) {
         const auto& pdo = description_of(m.pdo);
-        message(pdo.id + static_cast<std::uint32_t>(axis.node), axis.name + "_" + m.name, pdo.size,
+        if (!pdo.exchanged_at(bus.level)) continue;
+        message(pdo.id() + static_cast<std::uint32_t>(axis.node), axis.name + "_" + m.name, pdo.size,
                 pdo.received ? "controller" : "drive", bus.format);
         for (const auto& signal : m.signals) text += line_of(signal, pdo.received ? "drive" : "controller");
       }

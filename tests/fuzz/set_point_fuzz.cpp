@@ -126,7 +126,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     hal::can::Frame frame;
     const std::uint8_t what = data[at], length = data[at + 1];
     at += 2;
-    frame.id = hal::can::pdo_table[what % hal::can::pdo_table.size()].id + ((what & 8) != 0 ? 5u : what);
+    frame.id = hal::can::pdo_table[what % hal::can::pdo_table.size()].id() + ((what & 8) != 0 ? 5u : what);
     for (std::size_t i = 0; i < 8 && at < size; ++i) frame.data[i] = data[at++];
     const auto address = hal::can::pdo_address_of(frame);
     frame.size = (length & 0x80) != 0 ? static_cast<std::uint8_t>(length % 9) : description_of(address.pdo).size;
