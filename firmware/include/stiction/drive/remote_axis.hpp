@@ -54,6 +54,7 @@ class RemoteAxis {
   // Who commands it. Sources whose values owner().accepts() not are to be kept off by who calls what follows.
   constexpr const CommandOwner& owner() const { return owner_; }
   constexpr void hear(CommandSource source) { owner_.hear(source); }
+  constexpr void disconnect(CommandSource source) { owner_.disconnect(source); }
   // What is asked for; holds until changed.
   constexpr void ask(OperationMode mode) { asked_mode_ = mode; }
   // pp. `valid`: the bus gave a number that the formats hold; no move goes to another one.
