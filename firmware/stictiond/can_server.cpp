@@ -206,7 +206,7 @@ void CanServer::send(std::span<const ShownAxis> axes) {
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const auto& axis = axes[i];
     const double unit = config.increment;
-    frames_.node(i).step(now_ns_, axis.fault, [this](const hal::can::Frame& frame) { send(frame); });
+    frames_.node(i).step(now_ns_, axis.fault, [this](const hal::can::Frame& frame) { send_classical(frame); });
     if (!frames_.node(i).exchanges()) continue;
     const auto position = to_units(axis.position, unit);
     if (hal::can::description_of(Pdo::position).exchanged_at(config.frames))
@@ -218,6 +218,11 @@ void CanServer::send(std::span<const ShownAxis> axes) {
       send(hal::can::encode_motion(config.nodes[i], to_units(axis.velocity, unit * velocity_increments),
                                    to_units(axis.following_error, unit)));
   }
+}
+
+// As every node of CANopen has them, on a bus with CAN FD as well.
+void CanServer::send_classical(const hal::can::Frame& frame) {
+  if (!socket_.send(frame, hal::can::Format::classical)) ++send_failed_;
 }
 
 void CanServer::send(const hal::can::Frame& frame) {

@@ -111,6 +111,7 @@ class CanServer {
 
  private:
   void send(const hal::can::Frame& frame);
+  void send_classical(const hal::can::Frame& frame);
 
   ControllerFrames frames_;
   hal::can::CanSocket socket_;

@@ -59,11 +59,11 @@ class ObjectThread {
   std::thread thread_;
 };
 
-// For the requests to the nodes of `config`. Throws hal::can::CanError.
+// For the requests to the nodes of `config`: classical frames, as CiA 301 has them. Throws hal::can::CanError.
 inline std::unique_ptr<hal::can::CanSocket> object_socket(const CanServerConfig& config) {
   std::vector<hal::can::Filter> filters;
   for (const int node : config.nodes) filters.push_back({id_of(hal::can::CobId::sdo_request, node), CAN_SFF_MASK});
-  return std::make_unique<hal::can::CanSocket>(config.interface, config.format, filters, false);
+  return std::make_unique<hal::can::CanSocket>(config.interface, hal::can::Format::classical, filters, false);
 }
 
 }  // namespace stiction::drive
