@@ -124,6 +124,29 @@ std::vector<ServerMessage> server_messages(double increment) {
            {controlword, {"target_torque", 16, 16, true, 0, "%", 0.1}, {"max_torque", 32, 16, false, 0, "%", 0.1}}}};
 }
 
+struct NetworkMessage {
+  const char* name;
+  CobId use;
+  std::size_t size;
+  bool of_drive;
+  std::vector<Signal> signals;
+};
+
+// What CANopen has beside process data (network.hpp, sdo.hpp); the data of an SDO are those of its object.
+std::vector<NetworkMessage> network_messages() {
+  const std::vector<Signal> object{
+      {"command", 0, 8, false, 0, ""}, {"index", 8, 16, false, 0, ""}, {"sub_index", 24, 8, false, 0, ""}};
+  return {
+      {"emergency",
+       CobId::emergency,
+       8,
+       true,
+       {{"error_code", 0, 16, false, 0, ""}, {"error_register", 16, 8, false, 0, ""}, {"fault", 24, 8, false, 0, ""}}},
+      {"heartbeat", CobId::heartbeat, 1, true, {{"state", 0, 8, false, 0, ""}}},
+      {"sdo_answer", CobId::sdo_answer, 8, true, object},
+      {"sdo_request", CobId::sdo_request, 8, false, object}};
+}
+
 // A DBC file as it grows.
 struct Writer {
   std::string text{};
@@ -159,6 +182,19 @@ struct Writer {
       }
   }
 
+  // Classical frames on every bus.
+  void add_network(const DbcBus& bus) {
+    if (bus.axes.empty()) return;
+    message(base_of(CobId::network), "network", 2, "controller", Format::classical);
+    text += line_of({"command", 0, 8, false, 0, ""}, "drive") + line_of({"node", 8, 8, false, 0, ""}, "drive");
+    for (const auto& axis : bus.axes)
+      for (const auto& m : network_messages()) {
+        message(id_of(m.use, axis.node), axis.name + "_" + m.name, m.size, m.of_drive ? "drive" : "controller",
+                Format::classical);
+        for (const auto& signal : m.signals) text += line_of(signal, m.of_drive ? "controller" : "drive");
+      }
+  }
+
   void add_formats() {
     if (fd_ids.empty()) return;
     text +=
@@ -180,6 +216,7 @@ std::string dbc_text(const DbcBus& nodes, const DbcBus& server, double increment
   else
     writer.message(sync_id, "sync", 0, "drive", server.format);
   writer.add_server(server, increment);
+  writer.add_network(server);
   writer.add_formats();
   return writer.text;
 }

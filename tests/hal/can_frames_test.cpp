@@ -12,6 +12,7 @@
 #include "firmware/machine/configuration/conversion.hpp"
 #include "hal/can/dbc.hpp"
 #include "hal/can/frames.hpp"
+#include "hal/can/network.hpp"
 #include "hal/can/process_data.hpp"
 #include "stiction/number/crc.hpp"
 
@@ -304,6 +305,26 @@ TEST(Dbc, HasTheTorqueOfTheStateWhereItIsExchanged) {
   EXPECT_FALSE(has_torque(0));
   EXPECT_FALSE(has_torque(1));
   EXPECT_TRUE(has_torque(2));
+}
+
+// On a bus with CAN FD too they are classical frames.
+TEST(Dbc, DescribesWhatCanopenHasBesideProcessData) {
+  const auto text = dbc_text({}, {Format::fd, {{"X", 5}}});
+  const auto dbc = parse_dbc(text);
+  const Frame emergency = encode_emergency(5, 0x8611, 1);
+  EXPECT_EQ(emergency.id, 0x085u);
+  EXPECT_EQ(dbc.at(0x085).at("error_code").read(emergency), 0x8611);
+  EXPECT_EQ(dbc.at(0x085).at("error_register").read(emergency), 0x21);
+  EXPECT_EQ(dbc.at(0x085).at("fault").read(emergency), 1);
+  EXPECT_EQ(dbc.at(0x705).at("state").read(encode_heartbeat(5, NodeState::pre_operational)), 127);
+  const Frame request{0x605, 8, {0x40, 0x65, 0x60, 2}};
+  EXPECT_EQ(dbc.at(0x605).at("index").read(request), 0x6065);
+  EXPECT_EQ(dbc.at(0x585).at("sub_index").read(request), 2);
+  const Frame order{0x000, 2, {128, 5}};
+  EXPECT_EQ(dbc.at(0x000).at("command").read(order), 128);
+  EXPECT_EQ(network_order_of(order)->node, 5);
+  EXPECT_EQ(text.find("BO_ 133 14;"), std::string::npos);
+  EXPECT_NE(text.find("BO_ 1029 14;"), std::string::npos) << "a target";
 }
 
 TEST(Dbc, DescribesTheFramesAsTheyAre) {
