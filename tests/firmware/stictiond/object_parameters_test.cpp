@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <bit>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -79,6 +81,36 @@ TEST_F(Objects, OfALimitThatTheFileLeavesOutAreReadAndNotWritten) {
   EXPECT_EQ(client.number(0x6065), 2'000'000u);
   EXPECT_EQ(client.set(0x6065, 0, 1'000'000, 4), 0x06090030u);
   EXPECT_THAT(said(), ::testing::HasSubstr("expected a value in the machine file first"));
+}
+
+// One desk: what a client of CAN writes a client of Modbus reads, and the other way round.
+class ObjectsBesideRegisters : public Objects {
+ protected:
+  ObjectsBesideRegisters() : Objects({"drive.modbus_server.address=127.0.0.1:0"}) {}
+};
+TEST_F(ObjectsBesideRegisters, AreOneWithThem) {
+  cycles(1);
+  drive::ModbusPublisher publisher(desk, table.configuration.machine, table.configuration.setup);
+  publisher.open_commissioning();
+  const auto registers = desk->registers().map().registers();
+  const auto window = std::find_if(registers.begin(), registers.end(),
+                                   [](const hal::Register& r) { return r.name == "drive.axis.X.target_window"; });
+  ASSERT_NE(window, registers.end());
+  const auto high = static_cast<std::uint8_t>(window->address >> 8), low = static_cast<std::uint8_t>(window->address);
+  const RawClient modbus(publisher.server().port());
+  EXPECT_EQ(client.set(0x6067, 0, 20'000, 4), 0u);
+  modbus.send(request({3, high, low, 0, 2}));
+  const auto answer = modbus.receive();
+  ASSERT_EQ(answer.size(), 13u);
+  const auto bits =
+      std::uint32_t{answer[9]} << 24 | std::uint32_t{answer[10]} << 16 | std::uint32_t{answer[11]} << 8 | answer[12];
+  EXPECT_EQ(std::bit_cast<float>(bits), 20e-6F);
+  const auto wanted = std::bit_cast<std::uint32_t>(30e-6F);
+  modbus.send(
+      request({16, high, low, 0, 2, 4, static_cast<std::uint8_t>(wanted >> 24), static_cast<std::uint8_t>(wanted >> 16),
+               static_cast<std::uint8_t>(wanted >> 8), static_cast<std::uint8_t>(wanted)}));
+  ASSERT_EQ(modbus.receive().size(), 12u);
+  EXPECT_EQ(client.number(0x6067), 30'000u);
 }
 
 TEST_F(Objects, AreStoredByTheirSignatureAlone) {

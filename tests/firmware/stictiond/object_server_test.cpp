@@ -106,6 +106,26 @@ TEST_F(Objects, MoveAnAxisByItsProfileFromEnableToTarget) {
   EXPECT_EQ(client.number(0x6040), 0x1fu);
 }
 
+// One coordinate system on all that shows a position: that of the zero that homing found.
+class ObjectsOfAHomedAxis : public Objects {
+ protected:
+  ObjectsOfAHomedAxis() : Objects({"drive.axis.X.homing.method=here", "drive.axis.X.homing.offset=50 mm"}) {}
+};
+TEST_F(ObjectsOfAHomedAxis, ShowTheMachinesCoordinates) {
+  cycles(1);
+  EXPECT_EQ(client.number(0x6098), 35u);
+  EXPECT_EQ(client.number(0x607c), 50'000'000u);
+  ASSERT_TRUE(enable());
+  EXPECT_EQ(client.number(0x6041) & 0x4000, 0x4000u) << "the zero is not known";
+  EXPECT_EQ(client.set(0x6060, 0, 6, 1), 0u);
+  cycles(3);
+  EXPECT_EQ(client.set(0x6040, 0, 0x1f, 2), 0u);
+  cycles(10);
+  EXPECT_EQ(client.number(0x6041) & 0x5000, 0x1000u) << "attained";
+  EXPECT_EQ(client.number(0x6064), static_cast<std::uint32_t>(ServedTable::units(table.position(0))));
+  EXPECT_NEAR(client.number(0x6064), 50'000'000, 1'000);
+}
+
 // Stops are taken from everybody, and have their mailbox: an enabling word behind them in the same tick does not win.
 TEST_F(Objects, HandAStopOverWhateverFollowsIt) {
   int won = 0;
