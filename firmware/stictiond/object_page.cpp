@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "firmware/stictiond/modbus_registers.hpp"
 #include "firmware/stictiond/objects.hpp"
 #include "hal/can/identifiers.hpp"
 

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "firmware/machine/configuration/conversion.hpp"
+#include "firmware/stictiond/modbus_registers.hpp"
 #include "hal/can/identifiers.hpp"
 
 namespace stiction::drive {
