@@ -12,6 +12,7 @@
 namespace stiction::drive {
 namespace {
 
+using hal::can::CobId;
 using hal::can::Pdo;
 using hal::can::PdoVerdict;
 using S = FixedSignals;
@@ -20,16 +21,16 @@ constexpr double velocity_increments = 1000.0;  // of position a second in a uni
 constexpr double torque_units = 1000.0;         // in the current limit
 constexpr std::uint16_t most_torque = 1000;     // in torque units
 constexpr std::int64_t second_ns = 1'000'000'000;
-constexpr std::uint32_t heartbeat_id = 0x700;  // CiA 301
 
 std::vector<hal::can::Filter> filters(const CanServerConfig& config) {
   std::vector<hal::can::Filter> wanted;
   for (const int node : config.nodes)
     for (const auto& row : hal::can::pdo_table)
-      if (row.received && row.level <= config.frames)
-        wanted.push_back({row.id + static_cast<std::uint32_t>(node), CAN_SFF_MASK});
-  if (config.heartbeat_node != 0)
-    wanted.push_back({heartbeat_id + static_cast<std::uint32_t>(config.heartbeat_node), CAN_SFF_MASK});
+      if (row.received && row.exchanged_at(config.frames))
+        wanted.push_back({row.id() + static_cast<std::uint32_t>(node), CAN_SFF_MASK});
+  wanted.push_back({base_of(CobId::network), CAN_SFF_MASK});
+  // Of every node: which one is watched may be written (1016h).
+  wanted.push_back({base_of(CobId::heartbeat), CAN_SFF_MASK & ~unsigned{hal::can::highest_node}});
   if (config.follows_sync) wanted.push_back({hal::can::sync_id, CAN_SFF_MASK});
   return wanted;
 }
@@ -50,6 +51,7 @@ CanServer::CanServer(const CanServerConfig& config, LogRing& log)
     : frames_(config, log), socket_(config.interface, config.format, filters(config), false) {}
 
 bool CanServer::receive(std::int64_t now_ns, std::span<RemoteAxis> axes) {
+  now_ns_ = now_ns;
   const bool begins = slow_ticks_ == 0;
   slow_ticks_ = slow_ticks_ + 1 == frames_.config().cycle_ticks ? 0 : slow_ticks_ + 1;
   if (!begins) return false;
@@ -69,15 +71,23 @@ bool CanServer::receive(std::int64_t now_ns, std::span<RemoteAxis> axes) {
     look_again_ns_ = now_ns + second_ns;
     socket_.find_again();
   }
+  frames_.begin_cycle(now_ns, axes);
   for (auto& axis : axes) axis.begin_cycle();
   return true;
 }
 
+ControllerFrames::ControllerFrames(const CanServerConfig& config, LogRing& log) : config_(config), log_(log) {
+  for (std::size_t i = 0; i < config.nodes.size(); ++i)
+    nodes_.push_back({.canopen = CanopenNode(config.nodes[i], links_->at(i))});
+}
+
+void ControllerFrames::begin_cycle(std::int64_t now_ns, std::span<RemoteAxis> axes) {
+  for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_[i].canopen.watch(now_ns, axes[i]);
+}
+
 void ControllerFrames::take(std::int64_t now_ns, const hal::can::Frame& frame, std::span<RemoteAxis> axes) {
-  if (is_heartbeat(frame)) {
-    for (auto& axis : axes) axis.hear(CommandSource::can);
-    return;
-  }
+  if (take_heartbeat(now_ns, frame, axes)) return;
+  if (const auto order = hal::can::network_order_of(frame)) return take_order(now_ns, *order, axes);
   const auto address = hal::can::pdo_address_of(frame);
   const auto found = std::find(config_.nodes.begin(), config_.nodes.end(), address.node);
   if (address.verdict == PdoVerdict::unknown || found == config_.nodes.end()) return;
@@ -98,6 +108,10 @@ void ControllerFrames::ask(std::int64_t now_ns, std::size_t axis, Pdo pdo, const
   if (!config_.motion_allowed) {
     ++counts_.refused;
     if (pdo != Pdo::offsets) say_refused(now_ns, axis, data.controlword);
+    return;
+  }
+  if (!nodes_[axis].canopen.exchanges()) {
+    ++counts_.refused;
     return;
   }
   const bool owned = !remote.owner().accepts(CommandSource::can);
@@ -143,9 +157,26 @@ void ControllerFrames::ask_offsets(std::size_t axis, const hal::can::ControllerD
   remote.ask_offsets(velocity.value_or(S::Velocity{}), current.value_or(S::Current{}));
 }
 
-bool ControllerFrames::is_heartbeat(const hal::can::Frame& frame) const {
-  const auto node = static_cast<std::uint32_t>(config_.heartbeat_node);
-  return node != 0 && frame.id == heartbeat_id + node && frame.size == 1;
+bool ControllerFrames::take_heartbeat(std::int64_t now_ns, const hal::can::Frame& frame, std::span<RemoteAxis> axes) {
+  const int node = static_cast<int>(frame.id - base_of(CobId::heartbeat));
+  if (node < 1 || node > hal::can::highest_node || frame.size != 1) return false;
+  for (auto& each : nodes_) each.canopen.hear(node, now_ns);
+  if (node == config_.heartbeat_node)
+    for (auto& axis : axes) axis.hear(CommandSource::can);
+  return true;
+}
+
+// One line a second and axis.
+void ControllerFrames::take_order(std::int64_t now_ns, const hal::can::NetworkOrder& order,
+                                  std::span<RemoteAxis> axes) {
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    auto& node = nodes_[i];
+    if (!node.canopen.take(order, axes[i])) continue;
+    if (node.state_said_ns != INT64_MIN && now_ns - node.state_said_ns < second_ns) continue;
+    node.state_said_ns = now_ns;
+    log_.push(now_ns, LogLevel::notice, "CAN: axis {}: the master of the network sets its node {}",
+              {i, name_of(node.canopen.state())});
+  }
 }
 
 // One a second and axis.
@@ -175,13 +206,23 @@ void CanServer::send(std::span<const ShownAxis> axes) {
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const auto& axis = axes[i];
     const double unit = config.increment;
-    send(hal::can::encode_position(config.nodes[i], axis.statusword, to_units(axis.position, unit)));
-    if (config.frames >= hal::can::description_of(Pdo::motion).level)
+    frames_.node(i).step(now_ns_, axis.fault, [this](const hal::can::Frame& frame) { send_classical(frame); });
+    if (!frames_.node(i).exchanges()) continue;
+    const auto position = to_units(axis.position, unit);
+    if (hal::can::description_of(Pdo::position).exchanged_at(config.frames))
+      send(hal::can::encode_position(config.nodes[i], axis.statusword, position));
+    else
+      send(hal::can::encode_position(config.nodes[i], axis.statusword, position,
+                                     to_thousandths(axis.current / config.current_limit[i])));
+    if (hal::can::description_of(Pdo::motion).exchanged_at(config.frames))
       send(hal::can::encode_motion(config.nodes[i], to_units(axis.velocity, unit * velocity_increments),
                                    to_units(axis.following_error, unit)));
-    if (config.frames >= hal::can::description_of(Pdo::actual_torque).level)
-      send(hal::can::encode_torque(config.nodes[i], to_thousandths(axis.current / config.current_limit[i])));
   }
+}
+
+// As every node of CANopen has them, on a bus with CAN FD as well.
+void CanServer::send_classical(const hal::can::Frame& frame) {
+  if (!socket_.send(frame, hal::can::Format::classical)) ++send_failed_;
 }
 
 void CanServer::send(const hal::can::Frame& frame) {

@@ -5,11 +5,13 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "firmware/stictiond/canopen_node.hpp"
 #include "firmware/stictiond/log_ring.hpp"
 #include "hal/can/can_socket.hpp"
 #include "hal/can/process_data.hpp"
@@ -34,7 +36,8 @@ struct CanServerConfig {
 struct CanServerCounts {
   std::uint64_t taken = 0;       // frames that were taken
   std::uint64_t wrong_size = 0;  // of an axis' identifiers with another length
-  std::uint64_t refused = 0;     // because motion is not allowed, the mode is not there, or a different one commands
+  // Because motion is not allowed, the mode is not there, a different one commands, or the node is not operational.
+  std::uint64_t refused = 0;
 };
 
 // What the controller sees of an axis.
@@ -42,37 +45,47 @@ struct ShownAxis {
   std::uint16_t statusword = 0;
   double position = 0.0, velocity = 0.0, following_error = 0.0;  // m, m/s, m
   double current = 0.0;                                          // A, that makes the force
+  Fault fault = Fault::none;
 };
 
 // What the controller's frames ask of the axes, frame by frame; without a socket.
 class ControllerFrames {
  public:
-  ControllerFrames(const CanServerConfig& config, LogRing& log)
-      : config_(config), log_(log), nodes_(config.nodes.size()) {}
+  ControllerFrames(const CanServerConfig& config, LogRing& log);
 
   // Any frame; those that are of no axis are left alone. `now_ns`: time of the tick, for the log; `axes`: those that
   // the frames command, in the order of the configuration.
   void take(std::int64_t now_ns, const hal::can::Frame& frame, std::span<RemoteAxis> axes);
+
+  // Behind all frames of a cycle: commanders whose heartbeat has ended. `now_ns`, `axes`: as above.
+  void begin_cycle(std::int64_t now_ns, std::span<RemoteAxis> axes);
+  CanopenNode& node(std::size_t axis) { return nodes_[axis].canopen; }
+  // What the server of the nodes' objects shares with the loop.
+  std::shared_ptr<NodeLinks> links() const { return links_; }
 
   const CanServerConfig& config() const { return config_; }
   const CanServerCounts& counts() const { return counts_; }
 
  private:
   struct Node {
-    std::uint16_t refused_word = 0;    // the last one that was said to be refused
+    CanopenNode canopen;
+    std::uint16_t refused_word = 0;  // the last one that was said to be refused
+    std::int64_t state_said_ns = INT64_MIN;
     std::int64_t said_ns = INT64_MIN;  // a wrong size
     std::int64_t owned_said_ns = INT64_MIN;
   };
 
   void say_refused(std::int64_t now_ns, std::size_t axis, std::uint16_t controlword);
   void say_owned(std::int64_t now_ns, std::size_t axis, std::uint16_t controlword, const RemoteAxis& remote);
-  bool is_heartbeat(const hal::can::Frame& frame) const;
+  bool take_heartbeat(std::int64_t now_ns, const hal::can::Frame& frame, std::span<RemoteAxis> axes);
+  void take_order(std::int64_t now_ns, const hal::can::NetworkOrder& order, std::span<RemoteAxis> axes);
   void ask(std::int64_t now_ns, std::size_t axis, hal::can::Pdo pdo, const hal::can::ControllerData& data,
            RemoteAxis& remote);
   void ask_offsets(std::size_t axis, const hal::can::ControllerData& data, RemoteAxis& remote) const;
 
   CanServerConfig config_;
   LogRing& log_;
+  std::shared_ptr<NodeLinks> links_ = std::make_shared<NodeLinks>();
   std::vector<Node> nodes_;
   CanServerCounts counts_;
 };
@@ -93,14 +106,17 @@ class CanServer {
   std::optional<std::int64_t> sync_age_ns() const { return sync_age_ns_; }
   const CanServerCounts& counts() const { return frames_.counts(); }
   bool motion_allowed() const { return frames_.config().motion_allowed; }
+  std::shared_ptr<NodeLinks> links() const { return frames_.links(); }
   std::uint64_t send_failed() const { return send_failed_; }  // frames that the kernel did not take
 
  private:
   void send(const hal::can::Frame& frame);
+  void send_classical(const hal::can::Frame& frame);
 
   ControllerFrames frames_;
   hal::can::CanSocket socket_;
   std::uint32_t slow_ticks_ = 0;
+  std::int64_t now_ns_ = 0;                 // of the last cycle
   std::int64_t look_again_ns_ = INT64_MIN;  // for an adapter, not before
   std::uint64_t send_failed_ = 0;
   std::optional<std::int64_t> sync_age_ns_;

@@ -144,7 +144,7 @@ std::string dbc_page(const DriveConfiguration& configuration) {
   }
   if (setup.can_server) {
     const auto config = can_server_config(configuration);
-    server = {config.format, axes_of(config.nodes)};
+    server = {config.format, axes_of(config.nodes), config.frames};
   }
   const double increment = setup.can_server ? setup.can_server->position_increment : 0.0;
   return hal::can::dbc_text(bus, server, increment);

@@ -12,6 +12,7 @@
 #include "firmware/stictiond/gpio_setup.hpp"
 #include "firmware/stictiond/modbus_registers.hpp"
 #include "firmware/stictiond/modbus_setup.hpp"
+#include "firmware/stictiond/objects.hpp"
 #include "firmware/stictiond/options.hpp"
 #include "firmware/stictiond/real_time_check.hpp"
 #include "firmware/stictiond/remote_setup.hpp"
@@ -161,6 +162,10 @@ int serve(const DriveOptions& options) {
   }
   if (options.modbus_registers) {
     fmt::print("{}", modbus_register_page());
+    return exit_done;
+  }
+  if (options.canopen_objects || options.eds) {
+    fmt::print("{}", options.eds ? eds_text() : object_page());
     return exit_done;
   }
   if (options.machine.empty())

@@ -4,7 +4,7 @@
 
 namespace stiction::drive {
 
-void ask(const MotionWrite& write, double period, RemoteAxis& axis) {
+void ask(const MotionWrite& write, double period, RemoteAxis& axis, CommandSource source) {
   using enum MotionWrite::What;
   using S = FixedSignals;
   const auto speed = [](double value) { return machine::to_signal<S::Velocity>(value).value_or(S::Velocity{}); };
@@ -12,12 +12,12 @@ void ask(const MotionWrite& write, double period, RemoteAxis& axis) {
     return machine::to_signal<S::Current>(share * machine::to_si(axis.rated_torque())).value_or(S::Current{});
   };
   if (write.what == controlword) {
-    axis.ask(static_cast<std::uint16_t>(write.value), CommandSource::modbus, write.of_other);
+    axis.ask(static_cast<std::uint16_t>(write.value), source, write.of_other);
     return;
   }
   // A value of who does not command is none; the publisher has answered so.
-  if (!axis.owner().accepts(CommandSource::modbus)) return;
-  axis.hear(CommandSource::modbus);
+  if (!axis.owner().accepts(source)) return;
+  axis.hear(source);
   switch (write.what) {
     case mode:
       return axis.ask(static_cast<OperationMode>(static_cast<std::int8_t>(write.value)));

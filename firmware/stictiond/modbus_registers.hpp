@@ -22,6 +22,8 @@ namespace stiction::drive {
 inline constexpr std::uint16_t modbus_identification = 0x5344;  // "SD"
 inline constexpr std::uint16_t modbus_schema = 4;               // of the registers; changes with any address
 inline constexpr std::size_t most_published_axes = 8;
+// From the registers of an axis to those of the next one: of state and commands, and of parameters.
+inline constexpr std::uint16_t axis_registers = 100, parameter_registers = 200;
 
 struct PublishedAxis {
   std::uint16_t statusword = 0;  // CiA 402, 6041h

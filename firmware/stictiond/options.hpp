@@ -13,6 +13,7 @@ struct DriveOptions {
   std::vector<std::string> set;
   std::optional<double> hold;  // s
   bool unpaced = false, budget = false, check_realtime = false, dbc = false, faults = false, modbus_registers = false;
+  bool canopen_objects = false, eds = false;
   bool rest = false, udev = false;
 
   static constexpr double longest_hold = 31'536'000.0;  // s, a year
@@ -52,6 +53,8 @@ struct DriveOptions {
                      "print the rules for udev that give the drive's group the chips of the machine and exit");
     program.add_flag("--faults", faults, "print the table of faults and exit");
     program.add_flag("--modbus-registers", modbus_registers, "print the Modbus registers as Markdown and exit");
+    program.add_flag("--canopen-objects", canopen_objects, "print the objects of CANopen as Markdown and exit");
+    program.add_flag("--eds", eds, "print the electronic data sheet of an axis on CANopen and exit");
     program.add_flag("--dbc", dbc, "print the frames of the CAN bus as a DBC file and exit");
   }
 };

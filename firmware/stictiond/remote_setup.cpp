@@ -137,8 +137,16 @@ RemoteAxisConfig remote_axis(const DriveConfiguration& c, const machine::AxisMod
 
 std::vector<std::uint32_t> identifiers(const CanServerConfig& config) {
   std::vector<std::uint32_t> ids;
-  for (const int node : config.nodes)
-    for (const auto& row : hal::can::pdo_table) ids.push_back(row.id + static_cast<std::uint32_t>(node));
+  // The drive's own sockets hear one another.
+  for (const auto& row : hal::can::identifier_table) {
+    const bool of_power_stage =
+        row.base == hal::can::position_id || row.base == hal::can::command_id || row.base == hal::can::current_id;
+    if (row.use == hal::can::CobId::sync || of_power_stage) continue;  // those are of the other one of its buses
+    if (!row.of_node) ids.push_back(row.base);
+    if (!row.of_node) continue;
+    for (const int node : config.nodes) ids.push_back(id_of(row.use, node));
+  }
+  if (config.heartbeat_node != 0) ids.push_back(id_of(hal::can::CobId::heartbeat, config.heartbeat_node));
   return ids;
 }
 
@@ -209,10 +217,10 @@ std::vector<hal::CyclicFrame> can_server_frames(const DriveConfiguration& config
   std::vector<hal::CyclicFrame> frames;
   const auto axes = static_cast<int>(config.nodes.size());
   if (config.sends_sync || config.follows_sync) frames.push_back(frame("server sync", 0, 1));
-  constexpr std::array<const char*, 8> names{"mode", "target", "offsets", "state", "motion", "", "", "torque"};
+  constexpr std::array<const char*, 8> names{"mode", "target", "offsets", "state", "motion", "", "", "state"};
   for (const auto& row : hal::can::pdo_table)
     // The mode is sent when it changes, and a speed or a torque in the place of a target.
-    if (row.cyclic && row.level <= config.frames)
+    if (row.cyclic && row.exchanged_at(config.frames))
       frames.push_back(frame(names[static_cast<std::size_t>(row.pdo)], row.size, axes));
   return frames;
 }

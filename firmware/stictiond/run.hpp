@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "firmware/stictiond/loop_watchdog.hpp"
 #include "firmware/stictiond/modbus_motion.hpp"
 #include "firmware/stictiond/modbus_publisher.hpp"
+#include "firmware/stictiond/object_thread.hpp"
 #include "firmware/stictiond/programme.hpp"
 #include "firmware/stictiond/real_time.hpp"
 #include "firmware/stictiond/remote_setup.hpp"
@@ -91,23 +93,27 @@ void show_on_can(const hal::DriveLoop<B>& loop, const Programme<B>& programme, b
                  std::span<ShownAxis> shown) {
   for (std::size_t i = 0; i < shown.size(); ++i) {
     const auto& signals = loop.loop().signals()[i];
-    shown[i] = {statusword_on(programme.statusword(i), obeyed), machine::to_si(loop.drive(i).position()),
-                machine::to_si(signals.v), machine::to_si(signals.e), machine::to_si(signals.i)};
+    shown[i] = {statusword_on(programme.statusword(i), obeyed),
+                machine::to_si(loop.drive(i).position()),
+                machine::to_si(signals.v),
+                machine::to_si(signals.e),
+                machine::to_si(signals.i),
+                loop.fault(i)};
   }
 }
 
 // The axes for others to see. Wait-free. `loop`, `programme`: whose state is published; `period`: of the fast tick, s;
-// `modbus`: the server.
-template <hal::Backend B>
-void show_on_modbus(const hal::DriveLoop<B>& loop, Programme<B>& programme, double period, ModbusPublisher& modbus) {
+// `server`: a ModbusPublisher or an ObjectServer.
+template <hal::Backend B, class Server>
+void show_to_clients(const hal::DriveLoop<B>& loop, Programme<B>& programme, double period, Server& server) {
   Fault fault = Fault::none;
   for (std::size_t i = 0; i < loop.axis_count(); ++i)
     if (loop.fault(i) != Fault::none) fault = loop.fault(i);
-  modbus.publish(loop.loop().signals(), loop.now_ns(), fault, [&](std::size_t i, PublishedAxis& axis) {
+  server.publish(loop.loop().signals(), loop.now_ns(), fault, [&](std::size_t i, PublishedAxis& axis) {
     // Of the machine, as on CAN: homing has moved the zero of the encoder.
     axis.position = machine::to_si(loop.drive(i).position());
     axis.set_position = machine::to_si(loop.drive(i).set_position());
-    axis.statusword = statusword_on(programme.statusword(i), modbus.motion_allowed());
+    axis.statusword = statusword_on(programme.statusword(i), server.motion_allowed());
     axis.fault = loop.fault(i);
     const auto& inputs = loop.inputs(i);
     axis.limit_negative = inputs.limit_negative;
@@ -141,14 +147,20 @@ RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const Driv
   const LogSink say = [&output](LogLevel level, std::string_view text) { output.put(level, text); };
   const auto remote = remote_axes(configuration);
   Programme programme(loop, task, remote, log, options.trace.empty() ? nullptr : &trace);
+  // Only who serves takes set-points: a motion of its own is the programme's alone.
+  const bool serves_can = configuration.setup.can_server && task.serve;
+  std::shared_ptr<ParameterDesk> desk;
+  if (configuration.setup.modbus_server || serves_can)
+    desk = std::make_shared<ParameterDesk>(
+        configuration.machine, configuration.setup,
+        KeptParameters{.file = parameter_file(options),
+                       .check = [options](const ParameterSet& set) { check_whole(options, set); },
+                       .begun = configuration.stored,
+                       .file_holds = !configuration.rejected_parameters});
   std::optional<ModbusPublisher> modbus;
   if (configuration.setup.modbus_server)
     modbus.emplace(
-        configuration.machine, configuration.setup,
-        ModbusStore{.file = parameter_file(options),
-                    .check = [options](const ParameterSet& set) { check_whole(options, set); },
-                    .begun = configuration.stored,
-                    .file_holds = !configuration.rejected_parameters},
+        desk, configuration.machine, configuration.setup,
         [&](PublishedState& state) {
           state.trace_rows = static_cast<std::uint32_t>(trace.rows());
           state.trace_lost = static_cast<std::uint32_t>(trace.lost());
@@ -156,9 +168,15 @@ RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const Driv
         },
         [] { return hal::power_cut.is_cut(); }, !task.serve);
 
-  // Only who serves takes set-points: a motion of its own is the programme's alone.
   std::optional<CanServer> can;
-  if (configuration.setup.can_server && task.serve) can.emplace(can_server_config(configuration), log);
+  if (serves_can) can.emplace(can_server_config(configuration), log);
+  std::optional<ObjectServer> objects;
+  std::optional<ObjectThread<hal::can::CanSocket>> object_thread;
+  if (can) {
+    const auto config = can_server_config(configuration);
+    objects.emplace(configuration, config, desk, can->links(), [] { return hal::power_cut.is_cut(); });
+    object_thread.emplace(*objects, object_socket(config));
+  }
   std::vector<ShownAxis> shown(configuration.names.size());
   ControllerClock controller_clock(configuration);
 
@@ -185,10 +203,10 @@ RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const Driv
              [&] {
                const int asked = hal::signal_asked;
                hal::signal_asked = 0;
-               if (!modbus) return;
-               if (asked == SIGUSR1) modbus->open_commissioning();
-               if (asked == SIGUSR2) modbus->close_commissioning();
-               for (const auto& line : modbus->serve()) say(LogLevel::notice, line);
+               if (!desk) return;
+               if (asked == SIGUSR1) desk->open_commissioning();
+               if (asked == SIGUSR2) desk->close_commissioning();
+               for (const auto& line : desk->said().take(hal::MonotonicTime().now_ns())) say(LogLevel::notice, line);
              }},
         2 * LoopWatchdog::limit_ns);  // behind the watchdog, which acts and does not speak
     real_time.prepare_thread();
@@ -227,6 +245,9 @@ RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const Driv
           if (task.serve) return ask(asked, period, programme.remote()[asked.axis]);
           stop_asked = true;  // all that is let through then
         });
+      if (objects)
+        objects->loop().take_motion(
+            [&](const MotionWrite& asked) { ask(asked, period, programme.remote()[asked.axis], CommandSource::can); });
       const bool begins = can && loop.loop().slow() && can->receive(loop.now_ns(), programme.remote());
       const bool suspended = clock != nullptr && clock->was_suspended();
       if (suspended) log.push(loop.now_ns(), LogLevel::error, "the computer was suspended");
@@ -238,7 +259,8 @@ RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const Driv
         can->send(shown);
         if (clock != nullptr) controller_clock.follow(can->sync_age_ns(), *clock, log, loop.now_ns());
       }
-      if (modbus && loop.loop().slow()) show_on_modbus(loop, programme, period, *modbus);
+      if (modbus && loop.loop().slow()) show_to_clients(loop, programme, period, *modbus);
+      if (objects && loop.loop().slow()) show_to_clients(loop, programme, period, *objects);
     }
     processor_ns =
         static_cast<double>(processor_time_ns() - processor_begin_ns) / static_cast<double>(programme.progress());

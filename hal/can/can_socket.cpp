@@ -137,13 +137,13 @@ bool CanSocket::find_again() {
   return true;
 }
 
-bool CanSocket::send(const Frame& frame) {
+bool CanSocket::send(const Frame& frame, Format format) {
   canfd_frame wire{};
   wire.can_id = frame.id;
   wire.len = frame.size;
-  if (format_ == Format::fd) wire.flags = CANFD_BRS;
+  if (format == Format::fd) wire.flags = CANFD_BRS;
   std::copy_n(frame.data.begin(), frame.size, wire.data);
-  const std::size_t size = format_ == Format::fd ? CANFD_MTU : CAN_MTU;
+  const std::size_t size = format == Format::fd ? CANFD_MTU : CAN_MTU;
   ssize_t sent = 0;
   do sent = ::send(descriptor_, &wire, size, MSG_DONTWAIT);
   while (sent < 0 && errno == EINTR);

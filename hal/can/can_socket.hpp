@@ -43,8 +43,10 @@ class CanSocket {
   CanSocket& operator=(const CanSocket&) = delete;
   ~CanSocket();
 
-  // False when the kernel's queue is full or the interface went down; the frame is lost then.
-  bool send(const Frame& frame);
+  // False when the kernel's queue is full or the interface went down; the frame is lost then. `format`: of the wire.
+  bool send(const Frame& frame) { return send(frame, format_); }
+  // The same in a format of its own. `frame`: of at most eight bytes where it is classical.
+  bool send(const Frame& frame, Format format);
 
   // The next frame; waits for it until `deadline_ns` on CLOCK_MONOTONIC (0: does not wait). False when none came.
   bool receive(Received& received, std::int64_t deadline_ns);

@@ -106,23 +106,45 @@ struct ServerMessage {
 
 std::vector<ServerMessage> server_messages(double increment) {
   const double speed = 1000.0 * increment;
-  const Signal controlword{"controlword", 0, 16, false, 0, ""};
+  const Signal controlword{"controlword", 0, 16, false, 0, ""}, statusword{"statusword", 0, 16, false, 0, ""};
+  const Signal position{"actual_position", 16, 32, true, 0, "m", increment};
   return {{"mode", Pdo::mode, {controlword, {"mode_of_operation", 16, 8, true, 0, ""}}},
           {"target", Pdo::target, {controlword, {"target_position", 16, 32, true, 0, "m", increment}}},
           {"offsets",
            Pdo::offsets,
            {{"velocity_offset", 0, 32, true, 0, "m/s", speed}, {"torque_offset", 32, 16, true, 0, "%", 0.1}}},
-          {"state",
-           Pdo::position,
-           {{"statusword", 0, 16, false, 0, ""}, {"actual_position", 16, 32, true, 0, "m", increment}}},
+          {"state", Pdo::position, {statusword, position}},
+          {"state", Pdo::position_and_torque, {statusword, position, {"actual_torque", 48, 16, true, 0, "%", 0.1}}},
           {"motion",
            Pdo::motion,
            {{"actual_velocity", 0, 32, true, 0, "m/s", speed}, {"following_error", 32, 32, true, 0, "m", increment}}},
           {"speed", Pdo::speed, {controlword, {"target_velocity", 16, 32, true, 0, "m/s", speed}}},
           {"torque",
            Pdo::torque,
-           {controlword, {"target_torque", 16, 16, true, 0, "%", 0.1}, {"max_torque", 32, 16, false, 0, "%", 0.1}}},
-          {"actual_torque", Pdo::actual_torque, {{"actual_torque", 0, 16, true, 0, "%", 0.1}}}};
+           {controlword, {"target_torque", 16, 16, true, 0, "%", 0.1}, {"max_torque", 32, 16, false, 0, "%", 0.1}}}};
+}
+
+struct NetworkMessage {
+  const char* name;
+  CobId use;
+  std::size_t size;
+  bool of_drive;
+  std::vector<Signal> signals;
+};
+
+// What CANopen has beside process data (network.hpp, sdo.hpp); the data of an SDO are those of its object.
+std::vector<NetworkMessage> network_messages() {
+  const std::vector<Signal> object{
+      {"command", 0, 8, false, 0, ""}, {"index", 8, 16, false, 0, ""}, {"sub_index", 24, 8, false, 0, ""}};
+  return {
+      {"emergency",
+       CobId::emergency,
+       8,
+       true,
+       {{"error_code", 0, 16, false, 0, ""}, {"error_register", 16, 8, false, 0, ""}, {"fault", 24, 8, false, 0, ""}}},
+      {"heartbeat", CobId::heartbeat, 1, true, {{"state", 0, 8, false, 0, ""}}},
+      {"sdo_answer", CobId::sdo_answer, 8, true, object},
+      {"sdo_request", CobId::sdo_request, 8, false, object}};
 }
 
 // A DBC file as it grows.
@@ -153,9 +175,23 @@ struct Writer {
     for (const auto& axis : bus.axes)
       for (const auto& m : server_messages(increment)) {
         const auto& pdo = description_of(m.pdo);
-        message(pdo.id + static_cast<std::uint32_t>(axis.node), axis.name + "_" + m.name, pdo.size,
+        if (!pdo.exchanged_at(bus.level)) continue;
+        message(pdo.id() + static_cast<std::uint32_t>(axis.node), axis.name + "_" + m.name, pdo.size,
                 pdo.received ? "controller" : "drive", bus.format);
         for (const auto& signal : m.signals) text += line_of(signal, pdo.received ? "drive" : "controller");
+      }
+  }
+
+  // Classical frames on every bus.
+  void add_network(const DbcBus& bus) {
+    if (bus.axes.empty()) return;
+    message(base_of(CobId::network), "network", 2, "controller", Format::classical);
+    text += line_of({"command", 0, 8, false, 0, ""}, "drive") + line_of({"node", 8, 8, false, 0, ""}, "drive");
+    for (const auto& axis : bus.axes)
+      for (const auto& m : network_messages()) {
+        message(id_of(m.use, axis.node), axis.name + "_" + m.name, m.size, m.of_drive ? "drive" : "controller",
+                Format::classical);
+        for (const auto& signal : m.signals) text += line_of(signal, m.of_drive ? "controller" : "drive");
       }
   }
 
@@ -180,6 +216,7 @@ std::string dbc_text(const DbcBus& nodes, const DbcBus& server, double increment
   else
     writer.message(sync_id, "sync", 0, "drive", server.format);
   writer.add_server(server, increment);
+  writer.add_network(server);
   writer.add_formats();
   return writer.text;
 }

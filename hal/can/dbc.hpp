@@ -17,6 +17,7 @@ struct DbcAxis {
 struct DbcBus {
   Format format = Format::classical;
   std::vector<DbcAxis> axes{};  // empty: there is no such bus
+  int level = 2;                // of the frames with a motion controller (process_data.hpp)
 };
 
 // `nodes`: of the axes' power stages and encoders. `server`: what a motion controller sends and gets, with positions in

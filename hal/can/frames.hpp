@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <span>
 
+#include "hal/can/identifiers.hpp"
 #include "stiction/drive/exchange.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
@@ -25,12 +26,11 @@ struct Frame {
   std::array<std::uint8_t, 64> data{};
 };
 
-// Identifiers as CANopen's predefined connection set has them (CiA 301, 7.3.5), plus the node.
-inline constexpr std::uint32_t sync_id = 0x080;
-inline constexpr std::uint32_t position_id = 0x180;  // in CAN FD the whole feedback
-inline constexpr std::uint32_t command_id = 0x200;
-inline constexpr std::uint32_t current_id = 0x280;  // classical only
-inline constexpr int highest_node = 127;
+// Plus the node, but for SYNC.
+inline constexpr std::uint32_t sync_id = base_of(CobId::sync);
+inline constexpr std::uint32_t position_id = base_of(CobId::node_position);  // in CAN FD the whole feedback
+inline constexpr std::uint32_t command_id = base_of(CobId::node_command);
+inline constexpr std::uint32_t current_id = base_of(CobId::node_current);  // classical only
 
 // What a node says in one tick.
 struct NodeFeedback {

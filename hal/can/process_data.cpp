@@ -20,7 +20,7 @@ Word get(const Frame& frame, std::size_t at) {
 
 Frame of(Pdo pdo, int node) {
   Frame frame;
-  frame.id = description_of(pdo).id + static_cast<std::uint32_t>(node);
+  frame.id = description_of(pdo).id() + static_cast<std::uint32_t>(node);
   return frame;
 }
 
@@ -30,7 +30,7 @@ PdoAddress pdo_address_of(const Frame& frame) {
   const auto node = static_cast<int>(frame.id & node_bits);
   if (node == 0) return {};
   for (const auto& row : pdo_table)
-    if (row.received && row.id == (frame.id & ~node_bits))
+    if (row.received && row.id() == (frame.id & ~node_bits))
       return {frame.size == row.size ? PdoVerdict::good : PdoVerdict::wrong_size, row.pdo, node};
   return {};
 }
@@ -74,8 +74,8 @@ Frame encode_position(int node, std::uint16_t statusword, std::int32_t position)
   return frame;
 }
 
-Frame encode_torque(int node, std::int16_t torque) {
-  Frame frame = of(Pdo::actual_torque, node);
+Frame encode_position(int node, std::uint16_t statusword, std::int32_t position, std::int16_t torque) {
+  Frame frame = encode_position(node, statusword, position);
   put(frame, torque);
   return frame;
 }

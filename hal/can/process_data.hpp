@@ -1,18 +1,17 @@
-// The process data that a motion controller and the drive exchange on CAN: PDOs as CANopen's predefined connection set
-// has them (CiA 301, 7.3.5) with objects of CiA 402, one node an axis. No checksum and no counter, so that any
-// controller can send them: identifier, length and range are what can be judged. Little-endian.
+// The process data that a motion controller and the drive exchange on CAN: PDOs with objects of CiA 402, one node an
+// axis. No checksum and no counter, so that any controller can send them: identifier, length and range are what can be
+// judged. Little-endian. Identifiers: identifiers.hpp; those of target speed and target torque are none of the
+// predefined set, whose other PDOs are a node's.
 //
-//   RPDO2 300h + node  3 B  6040h controlword, 6060h mode of operation
-//   RPDO3 400h + node  6 B  6040h controlword, 607Ah target position
-//         100h + node  6 B  6040h controlword, 60FFh target velocity; not of the predefined set, whose RPDO1 is a
-//         node's
-//         680h + node  6 B  6040h controlword, 6071h target torque, 6072h max torque
-//   RPDO4 500h + node  6 B  60B1h velocity offset, 60B2h torque offset
-//   TPDO3 380h + node  6 B  6041h statusword, 6064h position actual value
-//   TPDO4 480h + node  8 B  606Ch velocity actual value, 60F4h following error
-//         580h + node  2 B  6077h torque actual value; of the predefined set the answer of an SDO, which the drive has
-//         not
-//   SYNC  080h         0 B  begins a cycle; sent by the drive
+//   mode           3 B  6040h controlword, 6060h mode of operation
+//   target         6 B  6040h controlword, 607Ah target position
+//   target speed   6 B  6040h controlword, 60FFh target velocity
+//   target torque  6 B  6040h controlword, 6071h target torque, 6072h max torque
+//   offsets        6 B  60B1h velocity offset, 60B2h torque offset
+//   state          6 B  6041h statusword, 6064h position actual value
+//                  8 B  the same and 6077h torque actual value
+//   motion         8 B  606Ch velocity actual value, 60F4h following error
+//   SYNC           0 B  begins a cycle
 //
 // Units: positions and following error in increments, velocities in 1000 increments a second, torque in thousandths of
 // the current limit.
@@ -26,36 +25,30 @@
 
 namespace stiction::hal::can {
 
-enum class Pdo : std::uint8_t { mode, target, offsets, position, motion, speed, torque, actual_torque };
+enum class Pdo : std::uint8_t { mode, target, offsets, position, motion, speed, torque, position_and_torque };
 
 struct PdoDescription {
   Pdo pdo;
-  std::uint32_t id;   // plus the node
+  CobId use;
   std::uint8_t size;  // bytes
   bool received;      // by the drive
   int level;          // from which on it is exchanged; 0: no position is commanded without it
   bool cyclic;        // each cycle, and not in the place of a different one
+  int last_level = 2;
+  constexpr std::uint32_t id() const { return base_of(use); }  // plus the node
+  constexpr bool exchanged_at(int wanted) const { return level <= wanted && wanted <= last_level; }
 };
 inline constexpr std::array<PdoDescription, 8> pdo_table{{
-    {Pdo::mode, 0x300, 3, true, 0, false},
-    {Pdo::target, 0x400, 6, true, 0, true},
-    {Pdo::offsets, 0x500, 6, true, 1, true},
-    {Pdo::position, 0x380, 6, false, 0, true},
-    {Pdo::motion, 0x480, 8, false, 1, true},
-    {Pdo::speed, 0x100, 6, true, 0, false},
-    {Pdo::torque, 0x680, 6, true, 0, false},
-    {Pdo::actual_torque, 0x580, 2, false, 2, true},
+    {Pdo::mode, CobId::mode, 3, true, 0, false},
+    {Pdo::target, CobId::target, 6, true, 0, true},
+    {Pdo::offsets, CobId::offsets, 6, true, 1, true},
+    {Pdo::position, CobId::state, 6, false, 0, true, 1},
+    {Pdo::motion, CobId::motion, 8, false, 1, true},
+    {Pdo::speed, CobId::target_speed, 6, true, 0, false},
+    {Pdo::torque, CobId::target_torque, 6, true, 0, false},
+    {Pdo::position_and_torque, CobId::state, 8, false, 2, true},
 }};
 constexpr const PdoDescription& description_of(Pdo pdo) { return pdo_table[static_cast<std::size_t>(pdo)]; }
-
-// A controller's bus may be that of the axes' own nodes (frames.hpp).
-constexpr bool apart_from_nodes() {
-  for (const auto& row : pdo_table)
-    for (const auto id : {sync_id, position_id, command_id, current_id})
-      if (row.id == id) return false;
-  return true;
-}
-static_assert(apart_from_nodes());
 
 // What a PDO to the drive asks for; the objects that its kind carries.
 struct ControllerData {
@@ -87,7 +80,7 @@ ControllerData decode_pdo(Pdo pdo, const Frame& frame);
 Frame encode_pdo(Pdo pdo, int node, const ControllerData& data);  // as a controller sends it
 Frame encode_position(int node, std::uint16_t statusword, std::int32_t position);
 Frame encode_motion(int node, std::int32_t velocity, std::int32_t following_error);
-Frame encode_torque(int node, std::int16_t torque);
+Frame encode_position(int node, std::uint16_t statusword, std::int32_t position, std::int16_t torque);
 inline constexpr Frame plain_sync{sync_id, 0, {}};
 
 }  // namespace stiction::hal::can

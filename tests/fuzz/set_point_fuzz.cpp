@@ -1,5 +1,6 @@
-// Any bytes as frames of a motion controller, cycle by cycle, before an axis that follows or stands: what is asked for
-// never leaves the travel in a profile move, nothing is taken where motion is not allowed, and no number overflows.
+// Any bytes as frames of a motion controller and of the network's master, cycle by cycle, before an axis that follows
+// or stands: what is asked for never leaves the travel in a profile move, nothing is taken where motion is not allowed,
+// and no number overflows.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -126,7 +127,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     hal::can::Frame frame;
     const std::uint8_t what = data[at], length = data[at + 1];
     at += 2;
-    frame.id = hal::can::pdo_table[what % hal::can::pdo_table.size()].id + ((what & 8) != 0 ? 5u : what);
+    frame.id = hal::can::pdo_table[what % hal::can::pdo_table.size()].id() + ((what & 8) != 0 ? 5u : what);
     for (std::size_t i = 0; i < 8 && at < size; ++i) frame.data[i] = data[at++];
     const auto address = hal::can::pdo_address_of(frame);
     frame.size = (length & 0x80) != 0 ? static_cast<std::uint8_t>(length % 9) : description_of(address.pdo).size;
@@ -137,9 +138,22 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       for (std::size_t i = 0; i < 4; ++i)
         frame.data[2 + i] = static_cast<std::uint8_t>(static_cast<std::uint32_t>(near) >> (8 * i));
     }
+    // An order of the network's master, or a heartbeat, in the place of it.
+    if (config.motion_allowed && (length & 0x60) == 0x60) {
+      constexpr std::uint8_t orders[]{1, 2, 128, 129, 130};
+      frame.id = (what & 1) != 0 ? 0x000 : 0x77f;
+      frame.size = (what & 1) != 0 ? 2 : 1;
+      if ((what & 2) != 0) frame.data[0] = orders[frame.data[0] % 5];
+      if ((what & 4) != 0) frame.data[1] = 5;
+      frames.links()->at(0).watched = 0x007f0000u | length;
+    }
     drive.following = (what & 32) != 0 || drive.following;
     if ((what & 64) != 0) drive.following = false;
     frames.take(now_ns, frame, axes);
+    frames.begin_cycle(now_ns, axes);
+    frames.node(0).step(now_ns, drive.seen, [](const hal::can::Frame& sent) {
+      if (sent.id != 0x705 && sent.id != 0x085) finding("a frame that no node sends by itself");
+    });
     const int cycles = 1 + (length & 7) * ((what & 128) != 0 ? 20 : 1);
     for (int i = 0; i < cycles; ++i) run_cycle(axes[0], drive);
     now_ns += 1'000'000;

@@ -12,6 +12,7 @@
 #include "firmware/machine/configuration/conversion.hpp"
 #include "hal/can/dbc.hpp"
 #include "hal/can/frames.hpp"
+#include "hal/can/network.hpp"
 #include "hal/can/process_data.hpp"
 #include "stiction/number/crc.hpp"
 
@@ -252,7 +253,11 @@ TEST(ProcessData, IsReadAsItWasWrittenAndAsTheDbcDescribesIt) {
     }
     const Frame state = encode_position(5, sent.controlword, sent.target);
     EXPECT_NEAR(dbc.at(state.id).at("actual_position").read(state), sent.target * increment, 1e-12);
-    const Frame torque = encode_torque(5, sent.torque_offset);
+    EXPECT_EQ(state.size, 6);
+    const Frame torque = encode_position(5, sent.controlword, sent.target, sent.torque_offset);
+    EXPECT_EQ(torque.id, state.id);
+    EXPECT_EQ(torque.size, 8);
+    EXPECT_NEAR(dbc.at(torque.id).at("actual_position").read(torque), sent.target * increment, 1e-12);
     EXPECT_NEAR(dbc.at(torque.id).at("actual_torque").read(torque), sent.torque_offset * 0.1, 1e-9);
     EXPECT_EQ(pdo_address_of(torque).verdict, PdoVerdict::unknown) << "the drive's own";
     const Frame motion = encode_motion(5, sent.velocity_offset, sent.target);
@@ -261,14 +266,65 @@ TEST(ProcessData, IsReadAsItWasWrittenAndAsTheDbcDescribesIt) {
   }
   for (std::uint8_t size = 0; size <= 8; ++size)
     for (const auto& row : pdo_table) {
-      Frame frame{row.id + 5, size, {}};
+      Frame frame{row.id() + 5, size, {}};
       const auto verdict = !row.received      ? PdoVerdict::unknown
                            : size == row.size ? PdoVerdict::good
                                               : PdoVerdict::wrong_size;
       EXPECT_EQ(pdo_address_of(frame).verdict, verdict);
-      frame.id = row.id;
+      frame.id = row.id();
       EXPECT_EQ(pdo_address_of(frame).verdict, PdoVerdict::unknown) << "node 0";
     }
+}
+
+// CiA 301, 7.3.5: what a master's tools take for granted, whatever else a node sends.
+TEST(Identifiers, AreThoseOfThePredefinedSetWhereItHasThem) {
+  EXPECT_EQ(base_of(CobId::network), 0x000u);
+  EXPECT_EQ(base_of(CobId::sync), 0x080u);
+  EXPECT_EQ(id_of(CobId::emergency, 1), 0x081u);
+  EXPECT_EQ(id_of(CobId::sdo_answer, 1), 0x581u);
+  EXPECT_EQ(id_of(CobId::sdo_request, 127), 0x67fu);
+  EXPECT_EQ(id_of(CobId::heartbeat, 127), 0x77fu);
+}
+
+TEST(Identifiers, HaveOneMeaningEach) {
+  std::map<std::uint32_t, const char*> seen;
+  for (const auto& row : identifier_table)
+    for (int node = row.of_node ? 1 : 0; node <= (row.of_node ? highest_node : 0); ++node) {
+      const auto id = id_of(row.use, node);
+      EXPECT_LE(id, 0x7ffu);
+      const auto [at, is_new] = seen.emplace(id, row.text);
+      EXPECT_TRUE(is_new) << std::hex << id << ": " << row.text << " and " << at->second;
+    }
+  for (const auto& row : pdo_table) EXPECT_NE(row.id(), base_of(CobId::sdo_answer));
+}
+
+TEST(Dbc, HasTheTorqueOfTheStateWhereItIsExchanged) {
+  const auto has_torque = [](int level) {
+    return parse_dbc(dbc_text({}, {Format::classical, {{"X", 5}}, level})).at(0x385).contains("actual_torque");
+  };
+  EXPECT_FALSE(has_torque(0));
+  EXPECT_FALSE(has_torque(1));
+  EXPECT_TRUE(has_torque(2));
+}
+
+// On a bus with CAN FD too they are classical frames.
+TEST(Dbc, DescribesWhatCanopenHasBesideProcessData) {
+  const auto text = dbc_text({}, {Format::fd, {{"X", 5}}});
+  const auto dbc = parse_dbc(text);
+  const Frame emergency = encode_emergency(5, 0x8611, 1);
+  EXPECT_EQ(emergency.id, 0x085u);
+  EXPECT_EQ(dbc.at(0x085).at("error_code").read(emergency), 0x8611);
+  EXPECT_EQ(dbc.at(0x085).at("error_register").read(emergency), 0x21);
+  EXPECT_EQ(dbc.at(0x085).at("fault").read(emergency), 1);
+  EXPECT_EQ(dbc.at(0x705).at("state").read(encode_heartbeat(5, NodeState::pre_operational)), 127);
+  const Frame request{0x605, 8, {0x40, 0x65, 0x60, 2}};
+  EXPECT_EQ(dbc.at(0x605).at("index").read(request), 0x6065);
+  EXPECT_EQ(dbc.at(0x585).at("sub_index").read(request), 2);
+  const Frame order{0x000, 2, {128, 5}};
+  EXPECT_EQ(dbc.at(0x000).at("command").read(order), 128);
+  EXPECT_EQ(network_order_of(order)->node, 5);
+  EXPECT_EQ(text.find("BO_ 133 14;"), std::string::npos);
+  EXPECT_NE(text.find("BO_ 1029 14;"), std::string::npos) << "a target";
 }
 
 TEST(Dbc, DescribesTheFramesAsTheyAre) {

@@ -56,6 +56,40 @@ ServedAxis commanded(OperationMode mode, CommandSource source, const CommandOwne
   return a;
 }
 
+// 6007h again, whatever the watch's time is: also without one.
+TEST(Commander, WhoseConnectionEndsIsGoneAtOnce) {
+  struct Row {
+    AbortReaction reaction;
+    Fault fault;
+    bool stops;
+  };
+  constexpr Row rows[]{{AbortReaction::none, Fault::none, false},
+                       {AbortReaction::fault, Fault::commander_lost, true},
+                       {AbortReaction::disable_voltage, Fault::none, true},
+                       {AbortReaction::quick_stop, Fault::none, true}};
+  for (const auto& row : rows)
+    for (const bool is_watched : {true, false}) {
+      CommandOwner::Config config = watched(row.reaction);
+      if (!is_watched) config.timeout_ticks = {};
+      auto a = commanded(OperationMode::profile_velocity, can, config);
+      a.remote.disconnect(modbus);
+      a.stream(32, 0.2);
+      EXPECT_EQ(a.remote.owner().owner(), can) << "of a source that does not command it";
+      a.remote.disconnect(can);
+      a.remote.disconnect(can);
+      a.stream(400, 0.2);
+      EXPECT_EQ(a.drive.fault(), row.fault);
+      EXPECT_EQ(a.remote.owner().owner() == none, row.stops);
+      EXPECT_EQ(a.set_speed == 0.0, row.stops);
+    }
+  // Of an axis that nobody commands it is nothing, and the next commander is none that is gone.
+  ServedAxis a({}, HomingMethod::none, 0.0, watched());
+  a.remote.disconnect(none);
+  a.remote.disconnect(can);
+  EXPECT_TRUE(lead(a, can));
+  EXPECT_EQ(a.remote.owner().owner(), can);
+}
+
 TEST(Commander, GoneInAnyModeIsAStopWithinItsTimeAndTheRamp) {
   int cases = 0, at_rest = 0;
   for (const auto mode : supported_modes)

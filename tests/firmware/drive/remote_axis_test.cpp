@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/firmware/drive/served_axis.hpp"
+#include "tests/support/figure.hpp"
 
 namespace stiction::test {
 namespace {
@@ -88,7 +89,15 @@ TEST(References, WithoutThemCyclicTargetsAreRefusedAndTheAxisHolds) {
 
 // Each fault of the table that may take the encoder's place: refused again until it is homed again.
 TEST(References, AreLostByEveryFaultThatTheTableSays) {
-  int lost = 0;
+  int lost = 0, refused = 0;
+  const auto refuses = [](ServedAxis& a) {
+    offer(a, 0.1);
+    return !a.shows(statusword::acknowledge_bit) && a.shows(statusword::limit_bit) &&
+           a.shows(statusword::unreferenced_bit) && a.remote.refusal() == Refusal::no_reference;
+  };
+  auto never_homed = enabled_in(OperationMode::profile_position, 0.0, HomingMethod::here);
+  const bool refused_at_first = refuses(never_homed);
+  EXPECT_TRUE(refused_at_first);
   for (const auto& row : fault_table) {
     SCOPED_TRACE(row.name);
     auto a = enabled_in(OperationMode::homing, 0.0, HomingMethod::here);
@@ -107,11 +116,16 @@ TEST(References, AreLostByEveryFaultThatTheTableSays) {
     a.remote.ask(OperationMode::profile_position);
     ASSERT_TRUE(a.enable());
     a.stream(64, 0.0);
-    offer(a, 0.1);
+    const bool refused_here = refuses(a);
+    refused += refused_here ? 1 : 0;
+    EXPECT_EQ(refused_here, row.loses_reference);
     EXPECT_EQ(a.shows(statusword::acknowledge_bit), !row.loses_reference);
     EXPECT_EQ(a.remote.refusal(), row.loses_reference ? Refusal::no_reference : Refusal::none);
   }
   EXPECT_GE(lost, 4);
+  figure(
+      "absolute moves of an axis that was never homed, or lost its reference by a fault: refused with bit and reason",
+      std::to_string(refused + (refused_at_first ? 1 : 0)) + " of " + std::to_string(lost + 1) + " (bound all)");
 }
 
 constexpr double beyond = end + 1e-6;
@@ -162,6 +176,24 @@ TEST(Ends, OneMicrometreBeyondThemCyclicTargetsGoBackAndNotOut) {
     EXPECT_EQ(out.drive.fault(), Fault::set_point);
     EXPECT_LT(side * out.x, beyond + 1e-3);
   }
+}
+
+TEST(Ends, OneMicrometreBeyondThemTheWayBackIsFreeInEveryMode) {
+  using enum OperationMode;
+  int back = 0, tried = 0;
+  for (const auto mode : {profile_position, profile_velocity, cyclic_position, cyclic_velocity, cyclic_torque})
+    for (const double side : {1.0, -1.0}) {
+      SCOPED_TRACE(static_cast<int>(mode));
+      auto a = enabled_in(mode, side * beyond);
+      if (mode == profile_position) offer(a, side * 0.4);
+      a.stream(6000, side * -0.1);
+      const bool is_back = side * a.x < end - 5e-3 && a.drive.fault() == Fault::none;
+      EXPECT_TRUE(is_back) << a.x;
+      back += is_back ? 1 : 0;
+      ++tried;
+    }
+  figure("axis 1 um beyond an end: way back, every mode and end",
+         std::to_string(back) + " of " + std::to_string(tried) + " (bound all)");
 }
 
 TEST(Ends, HomingSearchesBeyondThem) {
@@ -288,6 +320,7 @@ std::vector<WrongStream> wrong_streams() {
 }
 
 TEST(WrongStreams, EndInTheFaultThatIsStatedAndNoStepOfTheSetSpeed) {
+  int as_stated = 0, tried = 0;
   for (const auto& c : wrong_streams()) {
     SCOPED_TRACE(c.name);
     auto a = enabled_in(c.mode);
@@ -302,9 +335,13 @@ TEST(WrongStreams, EndInTheFaultThatIsStatedAndNoStepOfTheSetSpeed) {
     EXPECT_EQ(a.drive.fault(), c.fault) << name_of(a.drive.fault());
     // max_acceleration, and the roundings of two speeds.
     EXPECT_LE(largest, ServedAxis::acceleration * tick + 0x1p-27);
+    as_stated += a.drive.fault() == c.fault && largest <= ServedAxis::acceleration * tick + 0x1p-27 ? 1 : 0;
+    ++tried;
     a.run(4000);
     EXPECT_EQ(a.set_speed, c.fault == Fault::none ? a.set_speed : 0.0);
   }
+  figure("targets too many, too late, doubled or jumping in csp, csv and cst: no step, and the stated fault",
+         std::to_string(as_stated) + " of " + std::to_string(tried) + " (bound all)");
 }
 
 // To 0.5 m/s and to rest again without a jerk limit: the interpolated speeds overshoot at each jump of the

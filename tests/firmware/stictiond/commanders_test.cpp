@@ -14,6 +14,7 @@
 #include "firmware/stictiond/run.hpp"
 #include "tests/firmware/stictiond/served_table.hpp"
 #include "tests/hal/modbus_support.hpp"
+#include "tests/support/figure.hpp"
 
 namespace stiction::test {
 namespace {
@@ -252,8 +253,8 @@ TEST(Coordinates, OfAHomedAxisAreOneOnCanModbusLogAndTrace) {
   drive::show_on_can(table.loop, table.programme, true, can);
   EXPECT_EQ(ServedTable::units(can[0].position), ServedTable::units(place));
 
-  drive::ModbusPublisher publisher(table.configuration.machine, table.configuration.setup, drive::ModbusStore{});
-  drive::show_on_modbus(table.loop, table.programme, table.configuration.machine.timing.fast_period, publisher);
+  drive::ModbusPublisher publisher(table.configuration.machine, table.configuration.setup, drive::KeptParameters{});
+  drive::show_to_clients(table.loop, table.programme, table.configuration.machine.timing.fast_period, publisher);
   const RawClient client(publisher.server().port());
   client.send(request({4, 0, 104, 0, 4}));
   const auto answer = client.receive();
@@ -272,7 +273,7 @@ TEST(Coordinates, OfAHomedAxisAreOneOnCanModbusLogAndTrace) {
   std::ifstream in(file);
   std::string line, row;
   std::vector<std::string> names;
-  int compared = 0;
+  int compared = 0, in_trace = 0;
   while (std::getline(in, line)) {
     if (line.starts_with("#")) continue;
     std::stringstream cells(line);
@@ -286,7 +287,9 @@ TEST(Coordinates, OfAHomedAxisAreOneOnCanModbusLogAndTrace) {
       const double scale = names[i].ends_with("[mm]") ? 1e-3 : names[i].ends_with("[um]") ? 1e-6 : 1.0;
       const bool measured = names[i].starts_with("X.x["), set = names[i].starts_with("X.x_set[");
       if (!measured && !set) continue;
-      EXPECT_NEAR(std::stod(fields[i]) * scale, measured ? place : table.set_position(0), 1e-9);
+      const double off = std::stod(fields[i]) * scale - (measured ? place : table.set_position(0));
+      EXPECT_NEAR(off, 0.0, 1e-9);
+      in_trace += std::abs(off) <= 1e-9 ? 1 : 0;
       ++compared;
     }
   }
@@ -297,7 +300,14 @@ TEST(Coordinates, OfAHomedAxisAreOneOnCanModbusLogAndTrace) {
   table.cycle();
   std::string said;
   for (const auto& l : table.said()) said += l;
-  EXPECT_NE(said.find(fmt::format("while serving at {} nm", std::llround(place * 1e9))), std::string::npos) << said;
+  const bool logged = said.find(fmt::format("while serving at {} nm", std::llround(place * 1e9))) != std::string::npos;
+  EXPECT_TRUE(logged) << said;
+  const int equal = (ServedTable::units(can[0].position) == ServedTable::units(place) ? 1 : 0) +
+                    (number(9) == std::lround(place / 1e-8) ? 1 : 0) +
+                    (number(13) == std::lround(table.set_position(0) / 1e-8) ? 1 : 0) + (logged ? 1 : 0) + in_trace;
+  EXPECT_EQ(equal, 6);
+  figure("positions of a homed axis with an offset on CAN, Modbus, in log and trace: equal to an increment",
+         fmt::format("{} of 6 (bound all)", equal));
 }
 
 TEST(Coordinates, OfAnAxisThatWasNotHomedRefuseTargetsWithAReasonInTheLog) {

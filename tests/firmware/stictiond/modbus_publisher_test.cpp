@@ -1,6 +1,8 @@
 // The drive's Modbus server as a whole: the state of a loop on a client's screen, a client's parameters on the disk.
 #include "firmware/stictiond/modbus_publisher.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "firmware/machine/file/drive_file.hpp"
@@ -8,6 +10,7 @@
 #include "firmware/stictiond/modbus_setup.hpp"
 #include "stiction/number/fixed_signals.hpp"
 #include "tests/hal/modbus_support.hpp"
+#include "tests/support/figure.hpp"
 #include "tests/support/shipped_machine.hpp"
 
 namespace stiction::test {
@@ -92,7 +95,7 @@ TEST(ModbusPublisher, KeepsAParameterThatAClientWritesAndStores) {
   const Folder folder;
   drive::ModbusPublisher publisher(cross_table(), setup_with(false), {folder / "parameters", {}, {}});
   publisher.open_commissioning();
-  EXPECT_EQ(lines_of(publisher), (std::vector<std::string>{"Modbus: clients may write parameters for 900 s"}));
+  EXPECT_EQ(lines_of(publisher), (std::vector<std::string>{"clients may write parameters for 900 s"}));
   const RawClient client(publisher.server().port());
   // 550 at 1004 (0x3ec), the velocity gain of the first axis; then "store".
   client.send(request({16, 3, 0xec, 0, 2, 4, 0x44, 0x09, 0x80, 0}));
@@ -152,11 +155,19 @@ TEST_F(WrittenParameters, AreRefusedWhileTheWindowIsClosedAndNothingIsStored) {
   const Folder folder;
   drive::ModbusPublisher publisher(cross_table(), short_window(0.3), {folder / "parameters", {}, {}});
   const RawClient client(publisher.server().port());
+  int refused = 0, tried = 0;
+  const auto expect_refused = [&](int answer, const std::string& name) {
+    EXPECT_EQ(answer, 1) << name;
+    ++tried;
+    refused += answer == 1 ? 1 : 0;
+  };
   for (const auto& r : publisher.server().map().registers()) {
     if (r.access != hal::RegisterAccess::write || r.address == 0) continue;
-    EXPECT_EQ(ask(client, float_request(r.address, 0.005F)), 1) << r.name;
+    expect_refused(ask(client, float_request(r.address, 0.005F)), r.name);
   }
-  EXPECT_EQ(ask(client, store()), 1);
+  expect_refused(ask(client, store()), "store");
+  figure("writes of parameters over Modbus without the window: refused",
+         fmt::format("{} of {} (bound all)", refused, tried));
   const auto lines = lines_of(publisher);
   ASSERT_FALSE(lines.empty());
   EXPECT_NE(lines[0].find("the commissioning window is closed"), std::string::npos) << lines[0];
@@ -171,6 +182,31 @@ TEST_F(WrittenParameters, AreRefusedWhileTheWindowIsClosedAndNothingIsStored) {
   EXPECT_EQ(ask(client, float_request(gain, 551.0F)), 1);
   EXPECT_EQ(ask(client, store()), 1);
   EXPECT_FALSE(std::filesystem::exists(folder / "parameters"));
+}
+
+// Each limit of the table by the least that a float shows, and to what is far off.
+TEST_F(WrittenParameters, LoosenNoLimitOfTheTable) {
+  drive::ModbusPublisher publisher(cross_table(), setup_with(false), {});
+  publisher.open_commissioning();
+  const RawClient client(publisher.server().port());
+  int refused = 0, tried = 0;
+  for (const auto& parameter : drive::drive_parameters(cross_table(), setup_with(false))) {
+    const auto limit =
+        std::find_if(drive::limit_parameters.begin(), drive::limit_parameters.end(),
+                     [&](const auto& row) { return parameter.key.ends_with("." + std::string(row.key)); });
+    if (limit == drive::limit_parameters.end()) continue;
+    const double sign = limit->tightens == drive::Tightens::down ? 1.0 : -1.0;
+    const double value = parameter.value.value_or(1.0);
+    for (const double by : {std::max(1e-6 * std::abs(value), 1e-6), 0.5 * std::abs(value) + 1e-3}) {
+      const int answer =
+          ask(client, float_request(address_of(publisher, parameter.key), static_cast<float>(value + sign * by)));
+      EXPECT_EQ(answer, 3) << parameter.key << " " << value + sign * by;
+      ++tried;
+      refused += answer == 3 ? 1 : 0;
+    }
+  }
+  EXPECT_GE(tried, 60);
+  figure("limits loosened over Modbus in the window: refused", fmt::format("{} of {} (bound all)", refused, tried));
 }
 
 TEST_F(WrittenParameters, LoosenNoLimit) {
@@ -201,17 +237,21 @@ TEST_F(WrittenParameters, ThatWouldRefuseAStartAreNotStoredAndHarmNothingElse) {
                                                           {"drive.axis.X.homing.creep_speed", 1e-9F},
                                                           {"drive.axis.X.negative_end", 0.4F}}};
   EXPECT_EQ(read(client, 18), 0);
+  std::size_t stored = 0;
   for (const auto& [key, value] : bad) {
     SCOPED_TRACE(key);
     EXPECT_EQ(ask(client, float_request(address_of(publisher, key), value)), 0);
     EXPECT_EQ(ask(client, store()), 4);
     EXPECT_EQ(read(client, 18), 3);
+    const auto kept = drive::read_parameters(folder / "parameters");
+    stored += kept && kept->values.contains(key) ? 1u : 0u;
     EXPECT_EQ(ask(client, float_request(gain, 550.0F)), 0);
     EXPECT_EQ(ask(client, store()), 0) << "a later set";
     EXPECT_EQ(read(client, 18), 1);
     EXPECT_EQ(drive::read_parameters(folder / "parameters")->values,
               (std::map<std::string, double>{{"axis.X.velocity_controller.gain", 550.0}}));
   }
+  figure("sets that a start would refuse: stored", fmt::format("{} of {} (bound 0)", stored, bad.size()));
   // A disk that does not take it is told so, and the values are kept for the next time.
   std::filesystem::create_directory(folder / "parameters.new");
   EXPECT_EQ(ask(client, float_request(gain, 560.0F)), 0);

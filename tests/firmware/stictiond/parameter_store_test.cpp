@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <fstream>
+#include <system_error>
 
 #include "tests/firmware/stictiond/losing_disk.hpp"
 #include "tests/support/figure.hpp"
@@ -79,6 +80,43 @@ TEST(ParameterStore, KeepsTheOldOrTheNewSetWholeWhereverThePowerGoes) {
          fmt::format("{} cut points: {} whole, {} mixed, {} lost, {} damaged (bound: all whole)", cuts, outcome.whole,
                      outcome.mixed, outcome.lost, outcome.damaged));
   EXPECT_EQ(outcome.whole, cuts);
+}
+
+// A disk that takes so many bytes more, as the kernel tells it (ENOSPC); names need none.
+class FullDisk : public LosingDisk {
+ public:
+  void room_for(std::size_t bytes) { room_ = bytes; }
+  void append(const std::filesystem::path& file, std::string_view bytes) override {
+    LosingDisk::append(file, bytes.substr(0, room_));
+    if (bytes.size() > room_) throw std::system_error(std::make_error_code(std::errc::no_space_on_device));
+    room_ -= bytes.size();
+  }
+
+ private:
+  std::size_t room_ = static_cast<std::size_t>(-1);
+};
+
+TEST(ParameterStore, TellsThatADiskIsFullWhereverItIsAndKeepsTheSetBefore) {
+  const std::size_t size = drive::encode(numbered_set(1)).size();
+  std::size_t told = 0, kept = 0;
+  for (std::size_t room = 0; room < size; ++room) {
+    FullDisk disk;
+    drive::write_parameters(store, numbered_set(0), drive::KeepAsPrevious::the_file, disk);
+    disk.room_for(room);
+    try {
+      drive::write_parameters(store, numbered_set(1), drive::KeepAsPrevious::the_file, disk);
+    } catch (const std::system_error& error) {
+      told += error.code() == std::errc::no_space_on_device ? 1u : 0u;
+    }
+    kept += drive::read_parameters(store, disk) == numbered_set(0) ? 1u : 0u;
+    disk.room_for(static_cast<std::size_t>(-1));
+    drive::write_parameters(store, numbered_set(2), drive::KeepAsPrevious::the_file, disk);
+    EXPECT_EQ(drive::read_parameters(store, disk), numbered_set(2)) << "when there is room again";
+  }
+  EXPECT_EQ(told, size);
+  EXPECT_EQ(kept, size);
+  figure("parameters stored on a disk that is full at any byte of them",
+         fmt::format("{} of {} told, {} of {} kept the set before (bound all)", told, size, kept, size));
 }
 
 // The first set has none before it: nothing or the set.

@@ -148,7 +148,7 @@ class Plc {
     setup_.modbus_server.emplace();
     setup_.modbus_server->address = "127.0.0.1:0";
     setup_.modbus_server->motion_allowed = allowed;
-    publisher_.emplace(table_.configuration.machine, setup_, drive::ModbusStore{});
+    publisher_.emplace(table_.configuration.machine, setup_, drive::KeptParameters{});
   }
   std::string ask(const std::string& operations) {
     const auto said = output_of(pymodbus(fmt::format("client tcp {} {}", publisher_->server().port(), operations)));
@@ -161,7 +161,7 @@ class Plc {
       const double period = table_.configuration.machine.timing.fast_period;
       publisher_->take_motion(
           [&](const drive::MotionWrite& asked) { drive::ask(asked, period, table_.programme.remote()[asked.axis]); });
-      drive::show_on_modbus(table_.loop, table_.programme, period, *publisher_);
+      drive::show_to_clients(table_.loop, table_.programme, period, *publisher_);
     }
   }
   ServedTable& table() { return table_; }

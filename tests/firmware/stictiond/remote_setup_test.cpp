@@ -72,7 +72,9 @@ TEST(RemoteSetup, SharesTheBusOfTheNodesWithTheSameBitRatesAndWithoutASecondSync
               HasSubstr("found drive.can_server.sync = \"followed\" on the interface of [drive.can], can0"));
   const auto config = drive::can_config(c);
   EXPECT_THAT(config.others, ::testing::IsSupersetOf({0x40bu, 0x38cu, 0x50bu, 0x48cu, 0x30bu}));
-  EXPECT_EQ(config.others.size(), 16U);
+  EXPECT_THAT(config.others, ::testing::IsSupersetOf({0x000u, 0x08bu, 0x58cu, 0x60bu, 0x70bu}));
+  EXPECT_THAT(config.others, ::testing::Not(::testing::Contains(0x080u))) << "the drive alone sends SYNC there";
+  EXPECT_EQ(config.others.size(), 1U + 2U * 11U);
   EXPECT_EQ(drive::can_bus_budget(c).rows.size(), 3U + 4U);
   const auto apart = configuration(served);
   EXPECT_TRUE(drive::can_server_config(apart).sends_sync);
@@ -110,10 +112,15 @@ TEST(RemoteSetup, TakesTheLimitsOfTorqueFromTheMachine) {
 }
 
 TEST(RemoteSetup, SendsActualTorquesWhereTheyAreAskedFor) {
-  const auto frames = [](const std::vector<std::string>& set) {
-    return drive::can_server_frames(configuration(set)).size();
+  const auto bytes_of_state = [](const std::vector<std::string>& set) {
+    for (const auto& frame : drive::can_server_frames(configuration(set)))
+      if (frame.name == "state") return frame.bytes;
+    return 0;
   };
-  EXPECT_EQ(frames(with({"drive.can_server.frames=torques"})), frames(served) + 1);
+  EXPECT_EQ(bytes_of_state(served), 6);
+  EXPECT_EQ(bytes_of_state(with({"drive.can_server.frames=torques"})), 8);
+  const auto page = drive::dbc_page(configuration(with({"drive.can_server.frames=torques"})));
+  EXPECT_THAT(page, HasSubstr("BO_ 907 X_state: 8 drive\n"));
 }
 
 TEST(RemoteSetup, DescribesItsFramesInTheDbc) {

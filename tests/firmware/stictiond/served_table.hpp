@@ -31,6 +31,7 @@ class ServedTable {
   // Ticks of one cycle with what the controller sends for it; begins with a slow tick.
   void cycle(const std::function<void()>& sends = {}) {
     if (sends) sends();
+    frames.begin_cycle(loop.now_ns(), programme.remote());
     for (auto& axis : programme.remote()) axis.begin_cycle();
     for (int i = 0; i < ticks_of_cycle; ++i) tick();
   }

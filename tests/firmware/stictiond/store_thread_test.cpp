@@ -11,6 +11,7 @@
 
 #include "firmware/stictiond/rate_limit.hpp"
 #include "firmware/stictiond/said_lines.hpp"
+#include "tests/support/figure.hpp"
 
 namespace stiction::test {
 namespace {
@@ -26,6 +27,28 @@ TEST(StoreThread, SaysHowAJobEnded) {
   drive::StoreThread store;
   EXPECT_EQ(settled(store, store.ask([] {})), Outcome::stored);
   EXPECT_EQ(settled(store, store.ask([] { throw std::runtime_error("full"); })), Outcome::failed);
+}
+
+// Whoever asks is told "under way" at once, and how it ended when the disk has answered, in any order of both.
+TEST(StoreThread, TellsNothingBeforeASlowDiskHasAnswered) {
+  drive::StoreThread store;
+  int as_it_was = 0;
+  constexpr int tries = 100;
+  for (int i = 0; i < tries; ++i) {
+    std::promise<void> disk;
+    const bool fails = i % 3 == 0;
+    const auto ticket = store.ask([fails, ready = disk.get_future().share()] {
+      ready.wait();
+      if (fails) throw std::runtime_error("full");
+    });
+    const bool waited = store.outcome(ticket) == Outcome::under_way;
+    disk.set_value();
+    const bool ended = settled(store, ticket) == (fails ? Outcome::failed : Outcome::stored);
+    as_it_was += waited && ended ? 1 : 0;
+  }
+  EXPECT_EQ(as_it_was, tries);
+  figure("stores on a slow disk: told as they ended, and nothing before",
+         fmt::format("{} of {} (bound all)", as_it_was, tries));
 }
 
 TEST(StoreThread, HoldsUpNobodyWhileTheDiskIsSlowAndStoresTheLastThatWasAsked) {

@@ -3,7 +3,7 @@
 // obeyed from everybody: one of who is not the owner takes the ownership away and holds the axis until its sender
 // enables operation itself, which lifts the hold and moves nothing. So a stop wins over any enabling word of others,
 // before it, in its tick or behind it. The owner is watched (6007h): where it is not heard for its time while the axis
-// has power, the axis stops.
+// has power, or its connection ends, the axis stops.
 #pragma once
 
 #include <array>
@@ -66,6 +66,12 @@ class CommandOwner {
   // Something came of a source: a heartbeat, or a value.
   constexpr void hear(CommandSource source) { age_ticks_[static_cast<std::size_t>(source)] = 0; }
 
+  // The connection over which it commanded is gone: as if it had not been heard for its time, in the next tick.
+  // `source`: whose.
+  constexpr void disconnect(CommandSource source) {
+    gone_ = gone_ || (source == owner_ && source != CommandSource::none);
+  }
+
   // Whether targets, modes and speeds of a source count.
   constexpr bool accepts(CommandSource source) const { return owner_ == CommandSource::none || owner_ == source; }
 
@@ -75,8 +81,8 @@ class CommandOwner {
       change_owner(CommandSource::none);
     const auto at = static_cast<std::size_t>(owner_);
     const std::uint32_t most = config_.timeout_ticks[at];
-    if (owner_ == CommandSource::none || most == 0 || config_.reaction == AbortReaction::none) return;
-    if (age_ticks_[at] < most) {
+    if (owner_ == CommandSource::none || (most == 0 && !gone_) || config_.reaction == AbortReaction::none) return;
+    if (!gone_ && age_ticks_[at] < most) {
       ++age_ticks_[at];
       return;
     }
@@ -124,6 +130,7 @@ class CommandOwner {
   }
   constexpr void change_owner(CommandSource owner) {
     owner_ = owner;
+    gone_ = false;
     ++token_;
   }
 
@@ -132,7 +139,7 @@ class CommandOwner {
   std::uint16_t word_ = controlword::disable_voltage, token_ = 0;
   std::array<std::uint32_t, 3> age_ticks_{};
   std::array<Hold, 3> holds_{};
-  bool lost_ = false;
+  bool lost_ = false, gone_ = false;
 };
 
 }  // namespace stiction

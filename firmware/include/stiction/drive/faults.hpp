@@ -139,6 +139,12 @@ constexpr std::uint16_t error_code_of(Fault fault) {
   return row == nullptr ? 0 : row->error_code;
 }
 
+// Whether the encoder may have lost its place.
+constexpr bool loses_reference(Fault fault) {
+  const auto* row = description_of(fault);
+  return row != nullptr && row->loses_reference;
+}
+
 constexpr const char* name_of(Fault fault) {
   const auto* row = description_of(fault);
   return row == nullptr ? "none" : row->name;

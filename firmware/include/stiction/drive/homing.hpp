@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "stiction/drive/exchange.hpp"
+#include "stiction/drive/state_machine.hpp"
 #include "stiction/motion/velocity_ramp.hpp"
 #include "stiction/number/fixed.hpp"
 
@@ -55,6 +56,17 @@ class Homing {
   constexpr Phase phase() const { return state_.phase; }
   // Of the machine's zero in the encoder's coordinates, when done.
   constexpr Position origin() const { return state_.origin; }
+  // Bits 13, 12 and 10 of the statusword in this mode: error, attained, at rest. A search that a different fault ends
+  // is interrupted, as the standard calls it, and shows no error. `failed`: the fault of homing, which stays until the
+  // reset; `at_rest`: the set-point.
+  constexpr std::uint16_t status_bits(bool failed, bool at_rest) const {
+    std::uint16_t bits = 0;
+    if (state_.phase == Phase::done) bits |= statusword::homed_bit;
+    if (state_.phase == Phase::failed || failed) bits |= statusword::homing_error_bit;
+    const bool ended = state_.phase == Phase::idle || state_.phase == Phase::done || state_.phase == Phase::failed;
+    if (ended && at_rest) bits |= statusword::target_bit;
+    return bits;
+  }
   constexpr bool seeks_negative() const { return seeks(HomingMethod::limit_negative); }
   constexpr bool seeks_positive() const { return seeks(HomingMethod::limit_positive); }
 

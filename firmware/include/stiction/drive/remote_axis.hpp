@@ -18,10 +18,11 @@
 // while the drive does not follow. A move of pp is ended first; every other mode brakes.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "stiction/drive/command_owner.hpp"
+#include "stiction/drive/refusal.hpp"
+#include "stiction/drive/remote_axis_config.hpp"
 #include "stiction/drive/servo_drive.hpp"
 #include "stiction/drive/torque_mode.hpp"
 #include "stiction/motion/position_profile.hpp"
@@ -30,37 +31,6 @@
 #include "stiction/number/fixed_signals.hpp"
 
 namespace stiction {
-
-// Why the last target was not taken; bits 7 and 11 of the statusword say that it was not.
-enum class Refusal : std::uint8_t { none, no_number, beyond_end, no_reference };
-struct RefusalDescription {
-  Refusal refusal;
-  const char* text;
-};
-inline constexpr std::array<RefusalDescription, 4> refusal_table{{
-    {Refusal::none, "nothing is refused"},
-    {Refusal::no_number, "found a target that is no number; expected one that the units of the bus hold"},
-    {Refusal::beyond_end,
-     "found a target beyond negative_end or positive_end; expected one within them, or nearer to them than the axis "
-     "is"},
-    {Refusal::no_reference,
-     "found an absolute target of an axis whose zero is not known; expected homing first (mode 6), or a relative move "
-     "or a speed"},
-}};
-
-struct RemoteAxisConfig {
-  using S = FixedSignals;
-  SetPointInterpolator::Config interpolation{};  // with the ways that the limits of the axis allow in a cycle
-  bool streamed = false;                         // targets of csp come from outside; else csp holds where it is
-  S::Position low{}, high{};                     // of targets: the ends of the travel
-  PositionProfile::Config profile{};
-  PositionProfile::Move fastest{};      // limits of a move; also what a move has that nobody gave values for
-  S::Position target_window{};          // about the target, within which it is reached
-  TorqueMode::Config torque{};          // cst
-  CommandOwner::Config owner{};         // watch over who commands
-  S::Velocity halting{};                // change of the speed in a tick by which a profile halts at least (605Dh)
-  SpeedStepLimit::Config step_limit{};  // csp: of the speed that the targets make
-};
 
 class RemoteAxis {
  public:
@@ -84,6 +54,7 @@ class RemoteAxis {
   // Who commands it. Sources whose values owner().accepts() not are to be kept off by who calls what follows.
   constexpr const CommandOwner& owner() const { return owner_; }
   constexpr void hear(CommandSource source) { owner_.hear(source); }
+  constexpr void disconnect(CommandSource source) { owner_.disconnect(source); }
   // What is asked for; holds until changed.
   constexpr void ask(OperationMode mode) { asked_mode_ = mode; }
   // pp. `valid`: the bus gave a number that the formats hold; no move goes to another one.
@@ -158,7 +129,7 @@ class RemoteAxis {
       return;
     }
     if (!came) return interpolator_.extrapolate();
-    valid_ = offered_valid_ && allowed(offered_, interpolator_.target()) && interpolator_.can_take(offered_);
+    valid_ = offered_valid_ && config_.allows(offered_, interpolator_.target()) && interpolator_.can_take(offered_);
     // What is refused does not become a reference.
     if (!valid_) return interpolator_.extrapolate();
     interpolator_.take(offered_);
@@ -262,12 +233,6 @@ class RemoteAxis {
     waits_ = acknowledged_ = at_end_ = false;
   }
 
-  // Within the ends, or not further out than where it is.
-  constexpr bool allowed(S::Position target, S::Position from) const {
-    const bool below = target < config_.low && target < from;
-    const bool above = target > config_.high && target > from;
-    return !below && !above;
-  }
   static constexpr S::Velocity larger(S::Velocity a, S::Velocity b) { return a < b ? b : a; }
   constexpr bool within_window(S::Position a, S::Position b) const {
     const auto off = a.raw() - b.raw();
@@ -375,10 +340,10 @@ class RemoteAxis {
       const auto& before = waits_ ? waiting_ : profile_.move();
       move.target = narrow<S::Position>(before.target + asked_move_.target, saturations_);
     }
-    refusal_ = !has_target_                                            ? Refusal::no_number
-               : !referenced_ && !relative                             ? Refusal::no_reference
-               : referenced_ && !allowed(move.target, point_.position) ? Refusal::beyond_end
-                                                                       : Refusal::none;
+    refusal_ = !has_target_                                                   ? Refusal::no_number
+               : !referenced_ && !relative                                    ? Refusal::no_reference
+               : referenced_ && !config_.allows(move.target, point_.position) ? Refusal::beyond_end
+                                                                              : Refusal::none;
     refused_ = refusal_ != Refusal::none;
     if (refused_) return;
     const bool at_once = (controlword_ & controlword::at_once_bit) != 0;

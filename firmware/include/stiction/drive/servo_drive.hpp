@@ -15,59 +15,20 @@
 #include <array>
 #include <cstdint>
 
-#include "stiction/control/commutation.hpp"
 #include "stiction/control/limit.hpp"
 #include "stiction/drive/axis.hpp"
+#include "stiction/drive/force_current.hpp"
+#include "stiction/drive/holding_brake.hpp"
 #include "stiction/drive/homing.hpp"
+#include "stiction/drive/lag_watch.hpp"
+#include "stiction/drive/rest_watch.hpp"
+#include "stiction/drive/servo_drive_config.hpp"
+#include "stiction/drive/speed_offset.hpp"
 #include "stiction/drive/state_machine.hpp"
-#include "stiction/drive/stop_options.hpp"
 #include "stiction/drive/supervision.hpp"
 #include "stiction/motion/velocity_ramp.hpp"
 
 namespace stiction {
-
-template <class S>
-struct ServoDriveConfig {
-  StopCodes stops{};
-  typename VelocityRamp<S>::Config ramp{};  // of quick stops and of homing
-  typename S::Velocity slow_down{};         // change of the speed in a tick of the slow-down ramp; at most that of ramp
-  typename S::Velocity most_change{};       // of the set speed in a tick, offset and all; at least that of ramp
-  SupervisionConfig<S> supervision{};
-  HomingConfig<S> homing{};
-  typename S::Velocity standstill_speed{};  // of the measured speed, below which a stop is over
-  // Way in self_test_ticks, up to which an axis is at rest and may be enabled. Not by a speed: 50 nm of noise are 1
-  // mm/s in a tick, and a coarse encoder stands still for most ticks.
-  typename S::Position standstill_way{};
-  // 6065h and 6066h: the following error that is a fault when it has been exceeded for more than so many ticks; 0: not
-  // watched. That fault ends in a stop by 605Eh, as the encoder is trusted; the limit of the cascade, AxisConfig::
-  // following_error_fault, is for what no stop can end and is to be larger.
-  typename S::Distance following_error{};
-  std::uint32_t following_error_ticks = 0;
-  std::uint32_t stop_margin_ticks = 1600;  // 100 ms at 62.5 us
-  std::uint32_t brake_ticks = 0;           // that the brake takes to open or to close; 0: none
-};
-
-// What is asked of an axis in a tick.
-template <class S>
-struct DriveDemand {
-  std::uint16_t controlword = 0;
-  OperationMode mode = OperationMode::cyclic_position;
-  SetPoint<S> set_point{};                 // csp and pp, of the machine's coordinates
-  typename S::Velocity velocity_offset{};  // 60B1h, added to the set speed while the drive follows
-  std::array<Fault, 3> causes{};           // what programme, clock and backend see in this tick
-  bool brake = false;                      // to standstill under power, whatever set_point says
-  bool quick_stop = false;                 // another axis has a fault
-};
-
-// A fault as it was seen. `following`: it came on top of another one, or during its stop.
-template <class S>
-struct DriveEvent {
-  Fault fault = Fault::none;
-  bool following = false;
-  std::int64_t time_ns = 0;
-  typename S::Position position{};  // measured, the machine's coordinates
-  typename S::Velocity set_velocity{};
-};
 
 template <class S>
 class ServoDrive {
@@ -77,13 +38,13 @@ class ServoDrive {
   using Ramp = VelocityRamp<S>;
 
   // Ticks of a healthy axis at rest before the drive is ready: a current sensor's offset shows in it.
-  static constexpr std::uint8_t self_test_ticks = 64;
+  static constexpr std::uint8_t self_test_ticks = RestWatch<S>::ticks;
   // 10 ms at 62.5 us: a loop that settles passes through zero speed on its way.
   static constexpr std::uint8_t standstill_ticks = 160;
 
   explicit constexpr ServoDrive(const ServoDriveConfig<S>& config)
       : config_(config),
-        machine_({.hold_after_quick_stop = way_of(StopObject::quick_stop, config.stops.quick_stop).held}),
+        machine_({.hold_after_quick_stop = stop_way(StopObject::quick_stop, config.stops.quick_stop).held}),
         supervision_(config.supervision),
         homing_(config.homing) {
     referenced_ = config.homing.method == HomingMethod::none;
@@ -91,7 +52,8 @@ class ServoDrive {
 
   // Takes the power off and begins with the self-test. Before the first tick, with its feedback.
   constexpr void start(const Feedback<S>& feedback, Axis<S>& axis) {
-    measured_ = rested_at_ = feedback.position;
+    measured_ = feedback.position;
+    rest_.start(measured_);
     measured_ns_ = feedback.position_time_ns;
     last_ = {feedback.position, {}};
     axis.start(feedback);
@@ -112,7 +74,7 @@ class ServoDrive {
       measured_ = feedback.position;
       measured_ns_ = feedback.position_time_ns;
     }
-    watch_rest();
+    rest_.step(measured_, config_.standstill_way);
     const bool unfound = homing_.phase() == Homing<S>::Phase::failed;
     bool present = cause_holds(demand, feedback, axis);
     // One by one: a cause that stays must not hide another one.
@@ -123,22 +85,20 @@ class ServoDrive {
     if (stopping_ && fault_ == Fault::following_error && supervision_.resisted()) power_off(axis);
     // Before the cascade sees it, so that a ramp takes the place of what is no set-point.
     raise(follows_ && !demand.set_point.valid ? Fault::set_point : Fault::none, now_ns, axis);
-    self_test_ = present ? 0 : self_test_ < self_test_ticks ? static_cast<std::uint8_t>(self_test_ + 1) : self_test_;
+    self_test_ = present ? 0 : one_more(self_test_, self_test_ticks);
     advance_states(demand, feedback, present, axis);
     return set_point(demand, inputs);
   }
 
   // Of the tick that the cascade has made.
   constexpr void after(const AxisSignals<S>& signals, Axis<S>& axis) {
-    standing_ = exceeds(signals.v, config_.standstill_speed) ? 0
-                : standing_ < standstill_ticks               ? static_cast<std::uint8_t>(standing_ + 1)
-                                                             : standing_;
+    standing_ = exceeds(signals.v, config_.standstill_speed) ? 0 : one_more(standing_, standstill_ticks);
     v_ = signals.v;
     i_set_ = signals.i_set;
     limited_ = powered_ && limits_current_ && signals.limiting.current;
     events_ = {};
     fault_raised_ = false;
-    const bool lags = lags_too_long(signals.e);
+    const bool lags = lag_.step(powered_, signals.e, config_.following_error, config_.following_error_ticks);
     if (axis.fault() != Fault::none) {
       if (axis.fault() != fault_) raise(axis.fault(), axis.fault_time_ns(), axis);
       if (powered_) power_off(axis);  // the cascade has done so
@@ -151,7 +111,7 @@ class ServoDrive {
   constexpr DriveState state() const { return machine_.state(); }
   constexpr Fault fault() const { return fault_; }  // the first one, latched until a reset is taken
   constexpr bool powered() const { return powered_; }
-  constexpr bool brake_released() const { return powered_ && !brake_closing_; }
+  constexpr bool brake_released() const { return powered_ && !brake_.closing(); }
   constexpr bool referenced() const { return referenced_; }
   constexpr bool follows() const { return follows_; }    // the set-points from outside, in the last tick
   constexpr Position origin() const { return origin_; }  // of the machine's coordinates in the encoder's
@@ -159,9 +119,9 @@ class ServoDrive {
   // Where the set-point stands, machine's coordinates: where a source of set-points begins after enabling or homing.
   constexpr Position set_position() const { return to_machine(last_.position); }
   constexpr Velocity set_velocity() const { return last_.velocity; }
-  constexpr Velocity velocity() const { return v_; }                          // measured
-  constexpr typename S::Current set_current() const { return i_set_; }        // of the last tick
-  constexpr bool standing() const { return rest_ticks_ == self_test_ticks; }  // measured
+  constexpr Velocity velocity() const { return v_; }                    // measured
+  constexpr typename S::Current set_current() const { return i_set_; }  // of the last tick
+  constexpr bool standing() const { return rest_.at_rest(); }           // measured
   // Of the last call, before() or after(): the first fault and the one on top of it; Fault::none: nothing happened.
   constexpr const std::array<DriveEvent<S>, 2>& events() const { return events_; }
   constexpr typename Homing<S>::Phase homing_phase() const { return homing_.phase(); }
@@ -170,7 +130,9 @@ class ServoDrive {
     std::uint16_t word = statusword::of(machine_.state());
     if (supplied_) word |= statusword::voltage_bit;
     if (!referenced_) word |= statusword::unreferenced_bit;
-    if (mode_ == OperationMode::homing) return static_cast<std::uint16_t>(word | homing_bits());
+    if (mode_ == OperationMode::homing)
+      return static_cast<std::uint16_t>(word |
+                                        homing_.status_bits(fault_ == Fault::homing, last_.velocity == Velocity{}));
     if (follows_ && is_cyclic(mode_)) word |= statusword::follows_bit;
     if (shows_following_error()) word |= statusword::following_error_bit;
     if (limited_) word |= statusword::limit_bit;
@@ -183,22 +145,8 @@ class ServoDrive {
     return narrow<Position>(x - origin_, none);
   }
 
-  constexpr bool lags_too_long(typename S::Distance e) {
-    const bool lags =
-        powered_ && config_.following_error != typename S::Distance{} && exceeds(e, config_.following_error);
-    const bool too_long = lags && lag_ticks_ >= config_.following_error_ticks;
-    lag_ticks_ = lags && !too_long ? lag_ticks_ + 1 : 0;
-    return too_long;
-  }
-
-  constexpr void watch_rest() {
-    const auto way = measured_.raw() - rested_at_.raw();
-    if (way > config_.standstill_way.raw() || way < -config_.standstill_way.raw()) {
-      rested_at_ = measured_;
-      rest_ticks_ = 0;
-    } else if (rest_ticks_ < self_test_ticks) {
-      ++rest_ticks_;
-    }
+  static constexpr std::uint8_t one_more(std::uint8_t ticks, std::uint8_t most) {
+    return ticks < most ? static_cast<std::uint8_t>(ticks + 1) : ticks;
   }
 
   // As long as the fault is latched: without power the error itself is none.
@@ -208,25 +156,6 @@ class ServoDrive {
     return has_bit && (fault_ == Fault::following_error || following_ == Fault::following_error);
   }
 
-  // Bits 13, 12 and 10 of homing: error, attained, at rest. The error stays until the reset; a search that a different
-  // fault ends is interrupted, as the standard calls it, and shows none.
-  constexpr std::uint16_t homing_bits() const {
-    using Phase = typename Homing<S>::Phase;
-    const auto phase = homing_.phase();
-    std::uint16_t bits = 0;
-    if (phase == Phase::done) bits |= statusword::homed_bit;
-    if (phase == Phase::failed || fault_ == Fault::homing) bits |= statusword::homing_error_bit;
-    const bool ended = phase == Phase::idle || phase == Phase::done || phase == Phase::failed;
-    if (ended && last_.velocity == Velocity{}) bits |= statusword::target_bit;
-    return bits;
-  }
-
-  // A code that the table does not have is refused where it is configured; here it takes the power off at once.
-  static constexpr StopOption way_of(StopObject object, std::int8_t code) {
-    const auto* row = stop_option(object, code);
-    return row == nullptr ? StopOption{object, code, StopRamp::none} : *row;
-  }
-
   constexpr typename Supervision<S>::Seen seen(const Feedback<S>& feedback, const DigitalInputs<S>& inputs,
                                                std::int64_t now_ns, const Axis<S>& axis) {
     typename Supervision<S>::Seen seen{};
@@ -234,7 +163,7 @@ class ServoDrive {
     seen.inputs = inputs;
     seen.now_ns = now_ns;
     seen.powered = powered_;
-    seen.current = force_current(feedback, axis);
+    seen.current = force_current(axis.config(), feedback, measured_, i_set_, saturations_);
     seen.set_position = last_.position;
     seen.set_velocity = last_.velocity;
     seen.referenced = referenced_;
@@ -242,15 +171,6 @@ class ServoDrive {
     seen.seeks_negative = homing_.seeks_negative();
     seen.seeks_positive = homing_.seeks_positive();
     return seen;
-  }
-
-  constexpr typename S::Current force_current(const Feedback<S>& feedback, const Axis<S>& axis) {
-    const auto& config = axis.config();
-    if (config.current_loop == CurrentLoop::direct) return feedback.current[0];
-    if (config.current_loop == CurrentLoop::none) return i_set_;
-    const auto x = feedback.position_valid ? feedback.position : measured_;
-    const auto phases = Commutation<S>::phases(S::angle(x, config.inverse_pole_pair_pitch));
-    return Commutation<S>::amplitude(feedback.current, phases, saturations_);
   }
 
   // Conditions behind faults of the axis that would come back right after a reset.
@@ -269,7 +189,7 @@ class ServoDrive {
     events_[following ? 1 : 0] = {fault, following, now_ns, position(), last_.velocity};
     (following ? following_ : fault_) = fault;
     const auto* row = description_of(fault);
-    const auto way = way_of(StopObject::fault_reaction, config_.stops.fault_reaction);
+    const auto way = stop_way(StopObject::fault_reaction, config_.stops.fault_reaction);
     const bool stops = !following && row != nullptr && row->reaction == Reaction::quick_stop && powered_ &&
                        !(fault == Fault::following_error && supervision_.resisted());
     if (stops && way.ramp != StopRamp::none) {
@@ -307,9 +227,9 @@ class ServoDrive {
     if (before == DriveState::operation_enabled) {
       const auto command = command_of(demand.controlword);
       if (command == DriveCommand::shutdown)
-        begin_stop(way_of(StopObject::shutdown, config_.stops.shutdown), axis);
+        begin_stop(stop_way(StopObject::shutdown, config_.stops.shutdown), axis);
       else if (command == DriveCommand::switch_on)
-        begin_stop(way_of(StopObject::disable_operation, config_.stops.disable_operation), axis);
+        begin_stop(stop_way(StopObject::disable_operation, config_.stops.disable_operation), axis);
       // A stop once begun is finished: by its end the set-points have gone on.
       if (stopping_ && command == DriveCommand::enable_operation)
         controlword_ = static_cast<std::uint16_t>(controlword_ & ~controlword::enable_operation_bit);
@@ -325,16 +245,14 @@ class ServoDrive {
         power_on(feedback, axis);
         break;
       case 11:
-        begin_stop(way_of(StopObject::quick_stop, config_.stops.quick_stop), axis);
+        begin_stop(stop_way(StopObject::quick_stop, config_.stops.quick_stop), axis);
         break;
       case 15:
         forget(feedback, axis);
         break;
       case 16:
         stopping_ = fast_ = false;
-        stop_ticks_ = 0;
-        brake_closing_ = false;
-        hold_ticks_ = config_.brake_ticks;
+        brake_.open(config_.brake_ticks);
         break;
       default:
         break;
@@ -349,9 +267,7 @@ class ServoDrive {
     restart(feedback, axis);
     powered_ = true;
     stopping_ = fast_ = false;
-    brake_closing_ = false;
-    hold_ticks_ = config_.brake_ticks;
-    stop_ticks_ = 0;
+    brake_.open(config_.brake_ticks);
     standing_ = 0;
     last_ = {measured_, {}};
   }
@@ -362,7 +278,7 @@ class ServoDrive {
   }
 
   constexpr void forget(const Feedback<S>& feedback, Axis<S>& axis) {
-    const bool lost = lost_by(fault_) || lost_by(following_);
+    const bool lost = loses_reference(fault_) || loses_reference(following_);
     if (lost && config_.homing.method != HomingMethod::none) referenced_ = false;
     fault_ = following_ = Fault::none;
     supervision_.restart();
@@ -370,25 +286,10 @@ class ServoDrive {
     axis.stop();
   }
 
-  // Whether the encoder may have lost its place.
-  static constexpr bool lost_by(Fault fault) {
-    const auto* row = description_of(fault);
-    return row != nullptr && row->loses_reference;
-  }
-
-  // The set-point has come to rest and the carriage stands, or the margin is over; then the brake has closed.
   constexpr bool stop_ended() {
     if (!stopping_) return true;
-    if (last_.velocity != Velocity{} || offset_ != Velocity{}) return false;
-    if (!brake_closing_) {
-      ++stop_ticks_;
-      brake_closing_ = standing_ == standstill_ticks || stop_ticks_ > config_.stop_margin_ticks;
-      hold_ticks_ = config_.brake_ticks;
-    }
-    if (!brake_closing_) return false;
-    if (hold_ticks_ == 0) return true;
-    --hold_ticks_;
-    return false;
+    if (last_.velocity != Velocity{} || offset_.speed() != Velocity{}) return false;
+    return brake_.close(standing_ == standstill_ticks, config_.stop_margin_ticks, config_.brake_ticks);
   }
 
   // The set-point of whoever leads, and the offset on top of it.
@@ -398,19 +299,12 @@ class ServoDrive {
     limits_current_ = set.limits_current;
     const auto change = saturated_difference(last_.velocity, before, saturations_);
     const auto left = config_.most_change - (change < Velocity{} ? opposite(change) : change);
-    advance_offset(follows_ ? demand.velocity_offset : Velocity{}, narrow<Velocity>(left, saturations_));
-    set.velocity = saturated_sum(set.velocity, offset_, saturations_);
-    return set;
-  }
-
-  // By what the set-point leaves of the change that a tick may have.
-  constexpr void advance_offset(Velocity wanted, Velocity left) {
-    if (!powered_) {
+    if (powered_)
+      offset_.step(follows_ ? demand.velocity_offset : Velocity{}, narrow<Velocity>(left, saturations_), saturations_);
+    else
       offset_ = {};
-      return;
-    }
-    const auto most = left > Velocity{} ? left : Velocity{};
-    offset_ = saturated_sum(offset_, clamped(saturated_difference(wanted, offset_, saturations_), most), saturations_);
+    set.velocity = saturated_sum(set.velocity, offset_.speed(), saturations_);
+    return set;
   }
 
   constexpr SetPoint<S> leading_set_point(const DriveDemand<S>& demand, const DigitalInputs<S>& inputs) {
@@ -421,16 +315,13 @@ class ServoDrive {
       return {last_.position, {}, {}};
     }
     if (stopping_ || machine_.state() != DriveState::operation_enabled) return ramped({}, stopping_ && !fast_);
-    if (hold_ticks_ != 0) {  // the brake opens
-      --hold_ticks_;
-      return ramped({});
-    }
+    if (brake_.opens()) return ramped({});
     // Once begun it goes on to rest, as a source of set-points begins there.
     const bool wanted = demand.brake || leaves_homing_ || halted();
     brakes_ = wanted || (brakes_ && last_.velocity != Velocity{});
     if (brakes_) {
       homing_.interrupt();  // a mark that is passed while it brakes is none
-      return ramped({}, way_of(StopObject::halt, config_.stops.halt).ramp == StopRamp::slow_down);
+      return ramped({}, stop_way(StopObject::halt, config_.stops.halt).ramp == StopRamp::slow_down);
     }
     if (mode_ == OperationMode::homing) return ramped(homing_speed(inputs));
     homing_.stop();
@@ -487,18 +378,20 @@ class ServoDrive {
   std::uint16_t controlword_ = 0;
   Fault fault_ = Fault::none, following_ = Fault::none;
   bool fault_raised_ = false;
-  bool powered_ = false, stopping_ = false, brake_closing_ = false, follows_ = false, referenced_ = false;
+  bool powered_ = false, stopping_ = false, follows_ = false, referenced_ = false;
   bool fast_ = false;  // the stop, by the quick-stop ramp
   bool leaves_homing_ = false, brakes_ = false, supplied_ = true;
-  std::uint8_t self_test_ = 0, standing_ = 0, rest_ticks_ = 0;
+  RestWatch<S> rest_;
+  LagWatch<S> lag_;
+  std::uint8_t self_test_ = 0, standing_ = 0;
   bool limits_current_ = false, limited_ = false;
-  std::uint32_t hold_ticks_ = 0, stop_ticks_ = 0, lag_ticks_ = 0;
+  HoldingBrake brake_;
   std::int64_t now_ns_ = 0, measured_ns_ = 0;
-  Position measured_{}, rested_at_{}, origin_{};
+  Position measured_{}, origin_{};
   Velocity v_{};
   typename S::Current i_set_{};  // of the last tick
   typename Ramp::State last_{};  // the set-point of the last tick, the encoder's coordinates
-  Velocity offset_{};            // on top of its speed
+  SpeedOffset<S> offset_;        // on top of its speed
   std::array<DriveEvent<S>, 2> events_{};
   SaturationCounter saturations_;
 };

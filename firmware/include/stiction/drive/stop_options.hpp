@@ -53,6 +53,13 @@ constexpr const StopOption* stop_option(StopObject object, std::int8_t code) {
   return nullptr;
 }
 
+// The same; a code that the table does not have is refused where it is configured, and here takes the power off at
+// once.
+constexpr StopOption stop_way(StopObject object, std::int8_t code) {
+  const auto* row = stop_option(object, code);
+  return row == nullptr ? StopOption{object, code, StopRamp::none} : *row;
+}
+
 // The codes of an axis; each is one of stop_option_table.
 struct StopCodes {
   std::int8_t quick_stop = 2, shutdown = 1, disable_operation = 1, halt = 1, fault_reaction = 2;
