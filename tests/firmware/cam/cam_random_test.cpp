@@ -103,7 +103,7 @@ class RandomAxis {
     ++totals_.commands;
     switch (random_.whole(10)) {
       case 0:
-        EXPECT_TRUE(master.run(test::master_speed(between(-3.0, 3.0))));
+        EXPECT_TRUE(master.run(test::master_speed(between(-0.7, 0.7))));
         return;
       case 1:
         EXPECT_TRUE(master.run(0));
@@ -128,7 +128,7 @@ class RandomAxis {
     request.curve = &curves_[random_.whole(curves_.size())];
     if (random_.whole(8) == 0) request.goal = CamGoal::position;
     request.position = test::raw_position(between(-2.0, 2.0));
-    request.trigger = static_cast<CamTrigger>(random_.whole(5));
+    request.trigger = static_cast<CamTrigger>(random_.whole(2) == 0 ? 0 : random_.whole(5));
     request.approach = static_cast<CamApproach>(random_.whole(3));
     request.master_relative = random_.whole(3) == 0;
     request.slave_relative = random_.whole(3) == 0;
@@ -138,11 +138,11 @@ class RandomAxis {
     request.tolerance = {test::raw_position(0.3), test::raw_velocity(1.0), test::raw_acceleration(20.0)};
     request.span = Span::of(request.approach == CamApproach::distance ? test::raw_position(between(0.1, 3.0))
                                                                       : static_cast<std::int64_t>(between(200, 12000)));
-    requested_ = request;
     if (axis.engage(request) != CamRefusal::none) {
       ++totals_.refused;
       return;
     }
+    requested_ = request;
     stated_.open = false;
     waits_ = true;
   }
@@ -231,7 +231,7 @@ TEST(CamMotion, NothingEverJumpsInRandomCommands) {
   test::figure("cam motion: 10 000 random commands: not in sync within what was stated",
                fmt::format("{} of {} (bound 0)", totals.late, totals.in_sync));
   test::figure("cam motion: 10 000 random commands: off the motion in double precision, in sync",
-               fmt::format("{:.2g} rad (bound 1.3e-9)", totals.off_curve));
+               fmt::format("{:.2g} rad (bound 3.3e-10)", totals.off_curve));
   test::figure("cam motion: jump of a naive absolute start, largest", fmt::format("{:.2f} rad", totals.naive));
   EXPECT_EQ(totals.commands, axes * commands);
   EXPECT_LE(totals.position_jump, test::position_unit);
@@ -241,7 +241,7 @@ TEST(CamMotion, NothingEverJumpsInRandomCommands) {
   EXPECT_LE(totals.over_jerk, 0.0);
   EXPECT_EQ(totals.late, 0);
   // The table's tolerance and a unit.
-  EXPECT_LE(totals.off_curve, 1e-9 + test::position_unit);
+  EXPECT_LE(totals.off_curve, 1e-10 + test::position_unit);
 }
 
 }  // namespace

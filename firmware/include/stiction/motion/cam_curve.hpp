@@ -66,10 +66,12 @@ class CamCurve {
     CamCurve made;
     made.config_ = config;
     const std::int64_t scale = static_cast<std::int64_t>(magnitude(config.slave_scale));
-    if (magnitude(config.slave_scale) > std::uint64_t{1} << 48) return CamRefusal::scale;
+    if (magnitude(config.slave_scale) > std::uint64_t{1} << 48 || magnitude(config.rise) > std::uint64_t{1} << 60)
+      return CamRefusal::scale;
     if (config.table == nullptr) {
       made.config_.periodic = true;
       made.config_.rise = product_shifted(config.rise, config.slave_scale, scale_bits);
+      if (magnitude(made.config_.rise) > std::uint64_t{1} << 60) return CamRefusal::scale;
       made.peaks_.slope = static_cast<std::int64_t>(magnitude(made.config_.rise)) + 1;
     } else {
       const CamTable& table = *config.table;
@@ -79,13 +81,15 @@ class CamCurve {
         return CamRefusal::scale;
       made.config_.rise = product_shifted(h.rise, config.slave_scale, h.position_bits - least_bits);
       const CamPeaks of_table = peaks_of(table);
-      made.peaks_ = {product_shifted(of_table.slope, scale, scale_bits) + 1,
-                     product_shifted(of_table.bend, scale, scale_bits) + 1,
-                     product_shifted(of_table.third, scale, scale_bits) + 1};
-      if (!made.continuous()) return CamRefusal::not_continuous;
+      const auto scaled = [scale](std::int64_t peak) {
+        const std::int64_t rounded = product_shifted(peak, scale, scale_bits);
+        return rounded < INT64_MAX ? rounded + 1 : rounded;
+      };
+      made.peaks_ = {scaled(of_table.slope), scaled(of_table.bend), scaled(of_table.third)};
     }
     constexpr std::int64_t most = std::int64_t{1} << 61;
     if (made.peaks_.slope > most || made.peaks_.bend > most || made.peaks_.third > most) return CamRefusal::scale;
+    if (config.table != nullptr && !made.continuous()) return CamRefusal::not_continuous;
     curve = made;
     return CamRefusal::none;
   }
@@ -128,8 +132,10 @@ class CamCurve {
       out.slope = product_shifted(y.speed, config_.slave_scale, h.speed_bits - least_bits);
       out.bend = product_shifted(y.acceleration, config_.slave_scale, h.acceleration_bits - least_bits);
       // What the table's 32 bits of the phase leave.
+      const auto rest = static_cast<std::int64_t>(at.phase & 0xffffffffu);
       out.position = product_shifted(y.position, config_.slave_scale, h.position_bits - least_bits) +
-                     product_shifted(out.slope, static_cast<std::int64_t>(at.phase & 0xffffffffu), 64);
+                     product_shifted(out.slope, rest, 64);
+      out.slope += product_shifted(out.bend, rest, 64);
     }
     const auto turns = static_cast<std::uint64_t>(at.cycles) * static_cast<std::uint64_t>(config_.rise);
     out.position = static_cast<std::int64_t>(static_cast<std::uint64_t>(out.position + config_.slave_offset) + turns);
@@ -171,7 +177,10 @@ class CamCurve {
         widen(b2, 3 * second[0] + j * second[1] + j * (j - 1) / 2 * second[2] + (j == 3 ? 3 : 0) * second[3]);
       for (int j = 0; j <= 2; ++j) widen(b3, 2 * third[0] + j * third[1] + (j == 2 ? 2 : 0) * third[2]);
       const int shift = s.shift - CamTable::extra_bits + table.header().position_bits - MotionPoint::position_bits;
-      const auto over = [&s](std::int64_t x) { return product_shifted(x, s.reciprocal, s.down) + 1; };
+      const auto over = [&s](std::int64_t x) {
+        const std::int64_t rounded = product_shifted(x, s.reciprocal, s.down);
+        return rounded < INT64_MAX ? rounded + 1 : rounded;
+      };
       larger(peaks.slope, over(in_units(b1 / 12 + 1, shift)));
       larger(peaks.bend, over(over(in_units(b2 / 3 + 1, shift))));
       larger(peaks.third, over(over(over(in_units(b3 / 2 + 1, shift)))));
@@ -188,8 +197,8 @@ class CamCurve {
   }
 
   // Whether position, slope and bend are the same on both sides of each joint and of the seam, as far as what their
-  // largest slopes make of the last phase, and rounding: 2^-32 units of the position, 2^-20 of the largest slope and
-  // bend.
+  // largest slopes make of the last phase, and rounding: 2^-32 units of the position, 2^-20 of the largest slope,
+  // 2^-14 of the largest bend (of a table within 1e-10 coefficients of 32 bits leave up to 2^-16).
   constexpr bool continuous() const {
     const CamTable& table = *config_.table;
     constexpr std::int64_t near = std::int64_t{1} << (MotionPoint::position_bits - 32);
@@ -203,7 +212,7 @@ class CamCurve {
           magnitude(after.slope - before.slope) >
               static_cast<std::uint64_t>((peaks_.slope >> 20) + of_phase(peaks_.bend)) ||
           magnitude(after.bend - before.bend) >
-              static_cast<std::uint64_t>((peaks_.bend >> 20) + of_phase(peaks_.third)))
+              static_cast<std::uint64_t>((peaks_.bend >> 14) + of_phase(peaks_.third)))
         return false;
     }
     return true;
