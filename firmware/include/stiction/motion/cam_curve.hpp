@@ -47,12 +47,14 @@ class CamCurve {
     bool periodic = true;                              // a line is; a cam that is not ends with its cycle
   };
 
-  // Master scaling and offset as CODESYS writes them, X = scaling * master + offset: the `ratio` is the scaling.
+  // Master scaling and offset of `config` as CODESYS writes them, X = scaling * master + offset: the `ratio` is the
+  // scaling.
   static constexpr void scale_then_add(Config& config, const GearRatio& ratio, const MasterPosition& offset) {
     config.ratio = ratio;
     config.master_offset = offset;
   }
-  // The same as TwinCAT 3 writes them, X = (master - offset) / scaling: `ratio` is 1 / scaling, `offset` the master's.
+  // The same of `config` as TwinCAT 3 writes them, X = (master - offset) / scaling: `ratio` is 1 / scaling, `offset` the
+  // master's.
   static constexpr void subtract_then_divide(Config& config, const GearRatio& ratio, const MasterPosition& offset) {
     config.ratio = ratio;
     config.master_offset = -ratio.position(offset);
