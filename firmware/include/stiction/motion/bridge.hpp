@@ -141,8 +141,8 @@ class Bridge {
                    product_shifted(times(of_a, 0), 9, 0), times(times(times(room.jerk, 12), 12), 0));
   }
 
-  // The same of a bridge of speed of `ticks` within `room`, from the speed `v` and the acceleration `a`: the largest deviations of speed,
-  // acceleration and jerk are 1, 3/2, 6 of a speed, and 4/27, 1, 4 of an acceleration.
+  // The same of a bridge of speed of `ticks` within `room`, from the speed `v` and the acceleration `a`: the largest
+  // deviations of speed, acceleration and jerk are 1, 3/2, 6 of a speed, and 4/27, 1, 4 of an acceleration.
   static constexpr bool fits_speed(std::int64_t v, std::int64_t a, std::int64_t ticks, const MotionLimits& room) {
     const std::int64_t speed = bounded(v), change = bounded(a), change_left = room.acceleration - change;
     const std::int64_t of_a = product_shifted(change, ticks, MotionPoint::tick_bits);

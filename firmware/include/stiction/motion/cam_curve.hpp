@@ -53,8 +53,8 @@ class CamCurve {
     config.ratio = ratio;
     config.master_offset = offset;
   }
-  // The same of `config` as TwinCAT 3 writes them, X = (master - offset) / scaling: `ratio` is 1 / scaling, `offset` the
-  // master's.
+  // The same of `config` as TwinCAT 3 writes them, X = (master - offset) / scaling: `ratio` is 1 / scaling, `offset`
+  // the master's.
   static constexpr void subtract_then_divide(Config& config, const GearRatio& ratio, const MasterPosition& offset) {
     config.ratio = ratio;
     config.master_offset = -ratio.position(offset);
