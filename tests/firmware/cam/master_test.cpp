@@ -189,8 +189,8 @@ TEST(GearRatio, GearsSpeedsToo) {
   EXPECT_NEAR(static_cast<double>(out.acceleration), 5e5 * 355 / 113, 2.0);
   EXPECT_EQ(GearRatio(1, 0).denominator(), 1u);
   EXPECT_EQ(gear.numerator(), -355);
-  EXPECT_EQ(GearRatio(INT32_MIN, UINT32_MAX).position({1, 0}).cycles, -1);
-  EXPECT_NEAR(static_cast<double>(GearRatio(INT32_MIN, UINT32_MAX).factor()), -0x1p31, 2.0);
+  EXPECT_EQ(GearRatio(INT32_MIN, UINT16_MAX).position({65535, 0}), (MasterPosition{INT32_MIN, 0}));
+  EXPECT_NEAR(static_cast<double>(GearRatio(INT32_MIN, UINT16_MAX).factor()), -0x1p63 / 65535, 2.0);
 }
 
 TEST(SmoothOffset, GoesToEachNewTargetWithinItsLimits) {

@@ -92,7 +92,8 @@ class Bridge {
   constexpr std::int64_t start_speed(const Span& span, std::int64_t v, std::int64_t a) {
     const std::int64_t slope = product_shifted(a, span.length, MotionPoint::tick_bits);
     // -V/2 - A/12
-    const std::int64_t d = -product_shifted(6 * v + slope, span.length, MotionPoint::tick_bits) / 12;
+    const std::int64_t way = product_shifted(6 * v + slope, span.length, MotionPoint::tick_bits);
+    const std::int64_t d = -product_shifted(way, 0x5555555555555555, 66);
     start(span, {d, v, a}, Over::ticks);
     return d;
   }
@@ -202,7 +203,7 @@ struct SpeedRampRule {
     rule.acceleration = Span::of(limits.acceleration);
     const auto ticks = Span::of(limits.jerk).divide(limits.acceleration, MotionPoint::tick_bits);
     const std::int64_t bounded_ticks = ticks < (std::int64_t{1} << 40) ? ticks : std::int64_t{1} << 40;
-    const std::int64_t needed = (bounded_ticks + 1) * 20 / 3 + 1;
+    const std::int64_t needed = (bounded_ticks + 1) * 7;  // from 20 / 3 on
     rule.shortest = needed > 16 ? needed : 16;
     return rule;
   }

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -154,7 +155,10 @@ class CamSwitch {
   static constexpr std::uint16_t time_since(std::uint32_t beyond, std::int64_t step) {
     const std::uint64_t of_tick = magnitude(step), way = step < 0 ? std::uint32_t{0} - beyond : beyond;
     if (way >= of_tick) return way < 2 * of_tick ? UINT16_MAX : 0;
-    return static_cast<std::uint16_t>((way << time_bits) / of_tick);
+    // In 16 bits of a tick's way, for a division of one word.
+    const int length = 64 - std::countl_zero(of_tick), shift = length > 16 ? length - 16 : 0;
+    const auto part = static_cast<std::uint32_t>(way >> shift), all = static_cast<std::uint32_t>(of_tick >> shift);
+    return static_cast<std::uint16_t>(part >= all ? UINT16_MAX : (part << time_bits) / all);
   }
 
   static constexpr std::int64_t whole = std::int64_t{1} << 32;
