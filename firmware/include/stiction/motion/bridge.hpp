@@ -117,7 +117,7 @@ class Bridge {
     if (!active_) return {};
     const std::int64_t w = span_.share(span_.length - gone_), s = (std::int64_t{1} << Span::share_bits) - w;
     const auto w31 = static_cast<std::uint32_t>(w >> 31), s31 = static_cast<std::uint32_t>(s >> 31);
-    const auto fine = [](std::int64_t x, std::int64_t y) { return product_shifted(x, y, Span::share_bits); };
+    const auto fine = [](std::int64_t x, std::int64_t y) { return product<Span::share_bits>(x, y); };
     MotionPoint out;
     out.position = fine(w, fine(w, fine(w, p_[0] + fine(s, p_[1] + fine(s, p_[2])))));
     out.velocity = of(w31, of(w31, v_[0] + of(s31, v_[1] + of(s31, v_[2]))));

@@ -134,10 +134,10 @@ class CamCurve {
       out.slope = product_shifted(y.speed, config_.slave_scale, h.speed_bits - least_bits);
       out.bend = product_shifted(y.acceleration, config_.slave_scale, h.acceleration_bits - least_bits);
       // What the table's 32 bits of the phase leave.
-      const auto rest = static_cast<std::int64_t>(at.phase & 0xffffffffu);
+      const auto rest = static_cast<std::int32_t>(static_cast<std::uint32_t>(at.phase) >> 1);
       out.position = product_shifted(y.position, config_.slave_scale, h.position_bits - least_bits) +
-                     product_shifted(out.slope, rest, 64);
-      out.slope += product_shifted(out.bend, rest, 64);
+                     product_by_word<63>(out.slope, rest);
+      out.slope += product_by_word<63>(out.bend, rest);
     }
     const auto turns = static_cast<std::uint64_t>(at.cycles) * static_cast<std::uint64_t>(config_.rise);
     out.position = static_cast<std::int64_t>(static_cast<std::uint64_t>(out.position + config_.slave_offset) + turns);
@@ -151,9 +151,9 @@ class CamCurve {
 
   // The motion that `slopes` make of a master `x`, as seen.
   static constexpr MotionPoint chained(const CamSlopes& slopes, const MasterPoint& x) {
-    const std::int64_t square = product_shifted(x.velocity, x.velocity, 40);
-    return {slopes.position, product_shifted(slopes.slope, x.velocity, 40),
-            product_shifted(slopes.bend, square, 40) + product_shifted(slopes.slope, x.acceleration, 40)};
+    const std::int64_t square = product<40>(x.velocity, x.velocity);
+    return {slopes.position, product<40>(slopes.slope, x.velocity),
+            product<40>(slopes.bend, square) + product<40>(slopes.slope, x.acceleration)};
   }
 
  private:

@@ -15,14 +15,13 @@ struct CamPeaks {
 
   // What a slave needs to follow a curve with these peaks behind a master that keeps `master`.
   constexpr MotionLimits motion(const MotionLimits& master) const {
-    const std::int64_t square = product_shifted(master.velocity, master.velocity, 40);
-    const std::int64_t cube = product_shifted(square, master.velocity, 40);
-    const std::int64_t mixed = product_shifted(master.velocity, master.acceleration, 40);
+    const std::int64_t square = product<40>(master.velocity, master.velocity);
+    const std::int64_t cube = product<40>(square, master.velocity);
+    const std::int64_t mixed = product<40>(master.velocity, master.acceleration);
     MotionLimits needed;
-    needed.velocity = product_shifted(slope, master.velocity, 40);
-    needed.acceleration = sum(product_shifted(bend, square, 40), product_shifted(slope, master.acceleration, 40), 0);
-    needed.jerk = sum(product_shifted(third, cube, 40), product_shifted(bend, 3 * mixed, 40),
-                      product_shifted(slope, master.jerk, 40));
+    needed.velocity = product<40>(slope, master.velocity);
+    needed.acceleration = sum(product<40>(bend, square), product<40>(slope, master.acceleration), 0);
+    needed.jerk = sum(product<40>(third, cube), product<40>(bend, 3 * mixed), product<40>(slope, master.jerk));
     return needed;
   }
 

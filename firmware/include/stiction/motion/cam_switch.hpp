@@ -86,8 +86,8 @@ class CamSwitch {
 
     // From where it was `time` ago, 2^-16 ticks, in 2^-32 cycles; of a time that is negative, to where it will be.
     constexpr std::int64_t way(std::int32_t time) const {
-      const std::int64_t change = product_shifted(acceleration, time, time_bits + MotionPoint::tick_bits + 1);
-      return product_shifted(velocity - change, time, time_bits + 20);
+      const std::int64_t change = product_by_word<time_bits + 20>(acceleration, time);
+      return product_by_word<time_bits + 20>(velocity - (change << (20 - MotionPoint::tick_bits - 1)), time);
     }
 
     std::uint32_t place;

@@ -37,7 +37,7 @@ class GearRatio {
 
   // numerator * master / denominator, rounded down to 2^-64 cycles. `master`: up to 2^62 cycles over the ratio.
   constexpr MasterPosition position(const MasterPosition& master) const {
-    if (numerator_ == 1 && denominator_ == 1) return master;
+    if (unity()) return master;
     const bool back = master.cycles < 0;
     const MasterPosition size = back ? -master : master;
     const auto cycles = static_cast<std::uint64_t>(size.cycles);
@@ -67,11 +67,14 @@ class GearRatio {
 
   // A `master` as it is behind the gear.
   constexpr MasterPoint of(const MasterPoint& master) const {
-    return {position(master.position), product_shifted(master.velocity, factor_, factor_bits),
-            product_shifted(master.acceleration, factor_, factor_bits)};
+    if (unity()) return master;
+    return {position(master.position), product<factor_bits>(master.velocity, factor_),
+            product<factor_bits>(master.acceleration, factor_)};
   }
 
  private:
+  constexpr bool unity() const { return numerator_ == 1 && denominator_ == 1; }
+
   static constexpr int factor_bits = 32, half_words = 10;
   static constexpr std::uint32_t word = 0xffffu;
 

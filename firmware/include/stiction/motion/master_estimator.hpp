@@ -52,8 +52,8 @@ class MasterEstimator {
 
   // The master as the loop's delay makes it: `look_ahead` later.
   constexpr MasterPoint point() const {
-    const std::int64_t ahead = config_.look_ahead, change = product_shifted(acceleration_, ahead, 16);
-    const std::int64_t way = product_shifted(velocity_, ahead, 16) + product_shifted(change, ahead, 17);
+    const std::int64_t ahead = config_.look_ahead, change = product<16>(acceleration_, ahead);
+    const std::int64_t way = product<16>(velocity_, ahead) + product<17>(change, ahead);
     return {position_ + MasterPosition::fine(way), (velocity_ + change) >> MotionPoint::tick_bits, acceleration_};
   }
 

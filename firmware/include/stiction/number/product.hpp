@@ -14,7 +14,7 @@ constexpr std::uint64_t magnitude(std::int64_t x) {
 
 // a * b * 2^-shift to the nearest whole number, ties away from zero; what exceeds a word is its end. `a`, `b`: any;
 // `shift`: 0 to 127.
-constexpr std::int64_t product_shifted(std::int64_t a, std::int64_t b, int shift) {
+[[gnu::always_inline]] constexpr std::int64_t product_inlined(std::int64_t a, std::int64_t b, int shift) {
   const std::uint64_t x = magnitude(a), y = magnitude(b);
   const std::uint64_t x0 = x & 0xffffffffu, x1 = x >> 32, y0 = y & 0xffffffffu, y1 = y >> 32;
   const std::uint64_t low = x0 * y0, first = x1 * y0 + (low >> 32), second = x0 * y1 + (first & 0xffffffffu);
@@ -34,6 +34,27 @@ constexpr std::int64_t product_shifted(std::int64_t a, std::int64_t b, int shift
   constexpr auto most = static_cast<std::uint64_t>(INT64_MAX);
   if (beyond != 0 || result > most) result = most;
   return (a < 0) != (b < 0) ? -static_cast<std::int64_t>(result) : static_cast<std::int64_t>(result);
+}
+
+// As product_inlined(), as a function of its own.
+[[gnu::noinline]] constexpr std::int64_t product_shifted(std::int64_t a, std::int64_t b, int shift) {
+  return product_inlined(a, b, shift);
+}
+
+// The same with a shift that is known, 1 to 127: on a 32-bit machine half of the instructions.
+template <int Shift>
+[[gnu::always_inline]] constexpr std::int64_t product(std::int64_t a, std::int64_t b) {
+  static_assert(Shift >= 1 && Shift <= 127);
+  return product_inlined(a, b, Shift);
+}
+
+// a * b * 2^-Shift of a word `b`, rounded down; Shift 33 to 63, `a` below 2^62. Two products of 32 bits.
+template <int Shift>
+constexpr std::int64_t product_by_word(std::int64_t a, std::int32_t b) {
+  static_assert(Shift >= 33 && Shift <= 63);
+  const std::int64_t upper = std::int64_t{static_cast<std::int32_t>(a >> 32)} * b;
+  const std::int64_t lower = std::int64_t{static_cast<std::uint32_t>(a)} * b;
+  return (upper + (lower >> 32)) >> (Shift - 32);
 }
 
 }  // namespace stiction
