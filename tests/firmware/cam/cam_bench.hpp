@@ -56,6 +56,13 @@ inline std::unique_ptr<TestCam> test_cam(const sim::cam::Cam& cam, double tolera
   return made;
 }
 
+// The checksum of a table's `bytes` that were changed.
+inline void sign(std::vector<std::uint8_t>& bytes) {
+  const std::size_t end = bytes.size() - CamTable::checksum_size;
+  const std::uint32_t sum = Crc32{}.add(bytes, end).value();
+  for (std::size_t k = 0; k < 4; ++k) bytes[end + k] = static_cast<std::uint8_t>(sum >> (8 * k));
+}
+
 // The motion in double precision: position, and its first and second derivative over cycles, at `x` cycles.
 struct TrueSlopes {
   double position, slope, bend;

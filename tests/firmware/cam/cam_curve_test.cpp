@@ -177,6 +177,81 @@ TEST(CamCurve, RefusesWhatItCannotFollow) {
   EXPECT_EQ(CamCurve::prepare({.table = &single->table, .slave_scale = INT64_MIN, .periodic = false}, curve),
             CamRefusal::scale);
   EXPECT_EQ(CamCurve::prepare({.rise = INT64_MAX}, curve), CamRefusal::scale);
+  EXPECT_EQ(CamCurve::prepare({.slave_scale = std::int64_t{1} << 47, .rise = std::int64_t{1} << 50}, curve),
+            CamRefusal::scale);
+  // Bends and third derivatives beyond the formats, where slopes are not.
+  const auto cam = test::test_cam(test::rise_and_return("modified_sine", 1.0));
+  for (const int bits : {44, 48})
+    EXPECT_EQ(CamCurve::prepare({.table = &cam->table, .slave_scale = std::int64_t{1} << bits}, curve),
+              CamRefusal::scale);
+}
+
+// The bytes of a table with other bits of position, speed and acceleration.
+void with_bits(const test::TestCam& cam, int position, int speed, int acceleration, CamRefusal expected) {
+  auto bytes = cam.bytes;
+  bytes[9] = static_cast<std::uint8_t>(position);
+  bytes[10] = static_cast<std::uint8_t>(speed);
+  bytes[11] = static_cast<std::uint8_t>(acceleration);
+  test::sign(bytes);
+  CamTable table;
+  ASSERT_EQ(CamTable::read(bytes, table), CamTableProblem::none) << position << ' ' << speed << ' ' << acceleration;
+  CamCurve curve;
+  EXPECT_EQ(CamCurve::prepare({.table = &table}, curve), expected) << position << ' ' << speed << ' ' << acceleration;
+}
+
+TEST(CamCurve, RefusesScalesThatItsFormatsDoNotHold) {
+  const auto cam = test::test_cam(test::rise_and_return("3-4-5", 1.0));
+  const auto& h = cam->table.header();
+  const int p = h.position_bits, v = h.speed_bits, a = h.acceleration_bits;
+  with_bits(*cam, p, v, a, CamRefusal::none);
+  with_bits(*cam, 7, 7 + v - p, 7 + a - p, CamRefusal::scale);
+  with_bits(*cam, p, 7, a, CamRefusal::scale);
+  with_bits(*cam, p, v, 7, CamRefusal::scale);
+  // Positions of some 2^30 units.
+  with_bits(*cam, 8 + std::max({0, p - v, p - a}), 8, 8, CamRefusal::scale);
+}
+
+TEST(CamCurve, RefusesATableThatWasMadeWithAJump) {
+  const auto cam = test::test_cam(test::rise_and_return("3-4-5", 1.0));
+  const auto with = [&cam](std::size_t at, std::int32_t change) {
+    auto bytes = cam->bytes;
+    std::uint32_t word = 0;
+    for (std::size_t k = 4; k-- > 0;) word = word << 8 | bytes[at + k];
+    word += static_cast<std::uint32_t>(change);
+    for (std::size_t k = 0; k < 4; ++k) bytes[at + k] = static_cast<std::uint8_t>(word >> (8 * k));
+    test::sign(bytes);
+    CamTable table;
+    EXPECT_EQ(CamTable::read(bytes, table), CamTableProblem::none);
+    CamCurve curve;
+    return CamCurve::prepare({.table = &table}, curve);
+  };
+  const std::size_t second = CamTable::header_size + CamTable::segment_size;
+  EXPECT_EQ(with(second, 0), CamRefusal::none);
+  EXPECT_EQ(with(second + 8, 1 << 17), CamRefusal::not_continuous);  // its position, by 2 nrad
+  // In the second segment: its slope at the begin, and what takes the position back at its end.
+  const auto coefficient = [](const std::vector<std::uint8_t>& bytes, std::size_t at) {
+    std::uint32_t word = 0;
+    for (std::size_t k = 4; k-- > 0;) word = word << 8 | bytes[at + k];
+    return static_cast<std::int32_t>(word);
+  };
+  auto bytes = cam->bytes;
+  const std::int32_t change = 1 << 16;
+  for (const auto& [n, sign] : {std::pair<std::size_t, int>{0, 1}, {1, -1}}) {
+    const auto word = static_cast<std::uint32_t>(coefficient(bytes, second + 16 + 4 * n) + sign * change);
+    for (std::size_t k = 0; k < 4; ++k) bytes[second + 16 + 4 * n + k] = static_cast<std::uint8_t>(word >> (8 * k));
+  }
+  test::sign(bytes);
+  CamTable table;
+  ASSERT_EQ(CamTable::read(bytes, table), CamTableProblem::none);
+  CamCurve curve;
+  EXPECT_EQ(CamCurve::prepare({.table = &table}, curve), CamRefusal::not_continuous);
+}
+
+TEST(CamPeaks, EndWhereTheirFormatDoes) {
+  const CamPeaks peaks{INT64_MAX / 2, INT64_MAX / 2, INT64_MAX / 2};
+  const MotionLimits needed = peaks.motion(test::limits(4000.0, 1e6, 1e9));
+  EXPECT_GT(needed.acceleration, INT64_MAX / 4);
+  EXPECT_GT(needed.jerk, INT64_MAX / 4);
 }
 
 }  // namespace

@@ -167,6 +167,17 @@ TEST(CamSwitch, ADurationEndsByTime) {
   }
 }
 
+TEST(CamSwitch, ADurationBeginsOnceACycleAtAnySpeed) {
+  const Track track{.first = place(0.5), .duration = ticks(7.3e-3), .kind = CamSwitch::Kind::duration};
+  for (const double speed : {0.08, 1.0, 30.0, -0.08, -30.0}) {
+    const auto found = edges(track, 0.25, speed, 0.0, 2.0 / std::abs(speed));
+    ASSERT_EQ(found.size(), 4u) << speed;
+    const double first = (speed > 0 ? 0.25 : 0.75) / std::abs(speed);
+    EXPECT_NEAR(found[0].time, first, 2e-6);
+    EXPECT_NEAR(found[2].time, first + 1 / std::abs(speed), 2e-6);
+  }
+}
+
 TEST(CamSwitch, ADirectionLetsOnlyItsOwnEdgesSwitchOn) {
   for (const auto kind : {CamSwitch::Kind::position, CamSwitch::Kind::duration})
     for (const double speed : {1.0, -1.0}) {

@@ -187,6 +187,8 @@ TEST(GearRatio, GearsSpeedsToo) {
   const MasterPoint out = gear.of({{}, 1'000'000'000, -500'000});
   EXPECT_NEAR(static_cast<double>(out.velocity), -1e9 * 355 / 113, 2.0);
   EXPECT_NEAR(static_cast<double>(out.acceleration), 5e5 * 355 / 113, 2.0);
+  EXPECT_EQ(GearRatio(1, 1).position({3, 7}), (MasterPosition{3, 7}));
+  EXPECT_EQ(GearRatio(1, 3).of({{3, 6}, 33, 0}).velocity, 11);
   EXPECT_EQ(GearRatio(1, 0).denominator(), 1u);
   EXPECT_EQ(gear.numerator(), -355);
   EXPECT_EQ(GearRatio(INT32_MIN, UINT16_MAX).position({65535, 0}), (MasterPosition{INT32_MIN, 0}));

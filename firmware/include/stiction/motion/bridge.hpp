@@ -100,9 +100,9 @@ class Bridge {
 
   // Goes on by a tick. Over at its end.
   constexpr void tick() { go_to(gone_ + 1); }
-  // Goes to `gone` of its length, in units of it; below 0 it is at its begin.
+  // Goes to `gone` of its length, in units of it, from 0 on.
   constexpr void go_to(std::int64_t gone) {
-    gone_ = gone < 0 ? 0 : gone;
+    gone_ = gone;
     if (gone_ >= span_.length) active_ = false;
   }
   constexpr void clear() { active_ = false; }

@@ -78,8 +78,7 @@ class CamCurve {
     } else {
       const CamTable& table = *config.table;
       const auto& h = table.header();
-      if (h.position_bits < least_bits || h.speed_bits < least_bits || h.acceleration_bits < least_bits ||
-          h.position_bits > most_bits || h.speed_bits > most_bits || h.acceleration_bits > most_bits)
+      if (h.position_bits < least_bits || h.speed_bits < least_bits || h.acceleration_bits < least_bits)
         return CamRefusal::scale;
       made.config_.rise = product_shifted(h.rise, config.slave_scale, h.position_bits - least_bits);
       const CamPeaks of_table = peaks_of(table);
@@ -159,7 +158,7 @@ class CamCurve {
  private:
   static constexpr int scale_bits = 32;
   // Of a table's numbers, so that with the 32 of the scale at least 40 are left.
-  static constexpr int least_bits = 8, most_bits = 100;
+  static constexpr int least_bits = 8;
 
   // Of a table by itself.
   static constexpr CamPeaks peaks_of(const CamTable& table) {
@@ -191,11 +190,9 @@ class CamCurve {
   }
   static constexpr void larger(std::int64_t& largest, std::int64_t x) { largest = x > largest ? x : largest; }
   static constexpr void widen(std::int64_t& largest, std::int64_t x) { larger(largest, x < 0 ? -x : x); }
-  // x * 2^-shift, rounded up; `x` below 2^43.
+  // x * 2^-shift, rounded up; `x` below 2^43; the shift of a table that was read is -56 to 125.
   static constexpr std::int64_t in_units(std::int64_t x, int shift) {
-    if (shift < -127) return INT64_MAX;
-    if (shift < 0) return product_shifted(x, shift > -62 ? std::int64_t{1} << -shift : INT64_MAX, 0);
-    return product_shifted(x, 1, shift > 127 ? 127 : shift) + 1;
+    return shift < 0 ? product_shifted(x, std::int64_t{1} << -shift, 0) : product_shifted(x, 1, shift) + 1;
   }
 
   // Whether position, slope and bend are the same on both sides of each joint and of the seam, as far as what their

@@ -229,30 +229,23 @@ class CamMotion {
            needed.jerk <= config_->slave.jerk;
   }
 
-  // Whether the request's trigger is reached; `x`: the master as its curve sees it.
+  // Whether the request's trigger is reached, one that is not at once; `x`: the master as its curve sees it.
   constexpr bool reached(const MasterPoint& measured, const MasterPoint& x, const MotionPoint& off) {
     const auto passes = [this](std::int64_t side) {
-      const bool passed = watched_ && ((side >= 0) != (side_ >= 0)) && near(side) && near(side_);
+      const bool passed = watched_ && ((side >= 0) != (side_ >= 0)) && near(side);
       side_ = side;
       watched_ = true;
       return passed;
     };
-    switch (request_.trigger) {
-      case CamTrigger::at_once:
-        return true;
-      case CamTrigger::master_position:
-        return passes((measured.position - request_.at).raw());
-      case CamTrigger::cam_position:
-        return passes(static_cast<std::int64_t>(x.position.phase - request_.at.phase));
-      case CamTrigger::next_cycle: {
-        const std::int64_t cycles = follows_ ? cycles_ : x.position.cycles;
-        const bool begins = watched_ && cycles != side_;
-        side_ = cycles;
-        watched_ = true;
-        return begins;
-      }
-      case CamTrigger::curves_agree:
-        break;
+    if (request_.trigger == CamTrigger::master_position) return passes((measured.position - request_.at).raw());
+    if (request_.trigger == CamTrigger::cam_position)
+      return passes(static_cast<std::int64_t>(x.position.phase - request_.at.phase));
+    if (request_.trigger == CamTrigger::next_cycle) {
+      const std::int64_t cycles = follows_ ? cycles_ : x.position.cycles;
+      const bool begins = watched_ && cycles != side_;
+      side_ = cycles;
+      watched_ = true;
+      return begins;
     }
     const auto agrees = [](std::int64_t d, std::int64_t most) { return magnitude(d) <= magnitude(most); };
     return agrees(off.position, request_.tolerance.position) && agrees(off.velocity, request_.tolerance.velocity) &&

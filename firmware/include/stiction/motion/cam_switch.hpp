@@ -158,7 +158,7 @@ class CamSwitch {
     // In 16 bits of a tick's way, for a division of one word.
     const int length = 64 - std::countl_zero(of_tick), shift = length > 16 ? length - 16 : 0;
     const auto part = static_cast<std::uint32_t>(way >> shift), all = static_cast<std::uint32_t>(of_tick >> shift);
-    return static_cast<std::uint16_t>(part >= all ? UINT16_MAX : (part << time_bits) / all);
+    return static_cast<std::uint16_t>((part << time_bits) / (all + 1));
   }
 
   static constexpr std::int64_t whole = std::int64_t{1} << 32;

@@ -29,7 +29,8 @@ struct MotionPoint {
   }
 };
 
-// Magnitudes that a motion keeps, in the formats of a MotionPoint.
+// Magnitudes that a motion keeps, in the formats of a MotionPoint; up to 2^56 each, from which on sums of bridges are
+// beyond a word (8 units/s and 10^6 units/s^2 are 2^41 and 2^56 at 16 kHz).
 struct MotionLimits {
   std::int64_t velocity = 0;
   std::int64_t acceleration = 0;

@@ -62,7 +62,6 @@ class SmoothOffset {
   // Whether the last target was one that no length reaches within the limits. The offset then stays with the one
   // before.
   constexpr bool refused() const { return refused_; }
-  constexpr const MotionLimits& limits() const { return *limits_; }
 
  private:
   static constexpr std::int8_t none = -1;
