@@ -20,16 +20,17 @@ struct CamPeaks {
     const std::int64_t mixed = product<40>(master.velocity, master.acceleration);
     MotionLimits needed;
     needed.velocity = product<40>(slope, master.velocity);
-    needed.acceleration = sum(product<40>(bend, square), product<40>(slope, master.acceleration), 0);
-    needed.jerk = sum(product<40>(third, cube), product<40>(bend, 3 * mixed), product<40>(slope, master.jerk));
+    needed.acceleration = held(product<40>(bend, square)) + held(product<40>(slope, master.acceleration));
+    needed.jerk =
+        held(product<40>(third, cube)) + 3 * held(product<40>(bend, mixed)) + held(product<40>(slope, master.jerk));
     return needed;
   }
 
  private:
-  static constexpr std::int64_t sum(std::int64_t a, std::int64_t b, std::int64_t c) {
-    constexpr std::int64_t most = INT64_MAX / 4;
-    const auto held = [](std::int64_t x) { return x < most ? x : most; };
-    return held(a) + held(b) + held(c);
+  // So that five of them are within a word, and beyond all limits.
+  static constexpr std::int64_t held(std::int64_t x) {
+    constexpr std::int64_t most = INT64_MAX / 8;
+    return x < most ? x : most;
   }
 };
 
