@@ -36,7 +36,7 @@ constexpr std::uint64_t magnitude(std::int64_t x) {
   return (a < 0) != (b < 0) ? -static_cast<std::int64_t>(result) : static_cast<std::int64_t>(result);
 }
 
-// As product_inlined(), as a function of its own.
+// As product_inlined() of `a`, `b` and `shift`, as a function of its own.
 [[gnu::noinline]] constexpr std::int64_t product_shifted(std::int64_t a, std::int64_t b, int shift) {
   return product_inlined(a, b, shift);
 }
