@@ -25,7 +25,8 @@ TEST(Product, IsExactAndRoundedToNearest) {
     const Int128 held = rounded > INT64_MAX ? Int128{INT64_MAX} : rounded;
     ASSERT_EQ(product_shifted(a, b, shift), static_cast<std::int64_t>(exact < 0 ? -held : held));
     const auto word = static_cast<std::int32_t>(b);
-    ASSERT_EQ(product_by_word<36>(a >> 2, word), static_cast<std::int64_t>((Int128{a >> 2} * word) >> 36));
+    const Int128 of_word = Int128{a >> 2} * word;
+    ASSERT_EQ(product_by_word<36>(a >> 2, word), static_cast<std::int64_t>(of_word >> 36));
   }
   EXPECT_EQ(product_shifted(INT64_MIN, INT64_MIN, 0), INT64_MAX);
   EXPECT_EQ(product_shifted(INT64_MIN, 1, 0), -INT64_MAX);

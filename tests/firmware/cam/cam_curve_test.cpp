@@ -202,7 +202,8 @@ void with_bits(const test::TestCam& cam, int position, int speed, int accelerati
 TEST(CamCurve, RefusesScalesThatItsFormatsDoNotHold) {
   const auto cam = test::test_cam(test::rise_and_return("3-4-5", 1.0));
   const auto& h = cam->table.header();
-  const int p = h.position_bits, v = h.speed_bits, a = h.acceleration_bits;
+  const auto p = static_cast<int>(h.position_bits), v = static_cast<int>(h.speed_bits),
+             a = static_cast<int>(h.acceleration_bits);
   with_bits(*cam, p, v, a, CamRefusal::none);
   with_bits(*cam, 7, 7 + v - p, 7 + a - p, CamRefusal::scale);
   with_bits(*cam, p, 7, a, CamRefusal::scale);
