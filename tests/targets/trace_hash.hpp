@@ -9,20 +9,9 @@
 #include "stiction/drive/axis.hpp"
 #include "stiction/number/fixed_signals.hpp"
 #include "tests/targets/compensation.hpp"
+#include "tests/targets/hash.hpp"
 
 namespace stiction::targets {
-
-class Hash {
- public:
-  constexpr void add(std::int64_t word) {
-    for (int shift = 0; shift < 64; shift += 8)
-      value_ = (value_ ^ ((static_cast<std::uint64_t>(word) >> shift) & 0xFF)) * 0x100000001b3u;
-  }
-  constexpr std::uint64_t value() const { return value_; }
-
- private:
-  std::uint64_t value_ = 0xcbf29ce484222325u;
-};
 
 // Calls visit(name, word) for all that an axis shows of itself in a tick.
 template <class Visit>

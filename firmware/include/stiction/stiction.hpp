@@ -10,8 +10,11 @@
 #include "stiction/drive/remote_axis.hpp"              // set-points from a bus: csp and pp of CiA 402
 #include "stiction/drive/servo_drive.hpp"              // states, supervision, homing, stops around the cascade
 #include "stiction/drive/ticker.hpp"                   // fast and slow ticks
+#include "stiction/motion/cam_motion.hpp"              // an axis that follows a master along cams and gears
 #include "stiction/motion/cam_table.hpp"               // an electronic cam as polynomials
 #include "stiction/motion/endless_phase.hpp"           // whole turns and the exact rest of an endless axis
+#include "stiction/motion/master.hpp"                  // a virtual master
+#include "stiction/motion/master_estimator.hpp"        // speed and acceleration of a measured one
 #include "stiction/motion/position_profile.hpp"        // moves with limited jerk
 #include "stiction/motion/set_point_interpolator.hpp"  // from targets each cycle to a set-point each tick
 #include "stiction/number/crc.hpp"                     // checksums of parameter blocks

@@ -17,6 +17,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 
 #include "stiction/number/crc.hpp"
 
@@ -119,14 +120,13 @@ class CamTable {
 
   constexpr Segment segment(std::uint32_t k) const {
     const std::size_t at = header_size + segment_size * k;
-    Segment s;
-    s.start = static_cast<std::uint32_t>(number(bytes_, at, 4));
-    s.reciprocal = static_cast<std::uint32_t>(number(bytes_, at + 4, 4));
-    s.c0 = static_cast<std::int64_t>(number(bytes_, at + 8, 8));
-    for (std::size_t n = 0; n < 5; ++n) s.c[n] = static_cast<std::int32_t>(number(bytes_, at + 16 + 4 * n, 4));
-    s.down = bytes_[at + 36];
-    s.shift = bytes_[at + 37];
-    return s;
+    const auto c = [this, at](std::size_t n) { return word<std::int32_t>(bytes_, at + 16 + 4 * n); };
+    return {.start = word<std::uint32_t>(bytes_, at),
+            .reciprocal = word<std::uint32_t>(bytes_, at + 4),
+            .down = bytes_[at + 36],
+            .shift = bytes_[at + 37],
+            .c0 = word<std::int64_t>(bytes_, at + 8),
+            .c = {c(0), c(1), c(2), c(3), c(4)}};
   }
 
   constexpr Track track(std::uint32_t k) const {
@@ -167,7 +167,8 @@ class CamTable {
   constexpr std::uint32_t find(std::uint32_t phase) const {
     std::uint32_t k = 0;
     for (std::uint32_t step = std::bit_floor(header_.count); step != 0; step >>= 1)
-      if (k + step < header_.count && number(bytes_, header_size + segment_size * (k + step), 4) <= phase) k += step;
+      if (k + step < header_.count && word<std::uint32_t>(bytes_, header_size + segment_size * (k + step)) <= phase)
+        k += step;
     return k;
   }
 
@@ -178,14 +179,11 @@ class CamTable {
   static constexpr Output evaluate(const Header& header, const Segment& segment, std::uint32_t phase) {
     const std::uint64_t product = std::uint64_t{phase - segment.start} * segment.reciprocal;
     const auto t = static_cast<std::uint32_t>(product >> segment.down);
-    std::int64_t y = 0, v = 0, a = 0;
-    for (int n = 4; n >= 0; --n) {
-      const std::int64_t c = std::int64_t{segment.c[n]} * (1 << extra_bits);
-      y = high(y, t) + c;
-      v = (n < 4 ? high(v, t) : 0) + c * (n + 1);
-      if (n >= 1) a = (n < 4 ? high(a, t) : 0) + c * ((n + 1) * n);
-    }
-    y = high(y, t);
+    // Horner's scheme, written out: as a loop it takes a third more instructions on Cortex-M4.
+    const auto c = [&segment](int n) { return std::int64_t{segment.c[n - 1]} * (1 << extra_bits); };
+    const std::int64_t y = high(high(high(high(high(c(5), t) + c(4), t) + c(3), t) + c(2), t) + c(1), t);
+    const std::int64_t v = high(high(high(high(c(5) * 5, t) + c(4) * 4, t) + c(3) * 3, t) + c(2) * 2, t) + c(1);
+    const std::int64_t a = high(high(high(c(5) * 20, t) + c(4) * 12, t) + c(3) * 6, t) + c(2) * 2;
     const std::int64_t speed = high(v, segment.reciprocal);
     const std::int64_t acceleration = high(high(a, segment.reciprocal), segment.reciprocal);
     return {segment.c0 + rounded(y, segment.shift), rounded(speed, speed_shift(header, segment)),
@@ -208,6 +206,15 @@ class CamTable {
   static constexpr std::uint64_t number(std::span<const std::uint8_t> bytes, std::size_t at, std::size_t size) {
     std::uint64_t value = 0;
     for (std::size_t k = size; k-- > 0;) value = value << 8 | bytes[at + k];
+    return value;
+  }
+  // The same of 4 and 8, for what is read in each tick: a load, where the machine's order is that of the table.
+  template <class Word>
+  static constexpr Word word(std::span<const std::uint8_t> bytes, std::size_t at) {
+    if (std::endian::native != std::endian::little || std::is_constant_evaluated())
+      return static_cast<Word>(number(bytes, at, sizeof(Word)));
+    Word value{};
+    __builtin_memcpy(&value, bytes.data() + at, sizeof(Word));
     return value;
   }
 

@@ -1,0 +1,226 @@
+// What carries a motion over to a different one without a jump: the deviation between both, as a polynomial of fifth
+// degree that begins with its position, speed and acceleration and ends with none of them (quintic Hermite segment, L.
+// Biagiotti, C. Melchiorri, "Trajectory Planning for Automatic Machines and Robots", 2008, 2.1.7). With s from 0 to 1
+// and w = 1 - s,
+//   p   = w^3 (d + (V + 3 d) s + (A/2 + 3 V + 6 d) s^2)
+//   p'  = w^2 (V + (A + 2 V) s - 5 (A/2 + 3 V + 6 d) s^2)
+//   p'' = w   (A - (8 A + 36 V + 60 d) s + (10 A + 60 V + 120 d) s^2)
+// where V and A are speed and acceleration over the length of the bridge. Factors of w make the end exactly zero.
+//
+// A bridge runs over ticks, whatever the master does, or over a distance of the master, in which it goes back when the
+// master does.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+
+#include "stiction/motion/cam_peaks.hpp"
+#include "stiction/motion/motion_point.hpp"
+#include "stiction/number/product.hpp"
+
+namespace stiction {
+
+// A length and its reciprocal, so that a share of it takes no division.
+struct Span {
+  static constexpr int share_bits = 62;
+  static constexpr std::int64_t longest = std::int64_t{1} << 61;
+
+  std::int64_t length = 1;
+  std::int64_t reciprocal = std::int64_t{1} << 62;  // 2^(62 + bits) / length, from 2^61
+  std::int8_t bits = 0;                             // of the length, less one
+
+  // The span of `length`, 1 to 2^61: ticks, or 2^-40 cycles of the master. 62 steps of a division bit by bit.
+  static constexpr Span of(std::int64_t length) {
+    const auto whole = static_cast<std::uint64_t>(length < 1 ? 1 : length > longest ? longest : length);
+    Span span;
+    span.length = static_cast<std::int64_t>(whole);
+    span.bits = static_cast<std::int8_t>(std::bit_width(whole) - 1);
+    std::uint64_t rest = std::uint64_t{1} << span.bits, quotient = 0;
+    for (int bit = 0; bit <= share_bits; ++bit) {
+      const bool set = rest >= whole;
+      if (set) rest -= whole;
+      quotient = quotient << 1 | static_cast<std::uint64_t>(set);
+      rest <<= 1;
+    }
+    span.reciprocal = static_cast<std::int64_t>(quotient);
+    return span;
+  }
+
+  // `part` / length in 2^-62; `part`: 0 to the length.
+  constexpr std::int64_t share(std::int64_t part) const { return product_shifted(part, reciprocal, bits); }
+
+  // `x` * 2^up / length. `up`: up to 62.
+  constexpr std::int64_t divide(std::int64_t x, int up) const {
+    return product_shifted(x, reciprocal, share_bits + bits - up);
+  }
+};
+
+class Bridge {
+ public:
+  // What a bridge runs over: ticks, or 2^-40 cycles, so that its slopes are those of a MotionPoint or 2^-40 of the
+  // slave's unit for each cycle and for its square.
+  enum class Over : std::uint8_t { ticks, distance };
+
+  // A bridge from the deviation `from`, which is over after `span`, `over` what it says.
+  constexpr void start(const Span& span, const MotionPoint& from, Over over) {
+    span_ = span;
+    over_ = over;
+    gone_ = 0;
+    active_ = true;
+    const int up = over == Over::ticks ? MotionPoint::tick_bits : MotionPoint::position_bits;
+    const std::int64_t d = from.position, v = from.velocity, a = from.acceleration;
+    const std::int64_t length = span.length;
+    const std::int64_t slope = product_shifted(a, length, up);                // A, as a speed
+    const std::int64_t of_speed = product_shifted(v, length, up);             // V, as a way
+    const std::int64_t of_acceleration = product_shifted(slope, length, up);  // A, as a way
+    const std::int64_t d_speed = span.divide(d, up), d_acceleration = span.divide(d_speed, up);
+    const std::int64_t v_acceleration = span.divide(v, up);
+    p_[0] = d;
+    p_[1] = of_speed + 3 * d;
+    p_[2] = of_acceleration / 2 + 3 * of_speed + 6 * d;
+    v_[0] = v;
+    v_[1] = slope + 2 * v;
+    v_[2] = -5 * (slope / 2 + 3 * v + 6 * d_speed);
+    a_[0] = a;
+    a_[1] = -(8 * a + 36 * v_acceleration + 60 * d_acceleration);
+    a_[2] = 10 * a + 60 * v_acceleration + 120 * d_acceleration;
+  }
+
+  // A bridge of speed alone, over ticks: the way that it takes is what it makes it. Returns the deviation of the
+  // position at its begin, with which the polynomial is one of fourth degree. `span`: in ticks; `v`, `a`: deviations of
+  // speed and acceleration.
+  constexpr std::int64_t start_speed(const Span& span, std::int64_t v, std::int64_t a) {
+    const std::int64_t slope = product_shifted(a, span.length, MotionPoint::tick_bits);
+    // -V/2 - A/12
+    const std::int64_t way = product_shifted(6 * v + slope, span.length, MotionPoint::tick_bits);
+    const std::int64_t d = -product_shifted(way, 0x5555555555555555, 66);
+    start(span, {d, v, a}, Over::ticks);
+    return d;
+  }
+
+  // Goes on by a tick. Over at its end.
+  constexpr void tick() { go_to(gone_ + 1); }
+  // Goes to `gone` of its length, in units of it, from 0 on.
+  constexpr void go_to(std::int64_t gone) {
+    gone_ = gone;
+    if (gone_ >= span_.length) active_ = false;
+  }
+  constexpr void clear() { active_ = false; }
+
+  constexpr bool active() const { return active_; }
+  constexpr Over over() const { return over_; }
+  constexpr std::int64_t gone() const { return gone_; }
+  constexpr std::int64_t length() const { return span_.length; }
+
+  // The deviation where it is.
+  constexpr MotionPoint point() const {
+    if (!active_) return {};
+    const std::int64_t w = span_.share(span_.length - gone_), s = (std::int64_t{1} << Span::share_bits) - w;
+    const auto w31 = static_cast<std::uint32_t>(w >> 31), s31 = static_cast<std::uint32_t>(s >> 31);
+    const auto fine = [](std::int64_t x, std::int64_t y) { return product<Span::share_bits>(x, y); };
+    MotionPoint out;
+    out.position = fine(w, fine(w, fine(w, p_[0] + fine(s, p_[1] + fine(s, p_[2])))));
+    out.velocity = of(w31, of(w31, v_[0] + of(s31, v_[1] + of(s31, v_[2]))));
+    out.acceleration = of(w31, a_[0] + of(s31, a_[1] + of(s31, a_[2])));
+    return out;
+  }
+
+  // Whether a bridge of `ticks` from the deviation `from` keeps within `room`. Its parts are bounded each by itself:
+  // the largest |p'|, |p''|, |p'''| are 15/8, 5.7735, 60 of a position, 1, 3.9403, 36 of a speed, and 0.0678, 1, 9 of
+  // an acceleration.
+  static constexpr bool fits(const MotionPoint& from, std::int64_t ticks, const MotionLimits& room) {
+    const std::int64_t d = bounded(from.position), v = bounded(from.velocity), a = bounded(from.acceleration);
+    const auto times = [ticks](std::int64_t x, int down) { return product_shifted(x, ticks, down); };
+    const std::int64_t of_a = times(a, 12);  // as a speed
+    const std::int64_t speed_left = room.velocity - v - product_shifted(of_a, 1112, 14);
+    const std::int64_t change_left = room.acceleration - a;
+    if (speed_left < 0 || change_left < 0) return false;
+    return no_more(product_shifted(d, 7680, 0), 0, 0, times(speed_left, 0)) &&
+           no_more(product_shifted(d, 23649, 0), product_shifted(times(v, 0), 4035, 10), 0,
+                   times(times(change_left, 12), 0)) &&
+           no_more(product_shifted(d, 60 << 12, 0), product_shifted(times(v, 0), 36, 0),
+                   product_shifted(times(of_a, 0), 9, 0), times(times(times(room.jerk, 12), 12), 0));
+  }
+
+  // The same of a bridge of speed of `ticks` within `room`, from the speed `v` and the acceleration `a`: the largest
+  // deviations of speed, acceleration and jerk are 1, 3/2, 6 of a speed, and 4/27, 1, 4 of an acceleration.
+  static constexpr bool fits_speed(std::int64_t v, std::int64_t a, std::int64_t ticks, const MotionLimits& room) {
+    const std::int64_t speed = bounded(v), change = bounded(a), change_left = room.acceleration - change;
+    const std::int64_t of_a = product_shifted(change, ticks, MotionPoint::tick_bits);
+    const std::int64_t steps = product_shifted(room.jerk, ticks, MotionPoint::tick_bits);
+    return change_left >= 0 && speed <= room.velocity - product_shifted(of_a, 2428, 14) &&
+           no_more(product_shifted(speed, 6144, 0), 0, 0, product_shifted(change_left, ticks, 0)) &&
+           no_more(product_shifted(speed, 6 << 12, 0), product_shifted(change, 4 * ticks, 0), 0,
+                   product_shifted(steps, ticks, 0));
+  }
+
+  // Bounds of the derivatives of a bridge from the deviation `from` over the distance of `span`, by the same parts.
+  static constexpr CamPeaks peaks(const MotionPoint& from, const Span& span) {
+    constexpr int up = MotionPoint::position_bits;
+    const std::int64_t d = bounded(from.position), v = bounded(from.velocity), a = bounded(from.acceleration);
+    const std::int64_t d1 = span.divide(d, up) + 1, d2 = span.divide(d1, up) + 1, d3 = span.divide(d2, up) + 1;
+    const std::int64_t v1 = span.divide(v, up) + 1, v2 = span.divide(v1, up) + 1, a1 = span.divide(a, up) + 1;
+    return {sum(product_shifted(d1, 15, 3), v, product_shifted(product_shifted(a, span.length, up), 1112, 14)),
+            sum(product_shifted(d2, 23649, 12), product_shifted(v1, 4035, 10), a),
+            sum(product_shifted(d3, 60, 0), product_shifted(v2, 36, 0), product_shifted(a1, 9, 0))};
+  }
+
+ private:
+  static constexpr std::int64_t sum(std::int64_t a, std::int64_t b, std::int64_t c) {
+    constexpr std::int64_t most = std::int64_t{1} << 60;
+    const auto held = [](std::int64_t x) { return x < most ? x : most; };
+    return held(a) + held(b) + held(c) + 3;
+  }
+  // x * share / 2^31, rounded down; share: up to 2^31.
+  static constexpr std::int64_t of(std::uint32_t share, std::int64_t x) {
+    const std::int64_t upper = (x >> 32) * std::int64_t{share};
+    const std::uint64_t lower = std::uint64_t{static_cast<std::uint32_t>(x)} * share;
+    return upper * 2 + static_cast<std::int64_t>(lower >> 31);
+  }
+  static constexpr std::int64_t bounded(std::int64_t x) { return x < 0 ? (x == INT64_MIN ? INT64_MAX : -x) : x; }
+  static constexpr bool no_more(std::int64_t a, std::int64_t b, std::int64_t c, std::int64_t limit) {
+    constexpr std::int64_t most = std::int64_t{1} << 61;
+    return a < most && b < most && c < most && a + b + c <= limit;
+  }
+
+  std::int64_t p_[3] = {}, v_[3] = {}, a_[3] = {};
+  std::int64_t gone_ = 0;
+  Span span_{};
+  bool active_ = false;
+  Over over_ = Over::ticks;
+};
+
+// How long a change of speed takes that keeps an acceleration A and a jerk J from any motion within them. The bridge of
+// speed has the acceleration w ((1 - 3 s) a - 6 s v / T), which is at most A for |a| <= A and |v| / T <= 4 A / 9, and
+// a jerk of up to (4 |a| + 6 |v| / T) / T, at most J then for T >= 20 A / (3 J).
+struct SpeedRampRule {
+  Span acceleration{};         // whose reciprocal is taken
+  std::int64_t shortest = 16;  // ticks
+
+  // Of `limits`; 64 steps of a division. The longest is 2^40 ticks.
+  static constexpr SpeedRampRule of(const MotionLimits& limits) {
+    SpeedRampRule rule;
+    rule.acceleration = Span::of(limits.acceleration);
+    const auto ticks = Span::of(limits.jerk).divide(limits.acceleration, MotionPoint::tick_bits);
+    const std::int64_t bounded_ticks = ticks < (std::int64_t{1} << 40) ? ticks : std::int64_t{1} << 40;
+    const std::int64_t needed = (bounded_ticks + 1) * 7;  // from 20 / 3 on
+    rule.shortest = needed > 16 ? needed : 16;
+    return rule;
+  }
+
+  // Ticks for a change of speed by `v`.
+  constexpr std::int64_t ticks(std::int64_t v) const {
+    const std::int64_t change = v < 0 ? -v : v;
+    const std::int64_t needed = acceleration.divide(change / 4 + 1, MotionPoint::tick_bits) * 9 + 9;
+    return needed > shortest ? needed : shortest;
+  }
+};
+
+// The lengths that are tried one after the other, one each tick: 4, 5, 6, 7 ticks, and these doubled up to 18 times.
+struct BridgeLengths {
+  static constexpr int count = 76;
+  // `k`: 0 to count - 1.
+  static constexpr std::int64_t ticks(int k) { return std::int64_t{4 + k % 4} << (k / 4); }
+};
+
+}  // namespace stiction

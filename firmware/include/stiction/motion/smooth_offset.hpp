@@ -1,0 +1,76 @@
+// An offset that goes to each new value with limited velocity, acceleration and jerk, of a motion that runs on below
+// it: the phase of a master as a cam sees it, that of a slave behind a gear (PLCopen: MC_PhasingRelative), or a move
+// that is superposed (MC_MoveSuperimposed). A new value takes the place of the one before, at any time.
+//
+// The length of a bridge is the first that keeps the limits; one is tried each tick, so that the work of a tick is
+// fixed.
+#pragma once
+
+#include <cstdint>
+
+#include "stiction/motion/bridge.hpp"
+#include "stiction/motion/motion_point.hpp"
+
+namespace stiction {
+
+class SmoothOffset {
+ public:
+  // `limits`: of its motion; they must stay as long as it does.
+  explicit constexpr SmoothOffset(const MotionLimits& limits) : limits_(&limits) {}
+
+  // At rest at `value`, 2^-40 units.
+  constexpr void start(std::int64_t value) {
+    value_ = target_ = value;
+    bridge_.clear();
+    tried_ = none;
+    refused_ = false;
+  }
+
+  // Goes to `target`, 2^-40 units, from where it is.
+  constexpr void go(std::int64_t target) {
+    target_ = target;
+    tried_ = 0;
+    refused_ = false;
+  }
+
+  // The offset of the coming tick.
+  constexpr MotionPoint step() {
+    bridge_.tick();
+    const MotionPoint now = point();
+    if (tried_ == none) return now;
+    const std::int64_t ticks = BridgeLengths::ticks(tried_);
+    const MotionPoint from{now.position - target_, now.velocity, now.acceleration};
+    if (Bridge::fits(from, ticks, *limits_)) {
+      bridge_.start(Span::of(ticks), from, Bridge::Over::ticks);
+      value_ = target_;
+      tried_ = none;
+    } else if (++tried_ == BridgeLengths::count) {
+      // A bridge that still runs may be what leaves no room.
+      tried_ = bridge_.active() ? std::int8_t{0} : none;
+      refused_ = !bridge_.active();
+    }
+    return now;
+  }
+
+  constexpr MotionPoint point() const {
+    const MotionPoint deviation = bridge_.point();
+    return {value_ + deviation.position, deviation.velocity, deviation.acceleration};
+  }
+
+  // Whether it is on its way, or about to be.
+  constexpr bool busy() const { return bridge_.active() || tried_ != none; }
+  // Whether the last target was one that no length reaches within the limits. The offset then stays with the one
+  // before.
+  constexpr bool refused() const { return refused_; }
+
+ private:
+  static constexpr std::int8_t none = -1;
+
+  const MotionLimits* limits_;
+  std::int64_t value_ = 0, target_ = 0;  // 2^-40 units
+  Bridge bridge_{};
+  std::int8_t tried_ = none;  // number of the next length
+  bool refused_ = false;
+};
+
+}  // namespace stiction

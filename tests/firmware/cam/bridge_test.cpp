@@ -1,0 +1,179 @@
+// Bridges against the quintic through their ends in double precision, and their bounds against its samples.
+#include "stiction/motion/bridge.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "tests/firmware/cam/cam_bench.hpp"
+#include "tests/firmware/number/exact.hpp"
+
+namespace stiction {
+namespace {
+
+using test::Int128;
+
+TEST(Product, IsExactAndRoundedToNearest) {
+  std::mt19937_64 random(3);
+  for (int k = 0; k < 200'000; ++k) {
+    const auto a = static_cast<std::int64_t>(random()) >> (random() % 64);
+    const auto b = static_cast<std::int64_t>(random()) >> (random() % 64);
+    const int shift = static_cast<int>(random() % 127);
+    const Int128 exact = Int128{a} * b, size = exact < 0 ? -exact : exact;
+    const Int128 rounded = shift == 0 ? size : (size + (Int128{1} << (shift - 1))) >> shift;
+    const Int128 held = rounded > INT64_MAX ? Int128{INT64_MAX} : rounded;
+    ASSERT_EQ(product_shifted(a, b, shift), static_cast<std::int64_t>(exact < 0 ? -held : held));
+    const auto word = static_cast<std::int32_t>(b);
+    const Int128 of_word = Int128{a >> 2} * word;
+    ASSERT_EQ(product_by_word<36>(a >> 2, word), static_cast<std::int64_t>(of_word >> 36));
+  }
+  EXPECT_EQ(product_shifted(INT64_MIN, INT64_MIN, 0), INT64_MAX);
+  EXPECT_EQ(product_shifted(INT64_MIN, 1, 0), -INT64_MAX);
+  EXPECT_EQ(product_shifted(INT64_MIN, INT64_MIN, 127), 1);
+}
+
+TEST(Span, DividesByItsLength) {
+  std::mt19937_64 random(5);
+  for (int k = 0; k < 20'000; ++k) {
+    const std::int64_t length = 1 + static_cast<std::int64_t>(random() >> (3 + random() % 60));
+    const Span span = Span::of(length);
+    EXPECT_EQ(span.length, length);
+    const auto part = static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(length));
+    EXPECT_NEAR(static_cast<double>(span.share(part)), static_cast<double>(part) / static_cast<double>(length) * 0x1p62,
+                0x1p11);
+    EXPECT_EQ(span.share(0), 0);
+    const auto x = static_cast<std::int64_t>(random() >> 30);
+    EXPECT_NEAR(static_cast<double>(span.divide(x, 12)), static_cast<double>(x) * 4096 / static_cast<double>(length),
+                1.0);
+  }
+  EXPECT_EQ(Span::of(0).length, 1);
+  EXPECT_EQ(Span::of(INT64_MAX).length, Span::longest);
+}
+
+// The quintic by its textbook equation, over time in s.
+struct Quintic {
+  Quintic(double d, double v, double a, double seconds) : t_(seconds), c_{d, v, a / 2} {
+    const double v1 = v * seconds, a1 = a * seconds * seconds;
+    c_[3] = (-20 * d - 12 * v1 - 3 * a1) / 2 / std::pow(seconds, 3);
+    c_[4] = (30 * d + 16 * v1 + 3 * a1) / 2 / std::pow(seconds, 4);
+    c_[5] = (-12 * d - 6 * v1 - a1) / 2 / std::pow(seconds, 5);
+  }
+  double at(double t, int order) const {
+    double sum = 0.0;
+    for (int n = 5; n >= order; --n) {
+      double factor = c_[n];
+      for (int k = 0; k < order; ++k) factor *= n - k;
+      sum = sum * t + factor;
+    }
+    return sum;
+  }
+  double largest(int order) const {
+    double most = 0.0;
+    for (int k = 0; k <= 2000; ++k) most = std::max(most, std::abs(at(t_ * k / 2000, order)));
+    return most;
+  }
+
+ private:
+  double t_, c_[6];
+};
+
+class Drawn {
+ public:
+  double between(double low, double high) {
+    return low + (high - low) * static_cast<double>(random_() >> 11) * 0x1p-53;
+  }
+
+ private:
+  std::mt19937_64 random_{7};
+};
+
+TEST(Bridge, IsTheQuinticThroughItsEnds) {
+  Drawn drawn;
+  for (int k = 0; k < 400; ++k) {
+    const auto ticks = static_cast<std::int64_t>(std::exp(drawn.between(6.0, 11.0)));
+    const double seconds = static_cast<double>(ticks) / test::rate;
+    const double d = drawn.between(-2, 2), v = drawn.between(-3, 3) / seconds,
+                 a = drawn.between(-9, 9) / seconds / seconds;
+    const Quintic truth(d, v, a, seconds);
+    Bridge bridge;
+    bridge.start(Span::of(ticks), {test::raw_position(d), test::raw_velocity(v), test::raw_acceleration(a)},
+                 Bridge::Over::ticks);
+    for (std::int64_t tick = 0; tick <= ticks; tick += 1 + ticks / 57) {
+      bridge.go_to(tick);
+      const double t = static_cast<double>(tick) / test::rate;
+      EXPECT_NEAR(test::position_of(bridge.point().position), truth.at(t, 0), 2e-11);
+      EXPECT_NEAR(test::velocity_of(bridge.point().velocity), truth.at(t, 1), 4e-8 / seconds);  // shares of 31 bits
+      EXPECT_NEAR(test::acceleration_of(bridge.point().acceleration), truth.at(t, 2), 1e-7 / seconds / seconds);
+    }
+    bridge.go_to(ticks);
+    EXPECT_FALSE(bridge.active());
+    EXPECT_EQ(bridge.point(), MotionPoint{});
+  }
+}
+
+// What fits is within the limits, and what does not fit would not be by far.
+TEST(Bridge, FitsWhereItsLargestDerivativesDo) {
+  Drawn drawn;
+  int fitting = 0, close = 0;
+  for (int k = 0; k < 3000; ++k) {
+    const auto ticks = static_cast<std::int64_t>(std::exp(drawn.between(3.0, 10.0)));
+    const double seconds = static_cast<double>(ticks) / test::rate;
+    const double d = drawn.between(-1, 1), v = drawn.between(-1, 1) / seconds,
+                 a = drawn.between(-1, 1) / seconds / seconds;
+    const Quintic truth(d, v, a, seconds);
+    const double factor = std::exp(drawn.between(-1.0, 2.0));
+    const double most[3] = {truth.largest(1) * factor, truth.largest(2) * factor, truth.largest(3) * factor};
+    const bool fits = Bridge::fits({test::raw_position(d), test::raw_velocity(v), test::raw_acceleration(a)}, ticks,
+                                   test::limits(most[0], most[1], most[2]));
+    if (fits) {
+      EXPECT_GE(factor, 0.9999);
+    }
+    fitting += fits;
+    close += fits && factor < 1.8;
+  }
+  EXPECT_GT(fitting, 500);
+  EXPECT_GT(close, 100);
+  const MotionLimits wide = test::limits(10.0, 100.0, 1000.0);
+  EXPECT_FALSE(Bridge::fits({INT64_MIN, 0, 0}, 1000, wide));
+  EXPECT_FALSE(Bridge::fits({0, INT64_MIN, 0}, 1000, wide));
+  EXPECT_FALSE(Bridge::fits({0, 0, INT64_MIN}, 1000, wide));
+  EXPECT_TRUE(Bridge::fits({}, 4, {}));
+  EXPECT_TRUE(Bridge::fits_speed(test::raw_velocity(1.0), 0, 16000, test::limits(1.01, 1.51, 6.1)));
+  EXPECT_FALSE(Bridge::fits_speed(test::raw_velocity(1.0), 0, 16000, test::limits(0.99, 1.51, 6.1)));
+  EXPECT_FALSE(Bridge::fits_speed(test::raw_velocity(1.0), 0, 16000, test::limits(1.01, 1.49, 6.1)));
+  EXPECT_FALSE(Bridge::fits_speed(test::raw_velocity(1.0), 0, 16000, test::limits(1.01, 1.51, 5.9)));
+  EXPECT_FALSE(Bridge::fits_speed(0, test::raw_acceleration(2.0), 16000, test::limits(1.01, 1.51, 60.0)));
+}
+
+TEST(Bridge, OfSpeedEndsWithItAndKeepsItsRule) {
+  Drawn drawn;
+  for (int k = 0; k < 300; ++k) {
+    const MotionLimits limits = test::limits(drawn.between(0.5, 20), drawn.between(1, 300), drawn.between(20, 20000));
+    const SpeedRampRule rule = SpeedRampRule::of(limits);
+    // From any acceleration within the limit.
+    const std::int64_t v = static_cast<std::int64_t>(drawn.between(-1, 1) * static_cast<double>(limits.velocity));
+    const std::int64_t a = static_cast<std::int64_t>(drawn.between(-1, 1) * static_cast<double>(limits.acceleration));
+    Bridge bridge;
+    const std::int64_t ticks = rule.ticks(v), d = bridge.start_speed(Span::of(ticks), v, a);
+    test::Watch watch(limits);
+    for (std::int64_t tick = 1; tick <= ticks; ++tick) {
+      bridge.tick();
+      // Its own speed may be beyond the limit, as it is a deviation.
+      MotionPoint point = bridge.point();
+      watch.see(point);
+    }
+    EXPECT_FALSE(bridge.active());
+    EXPECT_LE(watch.over_acceleration, 1e-6);
+    EXPECT_LE(watch.over_jerk, 1e-3);
+    EXPECT_LE(watch.position_jump, test::position_unit / 4);
+    const double way = test::velocity_of(v) * static_cast<double>(ticks) / test::rate / 2;
+    EXPECT_NEAR(test::position_of(d),
+                -way - test::acceleration_of(a) * std::pow(static_cast<double>(ticks) / test::rate, 2) / 12, 1e-9);
+  }
+  EXPECT_EQ(SpeedRampRule::of({1, 1, INT64_MAX}).shortest, 16);
+  EXPECT_EQ(SpeedRampRule::of({1, std::int64_t{1} << 60, 1}).shortest, ((std::int64_t{1} << 40) + 1) * 7);
+}
+
+}  // namespace
+}  // namespace stiction
