@@ -36,7 +36,8 @@ class LoopWatch {
 class LoopWatchdog {
  public:
   static constexpr std::int64_t limit_ns = 100'000'000;  // as long as the longest gap that a clock may have
-  static constexpr std::int64_t round_ns = 10'000'000;
+  // A look sees progress up to a round late, and the limit exceeded up to a round later: 110 ms in all.
+  static constexpr std::int64_t round_ns = 5'000'000;
 
   // `progress`, `cut`: see LoopWatch, the first safe beside the loop; `priority`: of SCHED_FIFO of the loop, above
   // which the thread runs where that is allowed; 0: an ordinary one. Made before the loop's thread takes a processor

@@ -37,8 +37,8 @@ std::string describe_timing(const hal::LoopTiming& timing, const hal::TimeHistog
 
 void show_timing(const hal::TickClock& clock, const hal::LoopTiming& timing, PublishedState& state) {
   state.missed_deadlines = static_cast<std::uint32_t>(clock.missed());
-  state.largest_lateness = static_cast<double>(clock.lateness().read().maximum) * 1e-9;
-  state.largest_work = static_cast<double>(timing.work().read().maximum) * 1e-9;
+  state.largest_lateness = static_cast<double>(clock.lateness().maximum()) * 1e-9;
+  state.largest_work = static_cast<double>(timing.work().maximum()) * 1e-9;
 }
 
 namespace {

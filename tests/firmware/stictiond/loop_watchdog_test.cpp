@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <span>
 #include <string>
@@ -37,6 +38,21 @@ TEST(LoopWatch, CutsThePowerOfALoopThatStandsStillForLongerThanTheLimit) {
   watch.look(99, 2100 * watch_ms);
   EXPECT_TRUE(cut.is_cut());
   EXPECT_EQ(stage.cuts, 1);
+}
+
+// docs/safety.md: 110 ms from the last tick on, whenever that is between two looks; a stall within the limit is borne.
+TEST(LoopWatch, CutsWithin110MillisecondsOfTheLastTickAndNotBeforeTheLimit) {
+  constexpr std::int64_t limit_ns = drive::LoopWatchdog::limit_ns, round_ns = drive::LoopWatchdog::round_ns;
+  for (std::int64_t last_tick_ns = 1000 * watch_ms; last_tick_ns < 1020 * watch_ms; last_tick_ns += watch_ms / 4) {
+    hal::PowerCut cut;
+    drive::LoopWatch watch(limit_ns, cut);
+    std::int64_t now_ns = 0;
+    for (; !cut.is_cut() && now_ns < 2000 * watch_ms; now_ns += round_ns)
+      watch.look(static_cast<std::uint64_t>(1 + std::min(now_ns, last_tick_ns)), now_ns);
+    const std::int64_t taken_ns = now_ns - round_ns - last_tick_ns;
+    EXPECT_GE(taken_ns, limit_ns) << last_tick_ns;
+    EXPECT_LE(taken_ns, 110 * watch_ms) << last_tick_ns;
+  }
 }
 
 TEST(PowerCut, ReachesEveryBackendThatIsEnteredAndNoneThatIsGone) {
