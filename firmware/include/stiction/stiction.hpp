@@ -11,6 +11,7 @@
 #include "stiction/drive/servo_drive.hpp"              // states, supervision, homing, stops around the cascade
 #include "stiction/drive/ticker.hpp"                   // fast and slow ticks
 #include "stiction/motion/cam_motion.hpp"              // an axis that follows a master along cams and gears
+#include "stiction/motion/cam_switch.hpp"              // outputs that switch at angles of a master
 #include "stiction/motion/cam_table.hpp"               // an electronic cam as polynomials
 #include "stiction/motion/endless_phase.hpp"           // whole turns and the exact rest of an endless axis
 #include "stiction/motion/master.hpp"                  // a virtual master

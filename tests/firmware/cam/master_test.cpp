@@ -178,7 +178,7 @@ TEST(GearRatio, TakesAnEndlessSlaveThrough1e9TurnsExactly) {
     off += slave.phase != 0 || slave.cycles != 355 * k;
   }
   EXPECT_EQ(gear.position({113 * 3'000'000, 0}).cycles, 1'065'000'000);
-  test::figure("cam gear: 1.07 * 10^9 turns of an endless slave, drift", fmt::format("{} turns off (bound 0)", off));
+  test::figure("cam gear: 1.07e9 turns of an endless slave, drift", fmt::format("{} turns off (bound 0)", off));
   EXPECT_EQ(off, 0);
 }
 
