@@ -40,6 +40,10 @@ class AxisPlant {
   // Force from outside on the carriage (N, positive in +x), held until changed.
   void set_external_force(double force) { state_->external_force = force; }
 
+  // The brake that holds the axis, where it has one, held until changed; released at the start. Whether it is
+  // `released`.
+  void set_brake(bool released);
+
   bool coupled() const;  // whether the other axis' acceleration acts on the carriage
   // Of the other axis, m/s^2, held until changed.
   void set_other_acceleration(double acceleration);
