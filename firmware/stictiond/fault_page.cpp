@@ -10,7 +10,7 @@
 namespace stiction::drive {
 namespace {
 
-constexpr std::array<std::string_view, 4> detectors{"axis", "supervision", "bus", "programme"};
+constexpr std::array<std::string_view, 5> detectors{"axis", "supervision", "bus", "programme", "protection"};
 constexpr std::array<std::string_view, 3> reactions{"power off in the same tick", "controlled stop, then power off",
                                                     "nothing is enabled"};
 
