@@ -12,8 +12,15 @@ namespace stiction::drive {
 namespace {
 
 constexpr std::array<const char*, 3> access_names{"const", "ro", "rw"};
-constexpr std::array<const char*, 6> unit_names{
-    "–", "increments", "1000 increments/s", "1000 increments/s²", "thousandths of the current limit", "ms"};
+constexpr std::array<const char*, 9> unit_names{"–",
+                                                "increments",
+                                                "1000 increments/s",
+                                                "1000 increments/s²",
+                                                "thousandths of the current limit",
+                                                "ms",
+                                                "thousandths",
+                                                "tenths of the register's unit",
+                                                "hundredths of the register's unit"};
 
 std::string meaning_of(const Object& object) {
   switch (object.source) {
@@ -39,7 +46,8 @@ std::string meaning_of(const Object& object) {
   }
   switch (object.index) {
     case 0x1001:
-      return "bit 0: a fault; bit 1: current, 2: voltage, 4: communication, 5: of the profile, 7: of the manufacturer";
+      return "bit 0: a fault; bit 1: current, 2: voltage, 3: temperature, 4: communication, 5: of the profile, 7: of "
+             "the manufacturer";
     case 0x1003:
       return object.sub == 0 ? "errors since the start or since 0 was written, at most 8"
                              : "bits 0 to 15: error code, bits 16 to 31: number of the fault; 1 is the newest";

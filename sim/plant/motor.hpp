@@ -67,7 +67,7 @@ class SynchronousMotor {
  public:
   static constexpr std::size_t phases = 3;
 
-  // `offset`: rad, electrical angle at position zero.
+  // `motor`: windings and constants; `step`: of the plant, s; `offset`: rad, electrical angle at position zero.
   SynchronousMotor(const machine::MotorParameters& motor, double step, double offset = 0.0)
       : winding_(motor.phase_resistance / motor.count, (motor.phase_inductance - motor.mutual_inductance) / motor.count,
                  step),

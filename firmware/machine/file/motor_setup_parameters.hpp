@@ -85,7 +85,7 @@ inline constexpr std::array<Choice<bool>, 2> torque_off_wirings{{
 
 template <>
 struct Table<ProtectionSetup> : EmptyTable<ProtectionSetup> {
-  static constexpr std::string_view text = "limits of motor and power stage; what is left out is not watched";
+  static constexpr std::string_view text = "limits of motor and power stage; a limit that is left out is not watched";
   static constexpr std::tuple choices{ChoiceParameter<ProtectionSetup, bool>{
       "torque_off", &ProtectionSetup::torque_off, torque_off_wirings, false, "safe torque off as an input"}};
   static constexpr std::array<Parameter<ProtectionSetup>, 8> parameters{{
@@ -94,7 +94,7 @@ struct Table<ProtectionSetup> : EmptyTable<ProtectionSetup> {
        positive(),
        &ProtectionSetup::motor_current,
        {},
-       "current that the motor bears for ever, amplitude, for its thermal model"},
+       "continuous current of the motor, amplitude, for its thermal model"},
       {"motor_time_constant",
        "s",
        {1e-1, 1e5},
@@ -106,7 +106,7 @@ struct Table<ProtectionSetup> : EmptyTable<ProtectionSetup> {
        positive(),
        &ProtectionSetup::stage_current,
        {},
-       "current that the power stage bears for ever, amplitude; at standstill a phase may carry less"},
+       "continuous current of the power stage, amplitude; at standstill a phase may carry less"},
       {"stage_time_constant",
        "s",
        {1e-1, 1e5},

@@ -40,10 +40,10 @@ class Protection {
   // Whether a channel of safe torque off is open.
   constexpr bool torque_off() const { return torque_off_; }
   constexpr int motor_percent() const { return motor_.percent(); }
-  // Of the hottest phase.
-  constexpr int stage_percent() const {
-    int most = 0;
-    for (const auto& phase : stage_) most = phase.percent() > most ? phase.percent() : most;
+  // Of the hottest phase, as ThermalModel::state().
+  constexpr std::int64_t stage_state() const {
+    std::int64_t most = 0;
+    for (const auto& phase : stage_) most = phase.state() > most ? phase.state() : most;
     return most;
   }
   constexpr const ThermalModel& motor() const { return motor_; }

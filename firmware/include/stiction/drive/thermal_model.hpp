@@ -1,6 +1,6 @@
 // I2t: the heating of a body of one time constant by the square of a current, u' = (i^2 / i_n^2 - u) / tau, where u = 1
-// is what the continuous current i_n makes of it in the long run (IEC 60255-149, thermal electrical relays, 4.3.2; the
-// step is that of the explicit Euler method, whose error at a tick of a thousandth of tau is below one in a thousand).
+// is the state to which the continuous current i_n leads (as in thermal electrical relays, IEC 60255-149). A step is
+// exact for a square that is held over it.
 // Integers: u with 40 fraction bits.
 #pragma once
 
