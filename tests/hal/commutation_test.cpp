@@ -169,6 +169,31 @@ TEST_P(CommutationOf, ARightStoredOffsetIsTakenAsItIs) {
   }
 }
 
+// Trusted without a check, an offset of the wrong sign is left to the watches over force and following error.
+TEST_P(CommutationOf, AnUncheckedOffsetOfTheWrongSignIsSeenInItsFirstMotion) {
+  const auto& motor = GetParam();
+  double farthest = 0.0;
+  for (const int wrong : {120, 150, 180, 210, 240}) {
+    auto settings = with_offset(motor, 77.0, "stored");
+    for (const char* axis : motor.axes) {
+      settings.push_back(fmt::format("drive.axis.{}.commutation.offset={} deg", axis, 77.0 + wrong));
+      settings.push_back(fmt::format("drive.axis.{}.commutation.check=none", axis));
+    }
+    MotorBench bench(motor.machine, settings);
+    ASSERT_TRUE(bench.enable()) << wrong;
+    std::vector<double> start;
+    for (std::size_t i = 0; i < motor.axes.size(); ++i) start.push_back(bench.x(i));
+    way_against(bench, 0.5, 1600);
+    bool seen = true;
+    for (std::size_t i = 0; i < motor.axes.size(); ++i) {
+      seen &= !bench.loop.drive(i).powered();
+      farthest = std::max(farthest, std::abs(bench.x(i) - start[i]) / bench.machine.axes[i].motor.pole_pair_pitch);
+    }
+    EXPECT_TRUE(seen) << wrong << " " << name_of(bench.loop.fault(0));
+  }
+  fmt::print("{}: {:.3f} of a pole pair moved within 0.1 s\n", motor.machine, farthest);
+}
+
 TEST_P(CommutationOf, AJammedAxisIsAFaultAndNothingMoves) {
   const auto& motor = GetParam();
   auto settings = with_offset(motor, 123.0, "test");
@@ -288,6 +313,23 @@ TEST(Commutation, IsTestedOnceAndAnEnablingThatIsBrokenOffBeginsAgain) {
   bench.want_on = false;
   bench.run(3200);
   EXPECT_TRUE(bench.enable(2000));
+}
+
+// Behind a fault by which the encoder may have lost its place the angle is tested again.
+TEST(Commutation, IsLostWithTheEncodersPlace) {
+  MotorBench bench(screw.machine, with_offset(screw, 300.0, "test"));
+  ASSERT_TRUE(bench.enable());
+  for (const Fault fault : {Fault::over_speed, Fault::encoder_jump}) {
+    bench.loop.trip(0, fault);
+    bench.run(2);
+    EXPECT_EQ(bench.loop.fault(0), fault);
+    bench.want_on = false;
+    bench.run(200);
+    ASSERT_TRUE(bench.reset());
+    EXPECT_EQ(bench.loop.drive(0).commutation().known(), !loses_reference(fault));
+    ASSERT_TRUE(bench.enable());
+    EXPECT_LE(std::abs(bench.offset_error(0)), 2.0);
+  }
 }
 
 // Nothing but the true offset of the plant differs, and every bit of the drive's is the same.

@@ -117,6 +117,12 @@ class CommutationSearch {
     if (phase_ == Phase::failed) phase_ = Phase::unknown;
   }
 
+  // The encoder may have lost its place, and the angle with it: the next enabling begins at the beginning. A stored
+  // offset that is trusted stays.
+  constexpr void lose() {
+    if (used() && (config_.method != CommutationMethod::stored || config_.checked)) phase_ = Phase::unknown;
+  }
+
   // Each tick, powered or not: what index and Hall signals say beside the offset in force. `measured`: position;
   // `inputs`: of this tick.
   constexpr void watch(Position measured, const DigitalInputs<S>& inputs) {

@@ -310,6 +310,7 @@ class ServoDrive {
   constexpr void forget(const Feedback<S>& feedback, Axis<S>& axis) {
     const bool lost = loses_reference(fault_) || loses_reference(following_);
     if (lost && config_.homing.method != HomingMethod::none) referenced_ = false;
+    if (lost) commutation_.lose();
     fault_ = following_ = Fault::none;
     commutation_.forget();
     brake_test_.forget();

@@ -9,7 +9,7 @@
 
 namespace stiction {
 
-// Angle of (x, y) from the first axis, within 2^-24 turns for vectors longer than 2^20; the zero vector has angle zero.
+// Angle of (x, y) from the first axis, within 2^-18 turns for vectors longer than 2^21; the zero vector has angle zero.
 // `x`, `y`: |.| below 2^61.
 constexpr Turn angle_of(std::int64_t x, std::int64_t y) {
   constexpr std::array<std::uint32_t, 24> steps{// arctan(2^-k) / (2 pi) * 2^32
