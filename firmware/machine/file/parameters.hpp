@@ -336,8 +336,9 @@ template <>
 struct Table<BrakeParameters> : EmptyTable<BrakeParameters> {
   static constexpr std::string_view text = "brake that holds the axis without power; left out: none";
   static constexpr std::array<Parameter<BrakeParameters>, 2> parameters{{
+      {"stiffness", "N/m", positive(), &BrakeParameters::stiffness, 1e8,
+       "stiffness with which it holds until it slips"},
       {"holding_force", "N", positive(), &BrakeParameters::holding_force, {}, "force that it holds before it slips"},
-      {"stiffness", "N/m", positive(), &BrakeParameters::stiffness, {}, "stiffness with which it holds until then"},
   }};
 };
 
