@@ -17,7 +17,7 @@ struct CommutationSetup {
   std::optional<double> index_offset;   // rad, electrical, at the encoder's index mark
   std::optional<double> test_current;   // A; none: half of the current limit
   std::optional<double> test_response;  // m, amplitude of the vibration; none: a 4000th of a pole pair, 4 increments
-  std::optional<double> test_way;       // m; none: a fiftieth of a pole pair, at least 8 times the response
+  std::optional<double> test_way;       // m; none: a fiftieth of a pole pair, at least 16 times the response
 };
 
 struct BrakeTestSetup {
