@@ -2,7 +2,6 @@
 // that knows both the control's border and the simulation.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -28,7 +27,6 @@ class SimulatedBackend {
     for (std::size_t i = 0; i < machine.axes.size(); ++i)
       plants_.emplace_back(machine.timing, machine.axes[i], positions[i], seed + i);
     for (const auto& axis : machine.axes) supplies_.emplace_back(axis, machine.timing.fast_period);
-    commands_.resize(plants_.size());
     coupled_ = plants_.size() == 2 && (plants_[0].coupled() || plants_[1].coupled());
   }
 
@@ -55,7 +53,6 @@ class SimulatedBackend {
 
   void write(std::span<const Command<S>> command) {
     auto c = command.begin();
-    std::copy(command.begin(), command.end(), commands_.begin());
     for (auto& plant : plants_) {
       const auto& u = c->voltage;
       plant.command({machine::to_si(u[0]), machine::to_si(u[1]), machine::to_si(u[2])}, c->enable);
@@ -67,8 +64,7 @@ class SimulatedBackend {
   // are closed.
   void read_protection(std::span<ProtectionInputs<S>> inputs) {
     for (std::size_t i = 0; i < plants_.size(); ++i) {
-      const auto& u = commands_[i].voltage;
-      supplies_[i].step({machine::to_si(u[0]), machine::to_si(u[1]), machine::to_si(u[2])}, plants_[i].current());
+      supplies_[i].step(plants_[i].commanded(), plants_[i].current());
       inputs[i] = {};
       machine::convert(supplies_[i].dc_link(), inputs[i].dc_link);
       inputs[i].motor_temperature = tenths(supplies_[i].motor_temperature());
@@ -107,7 +103,6 @@ class SimulatedBackend {
   bool coupled_ = false;  // whether an axis feels the other's acceleration
   std::vector<sim::AxisPlant> plants_;
   std::vector<sim::DriveSupply> supplies_;
-  std::vector<Command<S>> commands_;
 };
 
 }  // namespace stiction::hal
