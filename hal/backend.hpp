@@ -63,4 +63,12 @@ concept BrakeBackend = Backend<B> && requires(B backend, std::size_t axis, bool 
   { backend.set_brake(axis, released) } -> std::same_as<void>;
 };
 
+// A backend that tells of power stage and motor what their protection watches. One that does not leaves all of it at
+// zero: what a machine file asks to be watched is then refused by who opens the backend.
+template <class B>
+concept ProtectionBackend = Backend<B> && requires(B backend, std::span<ProtectionInputs<typename B::Signals>> inputs) {
+  // Of every axis for this tick; once a tick.
+  { backend.read_protection(inputs) } -> std::same_as<void>;
+};
+
 }  // namespace stiction::hal

@@ -45,7 +45,12 @@ class DriveLoop {
         inputs_(drives.size()),
         set_(drives.size()) {
     drives_.reserve(drives.size());
-    for (const auto& config : drives) drives_.emplace_back(config);
+    for (const auto& config : drives) {
+      drives_.emplace_back(config);
+      protections_.emplace_back(config.protection);
+      protects_ |= config.protection.used;
+    }
+    protection_inputs_.resize(drives.size());
     start_drives();
   }
 
@@ -79,12 +84,15 @@ class DriveLoop {
   // One tick with a set-point an axis (csp, of the machine's coordinates), then waits for the next.
   void tick(std::span<const SetPoint<S>> set_points) {
     if constexpr (WiredBackend<B>) backend_.read_inputs(inputs_);
+    if constexpr (ProtectionBackend<B>)
+      if (protects_) backend_.read_protection(protection_inputs_);
     const Fault clock = watch_.step(loop_.now_ns());
     const bool stop_all = faulted();
     for (std::size_t i = 0; i < drives_.size(); ++i) {
       demands_[i].set_point = set_points[i];
       demands_[i].quick_stop = stop_all;
-      demands_[i].causes = {trips_[i], clock, backend_fault(i)};
+      demands_[i].causes = {trips_[i], clock, backend_fault(i), protection_fault(i)};
+      demands_[i].torque_off = protections_[i].torque_off();
       set_[i] = drives_[i].before(demands_[i], loop_.feedback()[i], inputs_[i], loop_.now_ns(), loop_.axes()[i]);
       note(i);
       if constexpr (BrakeBackend<B>) backend_.set_brake(i, drives_[i].brake_released());
@@ -102,6 +110,7 @@ class DriveLoop {
   DriveState state(std::size_t axis) const { return drives_[axis].state(); }
   std::uint16_t statusword(std::size_t axis) const { return drives_[axis].statusword(); }
   Fault fault(std::size_t axis) const { return drives_[axis].fault(); }
+  const Protection<S>& protection(std::size_t axis) const { return protections_[axis]; }
   const DigitalInputs<S>& inputs(std::size_t axis) const { return inputs_[axis]; }
   bool faulted() const {
     for (const auto& drive : drives_)
@@ -133,14 +142,22 @@ class DriveLoop {
                                                       std::span<const ServoDriveConfig<S>> drives) {
     std::vector<AxisConfig<S>> configs(axes.begin(), axes.end());
     SaturationCounter meant;
-    for (std::size_t i = 0; i < configs.size(); ++i)
+    for (std::size_t i = 0; i < configs.size(); ++i) {
       configs[i].following_error_fault =
           saturated_sum(configs[i].following_error_fault, drives[i].following_error, meant);
+      if (drives[i].commutation.method != CommutationMethod::encoder_zero)
+        configs[i].current_loop = CurrentLoop::three_phase_offset;
+    }
     return configs;
   }
 
   void start_drives() {
     for (std::size_t i = 0; i < drives_.size(); ++i) drives_[i].start(loop_.feedback()[i], loop_.axes()[i]);
+  }
+
+  Fault protection_fault(std::size_t axis) {
+    if (!protections_[axis].used()) return Fault::none;
+    return protections_[axis].step(loop_.feedback()[axis], protection_inputs_[axis], drives_[axis].powered());
   }
 
   Fault backend_fault(std::size_t axis) {
@@ -164,6 +181,9 @@ class DriveLoop {
   ControlLoop<B> loop_;
   TickWatch watch_;
   std::vector<ServoDrive<S>> drives_;
+  std::vector<Protection<S>> protections_;
+  std::vector<ProtectionInputs<S>> protection_inputs_;
+  bool protects_ = false;  // any of them
   std::vector<DriveDemand<S>> demands_;
   std::vector<Fault> trips_;
   std::vector<DigitalInputs<S>> inputs_;

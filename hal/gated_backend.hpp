@@ -27,6 +27,9 @@ class GatedBackend {
   void write(std::span<const Command<Signals>> command) { backend_.write(cut_.is_cut() ? off_ : command); }
   void read_inputs(std::span<DigitalInputs<Signals>> inputs) requires WiredBackend<B> { backend_.read_inputs(inputs); }
   Fault fault(std::size_t axis) requires WiredBackend<B> { return backend_.fault(axis); }
+  void read_protection(std::span<ProtectionInputs<Signals>> inputs) requires ProtectionBackend<B> {
+    backend_.read_protection(inputs);
+  }
   void set_brake(std::size_t axis, bool released) requires BrakeBackend<B> {
     backend_.set_brake(axis, released && !cut_.is_cut());
   }

@@ -98,6 +98,11 @@ class TimedBackend {
 
   Fault fault(std::size_t axis) requires WiredBackend<B> { return backend_.fault(axis); }
 
+  void read_protection(std::span<ProtectionInputs<Signals>> inputs) requires ProtectionBackend<B> {
+    backend_.read_protection(inputs);
+    timing_.lap(LoopPart::read);
+  }
+
   void set_brake(std::size_t axis, bool released) requires BrakeBackend<B> { backend_.set_brake(axis, released); }
 
  private:

@@ -59,7 +59,7 @@ constexpr std::array<StateRow<Drive>, 10> drive_rows{{
 }};
 
 using Axis = PublishedAxis;
-constexpr std::array<StateRow<Axis>, 20> axis_rows{{
+constexpr std::array<StateRow<Axis>, 28> axis_rows{{
     {0, uint16, 1, "statusword", "1", "CiA 402, 6041h", [](const Axis& a) -> double { return a.statusword; }},
     {1, int16, 1, "mode", "1", "mode of operation shown, 6061h", [](const Axis& a) -> double { return a.mode; }},
     {2, uint16, 1, "fault", "1", "number of the axis' fault; 0: none",
@@ -97,6 +97,24 @@ constexpr std::array<StateRow<Axis>, 20> axis_rows{{
      "the "
      "axis takes its place",
      [](const Axis& a) -> double { return a.owner_client; }},
+    // Of motor and power stage: 60 to 79 are theirs.
+    {60, uint16, 1, "commutation", "1",
+     "whether the electrical angle is known; 0: not yet, 1: it is tested, 2: it is known",
+     [](const Axis& a) -> double { return a.commutation; }},
+    {61, int16, 0.01, "commutation_offset", "deg", "electrical angle at the encoder's zero, in force",
+     [](const Axis& a) { return a.commutation_offset; }},
+    {62, uint16, 1e-3, "motor_load", "1", "state of the motor's thermal model; fault 82 at 1.025",
+     [](const Axis& a) { return a.motor_load; }},
+    {63, uint16, 1e-3, "stage_load", "1", "state of the power stage's thermal model, of its hottest phase; fault 83",
+     [](const Axis& a) { return a.stage_load; }},
+    {64, float32, 1, "dc_link", "V", "voltage of the DC link, where it is watched",
+     [](const Axis& a) { return a.dc_link; }},
+    {66, int16, 0.1, "motor_temperature", "degC", "temperature of the motor, where it is watched",
+     [](const Axis& a) { return a.motor_temperature; }},
+    {67, int16, 0.1, "stage_temperature", "degC", "temperature of the power stage, where it is watched",
+     [](const Axis& a) { return a.stage_temperature; }},
+    {68, uint16, 1, "torque_off", "1", "safe torque off; bit 0: channel A is open, bit 1: channel B",
+     [](const Axis& a) -> double { return (a.torque_off_a ? 1 : 0) + (a.torque_off_b ? 2 : 0); }},
 }};
 
 struct MotionRow {

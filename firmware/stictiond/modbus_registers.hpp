@@ -50,6 +50,13 @@ struct PublishedAxis {
   double profile_velocity = 0.0, target_velocity = 0.0;           // m/s
   double torque = 0.0, target_torque = 0.0, max_torque = 0.0;     // of the current limit
   double profile_acceleration = 0.0, profile_deceleration = 0.0;  // m/s^2
+  // Of motor and power stage.
+  int commutation = 0;                        // 0: the electrical angle is not known, 1: it is tested, 2: it is known
+  double commutation_offset = 0.0;            // degrees, electrical, at the encoder's zero, in force
+  double motor_load = 0.0, stage_load = 0.0;  // of the thermal models; 1: what the continuous current leads to
+  double dc_link = 0.0;                       // V
+  double motor_temperature = 0.0, stage_temperature = 0.0;  // degrees Celsius
+  bool torque_off_a = false, torque_off_b = false;          // open channels
 };
 
 // How the last request to store ended.

@@ -12,8 +12,15 @@ namespace stiction::drive {
 namespace {
 
 constexpr std::array<const char*, 3> access_names{"const", "ro", "rw"};
-constexpr std::array<const char*, 6> unit_names{
-    "–", "increments", "1000 increments/s", "1000 increments/s²", "thousandths of the current limit", "ms"};
+constexpr std::array<const char*, 9> unit_names{"–",
+                                                "increments",
+                                                "1000 increments/s",
+                                                "1000 increments/s²",
+                                                "thousandths of the current limit",
+                                                "ms",
+                                                "thousandths",
+                                                "tenths of the register's unit",
+                                                "hundredths of the register's unit"};
 
 std::string meaning_of(const Object& object) {
   switch (object.source) {
@@ -39,7 +46,8 @@ std::string meaning_of(const Object& object) {
   }
   switch (object.index) {
     case 0x1001:
-      return "bit 0: a fault; bit 1: current, 2: voltage, 4: communication, 5: of the profile, 7: of the manufacturer";
+      return "bit 0: a fault; bit 1: current, 2: voltage, 3: temperature, 4: communication, 5: of the profile, 7: of "
+             "the manufacturer";
     case 0x1003:
       return object.sub == 0 ? "errors since the start or since 0 was written, at most 8"
                              : "bits 0 to 15: error code, bits 16 to 31: number of the fault; 1 is the newest";
@@ -130,20 +138,22 @@ std::string eds_text() {
   text +=
       "SimpleBootUpMaster=0\nSimpleBootUpSlave=1\nGranularity=0\nDynamicChannelsSupported=0\nGroupMessaging=0\n"
       "NrOfRXPDO=0\nNrOfTXPDO=0\nLSS_Supported=0\n\n";
-  std::vector<std::uint16_t> mandatory, optional;
+  std::vector<std::uint16_t> mandatory, optional, manufacturer;
   for (const Object& object : object_table()) {
     if (object.sub != 0) continue;
     const bool needed = object.index == 0x1000 || object.index == 0x1001 || object.index == 0x1018;
-    (needed ? mandatory : optional).push_back(object.index);
+    const bool own = object.index >= 0x2000 && object.index < 0x6000;
+    (needed ? mandatory : own ? manufacturer : optional).push_back(object.index);
   }
   add_list(text, "MandatoryObjects", mandatory);
   add_list(text, "OptionalObjects", optional);
-  add_list(text, "ManufacturerObjects", {});
+  add_list(text, "ManufacturerObjects", manufacturer);
   for (const Object& object : object_table()) {
     const std::size_t subs = subs_of(object.index);
     if (subs > 1 && object.sub == 0) {
       const bool array = object.index == 0x1003 || object.index == 0x1010 || object.index == 0x1016 ||
-                         object.index == 0x607d || object.index == 0x6099;
+                         object.index == 0x2301 || object.index == 0x2302 || object.index == 0x607d ||
+                         object.index == 0x6099;
       text += fmt::format("[{:04X}]\nParameterName={}\nObjectType=0x{}\nSubNumber={}\n\n", object.index,
                           record_name(object.index), array ? 8 : 9, subs);
     }

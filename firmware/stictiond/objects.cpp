@@ -39,6 +39,10 @@ constexpr Object setup(std::uint16_t index, ObjectType type, const char* name,
                        double (*value)(const DriveConfiguration&, std::size_t), const char* key) {
   return {index, 0, type, ro, name, Unit::none, Source::setup, key, 0.0, value};
 }
+constexpr Object setup(std::uint16_t index, std::uint8_t sub, ObjectType type, const char* name,
+                       double (*value)(const DriveConfiguration&, std::size_t), const char* key) {
+  return {index, sub, type, ro, name, Unit::none, Source::setup, key, 0.0, value};
+}
 constexpr Object error(std::uint8_t sub) { return {0x1003, sub, unsigned32, ro, "Standard error field"}; }
 
 using C = DriveConfiguration;
@@ -74,6 +78,24 @@ constexpr auto table = std::to_array<Object>({
     cob_id(0x1200, 1, "COB-ID client to server", CobId::sdo_request),
     cob_id(0x1200, 2, "COB-ID server to client", CobId::sdo_answer),
     number(0x1f80, 0, unsigned32, "NMT startup", 0),
+    // Of motor and power stage: 2300h to 23FFh are theirs.
+    number_of_subs(0x2300, 3),
+    setup(
+        0x2300, 1, unsigned8, "Method",
+        [](const C& c, std::size_t axis) -> double {
+          return static_cast<double>(c.drives.at(axis).commutation.method);
+        },
+        "commutation.method"),
+    {0x2300, 2, unsigned16, ro, "State", Unit::none, Source::state, "commutation"},
+    {0x2300, 3, integer16, ro, "Offset", Unit::hundredth, Source::state, "commutation_offset"},
+    number_of_subs(0x2301, 2),
+    {0x2301, 1, unsigned16, ro, "Motor", Unit::thousandth, Source::state, "motor_load"},
+    {0x2301, 2, unsigned16, ro, "Power stage", Unit::thousandth, Source::state, "stage_load"},
+    number_of_subs(0x2302, 2),
+    {0x2302, 1, integer16, ro, "Motor", Unit::tenth, Source::state, "motor_temperature"},
+    {0x2302, 2, integer16, ro, "Power stage", Unit::tenth, Source::state, "stage_temperature"},
+    {0x2303, 0, unsigned16, ro, "DC link voltage", Unit::tenth, Source::state, "dc_link"},
+    {0x2304, 0, unsigned16, ro, "Safe torque off", Unit::none, Source::state, "torque_off"},
     setup(0x6007, integer16, "Abort connection option code", reaction_of, "stops.commander_lost"),
     {0x603f, 0, unsigned16, ro, "Error code", Unit::none, Source::state, "error_code"},
     {0x6040, 0, unsigned16, rw, "Controlword", Unit::none, Source::command, "controlword"},
@@ -141,13 +163,16 @@ struct RecordName {
   std::uint16_t index;
   const char* name;
 };
-constexpr std::array<RecordName, 7> record_names{{{0x1003, "Pre-defined error field"},
-                                                  {0x1010, "Store parameters"},
-                                                  {0x1016, "Consumer heartbeat time"},
-                                                  {0x1018, "Identity object"},
-                                                  {0x1200, "SDO server parameter"},
-                                                  {0x607d, "Software position limit"},
-                                                  {0x6099, "Homing speeds"}}};
+constexpr std::array<RecordName, 10> record_names{{{0x2300, "Commutation"},
+                                                   {0x2301, "Thermal load"},
+                                                   {0x2302, "Temperature"},
+                                                   {0x1003, "Pre-defined error field"},
+                                                   {0x1010, "Store parameters"},
+                                                   {0x1016, "Consumer heartbeat time"},
+                                                   {0x1018, "Identity object"},
+                                                   {0x1200, "SDO server parameter"},
+                                                   {0x607d, "Software position limit"},
+                                                   {0x6099, "Homing speeds"}}};
 
 constexpr bool is_sorted() {
   for (std::size_t i = 1; i < table.size(); ++i) {
@@ -172,7 +197,12 @@ double value_of(ObjectUnit unit, double increment) {
       return 1000.0 * increment;
     case Unit::torque:
     case Unit::millisecond:
+    case Unit::thousandth:
       return 1e-3;
+    case Unit::tenth:
+      return 0.1;
+    case Unit::hundredth:
+      return 0.01;
     default:
       return 1.0;
   }

@@ -30,6 +30,9 @@ enum class ObjectUnit : std::uint8_t {
   acceleration,  // 1000 increments a second squared
   torque,        // a thousandth of the current limit
   millisecond,
+  thousandth,
+  tenth,      // of the register's unit
+  hundredth,  // of the register's unit
 };
 // SI value of one. `increment`: of position on the bus, m.
 double value_of(ObjectUnit unit, double increment);

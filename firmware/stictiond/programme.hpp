@@ -134,7 +134,7 @@ class Programme {
     ++in_phase_;
     switch (phase_) {
       case Phase::enable:
-        if (loop_.all_in(DriveState::operation_enabled)) enter(Phase::home);
+        if (loop_.all_in(DriveState::operation_enabled) && none_preparing()) enter(Phase::home);
         break;
       case Phase::home:
         if (all_referenced() && loop_.loop().slow()) begin_motion();
@@ -173,6 +173,12 @@ class Programme {
   bool all_referenced() const {
     for (std::size_t i = 0; i < loop_.axis_count(); ++i)
       if (!loop_.drive(i).referenced()) return false;
+    return true;
+  }
+  // Commutation and brake are tested before a motion begins.
+  bool none_preparing() const {
+    for (std::size_t i = 0; i < loop_.axis_count(); ++i)
+      if (loop_.drive(i).preparing()) return false;
     return true;
   }
   bool none_powered() const {

@@ -80,4 +80,24 @@ Task task_of(const DriveOptions& options, const DriveConfiguration& configuratio
   return task;
 }
 
+void check_motor_inputs(const DriveConfiguration& configuration, bool protected_backend) {
+  for (std::size_t i = 0; i < configuration.names.size(); ++i) {
+    const auto& name = configuration.names[i];
+    if (configuration.drives[i].commutation.method == CommutationMethod::hall)
+      throw StartRefused(fmt::format(
+          "{}: found drive.axis.{}.commutation.method = \"hall\"; expected stored or test, as no backend of "
+          "this programme has inputs for Hall signals",
+          configuration.file.string(), name));
+    const auto& p = configuration.drives[i].protection;
+    const bool asks = p.watches_dc_high || p.watches_dc_low || p.watches_motor_temperature ||
+                      p.watches_stage_temperature || p.torque_off_wired;
+    if (asks && !protected_backend)
+      throw StartRefused(
+          fmt::format("{}: found limits of the DC link, of temperatures or torque_off in drive.axis.{}.protection; "
+                      "expected thermal models alone, as this backend has no such signals: let the power stage watch "
+                      "them and report by its fault input",
+                      configuration.file.string(), name));
+  }
+}
+
 }  // namespace stiction::drive

@@ -55,6 +55,10 @@ void show_timing(const hal::TickClock& clock, const hal::LoopTiming& timing, Pub
 // `locked`: whether memory is locked.
 void check_room(const DriveOptions& options, const DriveConfiguration& configuration, bool locked);
 
+// Throws StartRefused where the machine file asks for signals of motor or power stage that the backend does not have.
+// `configuration`: of the drive; `protected_backend`: whether it has those of a ProtectionBackend.
+void check_motor_inputs(const DriveConfiguration& configuration, bool protected_backend);
+
 inline constexpr std::uint64_t row_bytes = 256;  // of a trace's file, for one axis in one tick, at most
 
 // The task of the options. `positions`: where the axes stand (m). Throws MotionError. `options`: of the command line;
@@ -102,6 +106,23 @@ void show_on_can(const hal::DriveLoop<B>& loop, const Programme<B>& programme, b
   }
 }
 
+// What motor and power stage of axis `i` of `loop` tell, into `axis`.
+template <hal::Backend B>
+void show_motor(const hal::DriveLoop<B>& loop, std::size_t i, PublishedAxis& axis) {
+  const auto& commutation = loop.drive(i).commutation();
+  axis.commutation = commutation.known() ? 2 : commutation.searching() ? 1 : 0;
+  axis.commutation_offset = 360.0 * static_cast<double>(static_cast<std::int32_t>(commutation.offset().raw)) * 0x1p-32;
+  const auto& protection = loop.protection(i);
+  axis.motor_load = static_cast<double>(protection.motor().state()) * 0x1p-40;
+  axis.stage_load = static_cast<double>(protection.stage_state()) * 0x1p-40;
+  const auto& inputs = protection.inputs();
+  axis.dc_link = machine::to_si(inputs.dc_link);
+  axis.motor_temperature = 0.1 * inputs.motor_temperature;
+  axis.stage_temperature = 0.1 * inputs.stage_temperature;
+  axis.torque_off_a = inputs.torque_off_a;
+  axis.torque_off_b = inputs.torque_off_b;
+}
+
 // The axes for others to see. Wait-free. `loop`, `programme`: whose state is published; `period`: of the fast tick, s;
 // `server`: a ModbusPublisher or an ObjectServer.
 template <hal::Backend B, class Server>
@@ -119,6 +140,7 @@ void show_to_clients(const hal::DriveLoop<B>& loop, Programme<B>& programme, dou
     axis.limit_negative = inputs.limit_negative;
     axis.limit_positive = inputs.limit_positive;
     axis.home = inputs.home;
+    show_motor(loop, i, axis);
     show_asked(programme.remote()[i], period, axis);
   });
 }
@@ -130,6 +152,7 @@ void show_to_clients(const hal::DriveLoop<B>& loop, Programme<B>& programme, dou
 template <hal::Backend B>
 RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const DriveConfiguration& configuration,
               const DriveOptions& options, const std::string& title, RunRecord& record) {
+  check_motor_inputs(configuration, hal::ProtectionBackend<B>);
   hal::LoopTiming timing;
   const hal::PowerCut::Entry entry(hal::power_cut, backend);
   hal::GatedBackend<B> gated(backend, hal::power_cut);

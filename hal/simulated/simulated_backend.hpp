@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "firmware/machine/configuration/conversion.hpp"
 #include "hal/backend.hpp"
 #include "sim/plant/axis_plant.hpp"
+#include "sim/plant/drive_supply.hpp"
 
 namespace stiction::hal {
 
@@ -24,6 +26,7 @@ class SimulatedBackend {
       : period_ns_(std::llround(machine.timing.fast_period * 1e9)) {
     for (std::size_t i = 0; i < machine.axes.size(); ++i)
       plants_.emplace_back(machine.timing, machine.axes[i], positions[i], seed + i);
+    for (const auto& axis : machine.axes) supplies_.emplace_back(axis, machine.timing.fast_period);
     coupled_ = plants_.size() == 2 && (plants_[0].coupled() || plants_[1].coupled());
   }
 
@@ -57,7 +60,24 @@ class SimulatedBackend {
     }
   }
 
+  // What the power stages and motors of the file's thermal and electrical values show; both channels of safe torque off
+  // are closed.
+  void read_protection(std::span<ProtectionInputs<S>> inputs) {
+    for (std::size_t i = 0; i < plants_.size(); ++i) {
+      supplies_[i].step(plants_[i].commanded(), plants_[i].current());
+      inputs[i] = {};
+      machine::convert(supplies_[i].dc_link(), inputs[i].dc_link);
+      inputs[i].motor_temperature = tenths(supplies_[i].motor_temperature());
+      inputs[i].stage_temperature = tenths(supplies_[i].stage_temperature());
+    }
+  }
+
+  // Whether the brake of an axis is released; where the axis has none, nothing.
+  void set_brake(std::size_t axis, bool released) { plants_[axis].set_brake(released); }
+
  private:
+  static std::int16_t tenths(double celsius) { return static_cast<std::int16_t>(std::lround(10.0 * celsius)); }
+
   // Each of the two axes feels the other's mean acceleration of this tick in the next one.
   void advance_coupled() {
     const std::array before{plants_[0].velocity(), plants_[1].velocity()};
@@ -82,6 +102,7 @@ class SimulatedBackend {
   bool started_ = false;
   bool coupled_ = false;  // whether an axis feels the other's acceleration
   std::vector<sim::AxisPlant> plants_;
+  std::vector<sim::DriveSupply> supplies_;
 };
 
 }  // namespace stiction::hal

@@ -17,6 +17,7 @@
 #include "sim/effects/force_saturation/force_saturation.hpp"
 #include "sim/effects/load_dependent_friction/load_dependent_friction.hpp"
 #include "sim/effects/structural_resonance/structural_resonance.hpp"
+#include "sim/plant/brake.hpp"
 #include "sim/plant/gravity.hpp"
 #include "sim/plant/two_masses.hpp"
 
@@ -41,6 +42,11 @@ class ActingEffects {
       if (!effects_of<LoadDependentFriction>(axis).empty()) weight_ = gravity.get();
       forces_.push_back({std::move(gravity), false});
     }
+    if (axis.brake) {
+      auto brake = std::make_unique<Brake>(*axis.brake, axis.mass, step);
+      brake_ = brake.get();
+      forces_.push_back({std::move(brake), false});
+    }
     for (const auto& parameters : effects_of<ForceSaturation>(axis)) saturation_.emplace(parameters, axis);
     for (const auto& parameters : effects_of<CrossAxisCoupling>(axis)) coupling_mass_ += parameters.mass;
     for (const EffectId id : all_effects())
@@ -56,6 +62,11 @@ class ActingEffects {
   bool coupled() const { return coupling_mass_ != 0.0; }  // with the other axis
   // What moves with the encoder: of an axis with an elastic mode the measured part alone.
   Body carriage(const machine::AxisModel& axis) const { return {mode_ ? mode_->load_mass() : axis.mass, step_}; }
+
+  // Whether the brake is `released`, where there is one; the carriage is at `position`, m.
+  void set_brake(bool released, double position) {
+    if (brake_ != nullptr) brake_->set(released, position);
+  }
 
   // Of the other axis, m/s^2; held until changed.
   void set_other_acceleration(double acceleration) { coupling_force_ = coupling_mass_ * acceleration; }
@@ -155,6 +166,7 @@ class ActingEffects {
   CarriageState state_{};
   std::vector<Acting> forces_;
   const Gravity* weight_ = nullptr;  // one of them, where an effect wants to know it
+  Brake* brake_ = nullptr;           // one of them, where the axis has one
   SlidingDirection direction_;
   std::optional<Backlash> play_;
   std::vector<EncoderSubdivisionError> reading_;

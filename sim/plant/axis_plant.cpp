@@ -17,12 +17,13 @@ namespace {
 
 using MotorVariant = std::variant<DcMotor, SynchronousMotor, ForceSource>;
 
-MotorVariant make_motor(const machine::MotorParameters& motor, double step) {
+MotorVariant make_motor(const machine::AxisModel& axis, double step) {
+  const machine::MotorParameters& motor = axis.motor;
   switch (motor.model) {
     case machine::MotorModel::dc:
       return DcMotor(motor, step);
     case machine::MotorModel::synchronous:
-      return SynchronousMotor(motor, step);
+      return SynchronousMotor(motor, step, axis.encoder.commutation_offset);
     case machine::MotorModel::force:
       return ForceSource(motor, step);
   }
@@ -53,7 +54,7 @@ AxisPlant::State::State(double step, int steps, const machine::AxisModel& axis, 
 struct AxisPlant::Moved final : State {
   Moved(double step, int steps, const machine::AxisModel& axis, double start, std::uint64_t seed)
       : State(step, steps, axis, start, seed),
-        driving_motor(make_motor(axis.motor, step)),
+        driving_motor(make_motor(axis, step)),
         acting_effects(axis, step, start),
         acting_friction(make_friction(axis.friction, acting_effects.carriage(axis))),
         encoders(axis, step, steps * step, start),
@@ -225,6 +226,7 @@ std::optional<double> AxisPlant::read_velocity_encoder() {
   return moved().encoders.read_velocity_encoder(state_->random);
 }
 std::optional<double> AxisPlant::read_second_encoder() { return moved().encoders.read_second_encoder(state_->random); }
+void AxisPlant::set_brake(bool released) { moved().acting_effects.set_brake(released, state_->position); }
 double AxisPlant::motor_position() const { return moved().motor_body().position; }
 
 // The freewheeling diodes end the currents within a fraction of a millisecond: here at once.

@@ -40,6 +40,10 @@ class AxisPlant {
   // Force from outside on the carriage (N, positive in +x), held until changed.
   void set_external_force(double force) { state_->external_force = force; }
 
+  // The brake that holds the axis, where it has one, held until changed; released at the start. Whether it is
+  // `released`.
+  void set_brake(bool released);
+
   bool coupled() const;  // whether the other axis' acceleration acts on the carriage
   // Of the other axis, m/s^2, held until changed.
   void set_other_acceleration(double acceleration);
@@ -57,10 +61,11 @@ class AxisPlant {
   double encoder_velocity() const { return state_->encoder_velocity(); }  // m/s
   // m, for a controller that computes the speed by itself; none where the velocity loop has no encoder of its own.
   std::optional<double> read_velocity_encoder();
-  std::optional<double> read_second_encoder();                    // m; none where there is none
-  double motor_position() const;                                  // m, of the motor: behind an elastic shaft its own
-  std::size_t phases() const { return state_->phases; }           // that carry current: 3, or 1
-  const PhaseValues& current() const { return state_->current; }  // A, of the phases
+  std::optional<double> read_second_encoder();  // m; none where there is none
+  double motor_position() const;                // m, of the motor: behind an elastic shaft its own
+  const PhaseValues& commanded() const { return state_->inverter.commanded(); }  // V, by the drive
+  std::size_t phases() const { return state_->phases; }                          // that carry current: 3, or 1
+  const PhaseValues& current() const { return state_->current; }                 // A, of the phases
 
   // What the encoder reads now: with increment and noise. Draws a new noise value at each call.
   double read_encoder() {

@@ -27,6 +27,7 @@ class InverterModel {
 
   // What the drive commands from this tick on.
   void command(const PhaseValues& voltage) { command_ = voltage; }
+  const PhaseValues& commanded() const { return command_; }  // V
 
   // One tick. Of the voltages only those of the first `phases` are taken over.
   template <std::size_t phases>

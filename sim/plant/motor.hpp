@@ -67,18 +67,20 @@ class SynchronousMotor {
  public:
   static constexpr std::size_t phases = 3;
 
-  SynchronousMotor(const machine::MotorParameters& motor, double step)
+  // `motor`: windings and constants; `step`: of the plant, s; `offset`: rad, electrical angle at position zero.
+  SynchronousMotor(const machine::MotorParameters& motor, double step, double offset = 0.0)
       : winding_(motor.phase_resistance / motor.count, (motor.phase_inductance - motor.mutual_inductance) / motor.count,
                  step),
         emf_constant_(motor.emf_constant),
         half_force_constant_(0.5 * motor.phase_force_constant),
         angle_per_metre_(2.0 * std::numbers::pi / motor.pole_pair_pitch),
-        half_step_(0.5 * step) {}
+        half_step_(0.5 * step),
+        offset_(offset) {}
 
   // Moves the currents on by one step from position x (m) at velocity v (m/s); returns the mean force (N). `voltage`:
   // of the three phases, V.
   double advance(const PhaseValues& voltage, double x, double v) {
-    const double angle = angle_per_metre_ * (x + half_step_ * v);
+    const double angle = angle_per_metre_ * (x + half_step_ * v) + offset_;
     const auto [s, c] = sine_cosine(angle);
     constexpr double half_root_3 = 0.5 * std::numbers::sqrt3;
     const PhaseValues sine{s, -0.5 * s + half_root_3 * c, -0.5 * s - half_root_3 * c};
@@ -100,6 +102,7 @@ class SynchronousMotor {
   double half_force_constant_;
   double angle_per_metre_;
   double half_step_;
+  double offset_;
   PhaseValues current_{};
 };
 

@@ -238,7 +238,9 @@ INSTANTIATE_TEST_SUITE_P(Injected, FaultOfTheTable, ::testing::ValuesIn(fault_ca
 TEST(FaultTable, HasAnInjectionForEachOfItsRows) {
   std::set<Fault> injected;
   for (const auto& c : fault_cases()) injected.insert(c.fault);
-  for (const auto& row : fault_table) EXPECT_TRUE(injected.contains(row.fault)) << row.name;
+  // Those of motor and power stage are injected where these have their signals: motor_protection_test.cpp.
+  for (const auto& row : fault_table)
+    EXPECT_TRUE(row.detector == Detector::protection || injected.contains(row.fault)) << row.name;
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "stiction/number/fixed.hpp"
 #include "stiction/number/octave.hpp"
+#include "stiction/number/trigonometry.hpp"
 
 namespace stiction::machine {
 
@@ -151,6 +152,9 @@ struct DoubleSignals {
 
   static constexpr Angle angle(Position position, PitchInverse inverse_pitch) {
     return {2.0 * std::numbers::pi * position.value * inverse_pitch.value};
+  }
+  static constexpr Angle turned(Angle angle, Turn by) {
+    return {angle.value + 2.0 * std::numbers::pi * 0x1p-32 * by.raw};
   }
   static Sine sine(Angle angle) { return {std::sin(angle.value)}; }
   static constexpr Angle third_of_turn_after(Angle angle) { return {angle.value + 2.0 * std::numbers::pi / 3.0}; }

@@ -8,6 +8,7 @@
 
 #include "firmware/machine/configuration/conversion.hpp"
 #include "firmware/machine/configuration/double_signals.hpp"
+#include "firmware/machine/configuration/motor_configuration.hpp"
 #include "stiction/design/axis_parameters.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
@@ -166,6 +167,7 @@ ServoDriveConfig<S> configure_drive(const Timing& timing, const AxisModel& axis,
       standstill_speed * ServoDrive<S>::self_test_ticks * period, "supervision");
   c.stop_margin_ticks = convert.ticks(stop_margin, period, "quick_stop_deceleration");
   c.brake_ticks = convert.ticks(setup.brake_time, period, "brake_time");
+  configure_motor(timing, axis, setup, c);
   return c;
 }
 

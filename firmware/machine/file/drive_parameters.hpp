@@ -5,6 +5,7 @@
 #include <limits>
 #include <tuple>
 
+#include "firmware/machine/file/motor_setup_parameters.hpp"
 #include "firmware/machine/file/parameter_tables.hpp"
 #include "firmware/machine/model/drive_setup.hpp"
 
@@ -339,7 +340,10 @@ struct Table<DriveAxisSetup> : EmptyTable<DriveAxisSetup> {
   static constexpr std::tuple subtables{
       Subtable<DriveAxisSetup, HomingSetup>{"homing", &DriveAxisSetup::homing, Presence::optional},
       Subtable<DriveAxisSetup, StopSetup>{"stops", &DriveAxisSetup::stops, Presence::optional},
-      Subtable<DriveAxisSetup, LineSetup>{"line", &DriveAxisSetup::line, Presence::optional}};
+      Subtable<DriveAxisSetup, LineSetup>{"line", &DriveAxisSetup::line, Presence::optional},
+      Subtable<DriveAxisSetup, CommutationSetup>{"commutation", &DriveAxisSetup::commutation, Presence::optional},
+      Subtable<DriveAxisSetup, BrakeTestSetup>{"brake_test", &DriveAxisSetup::brake_test, Presence::optional},
+      Subtable<DriveAxisSetup, ProtectionSetup>{"protection", &DriveAxisSetup::protection, Presence::optional}};
 };
 
 template <>

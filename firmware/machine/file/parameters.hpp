@@ -61,7 +61,7 @@ struct Table<MotorParameters> : EmptyTable<MotorParameters> {
   static constexpr std::string_view text = "motor";
   static constexpr std::tuple choices{
       ChoiceParameter<MotorParameters, MotorModel>{"model", &MotorParameters::model, motor_models, {}, "motor model"}};
-  static constexpr std::array<Parameter<MotorParameters>, 8> parameters{{
+  static constexpr std::array<Parameter<MotorParameters>, 10> parameters{{
       {"phase_resistance", "Ohm", positive(), &MotorParameters::phase_resistance, 0.0, "resistance R of one winding"},
       {"phase_inductance", "H", positive(), &MotorParameters::phase_inductance, 0.0, "inductance L of one winding"},
       {"mutual_inductance", "H", not_negative(), &MotorParameters::mutual_inductance, 0.0,
@@ -78,13 +78,17 @@ struct Table<MotorParameters> : EmptyTable<MotorParameters> {
        "N/V"},
       {"pole_pair_pitch", "m", positive(), &MotorParameters::pole_pair_pitch, 0.0, "pole-pair pitch tau_p"},
       {"count", "1", {1.0, 64.0}, &MotorParameters::count, 1.0, "motors in parallel on one servo module"},
+      {"thermal_resistance", "K/W", not_negative(), &MotorParameters::thermal_resistance, 0.0,
+       "rise of the windings' temperature by their losses; 0: they stay cold"},
+      {"thermal_time_constant", "s", positive(), &MotorParameters::thermal_time_constant, 600.0,
+       "time constant of that rise"},
   }};
 };
 
 template <>
 struct Table<InverterParameters> : EmptyTable<InverterParameters> {
   static constexpr std::string_view text = "inverter";
-  static constexpr std::array<Parameter<InverterParameters>, 3> parameters{{
+  static constexpr std::array<Parameter<InverterParameters>, 8> parameters{{
       {"dead_time",
        "s",
        not_negative(0.1),
@@ -94,6 +98,20 @@ struct Table<InverterParameters> : EmptyTable<InverterParameters> {
       {"voltage_limit", "V", positive(), &InverterParameters::voltage_limit, {}, "largest voltage"},
       {"current_limit", "A", positive(), &InverterParameters::current_limit, std::numeric_limits<double>::infinity(),
        "largest current per motor"},
+      {"dc_link",
+       "V",
+       positive(),
+       &InverterParameters::dc_link,
+       {},
+       "voltage of the DC link as its rectifier makes it; left out: voltage_limit"},
+      {"dc_link_capacitance", "F", not_negative(), &InverterParameters::dc_link_capacitance, 0.0,
+       "capacitor that a braking motor charges; 0: the DC link stays as it is"},
+      {"loss_voltage", "V", not_negative(), &InverterParameters::loss_voltage, 0.0,
+       "losses of the power stage per ampere in a phase"},
+      {"thermal_resistance", "K/W", not_negative(), &InverterParameters::thermal_resistance, 0.0,
+       "rise of the power stage's temperature by its losses; 0: it stays cold"},
+      {"thermal_time_constant", "s", positive(), &InverterParameters::thermal_time_constant, 60.0,
+       "time constant of that rise"},
   }};
 };
 
@@ -155,7 +173,7 @@ struct Table<FurtherEncoderParameters> : EmptyTable<FurtherEncoderParameters> {
 template <>
 struct Table<EncoderParameters> : EmptyTable<EncoderParameters> {
   static constexpr std::string_view text = "position encoder";
-  static constexpr std::array<Parameter<EncoderParameters>, 4> parameters{{
+  static constexpr std::array<Parameter<EncoderParameters>, 5> parameters{{
       {"increment", "m", not_negative(), &EncoderParameters::increment, 0.0,
        "increment after interpolation; 0: continuous"},
       {"counts",
@@ -166,6 +184,8 @@ struct Table<EncoderParameters> : EmptyTable<EncoderParameters> {
        "edges in a turn of its shaft, after quadrature; in place of increment"},
       {"noise", "m", not_negative(), &EncoderParameters::noise, 0.0, "noise of the position, rms"},
       {"delay", "s", encoder_delays, &EncoderParameters::delay, 0.0, "age of the position that it shows"},
+      {"commutation_offset", "rad", any_value(), &EncoderParameters::commutation_offset, 0.0,
+       "true electrical angle of a three-phase motor where the encoder shows zero; the drive never reads it"},
   }};
   static constexpr std::tuple choices{
       ChoiceParameter<EncoderParameters, VelocitySource>{"velocity", &EncoderParameters::velocity, velocity_sources,
@@ -312,6 +332,16 @@ struct Table<GravityParameters> : EmptyTable<GravityParameters> {
   }};
 };
 
+template <>
+struct Table<BrakeParameters> : EmptyTable<BrakeParameters> {
+  static constexpr std::string_view text = "brake that holds the axis without power; left out: none";
+  static constexpr std::array<Parameter<BrakeParameters>, 2> parameters{{
+      {"stiffness", "N/m", positive(), &BrakeParameters::stiffness, 1e8,
+       "stiffness with which it holds until it slips"},
+      {"holding_force", "N", positive(), &BrakeParameters::holding_force, {}, "force that it holds before it slips"},
+  }};
+};
+
 inline constexpr std::array<Choice<ControlStructure>, 5> control_structures{{
     {"cascade", ControlStructure::cascade, "the firmware's: position, velocity and current controller"},
     {"p-voltage", ControlStructure::p_voltage, "voltage proportional to the position error"},
@@ -412,6 +442,7 @@ struct Table<AxisModel> : EmptyTable<AxisModel> {
       Subtable<AxisModel, std::optional<FurtherEncoderParameters>>{"second_encoder", &AxisModel::second_encoder,
                                                                    Presence::optional},
       Subtable<AxisModel, std::optional<GravityParameters>>{"gravity", &AxisModel::gravity, Presence::optional},
+      Subtable<AxisModel, std::optional<BrakeParameters>>{"brake", &AxisModel::brake, Presence::optional},
       Subtable<AxisModel, std::optional<ControllerParameters>>{"controller", &AxisModel::controller,
                                                                Presence::optional},
       Subtable<AxisModel, PositionControllerParameters>{"position_controller", &AxisModel::position_controller,

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "firmware/machine/model/motor_setup.hpp"
+
 namespace stiction::machine {
 
 struct CanSetup {
@@ -129,6 +131,9 @@ struct DriveAxisSetup {
   HomingSetup homing;
   StopSetup stops;
   LineSetup line;
+  CommutationSetup commutation;
+  BrakeTestSetup brake_test;
+  ProtectionSetup protection;
 };
 
 struct DriveSetup {

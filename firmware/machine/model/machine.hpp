@@ -36,15 +36,17 @@ struct Timing {
 
 struct MotorParameters {
   MotorModel model = MotorModel::dc;
-  bool amperes = false;               // of a force source: its command is a current, not a voltage
-  double phase_resistance = 0.0;      // Ohm
-  double phase_inductance = 0.0;      // H
-  double mutual_inductance = 0.0;     // H
-  double emf_constant = 0.0;          // V s/m, one winding
-  double phase_force_constant = 0.0;  // N/A, one winding
-  double force_constant = 0.0;        // N/A of the whole motor, amplitude amperes; N/V for a force source of volts
-  double pole_pair_pitch = 0.0;       // m
-  int count = 1;                      // motors in parallel on one servo module
+  bool amperes = false;                  // of a force source: its command is a current, not a voltage
+  double phase_resistance = 0.0;         // Ohm
+  double phase_inductance = 0.0;         // H
+  double mutual_inductance = 0.0;        // H
+  double emf_constant = 0.0;             // V s/m, one winding
+  double phase_force_constant = 0.0;     // N/A, one winding
+  double force_constant = 0.0;           // N/A of the whole motor, amplitude amperes; N/V for a force source of volts
+  double pole_pair_pitch = 0.0;          // m
+  int count = 1;                         // motors in parallel on one servo module
+  double thermal_resistance = 0.0;       // K/W, of the windings against the air
+  double thermal_time_constant = 600.0;  // s
 
   bool driven_by_volts() const { return model == MotorModel::force && !amperes; }
 };
@@ -53,9 +55,14 @@ struct MotorParameters {
 inline constexpr double unlimited = 1e15;
 
 struct InverterParameters {
-  double dead_time = 0.0;      // s
-  double voltage_limit = 0.0;  // V
-  double current_limit = 0.0;  // A per motor
+  double dead_time = 0.0;               // s
+  double voltage_limit = 0.0;           // V
+  double current_limit = 0.0;           // A per motor
+  std::optional<double> dc_link;        // V, as the rectifier makes it; none: the voltage limit
+  double dc_link_capacitance = 0.0;     // F; 0: the DC link stays as it is
+  double loss_voltage = 0.0;            // V, times the current's magnitude in each phase: the losses
+  double thermal_resistance = 0.0;      // K/W, of the power stage against the air
+  double thermal_time_constant = 60.0;  // s
 };
 
 struct EncoderMountParameters {
@@ -84,6 +91,9 @@ struct EncoderParameters {
   double delay = 0.0;            // s, of what it shows
   VelocitySource velocity = VelocitySource::estimated;
   std::optional<EncoderMountParameters> mount;  // none: rigid
+  // rad, electrical: the true angle of a three-phase motor where the encoder shows zero. Of the plant alone: the drive
+  // has an offset that was stored or that it finds (drive_setup.hpp).
+  double commutation_offset = 0.0;
 };
 
 struct PositionControllerParameters {
@@ -198,6 +208,13 @@ struct FrictionCompensationParameters {
   std::optional<LearnedTable> learned;
 };
 
+// The brake that holds an axis without power, of the plant: what it bears before it slips, and how it yields until
+// then.
+struct BrakeParameters {
+  double holding_force = 0.0;  // N, at the axis
+  double stiffness = 0.0;      // N/m
+};
+
 // Friction on the motor, at its shaft.
 struct MotorFriction : FrictionParameters {};
 
@@ -236,6 +253,7 @@ struct AxisModel {
   std::optional<FurtherEncoderParameters> velocity_encoder;  // none: the one above
   std::optional<FurtherEncoderParameters> second_encoder;    // only measured
   std::optional<GravityParameters> gravity;
+  std::optional<BrakeParameters> brake;
   std::optional<ControllerParameters> controller;  // none: the cascade
   PositionControllerParameters position_controller;
   VelocityControllerParameters velocity_controller;

@@ -118,7 +118,7 @@ TEST(MachineFileError, UnknownKeySuggestsTheNearestAndListsTheKnown) {
   EXPECT_EQ(error_after("model =", "modle ="),
             "FILE:9: axis.B.motor.modle: found an unknown key; expected one of model, phase_resistance, "
             "phase_inductance, mutual_inductance, emf_constant, phase_force_constant, force_constant, pole_pair_pitch, "
-            "count; did you mean \"model\"?");
+            "count, thermal_resistance, thermal_time_constant; did you mean \"model\"?");
   EXPECT_EQ(error_after("name = \"small\"", "name = \"small\"\ncolour = \"red\""),
             "FILE:3: colour: found an unknown key; expected one of schema, name, timing, feed_drive, axis, drive, "
             "expected, experiment, reference");

@@ -116,7 +116,7 @@ constexpr AxisConfig<S> configure_axis(const Design& axis, Problems& problems) {
   c.current_loop = axis.motor.loop;
   configure_pi(c.current, convert, axis.current_controller, period, {"current_controller.gain", "", "V/A"},
                "current_controller.integral_time");
-  if (axis.motor.loop == CurrentLoop::three_phase)
+  if (has_phases(axis.motor.loop))
     c.inverse_pole_pair_pitch = convert.template gain<typename S::PitchInverse>(
         1.0 / axis.motor.pole_pair_pitch, {"motor.pole_pair_pitch", "1 / pitch", "1/m"});
 

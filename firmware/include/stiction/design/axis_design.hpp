@@ -83,7 +83,7 @@ struct AxisDesign {
     positive(max_velocity, {"max_velocity", "", "m/s"});
     positive(motor.force_constant, {"motor.force_constant", "", force_source ? "N/V" : "N/A"});
     positive(motor.count, {"motor.count", "", ""});
-    if (motor.loop == CurrentLoop::three_phase) positive(motor.pole_pair_pitch, {"motor.pole_pair_pitch", "", "m"});
+    if (design::has_phases(motor.loop)) positive(motor.pole_pair_pitch, {"motor.pole_pair_pitch", "", "m"});
     positive(inverter.voltage_limit, {"inverter.voltage_limit", "", "V"});
     if (!force_source) positive(inverter.current_limit, {"inverter.current_limit", "", "A"});
     positive(position_controller.gain, {"position_controller.gain", "", "1/s"});

@@ -7,16 +7,22 @@
 
 namespace stiction::design {
 
+// Whether a loop has the three phases of a synchronous motor.
+constexpr bool has_phases(CurrentLoop loop) {
+  return loop == CurrentLoop::three_phase || loop == CurrentLoop::three_phase_offset;
+}
+
 struct TimingParameters {
   double fast_period = 62.5e-6;  // s: current and velocity controllers, feedforwards
   double slow_period = 1e-3;     // s: position controller
 };
 
 struct MotorParameters {
-  CurrentLoop loop = CurrentLoop::direct;  // three_phase: synchronous motor; direct: DC motor; none: force source
-  double force_constant = 0.0;             // N/A of the whole motor, amplitude amperes; N/V of a force source
-  double pole_pair_pitch = 0.0;            // m; of three_phase
-  int count = 1;                           // motors in parallel on one servo module
+  CurrentLoop loop =
+      CurrentLoop::direct;       // three_phase(_offset): synchronous motor; direct: DC motor; none: force source
+  double force_constant = 0.0;   // N/A of the whole motor, amplitude amperes; N/V of a force source
+  double pole_pair_pitch = 0.0;  // m; of a synchronous motor
+  int count = 1;                 // motors in parallel on one servo module
 };
 
 struct InverterParameters {

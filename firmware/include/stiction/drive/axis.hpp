@@ -17,14 +17,16 @@
 #include "stiction/drive/exchange.hpp"
 #include "stiction/drive/faults.hpp"
 #include "stiction/number/fixed.hpp"
+#include "stiction/number/trigonometry.hpp"
 
 namespace stiction {
 
 // What stands behind the velocity controller.
 enum class CurrentLoop : std::uint8_t {
-  three_phase,  // one PI per phase, commutated
+  three_phase,  // one PI per phase, commutated by the encoder's position
   direct,       // one PI: DC motor
   none,         // the velocity controller's output is the voltage command of a force source, 1 A standing for 1 V
+  three_phase_offset,  // as three_phase, from an electrical angle at the encoder's zero, or at an angle that is given
 };
 
 template <class S>
@@ -113,6 +115,19 @@ class Axis {
     state_.running = false;
   }
 
+  // Of CurrentLoop::three_phase_offset: the electrical angle where the encoder shows zero. Kept over start(). `offset`:
+  // from now on.
+  constexpr void commutate(Turn offset) {
+    commutation_ = offset;
+    vector_given_ = false;
+  }
+  // Of the same, in place of what the position gives: the current's vector. `angle`: from now on.
+  constexpr void give_vector(Turn angle) {
+    vector_ = angle;
+    vector_given_ = true;
+  }
+  constexpr Turn commutation() const { return commutation_; }
+
   // One fast tick at logical time `now_ns`; `slow` on the ticks of the position controller. Writes every signal of
   // the cascade to `s`. `set`: set-point of this tick; `feedback`: newest position, currents and fault inputs. Returns
   // voltages and enable, which is off after a fault.
@@ -157,6 +172,9 @@ class Axis {
         break;
       case CurrentLoop::none:
         voltage_side = pass_through(s, command);
+        break;
+      case CurrentLoop::three_phase_offset:
+        voltage_side = control_offset_phases(s, command);
         break;
     }
     watch_cycle(state_.voltage_cycle, voltage_side, now_ns);
@@ -266,8 +284,18 @@ class Axis {
 
   // The side is that of the amplitude: a healthy limited phase changes side with its sine, twice an electrical turn.
   constexpr int control_phases(AxisSignals<S>& s, Command<S>& command) {
+    return control_phases_at(S::angle(s.x, config_.inverse_pole_pair_pitch), s, command);
+  }
+  // A function of its own: an axis whose encoder's zero is the motor's has nothing of it.
+  [[gnu::noinline]] constexpr int control_offset_phases(AxisSignals<S>& s, Command<S>& command) {
+    const auto angle = vector_given_ ? S::turned({}, vector_)
+                                     : S::turned(S::angle(s.x, config_.inverse_pole_pair_pitch), commutation_);
+    return control_phases_at(angle, s, command);
+  }
+  [[gnu::always_inline]] constexpr int control_phases_at(typename S::Angle angle, AxisSignals<S>& s,
+                                                         Command<S>& command) {
     auto& saturations = state_.saturations;
-    const auto phase = Commutation<S>::phases(S::angle(s.x, config_.inverse_pole_pair_pitch));
+    const auto phase = Commutation<S>::phases(angle);
     s.i = Commutation<S>::amplitude(s.i_phase, phase, saturations);
     const auto set = Commutation<S>::phase_currents(s.i_set, phase, saturations);
     // Written out: a signal with a running index must be stored even where nobody reads it.
@@ -295,6 +323,8 @@ class Axis {
 
   AxisConfig<S> config_;
   AxisState<S> state_;
+  Turn commutation_{}, vector_{};
+  bool vector_given_ = false;
 };
 
 }  // namespace stiction

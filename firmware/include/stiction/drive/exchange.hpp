@@ -42,6 +42,15 @@ struct DigitalInputs {
   bool home = false;
   bool index = false;                     // the encoder's index mark was passed since the tick before,
   typename S::Position index_position{};  // here
+  std::uint8_t hall = 0;                  // signals A, B, C of the motor's Hall sensors in bits 0 to 2; 0: none
+};
+
+// What the power stage and the motor tell about themselves, for their protection.
+template <class S>
+struct ProtectionInputs {
+  typename S::Voltage dc_link{};
+  std::int16_t motor_temperature = 0, stage_temperature = 0;  // tenths of a degree Celsius
+  bool torque_off_a = false, torque_off_b = false;            // channels of safe torque off that are open
 };
 
 }  // namespace stiction

@@ -39,9 +39,22 @@ enum class Fault : std::uint8_t {
   watchdog_starved = 51,
   set_points_lost = 52,
   commander_lost = 53,
+  // Of the motor and its power stage: commutation_search.hpp, protection.hpp, brake_test.hpp.
+  commutation_not_found = 80,
+  commutation_offset = 81,
+  motor_overload = 82,
+  stage_overload = 83,
+  dc_link_high = 84,
+  dc_link_low = 85,
+  motor_temperature = 86,
+  stage_temperature = 87,
+  temperature_sensor = 88,
+  torque_off_in_motion = 89,
+  torque_off_channels = 90,
+  brake_slips = 91,
 };
 
-enum class Detector : std::uint8_t { axis, supervision, backend, programme };
+enum class Detector : std::uint8_t { axis, supervision, backend, programme, protection };
 
 enum class Reaction : std::uint8_t {
   disable,       // the power stage is off in the same tick
@@ -61,7 +74,7 @@ struct FaultDescription {
 };
 
 // Reset of all: a fault reset, taken only when the cause has gone, then a new start of the axis.
-inline constexpr std::array<FaultDescription, 25> fault_table{{
+inline constexpr std::array<FaultDescription, 37> fault_table{{
     {Fault::following_error, "following error",
      "|x_set - x| above supervision.following_error for longer than drive.axis.NAME.following_error_timeout; above "
      "twice of it, or where a force above runaway_current meets an acceleration the other way that does not abate, the "
@@ -125,6 +138,44 @@ inline constexpr std::array<FaultDescription, 25> fault_table{{
     {Fault::commander_lost, "commander lost",
      "no command or heartbeat of the axis' owner came within commander_timeout while the axis had power", 0, 0x8130,
      Detector::programme, Reaction::quick_stop},
+    {Fault::commutation_not_found, "commutation not found",
+     "the test at the enabling moved the axis too little with all of test_current or by more than test_way, or the "
+     "Hall "
+     "signals show no sector",
+     0, 0x7122, Detector::protection},
+    {Fault::commutation_offset, "commutation offset",
+     "the stored offset, or the one in force, differs by more than commutation.tolerance from what test, Hall signals "
+     "or "
+     "index mark show",
+     0, 0x7122, Detector::protection},
+    {Fault::motor_overload, "motor overload",
+     "I2t: the motor's thermal model is 2.5 % above the state to which protection.motor_current leads", 1, 0x2350,
+     Detector::protection, Reaction::quick_stop},
+    {Fault::stage_overload, "power stage overload",
+     "I2t: the thermal model of a phase of the power stage is 2.5 % above the state to which protection.stage_current "
+     "leads",
+     1, 0x2350, Detector::protection, Reaction::quick_stop},
+    {Fault::dc_link_high, "DC link over-voltage", "the DC link is above protection.dc_link_high", 1, 0x3210,
+     Detector::protection},
+    {Fault::dc_link_low, "DC link under-voltage", "the DC link is below protection.dc_link_low for 16 ticks in a row",
+     16, 0x3220, Detector::protection, Reaction::quick_stop},
+    {Fault::motor_temperature, "motor temperature",
+     "the motor is hotter than protection.motor_temperature for 16 ticks in a row", 16, 0x4310, Detector::protection,
+     Reaction::quick_stop},
+    {Fault::stage_temperature, "power stage temperature",
+     "the power stage is hotter than protection.stage_temperature for 16 ticks in a row", 16, 0x4210,
+     Detector::protection, Reaction::quick_stop},
+    {Fault::temperature_sensor, "temperature sensor",
+     "a temperature that is watched is below -55 or above 300 degrees Celsius for 16 ticks in a row, as of a broken "
+     "wire",
+     16, 0xff58, Detector::protection, Reaction::quick_stop},
+    {Fault::torque_off_in_motion, "safe torque off under power", "a channel of safe torque off opened under power", 1,
+     0xff59, Detector::protection},
+    {Fault::torque_off_channels, "safe torque off channels", "the channels of safe torque off differ for 200 ms", 3200,
+     0xff5a, Detector::protection},
+    {Fault::brake_slips, "brake slips",
+     "under brake_test.current the closed brake lets the axis go by more than brake_test.way", 1, 0xff5b,
+     Detector::protection},
 }};
 
 constexpr const FaultDescription* description_of(Fault fault) {

@@ -46,7 +46,9 @@ class ServoDrive {
       : config_(config),
         machine_({.hold_after_quick_stop = stop_way(StopObject::quick_stop, config.stops.quick_stop).held}),
         supervision_(config.supervision),
-        homing_(config.homing) {
+        homing_(config.homing),
+        commutation_(config.commutation),
+        brake_test_(config.brake_test) {
     referenced_ = config.homing.method == HomingMethod::none;
   }
 
@@ -58,6 +60,7 @@ class ServoDrive {
     last_ = {feedback.position, {}};
     axis.start(feedback);
     axis.stop();
+    if (commutation_.used()) axis.commutate(commutation_.offset());
   }
 
   // The set-point of this tick for the cascade. Its power is on or off as the drive's state says. `demand`:
@@ -75,19 +78,31 @@ class ServoDrive {
       measured_ns_ = feedback.position_time_ns;
     }
     rest_.step(measured_, config_.standstill_way);
+    if (commutation_.used()) [[unlikely]]
+      commutation_.watch(measured_, inputs);
     const bool unfound = homing_.phase() == Homing<S>::Phase::failed;
     bool present = cause_holds(demand, feedback, axis);
     // One by one: a cause that stays must not hide another one.
     for (const Fault fault : demand.causes) present |= raise(fault, now_ns, axis);
     present |= raise(supervised, now_ns, axis);
     present |= raise(unfound ? Fault::homing : Fault::none, now_ns, axis);
+    // Not present: a reset lets the next enabling try again.
+    raise(commutation_.fault(), now_ns, axis);
+    raise(brake_test_.slipped() ? Fault::brake_slips : Fault::none, now_ns, axis);
     // What the control drives up cannot be braked by it, from the beginning of the stop (raise) or on the way.
     if (stopping_ && fault_ == Fault::following_error && supervision_.resisted()) power_off(axis);
     // Before the cascade sees it, so that a ramp takes the place of what is no set-point.
     raise(follows_ && !demand.set_point.valid ? Fault::set_point : Fault::none, now_ns, axis);
     self_test_ = present ? 0 : one_more(self_test_, self_test_ticks);
-    advance_states(demand, feedback, present, axis);
-    return set_point(demand, inputs);
+    advance_states(demand, feedback, present, inputs, axis);
+    const auto set = set_point(demand, inputs);
+    if (commutation_.used()) [[unlikely]] {
+      if (commutation_.searching())
+        axis.give_vector(commutation_.order().angle);
+      else
+        axis.commutate(commutation_.offset());
+    }
+    return set;
   }
 
   // Of the tick that the cascade has made.
@@ -111,7 +126,11 @@ class ServoDrive {
   constexpr DriveState state() const { return machine_.state(); }
   constexpr Fault fault() const { return fault_; }  // the first one, latched until a reset is taken
   constexpr bool powered() const { return powered_; }
-  constexpr bool brake_released() const { return powered_ && !brake_.closing(); }
+  constexpr bool brake_released() const { return powered_ && !brake_.closing() && !preparing(); }
+  // Whether commutation or brake are tested, under power, before the axis follows anything.
+  constexpr bool preparing() const { return commutation_.searching() || brake_test_.testing(); }
+  constexpr const CommutationSearch<S>& commutation() const { return commutation_; }
+  constexpr const BrakeTest<S>& brake_test() const { return brake_test_; }
   constexpr bool referenced() const { return referenced_; }
   constexpr bool follows() const { return follows_; }    // the set-points from outside, in the last tick
   constexpr Position origin() const { return origin_; }  // of the machine's coordinates in the encoder's
@@ -130,6 +149,7 @@ class ServoDrive {
     std::uint16_t word = statusword::of(machine_.state());
     if (supplied_) word |= statusword::voltage_bit;
     if (!referenced_) word |= statusword::unreferenced_bit;
+    if (torque_off_) word |= statusword::torque_off_bit;
     if (mode_ == OperationMode::homing)
       return static_cast<std::uint16_t>(word |
                                         homing_.status_bits(fault_ == Fault::homing, last_.velocity == Velocity{}));
@@ -163,7 +183,9 @@ class ServoDrive {
     seen.inputs = inputs;
     seen.now_ns = now_ns;
     seen.powered = powered_;
-    seen.current = force_current(axis.config(), feedback, measured_, i_set_, saturations_);
+    // A current at an angle that is not known tells nothing of the force.
+    if (!commutation_.searching())
+      seen.current = force_current(axis.config(), feedback, measured_, i_set_, axis.commutation(), saturations_);
     seen.set_position = last_.position;
     seen.set_velocity = last_.velocity;
     seen.referenced = referenced_;
@@ -202,8 +224,9 @@ class ServoDrive {
   }
 
   // A stop that is under way is never made slower.
+  // Nor is one begun that would control a position before its time.
   constexpr void begin_stop(const StopOption& way, Axis<S>& axis) {
-    if (way.ramp == StopRamp::none) return power_off(axis);
+    if (way.ramp == StopRamp::none || preparing()) return power_off(axis);
     fast_ = way.ramp == StopRamp::quick_stop || (stopping_ && fast_);
     stopping_ = true;
   }
@@ -211,6 +234,8 @@ class ServoDrive {
   constexpr void power_off(Axis<S>& axis) {
     axis.stop();
     homing_.stop();
+    commutation_.stop();
+    brake_test_.stop();
     powered_ = false;
     stopping_ = false;
     fast_ = false;
@@ -218,14 +243,17 @@ class ServoDrive {
   }
 
   constexpr void advance_states(const DriveDemand<S>& demand, const Feedback<S>& feedback, bool present,
-                                Axis<S>& axis) {
+                                const DigitalInputs<S>& inputs, Axis<S>& axis) {
     // Homing has set-points of its own, which no other source continues.
     leaves_homing_ = powered_ && mode_ == OperationMode::homing && demand.mode != mode_ && last_.velocity != Velocity{};
     if (!leaves_homing_) mode_ = demand.mode;
     controlword_ = demand.controlword;
+    torque_off_ = demand.torque_off;
+    // No further than switch on disabled; a reset is let through.
+    if (torque_off_) controlword_ = static_cast<std::uint16_t>(controlword_ & controlword::fault_reset_bit);
     const auto before = machine_.state();
     if (before == DriveState::operation_enabled) {
-      const auto command = command_of(demand.controlword);
+      const auto command = command_of(controlword_);
       if (command == DriveCommand::shutdown)
         begin_stop(stop_way(StopObject::shutdown, config_.stops.shutdown), axis);
       else if (command == DriveCommand::switch_on)
@@ -242,7 +270,7 @@ class ServoDrive {
                                                     .cause_present = present});
     switch (taken) {
       case 4:
-        power_on(feedback, axis);
+        power_on(feedback, inputs, axis);
         break;
       case 11:
         begin_stop(stop_way(StopObject::quick_stop, config_.stops.quick_stop), axis);
@@ -263,13 +291,15 @@ class ServoDrive {
       power_off(axis);
   }
 
-  constexpr void power_on(const Feedback<S>& feedback, Axis<S>& axis) {
+  constexpr void power_on(const Feedback<S>& feedback, const DigitalInputs<S>& inputs, Axis<S>& axis) {
     restart(feedback, axis);
     powered_ = true;
     stopping_ = fast_ = false;
     brake_.open(config_.brake_ticks);
     standing_ = 0;
     last_ = {measured_, {}};
+    commutation_.begin(measured_, inputs);
+    brake_test_.begin(measured_);
   }
 
   constexpr void restart(Feedback<S> feedback, Axis<S>& axis) const {
@@ -280,7 +310,10 @@ class ServoDrive {
   constexpr void forget(const Feedback<S>& feedback, Axis<S>& axis) {
     const bool lost = loses_reference(fault_) || loses_reference(following_);
     if (lost && config_.homing.method != HomingMethod::none) referenced_ = false;
+    if (lost) commutation_.lose();
     fault_ = following_ = Fault::none;
+    commutation_.forget();
+    brake_test_.forget();
     supervision_.restart();
     restart(feedback, axis);
     axis.stop();
@@ -315,6 +348,7 @@ class ServoDrive {
       return {last_.position, {}, {}};
     }
     if (stopping_ || machine_.state() != DriveState::operation_enabled) return ramped({}, stopping_ && !fast_);
+    if (preparing() || commutation_.fault() != Fault::none || brake_test_.slipped()) return prepared();
     if (brake_.opens()) return ramped({});
     // Once begun it goes on to rest, as a source of set-points begins there.
     const bool wanted = demand.brake || leaves_homing_ || halted();
@@ -336,6 +370,20 @@ class ServoDrive {
       set.position = narrow<Position>(set.position + origin_, saturations_);
     }
     last_ = {set.position, set.velocity};
+    return set;
+  }
+
+  // A current without control of position, with the brake closed: of a test, or none after one that failed.
+  constexpr SetPoint<S> prepared() {
+    SetPoint<S> set{measured_, {}, {}};
+    last_ = {measured_, {}};
+    set.by_current = true;
+    if (commutation_.searching()) {
+      commutation_.step(measured_, standing());
+      set.injection = commutation_.order().current;
+    } else if (brake_test_.testing()) {
+      set.injection = brake_test_.step(measured_);
+    }
     return set;
   }
 
@@ -373,6 +421,8 @@ class ServoDrive {
   StateMachine machine_;
   Supervision<S> supervision_;
   Homing<S> homing_;
+  CommutationSearch<S> commutation_;
+  BrakeTest<S> brake_test_;
 
   OperationMode mode_ = OperationMode::cyclic_position;
   std::uint16_t controlword_ = 0;
@@ -380,7 +430,7 @@ class ServoDrive {
   bool fault_raised_ = false;
   bool powered_ = false, stopping_ = false, follows_ = false, referenced_ = false;
   bool fast_ = false;  // the stop, by the quick-stop ramp
-  bool leaves_homing_ = false, brakes_ = false, supplied_ = true;
+  bool leaves_homing_ = false, brakes_ = false, supplied_ = true, torque_off_ = false;
   RestWatch<S> rest_;
   LagWatch<S> lag_;
   std::uint8_t self_test_ = 0, standing_ = 0;

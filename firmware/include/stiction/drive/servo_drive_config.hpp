@@ -6,7 +6,10 @@
 #include <cstdint>
 
 #include "stiction/drive/axis.hpp"
+#include "stiction/drive/brake_test.hpp"
+#include "stiction/drive/commutation_search.hpp"
 #include "stiction/drive/homing.hpp"
+#include "stiction/drive/protection.hpp"
 #include "stiction/drive/state_machine.hpp"
 #include "stiction/drive/stop_options.hpp"
 #include "stiction/drive/supervision.hpp"
@@ -33,6 +36,9 @@ struct ServoDriveConfig {
   std::uint32_t following_error_ticks = 0;
   std::uint32_t stop_margin_ticks = 1600;  // 100 ms at 62.5 us
   std::uint32_t brake_ticks = 0;           // that the brake takes to open or to close; 0: none
+  CommutationConfig<S> commutation{};
+  BrakeTestConfig<S> brake_test{};
+  ProtectionConfig<S> protection{};  // for who runs it beside the drive, as hal/drive_loop.hpp does
 };
 
 // What is asked of an axis in a tick.
@@ -42,9 +48,10 @@ struct DriveDemand {
   OperationMode mode = OperationMode::cyclic_position;
   SetPoint<S> set_point{};                 // csp and pp, of the machine's coordinates
   typename S::Velocity velocity_offset{};  // 60B1h, added to the set speed while the drive follows
-  std::array<Fault, 3> causes{};           // what programme, clock and backend see in this tick
+  std::array<Fault, 4> causes{};           // what programme, clock, backend and protection see in this tick
   bool brake = false;                      // to standstill under power, whatever set_point says
   bool quick_stop = false;                 // another axis has a fault
+  bool torque_off = false;                 // a channel of safe torque off is open: nothing is enabled
 };
 
 // A fault as it was seen. `following`: it came on top of another one, or during its stop.

@@ -179,6 +179,7 @@ inline constexpr std::uint16_t homing_error_bit = 1u << 13;  // homing
 // pp, csp: the following error was out of its window (6065h) for longer than 6066h; pv: the slippage of the standard,
 // which is the same error here, as a speed is led by a position. Reserved in csv and cst.
 inline constexpr std::uint16_t following_error_bit = 1u << 13;
+inline constexpr std::uint16_t torque_off_bit = 1u << 8;     // of the manufacturer: safe torque off
 inline constexpr std::uint16_t unreferenced_bit = 1u << 14;  // of the manufacturer: the zero of the axis is not known
 inline constexpr std::uint16_t state_bits = 0x6f;            // bits 0 to 3, 5, 6 tell the state
 

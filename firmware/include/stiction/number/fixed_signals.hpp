@@ -151,6 +151,7 @@ struct FixedSignals {
     return Turn{
         static_cast<std::uint32_t>((coarse * static_cast<std::uint64_t>(std::int64_t{inverse_pitch.raw()})) >> 20)};
   }
+  static constexpr Angle turned(Angle angle, Turn by) { return Turn{angle.raw + by.raw}; }
   static constexpr Sine sine(Angle angle) { return stiction::sine(angle); }
   static constexpr Angle third_of_turn_after(Angle angle) { return Turn{angle.raw + 0x55555555u}; }
   static constexpr Coefficient<30> two_thirds() { return Coefficient<30>::from_raw(715827883); }
