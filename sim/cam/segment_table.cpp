@@ -226,20 +226,4 @@ SegmentTable table_of_parts(const Motion& motion, int parts) {
   return written(motion, fitted, bits);
 }
 
-std::string_view words_of(CamTableProblem problem) {
-  constexpr std::string_view words[] = {
-      "a whole table",
-      "fewer bytes than a table has",
-      "a file of a different kind",
-      "a table of a different version of the format",
-      "a table with bytes missing or added",
-      "a table with a changed byte",
-      "a table for an unknown kind of axis",
-      "a table with scales that no drive can use",
-      "a table whose segments do not follow each other",
-      "a table whose switch tracks do not share their windows",
-  };
-  return words[static_cast<std::size_t>(problem)];
-}
-
 }  // namespace stiction::sim::cam

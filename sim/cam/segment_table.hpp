@@ -14,6 +14,7 @@
 
 #include "sim/cam/motion.hpp"
 #include "stiction/motion/cam_table.hpp"
+#include "stiction/motion/cam_words.hpp"
 
 namespace stiction::sim::cam {
 
@@ -41,7 +42,6 @@ SegmentTable table_within(const Motion& motion, double tolerance);
 // jumps.
 SegmentTable table_of_parts(const Motion& motion, int parts);
 
-// What a table that cannot be read is, as a sentence part: "a table with a changed byte".
-std::string_view words_of(CamTableProblem problem);
+using stiction::words_of;
 
 }  // namespace stiction::sim::cam
