@@ -12,8 +12,9 @@ namespace stiction::drive {
 namespace {
 
 constexpr std::array<const char*, 3> access_names{"const", "ro", "rw"};
-constexpr std::array<const char*, 6> unit_names{
-    "–", "increments", "1000 increments/s", "1000 increments/s²", "thousandths of the current limit", "ms"};
+constexpr std::array<const char*, 7> unit_names{
+    "–",  "increments", "1000 increments/s", "1000 increments/s²", "thousandths of the current limit",
+    "ms", "millionths"};
 
 std::string meaning_of(const Object& object) {
   switch (object.source) {
@@ -130,15 +131,16 @@ std::string eds_text() {
   text +=
       "SimpleBootUpMaster=0\nSimpleBootUpSlave=1\nGranularity=0\nDynamicChannelsSupported=0\nGroupMessaging=0\n"
       "NrOfRXPDO=0\nNrOfTXPDO=0\nLSS_Supported=0\n\n";
-  std::vector<std::uint16_t> mandatory, optional;
+  std::vector<std::uint16_t> mandatory, optional, of_manufacturer;
   for (const Object& object : object_table()) {
     if (object.sub != 0) continue;
     const bool needed = object.index == 0x1000 || object.index == 0x1001 || object.index == 0x1018;
-    (needed ? mandatory : optional).push_back(object.index);
+    const bool own = object.index >= 0x2000 && object.index < 0x6000;
+    (own ? of_manufacturer : needed ? mandatory : optional).push_back(object.index);
   }
   add_list(text, "MandatoryObjects", mandatory);
   add_list(text, "OptionalObjects", optional);
-  add_list(text, "ManufacturerObjects", {});
+  add_list(text, "ManufacturerObjects", of_manufacturer);
   for (const Object& object : object_table()) {
     const std::size_t subs = subs_of(object.index);
     if (subs > 1 && object.sub == 0) {

@@ -30,6 +30,7 @@ enum class ObjectUnit : std::uint8_t {
   acceleration,  // 1000 increments a second squared
   torque,        // a thousandth of the current limit
   millisecond,
+  millionth,  // of a cycle, of a second, of one
 };
 // SI value of one. `increment`: of position on the bus, m.
 double value_of(ObjectUnit unit, double increment);

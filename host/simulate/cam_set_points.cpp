@@ -43,7 +43,7 @@ CamSetPoints::CamSetPoints(const machine::Timing& timing, const machine::AxisMod
                            const sim::cam::Motion& motion, double master_speed, MasterSignal signal)
     : period_(timing.fast_period),
       signal_(signal),
-      bytes_(sim::cam::table_within(motion, table_tolerance).bytes),
+      bytes_(sim::cam::table_within(motion, sim::cam::table_tolerance(motion)).bytes),
       master_({}),
       estimator_(estimator_of(signal)) {
   if (const auto problem = CamTable::read(bytes_, table_); problem != CamTableProblem::none)

@@ -23,9 +23,8 @@ enum class MasterSignal {
   steps   // the same of an encoder with master_steps in a cycle
 };
 
-inline constexpr double master_noise = 1e-5;     // rms, of a cycle
-inline constexpr double master_steps = 10000;    // in a cycle
-inline constexpr double table_tolerance = 1e-9;  // m or rad, as `stiction cam table` has it by itself
+inline constexpr double master_noise = 1e-5;   // rms, of a cycle
+inline constexpr double master_steps = 10000;  // in a cycle
 
 class CamSetPoints {
  public:

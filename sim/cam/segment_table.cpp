@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "sim/cam/characteristics.hpp"
 #include "sim/cam/check.hpp"
 #include "sim/cam/segment_fit.hpp"
 
@@ -196,6 +197,12 @@ bool halve_worst(std::vector<DividedPart>& parts, const TableBound& wanted, doub
 }
 
 }  // namespace
+
+double table_tolerance(const Motion& motion, double share) {
+  const auto range = extremes(motion.curve, 0);
+  const double width = range.highest.value - range.lowest.value;
+  return width > 0.0 ? share * width : share;
+}
 
 SegmentTable table_within(const Motion& motion, double tolerance) {
   if (!(tolerance > 0.0)) throw CamError(fmt::format("found a tolerance of {}; expected more than 0", tolerance));

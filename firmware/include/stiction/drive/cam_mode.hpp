@@ -11,17 +11,12 @@
 #include <cstdint>
 #include <span>
 
+#include "stiction/drive/cam_master.hpp"
 #include "stiction/drive/cam_set_point.hpp"
 #include "stiction/drive/faults.hpp"
 #include "stiction/motion/cam_motion.hpp"
 
 namespace stiction {
-
-// What a master shows in a tick.
-struct MasterReading {
-  MasterPoint point{};
-  bool valid = true;
-};
 
 enum class CamCommand : std::uint8_t {
   none,
@@ -78,6 +73,7 @@ class CamMode {
     motion_.start(position.raw());
     fault_ = Fault::none;
     table_ = 0;
+    waiting_ = nullptr;
   }
 
   // Stands where `curve` is at a `master` that stands, and follows it from the first tick on. `curve`: must outlive
@@ -102,9 +98,11 @@ class CamMode {
       case CamCommand::engage:
         return refusal_ = engage(gear, referenced);
       case CamCommand::leave:
+        waiting_ = nullptr;
         return refusal_ = motion_.leave(0);
       case CamCommand::cancel:
         motion_.cancel();
+        waiting_ = nullptr;
         return refusal_ = CamRefusal::none;
       case CamCommand::phase:
         motion_.phase(asked_.phase);
@@ -119,13 +117,14 @@ class CamMode {
 
   // The set-point of the coming tick, at the `master` of that tick.
   constexpr SetPoint<S> step(const MasterReading& master) {
-    const bool waited = motion_.status().waiting;
     const MotionPoint& point = motion_.step(master.point, master.valid);
     const CamStatus& status = motion_.status();
     fault_ = fault_of(status.fault);
     // Refused behind its trigger.
-    if (waited && !status.waiting && status.refusal != CamRefusal::none) refusal_ = status.refusal;
-    if (waited && !status.waiting && status.active) table_ = waiting_table_;
+    const bool decided = waiting_ != nullptr && !status.waiting;
+    if (decided && status.refusal != CamRefusal::none) refusal_ = status.refusal;
+    if (decided && status.refusal == CamRefusal::none && status.active) table_ = waiting_table_;
+    if (decided) waiting_ = nullptr;
     if (!status.active) table_ = 0;
     return cam_set_point(point, config_->rate);
   }
@@ -197,7 +196,7 @@ class CamMode {
 
   constexpr CamCurve& free_place() {
     std::size_t k = 0;
-    while (&places_[k] == motion_.curve() || (motion_.status().waiting && &places_[k] == waiting_)) ++k;
+    while (&places_[k] == motion_.curve() || &places_[k] == waiting_) ++k;
     return places_[k];
   }
 
@@ -206,7 +205,7 @@ class CamMode {
   CamMotion motion_;
   Asked asked_{};
   std::array<CamCurve, 3> places_{};
-  const CamCurve* waiting_ = nullptr;
+  const CamCurve* waiting_ = nullptr;  // of a request that was not decided yet
   std::uint16_t table_ = 0, waiting_table_ = 0;
   CamRefusal refusal_ = CamRefusal::none;
   Fault fault_ = Fault::none;

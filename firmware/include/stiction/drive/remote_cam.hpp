@@ -15,13 +15,15 @@ class RemoteCam {
   using S = FixedSignals;
 
   // `mode`: of the axis; `master`: what it follows, new in each tick before the axis; both must outlive this.
-  constexpr void attach(CamMode& mode, const MasterReading& master) {
+  constexpr void attach(CamMode& mode, CamMaster& master) {
     mode_ = &mode;
     master_ = &master;
   }
   constexpr bool attached() const { return mode_ != nullptr; }
   constexpr CamMode& mode() { return *mode_; }
   constexpr const CamMode& mode() const { return *mode_; }
+  constexpr CamMaster& master() { return *master_; }
+  constexpr const CamMaster& master() const { return *master_; }
 
   // Stands at `position`, and follows nothing.
   constexpr void start(S::Position position) {
@@ -29,7 +31,8 @@ class RemoteCam {
     if (attached()) mode_->start(position);
   }
 
-  // Gives the command `asked`. `shown`: the mode of the axis; `following`: the drive follows its set-points; `referenced`: its zero is known.
+  // Gives the command `asked`. `shown`: the mode of the axis; `following`: the drive follows its set-points;
+  // `referenced`: its zero is known.
   constexpr void command(CamCommand asked, OperationMode shown, bool following, bool referenced) {
     if (!attached()) return;
     if (!following || !is_coupled(shown)) return mode_->refuse(CamRefusal::not_enabled);
@@ -43,7 +46,7 @@ class RemoteCam {
     if (!attached() || !following) return {stands_, {}, {}};
     const CamStatus& status = mode_->status();
     if (stops && (status.active || status.waiting)) mode_->command(CamCommand::leave, false, false);
-    const auto set = mode_->step(*master_);
+    const auto set = mode_->step(master_->reading());
     if (mode_->status().end_of_profile) ++ends_;
     return set;
   }
@@ -61,7 +64,7 @@ class RemoteCam {
 
  private:
   CamMode* mode_ = nullptr;
-  const MasterReading* master_ = nullptr;
+  CamMaster* master_ = nullptr;
   S::Position stands_{};
   std::uint32_t ends_ = 0;
 };

@@ -31,6 +31,10 @@ enum class OperationMode : std::int8_t {
   cyclic_torque = 10,   // cst: a current each cycle (torque_mode.hpp)
 };
 
+// Those of the standard, which every axis has.
+inline constexpr std::array<OperationMode, 6> standard_modes{
+    OperationMode::profile_position, OperationMode::profile_velocity, OperationMode::homing,
+    OperationMode::cyclic_position,  OperationMode::cyclic_velocity,  OperationMode::cyclic_torque};
 // 6502h, a bit a mode: bit 0 is mode 1, bit 16 mode -1.
 inline constexpr std::array<OperationMode, 8> supported_modes{OperationMode::profile_position,
                                                               OperationMode::profile_velocity,
