@@ -185,7 +185,7 @@ inline constexpr std::array<MotionRow, 16> motion_rows{{
      1e-6,
      "master_speed",
      "1/s",
-     "cycles a second to which a virtual master goes, of all axes; beyond --speed: not taken",
+     "cycles a second to which a virtual master goes, of all axes; held to --speed",
      What::master_speed,
      [](const Axis& a) { return a.cam.master_speed; },
      {}},

@@ -72,7 +72,7 @@ class FramedBackend {
 constexpr double speed = 130.0 / 60.0;  // turns a second
 constexpr double seconds = 10.0;
 
-struct Run {
+struct Compared {
   std::uint64_t ticks = 0, different = 0;
   bool faulted = false;
   double end = 0.0;  // m/s, the largest speed in the last tick before the power went
@@ -80,8 +80,8 @@ struct Run {
 
 // The drive's own run over `backend`, each of its set-points beside one of the simulation.
 template <class B>
-Run compare(B& backend, const drive::DriveOptions& options, const drive::DriveConfiguration& configuration,
-            host::CamSetPoints& simulated) {
+Compared compare(B& backend, const drive::DriveOptions& options, const drive::DriveConfiguration& configuration,
+                 host::CamSetPoints& simulated) {
   hal::DriveLoop<B> loop(backend, configuration.axes, configuration.drives, configuration.ticker,
                          configuration.compensations);
   const auto cam = drive::cam_of(options, configuration);
@@ -90,7 +90,7 @@ Run compare(B& backend, const drive::DriveOptions& options, const drive::DriveCo
   const auto remote = drive::remote_axes(configuration);
   const auto log = std::make_unique<drive::LogRing>();
   drive::Programme programme(loop, task, remote, *log, nullptr);
-  Run run;
+  Compared run;
   for (std::uint64_t tick = 0; tick < 400'000 && !programme.over(); ++tick) {
     const bool follows = programme.phase() == drive::Phase::motion;
     programme.tick(false);
@@ -112,7 +112,7 @@ class CamSetPoints : public ::testing::Test {
  protected:
   CamSetPoints() {
     options.machine = std::string(STICTION_SOURCE_DIR) + "/firmware/machine/shipped/screw-linear-scale.toml";
-    options.cam = {files.add(linear_cam(20e-3))};
+    options.cam = {files.add(linear_cam(15e-3))};
     options.master = "virtual";
     options.speed = "130 rpm";
     options.hold = seconds;
@@ -121,13 +121,13 @@ class CamSetPoints : public ::testing::Test {
     simulated = std::make_unique<host::CamSetPoints>(machine.timing, machine.axes[0], files.motions[0],
                                                      speed * 2.0 * std::numbers::pi);
   }
-  void expect_same(const Run& run, const char* over) const {
+  void expect_same(const Compared& run, const char* over) const {
     EXPECT_FALSE(run.faulted);
     EXPECT_EQ(run.ticks, 160'000u);
     EXPECT_EQ(run.different, 0u);
     EXPECT_EQ(run.end, 0.0) << "the master brakes it to rest along the cam";
-    figure(fmt::format("cam at 130/min for 10 s, stictiond over {} against simulate cam", over),
-           fmt::format("{} of {} set-points different (bound 0)", run.different, run.ticks));
+    figure(fmt::format("cam, 10 s at 130/min: drive against simulate cam, {}", over),
+           fmt::format("{} of {} set-points differ (bound 0)", run.different, run.ticks));
   }
 
   CamFiles files;
@@ -138,13 +138,13 @@ class CamSetPoints : public ::testing::Test {
 
 TEST_F(CamSetPoints, OfTheDriveAreThoseOfTheSimulationToTheLastDigit) {
   Simulated machine(configuration->machine, std::vector<double>{0.0});
-  expect_same(compare(machine, options, *configuration, *simulated), "the simulated machine");
+  expect_same(compare(machine, options, *configuration, *simulated), "simulated");
 }
 
 TEST_F(CamSetPoints, OverTheFramesOfCanFdAreTheSame) {
   Simulated machine(configuration->machine, std::vector<double>{0.0});
   FramedBackend framed(machine);
-  expect_same(compare(framed, options, *configuration, *simulated), "frames of CAN FD");
+  expect_same(compare(framed, options, *configuration, *simulated), "CAN FD");
   EXPECT_TRUE(framed.good());
 }
 

@@ -27,9 +27,11 @@ class CamMaster {
   explicit constexpr CamMaster(const Config& config)
       : config_(config), virtual_(config.virtual_master), estimator_(config.estimator) {}
 
-  // Goes to `speed`, 2^-64 cycles a tick. False, and nothing changes, where it is beyond the limit or the master is
-  // measured.
-  constexpr bool run(std::int64_t speed) { return !config_.measured && virtual_.run(speed); }
+  // Goes to `speed`, 2^-64 cycles a tick, held to its limit. False, and nothing changes, where the master is measured.
+  constexpr bool run(std::int64_t speed) {
+    const std::int64_t most = config_.virtual_master.limits.velocity << MotionPoint::tick_bits;
+    return !config_.measured && virtual_.run(speed > most ? most : speed < -most ? -most : speed);
+  }
   constexpr bool measured() const { return config_.measured; }
 
   // The virtual master of the coming tick.
