@@ -188,6 +188,7 @@ int serve(const DriveOptions& options) {
   }
   if (options.rest) return put_to_rest(configuration, options);
   check_remote(configuration);
+  cam_of(options, configuration);  // refused before anything is opened
   const auto& wanted = configuration.setup.real_time;
   RealTime real_time({.priority = wanted.priority, .cpu = wanted.cpu});
   real_time.prepare_process();

@@ -1,6 +1,7 @@
 #include "firmware/stictiond/modbus_motion.hpp"
 
 #include "firmware/machine/configuration/conversion.hpp"
+#include "firmware/stictiond/modbus_cam.hpp"
 
 namespace stiction::drive {
 
@@ -18,6 +19,7 @@ void ask(const MotionWrite& write, double period, RemoteAxis& axis, CommandSourc
   // A value of who does not command is none; the publisher has answered so.
   if (!axis.owner().accepts(source)) return;
   axis.hear(source);
+  if (ask_cam(write, period, axis)) return;
   switch (write.what) {
     case mode:
       return axis.ask(static_cast<OperationMode>(static_cast<std::int8_t>(write.value)));
@@ -37,12 +39,13 @@ void ask(const MotionWrite& write, double period, RemoteAxis& axis, CommandSourc
       return axis.ask_torque(current(write.value));
     case max_torque:
       return axis.ask_most_torque(current(write.value));
-    case controlword:
-      return;
+    default:
+      return;  // the controlword, and what a cam has taken
   }
 }
 
 void show_asked(const RemoteAxis& axis, double period, PublishedAxis& shown) {
+  show_cam(axis, period, shown.cam);
   const auto& move = axis.move();
   shown.controlword = axis.controlword();
   shown.owner = axis.owner().owner();

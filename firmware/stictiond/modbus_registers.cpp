@@ -5,6 +5,8 @@
 #include <limits>
 
 #include "firmware/machine/file/description.hpp"
+#include "firmware/stictiond/modbus_cam_rows.hpp"
+#include "firmware/stictiond/modbus_rows.hpp"
 
 namespace stiction::drive {
 namespace {
@@ -18,19 +20,7 @@ using enum RegisterType;
 // Axis by axis, with room to grow; a parameter takes two registers.
 constexpr std::uint16_t first_axis = 100, axis_stride = axis_registers;
 constexpr std::uint16_t first_parameters = 1000, parameters_stride = parameter_registers;
-constexpr double position_scale = 1e-8;  // m: 32 bits reach 21 m, in steps finer than any panel shows
 constexpr double store_password = 0x5354;
-
-template <class Owner>
-struct StateRow {
-  std::uint16_t offset;
-  RegisterType type;
-  double scale;
-  const char* name;
-  const char* unit;
-  const char* text;
-  double (*value)(const Owner&);
-};
 
 double number_of(Fault fault) { return static_cast<double>(fault); }
 
@@ -59,7 +49,7 @@ constexpr std::array<StateRow<Drive>, 10> drive_rows{{
 }};
 
 using Axis = PublishedAxis;
-constexpr std::array<StateRow<Axis>, 28> axis_rows{{
+constexpr std::array<StateRow<Axis>, 28> axis_rows_alone{{
     {0, uint16, 1, "statusword", "1", "CiA 402, 6041h", [](const Axis& a) -> double { return a.statusword; }},
     {1, int16, 1, "mode", "1", "mode of operation shown, 6061h", [](const Axis& a) -> double { return a.mode; }},
     {2, uint16, 1, "fault", "1", "number of the axis' fault; 0: none",
@@ -116,26 +106,8 @@ constexpr std::array<StateRow<Axis>, 28> axis_rows{{
     {68, uint16, 1, "torque_off", "1", "safe torque off; bit 0: channel A is open, bit 1: channel B",
      [](const Axis& a) -> double { return (a.torque_off_a ? 1 : 0) + (a.torque_off_b ? 2 : 0); }},
 }};
+constexpr auto axis_rows = joined(axis_rows_alone, cam_registers::state_rows);
 
-struct MotionRow {
-  std::uint16_t offset;
-  RegisterType type;
-  double scale;
-  const char* name;
-  const char* unit;
-  const char* text;
-  MotionWrite::What what;
-  double (*value)(const Axis&);
-  std::array<double, 5> choices{};  // all 0: every number
-  // Limits what may be written to what the axis can; null: every number.
-  void (*limit)(const machine::AxisModel&, Register&) = nullptr;
-};
-
-void up_to(double high, Register& r) {
-  r.low = 0.0;
-  r.low_open = true;
-  r.high = high;
-}
 void to_velocity(const machine::AxisModel& axis, Register& r) { up_to(axis.max_velocity, r); }
 // To both sides.
 void to_speed(const machine::AxisModel& axis, Register& r) {
@@ -151,7 +123,7 @@ void to_acceleration(const machine::AxisModel& axis, Register& r) { up_to(axis.m
 // Set-points of every tick do not come over this bus; what can be asked for is what a drive does by itself. A target
 // beyond the travel is refused by the axis, as it may be relative: bit 11 of the statusword.
 using What = MotionWrite::What;
-constexpr std::array<MotionRow, MotionWrite::kinds> motion_rows{{
+constexpr std::array<MotionRow, 9> motion_rows_alone{{
     {0, uint16, 1, "controlword", "1", "CiA 402, 6040h; reads as the last accepted value", What::controlword,
      [](const Axis& a) -> double { return a.controlword; }},
     {1,
@@ -159,10 +131,11 @@ constexpr std::array<MotionRow, MotionWrite::kinds> motion_rows{{
      1,
      "mode_of_operation",
      "1",
-     "6060h; 1: profile position, 3: profile velocity, 6: homing, 8: cyclic position, 10: cyclic torque",
+     "6060h; 1: profile position, 3: profile velocity, 6: homing, 8: cyclic position, 10: cyclic torque; with --master "
+     "-1: cam, -2: gear",
      What::mode,
      [](const Axis& a) -> double { return a.mode; },
-     {1, 3, 6, 8, 10}},
+     {1, 3, 6, 8, 10, -1, -2}},
     {2, int32, position_scale, "target_position", "m",
      "607Ah; accepted when bit 4 of the controlword rises; bit 5: at once, bit 6: relative", What::target,
      [](const Axis& a) { return a.target; }},
@@ -227,6 +200,8 @@ constexpr std::array<MotionRow, MotionWrite::kinds> motion_rows{{
      {},
      to_max_torque},
 }};
+constexpr auto motion_rows = joined(motion_rows_alone, cam_registers::motion_rows);
+static_assert(motion_rows.size() == MotionWrite::kinds);
 
 template <class Row>
 Register made(const Row& row, RegisterTable table, RegisterAccess access, unsigned start, const std::string& prefix) {

@@ -20,10 +20,28 @@
 namespace stiction::drive {
 
 inline constexpr std::uint16_t modbus_identification = 0x5344;  // "SD"
-inline constexpr std::uint16_t modbus_schema = 4;               // of the registers; changes with any address
+inline constexpr std::uint16_t modbus_schema = 5;               // of the registers; changes with any address
 inline constexpr std::size_t most_published_axes = 8;
 // From the registers of an axis to those of the next one: of state and commands, and of parameters.
 inline constexpr std::uint16_t axis_registers = 100, parameter_registers = 200;
+
+// Of the modes of cam and gear.
+struct PublishedCam {
+  std::uint16_t state = 0;  // bits: busy, active, in sync, waiting, command aborted, the master is known
+  CamRefusal refusal = CamRefusal::none;
+  std::uint16_t followed = 0;  // table
+  std::uint32_t ends = 0;      // of cycles, that were passed
+  double master_phase = 0.0;   // cycles, 0 to 1
+  std::int32_t master_cycles = 0;
+  double master_speed = 0.0;  // cycles/s
+  // What was asked for last.
+  std::uint16_t table = 1, trigger = 0, approach = 0, options = 0;
+  double time = 0.0, distance = 0.0, at = 0.0;                        // s, cycles
+  double master_offset = 0.0, slave_offset = 0.0, slave_scale = 1.0;  // cycles, m
+  double gear_way = 0.0, phase = 0.0;                                 // m, cycles
+  std::int32_t numerator = 1;
+  std::uint16_t denominator = 1;
+};
 
 struct PublishedAxis {
   std::uint16_t statusword = 0;  // CiA 402, 6041h
@@ -57,6 +75,7 @@ struct PublishedAxis {
   double dc_link = 0.0;                       // V
   double motor_temperature = 0.0, stage_temperature = 0.0;  // degrees Celsius
   bool torque_off_a = false, torque_off_b = false;          // open channels
+  PublishedCam cam{};
 };
 
 // How the last request to store ended.
@@ -88,9 +107,26 @@ struct MotionWrite {
     deceleration,
     target_velocity,
     target_torque,
-    max_torque
+    max_torque,
+    // Of a cam; its command last, as what it needs may come in the same request.
+    cam_table,
+    cam_trigger,
+    cam_approach,
+    cam_options,
+    cam_time,
+    cam_distance,
+    cam_at,
+    cam_master_offset,
+    cam_slave_offset,
+    cam_slave_scale,
+    gear_numerator,
+    gear_denominator,
+    gear_way,
+    cam_phase,
+    master_speed,
+    cam_command
   };
-  static constexpr std::size_t kinds = 9;
+  static constexpr std::size_t kinds = 25;
   std::size_t axis = 0;
   What what = What::controlword;
   double value = 0.0;     // SI units; torques as shares of the current limit

@@ -29,6 +29,13 @@ class Motion {
   // Throws MotionError.
   static Motion circle(const machine::Machine& machine, double feed);
 
+  // No set-points of its own, but a begin at `positions` (m, one an axis).
+  static Motion standing_at(std::span<const double> positions) {
+    Motion motion(positions.size());
+    motion.start_.assign(positions.begin(), positions.end());
+    return motion;
+  }
+
   // From `positions` (m, one an axis) to where this motion begins, all axes at once, slowly and from rest to rest; none
   // where they stand there already. Whole slow periods, so that what comes after begins with one.
   Motion approach(const machine::Machine& machine, std::span<const double> positions) const;

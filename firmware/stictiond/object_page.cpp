@@ -12,15 +12,16 @@ namespace stiction::drive {
 namespace {
 
 constexpr std::array<const char*, 3> access_names{"const", "ro", "rw"};
-constexpr std::array<const char*, 9> unit_names{"–",
-                                                "increments",
-                                                "1000 increments/s",
-                                                "1000 increments/s²",
-                                                "thousandths of the current limit",
-                                                "ms",
-                                                "thousandths",
-                                                "tenths of the register's unit",
-                                                "hundredths of the register's unit"};
+constexpr std::array<const char*, 10> unit_names{"–",
+                                                 "increments",
+                                                 "1000 increments/s",
+                                                 "1000 increments/s²",
+                                                 "thousandths of the current limit",
+                                                 "ms",
+                                                 "thousandths",
+                                                 "tenths of the register's unit",
+                                                 "hundredths of the register's unit",
+                                                 "millionths"};
 
 std::string meaning_of(const Object& object) {
   switch (object.source) {

@@ -194,6 +194,8 @@ class ObjectServer::Node : public hal::can::ServedObjects {
       if (!is_supported(static_cast<std::int8_t>(raw))) return SdoAbort::value;
     } else if (const auto refused = range_abort(r, value); refused != SdoAbort::none) {
       return refused;
+    } else if (!r.choices.empty() && std::find(r.choices.begin(), r.choices.end(), value) == r.choices.end()) {
+      return SdoAbort::value;
     }
     // The number that is none (CiA 402, of process data).
     if (raw == static_cast<double>(std::numeric_limits<std::int32_t>::min())) return SdoAbort::value_too_low;

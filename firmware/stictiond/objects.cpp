@@ -43,6 +43,9 @@ constexpr Object setup(std::uint16_t index, std::uint8_t sub, ObjectType type, c
                        double (*value)(const DriveConfiguration&, std::size_t), const char* key) {
   return {index, sub, type, ro, name, Unit::none, Source::setup, key, 0.0, value};
 }
+constexpr Object cam(std::uint8_t sub, ObjectType type, const char* name, const char* command, Unit unit = Unit::none) {
+  return {0x2400, sub, type, rw, name, unit, Source::command, command};
+}
 constexpr Object error(std::uint8_t sub) { return {0x1003, sub, unsigned32, ro, "Standard error field"}; }
 
 using C = DriveConfiguration;
@@ -96,6 +99,33 @@ constexpr auto table = std::to_array<Object>({
     {0x2302, 2, integer16, ro, "Power stage", Unit::tenth, Source::state, "stage_temperature"},
     {0x2303, 0, unsigned16, ro, "DC link voltage", Unit::tenth, Source::state, "dc_link"},
     {0x2304, 0, unsigned16, ro, "Safe torque off", Unit::none, Source::state, "torque_off"},
+    number_of_subs(0x2400, 11),
+    cam(1, unsigned16, "Cam table", "cam_table"),
+    cam(2, unsigned16, "Cam trigger", "cam_trigger"),
+    cam(3, unsigned16, "Cam approach", "cam_approach"),
+    cam(4, unsigned16, "Cam options", "cam_options"),
+    cam(5, unsigned32, "Cam time", "cam_time", Unit::millionth),
+    cam(6, unsigned32, "Cam distance", "cam_distance", Unit::millionth),
+    cam(7, integer32, "Cam trigger position", "cam_at", Unit::millionth),
+    cam(8, integer32, "Cam master offset", "cam_master_offset", Unit::millionth),
+    cam(9, integer32, "Cam slave offset", "cam_slave_offset", Unit::position),
+    cam(10, integer32, "Cam slave scale", "cam_slave_scale", Unit::millionth),
+    cam(11, integer32, "Cam phase", "cam_phase", Unit::millionth),
+    number_of_subs(0x2401, 3),
+    {0x2401, 1, integer32, rw, "Gear numerator", Unit::none, Source::command, "gear_numerator"},
+    {0x2401, 2, unsigned16, rw, "Gear denominator", Unit::none, Source::command, "gear_denominator"},
+    {0x2401, 3, integer32, rw, "Gear way", Unit::position, Source::command, "gear_way"},
+    {0x2402, 0, unsigned16, rw, "Cam command", Unit::none, Source::command, "cam_command"},
+    number_of_subs(0x2403, 4),
+    {0x2403, 1, unsigned16, ro, "Cam state", Unit::none, Source::state, "cam_state"},
+    {0x2403, 2, unsigned16, ro, "Cam refusal", Unit::none, Source::state, "cam_refusal"},
+    {0x2403, 3, unsigned16, ro, "Cam table followed", Unit::none, Source::state, "cam_followed"},
+    {0x2403, 4, unsigned32, ro, "Cam ends of profile", Unit::none, Source::state, "cam_ends"},
+    number_of_subs(0x2404, 4),
+    {0x2404, 1, integer32, rw, "Master set speed", Unit::millionth, Source::command, "master_speed"},
+    {0x2404, 2, integer32, ro, "Master speed", Unit::millionth, Source::state, "master_velocity"},
+    {0x2404, 3, unsigned32, ro, "Master phase", Unit::millionth, Source::state, "master_phase"},
+    {0x2404, 4, integer32, ro, "Master cycles", Unit::none, Source::state, "master_cycles"},
     setup(0x6007, integer16, "Abort connection option code", reaction_of, "stops.commander_lost"),
     {0x603f, 0, unsigned16, ro, "Error code", Unit::none, Source::state, "error_code"},
     {0x6040, 0, unsigned16, rw, "Controlword", Unit::none, Source::command, "controlword"},
@@ -163,7 +193,7 @@ struct RecordName {
   std::uint16_t index;
   const char* name;
 };
-constexpr std::array<RecordName, 10> record_names{{{0x2300, "Commutation"},
+constexpr std::array<RecordName, 14> record_names{{{0x2300, "Commutation"},
                                                    {0x2301, "Thermal load"},
                                                    {0x2302, "Temperature"},
                                                    {0x1003, "Pre-defined error field"},
@@ -171,6 +201,10 @@ constexpr std::array<RecordName, 10> record_names{{{0x2300, "Commutation"},
                                                    {0x1016, "Consumer heartbeat time"},
                                                    {0x1018, "Identity object"},
                                                    {0x1200, "SDO server parameter"},
+                                                   {0x2400, "Cam request"},
+                                                   {0x2401, "Gear"},
+                                                   {0x2403, "Cam status"},
+                                                   {0x2404, "Master of cam and gear"},
                                                    {0x607d, "Software position limit"},
                                                    {0x6099, "Homing speeds"}}};
 
@@ -203,6 +237,8 @@ double value_of(ObjectUnit unit, double increment) {
       return 0.1;
     case Unit::hundredth:
       return 0.01;
+    case Unit::millionth:
+      return 1e-6;
     default:
       return 1.0;
   }

@@ -9,8 +9,8 @@
 namespace stiction::drive {
 
 struct DriveOptions {
-  std::string machine, hal = "simulated", circle, trace, parameters;
-  std::vector<std::string> set;
+  std::string machine, hal = "simulated", circle, trace, parameters, master, speed;
+  std::vector<std::string> set, cam;
   std::optional<double> hold;  // s
   bool unpaced = false, budget = false, check_realtime = false, dbc = false, faults = false, modbus_registers = false;
   bool canopen_objects = false, eds = false;
@@ -39,10 +39,24 @@ struct DriveOptions {
         ->type_name("\"16 m/min\"");
     program
         .add_option("--hold", hold,
-                    "enable the axes, hold them for this many seconds, stop and exit; without --circle and --hold the "
+                    "enable the axes, hold them for this many seconds, or follow the cam of --cam, stop and exit; "
+                    "without --circle and --hold the "
                     "axes remain off until a client of [drive.can_server] or [drive.modbus_server] enables them")
         ->type_name("SECONDS")
         ->check(CLI::Validator(hold_rejection, ""));
+    program
+        .add_option(
+            "--cam", cam,
+            "table of an electronic cam, as `stiction cam table` makes it; may be repeated: clients ask for them "
+            "by their number, from 1")
+        ->type_name("TABLE")
+        ->allow_extra_args(false);
+    program
+        .add_option("--master", master,
+                    "what axes follow in the modes of cam and gear: virtual, or an axis of the machine")
+        ->type_name("MASTER");
+    program.add_option("--speed", speed, "largest speed of the master, for which the tables of --cam are checked")
+        ->type_name("\"130 rpm\"");
     program.add_flag("--unpaced", unpaced, "run the simulated machine as fast as possible, without deadlines");
     program.add_option("--trace", trace, "write every signal of every tick of the motion as a log")->type_name("FILE");
     program.add_flag("--budget", budget, "print the load of the buses and exit");

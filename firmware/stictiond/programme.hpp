@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "firmware/stictiond/cam_drive.hpp"
 #include "firmware/stictiond/log_ring.hpp"
 #include "firmware/stictiond/motion.hpp"
 #include "firmware/stictiond/trace.hpp"
@@ -28,6 +29,8 @@ constexpr const char* name_of(Phase phase) { return phase_names[static_cast<std:
 struct Task {
   Motion approach, motion;       // both may be empty
   std::uint64_t idle_ticks = 0;  // to be held enabled after the motion
+  CamDrive* cam = nullptr;       // a master, and tables that clients may ask for, or
+  std::uint64_t cam_ticks = 0;   // that an axis follows for so long, in the place of the motion
   bool serve = false;            // none of these: others ask for what is done, until the programme is stopped
 };
 
@@ -49,6 +52,9 @@ class Programme {
         dropped_(loop.axis_count()),
         said_refusals_(loop.axis_count()) {
     if (task.serve) enter(Phase::remote);
+    if (task.cam == nullptr) return;
+    for (std::size_t i = 0; i < remote_.size(); ++i)
+      if (task.cam->master_axis() != i) remote_[i].cam().attach(task.cam->mode(i), task.cam->master());
   }
 
   // A fault of every axis from the coming tick to the end: nothing is enabled.
@@ -56,9 +62,10 @@ class Programme {
 
   // One tick. `stop_wanted`: a controlled stop, then the end.
   void tick(bool stop_wanted) {
-    if (stop_wanted && phase_ < Phase::stop) enter(Phase::stop);
+    if (stop_wanted && phase_ < Phase::stop) begin_stop();
     if (loop_.faulted() && phase_ != Phase::remote && phase_ < Phase::faulted) enter(Phase::faulted);
     if (phase_ != Phase::remote) choose_controlwords();
+    if (task_.cam != nullptr) task_.cam->step(loop_);  // before its slaves
     const auto sets = phase_ == Phase::remote ? serve() : set_points();
     if (kept_off_ != Fault::none) loop_.trip(kept_off_);
     const std::int64_t now_ns = loop_.now_ns();
@@ -123,9 +130,10 @@ class Programme {
 
   std::span<const SetPoint<S>> set_points() {
     if (phase_ == Phase::approach) return task_.approach.at(in_phase_);
-    if (phase_ == Phase::motion) return task_.motion.at(in_phase_);
+    if (phase_ == Phase::motion && !follows_cam()) return task_.motion.at(in_phase_);
     // Where each axis' set-point stands; behind a motion that ended moving, the drives' ramp takes over.
     for (std::size_t i = 0; i < hold_.size(); ++i) hold_[i] = {loop_.drive(i).set_position(), {}, {}};
+    if (phase_ == Phase::motion) hold_[task_.cam->own_axis()] = task_.cam->set_point();
     return hold_;
   }
 
@@ -143,7 +151,12 @@ class Programme {
         if (in_phase_ == task_.approach.ticks()) begin_motion();
         break;
       case Phase::motion:
-        if (in_phase_ == task_.motion.ticks()) enter(task_.idle_ticks > 0 ? Phase::idle : Phase::stop);
+        if (follows_cam()) {
+          if (in_phase_ == task_.cam_ticks) task_.cam->brake();
+          if (task_.cam->stopped()) enter(Phase::stop);
+        } else if (in_phase_ == task_.motion.ticks()) {
+          enter(task_.idle_ticks > 0 ? Phase::idle : Phase::stop);
+        }
         break;
       case Phase::idle:
         if (in_phase_ >= task_.idle_ticks) enter(Phase::stop);
@@ -160,10 +173,21 @@ class Programme {
     }
   }
 
+  bool follows_cam() const { return task_.cam_ticks > 0; }
+
+  // A controlled stop: of a cam with its master, of all else by the ramps of the drives.
+  void begin_stop() {
+    if (phase_ == Phase::motion && follows_cam())
+      task_.cam->brake();
+    else
+      enter(Phase::stop);
+  }
+
   void begin_motion() {
     if (phase_ == Phase::home && task_.approach.ticks() > 0) return enter(Phase::approach);
-    if (task_.motion.ticks() == 0) return enter(Phase::idle);
+    if (task_.motion.ticks() == 0 && !follows_cam()) return enter(Phase::idle);
     enter(Phase::motion);
+    if (follows_cam()) task_.cam->begin();
     motion_began_ns_ = loop_.now_ns();
   }
 

@@ -55,7 +55,30 @@ double feed_of(const DriveOptions& options) {
 
 }  // namespace
 
+std::uint64_t ticks_of(const DriveOptions& options, const DriveConfiguration& configuration) {
+  return static_cast<std::uint64_t>(std::ceil(*options.hold / configuration.machine.timing.fast_period));
+}
+
+std::uint64_t traced_ticks(const DriveOptions& options, const DriveConfiguration& configuration, const Task& task) {
+  if (task.cam_ticks == 0) return task.motion.ticks();
+  // And the stop.
+  const double stop = CamDrive::longest_stop / configuration.machine.timing.fast_period;
+  return ticks_of(options, configuration) + static_cast<std::uint64_t>(std::ceil(stop));
+}
+
+std::unique_ptr<CamDrive> cam_of(const DriveOptions& options, const DriveConfiguration& configuration) {
+  if (options.master.empty() && options.cam.empty() && options.speed.empty()) return {};
+  if (options.master.empty())
+    throw StartRefused("--cam, --speed: found no --master; expected what the axes follow: virtual, or an axis");
+  if (!options.circle.empty()) throw StartRefused("--circle: found --master as well; expected one of both");
+  return std::make_unique<CamDrive>(options, configuration);
+}
+
 void check_room(const DriveOptions& options, const DriveConfiguration& configuration, bool locked) {
+  if (!options.cam.empty() && options.hold && !options.trace.empty()) {
+    const double ticks = *options.hold / configuration.machine.timing.fast_period;
+    check_memory(ticks * sizeof(AxisSignals<FixedSignals>) * static_cast<double>(configuration.axes.size()), locked);
+  }
   if (options.circle.empty()) return;
   const double feed = feed_of(options);
   if (!(feed > 0.0)) return;  // refused by the motion itself
@@ -66,14 +89,22 @@ void check_room(const DriveOptions& options, const DriveConfiguration& configura
   check_memory(ticks * bytes * static_cast<double>(configuration.axes.size()), locked);
 }
 
-Task task_of(const DriveOptions& options, const DriveConfiguration& configuration, std::span<const double> positions) {
+Task task_of(const DriveOptions& options, const DriveConfiguration& configuration, std::span<const double> positions,
+             CamDrive* cam) {
   const auto& machine = configuration.machine;
   Task task{.approach = Motion(machine.axes.size()), .motion = Motion(machine.axes.size())};
-  if (!options.circle.empty()) {
+  task.cam = cam;
+  if (cam != nullptr && options.hold) {
+    std::vector<double> begin(positions.begin(), positions.end());
+    begin[cam->own_axis()] = cam->start();
+    task.motion = Motion::standing_at(begin);
+    task.approach = task.motion.approach(machine, positions);
+    task.cam_ticks = ticks_of(options, configuration);
+  } else if (!options.circle.empty()) {
     task.motion = Motion::circle(machine, feed_of(options));
     task.approach = task.motion.approach(machine, positions);
   } else if (options.hold) {
-    task.idle_ticks = static_cast<std::uint64_t>(std::ceil(*options.hold / machine.timing.fast_period));
+    task.idle_ticks = ticks_of(options, configuration);
   } else {
     task.serve = true;
   }

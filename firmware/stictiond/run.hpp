@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "firmware/machine/configuration/conversion.hpp"
+#include "firmware/stictiond/cam_drive.hpp"
 #include "firmware/stictiond/can_server.hpp"
 #include "firmware/stictiond/configuration.hpp"
 #include "firmware/stictiond/log_output.hpp"
@@ -63,7 +64,15 @@ inline constexpr std::uint64_t row_bytes = 256;  // of a trace's file, for one a
 
 // The task of the options. `positions`: where the axes stand (m). Throws MotionError. `options`: of the command line;
 // `configuration`: of the drive.
-Task task_of(const DriveOptions& options, const DriveConfiguration& configuration, std::span<const double> positions);
+// `cam`: of --cam and --master; null: none.
+Task task_of(const DriveOptions& options, const DriveConfiguration& configuration, std::span<const double> positions,
+             CamDrive* cam = nullptr);
+// Of --hold. `options`, `configuration`: as above.
+std::uint64_t ticks_of(const DriveOptions& options, const DriveConfiguration& configuration);
+// Of the motion that a trace keeps. `options`, `configuration`, `task`: as above.
+std::uint64_t traced_ticks(const DriveOptions& options, const DriveConfiguration& configuration, const Task& task);
+// Null where the options ask for no cam. Throws StartRefused. `options`, `configuration`: as above.
+std::unique_ptr<CamDrive> cam_of(const DriveOptions& options, const DriveConfiguration& configuration);
 
 // The loop's clock behind a controller's SYNC.
 class ControllerClock {
@@ -161,10 +170,11 @@ RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const Driv
                                                                configuration.ticker, configuration.compensations);
   std::vector<double> positions;
   for (const auto& feedback : loop.loop().feedback()) positions.push_back(machine::to_si(feedback.position));
-  const Task task = task_of(options, configuration, positions);
-  if (!options.trace.empty())
-    check_trace_file(options.trace, task.motion.ticks() * configuration.axes.size() * row_bytes);
-  Trace trace(configuration.names.size(), options.trace.empty() ? 0 : task.motion.ticks());
+  const auto cam = cam_of(options, configuration);
+  const Task task = task_of(options, configuration, positions, cam.get());
+  const auto traced = traced_ticks(options, configuration, task);
+  if (!options.trace.empty()) check_trace_file(options.trace, traced * configuration.axes.size() * row_bytes);
+  Trace trace(configuration.names.size(), options.trace.empty() ? 0 : traced);
   LogRing log;
   LogOutput output(STDERR_FILENO, journal_listens());
   const LogSink say = [&output](LogLevel level, std::string_view text) { output.put(level, text); };

@@ -150,7 +150,7 @@ std::vector<NetworkMessage> network_messages() {
 // A DBC file as it grows.
 struct Writer {
   std::string text{};
-  std::vector<std::uint32_t> fd_ids{};
+  std::vector<std::uint32_t> fd_ids{}, mode_ids{};
 
   void message(std::uint32_t id, const std::string& name, std::size_t size, const std::string& sender, Format format) {
     if (format == Format::fd) fd_ids.push_back(id);
@@ -176,6 +176,7 @@ struct Writer {
       for (const auto& m : server_messages(increment)) {
         const auto& pdo = description_of(m.pdo);
         if (!pdo.exchanged_at(bus.level)) continue;
+        if (m.pdo == Pdo::mode) mode_ids.push_back(pdo.id() + static_cast<std::uint32_t>(axis.node));
         message(pdo.id() + static_cast<std::uint32_t>(axis.node), axis.name + "_" + m.name, pdo.size,
                 pdo.received ? "controller" : "drive", bus.format);
         for (const auto& signal : m.signals) text += line_of(signal, pdo.received ? "drive" : "controller");
@@ -193,6 +194,14 @@ struct Writer {
                 Format::classical);
         for (const auto& signal : m.signals) text += line_of(signal, m.of_drive ? "controller" : "drive");
       }
+  }
+
+  // What the numbers of 6060h are; those below 0 are the manufacturer's.
+  void add_modes() {
+    for (const auto id : mode_ids)
+      text += "\nVAL_ " + std::to_string(id) +
+              " mode_of_operation -2 \"gear\" -1 \"cam\" 1 \"profile position\" 3 \"profile velocity\" 6 \"homing\" 8 "
+              "\"cyclic position\" 9 \"cyclic velocity\" 10 \"cyclic torque\";\n";
   }
 
   void add_formats() {
@@ -218,6 +227,7 @@ std::string dbc_text(const DbcBus& nodes, const DbcBus& server, double increment
   writer.add_server(server, increment);
   writer.add_network(server);
   writer.add_formats();
+  writer.add_modes();
   return writer.text;
 }
 

@@ -125,8 +125,7 @@ double tolerance_of(const TableOptions& options, const sim::cam::Motion& motion)
   char* end = nullptr;
   const double share = std::strtod(text.c_str(), &end);
   if (end != text.c_str() && *end == '\0') {
-    const auto range = extremes(motion.curve, 0);
-    if (share > 0.0) return share * (range.highest.value - range.lowest.value);
+    if (share > 0.0) return table_tolerance(motion, share);
   }
   const double tolerance =
       cam_quantity("--tolerance", text, rotary ? "rad" : "m",

@@ -123,7 +123,8 @@ void run_cam_command(const CamRunOptions& options, const Invocation& invocation)
 }  // namespace
 
 void add_cam_run(CLI::App& simulate, const Invocation& invocation) {
-  auto* command = simulate.add_subcommand("cam", "simulate an electronic cam: following error, torque, power, energy");
+  auto* command =
+      simulate.add_subcommand("cam", "simulate the drive's electronic cam: following error, torque, power, energy");
   auto o = std::make_shared<CamRunOptions>();
   o->machine.add_to(*command, "shipped machine by name, or a machine file, whose axis follows the cam");
   o->machine.add_axis_to(*command);
@@ -139,7 +140,7 @@ void add_cam_run(CLI::App& simulate, const Invocation& invocation) {
       ->add_option(
           "--master", o->master,
           "what the slave knows of the master: ideal; noisy, a position with noise of 10 ppm of a cycle; steps, "
-          "an encoder of 10000 steps in a cycle [ideal]")
+          "an encoder of 10000 steps in a cycle; the last two through the drive's estimator [ideal]")
       ->check(one_of({"ideal", "noisy", "steps"}))
       ->type_name("SIGNAL");
   add_output_file(*command, "--log", o->log, "write the measured cycles of the first run as a log");

@@ -39,6 +39,7 @@ struct AxisLog {
   std::vector<double> supply;          // V, of the inverter
   std::vector<double> motor_torque;    // N m, at the motor, before the transmission
   std::vector<double> master;          // rad, of the axis that this one follows
+  std::vector<double> master_speed;    // rad/s
   std::vector<double> table;           // number of the cam table, a whole number
   std::vector<double> fault;           // number of the drive's fault, a whole number
   // Of an endless axis in a simulated log: the part of a turn beyond whole ones. It is written and not read, and is no
@@ -66,7 +67,7 @@ struct LogChannel {
   bool shared = false;  // may stand without prefix beside prefixed channels, for all axes
   bool whole = false;   // its values are whole numbers
 };
-inline constexpr std::array<LogChannel, 19> log_channels{{
+inline constexpr std::array<LogChannel, 20> log_channels{{
     {"x_set", "m", &AxisLog::x_set, "set position", "x_set", "rad"},
     {"v_set", "m/s", &AxisLog::v_set, "set velocity", "v_set", "rad/s"},
     {"a_set", "m/s^2", &AxisLog::a_set, "set acceleration", "a_set", "rad/s^2"},
@@ -84,6 +85,7 @@ inline constexpr std::array<LogChannel, 19> log_channels{{
     {"supply", "V", &AxisLog::supply, "supply voltage of the inverter", "supply", "V", true},
     {"T_motor", "N m", &AxisLog::motor_torque, "torque at the motor", "T_motor", "N m"},
     {"master", "rad", &AxisLog::master, "position of the master", "master", "rad", true},
+    {"master_speed", "rad/s", &AxisLog::master_speed, "speed of the master", "master_speed", "rad/s", true},
     {"table", "1", &AxisLog::table, "number of the cam table", "table", "1", true, true},
     {"fault", "1", &AxisLog::fault, "number of the fault", "fault", "1", true, true},
 }};

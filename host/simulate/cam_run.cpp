@@ -3,8 +3,10 @@
 #include <array>
 #include <cmath>
 #include <deque>
-#include <random>
+#include <numbers>
+#include <type_traits>
 
+#include "firmware/machine/configuration/cam_configuration.hpp"
 #include "firmware/machine/configuration/double_signals.hpp"
 #include "host/simulate/control_run.hpp"
 #include "host/simulate/log_recorder.hpp"
@@ -13,77 +15,20 @@
 namespace stiction::host {
 namespace {
 
-// The true master: from rest to `speed` within one cycle by a constant acceleration, then steady.
-class TrueMaster {
- public:
-  TrueMaster(double speed, double cycle) : speed_(speed), cycle_(cycle), ramp_(2.0 * cycle / speed) {}
-
-  double ramp() const { return ramp_; }  // s
-  double cycle_time() const { return cycle_ / speed_; }
-  double position(double t) const {
-    if (t <= 0.0) return 0.0;
-    return t < ramp_ ? 0.5 * speed_ * t * t / ramp_ : cycle_ + speed_ * (t - ramp_);
-  }
-  double speed(double t) const { return t <= 0.0 ? 0.0 : t < ramp_ ? speed_ * t / ramp_ : speed_; }
-  double acceleration(double t) const { return t > 0.0 && t < ramp_ ? speed_ / ramp_ : 0.0; }
-
- private:
-  double speed_, cycle_, ramp_;
-};
-
-struct MasterState {
-  double position, speed, acceleration;
-};
-
-// The master as the slave sees it, tick by tick.
-class SeenMaster {
- public:
-  // `window`: ticks over which a measured position is differentiated; `period` of a tick, s.
-  SeenMaster(const TrueMaster& master, MasterSignal signal, double cycle, int window, double period)
-      : master_(master), signal_(signal), cycle_(cycle), window_(static_cast<std::size_t>(window)), period_(period) {}
-
-  MasterState at(double t) {
-    const double position = master_.position(t);
-    if (signal_ == MasterSignal::ideal) return {position, master_.speed(t), master_.acceleration(t)};
-    const double seen = signal_ == MasterSignal::steps
-                            ? std::floor(position / cycle_ * master_steps) * cycle_ / master_steps
-                            : position + noise_(engine_) * master_noise * cycle_;
-    past_.push_back(seen);
-    if (past_.size() > window_ + 1) past_.pop_front();
-    const auto steps = static_cast<double>(past_.size() - 1);
-    return {seen, steps > 0.0 ? (seen - past_.front()) / (steps * period_) : 0.0, 0.0};
-  }
-
- private:
-  const TrueMaster& master_;
-  MasterSignal signal_;
-  double cycle_;
-  std::size_t window_;
-  double period_;
-  std::deque<double> past_;
-  std::mt19937_64 engine_{1};
-  std::normal_distribution<double> noise_;
-};
-
-// The slave over any number of cycles.
+// Where the motion is at a master, over any number of cycles.
 class Slave {
  public:
   explicit Slave(const sim::cam::Motion& motion) : motion_(motion), cycle_(motion.cam.cycle()) {
     const auto& curve = motion.curve;
     rise_ = curve.derivative(curve.end(), 0, sim::cam::Side::left) - curve(curve.begin());
   }
-  // In the slave's unit; `factor` makes it metres.
-  sim::AxisSetPoint at(const MasterState& master, double factor) const {
-    const double x = place(master.position);
-    const auto& piece = motion_.curve.pieces()[motion_.curve.piece_at(x)];
-    const double slope = piece.derivative(x, 1);
-    return {
-        .position = position(master.position) * factor,
-        .velocity = slope * master.speed * factor,
-        .acceleration = (piece.derivative(x, 2) * master.speed * master.speed + slope * master.acceleration) * factor};
+  // In the slave's unit.
+  double position(const MasterPosition& master) const {
+    return motion_.curve(place(master)) + rise_ * static_cast<double>(master.cycles);
   }
-  double position(double master) const { return motion_.curve(place(master)) + rise_ * std::floor(master / cycle_); }
-  double place(double master) const { return master - cycle_ * std::floor(master / cycle_); }
+  double place(const MasterPosition& master) const {
+    return std::ldexp(static_cast<double>(master.phase), -64) * cycle_;
+  }
 
  private:
   const sim::cam::Motion& motion_;
@@ -107,6 +52,15 @@ void switch_off(machine::AxisModel& axis, const CamRunSettings& settings) {
   if (!settings.compensation) axis.friction_compensation.reset();
 }
 
+// With the set-point in the drive's formats where the control has them.
+template <class S>
+void tick(ControlRun<S>& run, const CamSetPoints& set_points, const TraceSink<S>& trace) {
+  if constexpr (std::is_same_v<S, FixedSignals>) {
+    if (run.cascaded()) return run.tick(std::array{set_points.set_point()}, trace);
+  }
+  run.tick(std::array{set_points.in_si()}, trace);
+}
+
 }  // namespace
 
 template <class S>
@@ -115,28 +69,40 @@ CamRun run_cam(machine::Machine machine, const sim::cam::Motion& motion, const C
   switch_off(axis, settings);
   const double radius = axis.coordinate.rotary() ? axis.coordinate.radius : 1.0, cycle = motion.cam.cycle();
   const double period = machine.timing.fast_period;
-  const TrueMaster master(settings.master_speed, cycle);
-  SeenMaster seen(master, settings.master, cycle, static_cast<int>(machine.timing.slow_period / period), period);
+  // The log's master is an angle: of a linear one that of its cycle.
+  const double angle = motion.cam.master == sim::cam::Coordinate::rotary ? cycle : 2.0 * std::numbers::pi;
+  CamSetPoints set_points(machine.timing, axis, motion, settings.master_speed, settings.master);
   const Slave slave(motion);
-  ControlRun<S> run(machine, std::array<double, 1>{slave.position(0.0) * radius});
+  ControlRun<S> run(machine, std::array<double, 1>{set_points.start()});
   LogRecorder recorder(machine);
   const auto record = recorder.template sink<S>();
+  // Ticks by which compensation holds set-points back; what is followed now was made so long ago.
+  const auto late = static_cast<std::size_t>(std::lround((run.time() - run.set_point_time()) / period));
+  std::deque<MasterPoint> made;
 
   CamRun result;
   result.segments.resize(motion.segments.size());
   Sums whole;
   std::vector<Sums> parts(motion.segments.size());
-  std::vector<double> masters;
+  std::vector<double> masters, speeds;
   double squares = 0.0, energy = 0.0;
-  const double begin = master.ramp(), end = begin + settings.cycles * master.cycle_time();
-  const double last = end - master.cycle_time();
-  while (run.time() < end) {
-    const double t = run.time();
-    const bool measured = t >= begin;
+  std::int64_t first_cycle = -1;
+  while (true) {
+    set_points.step();
+    made.push_back(set_points.master());
+    if (made.size() > late + 1) made.pop_front();
+    const MasterPoint& followed = made.front();
+    const bool at_speed = set_points.at_speed() && made.size() == late + 1;
+    // From the first whole cycle at speed on.
+    if (first_cycle < 0 && at_speed && made.front().velocity == made.back().velocity)
+      first_cycle = followed.position.cycles + 1;
+    const std::int64_t gone = followed.position.cycles - first_cycle;
+    if (first_cycle >= 0 && gone >= settings.cycles) break;
+    const bool measured = first_cycle >= 0 && gone >= 0;
     if (measured) {
       auto& plant = run.plant(0);
-      const double now = master.position(run.set_point_time()), place = slave.place(now);
-      const double error = slave.position(now) - plant.position() / radius;
+      const double place = slave.place(followed.position);
+      const double error = slave.position(followed.position) - plant.position() / radius;
       const double effort = plant.motor_force() * radius, power = plant.motor_force() * plant.velocity();
       const std::size_t at = motion.segment_of(motion.curve.piece_at(place));
       include(result.error, whole, error, place);
@@ -145,22 +111,26 @@ CamRun run_cam(machine::Machine machine, const sim::cam::Motion& motion, const C
       result.peak_power = std::max(result.peak_power, std::fabs(power));
       squares += effort * effort;
       energy += power * period;
-      if (t >= last) {
+      if (gone + 1 == settings.cycles) {
         result.master.push_back(place);
         result.following.push_back(error);
         result.effort.push_back(effort);
       }
-      masters.push_back(place);
+      masters.push_back(place / cycle * angle);
+      speeds.push_back(machine::motion_bounds({followed.velocity, 0, 0}, period).velocity * angle);
     }
-    run.tick(std::array{slave.at(seen.at(t), radius)}, measured ? record : TraceSink<S>{});
+    tick(run, set_points, measured ? record : TraceSink<S>{});
   }
   result.rms_effort = std::sqrt(squares / static_cast<double>(whole.count));
   result.energy = energy / settings.cycles;
   result.log = recorder.take();
   // Of each tick in the order of the record.
+  auto& log = result.log.axes.front();
   masters.resize(result.log.t.size(), 0.0);
-  result.log.axes.front().master = std::move(masters);
-  result.log.axes.front().table.assign(result.log.t.size(), settings.table);
+  speeds.resize(result.log.t.size(), 0.0);
+  log.master = std::move(masters);
+  log.master_speed = std::move(speeds);
+  log.table.assign(result.log.t.size(), settings.table);
   return result;
 }
 

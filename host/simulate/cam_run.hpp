@@ -1,5 +1,5 @@
 // An electronic cam through the simulated axis: the set-points of the motion over a master that comes to its speed in
-// one cycle and then turns steadily. Set-points are computed in double precision; the axis' own control follows them.
+// about one cycle and then turns steadily. Set-points are those of the firmware's cam (cam_set_points.hpp).
 #pragma once
 
 #include <string>
@@ -7,23 +7,14 @@
 
 #include "firmware/machine/model/machine.hpp"
 #include "host/log/log.hpp"
+#include "host/simulate/cam_set_points.hpp"
 #include "sim/cam/motion.hpp"
 
 namespace stiction::host {
 
-// What the slave knows of its master.
-enum class MasterSignal {
-  ideal,  // position and speed
-  noisy,  // a position with noise of master_noise; its speed is the difference over a slow period
-  steps   // the same of an encoder with master_steps in a cycle
-};
-
-inline constexpr double master_noise = 1e-5;   // rms, of a cycle
-inline constexpr double master_steps = 10000;  // in a cycle
-
 struct CamRunSettings {
   double master_speed = 0.0;  // rad/s or m/s
-  int cycles = 3;             // that are measured, behind the one in which the master comes to its speed
+  int cycles = 3;             // that are measured, behind those in which the master comes to its speed
   MasterSignal master = MasterSignal::ideal;
   bool feedforward = true;   // as the machine file has it; false: none
   bool compensation = true;  // of friction, as the machine file has it; false: none
@@ -45,11 +36,11 @@ struct CamRun {
   double energy = 0.0;      // J a cycle
   // Of the last cycle, over the master: the error, the motor's effort.
   std::vector<double> master, following, effort;
-  Log log;  // of the measured cycles, with the channels master and table
+  Log log;  // of the measured cycles, with the channels master, master_speed and table
 };
 
 // `motion` on the only axis of `machine`, with those `settings`; set-points move it from where it is at the master's 0.
-// S: FixedSignals or machine::DoubleSignals. Throws FaultTripped, machine::ConfigurationError.
+// S: FixedSignals or machine::DoubleSignals. Throws FaultTripped, and as CamSetPoints.
 template <class S>
 CamRun run_cam(machine::Machine machine, const sim::cam::Motion& motion, const CamRunSettings& settings);
 

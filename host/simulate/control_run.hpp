@@ -99,6 +99,17 @@ class ControlRun {
     if (structured_) [[unlikely]]
       return tick_structured(set_points, trace);
     for (std::size_t i = 0; i < set_.size(); ++i) set_[i] = sim::to_set_point<S>(set_points[i]);
+    tick_cascade(trace);
+  }
+  // The same with set-points in the formats of the drive; only where every axis has the cascade.
+  void tick(std::span<const SetPoint<S>> set_points, const TraceSink<S>& trace = {}) {
+    std::copy(set_points.begin(), set_points.end(), set_.begin());
+    tick_cascade(trace);
+  }
+  bool cascaded() const { return !structured_; }
+
+ private:
+  void tick_cascade(const TraceSink<S>& trace) {
     const std::int64_t now_ns = loop_->now_ns();
     count();  // what this tick works on was read when the one before ended
     loop_->tick(set_);
@@ -106,7 +117,6 @@ class ControlRun {
     if (loop_->faulted()) throw_fault();
   }
 
- private:
   void tick_structured(std::span<const sim::AxisSetPoint> set_points, const TraceSink<S>& trace) {
     const std::int64_t now_ns = structured_->now_ns();
     structured_->tick(set_points);

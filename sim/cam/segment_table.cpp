@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "sim/cam/characteristics.hpp"
 #include "sim/cam/check.hpp"
 #include "sim/cam/segment_fit.hpp"
 
@@ -197,6 +198,12 @@ bool halve_worst(std::vector<DividedPart>& parts, const TableBound& wanted, doub
 
 }  // namespace
 
+double table_tolerance(const Motion& motion, double share) {
+  const auto range = extremes(motion.curve, 0);
+  const double width = range.highest.value - range.lowest.value;
+  return width > 0.0 ? share * width : share;
+}
+
 SegmentTable table_within(const Motion& motion, double tolerance) {
   if (!(tolerance > 0.0)) throw CamError(fmt::format("found a tolerance of {}; expected more than 0", tolerance));
   require_continuous(motion);
@@ -224,22 +231,6 @@ SegmentTable table_of_parts(const Motion& motion, int parts) {
     for (const DividedPart& part : of_segment) fitted.push_back(fit_segment(part.part, cycle, bits));
   }
   return written(motion, fitted, bits);
-}
-
-std::string_view words_of(CamTableProblem problem) {
-  constexpr std::string_view words[] = {
-      "a whole table",
-      "fewer bytes than a table has",
-      "a file of a different kind",
-      "a table of a different version of the format",
-      "a table with bytes missing or added",
-      "a table with a changed byte",
-      "a table for an unknown kind of axis",
-      "a table with scales that no drive can use",
-      "a table whose segments do not follow each other",
-      "a table whose switch tracks do not share their windows",
-  };
-  return words[static_cast<std::size_t>(problem)];
 }
 
 }  // namespace stiction::sim::cam

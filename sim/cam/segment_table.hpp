@@ -14,6 +14,7 @@
 
 #include "sim/cam/motion.hpp"
 #include "stiction/motion/cam_table.hpp"
+#include "stiction/motion/cam_words.hpp"
 
 namespace stiction::sim::cam {
 
@@ -30,6 +31,10 @@ struct SegmentTable {
   std::uint32_t segments = 0;  // of the table
 };
 
+// The tolerance of a table that nobody says more of, in the slave's unit: a `share` of the range of positions of
+// `motion`.
+double table_tolerance(const Motion& motion, double share = 1e-9);
+
 // The table of `motion` whose proven position error is at most `tolerance`, in the slave's unit: parts are halved until
 // it is. Throws CamError where that takes more segments than a table holds or is finer than 32-bit coefficients are,
 // and for a motion whose position or speed jumps.
@@ -41,7 +46,6 @@ SegmentTable table_within(const Motion& motion, double tolerance);
 // jumps.
 SegmentTable table_of_parts(const Motion& motion, int parts);
 
-// What a table that cannot be read is, as a sentence part: "a table with a changed byte".
-std::string_view words_of(CamTableProblem problem);
+using stiction::words_of;
 
 }  // namespace stiction::sim::cam

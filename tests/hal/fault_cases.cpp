@@ -245,6 +245,10 @@ std::vector<FaultCase> cases_of_backend_and_programme() {
       programme(Fault::watchdog_starved, "told by the programme"),
       programme(Fault::set_points_lost, "told by the programme"),
       programme(Fault::commander_lost, "told by the programme"),
+      programme(Fault::master_lost, "told by the programme"),
+      programme(Fault::master_too_fast, "told by the programme"),
+      programme(Fault::synchronisation_lost, "told by the programme"),
+      programme(Fault::cam_table, "told by the programme"),
   };
 }
 

@@ -92,7 +92,7 @@ TEST(Commander, WhoseConnectionEndsIsGoneAtOnce) {
 
 TEST(Commander, GoneInAnyModeIsAStopWithinItsTimeAndTheRamp) {
   int cases = 0, at_rest = 0;
-  for (const auto mode : supported_modes)
+  for (const auto mode : standard_modes)
     for (const auto source : {can, modbus}) {
       SCOPED_TRACE(::testing::Message() << "mode " << static_cast<int>(mode) << ", " << name_of(source));
       const bool streamed = is_cyclic(mode);

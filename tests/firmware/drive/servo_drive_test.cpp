@@ -201,10 +201,12 @@ TEST(ServoDrive, KnowsTheForceOfEveryKindOfMotor) {
 
 TEST(ServoDrive, HasTheModesThatItsBitsSay) {
   std::uint32_t bits = 0;
-  for (int mode = -1; mode < 12; ++mode)
+  for (int mode = 0; mode < 12; ++mode)
     if (is_supported(mode)) bits |= 1u << (mode - 1);
-  EXPECT_EQ(bits, supported_mode_bits());
   EXPECT_EQ(bits, 0b11'1010'0101u);
+  // Bits 16 and on are the manufacturer's: modes -1 and -2.
+  for (int mode = -4; mode < 0; ++mode) EXPECT_EQ(is_supported(mode), mode >= -2);
+  EXPECT_EQ(supported_mode_bits(), bits | 0b11u << 16);
 }
 
 }  // namespace

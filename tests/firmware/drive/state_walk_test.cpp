@@ -74,7 +74,8 @@ constexpr std::array<WayRow, 30> way_rows{{
 
 constexpr std::array<DriveState, 6> walked_states{switch_on_disabled, ready_to_switch_on, switched_on,
                                                   operation_enabled,  quick_stop_active,  DriveState::fault};
-constexpr auto& walked_modes = supported_modes;
+// Those of cam and gear need a master: tests/firmware/stictiond/served_cam_test.cpp.
+constexpr auto& walked_modes = standard_modes;
 constexpr std::array<double, 3> walked_speeds{0.0, 0.2, -0.2};  // m/s
 
 // The most that a limit of the axis lets the set speed change in a tick, and the roundings of two speeds.

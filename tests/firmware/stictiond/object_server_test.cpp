@@ -54,8 +54,8 @@ TEST_F(Objects, SayWhatTheDriveIs) {
   EXPECT_EQ(text(0x1008), "stiction");
   EXPECT_EQ(text(0x1009), table.configuration.machine.id);
   EXPECT_THAT(text(0x100a), ::testing::HasSubstr("commit"));
-  // pp, pv, homing, csp, csv, cst: bits 0, 2, 5, 7, 8, 9.
-  EXPECT_EQ(client.number(0x6502), 0x3a5u);
+  // pp, pv, homing, csp, csv, cst: bits 0, 2, 5, 7, 8, 9; cam and gear: 16, 17.
+  EXPECT_EQ(client.number(0x6502), 0x303a5u);
 }
 
 TEST_F(Objects, AreOfTheirNodeAlone) {

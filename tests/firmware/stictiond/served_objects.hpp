@@ -20,9 +20,9 @@ namespace stiction::test {
 
 class Objects : public ::testing::Test {
  protected:
-  explicit Objects(const std::vector<std::string>& settings = {}, bool allowed = true)
+  explicit Objects(const std::vector<std::string>& settings = {}, bool allowed = true, const ServedTable::Cam& cam = {})
       : folder(std::filesystem::temp_directory_path() / ("stiction-objects-" + std::to_string(::getpid()))),
-        table(settings, allowed) {
+        table(settings, allowed, cam) {
     std::filesystem::create_directories(folder);
     make({.file = folder / "parameters"});
   }

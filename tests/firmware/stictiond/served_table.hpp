@@ -15,13 +15,22 @@
 
 namespace stiction::test {
 
+// Of --cam, --master and --speed; no master: none.
+struct CamArguments {
+  std::vector<std::string> tables;
+  std::string master, speed;
+};
+
 class ServedTable {
  public:
+  using Cam = CamArguments;
   using Simulated = hal::SimulatedBackend<FixedSignals>;
 
   // `settings`: over the machine file, beside nodes 1 and 2 on an interface that nobody opens.
-  explicit ServedTable(const std::vector<std::string>& settings = {}, bool allowed = true)
+  // `cam_options`: for a cam.
+  explicit ServedTable(const std::vector<std::string>& settings = {}, bool allowed = true, const Cam& cam_options = {})
       : configuration(read(settings, allowed)),
+        cam(make(cam_options, configuration)),
         remote_(drive::remote_axes(configuration)),
         simulated(configuration.machine, std::vector<double>{0.09, 0.0}),
         loop(simulated, configuration.axes, configuration.drives, configuration.ticker, configuration.compensations),
@@ -81,8 +90,18 @@ class ServedTable {
   std::uint64_t ticks = 0;
   std::function<void()> before_tick;
   std::unique_ptr<drive::LogRing> log = std::make_unique<drive::LogRing>();
+  std::unique_ptr<drive::CamDrive> cam;
 
  private:
+  static std::unique_ptr<drive::CamDrive> make(const Cam& cam, const drive::DriveConfiguration& configuration) {
+    if (cam.master.empty()) return {};
+    drive::DriveOptions options;
+    options.cam = cam.tables;
+    options.master = cam.master;
+    options.speed = cam.speed;
+    return std::make_unique<drive::CamDrive>(options, configuration);
+  }
+
   static drive::DriveConfiguration read(const std::vector<std::string>& settings, bool allowed) {
     drive::DriveOptions options;
     options.machine = std::string(STICTION_SOURCE_DIR) + "/firmware/machine/shipped/mcfv5050ln.toml";
@@ -96,7 +115,8 @@ class ServedTable {
     return drive::read_configuration(options);
   }
 
-  drive::Task task_{.approach = drive::Motion(2), .motion = drive::Motion(2), .idle_ticks = 0, .serve = true};
+  drive::Task task_{
+      .approach = drive::Motion(2), .motion = drive::Motion(2), .idle_ticks = 0, .cam = cam.get(), .serve = true};
   std::vector<RemoteAxisConfig> remote_;
 
  public:

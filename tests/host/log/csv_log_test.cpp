@@ -59,8 +59,8 @@ TEST(CsvLog, ConvertsTheUnitsOfItsHeaderToSi) {
 TEST(CsvLog, ReadsEveryChannelOfTheContract) {
   const auto log = parse(
       "t[s],x_set[m],v_set[m/s],a_set[m/s^2],x[m],v[m/s],i[A],i_set[A],F[N],u[V],temperature[degC],F_ext[N],"
-      "i_inject[A],u_inject[V],x_load[m],supply[V],T_motor[N m],master[rad],table,fault\n"
-      "0,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19\n1,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19\n");
+      "i_inject[A],u_inject[V],x_load[m],supply[V],T_motor[N m],master[rad],master_speed[rad/s],table,fault\n"
+      "0,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20\n1,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20\n");
   double expected = 0.0;
   for (const auto& channel : log_channels) EXPECT_EQ((log.axes[0].*channel.values).at(0), expected += 1.0);
 }

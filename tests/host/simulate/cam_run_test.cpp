@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "firmware/machine/configuration/axis_configuration.hpp"
 #include "firmware/machine/file/machine_file.hpp"
 #include "sim/machine_file.hpp"
 #include "stiction/number/fixed_signals.hpp"
@@ -73,15 +74,36 @@ TEST(CamRun, TheLogHasMasterAndTable) {
     EXPECT_NEAR(axis.x_set[k], motion.curve(axis.master[k]), 1e-6);
 }
 
-TEST(CamRun, AMasterOfNoiseOrStepsDisturbsTheFeedforward) {
+// The estimator lags by nothing at constant speed, and what it leaves of noise and steps is far below the following
+// error.
+TEST(CamRun, AMasterOfNoiseOrStepsIsSeenThroughTheEstimator) {
   auto settings = at(2.0);
   const auto ideal = run_cam<FixedSignals>(joint(), there_and_back(), settings);
-  settings.master = MasterSignal::steps;
-  const auto steps = run_cam<FixedSignals>(joint(), there_and_back(), settings);
-  settings.master = MasterSignal::noisy;
-  const auto noisy = run_cam<FixedSignals>(joint(), there_and_back(), settings);
-  EXPECT_GT(steps.error.mean, ideal.error.mean);
-  EXPECT_GT(noisy.error.mean, ideal.error.mean);
+  for (const auto signal : {MasterSignal::steps, MasterSignal::noisy}) {
+    settings.master = signal;
+    const auto run = run_cam<FixedSignals>(joint(), there_and_back(), settings);
+    EXPECT_NEAR(run.error.mean, ideal.error.mean, 0.2 * ideal.error.mean);
+    EXPECT_NE(run.error.mean, ideal.error.mean);
+  }
+}
+
+TEST(CamRun, TheMasterIsAtSpeedBeforeItsFirstCycleEnds) {
+  const auto run = run_cam<FixedSignals>(joint(), there_and_back(), at(2.0));
+  const auto& log = run.log;
+  // From rest to 2 rad/s over a turn, at half of that speed, then a turn.
+  EXPECT_NEAR(log.t.front(), 2 * pi, 0.1);
+  EXPECT_NEAR(log.t.back() - log.t.front(), pi, 1e-3);
+  for (const double speed : log.axes.front().master_speed) EXPECT_NEAR(speed, 2.0, 1e-9);
+}
+
+TEST(CamRun, ACurveBeyondTheLimitsIsRefusedWithFigures) {
+  try {
+    run_cam<FixedSignals>(joint(), there_and_back(), at(9.0));
+    FAIL();
+  } catch (const machine::ConfigurationError& error) {
+    EXPECT_NE(std::string(error.what()).find("expected at most 3.5 rad/s, 20 rad/s^2"), std::string::npos)
+        << error.what();
+  }
 }
 
 }  // namespace

@@ -39,6 +39,11 @@ enum class Fault : std::uint8_t {
   watchdog_starved = 51,
   set_points_lost = 52,
   commander_lost = 53,
+  // Of an axis that follows a master (cam_mode.hpp).
+  master_lost = 64,
+  master_too_fast = 65,
+  synchronisation_lost = 66,
+  cam_table = 67,
   // Of the motor and its power stage: commutation_search.hpp, protection.hpp, brake_test.hpp.
   commutation_not_found = 80,
   commutation_offset = 81,
@@ -74,7 +79,7 @@ struct FaultDescription {
 };
 
 // Reset of all: a fault reset, taken only when the cause has gone, then a new start of the axis.
-inline constexpr std::array<FaultDescription, 37> fault_table{{
+inline constexpr std::array<FaultDescription, 41> fault_table{{
     {Fault::following_error, "following error",
      "|x_set - x| above supervision.following_error for longer than drive.axis.NAME.following_error_timeout; above "
      "twice of it, or where a force above runaway_current meets an acceleration the other way that does not abate, the "
@@ -138,6 +143,18 @@ inline constexpr std::array<FaultDescription, 37> fault_table{{
     {Fault::commander_lost, "commander lost",
      "no command or heartbeat of the axis' owner came within commander_timeout while the axis had power", 0, 0x8130,
      Detector::programme, Reaction::quick_stop},
+    {Fault::master_lost, "master lost", "no valid position of the master of an axis that follows it", 1, 0xff40,
+     Detector::programme, Reaction::quick_stop},
+    {Fault::master_too_fast, "master too fast",
+     "the master exceeds the speed of --speed, or the acceleration that belongs to it, while an axis follows it", 1,
+     0xff41, Detector::programme, Reaction::quick_stop},
+    {Fault::synchronisation_lost, "synchronisation lost",
+     "the master of an axis that follows it is not where its speed leads: it jumped", 1, 0xff42, Detector::programme,
+     Reaction::quick_stop},
+    {Fault::cam_table, "cam table",
+     "a table of --cam is damaged, is for a different kind of axis or cycle, asks for more than the axis keeps, or its "
+     "position, speed or acceleration jumps: the programme says so and ends with exit status 2",
+     0, 0x6320, Detector::programme, Reaction::refuse_start},
     {Fault::commutation_not_found, "commutation not found",
      "the test at the enabling moved the axis too little with all of test_current or by more than test_way, or the "
      "Hall "

@@ -15,14 +15,16 @@
 // towards the end of the travel with the speed asked for, so that the axis brakes before the end; csv with the
 // machine's limits, without smoothing, and with the watch of csp over its cycles. Without a zero there are no ends. An
 // axis beyond an end may go back in every mode, and no further out. Another mode is taken when the set-point stands, or
-// while the drive does not follow. A move of pp is ended first; every other mode brakes.
+// while the drive does not follow. A move of pp is ended first, a cam is left; every other mode brakes.
 #pragma once
 
 #include <cstdint>
 
+#include "stiction/drive/asked_values.hpp"
 #include "stiction/drive/command_owner.hpp"
 #include "stiction/drive/refusal.hpp"
 #include "stiction/drive/remote_axis_config.hpp"
+#include "stiction/drive/remote_cam.hpp"
 #include "stiction/drive/servo_drive.hpp"
 #include "stiction/drive/torque_mode.hpp"
 #include "stiction/motion/position_profile.hpp"
@@ -56,20 +58,18 @@ class RemoteAxis {
   constexpr void hear(CommandSource source) { owner_.hear(source); }
   constexpr void disconnect(CommandSource source) { owner_.disconnect(source); }
   // What is asked for; holds until changed.
-  constexpr void ask(OperationMode mode) { asked_mode_ = mode; }
+  constexpr void ask(OperationMode mode) {
+    if (!is_coupled(mode) || cam_.attached()) asked_mode_ = mode;
+  }
   // pp. `valid`: the bus gave a number that the formats hold; no move goes to another one.
   constexpr void ask_target(S::Position target, bool valid = true) {
-    asked_move_.target = target;
+    asked_move_.target(target);
     has_target_ = valid;
   }
   // Magnitudes, the last two a tick; held to the machine's limits.
-  constexpr void ask_velocity(S::Velocity v) { asked_move_.velocity = within(v, config_.fastest.velocity); }
-  constexpr void ask_acceleration(S::Velocity change) {
-    asked_move_.acceleration = within(change, config_.fastest.acceleration);
-  }
-  constexpr void ask_deceleration(S::Velocity change) {
-    asked_move_.deceleration = within(change, config_.fastest.deceleration);
-  }
+  constexpr void ask_velocity(S::Velocity v) { asked_move_.velocity(v); }
+  constexpr void ask_acceleration(S::Velocity change) { asked_move_.acceleration(change); }
+  constexpr void ask_deceleration(S::Velocity change) { asked_move_.deceleration(change); }
   // pv: 60FFh, held to the machine's limit.
   constexpr void ask_speed(S::Velocity v) {
     const auto most = config_.fastest.velocity, least = opposite(most);
@@ -80,11 +80,10 @@ class RemoteAxis {
   // 6072h, held to the current limit of the axis.
   constexpr void ask_most_torque(S::Current current) { torque_.limit_to(current); }
   // csp, and the current in cst: as cyclic as the targets are, forgotten after as many cycles.
-  constexpr void ask_offsets(S::Velocity velocity, S::Current current) {
-    velocity_offset_ = velocity;
-    current_offset_ = current;
-    offset_age_ = 0;
-  }
+  constexpr void ask_offsets(S::Velocity velocity, S::Current current) { offsets_.take(velocity, current); }
+  constexpr RemoteCam& cam() { return cam_; }
+  constexpr const RemoteCam& cam() const { return cam_; }
+  constexpr void ask(CamCommand command) { cam_.command(command, mode_, following_, referenced_); }
   // csp: a target of this cycle; the newest counts. `valid`: the bus gave a number that the formats hold.
   constexpr void offer(S::Position target, bool valid) {
     offered_ = target;
@@ -114,10 +113,7 @@ class RemoteAxis {
     }
     if (!came && missed_ <= cycles_bridged) ++missed_;
     if (came) missed_ = 0;
-    if (offset_age_ <= cycles_bridged)
-      ++offset_age_;
-    else
-      forget_offsets();
+    offsets_.begin_cycle();
     // Held without a zero, it refuses what is not where it stands.
     if (came && mode_ == OperationMode::cyclic_position && !referenced_) {
       refusal_ = offered_valid_ && within_window(offered_, x_) ? Refusal::none : Refusal::no_reference;
@@ -147,8 +143,7 @@ class RemoteAxis {
     referenced_ = drive.referenced();
     standing_ = drive.standing();
     // Behind a change too: a speed of before is none of the mode that follows.
-    if (changes) mode_ = asked_mode_;
-    if (changes) forget_asked();
+    if (changes) take_mode();
     // Another one begins where the last one ended.
     if (!follows || changes || !following_) {
       begin(stands);
@@ -157,7 +152,7 @@ class RemoteAxis {
     following_ = follows;
     faulted_ = drive.fault() == Fault::set_points_lost;
     x_ = drive.position();
-    const bool leaves = asked_mode_ != mode_ && mode_ != OperationMode::profile_position;
+    const bool leaves = asked_mode_ != mode_ && mode_ != OperationMode::profile_position && !is_coupled(mode_);
     brakes_ = leaves || (mode_ == OperationMode::cyclic_position && streams() && !referenced_);
     v_ = drive.velocity();
     const bool edge = take_edge() && follows;
@@ -168,29 +163,32 @@ class RemoteAxis {
   }
 
   constexpr std::uint16_t controlword() const { return owner_.word(); }
-  constexpr OperationMode mode() const { return mode_; }                       // 6061h
-  constexpr const PositionProfile::Move& move() const { return asked_move_; }  // the values asked for
-  constexpr S::Velocity speed() const { return asked_speed_; }                 // 60FFh
-  constexpr S::Current torque() const { return asked_torque_; }                // 6071h
-  constexpr S::Current most_torque() const { return torque_.most(); }          // 6072h
-  constexpr S::Current rated_torque() const { return config_.torque.most; }    // of which torques are thousandths
+  constexpr OperationMode mode() const { return mode_; }                              // 6061h
+  constexpr const PositionProfile::Move& move() const { return asked_move_.move(); }  // asked for
+  constexpr S::Velocity speed() const { return asked_speed_; }                        // 60FFh
+  constexpr S::Current torque() const { return asked_torque_; }                       // 6071h
+  constexpr S::Current most_torque() const { return torque_.most(); }                 // 6072h
+  constexpr S::Current rated_torque() const { return config_.torque.most; }  // of which torques are thousandths
   constexpr Refusal refusal() const { return refusal_; }  // of the last target, until one is taken or bit 4 falls
   // Whether the drive is to brake to standstill in the coming tick, in place of its set-point.
   constexpr bool brakes() const { return brakes_; }
   constexpr S::Velocity velocity_offset() const {
-    return mode_ == OperationMode::cyclic_position ? velocity_offset_ : S::Velocity{};
+    return mode_ == OperationMode::cyclic_position ? offsets_.velocity() : S::Velocity{};
   }
 
   // Of the coming tick; as long as its cause does.
   constexpr Fault fault() const {
     if (owner_.fault() != Fault::none) return owner_.fault();
+    if (is_coupled(mode_) && following_ && cam_.fault() != Fault::none) return cam_.fault();
     const bool wanted = is_cyclic(mode_) && (faulted_ || (streams() && following_));
     return wanted && missed_ > cycles_bridged ? Fault::set_points_lost : Fault::none;
   }
 
   // The drive's, with the bits of the mode.
   constexpr std::uint16_t statusword(std::uint16_t of_drive) const {
-    if (refused_) of_drive |= statusword::limit_bit | statusword::warning_bit;
+    const bool refused = is_coupled(mode_) ? cam_.refused() : refused_;
+    if (refused) of_drive |= statusword::limit_bit | statusword::warning_bit;
+    if (is_coupled(mode_)) of_drive |= cam_.bits();
     if (mode_ == OperationMode::profile_position) of_drive |= bits_of_move();
     if (mode_ == OperationMode::profile_velocity) of_drive |= bits_of_speed();
     const bool held_back = mode_ == OperationMode::cyclic_torque && following_ && torque_.held_back();
@@ -206,28 +204,24 @@ class RemoteAxis {
   constexpr bool halted() const { return (controlword_ & controlword::halt_bit) != 0; }
   constexpr bool source_rests() const {
     if (mode_ == OperationMode::cyclic_torque) return false;
+    if (is_coupled(mode_)) return cam_.at_rest();
     if (mode_ != OperationMode::cyclic_position) return profile_.at_rest();
     return interpolator_.at_rest();  // a rest of its lag is given up
   }
 
-  constexpr void forget_asked() {
+  constexpr void take_mode() {
+    mode_ = asked_mode_;
     asked_speed_ = {};
     asked_torque_ = {};
     refused_ = false;
     refusal_ = Refusal::none;
-  }
-  constexpr void forget_offsets() {
-    velocity_offset_ = {};
-    current_offset_ = {};
-  }
-  static constexpr S::Velocity within(S::Velocity asked, S::Velocity most) {
-    return asked < S::Velocity::from_raw(1) ? S::Velocity::from_raw(1) : asked > most ? most : asked;
   }
 
   constexpr void begin(S::Position position) {
     interpolator_.start(position);
     step_limit_.start(position);
     profile_.start(position, mode_ != OperationMode::cyclic_velocity);
+    cam_.start(position);
     point_ = {position, {}, {}};
     valid_ = true;
     waits_ = acknowledged_ = at_end_ = false;
@@ -248,15 +242,26 @@ class RemoteAxis {
         return speed_set_point();
       case OperationMode::cyclic_torque:
         return torque_set_point();
+      case OperationMode::cam:
+      case OperationMode::gear:
+        return cam_set_point();
       default:
         return csp_set_point();
     }
   }
 
+  // A position beyond an end is an invalid set-point, as in csp.
+  constexpr SetPoint<S> cam_set_point() {
+    auto set = cam_.step(halted() || asked_mode_ != mode_, following_);
+    set.valid = set.valid && (!referenced_ || config_.allows(set.position, point_.position));
+    point_ = {set.position, set.velocity, set.acceleration};
+    return set;
+  }
+
   // Position and speed are the drive's to show.
   constexpr SetPoint<S> torque_set_point() {
     SetPoint<S> set{point_.position, {}, {}};
-    const auto target = saturated_sum(asked_torque_, current_offset_, saturations_);
+    const auto target = saturated_sum(asked_torque_, offsets_.current(), saturations_);
     if (following_) set.injection = torque_.step(target, {x_, v_, referenced_});
     set.by_current = following_;
     set.valid = valid_;
@@ -266,17 +271,13 @@ class RemoteAxis {
   constexpr SetPoint<S> csp_set_point() {
     const auto wanted = interpolator_.step();
     const auto point = step_limit_.step({wanted.position, wanted.velocity, wanted.acceleration});
-    SetPoint<S> set{point.position, point.velocity, point.acceleration};
-    set.valid = valid_ && step_limit_.follows();
-    set.injection = current_offset_;
-    return set;
+    const bool valid = valid_ && step_limit_.follows();
+    return {point.position, point.velocity, point.acceleration, valid, offsets_.current()};
   }
 
   constexpr SetPoint<S> profile_set_point(bool halt) {
     point_ = profile_.step(halt, config_.halting);
-    SetPoint<S> set{point_.position, point_.velocity, point_.acceleration};
-    set.valid = valid_;
-    return set;
+    return {point_.position, point_.velocity, point_.acceleration, valid_};
   }
 
   constexpr SetPoint<S> move_set_point(bool edge) {
@@ -287,7 +288,7 @@ class RemoteAxis {
 
   // A cyclic speed changes by the machine's limits, one of pv by its profile.
   constexpr SetPoint<S> speed_set_point() {
-    auto move = mode_ == OperationMode::cyclic_velocity ? config_.fastest : asked_move_;
+    auto move = mode_ == OperationMode::cyclic_velocity ? config_.fastest : asked_move_.move();
     constexpr S::Velocity still{};
     const bool down = asked_speed_ < still;
     const bool up = asked_speed_ > still;
@@ -333,12 +334,12 @@ class RemoteAxis {
   }
 
   constexpr void offer_move() {
-    auto move = asked_move_;
+    auto move = asked_move_.move();
     move.deceleration = planned(move.deceleration);
     const bool relative = (controlword_ & controlword::relative_bit) != 0;
     if (relative) {
       const auto& before = waits_ ? waiting_ : profile_.move();
-      move.target = narrow<S::Position>(before.target + asked_move_.target, saturations_);
+      move.target = narrow<S::Position>(before.target + move.target, saturations_);
     }
     refusal_ = !has_target_                                                   ? Refusal::no_number
                : !referenced_ && !relative                                    ? Refusal::no_reference
@@ -371,16 +372,17 @@ class RemoteAxis {
   SpeedStepLimit step_limit_;
   PositionProfile profile_;
   TorqueMode torque_;
-  PositionProfile::Move asked_move_;
+  RemoteCam cam_;
+  AskedMove asked_move_;
   std::uint16_t controlword_ = controlword::disable_voltage;
   OperationMode asked_mode_ = OperationMode::cyclic_position, mode_ = OperationMode::cyclic_position;
-  S::Velocity velocity_offset_{}, asked_speed_{};
-  S::Current current_offset_{}, asked_torque_{};
+  S::Velocity asked_speed_{};
+  S::Current asked_torque_{};
   // csp, csv, cst
   S::Position offered_{};
-  unsigned came_ = 0;   // in this cycle
-  int missed_ = 0;      // cycles in a row without one
-  int offset_age_ = 0;  // cycles
+  unsigned came_ = 0;  // in this cycle
+  int missed_ = 0;     // cycles in a row without one
+  CyclicOffsets<cycles_bridged> offsets_;
   bool offered_valid_ = false, speed_valid_ = false, valid_ = true;
   // pp, pv, csv
   PositionProfile::Move waiting_{};

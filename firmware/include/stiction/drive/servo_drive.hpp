@@ -172,7 +172,7 @@ class ServoDrive {
   // As long as the fault is latched: without power the error itself is none.
   constexpr bool shows_following_error() const {
     const bool has_bit = mode_ == OperationMode::profile_position || mode_ == OperationMode::profile_velocity ||
-                         mode_ == OperationMode::cyclic_position;
+                         mode_ == OperationMode::cyclic_position || is_coupled(mode_);
     return has_bit && (fault_ == Fault::following_error || following_ == Fault::following_error);
   }
 

@@ -21,6 +21,8 @@ enum class DriveState : std::uint8_t {
 
 // Modes of operation 6060h that the drive has.
 enum class OperationMode : std::int8_t {
+  gear = -2,             // of the manufacturer's range: behind a master by a ratio (cam_mode.hpp)
+  cam = -1,              // and along a table
   profile_position = 1,  // pp: the drive moves to a target by itself (remote_axis.hpp)
   profile_velocity = 3,  // pv: the drive goes to a speed by itself
   homing = 6,
@@ -29,15 +31,26 @@ enum class OperationMode : std::int8_t {
   cyclic_torque = 10,   // cst: a current each cycle (torque_mode.hpp)
 };
 
-// 6502h, a bit a mode: bit 0 is mode 1.
-inline constexpr std::array<OperationMode, 6> supported_modes{
+// Those of the standard, which every axis has.
+inline constexpr std::array<OperationMode, 6> standard_modes{
     OperationMode::profile_position, OperationMode::profile_velocity, OperationMode::homing,
     OperationMode::cyclic_position,  OperationMode::cyclic_velocity,  OperationMode::cyclic_torque};
+// 6502h, a bit a mode: bit 0 is mode 1, bit 16 mode -1.
+inline constexpr std::array<OperationMode, 8> supported_modes{OperationMode::profile_position,
+                                                              OperationMode::profile_velocity,
+                                                              OperationMode::homing,
+                                                              OperationMode::cyclic_position,
+                                                              OperationMode::cyclic_velocity,
+                                                              OperationMode::cyclic_torque,
+                                                              OperationMode::cam,
+                                                              OperationMode::gear};
 // Targets each cycle: the drive follows them, and misses them.
 constexpr bool is_cyclic(OperationMode mode) {
   return mode == OperationMode::cyclic_position || mode == OperationMode::cyclic_velocity ||
          mode == OperationMode::cyclic_torque;
 }
+// Behind a master.
+constexpr bool is_coupled(OperationMode mode) { return mode == OperationMode::cam || mode == OperationMode::gear; }
 constexpr bool is_supported(int mode) {
   for (const auto known : supported_modes)
     if (static_cast<int>(known) == mode) return true;
@@ -45,7 +58,10 @@ constexpr bool is_supported(int mode) {
 }
 constexpr std::uint32_t supported_mode_bits() {
   std::uint32_t bits = 0;
-  for (const auto known : supported_modes) bits |= 1u << (static_cast<unsigned>(known) - 1);
+  for (const auto known : supported_modes) {
+    const int mode = static_cast<int>(known);
+    bits |= 1u << (mode > 0 ? mode - 1 : 15 - mode);
+  }
   return bits;
 }
 

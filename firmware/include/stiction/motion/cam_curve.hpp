@@ -7,6 +7,7 @@
 // slave may have to do is known before it moves.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "stiction/motion/cam_peaks.hpp"
@@ -26,8 +27,12 @@ enum class CamRefusal : std::uint8_t {
   no_bridge,        // no way to it from the motion before, within the limits and in the time or distance asked for
   moving,           // a start over a distance of the master from a slave that does not stand
   outside_profile,  // a master outside of the cycle of a once-only cam
-  speed             // a speed to leave with that is beyond the limit
+  speed,            // a speed to leave with that is beyond the limit
+  unknown_table,    // a number that no table has
+  not_enabled,      // an axis that does not follow set-points in a mode of cam or gear
+  beyond_travel     // a curve whose positions leave the travel
 };
+inline constexpr std::size_t cam_refusals = 11;
 
 // How a slave's position changes over the master's: 2^-40 of its unit, for each cycle of the master, and for its
 // square.
@@ -82,15 +87,28 @@ class CamCurve {
         return CamRefusal::scale;
       made.config_.rise = product_shifted(h.rise, config.slave_scale, h.position_bits - least_bits);
       const CamPeaks of_table = peaks_of(table);
-      const auto scaled = [scale](std::int64_t peak) {
-        const std::int64_t rounded = product_shifted(peak, scale, scale_bits);
-        return rounded < INT64_MAX ? rounded + 1 : rounded;
-      };
-      made.peaks_ = {scaled(of_table.slope), scaled(of_table.bend), scaled(of_table.third)};
+      made.peaks_ = {scaled(of_table.slope, scale), scaled(of_table.bend, scale), scaled(of_table.third, scale)};
     }
-    constexpr std::int64_t most = std::int64_t{1} << 61;
-    if (made.peaks_.slope > most || made.peaks_.bend > most || made.peaks_.third > most) return CamRefusal::scale;
+    if (!made.within_a_word()) return CamRefusal::scale;
     if (config.table != nullptr && !made.continuous()) return CamRefusal::not_continuous;
+    curve = made;
+    return CamRefusal::none;
+  }
+
+  // Makes `curve` what `config` says of the table of `base`, which was prepared with a scale of 1; its work is fixed,
+  // so that a tick may do it. A cam that runs once stays one. Where the result is not none, `curve` stays as it
+  // was.
+  static constexpr CamRefusal rescale(const CamCurve& base, const Config& config, CamCurve& curve) {
+    if (config.table == nullptr) return prepare(config, curve);
+    if (config.table != base.config_.table || magnitude(config.slave_scale) > std::uint64_t{1} << 48)
+      return CamRefusal::scale;
+    CamCurve made;
+    made.config_ = config;
+    made.config_.periodic = config.periodic && base.config_.periodic;
+    made.config_.rise = product_shifted(base.config_.rise, config.slave_scale, scale_bits);
+    const std::int64_t scale = static_cast<std::int64_t>(magnitude(config.slave_scale));
+    made.peaks_ = {scaled(base.peaks_.slope, scale), scaled(base.peaks_.bend, scale), scaled(base.peaks_.third, scale)};
+    if (!made.within_a_word() || magnitude(made.config_.rise) > std::uint64_t{1} << 60) return CamRefusal::scale;
     curve = made;
     return CamRefusal::none;
   }
@@ -159,6 +177,16 @@ class CamCurve {
   static constexpr int scale_bits = 32;
   // Of a table's numbers, so that with the 32 of the scale at least 40 are left.
   static constexpr int least_bits = 8;
+
+  // A peak behind the magnitude of a scale, rounded up.
+  static constexpr std::int64_t scaled(std::int64_t peak, std::int64_t scale) {
+    const std::int64_t rounded = product_shifted(peak, scale, scale_bits);
+    return rounded < INT64_MAX ? rounded + 1 : rounded;
+  }
+  constexpr bool within_a_word() const {
+    constexpr std::int64_t most = std::int64_t{1} << 61;
+    return peaks_.slope <= most && peaks_.bend <= most && peaks_.third <= most;
+  }
 
   // Of a table by itself.
   static constexpr CamPeaks peaks_of(const CamTable& table) {

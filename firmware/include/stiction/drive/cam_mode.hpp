@@ -1,0 +1,214 @@
+// An axis in the modes of cam and gear (6060h = -1 and -2): what a bus asks for becomes a request to CamMotion, and the
+// motion a set-point in each tick. The same bits drive the axis of the machine and that of `stiction simulate cam`.
+//
+// What is asked for stands in values that hold until changed, and acts with a command. A curve is prepared beside the
+// ticks with a scale of 1; scale, offsets and ratio of a request are put to it in the tick of the command, with fixed
+// work. The curve that is followed, the one that waits and the one of the next command have a place each.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "stiction/drive/cam_master.hpp"
+#include "stiction/drive/cam_set_point.hpp"
+#include "stiction/drive/faults.hpp"
+#include "stiction/motion/cam_motion.hpp"
+
+namespace stiction {
+
+enum class CamCommand : std::uint8_t {
+  none,
+  engage,  // MC_CamIn, MC_GearIn: with the values asked for; also to a different table, scale or offset on the run
+  leave,   // MC_CamOut, to standstill
+  cancel,  // deletes what waits
+  phase    // MC_Phasing: the phase asked for
+};
+inline constexpr int cam_commands = 5;
+
+class CamMode {
+ public:
+  using S = FixedSignals;
+
+  struct Config {
+    CamMotion::Config motion{};
+    S::Rate rate{};
+    S::Position low{}, high{};  // the ends of the travel
+  };
+
+  // A table that can be asked for.
+  struct Table {
+    CamCurve curve{};                // prepared with a scale of 1
+    std::int64_t low = 0, high = 0;  // 2^-40 m: between which its positions are in a cycle
+  };
+
+  struct Asked {
+    std::uint16_t table = 1;  // from 1
+    CamTrigger trigger = CamTrigger::at_once;
+    CamApproach approach = CamApproach::catch_up;
+    bool master_relative = false, slave_relative = false, backward = false;
+    std::int64_t ticks = 16;         // of the approach by ticks
+    std::int64_t distance = 1;       // of the approach by distance, 2^-40 cycles
+    MasterPosition at{};             // of a trigger by position
+    MotionPoint tolerance{};         // of curves that agree
+    MasterPosition master_offset{};  // cam and gear
+    std::int64_t slave_offset = 0;   // 2^-40 m
+    std::int64_t slave_scale = std::int64_t{1} << 32;
+    std::int32_t numerator = 1;  // of the ratio
+    std::uint16_t denominator = 1;
+    std::int64_t gear_way = 0;  // of the slave in a cycle of the master behind the ratio, 2^-40 m
+    std::int64_t phase = 0;     // 2^-40 cycles
+  };
+
+  // `config`: of the axis; `tables`: that can be asked for, by their number; both must outlive this.
+  explicit constexpr CamMode(const Config& config, std::span<const Table> tables = {})
+      : config_(&config), tables_(tables), motion_(config.motion) {}
+  CamMode(const CamMode&) = delete;
+  CamMode& operator=(const CamMode&) = delete;
+  ~CamMode() = default;
+
+  // Stands at `position` and follows nothing.
+  constexpr void start(S::Position position) {
+    motion_.start(position.raw());
+    fault_ = Fault::none;
+    table_ = 0;
+    waiting_ = nullptr;
+  }
+
+  // Stands where `curve` is at a `master` that stands, and follows it from the first tick on. `curve`: must outlive
+  // this. What it returns is not none where nothing follows.
+  constexpr CamRefusal begin(const CamCurve& curve, const MasterPoint& master) {
+    motion_.start(curve.slopes(curve.seen(master).position).position);
+    CamRequest request;
+    request.curve = &curve;
+    refusal_ = motion_.engage(request);
+    if (refusal_ != CamRefusal::none) return refusal_;
+    motion_.step(master);
+    return refusal_ = motion_.status().refusal;
+  }
+
+  constexpr Asked& asked() { return asked_; }
+  constexpr const Asked& asked() const { return asked_; }
+
+  // Does `command`. `gear`: in the mode of a gear, whose curve is a line; `referenced`: the zero of the position is
+  // known, as are the ends of the travel then.
+  constexpr CamRefusal command(CamCommand command, bool gear, bool referenced) {
+    switch (command) {
+      case CamCommand::engage:
+        return refusal_ = engage(gear, referenced);
+      case CamCommand::leave:
+        waiting_ = nullptr;
+        return refusal_ = motion_.leave(0);
+      case CamCommand::cancel:
+        motion_.cancel();
+        waiting_ = nullptr;
+        return refusal_ = CamRefusal::none;
+      case CamCommand::phase:
+        motion_.phase(asked_.phase);
+        return refusal_ = CamRefusal::none;
+      case CamCommand::none:
+        break;
+    }
+    return refusal_;
+  }
+  // Of a command that was not given to it.
+  constexpr void refuse(CamRefusal reason) { refusal_ = reason; }
+
+  // The set-point of the coming tick, at the `master` of that tick.
+  constexpr SetPoint<S> step(const MasterReading& master) {
+    const MotionPoint& point = motion_.step(master.point, master.valid);
+    const CamStatus& status = motion_.status();
+    fault_ = fault_of(status.fault);
+    // Refused behind its trigger.
+    const bool decided = waiting_ != nullptr && !status.waiting;
+    if (decided && status.refusal != CamRefusal::none) refusal_ = status.refusal;
+    if (decided && status.refusal == CamRefusal::none && status.active) table_ = waiting_table_;
+    if (decided) waiting_ = nullptr;
+    if (!status.active) table_ = 0;
+    return cam_set_point(point, config_->rate);
+  }
+
+  constexpr const MotionPoint& point() const { return motion_.point(); }
+  constexpr const CamStatus& status() const { return motion_.status(); }
+  constexpr bool at_rest() const { return motion_.at_rest(); }
+  constexpr std::uint16_t table() const { return table_; }  // that is followed; 0: none, or a gear
+  // Of the last command, and of what it asked for at its trigger.
+  constexpr CamRefusal refusal() const { return refusal_; }
+  // As long as the axis follows set-points and no request was taken again.
+  constexpr Fault fault() const { return fault_; }
+
+  static constexpr Fault fault_of(CamFault fault) {
+    switch (fault) {
+      case CamFault::master_lost:
+        return Fault::master_lost;
+      case CamFault::master_too_fast:
+        return Fault::master_too_fast;
+      case CamFault::master_jumped:
+        return Fault::synchronisation_lost;
+      case CamFault::none:
+        break;
+    }
+    return Fault::none;
+  }
+
+ private:
+  constexpr CamRefusal engage(bool gear, bool referenced) {
+    if (!gear && (asked_.table == 0 || asked_.table > tables_.size())) return CamRefusal::unknown_table;
+    const Table none{};
+    const Table& table = gear ? none : tables_[asked_.table - 1u];
+    CamCurve::Config config = table.curve.config();
+    config.ratio = GearRatio(asked_.numerator, asked_.denominator);
+    config.master_offset = asked_.master_offset;
+    config.slave_offset = asked_.slave_offset;
+    config.slave_scale = gear ? std::int64_t{1} << 32 : asked_.slave_scale;
+    if (gear) config.rise = asked_.gear_way;
+    CamCurve& curve = free_place();
+    const CamRefusal refusal = CamCurve::rescale(table.curve, config, curve);
+    if (refusal != CamRefusal::none) return refusal;
+    if (referenced && !gear && !asked_.slave_relative && leaves_travel(table, curve)) return CamRefusal::beyond_travel;
+    CamRequest request;
+    request.curve = &curve;
+    request.trigger = asked_.trigger;
+    request.approach = asked_.approach;
+    request.master_relative = asked_.master_relative;
+    request.slave_relative = asked_.slave_relative;
+    request.backward = asked_.backward;
+    request.free_way = gear && asked_.slave_relative;
+    request.span = Span::of(asked_.approach == CamApproach::distance ? asked_.distance : asked_.ticks);
+    request.at = asked_.at;
+    request.tolerance = asked_.tolerance;
+    const CamRefusal found = motion_.engage(request);
+    if (found != CamRefusal::none) return found;
+    waiting_ = &curve;
+    waiting_table_ = gear ? std::uint16_t{0} : asked_.table;
+    return CamRefusal::none;
+  }
+
+  // Of a curve that comes back to where it begins.
+  constexpr bool leaves_travel(const Table& table, const CamCurve& curve) const {
+    if (curve.config().rise != 0) return false;
+    const std::int64_t a = product_shifted(table.low, curve.config().slave_scale, 32) + curve.config().slave_offset;
+    const std::int64_t b = product_shifted(table.high, curve.config().slave_scale, 32) + curve.config().slave_offset;
+    const std::int64_t low = a < b ? a : b, high = a < b ? b : a;
+    return low < config_->low.raw() || high > config_->high.raw();
+  }
+
+  constexpr CamCurve& free_place() {
+    std::size_t k = 0;
+    while (&places_[k] == motion_.curve() || &places_[k] == waiting_) ++k;
+    return places_[k];
+  }
+
+  const Config* config_;
+  std::span<const Table> tables_;
+  CamMotion motion_;
+  Asked asked_{};
+  std::array<CamCurve, 3> places_{};
+  const CamCurve* waiting_ = nullptr;  // of a request that was not decided yet
+  std::uint16_t table_ = 0, waiting_table_ = 0;
+  CamRefusal refusal_ = CamRefusal::none;
+  Fault fault_ = Fault::none;
+};
+
+}  // namespace stiction

@@ -1,0 +1,212 @@
+#include "firmware/stictiond/cam_drive.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <numbers>
+
+#include "firmware/machine/configuration/cam_configuration.hpp"
+#include "firmware/machine/configuration/conversion.hpp"
+#include "firmware/machine/file/units.hpp"
+#include "stiction/motion/cam_words.hpp"
+
+namespace stiction::drive {
+namespace {
+
+constexpr const char* kind_names[]{"linear", "rotary"};
+const char* name_of(CamTable::Kind kind) { return kind_names[static_cast<std::size_t>(kind)]; }
+
+[[noreturn]] void refuse_table(const std::string& file, const std::string& problem) {
+  throw StartRefused(fmt::format("--cam: {}: {}. Nothing is enabled (fault {} '{}')", file, problem,
+                                 static_cast<int>(Fault::cam_table), stiction::name_of(Fault::cam_table)));
+}
+
+double metres(std::int64_t raw) { return std::ldexp(static_cast<double>(raw), -MotionPoint::position_bits); }
+
+// Between which positions a curve is in a cycle, by its value at 16 places of each segment, which is within a
+// thousandth of the rise between two of them.
+void find_range(const CamTable& table, CamMode::Table& made) {
+  made.low = INT64_MAX;
+  made.high = INT64_MIN;
+  const std::uint32_t count = table.header().count;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const std::uint64_t begin = table.segment(k).start;
+    const std::uint64_t end = k + 1 < count ? table.segment(k + 1).start : std::uint64_t{1} << 32;
+    for (std::uint64_t part = 0; part < 16; ++part) {
+      const std::uint64_t phase = (begin + (end - begin) * part / 16) << 32;
+      const std::int64_t position = made.curve.slopes({0, phase}).position;
+      made.low = std::min(made.low, position);
+      made.high = std::max(made.high, position);
+    }
+  }
+}
+
+}  // namespace
+
+CamDrive::CamDrive(const DriveOptions& options, const DriveConfiguration& configuration) {
+  if (options.hold && options.master != "virtual")
+    throw StartRefused(fmt::format(
+        "--hold: found --master {}; expected virtual, as clients alone move the axes otherwise", options.master));
+  if (options.speed.empty())
+    throw StartRefused("--master: found no --speed; expected the largest speed of the master, such as \"130 rpm\"");
+  const auto& names = configuration.names;
+  if (options.master != "virtual") {
+    const auto found = std::find(names.begin(), names.end(), options.master);
+    if (found == names.end())
+      throw StartRefused(fmt::format("--master: found '{}'; expected virtual, or an axis of {}", options.master,
+                                     configuration.machine.id));
+    master_axis_ = static_cast<std::size_t>(found - names.begin());
+    master_kind_ = CamTable::Kind::linear;
+    if (names.size() < 2)
+      throw StartRefused(
+          "--master: found the only axis of the machine; expected virtual, or a second axis that follows");
+  }
+  for (const auto& file : options.cam) load(file);
+  set_up_master(options, configuration);
+  const bool serves = !options.hold;
+  set_up_axes(configuration, serves);
+  if (tables_.empty() && !serves)
+    throw StartRefused("--hold: found --master without --cam; expected a table to follow, or no --hold");
+  if (!tables_.empty()) check_limits(configuration, serves);
+}
+
+void CamDrive::load(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw StartRefused(fmt::format("--cam: {}: found no file that can be read; expected a table", file));
+  auto& loaded = loaded_.emplace_back();
+  constexpr std::size_t most = CamTable::header_size + CamTable::segment_size * CamTable::most_segments + 1'600'000;
+  std::vector<char> text(most + 1);
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  loaded.bytes.assign(text.begin(), text.begin() + stream.gcount());
+  if (const auto problem = CamTable::read(loaded.bytes, loaded.table); problem != CamTableProblem::none)
+    refuse_table(file, fmt::format("found {}; expected one as `stiction cam table` makes it", words_of(problem)));
+  check_kinds(file, loaded.table.header());
+  CamMode::Table made;
+  CamCurve::Config config;
+  config.table = &loaded.table;
+  config.periodic = loaded.table.header().periodic;
+  if (const auto refusal = CamCurve::prepare(config, made.curve); refusal != CamRefusal::none)
+    refuse_table(file, fmt::format("found {}; expected a curve that an axis can follow", words_of(refusal)));
+  find_range(loaded.table, made);
+  tables_.push_back(made);
+  files_.push_back(file);
+}
+
+void CamDrive::check_kinds(const std::string& file, const CamTable::Header& header) const {
+  if (header.slave != CamTable::Kind::linear)
+    refuse_table(file, "found a table for a rotary axis; expected one for a linear axis, as those of the drive are");
+  if (master_axis_ && header.master != CamTable::Kind::linear)
+    refuse_table(file, "found a table behind a rotary master; expected a linear one, as the axis of --master is");
+  if (loaded_.size() < 2) return;
+  const auto& first = loaded_.front().table.header();
+  if (header.master != first.master || header.cycle != first.cycle)
+    refuse_table(file,
+                 fmt::format("found a cycle of {:.6g} of a {} master; expected that of {}, {:.6g} of a {} one, as "
+                             "both have one master",
+                             metres(header.cycle), name_of(header.master), files_.front(), metres(first.cycle),
+                             name_of(first.master)));
+}
+
+void CamDrive::set_up_master(const DriveOptions& options, const DriveConfiguration& configuration) {
+  if (!loaded_.empty()) {
+    master_kind_ = loaded_.front().table.header().master;
+    cycle_ = metres(loaded_.front().table.header().cycle);
+  } else {
+    cycle_ = master_axis_ ? 1.0 : 2.0 * std::numbers::pi;
+  }
+  const bool rotary = master_kind_ == CamTable::Kind::rotary;
+  try {
+    speed_ = machine::parse_quantity(options.speed, rotary ? "rad/s" : "m/s") / cycle_;
+  } catch (const machine::UnitError& error) {
+    throw StartRefused(fmt::format("--speed: found '{}' ({}); expected a speed of the master, which is {}, such as {}",
+                                   options.speed, error.what(), name_of(master_kind_),
+                                   rotary ? "\"130 rpm\"" : "\"0.5 m/s\""));
+  }
+  const auto& timing = configuration.machine.timing;
+  const double period = timing.fast_period;
+  if (!(speed_ > 0.0) || speed_ * period > 0.25)
+    throw StartRefused(fmt::format("--speed: found '{}'; expected more than 0 and at most a quarter of a cycle a tick",
+                                   options.speed));
+  auto bounds = machine::master_bounds(speed_);
+  CamMaster::Config config;
+  if (master_axis_) {
+    const auto& axis = configuration.machine.axes[*master_axis_];
+    const auto of_axis = machine::cam_bounds(timing, axis);
+    // Half of what the axis may: who follows it needs room for the way to it.
+    bounds.acceleration = 0.5 * of_axis.acceleration / cycle_;
+    bounds.jerk = 0.5 * of_axis.jerk / cycle_;
+    config.measured = true;
+    config.cycle = Span::of(std::llround(std::ldexp(cycle_, MotionPoint::position_bits)));
+    // A set position is exact: a fast estimator.
+    config.estimator.bits = 3;
+    config.estimator.look_ahead = 1 << 16;
+    config.estimator.jump = std::int64_t{1} << 54;
+  }
+  master_limits_ = machine::motion_limits(bounds, period);
+  config.virtual_master = VirtualMaster::Config::of(master_limits_);
+  master_ = CamMaster(config);
+  run_speed_ = machine::master_speed(speed_, period);
+  const std::int64_t ticks = config.virtual_master.rule.ticks(master_limits_.velocity);
+  short_stop_ = static_cast<double>(ticks) * period <= longest_stop;
+  // A tenth of the master's speed where clients may shift its phase.
+  if (options.hold) return;
+  phasing_limits_ = machine::motion_limits(machine::master_bounds(0.1 * speed_), period);
+}
+
+void CamDrive::set_up_axes(const DriveConfiguration& configuration, bool serves) {
+  const auto& timing = configuration.machine.timing;
+  const std::int64_t jump = master_axis_ ? std::int64_t{1} << 30 : 1024;  // 2^-40 cycles
+  for (std::size_t i = 0; i < configuration.names.size(); ++i) {
+    const auto& axis = configuration.machine.axes[i];
+    auto& config = configs_.emplace_back();
+    config.motion = CamMotion::Config::of(machine::motion_limits(machine::cam_bounds(timing, axis), timing.fast_period),
+                                          master_limits_, phasing_limits_, jump);
+    config.rate = S::rate(configuration.period_ns);
+    const auto& setup = configuration.setup.axes.at(axis.name);
+    config.low = machine::to_signal<S::Position>(setup.negative_end.value()).value_or(S::Position{});
+    config.high = machine::to_signal<S::Position>(setup.positive_end.value()).value_or(S::Position{});
+    modes_.emplace_back(config, tables_);
+  }
+  if (serves) return;
+  if (!tables_.empty()) start_ = metres(tables_.front().curve.slopes({}).position);
+}
+
+void CamDrive::check_limits(const DriveConfiguration& configuration, bool serves) const {
+  const double period = configuration.machine.timing.fast_period;
+  for (std::size_t k = 0; k < tables_.size(); ++k) {
+    const auto& table = tables_[k];
+    std::string found;
+    bool fits = false;
+    for (std::size_t i = 0; i < configs_.size(); ++i) {
+      if (master_axis_ == i || (!serves && i != own_axis_)) continue;
+      const auto& config = configs_[i];
+      const auto needed = table.curve.motion(config.motion.master_sum);
+      const auto& most = config.motion.slave;
+      const bool keeps =
+          needed.velocity <= most.velocity && needed.acceleration <= most.acceleration && needed.jerk <= most.jerk;
+      const bool inside = table.low >= config.low.raw() && table.high <= config.high.raw();
+      fits |= keeps && (inside || serves);
+      if (!keeps)
+        found = fmt::format("axis {}: {}", configuration.names[i],
+                            machine::words_of_limits(table.curve, config.motion, period));
+      else if (!inside && !serves)
+        found = fmt::format(
+            "axis {}: found positions from {:.6g} m to {:.6g} m; expected them within the travel, {:.6g} "
+            "m to {:.6g} m",
+            configuration.names[i], metres(table.low), metres(table.high), machine::to_si(config.low),
+            machine::to_si(config.high));
+    }
+    if (!fits) refuse_table(files_[k], found);
+  }
+}
+
+void CamDrive::begin() {
+  auto& mode = modes_[own_axis_];
+  mode.begin(tables_.front().curve, master_.reading().point);
+  master_.run(run_speed_);
+}
+
+}  // namespace stiction::drive

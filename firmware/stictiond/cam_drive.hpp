@@ -1,0 +1,95 @@
+// The electronic cam of the drive: the tables of --cam, the master of --master, and a cam mode an axis. Built and
+// checked before anything is enabled; allocates nothing after construction.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "firmware/stictiond/configuration.hpp"
+#include "firmware/stictiond/options.hpp"
+#include "hal/drive_loop.hpp"
+#include "stiction/drive/cam_mode.hpp"
+
+namespace stiction::drive {
+
+class CamDrive {
+ public:
+  using S = FixedSignals;
+
+  // Throws StartRefused where a table is damaged, of a different kind or cycle, not continuous, or beyond the limits of
+  // every axis. `options`: of the command line, with a --master; `configuration`: of the drive.
+  CamDrive(const DriveOptions& options, const DriveConfiguration& configuration);
+  CamDrive(const CamDrive&) = delete;
+  CamDrive& operator=(const CamDrive&) = delete;
+  ~CamDrive() = default;
+
+  // The master of the coming tick, before its axes. `loop`: of all axes.
+  template <hal::Backend B>
+  void step(const hal::DriveLoop<B>& loop) {
+    if (!master_axis_) {
+      master_.step();
+    } else {
+      // That of the tick before; the estimator looks a tick ahead.
+      const auto& drive = loop.drive(*master_axis_);
+      master_.see(drive.set_position().raw(), drive.powered());
+    }
+  }
+
+  static constexpr double longest_stop = 2.0;  // s
+
+  std::optional<std::size_t> master_axis() const { return master_axis_; }
+  CamMaster& master() { return master_; }
+  CamMode& mode(std::size_t axis) { return modes_[axis]; }
+
+  // A motion of the programme's own: the first axis that is not the master follows the first table.
+  std::size_t own_axis() const { return own_axis_; }
+  // Where it begins, m.
+  double start() const { return start_; }
+  // Stands there, and follows a virtual master to its largest speed from the coming tick on.
+  void begin();
+  // The set-point of that axis, behind step().
+  SetPoint<S> set_point() { return modes_[own_axis_].step(master_.reading()); }
+  // A controlled stop: along the cam, with the master, where that takes no longer than longest_stop; else the axis
+  // leaves the cam within its limits.
+  void brake() {
+    if (braking_) return;
+    braking_ = true;
+    master_.run(0);
+    if (!short_stop_) modes_[own_axis_].command(CamCommand::leave, false, false);
+  }
+  bool stopped() const { return braking_ && (short_stop_ ? master_.at_rest() : modes_[own_axis_].at_rest()); }
+
+ private:
+  struct LoadedTable {
+    std::vector<std::uint8_t> bytes;
+    CamTable table;
+  };
+
+  void load(const std::string& file);
+  void check_kinds(const std::string& file, const CamTable::Header& header) const;
+  void set_up_master(const DriveOptions& options, const DriveConfiguration& configuration);
+  void set_up_axes(const DriveConfiguration& configuration, bool serves);
+  void check_limits(const DriveConfiguration& configuration, bool serves) const;
+
+  std::vector<std::string> files_;
+  std::deque<LoadedTable> loaded_;  // their addresses stay
+  std::vector<CamMode::Table> tables_;
+  CamTable::Kind master_kind_ = CamTable::Kind::rotary;
+  double cycle_ = 0.0;          // of the master, rad or m
+  double speed_ = 0.0;          // largest, cycles/s
+  std::int64_t run_speed_ = 0;  // the same, 2^-64 cycles a tick
+  std::optional<std::size_t> master_axis_;
+  std::size_t own_axis_ = 0;
+  double start_ = 0.0;
+  bool short_stop_ = true, braking_ = false;
+  MotionLimits master_limits_{}, phasing_limits_{};
+  std::deque<CamMode::Config> configs_;
+  CamMaster master_{CamMaster::Config{}};
+  std::deque<CamMode> modes_;
+};
+
+}  // namespace stiction::drive

@@ -1,0 +1,203 @@
+// A drive's modes of cam and gear without a bus: set-points in the drive's formats, curves that are put to a request in
+// its tick, masters that are measured, faults.
+#include "stiction/drive/cam_mode.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "stiction/drive/remote_cam.hpp"
+#include "tests/firmware/cam/cam_bench.hpp"
+
+namespace stiction::test {
+namespace {
+
+using S = FixedSignals;
+const auto tick_rate = S::rate(62'500);
+
+TEST(CamSetPoint, IsTheMotionInTheDrivesUnitsToHalfAUnit) {
+  std::mt19937_64 draw(3);
+  std::uniform_real_distribution<double> speeds(-7.9, 7.9), accelerations(-500.0, 500.0);
+  for (int k = 0; k < 10'000; ++k) {
+    const double v = speeds(draw), a = accelerations(draw);
+    const auto set = cam_set_point({123, raw_velocity(v), raw_acceleration(a)}, tick_rate);
+    ASSERT_TRUE(set.valid);
+    EXPECT_EQ(set.position.raw(), 123);
+    ASSERT_NEAR(static_cast<double>(set.velocity.raw()), std::ldexp(v, 28), 0.51);
+    ASSERT_NEAR(static_cast<double>(set.acceleration.raw()), std::ldexp(a, 22), 0.51);
+  }
+  EXPECT_FALSE(cam_set_point({0, raw_velocity(8.1), 0}, tick_rate).valid);
+  EXPECT_FALSE(cam_set_point({0, 0, raw_acceleration(-513.0)}, tick_rate).valid);
+}
+
+TEST(CamCurve, RescaledInATickIsTheOnePreparedBesideIt) {
+  const auto cam = test_cam(rise_and_return("modified_sine", 0.03));
+  CamCurve base;
+  ASSERT_EQ(CamCurve::prepare({.table = &cam->table}, base), CamRefusal::none);
+  for (const double scale : {1.0, -0.5, 3.25, 1e-3}) {
+    CamCurve::Config config{
+        .table = &cam->table, .ratio = GearRatio(3, 7), .slave_scale = std::llround(scale * 0x1p32)};
+    CamCurve prepared, rescaled;
+    ASSERT_EQ(CamCurve::prepare(config, prepared), CamRefusal::none);
+    ASSERT_EQ(CamCurve::rescale(base, config, rescaled), CamRefusal::none);
+    EXPECT_EQ(rescaled.config().rise, prepared.config().rise);
+    EXPECT_NEAR(static_cast<double>(rescaled.peaks().bend), static_cast<double>(prepared.peaks().bend),
+                2.0 + std::abs(scale));
+    for (std::uint64_t phase = 0; phase < 100; ++phase) {
+      const MasterPosition at{4, phase * (UINT64_MAX / 100)};
+      const auto a = prepared.slopes(at), b = rescaled.slopes(at);
+      EXPECT_EQ(a.position, b.position);
+      EXPECT_EQ(a.slope, b.slope);
+      EXPECT_EQ(a.bend, b.bend);
+    }
+  }
+  CamCurve none;
+  EXPECT_EQ(CamCurve::rescale(base, {.table = &cam->table, .slave_scale = INT64_MAX}, none), CamRefusal::scale);
+}
+
+// A position of an axis as a master whose cycle is 1.2 m, exact to 2^-58 of a cycle.
+TEST(CamMaster, MeasuredIsWhereItsAxisIs) {
+  CamMaster::Config config;
+  config.measured = true;
+  config.cycle = Span::of(raw_position(1.2));
+  config.estimator.bits = 3;
+  config.estimator.jump = std::int64_t{1} << 58;
+  const double cycle = position_of(raw_position(1.2));
+  for (const double place : {0.0, 0.3, 1.2, -0.3, -2.5, 100.7}) {
+    CamMaster master(config);
+    int known_from = 0;
+    for (int k = 0; k < 200; ++k) {
+      const auto& reading = master.see(raw_position(place), true);
+      if (!reading.valid) known_from = k + 1;
+    }
+    EXPECT_NEAR(cycles_of(master.reading().point.position), place / cycle, 1e-12);
+    EXPECT_EQ(known_from, 127) << "16 times 8 ticks";
+    EXPECT_FALSE(master.see(0, false).valid);
+    EXPECT_FALSE(master.see(raw_position(place), true).valid) << "it has to be known for a while again";
+    EXPECT_FALSE(master.run(1)) << "nobody drives it from here";
+  }
+}
+
+class ACamMode : public ::testing::Test {
+ protected:
+  ACamMode() {
+    EXPECT_EQ(CamCurve::prepare({.table = &cam->table}, tables[0].curve), CamRefusal::none);
+    tables[0].high = raw_position(0.03);
+    config.motion =
+        CamMotion::Config::of(limits(1.0, 20.0, 20e3), limits(1.2, 5.0, 50.0), limits(0.1, 1.0, 10.0), 1024);
+    config.rate = tick_rate;
+    config.low = S::Position::from_raw(raw_position(-0.1));
+    config.high = S::Position::from_raw(raw_position(0.1));
+    mode.start(S::Position{});
+  }
+
+  std::unique_ptr<TestCam> cam = test_cam(rise_and_return("3-4-5", 0.03));
+  std::array<CamMode::Table, 1> tables{};
+  CamMode::Config config;
+  CamMode mode{config, tables};
+};
+
+TEST_F(ACamMode, SaysOfAMasterWhichFaultItIs) {
+  struct Case {
+    MasterReading reading;
+    Fault fault;
+  };
+  const MasterPosition half{0, std::uint64_t{1} << 62};
+  for (const auto& [reading, fault] :
+       {Case{{{}, false}, Fault::master_lost}, Case{{{{}, raw_velocity(1.3), 0}, true}, Fault::master_too_fast},
+        Case{{{{}, 0, raw_acceleration(5.5)}, true}, Fault::master_too_fast},
+        Case{{{half, 0, 0}, true}, Fault::synchronisation_lost}}) {
+    mode.start(S::Position{});
+    ASSERT_EQ(mode.command(CamCommand::engage, false, true), CamRefusal::none);
+    for (int k = 0; k < 20; ++k) mode.step({});
+    ASSERT_TRUE(mode.status().in_sync);
+    EXPECT_EQ(mode.fault(), Fault::none);
+    mode.step(reading);
+    EXPECT_EQ(mode.fault(), fault) << name_of(mode.fault());
+    EXPECT_FALSE(mode.status().active);
+    mode.start(S::Position{});
+    EXPECT_EQ(mode.fault(), Fault::none);
+  }
+}
+
+TEST_F(ACamMode, RefusesWhatCannotBeAndKeepsWhatIsFollowed) {
+  ASSERT_EQ(mode.command(CamCommand::engage, false, true), CamRefusal::none);
+  for (int k = 0; k < 20; ++k) mode.step({});
+  ASSERT_EQ(mode.table(), 1);
+  const auto refused = [&](CamRefusal reason) {
+    EXPECT_EQ(mode.command(CamCommand::engage, false, true), reason);
+    for (int k = 0; k < 20; ++k) mode.step({});
+    EXPECT_EQ(mode.refusal(), reason);
+    EXPECT_TRUE(mode.status().in_sync);
+    EXPECT_EQ(mode.table(), 1);
+    mode.asked() = {};
+  };
+  mode.asked().table = 2;
+  refused(CamRefusal::unknown_table);
+  mode.asked().table = 0;
+  refused(CamRefusal::unknown_table);
+  mode.asked().slave_scale = std::int64_t{100} << 32;
+  refused(CamRefusal::beyond_travel);
+  mode.asked().slave_offset = raw_position(0.08);
+  refused(CamRefusal::beyond_travel);
+  mode.asked().numerator = 100;
+  refused(CamRefusal::beyond_limits);
+}
+
+// More requests than curves have places.
+TEST_F(ACamMode, HasAPlaceForEachCurveHoweverOftenItIsAsked) {
+  VirtualMaster master(VirtualMaster::Config::of(limits(1.2, 5.0, 50.0)));
+  master.run(master_speed(1.0));
+  Watch watch(config.motion.slave);
+  std::mt19937_64 draw(5);
+  for (int k = 0; k < 200'000; ++k) {
+    if (draw() % 300 == 0) {
+      mode.asked().slave_offset = raw_position(0.01 * static_cast<double>(draw() % 5));
+      mode.asked().trigger = draw() % 3 == 0 ? CamTrigger::next_cycle : CamTrigger::at_once;
+      mode.command(CamCommand::engage, false, true);
+    }
+    mode.step({master.step(), true});
+    watch.see(mode.point());
+  }
+  EXPECT_LE(watch.position_jump, position_unit);
+  EXPECT_LE(watch.speed_jump, velocity_unit);
+  EXPECT_LE(watch.over_velocity, velocity_unit);
+  EXPECT_LE(watch.over_acceleration, acceleration_unit);
+}
+
+TEST_F(ACamMode, IsLeftByAHaltAndNotTakenUpAgain) {
+  CamMaster master(CamMaster::Config{.virtual_master = VirtualMaster::Config::of(limits(1.2, 5.0, 50.0))});
+  RemoteCam remote;
+  EXPECT_FALSE(remote.attached());
+  remote.command(CamCommand::engage, OperationMode::cam, true, true);
+  remote.attach(mode, master);
+  remote.start(S::Position{});
+  remote.command(CamCommand::engage, OperationMode::cyclic_position, true, true);
+  EXPECT_EQ(mode.refusal(), CamRefusal::not_enabled);
+  remote.command(CamCommand::engage, OperationMode::cam, false, true);
+  EXPECT_EQ(mode.refusal(), CamRefusal::not_enabled);
+  EXPECT_TRUE(remote.refused());
+  remote.command(CamCommand::engage, OperationMode::cam, true, true);
+  EXPECT_FALSE(remote.refused());
+  ASSERT_TRUE(master.run(master_speed(1.0)));
+  const auto run = [&](int count, bool stops) {
+    for (int k = 0; k < count; ++k) {
+      master.step();
+      remote.step(stops, true);
+    }
+  };
+  run(20'000, false);
+  EXPECT_EQ(remote.bits(), statusword::target_bit | statusword::follows_bit);
+  EXPECT_EQ(remote.ends(), 0u) << "the first cycle takes the master more than a second";
+  run(10'000, false);
+  EXPECT_EQ(remote.ends(), 1u);
+  run(1, true);
+  EXPECT_EQ(remote.bits(), 0);
+  run(10'000, true);
+  EXPECT_TRUE(remote.at_rest());
+  run(10'000, false);
+  EXPECT_TRUE(remote.at_rest());
+}
+
+}  // namespace
+}  // namespace stiction::test
