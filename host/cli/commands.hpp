@@ -40,6 +40,8 @@ void add_cam(CLI::App& program, const Invocation& invocation);
 void add_cam_rank(CLI::App& cam);
 void add_cam_exchange(CLI::App& cam);
 void add_cam_design(CLI::App& cam, const Invocation& invocation);
+// Methods against residual vibration, below `stiction cam`.
+void add_cam_shape(CLI::App& cam, const Invocation& invocation);
 // Step cams from a project, below `stiction cam`.
 void add_cam_step(CLI::App& cam, const Invocation& invocation);
 // Scripts for the shells, made from the commands that `program` has when it runs.

@@ -65,7 +65,9 @@ StandRun run_stand(const machine::Machine& machine, const sim::cam::Motion& moti
     const double master = settings.master_speed * run.time();
     const auto wanted = slave.at(master);
     auto& plant = run.plant(0);
-    result.load.push_back({master, plant.position() / radius, plant.velocity() / radius, 0.0});
+    const double velocity = plant.velocity() / radius;
+    const double change = result.load.empty() ? 0.0 : velocity - result.load.back().speed;
+    result.load.push_back({master, plant.position() / radius, velocity, change / machine.timing.fast_period});
     if (const auto seen = plant.read_second_encoder()) result.measured.push_back({master, *seen / radius, 0.0, 0.0});
     result.motor_error = std::max(result.motor_error, std::fabs(wanted.position - plant.motor_position()) / radius);
     places.push_back(slave.place(master));

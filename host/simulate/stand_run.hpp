@@ -18,7 +18,7 @@ struct StandSettings {
 };
 
 struct StandRun {
-  std::vector<sim::cam::LoadState> load;      // as it is, one a tick; the acceleration is left at 0
+  std::vector<sim::cam::LoadState> load;  // as it is, one a tick; the acceleration is the mean since the tick before
   std::vector<sim::cam::LoadState> measured;  // by the second encoder, late and with noise; position alone; none: none
   double motor_error = 0.0;                   // peak following error of the motor, in the slave's unit
   Log log;                                    // of all of it, with the channels master and table
