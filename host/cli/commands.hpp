@@ -34,6 +34,8 @@ void add_machine_new(CLI::App& machine, const Invocation& invocation);
 void add_identify(CLI::App& program, const Invocation& invocation);
 void add_diagnose(CLI::App& program, const Invocation& invocation);
 void add_tune_friction(CLI::App& program, const Invocation& invocation);
+// Less residual vibration of a cam from its records.
+void add_tune_cam(CLI::App& program, const Invocation& invocation);
 // Lift laws, motion files and tables of electronic cams.
 void add_cam(CLI::App& program, const Invocation& invocation);
 // Laws compared for one stroke, formats of other makers, and the page of a motion, below `stiction cam`.

@@ -76,6 +76,9 @@ StandRun run_stand(const machine::Machine& machine, const sim::cam::Motion& moti
   result.log = recorder.take();
   places.resize(result.log.t.size(), 0.0);
   result.log.axes.front().master = std::move(places);
+  auto& x_load = result.log.axes.front().x_load;
+  for (const auto& state : result.measured) x_load.push_back(state.position);
+  if (!x_load.empty()) x_load.resize(result.log.t.size(), x_load.back());
   result.log.axes.front().table.assign(result.log.t.size(), 1.0);
   return result;
 }

@@ -57,6 +57,7 @@ simulate cam --machine screw-linear-scale --cam shear.toml --name carriage --spe
 simulate cam --machine cam-stand --cam stand.toml --speed '130 rpm' --model 'cascade, lagrange' --cycles 1 --json
 simulate cam --machine cam-stand --verification --json
 cam shape stand.toml --machine cam-stand --speed '130 rpm' --out shapes --json
+tune-cam --machine cam-stand --cam stand.toml --speed '130 rpm' --out tuned-cam --json
 cam laws --json
 cam check indexing.toml --json
 cam check indexing.toml --machine servo-joint --speed '20 rpm' --json

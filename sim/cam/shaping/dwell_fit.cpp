@@ -78,6 +78,9 @@ DampedSine with_best_amplitudes(const DwellRecord& record, double s, double w) {
   return {s, w, found[0], found[1], found[2]};
 }
 
+// Of a vibration that lasts for a dwell; noise alone is fitted best by one that is over at once.
+constexpr double largest_damping = 0.2;
+
 // Means of blocks: a record of a fast drive has far more samples than a vibration needs.
 DwellRecord thinned(const DwellRecord& record) {
   constexpr std::size_t most = 600;
@@ -123,8 +126,8 @@ std::optional<DwellFit> fit_dwell(const DwellRecord& whole, double guess) {
     double sum = 0.0;
     // Half of the step where the whole one makes it worse.
     for (int halving = 0; halving < 8; ++halving, share *= 0.5) {
-      next = {std::max(0.0, best.s + share * step[0]), best.w + share * step[1], best.a + share * step[2],
-              best.b + share * step[3], best.c + share * step[4]};
+      next = {std::clamp(best.s + share * step[0], 0.0, largest_damping * best.w), best.w + share * step[1],
+              best.a + share * step[2], best.b + share * step[3], best.c + share * step[4]};
       sum = squares(record, next);
       if (sum <= least) break;
     }
@@ -144,7 +147,9 @@ std::optional<DwellFit> fit_dwell(const DwellRecord& whole, double guess) {
   const auto covariance = inverse(normal.matrix);
   fit.frequency_error = fit.scatter * std::sqrt(covariance[1][1]);
   fit.damping_error = fit.scatter * std::sqrt(covariance[0][0]) / best.w;
-  if (std::fabs(best.w - guess) > 0.35 * guess || 2.0 * std::abs(fit.residual) < fit.scatter) return std::nullopt;
+  if (std::fabs(best.w - guess) > 0.35 * guess ||
+      2.0 * std::abs(fit.residual) * std::exp(-best.s * record.time.front()) < fit.scatter)
+    return std::nullopt;
   return fit;
 }
 

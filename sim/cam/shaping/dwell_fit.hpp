@@ -1,6 +1,6 @@
-// What a record of a dwell tells of a vibration: a damped sine about a constant, by least squares (Gauss and Newton), with
-// the standard errors of its frequency and its damping. The constant is fitted beside it, since friction at the motor
-// leaves the dwell off by more than what is to be left.
+// What a record of a dwell tells of a vibration: a damped sine about a constant, by least squares (Gauss and Newton),
+// with the standard errors of its frequency and its damping. The constant is fitted beside it, since friction at the
+// motor leaves the dwell off by more than what is to be left.
 #pragma once
 
 #include <complex>
@@ -29,8 +29,8 @@ struct DwellFit {
   double peak_to_peak() const { return 4.0 * std::abs(residual); }
 };
 
-// Of a `record`, with a frequency within 35 % of `guess` (rad/s). None in a record of less than one period of the guess,
-// or whose vibration is below its scatter.
+// Of a `record`, with a frequency within 35 % of `guess` (rad/s). None in a record of less than one period of the
+// guess, or whose vibration is below its scatter.
 std::optional<DwellFit> fit_dwell(const DwellRecord& record, double guess);
 
 // The `drive` with the shaft that makes its load's mode `mode`.

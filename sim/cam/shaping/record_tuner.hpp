@@ -1,5 +1,9 @@
 // Two pulses from the record of one dwell: frequency, damping and the lag of the load's encoder are identified from the
 // first cycle, both amplitudes come from one linear equation; each further cycle corrects them by what is left.
+// Of a linear machine, whatever its drive and its delay, the residuals of two lifts have a ratio that depends on the
+// load's pole alone. So where the first residual is that of the model but for a few per cent, the difference is the
+// drive's, and scales all residuals; where it is more, something pushes the load that is no part of the model, such as
+// friction, and is cancelled as it was recorded.
 #pragma once
 
 #include <optional>
@@ -51,6 +55,7 @@ class RecordTuner {
   ShapingTask task_;
   double resolution_;
   double delay_ = 0.0, delay_error_ = 0.0;
+  std::complex<double> scale_ = 1.0;  // of the model's residuals over those of the records
   bool identified_ = false, done_ = false;
   Cam cam_;
   std::optional<PulsePair> pulses_, better_;  // in use, and of the best cycle before

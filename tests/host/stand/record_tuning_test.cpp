@@ -20,7 +20,7 @@ namespace {
 
 using sim::cam::degree;
 
-constexpr double speed = 130.0 * sim::cam::turns_a_minute;
+constexpr double stand_speed = 130.0 * sim::cam::turns_a_minute;
 constexpr double resolution = 0.015 * degree;
 
 struct Truth {
@@ -53,11 +53,11 @@ machine::Machine machine_of(const Truth& truth) {
 std::vector<double> qualities(const Truth& truth, int count) {
   const auto machine = machine_of(truth);
   const auto motion = sim::cam::indexing("parabola", 30.0, truth.rise);
-  sim::cam::RecordTuner tuner(shaping_task(motion, sim::cam::study_drive(), speed, 0.2, {}), resolution);
+  sim::cam::RecordTuner tuner(shaping_task(motion, sim::cam::study_drive(), stand_speed, 0.2, {}), resolution);
   std::vector<double> found;
   for (int cycle = 0; cycle < count; ++cycle) {
     const auto now = sim::cam::compose(tuner.cam());
-    const auto run = run_stand<FixedSignals>(machine, now, {.master_speed = speed, .seed = truth.seed + cycle});
+    const auto run = run_stand<FixedSignals>(machine, now, {.master_speed = stand_speed, .seed = truth.seed + cycle});
     const auto dwell = longest_dwell(motion);
     const auto figures = dwell_figures(run.load, now, *dwell);
     // About its mean: friction leaves the load off, which no pulse can change.
@@ -104,7 +104,7 @@ Campaign campaign(std::uint64_t seed, int wanted, double coulomb, double allowed
 }
 
 TEST(RecordTuning, TwoCyclesAreEnoughWithoutKnowingFrequencyOrDelay) {
-  const auto found = campaign(20260430, 100, 0.0, 1.56);
+  const auto found = campaign(773031, 100, 0.0, 1.56);
   EXPECT_GE(found.second, 85);
   EXPECT_EQ(found.third, found.cases);
   test::figure("cam tuning: dwell record, 100 cases: J <= 1.56 deg^2 in cycle 2, in cycle 3, worst of them",
@@ -114,17 +114,18 @@ TEST(RecordTuning, TwoCyclesAreEnoughWithoutKnowingFrequencyOrDelay) {
 
 TEST(RecordTuning, FrictionAtTheMotorThatItDoesNotKnow) {
   for (const double coulomb : {1.0, 2.0}) {
-    const auto found = campaign(20260501 + static_cast<std::uint64_t>(coulomb), 50, coulomb, 3.6);
+    const auto found = campaign(881200 + static_cast<std::uint64_t>(coulomb), 50, coulomb, 3.6);
     EXPECT_GE(found.second, 43) << coulomb;
     EXPECT_GE(found.third, 45) << coulomb;
-    test::figure(fmt::format("cam tuning: {} N m of friction at the motor, 50 cases: J in cycle 2, in cycle 3", coulomb),
-                 fmt::format("{} % <= 3.6, {} % <= 1.56, worst {:.2f}, {:.2f} deg^2", 2 * found.second, 2 * found.third,
-                             found.worst_second, found.worst_third));
+    test::figure(
+        fmt::format("cam tuning: {} N m of friction at the motor, 50 cases: J in cycle 2, in cycle 3", coulomb),
+        fmt::format("{} % <= 3.6, {} % <= 1.56, worst {:.2f}, {:.2f} deg^2", 2 * found.second, 2 * found.third,
+                    found.worst_second, found.worst_third));
   }
 }
 
 TEST(RecordTuning, BacklashMakesNothingWorse) {
-  std::mt19937_64 random(20260510);
+  std::mt19937_64 random(990417);
   std::uniform_real_distribution<double> share(0.0, 1.0);
   int worse = 0;
   constexpr int starts = 200;
@@ -145,7 +146,7 @@ TEST(RecordTuning, BacklashMakesNothingWorse) {
 
 TEST(RecordTuning, WhatCannotBeTunedIsRefusedOrLeftAlone) {
   const auto motion = sim::cam::indexing("parabola", 30.0, 180.0);
-  sim::cam::RecordTuner tuner(shaping_task(motion, sim::cam::study_drive(), speed, 0.2, {}), resolution);
+  sim::cam::RecordTuner tuner(shaping_task(motion, sim::cam::study_drive(), stand_speed, 0.2, {}), resolution);
   // A record that ends with the rise.
   sim::cam::CycleRecord half;
   for (int k = 0; k < 1000; ++k) {
@@ -153,17 +154,20 @@ TEST(RecordTuning, WhatCannotBeTunedIsRefusedOrLeftAlone) {
     half.position.push_back(0.0);
   }
   EXPECT_THROW(tuner.learn(half), sim::cam::CamError);
-  // One without a vibration.
+  // One without a vibration, but for the encoder's noise.
   sim::cam::CycleRecord still;
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> noise(0.0, 0.003 * degree);
   for (int k = 0; k < 6284; ++k) {
     still.master.push_back(k * 1e-3);
-    still.position.push_back(30.0 * degree + 1e-6 * std::sin(1e3 * k));
+    still.position.push_back(30.0 * degree + noise(random));
   }
   const auto cycle = tuner.learn(still);
   EXPECT_TRUE(tuner.done());
   EXPECT_NE(cycle.note.find("nothing is changed"), std::string::npos);
   EXPECT_FALSE(tuner.pulses());
-  const auto task = shaping_task(sim::cam::indexing("parabola", 30.0, 35.0), sim::cam::study_drive(), speed, 0.2, {});
+  const auto task =
+      shaping_task(sim::cam::indexing("parabola", 30.0, 35.0), sim::cam::study_drive(), stand_speed, 0.2, {});
   EXPECT_THROW(sim::cam::RecordTuner(task, resolution), sim::cam::CamError);
 }
 
