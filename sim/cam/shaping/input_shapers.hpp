@@ -1,5 +1,5 @@
-// Input shapers: a motion in shares, each later than the one before, whose vibrations cancel. ZV and ZVD after Singer
-// and Seering 1990; extra-insensitive ones (EI, two humps) after Singhose, Seering and Singer 1996; MZV, three impulses
+// Input shapers: a motion in shares, each later than the one before, whose vibrations cancel. ZV and ZVD after Singer,
+// Seering 1990; extra-insensitive ones (EI, two humps) after Singhose, Seering, Singer 1996; MZV, three impulses
 // in three quarters of a period, is that of machine tools for printing. Times are in periods of the damped vibration,
 // K = exp(-zeta pi / sqrt(1 - zeta^2)) is what it keeps over half a period.
 #pragma once
