@@ -62,10 +62,10 @@ void add_row(const ShapedRow& row, const ShapingUnits& units, sim::ExperimentRes
   for (std::size_t k = 0; k < made.from_rest.factors.size(); ++k) {
     const double percent = 100.0 * made.from_rest.factors[k];
     add(fmt::format("residual_at_{:.0f}_percent", percent), units.slave_unit,
-        fmt::format("left from peak to peak at {:.0f} % of the frequency", percent),
+        fmt::format("residual from peak to peak at {:.0f} % of the frequency", percent),
         made.from_rest.figures[k].peak_to_peak * units.slave);
   }
-  add("residual_worst", units.slave_unit, "left at most over the band", made.from_rest.worst * units.slave);
+  add("residual_worst", units.slave_unit, "largest residual over the band", made.from_rest.worst * units.slave);
   add("residual_running", units.slave_unit, "the same in continuous running", made.running.worst * units.slave);
   add("quality_nominal", units.slave_unit + " " + units.master_unit, "area of the deviation in the dwell",
       made.from_rest.figures[made.from_rest.figures.size() / 2].quality * units.slave * units.master);
@@ -80,7 +80,7 @@ void add_row(const ShapedRow& row, const ShapingUnits& units, sim::ExperimentRes
 
 sim::Chart residual_chart(const ShapingResult& result, const ShapingUnits& units) {
   sim::Chart chart;
-  chart.title = "What is left over the true frequency";
+  chart.title = "Residual at the true frequency";
   chart.x_label = "frequency of the load, % of the nominal one";
   chart.y_label = "peak to peak, " + units.slave_unit;
   chart.shape.wide = true;
@@ -170,7 +170,7 @@ ShapingResult shape(const sim::cam::ShapingTask& task, const AxisLoad& load,
   }
   const double damping = task.mode().damping_ratio(), z = std::fabs(task.stroke);
   if (const auto least = least_residual(task.periods(), damping, task.band, task.limits)) result.least = *least * z;
-  // The limits of the unit law grow with the square of the rise; for other lengths those of the study are taken.
+  // The limits of the unit law grow with the square of the rise; for other lengths those of LiftLimits are taken.
   result.frontier = sim::cam::frontier(1.5, 4.0, 11, damping, task.band, {});
   if (!result.least || *result.least > wanted)
     result.shortest_periods = sim::cam::shortest_rise(wanted / z, damping, task.band, {});

@@ -31,7 +31,7 @@ struct ShapingResult {
 };
 
 // What a lift of `stroke` in `rise_time` (s) may ask of an axis with that `load`, as figures of the unit law: its
-// speed, acceleration and torque, and at most the acceleration and jerk of the laws that the study compares.
+// speed, acceleration and torque, and at most the acceleration and jerk of LiftLimits.
 sim::cam::LiftLimits limits_of(const AxisLoad& load, double stroke, double rise_time);
 
 // The `methods` on a `task`, for an axis with that `load`. `wanted`: what may be left from peak to peak.

@@ -43,7 +43,7 @@ sim::Chart dwell_records(const sim::cam::ShapingTask& task, const std::vector<Tu
 sim::Chart over_frequency(const sim::cam::ShapingTask& task, const sim::cam::RecordTuner& tuner,
                           const TuningUnits& units) {
   sim::Chart chart;
-  chart.title = "What is left over the frequency, by the model that was identified";
+  chart.title = "Residual over the frequency, by the model that was identified";
   chart.x_label = "frequency of the load, % of the identified one";
   chart.y_label = "peak to peak, " + units.slave_unit;
   auto identified = task;
@@ -71,7 +71,7 @@ sim::ExperimentResult tuning_report(const sim::cam::ShapingTask& task, const sim
   sim::ExperimentResult result;
   result.experiment = "tune-cam";
   result.title = fmt::format("Tuned cam {}", task.motion.cam.name);
-  result.question = "How much less does the load vibrate in the dwell, and what was learned of it?";
+  result.question = "How much less does the load vibrate in the dwell, and what are its frequency and damping?";
   const auto add = [&](const std::string& name, const std::string& unit, const std::string& text, double value) {
     result.figures.push_back({.name = name, .unit = unit, .text = text, .value = value, .expected = {}});
   };
@@ -86,7 +86,7 @@ sim::ExperimentResult tuning_report(const sim::cam::ShapingTask& task, const sim
   for (std::size_t c = 0; c < cycles.size(); ++c) {
     const auto& learned = cycles[c].learned;
     add(fmt::format("quality_cycle_{}", c + 1), units.slave_unit + " " + units.master_unit,
-        fmt::format("cycle {}: area of the deviation in the dwell", c + 1),
+        fmt::format("cycle {}: area of the deviation in the dwell, behind the lag of the drive", c + 1),
         learned.quality * units.slave * units.master);
     add(fmt::format("peak_to_peak_cycle_{}", c + 1), units.slave_unit,
         fmt::format("cycle {}: vibration at the beginning of the dwell", c + 1), learned.peak_to_peak * units.slave);

@@ -153,7 +153,7 @@ void add_cam_run(CLI::App& simulate, const Invocation& invocation) {
   add_out(*command, o->out, "write report.html and result.json into this folder");
   command->add_flag("--json", o->json, "print the figures as JSON on standard output");
   command->callback([o, &invocation] {
-    // Both are needed but for the study's own case.
+    // Both are needed but for the case of --verification.
     if (o->motion.motion.empty() && !o->stand.verification) throw CLI::RequiredError("--cam");
     if (o->speed.empty() && !o->stand.verification) throw CLI::RequiredError("--speed");
     run_cam_command(*o, invocation);

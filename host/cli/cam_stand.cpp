@@ -50,7 +50,7 @@ void CamStandOptions::add_to(CLI::App& command) {
                   "cascade, transfer-function, lagrange")
       ->type_name("MODELS");
   command.add_flag("--verification", verification,
-                   "the case with which the study of cam-stand checks its model, in place of --cam and --speed");
+                   "the case with which Dostrasil 2014 checks the model, in place of --cam and --speed");
 }
 
 void run_cam_stand(const CamStandOptions& options, const CamStandRun& run, const Invocation& invocation) {
@@ -76,7 +76,8 @@ void run_cam_stand(const CamStandOptions& options, const CamStandRun& run, const
   auto result = stand_result(motion, speed, cases, simulation.signals);
   if (options.verification)
     result.findings.emplace_back(
-        "The transfer function that the study prints has the denominator of Lagrange's equations; its numerator lacks "
+        "The transfer function that Dostrasil 2014 prints has the denominator of Lagrange's equations; its numerator "
+        "lacks "
         "the gear's 1/33, so that it holds for set-points at the output alone. The corrected one is used here.");
   const auto json = experiment_json(result, machine);
   if (!run.log.empty()) {

@@ -1,4 +1,4 @@
-// The part of `stiction simulate cam` that has the models of a study of residual vibration.
+// The part of `stiction simulate cam` that has the models of an elastic axis.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -28,7 +28,7 @@ struct CamStandRun {
   bool json;
 };
 
-// Runs the models of `options` with what the rest of the command says, `run`.
+// Runs the models of `options` with the rest of the command, `run`, as `invocation` has it.
 void run_cam_stand(const CamStandOptions& options, const CamStandRun& run, const Invocation& invocation);
 
 }  // namespace stiction::host

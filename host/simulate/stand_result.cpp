@@ -87,10 +87,10 @@ sim::ExperimentResult stand_result(const sim::cam::Motion& motion, double master
                                    const std::vector<StandCase>& cases, const std::string& signals) {
   const auto units = units_of_stand(motion.cam);
   sim::ExperimentResult result;
-  result.experiment = "cam-stand";
+  result.experiment = "cam-load";
   result.title = fmt::format("Cam {} on an elastic axis", motion.cam.name);
   result.signals = signals;
-  result.question = "How does the load follow the cam, and how much does it swing in the dwell?";
+  result.question = "How does the load follow the cam, and how much does it oscillate in the dwell?";
   result.figures.push_back({.name = "theoretical_acceleration",
                             .unit = units.slave_unit + "/s²",
                             .text = "peak acceleration of the set-point",
@@ -101,7 +101,7 @@ sim::ExperimentResult stand_result(const sim::cam::Motion& motion, double master
   for (const auto& c : cases)
     result.findings.push_back(
         dwell
-            ? fmt::format("The load swings by {:.4g} {} from peak to peak in the dwell, {}.",
+            ? fmt::format("The load oscillates by {:.4g} {} from peak to peak in the dwell, {}.",
                           dwell_figures(c.states, motion, *dwell).peak_to_peak * units.slave, units.slave_unit, c.label)
             : fmt::format("The motion has no dwell; nothing is said of residual vibration, {}.", c.label));
   result.charts = {stand_chart(cases, units, "Lift of the load", "position, " + units.slave_unit,

@@ -33,7 +33,8 @@ struct FrontierPoint {
 std::vector<FrontierPoint> frontier(double from, double to, int count, double damping_ratio, double band,
                                     const LiftLimits& limits);
 
-// The shortest rise, in periods, that leaves at most `residual` of the stroke; none up to 8 periods.
+// The shortest rise, in periods, that leaves at most `residual` of the stroke; none up to 8 periods. `damping_ratio`,
+// `band`, `limits` as above.
 std::optional<double> shortest_rise(double residual, double damping_ratio, double band, const LiftLimits& limits);
 
 }  // namespace stiction::sim::cam

@@ -18,7 +18,7 @@ namespace {
 using MaybeCurve = std::optional<Curve>;
 
 constexpr std::string_view pulse_law = "polynomial_3_4_5";
-// The study's 50 degrees at 130/min, in periods of its load.
+// The 50 degrees of Dostrasil 2014 at 130/min, in periods of its load.
 constexpr double pulse_periods = 0.93;
 
 MaybeCurve as_it_is(const ShapingTask& task) {

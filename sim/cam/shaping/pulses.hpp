@@ -14,10 +14,11 @@ struct Pulse {
   double amplitude = 0.0;  // of the slave
 };
 
-// As extended in 6.2: a rise of its own by `amplitude` over `length` by `law`, inside of the rise, whose own stroke is
-// that much less. The last place before the end of the rise, since a pulse is smallest there; none where the rise has
-// no such place.
+// Of a `task`, as extended in 6.2: a rise of its own by `amplitude` over `length` by `law`, inside of the rise, whose
+// own stroke is that much less. The last place before the end of the rise, since a pulse is smallest there; none where
+// the rise has no such place.
 std::optional<Pulse> tuned_pulse(const ShapingTask& task, std::string_view law, double length);
+// The rise of the `task` with that `pulse` by `law` over `length`.
 Curve with_pulse(const ShapingTask& task, const Pulse& pulse, std::string_view law, double length);
 
 // The master's way in the longest time constant of the drive of a `task` itself, its load's mode apart: so long a drive
@@ -27,6 +28,7 @@ double drive_lag(const ShapingTask& task);
 // As published first (6.1): a bump (1 - cos)/2 of `length`, one period of the mode, at the beginning of the dwell. It
 // begins within half a period behind the rise of `task`.
 std::optional<Pulse> tuned_dwell_pulse(const ShapingTask& task, double length);
+// The rise of the `task` with that `pulse` of `length` behind it.
 Curve with_dwell_pulse(const ShapingTask& task, const Pulse& pulse, double length);
 
 // Two pulses of half a period a quarter of a period apart, the second one up to the end of the rise: one linear
@@ -37,6 +39,7 @@ struct PulsePair {
   double length = 0.0;
 };
 std::optional<PulsePair> pulse_pair(const ShapingTask& task, std::complex<double> residual);
+// The rise of the `task` with both `pulses`.
 Curve with_pulses(const ShapingTask& task, const PulsePair& pulses);
 
 }  // namespace stiction::sim::cam

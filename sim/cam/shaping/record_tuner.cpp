@@ -122,7 +122,7 @@ TunedCycle RecordTuner::learn(const CycleRecord& record) {
   better_ = pulses_;
   if (!cycle.fit || cycle.peak_to_peak < resolution_) {
     done_ = true;
-    cycle.note = "What is left is within the resolution of the encoder; nothing is changed.";
+    cycle.note = "The residual is within the resolution of the encoder; nothing is changed.";
     return cycle;
   }
   if (!identified_) {

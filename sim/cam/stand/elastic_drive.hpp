@@ -1,4 +1,4 @@
-// A drive that follows a cam through an elastic shaft, as the study of an indexing table simplifies it: motor and its
+// A drive that follows a cam through an elastic shaft, as it is simplified for an indexing table: motor and its
 // controllers are a spring and a damper between set-point and rotor (Dostrasil 2014, 5.2 and 5.3), the shaft is one
 // between rotor and load. With u the set-point, x the rotor and y the load, all at the load:
 //   I_Z y'' = k_H (x - y) + b_H (x' - y')

@@ -28,8 +28,10 @@ struct ResponseSettings {
 // motion is a polynomial of the fifth degree or less in each step; other laws are replaced by the one through position,
 // speed and acceleration at the ends of the step, which is 1e-12 of the stroke off. `motion` is the set-point at the
 // output, `drive` what follows it.
+// `settings`: speed of the master, cycles, step.
 std::vector<LoadState> transfer_response(const ElasticDrive& drive, const Motion& motion,
                                          const ResponseSettings& settings);
+// The same of `drive` and `motion` by Lagrange's equations, with those `settings`.
 std::vector<LoadState> lagrange_response(const ElasticDrive& drive, const Motion& motion,
                                          const ResponseSettings& settings);
 

@@ -6,13 +6,14 @@ namespace {
 
 class CamVibrationCli : public Cli {
  protected:
-  static std::string stand() { return "'" + (fs::path(STICTION_SOURCE_DIR) / "examples/cams/stand.toml").string() + "'"; }
-  static std::string on_stand(const std::string& command) {
-    return command + " --machine cam-stand --speed '130 rpm'";
+  static std::string stand() {
+    return "'" + (fs::path(STICTION_SOURCE_DIR) / "examples/cams/stand.toml").string() + "'";
   }
+  static std::string on_stand(const std::string& command) { return command + " --machine cam-stand --speed '130 rpm'"; }
+  // Next to the folder in which the command runs, so that a refused one has written nothing there.
   std::string written(const std::string& name, const std::string& text) {
-    std::ofstream(work() / name) << text;
-    return name;
+    std::ofstream(work().parent_path() / name) << text;
+    return "../" + name;
   }
 };
 
@@ -72,7 +73,8 @@ TEST_F(CamVibrationCli, VerifiesTheStudysCaseAndSaysWhatItsPrintLacks) {
 }
 
 TEST_F(CamVibrationCli, TunesFromLogsAsFromSimulatedCycles) {
-  ASSERT_EQ(stiction(on_stand("simulate cam --cam " + stand() + " --model cascade --cycles 1 --log ../one.csv")).code, 0);
+  ASSERT_EQ(stiction(on_stand("simulate cam --cam " + stand() + " --model cascade --cycles 1 --log ../one.csv")).code,
+            0);
   const auto first = stiction(on_stand("tune-cam ../one.csv --cam " + stand() + " --out ../tuned --json"));
   ASSERT_EQ(first.code, 0) << first.error;
   const auto results = nlohmann::json::parse(first.out)["results"];
@@ -85,7 +87,8 @@ TEST_F(CamVibrationCli, TunesFromLogsAsFromSimulatedCycles) {
 }
 
 TEST_F(CamVibrationCli, RefusesLogsThatCannotBeTunedFrom) {
-  ASSERT_EQ(stiction(on_stand("simulate cam --cam " + stand() + " --model cascade --cycles 1 --log ../one.csv")).code, 0);
+  ASSERT_EQ(stiction(on_stand("simulate cam --cam " + stand() + " --model cascade --cycles 1 --log ../one.csv")).code,
+            0);
   const auto other = written("short.toml", short_rise);
   expect_refused(on_stand("tune-cam ../one.csv --cam " + other), "expected a log of this motion");
   expect_refused("tune-cam --machine servo-joint --speed '20 rpm' --cam " + stand(),

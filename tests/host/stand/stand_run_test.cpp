@@ -1,5 +1,5 @@
-// The firmware's cascade on the stand of the study, against the study's own model and the figures of an independent
-// prototype.
+// The firmware's cascade on the test rig of Dostrasil 2014, against that source's own model and the figures of an
+// independent prototype.
 #include "host/simulate/stand_run.hpp"
 
 #include <fmt/format.h>
@@ -46,7 +46,7 @@ double distance_from_model(const StandRun& run) {
   return largest;
 }
 
-TEST(CamStand, TheCascadeVibratesAsTheStudysModel) {
+TEST(CamStand, TheCascadeVibratesAsTheSimplifiedModel) {
   const auto run = run_stand<FixedSignals>(stand(), parabola(), {.master_speed = speed});
   const auto dwell = sim::cam::longest_dwell(parabola());
   const double peak_to_peak = dwell_figures(run.load, parabola(), *dwell).peak_to_peak / degree;

@@ -1,4 +1,4 @@
-// Methods against residual vibration on the stand of the study: the figures of an independent prototype
+// Methods against residual vibration on the test rig of Dostrasil 2014: the figures of an independent prototype
 // (docs/residual_vibration.md), and properties that each method has by its construction.
 #include "sim/cam/shaping/methods.hpp"
 
@@ -94,7 +94,7 @@ TEST(Shaping, TwoPulsesCancelAnyVibrationByOneLinearEquation) {
     }
 }
 
-// The table of the study's own page: five frequencies, and the peak acceleration over the parabola's.
+// The table of docs/residual_vibration.md: five frequencies, and the peak acceleration over the parabola's.
 TEST(Shaping, RowsOfTheTableAreThoseOfThePrototype) {
   struct Row {
     const char* method;

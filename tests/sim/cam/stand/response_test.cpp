@@ -1,4 +1,4 @@
-// The two simplified models of the study against each other, against closed forms and against the figures of an
+// The two simplified models of Dostrasil 2014 against each other, against closed forms and against the figures of an
 // independent prototype (docs/residual_vibration.md).
 #include "sim/cam/stand/response.hpp"
 
@@ -36,7 +36,7 @@ TEST(StandModel, PrintedDenominatorIsLagrangesAndPrintedNumeratorIsAGearOff) {
   EXPECT_NEAR(std::abs(printed.at(0.0) - 1.0), 0.0, 1e-15) << "the motor's lift would need 1/33";
 }
 
-TEST(StandModel, PolesAndZerosAreThoseOfTheStudy) {
+TEST(StandModel, PolesAndZerosAreThoseOfTheTestRig) {
   const auto g = transfer_function(study_drive());
   const auto poles = g.poles();
   ASSERT_EQ(poles.size(), 4u);

@@ -1,4 +1,4 @@
-// The stand of the study and its motions: Table 2 of Dostrasil 2014 as it is printed, without the shipped machine.
+// The test rig of Dostrasil 2014 and its motions: its Table 2 as it is printed, without the shipped machine.
 #pragma once
 
 #include <numbers>
