@@ -24,8 +24,8 @@ std::vector<std::string> stand_models();
 sim::ExperimentResult stand_result(const sim::cam::Motion& motion, double master_speed,
                                    const std::vector<StandCase>& cases, const std::string& signals);
 
-// The lift with which Dostrasil 2014 compares its model with its test rig (5.4): 68.18° in 90° by a parabola, at 47 turns
-// a minute.
+// The lift with which Dostrasil 2014 compares its model with its test rig (5.4): 68.18° in 90° by a parabola, at 47
+// turns a minute.
 sim::cam::Cam verification_cam();
 inline constexpr double verification_speed = 47.0 * 3.14159265358979323846 / 30.0;  // rad/s
 
