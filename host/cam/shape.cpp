@@ -72,7 +72,7 @@ void add_row(const ShapedRow& row, const ShapingUnits& units, sim::ExperimentRes
   add("acceleration_ratio", "", "peak acceleration over the parabola's", made.acceleration_ratio);
   const std::string unit = units.slave_unit == "°" ? "rad" : "m";
   add("peak_acceleration", unit + "/s²", "peak acceleration", made.acceleration);
-  add("peak_jerk", unit + "/s³", "peak jerk, its finite part", made.jerk);
+  add("peak_jerk", unit + "/s^3", "peak jerk, its finite part", made.jerk);
   add(units.effort_unit == "N" ? "peak_force" : "peak_torque", units.effort_unit,
       "peak effort of the motor at the axis", row.torque);
   add("rise", units.master_unit, "until the set-point rests", made.rise * units.master);

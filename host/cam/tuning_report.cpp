@@ -103,10 +103,15 @@ sim::ExperimentResult tuning_report(const sim::cam::ShapingTask& task, const sim
     }
     add("pulse_length", units.master_unit, "length of the pulses", pulses->length * units.master);
   }
+  const auto area = [&](const TuningCycle& cycle) {
+    return fmt::format("{:.3g} {}·{}", cycle.learned.quality * units.slave * units.master, units.slave_unit,
+                       units.master_unit);
+  };
   result.findings.push_back(
-      fmt::format("Area of the deviation in the dwell: {:.3g} {}·{} in the first cycle, {:.3g} in the last one.",
-                  cycles.front().learned.quality * units.slave * units.master, units.slave_unit, units.master_unit,
-                  cycles.back().learned.quality * units.slave * units.master));
+      cycles.size() == 1 ? fmt::format("Area of the deviation in the dwell: {}; the next cycle shows the pulses.",
+                                       area(cycles.front()))
+                         : fmt::format("Area of the deviation in the dwell: {} in the first cycle, {} in the last one.",
+                                       area(cycles.front()), area(cycles.back())));
   result.charts = {dwell_records(task, cycles, units), over_frequency(task, tuner, units)};
   return result;
 }
