@@ -78,18 +78,33 @@ void add_row(const ShapedRow& row, const ShapingUnits& units, sim::ExperimentRes
   add("rise", units.master_unit, "until the set-point rests", made.rise * units.master);
 }
 
+// The rows that a chart has room for in colours that can be told apart: the first, and the five that leave least.
+std::vector<const ShapedRow*> shown_rows(const ShapingResult& result) {
+  constexpr std::size_t most = 6;
+  std::vector<const ShapedRow*> rows;
+  for (const auto& row : result.rows)
+    if (row.made) rows.push_back(&row);
+  if (rows.size() <= most) return rows;
+  std::stable_sort(rows.begin() + 1, rows.end(), [](const ShapedRow* a, const ShapedRow* b) {
+    return a->made->from_rest.worst < b->made->from_rest.worst;
+  });
+  rows.resize(most);
+  return rows;
+}
+
 sim::Chart residual_chart(const ShapingResult& result, const ShapingUnits& units) {
   sim::Chart chart;
   chart.title = "Residual at the true frequency";
   chart.x_label = "frequency of the load, % of the nominal one";
   chart.y_label = "peak to peak, " + units.slave_unit;
   chart.shape.wide = true;
-  chart.caption = "Each method is made for 100 %; the machine may be at any place of the band.";
+  chart.caption =
+      "Each method is made for 100 %; the machine may be at any place of the band. Shown are "
+      "the motion as it is and the five methods with the least residual.";
   constexpr int points = 33;
-  for (const auto& row : result.rows) {
-    if (!row.made) continue;
-    const auto figures = band_figures(result.task, row.made->motion, points);
-    sim::Series series{.name = std::string(row.method->label), .x = {}, .y = {}};
+  for (const auto* row : shown_rows(result)) {
+    const auto figures = band_figures(result.task, row->made->motion, points);
+    sim::Series series{.name = std::string(row->method->label), .x = {}, .y = {}};
     for (std::size_t k = 0; k < figures.factors.size(); ++k) {
       series.x.push_back(100.0 * figures.factors[k]);
       series.y.push_back(figures.figures[k].peak_to_peak * units.slave);
@@ -110,12 +125,11 @@ sim::Chart frontier_chart(const ShapingResult& result, const ShapingUnits& units
     bound.y.push_back(point.residual * std::fabs(result.task.stroke) * units.slave);
   }
   chart.series.push_back(std::move(bound));
-  for (const auto& row : result.rows)
-    if (row.made)
-      chart.series.push_back({.name = std::string(row.method->label),
-                              .x = {row.made->rise / result.task.period_length()},
-                              .y = {row.made->from_rest.worst * units.slave},
-                              .points = true});
+  for (const auto* row : shown_rows(result))
+    chart.series.push_back({.name = std::string(row->method->label),
+                            .x = {row->made->rise / result.task.period_length()},
+                            .y = {row->made->from_rest.worst * units.slave},
+                            .points = true});
   return chart;
 }
 
@@ -126,10 +140,9 @@ sim::Chart dwell_chart(const ShapingResult& result, const ShapingUnits& units) {
   chart.y_label = "deviation, " + units.slave_unit;
   const auto& task = result.task;
   const double wanted = task.start + task.stroke;
-  for (const auto& row : result.rows) {
-    if (!row.made) continue;
-    sim::Series series{.name = std::string(row.method->label), .x = {}, .y = {}};
-    for (const auto& state : transfer_response(task.drive, row.made->motion, {.master_speed = task.master_speed})) {
+  for (const auto* row : shown_rows(result)) {
+    sim::Series series{.name = std::string(row->method->label), .x = {}, .y = {}};
+    for (const auto& state : transfer_response(task.drive, row->made->motion, {.master_speed = task.master_speed})) {
       if (state.master < task.end() - 1e-9 || state.master > task.dwell.end()) continue;
       series.x.push_back(state.master * units.master);
       series.y.push_back((state.position - wanted) * units.slave);
