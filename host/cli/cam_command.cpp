@@ -173,6 +173,7 @@ void add_cam(CLI::App& program, const Invocation& invocation) {
   add_cam_rank(*command);
   add_table(*command);
   add_cam_exchange(*command);
+  add_cam_shape(*command, invocation);
   add_cam_step(*command, invocation);
 }
 

@@ -7,6 +7,7 @@
 #include "firmware/machine/configuration/double_signals.hpp"
 #include "host/cam/duty.hpp"
 #include "host/cli/cam_options.hpp"
+#include "host/cli/cam_stand.hpp"
 #include "host/cli/choices.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
@@ -27,6 +28,7 @@ namespace {
 struct CamRunOptions {
   MachineOptions machine;
   MotionOptions motion;
+  CamStandOptions stand;
   std::string speed, master = "ideal", log, out;
   int cycles = 3;
   bool json = false;
@@ -84,6 +86,11 @@ std::vector<CamRunCase> cam_cases(const machine::Machine& machine, const sim::ca
 }
 
 void run_cam_command(const CamRunOptions& options, const Invocation& invocation) {
+  if (options.stand.asked())
+    return run_cam_stand(
+        options.stand,
+        {options.machine, options.motion, options.speed, options.log, options.out, options.cycles, options.json},
+        invocation);
   const auto cam = options.motion.one();
   const auto motion = sim::cam::compose(cam);
   const AxisLoad load = load_of_axis(options.machine, &cam);
@@ -128,11 +135,11 @@ void add_cam_run(CLI::App& simulate, const Invocation& invocation) {
   auto o = std::make_shared<CamRunOptions>();
   o->machine.add_to(*command, "shipped machine by name, or a machine file, whose axis follows the cam");
   o->machine.add_axis_to(*command);
-  command->add_option("--cam", o->motion.motion, "motion file (stiction.cam/1)")->required()->type_name("MOTION");
+  command->add_option("--cam", o->motion.motion, "motion file (stiction.cam/1)")->type_name("MOTION");
   command->add_option("--name", o->motion.cam, "name of the cam in the file [the only one]")->type_name("NAME");
   command->add_option("--speed", o->speed, "speed of the master, such as \"130 rpm\" or \"0.5 m/s\"")
-      ->required()
       ->type_name("SPEED");
+  o->stand.add_to(*command);
   command->add_option("--cycles", o->cycles, "measured cycles, after the one in which the master starts [3]")
       ->check(whole_number_between(1, 1000))
       ->type_name("N");
@@ -146,7 +153,12 @@ void add_cam_run(CLI::App& simulate, const Invocation& invocation) {
   add_output_file(*command, "--log", o->log, "write the measured cycles of the first run as a log");
   add_out(*command, o->out, "write report.html and result.json into this folder");
   command->add_flag("--json", o->json, "print the figures as JSON on standard output");
-  command->callback([o, &invocation] { run_cam_command(*o, invocation); });
+  command->callback([o, &invocation] {
+    // Both are needed but for the case of --verification.
+    if (o->motion.motion.empty() && !o->stand.verification) throw CLI::RequiredError("--cam");
+    if (o->speed.empty() && !o->stand.verification) throw CLI::RequiredError("--speed");
+    run_cam_command(*o, invocation);
+  });
 }
 
 }  // namespace stiction::host

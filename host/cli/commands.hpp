@@ -34,12 +34,16 @@ void add_machine_new(CLI::App& machine, const Invocation& invocation);
 void add_identify(CLI::App& program, const Invocation& invocation);
 void add_diagnose(CLI::App& program, const Invocation& invocation);
 void add_tune_friction(CLI::App& program, const Invocation& invocation);
+// Less residual vibration of a cam from its records.
+void add_tune_cam(CLI::App& program, const Invocation& invocation);
 // Lift laws, motion files and tables of electronic cams.
 void add_cam(CLI::App& program, const Invocation& invocation);
 // Laws compared for one stroke, formats of other makers, and the page of a motion, below `stiction cam`.
 void add_cam_rank(CLI::App& cam);
 void add_cam_exchange(CLI::App& cam);
 void add_cam_design(CLI::App& cam, const Invocation& invocation);
+// Methods against residual vibration, below `stiction cam`.
+void add_cam_shape(CLI::App& cam, const Invocation& invocation);
 // Step cams from a project, below `stiction cam`.
 void add_cam_step(CLI::App& cam, const Invocation& invocation);
 // Scripts for the shells, made from the commands that `program` has when it runs.

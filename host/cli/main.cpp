@@ -82,6 +82,7 @@ int run(int argc, char** argv) {
   add_identify(program, invocation);
   add_diagnose(program, invocation);
   add_tune_friction(program, invocation);
+  add_tune_cam(program, invocation);
   add_cam(program, invocation);
   add_convert(program);
   add_inspect(program);

@@ -119,7 +119,7 @@ class Machine:
         """The file of a machine with another level of Coulomb friction, by the effect that diagnosis has to name; None
         where no level can be changed. A law without a level of its own gets the part of the axis' other models."""
         level = self.coulomb(axis, model)
-        if level is not None:
+        if level:  # a machine without friction has nothing to change
             true = factor * level
         else:
             others = [self.coulomb(axis, other) for other in self.models(axis)]

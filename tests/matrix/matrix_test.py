@@ -56,6 +56,17 @@ class MachineFiles(unittest.TestCase):
         self.assertEqual([str(cell) for cell in cells],
                          ["table/-/-/1"] + [f"table/{model}/{seed}" for seed in (1, 2) for model in models])
 
+    def test_have_nothing_to_change_where_there_is_no_friction(self):
+        bare = machines.Machine("bare", """
+[axis.L]
+kind = "rotary"
+  [axis.L.friction]
+    [axis.L.friction.coulomb_viscous]
+    coulomb = "0 N m"
+    viscous = "0 N m s/rad"
+""")
+        self.assertIsNone(bare.with_coulomb("L", "coulomb_viscous", 1.2))
+
     def test_give_the_values_that_identification_has_to_find(self):
         self.assertEqual(MACHINE.truths("X", "lugre"),
                          {"mass_kg": 225.0, "coulomb_N": 90.0, "viscous_N_s_per_m": 500.0})

@@ -54,6 +54,10 @@ tune-friction --machine mcfv5050ln --axis X --feed '16 m/min' --no-pulse --json
 identify --reference circle --machine mcfv5050ln --json
 simulate cam --machine servo-joint --cam indexing.toml --speed '20 rpm' --cycles 1 --out cam-run --json
 simulate cam --machine screw-linear-scale --cam shear.toml --name carriage --speed '0.2 m/s' --cycles 1 --json
+simulate cam --machine cam-stand --cam stand.toml --speed '130 rpm' --model 'cascade, lagrange' --cycles 1 --json
+simulate cam --machine cam-stand --verification --json
+cam shape stand.toml --machine cam-stand --speed '130 rpm' --out shapes --json
+tune-cam --machine cam-stand --cam stand.toml --speed '130 rpm' --out tuned-cam --json
 cam laws --json
 cam check indexing.toml --json
 cam check indexing.toml --machine servo-joint --speed '20 rpm' --json
@@ -91,6 +95,8 @@ def prepare(folder):
     (folder / "indexing.toml").write_text(motion.read_text(encoding="utf-8"), encoding="utf-8")
     for name in ("step_cam.toml", "quarter_turn.toml", "spring_cam.toml", "swing.toml"):
         (folder / name).write_text((SOURCE / "examples/cams" / name).read_text(encoding="utf-8"), encoding="utf-8")
+    stand = SOURCE / "examples/cams/stand.toml"
+    (folder / "stand.toml").write_text(stand.read_text(encoding="utf-8"), encoding="utf-8")
     shear = SOURCE / "examples/cams/flying_shear.toml"
     (folder / "shear.toml").write_text(shear.read_text(encoding="utf-8"), encoding="utf-8")
     (folder / "steady.csv").write_text(STEADY, encoding="utf-8")

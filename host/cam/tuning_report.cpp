@@ -1,0 +1,119 @@
+#include "host/cam/tuning_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace stiction::host {
+namespace {
+
+struct TuningUnits {
+  double slave, master;
+  std::string slave_unit, master_unit;
+};
+
+TuningUnits units_of_tuning(const sim::cam::Cam& cam) {
+  const bool turn = cam.slave == sim::cam::Coordinate::rotary, angle = cam.master == sim::cam::Coordinate::rotary;
+  const double degrees = 180.0 / std::numbers::pi;
+  return {turn ? degrees : 1e3, angle ? degrees : 1e3, turn ? "°" : "mm", angle ? "°" : "mm"};
+}
+
+sim::Chart dwell_records(const sim::cam::ShapingTask& task, const std::vector<TuningCycle>& cycles,
+                         const TuningUnits& units) {
+  sim::Chart chart;
+  chart.title = "The load's encoder in the dwell";
+  chart.x_label = "master, " + units.master_unit;
+  chart.y_label = "deviation, " + units.slave_unit;
+  chart.shape.wide = true;
+  for (std::size_t c = 0; c < cycles.size(); ++c) {
+    sim::Series series{.name = fmt::format("cycle {}", c + 1), .x = {}, .y = {}};
+    const auto& record = cycles[c].record;
+    for (std::size_t k = 0; k < record.master.size(); ++k) {
+      if (record.master[k] < task.end() || record.master[k] > task.dwell.end()) continue;
+      series.x.push_back(record.master[k] * units.master);
+      series.y.push_back((record.position[k] - task.start - task.stroke) * units.slave);
+    }
+    chart.series.push_back(std::move(series));
+  }
+  return chart;
+}
+
+sim::Chart over_frequency(const sim::cam::ShapingTask& task, const sim::cam::RecordTuner& tuner,
+                          const TuningUnits& units) {
+  sim::Chart chart;
+  chart.title = "Residual over the frequency, by the model that was identified";
+  chart.x_label = "frequency of the load, % of the identified one";
+  chart.y_label = "peak to peak, " + units.slave_unit;
+  auto identified = task;
+  identified.drive = tuner.drive();
+  const auto add = [&](const char* name, const sim::cam::Motion& motion) {
+    sim::Series series{.name = name, .x = {}, .y = {}};
+    constexpr int points = 33;
+    const auto figures = band_figures(identified, motion, points);
+    for (std::size_t k = 0; k < figures.factors.size(); ++k) {
+      series.x.push_back(100.0 * figures.factors[k]);
+      series.y.push_back(figures.figures[k].peak_to_peak * units.slave);
+    }
+    chart.series.push_back(std::move(series));
+  };
+  add("before", task.motion);
+  add("after", sim::cam::compose(tuner.cam()));
+  return chart;
+}
+
+}  // namespace
+
+sim::ExperimentResult tuning_report(const sim::cam::ShapingTask& task, const sim::cam::RecordTuner& tuner,
+                                    const std::vector<TuningCycle>& cycles) {
+  const auto units = units_of_tuning(task.motion.cam);
+  sim::ExperimentResult result;
+  result.experiment = "tune-cam";
+  result.title = fmt::format("Tuned cam {}", task.motion.cam.name);
+  result.question = "How much less does the load vibrate in the dwell, and what are its frequency and damping?";
+  const auto add = [&](const std::string& name, const std::string& unit, const std::string& text, double value) {
+    result.figures.push_back({.name = name, .unit = unit, .text = text, .value = value, .expected = {}});
+  };
+  if (const auto& fit = cycles.front().learned.fit) {
+    add("frequency", "Hz", "frequency of the load", fit->mode.frequency() / (2.0 * std::numbers::pi));
+    add("frequency_error", "Hz", "its standard error", fit->frequency_error / (2.0 * std::numbers::pi));
+    add("damping_ratio", "", "damping ratio", fit->mode.damping_ratio());
+    add("damping_ratio_error", "", "its standard error", fit->damping_error);
+    add("delay", "ms", "lag of the load's encoder", tuner.delay() * 1e3);
+    add("delay_error", "ms", "its standard error", tuner.delay_error() * 1e3);
+  }
+  for (std::size_t c = 0; c < cycles.size(); ++c) {
+    const auto& learned = cycles[c].learned;
+    add(fmt::format("quality_cycle_{}", c + 1), units.slave_unit + " " + units.master_unit,
+        fmt::format("cycle {}: area of the deviation in the dwell, behind the lag of the drive", c + 1),
+        learned.quality * units.slave * units.master);
+    add(fmt::format("peak_to_peak_cycle_{}", c + 1), units.slave_unit,
+        fmt::format("cycle {}: vibration at the beginning of the dwell", c + 1), learned.peak_to_peak * units.slave);
+    if (!learned.note.empty()) result.findings.push_back(fmt::format("Cycle {}: {}", c + 1, learned.note));
+  }
+  if (const auto& pulses = tuner.pulses()) {
+    int number = 0;
+    for (const auto& pulse : {pulses->first, pulses->second}) {
+      ++number;
+      add(fmt::format("pulse_{}_at", number), units.master_unit, fmt::format("pulse {}: begins at", number),
+          pulse.position * units.master);
+      add(fmt::format("pulse_{}_amplitude", number), units.slave_unit, fmt::format("pulse {}: amplitude", number),
+          pulse.amplitude * units.slave);
+    }
+    add("pulse_length", units.master_unit, "length of the pulses", pulses->length * units.master);
+  }
+  const auto area = [&](const TuningCycle& cycle) {
+    return fmt::format("{:.3g} {}·{}", cycle.learned.quality * units.slave * units.master, units.slave_unit,
+                       units.master_unit);
+  };
+  result.findings.push_back(
+      cycles.size() == 1 ? fmt::format("Area of the deviation in the dwell: {}; the next cycle shows the pulses.",
+                                       area(cycles.front()))
+                         : fmt::format("Area of the deviation in the dwell: {} in the first cycle, {} in the last one.",
+                                       area(cycles.front()), area(cycles.back())));
+  result.charts = {dwell_records(task, cycles, units), over_frequency(task, tuner, units)};
+  return result;
+}
+
+}  // namespace stiction::host

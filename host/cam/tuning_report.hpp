@@ -1,0 +1,20 @@
+// What a tuning of two pulses found and did, cycle by cycle, as figures, charts and sentences.
+#pragma once
+
+#include <vector>
+
+#include "sim/cam/shaping/record_tuner.hpp"
+#include "sim/experiment/experiment_result.hpp"
+
+namespace stiction::host {
+
+struct TuningCycle {
+  sim::cam::CycleRecord record;
+  sim::cam::TunedCycle learned;
+};
+
+// Of a `task` as it was before, the `tuner` at the end, and all `cycles`, one or more.
+sim::ExperimentResult tuning_report(const sim::cam::ShapingTask& task, const sim::cam::RecordTuner& tuner,
+                                    const std::vector<TuningCycle>& cycles);
+
+}  // namespace stiction::host

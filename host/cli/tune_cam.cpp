@@ -1,0 +1,182 @@
+// `stiction tune-cam`: two pulses against residual vibration from records of a dwell.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "firmware/machine/configuration/double_signals.hpp"
+#include "host/cam/duty.hpp"
+#include "host/cam/tuning_report.hpp"
+#include "host/cli/cam_options.hpp"
+#include "host/cli/choices.hpp"
+#include "host/cli/commands.hpp"
+#include "host/cli/errors.hpp"
+#include "host/cli/experiment_output.hpp"
+#include "host/cli/logs.hpp"
+#include "host/cli/output.hpp"
+#include "host/cli/report_origin.hpp"
+#include "host/report/experiment_report.hpp"
+#include "host/simulate/stand_run.hpp"
+#include "sim/cam/motion_file.hpp"
+#include "stiction/number/fixed_signals.hpp"
+
+namespace stiction::host {
+namespace {
+
+struct TuneCamOptions {
+  std::vector<std::string> logs;
+  std::string columns;
+  MotionOptions motion;
+  MachineOptions machine;
+  std::string speed, out;
+  int cycles = 3;
+  bool json = false;
+};
+
+// The first cycle of a log. Throws UsageError for one that cannot be tuned from.
+sim::cam::CycleRecord record_of(const Log& log, const machine::AxisModel& axis, const sim::cam::Motion& motion) {
+  const auto found = std::find_if(log.axes.begin(), log.axes.end(),
+                                  [&](const AxisLog& each) { return each.axis == axis.name || each.axis.empty(); });
+  if (found == log.axes.end())
+    throw UsageError(fmt::format("{}: found no channel of axis {}; expected x_load and master", log.source, axis.name));
+  if (found->master.empty())
+    throw UsageError(fmt::format("{}: found no channel master; expected the master's position", log.source));
+  if (found->x_load.empty())
+    throw UsageError(fmt::format(
+        "{}: found no channel x_load; expected an encoder at the load: the motor's following error sees the drive's "
+        "lag and not what the shaft does",
+        log.source));
+  const double cycle = motion.curve.length();
+  double range = 0.0;
+  for (const auto& piece : motion.curve.pieces())
+    range = std::max(range, std::fabs(piece.derivative(piece.end, 0) - motion.curve(motion.curve.begin())));
+  sim::cam::CycleRecord record;
+  double largest = 0.0, off = 0.0;
+  for (std::size_t k = 0; k < log.t.size(); ++k) {
+    // The first cycle ends where the master falls back.
+    if (k > 0 && found->master[k] < found->master[k - 1] - 0.5 * cycle) break;
+    record.master.push_back(found->master[k]);
+    record.position.push_back(found->x_load[k]);
+    if (!found->x_set.empty())
+      off = std::max(off, std::fabs(found->x_set[k] - found->x_set[0] - motion.curve(found->master[k]) +
+                                    motion.curve(found->master[0])));
+    if (!found->i.empty()) largest = std::max(largest, std::fabs(found->i[k]));
+  }
+  // A tick of the fastest motion is a thousandth of it.
+  if (off > 5e-3 * range)
+    throw UsageError(
+        fmt::format("{}: found set-points that are {:.3g} of the stroke off those of the cam; expected a "
+                    "log of this motion",
+                    log.source, off / range));
+  const double limit = axis.inverter.current_limit * axis.motor.count;
+  if (largest >= 0.999 * limit)
+    throw UsageError(
+        fmt::format("{}: found a current of {:.4g} A, the inverter's limit; expected a cycle below it, "
+                    "since a drive at its limit does not follow",
+                    log.source, largest));
+  return record;
+}
+
+sim::cam::CycleRecord simulated_record(const machine::Machine& machine, const sim::cam::Motion& motion, double speed,
+                                       std::uint64_t seed) {
+  const StandSettings settings{.master_speed = speed, .seed = seed};
+  const auto run = machine.fits_formats() ? run_stand<FixedSignals>(machine, motion, settings)
+                                          : run_stand<machine::DoubleSignals>(machine, motion, settings);
+  sim::cam::CycleRecord record;
+  for (const auto& state : run.measured) {
+    record.master.push_back(state.master);
+    record.position.push_back(state.position);
+  }
+  return record;
+}
+
+void require_within_limits(const sim::cam::Motion& motion, const AxisLoad& load, double speed) {
+  for (const Limit& limit : duty_of(motion, load, speed).limits)
+    if (limit.broken())
+      throw std::runtime_error(
+          fmt::format("the tuned motion asks for a {} of {:.4g} {}, the axis has {:.4g} {}; no file is written",
+                      limit.name, limit.found, limit.unit, limit.allowed, limit.unit));
+}
+
+void run_tuning(const TuneCamOptions& options, const Invocation& invocation) {
+  const auto cam = options.motion.one();
+  const AxisLoad load = load_of_axis(options.machine, &cam);
+  auto machine = options.machine.load(
+      options.machine.machine, "",
+      {.command = "tune-cam", .rotary = true, .controllers = Controllers::known, .formats = Formats::or_doubles});
+  std::erase_if(machine.axes, [&](const auto& axis) { return axis.name != load.axis; });
+  const auto& axis = machine.axes.front();
+  const double speed = master_speed("--speed", options.speed, cam.master);
+  if (!axis.second_encoder || axis.second_encoder->on != machine::EncoderPlace::load)
+    throw UsageError(
+        fmt::format("--machine: found axis {} without a second encoder on the load; expected one: the "
+                    "motor's following error does not see what the shaft does",
+                    axis.name));
+  const double radius = axis.coordinate.rotary() ? axis.coordinate.radius : 1.0;
+  const auto logs = read_logs(options.logs, options.columns);
+  std::vector<TuningCycle> cycles;
+  try {
+    const auto motion = sim::cam::compose(cam);
+    const auto task = shaping_task(motion, sim::cam::elastic_drive_of(axis), speed, 0.2, {});
+    sim::cam::RecordTuner tuner(task, axis.second_encoder->increment / radius);
+    const std::size_t count = logs.empty() ? static_cast<std::size_t>(options.cycles) : logs.size();
+    for (std::size_t c = 0; c < count && !tuner.done(); ++c) {
+      const auto now = sim::cam::compose(tuner.cam());
+      auto record = logs.empty() ? simulated_record(machine, now, speed, c + 1) : record_of(logs[c], axis, now);
+      cycles.push_back({std::move(record), {}});
+      cycles.back().learned = tuner.learn(cycles.back().record);
+    }
+    require_within_limits(sim::cam::compose(tuner.cam()), load, speed);
+    const auto result = tuning_report(task, tuner, cycles);
+    const auto json = experiment_json(result, machine);
+    if (!options.out.empty()) {
+      auto sources = options.logs;
+      sources.push_back(options.motion.motion);
+      PendingFolder folder(options.out, invocation.command);
+      folder.write("tuned.toml", sim::cam::motion_text({tuner.cam()}));
+      folder.write("report.html", experiment_report_html({invocation.command_line, invocation.version, machine, result,
+                                                          report_origin(options.machine.machine, std::move(sources))}));
+      folder.write("result.json", json.dump(2) + "\n");
+      folder.commit();
+    }
+    if (options.json) {
+      fmt::print("{}\n", json.dump(2));
+      return;
+    }
+    fmt::print("{}", experiment_text(result, machine));
+    if (!options.out.empty()) fmt::print("\nmotion file: {0}/tuned.toml\nreport: {0}/report.html\n", options.out);
+  } catch (const sim::cam::StandError& error) {
+    throw UsageError(fmt::format("--machine: {}", error.what()));
+  } catch (const sim::cam::CamError& error) {
+    throw UsageError(fmt::format("{}: {}", options.motion.motion, error.what()));
+  }
+}
+
+}  // namespace
+
+void add_tune_cam(CLI::App& program, const Invocation& invocation) {
+  auto* command = program.add_subcommand(
+      "tune-cam", "take residual vibration out of a cam by two pulses, from records of its dwell");
+  auto o = std::make_shared<TuneCamOptions>();
+  command
+      ->add_option("logs", o->logs,
+                   "a log of one cycle from rest with x_load and master, then those of the motions that this command "
+                   "made of it [simulations of the machine file]")
+      ->type_name("LOG");
+  add_columns(*command, o->columns);
+  o->machine.add_to(*command, "shipped machine by name, or a machine file, with an elastic axis that follows the cam");
+  o->machine.add_axis_to(*command);
+  command->add_option("--cam", o->motion.motion, "motion file (stiction.cam/1)")->required()->type_name("MOTION");
+  command->add_option("--name", o->motion.cam, "name of the cam in the file [the only one]")->type_name("NAME");
+  command->add_option("--speed", o->speed, "speed of the master, such as \"130 rpm\"")->required()->type_name("SPEED");
+  command->add_option("--cycles", o->cycles, "simulated cycles, where no log is given [3]")
+      ->check(whole_number_between(1, 20))
+      ->type_name("N");
+  add_out(*command, o->out, "write tuned.toml, report.html and result.json into this folder");
+  command->add_flag("--json", o->json, "print the figures as JSON on standard output");
+  command->callback([o, &invocation] { run_tuning(*o, invocation); });
+}
+
+}  // namespace stiction::host

@@ -1,0 +1,171 @@
+#include "sim/cam/shaping/dwell_fit.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace stiction::sim::cam {
+namespace {
+
+template <std::size_t n>
+using Vector = std::array<double, n>;
+template <std::size_t n>
+using Matrix = std::array<Vector<n>, n>;
+
+// The inverse of a symmetric positive definite matrix by Gauss and Jordan's elimination.
+template <std::size_t n>
+Matrix<n> inverse(Matrix<n> a) {
+  Matrix<n> b{};
+  for (std::size_t i = 0; i < n; ++i) b[i][i] = 1.0;
+  for (std::size_t k = 0; k < n; ++k) {
+    const double pivot = a[k][k] != 0.0 ? 1.0 / a[k][k] : 0.0;
+    for (std::size_t j = 0; j < n; ++j) a[k][j] *= pivot, b[k][j] *= pivot;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (i == k) continue;
+      const double factor = a[i][k];
+      for (std::size_t j = 0; j < n; ++j) a[i][j] -= factor * a[k][j], b[i][j] -= factor * b[k][j];
+    }
+  }
+  return b;
+}
+
+template <std::size_t n>
+struct Normal {
+  Matrix<n> matrix{};
+  Vector<n> right{};
+
+  void add(const Vector<n>& row, double value) {
+    for (std::size_t i = 0; i < n; ++i) {
+      right[i] += row[i] * value;
+      for (std::size_t j = 0; j < n; ++j) matrix[i][j] += row[i] * row[j];
+    }
+  }
+  Vector<n> solve() const {
+    const auto covariance = inverse(matrix);
+    Vector<n> found{};
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j) found[i] += covariance[i][j] * right[j];
+    return found;
+  }
+};
+
+// e^(-s t) (a cos w t + b sin w t) + c.
+struct DampedSine {
+  double s, w, a, b, c;
+
+  double at(double t) const { return std::exp(-s * t) * (a * std::cos(w * t) + b * std::sin(w * t)) + c; }
+};
+
+double squares(const DwellRecord& record, const DampedSine& sine) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < record.time.size(); ++k) {
+    const double off = record.position[k] - sine.at(record.time[k]);
+    sum += off * off;
+  }
+  return sum;
+}
+
+// The best amplitudes and constant for a decay `s` and a frequency `w`.
+DampedSine with_best_amplitudes(const DwellRecord& record, double s, double w) {
+  Normal<3> normal;
+  for (std::size_t k = 0; k < record.time.size(); ++k) {
+    const double t = record.time[k], e = std::exp(-s * t);
+    normal.add({e * std::cos(w * t), e * std::sin(w * t), 1.0}, record.position[k]);
+  }
+  const auto found = normal.solve();
+  return {s, w, found[0], found[1], found[2]};
+}
+
+// Of a vibration that lasts for a dwell; noise alone is fitted best by one that is over at once.
+constexpr double largest_damping = 0.2;
+
+// Means of blocks: a record of a fast drive has far more samples than a vibration needs.
+DwellRecord thinned(const DwellRecord& record) {
+  constexpr std::size_t most = 600;
+  const std::size_t block = std::max<std::size_t>(1, record.time.size() / most);
+  DwellRecord thin;
+  for (std::size_t k = 0; k + block <= record.time.size(); k += block) {
+    double time = 0.0, position = 0.0;
+    for (std::size_t i = k; i < k + block; ++i) time += record.time[i], position += record.position[i];
+    thin.time.push_back(time / static_cast<double>(block));
+    thin.position.push_back(position / static_cast<double>(block));
+  }
+  return thin;
+}
+
+Vector<5> slopes(const DampedSine& m, double t) {
+  const double e = std::exp(-m.s * t), co = std::cos(m.w * t), si = std::sin(m.w * t);
+  return {-t * e * (m.a * co + m.b * si), t * e * (m.b * co - m.a * si), e * co, e * si, 1.0};
+}
+
+}  // namespace
+
+std::optional<DwellFit> fit_dwell(const DwellRecord& whole, double guess) {
+  const DwellRecord record = thinned(whole);
+  const auto n = static_cast<double>(record.time.size());
+  if (record.time.size() < 12 || record.time.back() - record.time.front() < 2.0 * std::numbers::pi / guess)
+    return std::nullopt;
+  DampedSine best{};
+  double least = std::numeric_limits<double>::infinity();
+  constexpr int steps = 70;
+  for (int k = 0; k <= steps; ++k) {
+    const double w = guess * (0.65 + 0.7 * k / steps);
+    const auto sine = with_best_amplitudes(record, 0.015 * w, w);
+    if (const double sum = squares(record, sine); sum < least) least = sum, best = sine;
+  }
+  constexpr int most_iterations = 30;
+  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+    Normal<5> normal;
+    for (std::size_t k = 0; k < record.time.size(); ++k)
+      normal.add(slopes(best, record.time[k]), record.position[k] - best.at(record.time[k]));
+    const auto step = normal.solve();
+    double share = 1.0;
+    DampedSine next{};
+    double sum = 0.0;
+    // Half of the step where the whole one makes it worse.
+    for (int halving = 0; halving < 8; ++halving, share *= 0.5) {
+      next = {std::clamp(best.s + share * step[0], 0.0, largest_damping * best.w), best.w + share * step[1],
+              best.a + share * step[2], best.b + share * step[3], best.c + share * step[4]};
+      sum = squares(record, next);
+      if (sum <= least) break;
+    }
+    if (sum > least) break;
+    const double gain = least - sum;
+    best = next;
+    least = sum;
+    if (gain <= 1e-12 * least) break;
+  }
+  DwellFit fit;
+  fit.mode.pole = {-best.s, best.w};
+  fit.residual = {0.5 * best.a, -0.5 * best.b};
+  fit.offset = best.c;
+  fit.scatter = std::sqrt(least / (n - 5.0));
+  Normal<5> normal;
+  for (const double t : record.time) normal.add(slopes(best, t), 0.0);
+  const auto covariance = inverse(normal.matrix);
+  fit.frequency_error = fit.scatter * std::sqrt(covariance[1][1]);
+  fit.damping_error = fit.scatter * std::sqrt(covariance[0][0]) / best.w;
+  if (std::fabs(best.w - guess) > 0.35 * guess ||
+      2.0 * std::abs(fit.residual) * std::exp(-best.s * record.time.front()) < fit.scatter)
+    return std::nullopt;
+  return fit;
+}
+
+ElasticDrive drive_with_mode(const ElasticDrive& drive, const Mode& mode) {
+  ElasticDrive changed = drive;
+  // Frequency and damping of the mode go with stiffness and damping of the shaft, almost in proportion.
+  constexpr int iterations = 12;
+  for (int k = 0; k < iterations; ++k) {
+    const Mode now = load_mode(changed);
+    const double ratio = mode.frequency() / now.frequency();
+    changed.shaft_stiffness *= ratio * ratio;
+    const double critical = 2.0 * std::sqrt(changed.shaft_stiffness * changed.load_inertia);
+    changed.shaft_damping =
+        std::max(0.0, changed.shaft_damping + critical * (mode.damping_ratio() - now.damping_ratio()));
+  }
+  return changed;
+}
+
+}  // namespace stiction::sim::cam

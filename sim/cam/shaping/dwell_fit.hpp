@@ -1,0 +1,39 @@
+// What a record of a dwell tells of a vibration: a damped sine about a constant, by least squares (Gauss and Newton),
+// with the standard errors of its frequency and its damping. The constant is fitted beside it, since friction at the
+// motor leaves the dwell off by more than what is to be left.
+#pragma once
+
+#include <complex>
+#include <optional>
+#include <vector>
+
+#include "sim/cam/stand/transfer_function.hpp"
+
+namespace stiction::sim::cam {
+
+// Of the load, less where it should be.
+struct DwellRecord {
+  std::vector<double> time;      // s, rising
+  std::vector<double> position;  // as many, in the slave's unit
+};
+
+struct DwellFit {
+  Mode mode;
+  std::complex<double> residual;  // the load deviates by 2 Re(residual e^(pole t)) + offset at the time t
+  double offset = 0.0;
+  double scatter = 0.0;          // rms of what is left
+  double frequency_error = 0.0;  // standard error, rad/s
+  double damping_error = 0.0;    // of the damping ratio
+
+  // From peak to peak at the time 0.
+  double peak_to_peak() const { return 4.0 * std::abs(residual); }
+};
+
+// Of a `record`, with a frequency within 35 % of `guess` (rad/s). None in a record of less than one period of the
+// guess, or whose vibration is below its scatter.
+std::optional<DwellFit> fit_dwell(const DwellRecord& record, double guess);
+
+// The `drive` with the shaft that makes its load's mode `mode`.
+ElasticDrive drive_with_mode(const ElasticDrive& drive, const Mode& mode);
+
+}  // namespace stiction::sim::cam

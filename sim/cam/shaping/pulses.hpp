@@ -1,0 +1,45 @@
+// Pulses that are added to a rise so that the load's vibration and theirs cancel (Dostrasil 2014, 6.1 and 6.2). The
+// residual is linear in the amplitudes: each is found in closed form, the place of a single one by bisection.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "sim/cam/shaping/task.hpp"
+
+namespace stiction::sim::cam {
+
+struct Pulse {
+  double position = 0.0;   // of the master, where it begins
+  double amplitude = 0.0;  // of the slave
+};
+
+// Of a `task`, as extended in 6.2: a rise of its own by `amplitude` over `length` by `law`, inside of the rise, whose
+// own stroke is that much less. The last place before the end of the rise, since a pulse is smallest there; none where
+// the rise has no such place.
+std::optional<Pulse> tuned_pulse(const ShapingTask& task, std::string_view law, double length);
+// The rise of the `task` with that `pulse` by `law` over `length`.
+Curve with_pulse(const ShapingTask& task, const Pulse& pulse, std::string_view law, double length);
+
+// The master's way in the longest time constant of the drive of a `task` itself, its load's mode apart: so long a drive
+// needs to follow a pulse.
+double drive_lag(const ShapingTask& task);
+
+// As published first (6.1): a bump (1 - cos)/2 of `length`, one period of the mode, at the beginning of the dwell. It
+// begins within half a period behind the rise of `task`.
+std::optional<Pulse> tuned_dwell_pulse(const ShapingTask& task, double length);
+// The rise of the `task` with that `pulse` of `length` behind it.
+Curve with_dwell_pulse(const ShapingTask& task, const Pulse& pulse, double length);
+
+// Two pulses of half a period a quarter of a period apart, the second one up to the end of the rise: one linear
+// equation for both amplitudes, whatever the vibration that they have to cancel. `residual`: that vibration at the end
+// of the rise, as modal_residual() has it. None in a rise of less than three quarters of a period.
+struct PulsePair {
+  Pulse first, second;
+  double length = 0.0;
+};
+std::optional<PulsePair> pulse_pair(const ShapingTask& task, std::complex<double> residual);
+// The rise of the `task` with both `pulses`.
+Curve with_pulses(const ShapingTask& task, const PulsePair& pulses);
+
+}  // namespace stiction::sim::cam

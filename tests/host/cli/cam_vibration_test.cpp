@@ -1,0 +1,99 @@
+// `stiction cam shape`, `tune-cam` and the models of `simulate cam` as their users call them.
+#include "tests/host/cli/program.hpp"
+
+namespace stiction::test {
+namespace {
+
+class CamVibrationCli : public Cli {
+ protected:
+  static std::string stand() {
+    return "'" + (fs::path(STICTION_SOURCE_DIR) / "examples/cams/stand.toml").string() + "'";
+  }
+  static std::string on_stand(const std::string& command) { return command + " --machine cam-stand --speed '130 rpm'"; }
+  // Next to the folder in which the command runs, so that a refused one has written nothing there.
+  std::string written(const std::string& name, const std::string& text) {
+    std::ofstream(work().parent_path() / name) << text;
+    return "../" + name;
+  }
+};
+
+constexpr const char* short_rise = R"(schema = "stiction.cam/1"
+[cam.short]
+cycle = "360 deg"
+modulo = "30 deg"
+[[cam.short.segment]]
+length = "120 deg"
+stroke = "30 deg"
+law = "parabola"
+[[cam.short.segment]]
+end = "360 deg"
+)";
+
+TEST_F(CamVibrationCli, ShapesAMotionByTheMethodsThatWereNamed) {
+  const auto done = stiction(on_stand("cam shape " + stand() + " --method zvd,none --out ../shapes --json"));
+  ASSERT_EQ(done.code, 0) << done.error;
+  const auto results = nlohmann::json::parse(done.out)["results"];
+  EXPECT_NEAR(results["residual_at_100_percent_none_deg"].get<double>(), 1.645, 0.01);
+  EXPECT_NEAR(results["residual_at_80_percent_zvd_deg"].get<double>(), 0.063, 0.003);
+  EXPECT_FALSE(results.contains("residual_worst_pulse_deg"));
+  EXPECT_EQ(stiction("cam check ../shapes/zvd.toml --machine cam-stand --speed '130 rpm'").code, 0);
+}
+
+TEST_F(CamVibrationCli, SaysBeforehandThatNoTuningCanHelp) {
+  const auto done = stiction(on_stand("cam shape " + written("short.toml", short_rise) + " --method none"));
+  ASSERT_EQ(done.code, 0) << done.error;
+  EXPECT_NE(done.out.find("0.03 ° is impossible; the shortest rise that makes it possible takes"), std::string::npos)
+      << done.out;
+}
+
+TEST_F(CamVibrationCli, RefusesWhatCannotBeShaped) {
+  expect_refused(on_stand("cam shape " + stand() + " --method zvx"), "--method: found 'zvx'; expected a method: none");
+  expect_refused(on_stand("cam shape " + stand() + " --band '80 %'"), "--band: found '80 %'; expected more than 0");
+  expect_refused("cam shape " + stand() + " --machine servo-joint --speed '20 rpm'",
+                 "found no transmission.stiffness; expected it");
+}
+
+TEST_F(CamVibrationCli, VerifiesTheStudysCaseAndSaysWhatItsPrintLacks) {
+  const auto done = stiction("simulate cam --machine cam-stand --verification --json");
+  ASSERT_EQ(done.code, 0) << done.error;
+  const auto document = nlohmann::json::parse(done.out);
+  for (const char* model : {"transfer_function", "lagrange"}) {
+    const auto figure = [&](const std::string& name, const std::string& unit) {
+      return document["results"][name + "_" + model + "_" + unit].get<double>();
+    };
+    EXPECT_NEAR(figure("highest", "deg"), 69.0698, 0.07);
+    EXPECT_NEAR(figure("highest_at", "deg"), 93.79, 0.1);
+    EXPECT_NEAR(figure("peak_to_peak", "deg"), 1.7484, 0.0018);
+    EXPECT_NEAR(figure("highest_speed", "deg_per_s"), 456.95, 0.46);
+    EXPECT_NEAR(figure("lowest_acceleration", "deg_per_s2"), -10304.5, 10.4);
+  }
+  EXPECT_NE(done.out.find("lacks the gear's 1/33"), std::string::npos);
+  expect_refused("simulate cam --machine cam-stand", "--cam");
+  expect_refused(on_stand("simulate cam --verification"), "--verification: found it with --cam or --speed");
+}
+
+TEST_F(CamVibrationCli, TunesFromLogsAsFromSimulatedCycles) {
+  ASSERT_EQ(stiction(on_stand("simulate cam --cam " + stand() + " --model cascade --cycles 1 --log ../one.csv")).code,
+            0);
+  const auto first = stiction(on_stand("tune-cam ../one.csv --cam " + stand() + " --out ../tuned --json"));
+  ASSERT_EQ(first.code, 0) << first.error;
+  const auto results = nlohmann::json::parse(first.out)["results"];
+  EXPECT_NEAR(results["frequency_Hz"].get<double>(), 14.48, 0.03);
+  // The delay of the shipped encoder.
+  EXPECT_NEAR(results["delay_ms"].get<double>(), 3.363, 0.3);
+  const auto second = stiction(on_stand("simulate cam --cam ../tuned/tuned.toml --model cascade --cycles 1 --json"));
+  ASSERT_EQ(second.code, 0) << second.error;
+  EXPECT_LE(nlohmann::json::parse(second.out)["results"]["quality_cascade_deg_deg"].get<double>(), 1.56);
+}
+
+TEST_F(CamVibrationCli, RefusesLogsThatCannotBeTunedFrom) {
+  ASSERT_EQ(stiction(on_stand("simulate cam --cam " + stand() + " --model cascade --cycles 1 --log ../one.csv")).code,
+            0);
+  const auto other = written("short.toml", short_rise);
+  expect_refused(on_stand("tune-cam ../one.csv --cam " + other), "expected a log of this motion");
+  expect_refused("tune-cam --machine servo-joint --speed '20 rpm' --cam " + stand(),
+                 "found axis J without a second encoder on the load");
+}
+
+}  // namespace
+}  // namespace stiction::test
