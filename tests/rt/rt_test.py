@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """The drive's programme and the simulated machine on Debian's real-time kernel in counted time (toolchain/rt/run): starts
 over CAN (vcan, and two emulated SJA1000 controllers) and Modbus, the circle at 48 m/min idle and loaded, cyclictest in
-the same boot; an adapter unplugged, a link down, a time of day that is set and a suspension while an axis is held. One processor, one
-instruction a nanosecond; the plant answers on that processor too. Needs the programmes (release build) and what
+the same boot; an adapter unplugged, a link down, a time of day that is set and a suspension while an axis is held; deaths
+of all kinds and stops under load, seen from the buses. One processor, one instruction a nanosecond; the plant answers on
+that processor too. Needs the programmes (release build) and what
 toolchain/setup rt installs. Counted time judges the length of paths and the kernel's part of them, never hardware."""
 
 import argparse
@@ -21,7 +22,8 @@ BIN = pathlib.Path(os.environ.get("STICTION_BIN", ROOT / "build/release/bin"))
 FOLDER = pathlib.Path(os.environ.get("STICTION_RT_DIR", ROOT / "build/rt"))
 SCRIPT_SIZE = 1 << 17  # characters; that of 100 starts has 80 000
 TWO_AXES = FOLDER / "two_axes.toml"
-PROGRAMMES = [BIN / "stictiond", BIN / "stiction-plant", BIN / "can_adapter_test"]
+PROGRAMMES = [BIN / "stictiond", BIN / "stiction-plant", BIN / "can_adapter_test", BIN / "can_kill_list", BIN / "stops_under_load",
+              BIN.parent / "tests/firmware/stictiond/libheld_fsync.so"]
 TOOLS = ["/usr/bin/cyclictest", "/usr/bin/hackbench", "/usr/bin/chrt", shutil.which("ip", path="/bin:/sbin:/usr/bin:/usr/sbin")]
 DATA = [*sorted((ROOT / "firmware/machine/shipped").glob("*.toml")), *sorted(pathlib.Path("/usr/share/xml/udunits").glob("*.xml"))]
 
@@ -85,6 +87,16 @@ device=$(readlink -f /sys/class/net/can0/device)
 export UNPLUG="echo 1 >$device/remove"
 export PLUG="echo 1 >/sys/bus/pci/rescan && sleep 0.1 && /bin/ip link set can0 type can bitrate 1000000 && /bin/ip link set can0 up"
 adapter sja1000 can0 can1
+"""
+# Programmes of their own, which start drive and machine themselves.
+DEATHS = """
+ip link add vcan1 type vcan
+ip link set vcan1 up
+export HELD_FSYNC_LIBRARY=/bin/libheld_fsync.so
+can_kill_list >deaths.drive 2>&1
+echo $? >deaths.status
+stops_under_load STOPS >stops.drive 2>&1
+echo $? >stops.status
 """
 LOAD = "hackbench -g 1 -f 4 -l 1000000000"
 
@@ -195,6 +207,7 @@ def cyclic(folder, period):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--starts", type=int, default=5, help="starts of the drive over each bus")
+    parser.add_argument("--stops", type=int, help="stops under load, half of them over each bus (ten for each start)")
     options = parser.parse_args()
 
     first = [Run("idle", "can", "125 us", ("--circle", "48 m/min"), trace=True)]
@@ -209,11 +222,13 @@ def main():
     with concurrent.futures.ThreadPoolExecutor() as pool:
         again = pool.submit(boot, "again", "".join(run.script() for run in first) + CONTROLLERS +
                             "".join(run.script() for run in controllers) + ADAPTERS.removeprefix(CONTROLLERS))
+        deaths = pool.submit(boot, "deaths", DEATHS.replace("STOPS", str(options.stops or 10 * options.starts)))
         folder = boot("whole", "".join(run.script() for run in first) + timers + "".join(run.script() for run in whole[1:]))
-        again = again.result()
+        again, deaths = again.result(), deaths.result()
     results = {run.name: Result(folder, run.name) for run in whole}
     results |= {run.name: Result(again, run.name) for run in controllers}
     adapters = {name: Result(again, name) for name in ("vcan", "sja1000")}
+    deaths, stops = Result(deaths, "deaths"), Result(deaths, "stops")
     again = Result(again, "idle")
     idle, loaded, slower = (results[name] for name in ("idle", "loaded", "slower"))
     cyclic125, cyclic250 = cyclic(folder, 125), cyclic(folder, 250)
@@ -270,6 +285,18 @@ def main():
         figure(f"events of the computer recovered in counted time: {name}", f"{good} of 4")
         if result.status != 0:
             print("\n".join(line for line in result.drive.splitlines() if "Failure" in line or "FAILED" in line or "Which" in line))
+    good, count = (int(number) for number in re.search(r"^(\d+) of (\d+) ended in their reaction$", deaths.drive, re.M).groups())
+    row("deaths around a drive over CAN: ended in their reaction", f"{good} of {count}", "all", deaths.status == 0)
+    figure("deaths around a drive over CAN in counted time", f"{good} of {count}")
+    frozen = re.search(r"^the loop does not go on .* disabled after +([\d.]+) ms", deaths.drive, re.M)
+    row("  the loop does not go on: power taken after, ms", frozen[1], "<= 110", float(frozen[1]) <= 110.0)
+    figure("power taken from a loop that does not go on in counted time", f"{frozen[1]} ms")
+    if deaths.status != 0:
+        print(deaths.drive)
+    for bus, good, count, ticks in re.findall(r"^stops by (\w+) +(\d+) of (\d+) within 2 ticks, longest (\d+)", stops.drive, re.M):
+        row(f"stops by {bus} under load within 2 ticks", f"{good} of {count}, longest {ticks}", "all", good == count)
+        figure(f"stops under load in counted time: {bus}", f"{good} of {count}, longest {ticks} ticks")
+    row("  the load", stops.drive.splitlines()[-1], "", stops.status == 0)
     for name, result in results.items():
         if result.status != 0:
             print(f"{name}: status {result.status}: {result.why()}")
