@@ -189,11 +189,14 @@ class Buses {
       if (!watch(1000 * millisecond_ns, [&, state = state] { return (statusword_ & state_mask) == state; }))
         return false;
     }
-    speed_ = speed;
-    command_speed();
     if (speed == 0) return true;
+    accelerate(speed);
     watch(settles_ns);
     return std::abs(shown_speed_ - speed * 1e-6) < ramp_step;
+  }
+  void accelerate(std::int32_t speed) {
+    speed_ = speed;
+    command_speed();
   }
   void be_silent() { speed_ = 0; }
 

@@ -10,8 +10,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "firmware/stictiond/configuration.hpp"
-#include "tests/rt/drive_over_can.hpp"
+#include "tests/rt/kill_list.hpp"
 #include "tests/rt/modbus_load.hpp"
 
 namespace stiction::test {
@@ -78,11 +77,8 @@ int blocked_pipe() {
 }
 
 int run(int stops) {
-  drive::DriveOptions options;
-  options.machine = "emps";
-  options.set = {"drive.can.interface=vcan0", "drive.axis.X.node=1"};
   std::filesystem::create_directories("/tmp/parameters");
-  Buses buses(drive::can_config(drive::read_configuration(options)).format);
+  Buses buses(format_of_nodes());
   Process plant(plant_command, "/tmp/plant.log");
   buses.watch(1000 * millisecond_ns, [] { return !text_of("/tmp/plant.log").empty(); });
   const char* library = std::getenv("HELD_FSYNC_LIBRARY");
