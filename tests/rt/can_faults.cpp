@@ -24,11 +24,12 @@ struct Injected {
   double coasts_um = most_coasted_um;
 };
 
+// What comes behind the answer of its tick, an error frame or those of a babbler, is read in the next one.
 constexpr int lasting = 1'000'000;
-// At 20 mm/s a set-point goes on by the 100 um of frozen_distance in 5 ticks; meanwhile the position controller adds 16
-// mm/s. A motor of the wrong sign is seen by its
-// following error at the latest, 2 mm, which it has with 0.3 m/s^2 after 120 ticks at most: at 0.06 m/s, from which
-// friction lets it go on by 10 mm. 5 A are no part of a force source's signals.
+// At 20 mm/s a set-point goes on by the 100 um of frozen_distance in 5 ticks; meanwhile the position controller adds
+// 16 mm/s. A motor of the wrong sign is seen by its following error at the latest, 2 mm, which it has with 0.3 m/s^2
+// after 120 ticks at most: at 0.06 m/s, from which friction lets it go on by 10 mm. A force source has no phase
+// currents.
 const std::vector<Injected> injected{
     {"frame-lost", 5, {32}, 3, true},
     {"frame-late", 20, {32}, 3, true},
@@ -36,8 +37,8 @@ const std::vector<Injected> injected{
     {"frame-damaged", 5, {32}, 3, true},
     {"frame-duplicate", 20, {33}, 11, false},
     {"frame-out-of-order", 20, {33}, 11, false},
-    {"bus-off", 1, {34}, 1, true},
-    {"babble", 5, {35}, 1, false},
+    {"bus-off", 1, {34}, 2, true},
+    {"babble", 5, {35}, 2, false},
     {"encoder-open", lasting, {4}, 3, true},
     {"encoder-frozen", lasting, {16, 17}, 16, true, 3'600.0},
     {"encoder-jump", lasting, {17}, 1, true},
@@ -95,9 +96,8 @@ void inject(KillList& list, const Injected& row) {
     const auto [number, fault_ns] = named();
     list.expect(row.numbers.count(number) == 1,
                 fmt::format("fault {}, found {}", fmt::join(row.numbers, " or "), number));
-    // The command that takes the power acts from the machine's next tick on.
-    const int by_command = row.kind == "power-stage" ? 0 : 1;  // which is off by itself: the time is its own
-    const int tick = off_since() - by_command - static_cast<int>((seen.disabling_ns - fault_ns) / tick_ns);
+    // The stage is off from the tick on whose command takes the power; with a fault of its own from there on.
+    const int tick = off_since() - static_cast<int>((seen.disabling_ns - fault_ns) / tick_ns);
     const int taken = tick - onset + 1;
     list.expect(1 <= taken && taken <= row.within_ticks, fmt::format("it within {} ticks", row.within_ticks));
     if (row.at_once) list.expect(seen.disabling_ns - fault_ns < tick_ns, "power off in the same tick");
