@@ -17,20 +17,21 @@ namespace {
 
 class Maker {
  public:
-  Maker(const Prepared& prepared, const DiagnoseInput& input, const Eigen::VectorXd& force)
+  Maker(const Prepared& prepared, const DiagnoseInput& input, const Record& original, const Eigen::VectorXd& force)
       : prepared_(prepared),
+        original_(original),
         machine_(input.machine),
         axis_(input.axis),
         disturbance_(force, rows().logs(), rows().time, rows().period(0)),
-        driven_(with_recorded_set_points(input.machine.axes[input.axis], training().logs, prepared.settings.cutoff)),
+        driven_(with_recorded_set_points(input.machine.axes[input.axis], original_.logs, prepared.settings.cutoff)),
         own_motion_(!prepared.known_motion ||
-                    std::any_of(training().logs.begin(), training().logs.end(),
+                    std::any_of(original_.logs.begin(), original_.logs.end(),
                                 [&](const Log& log) { return channels_of(log, prepared.axis).x_set.empty(); })) {
     // What the file leaves of its own run is told by the motor that the draws have.
     without_windings(machine_.axes[axis_]);
     if (own_motion_) return;
-    own_ = mean_own_residual(runs_of_target(training(), machine_, axis_), training().logs, prepared.axis,
-                             prepared.settings);
+    own_ =
+        mean_own_residual(runs_of_target(original_, machine_, axis_), original_.logs, prepared.axis, prepared.settings);
   }
 
   std::optional<ExactRecord> operator()(std::size_t draw) const {
@@ -39,9 +40,10 @@ class Maker {
       record.logs = recorded(draw);
       measure(record, prepared_.axis, prepared_.settings);
       if (!prepare(record)) return std::nullopt;
-      if (training().friction == FrictionAlong::simulated_motion)
+      if (original_.friction == FrictionAlong::simulated_motion)
         record.target = along_regressors(record, prepared_.axis);
-      if (training().of_disturbance.size() > 0) record.target -= training().of_disturbance;
+      for (const auto* own : {&original_.of_exact_records, &original_.of_disturbance})
+        if (own->size() > 0) record.target -= own->cwiseProduct(record.regressors.counts());
       ExactRecord made{std::move(record.target), std::nullopt};
       if (own_motion_) made.regressors = std::move(record.regressors);
       return made;
@@ -51,8 +53,7 @@ class Maker {
   }
 
  private:
-  const Record& training() const { return prepared_.training; }
-  const LogRows& rows() const { return training().rows; }
+  const LogRows& rows() const { return original_.rows; }
 
   // The logs as the machine of the file makes them under a draw of the forces, with the set-points that the record has.
   std::vector<Log> recorded(std::size_t draw) const {
@@ -66,8 +67,8 @@ class Maker {
     auto logs = replays(setup);
     for (std::size_t k = 0; k < logs.size(); ++k) {
       auto& channels = logs[k].axes.front();
-      const auto& original = channels_of(training().logs[k], prepared_.axis);
-      logs[k].source = training().logs[k].source;
+      const auto& original = channels_of(original_.logs[k], prepared_.axis);
+      logs[k].source = original_.logs[k].source;
       channels.external_force = original.external_force;
       if (original.x_set.empty())
         for (auto* set : {&channels.x_set, &channels.v_set, &channels.a_set}) set->clear();
@@ -80,18 +81,19 @@ class Maker {
   bool prepare(Record& record) const {
     if (own_motion_) {
       const auto motion = prepared_.known_motion
-                              ? drive(record, machine_, axis_, Following::as_near_as_it_comes, training().driven)
+                              ? drive(record, machine_, axis_, Following::as_near_as_it_comes, original_.driven)
                               : std::vector<Log>{};
       if (prepared_.known_motion && motion.empty()) return false;
       regress_on(record, motion, prepared_.axis, prepared_.settings);
     } else {
-      record.regressors = training().regressors;
+      record.regressors = original_.regressors;
       record.target = (record.target - own_).cwiseProduct(record.regressors.counts());
     }
     return true;
   }
 
   const Prepared& prepared_;
+  const Record& original_;
   machine::Machine machine_;  // of the file
   std::size_t axis_;
   RedrawnResidual disturbance_;
@@ -102,8 +104,10 @@ class Maker {
 
 }  // namespace
 
-ExactRecords exact_records(const Prepared& prepared, const DiagnoseInput& input, const Eigen::VectorXd& force) {
-  return [maker = std::make_shared<Maker>(prepared, input, force)](std::size_t draw) { return (*maker)(draw); };
+ExactRecords exact_records(const Prepared& prepared, const DiagnoseInput& input, const Record& original,
+                           const Eigen::VectorXd& force) {
+  return
+      [maker = std::make_shared<Maker>(prepared, input, original, force)](std::size_t draw) { return (*maker)(draw); };
 }
 
 }  // namespace stiction::host

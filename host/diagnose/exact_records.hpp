@@ -9,10 +9,12 @@
 
 namespace stiction::host {
 
-// `prepared`: with its training data; `input` of the diagnosis; `force`: N, of the rows. Records without set-points are
+// `prepared`: with its training data; `input` of the diagnosis; `original`: those of `prepared` that are drawn again;
+// `force`: N, of their rows. Records without set-points are
 // followed anew in each draw, as those were, since the motion that they are followed by contains the answer of the loop
 // to the forces; with set-points the regressors are the record's. Where the record's are of its measured motion, so are
 // those of the draws.
-ExactRecords exact_records(const Prepared& prepared, const DiagnoseInput& input, const Eigen::VectorXd& force);
+ExactRecords exact_records(const Prepared& prepared, const DiagnoseInput& input, const Record& original,
+                           const Eigen::VectorXd& force);
 
 }  // namespace stiction::host

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "firmware/machine/model/motor_force.hpp"
+#include "host/diagnose/exact_floor.hpp"
 #include "host/diagnose/exact_records.hpp"
 #include "host/diagnose/record/inverse_dynamics.hpp"
 #include "host/diagnose/record/noise_floor.hpp"
@@ -171,14 +172,13 @@ void take_exact_records(Prepared& prepared, const DiagnoseInput& input) {
   if (!follows && !without_set_points(prepared).empty()) return;
   if (!why_not_simulated(input.machine, input.axis, prepared.training.logs).empty()) return;
   prepared.context.exact_records = [&prepared, &input](const Eigen::VectorXd& force) {
-    return exact_records(prepared, input, force);
+    return exact_records(prepared, input, prepared.training, force);
   };
 }
 
 // The simulations in which causes are tried, and what the residual force itself does to the file's own residual.
 void take_responses(Prepared& prepared, const DiagnoseInput& input) {
   if (!prepared.known_motion) return;
-  take_friction(prepared);
   auto &training = prepared.training, &held_out = prepared.held_out;
   const auto friction = training.friction;
   const auto logs = joined(training.driven, held_out.driven);
@@ -234,7 +234,9 @@ std::unique_ptr<Prepared> prepare(const DiagnoseInput& input, Verdict& verdict) 
   take_motion(*prepared, input, verdict);
   prepared->context.highest_residual = prepared->training.target.cwiseAbs().maxCoeff();
   prepared->context.resolved_force = resolution_of_dynamics * rms(prepared->training.expected);
+  if (prepared->known_motion) take_friction(*prepared);
   take_exact_records(*prepared, input);
+  if (prepared->context.disturbed_motion) take_exact_floor_off(*prepared, input);
   take_responses(*prepared, input);
   return prepared;
 }

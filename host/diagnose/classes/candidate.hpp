@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "firmware/machine/model/machine.hpp"
+#include "host/diagnose/classes/exact_record.hpp"
 #include "host/diagnose/spectrum/line_scan.hpp"
 #include "host/diagnose/spectrum/place_scan.hpp"
 #include "host/diagnose/verdict/verdict.hpp"
@@ -21,14 +22,6 @@
 #include "sim/effects/effect_descriptor.hpp"
 
 namespace stiction::host {
-
-// One record of a machine that is exactly as its file says.
-struct ExactRecord {
-  Eigen::VectorXd target;             // N, of the rows: what the file does not make of its force
-  std::optional<LogRows> regressors;  // where they are not those of the record that it is like
-};
-// One of many draws, by its number; none where the machine cannot follow under the forces that were drawn.
-using ExactRecords = std::function<std::optional<ExactRecord>(std::size_t)>;
 
 // What a search has found so far of lines: over position, over position in proportion to the force and to the speed,
 // over time, over the encoder's signal; and of places of friction, and of a force.

@@ -34,6 +34,8 @@ struct Record {
   // N, what the residual force itself does to what the file leaves of its own run; the target is less that. Empty:
   // nothing was taken off.
   Eigen::VectorXd of_disturbance;
+  // N, what exact machines leave of records that were made ready as this one; the target is less that. Empty: as above.
+  Eigen::VectorXd of_exact_records;
 };
 
 // Gives the `record` with its logs the rows as measured, and what the file says of them and leaves. `axis` of the file

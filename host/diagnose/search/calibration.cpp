@@ -1,12 +1,8 @@
 #include "host/diagnose/search/calibration.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <future>
 #include <numeric>
-#include <optional>
-#include <thread>
 #include <utility>
 
 #include "host/diagnose/search/price.hpp"
@@ -53,25 +49,9 @@ Limit exceeded_with(double chance, std::vector<double> odds) {
 
 Calibration::Calibration(const SearchContext& context, const Eigen::VectorXd& noise)
     : drawn_(context.exact_records(sized(context, noise))) {
-  kept_ = draw(0, records_kept);
+  kept_ = draw(drawn_, 0, records_kept);
   if (kept_.size() < fewest_drawn) kept_.clear();
   records_ = kept_.size();
-}
-
-std::vector<ExactRecord> Calibration::draw(std::size_t begin, std::size_t end) const {
-  std::vector<std::optional<ExactRecord>> drawn(end - begin);
-  std::atomic<std::size_t> next = 0;
-  const auto work = [&] {
-    for (std::size_t k = next++; k < drawn.size(); k = next++) drawn[k] = drawn_(begin + k);
-  };
-  std::vector<std::future<void>> workers;
-  for (unsigned k = 0; k < std::max(std::thread::hardware_concurrency(), 1U); ++k)
-    workers.push_back(std::async(std::launch::async, work));
-  for (auto& worker : workers) worker.get();
-  std::vector<ExactRecord> records;
-  for (auto& record : drawn)
-    if (record) records.push_back(std::move(*record));
-  return records;
 }
 
 std::vector<double> Calibration::prices(const std::function<std::vector<double>(const ExactRecord&)>& odds_in,
@@ -98,7 +78,7 @@ std::vector<double> Calibration::prices(const std::function<std::vector<double>(
   };
   std::size_t looked_at = kept_.size();
   for (std::size_t drawn = records_kept; !told() && !kept_.empty() && drawn < most_drawn; drawn += records_kept)
-    for (const auto& record : draw(drawn, drawn + records_kept)) look_at(record), ++looked_at;
+    for (const auto& record : draw(drawn_, drawn, drawn + records_kept)) look_at(record), ++looked_at;
   records_ = std::max(records_, looked_at);
   return prices;
 }

@@ -23,9 +23,6 @@ class Calibration {
                              const std::vector<double>& own);
 
  private:
-  // Those that the machine can follow of the draws from `begin` to `end`, in their order.
-  std::vector<ExactRecord> draw(std::size_t begin, std::size_t end) const;
-
   ExactRecords drawn_;
   std::vector<ExactRecord> kept_;  // the first ones
   std::size_t records_ = 0;

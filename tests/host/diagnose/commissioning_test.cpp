@@ -84,7 +84,7 @@ TEST(Commissioning, names_what_is_hidden) {
 }
 
 TEST(Commissioning, names_what_is_hidden_without_set_points) {
-  expect_named("demonstration, no set-points: hidden effect named first", 6, 4, Kept::without_set_points);
+  expect_named("demonstration, no set-points: hidden effect named first", 6, 5, Kept::without_set_points);
 }
 
 // A contact that gives is softer in the drive's hands than any regressor of the planned motion says: without the steps
