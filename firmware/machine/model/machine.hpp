@@ -58,7 +58,7 @@ struct InverterParameters {
   double dead_time = 0.0;               // s
   double voltage_limit = 0.0;           // V
   double current_limit = 0.0;           // A per motor
-  std::optional<double> dc_link;        // V, as the rectifier makes it; none: the voltage limit
+  std::optional<double> dc_link{};      // V, as the rectifier makes it; none: the voltage limit
   double dc_link_capacitance = 0.0;     // F; 0: the DC link stays as it is
   double loss_voltage = 0.0;            // V, times the current's magnitude in each phase: the losses
   double thermal_resistance = 0.0;      // K/W, of the power stage against the air
