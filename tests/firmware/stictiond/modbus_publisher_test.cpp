@@ -77,7 +77,7 @@ TEST(ModbusPublisher, ShowsTheLoopsStateToAClient) {
       found.push_back(static_cast<std::uint16_t>(answer[at] << 8 | answer[at + 1]));
     return found;
   };
-  EXPECT_EQ(read(0, 8), (std::vector<std::uint16_t>{0x5344, 4, 2, 34, 0, 2, 0, 3}));
+  EXPECT_EQ(read(0, 8), (std::vector<std::uint16_t>{0x5344, 5, 2, 34, 0, 2, 0, 3}));
   EXPECT_EQ(read(100, 1), (std::vector<std::uint16_t>{0x1237}));
   const auto second = read(200, 20);
   ASSERT_EQ(second.size(), 20U);

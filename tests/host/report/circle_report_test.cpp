@@ -193,7 +193,7 @@ TEST(MachineSheet, ShowsWhatAForceMotorHasInItsOwnUnits) {
     for (const auto& row : section.rows)
       if (!row.values.at(0).empty() && (section.title == "Motor" || section.title == "Current controller"))
         found.push_back(row.values[0] + " " + row.unit);
-  EXPECT_EQ(found, (std::vector<std::string>{"force ", "0 mH", "35 N/V", "1 "}));
+  EXPECT_EQ(found, (std::vector<std::string>{"force ", "0 mH", "35 N/V", "1 ", "they stay cold ", "600 s"}));
 }
 
 TEST(MachineSheet, HasTheWordsAndUnitsOfARotaryAxis) {
