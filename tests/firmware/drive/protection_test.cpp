@@ -63,6 +63,28 @@ TEST(Protection, HeatsADcMotorByItsCurrent) {
   EXPECT_EQ(until_fault(config, currents(9.9, 0.0, 0.0)).first, Fault::none);
 }
 
+// At standstill or not, the one leg carries its current.
+TEST(Protection, HeatsTheStageOfADcMotorByItsCurrent) {
+  ProtectionConfig<S> config;
+  config.stage = body;
+  EXPECT_EQ(until_fault(config, currents(20.0, 0.0, 0.0)).first, Fault::stage_overload);
+  EXPECT_EQ(until_fault(config, currents(9.9, 0.0, 0.0)).first, Fault::none);
+  EXPECT_EQ(until_fault(config, currents(0.0, 20.0, 20.0)).first, Fault::none) << "phases that it does not have";
+}
+
+// Ten time constants at half of the continuous current; the third phase is the hottest one.
+TEST(Protection, TellsHowWarmMotorAndHottestPhaseAre) {
+  ProtectionConfig<S> config;
+  config.three_phase = true;
+  config.motor = config.stage = body;
+  Protection<S> protection(config);
+  EXPECT_EQ(protection.motor_percent(), 0);
+  EXPECT_EQ(protection.stage_state(), 0);
+  for (int k = 0; k < 160000; ++k) protection.step(currents(-2.5, -2.5, 5.0), {}, true);
+  EXPECT_NEAR(protection.motor_percent(), 25, 1);  // of an amplitude of 5 A
+  EXPECT_NEAR(static_cast<double>(protection.stage_state()) * 0x1p-40, 0.5, 1e-3);
+}
+
 // With a time constant of 10000 s, a day at 101 % of the current's square ends at 101 %, no word overflows at 2000 A.
 TEST(ThermalModel, KeepsItsDigitsWithLongTimeConstantsAndLargeCurrents) {
   const ThermalModel::Config slow{static_cast<std::int64_t>(0x1p36 / 100.0), static_cast<std::int64_t>(1e-4 * 0x1p56)};

@@ -50,6 +50,18 @@ TEST(ServoDrive, SearchesItsTravelAndThenFailsWithTheBitsOfHoming) {
   EXPECT_EQ(a.drive.statusword() & 0x3400, 0x2400) << "the error stays, at rest and without power";
 }
 
+TEST(ServoDrive, PutsTheMachinesZeroWhereHomingFindsIt) {
+  ServedAxis a({}, HomingMethod::here, 0.3);
+  EXPECT_EQ(a.drive.origin(), S::Position{});
+  ASSERT_TRUE(a.enable());
+  a.direct_mode = OperationMode::homing;
+  a.remote.ask(controlword::enable_operation | controlword::homing_start_bit);
+  a.run(100);
+  ASSERT_TRUE(a.drive.referenced());
+  EXPECT_NEAR(machine::to_si(a.drive.origin()), 0.3, 1e-6);
+  EXPECT_NEAR(machine::to_si(a.drive.position()), 0.0, 1e-6);
+}
+
 TEST(ServoDrive, HoldsBehindAQuickStopAndGoesOnFromThere) {
   StopCodes codes;
   codes.quick_stop = 6;
