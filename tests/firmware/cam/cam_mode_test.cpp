@@ -28,6 +28,13 @@ TEST(CamSetPoint, IsTheMotionInTheDrivesUnitsToHalfAUnit) {
   }
   EXPECT_FALSE(cam_set_point({0, raw_velocity(8.1), 0}, tick_rate).valid);
   EXPECT_FALSE(cam_set_point({0, 0, raw_acceleration(-513.0)}, tick_rate).valid);
+  constexpr std::int64_t most = std::int64_t{1} << 60;
+  EXPECT_TRUE(cam_set_point({most - 1, 0, 0}, tick_rate).valid);
+  for (const std::int64_t position : {most, -most}) {
+    const auto set = cam_set_point({position, 0, 0}, tick_rate);
+    EXPECT_FALSE(set.valid);
+    EXPECT_EQ(set.position.raw(), 0);
+  }
 }
 
 TEST(CamCurve, RescaledInATickIsTheOnePreparedBesideIt) {
@@ -55,6 +62,37 @@ TEST(CamCurve, RescaledInATickIsTheOnePreparedBesideIt) {
   EXPECT_EQ(CamCurve::rescale(base, {.table = &cam->table, .slave_scale = INT64_MAX}, none), CamRefusal::scale);
 }
 
+TEST(CamCurve, RescaledIsThatOfItsOwnTableAndRunsOnceWhereEitherDoes) {
+  const auto cam = test_cam(rise_and_return("3-4-5", 0.03)), other = test_cam(rise_and_return("3-4-5", 0.02));
+  CamCurve endless, once, curve;
+  ASSERT_EQ(CamCurve::prepare({.table = &cam->table}, endless), CamRefusal::none);
+  ASSERT_EQ(CamCurve::prepare({.table = &cam->table, .periodic = false}, once), CamRefusal::none);
+  EXPECT_EQ(CamCurve::rescale(endless, {.table = &other->table}, curve), CamRefusal::scale);
+  ASSERT_EQ(CamCurve::rescale(endless, {.table = &cam->table}, curve), CamRefusal::none);
+  EXPECT_FALSE(curve.outside({1, 0}));
+  ASSERT_EQ(CamCurve::rescale(endless, {.table = &cam->table, .periodic = false}, curve), CamRefusal::none);
+  EXPECT_TRUE(curve.outside({1, 0}));
+  ASSERT_EQ(CamCurve::rescale(once, {.table = &cam->table}, curve), CamRefusal::none);
+  EXPECT_TRUE(curve.outside({1, 0}));
+}
+
+// A line of 24 m a cycle, scaled by 2^16, rises by more than 2^20 m and has no bend; the third derivative of a motion
+// of 1 m is what passes 2^21 m first.
+TEST(CamCurve, RefusesTheSameScalesInATickAndBesideIt) {
+  sim::cam::Cam line{.name = "a", .periodic = true, .modulo = 24.0};
+  line.segments = {{.length = 1.0, .stroke = 24.0, .law = "linear"}};
+  for (const auto& cam : {line, rise_and_return("modified_sine", 1.0)}) {
+    const auto made = test_cam(cam);
+    CamCurve base, curve;
+    ASSERT_EQ(CamCurve::prepare({.table = &made->table}, base), CamRefusal::none);
+    for (const std::int64_t scale : {std::int64_t{1} << 48, -(std::int64_t{1} << 48)}) {
+      const CamCurve::Config config{.table = &made->table, .slave_scale = scale};
+      EXPECT_EQ(CamCurve::prepare(config, curve), CamRefusal::scale);
+      EXPECT_EQ(CamCurve::rescale(base, config, curve), CamRefusal::scale);
+    }
+  }
+}
+
 // A position of an axis as a master whose cycle is 1.2 m, exact to 2^-58 of a cycle.
 TEST(CamMaster, MeasuredIsWhereItsAxisIs) {
   CamMaster::Config config;
@@ -76,6 +114,37 @@ TEST(CamMaster, MeasuredIsWhereItsAxisIs) {
     EXPECT_FALSE(master.see(raw_position(place), true).valid) << "it has to be known for a while again";
     EXPECT_FALSE(master.run(1)) << "nobody drives it from here";
   }
+}
+
+TEST(CamMaster, ThatJumpsIsAtOnceWhereItJumpedTo) {
+  CamMaster::Config config;
+  config.measured = true;
+  config.cycle = Span::of(raw_position(1.0));
+  config.estimator.bits = 3;
+  config.estimator.jump = std::int64_t{1} << 58;
+  CamMaster master(config);
+  for (int k = 0; k < 200; ++k) master.see(raw_position(0.125), true);
+  const auto& reading = master.see(raw_position(0.625), true);
+  EXPECT_TRUE(reading.valid) << "it is the slave that is to see the jump";
+  EXPECT_EQ(cycles_of(reading.point.position), 0.625);
+  EXPECT_EQ(reading.point.velocity, 0);
+}
+
+TEST(CamMaster, VirtualIsHeldToItsLimitAndRestsWhereItDoesNotTurn) {
+  CamMaster master(CamMaster::Config{.virtual_master = VirtualMaster::Config::of(limits(1.2, 5.0, 50.0))});
+  EXPECT_TRUE(master.at_rest());
+  const auto turn = [&](double speed) {
+    EXPECT_TRUE(master.run(master_speed(speed)));
+    EXPECT_FALSE(master.at_rest());
+    for (int k = 0; k < 20'000; ++k) master.step();
+    return velocity_of(master.reading().point.velocity);
+  };
+  EXPECT_NEAR(turn(1.0), 1.0, 1e-9);
+  EXPECT_FALSE(master.at_rest()) << "it has its speed, which is not zero";
+  EXPECT_NEAR(turn(7.0), 1.2, 1e-9);
+  EXPECT_NEAR(turn(-7.0), -1.2, 1e-9);
+  EXPECT_EQ(turn(0.0), 0.0);
+  EXPECT_TRUE(master.at_rest());
 }
 
 class ACamMode : public ::testing::Test {
@@ -140,8 +209,89 @@ TEST_F(ACamMode, RefusesWhatCannotBeAndKeepsWhatIsFollowed) {
   refused(CamRefusal::beyond_travel);
   mode.asked().slave_offset = raw_position(0.08);
   refused(CamRefusal::beyond_travel);
+  mode.asked().slave_offset = raw_position(-0.11);
+  refused(CamRefusal::beyond_travel);
+  mode.asked().slave_scale = std::int64_t{-4} << 32;
+  refused(CamRefusal::beyond_travel);
+  mode.asked().slave_scale = INT64_MAX;
+  refused(CamRefusal::scale);
   mode.asked().numerator = 100;
   refused(CamRefusal::beyond_limits);
+}
+
+// Where the positions of a curve are not those of the axis, or nothing says where the travel ends, no track leaves it.
+TEST_F(ACamMode, FindsATrackBeyondTheTravelOnlyWhereItKnowsBoth) {
+  mode.asked().slave_offset = raw_position(0.08);
+  EXPECT_EQ(mode.command(CamCommand::engage, false, true), CamRefusal::beyond_travel);
+  EXPECT_EQ(mode.command(CamCommand::engage, false, false), CamRefusal::none);
+  mode.asked().slave_relative = true;
+  EXPECT_EQ(mode.command(CamCommand::engage, false, true), CamRefusal::none);
+}
+
+// A table that goes on by 0.03 m each cycle leaves the travel at a time that only its master knows.
+TEST_F(ACamMode, TakesATableThatGoesOn) {
+  sim::cam::Cam rise{.name = "a", .periodic = true, .modulo = 0.03};
+  rise.segments = {{.length = 1.0, .stroke = 0.03, .law = "3-4-5"}};
+  const auto endless = test_cam(rise);
+  ASSERT_EQ(CamCurve::prepare({.table = &endless->table}, tables[0].curve), CamRefusal::none);
+  mode.asked().slave_offset = raw_position(0.08);
+  EXPECT_EQ(mode.command(CamCommand::engage, false, true), CamRefusal::none);
+}
+
+TEST_F(ACamMode, BeginsOnACurveOrSaysWhyNot) {
+  CamCurve steep, fits;
+  ASSERT_EQ(CamCurve::prepare({.table = &cam->table, .slave_scale = std::int64_t{100} << 32}, steep), CamRefusal::none);
+  ASSERT_EQ(CamCurve::prepare({.table = &cam->table}, fits), CamRefusal::none);
+  EXPECT_EQ(mode.begin(steep, {}), CamRefusal::beyond_limits);
+  EXPECT_EQ(mode.refusal(), CamRefusal::beyond_limits);
+  EXPECT_FALSE(mode.status().active);
+  EXPECT_EQ(mode.begin(fits, {}), CamRefusal::none);
+  EXPECT_TRUE(mode.status().active);
+}
+
+TEST_F(ACamMode, DropsWhatWaitsByACommandAndByAFault) {
+  const auto waits = [&] {
+    mode.step({});
+    return mode.status().waiting;
+  };
+  mode.asked().trigger = CamTrigger::next_cycle;
+  ASSERT_EQ(mode.command(CamCommand::engage, false, true), CamRefusal::none);
+  EXPECT_TRUE(waits());
+  EXPECT_EQ(mode.command(CamCommand::none, false, true), CamRefusal::none);
+  EXPECT_TRUE(waits()) << "no command does nothing";
+  EXPECT_EQ(mode.command(CamCommand::cancel, false, true), CamRefusal::none);
+  EXPECT_FALSE(waits());
+  mode.refuse(CamRefusal::not_enabled);
+  EXPECT_EQ(mode.command(CamCommand::none, false, true), CamRefusal::not_enabled) << "nor to what it says";
+  ASSERT_EQ(mode.command(CamCommand::engage, false, true), CamRefusal::none);
+  EXPECT_TRUE(waits());
+  mode.step({{}, false});
+  EXPECT_EQ(mode.fault(), Fault::master_lost);
+  EXPECT_EQ(mode.refusal(), CamRefusal::none);
+  EXPECT_EQ(mode.table(), 0);
+  EXPECT_FALSE(waits());
+}
+
+// A gear of 0.1 m a cycle that is not relative has a place for each of its master's, to which a distance leads.
+TEST_F(ACamMode, ComesToThePlaceOfAGearInADistanceOfItsMaster) {
+  VirtualMaster master(VirtualMaster::Config::of(limits(1.2, 5.0, 50.0)));
+  mode.asked().gear_way = raw_position(0.1);
+  mode.asked().slave_offset = raw_position(0.01);
+  mode.asked().approach = CamApproach::distance;
+  mode.asked().distance = raw_position(0.25);
+  ASSERT_EQ(mode.command(CamCommand::engage, true, true), CamRefusal::none);
+  master.run(master_speed(0.5));
+  const auto run_to = [&](double x) {
+    while (cycles_of(master.point().position) < x) mode.step({master.step(), true});
+  };
+  run_to(0.24);
+  EXPECT_TRUE(mode.status().active);
+  EXPECT_FALSE(mode.status().in_sync);
+  run_to(0.26);
+  EXPECT_TRUE(mode.status().in_sync);
+  EXPECT_EQ(mode.table(), 0);
+  run_to(0.7);
+  EXPECT_NEAR(position_of(mode.point().position), 0.01 + 0.1 * cycles_of(master.point().position), 1e-9);
 }
 
 // More requests than curves have places.
@@ -169,6 +319,13 @@ TEST_F(ACamMode, IsLeftByAHaltAndNotTakenUpAgain) {
   CamMaster master(CamMaster::Config{.virtual_master = VirtualMaster::Config::of(limits(1.2, 5.0, 50.0))});
   RemoteCam remote;
   EXPECT_FALSE(remote.attached());
+  // Without a master it stands, and has nothing to say.
+  remote.start(S::Position::from_raw(5));
+  EXPECT_TRUE(remote.at_rest());
+  EXPECT_EQ(remote.step(false, true).position.raw(), 5);
+  EXPECT_FALSE(remote.refused());
+  EXPECT_EQ(remote.fault(), Fault::none);
+  EXPECT_EQ(remote.bits(), 0);
   remote.command(CamCommand::engage, OperationMode::cam, true, true);
   remote.attach(mode, master);
   remote.start(S::Position{});
@@ -196,6 +353,15 @@ TEST_F(ACamMode, IsLeftByAHaltAndNotTakenUpAgain) {
   run(10'000, true);
   EXPECT_TRUE(remote.at_rest());
   run(10'000, false);
+  EXPECT_TRUE(remote.at_rest());
+  // Nor is what waits when it is halted.
+  mode.asked().trigger = CamTrigger::next_cycle;
+  remote.command(CamCommand::engage, OperationMode::cam, true, true);
+  run(1, false);
+  ASSERT_TRUE(mode.status().waiting);
+  run(1, true);
+  EXPECT_FALSE(mode.status().waiting);
+  run(20'000, false);
   EXPECT_TRUE(remote.at_rest());
 }
 

@@ -30,9 +30,9 @@ class CamMaster {
   // Goes to `speed`, 2^-64 cycles a tick, held to its limit. False, and nothing changes, where the master is measured.
   constexpr bool run(std::int64_t speed) {
     const std::int64_t most = config_.virtual_master.limits.velocity << MotionPoint::tick_bits;
-    return !config_.measured && virtual_.run(speed > most ? most : speed < -most ? -most : speed);
+    if (config_.measured) return false;
+    return virtual_.run(speed > most ? most : speed < -most ? -most : speed);
   }
-  constexpr bool measured() const { return config_.measured; }
 
   // The virtual master of the coming tick.
   constexpr const MasterReading& step() { return reading_ = {virtual_.step(), true}; }

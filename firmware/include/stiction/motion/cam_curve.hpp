@@ -108,7 +108,7 @@ class CamCurve {
     made.config_.rise = product_shifted(base.config_.rise, config.slave_scale, scale_bits);
     const std::int64_t scale = static_cast<std::int64_t>(magnitude(config.slave_scale));
     made.peaks_ = {scaled(base.peaks_.slope, scale), scaled(base.peaks_.bend, scale), scaled(base.peaks_.third, scale)};
-    if (!made.within_a_word() || magnitude(made.config_.rise) > std::uint64_t{1} << 60) return CamRefusal::scale;
+    if (!made.within_a_word()) return CamRefusal::scale;
     curve = made;
     return CamRefusal::none;
   }
@@ -185,7 +185,8 @@ class CamCurve {
   }
   constexpr bool within_a_word() const {
     constexpr std::int64_t most = std::int64_t{1} << 61;
-    return peaks_.slope <= most && peaks_.bend <= most && peaks_.third <= most;
+    return magnitude(config_.rise) <= std::uint64_t{1} << 60 && peaks_.slope <= most && peaks_.bend <= most &&
+           peaks_.third <= most;
   }
 
   // Of a table by itself.

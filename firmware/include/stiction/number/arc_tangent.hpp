@@ -30,7 +30,8 @@ constexpr Turn angle_of(std::int64_t x, std::int64_t y) {
     y -= up ? dx : -dx;
     angle += up ? steps[k] : 0u - steps[k];
   }
-  return x == 0 && y == 0 ? Turn{} : Turn{angle};
+  // A turn makes x no smaller, and the first one makes it larger unless y is zero.
+  return x == 0 ? Turn{} : Turn{angle};
 }
 
 }  // namespace stiction
