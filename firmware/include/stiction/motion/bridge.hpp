@@ -158,8 +158,12 @@ class Bridge {
   static constexpr CamPeaks peaks(const MotionPoint& from, const Span& span) {
     constexpr int up = MotionPoint::position_bits;
     const std::int64_t d = bounded(from.position), v = bounded(from.velocity), a = bounded(from.acceleration);
-    const std::int64_t d1 = span.divide(d, up) + 1, d2 = span.divide(d1, up) + 1, d3 = span.divide(d2, up) + 1;
-    const std::int64_t v1 = span.divide(v, up) + 1, v2 = span.divide(v1, up) + 1, a1 = span.divide(a, up) + 1;
+    // Rounded up; what no word holds stays the largest.
+    const auto part = [&](std::int64_t of) {
+      const std::int64_t quotient = span.divide(of, up);
+      return quotient < INT64_MAX ? quotient + 1 : quotient;
+    };
+    const std::int64_t d1 = part(d), d2 = part(d1), d3 = part(d2), v1 = part(v), v2 = part(v1), a1 = part(a);
     return {sum(product_shifted(d1, 15, 3), v, product_shifted(product_shifted(a, span.length, up), 1112, 14)),
             sum(product_shifted(d2, 23649, 12), product_shifted(v1, 4035, 10), a),
             sum(product_shifted(d3, 60, 0), product_shifted(v2, 36, 0), product_shifted(a1, 9, 0))};
