@@ -29,6 +29,11 @@ MasterEstimator::Config estimator_of(MasterSignal signal) {
 
 [[noreturn]] void refuse(CamRefusal refusal, const CamCurve& curve, const CamMode::Config& config, double period,
                          const machine::AxisModel& axis) {
+  if (refusal == CamRefusal::not_continuous)
+    throw machine::ConfigurationError(
+        "found a motion whose position, speed or acceleration jumps, as the drive refuses it; expected one without "
+        "jumps: "
+        "`stiction cam check` shows their places, and --model cascade simulates the motion as it is");
   const bool rotary = axis.coordinate.rotary();
   throw machine::ConfigurationError(
       refusal == CamRefusal::beyond_limits

@@ -133,6 +133,35 @@ TEST_P(CommutationOf, IsFoundWithFrictionThatSticksExactly) {
          fmt::format("{:.3f} deg off (bound 2 deg)", worst));
 }
 
+TEST(Commutation, IsFoundWithEveryFrictionModelOfTheCrossTable) {
+  const auto& motor = shipped_motors.front();
+  for (const char* model : {"coulomb_viscous", "classical", "linear_ramp", "parabolic", "lugre", "maxwell_slip", "dahl",
+                            "elasto_plastic", "curve"})
+    for (int degrees = 0; degrees < 360; degrees += 30) {
+      auto settings = with_offset(motor, degrees + 0.5, "test");
+      for (const char* axis : motor.axes) settings.push_back(fmt::format("axis.{}.friction.use={}", axis, model));
+      MotorBench bench(motor.machine, settings);
+      ASSERT_TRUE(bench.enable()) << model << " " << degrees << " " << name_of(bench.loop.fault(0));
+      for (std::size_t i = 0; i < motor.axes.size(); ++i) EXPECT_LE(std::abs(bench.offset_error(i)), 2.0) << model;
+    }
+}
+
+// The test counts in ticks; what the vector makes of the axis in a turn differs by the square of the period.
+TEST_P(CommutationOf, IsFoundAtOtherPeriods) {
+  const auto& motor = GetParam();
+  for (const char* period : {"50 us", "125 us"})
+    for (int degrees = 0; degrees < 360; degrees += 30) {
+      auto settings = with_offset(motor, degrees + 0.5, "test");
+      settings.push_back(fmt::format("timing.fast_period={}", period));
+      settings.emplace_back("timing.set_point_delay=750 us");  // a multiple of each
+      for (const char* axis : motor.axes)
+        settings.push_back(fmt::format("axis.{}.inverter.dead_time={}", axis, period));
+      MotorBench bench(motor.machine, settings);
+      ASSERT_TRUE(bench.enable(96000)) << period << " " << degrees << " " << name_of(bench.loop.fault(0));
+      for (std::size_t i = 0; i < motor.axes.size(); ++i) EXPECT_LE(std::abs(bench.offset_error(i)), 2.0) << period;
+    }
+}
+
 TEST_P(CommutationOf, AWrongStoredOffsetIsAFaultBeforeTheAxisFollows) {
   const auto& motor = GetParam();
   double farthest = 0.0;

@@ -48,7 +48,9 @@ class Yielding {
 
   double growing = stiff, forwards = stiff, backwards = stiff, pushed = stiff;  // m/A
   double drift = 0.0;                                                           // m a tick
+  double shaken = 0.0, fading = 1.0;                                            // m behind the turns, of it in a tick
   double pole_pair = pitch;
+  double shaken_from = 0.0;  // rad
   bool standing = true;
   Search search;
   double highest = 0.0;  // A
@@ -71,6 +73,10 @@ class Yielding {
     highest = std::max(highest, current);
     const double phi = true_offset / 360.0 + x_ / pole_pair, theta = order.angle.raw * 0x1p-32;
     x_ = at_ + yields(before) * current * std::cos(2.0 * std::numbers::pi * (phi - theta));
+    if (before == Phase::resting || before == Phase::pushing) {
+      shaken *= fading;
+      x_ += shaken * std::cos(2.0 * std::numbers::pi * ++shakes_ / 700.0 + shaken_from);
+    }
     search.step(position(x_), standing);
     measured_ += before == Phase::turning && search.phase() != Phase::turning ? 1 : 0;
   }
@@ -81,8 +87,25 @@ class Yielding {
   }
 
   double at_ = 0.1, x_ = 0.1;
-  int measured_ = 0;
+  int measured_ = 0, shakes_ = 0;
 };
+
+// A push is told from a vibration that the turns have left: by waiting, or not at all.
+TEST(CommutationSearch, WaitsForAVibrationBeforeItBelievesAPush) {
+  for (int k = 0; k < 24; ++k) {
+    Yielding fades, stays;
+    for (auto* axis : {&fades, &stays}) {
+      axis->shaken = 50e-6;
+      axis->shaken_from = k * std::numbers::pi / 12.0;
+    }
+    fades.fading = 1.0 - 1.0 / 2000.0;
+    fades.run();
+    EXPECT_TRUE(fades.search.known()) << k;
+    EXPECT_NEAR(apart(fades.search.offset(), turn(true_offset)), 0.0, 2.0) << k;
+    stays.run();
+    EXPECT_EQ(stays.search.fault(), Fault::commutation_not_found) << k;
+  }
+}
 
 TEST(CommutationSearch, FindsTheOffsetWithAllOfTheCurrentFromAQuarterOfTheResponseOn) {
   Yielding soft;

@@ -53,6 +53,13 @@ TEST_F(CamVibrationCli, RefusesWhatCannotBeShaped) {
                  "found no transmission.stiffness; expected it");
 }
 
+// The drive follows no parabola; what it would do along one is asked of the model.
+TEST_F(CamVibrationCli, SaysHowAMotionThatTheDriveRefusesIsSimulated) {
+  const auto simulate = on_stand("simulate cam --cam " + stand());
+  expect_refused(simulate, "`stiction cam check` shows their places, and --model cascade simulates");
+  EXPECT_EQ(stiction(simulate + " --model cascade --cycles 1").code, 0);
+}
+
 TEST_F(CamVibrationCli, VerifiesTheStudysCaseAndSaysWhatItsPrintLacks) {
   const auto done = stiction("simulate cam --machine cam-stand --verification --json");
   ASSERT_EQ(done.code, 0) << done.error;

@@ -5,8 +5,9 @@
 // makes the axis vibrate about where it is; the vibration's phase against theta is phi plus the lag of inverter,
 // windings and mechanics. Turned the other way about, it is phi less the same lag, whatever friction, load and brake
 // make of it, as both are the same motion mirrored in time; the mean of both is phi or phi plus half a turn. A push
-// forwards and one backwards tell which. The way is a few hundredths of a pole pair, and what exceeds longest_way ends
-// the test. Integer; fixed work but for the tick in which a part of the test ends.
+// forwards and one backwards tell which, where they move the axis clearly more than it still moved before them; else
+// both are made again after a longer rest. The way is a few hundredths of a pole pair, and what exceeds longest_way
+// ends the test. Integer; fixed work but for the tick in which a part of the test ends.
 #pragma once
 
 #include <cstdint>
@@ -63,19 +64,18 @@ class CommutationSearch {
     Turn angle{};
   };
 
-  static constexpr std::int32_t ticks_a_turn = 256;         // of the vector: 62.5 Hz at 62.5 us
-  static constexpr std::int32_t settling_ticks = 16 * 256;  // before it is measured
-  static constexpr std::int32_t measured_ticks = 16 * 256;  // for which it is measured
-  static constexpr std::int32_t longest_rest_ticks = 8000;  // 0.5 s at 62.5 us
-  static constexpr std::int32_t push_ticks = 64;            // a push, and as much to brake it
-  static constexpr std::int32_t rest_between_pushes = 1024;
+  static constexpr std::int32_t ticks_a_turn = 256;          // of the vector: 62.5 Hz at 62.5 us
+  static constexpr std::int32_t settling_ticks = 16 * 256;   // before it is measured
+  static constexpr std::int32_t measured_ticks = 16 * 256;   // for which it is measured
+  static constexpr std::int32_t longest_rest_ticks = 8000;   // 0.5 s at 62.5 us
+  static constexpr std::int32_t push_ticks = 64;             // a push, and as much to brake it
+  static constexpr std::int32_t rest_between_pushes = 1024;  // at least; doubled each time that both are made again
+  static constexpr std::int32_t most_rounds = 4;
 
-  explicit constexpr CommutationSearch(const CommutationConfig<S>& config) : config_(config) {
-    const bool settled = config.method == CommutationMethod::encoder_zero ||
-                         (config.method == CommutationMethod::stored && !config.checked);
-    phase_ = settled ? Phase::known : Phase::unknown;
-    if (config.method == CommutationMethod::stored) offset_ = config.offset;
-  }
+  explicit constexpr CommutationSearch(const CommutationConfig<S>& config)
+      : config_(config),
+        phase_(trusted(config) ? Phase::known : Phase::unknown),
+        offset_(config.method == CommutationMethod::stored ? config.offset : Turn{}) {}
 
   constexpr bool used() const { return config_.method != CommutationMethod::encoder_zero; }
   constexpr Phase phase() const { return phase_; }
@@ -120,7 +120,7 @@ class CommutationSearch {
   // The encoder may have lost its place, and the angle with it: the next enabling begins at the beginning. A stored
   // offset that is trusted stays.
   constexpr void lose() {
-    if (used() && (config_.method != CommutationMethod::stored || config_.checked)) phase_ = Phase::unknown;
+    if (!trusted(config_)) phase_ = Phase::unknown;
   }
 
   // Each tick, powered or not: what index and Hall signals say beside the offset in force. `measured`: position;
@@ -164,6 +164,11 @@ class CommutationSearch {
   }
 
  private:
+  // Whether the angle is known from the start, and stays so.
+  static constexpr bool trusted(const CommutationConfig<S>& config) {
+    return config.method == CommutationMethod::encoder_zero ||
+           (config.method == CommutationMethod::stored && !config.checked);
+  }
   static constexpr Turn plus(Turn a, Turn b) { return Turn{a.raw + b.raw}; }
   static constexpr Turn minus(Turn a, Turn b) { return Turn{a.raw - b.raw}; }
   // |a - b|, at most half a turn.
@@ -253,19 +258,36 @@ class CommutationSearch {
     const Turn mean{forward_.raw + static_cast<std::uint32_t>(half)};
     const auto at = Position::from_raw(origin_.raw() + (middle_ + middle) / 2);
     found_ = minus(mean, S::angle(at, config_.inverse_pole_pair_pitch));
+    round_ = 0;
+    prepare_pushes();
+  }
+
+  constexpr void prepare_pushes() {
     order_ = {};
     enter(Phase::resting);
     push_ = 0;
-    pushed_[0] = pushed_[1] = 0;
+    pushed_ = moved_ = {};
+    still_moves_ = 0;
   }
 
   constexpr bool rested(bool standing) const {
     return tick_ >= rest_between_pushes && (standing || tick_ >= longest_rest_ticks);
   }
+  // How far the axis goes by itself in as many ticks as a push has is known of the last ones, fading: a vibration may
+  // show little of itself in one of them.
   constexpr void rest(bool standing) {
     order_ = {};
-    if (!rested(standing)) return;
+    if (tick_ == 1) rest_from_ = last_;
+    sum_ += last_.raw() - rest_from_.raw();
+    if (tick_ % push_ticks != 0) return;
+    const std::int64_t size = sum_ < 0 ? -sum_ : sum_;
+    still_moves_ -= still_moves_ / 8;
+    still_moves_ = size > still_moves_ ? size : still_moves_;
+    sum_ = 0;
+    rest_from_ = last_;
+    if (!rested(standing) || tick_ < rest_between_pushes << round_) return;
     if (push_ == 2) return decide();
+    moved_[push_] = still_moves_;
     enter(Phase::pushing);
     pushed_from_ = last_;
   }
@@ -282,13 +304,20 @@ class CommutationSearch {
     order_ = {};
     ++push_;
     enter(Phase::resting);
+    still_moves_ = 0;
   }
 
   constexpr void decide() {
     const std::int64_t difference = pushed_[0] - pushed_[1];
     // Of a push that moved the axis at all: as far as half of the vibration's amplitude for an eighth of its ticks.
     const std::int64_t least = config_.response.raw() / 16 * push_ticks / 8;
-    if (difference < least && difference > -least) return fail(Fault::commutation_not_found);
+    // A vibration goes on by no more than twice what it showed; twice that is in doubt.
+    const std::int64_t doubtful = 4 * (moved_[0] + moved_[1]);
+    const std::int64_t size = difference < 0 ? -difference : difference;
+    if (size < least || size < doubtful) {
+      if (++round_ == most_rounds) return fail(Fault::commutation_not_found);
+      return prepare_pushes();
+    }
     if (difference < 0) found_.raw += std::uint32_t{1} << 31;
     order_ = {};
     if (config_.method == CommutationMethod::stored) {
@@ -341,16 +370,19 @@ class CommutationSearch {
   CommutationConfig<S> config_;
   Phase phase_ = Phase::unknown;
   Fault fault_ = Fault::none;
-  Turn offset_{}, found_{}, angle_{}, forward_{};
+  Turn offset_{};
+  Turn found_{}, angle_{}, forward_{};
   Order order_{};
   bool backwards_ = false, at_edge_ = false;
   std::int8_t sector_ = 0;
   std::uint8_t push_ = 0;
+  std::int32_t round_ = 0;  // of pushes
   std::int32_t tick_ = 0;
   std::int64_t current_raw_ = 0;
-  Position origin_{}, last_{}, pushed_from_{};
+  Position origin_{}, last_{}, pushed_from_{}, rest_from_{};
   std::int64_t farthest_ = 0, cosine_ = 0, sine_ = 0, sum_ = 0, middle_ = 0, forward_size_ = 0;
-  std::array<std::int64_t, 2> pushed_{};
+  std::int64_t still_moves_ = 0;
+  std::array<std::int64_t, 2> pushed_{}, moved_{};  // sums over the ticks of a push, and of a rest before it
 };
 
 }  // namespace stiction
