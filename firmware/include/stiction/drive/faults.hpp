@@ -189,7 +189,7 @@ inline constexpr std::array<FaultDescription, 41> fault_table{{
     {Fault::torque_off_in_motion, "safe torque off under power", "a channel of safe torque off opened under power", 1,
      0xff59, Detector::protection},
     {Fault::torque_off_channels, "safe torque off channels",
-     "the channels of safe torque off differ for 3200 ticks in a row, 200 ms at 62.5 us", 3200, 0xff5a,
+     "the channels of safe torque off differ for 3200 ticks in a row, 200 ms at 62.5 µs", 3200, 0xff5a,
      Detector::protection},
     {Fault::brake_slips, "brake slips",
      "under brake_test.current the closed brake lets the axis go by more than brake_test.way", 1, 0xff5b,
