@@ -86,6 +86,15 @@ std::string figures_of(const Finding& finding) {
   return text + ".";
 }
 
+// How sure the name is: its odds by these records, and whether it needs one of them.
+std::string how_sure(const Finding& finding) {
+  auto text = finding.probability > 0.995 ? std::string("over 99 % likely")
+                                          : fmt::format("{:.0f} % likely", 100.0 * finding.probability);
+  if (const auto& each = finding.without_each_log)
+    text += fmt::format("; named in {} of {} searches, each without a part of the logs", each->named, each->searches);
+  return text;
+}
+
 std::string on_part(const Finding& finding, const ShownQuantity& deviation) {
   if (!finding.part_error)
     return "Not computed: the logs have no set-points with which the simulation could run with and without this cause.";
@@ -114,6 +123,8 @@ json cause_json(const Finding& finding, const Verdict& verdict) {
           {"part", finding.part_error ? json(deviation_text(*finding.part_error, deviation)) : json(nullptr)},
           {"small_below",
            verdict.is_small(finding) ? json(deviation_text(*verdict.small_below, deviation)) : json(nullptr)},
+          // Of rows and of the command there are no odds.
+          {"sure", verdict.reference || finding.in_command ? json(nullptr) : json(how_sure(finding))},
           {"parameters", parameters},
           {"evidence", typeset(finding.evidence)},
           {"figures", figures_of(finding)},

@@ -52,6 +52,11 @@ struct HoldoutGain {
   std::array<double, 2> ci95{1.0, 1.0};            // of force_rms_ratio, or of command_rms_ratio where there is one
 };
 
+// In how many of the searches, each with one log (of very many: one part of them) left out, a cause was named.
+struct NamedIn {
+  std::size_t named = 0, searches = 0;
+};
+
 struct Finding {
   explicit Finding(sim::EffectId found) : effect(found) {}
 
@@ -66,6 +71,7 @@ struct Finding {
   double p_value = 1.0;
   double probability = 1.0;  // of this name, of all that could be in its place, one without a name included
   std::vector<ConfusedWith> confused_with;
+  std::optional<NamedIn> without_each_log;  // none: of a single log
   std::string evidence;              // sentences for readers
   std::optional<double> part_error;  // m, what it does to the part: peak change of the position error by it
   std::vector<sim::Chart> charts;

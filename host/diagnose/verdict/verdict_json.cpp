@@ -42,6 +42,8 @@ Json finding_json(const Finding& f, const Verdict& verdict) {
       {"effect", f.effect.name()}, {"axis", f.axis},       {"parameters", parameters}, {"standard_errors", errors},
       {"explains", f.explains},    {"holdout_gain", gain}, {"p_value", f.p_value},     {"probability", f.probability},
       {"confused_with", confused}};
+  if (f.without_each_log)
+    out["without_each_log"] = {{"named", f.without_each_log->named}, {"searches", f.without_each_log->searches}};
   if (f.in_command) out["residual"] = "command";
   if (f.part_error) out[named("part_error", units.deviation)] = units.deviation(*f.part_error);
   if (f.part_error && verdict.small_below) out["small"] = verdict.is_small(f);

@@ -14,7 +14,9 @@ await openPage('open_diagnosis', '', async (page, data) => {
   }
   expect(await page.locator('section.cause').count() === data.causes.length, 'not every cause has its section');
   if (data.causes.length) expect(await rows('summary') === data.causes.length, 'not every cause stands in the summary');
+  const summary = data.causes.length ? await page.locator('#summary').innerText() : '';
   for (const [i, cause] of data.causes.entries()) {
+    if (cause.sure) expect(summary.includes(cause.sure), `the summary does not say "${cause.sure}"`);
     const says = await page.locator(`#cause-${i}`).innerText();
     for (const words of [cause.title, cause.on_part, cause.advice, ...cause.confused_with.map(row => row.separate_by)])
       expect(says.includes(words), `the section of ${cause.name} does not say "${words}"`);

@@ -143,6 +143,8 @@ DiagnosisReport synthetic_diagnosis() {
   cogging.explains = 0.63;
   cogging.holdout = {0.41, 0.44, {}, {0.38, 0.45}};
   cogging.p_value = 1e-9;
+  cogging.probability = 0.93;
+  cogging.without_each_log = NamedIn{2, 3};
   cogging.confused_with = {{effect("position_dependent_friction"), "traverse the same stretch in both directions"}};
   cogging.evidence = "The residual repeats every 72.0 mm with 3.1 N, in both directions and at all six speeds.";
   cogging.part_error = 0.31e-6;
