@@ -207,6 +207,13 @@ class Programmes(unittest.TestCase):
 
 
 class Tally(unittest.TestCase):
+    def test_bounds_a_sample_by_chance(self):
+        # Of 20 cases of 1.5 %: three and more have 0.3 %, four and more 0.02 %.
+        self.assertEqual(tally.most_by_chance(0.015, 20, 0.001), 3)
+        self.assertEqual(tally.most_by_chance(0.015, 20, 0.005), 2)
+        self.assertEqual(tally.most_by_chance(0.0, 20, 0.001), 0)
+        self.assertEqual(tally.most_by_chance(1.0, 20, 0.001), 20)
+
     def test_takes_the_interval_of_wilson(self):
         # Brown, Cai, DasGupta, Stat. Sci. 16 (2001): of n = 10 and none, 0 to 0.278.
         low, high = tally.wilson(0, 10)

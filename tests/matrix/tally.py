@@ -16,6 +16,16 @@ def wilson(hits, cases):
     return max(middle - half, 0.0), min(middle + half, 1.0)
 
 
+def most_by_chance(rate, cases, chance):
+    """The number of hits that cases of this rate exceed with a probability of at most `chance`."""
+    above = 1.0
+    for hits in range(cases + 1):
+        above -= math.comb(cases, hits) * rate**hits * (1.0 - rate)**(cases - hits)
+        if above <= chance:
+            return hits
+    return cases
+
+
 @dataclasses.dataclass(frozen=True)
 class Failure:
     """`what` is a few words that do not change from run to run; the detail is for the reader."""

@@ -4,7 +4,8 @@
 Every shipped machine, axis and friction model has its turn; motions, speeds, logging period, set-points in the log or
 not, and the size of the noise of guide and current sensor (0.3 to 10 % of Coulomb friction) are drawn. Each case that --results has already is not run
 again. Prints the rate with its interval over all cases, then by what was drawn, and each name that was given. Exit 0,
-whatever is named; 1: a case could not be judged."""
+whatever is named; 1: a case could not be judged. With --sample the cells are drawn as well, and more names than an
+engine with the wanted rate gives once in a thousand samples are exit 1 too."""
 
 import argparse
 import concurrent.futures
@@ -28,6 +29,7 @@ def arguments():
     parser.add_argument("--program", required=True, help="stiction; its machines lie in ../share")
     parser.add_argument("--cases", type=int, default=60, help="number of cases [60]")
     parser.add_argument("--seed", type=int, default=1, help="what is drawn [1]")
+    parser.add_argument("--sample", action="store_true", help="draw the cells, and judge the number of names")
     parser.add_argument("--jobs", type=int, default=2, help="cases at a time [2]")
     parser.add_argument("--results", type=pathlib.Path, help="keep a line of JSON for each case in this file")
     return parser.parse_args()
@@ -69,9 +71,11 @@ class Campaign:
         self.machines = {machine.name: machine for machine in machines.shipped(self.program)}
         self.cells = [cell for cell in machines.table_of_cells(self.machines.values(), [options.seed])
                       if cell.axis != machines.WHOLE]
+        if options.sample:
+            records.drawing(options.seed, "sample").shuffle(self.cells)
 
     def key(self, number):
-        return f"{self.options.seed}/{number}"
+        return f"{self.options.seed}/{'sample/' if self.options.sample else ''}{number}"
 
     def run_case(self, number):
         cell = self.cells[number % len(self.cells)]
@@ -119,6 +123,10 @@ def kept(place):
     return {line["key"]: line for line in map(json.loads, place.read_text(encoding="utf-8").splitlines())}
 
 
+WANTED = 0.015  # of records
+CHANCE = 0.001  # that a sample of an engine with this rate is called bad
+
+
 def rate_of(name, cases):
     rate = tally.Rate(name)
     for case in cases:
@@ -128,7 +136,7 @@ def rate_of(name, cases):
 
 def report(cases):
     judged = [case for case in cases if "error" not in case]
-    lines = [rate_of("exact file: a cause is named (wanted at most 1.5 %)", judged), ""]
+    lines = [rate_of(f"exact file: a cause is named (wanted at most {100.0 * WANTED:g} %)", judged), ""]
     for what in ("machine", "model", "period_ms", "set_points", "status"):
         for value in sorted({str(case[what]) for case in judged}):
             lines.append("  " + rate_of(f"{what} {value}", [case for case in judged if str(case[what]) == value]))
@@ -164,7 +172,12 @@ def main():
                     file.write(json.dumps(case) + "\n")
     cases = [known[campaign.key(number)] for number in range(options.cases)]
     print(report(cases))
-    return 1 if any("error" in case for case in cases) else 0
+    bad = any("error" in case for case in cases)
+    if options.sample:
+        named, most = sum(bool(case.get("names")) for case in cases), tally.most_by_chance(WANTED, len(cases), CHANCE)
+        print(f"sample: {named} of {len(cases)} named, at most {most} may be")
+        bad = bad or named > most
+    return 1 if bad else 0
 
 
 if __name__ == "__main__":
