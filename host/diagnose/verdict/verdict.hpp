@@ -72,8 +72,8 @@ struct Finding {
   double probability = 1.0;  // of this name, of all that could be in its place, one without a name included
   std::vector<ConfusedWith> confused_with;
   std::optional<NamedIn> without_each_log;  // none: of a single log
-  std::string evidence;              // sentences for readers
-  std::optional<double> part_error;  // m, what it does to the part: peak change of the position error by it
+  std::string evidence;                     // sentences for readers
+  std::optional<double> part_error;         // m, what it does to the part: peak change of the position error by it
   std::vector<sim::Chart> charts;
 
   bool names_cause() const { return !sim::is_a<sim::ForceMap>(effect); }
