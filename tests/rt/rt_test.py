@@ -229,7 +229,7 @@ def traced_timers(file):
     interrupted the machine, and how often that more than 1 us late."""
     rows = [(name, int(time)) for name, time in (line.rsplit(" ", 1) for line in file.read_text().splitlines())]
     phase = collections.Counter(time % 125000 // 100 for _, time in rows).most_common(1)[0][0] * 100
-    delays = [(name, delay) for name, delay in ((name, (time - phase) % 125000) for name, time in rows) if delay < 20000]
+    delays = [(name, delay) for name, delay in ((name, (time - phase + 1000) % 125000 - 1000) for name, time in rows) if delay < 20000]
     met = [delay for name, delay in delays if name == "stiction-plant"]
     return len(delays), len(met), sum(delay > 1000 for delay in met)
 
