@@ -21,6 +21,7 @@ import sys
 ROOT = pathlib.Path(__file__).parents[2]
 BIN = pathlib.Path(os.environ.get("STICTION_BIN", ROOT / "build/release/bin"))
 FOLDER = pathlib.Path(os.environ.get("STICTION_RT_DIR", ROOT / "build/rt"))
+CYCLIC_STARTS = 3  # of cyclictest, at each period
 SCRIPT_SIZE = 1 << 17  # characters; that of 100 starts has 80 000
 TWO_AXES = FOLDER / "two_axes.toml"
 PROGRAMMES = [BIN / "stictiond", BIN / "stiction-plant", BIN / "can_adapter_test", BIN / "can_kill_list", BIN / "can_faults", BIN / "stops_under_load",
@@ -213,15 +214,19 @@ def boot(name, script):
 
 
 def cyclic(folder, period):
-    """Median and 99.9 % of cyclictest's latencies, us; its histogram has a nanosecond a row."""
-    rows = [tuple(map(int, line.split())) for line in (folder / f"cyclic{period}").read_text().splitlines()
-            if re.match(r"\d+ \d+$", line)]
-    total, seen, found = sum(count for _, count in rows), 0, []
-    for latency, count in rows:
-        seen += count
-        while len(found) < 2 and seen >= (0.5, 0.999)[len(found)] * total:
-            found.append(latency * 1e-3)
-    return found
+    """Median and 99.9 % of cyclictest's latencies, us, of the start whose 99.9 % is least: one whose wakes happen to meet
+    the kernel's tick is no measure for a loop. Its histogram has a nanosecond a row."""
+    starts = []
+    for start in range(CYCLIC_STARTS):
+        rows = [tuple(map(int, line.split())) for line in (folder / f"cyclic{period}.{start}").read_text().splitlines()
+                if re.match(r"\d+ \d+$", line)]
+        total, seen, found = sum(count for _, count in rows), 0, []
+        for latency, count in rows:
+            seen += count
+            while len(found) < 2 and seen >= (0.5, 0.999)[len(found)] * total:
+                found.append(latency * 1e-3)
+        starts.append(found)
+    return min(starts, key=lambda found: found[1])
 
 
 def traced_timers(file):
@@ -244,8 +249,8 @@ def main():
     rest = [Run("loaded", "can", "125 us", ("--circle", "48 m/min"), load=LOAD), Run("slower", "can", "250 us", ("--hold", "1"))]
     starts = {bus: [Run(f"{bus}{k}", bus, period, ("--hold", hold)) for k in range(options.starts)]
               for bus, period, hold in (("can", "125 us", "0.05"), ("modbus", "10 ms", "0.5"))}
-    timers = "".join(f"cyclictest -N -q -m -p 80 -i {period} -l 4000 -h 30000 | grep -v ' 000000$' >cyclic{period}\n"
-                     for period in (125, 250))
+    timers = "".join(f"cyclictest -N -q -m -p 80 -i {period} -l 4000 -h 30000 | grep -v ' 000000$' >cyclic{period}.{start}\n"
+                     for period in (125, 250) for start in range(CYCLIC_STARTS))
     controllers = [Run("sja1000hold", "sja1000", "2 ms", ("--hold", "0.2")), Run("sja1000circle", "sja1000", "2 ms", ("--circle", "9 m/min"))]
     traced = Run("traced", "can", "125 us", ("--circle", "48 m/min"))
     whole = first + rest + starts["can"] + starts["modbus"]
@@ -295,8 +300,8 @@ def main():
                 row(f"  instructions of {part}, without waiting, {what}: mean", f"{instructions:.0f}", "within 5 % of docs/results.md")
                 figure(f"instructions of {part} in counted time, {what}", f"{instructions:.0f}")
     row("  one circle's timer that meets the machine at work", "{1} of {0} times, {2} of them over 1 us late".format(*traced))
-    row("cyclictest -N, us, 125 us: median, 99.9 %", "  ".join(f"{value:.2f}" for value in cyclic125))
-    row("cyclictest -N, us, 250 us: median, 99.9 %", "  ".join(f"{value:.2f}" for value in cyclic250))
+    row(f"cyclictest -N, us, 125 us: median, 99.9 %, best of {CYCLIC_STARTS}", "  ".join(f"{value:.2f}" for value in cyclic125))
+    row(f"cyclictest -N, us, 250 us: median, 99.9 %, best of {CYCLIC_STARTS}", "  ".join(f"{value:.2f}" for value in cyclic250))
     if slower.times:
         ratio = slower.times["lateness"][1] / cyclic250[1]
         row("lateness 99.9 % at 250 us over cyclictest's", f"{slower.times['lateness'][1]:.2f} us, {ratio:.2f} of it", "<= 1.2", ratio <= 1.2)
