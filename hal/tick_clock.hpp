@@ -3,6 +3,7 @@
 // late ticks began.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 
@@ -18,6 +19,16 @@ struct MonotonicTime {
   std::int64_t with_suspension_ns() const;
   void sleep_until(std::int64_t time_ns) const;
 };
+
+// The first time from `earliest_ns` on from which ticks `period_ns` apart begin while the kernel is not at its own
+// tick. That comes at multiples of 1 ms or more of CLOCK_MONOTONIC (CONFIG_HZ 1000, 250 or 100) and keeps interrupts
+// off for 3 us and a thread above the loop that wakes there (loop_watchdog.hpp) for 7 us: 47 us before a tick of the
+// loop, and, where its period is that of the current loop or a multiple of it, 16 us behind one.
+constexpr std::int64_t clear_of_kernel_tick(std::int64_t earliest_ns, std::int64_t period_ns) {
+  const std::int64_t behind_ns = std::min<std::int64_t>(period_ns, 62'500) * 3 / 4;
+  const std::int64_t since_ns = (earliest_ns - behind_ns) % period_ns;
+  return earliest_ns + (since_ns > 0 ? period_ns - since_ns : -since_ns);
+}
 
 // Time: now_ns(), with_suspension_ns() and sleep_until(time_ns). One thread waits; missed(), jumps() and lateness() may
 // be read by others.
@@ -68,8 +79,12 @@ class BasicTickClock {
     last_ns_ = now;
     const std::int64_t tick_ns = next_ns_;
     next_ns_ += period_ns_;
+    if (jumped) next_ns_ = start_from(next_ns_);
     return tick_ns;
   }
+
+  // Whenever the clock starts from here on, its ticks are clear of the kernel's own: of a loop that is alone in time.
+  void keep_clear_of_kernel_tick() { clear_ = true; }
 
   // All ticks to come are so much later (ns, a small part of the period): of a loop that follows another clock.
   void shift(std::int64_t later_ns) { next_ns_ += later_ns; }
@@ -105,9 +120,13 @@ class BasicTickClock {
   void start(std::int64_t now) {
     started_ = true;
     last_ns_ = now;
-    next_ns_ = now + period_ns_;
+    next_ns_ = start_from(now + period_ns_);
     late_in_a_row_ = 0;
     suspension_ns_ = time_.with_suspension_ns() - now;  // and what passed between the two readings
+  }
+
+  std::int64_t start_from(std::int64_t earliest_ns) const {
+    return clear_ ? clear_of_kernel_tick(earliest_ns, period_ns_) : earliest_ns;
   }
 
   bool jumped_since_last(std::int64_t now) const { return now < last_ns_ || now - last_ns_ > jump_ns; }
@@ -131,6 +150,7 @@ class BasicTickClock {
 
   std::int64_t period_ns_;
   [[no_unique_address]] Time time_;
+  bool clear_ = false;  // of the kernel's tick
   bool started_ = false;
   bool first_ = false;
   std::int64_t next_ns_ = 0;

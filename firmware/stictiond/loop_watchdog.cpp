@@ -23,8 +23,8 @@ void LoopWatchdog::run(int priority) {
     ::sched_setscheduler(0, SCHED_FIFO, &above);
   }
   const hal::MonotonicTime time;
-  for (std::int64_t now_ns = time.now_ns(); !end_; now_ns += round_ns) {
-    time.sleep_until(now_ns);
+  for (std::int64_t look_ns = first_look_ns(time.now_ns()); !end_; look_ns += round_ns) {
+    time.sleep_until(look_ns);
     watch_.look(progress_(), time.now_ns());
   }
 }

@@ -38,6 +38,9 @@ class LoopWatchdog {
   static constexpr std::int64_t limit_ns = 100'000'000;  // as long as the longest gap that a clock may have
   // A look sees progress up to a round late, and the limit exceeded up to a round later: 110 ms in all.
   static constexpr std::int64_t round_ns = 5'000'000;
+  // Looks are at multiples of the round of the monotonic clock, where the kernel may have its own tick and the loop has
+  // none (hal/tick_clock.hpp): above the loop's priority, a look at its deadline would hold up that tick.
+  static constexpr std::int64_t first_look_ns(std::int64_t now_ns) { return (now_ns / round_ns + 1) * round_ns; }
 
   // `progress`, `cut`: see LoopWatch, the first safe beside the loop; `priority`: of SCHED_FIFO of the loop, above
   // which the thread runs where that is allowed; 0: an ordinary one. Made before the loop's thread takes a processor

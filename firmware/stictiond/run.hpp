@@ -263,6 +263,7 @@ RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const Driv
       programme.keep_off(Fault::parameters_damaged);
     }
     if (record.broken_off()) say(LogLevel::warning, "the last run did not end in order, but " + *record.broken_off());
+    if (clock != nullptr) clock->keep_clear_of_kernel_tick();
     loop.begin();  // every thread has been made, and what came before took its time
     programme.tick(false);
     const std::int64_t processor_begin_ns = processor_time_ns();

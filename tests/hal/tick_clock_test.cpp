@@ -162,6 +162,31 @@ TEST(TickClock, TakesNoDelayBetweenItsReadingsForASuspension) {
   }
 }
 
+// The kernel's tick is at multiples of 1, 4 or 10 ms (CONFIG_HZ) and of nothing shorter than 1 ms. An interrupt there
+// keeps others off for some microseconds: at a loop's deadline that would be so in the same ticks of every second.
+TEST(TickClock, KeepsClearOfTheKernelsOwnTickFromEveryStartAndAfterAJump) {
+  constexpr std::int64_t kernel_ns = 1'000'000;
+  for (const std::int64_t period : {62'500, 125'000, 250'000, 500'000, 1'000'000, 2'000'000, 10'000'000})
+    for (std::int64_t begin_ns = 1'000'000'000; begin_ns < 1'001'000'000; begin_ns += 3'917) {
+      FakeClock time;
+      time.now_ns = begin_ns;
+      Clock clock(period, {&time});
+      clock.keep_clear_of_kernel_tick();
+      const std::int64_t first_ns = clock.wait();
+      EXPECT_LT(first_ns, begin_ns + 2 * period);
+      std::int64_t tick_ns = first_ns;
+      for (int tick = 1; tick < 40; ++tick) {
+        const bool jumped = tick == 20;
+        if (jumped) time.now_ns += Clock::jump_ns + 777'777;
+        tick_ns = clock.wait();
+        if (jumped) continue;  // at once
+        EXPECT_GE(tick_ns % kernel_ns, 46'000) << period << ' ' << begin_ns;
+        EXPECT_LE(tick_ns % kernel_ns, kernel_ns - 15'000) << period << ' ' << begin_ns;
+      }
+      EXPECT_EQ(clock.missed(), 0u);
+    }
+}
+
 TEST(TickClock, CountsHowLateEveryTickBegan) {
   Started s;
   for (const std::int64_t late : {10, 10, 3000, 70'000}) s.wait_late(late);

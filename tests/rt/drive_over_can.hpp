@@ -98,11 +98,11 @@ inline std::vector<std::string> drive_command() {
   return command;
 }
 
-// Its machine. The nodes are computers of their own, so it comes before all but the drive's loop: as an ordinary
+// Its machine. The nodes are computers of their own, so it has the priority of the drive's loop: as an ordinary
 // process it waits for its turn behind the drive's server and its clients, answers three ticks late, and the drive
-// trips fault 32.
+// trips fault 32. Below the loop, the loop interrupts it where it hands over an answer.
 inline const std::vector<std::string> plant_command{"chrt",      "-f",
-                                                    "70",        "stiction-plant",
+                                                    "80",        "stiction-plant",
                                                     "--machine", "emps",
                                                     "--bus",     "can:vcan0",
                                                     "--set",     "drive.can.interface=vcan0",

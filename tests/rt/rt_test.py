@@ -21,6 +21,7 @@ import sys
 ROOT = pathlib.Path(__file__).parents[2]
 BIN = pathlib.Path(os.environ.get("STICTION_BIN", ROOT / "build/release/bin"))
 FOLDER = pathlib.Path(os.environ.get("STICTION_RT_DIR", ROOT / "build/rt"))
+CYCLIC_STARTS = 3  # of cyclictest, at each period
 SCRIPT_SIZE = 1 << 17  # characters; that of 100 starts has 80 000
 TWO_AXES = FOLDER / "two_axes.toml"
 PROGRAMMES = [BIN / "stictiond", BIN / "stiction-plant", BIN / "can_adapter_test", BIN / "can_kill_list", BIN / "can_faults", BIN / "stops_under_load",
@@ -28,6 +29,10 @@ PROGRAMMES = [BIN / "stictiond", BIN / "stiction-plant", BIN / "can_adapter_test
 TOOLS = ["/usr/bin/cyclictest", "/usr/bin/hackbench", "/usr/bin/chrt", shutil.which("ip", path="/bin:/sbin:/usr/bin:/usr/sbin")]
 DATA = [*sorted((ROOT / "firmware/machine/shipped").glob("*.toml")), *sorted(pathlib.Path("/usr/share/xml/udunits").glob("*.xml"))]
 
+# The machine's nodes stand for computers of their own. They have the priority of the drive's loop: above it, they would
+# interrupt the loop where it hands them a frame, below it, the loop interrupts them where they hand it theirs, in both
+# cases with the bus' locks held, which costs two changes of the thread and back each time.
+PLANT = ["chrt", "-f", "80", "stiction-plant"]
 # The machine's folder and the units' database where the programmes look for them; a bus; no budget for real-time threads,
 # of which the plant on the drive's own processor takes most.
 PREPARE = """
@@ -73,7 +78,7 @@ echo 1 >/sys/module/suspend/parameters/pm_test_delay
 export SUSPEND="echo core >/sys/power/pm_test && echo mem >/sys/power/state"
 # adapter NAME INTERFACE OTHER: the machine on the other interface, the tests on the first.
 adapter() {
-  chrt -f 70 stiction-plant --machine emps --bus can:$3 --set drive.can.interface=$3 --set drive.axis.X.node=1 >$1.plant 2>&1 &
+  PLANT --machine emps --bus can:$3 --set drive.can.interface=$3 --set drive.axis.X.node=1 >$1.plant 2>&1 &
   plant=$!
   while kill -0 $plant 2>/dev/null && [ ! -s $1.plant ]; do sleep 0.01; done
   export ADAPTER=$2 DOWN="/bin/ip link set $2 down" UP="/bin/ip link set $2 up"
@@ -88,7 +93,7 @@ device=$(readlink -f /sys/class/net/can0/device)
 export UNPLUG="echo 1 >$device/remove"
 export PLUG="echo 1 >/sys/bus/pci/rescan && sleep 0.1 && /bin/ip link set can0 type can bitrate 1000000 && /bin/ip link set can0 up"
 adapter sja1000 can0 can1
-"""
+""".replace("PLANT", " ".join(PLANT))
 # Programmes of their own, which start drive and machine themselves.
 DEATHS = """
 ip link add vcan1 type vcan
@@ -150,7 +155,7 @@ class Run:
                      "drive.modbus_client.device=127.0.0.1:15020"]
         task = list(self.task) + (["--trace", "trace.csv"] if self.trace else [])
         text = f"LOAD='{self.load}'\n" if self.load else ""
-        text += f"plant() {{ exec {shlex.join(['chrt', '-f', '70', 'stiction-plant', *machine, *plant])}; }}\n"
+        text += f"plant() {{ exec {shlex.join([*PLANT, *machine, *plant])}; }}\n"
         text += f"drive() {{ exec {shlex.join(['stictiond', *machine, *drive, *task])}; }}\n"
         text += f"run {self.name}\n"
         if self.trace:
@@ -209,25 +214,29 @@ def boot(name, script):
 
 
 def cyclic(folder, period):
-    """Median and 99.9 % of cyclictest's latencies, us; its histogram has a nanosecond a row."""
-    rows = [tuple(map(int, line.split())) for line in (folder / f"cyclic{period}").read_text().splitlines()
-            if re.match(r"\d+ \d+$", line)]
-    total, seen, found = sum(count for _, count in rows), 0, []
-    for latency, count in rows:
-        seen += count
-        while len(found) < 2 and seen >= (0.5, 0.999)[len(found)] * total:
-            found.append(latency * 1e-3)
-    return found
+    """Median and 99.9 % of cyclictest's latencies, us, of the start whose 99.9 % is least: one whose wakes happen to meet
+    the kernel's tick is no measure for a loop. Its histogram has a nanosecond a row."""
+    starts = []
+    for start in range(CYCLIC_STARTS):
+        rows = [tuple(map(int, line.split())) for line in (folder / f"cyclic{period}.{start}").read_text().splitlines()
+                if re.match(r"\d+ \d+$", line)]
+        total, seen, found = sum(count for _, count in rows), 0, []
+        for latency, count in rows:
+            seen += count
+            while len(found) < 2 and seen >= (0.5, 0.999)[len(found)] * total:
+                found.append(latency * 1e-3)
+        starts.append(found)
+    return min(starts, key=lambda found: found[1])
 
 
 def traced_timers(file):
-    """Of the timer of a loop of 125 us, which expires most often at one phase: how often it interrupted the machine, how
-    often more than 1 us late, and the delay that 99.9 % of these keep, us."""
+    """Of the timer of a loop of 125 us, which expires most often at one phase: how often it expired, how often it
+    interrupted the machine, and how often that more than 1 us late."""
     rows = [(name, int(time)) for name, time in (line.rsplit(" ", 1) for line in file.read_text().splitlines())]
     phase = collections.Counter(time % 125000 // 100 for _, time in rows).most_common(1)[0][0] * 100
-    late = sorted(delay * 1e-3 for name, delay in ((name, (time - phase) % 125000) for name, time in rows)
-                  if name == "stiction-plant" and delay < 20000)
-    return len(late), sum(delay > 1.0 for delay in late), late[int(0.999 * (len(late) - 1))]
+    delays = [(name, delay) for name, delay in ((name, (time - phase + 1000) % 125000 - 1000) for name, time in rows) if delay < 20000]
+    met = [delay for name, delay in delays if name == "stiction-plant"]
+    return len(delays), len(met), sum(delay > 1000 for delay in met)
 
 
 def main():
@@ -240,8 +249,8 @@ def main():
     rest = [Run("loaded", "can", "125 us", ("--circle", "48 m/min"), load=LOAD), Run("slower", "can", "250 us", ("--hold", "1"))]
     starts = {bus: [Run(f"{bus}{k}", bus, period, ("--hold", hold)) for k in range(options.starts)]
               for bus, period, hold in (("can", "125 us", "0.05"), ("modbus", "10 ms", "0.5"))}
-    timers = "".join(f"cyclictest -N -q -m -p 80 -i {period} -l 4000 -h 30000 | grep -v ' 000000$' >cyclic{period}\n"
-                     for period in (125, 250))
+    timers = "".join(f"cyclictest -N -q -m -p 80 -i {period} -l 4000 -h 30000 | grep -v ' 000000$' >cyclic{period}.{start}\n"
+                     for period in (125, 250) for start in range(CYCLIC_STARTS))
     controllers = [Run("sja1000hold", "sja1000", "2 ms", ("--hold", "0.2")), Run("sja1000circle", "sja1000", "2 ms", ("--circle", "9 m/min"))]
     traced = Run("traced", "can", "125 us", ("--circle", "48 m/min"))
     whole = first + rest + starts["can"] + starts["modbus"]
@@ -290,9 +299,9 @@ def main():
             for part, instructions in counted.items():
                 row(f"  instructions of {part}, without waiting, {what}: mean", f"{instructions:.0f}", "within 5 % of docs/results.md")
                 figure(f"instructions of {part} in counted time, {what}", f"{instructions:.0f}")
-    row("  one circle's timer that meets the machine at work", "{} times, {} of them over 1 us late, 99.9 %: {:.2f} us".format(*traced))
-    row("cyclictest -N, us, 125 us: median, 99.9 %", "  ".join(f"{value:.2f}" for value in cyclic125))
-    row("cyclictest -N, us, 250 us: median, 99.9 %", "  ".join(f"{value:.2f}" for value in cyclic250))
+    row("  one circle's timer that meets the machine at work", "{1} of {0} times, {2} of them over 1 us late".format(*traced))
+    row(f"cyclictest -N, us, 125 us: median, 99.9 %, best of {CYCLIC_STARTS}", "  ".join(f"{value:.2f}" for value in cyclic125))
+    row(f"cyclictest -N, us, 250 us: median, 99.9 %, best of {CYCLIC_STARTS}", "  ".join(f"{value:.2f}" for value in cyclic250))
     if slower.times:
         ratio = slower.times["lateness"][1] / cyclic250[1]
         row("lateness 99.9 % at 250 us over cyclictest's", f"{slower.times['lateness'][1]:.2f} us, {ratio:.2f} of it", "<= 1.2", ratio <= 1.2)

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "hal/gated_backend.hpp"
+#include "hal/tick_clock.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
 namespace stiction::test {
@@ -53,6 +54,22 @@ TEST(LoopWatch, CutsWithin110MillisecondsOfTheLastTickAndNotBeforeTheLimit) {
     EXPECT_GE(taken_ns, limit_ns) << last_tick_ns;
     EXPECT_LE(taken_ns, 110 * watch_ms) << last_tick_ns;
   }
+}
+
+// A look comes before the loop on its processor: at the loop's deadline it would hold that tick up, in every such
+// round.
+TEST(LoopWatch, LooksWhereALoopOnTheSameProcessorHasNoDeadline) {
+  constexpr std::int64_t round_ns = drive::LoopWatchdog::round_ns;
+  for (const std::int64_t period : {62'500, 125'000, 250'000, 500'000, 1'000'000, 2'000'000, 10'000'000})
+    for (const std::int64_t begin_ns : {1'000'000'000LL, 3'123'456'789LL, 86'400'004'999'999LL}) {
+      const std::int64_t tick_ns = hal::clear_of_kernel_tick(begin_ns, period);
+      for (std::int64_t look = 3; look < 50; ++look) {  // behind the first tick
+        const std::int64_t look_ns = drive::LoopWatchdog::first_look_ns(begin_ns) + look * round_ns;
+        const std::int64_t since_ns = (look_ns - tick_ns) % period;
+        EXPECT_GE(since_ns, 15'000) << period;
+        EXPECT_GE(period - since_ns, 46'000) << period;
+      }
+    }
 }
 
 TEST(PowerCut, ReachesEveryBackendThatIsEnteredAndNoneThatIsGone) {
