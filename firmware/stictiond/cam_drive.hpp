@@ -11,8 +11,10 @@
 
 #include "firmware/stictiond/configuration.hpp"
 #include "firmware/stictiond/options.hpp"
+#include "hal/can/frames.hpp"
 #include "hal/drive_loop.hpp"
 #include "stiction/drive/cam_mode.hpp"
+#include "stiction/drive/master_encoder.hpp"
 
 namespace stiction::drive {
 
@@ -30,7 +32,10 @@ class CamDrive {
   // The master of the coming tick, before its axes. `loop`: of all axes.
   template <hal::Backend B>
   void step(const hal::DriveLoop<B>& loop) {
-    if (!master_axis_) {
+    if (encoder_) {
+      const auto place = encoder_->step();
+      master_.see(place.cycles, place.part, place.valid);
+    } else if (!master_axis_) {
       master_.step();
     } else {
       // That of the tick before; the estimator looks a tick ahead.
@@ -38,6 +43,10 @@ class CamDrive {
       master_.see(drive.set_position().raw(), drive.powered());
     }
   }
+
+  // A frame of the encoder's bus that came for the coming tick; any other is left alone. `age_ns`: since it came.
+  void take(const hal::can::Frame& frame, std::int64_t age_ns);
+  int encoder_node() const { return encoder_node_; }  // 0: the master is none
 
   static constexpr double longest_stop = 2.0;  // s
 
@@ -71,6 +80,8 @@ class CamDrive {
 
   void load(const std::string& file);
   void check_kinds(const std::string& file, const CamTable::Header& header) const;
+  void find_master(const DriveOptions& options, const DriveConfiguration& configuration);
+  void set_up_encoder(const DriveConfiguration& configuration, CamMaster::Config& config);
   void set_up_master(const DriveOptions& options, const DriveConfiguration& configuration);
   void set_up_axes(const DriveConfiguration& configuration, bool serves);
   void check_limits(const DriveConfiguration& configuration, bool serves) const;
@@ -83,6 +94,9 @@ class CamDrive {
   double speed_ = 0.0;          // largest, cycles/s
   std::int64_t run_speed_ = 0;  // the same, 2^-64 cycles a tick
   std::optional<std::size_t> master_axis_;
+  int encoder_node_ = 0;
+  std::optional<MasterEncoder> encoder_;
+  double ticks_a_ns_ = 0.0;
   std::size_t own_axis_ = 0;
   double start_ = 0.0;
   bool short_stop_ = true, braking_ = false;

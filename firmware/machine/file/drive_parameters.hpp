@@ -89,6 +89,38 @@ struct Table<CanServerSetup> : EmptyTable<CanServerSetup> {
                                             "controlwords and set-points that a motion controller sends"}};
 };
 
+template <>
+struct Table<MasterEncoderSetup> : EmptyTable<MasterEncoderSetup> {
+  static constexpr std::string_view text = "encoder on a CAN bus (CiA 406) that axes follow as their master";
+  static constexpr std::array<TextParameter<MasterEncoderSetup>, 1> texts{
+      {{"interface", &MasterEncoderSetup::interface,
+        "name of the network interface; may be that of [drive.can_server]"}}};
+  static constexpr std::array<Parameter<MasterEncoderSetup>, 5> parameters{{
+      {"period",
+       "s",
+       {100e-6, 20e-3},
+       &MasterEncoderSetup::period,
+       1e-3,
+       "time from one position to the next: its cycle timer (6200h), or the period of SYNC"},
+      {"counts_per_turn", "1", not_negative(4294967296.0), &MasterEncoderSetup::counts_per_turn, 0.0,
+       "positions of a revolution (6001h); 0: it is not a rotary one"},
+      {"position_increment",
+       "m",
+       positive(1e-3),
+       &MasterEncoderSetup::position_increment,
+       {},
+       "a position of a linear one; left out: it is not a linear one"},
+      {"range",
+       "1",
+       {16, 4294967296.0},
+       &MasterEncoderSetup::range,
+       4294967296.0,
+       "total measuring range (6002h): positions after which the value begins again at 0"},
+      {"delay", "s", not_negative(0.1), &MasterEncoderSetup::delay, 0.0,
+       "time from the measurement to the arrival of its frame"},
+  }};
+};
+
 inline constexpr Range line_numbers{-1, 1023};
 
 inline constexpr std::array<Choice<InputBias>, 4> input_biases{{
@@ -352,6 +384,8 @@ struct Table<DriveSetup> : EmptyTable<DriveSetup> {
   static constexpr std::tuple subtables{
       Subtable<DriveSetup, std::optional<CanSetup>>{"can", &DriveSetup::can, Presence::optional},
       Subtable<DriveSetup, std::optional<CanServerSetup>>{"can_server", &DriveSetup::can_server, Presence::optional},
+      Subtable<DriveSetup, std::optional<MasterEncoderSetup>>{"master_encoder", &DriveSetup::master_encoder,
+                                                              Presence::optional},
       Subtable<DriveSetup, std::optional<GpioSetup>>{"gpio", &DriveSetup::gpio, Presence::optional},
       Subtable<DriveSetup, std::optional<ModbusClientSetup>>{"modbus_client", &DriveSetup::modbus_client,
                                                              Presence::optional},

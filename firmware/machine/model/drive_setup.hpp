@@ -35,6 +35,16 @@ struct CanServerSetup {
   bool motion_allowed = false;     // whether set-points and controlwords are taken
 };
 
+// An encoder on a CAN bus (CiA 406) that axes follow (--master can:NODE).
+struct MasterEncoderSetup {
+  std::string interface;                     // of the network
+  double period = 1e-3;                      // s, from one position to the next
+  double counts_per_turn = 0.0;              // of a rotary one (6001h); 0: it is none
+  std::optional<double> position_increment;  // m, of a linear one
+  double range = 4294967296.0;               // counts after which the value begins anew (6002h)
+  double delay = 0.0;                        // s, from the measurement to the frame's arrival
+};
+
 // Of the chip's inputs, inside the chip.
 enum class InputBias { as_is, pull_up, pull_down, none };
 
@@ -139,6 +149,7 @@ struct DriveAxisSetup {
 struct DriveSetup {
   std::optional<CanSetup> can;
   std::optional<CanServerSetup> can_server;
+  std::optional<MasterEncoderSetup> master_encoder;
   std::optional<GpioSetup> gpio;
   std::optional<ModbusClientSetup> modbus_client;
   std::optional<ModbusServerSetup> modbus_server;

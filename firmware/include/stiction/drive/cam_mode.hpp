@@ -132,6 +132,7 @@ class CamMode {
   constexpr const MotionPoint& point() const { return motion_.point(); }
   constexpr const CamStatus& status() const { return motion_.status(); }
   constexpr bool at_rest() const { return motion_.at_rest(); }
+  constexpr bool phasing() const { return motion_.phasing().busy(); }  // the phase is on its way
   constexpr std::uint16_t table() const { return table_; }  // that is followed; 0: none, or a gear
   // Of the last command, and of what it asked for at its trigger.
   constexpr CamRefusal refusal() const { return refusal_; }
