@@ -249,10 +249,22 @@ void CamDrive::set_up_axes(const DriveConfiguration& configuration, bool serves)
   for (std::size_t i = 0; i < configuration.names.size(); ++i) {
     const auto& axis = configuration.machine.axes[i];
     auto& config = configs_.emplace_back();
-    config.motion = CamMotion::Config::of(machine::motion_limits(machine::cam_bounds(timing, axis), timing.fast_period),
-                                          master_limits_, phasing_limits_, jump);
+    // What a client superposes has a tenth of what the axis keeps, and what it follows the rest.
+    const auto shared = [&](double share) {
+      auto bounds = machine::cam_bounds(timing, axis);
+      bounds = {share * bounds.velocity, share * bounds.acceleration, share * bounds.jerk};
+      return machine::motion_limits(bounds, timing.fast_period);
+    };
+    config.motion = CamMotion::Config::of(shared(serves ? 0.9 : 1.0), master_limits_, phasing_limits_, jump);
+    config.superposed = shared(0.1);
+    config.superposed_ramp = SpeedRampRule::of(config.superposed);
     config.rate = S::rate(configuration.period_ns);
     const auto& setup = configuration.setup.axes.at(axis.name);
+    const auto deceleration = [&](double a) {
+      return Span::of(machine::motion_limits({0.0, a, 0.0}, timing.fast_period).acceleration);
+    };
+    const double quick = setup.quick_stop_deceleration;
+    config.stops = {deceleration(setup.slow_down_deceleration.value_or(quick)), deceleration(quick)};
     config.low = machine::to_signal<S::Position>(setup.negative_end.value()).value_or(S::Position{});
     config.high = machine::to_signal<S::Position>(setup.positive_end.value()).value_or(S::Position{});
     modes_.emplace_back(config, tables_);

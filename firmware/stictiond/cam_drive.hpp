@@ -68,7 +68,7 @@ class CamDrive {
     if (braking_) return;
     braking_ = true;
     master_.run(0);
-    if (!short_stop_) modes_[own_axis_].command(CamCommand::leave, false, false);
+    if (!short_stop_) modes_[own_axis_].leave_to_rest();
   }
   bool stopped() const { return braking_ && (short_stop_ ? master_.at_rest() : modes_[own_axis_].at_rest()); }
 

@@ -66,7 +66,8 @@ class Programme {
     if (loop_.faulted() && phase_ != Phase::remote && phase_ < Phase::faulted) enter(Phase::faulted);
     if (phase_ != Phase::remote) choose_controlwords();
     if (task_.cam != nullptr) task_.cam->step(loop_);  // before its slaves
-    const auto sets = phase_ == Phase::remote ? serve() : set_points();
+    const bool serves = phase_ == Phase::remote;
+    const auto sets = serves ? serve() : task_.serve && phase_ == Phase::stop ? stop_served() : set_points();
     if (kept_off_ != Fault::none) loop_.trip(kept_off_);
     const std::int64_t now_ns = loop_.now_ns();
     loop_.tick(sets);
@@ -107,6 +108,7 @@ class Programme {
       const bool homes = phase_ == Phase::home && !loop_.drive(i).referenced();
       loop_.set_mode(i, homes ? OperationMode::homing : OperationMode::cyclic_position);
       loop_.set_braking(i, false);
+      loop_.set_along(i, false);
       std::uint16_t word = off ? controlword::shutdown : controlword_to_enable(loop_.state(i));
       if (phase_ == Phase::faulted) word = controlword::shutdown;
       if (homes) word |= controlword::homing_start_bit;
@@ -122,8 +124,22 @@ class Programme {
       loop_.set_controlword(i, remote.controlword());
       loop_.set_mode(i, remote.mode());
       loop_.set_braking(i, remote.brakes());
+      loop_.set_along(i, remote.along());
       loop_.set_velocity_offset(i, remote.velocity_offset());
       if (const Fault fault = remote.fault(); fault != Fault::none) loop_.trip(i, fault);
+    }
+    return hold_;
+  }
+
+  // The end of what others asked for: by the ramps of the drives, and along a cam where that is gentler.
+  std::span<const SetPoint<S>> stop_served() {
+    for (std::size_t i = 0; i < hold_.size(); ++i) {
+      auto& remote = remote_[i];
+      hold_[i] = {loop_.drive(i).set_position(), {}, {}};
+      if (!is_coupled(remote.mode())) continue;
+      hold_[i] = remote.tick(loop_.drive(i));
+      loop_.set_along(i, remote.along());
+      loop_.set_mode(i, remote.mode());
     }
     return hold_;
   }

@@ -125,6 +125,207 @@ TEST_P(ServedCam, IsLeftForAHaltAndForADifferentMode) {
   EXPECT_EQ(machine::to_si(table.loop.drive(0).set_velocity()), 0.0);
 }
 
+// Each word that stops, along the cam where that takes no more than the ramp: the acceleration comes and goes with a
+// limited jerk, where a ramp has all of its own at once; the place stays one of the curve.
+struct StopWord {
+  std::uint16_t word;
+  DriveState to;
+};
+constexpr std::array<StopWord, 4> stop_words{{{0x10f, DriveState::operation_enabled},
+                                              {0x02, DriveState::switch_on_disabled},
+                                              {0x06, DriveState::ready_to_switch_on},
+                                              {0x07, DriveState::switched_on}}};
+
+struct Stop {
+  int ticks = 0;
+  double largest_acceleration = 0.0, largest_change = 0.0;  // m/s^2, and of it from tick to tick
+  double lowest = 1.0, highest = -1.0;                      // m
+};
+
+class StoppedCam : public ServedCam {
+ protected:
+  explicit StoppedCam(const std::vector<std::string>& settings = {}) : ServedCam(two_tables(), settings) {}
+
+  // The stop that `word` makes of a cam at `speed` (cycles/s), `delay` ms after it is in sync.
+  Stop stop(std::uint16_t word, double speed, int delay) {
+    Stop made;
+    EXPECT_TRUE(enable_in(-1));
+    EXPECT_TRUE(write("master_speed", speed));
+    run_until([&] { return std::abs(read("master_velocity") - speed) < 1e-5; });
+    EXPECT_TRUE(command(engage));
+    run_until([&] { return shows(in_sync); });
+    step(delay);
+    double before = 0.0, acceleration_before = 0.0;
+    bool moving = false, seen = false;
+    table.before_tick = [&] {
+      const double v = machine::to_si(table.loop.drive(0).set_velocity()), x = table.set_position(0);
+      const double a = (v - before) / 62.5e-6;
+      moving = v != 0.0 || a != 0.0;
+      if (seen && table.powered(0)) {
+        ++made.ticks;
+        made.largest_acceleration = std::max(made.largest_acceleration, std::abs(a));
+        if (made.ticks > 1) made.largest_change = std::max(made.largest_change, std::abs(a - acceleration_before));
+        made.lowest = std::min(made.lowest, x);
+        made.highest = std::max(made.highest, x);
+      }
+      seen = true;
+      before = v;
+      acceleration_before = a;
+    };
+    EXPECT_TRUE(write("controlword", word));
+    int still = 0;
+    for (int k = 0; k < 5000 && still < 20; ++k) {
+      step();
+      still = moving ? 0 : still + 1;
+    }
+    table.before_tick = {};
+    step(200);
+    return made;
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Bus, StoppedCam, ::testing::Bool(),
+                         [](const auto& bus) { return std::string(bus.param ? "CANopen" : "Modbus"); });
+
+TEST_P(StoppedCam, BrakesAlongTheCamByEveryWordThatStops) {
+  for (const auto& [word, to] : stop_words)
+    for (const int delay : {50, 310}) {
+      SCOPED_TRACE(::testing::Message() << std::hex << word << std::dec << " after " << delay << " ms");
+      const auto made = stop(word, 1.5, delay);
+      EXPECT_EQ(table.loop.state(0), to);
+      EXPECT_EQ(table.loop.fault(0), Fault::none);
+      EXPECT_FALSE(shows(active));
+      // The ramp's deceleration, 10 m/s^2, at most; its onset within a tick is none.
+      EXPECT_LE(made.largest_acceleration, 10.0 + 1e-3);
+      EXPECT_LE(made.largest_change, 2.0);
+      // Over the top of the cam the way leads back on it, and not further.
+      EXPECT_LE(made.highest, 0.09 + 20e-3 + 1e-9);
+      EXPECT_GE(made.lowest, 0.09 - 1e-9);
+      write("controlword", 0);
+      step(200);
+    }
+}
+
+TEST_P(StoppedCam, CanBeEnabledAndEngagedAgainBehindAStop) {
+  stop(0x02, 1.5, 50);
+  ASSERT_TRUE(enable_in(-1));
+  EXPECT_FALSE(shows(active)) << "not by itself";
+  ASSERT_TRUE(command(engage));
+  run_until([&] { return shows(in_sync); });
+  for (int k = 0; k < 500; ++k) {
+    step();
+    ASSERT_NEAR(off(0), 0.0, 2e-9);
+  }
+}
+
+// What the master braked would do is of no use for an axis with a fault.
+TEST_P(StoppedCam, BrakesByItsRampForAFault) {
+  ASSERT_TRUE(enable_in(-1));
+  ASSERT_TRUE(write("master_speed", 1.5));
+  ASSERT_TRUE(command(engage));
+  run_until([&] { return shows(in_sync); });
+  step(600);
+  while (std::abs(machine::to_si(table.loop.drive(0).set_velocity())) < 0.05) step();
+  table.before_tick = {};
+  double before = machine::to_si(table.loop.drive(0).set_velocity());
+  table.loop.trip(0, Fault::missed_deadline);
+  for (int k = 0; k < 3; ++k) table.tick();
+  before = machine::to_si(table.loop.drive(0).set_velocity());
+  table.tick();
+  const double after = machine::to_si(table.loop.drive(0).set_velocity());
+  EXPECT_NEAR(std::abs(after) - std::abs(before), -10.0 * 62.5e-6, 1e-6);
+}
+
+// 3.4 m/s^2 of the curve alone at this speed.
+class SlowRampCam : public StoppedCam {
+ protected:
+  SlowRampCam() : StoppedCam({"drive.axis.X.quick_stop_deceleration=3 m/s^2"}) {}
+};
+
+INSTANTIATE_TEST_SUITE_P(Bus, SlowRampCam, ::testing::Bool(),
+                         [](const auto& bus) { return std::string(bus.param ? "CANopen" : "Modbus"); });
+
+TEST_P(SlowRampCam, LeavesACamThatAsksForMoreThanTheRamp) {
+  for (const int word : {0x02, 0x06, 0x07}) {
+    SCOPED_TRACE(word);
+    const auto made = stop(static_cast<std::uint16_t>(word), 130.0 / 60.0, 120);
+    EXPECT_EQ(table.loop.fault(0), Fault::none);
+    EXPECT_FALSE(shows(active));
+    EXPECT_GE(made.largest_change, 1.0) << "the onset of the ramp";
+    write("controlword", 0);
+    step(200);
+  }
+}
+
+TEST_P(ServedCam, IsLeftAtASpeed) {
+  ASSERT_TRUE(enable_in(-1));
+  ASSERT_TRUE(write("master_speed", 1.0));
+  ASSERT_TRUE(command(engage));
+  run_until([&] { return shows(in_sync); });
+  step(300);
+  ASSERT_TRUE(write("cam_leave_speed", -0.01));
+  ASSERT_TRUE(command(leave));
+  run_until([&] { return !shows(busy); });
+  EXPECT_NEAR(machine::to_si(table.loop.drive(0).set_velocity()), -0.01, 1e-6);
+  step(100);
+  EXPECT_NEAR(machine::to_si(table.loop.drive(0).set_velocity()), -0.01, 1e-6);
+  // A halt ends that too.
+  ASSERT_TRUE(write("controlword", 0x10f));
+  step(300);
+  EXPECT_EQ(machine::to_si(table.loop.drive(0).set_velocity()), 0.0);
+  ASSERT_TRUE(write("controlword", 0x0f));
+  ASSERT_TRUE(write("cam_leave_speed", 100.0));
+  ASSERT_TRUE(command(leave));
+  EXPECT_EQ(read("cam_refusal"), 7.0);
+}
+
+// The second cam is 5 mm lower where both rest at their begin, and 3 mm at the top, of the first's dwell.
+TEST_P(ServedCam, IsSwitchedWhereTheCurvesAgree) {
+  ASSERT_TRUE(enable_in(-1));
+  ASSERT_TRUE(write("master_speed", 1.0));
+  ASSERT_TRUE(command(engage));
+  run_until([&] { return shows(in_sync); });
+  ASSERT_TRUE(write("cam_table", 2));
+  ASSERT_TRUE(write("cam_trigger", 4));
+  ASSERT_TRUE(write("cam_tolerance", 4e-3));
+  ASSERT_TRUE(write("cam_tolerance_speed", 1e-3));
+  ASSERT_TRUE(write("cam_tolerance_acceleration", 5.0));
+  ASSERT_TRUE(command(engage));
+  step(2500);
+  EXPECT_TRUE(shows(waiting)) << "nowhere do they agree so well";
+  ASSERT_TRUE(write("cam_tolerance", 5.1e-3));
+  ASSERT_TRUE(command(engage));
+  run_until([&] { return read("cam_followed") == 2.0 && shows(in_sync); }, 2000);
+  for (int k = 0; k < 200; ++k) {
+    step();
+    ASSERT_NEAR(off(1), 0.0, 2e-9);
+  }
+}
+
+TEST_P(ServedCam, HasAMoveOnTopOfIt) {
+  ASSERT_TRUE(enable_in(-1));
+  ASSERT_TRUE(write("master_speed", 1.0));
+  ASSERT_TRUE(command(engage));
+  run_until([&] { return shows(in_sync); });
+  step(100);
+  ASSERT_TRUE(write("cam_superposed", 3e-3));
+  ASSERT_TRUE(command(5));
+  run_until([&] { return !table.cam->mode(0).superposes(); });
+  for (int k = 0; k < 1000; ++k) {
+    step();
+    ASSERT_NEAR(off(0), 3e-3, 2e-9);
+  }
+  EXPECT_TRUE(shows(in_sync));
+  // A halt in the middle of one ends both.
+  ASSERT_TRUE(write("cam_superposed", -10e-3));
+  ASSERT_TRUE(command(5));
+  step(20);
+  ASSERT_TRUE(write("controlword", 0x10f));
+  step(1000);
+  EXPECT_EQ(machine::to_si(table.loop.drive(0).set_velocity()), 0.0);
+  EXPECT_FALSE(table.cam->mode(0).superposes());
+}
+
 TEST_P(ServedCam, AMasterIsHeldToItsLargestSpeed) {
   ASSERT_TRUE(enable_in(-1));
   ASSERT_TRUE(write("master_speed", -3.0));
