@@ -59,6 +59,7 @@ CamDrive::CamDrive(const DriveOptions& options, const DriveConfiguration& config
   set_up_master(options, configuration);
   const bool serves = !options.hold;
   set_up_axes(configuration, serves);
+  set_up_tracks(configuration);
   if (tables_.empty() && !serves)
     throw StartRefused("--hold: found --master without --cam; expected a table to follow, or no --hold");
   if (!tables_.empty()) check_limits(configuration, serves);
@@ -271,6 +272,50 @@ void CamDrive::set_up_axes(const DriveConfiguration& configuration, bool serves)
   }
   if (serves) return;
   if (!tables_.empty()) start_ = metres(tables_.front().curve.slopes({}).position);
+}
+
+void CamDrive::set_up_tracks(const DriveConfiguration& configuration) {
+  const double period = configuration.machine.timing.fast_period;
+  const auto place = [](double cycles) { return static_cast<std::uint32_t>(std::llround(std::ldexp(cycles, 32))); };
+  const auto key = [](std::size_t k, const char* name) {
+    return fmt::format("drive.cam_switch.track{}.{}", k + 1, name);
+  };
+  const auto time = [&](double seconds, const std::string& of) {
+    const double ticks = std::ldexp(seconds / period, CamSwitch::time_bits);
+    if (std::abs(ticks) > 0x1p31 - 1.0)
+      throw StartRefused(
+          fmt::format("{}: found {:g} s; expected at most {:g} s, 32768 ticks", of, seconds, 32767.0 * period));
+    return static_cast<std::int32_t>(std::llround(ticks));
+  };
+  track_forces_.enabled = 0;
+  const auto setups = machine::tracks_of(configuration.setup.cam_switch);
+  for (std::size_t k = 0; k < tracks; ++k) {
+    const auto& setup = *setups[k];
+    if (setup.line < 0) continue;
+    auto& track = tracks_[k];
+    track.first = place(setup.first);
+    track.last = place(setup.last);
+    track.hysteresis = place(setup.hysteresis);
+    track.kind = static_cast<CamSwitch::Kind>(setup.kind);
+    track.direction = static_cast<CamSwitch::Direction>(setup.direction);
+    track.duration = time(setup.duration, key(k, "duration"));
+    track.on_compensation = time(setup.on_compensation, key(k, "on_compensation"));
+    track.off_compensation = time(setup.off_compensation, key(k, "off_compensation"));
+    if (track.kind == CamSwitch::Kind::duration && track.duration <= 0)
+      throw StartRefused(
+          fmt::format("{}: found 0 s; expected more, the time for which the track is on", key(k, "duration")));
+    track_forces_.enabled |= std::uint32_t{1} << k;
+    has_tracks_ = true;
+  }
+}
+
+std::uint32_t CamDrive::step_tracks(bool wanted) {
+  if (!has_tracks_) return 0;
+  const auto& reading = master_.reading();
+  const auto on = CamSwitch::step(tracks_, track_state_, reading.point, track_forces_).on;
+  const bool follows =
+      std::any_of(modes_.begin(), modes_.end(), [](const CamMode& mode) { return mode.status().active; });
+  return wanted && reading.valid && follows ? on : 0;
 }
 
 void CamDrive::check_limits(const DriveConfiguration& configuration, bool serves) const {

@@ -15,6 +15,7 @@
 #include "hal/drive_loop.hpp"
 #include "stiction/drive/cam_mode.hpp"
 #include "stiction/drive/master_encoder.hpp"
+#include "stiction/motion/cam_switch.hpp"
 
 namespace stiction::drive {
 
@@ -43,6 +44,12 @@ class CamDrive {
       master_.see(drive.set_position().raw(), drive.powered());
     }
   }
+
+  // The tracks of the cam switch that are on, by the master of the coming tick: while an axis follows a curve, without
+  // a fault. `wanted`: false where the programme stops. Behind step(), once a tick.
+  std::uint32_t step_tracks(bool wanted);
+  static constexpr std::size_t tracks = 8;
+  bool has_tracks() const { return has_tracks_; }
 
   // A frame of the encoder's bus that came for the coming tick; any other is left alone. `age_ns`: since it came.
   void take(const hal::can::Frame& frame, std::int64_t age_ns);
@@ -80,6 +87,7 @@ class CamDrive {
 
   void load(const std::string& file);
   void check_kinds(const std::string& file, const CamTable::Header& header) const;
+  void set_up_tracks(const DriveConfiguration& configuration);
   void find_master(const DriveOptions& options, const DriveConfiguration& configuration);
   void set_up_encoder(const DriveConfiguration& configuration, CamMaster::Config& config);
   void set_up_master(const DriveOptions& options, const DriveConfiguration& configuration);
@@ -104,6 +112,10 @@ class CamDrive {
   std::deque<CamMode::Config> configs_;
   CamMaster master_{CamMaster::Config{}};
   std::deque<CamMode> modes_;
+  std::array<CamSwitch::Track, tracks> tracks_{};
+  CamSwitch::State track_state_{};
+  CamSwitch::Forces track_forces_{};
+  bool has_tracks_ = false;
 };
 
 }  // namespace stiction::drive

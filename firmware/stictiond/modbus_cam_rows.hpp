@@ -231,7 +231,7 @@ inline constexpr std::array<MotionRow, 21> motion_rows{{
      position_scale,
      "cam_superposed",
      "m",
-     "displacement of the axis from what it follows, or from where it stands; acts with command 5",
+     "displacement of the axis that is added to its motion, or to its position at standstill; acts with command 5",
      What::cam_superposed,
      [](const Axis& a) { return a.cam.superposed; },
      {}},

@@ -69,6 +69,7 @@ class Programme {
     const bool serves = phase_ == Phase::remote;
     const auto sets = serves ? serve() : task_.serve && phase_ == Phase::stop ? stop_served() : set_points();
     if (kept_off_ != Fault::none) loop_.trip(kept_off_);
+    if (task_.cam != nullptr) switch_tracks();
     const std::int64_t now_ns = loop_.now_ns();
     loop_.tick(sets);
     if (phase_ == Phase::motion && trace_ != nullptr)
@@ -114,6 +115,16 @@ class Programme {
       if (homes) word |= controlword::homing_start_bit;
       loop_.set_controlword(i, word);
     }
+  }
+
+  // Behind the axes, which follow or do not from this tick on.
+  void switch_tracks() {
+    const bool runs = phase_ == Phase::motion || phase_ == Phase::remote;
+    const std::uint32_t on = task_.cam->step_tracks(runs && !loop_.faulted() && kept_off_ == Fault::none);
+    for (std::size_t k = 0; k < CamDrive::tracks; ++k)
+      if (const std::uint32_t bit = std::uint32_t{1} << k; ((on ^ tracks_on_) & bit) != 0)
+        loop_.set_output(k, (on & bit) != 0);
+    tracks_on_ = on;
   }
 
   // What others ask for, in this tick.
@@ -282,6 +293,7 @@ class Programme {
   std::atomic<std::uint64_t> progress_ = 0;
   std::int64_t motion_began_ns_ = 0;
   bool faulted_ = false;
+  std::uint32_t tracks_on_ = 0;  // of the cam switch
 };
 
 }  // namespace stiction::drive

@@ -2,6 +2,7 @@
 // simulation knows nothing of it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -44,6 +45,26 @@ struct MasterEncoderSetup {
   double range = 4294967296.0;               // counts after which the value begins anew (6002h)
   double delay = 0.0;                        // s, from the measurement to the frame's arrival
 };
+
+// A track of the cam switch on the master (PLCopen: MC_DigitalCamSwitch), and the line that it drives.
+enum class TrackKind { position, duration };
+enum class TrackDirection { both, positive, negative };
+struct TrackSetup {
+  int line = -1;                                         // of the gpiochip; -1: there is no such track
+  bool active_low = false;                               // the line is low while the track is on
+  TrackKind kind = TrackKind::position;                  // on to `last`, or for `duration`
+  TrackDirection direction = TrackDirection::both;       // of the master, in which it switches on
+  double first = 0.0, last = 0.0;                        // cycles, 0 to 1
+  double duration = 0.0;                                 // s
+  double on_compensation = 0.0, off_compensation = 0.0;  // s, negative is earlier
+  double hysteresis = 0.0;                               // cycles
+};
+struct CamSwitchSetup {
+  TrackSetup track1, track2, track3, track4, track5, track6, track7, track8;
+};
+inline std::array<const TrackSetup*, 8> tracks_of(const CamSwitchSetup& s) {
+  return {&s.track1, &s.track2, &s.track3, &s.track4, &s.track5, &s.track6, &s.track7, &s.track8};
+}
 
 // Of the chip's inputs, inside the chip.
 enum class InputBias { as_is, pull_up, pull_down, none };
@@ -154,6 +175,7 @@ struct DriveSetup {
   std::optional<ModbusClientSetup> modbus_client;
   std::optional<ModbusServerSetup> modbus_server;
   RealTimeSetup real_time;
+  CamSwitchSetup cam_switch;
   std::map<std::string, DriveAxisSetup> axes;  // of every axis of the machine, by name
 };
 

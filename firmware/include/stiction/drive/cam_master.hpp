@@ -46,7 +46,8 @@ class CamMaster {
     }
     return see(cycles, rest, valid);
   }
-  // The same `rest` behind the begin of a cycle, one of `cycles`; `rest`: 0 to the length of a cycle.
+  // The same `rest` behind the begin of a cycle, one of `cycles`; `rest`: 0 to the length of a cycle; `valid`: as
+  // above.
   constexpr const MasterReading& see(std::int64_t cycles, std::int64_t rest, bool valid) {
     if (!valid) {
       known_ = 0;

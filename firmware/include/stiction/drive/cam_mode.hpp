@@ -129,10 +129,11 @@ class CamMode {
   // Of a command that was not given to it.
   constexpr void refuse(CamRefusal reason) { refusal_ = reason; }
 
-  // Leaves what is followed to standstill within the limits of the axis, and ends a superposed move.
+  // Deletes what waits, leaves what is followed to standstill within the limits of the axis, and ends a superposed
+  // move.
   constexpr void leave_to_rest() {
     superposed_.stop(config_->superposed_ramp);
-    if (!motion_.at_rest()) leave(0);
+    if (!motion_.at_rest() || motion_.status().waiting) leave(0);
   }
 
   // Brakes along what is followed: from the coming tick on the master that this axis sees goes to standstill by itself,
