@@ -42,8 +42,6 @@ inline constexpr std::array<const char*, cam_refusals> words_of_refusals{
 };
 
 // Why a request with that `refusal` is not taken, as a sentence part: what was found.
-constexpr const char* words_of(CamRefusal refusal) {
-  return words_of_refusals[static_cast<std::size_t>(refusal)];
-}
+constexpr const char* words_of(CamRefusal refusal) { return words_of_refusals[static_cast<std::size_t>(refusal)]; }
 
 }  // namespace stiction
