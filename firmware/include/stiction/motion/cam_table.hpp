@@ -239,9 +239,22 @@ class CamTable {
     __extension__ using Wide = __int128;
     return static_cast<std::int64_t>((static_cast<Wide>(value) * factor) >> 32);
 #else
-    const std::int64_t upper = (value >> 32) * std::int64_t{factor};
-    const std::uint64_t lower = std::uint64_t{static_cast<std::uint32_t>(value)} * factor;
-    return upper + static_cast<std::int64_t>(lower >> 32);
+    // The upper word as one without a sign; what that is too much of a negative one goes into the upper word of the
+    // sum.
+    const auto upper = static_cast<std::uint32_t>(static_cast<std::uint64_t>(value) >> 32);
+    const auto lower = static_cast<std::uint32_t>(value);
+    const std::uint32_t sign = static_cast<std::uint32_t>(static_cast<std::int32_t>(upper) >> 31) & (0u - factor);
+#ifdef __thumb2__
+    // Product and sum in one instruction, which g++ makes of neither form.
+    if (!std::is_constant_evaluated()) {
+      auto low = static_cast<std::uint32_t>(std::uint64_t{lower} * factor >> 32);
+      std::uint32_t top = sign;
+      asm("umlal %0, %1, %2, %3" : "+r"(low), "+r"(top) : "r"(upper), "r"(factor));
+      return static_cast<std::int64_t>(std::uint64_t{top} << 32 | low);
+    }
+#endif
+    const std::uint64_t sum = std::uint64_t{sign} << 32 | std::uint64_t{lower} * factor >> 32;
+    return static_cast<std::int64_t>(sum + std::uint64_t{upper} * factor);
 #endif
   }
 
