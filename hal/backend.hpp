@@ -63,6 +63,13 @@ concept BrakeBackend = Backend<B> && requires(B backend, std::size_t axis, bool 
   { backend.set_brake(axis, released) } -> std::same_as<void>;
 };
 
+// A backend with digital outputs for the whole machine, such as the tracks of a cam switch. They go inactive where the
+// power is cut, whatever was set.
+template <class B>
+concept OutputBackend = Backend<B> && requires(B backend, std::size_t output, bool active) {
+  { backend.set_output(output, active) } -> std::same_as<void>;
+};
+
 // A backend that tells of power stage and motor what their protection watches. One that does not leaves all of it at
 // zero: what a machine file asks to be watched is then refused by who opens the backend.
 template <class B>

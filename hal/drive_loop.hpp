@@ -61,7 +61,13 @@ class DriveLoop {
   void set_mode(std::size_t axis, OperationMode mode) { demands_[axis].mode = mode; }
   // To standstill under power in place of the set-points.
   void set_braking(std::size_t axis, bool brakes) { demands_[axis].brake = brakes; }
+  // A stop by a word, or for a fault of a different axis, may take the set-points on to standstill.
+  void set_along(std::size_t axis, bool along) { demands_[axis].along = along; }
   void set_velocity_offset(std::size_t axis, typename S::Velocity offset) { demands_[axis].velocity_offset = offset; }
+  // An output for the whole machine, at once; where the backend has none, none.
+  void set_output(std::size_t output, bool active) {
+    if constexpr (OutputBackend<B>) backend_.set_output(output, active);
+  }
   // A fault that the programme sees (Detector::programme), in the coming tick. As long as its cause holds it is to be
   // repeated each tick: no reset is taken in a tick with one.
   void trip(std::size_t axis, Fault fault) { trips_[axis] = fault; }

@@ -34,6 +34,10 @@ class GatedBackend {
     backend_.set_brake(axis, released && !cut_.is_cut());
   }
 
+  void set_output(std::size_t output, bool active) requires OutputBackend<B> {
+    backend_.set_output(output, active && !cut_.is_cut());
+  }
+
  private:
   B& backend_;
   const PowerCut& cut_;

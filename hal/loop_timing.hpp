@@ -104,6 +104,7 @@ class TimedBackend {
   }
 
   void set_brake(std::size_t axis, bool released) requires BrakeBackend<B> { backend_.set_brake(axis, released); }
+  void set_output(std::size_t output, bool active) requires OutputBackend<B> { backend_.set_output(output, active); }
 
  private:
   B& backend_;

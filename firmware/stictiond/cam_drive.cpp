@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -11,6 +12,7 @@
 #include "firmware/machine/configuration/cam_configuration.hpp"
 #include "firmware/machine/configuration/conversion.hpp"
 #include "firmware/machine/file/units.hpp"
+#include "hal/can/encoder.hpp"
 #include "stiction/motion/cam_words.hpp"
 
 namespace stiction::drive {
@@ -52,25 +54,106 @@ CamDrive::CamDrive(const DriveOptions& options, const DriveConfiguration& config
         "--hold: found --master {}; expected virtual, as clients alone move the axes otherwise", options.master));
   if (options.speed.empty())
     throw StartRefused("--master: found no --speed; expected the largest speed of the master, such as \"130 rpm\"");
-  const auto& names = configuration.names;
-  if (options.master != "virtual") {
-    const auto found = std::find(names.begin(), names.end(), options.master);
-    if (found == names.end())
-      throw StartRefused(fmt::format("--master: found '{}'; expected virtual, or an axis of {}", options.master,
-                                     configuration.machine.id));
-    master_axis_ = static_cast<std::size_t>(found - names.begin());
-    master_kind_ = CamTable::Kind::linear;
-    if (names.size() < 2)
-      throw StartRefused(
-          "--master: found the only axis of the machine; expected virtual, or a second axis that follows");
-  }
+  find_master(options, configuration);
   for (const auto& file : options.cam) load(file);
   set_up_master(options, configuration);
   const bool serves = !options.hold;
   set_up_axes(configuration, serves);
+  set_up_tracks(configuration);
   if (tables_.empty() && !serves)
     throw StartRefused("--hold: found --master without --cam; expected a table to follow, or no --hold");
   if (!tables_.empty()) check_limits(configuration, serves);
+}
+
+void CamDrive::find_master(const DriveOptions& options, const DriveConfiguration& configuration) {
+  const auto& names = configuration.names;
+  if (options.master == "virtual") return;
+  constexpr std::string_view can = "can:";
+  if (options.master.starts_with(can)) {
+    const char* const end = options.master.data() + options.master.size();
+    const auto [rest, error] = std::from_chars(options.master.data() + can.size(), end, encoder_node_);
+    if (error != std::errc{} || rest != end || encoder_node_ < 1 || encoder_node_ > hal::can::highest_node)
+      throw StartRefused(fmt::format("--master: found '{}'; expected can:NODE with a node from 1 to {}", options.master,
+                                     hal::can::highest_node));
+    return;
+  }
+  const auto found = std::find(names.begin(), names.end(), options.master);
+  if (found == names.end())
+    throw StartRefused(fmt::format("--master: found '{}'; expected virtual, an axis of {}, or can:NODE", options.master,
+                                   configuration.machine.id));
+  master_axis_ = static_cast<std::size_t>(found - names.begin());
+  master_kind_ = CamTable::Kind::linear;
+  if (names.size() < 2)
+    throw StartRefused("--master: found the only axis of the machine; expected virtual, or a second axis that follows");
+}
+
+void CamDrive::set_up_encoder(const DriveConfiguration& configuration, CamMaster::Config& config) {
+  const auto& setup = configuration.setup;
+  const std::string of = configuration.machine.id + ": [drive.master_encoder]";
+  if (!setup.master_encoder)
+    throw StartRefused(
+        fmt::format("{}: found no such table, and --master can:{}; expected one with the interface and "
+                    "the counts of the encoder",
+                    of, encoder_node_));
+  const auto& encoder = *setup.master_encoder;
+  if (setup.can && setup.can->interface == encoder.interface)
+    throw StartRefused(
+        fmt::format("{}: found the interface of [drive.can], {}; expected a different one, as that bus is "
+                    "for power stages alone",
+                    of, encoder.interface));
+  const auto own = [&](const auto& axis) { return axis.second.server_node == encoder_node_; };
+  if (setup.can_server && setup.can_server->interface == encoder.interface &&
+      std::any_of(setup.axes.begin(), setup.axes.end(), own))
+    throw StartRefused(
+        fmt::format("--master: found can:{}, the server_node of an axis on {}; expected a node of its own",
+                    encoder_node_, encoder.interface));
+  const bool rotary = master_kind_ == CamTable::Kind::rotary;
+  if (rotary ? encoder.counts_per_turn == 0.0 : !encoder.position_increment)
+    throw StartRefused(fmt::format("{}: found no {}; expected it, as the master is {}", of,
+                                   rotary ? "counts_per_turn" : "position_increment", name_of(master_kind_)));
+  const double counts =
+      rotary ? encoder.counts_per_turn * cycle_ / (2.0 * std::numbers::pi) : cycle_ / *encoder.position_increment;
+  // Rounded in the table to 2^-40 rad or m.
+  if (std::abs(counts - std::round(counts)) > 1e-6 || counts < 4.0 ||
+      counts > static_cast<double>(MasterEncoder::longest_cycle))
+    throw StartRefused(
+        fmt::format("{}: found {:.10g} counts in a cycle of the master; expected a whole number of them, "
+                    "4 to 2^40, so that nothing drifts",
+                    of, counts));
+  const double period = configuration.machine.timing.fast_period, ticks = encoder.period / period;
+  const auto in_ticks = [](double t) { return std::llround(std::ldexp(t, MasterEncoder::time_bits)); };
+  MasterEncoder::Config made;
+  made.range = std::llround(encoder.range);
+  made.cycle = std::llround(counts);
+  made.period = in_ticks(std::max(ticks, 1.0));
+  made.patience = 3 * made.period + (std::int64_t{1} << MasterEncoder::time_bits);
+  // At twice the largest speed, and some counts.
+  const double most = 2.0 * speed_ * encoder.period * counts + 4.0;
+  if (most > std::min(0.5 * encoder.range, 0x1p30))
+    throw StartRefused(
+        fmt::format("--speed: found {:.6g} counts in two periods of the encoder; expected at most half of "
+                    "drive.master_encoder.range, and 2^30",
+                    most));
+  made.most = std::llround(most);
+  encoder_.emplace(made);
+  ticks_a_ns_ = 1e-9 / period;
+  config.measured = true;
+  config.cycle = Span::of(made.cycle << MasterEncoder::part_bits);
+  // Over four positions, so that little of their steps is left.
+  config.estimator.bits =
+      std::clamp(static_cast<int>(std::ceil(std::log2(4.0 * ticks))), 3, MasterEstimator::most_bits);
+  config.estimator.half_count = std::llround(0x1p63 / counts);
+  config.estimator.jump = std::int64_t{1} << 58;
+  config.estimator.look_ahead = static_cast<std::int32_t>(made.period + in_ticks(encoder.delay / period));
+}
+
+void CamDrive::take(const hal::can::Frame& frame, std::int64_t age_ns) {
+  if (!encoder_) return;
+  if (const auto broken = hal::can::encoder_error_of(frame, encoder_node_)) encoder_->say(*broken);
+  const auto position = hal::can::encoder_position_of(frame, encoder_node_);
+  if (!position) return;
+  const double age = static_cast<double>(std::clamp<std::int64_t>(age_ns, 0, 1'000'000'000)) * ticks_a_ns_;
+  encoder_->take(*position, std::llround(std::ldexp(age, MasterEncoder::time_bits)));
 }
 
 void CamDrive::load(const std::string& file) {
@@ -115,7 +198,9 @@ void CamDrive::set_up_master(const DriveOptions& options, const DriveConfigurati
     master_kind_ = loaded_.front().table.header().master;
     cycle_ = metres(loaded_.front().table.header().cycle);
   } else {
-    cycle_ = master_axis_ ? 1.0 : 2.0 * std::numbers::pi;
+    const auto& encoder = configuration.setup.master_encoder;
+    if (encoder_node_ != 0 && encoder && encoder->position_increment) master_kind_ = CamTable::Kind::linear;
+    cycle_ = master_kind_ == CamTable::Kind::linear ? 1.0 : 2.0 * std::numbers::pi;
   }
   const bool rotary = master_kind_ == CamTable::Kind::rotary;
   try {
@@ -145,6 +230,7 @@ void CamDrive::set_up_master(const DriveOptions& options, const DriveConfigurati
     config.estimator.look_ahead = 1 << 16;
     config.estimator.jump = std::int64_t{1} << 54;
   }
+  if (encoder_node_ != 0) set_up_encoder(configuration, config);
   master_limits_ = machine::motion_limits(bounds, period);
   config.virtual_master = VirtualMaster::Config::of(master_limits_);
   master_ = CamMaster(config);
@@ -158,20 +244,78 @@ void CamDrive::set_up_master(const DriveOptions& options, const DriveConfigurati
 
 void CamDrive::set_up_axes(const DriveConfiguration& configuration, bool serves) {
   const auto& timing = configuration.machine.timing;
-  const std::int64_t jump = master_axis_ ? std::int64_t{1} << 30 : 1024;  // 2^-40 cycles
+  const std::int64_t jump = encoder_       ? std::int64_t{1} << 34
+                            : master_axis_ ? std::int64_t{1} << 30
+                                           : 1024;  // 2^-40 cycles
   for (std::size_t i = 0; i < configuration.names.size(); ++i) {
     const auto& axis = configuration.machine.axes[i];
     auto& config = configs_.emplace_back();
-    config.motion = CamMotion::Config::of(machine::motion_limits(machine::cam_bounds(timing, axis), timing.fast_period),
-                                          master_limits_, phasing_limits_, jump);
+    // What a client superposes has a tenth of what the axis keeps, and what it follows the rest.
+    const auto shared = [&](double share) {
+      auto bounds = machine::cam_bounds(timing, axis);
+      bounds = {share * bounds.velocity, share * bounds.acceleration, share * bounds.jerk};
+      return machine::motion_limits(bounds, timing.fast_period);
+    };
+    config.motion = CamMotion::Config::of(shared(serves ? 0.9 : 1.0), master_limits_, phasing_limits_, jump);
+    config.superposed = shared(0.1);
+    config.superposed_ramp = SpeedRampRule::of(config.superposed);
     config.rate = S::rate(configuration.period_ns);
     const auto& setup = configuration.setup.axes.at(axis.name);
+    const auto deceleration = [&](double a) {
+      return Span::of(machine::motion_limits({0.0, a, 0.0}, timing.fast_period).acceleration);
+    };
+    const double quick = setup.quick_stop_deceleration;
+    config.stops = {deceleration(setup.slow_down_deceleration.value_or(quick)), deceleration(quick)};
     config.low = machine::to_signal<S::Position>(setup.negative_end.value()).value_or(S::Position{});
     config.high = machine::to_signal<S::Position>(setup.positive_end.value()).value_or(S::Position{});
     modes_.emplace_back(config, tables_);
   }
   if (serves) return;
   if (!tables_.empty()) start_ = metres(tables_.front().curve.slopes({}).position);
+}
+
+void CamDrive::set_up_tracks(const DriveConfiguration& configuration) {
+  const double period = configuration.machine.timing.fast_period;
+  const auto place = [](double cycles) { return static_cast<std::uint32_t>(std::llround(std::ldexp(cycles, 32))); };
+  const auto key = [](std::size_t k, const char* name) {
+    return fmt::format("drive.cam_switch.track{}.{}", k + 1, name);
+  };
+  const auto time = [&](double seconds, const std::string& of) {
+    const double ticks = std::ldexp(seconds / period, CamSwitch::time_bits);
+    if (std::abs(ticks) > 0x1p31 - 1.0)
+      throw StartRefused(
+          fmt::format("{}: found {:g} s; expected at most {:g} s, 32768 ticks", of, seconds, 32767.0 * period));
+    return static_cast<std::int32_t>(std::llround(ticks));
+  };
+  track_forces_.enabled = 0;
+  const auto setups = machine::tracks_of(configuration.setup.cam_switch);
+  for (std::size_t k = 0; k < tracks; ++k) {
+    const auto& setup = *setups[k];
+    if (setup.line < 0) continue;
+    auto& track = tracks_[k];
+    track.first = place(setup.first);
+    track.last = place(setup.last);
+    track.hysteresis = place(setup.hysteresis);
+    track.kind = static_cast<CamSwitch::Kind>(setup.kind);
+    track.direction = static_cast<CamSwitch::Direction>(setup.direction);
+    track.duration = time(setup.duration, key(k, "duration"));
+    track.on_compensation = time(setup.on_compensation, key(k, "on_compensation"));
+    track.off_compensation = time(setup.off_compensation, key(k, "off_compensation"));
+    if (track.kind == CamSwitch::Kind::duration && track.duration <= 0)
+      throw StartRefused(
+          fmt::format("{}: found 0 s; expected more, the time for which the track is on", key(k, "duration")));
+    track_forces_.enabled |= std::uint32_t{1} << k;
+    has_tracks_ = true;
+  }
+}
+
+std::uint32_t CamDrive::step_tracks(bool wanted) {
+  if (!has_tracks_) return 0;
+  const auto& reading = master_.reading();
+  const auto on = CamSwitch::step(tracks_, track_state_, reading.point, track_forces_).on;
+  const bool follows =
+      std::any_of(modes_.begin(), modes_.end(), [](const CamMode& mode) { return mode.status().active; });
+  return wanted && reading.valid && follows ? on : 0;
 }
 
 void CamDrive::check_limits(const DriveConfiguration& configuration, bool serves) const {

@@ -11,8 +11,11 @@
 
 #include "firmware/stictiond/configuration.hpp"
 #include "firmware/stictiond/options.hpp"
+#include "hal/can/frames.hpp"
 #include "hal/drive_loop.hpp"
 #include "stiction/drive/cam_mode.hpp"
+#include "stiction/drive/master_encoder.hpp"
+#include "stiction/motion/cam_switch.hpp"
 
 namespace stiction::drive {
 
@@ -30,7 +33,10 @@ class CamDrive {
   // The master of the coming tick, before its axes. `loop`: of all axes.
   template <hal::Backend B>
   void step(const hal::DriveLoop<B>& loop) {
-    if (!master_axis_) {
+    if (encoder_) {
+      const auto place = encoder_->step();
+      master_.see(place.cycles, place.part, place.valid);
+    } else if (!master_axis_) {
       master_.step();
     } else {
       // That of the tick before; the estimator looks a tick ahead.
@@ -38,6 +44,16 @@ class CamDrive {
       master_.see(drive.set_position().raw(), drive.powered());
     }
   }
+
+  // The tracks of the cam switch that are on, by the master of the coming tick: while an axis follows a curve, without
+  // a fault. `wanted`: false where the programme stops. Behind step(), once a tick.
+  std::uint32_t step_tracks(bool wanted);
+  static constexpr std::size_t tracks = 8;
+  bool has_tracks() const { return has_tracks_; }
+
+  // A frame of the encoder's bus that came for the coming tick; any other is left alone. `age_ns`: since it came.
+  void take(const hal::can::Frame& frame, std::int64_t age_ns);
+  int encoder_node() const { return encoder_node_; }  // 0: the master is none
 
   static constexpr double longest_stop = 2.0;  // s
 
@@ -59,7 +75,7 @@ class CamDrive {
     if (braking_) return;
     braking_ = true;
     master_.run(0);
-    if (!short_stop_) modes_[own_axis_].command(CamCommand::leave, false, false);
+    if (!short_stop_) modes_[own_axis_].leave_to_rest();
   }
   bool stopped() const { return braking_ && (short_stop_ ? master_.at_rest() : modes_[own_axis_].at_rest()); }
 
@@ -71,6 +87,9 @@ class CamDrive {
 
   void load(const std::string& file);
   void check_kinds(const std::string& file, const CamTable::Header& header) const;
+  void set_up_tracks(const DriveConfiguration& configuration);
+  void find_master(const DriveOptions& options, const DriveConfiguration& configuration);
+  void set_up_encoder(const DriveConfiguration& configuration, CamMaster::Config& config);
   void set_up_master(const DriveOptions& options, const DriveConfiguration& configuration);
   void set_up_axes(const DriveConfiguration& configuration, bool serves);
   void check_limits(const DriveConfiguration& configuration, bool serves) const;
@@ -83,6 +102,9 @@ class CamDrive {
   double speed_ = 0.0;          // largest, cycles/s
   std::int64_t run_speed_ = 0;  // the same, 2^-64 cycles a tick
   std::optional<std::size_t> master_axis_;
+  int encoder_node_ = 0;
+  std::optional<MasterEncoder> encoder_;
+  double ticks_a_ns_ = 0.0;
   std::size_t own_axis_ = 0;
   double start_ = 0.0;
   bool short_stop_ = true, braking_ = false;
@@ -90,6 +112,10 @@ class CamDrive {
   std::deque<CamMode::Config> configs_;
   CamMaster master_{CamMaster::Config{}};
   std::deque<CamMode> modes_;
+  std::array<CamSwitch::Track, tracks> tracks_{};
+  CamSwitch::State track_state_{};
+  CamSwitch::Forces track_forces_{};
+  bool has_tracks_ = false;
 };
 
 }  // namespace stiction::drive

@@ -68,9 +68,19 @@ std::vector<hal::AxisLines> gpio_lines(const machine::DriveSetup& setup, const m
   return lines;
 }
 
+std::vector<hal::LineConfig> track_lines(const machine::DriveSetup& setup) {
+  std::vector<hal::LineConfig> lines;
+  for (const auto* track : machine::tracks_of(setup.cam_switch))
+    lines.push_back({.offset = track->line, .active_low = track->active_low});
+  return lines;
+}
+
 bool has_gpio_lines(const machine::DriveSetup& setup, const machine::Machine& machine) {
   const auto lines = gpio_lines(setup, machine);
   if (watchdog_config(setup).line.wired()) return true;
+  const auto tracks = track_lines(setup);
+  if (setup.gpio && std::any_of(tracks.begin(), tracks.end(), [](const auto& track) { return track.wired(); }))
+    return true;
   return setup.gpio && std::any_of(lines.begin(), lines.end(), [](const hal::AxisLines& axis) {
            return axis.enable.wired() || axis.brake.wired() || axis.fault.wired() || axis.limit_negative.wired() ||
                   axis.limit_positive.wired() || axis.home.wired() || axis.index.wired();
@@ -82,8 +92,11 @@ hal::GpioBackendConfig gpio_configuration(const machine::DriveSetup& setup, cons
   if (!setup.gpio) throw hal::GpioError("the machine file has no table [drive.gpio]; name the gpiochip there");
   if (!setup.gpio->pwm_chip)
     throw hal::GpioError("[drive.gpio] names no pwm_chip; expected a folder of /sys/class/pwm");
-  hal::GpioBackendConfig config{
-      .chip = setup.gpio->chip, .bias = input_bias(setup), .axes = {}, .watchdog = watchdog_config(setup)};
+  hal::GpioBackendConfig config{.chip = setup.gpio->chip,
+                                .bias = input_bias(setup),
+                                .axes = {},
+                                .watchdog = watchdog_config(setup),
+                                .tracks = track_lines(setup)};
   for (const auto& axis : machine.axes)
     config.axes.push_back(configuration_of(axis, setup.axes.at(axis.name).line, *setup.gpio, takes_over));
   return config;

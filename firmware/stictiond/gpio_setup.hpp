@@ -17,7 +17,10 @@ hal::WatchdogConfig watchdog_config(const machine::DriveSetup& setup);
 // Enable, brake, fault and switches of every axis, in the machine's order.
 std::vector<hal::AxisLines> gpio_lines(const machine::DriveSetup& setup, const machine::Machine& machine);
 
-// Whether any of them, or the pulse for a watchdog, is wired to the chip of [drive.gpio].
+// Of the cam switch, one a track. `setup`: of the machine file.
+std::vector<hal::LineConfig> track_lines(const machine::DriveSetup& setup);
+
+// Whether any of these, or the pulse for a watchdog, is wired to the chip of [drive.gpio].
 bool has_gpio_lines(const machine::DriveSetup& setup, const machine::Machine& machine);
 
 // A machine on GPIO alone. Throws hal::GpioError where [drive.gpio] is missing, or where an axis has current

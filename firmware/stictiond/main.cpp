@@ -61,7 +61,8 @@ int run_can(RealTime& real_time, const DriveConfiguration& configuration, const 
   RunResult result;
   if (has_gpio_lines(configuration.setup, configuration.machine)) {
     hal::BesideLines both(backend, configuration.setup.gpio->chip, input_bias(configuration.setup),
-                          gpio_lines(configuration.setup, configuration.machine), watchdog_config(configuration.setup));
+                          gpio_lines(configuration.setup, configuration.machine), watchdog_config(configuration.setup),
+                          track_lines(configuration.setup));
     result = run(real_time, both, &clock, configuration, options,
                  title + " and lines of " + configuration.setup.gpio->chip, record);
   } else {
@@ -149,7 +150,7 @@ int put_to_rest(const DriveConfiguration& configuration, const DriveOptions& opt
     const hal::GpioBackend backend(gpio_configuration(setup, machine, true), configuration.period_ns);
   } else if (options.hal == "can" && has_gpio_lines(setup, machine)) {
     hal::Lines lines(setup.gpio->chip, input_bias(setup));
-    const hal::GpioInputsOutputs io(lines, gpio_lines(setup, machine));
+    const hal::GpioInputsOutputs io(lines, gpio_lines(setup, machine), {}, track_lines(setup));
   }
   return exit_done;
 }

@@ -64,6 +64,21 @@ void take(const MotionWrite& write, double period, CamMode::Asked& asked) {
     case What::gear_way:
       asked.gear_way = raw(write.value, way_bits);
       break;
+    case What::cam_tolerance:
+      asked.tolerance.position = raw(write.value, way_bits);
+      break;
+    case What::cam_tolerance_speed:
+      asked.tolerance.velocity = raw(write.value * period, MotionPoint::velocity_bits);
+      break;
+    case What::cam_tolerance_acceleration:
+      asked.tolerance.acceleration = raw(write.value * period * period, MotionPoint::acceleration_bits);
+      break;
+    case What::cam_leave_speed:
+      asked.leave_speed = raw(write.value * period, MotionPoint::velocity_bits);
+      break;
+    case What::cam_superposed:
+      asked.superposed = raw(write.value, way_bits);
+      break;
     case What::cam_phase:
       asked.phase = raw(write.value, way_bits);
       break;
@@ -120,6 +135,11 @@ void show_cam(const RemoteAxis& axis, double period, PublishedCam& shown) {
   shown.denominator = asked.denominator;
   shown.gear_way = value(asked.gear_way, way_bits);
   shown.phase = value(asked.phase, way_bits);
+  shown.tolerance = value(asked.tolerance.position, way_bits);
+  shown.tolerance_speed = value(asked.tolerance.velocity, MotionPoint::velocity_bits) / period;
+  shown.tolerance_acceleration = value(asked.tolerance.acceleration, MotionPoint::acceleration_bits) / period / period;
+  shown.leave_speed = value(asked.leave_speed, MotionPoint::velocity_bits) / period;
+  shown.superposed = value(asked.superposed, way_bits);
 }
 
 }  // namespace stiction::drive

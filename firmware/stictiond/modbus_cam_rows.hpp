@@ -1,4 +1,4 @@
-// The registers of the modes of cam and gear, in a range of their own of each axis: 40 to 67.
+// The registers of the modes of cam and gear, in a range of their own of each axis: 40 to 77.
 #pragma once
 
 #include "firmware/stictiond/modbus_rows.hpp"
@@ -11,6 +11,13 @@ using Axis = PublishedAxis;
 using What = MotionWrite::What;
 
 inline void above_zero(const machine::AxisModel&, Register& r) { up_to(1e3, r); }
+inline void from_zero(double high, Register& r) {
+  r.low = 0.0;
+  r.high = high;
+}
+inline void to_metre(const machine::AxisModel&, Register& r) { from_zero(1.0, r); }
+inline void to_hundred(const machine::AxisModel&, Register& r) { from_zero(100.0, r); }
+inline void to_thousand(const machine::AxisModel&, Register& r) { from_zero(1000.0, r); }
 inline void to_hour(const machine::AxisModel&, Register& r) { up_to(3600.0, r); }
 inline void to_options(const machine::AxisModel&, Register& r) {
   r.low = 0.0;
@@ -46,7 +53,7 @@ inline constexpr std::array<StateRow<Axis>, 7> state_rows{{
 }};
 
 // In the order of MotionWrite::What.
-inline constexpr std::array<MotionRow, 16> motion_rows{{
+inline constexpr std::array<MotionRow, 21> motion_rows{{
     {41,
      uint16,
      1,
@@ -62,10 +69,10 @@ inline constexpr std::array<MotionRow, 16> motion_rows{{
      "cam_trigger",
      "1",
      "when an engage acts; 0: at once, 1: where the master passes cam_at, 2: where it does in its cycle, 3: where the "
-     "cycle begins",
+     "cycle begins, 4: where the curves agree within cam_tolerance",
      What::cam_trigger,
      [](const Axis& a) -> double { return a.cam.trigger; },
-     {0, 1, 2, 3}},
+     {0, 1, 2, 3, 4}},
     {43,
      uint16,
      1,
@@ -180,6 +187,54 @@ inline constexpr std::array<MotionRow, 16> motion_rows{{
      What::cam_phase,
      [](const Axis& a) { return a.cam.phase; },
      {}},
+    {68,
+     uint32,
+     position_scale,
+     "cam_tolerance",
+     "m",
+     "trigger 4: by which the positions may differ, of the curve asked for and of the axis",
+     What::cam_tolerance,
+     [](const Axis& a) { return a.cam.tolerance; },
+     {},
+     to_metre},
+    {70,
+     uint32,
+     1e-6,
+     "cam_tolerance_speed",
+     "m/s",
+     "trigger 4: the same of their speeds",
+     What::cam_tolerance_speed,
+     [](const Axis& a) { return a.cam.tolerance_speed; },
+     {},
+     to_hundred},
+    {72,
+     uint32,
+     1e-3,
+     "cam_tolerance_acceleration",
+     "m/s^2",
+     "trigger 4: the same of their accelerations",
+     What::cam_tolerance_acceleration,
+     [](const Axis& a) { return a.cam.tolerance_acceleration; },
+     {},
+     to_thousand},
+    {74,
+     int32,
+     1e-6,
+     "cam_leave_speed",
+     "m/s",
+     "speed to which command 2 leaves; 0: standstill",
+     What::cam_leave_speed,
+     [](const Axis& a) { return a.cam.leave_speed; },
+     {}},
+    {76,
+     int32,
+     position_scale,
+     "cam_superposed",
+     "m",
+     "displacement of the axis that is added to its motion, or to its position at standstill; acts with command 5",
+     What::cam_superposed,
+     [](const Axis& a) { return a.cam.superposed; },
+     {}},
     {66,
      int32,
      1e-6,
@@ -194,11 +249,11 @@ inline constexpr std::array<MotionRow, 16> motion_rows{{
      1,
      "cam_command",
      "1",
-     "1: engage, 2: leave to standstill, 3: delete what waits, 4: phase; each write acts once, the newest of a "
+     "1: engage, 2: leave, 3: delete what waits, 4: phase, 5: superpose; each write acts once, the newest of a "
      "millisecond counts",
      What::cam_command,
      [](const Axis&) { return 0.0; },
-     {0, 1, 2, 3, 4}},
+     {0, 1, 2, 3, 4, 5}},
 }};
 
 }  // namespace stiction::drive::cam_registers

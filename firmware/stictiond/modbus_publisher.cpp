@@ -11,12 +11,36 @@
 namespace stiction::drive {
 namespace {
 
-constexpr std::array<const char*, MotionWrite::kinds> motion_names{
-    "controlword",          "mode of operation", "target position",  "profile velocity", "profile acceleration",
-    "profile deceleration", "target velocity",   "target torque",    "max torque",       "cam table",
-    "cam trigger",          "cam approach",      "cam options",      "cam time",         "cam distance",
-    "cam position",         "cam master offset", "cam slave offset", "cam slave scale",  "gear numerator",
-    "gear denominator",     "gear way",          "cam phase",        "master speed",     "cam command"};
+constexpr std::array<const char*, MotionWrite::kinds> motion_names{"controlword",
+                                                                   "mode of operation",
+                                                                   "target position",
+                                                                   "profile velocity",
+                                                                   "profile acceleration",
+                                                                   "profile deceleration",
+                                                                   "target velocity",
+                                                                   "target torque",
+                                                                   "max torque",
+                                                                   "cam table",
+                                                                   "cam trigger",
+                                                                   "cam approach",
+                                                                   "cam options",
+                                                                   "cam time",
+                                                                   "cam distance",
+                                                                   "cam position",
+                                                                   "cam master offset",
+                                                                   "cam slave offset",
+                                                                   "cam slave scale",
+                                                                   "gear numerator",
+                                                                   "gear denominator",
+                                                                   "gear way",
+                                                                   "cam phase",
+                                                                   "cam tolerance",
+                                                                   "cam tolerance of speed",
+                                                                   "cam tolerance of acceleration",
+                                                                   "cam leave speed",
+                                                                   "cam superposed",
+                                                                   "master speed",
+                                                                   "cam command"};
 
 std::vector<std::string> names_of(const machine::Machine& machine) {
   std::vector<std::string> names;

@@ -36,9 +36,11 @@ struct PublishedCam {
   double master_speed = 0.0;  // cycles/s
   // What was asked for last.
   std::uint16_t table = 1, trigger = 0, approach = 0, options = 0;
-  double time = 0.0, distance = 0.0, at = 0.0;                        // s, cycles
-  double master_offset = 0.0, slave_offset = 0.0, slave_scale = 1.0;  // cycles, m
-  double gear_way = 0.0, phase = 0.0;                                 // m, cycles
+  double time = 0.0, distance = 0.0, at = 0.0;                                  // s, cycles
+  double master_offset = 0.0, slave_offset = 0.0, slave_scale = 1.0;            // cycles, m
+  double gear_way = 0.0, phase = 0.0;                                           // m, cycles
+  double tolerance = 0.0, tolerance_speed = 0.0, tolerance_acceleration = 0.0;  // m, m/s, m/s^2
+  double leave_speed = 0.0, superposed = 0.0;                                   // m/s, m
   std::int32_t numerator = 1;
   std::uint16_t denominator = 1;
 };
@@ -123,10 +125,15 @@ struct MotionWrite {
     gear_denominator,
     gear_way,
     cam_phase,
+    cam_tolerance,
+    cam_tolerance_speed,
+    cam_tolerance_acceleration,
+    cam_leave_speed,
+    cam_superposed,
     master_speed,
     cam_command
   };
-  static constexpr std::size_t kinds = 25;
+  static constexpr std::size_t kinds = 30;
   std::size_t axis = 0;
   What what = What::controlword;
   double value = 0.0;     // SI units; torques as shares of the current limit

@@ -53,7 +53,8 @@ struct DriveOptions {
         ->allow_extra_args(false);
     program
         .add_option("--master", master,
-                    "what axes follow in the modes of cam and gear: virtual, or an axis of the machine")
+                    "what axes follow in the modes of cam and gear: virtual, an axis of the machine, or can:NODE, an "
+                    "encoder on the bus of [drive.master_encoder]")
         ->type_name("MASTER");
     program.add_option("--speed", speed, "largest speed of the master, for which the tables of --cam are checked")
         ->type_name("\"130 rpm\"");

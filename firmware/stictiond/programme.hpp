@@ -66,8 +66,10 @@ class Programme {
     if (loop_.faulted() && phase_ != Phase::remote && phase_ < Phase::faulted) enter(Phase::faulted);
     if (phase_ != Phase::remote) choose_controlwords();
     if (task_.cam != nullptr) task_.cam->step(loop_);  // before its slaves
-    const auto sets = phase_ == Phase::remote ? serve() : set_points();
+    const bool serves = phase_ == Phase::remote;
+    const auto sets = serves ? serve() : task_.serve && phase_ == Phase::stop ? stop_served() : set_points();
     if (kept_off_ != Fault::none) loop_.trip(kept_off_);
+    if (task_.cam != nullptr) switch_tracks();
     const std::int64_t now_ns = loop_.now_ns();
     loop_.tick(sets);
     if (phase_ == Phase::motion && trace_ != nullptr)
@@ -107,11 +109,22 @@ class Programme {
       const bool homes = phase_ == Phase::home && !loop_.drive(i).referenced();
       loop_.set_mode(i, homes ? OperationMode::homing : OperationMode::cyclic_position);
       loop_.set_braking(i, false);
+      loop_.set_along(i, false);
       std::uint16_t word = off ? controlword::shutdown : controlword_to_enable(loop_.state(i));
       if (phase_ == Phase::faulted) word = controlword::shutdown;
       if (homes) word |= controlword::homing_start_bit;
       loop_.set_controlword(i, word);
     }
+  }
+
+  // Behind the axes, which follow or do not from this tick on.
+  void switch_tracks() {
+    const bool runs = phase_ == Phase::motion || phase_ == Phase::remote;
+    const std::uint32_t on = task_.cam->step_tracks(runs && !loop_.faulted() && kept_off_ == Fault::none);
+    for (std::size_t k = 0; k < CamDrive::tracks; ++k)
+      if (const std::uint32_t bit = std::uint32_t{1} << k; ((on ^ tracks_on_) & bit) != 0)
+        loop_.set_output(k, (on & bit) != 0);
+    tracks_on_ = on;
   }
 
   // What others ask for, in this tick.
@@ -122,8 +135,22 @@ class Programme {
       loop_.set_controlword(i, remote.controlword());
       loop_.set_mode(i, remote.mode());
       loop_.set_braking(i, remote.brakes());
+      loop_.set_along(i, remote.along());
       loop_.set_velocity_offset(i, remote.velocity_offset());
       if (const Fault fault = remote.fault(); fault != Fault::none) loop_.trip(i, fault);
+    }
+    return hold_;
+  }
+
+  // The end of what others asked for: by the ramps of the drives, and along a cam where that is gentler.
+  std::span<const SetPoint<S>> stop_served() {
+    for (std::size_t i = 0; i < hold_.size(); ++i) {
+      auto& remote = remote_[i];
+      hold_[i] = {loop_.drive(i).set_position(), {}, {}};
+      if (!is_coupled(remote.mode())) continue;
+      hold_[i] = remote.tick(loop_.drive(i));
+      loop_.set_along(i, remote.along());
+      loop_.set_mode(i, remote.mode());
     }
     return hold_;
   }
@@ -266,6 +293,7 @@ class Programme {
   std::atomic<std::uint64_t> progress_ = 0;
   std::int64_t motion_began_ns_ = 0;
   bool faulted_ = false;
+  std::uint32_t tracks_on_ = 0;  // of the cam switch
 };
 
 }  // namespace stiction::drive

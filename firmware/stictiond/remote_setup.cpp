@@ -222,6 +222,9 @@ std::vector<hal::CyclicFrame> can_server_frames(const DriveConfiguration& config
     // The mode is sent when it changes, and a speed or a torque in the place of a target.
     if (row.cyclic && row.exchanged_at(config.frames))
       frames.push_back(frame(names[static_cast<std::size_t>(row.pdo)], row.size, axes));
+  const auto& encoder = configuration.setup.master_encoder;
+  if (encoder && encoder->interface == config.interface)
+    frames.push_back({.name = "master encoder", .bytes = 4, .fd = false, .per_cycle = 1, .period = encoder->period});
   return frames;
 }
 

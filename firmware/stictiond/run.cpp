@@ -69,7 +69,8 @@ std::uint64_t traced_ticks(const DriveOptions& options, const DriveConfiguration
 std::unique_ptr<CamDrive> cam_of(const DriveOptions& options, const DriveConfiguration& configuration) {
   if (options.master.empty() && options.cam.empty() && options.speed.empty()) return {};
   if (options.master.empty())
-    throw StartRefused("--cam, --speed: found no --master; expected what the axes follow: virtual, or an axis");
+    throw StartRefused(
+        "--cam, --speed: found no --master; expected what the axes follow: virtual, an axis, or can:NODE");
   if (!options.circle.empty()) throw StartRefused("--circle: found --master as well; expected one of both");
   return std::make_unique<CamDrive>(options, configuration);
 }

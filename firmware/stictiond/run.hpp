@@ -17,6 +17,7 @@
 #include "firmware/stictiond/configuration.hpp"
 #include "firmware/stictiond/log_output.hpp"
 #include "firmware/stictiond/loop_watchdog.hpp"
+#include "firmware/stictiond/master_encoder_bus.hpp"
 #include "firmware/stictiond/modbus_motion.hpp"
 #include "firmware/stictiond/modbus_publisher.hpp"
 #include "firmware/stictiond/object_thread.hpp"
@@ -203,6 +204,9 @@ RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const Driv
 
   std::optional<CanServer> can;
   if (serves_can) can.emplace(can_server_config(configuration), log);
+  std::optional<MasterEncoderBus> encoder;
+  if (task.cam != nullptr && task.cam->encoder_node() != 0)
+    encoder.emplace(configuration.setup.master_encoder->interface, task.cam->encoder_node());
   std::optional<ObjectServer> objects;
   std::optional<ObjectThread<hal::can::CanSocket>> object_thread;
   if (can) {
@@ -283,6 +287,9 @@ RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const Driv
         objects->loop().take_motion(
             [&](const MotionWrite& asked) { ask(asked, period, programme.remote()[asked.axis], CommandSource::can); });
       const bool begins = can && loop.loop().slow() && can->receive(loop.now_ns(), programme.remote());
+      if (encoder)
+        encoder->receive(loop.now_ns(),
+                         [&](const hal::can::Frame& frame, std::int64_t age_ns) { task.cam->take(frame, age_ns); });
       const bool suspended = clock != nullptr && clock->was_suspended();
       if (suspended) log.push(loop.now_ns(), LogLevel::error, "the computer was suspended");
       tick_under_watch(programme, loop, hal::power_cut,

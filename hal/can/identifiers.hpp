@@ -45,7 +45,7 @@ inline constexpr std::array<Identifier, 16> identifier_table{{
     {CobId::sync, 0x080, false, true, true, "SYNC: begins a cycle"},
     {CobId::emergency, 0x080, true, false, true, "EMCY: a fault, or its end"},
     {CobId::target_speed, 0x100, true, true, false, "controlword, target velocity"},
-    {CobId::node_position, 0x180, true, true, false, "position of a power stage's encoder"},
+    {CobId::node_position, 0x180, true, true, false, "position of a power stage's encoder, or of a master's (CiA 406)"},
     {CobId::node_command, 0x200, true, false, true, "voltages of a power stage"},
     {CobId::node_current, 0x280, true, true, false, "currents of a power stage"},
     {CobId::mode, 0x300, true, true, false, "controlword, mode of operation"},

@@ -20,10 +20,11 @@ class BesideLines {
   static_assert(std::same_as<typename B::Signals, Signals>);
 
   // `backend` must outlive this. `axes`: one an axis of it, in its order. Throws GpioError. `chip`: name or path of the
-  // gpiochip; `bias`: of its inputs; `watchdog`: of the pulse.
+  // gpiochip; `bias`: of its inputs; `watchdog`: of the pulse; `tracks`: of
+  // a cam switch.
   BesideLines(B& backend, const std::string& chip, Bias bias, std::span<const AxisLines> axes,
-              const WatchdogConfig& watchdog = {})
-      : backend_(backend), lines_(chip, bias), io_(lines_, axes, watchdog), latches_(axes.size()) {
+              const WatchdogConfig& watchdog = {}, std::span<const LineConfig> tracks = {})
+      : backend_(backend), lines_(chip, bias), io_(lines_, axes, watchdog, tracks), latches_(axes.size()) {
     if (axes.size() != backend.axis_count())
       throw GpioError("lines for a different number of axes than the machine has");
   }
@@ -66,6 +67,7 @@ class BesideLines {
 
   Fault fault(std::size_t axis) { return backend_.fault(axis); }
   void set_brake(std::size_t axis, bool released) { io_.set_brake(axis, released); }
+  void set_output(std::size_t output, bool active) { io_.set_track(output, active); }
 
   // Every line goes inactive, which engages the brakes, then the other bus is told.
   void cut_power() noexcept {

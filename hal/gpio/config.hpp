@@ -67,6 +67,7 @@ struct GpioBackendConfig {
   Bias bias = Bias::as_is;
   std::vector<GpioAxisConfig> axes;
   WatchdogConfig watchdog{};
+  std::vector<LineConfig> tracks{};  // out: of a cam switch; those that are not wired have their number all the same
 };
 
 }  // namespace stiction::hal

@@ -24,7 +24,9 @@ std::vector<AxisLines> checked_lines(const GpioBackendConfig& config) {
 }  // namespace
 
 GpioBackend::GpioBackend(const GpioBackendConfig& config, std::int64_t period_ns)
-    : clock_(period_ns), lines_(config.chip, config.bias), io_(lines_, checked_lines(config), config.watchdog) {
+    : clock_(period_ns),
+      lines_(config.chip, config.bias),
+      io_(lines_, checked_lines(config), config.watchdog, config.tracks) {
   for (const auto& axis : config.axes) axes_.push_back(std::make_unique<Axis>(lines_, axis));
 }
 

@@ -44,6 +44,7 @@ class GpioBackend {
   std::uint64_t lost_edges(std::size_t axis) const;  // at least, since the start
 
   void set_brake(std::size_t axis, bool released) { io_.set_brake(axis, released); }
+  void set_output(std::size_t output, bool active) { io_.set_track(output, active); }
 
   // Every line goes inactive, which engages the brakes, and the voltages go to rest.
   void cut_power() noexcept {

@@ -2,9 +2,14 @@
 
 namespace stiction::hal {
 
-GpioInputsOutputs::GpioInputsOutputs(Lines& lines, std::span<const AxisLines> axes, const WatchdogConfig& watchdog)
+GpioInputsOutputs::GpioInputsOutputs(Lines& lines, std::span<const AxisLines> axes, const WatchdogConfig& watchdog,
+                                     std::span<const LineConfig> tracks)
     : lines_(lines), pulse_(watchdog.period_ns) {
   if (watchdog.line.wired()) watchdog_ = lines.add_output(watchdog.line, "watchdog");
+  for (const auto& track : tracks) {
+    const std::string name = "cam track " + std::to_string(tracks_.size() + 1);
+    tracks_.push_back(track.wired() ? Place(lines.add_output(track, name)) : Place());
+  }
   for (const auto& wired : axes) {
     const auto name = [&](const char* what) { return "axis " + wired.name + " " + what; };
     const auto input = [&](const LineConfig& line, const char* what) {

@@ -18,8 +18,9 @@ namespace stiction::hal {
 class GpioInputsOutputs {
  public:
   // Reserves the lines of every axis and that of the watchdog, outputs inactive. `lines` must outlive this; `axes`: one
-  // an axis of the machine; `watchdog`: of the pulse. Throws GpioError.
-  GpioInputsOutputs(Lines& lines, std::span<const AxisLines> axes, const WatchdogConfig& watchdog = {});
+  // an axis of the machine; `watchdog`: of the pulse; `tracks`: of a cam switch. Throws GpioError.
+  GpioInputsOutputs(Lines& lines, std::span<const AxisLines> axes, const WatchdogConfig& watchdog = {},
+                    std::span<const LineConfig> tracks = {});
 
   // From the last Lines::poll. Lines that are not wired leave the inputs as they are.
   void read_inputs(std::size_t axis, DigitalInputs<FixedSignals>& inputs) const;
@@ -36,6 +37,11 @@ class GpioInputsOutputs {
   // From the next set_enable() on. A drive engages its brake while the power still holds the axis.
   void set_brake(std::size_t axis, bool released) { axes_[axis].released = released; }
 
+  // A track of the cam switch; one that is not wired is left alone.
+  void set_track(std::size_t track, bool on) {
+    if (track < tracks_.size() && tracks_[track]) lines_.set(*tracks_[track], on);
+  }
+
   // At the end of each tick: the pulse for a watchdog outside of the computer. `now_ns`: time of the tick.
   void pulse(std::int64_t now_ns) {
     if (watchdog_) lines_.set(*watchdog_, pulse_.step(now_ns));
@@ -50,6 +56,7 @@ class GpioInputsOutputs {
 
   Lines& lines_;
   std::vector<Axis> axes_;
+  std::vector<Place> tracks_;
   Place watchdog_;
   WatchdogPulse pulse_;
 };

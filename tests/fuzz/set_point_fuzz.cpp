@@ -29,6 +29,8 @@ struct Drive {
   bool stepped = false;  // it has followed in the tick before too
   Fault seen = Fault::none;
   S::Position set_position() const { return at; }
+  bool stops_along() const { return false; }
+  bool stops_fast() const { return false; }
   S::Position position() const { return at; }
   S::Velocity set_velocity() const { return v; }
   S::Velocity velocity() const { return v; }

@@ -89,6 +89,38 @@ struct Table<CanServerSetup> : EmptyTable<CanServerSetup> {
                                             "controlwords and set-points that a motion controller sends"}};
 };
 
+template <>
+struct Table<MasterEncoderSetup> : EmptyTable<MasterEncoderSetup> {
+  static constexpr std::string_view text = "encoder on a CAN bus (CiA 406) that axes follow as their master";
+  static constexpr std::array<TextParameter<MasterEncoderSetup>, 1> texts{
+      {{"interface", &MasterEncoderSetup::interface,
+        "name of the network interface; may be that of [drive.can_server]"}}};
+  static constexpr std::array<Parameter<MasterEncoderSetup>, 5> parameters{{
+      {"period",
+       "s",
+       {100e-6, 20e-3},
+       &MasterEncoderSetup::period,
+       1e-3,
+       "time from one position to the next: its cycle timer (6200h), or the period of SYNC"},
+      {"counts_per_turn", "1", not_negative(4294967296.0), &MasterEncoderSetup::counts_per_turn, 0.0,
+       "positions of a revolution (6001h); 0: it is not a rotary one"},
+      {"position_increment",
+       "m",
+       positive(1e-3),
+       &MasterEncoderSetup::position_increment,
+       {},
+       "a position of a linear one; left out: it is not a linear one"},
+      {"range",
+       "1",
+       {16, 4294967296.0},
+       &MasterEncoderSetup::range,
+       4294967296.0,
+       "total measuring range (6002h): positions after which the value begins again at 0"},
+      {"delay", "s", not_negative(0.1), &MasterEncoderSetup::delay, 0.0,
+       "time from the measurement to the arrival of its frame"},
+  }};
+};
+
 inline constexpr Range line_numbers{-1, 1023};
 
 inline constexpr std::array<Choice<InputBias>, 4> input_biases{{
@@ -270,6 +302,76 @@ struct Table<LineSetup> : EmptyTable<LineSetup> {
   }};
 };
 
+inline constexpr std::array<Choice<bool>, 2> track_levels{{
+    {"high", false, "high"},
+    {"low", true, "low"},
+}};
+inline constexpr std::array<Choice<TrackKind>, 2> track_kinds{{
+    {"position", TrackKind::position, "from first to last"},
+    {"duration", TrackKind::duration, "from first on for the duration"},
+}};
+inline constexpr std::array<Choice<TrackDirection>, 3> track_directions{{
+    {"both", TrackDirection::both, "either"},
+    {"positive", TrackDirection::positive, "that of a positive speed"},
+    {"negative", TrackDirection::negative, "that of a negative speed"},
+}};
+
+template <>
+struct Table<TrackSetup> : EmptyTable<TrackSetup> {
+  static constexpr std::string_view text = "a track of the cam switch on the master, and the line that it drives";
+  static constexpr std::tuple choices{
+      ChoiceParameter<TrackSetup, bool>{"active", &TrackSetup::active_low, track_levels, false,
+                                        "level of the line while the track is on"},
+      ChoiceParameter<TrackSetup, TrackKind>{"kind", &TrackSetup::kind, track_kinds, TrackKind::position,
+                                             "when the track is on"},
+      ChoiceParameter<TrackSetup, TrackDirection>{"direction", &TrackSetup::direction, track_directions,
+                                                  TrackDirection::both, "direction in which the track switches on"},
+  };
+  static constexpr std::array<Parameter<TrackSetup>, 7> parameters{{
+      {"line", "1", line_numbers, &TrackSetup::line, -1.0, "line of the gpiochip by its number; -1: no such track"},
+      {"first", "1", {0, 1}, &TrackSetup::first, 0.0, "place of the master, in cycles, at which the track switches on"},
+      {"last",
+       "1",
+       {0, 1},
+       &TrackSetup::last,
+       0.0,
+       "place at which it switches off; before first: around the begin of the cycle"},
+      {"duration", "s", not_negative(2.0), &TrackSetup::duration, 0.0, "time of the kind duration"},
+      {"on_compensation",
+       "s",
+       {-1, 1},
+       &TrackSetup::on_compensation,
+       0.0,
+       "time by which the track switches on later; negative is earlier"},
+      {"off_compensation",
+       "s",
+       {-1, 1},
+       &TrackSetup::off_compensation,
+       0.0,
+       "time by which it switches off later; negative is earlier"},
+      {"hysteresis",
+       "1",
+       {0, 0.25},
+       &TrackSetup::hysteresis,
+       0.0,
+       "way of a master that goes back, in cycles, for which an edge is held"},
+  }};
+};
+
+template <>
+struct Table<CamSwitchSetup> : EmptyTable<CamSwitchSetup> {
+  static constexpr std::string_view text = "cam switch on the master of the axes, while one of them follows a curve";
+  static constexpr std::tuple subtables{
+      Subtable<CamSwitchSetup, TrackSetup>{"track1", &CamSwitchSetup::track1, Presence::optional},
+      Subtable<CamSwitchSetup, TrackSetup>{"track2", &CamSwitchSetup::track2, Presence::optional},
+      Subtable<CamSwitchSetup, TrackSetup>{"track3", &CamSwitchSetup::track3, Presence::optional},
+      Subtable<CamSwitchSetup, TrackSetup>{"track4", &CamSwitchSetup::track4, Presence::optional},
+      Subtable<CamSwitchSetup, TrackSetup>{"track5", &CamSwitchSetup::track5, Presence::optional},
+      Subtable<CamSwitchSetup, TrackSetup>{"track6", &CamSwitchSetup::track6, Presence::optional},
+      Subtable<CamSwitchSetup, TrackSetup>{"track7", &CamSwitchSetup::track7, Presence::optional},
+      Subtable<CamSwitchSetup, TrackSetup>{"track8", &CamSwitchSetup::track8, Presence::optional}};
+};
+
 template <>
 struct Table<DriveAxisSetup> : EmptyTable<DriveAxisSetup> {
   static constexpr std::string_view text = "one axis as the drive's programme runs it";
@@ -352,11 +454,14 @@ struct Table<DriveSetup> : EmptyTable<DriveSetup> {
   static constexpr std::tuple subtables{
       Subtable<DriveSetup, std::optional<CanSetup>>{"can", &DriveSetup::can, Presence::optional},
       Subtable<DriveSetup, std::optional<CanServerSetup>>{"can_server", &DriveSetup::can_server, Presence::optional},
+      Subtable<DriveSetup, std::optional<MasterEncoderSetup>>{"master_encoder", &DriveSetup::master_encoder,
+                                                              Presence::optional},
       Subtable<DriveSetup, std::optional<GpioSetup>>{"gpio", &DriveSetup::gpio, Presence::optional},
       Subtable<DriveSetup, std::optional<ModbusClientSetup>>{"modbus_client", &DriveSetup::modbus_client,
                                                              Presence::optional},
       Subtable<DriveSetup, std::optional<ModbusServerSetup>>{"modbus_server", &DriveSetup::modbus_server,
                                                              Presence::optional},
+      Subtable<DriveSetup, CamSwitchSetup>{"cam_switch", &DriveSetup::cam_switch, Presence::optional},
       Subtable<DriveSetup, RealTimeSetup>{"real_time", &DriveSetup::real_time, Presence::optional}};
 };
 

@@ -2,6 +2,7 @@
 // simulation knows nothing of it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -34,6 +35,36 @@ struct CanServerSetup {
   int heartbeat_node = 0;          // of the controller; 0: none
   bool motion_allowed = false;     // whether set-points and controlwords are taken
 };
+
+// An encoder on a CAN bus (CiA 406) that axes follow (--master can:NODE).
+struct MasterEncoderSetup {
+  std::string interface;                     // of the network
+  double period = 1e-3;                      // s, from one position to the next
+  double counts_per_turn = 0.0;              // of a rotary one (6001h); 0: it is none
+  std::optional<double> position_increment;  // m, of a linear one
+  double range = 4294967296.0;               // counts after which the value begins anew (6002h)
+  double delay = 0.0;                        // s, from the measurement to the frame's arrival
+};
+
+// A track of the cam switch on the master (PLCopen: MC_DigitalCamSwitch), and the line that it drives.
+enum class TrackKind { position, duration };
+enum class TrackDirection { both, positive, negative };
+struct TrackSetup {
+  int line = -1;                                         // of the gpiochip; -1: there is no such track
+  bool active_low = false;                               // the line is low while the track is on
+  TrackKind kind = TrackKind::position;                  // on to `last`, or for `duration`
+  TrackDirection direction = TrackDirection::both;       // of the master, in which it switches on
+  double first = 0.0, last = 0.0;                        // cycles, 0 to 1
+  double duration = 0.0;                                 // s
+  double on_compensation = 0.0, off_compensation = 0.0;  // s, negative is earlier
+  double hysteresis = 0.0;                               // cycles
+};
+struct CamSwitchSetup {
+  TrackSetup track1, track2, track3, track4, track5, track6, track7, track8;
+};
+inline std::array<const TrackSetup*, 8> tracks_of(const CamSwitchSetup& s) {
+  return {&s.track1, &s.track2, &s.track3, &s.track4, &s.track5, &s.track6, &s.track7, &s.track8};
+}
 
 // Of the chip's inputs, inside the chip.
 enum class InputBias { as_is, pull_up, pull_down, none };
@@ -139,10 +170,12 @@ struct DriveAxisSetup {
 struct DriveSetup {
   std::optional<CanSetup> can;
   std::optional<CanServerSetup> can_server;
+  std::optional<MasterEncoderSetup> master_encoder;
   std::optional<GpioSetup> gpio;
   std::optional<ModbusClientSetup> modbus_client;
   std::optional<ModbusServerSetup> modbus_server;
   RealTimeSetup real_time;
+  CamSwitchSetup cam_switch;
   std::map<std::string, DriveAxisSetup> axes;  // of every axis of the machine, by name
 };
 

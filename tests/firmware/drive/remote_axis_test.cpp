@@ -495,6 +495,8 @@ TEST(ProfileMovesOfAnAxis, WaitForTheOneBeforeUnlessTheyAreToBeMadeAtOnce) {
 struct Beside {
   FixedSignals::Position at{}, measured{};
   FixedSignals::Position set_position() const { return at; }
+  bool stops_along() const { return false; }
+  bool stops_fast() const { return false; }
   FixedSignals::Position position() const { return measured; }
   FixedSignals::Velocity set_velocity() const { return {}; }
   FixedSignals::Velocity velocity() const { return {}; }

@@ -110,6 +110,7 @@ struct ServedAxis {
     demand.controlword = remote.controlword();
     demand.mode = remote.mode();
     demand.brake = remote.brakes();
+    demand.along = remote.along();
     demand.velocity_offset = remote.velocity_offset();
     demand.causes[0] = remote.fault();
     demand.causes[1] = trip;

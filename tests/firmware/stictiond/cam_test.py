@@ -137,10 +137,26 @@ class Cam(unittest.TestCase):
         self.refused("within the travel", "--cam", self.table(name="far", stroke="260 mm"), "--master", "virtual",
                      "--hold", "0.1", "--speed", "10 rpm")
         self.refused("expected what the axes follow", "--cam", self.table())
-        self.refused("expected virtual, or an axis", "--master", "Q", "--speed", "1 rpm")
+        self.refused("expected virtual, an axis of", "--master", "Q", "--speed", "1 rpm")
         self.refused("found the only axis", "--master", "X", "--speed", "1 m/s")
         self.refused("expected a table to follow", "--master", "virtual", "--speed", "1 rpm", "--hold", "1")
         self.refused("clients alone move the axes", "--master", "X", "--speed", "1 m/s", "--hold", "1")
+
+    def test_an_encoder_that_cannot_be_the_master_refuses_the_start(self):
+        def encoder(*settings):
+            return [part for setting in settings for part in ("--set", f"drive.master_encoder.{setting}")]
+        master = ("--master", "can:5", "--speed", "1 rpm")
+        for strange in ("can:0", "can:128", "can:", "can:5x"):
+            self.refused("expected can:NODE with a node from 1 to 127", "--master", strange, "--speed", "1 rpm")
+        self.refused("clients alone move the axes", *master, "--hold", "1")
+        self.refused("found no such table", *master)
+        self.refused("found no counts_per_turn", *master, *encoder("interface=can0"))
+        self.refused("found no position_increment", "--master", "can:5", "--speed", "1 m/s", "--cam",
+                     self.table(name="shear", master="linear", cycle="1 m", first="400 mm"),
+                     *encoder("interface=can0", "counts_per_turn=4096"))
+        self.refused("expected a whole number of them", *master, *encoder("interface=can0", "counts_per_turn=1000.5"))
+        self.refused("counts in two periods of the encoder", "--master", "can:5", "--speed", "6000 rpm",
+                     *encoder("interface=can0", "counts_per_turn=65536", "range=4096"))
 
 
 if __name__ == "__main__":

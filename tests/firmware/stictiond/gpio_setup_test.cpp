@@ -104,6 +104,18 @@ TEST(GpioSetup, TakesALineForAWatchdogAlone) {
   EXPECT_EQ(drive::watchdog_config(setup).line.offset, 2);
 }
 
+TEST(GpioSetup, TakesALineForATrackOfTheCamSwitchAlone) {
+  const std::string track = "[drive.cam_switch.track2]\nline = 4\nactive = \"low\"\nfirst = 0.1\nlast = 0.4\n";
+  const auto [machine, setup] =
+      read(std::string(machine::test::small_machine) + "[drive.gpio]\nchip = \"lines\"\n" + track);
+  EXPECT_TRUE(drive::has_gpio_lines(setup, machine));
+  const auto lines = drive::track_lines(setup);
+  ASSERT_EQ(lines.size(), 8u);
+  EXPECT_FALSE(lines[0].wired());
+  EXPECT_EQ(lines[1].offset, 4);
+  EXPECT_TRUE(lines[1].active_low);
+}
+
 TEST(GpioSetup, RefusesAnAxisWhoseCurrentIsControlledInTheDrive) {
   auto both = read(std::string(machine::test::small_machine) + drive_text);
   both.machine.axes[0].motor.model = machine::MotorModel::synchronous;

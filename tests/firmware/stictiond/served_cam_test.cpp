@@ -1,139 +1,13 @@
 // A PLC that engages a cam, switches the table, phases and disengages: over Modbus registers and over the objects of
 // CANopen, in the drive's own time. Truth is the motion in double precision at the place that the master shows.
+#include "tests/firmware/stictiond/served_cam.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
-
-#include "firmware/stictiond/objects.hpp"
-#include "tests/firmware/stictiond/cam_files.hpp"
-#include "tests/firmware/stictiond/served_objects.hpp"
 
 namespace stiction::test {
 namespace {
-
-using Cam = ServedTable::Cam;
-
-// Both have their begin where the axis is.
-CamFiles& files() {
-  static CamFiles made;
-  return made;
-}
-Cam two_tables(const std::string& speed = "130 rpm") {
-  static const std::vector<std::string> tables{files().add(linear_cam(20e-3, 0.09)),
-                                               files().add(linear_cam(12e-3, 0.085, "modified_sine"))};
-  return {tables, "virtual", speed};
-}
-
-enum State : unsigned { busy = 1, active = 2, in_sync = 4, waiting = 8, aborted = 16, known = 32 };
-enum CommandNumber { engage = 1, leave = 2, cancel = 3, phase = 4 };
-
-class ServedCam : public Objects, public ::testing::WithParamInterface<bool> {
- protected:
-  explicit ServedCam(const Cam& cam = two_tables(), const std::vector<std::string>& settings = {})
-      : Objects(settings, true, cam), registers(table.configuration.machine, table.configuration.setup) {
-    table.before_tick = [this] { watch(); };
-  }
-
-  static bool over_can() { return GetParam(); }
-
-  // A value by the name of its register: its words to the register, or its object over SDO. False: refused.
-  bool write(const std::string& name, double value, std::size_t axis = 0) {
-    if (!over_can()) return write_words(name, value, axis);
-    for (const auto& object : drive::object_table())
-      if (object.source == drive::ObjectSource::command && name == object.of) {
-        const double unit = drive::value_of(object.unit, 1e-9);
-        const auto& type = drive::row_of(object.type);
-        SdoClient node(static_cast<unsigned>(axis) + 1,
-                       [this](const hal::can::Frame& frame) { return server->answer(frame, now_ns); });
-        return node.set(object.index, object.sub, std::llround(value / unit), type.bytes) == 0;
-      }
-    ADD_FAILURE() << name;
-    return false;
-  }
-  double read(const std::string& name, std::size_t axis = 0) {
-    const auto all = registers.map().registers();
-    std::vector<double> values(all.size());
-    registers.put_values(server->loop().latest(), values);
-    const std::string wanted = table.configuration.names[axis] + "." + name;
-    for (std::size_t k = 0; k < all.size(); ++k)
-      if (all[k].name == wanted && all[k].table == hal::RegisterTable::input) return values[k];
-    ADD_FAILURE() << name;
-    return 0.0;
-  }
-  bool shows(unsigned bits) { return (static_cast<unsigned>(read("cam_state")) & bits) == bits; }
-
-  // Milliseconds until it is so.
-  template <class Condition>
-  int run_until(Condition condition, int most = 5000) {
-    int k = 0;
-    for (; k < most && !condition(); ++k) step();
-    EXPECT_LT(k, most);
-    return k;
-  }
-  void step(int count = 1) {
-    for (int k = 0; k < count; ++k) cycles(1);
-  }
-
-  bool enable_in(int mode, std::size_t axis = 0) {
-    EXPECT_TRUE(write("mode_of_operation", mode, axis));
-    for (const int word : {6, 7, 15}) {
-      EXPECT_TRUE(write("controlword", word, axis));
-      step(20);
-    }
-    return table.powered(axis) && read("mode", axis) == mode;
-  }
-  bool command(int number) {
-    const bool taken = write("cam_command", number);
-    step(2);
-    return taken;
-  }
-  // The place of the axis where the `motion` is at the master, m.
-  double off(std::size_t motion, double phase_offset = 0.0) {
-    const auto& m = files().motions[motion];
-    const auto& at = table.cam->master().reading().point.position;
-    const double phase = std::ldexp(static_cast<double>(at.phase), -64) + phase_offset;
-    const double expected = m.curve((phase - std::floor(phase)) * m.cam.cycle());
-    return table.set_position(0) - expected;
-  }
-
-  // From tick to tick: nothing jumps, and the limits of the axis hold.
-  void watch() {
-    const double x = table.set_position(0), v = machine::to_si(table.loop.drive(0).set_velocity());
-    if (table.powered(0) && was_powered) {
-      constexpr double tick = 62.5e-6, most = 20.0, rounding = 0x1p-27;
-      largest_change = std::max(largest_change, std::abs(v - last_v) / tick);
-      EXPECT_LE(std::abs(v - last_v), most * tick + rounding);
-      EXPECT_NEAR(x - last_x, 0.5 * (v + last_v) * tick, 20e3 * tick * tick * tick / 12 + 1e-12);
-    }
-    was_powered = table.powered(0);
-    last_x = x;
-    last_v = v;
-  }
-
-  drive::ModbusRegisters registers;
-  bool was_powered = false;
-  double last_x = 0.0, last_v = 0.0, largest_change = 0.0;
-
- private:
-  bool write_words(const std::string& name, double value, std::size_t axis) {
-    const auto& map = registers.map();
-    const std::string wanted = table.configuration.names[axis] + "." + name;
-    for (const auto& r : map.registers()) {
-      if (r.name != wanted || r.table != hal::RegisterTable::holding) continue;
-      std::vector<std::uint16_t> words(static_cast<std::size_t>(hal::words_of(r.type)));
-      hal::put_words(r.type, value / r.scale, words);
-      const auto meant = map.writes_of(r.address, words, true);
-      if (!std::holds_alternative<std::vector<hal::RegisterWrite>>(meant)) return false;
-      for (const auto& write : std::get<std::vector<hal::RegisterWrite>>(meant))
-        drive::ask(std::get<drive::MotionWrite>(registers.meaning_of(write)), period(), table.programme.remote()[axis],
-                   CommandSource::modbus);
-      return true;
-    }
-    ADD_FAILURE() << name;
-    return false;
-  }
-};
 
 INSTANTIATE_TEST_SUITE_P(Bus, ServedCam, ::testing::Bool(),
                          [](const auto& bus) { return std::string(bus.param ? "CANopen" : "Modbus"); });
@@ -172,8 +46,11 @@ TEST_P(ServedCam, IsEngagedSwitchedPhasedAndLeft) {
 
   ASSERT_TRUE(write("cam_phase", 0.1));
   ASSERT_TRUE(command(phase));
-  step(4000);
-  ASSERT_NEAR(off(1, 0.1), 0.0, 2e-9);
+  run_until([&] { return !table.cam->mode(0).phasing(); }, 8000);
+  for (int k = 0; k < 500; ++k) {
+    step();
+    ASSERT_NEAR(off(1, 0.1), 0.0, 2e-9);
+  }
 
   ASSERT_TRUE(command(leave));
   run_until([&] { return !shows(busy); });
@@ -246,6 +123,207 @@ TEST_P(ServedCam, IsLeftForAHaltAndForADifferentMode) {
   run_until([&] { return read("mode") == 1.0; });
   EXPECT_FALSE(shows(busy));
   EXPECT_EQ(machine::to_si(table.loop.drive(0).set_velocity()), 0.0);
+}
+
+// Each word that stops, along the cam where that takes no more than the ramp: the acceleration comes and goes with a
+// limited jerk, where a ramp has all of its own at once; the place stays one of the curve.
+struct StopWord {
+  std::uint16_t word;
+  DriveState to;
+};
+constexpr std::array<StopWord, 4> stop_words{{{0x10f, DriveState::operation_enabled},
+                                              {0x02, DriveState::switch_on_disabled},
+                                              {0x06, DriveState::ready_to_switch_on},
+                                              {0x07, DriveState::switched_on}}};
+
+struct Stop {
+  int ticks = 0;
+  double largest_acceleration = 0.0, largest_change = 0.0;  // m/s^2, and of it from tick to tick
+  double lowest = 1.0, highest = -1.0;                      // m
+};
+
+class StoppedCam : public ServedCam {
+ protected:
+  explicit StoppedCam(const std::vector<std::string>& settings = {}) : ServedCam(two_tables(), settings) {}
+
+  // The stop that `word` makes of a cam at `speed` (cycles/s), `delay` ms after it is in sync.
+  Stop stop(std::uint16_t word, double speed, int delay) {
+    Stop made;
+    EXPECT_TRUE(enable_in(-1));
+    EXPECT_TRUE(write("master_speed", speed));
+    run_until([&] { return std::abs(read("master_velocity") - speed) < 1e-5; });
+    EXPECT_TRUE(command(engage));
+    run_until([&] { return shows(in_sync); });
+    step(delay);
+    double before = 0.0, acceleration_before = 0.0;
+    bool moving = false, seen = false;
+    table.before_tick = [&] {
+      const double v = machine::to_si(table.loop.drive(0).set_velocity()), x = table.set_position(0);
+      const double a = (v - before) / 62.5e-6;
+      moving = v != 0.0 || a != 0.0;
+      if (seen && table.powered(0)) {
+        ++made.ticks;
+        made.largest_acceleration = std::max(made.largest_acceleration, std::abs(a));
+        if (made.ticks > 1) made.largest_change = std::max(made.largest_change, std::abs(a - acceleration_before));
+        made.lowest = std::min(made.lowest, x);
+        made.highest = std::max(made.highest, x);
+      }
+      seen = true;
+      before = v;
+      acceleration_before = a;
+    };
+    EXPECT_TRUE(write("controlword", word));
+    int still = 0;
+    for (int k = 0; k < 5000 && still < 20; ++k) {
+      step();
+      still = moving ? 0 : still + 1;
+    }
+    table.before_tick = {};
+    step(200);
+    return made;
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Bus, StoppedCam, ::testing::Bool(),
+                         [](const auto& bus) { return std::string(bus.param ? "CANopen" : "Modbus"); });
+
+TEST_P(StoppedCam, BrakesAlongTheCamByEveryWordThatStops) {
+  for (const auto& [word, to] : stop_words)
+    for (const int delay : {50, 310}) {
+      SCOPED_TRACE(::testing::Message() << std::hex << word << std::dec << " after " << delay << " ms");
+      const auto made = stop(word, 1.5, delay);
+      EXPECT_EQ(table.loop.state(0), to);
+      EXPECT_EQ(table.loop.fault(0), Fault::none);
+      EXPECT_FALSE(shows(active));
+      // The ramp's deceleration, 10 m/s^2, at most; its onset within a tick is none.
+      EXPECT_LE(made.largest_acceleration, 10.0 + 1e-3);
+      EXPECT_LE(made.largest_change, 2.0);
+      // Over the top of the cam the way leads back on it, and not further.
+      EXPECT_LE(made.highest, 0.09 + 20e-3 + 1e-9);
+      EXPECT_GE(made.lowest, 0.09 - 1e-9);
+      write("controlword", 0);
+      step(200);
+    }
+}
+
+TEST_P(StoppedCam, CanBeEnabledAndEngagedAgainBehindAStop) {
+  stop(0x02, 1.5, 50);
+  ASSERT_TRUE(enable_in(-1));
+  EXPECT_FALSE(shows(active)) << "not by itself";
+  ASSERT_TRUE(command(engage));
+  run_until([&] { return shows(in_sync); });
+  for (int k = 0; k < 500; ++k) {
+    step();
+    ASSERT_NEAR(off(0), 0.0, 2e-9);
+  }
+}
+
+// What the master braked would do is of no use for an axis with a fault.
+TEST_P(StoppedCam, BrakesByItsRampForAFault) {
+  ASSERT_TRUE(enable_in(-1));
+  ASSERT_TRUE(write("master_speed", 1.5));
+  ASSERT_TRUE(command(engage));
+  run_until([&] { return shows(in_sync); });
+  step(600);
+  while (std::abs(machine::to_si(table.loop.drive(0).set_velocity())) < 0.05) step();
+  table.before_tick = {};
+  double before = machine::to_si(table.loop.drive(0).set_velocity());
+  table.loop.trip(0, Fault::missed_deadline);
+  for (int k = 0; k < 3; ++k) table.tick();
+  before = machine::to_si(table.loop.drive(0).set_velocity());
+  table.tick();
+  const double after = machine::to_si(table.loop.drive(0).set_velocity());
+  EXPECT_NEAR(std::abs(after) - std::abs(before), -10.0 * 62.5e-6, 1e-6);
+}
+
+// 3.4 m/s^2 of the curve alone at this speed.
+class SlowRampCam : public StoppedCam {
+ protected:
+  SlowRampCam() : StoppedCam({"drive.axis.X.quick_stop_deceleration=3 m/s^2"}) {}
+};
+
+INSTANTIATE_TEST_SUITE_P(Bus, SlowRampCam, ::testing::Bool(),
+                         [](const auto& bus) { return std::string(bus.param ? "CANopen" : "Modbus"); });
+
+TEST_P(SlowRampCam, LeavesACamThatAsksForMoreThanTheRamp) {
+  for (const int word : {0x02, 0x06, 0x07}) {
+    SCOPED_TRACE(word);
+    const auto made = stop(static_cast<std::uint16_t>(word), 130.0 / 60.0, 120);
+    EXPECT_EQ(table.loop.fault(0), Fault::none);
+    EXPECT_FALSE(shows(active));
+    EXPECT_GE(made.largest_change, 1.0) << "the onset of the ramp";
+    write("controlword", 0);
+    step(200);
+  }
+}
+
+TEST_P(ServedCam, IsLeftAtASpeed) {
+  ASSERT_TRUE(enable_in(-1));
+  ASSERT_TRUE(write("master_speed", 1.0));
+  ASSERT_TRUE(command(engage));
+  run_until([&] { return shows(in_sync); });
+  step(300);
+  ASSERT_TRUE(write("cam_leave_speed", -0.01));
+  ASSERT_TRUE(command(leave));
+  run_until([&] { return !shows(busy); });
+  EXPECT_NEAR(machine::to_si(table.loop.drive(0).set_velocity()), -0.01, 1e-6);
+  step(100);
+  EXPECT_NEAR(machine::to_si(table.loop.drive(0).set_velocity()), -0.01, 1e-6);
+  // A halt ends that too.
+  ASSERT_TRUE(write("controlword", 0x10f));
+  step(300);
+  EXPECT_EQ(machine::to_si(table.loop.drive(0).set_velocity()), 0.0);
+  ASSERT_TRUE(write("controlword", 0x0f));
+  ASSERT_TRUE(write("cam_leave_speed", 100.0));
+  ASSERT_TRUE(command(leave));
+  EXPECT_EQ(read("cam_refusal"), 7.0);
+}
+
+// The second cam is 5 mm lower where both rest at their begin, and 3 mm at the top, of the first's dwell.
+TEST_P(ServedCam, IsSwitchedWhereTheCurvesAgree) {
+  ASSERT_TRUE(enable_in(-1));
+  ASSERT_TRUE(write("master_speed", 1.0));
+  ASSERT_TRUE(command(engage));
+  run_until([&] { return shows(in_sync); });
+  ASSERT_TRUE(write("cam_table", 2));
+  ASSERT_TRUE(write("cam_trigger", 4));
+  ASSERT_TRUE(write("cam_tolerance", 4e-3));
+  ASSERT_TRUE(write("cam_tolerance_speed", 1e-3));
+  ASSERT_TRUE(write("cam_tolerance_acceleration", 5.0));
+  ASSERT_TRUE(command(engage));
+  step(2500);
+  EXPECT_TRUE(shows(waiting)) << "nowhere do they agree so well";
+  ASSERT_TRUE(write("cam_tolerance", 5.1e-3));
+  ASSERT_TRUE(command(engage));
+  run_until([&] { return read("cam_followed") == 2.0 && shows(in_sync); }, 2000);
+  for (int k = 0; k < 200; ++k) {
+    step();
+    ASSERT_NEAR(off(1), 0.0, 2e-9);
+  }
+}
+
+TEST_P(ServedCam, HasAMoveOnTopOfIt) {
+  ASSERT_TRUE(enable_in(-1));
+  ASSERT_TRUE(write("master_speed", 1.0));
+  ASSERT_TRUE(command(engage));
+  run_until([&] { return shows(in_sync); });
+  step(100);
+  ASSERT_TRUE(write("cam_superposed", 3e-3));
+  ASSERT_TRUE(command(5));
+  run_until([&] { return !table.cam->mode(0).superposes(); });
+  for (int k = 0; k < 1000; ++k) {
+    step();
+    ASSERT_NEAR(off(0), 3e-3, 2e-9);
+  }
+  EXPECT_TRUE(shows(in_sync));
+  // A halt in the middle of one ends both.
+  ASSERT_TRUE(write("cam_superposed", -10e-3));
+  ASSERT_TRUE(command(5));
+  step(20);
+  ASSERT_TRUE(write("controlword", 0x10f));
+  step(1000);
+  EXPECT_EQ(machine::to_si(table.loop.drive(0).set_velocity()), 0.0);
+  EXPECT_FALSE(table.cam->mode(0).superposes());
 }
 
 TEST_P(ServedCam, AMasterIsHeldToItsLargestSpeed) {

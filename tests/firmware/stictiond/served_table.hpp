@@ -2,6 +2,7 @@
 // without a bus.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -24,7 +25,12 @@ struct CamArguments {
 class ServedTable {
  public:
   using Cam = CamArguments;
-  using Simulated = hal::SimulatedBackend<FixedSignals>;
+  // With outputs, which the simulated machine has not.
+  struct Simulated : hal::SimulatedBackend<FixedSignals> {
+    using hal::SimulatedBackend<FixedSignals>::SimulatedBackend;
+    void set_output(std::size_t output, bool active) { outputs.at(output) = active; }
+    std::array<bool, 8> outputs{};
+  };
 
   // `settings`: over the machine file, beside nodes 1 and 2 on an interface that nobody opens.
   // `cam_options`: for a cam.

@@ -38,13 +38,28 @@ class CamMaster {
   constexpr const MasterReading& step() { return reading_ = {virtual_.step(), true}; }
   // A measured one at `position`; one that is not `valid` has to be known for a while before it counts again.
   constexpr const MasterReading& see(std::int64_t position, bool valid) {
+    const std::int64_t length = config_.cycle.length;
+    std::int64_t cycles = position / length, rest = position % length;
+    if (rest < 0) {
+      --cycles;
+      rest += length;
+    }
+    return see(cycles, rest, valid);
+  }
+  // The same `rest` behind the begin of a cycle, one of `cycles`; `rest`: 0 to the length of a cycle; `valid`: as
+  // above.
+  constexpr const MasterReading& see(std::int64_t cycles, std::int64_t rest, bool valid) {
     if (!valid) {
       known_ = 0;
       reading_.valid = false;
       return reading_;
     }
-    const MasterPosition at = in_cycles(position);
+    constexpr int bits = 60;  // so that a whole cycle stays within a word
+    const MasterPosition at{cycles, static_cast<std::uint64_t>(config_.cycle.divide(rest, bits)) << (64 - bits)};
+    // From the second on its speed is known too: one that turns when it is found.
     if (known_ == 0) estimator_.start(at);
+    if (known_ == 1) estimator_.start(first_, static_cast<std::int64_t>((at - first_).phase));
+    if (known_ == 0) first_ = at;
     const bool follows = estimator_.step(at);
     const std::int32_t settled = std::int32_t{16} << config_.estimator.bits;
     known_ = known_ < settled ? known_ + 1 : settled;
@@ -58,21 +73,11 @@ class CamMaster {
   constexpr bool at_rest() const { return virtual_.at_speed() && virtual_.point().velocity == 0; }
 
  private:
-  constexpr MasterPosition in_cycles(std::int64_t position) const {
-    const std::int64_t length = config_.cycle.length;
-    std::int64_t cycles = position / length, rest = position % length;
-    if (rest < 0) {
-      --cycles;
-      rest += length;
-    }
-    constexpr int bits = 60;  // so that a whole cycle stays within a word
-    return {cycles, static_cast<std::uint64_t>(config_.cycle.divide(rest, bits)) << (64 - bits)};
-  }
-
   Config config_;
   VirtualMaster virtual_;
   MasterEstimator estimator_;
   MasterReading reading_{};
+  MasterPosition first_{};  // seen
   std::int32_t known_ = 0;  // ticks in a row
 };
 

@@ -20,12 +20,16 @@ namespace stiction {
 
 enum class CamCommand : std::uint8_t {
   none,
-  engage,  // MC_CamIn, MC_GearIn: with the values asked for; also to a different table, scale or offset on the run
-  leave,   // MC_CamOut, to standstill
-  cancel,  // deletes what waits
-  phase    // MC_Phasing: the phase asked for
+  engage,    // MC_CamIn, MC_GearIn: with the values asked for; also to a different table, scale or offset on the run
+  leave,     // MC_CamOut, to standstill or to the speed asked for
+  cancel,    // deletes what waits
+  phase,     // MC_Phasing: the phase asked for
+  superpose  // MC_MoveSuperimposed: the displacement asked for, on top of what the axis follows or where it stands
 };
-inline constexpr int cam_commands = 5;
+inline constexpr int cam_commands = 6;
+
+// The ramp of the drive that a stop along a cam takes the place of.
+enum class CamStop : std::uint8_t { slow_down, quick_stop };
 
 class CamMode {
  public:
@@ -34,7 +38,10 @@ class CamMode {
   struct Config {
     CamMotion::Config motion{};
     S::Rate rate{};
-    S::Position low{}, high{};  // the ends of the travel
+    S::Position low{}, high{};        // the ends of the travel
+    std::array<Span, 2> stops{};      // decelerations of the drive's ramps by CamStop, 2^-64 m a tick, a tick
+    MotionLimits superposed{};        // of superposed moves, beside those of `motion`
+    SpeedRampRule superposed_ramp{};  // of these
   };
 
   // A table that can be asked for.
@@ -57,13 +64,15 @@ class CamMode {
     std::int64_t slave_scale = std::int64_t{1} << 32;
     std::int32_t numerator = 1;  // of the ratio
     std::uint16_t denominator = 1;
-    std::int64_t gear_way = 0;  // of the slave in a cycle of the master behind the ratio, 2^-40 m
-    std::int64_t phase = 0;     // 2^-40 cycles
+    std::int64_t gear_way = 0;     // of the slave in a cycle of the master behind the ratio, 2^-40 m
+    std::int64_t phase = 0;        // 2^-40 cycles
+    std::int64_t leave_speed = 0;  // 2^-52 m a tick
+    std::int64_t superposed = 0;   // 2^-40 m
   };
 
   // `config`: of the axis; `tables`: that can be asked for, by their number; both must outlive this.
   explicit constexpr CamMode(const Config& config, std::span<const Table> tables = {})
-      : config_(&config), tables_(tables), motion_(config.motion) {}
+      : config_(&config), tables_(tables), motion_(config.motion), superposed_(config_->superposed) {}
   CamMode(const CamMode&) = delete;
   CamMode& operator=(const CamMode&) = delete;
   ~CamMode() = default;
@@ -71,6 +80,9 @@ class CamMode {
   // Stands at `position` and follows nothing.
   constexpr void start(S::Position position) {
     motion_.start(position.raw());
+    superposed_.start(0);
+    point_ = motion_.point();
+    braking_ = false;
     fault_ = Fault::none;
     table_ = 0;
     waiting_ = nullptr;
@@ -96,16 +108,18 @@ class CamMode {
   constexpr CamRefusal command(CamCommand command, bool gear, bool referenced) {
     switch (command) {
       case CamCommand::engage:
-        return refusal_ = engage(gear, referenced);
+        return refusal_ = braking_ ? CamRefusal::not_enabled : engage(gear, referenced);
       case CamCommand::leave:
-        waiting_ = nullptr;
-        return refusal_ = motion_.leave(0);
+        return refusal_ = leave(asked_.leave_speed);
       case CamCommand::cancel:
         motion_.cancel();
         waiting_ = nullptr;
         return refusal_ = CamRefusal::none;
       case CamCommand::phase:
         motion_.phase(asked_.phase);
+        return refusal_ = CamRefusal::none;
+      case CamCommand::superpose:
+        superposed_.go(asked_.superposed);
         return refusal_ = CamRefusal::none;
       case CamCommand::none:
         break;
@@ -115,9 +129,53 @@ class CamMode {
   // Of a command that was not given to it.
   constexpr void refuse(CamRefusal reason) { refusal_ = reason; }
 
+  // Deletes what waits, leaves what is followed to standstill within the limits of the axis, and ends a superposed
+  // move.
+  constexpr void leave_to_rest() {
+    superposed_.stop(config_->superposed_ramp);
+    if (!motion_.at_rest() || motion_.status().waiting) leave(0);
+  }
+
+  // Brakes along what is followed: from the coming tick on the master that this axis sees goes to standstill by itself,
+  // so slowly that the axis needs no more than the deceleration of `stop` for the curve and for the braking together,
+  // nor more than its limits. Three times as long as the ramp would take from the largest speed of the curve at that of
+  // the master, or six times. False, and nothing changes, where no such way is found, or the axis is not in sync.
+  constexpr bool brake(CamStop stop) {
+    if (braking_) return true;
+    const CamStatus& status = motion_.status();
+    if (!status.in_sync || status.waiting || motion_.phasing().busy() || superposed_.busy()) return false;
+    const Span& deceleration = config_->stops[static_cast<std::size_t>(stop)];
+    const MotionLimits& slave = config_->motion.slave;
+    const MasterPoint& now = seen_.point;
+    const auto speed = static_cast<std::int64_t>(magnitude(now.velocity));
+    const auto change = static_cast<std::int64_t>(magnitude(now.acceleration));
+    const std::int64_t fastest = motion_.curve()->motion({speed, 0, 0}).velocity;
+    std::int64_t ticks = 3 * deceleration.divide(fastest, MotionPoint::tick_bits) + 48;
+    constexpr std::int64_t most_ticks = std::int64_t{1} << 20;
+    for (int tried = 0; tried < 2 && ticks <= most_ticks; ++tried, ticks *= 2) {
+      // Of the bridge of speed: at most v + a T / 4, |a| + 3/2 v / T and (4 |a| + 6 v / T) / T.
+      const Span span = Span::of(ticks);
+      const std::int64_t share = span.divide(speed, MotionPoint::tick_bits);
+      const MotionLimits master{speed + product_shifted(change, ticks, MotionPoint::tick_bits + 2),
+                                change + share + share / 2 + 1,
+                                span.divide(4 * change + 6 * share, MotionPoint::tick_bits) + 1};
+      const MotionLimits needed = motion_.curve()->motion(master);
+      if (needed.acceleration > deceleration.length || needed.acceleration > slave.acceleration ||
+          needed.velocity > slave.velocity || needed.jerk > slave.jerk)
+        continue;
+      stopping_master_.brake_from(now, ticks);
+      return braking_ = true;
+    }
+    return false;
+  }
+  constexpr bool braking() const { return braking_; }
+  // Whether the master of brake() stands.
+  constexpr bool braked() const { return braking_ && stopping_master_.at_speed(); }
+
   // The set-point of the coming tick, at the `master` of that tick.
   constexpr SetPoint<S> step(const MasterReading& master) {
-    const MotionPoint& point = motion_.step(master.point, master.valid);
+    seen_ = braking_ ? MasterReading{stopping_master_.step(), true} : master;
+    point_ = motion_.step(seen_.point, seen_.valid, braking_) + superposed_.step();
     const CamStatus& status = motion_.status();
     fault_ = fault_of(status.fault);
     // Refused behind its trigger.
@@ -126,13 +184,15 @@ class CamMode {
     if (decided && status.refusal == CamRefusal::none && status.active) table_ = waiting_table_;
     if (decided) waiting_ = nullptr;
     if (!status.active) table_ = 0;
-    return cam_set_point(point, config_->rate);
+    return cam_set_point(point_, config_->rate);
   }
 
-  constexpr const MotionPoint& point() const { return motion_.point(); }
+  constexpr const MotionPoint& point() const { return point_; }
   constexpr const CamStatus& status() const { return motion_.status(); }
-  constexpr bool at_rest() const { return motion_.at_rest(); }
-  constexpr std::uint16_t table() const { return table_; }  // that is followed; 0: none, or a gear
+  constexpr bool at_rest() const { return motion_.at_rest() && !superposed_.busy(); }
+  constexpr bool superposes() const { return superposed_.busy(); }     // a move is on its way
+  constexpr bool phasing() const { return motion_.phasing().busy(); }  // the phase is on its way
+  constexpr std::uint16_t table() const { return table_; }             // that is followed; 0: none, or a gear
   // Of the last command, and of what it asked for at its trigger.
   constexpr CamRefusal refusal() const { return refusal_; }
   // As long as the axis follows set-points and no request was taken again.
@@ -153,6 +213,12 @@ class CamMode {
   }
 
  private:
+  constexpr CamRefusal leave(std::int64_t speed) {
+    braking_ = false;
+    waiting_ = nullptr;
+    return motion_.leave(speed);
+  }
+
   constexpr CamRefusal engage(bool gear, bool referenced) {
     if (!gear && (asked_.table == 0 || asked_.table > tables_.size())) return CamRefusal::unknown_table;
     const Table none{};
@@ -203,6 +269,11 @@ class CamMode {
   const Config* config_;
   std::span<const Table> tables_;
   CamMotion motion_;
+  SmoothOffset superposed_;
+  VirtualMaster stopping_master_{VirtualMaster::Config{}};  // that the axis sees while it brakes along its curve
+  MasterReading seen_{{}, false};                           // in the last tick
+  MotionPoint point_{};
+  bool braking_ = false;
   Asked asked_{};
   std::array<CamCurve, 3> places_{};
   const CamCurve* waiting_ = nullptr;  // of a request that was not decided yet

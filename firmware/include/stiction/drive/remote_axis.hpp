@@ -140,6 +140,8 @@ class RemoteAxis {
     const bool follows = drive.follows();
     const bool at_rest = drive.set_velocity() == S::Velocity{} && (!follows || source_rests());
     const bool changes = asked_mode_ != mode_ && at_rest;
+    stops_along_ = drive.stops_along();
+    stops_fast_ = drive.stops_fast();
     referenced_ = drive.referenced();
     standing_ = drive.standing();
     // Behind a change too: a speed of before is none of the mode that follows.
@@ -172,6 +174,8 @@ class RemoteAxis {
   constexpr Refusal refusal() const { return refusal_; }  // of the last target, until one is taken or bit 4 falls
   // Whether the drive is to brake to standstill in the coming tick, in place of its set-point.
   constexpr bool brakes() const { return brakes_; }
+  // Whether a stop of the drive may follow the set-point in place of a ramp.
+  constexpr bool along() const { return is_coupled(mode_) && cam_.along(); }
   constexpr S::Velocity velocity_offset() const {
     return mode_ == OperationMode::cyclic_position ? offsets_.velocity() : S::Velocity{};
   }
@@ -252,7 +256,9 @@ class RemoteAxis {
 
   // A position beyond an end is an invalid set-point, as in csp.
   constexpr SetPoint<S> cam_set_point() {
-    auto set = cam_.step(halted() || asked_mode_ != mode_, following_);
+    const bool fast = stops_along_ ? stops_fast_ : config_.halting != S::Velocity{};
+    auto set = cam_.step(stops_along_ || halted() || asked_mode_ != mode_, following_,
+                         fast ? CamStop::quick_stop : CamStop::slow_down, stops_along_);
     set.valid = set.valid && (!referenced_ || config_.allows(set.position, point_.position));
     point_ = {set.position, set.velocity, set.acceleration};
     return set;
@@ -393,6 +399,7 @@ class RemoteAxis {
   // The drive in the last tick.
   S::Position x_{};
   S::Velocity v_{};
+  bool stops_along_ = false, stops_fast_ = false;
   bool following_ = false, faulted_ = false, referenced_ = true, standing_ = true;
   SaturationCounter saturations_;
 };

@@ -1,6 +1,8 @@
 // The modes of cam and gear of an axis that others command (remote_axis.hpp): there only where the drive has a master.
-// A halt, and a different mode that is asked for, leave the curve to standstill within the axis' limits; what was
-// engaged is not taken up again by itself.
+// A halt, a different mode that is asked for, and a stop of the drive that is none for a fault of the axis brake along
+// the curve, where that takes no more than the deceleration of the drive's ramp (CamMode::brake()). Else the first two
+// leave it to standstill within the axis' limits, and the drive stops by its ramp. What was engaged is not taken up
+// again by itself.
 #pragma once
 
 #include <cstdint>
@@ -41,15 +43,25 @@ class RemoteCam {
 
   constexpr bool at_rest() const { return !attached() || mode_->at_rest(); }
 
-  // The set-point of the coming tick. `stops`: to standstill; `following`: as of command().
-  constexpr SetPoint<S> step(bool stops, bool following) {
+  // The set-point of the coming tick. `stops`: to standstill; `following`: as of command(); `ramp`: that of the stop;
+  // `by_drive`: it is the drive that stops, and takes the ramp where along() is false.
+  constexpr SetPoint<S> step(bool stops, bool following, CamStop ramp = CamStop::slow_down, bool by_drive = false) {
+    along_ = false;
     if (!attached() || !following) return {stands_, {}, {}};
-    const CamStatus& status = mode_->status();
-    if (stops && (status.active || status.waiting)) mode_->command(CamCommand::leave, false, false);
+    const bool brakes = stops && mode_->brake(ramp);
+    const bool waits = mode_->status().waiting;
+    if (stops && !by_drive && !brakes && (waits || !mode_->at_rest())) leave_once();
+    if (!stops) leaving_ = false;
+    if (mode_->braked()) mode_->leave_to_rest();
+    along_ = by_drive ? mode_->braking() : mode_->status().in_sync;
     const auto set = mode_->step(master_->reading());
     if (mode_->status().end_of_profile) ++ends_;
     return set;
   }
+
+  // Whether a stop of the drive is to take the set-points: one that begins, in this tick; one under way, on to
+  // standstill.
+  constexpr bool along() const { return along_; }
 
   constexpr bool refused() const { return attached() && mode_->refusal() != CamRefusal::none; }
   constexpr Fault fault() const { return attached() ? mode_->fault() : Fault::none; }
@@ -63,10 +75,18 @@ class RemoteCam {
   constexpr std::uint32_t ends() const { return ends_; }  // of a profile, that were passed
 
  private:
+  // Where it leaves already, what it does is not to begin again in each tick.
+  constexpr void leave_once() {
+    if (leaving_ && !mode_->status().waiting && !mode_->status().active) return;
+    leaving_ = true;
+    mode_->leave_to_rest();
+  }
+
   CamMode* mode_ = nullptr;
   CamMaster* master_ = nullptr;
   S::Position stands_{};
   std::uint32_t ends_ = 0;
+  bool along_ = false, leaving_ = false;
 };
 
 }  // namespace stiction

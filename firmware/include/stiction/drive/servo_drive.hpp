@@ -132,7 +132,10 @@ class ServoDrive {
   constexpr const CommutationSearch<S>& commutation() const { return commutation_; }
   constexpr const BrakeTest<S>& brake_test() const { return brake_test_; }
   constexpr bool referenced() const { return referenced_; }
-  constexpr bool follows() const { return follows_; }    // the set-points from outside, in the last tick
+  constexpr bool follows() const { return follows_; }  // the set-points from outside, in the last tick
+  // Whether it stops, and goes on to follow set-points that lead to standstill; by which ramp it would stop else.
+  constexpr bool stops_along() const { return stopping_ && along_; }
+  constexpr bool stops_fast() const { return fast_; }
   constexpr Position origin() const { return origin_; }  // of the machine's coordinates in the encoder's
   constexpr Position position() const { return to_machine(measured_); }
   // Where the set-point stands, machine's coordinates: where a source of set-points begins after enabling or homing.
@@ -214,6 +217,8 @@ class ServoDrive {
     const auto way = stop_way(StopObject::fault_reaction, config_.stops.fault_reaction);
     const bool stops = !following && row != nullptr && row->reaction == Reaction::quick_stop && powered_ &&
                        !(fault == Fault::following_error && supervision_.resisted());
+    // Whatever an axis with a fault follows, it brakes at once.
+    along_ = false;
     if (stops && way.ramp != StopRamp::none) {
       begin_stop(way, axis);
     } else {
@@ -225,8 +230,10 @@ class ServoDrive {
 
   // A stop that is under way is never made slower.
   // Nor is one begun that would control a position before its time.
-  constexpr void begin_stop(const StopOption& way, Axis<S>& axis) {
+  constexpr void begin_stop(const StopOption& way, Axis<S>& axis, bool along = false) {
     if (way.ramp == StopRamp::none || preparing()) return power_off(axis);
+    const bool faster = way.ramp == StopRamp::quick_stop && !fast_;
+    along_ = stopping_ ? along_ && !faster : along && follows_;
     fast_ = way.ramp == StopRamp::quick_stop || (stopping_ && fast_);
     stopping_ = true;
   }
@@ -238,6 +245,7 @@ class ServoDrive {
     brake_test_.stop();
     powered_ = false;
     stopping_ = false;
+    along_ = false;
     fast_ = false;
     follows_ = false;
   }
@@ -255,9 +263,9 @@ class ServoDrive {
     if (before == DriveState::operation_enabled) {
       const auto command = command_of(controlword_);
       if (command == DriveCommand::shutdown)
-        begin_stop(stop_way(StopObject::shutdown, config_.stops.shutdown), axis);
+        begin_stop(stop_way(StopObject::shutdown, config_.stops.shutdown), axis, demand.along);
       else if (command == DriveCommand::switch_on)
-        begin_stop(stop_way(StopObject::disable_operation, config_.stops.disable_operation), axis);
+        begin_stop(stop_way(StopObject::disable_operation, config_.stops.disable_operation), axis, demand.along);
       // A stop once begun is finished: by its end the set-points have gone on.
       if (stopping_ && command == DriveCommand::enable_operation)
         controlword_ = static_cast<std::uint16_t>(controlword_ & ~controlword::enable_operation_bit);
@@ -273,13 +281,13 @@ class ServoDrive {
         power_on(feedback, inputs, axis);
         break;
       case 11:
-        begin_stop(stop_way(StopObject::quick_stop, config_.stops.quick_stop), axis);
+        begin_stop(stop_way(StopObject::quick_stop, config_.stops.quick_stop), axis, demand.along);
         break;
       case 15:
         forget(feedback, axis);
         break;
       case 16:
-        stopping_ = fast_ = false;
+        stopping_ = fast_ = along_ = false;
         brake_.open(config_.brake_ticks);
         break;
       default:
@@ -294,7 +302,7 @@ class ServoDrive {
   constexpr void power_on(const Feedback<S>& feedback, const DigitalInputs<S>& inputs, Axis<S>& axis) {
     restart(feedback, axis);
     powered_ = true;
-    stopping_ = fast_ = false;
+    stopping_ = fast_ = along_ = false;
     brake_.open(config_.brake_ticks);
     standing_ = 0;
     last_ = {measured_, {}};
@@ -321,6 +329,8 @@ class ServoDrive {
 
   constexpr bool stop_ended() {
     if (!stopping_) return true;
+    // A curve may stand on the way.
+    if (along_) return false;
     if (last_.velocity != Velocity{} || offset_.speed() != Velocity{}) return false;
     return brake_.close(standing_ == standstill_ticks, config_.stop_margin_ticks, config_.brake_ticks);
   }
@@ -347,6 +357,8 @@ class ServoDrive {
       brakes_ = false;
       return {last_.position, {}, {}};
     }
+    if (stopping_ && along_ && demand.along && demand.set_point.valid) return followed(demand.set_point);
+    along_ = false;
     if (stopping_ || machine_.state() != DriveState::operation_enabled) return ramped({}, stopping_ && !fast_);
     if (preparing() || commutation_.fault() != Fault::none || brake_test_.slipped()) return prepared();
     if (brake_.opens()) return ramped({});
@@ -359,8 +371,11 @@ class ServoDrive {
     }
     if (mode_ == OperationMode::homing) return ramped(homing_speed(inputs));
     homing_.stop();
+    return followed(demand.set_point);
+  }
+
+  constexpr SetPoint<S> followed(SetPoint<S> set) {
     follows_ = true;
-    SetPoint<S> set = demand.set_point;
     if (set.by_current) {
       // Where the axis is, so that a ramp begins there.
       const auto since = narrow<Position>(v_ * S::seconds(now_ns_ - measured_ns_), saturations_);
@@ -429,7 +444,8 @@ class ServoDrive {
   Fault fault_ = Fault::none, following_ = Fault::none;
   bool fault_raised_ = false;
   bool powered_ = false, stopping_ = false, follows_ = false, referenced_ = false;
-  bool fast_ = false;  // the stop, by the quick-stop ramp
+  bool fast_ = false;   // the stop, by the quick-stop ramp
+  bool along_ = false;  // it goes on to follow set-points
   bool leaves_homing_ = false, brakes_ = false, supplied_ = true, torque_off_ = false;
   RestWatch<S> rest_;
   LagWatch<S> lag_;

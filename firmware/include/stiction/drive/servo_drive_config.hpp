@@ -51,6 +51,7 @@ struct DriveDemand {
   std::array<Fault, 4> causes{};           // what programme, clock, backend and protection see in this tick
   bool brake = false;                      // to standstill under power, whatever set_point says
   bool quick_stop = false;                 // another axis has a fault
+  bool along = false;                      // a stop by a word may follow set_point to standstill in place of a ramp
   bool torque_off = false;                 // a channel of safe torque off is open: nothing is enabled
 };
 

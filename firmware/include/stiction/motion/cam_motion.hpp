@@ -93,13 +93,17 @@ class CamMotion {
   // Moves the master's phase as the slave sees it to `offset`, 2^-40 cycles, within the limits of phasing.
   constexpr void phase(std::int64_t offset) { phasing_.go(offset); }
 
-  // The set-point of the coming tick. `measured`: the master of this tick; `valid`: whether it is known.
-  constexpr MotionPoint step(const MasterPoint& measured, bool valid = true) {
+  // The set-point of the coming tick. `measured`: the master of this tick; `valid`: whether it is known; `own`: it is
+  // made for this slave alone, which keeps its limits behind it, whatever those of the master are.
+  constexpr MotionPoint step(const MasterPoint& measured, bool valid = true, bool own = false) {
     status_.end_of_profile = false;
     const MotionPoint offset = phasing_.step();
     const MasterPoint master{measured.position + MasterPosition::way(offset.position),
                              measured.velocity + offset.velocity, measured.acceleration + offset.acceleration};
-    const CamFault fault = seen_ ? fault_of(measured, valid) : valid ? CamFault::none : CamFault::master_lost;
+    const CamFault fault = own     ? CamFault::none
+                           : seen_ ? fault_of(measured, valid)
+                           : valid ? CamFault::none
+                                   : CamFault::master_lost;
     if (fault != CamFault::none && (follows_ || waits_)) end_by(fault);
     advance(master);
     if (waits_) try_request(measured, master);

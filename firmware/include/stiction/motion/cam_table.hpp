@@ -118,16 +118,7 @@ class CamTable {
 
   constexpr const Header& header() const { return header_; }
 
-  constexpr Segment segment(std::uint32_t k) const {
-    const std::size_t at = header_size + segment_size * k;
-    const auto c = [this, at](std::size_t n) { return word<std::int32_t>(bytes_, at + 16 + 4 * n); };
-    return {.start = word<std::uint32_t>(bytes_, at),
-            .reciprocal = word<std::uint32_t>(bytes_, at + 4),
-            .down = bytes_[at + 36],
-            .shift = bytes_[at + 37],
-            .c0 = word<std::int64_t>(bytes_, at + 8),
-            .c = {c(0), c(1), c(2), c(3), c(4)}};
-  }
+  constexpr Segment segment(std::uint32_t k) const { return segment_at(header_size + segment_size * k); }
 
   constexpr Track track(std::uint32_t k) const {
     const std::size_t at = tracks_at() + track_size * k;
@@ -165,25 +156,23 @@ class CamTable {
 
   // The segment that holds `phase`, in 2^-32 cycles.
   constexpr std::uint32_t find(std::uint32_t phase) const {
-    std::uint32_t k = 0;
-    for (std::uint32_t step = std::bit_floor(header_.count); step != 0; step >>= 1)
-      if (k + step < header_.count && word<std::uint32_t>(bytes_, header_size + segment_size * (k + step)) <= phase)
-        k += step;
-    return k;
+    return static_cast<std::uint32_t>((place_of(phase) - header_size) / segment_size);
   }
 
   // Position, speed and acceleration at `phase`, in 2^-32 cycles.
-  constexpr Output evaluate(std::uint32_t phase) const { return evaluate(header_, segment(find(phase)), phase); }
+  constexpr Output evaluate(std::uint32_t phase) const { return evaluate(header_, segment_at(place_of(phase)), phase); }
 
   // The same within a `segment` of a table with that `header`; `phase` lies in it.
   static constexpr Output evaluate(const Header& header, const Segment& segment, std::uint32_t phase) {
     const std::uint64_t product = std::uint64_t{phase - segment.start} * segment.reciprocal;
     const auto t = static_cast<std::uint32_t>(product >> segment.down);
     // Horner's scheme, written out: as a loop it takes a third more instructions on Cortex-M4.
-    const auto c = [&segment](int n) { return std::int64_t{segment.c[n - 1]} * (1 << extra_bits); };
-    const std::int64_t y = high(high(high(high(high(c(5), t) + c(4), t) + c(3), t) + c(2), t) + c(1), t);
-    const std::int64_t v = high(high(high(high(c(5) * 5, t) + c(4) * 4, t) + c(3) * 3, t) + c(2) * 2, t) + c(1);
-    const std::int64_t a = high(high(high(c(5) * 20, t) + c(4) * 12, t) + c(3) * 6, t) + c(2) * 2;
+    const auto c = [&segment](int n, int times) {
+      return std::int64_t{segment.c[n - 1]} * (times * (1 << extra_bits));  // one product of words
+    };
+    const std::int64_t y = high(high(high(high(high(c(5, 1), t) + c(4, 1), t) + c(3, 1), t) + c(2, 1), t) + c(1, 1), t);
+    const std::int64_t v = high(high(high(high(c(5, 5), t) + c(4, 4), t) + c(3, 3), t) + c(2, 2), t) + c(1, 1);
+    const std::int64_t a = high(high(high(c(5, 20), t) + c(4, 12), t) + c(3, 6), t) + c(2, 2);
     const std::int64_t speed = high(v, segment.reciprocal);
     const std::int64_t acceleration = high(high(a, segment.reciprocal), segment.reciprocal);
     return {segment.c0 + rounded(y, segment.shift), rounded(speed, speed_shift(header, segment)),
@@ -202,6 +191,28 @@ class CamTable {
   static constexpr int extra_bits = 24;
 
  private:
+  // The place of the segment that holds `phase`: in bytes, so that no step takes a product.
+  constexpr std::size_t place_of(std::uint32_t phase) const {
+    const std::size_t end = tracks_at();
+    std::size_t at = header_size;
+    for (std::size_t step = segment_size * std::bit_floor(header_.count); step >= segment_size; step >>= 1) {
+      const std::size_t next = at + step;
+      if (next < end && word<std::uint32_t>(bytes_, next) <= phase) at = next;
+    }
+    return at;
+  }
+
+  constexpr Segment segment_at(std::size_t at) const {
+    const auto part = bytes_.subspan(at, segment_size);
+    const auto c = [part](std::size_t n) { return word<std::int32_t>(part, 16 + 4 * n); };
+    return {.start = word<std::uint32_t>(part, 0),
+            .reciprocal = word<std::uint32_t>(part, 4),
+            .down = part[36],
+            .shift = part[37],
+            .c0 = word<std::int64_t>(part, 8),
+            .c = {c(0), c(1), c(2), c(3), c(4)}};
+  }
+
   // `size` bytes from `at`, the least significant first.
   static constexpr std::uint64_t number(std::span<const std::uint8_t> bytes, std::size_t at, std::size_t size) {
     std::uint64_t value = 0;
@@ -221,11 +232,30 @@ class CamTable {
   constexpr std::size_t tracks_at() const { return header_size + segment_size * header_.count; }
   constexpr std::size_t windows_at() const { return tracks_at() + track_size * header_.tracks; }
 
-  // value * factor / 2^32, rounded down: two products of 32 bits. |value| < 2^62.
+  // value * factor / 2^32, rounded down: two products of 32 bits, or one of 64 where the machine has it. |value| <
+  // 2^62.
   static constexpr std::int64_t high(std::int64_t value, std::uint32_t factor) {
-    const std::int64_t upper = (value >> 32) * std::int64_t{factor};
-    const std::uint64_t lower = std::uint64_t{static_cast<std::uint32_t>(value)} * factor;
-    return upper + static_cast<std::int64_t>(lower >> 32);
+#ifdef __SIZEOF_INT128__
+    __extension__ using Wide = __int128;
+    return static_cast<std::int64_t>((static_cast<Wide>(value) * factor) >> 32);
+#else
+    // The upper word as one without a sign; what that is too much of a negative one goes into the upper word of the
+    // sum.
+    const auto upper = static_cast<std::uint32_t>(static_cast<std::uint64_t>(value) >> 32);
+    const auto lower = static_cast<std::uint32_t>(value);
+    const std::uint32_t sign = static_cast<std::uint32_t>(static_cast<std::int32_t>(upper) >> 31) & (0u - factor);
+#ifdef __thumb2__
+    // Product and sum in one instruction, which g++ makes of neither form.
+    if (!std::is_constant_evaluated()) {
+      auto low = static_cast<std::uint32_t>(std::uint64_t{lower} * factor >> 32);
+      std::uint32_t top = sign;
+      asm("umlal %0, %1, %2, %3" : "+r"(low), "+r"(top) : "r"(upper), "r"(factor));
+      return static_cast<std::int64_t>(std::uint64_t{top} << 32 | low);
+    }
+#endif
+    const std::uint64_t sum = std::uint64_t{sign} << 32 | std::uint64_t{lower} * factor >> 32;
+    return static_cast<std::int64_t>(sum + std::uint64_t{upper} * factor);
+#endif
   }
 
   // To nearest; what is shifted out of a word is nothing.

@@ -45,6 +45,14 @@ class VirtualMaster {
     return true;
   }
 
+  // Takes up the motion `now` of a master, and brakes it to standstill in `ticks`, whatever the limits are.
+  constexpr void brake_from(const MasterPoint& now, std::int64_t ticks) {
+    const Span span = Span::of(ticks);
+    base_ = now.position + MasterPosition::way(-bridge_.start_speed(span, now.velocity, now.acceleration));
+    speed_ = 0;
+    stopping_ = false;
+  }
+
   // Stops at the next `angle` that it can, in 2^-64 cycles, once it runs at a constant speed; in the direction that it
   // has. One that stands stays.
   constexpr void stop_at(std::uint64_t angle) {

@@ -29,10 +29,11 @@ class MasterEstimator {
 
   explicit constexpr MasterEstimator(const Config& config) : config_(config) {}
 
-  // At `position`, with no speed.
-  constexpr void start(const MasterPosition& position) {
+  // At `position`, with a `velocity`, 2^-64 cycles a tick.
+  constexpr void start(const MasterPosition& position, std::int64_t velocity = 0) {
     position_ = position + MasterPosition::fine(config_.half_count);
-    velocity_ = acceleration_ = 0;
+    velocity_ = velocity;
+    acceleration_ = 0;
   }
 
   // Takes the `measured` position of a tick. False where the master jumped; the estimate then goes on as predicted.

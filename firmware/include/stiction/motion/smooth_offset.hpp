@@ -33,6 +33,15 @@ class SmoothOffset {
     refused_ = false;
   }
 
+  // To standstill from wherever it is. `rule`: of its limits.
+  constexpr void stop(const SpeedRampRule& rule) {
+    tried_ = none;
+    if (!bridge_.active()) return;
+    const MotionPoint now = point();
+    const Span span = Span::of(rule.ticks(now.velocity));
+    value_ = target_ = now.position - bridge_.start_speed(span, now.velocity, now.acceleration);
+  }
+
   // The offset of the coming tick.
   constexpr MotionPoint step() {
     bridge_.tick();
