@@ -12,7 +12,6 @@
 #include "hal/gpio/gpiod.hpp"
 
 namespace stiction::hal::gpiod {
-namespace {
 
 template <auto Free>
 struct Freed {
@@ -26,8 +25,6 @@ using LinesConfig = std::unique_ptr<gpiod_line_config, Freed<::gpiod_line_config
 using RequestConfig = std::unique_ptr<gpiod_request_config, Freed<::gpiod_request_config_free>>;
 using Request = std::unique_ptr<gpiod_line_request, Freed<::gpiod_line_request_release>>;
 using Buffer = std::unique_ptr<gpiod_edge_event_buffer, Freed<::gpiod_edge_event_buffer_free>>;
-
-}  // namespace
 
 struct Line::Native {
   Request request;
