@@ -66,7 +66,8 @@ class Chip {
   int line_count() const;
   std::string user(int offset) const;  // who holds the line; empty: the kernel does not say
 
-  // `line`: below line_count(); `user`: what the kernel shows as the one who holds it. Empty with errno where refused.
+  // `line`: below line_count(); `user`: what the kernel shows as the one who holds it; `bias`: of an input. Empty with
+  // errno where refused.
   Line input(const LineConfig& line, const std::string& user, Bias bias) const;
   Line output(const LineConfig& line, const std::string& user) const;  // inactive
 

@@ -49,8 +49,8 @@ inline void sleep_exactly() { ::prctl(PR_SET_TIMERSLACK, 1ul, 0ul, 0ul, 0ul); }
 // kernel's command line.
 bool simulated_time();
 
-// What a full queue of the kernel is to an encoder: where edges are numbered it is seen that some are missing, otherwise
-// they may be.
+// What a full queue of the kernel is to an encoder: where edges are numbered it is seen that some are missing,
+// otherwise they may be.
 inline hal::QuadratureFault dropped_edges() {
   return hal::gpiod::numbers_edges() ? hal::QuadratureFault::lost_edge : hal::QuadratureFault::queue_full;
 }
