@@ -12,8 +12,9 @@ struct Edge {
   bool rising = false;       // the line became active
 };
 
-// What the kernel keeps of a line's edges until they are read; the newest are dropped when it is full (version 1 of the
-// character device, gpiolib-cdev.c: DECLARE_KFIFO(events, struct gpioevent_data, 16)).
+// What the kernel keeps of a line's edges until they are read. When it is full, version 1 of the character device drops
+// the newest (gpiolib-cdev.c: DECLARE_KFIFO(events, struct gpioevent_data, 16)), version 2 the oldest; there it is
+// asked for as many.
 inline constexpr std::size_t kernel_queue = 16;
 
 class EdgeQueue {

@@ -1,8 +1,6 @@
 #include "hal/gpio/lines.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <gpiod.h>
 
 #include <cerrno>
 #include <cstring>
@@ -29,9 +27,8 @@ ChipsFound chips_found() {
     const std::string path = entry.path().string();
     if (!path.starts_with("/dev/gpiochip")) continue;
     list += (list.empty() ? "" : ", ") + path;
-    if (gpiod_chip* chip = ::gpiod_chip_open(path.c_str())) {
-      list += fmt::format(" \"{}\" with {} lines", ::gpiod_chip_label(chip), ::gpiod_chip_num_lines(chip));
-      ::gpiod_chip_close(chip);
+    if (const auto chip = gpiod::Chip::at(path)) {
+      list += fmt::format(" \"{}\" with {} lines", chip.label(), chip.line_count());
     } else {
       found.denied |= errno == EACCES || errno == EPERM;
       list += fmt::format(" ({})", std::strerror(errno));
@@ -42,8 +39,8 @@ ChipsFound chips_found() {
 }
 
 // Looked for by its label, a chip that may not be opened is as one that is not there.
-gpiod_chip* open_chip(const std::string& name) {
-  if (gpiod_chip* chip = ::gpiod_chip_open_lookup(name.c_str())) return chip;
+gpiod::Chip open_chip(const std::string& name) {
+  if (auto chip = gpiod::Chip::find(name)) return chip;
   const char* error = std::strerror(errno);
   const auto found = chips_found();
   if (found.denied)
@@ -54,53 +51,36 @@ gpiod_chip* open_chip(const std::string& name) {
   throw GpioError(fmt::format("gpiochip \"{}\": {}; {}. Set drive.gpio.chip to one of them", name, error, found.text));
 }
 
-int flags_of(const LineConfig& line, Bias bias) {
-  static constexpr std::array biases{0, int{GPIOD_LINE_REQUEST_FLAG_BIAS_PULL_UP},
-                                     int{GPIOD_LINE_REQUEST_FLAG_BIAS_PULL_DOWN},
-                                     int{GPIOD_LINE_REQUEST_FLAG_BIAS_DISABLE}};
-  return biases[static_cast<std::size_t>(bias)] | (line.active_low ? int{GPIOD_LINE_REQUEST_FLAG_ACTIVE_LOW} : 0);
-}
-
-std::int64_t ns_of(const timespec& time) { return time.tv_sec * std::int64_t{1'000'000'000} + time.tv_nsec; }
-
 }  // namespace
 
-std::string chip_name(const std::string& chip) {
-  const std::unique_ptr<gpiod_chip, void (*)(gpiod_chip*)> opened(open_chip(chip), ::gpiod_chip_close);
-  return ::gpiod_chip_name(opened.get());
-}
+std::string chip_name(const std::string& chip) { return open_chip(chip).name(); }
 
-Lines::Lines(const std::string& chip, Bias bias) : chip_(open_chip(chip), ::gpiod_chip_close), bias_(bias) {
-  chip_name_ = fmt::format("{} \"{}\"", ::gpiod_chip_name(chip_.get()), ::gpiod_chip_label(chip_.get()));
+Lines::Lines(const std::string& chip, Bias bias) : chip_(open_chip(chip)), bias_(bias) {
+  chip_name_ = fmt::format("{} \"{}\"", chip_.name(), chip_.label());
 }
 
 Lines::~Lines() {
   for (std::size_t i = 0; i < outputs_.size(); ++i) set(i, false);
 }
 
-gpiod_line* Lines::line_of(const LineConfig& line, const std::string& name) {
-  const auto lines = static_cast<int>(::gpiod_chip_num_lines(chip_.get()));
+void Lines::take_offset(const LineConfig& line, const std::string& name) {
+  const int lines = chip_.line_count();
   if (line.offset < 0 || line.offset >= lines)
     throw GpioError(
         fmt::format("{}: line {} of {}: the chip has the lines 0 to {}", name, line.offset, chip_name_, lines - 1));
   for (const auto& [offset, user] : taken_)
     if (offset == line.offset)
       throw GpioError(fmt::format("{}: line {} of {} is \"{}\" already", name, line.offset, chip_name_, user));
-  gpiod_line* found = ::gpiod_chip_get_line(chip_.get(), static_cast<unsigned>(line.offset));
-  if (found == nullptr)
-    throw GpioError(fmt::format("{}: line {} of {}: {}", name, line.offset, chip_name_, std::strerror(errno)));
   taken_.emplace_back(line.offset, name);
-  return found;
 }
 
-void Lines::refuse(gpiod_line* line, const std::string& name) const {
+void Lines::refuse(const LineConfig& line, const std::string& name) const {
   const int error = errno;
-  const auto where = fmt::format("{}: line {} of {}", name, ::gpiod_line_offset(line), chip_name_);
+  const auto where = fmt::format("{}: line {} of {}", name, line.offset, chip_name_);
   if (error == EBUSY) {
-    ::gpiod_line_update(line);
-    const char* user = ::gpiod_line_consumer(line);
+    const auto user = chip_.user(line.offset);
     throw GpioError(fmt::format("{} is in use by \"{}\"; stop that programme or choose a different line", where,
-                                user == nullptr ? "the kernel" : user));
+                                user.empty() ? "the kernel" : user));
   }
   if (error == ENODEV || error == ENXIO || error == ENOTTY)
     throw GpioError(where + " gives no edges: its chip has no interrupt for it; choose a line of a different chip");
@@ -110,27 +90,24 @@ void Lines::refuse(gpiod_line* line, const std::string& name) const {
 }
 
 std::size_t Lines::add_input(const LineConfig& config, const std::string& name) {
+  take_offset(config, name);
   Input input;
-  input.line = line_of(config, name);
-  if (::gpiod_line_request_both_edges_events_flags(input.line, name.c_str(), flags_of(config, bias_)) != 0)
-    refuse(input.line, name);
-  const int descriptor = ::gpiod_line_event_get_fd(input.line);
-  if (descriptor < 0 || ::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) | O_NONBLOCK) != 0)
-    refuse(input.line, name);
-  settle_level(input, descriptor);
-  inputs_.push_back(input);
-  descriptors_.push_back({descriptor, POLLIN, 0});
+  input.line = chip_.input(config, name, bias_);
+  if (!input.line) refuse(config, name);
+  settle_level(input);
+  descriptors_.push_back({input.line.descriptor(), POLLIN, 0});
+  inputs_.push_back(std::move(input));
   return inputs_.size() - 1;
 }
 
 // An edge between a look at the level and the look at the queue would count as lost: look until none comes between.
-void Lines::settle_level(Input& input, int descriptor) {
+void Lines::settle_level(Input& input) {
   for (int attempt = 0; attempt < 100; ++attempt) {
-    const int level = ::gpiod_line_get_value(input.line);
+    const int level = input.line.level();
     if (level < 0) failed_ = true;
-    input.level = level > 0;
+    input.sequence.start(level > 0);
     input.edge_count = 0;
-    drain(input, descriptor);
+    drain(input);
     if (input.edge_count == 0) break;
   }
   input.edge_count = 0;
@@ -138,11 +115,11 @@ void Lines::settle_level(Input& input, int descriptor) {
 }
 
 std::size_t Lines::add_output(const LineConfig& config, const std::string& name) {
+  take_offset(config, name);
   Output output;
-  output.line = line_of(config, name);
-  if (::gpiod_line_request_output_flags(output.line, name.c_str(), flags_of(config, Bias::as_is), 0) != 0)
-    refuse(output.line, name);
-  outputs_.push_back(output);
+  output.line = chip_.output(config, name);
+  if (!output.line) refuse(config, name);
+  outputs_.push_back(std::move(output));
   return outputs_.size() - 1;
 }
 
@@ -153,15 +130,15 @@ void Lines::poll(std::int64_t now_ns) {
   if (::ppoll(descriptors_.data(), descriptors_.size(), &at_once, nullptr) < 0 && errno != EINTR) failed_ = true;
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     if ((descriptors_[i].revents & (POLLERR | POLLHUP | POLLNVAL)) != 0) failed_ = true;
-    if ((descriptors_[i].revents & POLLIN) != 0) drain(inputs_[i], descriptors_[i].fd);
+    if ((descriptors_[i].revents & POLLIN) != 0) drain(inputs_[i]);
   }
   looked_at_ = (looked_at_ + 1) % inputs_.size();
   look_at(inputs_[looked_at_], now_ns);
 }
 
-void Lines::drain(Input& input, int descriptor) {
-  std::array<gpiod_line_event, kernel_queue> events;
-  const int count = ::gpiod_line_event_read_fd_multiple(descriptor, events.data(), kernel_queue);
+void Lines::drain(Input& input) {
+  std::array<gpiod::KernelEdge, kernel_queue> events;
+  const int count = input.line.read_edges(events);
   if (count < 0) {
     if (errno != EAGAIN && errno != EINTR) failed_ = true;
     return;
@@ -169,27 +146,25 @@ void Lines::drain(Input& input, int descriptor) {
   if (count > 0) input.differs_since_ns = 0;
   for (int i = 0; i < count; ++i) {
     const auto& event = events[static_cast<std::size_t>(i)];
-    const bool rising = event.event_type == GPIOD_LINE_EVENT_RISING_EDGE;
-    if (rising == input.level) ++input.lost;
-    input.level = rising;
-    input.edges[input.edge_count++] = {ns_of(event.ts), rising};
+    input.lost += input.sequence.take(event.rising, event.number);
+    input.edges[input.edge_count++] = {event.time_ns, event.rising};
   }
 }
 
 // The level may be newer than the edges read; only one that stays different while no edge comes tells.
 void Lines::look_at(Input& input, std::int64_t now_ns) {
-  const int level = ::gpiod_line_get_value(input.line);
+  const int level = input.line.level();
   if (level < 0) {
     failed_ = true;
     return;
   }
-  if ((level > 0) == input.level) {
+  if ((level > 0) == input.sequence.level()) {
     input.differs_since_ns = 0;
   } else if (input.differs_since_ns == 0) {
     input.differs_since_ns = now_ns;
   } else if (now_ns - input.differs_since_ns > patience_ns) {
     ++input.lost;
-    input.level = level > 0;
+    input.sequence.start(level > 0);
     input.differs_since_ns = 0;
   }
 }
@@ -208,14 +183,14 @@ std::span<const Edge> Lines::edges(std::size_t input) const {
 void Lines::set(std::size_t output, bool active) {
   auto& line = outputs_[output];
   if (line.active == active) return;
-  if (::gpiod_line_set_value(line.line, active ? 1 : 0) != 0)
+  if (!line.line.set(active))
     failed_ = true;
   else
     line.active = active;
 }
 
 void Lines::cut() noexcept {
-  for (const auto& output : outputs_) ::gpiod_line_set_value(output.line, 0);
+  for (const auto& output : outputs_) output.line.set(false);
 }
 
 }  // namespace stiction::hal

@@ -1,25 +1,24 @@
-// Lines of one gpiochip through libgpiod 1.6 (version 1 of the kernel's character device): outputs, and inputs whose
-// edges carry the kernel's time stamps.
+// Lines of one gpiochip (gpiod.hpp): outputs, and inputs whose edges carry the kernel's time stamps.
 //
-// A tick costs one poll, a read for each line that changed, and one look at one line's level, each line in turn: an
-// edge of which the kernel dropped two shows in no sequence of edges, only in a level that stays different.
+// A tick costs one poll, a read for each line that changed, and one look at one line's level, each line in turn: where
+// the kernel does not number its edges (libgpiod 1.6), the last ones before a standstill that it dropped show in a
+// level that stays different and in nothing else; and so does a pulse that was over before its interrupt was served.
 #pragma once
 
 #include <poll.h>
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hal/gpio/config.hpp"
 #include "hal/gpio/edge_queue.hpp"
-
-struct gpiod_chip;
-struct gpiod_line;
+#include "hal/gpio/edge_sequence.hpp"
+#include "hal/gpio/gpiod.hpp"
 
 namespace stiction::hal {
 
@@ -49,16 +48,16 @@ class Lines {
   void poll(std::int64_t now_ns);
 
   // Of an input, from the last poll. Levels and edges are those of the meaning, whatever the wiring.
-  bool level(std::size_t input) const { return inputs_[input].level; }
+  bool level(std::size_t input) const { return inputs_[input].sequence.level(); }
   bool was_active(std::size_t input) const;  // at some time since the poll before
   std::span<const Edge> edges(std::size_t input) const;
   bool queue_was_full(std::size_t input) const { return inputs_[input].edge_count == kernel_queue; }
-  std::uint64_t lost_edges(std::size_t input) const { return inputs_[input].lost; }  // at least, since the start
+  // At least, since the start. Where the kernel numbers edges, every one that it dropped.
+  std::uint64_t lost_edges(std::size_t input) const { return inputs_[input].lost; }
 
   void set(std::size_t output, bool active);  // a system call only when it changes
 
-  // Every output goes inactive, whatever was set last. Beside the thread that sets them, and in a signal handler: the
-  // library's call is one ioctl over memory of the stack.
+  // Every output goes inactive, whatever was set last. Beside the thread that sets them, and in a signal handler.
   void cut() noexcept;
 
   // Whether the chip stopped answering: nothing that it said counts any more.
@@ -66,25 +65,25 @@ class Lines {
 
  private:
   struct Input {
-    gpiod_line* line = nullptr;
-    bool level = false;
+    gpiod::Line line;
+    EdgeSequence sequence;
     std::array<Edge, kernel_queue> edges{};
     std::size_t edge_count = 0;
     std::uint64_t lost = 0;
     std::int64_t differs_since_ns = 0;  // the level from what the edges say; 0: it does not
   };
   struct Output {
-    gpiod_line* line = nullptr;
+    gpiod::Line line;
     bool active = false;
   };
 
-  gpiod_line* line_of(const LineConfig& line, const std::string& name);
-  [[noreturn]] void refuse(gpiod_line* line, const std::string& name) const;
-  void settle_level(Input& input, int descriptor);
-  void drain(Input& input, int descriptor);
+  void take_offset(const LineConfig& line, const std::string& name);
+  [[noreturn]] void refuse(const LineConfig& line, const std::string& name) const;
+  void settle_level(Input& input);
+  void drain(Input& input);
   void look_at(Input& input, std::int64_t now_ns);
 
-  std::unique_ptr<gpiod_chip, void (*)(gpiod_chip*)> chip_;
+  gpiod::Chip chip_;
   Bias bias_;
   std::string chip_name_;
   std::vector<Input> inputs_;

@@ -19,7 +19,7 @@ using MatVariable = std::unique_ptr<matvar_t, MatFree>;
 
 // matio prints what it finds wrong on standard error; our own messages say it.
 inline void silence_matio() {
-  Mat_LogInitFunc("stiction", [](int, char*) {});
+  Mat_LogInitFunc("stiction", [](int, auto*) {});  // char* before matio 1.5.28, const char* since
 }
 
 // The opened file, never null. Throws LogError.

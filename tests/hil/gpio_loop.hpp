@@ -16,6 +16,7 @@
 
 #include "hal/gpio/config.hpp"
 #include "hal/gpio/lines.hpp"
+#include "hal/gpio/quadrature_tracker.hpp"
 #include "host/plant/gpio_sim.hpp"
 #include "host/plant/pwm_folder.hpp"
 
@@ -47,6 +48,12 @@ inline void sleep_exactly() { ::prctl(PR_SET_TIMERSLACK, 1ul, 0ul, 0ul, 0ul); }
 // Whether time is simulated (time-travel=inf-cpu): then waiting costs nothing and work takes no time. Told by the
 // kernel's command line.
 bool simulated_time();
+
+// What a full queue of the kernel is to an encoder: where edges are numbered it is seen that some are missing,
+// otherwise they may be.
+inline hal::QuadratureFault dropped_edges() {
+  return hal::gpiod::numbers_edges() ? hal::QuadratureFault::lost_edge : hal::QuadratureFault::queue_full;
+}
 
 // A line of the figures that toolchain/test prints; the guest's root is read-only, so that it goes to the output alone.
 inline void measured(const std::string& name, const std::string& text) { fmt::print("{:<64} {}\n", name, text); }

@@ -77,7 +77,8 @@ bool has_stray_number(std::string_view unit) {
 
 // UDUNITS-2 reads to the first NUL, so that "A\0s/m" would pass as A.
 bool has_control_character(std::string_view text) {
-  return std::ranges::any_of(text, [](char c) { return (c >= 0 && c < ' ' && c != '\t') || c == '\x7f'; });
+  return std::ranges::any_of(
+      text, [](unsigned char c) { return (c < ' ' && c != '\t') || c == '\x7f'; });  // char has no sign on aarch64
 }
 
 // How units are usually written: for the right spelling of one that nobody knows.
