@@ -193,7 +193,7 @@ TEST_P(CommutationOf, ARightStoredOffsetIsTakenAsItIs) {
     for (const char* axis : motor.axes)
       settings.push_back(fmt::format("drive.axis.{}.commutation.offset={} deg", axis, 200.0 + off));
     MotorBench bench(motor.machine, settings);
-    ASSERT_TRUE(bench.enable()) << off;
+    ASSERT_TRUE(bench.enable()) << off << " " << name_of(bench.loop.fault(0));
     for (std::size_t i = 0; i < motor.axes.size(); ++i) EXPECT_NEAR(bench.offset_error(i), off, 1e-6);
   }
 }

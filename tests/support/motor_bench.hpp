@@ -56,7 +56,7 @@ class MotorBench {
     }
   }
   // Until every axis follows its set-points, or one has a fault, for at most `most` ticks; whether they follow.
-  bool enable(int most = 48000) {
+  bool enable(int most = 96000) {
     want_on = true;
     for (int i = 0; i < most; ++i) {
       hold_here();

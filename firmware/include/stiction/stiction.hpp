@@ -7,6 +7,7 @@
 #include "stiction/drive/axis.hpp"                     // the cascade: Axis<FixedSignals>
 #include "stiction/drive/faults.hpp"                   // its faults, one table
 #include "stiction/drive/friction_compensation.hpp"    // between set-points and axis
+#include "stiction/drive/master_encoder.hpp"           // a master that is an encoder on a bus
 #include "stiction/drive/remote_axis.hpp"              // set-points from a bus: csp and pp of CiA 402
 #include "stiction/drive/servo_drive.hpp"              // states, supervision, homing, stops around the cascade
 #include "stiction/drive/ticker.hpp"                   // fast and slow ticks
