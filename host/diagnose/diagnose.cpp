@@ -13,7 +13,6 @@
 #include "host/diagnose/judge/closed_loop_description.hpp"
 #include "host/diagnose/judge/command_residual.hpp"
 #include "host/diagnose/judge/finding_evidence.hpp"
-#include "host/diagnose/judge/left_out.hpp"
 #include "host/diagnose/judge/withdrawal.hpp"
 #include "host/diagnose/next_measurement/next_measurement.hpp"
 #include "host/diagnose/prepare.hpp"
@@ -129,8 +128,6 @@ void give_figures(Verdict& verdict, const Prepared& prepared, const Explained& e
     verdict.findings.push_back(map_finding(prepared.context, maps[k], figures.gains[terms.size() + k],
                                            figures.held_out_amplitudes[terms.size() + k]));
   const auto& rows = prepared.training.regressors;
-  const auto named = named_without_each_log(rows, prepared.training.target, prepared.context, terms);
-  for (std::size_t k = 0; k < named.size(); ++k) verdict.findings[k].without_each_log = named[k];
   compare_bands(verdict, terms, rows, explained.inside, prepared.context);
   auto shown = terms;
   shown.insert(shown.end(), maps.begin(), maps.end());

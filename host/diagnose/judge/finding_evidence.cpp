@@ -54,6 +54,7 @@ void give_evidence(Finding& finding, const Term& term, const HoldoutGain& gain,
   finding.holdout = gain;
   finding.p_value = term.judgement.p_value;
   finding.probability = term.probability;
+  finding.without_each_log = term.without_each_log;
   finding.confused_with = confused_with(term);
   finding.evidence = evidence_of(term, held_out_amplitude, blocks);
 }

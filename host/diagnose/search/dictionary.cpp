@@ -29,6 +29,7 @@ std::vector<RowBlock> blocks_for(const LogRows& rows, double correlation) {
 Dictionary::Dictionary(const LogRows& rows, const Eigen::VectorXd& target, SearchContext& context)
     : rows_(rows),
       scene_(context),
+      counts_(rows.counts()),
       correlation_(correlation_length(target, rows.logs())),
       evidence_(target, blocks_for(rows, std::min(correlation_, 0.1 / rows.period(0)))),
       plain_(target, evidence_.row_blocks()),
@@ -115,7 +116,7 @@ Eigen::VectorXd Dictionary::settled_residual(const ActiveSet& set) const {
   }
   Eigen::VectorXd left = residual(set);
   for (int round = 0; round < settling_rounds; ++round) {
-    own.whiten(noise_of(left.cwiseProduct(rows_.counts()), rows_.logs()));
+    own.whiten(noise_in(left));
     Posterior of_set(own, sizes_);
     for (const auto& group : groups) of_set.add(group);
     left = own.residual(of_set.columns(), of_set.weights());
@@ -123,15 +124,37 @@ Eigen::VectorXd Dictionary::settled_residual(const ActiveSet& set) const {
   return left;
 }
 
+// By the noise of the rows that count; those of a log that is left out weigh nothing, so that nothing is learned there.
+Whitening Dictionary::noise_in(const Eigen::VectorXd& left) const {
+  auto noise = noise_of(left.cwiseProduct(counts_), rows_.logs());
+  if (left_out_) noise.weigh(noise.weight().cwiseProduct(counts_));
+  return noise;
+}
+
+void Dictionary::leave_out(const ActiveSet& set, std::size_t part, std::size_t parts) {
+  take_all();
+  left_out_ = true;
+  for (std::size_t log = part; log < rows_.logs().size(); log += parts) {
+    const auto begin = static_cast<Eigen::Index>(rows_.logs()[log]);
+    counts_.segment(begin, static_cast<Eigen::Index>(rows_.end(log)) - begin).setZero();
+  }
+  whiten(set, false);
+}
+
+void Dictionary::take_all() {
+  left_out_ = false;
+  counts_ = rows_.counts();
+}
+
 void Dictionary::whiten(const ActiveSet& set, bool absorbed) {
-  if (!evidence_.whitening() || set.empty()) evidence_.whiten(noise_of(evidence_.target(), rows_.logs()));
+  if (!evidence_.whitening() || set.empty()) evidence_.whiten(noise_in(evidence_.target()));
   const Eigen::VectorXd noise = absorbed      ? absorbed_by_all(set)
                                 : set.empty() ? evidence_.target()
                                               : settled_residual(set);
-  const auto whitening = noise_of(noise.cwiseProduct(rows_.counts()), rows_.logs());
+  const auto whitening = noise_in(noise);
   correlation_ = correlation_length(whitening(noise), rows_.logs());
   evidence_.whiten(whitening, static_cast<std::size_t>(std::ceil(cluster_lengths * correlation_)));
-  respond_under(noise);
+  if (!left_out_) respond_under(noise);
 }
 
 void Dictionary::scan_lines(const ActiveSet& set) {
@@ -170,7 +193,7 @@ Posterior Dictionary::posterior(const ActiveSet& set) const {
 
 double Dictionary::with_own_noise(const ActiveSet& set) const {
   const auto of_set = posterior(set);
-  const Eigen::VectorXd left = evidence_.residual(of_set.columns(), of_set.weights()).cwiseProduct(rows_.counts());
+  const Eigen::VectorXd left = evidence_.residual(of_set.columns(), of_set.weights()).cwiseProduct(counts_);
   double odds = noise_log_likelihood(left, rows_.logs()) + of_set.price();
   for (const auto* atom : set) odds += atom->log_prior;
   return odds;
@@ -178,7 +201,7 @@ double Dictionary::with_own_noise(const ActiveSet& set) const {
 
 double Dictionary::with_own_spectrum(const ActiveSet& set) const {
   const auto of_set = posterior(set);
-  const Eigen::VectorXd left = evidence_.residual(of_set.columns(), of_set.weights()).cwiseProduct(rows_.counts());
+  const Eigen::VectorXd left = evidence_.residual(of_set.columns(), of_set.weights()).cwiseProduct(counts_);
   double odds = noise_log_likelihood(left, rows_.logs(), evidence_.whitening()) + of_set.price();
   for (const auto* atom : set) odds += atom->log_prior;
   return odds;

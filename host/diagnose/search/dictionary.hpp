@@ -59,6 +59,10 @@ class Dictionary {
   // Log odds of the best of each of the candidates `names`, as best_of() beside none, were this the `record`; minus
   // infinity where none is possible. Lines and places are looked for in that record.
   std::vector<double> names_in(const ExactRecord& record, const std::vector<std::size_t>& names);
+  // From now on without the logs number `part`, `part` + `parts`, ..., in whitened rows, by the noise that the set
+  // leaves in the others; options and replays are those of all logs.
+  void leave_out(const ActiveSet& set, std::size_t part, std::size_t parts);
+  void take_all();
   // Each option's price anew, as the context has them now.
   void price_again();
   // The `option` with its nonlinear parameter between the values of the grid; `beside` and `of_beside` as above.
@@ -67,6 +71,7 @@ class Dictionary {
  protected:
   const LogRows& rows_;
   SearchContext& scene_;
+  Eigen::VectorXd counts_;    // of the rows, 0 or 1
   double correlation_ = 1.0;  // rows, of the residual, whitened
   Evidence evidence_;         // whitened
   Evidence plain_;            // never whitened: for what a term takes off the force
@@ -81,12 +86,14 @@ class Dictionary {
   std::optional<Option> at_shape(std::size_t candidate, double shape, const ActiveSet& beside,
                                  const Posterior& of_beside);
   std::vector<Atom> tried_in(const ExactRecord& record, std::size_t candidate);
+  Whitening noise_in(const Eigen::VectorXd& left) const;
   Eigen::VectorXd settled_residual(const ActiveSet& set) const;
   Eigen::VectorXd absorbed_by_all(const ActiveSet& set) const;
 
   std::vector<std::unique_ptr<Atom>> options_;
   std::size_t on_grid_ = 0;  // of the options: those of candidates that are not periodic, as they were tried first
   Sizes sizes_;              // N rms, of a group's force
+  bool left_out_ = false;    // some of the logs
   double disturbance_;       // square of the force under which candidates replay
 };
 

@@ -22,6 +22,7 @@ constexpr std::size_t most_rounds = 40;
 constexpr std::size_t refined_each = 5;  // of the best options, before one of them is taken
 constexpr std::size_t paired = 10;       // of the best options, where none is worth its price alone
 constexpr double better = 0.5;           // nats: less is no reason to move
+constexpr std::size_t most_parts = 8;    // of the logs, each of which is left out once
 constexpr double telling = 20.0;         // odds that exclude a name in the place of another
 constexpr double least_probability = 1.0 / (1.0 + telling);
 
@@ -48,6 +49,9 @@ class Search : private Dictionary {
   SearchResult run();
   // With the prices of records of the exact machine, where a name came out that has one.
   SearchResult run_calibrated();
+  // Looks for causes with one log after the other left out, of more than a few with one part of them after the other;
+  // and tells each term of the `result` that has a name in how many of these searches it is named.
+  void search_without_each_log(SearchResult& result);
 
  private:
   std::vector<Option> options_beside(const ActiveSet& set, const Posterior& of_set) const;
@@ -294,7 +298,7 @@ SearchResult Search::run_calibrated() {
     if (names.empty()) break;
     if (!calibration) {
       const auto& noise = scene_.disturbed_motion ? evidence_.target() : result.residual;
-      calibration.emplace(scene_, noise.cwiseProduct(rows_.counts()));
+      calibration.emplace(scene_, noise.cwiseProduct(counts_));
     }
     const auto odds_in = [&](const ExactRecord& record) { return names_in(record, names); };
     const auto own = odds_in({evidence_.target(), {}});
@@ -317,6 +321,25 @@ SearchResult Search::run_calibrated() {
                           "that were simulated one in a hundred has log odds above {:.1f}",
                           result.exact_records, scene_.prices[c] + sure)});
   return result;
+}
+
+void Search::search_without_each_log(SearchResult& result) {
+  const std::size_t parts = std::min(rows_.logs().size(), most_parts);
+  const auto named = [](const Term& term) { return !candidates()[term.candidate].outside(); };
+  if (parts < 2 || std::none_of(result.terms.begin(), result.terms.end(), named)) return;
+  for (auto& term : result.terms)
+    if (named(term)) term.without_each_log = NamedIn{0, parts};
+  for (std::size_t part = 0; part < parts; ++part) {
+    leave_out(found_, part, parts);
+    ActiveSet set;
+    for (std::size_t round = 0; round < most_rounds && set.size() < most_terms && grow(set); ++round) improve(set);
+    prune(set);
+    for (auto& term : result.terms)
+      if (term.without_each_log)
+        term.without_each_log->named += std::any_of(
+            set.begin(), set.end(), [&](const auto* atom) { return one_cause(atom->candidate, term.candidate); });
+  }
+  take_all();
 }
 
 SearchResult Search::run() {
@@ -362,7 +385,10 @@ SearchResult Search::run() {
 }  // namespace
 
 SearchResult search_causes(const LogRows& rows, const Eigen::VectorXd& target, SearchContext& context) {
-  return Search(rows, target, context).run_calibrated();
+  Search search(rows, target, context);
+  auto result = search.run_calibrated();
+  search.search_without_each_log(result);
+  return result;
 }
 
 }  // namespace stiction::host

@@ -3,11 +3,13 @@
 // Names compete with smooth functions that have none: what is certain and is no name's is what stays unexplained.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "host/diagnose/classes/candidate.hpp"
 #include "host/diagnose/search/judgement.hpp"
+#include "host/diagnose/verdict/verdict.hpp"
 #include "host/identify/log_rows.hpp"
 
 namespace stiction::host {
@@ -26,7 +28,8 @@ struct Term {
     std::size_t candidate;
     double probability;
   };
-  std::vector<Alternative> alternatives;  // other names that may be in its place, the likeliest first
+  std::optional<NamedIn> without_each_log;  // none: of a single log, or without a name
+  std::vector<Alternative> alternatives;    // other names that may be in its place, the likeliest first
 };
 
 struct Discarded {
