@@ -365,5 +365,91 @@ TEST_F(ACamMode, IsLeftByAHaltAndNotTakenUpAgain) {
   EXPECT_TRUE(remote.at_rest());
 }
 
+// What is engaged during a halt, at once or later, is left in the next tick.
+TEST_F(ACamMode, IsEngagedByNothingDuringAHalt) {
+  CamMaster master(CamMaster::Config{.virtual_master = VirtualMaster::Config::of(limits(1.2, 5.0, 50.0))});
+  RemoteCam remote;
+  remote.attach(mode, master);
+  remote.start(S::Position{});
+  remote.command(CamCommand::engage, OperationMode::cam, true, true);
+  ASSERT_TRUE(master.run(master_speed(1.0)));
+  const auto run = [&](int count, bool stops) {
+    for (int k = 0; k < count; ++k) {
+      master.step();
+      remote.step(stops, true);
+    }
+  };
+  run(20'000, false);
+  for (const auto trigger : {CamTrigger::next_cycle, CamTrigger::at_once}) {
+    run(3, true);
+    mode.asked().trigger = trigger;
+    remote.command(CamCommand::engage, OperationMode::cam, true, true);
+    run(10'000, true);
+    EXPECT_TRUE(remote.at_rest());
+    EXPECT_FALSE(mode.status().active);
+    EXPECT_FALSE(mode.status().waiting);
+    mode.asked().trigger = CamTrigger::at_once;
+    remote.command(CamCommand::engage, OperationMode::cam, true, true);
+    run(20'000, false);
+    ASSERT_TRUE(mode.status().in_sync);
+  }
+}
+
+// In sync with a master of 1 cycle/s, and with a ramp that brakes as hard as its limits let it.
+class AMovingCam : public ACamMode {
+ protected:
+  AMovingCam() {
+    config.stops.fill(Span::of(raw_acceleration(20.0)));
+    master.run(master_speed(1.0));
+    EXPECT_EQ(mode.command(CamCommand::engage, false, true), CamRefusal::none);
+    run(20'000);
+    EXPECT_TRUE(mode.status().in_sync);
+  }
+  void run(int ticks) {
+    for (int k = 0; k < ticks; ++k) mode.step({master.step(), true});
+  }
+
+  VirtualMaster master{VirtualMaster::Config::of(limits(1.2, 5.0, 50.0))};
+};
+
+TEST_F(AMovingCam, BrakesAlongItsCurveAndEngagesNothingMeanwhile) {
+  ASSERT_TRUE(mode.brake(CamStop::slow_down));
+  EXPECT_EQ(mode.command(CamCommand::engage, false, true), CamRefusal::not_enabled);
+  run(1000);
+  EXPECT_TRUE(mode.brake(CamStop::slow_down)) << "it does already";
+  run(20'000);
+  EXPECT_TRUE(mode.braked());
+  mode.leave_to_rest();
+  run(10);
+  EXPECT_TRUE(mode.at_rest());
+  mode.leave_to_rest();
+  EXPECT_TRUE(mode.at_rest()) << "where it rests it has nothing to leave";
+}
+
+TEST_F(AMovingCam, DoesNotBrakeAlongACurveBeforeAnotherOrWithAPhaseOnItsWay) {
+  mode.asked().trigger = CamTrigger::next_cycle;
+  ASSERT_EQ(mode.command(CamCommand::engage, false, true), CamRefusal::none);
+  run(1);
+  ASSERT_TRUE(mode.status().waiting);
+  EXPECT_FALSE(mode.brake(CamStop::slow_down));
+  ASSERT_EQ(mode.command(CamCommand::cancel, false, true), CamRefusal::none);
+  run(1);
+  mode.asked().phase = raw_position(0.2);
+  ASSERT_EQ(mode.command(CamCommand::phase, false, true), CamRefusal::none);
+  run(1);
+  ASSERT_TRUE(mode.phasing());
+  EXPECT_FALSE(mode.brake(CamStop::slow_down));
+}
+
+TEST_F(AMovingCam, DoesNotBrakeAlongACurveBeyondTheLimitsOfTheAxis) {
+  for (auto limit : {&MotionLimits::velocity, &MotionLimits::acceleration, &MotionLimits::jerk}) {
+    const auto whole = config.motion.slave;
+    config.motion.slave.*limit = 1;
+    EXPECT_FALSE(mode.brake(CamStop::slow_down));
+    config.motion.slave = whole;
+  }
+  EXPECT_TRUE(mode.brake(CamStop::slow_down));
+}
+
 }  // namespace
 }  // namespace stiction::test

@@ -187,5 +187,30 @@ TEST(MasterEncoder, ShowsAJumpAtOnce) {
   EXPECT_NEAR(largest, 0.05, 1e-3);
 }
 
+// Where a position comes each tick, it may be nearly as old as its period, or, heard late, older.
+TEST(MasterEncoder, GoesEvenlyWherePositionsAreAsOldAsTheirPeriod) {
+  constexpr std::int64_t tick = std::int64_t{1} << 16;
+  for (const std::int64_t age : {tick / 4, 3 * tick / 4, tick, 3 * tick}) {
+    MasterEncoder::Config config;
+    config.range = std::int64_t{1} << 24;
+    config.cycle = std::int64_t{1} << 22;
+    config.most = 800;
+    config.patience = 10 * tick;
+    MasterEncoder encoder(config);
+    std::int64_t before = 0;
+    for (int k = 0; k < 1000; ++k) {
+      encoder.take(static_cast<std::uint32_t>(100 * k), age);
+      const auto place = encoder.step();
+      const std::int64_t counts = place.cycles * config.cycle + (place.part >> MasterEncoder::part_bits);
+      if (k > 100) {
+        EXPECT_TRUE(place.valid) << age;
+        EXPECT_NEAR(static_cast<double>(counts - before), 100.0, 1.0) << age;
+        EXPECT_NEAR(static_cast<double>(counts), 100.0 * k, 200.0) << age << ": up to two periods behind";
+      }
+      before = counts;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace stiction::test

@@ -236,6 +236,23 @@ TEST_P(StoppedCam, BrakesByItsRampForAFault) {
   EXPECT_NEAR(std::abs(after) - std::abs(before), -10.0 * 62.5e-6, 1e-6);
 }
 
+// A quick stop in a slower one: by its ramp from there on, from 4 ms behind the first word.
+TEST_P(StoppedCam, TakesTheRampOfAFasterStop) {
+  ASSERT_TRUE(enable_in(-1));
+  ASSERT_TRUE(write("master_speed", 1.5));
+  ASSERT_TRUE(command(engage));
+  run_until([&] { return shows(in_sync); });
+  while (std::abs(machine::to_si(table.loop.drive(0).set_velocity())) < 0.05) step();
+  ASSERT_TRUE(write("controlword", 0x07));
+  step(4);
+  ASSERT_TRUE(table.powered(0)) << "the way along the cam takes longer";
+  ASSERT_TRUE(write("controlword", 0x02));
+  step(1000);
+  EXPECT_EQ(table.loop.state(0), DriveState::switch_on_disabled);
+  EXPECT_EQ(table.loop.fault(0), Fault::none);
+  EXPECT_FALSE(shows(active));
+}
+
 // 3.4 m/s^2 of the curve alone at this speed.
 class SlowRampCam : public StoppedCam {
  protected:
