@@ -226,7 +226,7 @@ def rates(matrix, reports, failures):
     missed = []
     for report in reports:
         for name, hit, detail in report.counts:
-            matrix.rates[name].add(hit)
+            matrix.rates[name].add(hit, str(report.cell))
             if not hit and name in (walk.TRUTHS, walk.FOUND):
                 missed.append(f"  {report.cell}, {detail}")
     if missed:

@@ -220,6 +220,23 @@ class Tally(unittest.TestCase):
         self.assertEqual(low, 0.0)
         self.assertAlmostEqual(high, 0.2775, places=4)
 
+    def test_counts_cases_that_hang_together_as_what_they_are_worth(self):
+        alone, together = tally.Rate("alone"), tally.Rate("together")
+        for group in range(10):
+            for case in range(10):
+                alone.add(group < 8, (group, case))
+                together.add(group < 8, group)
+        for own, of_all in zip(alone.interval(), tally.wilson(80, 100)):
+            self.assertAlmostEqual(own, of_all, places=2)
+        # Ten groups, but for the one that their mean takes: 8 of 10, less a tenth.
+        low, high = together.interval()
+        self.assertAlmostEqual(low, tally.wilson(7.2, 9)[0])
+        self.assertAlmostEqual(high, tally.wilson(7.2, 9)[1])
+        without_scatter = tally.Rate("even")
+        for case in range(100):
+            without_scatter.add(case % 10 < 8, case // 10)
+        self.assertEqual(without_scatter.interval(), tally.wilson(80, 100))
+
     def test_of_few_cases_asks_for_an_interval_that_meets_what_is_wanted_and_of_many_for_the_value(self):
         rate = tally.Rate("named", least=0.9, hits=17, cases=20)
         self.assertTrue(rate.holds(exactly=False))

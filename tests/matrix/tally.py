@@ -81,20 +81,35 @@ class Rate:
     most: float = 1.0
     hits: int = 0
     cases: int = 0
+    groups: dict = dataclasses.field(default_factory=dict)  # hits and cases of those that hang together
 
-    def add(self, hit):
+    def add(self, hit, group=None):
+        """`group`: cases of one record are no pieces of evidence of their own: what misses one misses the others."""
         self.hits += bool(hit)
         self.cases += 1
+        hits, cases = self.groups.get(group, (0, 0))
+        self.groups[group] = (hits + bool(hit), cases + 1)
+
+    def interval(self):
+        """Wilson's, of as many cases as the groups are worth: fewer by the design effect (Kish, Survey Sampling, 1965,
+        8.2), by which the rate scatters more from group to group than that of single cases would."""
+        rate = self.hits / self.cases if self.cases else 0.0
+        effect = 1.0
+        if len(self.groups) > 1 and 0.0 < rate < 1.0:
+            spread = sum((hits - rate * cases)**2 for hits, cases in self.groups.values())
+            spread *= len(self.groups) / (len(self.groups) - 1)
+            effect = max(spread / (self.cases * rate * (1.0 - rate)), 1.0)
+        return wilson(self.hits / effect, self.cases / effect)
 
     def holds(self, exactly):
         """Whether the rate lies in what is wanted: its point where there are many cases, else its interval overlaps."""
         if self.cases == 0:
             return True
-        low, high = (self.hits / self.cases,) * 2 if exactly else wilson(self.hits, self.cases)
+        low, high = (self.hits / self.cases,) * 2 if exactly else self.interval()
         return low <= self.most and high >= self.least
 
     def text(self):
-        low, high = wilson(self.hits, self.cases)
+        low, high = self.interval()
         rate = f"{100.0 * self.hits / self.cases:.1f} %" if self.cases else "no case"
         return (f"{self.name}: {self.hits} of {self.cases}, {rate} (95 % interval {100.0 * low:.1f} to "
                 f"{100.0 * high:.1f} %)")
