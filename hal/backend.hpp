@@ -73,9 +73,13 @@ concept OutputBackend = Backend<B> && requires(B backend, std::size_t output, bo
 // A backend that tells of power stage and motor what their protection watches. One that does not leaves all of it at
 // zero: what a machine file asks to be watched is then refused by who opens the backend.
 template <class B>
-concept ProtectionBackend = Backend<B> && requires(B backend, std::span<ProtectionInputs<typename B::Signals>> inputs) {
+concept ProtectionBackend = Backend<B> &&
+    requires(B backend, std::size_t axis, std::span<ProtectionInputs<typename B::Signals>> inputs) {
   // Of every axis for this tick; once a tick.
   { backend.read_protection(inputs) } -> std::same_as<void>;
+
+  // What an axis has of it, and whether it has Hall signals (read_inputs). Known before the loop begins.
+  { backend.motor_signals(axis) } -> std::same_as<MotorSignalSet>;
 };
 
 }  // namespace stiction::hal

@@ -27,6 +27,7 @@ class GatedBackend {
   void write(std::span<const Command<Signals>> command) { backend_.write(cut_.is_cut() ? off_ : command); }
   void read_inputs(std::span<DigitalInputs<Signals>> inputs) requires WiredBackend<B> { backend_.read_inputs(inputs); }
   Fault fault(std::size_t axis) requires WiredBackend<B> { return backend_.fault(axis); }
+  MotorSignalSet motor_signals(std::size_t axis) requires ProtectionBackend<B> { return backend_.motor_signals(axis); }
   void read_protection(std::span<ProtectionInputs<Signals>> inputs) requires ProtectionBackend<B> {
     backend_.read_protection(inputs);
   }

@@ -98,6 +98,7 @@ class TimedBackend {
 
   Fault fault(std::size_t axis) requires WiredBackend<B> { return backend_.fault(axis); }
 
+  MotorSignalSet motor_signals(std::size_t axis) requires ProtectionBackend<B> { return backend_.motor_signals(axis); }
   void read_protection(std::span<ProtectionInputs<Signals>> inputs) requires ProtectionBackend<B> {
     backend_.read_protection(inputs);
     timing_.lap(LoopPart::read);

@@ -40,6 +40,12 @@ class PacedBackend {
       for (auto& input : inputs) input = {};
   }
 
+  MotorSignalSet motor_signals(std::size_t axis) requires ProtectionBackend<B> { return backend_.motor_signals(axis); }
+  void read_protection(std::span<ProtectionInputs<Signals>> inputs) requires ProtectionBackend<B> {
+    backend_.read_protection(inputs);
+  }
+  void set_brake(std::size_t axis, bool released) requires BrakeBackend<B> { backend_.set_brake(axis, released); }
+
   // The backend's, else the clock's.
   Fault fault(std::size_t axis) {
     if constexpr (WiredBackend<B>)

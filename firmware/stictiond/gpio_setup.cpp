@@ -25,7 +25,12 @@ hal::AxisLines lines_of(const std::string& axis, const machine::LineSetup& setup
           .limit_negative = line(setup.limit_negative, setup.limit_active),
           .limit_positive = line(setup.limit_positive, setup.limit_active),
           .home = line(setup.home, setup.home_active),
-          .index = line(setup.index, setup.index_active)};
+          .index = line(setup.index, setup.index_active),
+          .torque_off_a = line(setup.torque_off_a, setup.torque_off_active),
+          .torque_off_b = line(setup.torque_off_b, setup.torque_off_active),
+          .hall_a = line(setup.hall_a, setup.hall_active),
+          .hall_b = line(setup.hall_b, setup.hall_active),
+          .hall_c = line(setup.hall_c, setup.hall_active)};
 }
 
 hal::GpioAxisConfig configuration_of(const machine::AxisModel& axis, const machine::LineSetup& setup,
@@ -83,7 +88,8 @@ bool has_gpio_lines(const machine::DriveSetup& setup, const machine::Machine& ma
     return true;
   return setup.gpio && std::any_of(lines.begin(), lines.end(), [](const hal::AxisLines& axis) {
            return axis.enable.wired() || axis.brake.wired() || axis.fault.wired() || axis.limit_negative.wired() ||
-                  axis.limit_positive.wired() || axis.home.wired() || axis.index.wired();
+                  axis.limit_positive.wired() || axis.home.wired() || axis.index.wired() || axis.torque_off_a.wired() ||
+                  axis.torque_off_b.wired() || axis.hall_a.wired() || axis.hall_b.wired() || axis.hall_c.wired();
          });
 }
 

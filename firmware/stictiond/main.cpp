@@ -25,6 +25,7 @@
 #include "hal/modbus/modbus_backend.hpp"
 #include "hal/paced_backend.hpp"
 #include "hal/program.hpp"
+#include "hal/simulated/motor_inputs_backend.hpp"
 #include "hal/simulated/simulated_backend.hpp"
 
 namespace stiction::drive {
@@ -38,7 +39,10 @@ int run_simulated(RealTime& real_time, const DriveConfiguration& configuration, 
                   RunRecord& record) {
   const std::vector<double> rest(configuration.machine.axes.size());
   const auto start = options.circle.empty() ? rest : task_of(options, configuration, rest).motion.start();
-  hal::SimulatedBackend<FixedSignals> simulated(configuration.machine, start);
+  hal::SimulatedBackend<FixedSignals> machine(configuration.machine, start);
+  hal::MotorInputsBackend simulated(machine, configuration.machine);
+  for (std::size_t i = 0; i < configuration.drives.size(); ++i)
+    simulated.signals(i).hall_wired = configuration.drives[i].commutation.method == CommutationMethod::hall;
   if (options.unpaced)
     return status_of(run(real_time, simulated, nullptr, configuration, options, "simulated, in its own time", record));
   hal::PacedBackend backend(simulated, configuration.period_ns);

@@ -112,23 +112,31 @@ Task task_of(const DriveOptions& options, const DriveConfiguration& configuratio
   return task;
 }
 
-void check_motor_inputs(const DriveConfiguration& configuration, bool protected_backend) {
+void check_motor_inputs(const DriveConfiguration& configuration, std::span<const MotorSignalSet> sets) {
   for (std::size_t i = 0; i < configuration.names.size(); ++i) {
-    const auto& name = configuration.names[i];
-    if (configuration.drives[i].commutation.method == CommutationMethod::hall)
-      throw StartRefused(fmt::format(
-          "{}: found drive.axis.{}.commutation.method = \"hall\"; expected stored or test, as no backend of "
-          "this programme has inputs for Hall signals",
-          configuration.file.string(), name));
-    const auto& p = configuration.drives[i].protection;
-    const bool asks = p.watches_dc_high || p.watches_dc_low || p.watches_motor_temperature ||
-                      p.watches_stage_temperature || p.torque_off_wired;
-    if (asks && !protected_backend)
-      throw StartRefused(
-          fmt::format("{}: found limits of the DC link, of temperatures or torque_off in drive.axis.{}.protection; "
-                      "expected thermal models alone, as this backend has no such signals: let the power stage watch "
-                      "them and report by its fault input",
-                      configuration.file.string(), name));
+    const std::string axis = "drive.axis." + configuration.names[i];
+    const auto& drive = configuration.drives[i];
+    const auto& p = drive.protection;
+    const auto& set = sets[i];
+    const auto demand = [&](bool asked, bool there, const std::string& key, const char* signal, const char* instead) {
+      if (asked && !there)
+        throw StartRefused(fmt::format("{}: found {}.{}, and nothing that gives {}; expected {}",
+                                       configuration.file.string(), axis, key, signal, instead));
+    };
+    const char* watched =
+        "a power stage that tells it over CAN FD or Modbus, or one that watches it and reports by its "
+        "fault input";
+    demand(drive.commutation.method == CommutationMethod::hall, set.hall, "commutation.method = \"hall\"",
+           "the Hall signals",
+           "lines hall_a, hall_b and hall_c, a node that tells them over CAN FD, or a different method");
+    demand(p.watches_dc_high, set.dc_link, "protection.dc_link_high", "the voltage of the DC link", watched);
+    demand(p.watches_dc_low, set.dc_link, "protection.dc_link_low", "the voltage of the DC link", watched);
+    demand(p.watches_motor_temperature, set.motor_temperature, "protection.motor_temperature",
+           "the motor's temperature", watched);
+    demand(p.watches_stage_temperature, set.stage_temperature, "protection.stage_temperature",
+           "the power stage's temperature", watched);
+    demand(p.torque_off_wired, set.torque_off, "protection.torque_off", "both channels of safe torque off",
+           "lines torque_off_a and torque_off_b, or a node that tells them");
   }
 }
 

@@ -58,8 +58,8 @@ void show_timing(const hal::TickClock& clock, const hal::LoopTiming& timing, Pub
 void check_room(const DriveOptions& options, const DriveConfiguration& configuration, bool locked);
 
 // Throws StartRefused where the machine file asks for signals of motor or power stage that the backend does not have.
-// `configuration`: of the drive; `protected_backend`: whether it has those of a ProtectionBackend.
-void check_motor_inputs(const DriveConfiguration& configuration, bool protected_backend);
+// `configuration`: of the drive; `sets`: what the backend has, one an axis.
+void check_motor_inputs(const DriveConfiguration& configuration, std::span<const MotorSignalSet> sets);
 
 inline constexpr std::uint64_t row_bytes = 256;  // of a trace's file, for one axis in one tick, at most
 
@@ -162,7 +162,10 @@ void show_to_clients(const hal::DriveLoop<B>& loop, Programme<B>& programme, dou
 template <hal::Backend B>
 RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const DriveConfiguration& configuration,
               const DriveOptions& options, const std::string& title, RunRecord& record) {
-  check_motor_inputs(configuration, hal::ProtectionBackend<B>);
+  std::vector<MotorSignalSet> motor_signals(configuration.names.size());
+  if constexpr (hal::ProtectionBackend<B>)
+    for (std::size_t i = 0; i < motor_signals.size(); ++i) motor_signals[i] = backend.motor_signals(i);
+  check_motor_inputs(configuration, motor_signals);
   hal::LoopTiming timing;
   const hal::PowerCut::Entry entry(hal::power_cut, backend);
   hal::GatedBackend<B> gated(backend, hal::power_cut);

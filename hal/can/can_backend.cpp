@@ -161,6 +161,10 @@ void CanBackend::read_inputs(std::span<DigitalInputs<Signals>> inputs) const {
   for (std::size_t i = 0; i < nodes_.size(); ++i) inputs[i] = nodes_[i].state.inputs;
 }
 
+void CanBackend::read_protection(std::span<ProtectionInputs<Signals>> inputs) const {
+  for (std::size_t i = 0; i < nodes_.size(); ++i) inputs[i] = nodes_[i].state.protection;
+}
+
 void CanBackend::write(std::span<const Command<Signals>> command) {
   for (std::size_t i = 0; i < nodes_.size(); ++i) send(encode_command(format_, nodes_[i].id, tick_, command[i]));
 }

@@ -42,6 +42,9 @@ class CanBackend {
   std::int64_t wait_for_tick();
   void read(std::span<Feedback<Signals>> feedback);
   void read_inputs(std::span<DigitalInputs<Signals>> inputs) const;
+  void read_protection(std::span<ProtectionInputs<Signals>> inputs) const;
+  // As the node's last answer says.
+  MotorSignalSet motor_signals(std::size_t axis) const { return nodes_[axis].state.motor_signals; }
   void write(std::span<const Command<Signals>> command);
   Fault fault(std::size_t axis) const { return nodes_[axis].fault; }
   // Tells every node to switch off, once; without a loop that goes on the silence on the bus does it within 5 ms.
@@ -88,6 +91,6 @@ class CanBackend {
   BusCounts bus_;
 };
 
-static_assert(WiredBackend<CanBackend> && KernelTimeBackend<CanBackend>);
+static_assert(WiredBackend<CanBackend> && KernelTimeBackend<CanBackend> && ProtectionBackend<CanBackend>);
 
 }  // namespace stiction::hal::can

@@ -32,7 +32,8 @@ constexpr int current_bits = S::Current::fraction_bits, voltage_bits = S::Voltag
 
 std::vector<Signal> flags(int first_bit) {
   std::vector<Signal> signals;
-  for (const char* name : {"valid", "fault", "limit_negative", "limit_positive", "home", "index_passed"})
+  for (const char* name :
+       {"valid", "fault", "limit_negative", "limit_positive", "home", "index_passed", "torque_off_a", "torque_off_b"})
     signals.push_back({name, first_bit++, 1, false, 0, ""});
   return signals;
 }
@@ -48,6 +49,15 @@ std::vector<Message> messages(Format format) {
                                                      {"sample_age", 192, 32, false, 0, "ns"},
                                                      {"index_position", 224, 64, true, S::Position::fraction_bits, "m"},
                                                      {"counter", 296, 8, false, 0, ""},
+                                                     {"dc_link", 304, 30, true, voltage_bits, "V"},
+                                                     {"motor_temperature", 334, 13, true, 0, "degC", 0.1},
+                                                     {"stage_temperature", 347, 13, true, 0, "degC", 0.1},
+                                                     {"hall", 360, 3, false, 0, ""},
+                                                     {"has_hall", 363, 1, false, 0, ""},
+                                                     {"has_dc_link", 364, 1, false, 0, ""},
+                                                     {"has_motor_temperature", 365, 1, false, 0, ""},
+                                                     {"has_stage_temperature", 366, 1, false, 0, ""},
+                                                     {"has_torque_off", 367, 1, false, 0, ""},
                                                      {"checksum", 368, 16, false, 0, ""}});
     return {{"command",
              command_id,
@@ -87,6 +97,8 @@ std::vector<Message> messages(Format format) {
             {"current_C", 32, 16, true, 8, "A"},
             {"home", 48, 1, false, 0, ""},
             {"index_passed", 49, 1, false, 0, ""},
+            {"torque_off_a", 50, 1, false, 0, ""},
+            {"torque_off_b", 51, 1, false, 0, ""},
             counter,
             checksum}}};
 }

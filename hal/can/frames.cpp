@@ -55,19 +55,46 @@ bool sealed(const Frame& frame, Format format) {
 constexpr std::size_t sync_size = 8;
 
 // FD feedback, bytes from 0: position 8, velocity 4, currents 3 x 4, sample's age 4, index position 8, flags 1,
-// counter 1; spare; checksum 2.
+// counter 1, protection 7 (DC link, temperatures of motor and stage), motor flags 1; checksum 2.
 namespace fd {
 constexpr std::size_t velocity = 8, current = 12, age = 24, index = 28, flags = 36, counter = 37;
+constexpr std::size_t protection = 38, protection_bytes = 7, motor_flags = 45;
+constexpr int dc_link_bits = 30;      // of the control's own voltage: +-2048 V
+constexpr int temperature_bits = 13;  // tenths of a degree: 409 degrees, beyond what is a broken sensor
 constexpr std::size_t command_flags = 12, command_counter = 13;
 }  // namespace fd
 
-enum Flag : std::uint8_t { valid = 1, fault = 2, limit_negative = 4, limit_positive = 8, home = 16, index_mark = 32 };
+enum Flag : std::uint8_t {
+  valid = 1,
+  fault = 2,
+  limit_negative = 4,
+  limit_positive = 8,
+  home = 16,
+  index_mark = 32,
+  torque_off_a = 64,
+  torque_off_b = 128
+};
+
+// Hall signals in bits 0 to 2, and what the node has.
+enum MotorFlag : std::uint8_t {
+  hall_signals = 7,
+  has_hall = 8,
+  has_dc_link = 16,
+  has_motor_temperature = 32,
+  has_stage_temperature = 64,
+  has_torque_off = 128
+};
+
+constexpr unsigned set_if(bool condition, unsigned flag) { return condition ? flag : 0u; }
 
 std::uint8_t flags_of(const NodeFeedback& state) {
   const auto& in = state.inputs;
-  return static_cast<std::uint8_t>((state.feedback.position_valid ? valid : 0) | (state.feedback.fault ? fault : 0) |
-                                   (in.limit_negative ? limit_negative : 0) | (in.limit_positive ? limit_positive : 0) |
-                                   (in.home ? home : 0) | (in.index ? index_mark : 0));
+  const auto& protection = state.protection;
+  return static_cast<std::uint8_t>(set_if(state.feedback.position_valid, valid) | set_if(state.feedback.fault, fault) |
+                                   set_if(in.limit_negative, limit_negative) |
+                                   set_if(in.limit_positive, limit_positive) | set_if(in.home, home) |
+                                   set_if(in.index, index_mark) | set_if(protection.torque_off_a, torque_off_a) |
+                                   set_if(protection.torque_off_b, torque_off_b));
 }
 void take_low_flags(std::uint8_t flags, NodeFeedback& state) {
   state.feedback.position_valid = (flags & valid) != 0;
@@ -78,6 +105,49 @@ void take_low_flags(std::uint8_t flags, NodeFeedback& state) {
 void take_high_flags(std::uint8_t flags, NodeFeedback& state) {
   state.inputs.home = (flags & home) != 0;
   state.inputs.index = (flags & index_mark) != 0;
+  state.protection.torque_off_a = (flags & torque_off_a) != 0;
+  state.protection.torque_off_b = (flags & torque_off_b) != 0;
+}
+
+// A number of `bits` bits at `first_bit`, held within them; and back, with its sign.
+constexpr std::uint64_t in_bits(std::int64_t number, int first_bit, int bits) {
+  const std::int64_t most = (std::int64_t{1} << (bits - 1)) - 1;
+  const auto word = static_cast<std::uint64_t>(std::clamp(number, -most - 1, most));
+  return (word & ((std::uint64_t{1} << bits) - 1)) << first_bit;
+}
+constexpr std::int64_t of_bits(std::uint64_t word, int first_bit, int bits) {
+  return static_cast<std::int64_t>(word << (64 - first_bit - bits)) >> (64 - bits);
+}
+
+void put_motor(Frame& frame, const NodeFeedback& state) {
+  const auto& p = state.protection;
+  const auto& has = state.motor_signals;
+  put<std::uint64_t>(frame, fd::protection,
+                     in_bits(p.dc_link.raw(), 0, fd::dc_link_bits) |
+                         in_bits(p.motor_temperature, fd::dc_link_bits, fd::temperature_bits) |
+                         in_bits(p.stage_temperature, fd::dc_link_bits + fd::temperature_bits, fd::temperature_bits),
+                     fd::protection_bytes);
+  frame.data[fd::motor_flags] = static_cast<std::uint8_t>(
+      (state.inputs.hall & hall_signals) | set_if(has.hall, has_hall) | set_if(has.dc_link, has_dc_link) |
+      set_if(has.motor_temperature, has_motor_temperature) | set_if(has.stage_temperature, has_stage_temperature) |
+      set_if(has.torque_off, has_torque_off));
+}
+void take_motor(const Frame& frame, NodeFeedback& state) {
+  auto& p = state.protection;
+  const auto word = get<std::uint64_t>(frame, fd::protection, fd::protection_bytes);
+  const auto temperature = [&](int first_bit) {
+    return static_cast<std::int16_t>(of_bits(word, first_bit, fd::temperature_bits));
+  };
+  p.dc_link = FixedSignals::Voltage::from_raw(static_cast<std::int32_t>(of_bits(word, 0, fd::dc_link_bits)));
+  p.motor_temperature = temperature(fd::dc_link_bits);
+  p.stage_temperature = temperature(fd::dc_link_bits + fd::temperature_bits);
+  const std::uint8_t flags = frame.data[fd::motor_flags];
+  state.inputs.hall = flags & hall_signals;
+  state.motor_signals = {.hall = (flags & has_hall) != 0,
+                         .dc_link = (flags & has_dc_link) != 0,
+                         .motor_temperature = (flags & has_motor_temperature) != 0,
+                         .stage_temperature = (flags & has_stage_temperature) != 0,
+                         .torque_off = (flags & has_torque_off) != 0};
 }
 
 // Classical frames: three words of 16 bits, or a position of 48; then flags and counter, four bits each; checksum.
@@ -173,6 +243,7 @@ std::size_t encode_feedback(Format format, int node, std::uint32_t tick, const N
     put<std::int64_t>(first, fd::index, state.inputs.index_position.raw());
     first.data[fd::flags] = flags;
     first.data[fd::counter] = static_cast<std::uint8_t>(tick);
+    put_motor(first, state);
     seal(first, format);
     return 1;
   }
@@ -200,6 +271,7 @@ bool decode_feedback(Format format, Kind kind, const Frame& frame, std::uint32_t
     state.inputs.index_position = S::Position::from_raw(get<std::int64_t>(frame, fd::index));
     take_low_flags(frame.data[fd::flags], state);
     take_high_flags(frame.data[fd::flags], state);
+    take_motor(frame, state);
     counter = frame.data[fd::counter];
     return true;
   }
@@ -213,6 +285,7 @@ bool decode_feedback(Format format, Kind kind, const Frame& frame, std::uint32_t
     for (std::size_t k = 0; k < 3; ++k)
       f.current[k] = S::Current::from_raw(short_word(frame, k) * (1 << classical::current_shift));
     take_high_flags(static_cast<std::uint8_t>(flags_and_counter << 4), state);
+    state.motor_signals = {.torque_off = true};
     state.inputs.index_position = f.position;  // the mark's own place has no room
   }
   return true;

@@ -36,6 +36,8 @@ inline constexpr std::uint32_t current_id = base_of(CobId::node_current);  // cl
 struct NodeFeedback {
   Feedback<FixedSignals> feedback;  // position_time_ns: minus the sample's age at SYNC
   DigitalInputs<FixedSignals> inputs;
+  ProtectionInputs<FixedSignals> protection;
+  MotorSignalSet motor_signals;  // that the node has; classical frames carry safe torque off alone
 };
 
 struct FormatProperties {

@@ -65,6 +65,26 @@ class BesideLines {
     }
   }
 
+  void read_protection(std::span<ProtectionInputs<Signals>> inputs) {
+    if constexpr (ProtectionBackend<B>)
+      backend_.read_protection(inputs);
+    else
+      for (auto& input : inputs) input = {};
+    for (std::size_t i = 0; i < latches_.size(); ++i) io_.read_protection(i, inputs[i]);
+  }
+  MotorSignalSet motor_signals(std::size_t axis) {
+    MotorSignalSet set = io_.motor_signals(axis);
+    if constexpr (ProtectionBackend<B>) {
+      const MotorSignalSet other = backend_.motor_signals(axis);
+      set = {.hall = set.hall || other.hall,
+             .dc_link = other.dc_link,
+             .motor_temperature = other.motor_temperature,
+             .stage_temperature = other.stage_temperature,
+             .torque_off = set.torque_off || other.torque_off};
+    }
+    return set;
+  }
+
   Fault fault(std::size_t axis) { return backend_.fault(axis); }
   void set_brake(std::size_t axis, bool released) { io_.set_brake(axis, released); }
   void set_output(std::size_t output, bool active) { io_.set_track(output, active); }

@@ -28,6 +28,8 @@ struct AxisLines {
   LineConfig brake;   // out: the brake is released
   LineConfig fault;   // in: of the power stage
   LineConfig limit_negative, limit_positive, home, index;
+  LineConfig torque_off_a, torque_off_b;  // in: a channel of safe torque off is open
+  LineConfig hall_a, hall_b, hall_c;      // in: of the motor
 };
 
 // A line for the whole machine: out, the pulse for a watchdog outside of the computer.

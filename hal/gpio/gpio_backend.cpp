@@ -78,6 +78,13 @@ void GpioBackend::read_inputs(std::span<DigitalInputs<Signals>> inputs) {
   }
 }
 
+void GpioBackend::read_protection(std::span<ProtectionInputs<Signals>> inputs) const {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    inputs[i] = {};
+    io_.read_protection(i, inputs[i]);
+  }
+}
+
 std::uint64_t GpioBackend::lost_edges(std::size_t axis) const {
   return io_.lost_edges(axis) + axes_[axis]->encoder.lost_edges();
 }

@@ -35,6 +35,9 @@ class GpioBackend {
   void write(std::span<const Command<Signals>> command);
   void read_inputs(std::span<DigitalInputs<Signals>> inputs);
 
+  void read_protection(std::span<ProtectionInputs<Signals>> inputs) const;
+  MotorSignalSet motor_signals(std::size_t axis) const { return io_.motor_signals(axis); }
+
   // What the encoder's edges show; a chip or a PWM that stopped answering reaches the axis as its fault input instead.
   Fault fault(std::size_t axis) const {
     return encoder_fault(axis) == QuadratureFault::none ? Fault::none : Fault::encoder_signal;
@@ -69,6 +72,7 @@ class GpioBackend {
   std::int64_t now_ns_ = 0;
 };
 
-static_assert(WiredBackend<GpioBackend> && BrakeBackend<GpioBackend> && KernelTimeBackend<GpioBackend>);
+static_assert(WiredBackend<GpioBackend> && BrakeBackend<GpioBackend> && KernelTimeBackend<GpioBackend> &&
+              ProtectionBackend<GpioBackend>);
 
 }  // namespace stiction::hal

@@ -18,14 +18,17 @@ GpioInputsOutputs::GpioInputsOutputs(Lines& lines, std::span<const AxisLines> ax
     const auto output = [&](const LineConfig& line, const char* what) {
       return line.wired() ? Place(lines.add_output(line, name(what))) : Place();
     };
-    axes_.push_back({.enable = output(wired.enable, "enable"),
-                     .brake = output(wired.brake, "brake"),
-                     .fault = input(wired.fault, "fault"),
-                     .limit_negative = input(wired.limit_negative, "negative limit"),
-                     .limit_positive = input(wired.limit_positive, "positive limit"),
-                     .home = input(wired.home, "home"),
-                     .index = input(wired.index, "index"),
-                     .released = true});
+    axes_.push_back(
+        {.enable = output(wired.enable, "enable"),
+         .brake = output(wired.brake, "brake"),
+         .fault = input(wired.fault, "fault"),
+         .limit_negative = input(wired.limit_negative, "negative limit"),
+         .limit_positive = input(wired.limit_positive, "positive limit"),
+         .home = input(wired.home, "home"),
+         .index = input(wired.index, "index"),
+         .torque_off = {input(wired.torque_off_a, "safe torque off A"), input(wired.torque_off_b, "safe torque off B")},
+         .hall = {input(wired.hall_a, "Hall A"), input(wired.hall_b, "Hall B"), input(wired.hall_c, "Hall C")},
+         .released = true});
   }
 }
 
@@ -38,6 +41,22 @@ void GpioInputsOutputs::read_inputs(std::size_t axis, DigitalInputs<FixedSignals
   take(places.limit_negative, inputs.limit_negative);
   take(places.limit_positive, inputs.limit_positive);
   take(places.home, inputs.home);
+  if (!places.has_hall()) return;
+  inputs.hall = 0;  // as the three are now: one that was high is another place
+  for (std::size_t k = 0; k < places.hall.size(); ++k)
+    if (lines_.level(*places.hall[k])) inputs.hall = static_cast<std::uint8_t>(inputs.hall | 1u << k);
+}
+
+// A channel that was open only between two ticks was open.
+void GpioInputsOutputs::read_protection(std::size_t axis, ProtectionInputs<FixedSignals>& inputs) const {
+  const auto& [a, b] = axes_[axis].torque_off;
+  if (a) inputs.torque_off_a = lines_.was_active(*a);
+  if (b) inputs.torque_off_b = lines_.was_active(*b);
+}
+
+MotorSignalSet GpioInputsOutputs::motor_signals(std::size_t axis) const {
+  const auto& places = axes_[axis];
+  return {.hall = places.has_hall(), .torque_off = places.torque_off[0] && places.torque_off[1]};
 }
 
 bool GpioInputsOutputs::fault(std::size_t axis) const {
@@ -58,7 +77,8 @@ bool GpioInputsOutputs::index_queue_was_full(std::size_t axis) const {
 std::uint64_t GpioInputsOutputs::lost_edges(std::size_t axis) const {
   const auto& places = axes_[axis];
   std::uint64_t lost = 0;
-  for (const auto& place : {places.fault, places.limit_negative, places.limit_positive, places.home, places.index})
+  for (const auto& place : {places.fault, places.limit_negative, places.limit_positive, places.home, places.index,
+                            places.torque_off[0], places.torque_off[1], places.hall[0], places.hall[1], places.hall[2]})
     if (place) lost += lines_.lost_edges(*place);
   return lost;
 }

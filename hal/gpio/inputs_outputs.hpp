@@ -2,6 +2,7 @@
 // (beside_lines.hpp), or as part of the GPIO backend.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -24,6 +25,9 @@ class GpioInputsOutputs {
 
   // From the last Lines::poll. Lines that are not wired leave the inputs as they are.
   void read_inputs(std::size_t axis, DigitalInputs<FixedSignals>& inputs) const;
+  // What is wired of them takes the place of what is there.
+  void read_protection(std::size_t axis, ProtectionInputs<FixedSignals>& inputs) const;
+  MotorSignalSet motor_signals(std::size_t axis) const;
   // The power stage's fault input, or a chip that failed.
   bool fault(std::size_t axis) const;
   bool has_index(std::size_t axis) const { return axes_[axis].index.has_value(); }
@@ -51,6 +55,9 @@ class GpioInputsOutputs {
   using Place = std::optional<std::size_t>;
   struct Axis {
     Place enable, brake, fault, limit_negative, limit_positive, home, index;
+    std::array<Place, 2> torque_off;
+    std::array<Place, 3> hall;
+    bool has_hall() const { return hall[0] && hall[1] && hall[2]; }
     bool released = true;  // the brake, while the power is on
   };
 

@@ -74,25 +74,27 @@ class ModbusClient::Line {
     if (context_) modbus_set_response_timeout(context_.get(), us / 1'000'000, us % 1'000'000);
   }
 
-  // Throws ModbusError where another slave answers, or none.
-  void identify(int unit) {
+  // The schema of its registers. Throws ModbusError where another slave answers, or none.
+  std::uint16_t identify(int unit) {
     std::array<std::uint16_t, 2> words{};
     select(unit);
     if (modbus_read_registers(context_.get(), power_stage_read, words.size(), words.data()) < 0)
       throw ModbusError(fmt::format("{}; check that it has power and that rate and unit are right", failure(unit)));
-    if (words[0] != power_stage_identification || words[1] != power_stage_schema)
+    if (words[0] != power_stage_identification || words[1] < oldest_power_stage_schema || words[1] > power_stage_schema)
       throw ModbusError(fmt::format(
-          "{}, unit {}: found the registers {:#06x} version {}; expected {:#06x} version {} at addresses 0 and 1",
-          device_, unit, words[0], words[1], power_stage_identification, power_stage_schema));
+          "{}, unit {}: found the registers {:#06x} version {}; expected {:#06x} version {} to {} at addresses 0 and 1",
+          device_, unit, words[0], words[1], power_stage_identification, oldest_power_stage_schema,
+          power_stage_schema));
+    return words[1];
   }
 
   // Empty: the words of the state came.
   std::string exchange(int unit, std::span<const std::uint16_t, power_stage_written_words> written,
-                       std::span<std::uint16_t, power_stage_read_words> read) {
+                       std::span<std::uint16_t> read) {
     if (broken_ && !reconnect()) return failure(unit);
     select(unit);
     if (modbus_write_and_read_registers(context_.get(), power_stage_written, written.size(), written.data(),
-                                        power_stage_read, read.size(), read.data()) >= 0)
+                                        power_stage_read, static_cast<int>(read.size()), read.data()) >= 0)
       return {};
     const int error = errno;
     broken_ = !serial_ && (error == EPIPE || error == ECONNRESET || error == EBADF || error == ENOTCONN);
@@ -144,7 +146,7 @@ ModbusClient::ModbusClient(const ModbusClientConfig& config)
       misses_(config.units.size()) {
   if (config_.units.empty()) throw ModbusError(fmt::format("{}: no unit given", config_.device));
   line_ = std::make_unique<Line>(config_);
-  for (const int unit : config_.units) line_->identify(unit);
+  for (const int unit : config_.units) schemas_.push_back(line_->identify(unit));
   line_->set_timeout(answer_share * config_.period / static_cast<double>(config_.units.size()));
   exchange_all();
   thread_ = std::thread([this] { run(); });
@@ -200,8 +202,8 @@ void ModbusClient::exchange(std::size_t axis, PowerStageCommand command) {
   command.cycle = cycle_;
   put_words(command, written);
   const std::int64_t asked_ns = now_ns();
-  std::string error = line_->exchange(unit, written, read);
-  if (error.empty() && (read[0] != power_stage_identification || read[1] != power_stage_schema))
+  std::string error = line_->exchange(unit, written, std::span(read).first(words_of_schema(schemas_[axis])));
+  if (error.empty() && (read[0] != power_stage_identification || read[1] != schemas_[axis]))
     error = line_->changed(unit);
   const PowerStageState state = state_in(read);
   if (error.empty() && feedback.time_ns != 0 && state.cycle == feedback.state.cycle) error = line_->frozen(unit);

@@ -66,6 +66,7 @@ class ModbusClient {
   Snapshot<std::vector<PowerStageCommand>> commands_;
   Snapshot<std::vector<PowerStageFeedback>> feedback_;
   std::vector<PowerStageFeedback> newest_;  // the thread's own
+  std::vector<std::uint16_t> schemas_;      // of the units' registers
   std::vector<int> misses_;                 // exchanges in a row without a new state
   std::uint16_t cycle_ = 0;
   int stale_commands_ = 3;  // periods in a row without a new command

@@ -22,7 +22,10 @@ class ModbusBackend {
 
   // `clock` gives the ticks; both must outlive this.
   ModbusBackend(ModbusClient& client, TickClock& clock)
-      : client_(client), clock_(clock), commands_(client.feedback().size()), newest_(commands_.size()) {}
+      : client_(client), clock_(clock), commands_(client.feedback().size()) {
+    const auto first = client_.feedback();
+    newest_.assign(first.begin(), first.end());
+  }
 
   std::size_t axis_count() const { return commands_.size(); }
 
@@ -53,6 +56,25 @@ class ModbusBackend {
       inputs[i].limit_positive = state.limit_positive;
       inputs[i].home = state.home;
     }
+  }
+
+  void read_protection(std::span<ProtectionInputs<Signals>> inputs) const {
+    for (std::size_t i = 0; i < newest_.size(); ++i) {
+      const PowerStageState& state = newest_[i].state;
+      inputs[i] = {};
+      to_signal(state.dc_link, inputs[i].dc_link);  // 16 bits of 0.1 V have a place in every format of voltages
+      inputs[i].motor_temperature = static_cast<std::int16_t>(std::lround(10.0 * state.motor_temperature));
+      inputs[i].stage_temperature = static_cast<std::int16_t>(std::lround(10.0 * state.stage_temperature));
+      inputs[i].torque_off_a = state.torque_off_a;
+      inputs[i].torque_off_b = state.torque_off_b;
+    }
+  }
+  MotorSignalSet motor_signals(std::size_t axis) const {
+    const PowerStageState& state = newest_[axis].state;
+    return {.dc_link = state.has_dc_link,
+            .motor_temperature = state.has_motor_temperature,
+            .stage_temperature = state.has_stage_temperature,
+            .torque_off = state.has_torque_off};
   }
 
   void write(std::span<const Command<Signals>> command) {
@@ -89,6 +111,6 @@ class ModbusBackend {
   std::vector<PowerStageFeedback> newest_;
 };
 
-static_assert(WiredBackend<ModbusBackend> && KernelTimeBackend<ModbusBackend>);
+static_assert(WiredBackend<ModbusBackend> && KernelTimeBackend<ModbusBackend> && ProtectionBackend<ModbusBackend>);
 
 }  // namespace stiction::hal

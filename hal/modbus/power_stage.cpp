@@ -22,6 +22,14 @@ constexpr std::array<Bit<PowerStageState>, 5> input_bits{{
     {&PowerStageState::home, "home switch reached"},
     {&PowerStageState::enabled, "power stage on"},
 }};
+constexpr std::array<Bit<PowerStageState>, 6> protection_bits{{
+    {&PowerStageState::torque_off_a, "channel A of safe torque off open"},
+    {&PowerStageState::torque_off_b, "channel B of safe torque off open"},
+    {&PowerStageState::has_torque_off, "safe torque off is told"},
+    {&PowerStageState::has_dc_link, "dc_link is measured"},
+    {&PowerStageState::has_motor_temperature, "motor_temperature is measured"},
+    {&PowerStageState::has_stage_temperature, "stage_temperature is measured"},
+}};
 constexpr std::array<Bit<PowerStageCommand>, 2> control_bits{{
     {&PowerStageCommand::enable, "power stage on"},
     {&PowerStageCommand::release_brake, "brake released"},
@@ -60,9 +68,9 @@ struct Row {
 
 using enum RegisterType;
 
-const std::array<Row<PowerStageState>, 7>& state_rows() {
+const std::array<Row<PowerStageState>, 11>& state_rows() {
   using S = PowerStageState;
-  static const std::array<Row<S>, 7> rows{{
+  static const std::array<Row<S>, 11> rows{{
       {0, uint16, 1, "identification", "1", "21332 identifies a power stage for stiction",
        [](const S&) -> double { return power_stage_identification; }, [](S&, double) {}},
       {1, uint16, 1, "schema", "1", "version of these registers", [](const S&) -> double { return power_stage_schema; },
@@ -77,6 +85,14 @@ const std::array<Row<PowerStageState>, 7>& state_rows() {
        [](S& s, double v) { s.velocity = v; }},
       {8, float32, 1, "current", "A", "amplitude of the force-producing current", [](const S& s) { return s.current; },
        [](S& s, double v) { s.current = v; }},
+      {10, uint16, 1, "protection", "1", text_of(protection_bits),
+       [](const S& s) { return bits_of(s, protection_bits); }, [](S& s, double v) { set_bits(s, protection_bits, v); }},
+      {11, uint16, 0.1, "dc_link", "V", "voltage of the DC link", [](const S& s) { return s.dc_link; },
+       [](S& s, double v) { s.dc_link = v; }},
+      {12, int16, 0.1, "motor_temperature", "degC", "temperature of the motor",
+       [](const S& s) { return s.motor_temperature; }, [](S& s, double v) { s.motor_temperature = v; }},
+      {13, int16, 0.1, "stage_temperature", "degC", "temperature of the power stage",
+       [](const S& s) { return s.stage_temperature; }, [](S& s, double v) { s.stage_temperature = v; }},
   }};
   return rows;
 }

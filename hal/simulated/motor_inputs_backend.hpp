@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "firmware/machine/configuration/conversion.hpp"
+#include "firmware/machine/model/machine.hpp"
 #include "hal/backend.hpp"
 
 namespace stiction::hal {
@@ -74,6 +75,11 @@ class MotorInputsBackend {
   }
   Fault fault(std::size_t) const { return Fault::none; }
 
+  MotorSignalSet motor_signals(std::size_t axis) const {
+    auto set = inner_.motor_signals(axis);
+    set.hall = signals_[axis].hall_wired;
+    return set;
+  }
   void read_protection(std::span<ProtectionInputs<S>> inputs) {
     inner_.read_protection(inputs);
     for (std::size_t i = 0; i < inputs.size(); ++i) {

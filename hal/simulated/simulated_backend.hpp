@@ -72,6 +72,10 @@ class SimulatedBackend {
     }
   }
 
+  MotorSignalSet motor_signals(std::size_t) const {
+    return {.dc_link = true, .motor_temperature = true, .stage_temperature = true, .torque_off = true};
+  }
+
   // Whether the brake of an axis is released; where the axis has none, nothing.
   void set_brake(std::size_t axis, bool released) { plants_[axis].set_brake(released); }
 

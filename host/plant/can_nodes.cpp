@@ -42,7 +42,8 @@ CanNodes::CanNodes(const CanNodesConfig& config, PlantUnderBus plant, const Faul
       state_(config.nodes.size()),
       held_(config.nodes.size()),
       feedback_(config.nodes.size()),
-      inputs_(config.nodes.size()) {}
+      inputs_(config.nodes.size()),
+      protection_(config.nodes.size()) {}
 
 void CanNodes::serve(const std::function<bool()>& stop) {
   hal::can::Received received;
@@ -109,8 +110,9 @@ bool CanNodes::faulty(FrameFaultKind kind, std::size_t axis, std::uint64_t tick)
 
 void CanNodes::answer(std::uint32_t number) {
   plant_.sample(feedback_, inputs_);
+  plant_.sample_protection(protection_);
   for (std::size_t i = 0; i < state_.size(); ++i) {
-    state_[i] = {feedback_[i], inputs_[i]};
+    state_[i] = {feedback_[i], inputs_[i], protection_[i], plant_.motor_signals(i)};
     state_[i].feedback.position_time_ns = 0;  // sampled at SYNC
     send_feedback(i, number);
     held_[i] = state_[i];

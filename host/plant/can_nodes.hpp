@@ -59,6 +59,7 @@ class CanNodes {
   std::vector<hal::can::NodeFeedback> held_;  // answers kept back, to be late or old
   std::vector<Feedback<FixedSignals>> feedback_;
   std::vector<DigitalInputs<FixedSignals>> inputs_;
+  std::vector<ProtectionInputs<FixedSignals>> protection_;
   bool synced_ = false;
   std::uint32_t number_ = 0;  // of the last SYNC
   std::uint64_t tick_ = 0;

@@ -35,13 +35,16 @@ class FaultSchedule {
   // To be asked whether they act.
   std::span<const PlantFault> faults() const { return faults_; }
 
-  // The parts of every axis as they are in a tick. `faults_of(axis)`: the hal::AxisFaults of an axis.
-  template <class FaultsOf>
-  void break_parts(std::uint64_t tick, FaultsOf faults_of) const {
+  // The parts and signals of every axis as they are in a tick. `faults_of(axis)`, `signals_of(axis)`: the
+  // hal::AxisFaults and hal::MotorSignals of an axis.
+  template <class FaultsOf, class SignalsOf>
+  void break_parts(std::uint64_t tick, FaultsOf faults_of, SignalsOf signals_of) const {
     for (const bool acts : {false, true})  // two faults may be of one part
-      for (const auto& fault : faults_)
-        if (fault.kind->machine != nullptr && fault.acts(tick) == acts)
-          fault.kind->machine(faults_of(fault.axis), acts);
+      for (const auto& fault : faults_) {
+        if (fault.acts(tick) != acts) continue;
+        if (fault.kind->machine != nullptr) fault.kind->machine(faults_of(fault.axis), acts);
+        if (fault.kind->signal != nullptr) fault.kind->signal(signals_of(fault.axis), acts);
+      }
   }
 
   // Whether a fault whose `member` (frame or line) is `kind` acts on `axis` in `tick`.

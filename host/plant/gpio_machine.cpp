@@ -75,7 +75,8 @@ GpioMachine::GpioMachine(const GpioMachineConfig& config, PlantUnderBus plant, c
       pwm_(config.pwm, channels_of(config)),
       commands_(config.axes.size()),
       feedback_(config.axes.size()),
-      inputs_(config.axes.size()) {
+      inputs_(config.axes.size()),
+      protection_(config.axes.size()) {
   for (const auto& axis : config.axes)
     encoders_.emplace_back(chip_,
                            plant::EncoderLines::Wiring{.a = axis.line.quadrature_a,
@@ -85,6 +86,7 @@ GpioMachine::GpioMachine(const GpioMachineConfig& config, PlantUnderBus plant, c
                                                        .marks = axis.index},
                            std::llround(axis.start / axis.increment));
   plant_.sample(feedback_, inputs_);
+  plant_.sample_protection(protection_);
   set_switches();
 }
 
@@ -107,6 +109,7 @@ void GpioMachine::tick(std::int64_t time_ns) {
   plant_.advance(commands_);
   ++tick_;
   plant_.sample(feedback_, inputs_);
+  plant_.sample_protection(protection_);
   set_switches();
   edges_.clear();
   for (std::size_t i = 0; i < encoders_.size(); ++i) plan_edges(i, time_ns);
@@ -137,6 +140,11 @@ void GpioMachine::set_switches() {
     put(chip_, line.limit_positive, line.limit_active, inputs_[i].limit_positive);
     put(chip_, line.home, line.home_active, inputs_[i].home);
     put(chip_, line.fault, line.fault_active, feedback_[i].fault);
+    put(chip_, line.torque_off_a, line.torque_off_active, protection_[i].torque_off_a);
+    put(chip_, line.torque_off_b, line.torque_off_active, protection_[i].torque_off_b);
+    put(chip_, line.hall_a, line.hall_active, (inputs_[i].hall & 1) != 0);
+    put(chip_, line.hall_b, line.hall_active, (inputs_[i].hall & 2) != 0);
+    put(chip_, line.hall_c, line.hall_active, (inputs_[i].hall & 4) != 0);
   }
 }
 

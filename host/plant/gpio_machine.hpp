@@ -80,6 +80,7 @@ class GpioMachine {
   std::vector<Command<FixedSignals>> commands_;
   std::vector<Feedback<FixedSignals>> feedback_;
   std::vector<DigitalInputs<FixedSignals>> inputs_;
+  std::vector<ProtectionInputs<FixedSignals>> protection_;
   std::uint64_t tick_ = 0;
   std::int64_t most_edges_ = 0;
 };

@@ -38,7 +38,10 @@ void ModbusSlave::take_writes(std::int64_t now_ns) {
 void ModbusSlave::publish() {
   std::array<Feedback<FixedSignals>, 1> feedback{};
   std::array<DigitalInputs<FixedSignals>, 1> inputs{};
+  std::array<ProtectionInputs<FixedSignals>, 1> protection{};
   plant_.sample(feedback, inputs);
+  plant_.sample_protection(protection);
+  const auto has = plant_.motor_signals(0);
   const auto& f = feedback[0];
   auto& state = state_.next();
   state.fault = f.fault || !f.position_valid;
@@ -50,6 +53,15 @@ void ModbusSlave::publish() {
   state.position = machine::to_si(f.position);
   state.velocity = machine::to_si(f.velocity);
   state.current = machine::to_si(f.current[0]);
+  state.dc_link = machine::to_si(protection[0].dc_link);
+  state.motor_temperature = 0.1 * protection[0].motor_temperature;
+  state.stage_temperature = 0.1 * protection[0].stage_temperature;
+  state.torque_off_a = protection[0].torque_off_a;
+  state.torque_off_b = protection[0].torque_off_b;
+  state.has_dc_link = has.dc_link;
+  state.has_motor_temperature = has.motor_temperature;
+  state.has_stage_temperature = has.stage_temperature;
+  state.has_torque_off = has.torque_off;
   state_.publish();
 }
 

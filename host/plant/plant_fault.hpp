@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "hal/simulated/faulty_backend.hpp"
+#include "hal/simulated/motor_inputs_backend.hpp"
 
 namespace stiction::host {
 
@@ -25,6 +26,7 @@ enum class FrameFaultKind : std::uint8_t {
 enum class LineFaultKind : std::uint8_t { none, tracks_together, track_noise };
 
 using BreakPart = void (*)(hal::AxisFaults&, bool acts);
+using ShowSignal = void (*)(hal::MotorSignals&, bool acts);
 
 // Of one kind: what a CAN bus does, what digital lines do, or what breaks in the axis.
 struct PlantFaultKind {
@@ -33,13 +35,15 @@ struct PlantFaultKind {
   FrameFaultKind frame = FrameFaultKind::none;
   LineFaultKind line = LineFaultKind::none;
   BreakPart machine = nullptr;
-  bool shows_on_lines = true;  // a part that breaks
+  ShowSignal signal = nullptr;
+  bool shows_on_lines = true;  // a part that breaks, a signal
+  bool shows_on_modbus = true;
 
   // `bus`: "can", "modbus" or "gpio".
   constexpr bool possible_on(std::string_view bus) const {
     if (frame != FrameFaultKind::none) return bus == "can";
     if (line != LineFaultKind::none) return bus == "gpio";
-    return bus != "gpio" || shows_on_lines;
+    return bus == "gpio" ? shows_on_lines : bus != "modbus" || shows_on_modbus;
   }
 };
 
@@ -56,7 +60,18 @@ constexpr PlantFaultKind of_part(std::string_view name, std::string_view text, B
   return {.name = name, .text = text, .machine = part, .shows_on_lines = on_lines};
 }
 
-inline constexpr std::array<PlantFaultKind, 20> plant_faults{{
+// What motor and power stage tell of themselves. `name`, `text`: as above; `signal`: shows it and ends it; `on_lines`,
+// `on_modbus`: it shows there.
+constexpr PlantFaultKind of_signal(std::string_view name, std::string_view text, ShowSignal signal,
+                                   bool on_lines = false, bool on_modbus = true) {
+  return {.name = name, .text = text, .signal = signal, .shows_on_lines = on_lines, .shows_on_modbus = on_modbus};
+}
+
+// Beyond what any machine file allows.
+inline constexpr double shown_high_voltage = 2000.0, shown_low_voltage = 1.0;  // V
+inline constexpr double shown_heat = 200.0;                                    // degrees Celsius
+
+inline constexpr std::array<PlantFaultKind, 27> plant_faults{{
     of_frames("frame-lost", FrameFaultKind::lost, "the answer is not sent"),
     of_frames("frame-late", FrameFaultKind::late, "the answer is sent together with that of the next tick"),
     of_frames("frame-duplicate", FrameFaultKind::duplicate, "the answer is sent twice"),
@@ -91,6 +106,23 @@ inline constexpr std::array<PlantFaultKind, 20> plant_faults{{
     of_part(
         "limit-positive", "the positive limit switch is closed",
         [](auto& f, bool acts) { f.positive_switch = acts ? hal::SwitchFault::stuck_closed : hal::SwitchFault::none; }),
+    of_signal(
+        "torque-off", "both channels of safe torque off are open, the stage has no torque",
+        [](auto& s, bool acts) { s.torque_off_a = s.torque_off_b = acts; }, true),
+    of_signal(
+        "torque-off-channel", "channel A of safe torque off is open, the stage has no torque",
+        [](auto& s, bool acts) { s.torque_off_a = acts; }, true),
+    of_signal("dc-link-high", "the DC link shows 2000 V",
+              [](auto& s, bool acts) { s.dc_link = acts ? std::optional(shown_high_voltage) : std::nullopt; }),
+    of_signal("dc-link-low", "the DC link shows 1 V",
+              [](auto& s, bool acts) { s.dc_link = acts ? std::optional(shown_low_voltage) : std::nullopt; }),
+    of_signal("motor-hot", "the motor shows 200 degrees Celsius",
+              [](auto& s, bool acts) { s.motor_temperature = acts ? std::optional(shown_heat) : std::nullopt; }),
+    of_signal("stage-hot", "the power stage shows 200 degrees Celsius",
+              [](auto& s, bool acts) { s.stage_temperature = acts ? std::optional(shown_heat) : std::nullopt; }),
+    of_signal(
+        "hall-open", "all Hall signals are low",
+        [](auto& s, bool acts) { s.hall = acts ? std::optional(std::uint8_t{0}) : std::nullopt; }, true, false),
 }};
 
 struct PlantFault {

@@ -75,7 +75,8 @@ PlantFault plant_fault(const std::string& text, const std::string& bus, const ma
 // For the help: where a kind can be had.
 std::string_view bus_note(const PlantFaultKind& kind) {
   if (!kind.possible_on("gpio")) return kind.possible_on("modbus") ? "not on gpio: " : "can: ";
-  return kind.possible_on("can") ? "" : "gpio: ";
+  if (!kind.possible_on("can")) return "gpio: ";
+  return kind.possible_on("modbus") ? "" : "not on modbus: ";
 }
 
 struct MarkName {

@@ -10,6 +10,7 @@
 
 #include "firmware/machine/model/machine.hpp"
 #include "hal/simulated/faulty_backend.hpp"
+#include "hal/simulated/motor_inputs_backend.hpp"
 #include "hal/simulated/simulated_backend.hpp"
 #include "host/plant/fault_schedule.hpp"
 #include "host/plant/motion_record.hpp"
@@ -49,7 +50,10 @@ class SimulatedMachine {
   FaultSchedule faults_;
   OnFault on_fault_;
   hal::SimulatedBackend<FixedSignals> simulated_;
-  hal::FaultyBackend<hal::SimulatedBackend<FixedSignals>> faulty_;
+  hal::MotorInputsBackend<hal::SimulatedBackend<FixedSignals>> motors_;
+  hal::FaultyBackend<hal::MotorInputsBackend<hal::SimulatedBackend<FixedSignals>>> faulty_;
+  std::vector<DigitalInputs<FixedSignals>> halls_;          // of motors_, which know nothing of switches
+  std::vector<ProtectionInputs<FixedSignals>> protection_;  // of this tick
   MotionRecord record_;
   std::uint64_t tick_ = 0;
 };

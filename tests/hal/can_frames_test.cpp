@@ -38,6 +38,19 @@ NodeFeedback random_state(std::mt19937_64& random, double largest_current, doubl
   state.inputs.limit_positive = (random() & 1) != 0;
   state.inputs.home = (random() & 1) != 0;
   state.inputs.index = (random() & 1) != 0;
+  state.inputs.hall = static_cast<std::uint8_t>(random() & 7);
+  auto& p = state.protection;
+  EXPECT_TRUE(machine::convert(within(1500.0), p.dc_link));
+  // A platinum sensor and its broken wire.
+  p.motor_temperature = static_cast<std::int16_t>(within(4000.0));
+  p.stage_temperature = static_cast<std::int16_t>(within(4000.0));
+  p.torque_off_a = (random() & 1) != 0;
+  p.torque_off_b = (random() & 1) != 0;
+  state.motor_signals = {.hall = (random() & 1) != 0,
+                         .dc_link = (random() & 1) != 0,
+                         .motor_temperature = (random() & 1) != 0,
+                         .stage_temperature = (random() & 1) != 0,
+                         .torque_off = (random() & 1) != 0};
   return state;
 }
 
@@ -64,6 +77,8 @@ void expect_same_flags(const NodeFeedback& found, const NodeFeedback& sent) {
   EXPECT_EQ(found.inputs.limit_positive, sent.inputs.limit_positive);
   EXPECT_EQ(found.inputs.home, sent.inputs.home);
   EXPECT_EQ(found.inputs.index, sent.inputs.index);
+  EXPECT_EQ(found.protection.torque_off_a, sent.protection.torque_off_a);
+  EXPECT_EQ(found.protection.torque_off_b, sent.protection.torque_off_b);
 }
 
 TEST(CanFrames, OfCanFdCarryTheControlsIntegers) {
@@ -76,6 +91,11 @@ TEST(CanFrames, OfCanFdCarryTheControlsIntegers) {
     EXPECT_EQ(found.feedback.current, sent.feedback.current);
     EXPECT_EQ(found.feedback.position_time_ns, sent.feedback.position_time_ns);
     EXPECT_EQ(found.inputs.index_position, sent.inputs.index_position);
+    EXPECT_EQ(found.inputs.hall, sent.inputs.hall);
+    EXPECT_EQ(found.protection.dc_link, sent.protection.dc_link);
+    EXPECT_EQ(found.protection.motor_temperature, sent.protection.motor_temperature);
+    EXPECT_EQ(found.protection.stage_temperature, sent.protection.stage_temperature);
+    EXPECT_EQ(found.motor_signals, sent.motor_signals);
     expect_same_flags(found, sent);
   }
 }
@@ -89,8 +109,20 @@ TEST(CanFrames, ClassicalOnesRoundToTheirResolution) {
     for (std::size_t k = 0; k < 3; ++k)
       EXPECT_NEAR(machine::to_si(found.feedback.current[k]), machine::to_si(sent.feedback.current[k]),
                   std::ldexp(0.5, -8));
+    EXPECT_EQ(found.motor_signals, (MotorSignalSet{.torque_off = true}));
     expect_same_flags(found, sent);
   }
+}
+
+TEST(CanFrames, HoldADcLinkAndATemperatureBeyondTheirRangeAtItsEnd) {
+  NodeFeedback sent;
+  ASSERT_TRUE(machine::convert(4000.0, sent.protection.dc_link));
+  sent.protection.motor_temperature = 30'000;
+  sent.protection.stage_temperature = -30'000;
+  const auto found = through_the_bus(Format::fd, sent, 0);
+  EXPECT_NEAR(machine::to_si(found.protection.dc_link), 2048.0, 0.01);
+  EXPECT_EQ(found.protection.motor_temperature, 4095);
+  EXPECT_EQ(found.protection.stage_temperature, -4096);
 }
 
 TEST(CanFrames, ClassicalOnesHoldWhatIsBeyondTheirRangeAtItsEnd) {

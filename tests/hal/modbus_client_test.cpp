@@ -70,6 +70,10 @@ TEST(PowerStage, SurvivesItsOwnRegisters) {
   state.position = -1.23456789;
   state.velocity = 0.25;
   state.current = -3.5;
+  state.torque_off_b = state.has_dc_link = state.has_stage_temperature = true;
+  state.dc_link = 565.7;
+  state.motor_temperature = -12.3;
+  state.stage_temperature = 87.6;
   const auto& map = hal::power_stage_map();
   std::vector<double> values(map.registers().size());
   hal::put_power_stage_values(state, values);
@@ -86,6 +90,15 @@ TEST(PowerStage, SurvivesItsOwnRegisters) {
   EXPECT_NEAR(found.position, state.position, 5e-9);  // half a step of the register
   EXPECT_EQ(found.velocity, 0.25);
   EXPECT_EQ(found.current, -3.5);
+  EXPECT_FALSE(found.torque_off_a);
+  EXPECT_TRUE(found.torque_off_b);
+  EXPECT_FALSE(found.has_torque_off);
+  EXPECT_TRUE(found.has_dc_link);
+  EXPECT_FALSE(found.has_motor_temperature);
+  EXPECT_TRUE(found.has_stage_temperature);
+  EXPECT_NEAR(found.dc_link, 565.7, 1e-9);
+  EXPECT_NEAR(found.motor_temperature, -12.3, 1e-9);
+  EXPECT_NEAR(found.stage_temperature, 87.6, 1e-9);
 }
 
 TEST(PowerStage, ItsExchangeIsThatOfTheBudget) {
@@ -183,7 +196,7 @@ TEST(ModbusClient, RefusesToStartWithOtherRegisters) {
   const hal::ModbusServer other(hal::RegisterMap(small_registers()), config, small_values);
   EXPECT_EQ(refusal_of(config_for(local(other.port()))),
             local(other.port()) +
-                ", unit 1: found the registers 0x0003 version 0; expected 0x5354 version 1 at addresses 0 and 1");
+                ", unit 1: found the registers 0x0003 version 0; expected 0x5354 version 1 to 2 at addresses 0 and 1");
 }
 
 TEST(ModbusClient, ReportsASilentSlaveAsFramesLostAndRecovers) {
@@ -232,11 +245,14 @@ TEST(ModbusBackend, CarriesAnAxisBetweenTheLoopAndAStage) {
   state.position = -0.25;
   state.current = 1.5;
   state.limit_negative = true;
+  state.has_torque_off = state.has_dc_link = state.torque_off_b = true;
+  state.dc_link = 48.5;
   stage->set(state);
   hal::ModbusClient client(config_for(local(stage->port()), 0.02));
   hal::TickClock clock(10'000'000);
   hal::ModbusBackend backend(client, clock);
   ASSERT_EQ(backend.axis_count(), 1U);
+  EXPECT_EQ(backend.motor_signals(0), (MotorSignalSet{.dc_link = true, .torque_off = true}));
   std::array<Feedback<FixedSignals>, 1> feedback{};
   std::array<DigitalInputs<FixedSignals>, 1> inputs{};
   std::array<Command<FixedSignals>, 1> command{};
@@ -262,6 +278,11 @@ TEST(ModbusBackend, CarriesAnAxisBetweenTheLoopAndAStage) {
   EXPECT_EQ(feedback[0].current[0].raw(), 3 << 19);
   EXPECT_TRUE(inputs[0].limit_negative);
   EXPECT_EQ(backend.fault(0), Fault::none);
+  std::array<ProtectionInputs<FixedSignals>, 1> protection{};
+  backend.read_protection(protection);
+  EXPECT_EQ(protection[0].dc_link.raw(), 97 << 17);  // 48.5 V
+  EXPECT_FALSE(protection[0].torque_off_a);
+  EXPECT_TRUE(protection[0].torque_off_b);
 
   command[0].enable = false;
   EXPECT_TRUE(comes_true([&] {

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <atomic>
 #include <thread>
 
@@ -170,6 +171,39 @@ TEST_F(GpioBackendLoop, StopsAtALimitSwitchInTheTickThatShowsIt) {
   }
 }
 
+TEST_F(GpioBackendLoop, TellsSafeTorqueOffAndHallSignalsAsTheirLinesAre) {
+  hal::GpioBackend backend(config(), period_ns);
+  EXPECT_EQ(backend.motor_signals(0), (MotorSignalSet{.hall = true, .torque_off = true}));
+  Tick tick(backend);
+  ProtectionInputs<Signals> protection;
+  const auto seen = [&] {
+    tick.wait();
+    backend.read_protection({&protection, 1});
+  };
+  constexpr std::array halls{wire::hall_a, wire::hall_b, wire::hall_c};
+  for (unsigned code = 0; code < 8; ++code) {
+    for (unsigned k = 0; k < 3; ++k) sim_->set(halls[k], (code >> k & 1u) != 0);
+    sim_->set(wire::torque_off_a, (code & 1u) != 0);
+    sim_->set(wire::torque_off_b, (code & 2u) != 0);
+    seen();
+    seen();  // a channel that was open since the poll before counts as open
+    EXPECT_EQ(tick.inputs.hall, code);
+    EXPECT_EQ(protection.torque_off_a, (code & 1u) != 0);
+    EXPECT_EQ(protection.torque_off_b, (code & 2u) != 0);
+  }
+}
+
+TEST_F(GpioBackendLoop, HasNoHallSignalsAndNoSafeTorqueOffWhereALineOfThemIsNotWired) {
+  auto without = config();
+  without.axes[0].lines.hall_b = without.axes[0].lines.torque_off_b = {};
+  hal::GpioBackend backend(without, period_ns);
+  EXPECT_EQ(backend.motor_signals(0), MotorSignalSet{});
+  Tick tick(backend);
+  for (const int line : {wire::hall_a, wire::hall_c}) sim_->set(line, true);
+  tick.wait();
+  EXPECT_EQ(tick.inputs.hall, 0);
+}
+
 TEST_F(GpioBackendLoop, ReportsEdgesThatTheKernelDroppedInTheTickThatReadsTheRestAndIsWellAgainInTheCalm) {
   plant::EncoderLines encoder(*sim_, {.a = wire::a, .b = wire::b});
   hal::GpioBackend backend(config(), period_ns);
@@ -262,6 +296,14 @@ TEST_F(GpioLoop, StandsBesideABackendWhosePowerStagesAreOnAnotherBus) {
   EXPECT_LE(tick.inputs.index_position.raw(), carriage.raw_at(after));
   tick.wait();
   EXPECT_FALSE(tick.inputs.index);
+
+  EXPECT_EQ(both.motor_signals(0), (MotorSignalSet{.hall = true, .torque_off = true}));
+  sim_->set(wire::torque_off_b, true);
+  ProtectionInputs<Signals> protection;
+  tick.wait();
+  both.read_protection({&protection, 1});
+  EXPECT_FALSE(protection.torque_off_a);
+  EXPECT_TRUE(protection.torque_off_b);
 
   sim_->set(wire::fault, true);
   tick.wait();

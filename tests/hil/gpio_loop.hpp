@@ -27,7 +27,7 @@ inline constexpr const char* chip = "stiction-test";
 // Line numbers.
 namespace wire {
 inline constexpr int a = 0, b = 1, index = 2, limit_negative = 3, limit_positive = 4, home = 5, fault = 6, enable = 7,
-                     brake = 8, spare = 9;
+                     brake = 8, spare = 9, torque_off_a = 10, torque_off_b = 11, hall_a = 12, hall_b = 13, hall_c = 14;
 }
 
 inline std::int64_t monotonic_ns() {
@@ -66,7 +66,12 @@ inline hal::AxisLines axis_lines() {
           .limit_negative = {wire::limit_negative, true},
           .limit_positive = {wire::limit_positive, true},
           .home = {wire::home},
-          .index = {wire::index}};
+          .index = {wire::index},
+          .torque_off_a = {wire::torque_off_a},
+          .torque_off_b = {wire::torque_off_b},
+          .hall_a = {wire::hall_a},
+          .hall_b = {wire::hall_b},
+          .hall_c = {wire::hall_c}};
 }
 
 // The PWM of two half bridges.

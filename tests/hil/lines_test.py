@@ -32,6 +32,8 @@ FAULTS = [
     ("encoder-open", SEARCHING, 1000, {16}, 52.0),
     ("limit-negative", HOMED, 1000, {21}, 1.0),
     ("limit-positive", HOMED, 1000, {21}, 1.0),
+    ("torque-off", SEARCHING, 1000, {89}, 1.0),
+    ("torque-off-channel", SEARCHING, 1000, {89}, 1.0),
 ]
 
 RUN = """

@@ -29,6 +29,10 @@ def fault(kind, ticks=LASTING):
     return f"{kind},axis=X,at={ONSET * loop.PERIOD} s,ticks={ticks}"
 
 
+# What the machine's power stages tell over CAN FD, watched.
+WATCHED = tuple(part for key, value in (("dc_link_high", "900 V"), ("dc_link_low", "100 V"), ("motor_temperature", "130 degC"),
+                                        ("stage_temperature", "90 degC"), ("torque_off", "two-channels"))
+                for part in ("--set", f"drive.axis.X.protection.{key}={value}"))
 # Kind, ticks that it lasts, faults that may be named for it (faults.hpp), ticks within which, whether the power goes at
 # once (else after a controlled stop).
 FAULTS = [
@@ -49,6 +53,12 @@ FAULTS = [
     ("power-stage", LASTING, {5}, 1, True),
     ("limit-negative", LASTING, {20, 21}, 1, False),
     ("limit-positive", LASTING, {20, 21}, 1, False),
+    ("torque-off", LASTING, {89}, 1, True),
+    ("torque-off-channel", LASTING, {89}, 1, True),
+    ("dc-link-high", LASTING, {84}, 1, True),
+    ("dc-link-low", LASTING, {85}, 16, False),
+    ("motor-hot", LASTING, {86}, 16, False),
+    ("stage-hot", LASTING, {87}, 16, False),
 ]
 FAULTS = loop.sampled(FAULTS)
 HELD = ("--hold", "0.5")
@@ -87,7 +97,7 @@ class Circle(unittest.TestCase):
 class Faults(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        runs = [loop.Run(kind, faults=(fault(kind, ticks),)) for kind, ticks, *_ in FAULTS]
+        runs = [loop.Run(kind, faults=(fault(kind, ticks),), both=WATCHED) for kind, ticks, *_ in FAULTS]
         cls.results = loop.execute(FOLDER / "faults", runs)
 
     def test_are_detected_in_their_time_and_nothing_moves_afterwards(self):
@@ -113,6 +123,19 @@ class Faults(unittest.TestCase):
                        f"{x.ran_on_ticks * loop.PERIOD:.2f} s")
                 detected += 1
         figure("faults injected in the loop and detected in time", f"{detected} of {len(FAULTS)} (bound all)")
+
+
+class HallSignals(unittest.TestCase):
+    def test_over_the_bus_tell_the_drive_where_its_motor_is(self):
+        # The machine's motor is 200 degrees away from its encoder's zero, which the drive's file does not know.
+        motor = ("--set", "axis.X.encoder.commutation_offset=200 deg")
+        told = ("--set", "drive.axis.X.commutation.method=hall")
+        results = loop.execute(FOLDER / "hall", [
+            loop.Run("told", plant=motor, drive=told),
+            loop.Run("open", HELD, (f"hall-open,axis=X,at=0 s,ticks={LASTING}",), told, motor)])
+        self.assertEqual((results["told"].status, results["told"].faults()), (0, []), results["told"].drive)
+        self.assertEqual(results["open"].status, 1, results["open"].drive)
+        self.assertEqual(min(results["open"].faults())[2], 80, results["open"].drive)
 
 
 class Disturbances(unittest.TestCase):

@@ -281,8 +281,11 @@ struct Table<LineSetup> : EmptyTable<LineSetup> {
       active_level("limit_active", &LineSetup::limit_active, "level of both limit switches when they are reached"),
       active_level("home_active", &LineSetup::home_active, "level of the home switch when it is reached"),
       active_level("index_active", &LineSetup::index_active, "level of the index mark"),
+      active_level("torque_off_active", &LineSetup::torque_off_active,
+                   "level of both channels of safe torque off when they are open"),
+      active_level("hall_active", &LineSetup::hall_active, "level of the Hall signals when they are true"),
   };
-  static constexpr std::array<Parameter<LineSetup>, 13> parameters{{
+  static constexpr std::array<Parameter<LineSetup>, 18> parameters{{
       {"enable", "1", line_numbers, &LineSetup::enable, -1.0, "power stage on"},
       {"brake", "1", line_numbers, &LineSetup::brake, -1.0, "brake released"},
       {"fault", "1", line_numbers, &LineSetup::fault, -1.0, "fault of the power stage"},
@@ -290,6 +293,11 @@ struct Table<LineSetup> : EmptyTable<LineSetup> {
       {"limit_positive", "1", line_numbers, &LineSetup::limit_positive, -1.0, "limit switch at the positive end"},
       {"home", "1", line_numbers, &LineSetup::home, -1.0, "home switch"},
       {"index", "1", line_numbers, &LineSetup::index, -1.0, "index mark of the encoder"},
+      {"torque_off_a", "1", line_numbers, &LineSetup::torque_off_a, -1.0, "safe torque off, channel A open"},
+      {"torque_off_b", "1", line_numbers, &LineSetup::torque_off_b, -1.0, "safe torque off, channel B open"},
+      {"hall_a", "1", line_numbers, &LineSetup::hall_a, -1.0, "Hall signal A of the motor"},
+      {"hall_b", "1", line_numbers, &LineSetup::hall_b, -1.0, "Hall signal B of the motor"},
+      {"hall_c", "1", line_numbers, &LineSetup::hall_c, -1.0, "Hall signal C of the motor"},
       {"quadrature_a", "1", line_numbers, &LineSetup::quadrature_a, -1.0, "track A of the encoder"},
       {"quadrature_b", "1", line_numbers, &LineSetup::quadrature_b, -1.0, "track B of the encoder"},
       {"quadrature_increment", "m", not_negative(1e-3), &LineSetup::quadrature_increment, 0.0,

@@ -80,7 +80,7 @@ struct Table<BrakeTestSetup> : EmptyTable<BrakeTestSetup> {
 
 inline constexpr std::array<Choice<bool>, 2> torque_off_wirings{{
     {"none", false, "it is not wired"},
-    {"two-channels", true, "both of its channels are inputs of the power stage"},
+    {"two-channels", true, "both of its channels are inputs of the drive"},
 }};
 
 template <>

@@ -134,6 +134,8 @@ enum class ActiveLevel { high, low };
 struct LineSetup {
   int enable = -1, brake = -1, fault = -1;
   int limit_negative = -1, limit_positive = -1, home = -1, index = -1;
+  int torque_off_a = -1, torque_off_b = -1;
+  int hall_a = -1, hall_b = -1, hall_c = -1;
   int quadrature_a = -1, quadrature_b = -1;
   double quadrature_increment = 0.0;  // m an edge
   double quadrature_rate = 10e3;      // edges a second of both tracks, that the machine's kernel was measured to hold
@@ -141,6 +143,7 @@ struct LineSetup {
   int pwm_channel = -1;               // the first of the motor's
   ActiveLevel enable_active = ActiveLevel::high, brake_active = ActiveLevel::high, fault_active = ActiveLevel::high;
   ActiveLevel limit_active = ActiveLevel::high, home_active = ActiveLevel::high, index_active = ActiveLevel::high;
+  ActiveLevel torque_off_active = ActiveLevel::high, hall_active = ActiveLevel::high;
 };
 
 struct DriveAxisSetup {

@@ -59,8 +59,11 @@ TEST(FaultSchedule, DrawsTheSameFaultsFromTheSameSeedSoFarApartInTheMeanAndNever
 TEST(FaultSchedule, BreaksAPartThatAnyOfItsFaultsBreaks) {
   const FaultSchedule schedule({fault_of("encoder-jump", 10, 5), fault_of("encoder-jump", 20, 5)});
   hal::AxisFaults faults;
+  hal::MotorSignals signals;
   const auto shift_at = [&](std::uint64_t tick) {
-    schedule.break_parts(tick, [&](std::size_t) -> hal::AxisFaults& { return faults; });
+    schedule.break_parts(
+        tick, [&](std::size_t) -> hal::AxisFaults& { return faults; },
+        [&](std::size_t) -> hal::MotorSignals& { return signals; });
     return faults.encoder_shift;
   };
   EXPECT_EQ(shift_at(9), 0.0);

@@ -53,4 +53,12 @@ struct ProtectionInputs {
   bool torque_off_a = false, torque_off_b = false;            // channels of safe torque off that are open
 };
 
+// Which signals of a motor and its power stage there are. What is not there is zero in the inputs above.
+struct MotorSignalSet {
+  bool hall = false, dc_link = false, motor_temperature = false, stage_temperature = false;
+  bool torque_off = false;
+
+  constexpr bool operator==(const MotorSignalSet&) const = default;
+};
+
 }  // namespace stiction
