@@ -118,13 +118,10 @@ void regress_on(Record& record, const std::vector<Log>& motion, const machine::A
     Eigen::VectorXd apart = shared;
     if (!record.simulated_elsewhere.empty())
       apart = record.target - mean_own_residual(record.simulated_elsewhere, record.logs, axis, settings);
-    if (shared.squaredNorm() < alike * apart.squaredNorm()) {
-      record.simulated_elsewhere.clear();
-      record.moved_elsewhere.clear();
-    }
+    if (shared.squaredNorm() < alike * apart.squaredNorm()) record.simulated_elsewhere.clear();
     record.target = record.simulated_elsewhere.empty() ? shared : apart;
     record.regressors = rows_of(
-        record.simulated_elsewhere.empty() ? motion : moved_as(motion, record.moved_elsewhere, axis), axis, settings);
+        record.moved_elsewhere.empty() ? motion : moved_as(motion, record.moved_elsewhere, axis), axis, settings);
     record.regressors.read_as(record.rows);
   }
   Eigen::VectorXd moves = Eigen::VectorXd::Ones(record.target.size());

@@ -26,8 +26,9 @@ struct Record {
   Eigen::VectorXd target;      // N, what the file does not make of the force; rows at rest do not count
   std::vector<Log> simulated;  // the file's own runs of these logs; empty where it cannot follow
   // The same on other parts of the encoder's increment: those of which was taken what the file leaves of its own runs,
-  // and the one with the motion of the regressors. Both empty: simulated is both. Two that share their increments have
-  // something in common that looks like a mode of the machine, and a quiet record may share those of simulated.
+  // and the one with the motion of the regressors. Empty: simulated has that part. Two that share their increments have
+  // something in common that looks like a mode of the machine, and a quiet record may share those of simulated, at
+  // least for a while: columns never do.
   std::vector<std::vector<Log>> simulated_elsewhere;
   std::vector<Log> moved_elsewhere;
   FrictionAlong friction = FrictionAlong::own_motion;  // in the target
