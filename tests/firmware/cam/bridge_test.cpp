@@ -33,6 +33,29 @@ TEST(Product, IsExactAndRoundedToNearest) {
   EXPECT_EQ(product_shifted(INT64_MIN, INT64_MIN, 127), 1);
 }
 
+// 2^(62 + bits) / length, rounded down, by the division of 128 bits that the compiler brings along.
+TEST(Span, HasTheExactReciprocal) {
+  const auto check = [](std::int64_t length) {
+    const Span span = Span::of(length);
+    __extension__ using Wide = unsigned __int128;
+    const auto expected = static_cast<std::int64_t>((Wide{1} << (62 + span.bits)) / static_cast<std::uint64_t>(length));
+    ASSERT_EQ(span.reciprocal, expected) << length;
+    ASSERT_EQ(span.length, length);
+  };
+  for (std::int64_t length = 1; length <= 70'000; ++length) check(length);
+  for (int bit = 2; bit <= 61; ++bit)
+    for (const std::int64_t off : {-3, -2, -1, 0, 1, 2, 3})
+      if (bit < 61 || off <= 0) check((std::int64_t{1} << bit) + off > 0 ? (std::int64_t{1} << bit) + off : 1);
+  std::mt19937_64 random(5);
+  for (int k = 0; k < 1'000'000; ++k) check(static_cast<std::int64_t>(random() >> (3 + random() % 50)) + 1);
+  for (int k = 0; k < BridgeLengths::count; ++k) {
+    const Span span = BridgeLengths::span(k), expected = Span::of(BridgeLengths::ticks(k));
+    EXPECT_EQ(span.length, expected.length);
+    EXPECT_EQ(span.reciprocal, expected.reciprocal);
+    EXPECT_EQ(span.bits, expected.bits);
+  }
+}
+
 TEST(Span, DividesByItsLength) {
   std::mt19937_64 random(5);
   for (int k = 0; k < 20'000; ++k) {

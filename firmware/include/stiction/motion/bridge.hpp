@@ -29,18 +29,23 @@ struct Span {
   std::int64_t reciprocal = std::int64_t{1} << 62;  // 2^(62 + bits) / length, from 2^61
   std::int8_t bits = 0;                             // of the length, less one
 
-  // The span of `length`, 1 to 2^61: ticks, or 2^-40 cycles of the master. 62 steps of a division bit by bit.
+  // The span of `length`, 1 to 2^61: ticks, or 2^-40 cycles of the master. A division of four digits (D. E. Knuth, "The
+  // Art of Computer Programming", volume 2, 4.3.1), each by a division of words that is too small by up to 3.
   static constexpr Span of(std::int64_t length) {
     const auto whole = static_cast<std::uint64_t>(length < 1 ? 1 : length > longest ? longest : length);
     Span span;
     span.length = static_cast<std::int64_t>(whole);
     span.bits = static_cast<std::int8_t>(std::bit_width(whole) - 1);
-    std::uint64_t rest = std::uint64_t{1} << span.bits, quotient = 0;
-    for (int bit = 0; bit <= share_bits; ++bit) {
-      const bool set = rest >= whole;
-      if (set) rest -= whole;
-      quotient = quotient << 1 | static_cast<std::uint64_t>(set);
-      rest <<= 1;
+    const std::uint64_t divisor = whole << (61 - span.bits);
+    const auto leading = static_cast<std::uint32_t>(divisor >> 46) + 1;
+    const bool one = divisor == std::uint64_t{1} << 61;
+    std::uint64_t rest = one ? 0 : std::uint64_t{1} << 61, quotient = one ? 1 : 0;
+    for (const int bits_of_digit : {16, 16, 15, 15}) {
+      std::uint32_t digit = static_cast<std::uint32_t>(rest >> (46 - bits_of_digit)) / leading;
+      rest = (rest << bits_of_digit) - divisor * digit;
+      for (int k = 0; k < 3; ++k)
+        if (rest >= divisor) rest -= divisor, ++digit;
+      quotient = quotient << bits_of_digit | digit;
     }
     span.reciprocal = static_cast<std::int64_t>(quotient);
     return span;
@@ -225,6 +230,12 @@ struct BridgeLengths {
   static constexpr int count = 76;
   // `k`: 0 to count - 1.
   static constexpr std::int64_t ticks(int k) { return std::int64_t{4 + k % 4} << (k / 4); }
+  // The same as a span, without a division.
+  static constexpr Span span(int k) {
+    constexpr std::int64_t reciprocals[4] = {Span::of(4).reciprocal, Span::of(5).reciprocal, Span::of(6).reciprocal,
+                                             Span::of(7).reciprocal};
+    return {ticks(k), reciprocals[k % 4], static_cast<std::int8_t>(k / 4 + 2)};
+  }
 };
 
 }  // namespace stiction

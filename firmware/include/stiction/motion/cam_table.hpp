@@ -116,6 +116,11 @@ class CamTable {
     if (Crc32{}.add(bytes, end).value() != number(bytes, end, 4)) return CamTableProblem::checksum;
     if (bytes[6] > 1 || bytes[7] > 1 || bytes[8] > 1) return CamTableProblem::kind;
     read.fill_header();
+    const std::uint32_t power = std::bit_floor(h.count);
+    read.speed_shift_ = h.position_bits - 32 - h.speed_bits;
+    read.acceleration_shift_ = h.position_bits - 64 - h.acceleration_bits;
+    read.halvings_ = std::countr_zero(power);
+    read.last_ = header_size + segment_size * (h.count - power);
     auto problem = read.check_segments(written);
     if (problem == CamTableProblem::none) problem = read.check_tracks();
     if (problem == CamTableProblem::none) table = read;
@@ -166,7 +171,11 @@ class CamTable {
   }
 
   // Position, speed and acceleration at `phase`, in 2^-32 cycles.
-  constexpr Output evaluate(std::uint32_t phase) const { return evaluate(header_, segment_at(place_of(phase)), phase); }
+  constexpr Output evaluate(std::uint32_t phase) const {
+    const auto segment = segment_at(place_of(phase));
+    const std::uint64_t t = std::uint64_t{phase - segment.start} * segment.reciprocal;
+    return at(segment, static_cast<std::uint32_t>(t >> segment.down), 0);
+  }
 
   // The same at `phase` in 2^-64 cycles: what is below 2^-32 cycles counts as well.
   constexpr Output evaluate_fine(std::uint64_t phase) const {
@@ -175,22 +184,8 @@ class CamTable {
     const std::uint64_t upper =
         std::uint64_t{static_cast<std::uint32_t>(phase >> 32) - segment.start} * segment.reciprocal;
     const std::uint64_t t = upper + (std::uint64_t{static_cast<std::uint32_t>(phase)} * segment.reciprocal >> 32);
-    return at(header_, segment, static_cast<std::uint32_t>(t >> segment.down),
+    return at(segment, static_cast<std::uint32_t>(t >> segment.down),
               static_cast<std::uint32_t>(t) << 1 << (31 - segment.down));
-  }
-
-  // The same within a `segment` of a table with that `header`; `phase`, in 2^-32 cycles, lies in it.
-  static constexpr Output evaluate(const Header& header, const Segment& segment, std::uint32_t phase) {
-    const std::uint64_t product = std::uint64_t{phase - segment.start} * segment.reciprocal;
-    return at(header, segment, static_cast<std::uint32_t>(product >> segment.down), 0);
-  }
-
-  // By how much the products of a `segment` are shifted to the outputs of a table with that `header`.
-  static constexpr int speed_shift(const Header& header, const Segment& segment) {
-    return header.position_bits + segment.shift + segment.down - 32 - header.speed_bits;
-  }
-  static constexpr int acceleration_shift(const Header& header, const Segment& segment) {
-    return header.position_bits + segment.shift + 2 * segment.down - 64 - header.acceleration_bits;
   }
 
   // Of the coefficients while they are multiplied.
@@ -198,10 +193,13 @@ class CamTable {
 
  private:
   // The outputs of a `segment` at `t` and a `rest`, in 2^-32 and 2^-64 of what t goes through.
-  [[gnu::always_inline]] static constexpr Output at(const Header& header, const Segment& segment, std::uint32_t t,
-                                                    std::uint32_t rest) {
+  [[gnu::always_inline]] constexpr Output at(const Segment& segment, std::uint32_t t, std::uint32_t rest) const {
     const auto c = [&segment](int n) {
+#ifdef __SIZEOF_INT128__
+      return std::int64_t{segment.c[n - 1]} * (1 << extra_bits) >> segment.finer_bits(n);
+#else
       return std::int64_t{segment.c[n - 1]} * ((1 << extra_bits) >> segment.finer_bits(n));  // one product of words
+#endif
     };
     // Written out: as a loop it takes a third more instructions on Cortex-M4.
     const std::int64_t c5 = c(5), first = high(c5, t);
@@ -215,19 +213,75 @@ class CamTable {
     const std::int64_t y = high(b1, t) + on(d1), v = d1 + on(a);
     const std::int64_t speed = high(v, segment.reciprocal);
     const std::int64_t acceleration = high(high(a, segment.reciprocal), segment.reciprocal);
-    return {segment.c0 + rounded(y, segment.shift), rounded(speed, speed_shift(header, segment)),
-            rounded(acceleration, acceleration_shift(header, segment))};
+    const int shift = segment.shift + segment.down;
+    return {segment.c0 + rounded(y, segment.shift), rounded(speed, shift + speed_shift_),
+            rounded(acceleration, shift + segment.down + acceleration_shift_)};
   }
 
+  constexpr void half(std::size_t& at, std::uint32_t phase, int power) const {
+    const std::size_t next = at + (segment_size << power);
+    if (start_of(next) <= phase) at = next;
+  }
+  constexpr std::uint32_t start_of(std::size_t at) const { return word<std::uint32_t>(bytes_, at); }
+
   // The place of the segment that holds `phase`: in bytes, so that no step takes a product.
-  constexpr std::size_t place_of(std::uint32_t phase) const {
-    const std::size_t end = tracks_at();
-    std::size_t at = header_size;
-    for (std::size_t step = segment_size * std::bit_floor(header_.count); step >= segment_size; step >>= 1) {
-      const std::size_t next = at + step;
-      if (next < end && word<std::uint32_t>(bytes_, next) <= phase) at = next;
+  [[gnu::always_inline]] constexpr std::size_t place_of(std::uint32_t phase) const {
+    // Among the last ones, as many as the largest power of two within the count, or among as many from the first one:
+    // in both no step leads beyond the end.
+    std::size_t at = start_of(last_) <= phase ? last_ : header_size;
+    // Without a loop, whose steps would take twice the instructions.
+    switch (halvings_) {
+      case 16:
+        half(at, phase, 15);
+        [[fallthrough]];
+      case 15:
+        half(at, phase, 14);
+        [[fallthrough]];
+      case 14:
+        half(at, phase, 13);
+        [[fallthrough]];
+      case 13:
+        half(at, phase, 12);
+        [[fallthrough]];
+      case 12:
+        half(at, phase, 11);
+        [[fallthrough]];
+      case 11:
+        half(at, phase, 10);
+        [[fallthrough]];
+      case 10:
+        half(at, phase, 9);
+        [[fallthrough]];
+      case 9:
+        half(at, phase, 8);
+        [[fallthrough]];
+      case 8:
+        half(at, phase, 7);
+        [[fallthrough]];
+      case 7:
+        half(at, phase, 6);
+        [[fallthrough]];
+      case 6:
+        half(at, phase, 5);
+        [[fallthrough]];
+      case 5:
+        half(at, phase, 4);
+        [[fallthrough]];
+      case 4:
+        half(at, phase, 3);
+        [[fallthrough]];
+      case 3:
+        half(at, phase, 2);
+        [[fallthrough]];
+      case 2:
+        half(at, phase, 1);
+        [[fallthrough]];
+      case 1:
+        half(at, phase, 0);
+        [[fallthrough]];
+      default:
+        return at;
     }
-    return at;
   }
 
   constexpr Segment segment_at(std::size_t at) const {
@@ -289,8 +343,7 @@ class CamTable {
 
   // To nearest; what is shifted out of a word is nothing.
   static constexpr std::int64_t rounded(std::int64_t value, int shift) {
-    if (shift > 62) return 0;
-    return shift == 0 ? value : ((value >> (shift - 1)) + 1) >> 1;
+    return ((2 * value >> (shift < 63 ? shift : 63)) + 1) >> 1;
   }
 
   constexpr void fill_header() {
@@ -323,7 +376,7 @@ class CamTable {
       // Up to the segment's end t stays within a word. The product is below 2^64.
       const bool in_word = s.down <= 31 && ((length * s.reciprocal - 1) >> s.down) >> 32 == 0;
       if (!in_word || !within(s.c0) || s.shift > 62 || (written == oldest_version && s.finer != 0) ||
-          !shifts(speed_shift(header_, s)) || !shifts(acceleration_shift(header_, s)))
+          !shifts(s.shift + s.down + speed_shift_) || !shifts(s.shift + 2 * s.down + acceleration_shift_))
         return CamTableProblem::scale;
     }
     return CamTableProblem::none;
@@ -341,6 +394,10 @@ class CamTable {
 
   std::span<const std::uint8_t> bytes_{};
   Header header_{};
+  std::size_t last_ = header_size;  // where the search looks first
+  int halvings_ = 0;                // and how often it halves then
+  // By how much the products of a segment are shifted to the outputs, its own shifts aside.
+  int speed_shift_ = 0, acceleration_shift_ = 0;
 };
 
 }  // namespace stiction
