@@ -269,6 +269,7 @@ void CamDrive::set_up_axes(const DriveConfiguration& configuration, bool serves)
     config.low = machine::to_signal<S::Position>(setup.negative_end.value()).value_or(S::Position{});
     config.high = machine::to_signal<S::Position>(setup.positive_end.value()).value_or(S::Position{});
     modes_.emplace_back(config, tables_);
+    if (i > 0) modes_.back().join(modes_.front());
   }
   if (serves) return;
   if (!tables_.empty()) start_ = metres(tables_.front().curve.slopes({}).position);

@@ -136,37 +136,30 @@ class CamMode {
     if (!motion_.at_rest() || motion_.status().waiting) leave(0);
   }
 
+  // Makes this axis one of those that brake together with `other` and its like: axes behind one master. All of them
+  // must stay as long as one is used.
+  constexpr void join(CamMode& other) {
+    next_ = other.next_;
+    other.next_ = this;
+  }
+
   // Brakes along what is followed: from the coming tick on the master that this axis sees goes to standstill by itself,
   // so slowly that the axis needs no more than the deceleration of `stop` for the curve and for the braking together,
   // nor more than its limits. Three times as long as the ramp would take from the largest speed of the curve at that of
   // the master, or six times. False, and nothing changes, where no such way is found, or the axis is not in sync.
+  //
+  // Axes that joined and brake from the same tick on keep their phase: the slowest decides, and all of them see their
+  // masters go the same way. One that would need more than twice as long as the first to brake is not waited for, since
+  // it may not have to stop at all.
   constexpr bool brake(CamStop stop) {
     if (braking_) return true;
-    const CamStatus& status = motion_.status();
-    if (!status.in_sync || status.waiting || motion_.phasing().busy() || superposed_.busy()) return false;
-    const Span& deceleration = config_->stops[static_cast<std::size_t>(stop)];
-    const MotionLimits& slave = config_->motion.slave;
-    const MasterPoint& now = seen_.point;
-    const auto speed = static_cast<std::int64_t>(magnitude(now.velocity));
-    const auto change = static_cast<std::int64_t>(magnitude(now.acceleration));
-    const std::int64_t fastest = motion_.curve()->motion({speed, 0, 0}).velocity;
-    std::int64_t ticks = 3 * deceleration.divide(fastest, MotionPoint::tick_bits) + 48;
-    constexpr std::int64_t most_ticks = std::int64_t{1} << 20;
-    for (int tried = 0; tried < 2 && ticks <= most_ticks; ++tried, ticks *= 2) {
-      // Of the bridge of speed: at most v + a T / 4, |a| + 3/2 v / T and (4 |a| + 6 v / T) / T.
-      const Span span = Span::of(ticks);
-      const std::int64_t share = span.divide(speed, MotionPoint::tick_bits);
-      const MotionLimits master{speed + product_shifted(change, ticks, MotionPoint::tick_bits + 2),
-                                change + share + share / 2 + 1,
-                                span.divide(4 * change + 6 * share, MotionPoint::tick_bits) + 1};
-      const MotionLimits needed = motion_.curve()->motion(master);
-      if (needed.acceleration > deceleration.length || needed.acceleration > slave.acceleration ||
-          needed.velocity > slave.velocity || needed.jerk > slave.jerk)
-        continue;
-      stopping_master_.brake_from(now, ticks);
-      return braking_ = true;
-    }
-    return false;
+    const std::int64_t own = ticks_to_brake(stop);
+    if (own == 0) return false;
+    began_ = seen_.point;
+    stop_ = stop;
+    braking_ticks_ = ticks_together(stop, own);
+    stopping_master_.brake_from(began_, braking_ticks_);
+    return braking_ = true;
   }
   constexpr bool braking() const { return braking_; }
   // Whether the master of brake() stands.
@@ -213,6 +206,51 @@ class CamMode {
   }
 
  private:
+  // How long it takes to brake along the curve as brake() says; 0: it does not.
+  constexpr std::int64_t ticks_to_brake(CamStop stop) const {
+    const CamStatus& status = motion_.status();
+    if (braking_ || !status.in_sync || status.waiting || motion_.phasing().busy() || superposed_.busy()) return 0;
+    const Span& deceleration = config_->stops[static_cast<std::size_t>(stop)];
+    const auto speed = static_cast<std::int64_t>(magnitude(seen_.point.velocity));
+    const std::int64_t fastest = motion_.curve()->motion({speed, 0, 0}).velocity;
+    const std::int64_t ticks = 3 * deceleration.divide(fastest, MotionPoint::tick_bits) + 48;
+    return may_brake_in(stop, ticks) ? ticks : may_brake_in(stop, 2 * ticks) ? 2 * ticks : 0;
+  }
+
+  // Whether the deceleration of `stop` and the limits of the axis are enough for braking in `ticks`.
+  constexpr bool may_brake_in(CamStop stop, std::int64_t ticks) const {
+    constexpr std::int64_t most_ticks = std::int64_t{1} << 20;
+    if (ticks > most_ticks) return false;
+    const MotionLimits& slave = config_->motion.slave;
+    const auto speed = static_cast<std::int64_t>(magnitude(seen_.point.velocity));
+    const auto change = static_cast<std::int64_t>(magnitude(seen_.point.acceleration));
+    // Of the bridge of speed: at most v + a T / 4, |a| + 3/2 v / T and (4 |a| + 6 v / T) / T.
+    const Span span = Span::of(ticks);
+    const std::int64_t share = span.divide(speed, MotionPoint::tick_bits);
+    const MotionLimits master{speed + product_shifted(change, ticks, MotionPoint::tick_bits + 2),
+                              change + share + share / 2 + 1,
+                              span.divide(4 * change + 6 * share, MotionPoint::tick_bits) + 1};
+    const MotionLimits needed = motion_.curve()->motion(master);
+    return needed.acceleration <= config_->stops[static_cast<std::size_t>(stop)].length &&
+           needed.acceleration <= slave.acceleration && needed.velocity <= slave.velocity && needed.jerk <= slave.jerk;
+  }
+
+  // The same for all that joined; `own`: of this axis alone. Who brakes first in a tick decides, and the others follow.
+  constexpr std::int64_t ticks_together(CamStop stop, std::int64_t own) const {
+    std::int64_t ticks = own;
+    for (const CamMode* other = next_; other != this; other = other->next_) {
+      if (other->braking_) {
+        if (other->stop_ == stop && other->began_ == began_)
+          return may_brake_in(stop, other->braking_ticks_) ? other->braking_ticks_ : own;
+        continue;
+      }
+      // One that has had this tick does not brake from it on.
+      const std::int64_t needed = other->seen_.point == began_ ? other->ticks_to_brake(stop) : 0;
+      if (needed > ticks && needed <= 2 * own && may_brake_in(stop, needed)) ticks = needed;
+    }
+    return ticks;
+  }
+
   constexpr CamRefusal leave(std::int64_t speed) {
     braking_ = false;
     waiting_ = nullptr;
@@ -273,6 +311,10 @@ class CamMode {
   VirtualMaster stopping_master_{VirtualMaster::Config{}};  // that the axis sees while it brakes along its curve
   MasterReading seen_{{}, false};                           // in the last tick
   MotionPoint point_{};
+  MasterPoint began_{};             // from which it does
+  std::int64_t braking_ticks_ = 0;  // and how long
+  const CamMode* next_ = this;      // of those that brake together, in a ring
+  CamStop stop_ = CamStop::slow_down;
   bool braking_ = false;
   Asked asked_{};
   std::array<CamCurve, 3> places_{};
