@@ -30,9 +30,10 @@ enum class CamRefusal : std::uint8_t {
   speed,            // a speed to leave with that is beyond the limit
   unknown_table,    // a number that no table has
   not_enabled,      // an axis that does not follow set-points in a mode of cam or gear
-  beyond_travel     // a curve whose positions leave the travel
+  beyond_travel,    // a curve whose positions leave the travel, or a position beyond it
+  superposes        // a move or a second cam on top, where the other one is under way
 };
-inline constexpr std::size_t cam_refusals = 11;
+inline constexpr std::size_t cam_refusals = 12;
 
 // How a slave's position changes over the master's: 2^-40 of its unit, for each cycle of the master, and for its
 // square.
