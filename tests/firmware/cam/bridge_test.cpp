@@ -24,6 +24,9 @@ TEST(Product, IsExactAndRoundedToNearest) {
     const Int128 rounded = shift == 0 ? size : (size + (Int128{1} << (shift - 1))) >> shift;
     const Int128 held = rounded > INT64_MAX ? Int128{INT64_MAX} : rounded;
     ASSERT_EQ(product_shifted(a, b, shift), static_cast<std::int64_t>(exact < 0 ? -held : held));
+    const std::int64_t x = a < 0 ? ~a : a, y = b < 0 ? ~b : b;
+    const Int128 whole = Int128{x} * y;
+    ASSERT_EQ(product_held(x, y), static_cast<std::int64_t>(whole > INT64_MAX ? Int128{INT64_MAX} : whole));
     const auto word = static_cast<std::int32_t>(b);
     const Int128 of_word = Int128{a >> 2} * word;
     ASSERT_EQ(product_by_word<36>(a >> 2, word), static_cast<std::int64_t>(of_word >> 36));
@@ -31,6 +34,10 @@ TEST(Product, IsExactAndRoundedToNearest) {
   EXPECT_EQ(product_shifted(INT64_MIN, INT64_MIN, 0), INT64_MAX);
   EXPECT_EQ(product_shifted(INT64_MIN, 1, 0), -INT64_MAX);
   EXPECT_EQ(product_shifted(INT64_MIN, INT64_MIN, 127), 1);
+  EXPECT_EQ(product_held(INT64_MAX, 1), INT64_MAX);
+  EXPECT_EQ(product_held(INT64_MAX, 0), 0);
+  EXPECT_EQ(product_held(INT64_MAX, INT64_MAX), INT64_MAX);
+  EXPECT_EQ(product_held((std::int64_t{1} << 31) - 1, std::int64_t{1} << 32), INT64_MAX - UINT32_MAX);
 }
 
 // 2^(62 + bits) / length, rounded down, by the division of 128 bits that the compiler brings along.

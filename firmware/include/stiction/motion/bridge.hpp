@@ -72,23 +72,10 @@ class Bridge {
     over_ = over;
     gone_ = 0;
     active_ = true;
-    const int up = over == Over::ticks ? MotionPoint::tick_bits : MotionPoint::position_bits;
-    const std::int64_t d = from.position, v = from.velocity, a = from.acceleration;
-    const std::int64_t length = span.length;
-    const std::int64_t slope = product_shifted(a, length, up);                // A, as a speed
-    const std::int64_t of_speed = product_shifted(v, length, up);             // V, as a way
-    const std::int64_t of_acceleration = product_shifted(slope, length, up);  // A, as a way
-    const std::int64_t d_speed = span.divide(d, up), d_acceleration = span.divide(d_speed, up);
-    const std::int64_t v_acceleration = span.divide(v, up);
-    p_[0] = d;
-    p_[1] = of_speed + 3 * d;
-    p_[2] = of_acceleration / 2 + 3 * of_speed + 6 * d;
-    v_[0] = v;
-    v_[1] = slope + 2 * v;
-    v_[2] = -5 * (slope / 2 + 3 * v + 6 * d_speed);
-    a_[0] = a;
-    a_[1] = -(8 * a + 36 * v_acceleration + 60 * d_acceleration);
-    a_[2] = 10 * a + 60 * v_acceleration + 120 * d_acceleration;
+    if (over == Over::ticks)
+      start_over<MotionPoint::tick_bits>(from);
+    else
+      start_over<MotionPoint::position_bits>(from);
   }
 
   // A bridge of speed alone, over ticks: the way that it takes is what it makes it. Returns the deviation of the
@@ -135,16 +122,17 @@ class Bridge {
   // an acceleration.
   static constexpr bool fits(const MotionPoint& from, std::int64_t ticks, const MotionLimits& room) {
     const std::int64_t d = bounded(from.position), v = bounded(from.velocity), a = bounded(from.acceleration);
-    const auto times = [ticks](std::int64_t x, int down) { return product_shifted(x, ticks, down); };
-    const std::int64_t of_a = times(a, 12);  // as a speed
-    const std::int64_t speed_left = room.velocity - v - product_shifted(of_a, 1112, 14);
+    const auto times = [ticks](std::int64_t x) { return product_held(x, ticks); };
+    const auto a_tick = [ticks](std::int64_t x) { return product<MotionPoint::tick_bits>(x, ticks); };
+    const std::int64_t of_a = a_tick(a);  // as a speed
+    const std::int64_t speed_left = room.velocity - v - product<14>(of_a, 1112);
     const std::int64_t change_left = room.acceleration - a;
-    if (speed_left < 0 || change_left < 0) return false;
-    return no_more(product_shifted(d, 7680, 0), 0, 0, times(speed_left, 0)) &&
-           no_more(product_shifted(d, 23649, 0), product_shifted(times(v, 0), 4035, 10), 0,
-                   times(times(change_left, 12), 0)) &&
-           no_more(product_shifted(d, 60 << 12, 0), product_shifted(times(v, 0), 36, 0),
-                   product_shifted(times(of_a, 0), 9, 0), times(times(times(room.jerk, 12), 12), 0));
+    if (speed_left < 0 || change_left < 0 || room.jerk < 0) return false;
+    const std::int64_t of_v = times(v);
+    return no_more(product_held(d, 7680), 0, 0, times(speed_left)) &&
+           no_more(product_held(d, 23649), product<10>(of_v, 4035), 0, times(a_tick(change_left))) &&
+           no_more(product_held(d, 60 << 12), product_held(of_v, 36), product_held(times(of_a), 9),
+                   times(a_tick(a_tick(room.jerk))));
   }
 
   // The same of a bridge of speed of `ticks` within `room`, from the speed `v` and the acceleration `a`: the largest
@@ -175,6 +163,27 @@ class Bridge {
   }
 
  private:
+  // Of the position in the units of the span, `Up` bits from one derivative to the next.
+  template <int Up>
+  constexpr void start_over(const MotionPoint& from) {
+    const std::int64_t d = from.position, v = from.velocity, a = from.acceleration;
+    const std::int64_t length = span_.length;
+    const std::int64_t slope = product<Up>(a, length);                // A, as a speed
+    const std::int64_t of_speed = product<Up>(v, length);             // V, as a way
+    const std::int64_t of_acceleration = product<Up>(slope, length);  // A, as a way
+    const std::int64_t d_speed = span_.divide(d, Up), d_acceleration = span_.divide(d_speed, Up);
+    const std::int64_t v_acceleration = span_.divide(v, Up);
+    p_[0] = d;
+    p_[1] = of_speed + 3 * d;
+    p_[2] = of_acceleration / 2 + 3 * of_speed + 6 * d;
+    v_[0] = v;
+    v_[1] = slope + 2 * v;
+    v_[2] = -5 * (slope / 2 + 3 * v + 6 * d_speed);
+    a_[0] = a;
+    a_[1] = -(8 * a + 36 * v_acceleration + 60 * d_acceleration);
+    a_[2] = 10 * a + 60 * v_acceleration + 120 * d_acceleration;
+  }
+
   static constexpr std::int64_t sum(std::int64_t a, std::int64_t b, std::int64_t c) {
     constexpr std::int64_t most = std::int64_t{1} << 60;
     const auto held = [](std::int64_t x) { return x < most ? x : most; };

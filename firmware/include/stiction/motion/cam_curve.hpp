@@ -122,8 +122,8 @@ class CamCurve {
   // Those of the master behind the ratio.
   constexpr MotionLimits behind_ratio(const MotionLimits& master) const {
     const auto factor = static_cast<std::int64_t>(magnitude(config_.ratio.factor())) + 1;
-    return {product_shifted(master.velocity, factor, 32) + 1, product_shifted(master.acceleration, factor, 32) + 1,
-            product_shifted(master.jerk, factor, 32) + 1};
+    return {product<32>(master.velocity, factor) + 1, product<32>(master.acceleration, factor) + 1,
+            product<32>(master.jerk, factor) + 1};
   }
 
   // The master as the table sees it.
