@@ -453,6 +453,61 @@ TEST_F(AMovingCam, DoesNotBrakeAlongACurveBeyondTheLimitsOfTheAxis) {
   EXPECT_TRUE(mode.brake(CamStop::slow_down));
 }
 
+// With a second cam on top, of a tenth of the first.
+class ASecondCam : public AMovingCam {
+ protected:
+  ASecondCam() {
+    config.second = CamMotion::Config::of(limits(0.1, 2.0, 2e3), limits(1.2, 5.0, 50.0), limits(0.1, 1.0, 10.0), 1024);
+    config.superposed = config.second.slave;
+    config.superposed_ramp = config.second.ramp;
+    mode.asked().slave_scale = std::int64_t{1} << 28;
+    EXPECT_EQ(mode.command(CamCommand::engage_second, false, true), CamRefusal::none);
+    run(20'000);
+    EXPECT_TRUE(mode.second_status().in_sync);
+    EXPECT_EQ(mode.second_table(), 1);
+  }
+};
+
+TEST_F(ASecondCam, BrakesWithTheFirstAndTakesNoCommandMeanwhile) {
+  ASSERT_TRUE(mode.brake(CamStop::slow_down));
+  for (const auto command : {CamCommand::leave_to, CamCommand::engage_second, CamCommand::leave_second})
+    EXPECT_EQ(mode.command(command, false, true), CamRefusal::not_enabled);
+  run(40'000);
+  EXPECT_TRUE(mode.braked());
+  EXPECT_TRUE(mode.second_status().in_sync);
+  EXPECT_EQ(mode.point().velocity, 0);
+}
+
+// Neither sees the master of the machine again, which has gone on.
+TEST_F(ASecondCam, IsLeftWithTheFirstWhileBothBrake) {
+  ASSERT_TRUE(mode.brake(CamStop::slow_down));
+  run(300);
+  ASSERT_EQ(mode.command(CamCommand::leave, false, true), CamRefusal::none);
+  run(20'000);
+  EXPECT_TRUE(mode.at_rest());
+  EXPECT_EQ(mode.fault(), Fault::none);
+}
+
+TEST_F(ASecondCam, IsNotBrakedAlongWhileItIsOnItsWay) {
+  ASSERT_EQ(mode.command(CamCommand::leave_second, false, true), CamRefusal::none);
+  run(20);
+  ASSERT_TRUE(mode.second_status().waiting) << "one length of a bridge is tried in a tick";
+  EXPECT_FALSE(mode.brake(CamStop::slow_down));
+  run(80);
+  ASSERT_TRUE(mode.second_status().busy);
+  ASSERT_FALSE(mode.second_status().active);
+  EXPECT_FALSE(mode.brake(CamStop::slow_down));
+  run(20'000);
+  EXPECT_FALSE(mode.second_status().busy);
+  EXPECT_TRUE(mode.brake(CamStop::slow_down));
+}
+
+TEST_F(ASecondCam, IsAFaultOfTheAxisWhereItLosesItsMaster) {
+  mode.step({{}, false});
+  EXPECT_EQ(mode.fault(), Fault::master_lost);
+  EXPECT_FALSE(mode.second_status().active);
+}
+
 // Three axes on one curve behind one master, with ramps of their own.
 class JoinedCams : public ACamMode {
  protected:
