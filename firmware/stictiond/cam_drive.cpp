@@ -259,6 +259,7 @@ void CamDrive::set_up_axes(const DriveConfiguration& configuration, bool serves)
     config.motion = CamMotion::Config::of(shared(serves ? 0.9 : 1.0), master_limits_, phasing_limits_, jump);
     config.superposed = shared(0.1);
     config.superposed_ramp = SpeedRampRule::of(config.superposed);
+    config.second = CamMotion::Config::of(config.superposed, master_limits_, phasing_limits_, jump);
     config.rate = S::rate(configuration.period_ns);
     const auto& setup = configuration.setup.axes.at(axis.name);
     const auto deceleration = [&](double a) {
@@ -269,6 +270,7 @@ void CamDrive::set_up_axes(const DriveConfiguration& configuration, bool serves)
     config.low = machine::to_signal<S::Position>(setup.negative_end.value()).value_or(S::Position{});
     config.high = machine::to_signal<S::Position>(setup.positive_end.value()).value_or(S::Position{});
     modes_.emplace_back(config, tables_);
+    if (i > 0) modes_.back().join(modes_.front());
   }
   if (serves) return;
   if (!tables_.empty()) start_ = metres(tables_.front().curve.slopes({}).position);

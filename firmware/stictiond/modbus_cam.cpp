@@ -79,6 +79,9 @@ void take(const MotionWrite& write, double period, CamMode::Asked& asked) {
     case What::cam_superposed:
       asked.superposed = raw(write.value, way_bits);
       break;
+    case What::cam_leave_position:
+      asked.leave_position = raw(write.value, way_bits);
+      break;
     case What::cam_phase:
       asked.phase = raw(write.value, way_bits);
       break;
@@ -107,12 +110,15 @@ void show_cam(const RemoteAxis& axis, double period, PublishedCam& shown) {
   shown = {};
   if (!cam.attached()) return;
   const CamStatus& status = cam.mode().status();
+  const CamStatus& second = cam.mode().second_status();
   const bool flags[]{status.busy,    status.active,          status.in_sync,
-                     status.waiting, status.command_aborted, cam.master().reading().valid};
+                     status.waiting, status.command_aborted, cam.master().reading().valid,
+                     second.busy,    second.in_sync};
   for (unsigned k = 0; k < std::size(flags); ++k)
     shown.state = static_cast<std::uint16_t>(shown.state | (flags[k] ? 1u << k : 0u));
   shown.refusal = cam.mode().refusal();
   shown.followed = cam.mode().table();
+  shown.second = cam.mode().second_table();
   shown.ends = cam.ends();
   const MasterPoint& master = cam.master().reading().point;
   shown.master_phase = std::ldexp(static_cast<double>(master.position.phase >> 11), -53);
@@ -140,6 +146,7 @@ void show_cam(const RemoteAxis& axis, double period, PublishedCam& shown) {
   shown.tolerance_acceleration = value(asked.tolerance.acceleration, MotionPoint::acceleration_bits) / period / period;
   shown.leave_speed = value(asked.leave_speed, MotionPoint::velocity_bits) / period;
   shown.superposed = value(asked.superposed, way_bits);
+  shown.leave_position = value(asked.leave_position, way_bits);
 }
 
 }  // namespace stiction::drive

@@ -1,4 +1,4 @@
-// The registers of the modes of cam and gear, in a range of their own of each axis: 40 to 77.
+// The registers of the modes of cam and gear, in a range of their own of each axis: 40 to 79.
 #pragma once
 
 #include "firmware/stictiond/modbus_rows.hpp"
@@ -28,17 +28,17 @@ inline void from_one(const machine::AxisModel&, Register& r) {
   r.high = 65535.0;
 }
 
-inline constexpr std::array<StateRow<Axis>, 7> state_rows{{
+inline constexpr std::array<StateRow<Axis>, 8> state_rows{{
     {40, uint16, 1, "cam_state", "1",
      "modes cam and gear; bit 0: busy, 1: active, 2: in sync, 3: a request waits, 4: the last command was aborted, 5: "
-     "the master is known",
+     "the master is known, 6: the second cam is busy, 7: it is in sync",
      [](const Axis& a) -> double { return a.cam.state; }},
     {41, uint16, 1, "cam_refusal", "1",
      "why the last cam command was refused; 0: it was not, 1: numbers beyond the formats, 2: a table that jumps, 3: "
      "more "
      "than the axis' limits, 4: no way to the curve within them, 5: a start by distance from an axis that moves, 6: a "
      "master outside of the profile, 7: a speed, 8: no such table, 9: the axis is not enabled in this mode, 10: beyond "
-     "the travel",
+     "the travel, 11: a move and a second cam at once",
      [](const Axis& a) { return static_cast<double>(a.cam.refusal); }},
     {42, uint16, 1, "cam_followed", "1", "table that is followed; 0: none, or a gear",
      [](const Axis& a) -> double { return a.cam.followed; }},
@@ -50,10 +50,12 @@ inline constexpr std::array<StateRow<Axis>, 7> state_rows{{
      [](const Axis& a) -> double { return a.cam.master_cycles; }},
     {50, int32, 1e-6, "master_velocity", "1/s", "speed of the master in cycles",
      [](const Axis& a) { return a.cam.master_speed; }},
+    {52, uint16, 1, "cam_second", "1", "table that the second cam follows; 0: none",
+     [](const Axis& a) -> double { return a.cam.second; }},
 }};
 
 // In the order of MotionWrite::What.
-inline constexpr std::array<MotionRow, 21> motion_rows{{
+inline constexpr std::array<MotionRow, 22> motion_rows{{
     {41,
      uint16,
      1,
@@ -235,6 +237,15 @@ inline constexpr std::array<MotionRow, 21> motion_rows{{
      What::cam_superposed,
      [](const Axis& a) { return a.cam.superposed; },
      {}},
+    {78,
+     int32,
+     position_scale,
+     "cam_leave_position",
+     "m",
+     "position to which command 6 leaves, by cam_trigger and cam_approach 0 or 1",
+     What::cam_leave_position,
+     [](const Axis& a) { return a.cam.leave_position; },
+     {}},
     {66,
      int32,
      1e-6,
@@ -249,11 +260,11 @@ inline constexpr std::array<MotionRow, 21> motion_rows{{
      1,
      "cam_command",
      "1",
-     "1: engage, 2: leave, 3: delete what waits, 4: phase, 5: superpose; each write acts once, the newest of a "
-     "millisecond counts",
+     "1: engage, 2: leave, 3: delete what waits, 4: phase, 5: superpose, 6: leave to cam_leave_position, 7: engage a "
+     "second cam on top, 8: bring that back to nothing; each write acts once, the newest of a millisecond counts",
      What::cam_command,
      [](const Axis&) { return 0.0; },
-     {0, 1, 2, 3, 4, 5}},
+     {0, 1, 2, 3, 4, 5, 6, 7, 8}},
 }};
 
 }  // namespace stiction::drive::cam_registers

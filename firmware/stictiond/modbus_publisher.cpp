@@ -39,6 +39,7 @@ constexpr std::array<const char*, MotionWrite::kinds> motion_names{"controlword"
                                                                    "cam tolerance of acceleration",
                                                                    "cam leave speed",
                                                                    "cam superposed",
+                                                                   "cam leave position",
                                                                    "master speed",
                                                                    "cam command"};
 

@@ -27,11 +27,12 @@ inline constexpr std::uint16_t axis_registers = 100, parameter_registers = 200;
 
 // Of the modes of cam and gear.
 struct PublishedCam {
-  std::uint16_t state = 0;  // bits: busy, active, in sync, waiting, command aborted, the master is known
+  // Bits: busy, active, in sync, waiting, command aborted, the master is known; the second cam busy, in sync.
+  std::uint16_t state = 0;
   CamRefusal refusal = CamRefusal::none;
-  std::uint16_t followed = 0;  // table
-  std::uint32_t ends = 0;      // of cycles, that were passed
-  double master_phase = 0.0;   // cycles, 0 to 1
+  std::uint16_t followed = 0, second = 0;  // tables
+  std::uint32_t ends = 0;                  // of cycles, that were passed
+  double master_phase = 0.0;               // cycles, 0 to 1
   std::int32_t master_cycles = 0;
   double master_speed = 0.0;  // cycles/s
   // What was asked for last.
@@ -40,7 +41,7 @@ struct PublishedCam {
   double master_offset = 0.0, slave_offset = 0.0, slave_scale = 1.0;            // cycles, m
   double gear_way = 0.0, phase = 0.0;                                           // m, cycles
   double tolerance = 0.0, tolerance_speed = 0.0, tolerance_acceleration = 0.0;  // m, m/s, m/s^2
-  double leave_speed = 0.0, superposed = 0.0;                                   // m/s, m
+  double leave_speed = 0.0, superposed = 0.0, leave_position = 0.0;             // m/s, m, m
   std::int32_t numerator = 1;
   std::uint16_t denominator = 1;
 };
@@ -130,10 +131,11 @@ struct MotionWrite {
     cam_tolerance_acceleration,
     cam_leave_speed,
     cam_superposed,
+    cam_leave_position,
     master_speed,
     cam_command
   };
-  static constexpr std::size_t kinds = 30;
+  static constexpr std::size_t kinds = 31;
   std::size_t axis = 0;
   What what = What::controlword;
   double value = 0.0;     // SI units; torques as shares of the current limit

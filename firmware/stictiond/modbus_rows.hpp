@@ -32,7 +32,7 @@ struct MotionRow {
   const char* text;
   MotionWrite::What what;
   double (*value)(const PublishedAxis&);
-  std::array<double, 7> choices{};  // all 0: every number
+  std::array<double, 9> choices{};  // all 0: every number
   // Limits what may be written to what the axis can; null: every number.
   void (*limit)(const machine::AxisModel&, hal::Register&) = nullptr;
 };

@@ -19,16 +19,24 @@ std::int64_t to_nearest(double value) { return static_cast<std::int64_t>(value +
 // The master's place of a phase.
 double place_of(std::uint64_t phase, double cycle) { return static_cast<double>(phase) * 0x1p-32 * cycle; }
 
-Coefficients hermite_of(const Part& part, double cycle) {
-  const double begin = place_of(part.begin, cycle), end = place_of(part.end, cycle), h = end - begin;
-  const auto state = [&](double x) {
-    return EndState{part.piece->derivative(x, 0), part.piece->derivative(x, 1) * h,
-                    part.piece->derivative(x, 2) * h * h, 0.0};
-  };
-  const auto found = quintic(state(begin), state(end));
+// The states of a part's piece at its ends, over units of the master.
+EndState state_at(const Part& part, std::uint64_t phase, double cycle) {
+  const double x = place_of(phase, cycle);
+  return {part.piece->derivative(x, 0), part.piece->derivative(x, 1), part.piece->derivative(x, 2), 0.0};
+}
+
+// The polynomial through both states over a way of `h` of the master.
+Coefficients hermite_of(const EndState& begin, const EndState& end, double h) {
+  const auto over = [h](const EndState& s) { return EndState{s.position, s.speed * h, s.acceleration * h * h, 0.0}; };
+  const auto found = quintic(over(begin), over(end));
   Coefficients c{};
   std::copy(found.begin(), found.end(), c.begin());
   return c;
+}
+
+Coefficients hermite_of(const Part& part, double cycle) {
+  return hermite_of(state_at(part, part.begin, cycle), state_at(part, part.end, cycle),
+                    place_of(part.end, cycle) - place_of(part.begin, cycle));
 }
 
 // 2^(32 + down) / length with 32 bits.
@@ -43,33 +51,107 @@ void set_reciprocal(CamTable::Segment& segment, std::uint64_t length) {
   segment.reciprocal = static_cast<std::uint32_t>(std::min<std::uint64_t>(exact, UINT32_MAX));
 }
 
-void set_coefficients(CamTable::Segment& segment, const Coefficients& c, int position_bits) {
-  const double scale = power_of_two(position_bits);
-  segment.c0 = to_nearest(c[0] * scale);
-  double largest = 0.0;
-  for (std::size_t n = 1; n < 6; ++n) largest = std::max(largest, absolute(c[n] * scale));
-  // position = coefficient * 2^extra_bits / 2^shift.
-  // No finer than 2^-8 of a position's unit: the products of all segments are shifted to one scale.
-  int shift = CamTable::extra_bits;
-  while (shift < CamTable::extra_bits + 8 && largest * power_of_two(shift + 1 - CamTable::extra_bits) < 2147483647.0)
-    ++shift;
-  while (shift > 0 && largest * power_of_two(shift - CamTable::extra_bits) >= 2147483647.0) --shift;
-  segment.shift = static_cast<std::uint8_t>(shift);
-  for (std::size_t n = 1; n < 6; ++n)
-    segment.c[n - 1] = static_cast<std::int32_t>(to_nearest(c[n] * scale * power_of_two(shift - CamTable::extra_bits)));
+// What t is at the end of a segment of `length` phases: 1, or below it by the rounding of the reciprocal.
+double end_of_t(const CamTable::Segment& segment, std::uint64_t length) {
+  return static_cast<double>(length * segment.reciprocal) * power_of_two(-32 - segment.down);
 }
 
-// The polynomial that the drive evaluates, without its roundings: exact doubles.
-Coefficients exact_of(const CamTable::Segment& segment, int position_bits) {
-  Coefficients c{static_cast<double>(segment.c0) * power_of_two(-position_bits)};
-  for (std::size_t n = 1; n < 6; ++n)
-    c[n] = segment.c[n - 1] * power_of_two(CamTable::extra_bits - segment.shift - position_bits);
+// The way of the master over which t goes from 0 to 1.
+double way_of_t(const CamTable::Segment& segment, double cycle) {
+  return power_of_two(segment.down) / segment.reciprocal * cycle;
+}
+
+// Of coefficients over u, which is 1 at the segment's end, those over t, which is `end` there.
+Coefficients over_t(Coefficients c, double end) {
+  double power = 1.0;
+  for (double& each : c) each /= power, power *= end;
   return c;
 }
 
-// A polynomial in t from 0 to 1 as one in s from -1 to 1: t = (1 + s) / 2, by Horner's scheme around 1/2, then halves.
-std::vector<Interval> around_middle(const Coefficients& c) {
-  std::vector<Interval> shifted(c.begin(), c.end());
+// Below what a word holds by more than joining a segment to the next one changes a coefficient.
+constexpr double largest_coefficient = 2147483000.0;
+
+// The exponent that all coefficients share: position = coefficient * 2^extra_bits / 2^shift.
+void set_shift(CamTable::Segment& segment, const Coefficients& c, int position_bits) {
+  double largest = 0.0;
+  for (std::size_t n = 1; n < 6; ++n) largest = std::max(largest, absolute(c[n] * power_of_two(position_bits)));
+  // No finer than 2^-8 of a position's unit: the products of all segments are shifted to one scale.
+  int shift = CamTable::extra_bits;
+  while (shift < CamTable::extra_bits + 8 &&
+         largest * power_of_two(shift + 1 - CamTable::extra_bits) < largest_coefficient)
+    ++shift;
+  while (shift > 0 && largest * power_of_two(shift - CamTable::extra_bits) >= largest_coefficient) --shift;
+  segment.shift = static_cast<std::uint8_t>(shift);
+}
+
+// By how many bits the coefficient `c` of t^`n` can be finer than the exponent that all share.
+int finer_bits_of(const CamTable::Segment& segment, int n, double c, int position_bits) {
+  const double value = c * power_of_two(position_bits + segment.shift - CamTable::extra_bits);
+  int finer = 0;
+  while (n > 1 && finer < 15 && absolute(value) * power_of_two(finer + 1) < largest_coefficient) ++finer;
+  return finer;
+}
+
+// Sets the coefficient of t^`n`, with all bits that its word has room for. What rounding left of `c`.
+double set_coefficient(CamTable::Segment& segment, int n, double c, int position_bits) {
+  const int finer = finer_bits_of(segment, n, c, position_bits);
+  if (n > 1) segment.finer = static_cast<std::uint16_t>(segment.finer | finer << (4 * (n - 2)));
+  const int bits = position_bits + segment.shift - CamTable::extra_bits + finer;
+  segment.c[n - 1] = static_cast<std::int32_t>(to_nearest(c * power_of_two(bits)));
+  return c - segment.c[n - 1] * power_of_two(-bits);
+}
+
+// Sets the last three coefficients. What rounding leaves of one is added to the next finer one, so that the end of the
+// segment is off by what it leaves of the finest.
+void set_last(CamTable::Segment& segment, const Coefficients& c, int position_bits) {
+  std::array<int, 3> order{3, 4, 5};
+  const auto bits = [&](int n) { return finer_bits_of(segment, n, c[static_cast<std::size_t>(n)], position_bits); };
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return bits(a) < bits(b); });
+  double left = 0.0;
+  for (const int n : order) left = set_coefficient(segment, n, c[static_cast<std::size_t>(n)] + left, position_bits);
+}
+
+// The polynomial over t that the drive evaluates, without its roundings: exact doubles.
+Coefficients exact_of(const CamTable::Segment& segment, int position_bits) {
+  Coefficients c{static_cast<double>(segment.c0) * power_of_two(-position_bits)};
+  for (int n = 1; n < 6; ++n)
+    c[static_cast<std::size_t>(n)] =
+        segment.c[n - 1] * power_of_two(CamTable::extra_bits - segment.shift - segment.finer_bits(n) - position_bits);
+  return c;
+}
+
+// The segment of `part` but for the last three coefficients: what it begins with.
+CamTable::Segment begun(const Part& part, double cycle, int position_bits) {
+  CamTable::Segment segment;
+  segment.start = static_cast<std::uint32_t>(part.begin);
+  const std::uint64_t length = part.end - part.begin;
+  set_reciprocal(segment, length);
+  const Coefficients c = over_t(hermite_of(part, cycle), end_of_t(segment, length));
+  set_shift(segment, c, position_bits);
+  segment.c0 = to_nearest(c[0] * power_of_two(position_bits));
+  for (int n = 1; n < 3; ++n) set_coefficient(segment, n, c[static_cast<std::size_t>(n)], position_bits);
+  return segment;
+}
+
+EndState begin_of(const CamTable::Segment& segment, double cycle, int position_bits) {
+  const Coefficients c = exact_of(segment, position_bits);
+  const double h = way_of_t(segment, cycle);
+  return {c[0], c[1] / h, 2.0 * c[2] / (h * h), 0.0};
+}
+
+// The same coefficients over u from 0 to 1 over all of the segment, enclosed.
+std::vector<Interval> enclosed(const CamTable::Segment& segment, std::uint64_t length, int position_bits) {
+  const double middle = end_of_t(segment, length);
+  const Interval end =
+      std::has_single_bit(length) ? Interval(middle) : Interval(next_below(middle), next_above(middle));
+  std::vector<Interval> c;
+  Interval power = 1.0;
+  for (const double each : exact_of(segment, position_bits)) c.push_back(Interval(each) * power), power = power * end;
+  return c;
+}
+
+// A polynomial in u from 0 to 1 as one in s from -1 to 1: u = (1 + s) / 2, by Horner's scheme around 1/2, then halves.
+std::vector<Interval> around_middle(std::vector<Interval> shifted) {
   for (std::size_t n = 0; n < 5; ++n)
     for (std::size_t k = 5; k-- > n;) shifted[k] = shifted[k] + Interval(0.5) * shifted[k + 1];
   double half = 1.0;
@@ -78,7 +160,7 @@ std::vector<Interval> around_middle(const Coefficients& c) {
 }
 
 // Motion minus table over the segment as a polynomial in s, whose coefficients are enclosed.
-std::vector<Interval> difference(const TaylorModel& model, const Coefficients& table) {
+std::vector<Interval> difference(const TaylorModel& model, const std::vector<Interval>& table) {
   std::vector<Interval> d = model.coefficients;
   Interval power = 1.0;
   for (Interval& c : d) c = c * power, power = power * Interval(model.radius);
@@ -112,24 +194,22 @@ double largest_of(const std::vector<Interval>& c) {
 }
 
 // What the drive's integers add, in the slave's unit and for it over cycles.
-TableBound rounding_of(const CamTable::Segment& segment, const Coefficients& table, std::uint64_t length,
+TableBound rounding_of(const CamTable::Segment& segment, const std::vector<Interval>& table, std::uint64_t length,
                        int position_bits) {
-  // Largest derivatives over t, which is s / 2.
+  // Largest derivatives over u, which is s / 2.
   const auto first = derivative_of(around_middle(table)), second = derivative_of(first);
   const double slope = 2.0 * largest_of(first), bend = 4.0 * largest_of(second);
   const double twist = 8.0 * largest_of(derivative_of(second));
-  // t is rounded down, but for a length that is a power of two, and by the reciprocal's rounding.
-  const double ideal = 0x1p32 * power_of_two(segment.down) / static_cast<double>(length);
-  const double relative = absolute(segment.reciprocal - ideal) / ideal * (1.0 + 1e-12);
-  const double late = (std::has_single_bit(length) ? 0.0 : 0x1p-32) + relative;
-  // One unit of the extended coefficients for each step of a scheme.
+  // t is rounded down, but for a length that is a power of two.
+  const double late = std::has_single_bit(length) ? 0.0 : 0x1.00001p-32;
+  // Each product is rounded down by up to a unit of the extended coefficients, which the sums behind it take up: 5 for
+  // the value, 14 for its derivative, twice 19 for the second one; the products with the reciprocal round too.
   const double unit = power_of_two(-segment.shift - position_bits);
-  const double over = 0x1p32 / static_cast<double>(length);  // t for each cycle
+  const double over = 0x1p32 / static_cast<double>(length);  // u for each cycle
   TableBound bound;
   bound.position = late * slope + 6.0 * unit + 0.5 * power_of_two(-position_bits);
-  bound.speed = over * (late * bend + relative * slope + 8.0 * unit);
-  // The second product is rounded down in units that the first one has made smaller by up to two.
-  bound.acceleration = over * over * (late * twist + 2.1 * relative * bend + 16.0 * unit);
+  bound.speed = over * (late * bend + 17.0 * unit);
+  bound.acceleration = over * over * (late * twist + 45.0 * unit);
   return bound;
 }
 
@@ -137,23 +217,34 @@ TableBound rounding_of(const CamTable::Segment& segment, const Coefficients& tab
 
 double power_of_two(int exponent) { return std::bit_cast<double>(static_cast<std::int64_t>(1023 + exponent) << 52); }
 
-FittedSegment fit_segment(const Part& part, double cycle, int position_bits, double tolerance) {
+EndState segment_begin(const Part& part, double cycle, int position_bits) {
+  return begin_of(begun(part, cycle, position_bits), cycle, position_bits);
+}
+
+EndState part_begin(const Part& part, double cycle) { return state_at(part, part.begin, cycle); }
+EndState part_end(const Part& part, double cycle) { return state_at(part, part.end, cycle); }
+
+FittedSegment fit_segment(const Part& part, double cycle, int position_bits, const EndState& end, double tolerance) {
   FittedSegment fitted;
   const std::uint64_t length = part.end - part.begin;
-  fitted.segment.start = static_cast<std::uint32_t>(part.begin);
-  set_reciprocal(fitted.segment, length);
-  set_coefficients(fitted.segment, hermite_of(part, cycle), position_bits);
+  fitted.segment = begun(part, cycle, position_bits);
+  const double t = end_of_t(fitted.segment, length);
+  // Through the begin as it was rounded, so that its rounding is gone at the end.
+  const EndState begin = begin_of(fitted.segment, cycle, position_bits);
+  const Coefficients joined = over_t(hermite_of(begin, end, way_of_t(fitted.segment, cycle) * t), t);
+  set_last(fitted.segment, joined, position_bits);
 
-  const auto table = exact_of(fitted.segment, position_bits);
+  const Coefficients exact = exact_of(fitted.segment, position_bits);
+  const auto table = enclosed(fitted.segment, length, position_bits);
   const auto model = taylor_model(*part.piece, place_of(part.begin, cycle), place_of(part.end, cycle), taylor_order);
   const auto d = difference(model, table);
   const TableBound rounding = rounding_of(fitted.segment, table, length, position_bits);
   // From s to cycles.
   const double rate = cycle / model.radius;
   double size = 0.0, fast = 0.0, bent = 0.0;
-  for (std::size_t n = 0; n < 6; ++n) size += absolute(table[n]);
-  for (std::size_t n = 1; n < 6; ++n) fast += absolute(table[n]) * static_cast<double>(n);
-  for (std::size_t n = 2; n < 6; ++n) bent += absolute(table[n]) * static_cast<double>(n * (n - 1));
+  for (std::size_t n = 0; n < 6; ++n) size += absolute(exact[n]);
+  for (std::size_t n = 1; n < 6; ++n) fast += absolute(exact[n]) * static_cast<double>(n);
+  for (std::size_t n = 2; n < 6; ++n) bent += absolute(exact[n]) * static_cast<double>(n * (n - 1));
   // The law in double precision is itself rounded: 64 units of the last place, and the place that it is evaluated at.
   constexpr double ulps = 64.0 * 0x1p-53;
   const double place = 2.0 * ulps * static_cast<double>(part.end) / static_cast<double>(length);
@@ -169,7 +260,8 @@ FittedSegment fit_segment(const Part& part, double cycle, int position_bits, dou
 
 TableBound smooth_error(const Part& part, double cycle) {
   const auto model = taylor_model(*part.piece, place_of(part.begin, cycle), place_of(part.end, cycle), taylor_order);
-  const auto ideal = difference(model, hermite_of(part, cycle));
+  const Coefficients c = hermite_of(part, cycle);
+  const auto ideal = difference(model, {c.begin(), c.end()});
   const double rate = cycle / model.radius;
   return {largest_of(ideal), 0.0, largest_of(derivative_of(derivative_of(ideal))) * rate * rate};
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "sim/cam/hermite.hpp"
 #include "sim/cam/piece.hpp"
 #include "sim/cam/segment_table.hpp"
 
@@ -20,10 +21,19 @@ struct FittedSegment {
   TableBound bound;
 };
 
-// The segment of `part` of a motion with that `cycle`, its position in 2^-`position_bits` of the slave's unit. The
-// bound is that of an output that is not rounded to the header's scales; where the position's is above `tolerance` the
-// others are left out.
-FittedSegment fit_segment(const Part& part, double cycle, int position_bits,
+// Position, speed and acceleration, over units of the master, with which the segment of `part` begins in the drive's
+// integers; of a motion with that `cycle`, positions in 2^-`position_bits` of the slave's unit.
+EndState segment_begin(const Part& part, double cycle, int position_bits);
+
+// The same of the motion itself at both ends of `part`.
+EndState part_begin(const Part& part, double cycle);
+EndState part_end(const Part& part, double cycle);
+
+// The segment of `part` of a motion with that `cycle`, its position in 2^-`position_bits` of the slave's unit. It ends
+// with `end`: with what the next segment begins with, rounding included, nothing jumps between them. The bound is that
+// of an output that is not rounded to the header's scales; where the position's is above `tolerance` the others are
+// left out.
+FittedSegment fit_segment(const Part& part, double cycle, int position_bits, const EndState& end,
                           double tolerance = std::numeric_limits<double>::infinity());
 
 // The errors of position and acceleration of `part` of a motion with that `cycle` without the rounding of coefficients:

@@ -75,6 +75,11 @@ int output_bits(const std::vector<FittedSegment>& fitted, int position_bits, int
 
 std::int64_t in_units(double bound, int bits) { return static_cast<std::int64_t>(bound * power_of_two(bits)) + 1; }
 
+// Of a cycle.
+double rise_of(const Motion& motion) {
+  return motion.curve.derivative(motion.curve.end(), 0, Side::left) - motion.curve(0.0);
+}
+
 // A time in the 2^-24 s of a track's compensation.
 std::int64_t compensation_of(double seconds, const Track& track) {
   const double scaled = seconds * 0x1p24;
@@ -122,8 +127,7 @@ SegmentTable written(const Motion& motion, const std::vector<FittedSegment>& fit
   out.number(std::uint64_t{table.segments}, 4);
   const auto nearest = [](double value) { return static_cast<std::int64_t>(value + (value < 0.0 ? -0.5 : 0.5)); };
   out.number(nearest(motion.cam.cycle() * power_of_two(CamTable::cycle_bits)), 8);
-  const double rise = motion.curve.derivative(motion.curve.end(), 0, Side::left) - motion.curve(0.0);
-  out.number(nearest(rise * power_of_two(position_bits)), 8);
+  out.number(nearest(rise_of(motion) * power_of_two(position_bits)), 8);
   out.number(in_units(table.bound.position, position_bits), 8);
   out.number(in_units(table.bound.speed, speed_bits), 8);
   out.number(in_units(table.bound.acceleration, acceleration_bits), 8);
@@ -141,7 +145,7 @@ SegmentTable written(const Motion& motion, const std::vector<FittedSegment>& fit
     for (const std::int32_t c : segment.c) out.number(std::int64_t{c}, 4);
     out.number(std::uint64_t{segment.down}, 1);
     out.number(std::uint64_t{segment.shift}, 1);
-    out.number(std::uint64_t{0}, 2);
+    out.number(std::uint64_t{segment.finer}, 2);
   }
   write_tracks(motion.cam, out);
   out.number(std::uint64_t{Crc32{}.add(out.bytes, out.bytes.size()).value()}, 4);
@@ -149,18 +153,55 @@ SegmentTable written(const Motion& motion, const std::vector<FittedSegment>& fit
   return table;
 }
 
-// Halves `part` until its error is within the tolerance.
-void add_within(const Part& part, double cycle, int position_bits, double tolerance, std::vector<FittedSegment>& all) {
-  const FittedSegment fitted = fit_segment(part, cycle, position_bits, tolerance);
-  if (fitted.bound.position <= tolerance) {
-    all.push_back(fitted);
-    return;
+// What the segment of parts[k] ends with: what the next one begins with, as far as the motion goes on there. That of a
+// periodic motion goes on over its seam.
+class Joints {
+ public:
+  Joints(const Motion& motion, int position_bits)
+      : cycle_(motion.cam.cycle()), bits_(position_bits), periodic_(motion.cam.periodic) {
+    const double unit = power_of_two(-position_bits);
+    const auto units = rise_of(motion) * power_of_two(position_bits);
+    rise_ = static_cast<double>(static_cast<std::int64_t>(units + (units < 0.0 ? -0.5 : 0.5))) * unit;
+    // A part ends at the first phase behind a joint, and a jerk that jumps there shows in the acceleration.
+    const auto sizes = derivative_sizes(motion.curve);
+    near_ = {1e-7 * sizes[0] + 2.0 * unit, 1e-7 * sizes[1], 1e-6 * sizes[2], 0.0};
   }
-  const std::uint64_t length = part.end - part.begin;
-  if (length < shortest_part || all.size() >= CamTable::most_segments)
+
+  EndState end_of(const std::vector<Part>& parts, std::size_t k) const {
+    EndState end = part_end(parts[k], cycle_);
+    const bool last = k + 1 == parts.size();
+    if (last && !periodic_) return end;
+    const Part& next = parts[last ? 0 : k + 1];
+    EndState exact = part_begin(next, cycle_), rounded = segment_begin(next, cycle_, bits_);
+    if (last) exact.position += rise_, rounded.position += rise_;
+    if (absolute(exact.position - end.position) <= near_.position) end.position = rounded.position;
+    if (absolute(exact.speed - end.speed) <= near_.speed) end.speed = rounded.speed;
+    if (absolute(exact.acceleration - end.acceleration) <= near_.acceleration) end.acceleration = rounded.acceleration;
+    return end;
+  }
+
+ private:
+  double cycle_;
+  int bits_;
+  bool periodic_;
+  double rise_ = 0.0;
+  EndState near_{};
+};
+
+void require_divisible(const Part& part, std::size_t parts, double tolerance) {
+  if (part.end - part.begin < shortest_part || parts >= CamTable::most_segments)
     throw CamError(fmt::format("found a tolerance of {}; expected one that {} segments of 32-bit coefficients can keep",
                                tolerance, CamTable::most_segments));
-  const std::uint64_t middle = part.begin + length / 2;
+}
+
+// Halves `part` until its error is within the tolerance.
+void add_within(const Part& part, double cycle, int position_bits, double tolerance, std::vector<Part>& all) {
+  if (fit_segment(part, cycle, position_bits, part_end(part, cycle), tolerance).bound.position <= tolerance) {
+    all.push_back(part);
+    return;
+  }
+  require_divisible(part, all.size(), tolerance);
+  const std::uint64_t middle = part.begin + (part.end - part.begin) / 2;
   add_within({part.piece, part.begin, middle}, cycle, position_bits, tolerance, all);
   add_within({part.piece, middle, part.end}, cycle, position_bits, tolerance, all);
 }
@@ -208,8 +249,25 @@ SegmentTable table_within(const Motion& motion, double tolerance) {
   if (!(tolerance > 0.0)) throw CamError(fmt::format("found a tolerance of {}; expected more than 0", tolerance));
   require_continuous(motion);
   const int bits = position_bits_of(motion);
+  const double cycle = motion.cam.cycle();
+  const Joints joints(motion, bits);
+  std::vector<Part> parts;
+  for (const Part& part : pieces_of(motion)) add_within(part, cycle, bits, tolerance, parts);
   std::vector<FittedSegment> fitted;
-  for (const Part& part : pieces_of(motion)) add_within(part, motion.cam.cycle(), bits, tolerance, fitted);
+  // Joining a segment to the next one moves it by roundings: one that was at the tolerance is halved once more.
+  for (std::size_t k = 0; k < parts.size();) {
+    fitted.resize(k);
+    fitted.push_back(fit_segment(parts[k], cycle, bits, joints.end_of(parts, k), tolerance));
+    if (fitted.back().bound.position <= tolerance) {
+      ++k;
+      continue;
+    }
+    require_divisible(parts[k], parts.size(), tolerance);
+    const std::uint64_t end = parts[k].end, middle = parts[k].begin + (end - parts[k].begin) / 2;
+    parts[k].end = middle;
+    parts.insert(parts.begin() + static_cast<std::ptrdiff_t>(k) + 1, {parts[k].piece, middle, end});
+    if (k > 0) --k;  // it ends with a different begin
+  }
   return written(motion, fitted, bits);
 }
 
@@ -223,13 +281,17 @@ SegmentTable table_of_parts(const Motion& motion, int parts) {
     const auto at = static_cast<std::size_t>(piece.piece - motion.curve.pieces().data());
     segments[motion.segment_of(at)].push_back({piece, smooth_error(piece, cycle)});
   }
-  std::vector<FittedSegment> fitted;
+  std::vector<Part> all;
   for (std::size_t k = 0; k < segments.size(); ++k) {
     auto& of_segment = segments[k];
     while (motion.cam.segments[k].law != "linear" && of_segment.size() < static_cast<std::size_t>(parts))
       if (!halve_worst(of_segment, wanted, cycle)) break;
-    for (const DividedPart& part : of_segment) fitted.push_back(fit_segment(part.part, cycle, bits));
+    for (const DividedPart& part : of_segment) all.push_back(part.part);
   }
+  const Joints joints(motion, bits);
+  std::vector<FittedSegment> fitted;
+  for (std::size_t k = 0; k < all.size(); ++k)
+    fitted.push_back(fit_segment(all[k], cycle, bits, joints.end_of(all, k)));
   return written(motion, fitted, bits);
 }
 

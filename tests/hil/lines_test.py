@@ -7,6 +7,7 @@ import os
 import pathlib
 import re
 import shlex
+import subprocess
 import tempfile
 import unittest
 
@@ -73,9 +74,44 @@ def served():
     return script("served", ["tracks-together,at=4 s"], task, SERVED.format(peer=HERE / "endurance_peer.py", port=PORT))
 
 
+# What the lines of switch tracks show, from beside the drive: time and level of each change, until the drive has ended.
+WATCH = """
+import glob, json, time
+lines = {line: glob.glob(f"/sys/devices/platform/gpio-sim.*/gpiochip*/sim_gpio{line}/value") for line in (12, 13)}
+files = {line: open(found[0]) for line, found in lines.items()}
+def level(file):
+    file.seek(0)
+    return file.read().strip() == "1"
+seen = {line: False for line in files}
+changes = []
+while not glob.glob("cam.status"):
+    for line, file in files.items():
+        now = level(file)
+        if now != seen[line]:
+            changes.append((time.monotonic(), line, now))
+            seen[line] = now
+    time.sleep(0.001)
+json.dump(changes, open("cam.lines", "w"))
+"""
+CAM = """schema = "stiction.cam/1"
+[cam.a]
+cycle = "360 deg"
+master = "rotary"
+slave = "linear"
+periodic = true
+[[cam.a.segment]]
+length = "150 deg"
+stroke = "5 mm"
+law = "3-4-5"
+[[cam.a.segment]]
+end = "360 deg"
+to = "0 mm"
+law = "3-4-5"
+"""
+
+
 class Run:
-    def __init__(self, name):
-        folder = FOLDER / "lines"
+    def __init__(self, name, folder=FOLDER / "lines"):
         self.drive = (folder / f"{name}.drive").read_text()
         self.plant = (folder / f"{name}.plant").read_text()
         self.status = int((folder / f"{name}.status").read_text())
@@ -126,6 +162,41 @@ class Lines(unittest.TestCase):
                 self.assertLess(abs(run.ran_on), 1e-3, run.plant)
                 figure(f"fault on lines: {kind}", f"fault {number} after {taken:.2f} periods (bound {within:g}), ran on by "
                                                   f"{run.ran_on * 1e6:.0f} um")
+
+
+class Tracks(unittest.TestCase):
+    """Switch tracks of a cam on lines of a chip, at a cycle a second for ten of them."""
+
+    def test_switch_their_lines_by_the_place_of_the_master(self):
+        folder = FOLDER / "tracks"
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / "cam.toml").write_text(CAM)
+        (folder / "watch.py").write_text(WATCH)
+        subprocess.run([loop.BIN / "stiction", "cam", "table", folder / "cam.toml", "--out", folder / "cam.scam"],
+                       check=True, stdout=subprocess.DEVNULL)
+        task = ["--cam", "cam.scam", "--master", "virtual", "--speed", "60 rpm", "--hold", "10"]
+        for track, line, first, last in ((1, 12, 0.1, 0.3), (2, 13, 0.9, 0.2)):
+            task += [f"--set=drive.cam_switch.track{track}.{key}={value}"
+                     for key, value in (("line", line), ("first", first), ("last", last))]
+        loop.boot(folder, script("cam", (), task, "python3 watch.py >watch.log 2>&1 &"),
+                  through=(HERE / "gpio_guest.sh",))
+        run = Run("cam", folder)
+        self.assertEqual((run.status, run.faults), (0, []), run.drive + run.plant)
+        changes = json.loads((folder / "cam.lines").read_text())
+        worst = 0.0
+        for line, width in ((12, 0.2), (13, 0.3)):
+            edges = [(time, on) for time, of, on in changes if of == line]
+            self.assertEqual([on for _, on in edges], [k % 2 == 0 for k in range(len(edges))], changes)
+            self.assertEqual(len(edges) % 2, 0, "off at the end")
+            ons, offs = [time for time, on in edges if on], [time for time, on in edges if not on]
+            # The master comes to its speed, and brakes, within about a cycle.
+            steady = range(2, len(ons) - 2)
+            self.assertGreater(len(steady), 4, changes)
+            for k in steady:
+                worst = max(worst, abs(offs[k] - ons[k] - width), abs(ons[k] - ons[k - 1] - 1.0))
+        # A tick of the drive and one of who watches, at each end.
+        self.assertLess(worst, 4e-3, changes)
+        figure("switch tracks on lines of a chip, width and period", f"off by up to {worst * 1e3:.1f} ms (bound 4 ms)")
 
 
 if __name__ == "__main__":

@@ -49,14 +49,18 @@ class CamBytes {
     put(std::uint64_t{1} << 31, 4);
     const std::int64_t begin = c[0] * (1 << scale);
     put(static_cast<std::uint64_t>(down ? (std::int64_t{1} << 46) - begin : begin), 8);
+    std::uint64_t finer = 0;
     for (int i = 1; i < 6; ++i) {
-      const std::int64_t value = c[i] * (1 << scale) / (1 << coarse);
+      const std::int64_t value = c[i] * (1 << scale) / (1 << coarse) * (1 << finer_bits[i]);
       put(static_cast<std::uint64_t>(down ? -value : value), 4);
+      if (i > 1) finer |= static_cast<std::uint64_t>(finer_bits[i]) << (4 * (i - 2));
     }
-    put(23, 1), put(shift, 1), put(0, 2);
+    put(23, 1), put(shift, 1), put(finer, 2);
   }
 
   static constexpr int shift = 15;
+  // As far as the largest of each stays within a word.
+  static constexpr int finer_bits[6] = {0, 0, 6, 11, 15, 15};
   std::size_t at_ = 0;
 };
 

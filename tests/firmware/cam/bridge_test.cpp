@@ -24,6 +24,9 @@ TEST(Product, IsExactAndRoundedToNearest) {
     const Int128 rounded = shift == 0 ? size : (size + (Int128{1} << (shift - 1))) >> shift;
     const Int128 held = rounded > INT64_MAX ? Int128{INT64_MAX} : rounded;
     ASSERT_EQ(product_shifted(a, b, shift), static_cast<std::int64_t>(exact < 0 ? -held : held));
+    const std::int64_t x = a < 0 ? ~a : a, y = b < 0 ? ~b : b;
+    const Int128 whole = Int128{x} * y;
+    ASSERT_EQ(product_held(x, y), static_cast<std::int64_t>(whole > INT64_MAX ? Int128{INT64_MAX} : whole));
     const auto word = static_cast<std::int32_t>(b);
     const Int128 of_word = Int128{a >> 2} * word;
     ASSERT_EQ(product_by_word<36>(a >> 2, word), static_cast<std::int64_t>(of_word >> 36));
@@ -31,6 +34,33 @@ TEST(Product, IsExactAndRoundedToNearest) {
   EXPECT_EQ(product_shifted(INT64_MIN, INT64_MIN, 0), INT64_MAX);
   EXPECT_EQ(product_shifted(INT64_MIN, 1, 0), -INT64_MAX);
   EXPECT_EQ(product_shifted(INT64_MIN, INT64_MIN, 127), 1);
+  EXPECT_EQ(product_held(INT64_MAX, 1), INT64_MAX);
+  EXPECT_EQ(product_held(INT64_MAX, 0), 0);
+  EXPECT_EQ(product_held(INT64_MAX, INT64_MAX), INT64_MAX);
+  EXPECT_EQ(product_held((std::int64_t{1} << 31) - 1, std::int64_t{1} << 32), INT64_MAX - UINT32_MAX);
+}
+
+// 2^(62 + bits) / length, rounded down, by the division of 128 bits that the compiler brings along.
+TEST(Span, HasTheExactReciprocal) {
+  const auto check = [](std::int64_t length) {
+    const Span span = Span::of(length);
+    __extension__ using Wide = unsigned __int128;
+    const auto expected = static_cast<std::int64_t>((Wide{1} << (62 + span.bits)) / static_cast<std::uint64_t>(length));
+    ASSERT_EQ(span.reciprocal, expected) << length;
+    ASSERT_EQ(span.length, length);
+  };
+  for (std::int64_t length = 1; length <= 70'000; ++length) check(length);
+  for (int bit = 2; bit <= 61; ++bit)
+    for (const std::int64_t off : {-3, -2, -1, 0, 1, 2, 3})
+      if (bit < 61 || off <= 0) check((std::int64_t{1} << bit) + off > 0 ? (std::int64_t{1} << bit) + off : 1);
+  std::mt19937_64 random(5);
+  for (int k = 0; k < 1'000'000; ++k) check(static_cast<std::int64_t>(random() >> (3 + random() % 50)) + 1);
+  for (int k = 0; k < BridgeLengths::count; ++k) {
+    const Span span = BridgeLengths::span(k), expected = Span::of(BridgeLengths::ticks(k));
+    EXPECT_EQ(span.length, expected.length);
+    EXPECT_EQ(span.reciprocal, expected.reciprocal);
+    EXPECT_EQ(span.bits, expected.bits);
+  }
 }
 
 TEST(Span, DividesByItsLength) {

@@ -2,12 +2,14 @@
 // its tick, masters that are measured, faults.
 #include "stiction/drive/cam_mode.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "stiction/drive/remote_cam.hpp"
 #include "tests/firmware/cam/cam_bench.hpp"
+#include "tests/support/figure.hpp"
 
 namespace stiction::test {
 namespace {
@@ -449,6 +451,158 @@ TEST_F(AMovingCam, DoesNotBrakeAlongACurveBeyondTheLimitsOfTheAxis) {
     config.motion.slave = whole;
   }
   EXPECT_TRUE(mode.brake(CamStop::slow_down));
+}
+
+// With a second cam on top, of a tenth of the first.
+class ASecondCam : public AMovingCam {
+ protected:
+  ASecondCam() {
+    config.second = CamMotion::Config::of(limits(0.1, 2.0, 2e3), limits(1.2, 5.0, 50.0), limits(0.1, 1.0, 10.0), 1024);
+    config.superposed = config.second.slave;
+    config.superposed_ramp = config.second.ramp;
+    mode.asked().slave_scale = std::int64_t{1} << 28;
+    EXPECT_EQ(mode.command(CamCommand::engage_second, false, true), CamRefusal::none);
+    run(20'000);
+    EXPECT_TRUE(mode.second_status().in_sync);
+    EXPECT_EQ(mode.second_table(), 1);
+  }
+};
+
+TEST_F(ASecondCam, BrakesWithTheFirstAndTakesNoCommandMeanwhile) {
+  ASSERT_TRUE(mode.brake(CamStop::slow_down));
+  for (const auto command : {CamCommand::leave_to, CamCommand::engage_second, CamCommand::leave_second})
+    EXPECT_EQ(mode.command(command, false, true), CamRefusal::not_enabled);
+  run(40'000);
+  EXPECT_TRUE(mode.braked());
+  EXPECT_TRUE(mode.second_status().in_sync);
+  EXPECT_EQ(mode.point().velocity, 0);
+}
+
+// Neither sees the master of the machine again, which has gone on.
+TEST_F(ASecondCam, IsLeftWithTheFirstWhileBothBrake) {
+  ASSERT_TRUE(mode.brake(CamStop::slow_down));
+  run(300);
+  ASSERT_EQ(mode.command(CamCommand::leave, false, true), CamRefusal::none);
+  run(20'000);
+  EXPECT_TRUE(mode.at_rest());
+  EXPECT_EQ(mode.fault(), Fault::none);
+}
+
+TEST_F(ASecondCam, IsNotBrakedAlongWhileItIsOnItsWay) {
+  ASSERT_EQ(mode.command(CamCommand::leave_second, false, true), CamRefusal::none);
+  run(20);
+  ASSERT_TRUE(mode.second_status().waiting) << "one length of a bridge is tried in a tick";
+  EXPECT_FALSE(mode.brake(CamStop::slow_down));
+  run(80);
+  ASSERT_TRUE(mode.second_status().busy);
+  ASSERT_FALSE(mode.second_status().active);
+  EXPECT_FALSE(mode.brake(CamStop::slow_down));
+  run(20'000);
+  EXPECT_FALSE(mode.second_status().busy);
+  EXPECT_TRUE(mode.brake(CamStop::slow_down));
+}
+
+TEST_F(ASecondCam, IsAFaultOfTheAxisWhereItLosesItsMaster) {
+  mode.step({{}, false});
+  EXPECT_EQ(mode.fault(), Fault::master_lost);
+  EXPECT_FALSE(mode.second_status().active);
+}
+
+// Three axes on one curve behind one master, with ramps of their own.
+class JoinedCams : public ACamMode {
+ protected:
+  JoinedCams() {
+    for (std::size_t k = 0; k < 3; ++k) configs[k] = config;
+    for (auto& each : modes) {
+      if (&each != &modes[0]) each.join(modes[0]);
+      each.start(S::Position{});
+    }
+  }
+  void decelerate(double first, double second, double third) {
+    const double wanted[] = {first, second, third};
+    for (std::size_t k = 0; k < 3; ++k) configs[k].stops.fill(Span::of(raw_acceleration(wanted[k])));
+  }
+  void engage() {
+    master.run(master_speed(1.0));
+    for (auto& each : modes) EXPECT_EQ(each.command(CamCommand::engage, false, true), CamRefusal::none);
+    for (int k = 0; k < 20'000; ++k) tick(0);
+    for (const auto& each : modes) EXPECT_TRUE(each.status().in_sync);
+  }
+  // One after the other, as an owner of axes has them; `braking`: a bit an axis that is to brake.
+  void tick(unsigned braking) {
+    const MasterReading reading{master.step(), true};
+    for (std::size_t k = 0; k < 3; ++k) {
+      if ((braking >> k & 1u) != 0) modes[k].brake(CamStop::slow_down);
+      modes[k].step(reading);
+    }
+    for (const std::size_t k : {1u, 2u})
+      apart[k] = std::max(apart[k], std::abs(modes[k].point().position - modes[0].point().position));
+  }
+
+  VirtualMaster master{VirtualMaster::Config::of(limits(1.2, 5.0, 50.0))};
+  std::array<CamMode::Config, 3> configs;
+  std::array<CamMode, 3> modes{{CamMode{configs[0], tables}, CamMode{configs[1], tables}, CamMode{configs[2], tables}}};
+  std::array<std::int64_t, 3> apart{};
+};
+
+TEST_F(JoinedCams, KeepTheirPhaseThroughAStopOfAllWhoeverIsSlowest) {
+  decelerate(20.0, 12.0, 15.0);
+  engage();
+  std::mt19937_64 draw(8);
+  std::int64_t most = 0;
+  for (int stop = 0; stop < 40; ++stop) {
+    const auto& fastest = configs[static_cast<std::size_t>(stop) % 3];
+    for (auto& each : configs) each.stops = fastest.stops;
+    configs[draw() % 3].stops.fill(Span::of(raw_acceleration(12.0)));
+    const auto wait = static_cast<int>(draw() % 16'000);
+    for (int k = 0; k < wait; ++k) tick(0);
+    apart = {};
+    for (int k = 0; k < 20'000; ++k) tick(7);
+    most = std::max({most, apart[1], apart[2]});
+    for (auto& each : modes) {
+      ASSERT_TRUE(each.braked());
+      each.leave_to_rest();
+    }
+    for (int k = 0; k < 100; ++k) tick(0);
+    engage();
+  }
+  figure("cam mode: three axes that brake along their cams at once, phase between them",
+         fmt::format("{} units of 2^-40 m in 40 stops (bound 1)", most));
+  EXPECT_LE(most, 1);
+}
+
+TEST_F(JoinedCams, DoNotWaitForOneThatTakesMoreThanTwiceAsLong) {
+  decelerate(20.0, 20.0, 3.0);
+  engage();
+  int first = 0;
+  for (; !modes[0].braked() && first < 100'000; ++first) tick(7);
+  CamMode alone{configs[0], tables};
+  alone.start(S::Position{});
+  master.run(master_speed(1.0));
+  alone.command(CamCommand::engage, false, true);
+  for (int k = 0; k < 20'000; ++k) alone.step({master.step(), true});
+  int ticks = 0;
+  for (; !alone.braked() && ticks < 100'000; ++ticks) {
+    alone.brake(CamStop::slow_down);
+    alone.step({master.step(), true});
+  }
+  EXPECT_EQ(first, ticks);
+  EXPECT_EQ(apart[1], 0);
+}
+
+TEST_F(JoinedCams, BrakeAloneWhereTheOthersGoOn) {
+  decelerate(20.0, 12.0, 12.0);
+  engage();
+  for (int k = 0; k < 100; ++k) tick(4);
+  EXPECT_TRUE(modes[2].braking());
+  EXPECT_FALSE(modes[0].braking());
+  EXPECT_EQ(apart[1], 0);
+  for (int k = 0; k < 20'000; ++k) tick(4);
+  EXPECT_TRUE(modes[2].braked());
+  EXPECT_TRUE(modes[0].status().in_sync);
+  // Later ones go their own way.
+  for (int k = 0; k < 20'000; ++k) tick(1);
+  EXPECT_TRUE(modes[0].braked());
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ std::vector<std::uint8_t> bytes_of(const HandMade& table) {
     for (const std::int32_t c : s.c) put(bytes, static_cast<std::uint64_t>(std::int64_t{c}), 4);
     put(bytes, s.down, 1);
     put(bytes, s.shift, 1);
-    put(bytes, 0, 2);
+    put(bytes, s.finer, 2);
   }
   for (const auto& t : table.tracks) {
     put(bytes, t.first_window, 2);
@@ -185,6 +185,60 @@ TEST(CamTable, RefusesBytesThatAreNoTable) {
   bytes[70] ^= 4;
   CamTable read;
   EXPECT_EQ(CamTable::read(bytes, read), CamTableProblem::checksum);
+}
+
+// 1/2 - 3 t^2 + 5/2 t^3, each coefficient in a unit of its own: 2^-30 / 2^finer.
+TEST(CamTable, TakesCoefficientsThatAreFinerThanTheFirst) {
+  HandMade table = line_and_parabola();
+  auto& s = table.segments[1];
+  s.c0 = std::int64_t{1} << 29;
+  s.shift = CamTable::extra_bits - 4;
+  s.finer = 3 | 1 << 4 | 15 << 8 | 7 << 12;
+  s.c[1] = -3 * (1 << (30 - 4 + 3));
+  s.c[2] = 5 << (29 - 4 + 1);
+  const auto bytes = bytes_of(table);
+  CamTable read;
+  ASSERT_EQ(CamTable::read(bytes, read), CamTableProblem::none);
+  EXPECT_EQ(read.segment(1).finer_bits(1), 0);
+  EXPECT_EQ(read.segment(1).finer_bits(2), 3);
+  EXPECT_EQ(read.segment(1).finer_bits(5), 7);
+  for (const double t : {0.0, 0.25, 0.5, 0.9999}) {
+    const auto out = read.evaluate(static_cast<std::uint32_t>((0.5 + t / 2) * 0x1p32));
+    EXPECT_NEAR(static_cast<double>(out.position) * 0x1p-30, 0.5 - 3 * t * t + 2.5 * t * t * t, 2e-9) << t;
+    EXPECT_NEAR(static_cast<double>(out.speed) * 0x1p-20, 2 * (-6 * t + 7.5 * t * t), 2e-6) << t;
+    EXPECT_NEAR(static_cast<double>(out.acceleration) * 0x1p-10, 4 * (-6 + 15 * t), 2e-3) << t;
+  }
+}
+
+// What is below 2^-32 cycles of a phase: the line of slope 2 goes on, the parabola's acceleration stays.
+TEST(CamTable, EvaluatesPhasesBetweenTheWordsOfItsStarts) {
+  HandMade table = line_and_parabola();
+  for (auto& s : table.segments) s.shift -= 14;  // positions in 2^-44
+  table.header.position_bits = 44;
+  table.segments[1].c0 = std::int64_t{1} << 44;
+  const auto bytes = bytes_of(table);
+  CamTable read;
+  ASSERT_EQ(CamTable::read(bytes, read), CamTableProblem::none);
+  for (const std::uint64_t phase : {0x12345678'00000000u, 0x12345678'80000000u, 0x12345678'fffff000u}) {
+    const auto out = read.evaluate_fine(phase);
+    EXPECT_NEAR(static_cast<double>(out.position), std::ldexp(static_cast<double>(phase), -19), 1.0) << phase;
+    EXPECT_EQ(out.speed, 2 << 20);
+  }
+  const auto coarse = read.evaluate(0xc0000000u), fine = read.evaluate_fine(0xc0000000'00000000u);
+  EXPECT_EQ(coarse.position, fine.position);
+  EXPECT_EQ(coarse.speed, fine.speed);
+  EXPECT_EQ(coarse.acceleration, fine.acceleration);
+  // Speed -4 t, and t goes by 2^-32 for half a word of the phase.
+  const auto later = read.evaluate_fine(0xc0000000'80000000u);
+  EXPECT_NEAR(static_cast<double>(later.position - fine.position), -2.0 * 0x1p44 * 0x1p-33, 1.0);
+}
+
+// A table of version 2, whose coefficients had one exponent: as it was, but not with bytes that version 2 left 0.
+TEST(CamTable, ReadsTheVersionBefore) {
+  EXPECT_EQ(problem_of_bytes([](auto& b) { b[4] = 2; }), CamTableProblem::none);
+  EXPECT_EQ(problem_of_bytes([](auto& b) { b[CamTable::header_size + 38] = 1; }), CamTableProblem::none);
+  EXPECT_EQ(problem_of_bytes([](auto& b) { b[4] = 2, b[CamTable::header_size + 38] = 1; }), CamTableProblem::scale);
+  EXPECT_EQ(problem_of_bytes([](auto& b) { b[4] = 4; }), CamTableProblem::version);
 }
 
 // Two tracks of a cycle of 2^32: one on from 100 to 200 and around the seam, one that is always on. A compensation of

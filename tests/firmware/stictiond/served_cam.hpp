@@ -24,8 +24,17 @@ inline Cam two_tables(const std::string& speed = "130 rpm") {
   return {tables, "virtual", speed};
 }
 
-enum State : unsigned { busy = 1, active = 2, in_sync = 4, waiting = 8, aborted = 16, known = 32 };
-enum CommandNumber { engage = 1, leave = 2, cancel = 3, phase = 4 };
+enum State : unsigned {
+  busy = 1,
+  active = 2,
+  in_sync = 4,
+  waiting = 8,
+  aborted = 16,
+  known = 32,
+  second_busy = 64,
+  second_in_sync = 128
+};
+enum CommandNumber { engage = 1, leave = 2, cancel = 3, phase = 4, leave_to = 6, engage_second = 7, leave_second = 8 };
 
 class ServedCam : public Objects, public ::testing::WithParamInterface<bool> {
  protected:

@@ -343,6 +343,154 @@ TEST_P(ServedCam, HasAMoveOnTopOfIt) {
   EXPECT_FALSE(table.cam->mode(0).superposes());
 }
 
+TEST_P(ServedCam, IsLeftAtAPosition) {
+  ASSERT_TRUE(enable_in(-1));
+  ASSERT_TRUE(write("master_speed", 1.0));
+  ASSERT_TRUE(command(engage));
+  run_until([&] { return shows(in_sync); });
+  step(300);
+  ASSERT_TRUE(write("cam_leave_position", 0.1));
+  ASSERT_TRUE(command(leave_to));
+  run_until([&] { return !shows(busy); });
+  EXPECT_EQ(read("cam_refusal"), 0.0);
+  EXPECT_NEAR(table.set_position(0), 0.1, 1e-9);
+  EXPECT_EQ(machine::to_si(table.loop.drive(0).set_velocity()), 0.0);
+  step(100);
+  EXPECT_NEAR(table.set_position(0), 0.1, 1e-9);
+  // Where the next cycle begins, in half a second.
+  ASSERT_TRUE(command(engage));
+  run_until([&] { return shows(in_sync); });
+  ASSERT_TRUE(write("cam_leave_position", 0.08));
+  ASSERT_TRUE(write("cam_trigger", 3));
+  ASSERT_TRUE(write("cam_approach", 1));
+  ASSERT_TRUE(write("cam_time", 0.5));
+  ASSERT_TRUE(command(leave_to));
+  EXPECT_TRUE(shows(active | waiting));
+  run_until([&] { return !shows(active); });
+  EXPECT_LT(read("master_phase"), 0.01);
+  EXPECT_NEAR(run_until([&] { return !shows(busy); }), 500, 5);
+  EXPECT_NEAR(table.set_position(0), 0.08, 1e-9);
+  EXPECT_EQ(read("cam_followed"), 0.0);
+}
+
+TEST_P(ServedCam, IsNotLeftForAPositionThatCannotBe) {
+  ASSERT_TRUE(enable_in(-1));
+  ASSERT_TRUE(write("master_speed", 1.0));
+  ASSERT_TRUE(command(engage));
+  run_until([&] { return shows(in_sync); });
+  const auto refused = [&](int reason) {
+    EXPECT_TRUE(command(leave_to));
+    step(50);
+    EXPECT_EQ(read("cam_refusal"), reason);
+    EXPECT_TRUE(shows(in_sync));
+    EXPECT_NEAR(off(0), 0.0, 2e-9);
+  };
+  ASSERT_TRUE(write("cam_leave_position", 2.0));
+  refused(10);
+  ASSERT_TRUE(write("cam_leave_position", 0.0));
+  ASSERT_TRUE(write("cam_approach", 1));
+  ASSERT_TRUE(write("cam_time", 5e-3));
+  refused(4);
+  ASSERT_TRUE(write("cam_approach", 2));
+  refused(5);
+}
+
+// The second table, a tenth as high and begun at 0.
+class TwoCams : public ServedCam {
+ protected:
+  void engage_both() {
+    ASSERT_TRUE(enable_in(-1));
+    ASSERT_TRUE(write("master_speed", 1.0));
+    ASSERT_TRUE(command(engage));
+    run_until([&] { return shows(in_sync); });
+    ASSERT_TRUE(write("cam_table", 2));
+    ASSERT_TRUE(write("cam_slave_scale", 0.1));
+    ASSERT_TRUE(write("cam_slave_offset", -8.5e-3));
+    ASSERT_TRUE(command(engage_second));
+    EXPECT_EQ(read("cam_refusal"), 0.0);
+    run_until([&] { return shows(second_busy | second_in_sync); });
+    EXPECT_EQ(read("cam_second"), 2.0);
+    EXPECT_EQ(read("cam_followed"), 1.0);
+  }
+  // What the second one adds: from off(1) = x - m2, and off(0) = x - m1.
+  double off_both() { return off(0) - (0.1 * (table.set_position(0) - off(1)) - 8.5e-3); }
+};
+
+INSTANTIATE_TEST_SUITE_P(Bus, TwoCams, ::testing::Bool(),
+                         [](const auto& bus) { return std::string(bus.param ? "CANopen" : "Modbus"); });
+
+TEST_P(TwoCams, AreTheSumOfBoth) {
+  engage_both();
+  double most = 0.0;
+  for (int k = 0; k < 1500; ++k) {
+    step();
+    ASSERT_NEAR(off_both(), 0.0, 3e-9);
+    most = std::max(most, std::abs(off(0)));
+  }
+  EXPECT_NEAR(most, 1.2e-3, 1e-6) << "what the second one adds";
+  ASSERT_TRUE(command(leave_second));
+  run_until([&] { return !shows(second_busy); });
+  EXPECT_EQ(read("cam_second"), 0.0);
+  EXPECT_TRUE(shows(in_sync));
+  for (int k = 0; k < 500; ++k) {
+    step();
+    ASSERT_NEAR(off(0), 0.0, 2e-9);
+  }
+}
+
+TEST_P(TwoCams, ShareTheirPhase) {
+  engage_both();
+  ASSERT_TRUE(write("cam_phase", 0.1));
+  ASSERT_TRUE(command(phase));
+  run_until([&] { return !table.cam->mode(0).phasing(); }, 8000);
+  for (int k = 0; k < 500; ++k) {
+    step();
+    const double second = 0.1 * (table.set_position(0) - off(1, 0.1)) - 8.5e-3;
+    ASSERT_NEAR(off(0, 0.1), second, 3e-9);
+  }
+}
+
+TEST_P(TwoCams, AreNotOneOnTopOfAMove) {
+  engage_both();
+  ASSERT_TRUE(write("cam_superposed", 1e-3));
+  ASSERT_TRUE(command(5));
+  EXPECT_EQ(read("cam_refusal"), 11.0);
+  ASSERT_TRUE(command(leave_second));
+  run_until([&] { return !shows(second_busy); });
+  ASSERT_TRUE(command(5));
+  EXPECT_EQ(read("cam_refusal"), 0.0);
+  ASSERT_TRUE(command(engage_second));
+  EXPECT_EQ(read("cam_refusal"), 11.0);
+  run_until([&] { return !table.cam->mode(0).superposes(); });
+  // The curve as it is takes more than its share.
+  ASSERT_TRUE(write("cam_slave_scale", 1.0));
+  ASSERT_TRUE(command(engage_second));
+  EXPECT_EQ(read("cam_refusal"), 3.0);
+  EXPECT_TRUE(shows(in_sync));
+}
+
+TEST_P(TwoCams, BrakeTogetherAlongBoth) {
+  engage_both();
+  while (std::abs(machine::to_si(table.loop.drive(0).set_velocity())) < 0.03) step();
+  int ticks = 0;
+  ASSERT_TRUE(write("controlword", 0x02));
+  step(2);
+  EXPECT_TRUE(table.cam->mode(0).braking());
+  for (; ticks < 1500 && table.powered(0); ++ticks) step();
+  EXPECT_EQ(table.loop.state(0), DriveState::switch_on_disabled);
+  EXPECT_EQ(table.loop.fault(0), Fault::none);
+  EXPECT_FALSE(shows(active));
+  EXPECT_FALSE(shows(second_busy));
+}
+
+TEST_P(TwoCams, AreBothLeftForAHalt) {
+  engage_both();
+  ASSERT_TRUE(write("controlword", 0x10f));
+  run_until([&] { return !shows(busy) && !shows(second_busy); });
+  EXPECT_EQ(machine::to_si(table.loop.drive(0).set_velocity()), 0.0);
+  EXPECT_EQ(table.loop.fault(0), Fault::none);
+}
+
 TEST_P(ServedCam, AMasterIsHeldToItsLargestSpeed) {
   ASSERT_TRUE(enable_in(-1));
   ASSERT_TRUE(write("master_speed", -3.0));

@@ -93,14 +93,14 @@ TEST(CamSegmentTable, HasTheSameBytesEverywhere) {
     const auto table = table_within(compose(seed % 2 == 0 ? random.rests(6) : random.septics(5)), 1e-8);
     checksum.add(table.bytes, table.bytes.size());
   }
-  EXPECT_EQ(checksum.value(), 0xd0bed2b1u);
+  EXPECT_EQ(checksum.value(), 0x3699d37du);
 }
 
 // The same of motion files, read from their text.
 TEST(CamSegmentTable, OfAMotionFileHasTheSameBytesEverywhere) {
   std::uint32_t sum = 0;
   for (std::uint64_t seed = 1; seed <= drawn_files; ++seed) sum = sum * 31 + table_checksum(seed);
-  EXPECT_EQ(sum, 0xd60e3339u);
+  EXPECT_EQ(sum, 0xabb0045du);
 }
 
 TEST(CamSegmentTable, RefusesEachFlippedBitAndEachLength) {
@@ -120,7 +120,7 @@ TEST(CamSegmentTable, RefusesEachFlippedBitAndEachLength) {
   bytes.push_back(0);
   EXPECT_EQ(CamTable::read(bytes, read), CamTableProblem::size);
   bytes.pop_back();
-  bytes[4] = 0;  // an older version
+  bytes[4] = 1;  // an older version
   EXPECT_EQ(CamTable::read(bytes, read), CamTableProblem::version);
   bytes[0] = 'x';
   EXPECT_EQ(CamTable::read(bytes, read), CamTableProblem::no_table);

@@ -4,6 +4,9 @@
 // What is asked for stands in values that hold until changed, and acts with a command. A curve is prepared beside the
 // ticks with a scale of 1; scale, offsets and ratio of a request are put to it in the tick of the command, with fixed
 // work. The curve that is followed, the one that waits and the one of the next command have a place each.
+//
+// On top of it there is a share of what the axis keeps, for either a move or a second cam: the sum of two motions
+// within their shares is within the limits.
 #pragma once
 
 #include <array>
@@ -20,13 +23,16 @@ namespace stiction {
 
 enum class CamCommand : std::uint8_t {
   none,
-  engage,    // MC_CamIn, MC_GearIn: with the values asked for; also to a different table, scale or offset on the run
-  leave,     // MC_CamOut, to standstill or to the speed asked for
-  cancel,    // deletes what waits
-  phase,     // MC_Phasing: the phase asked for
-  superpose  // MC_MoveSuperimposed: the displacement asked for, on top of what the axis follows or where it stands
+  engage,     // MC_CamIn, MC_GearIn: with the values asked for; also to a different table, scale or offset on the run
+  leave,      // MC_CamOut, to standstill or to the speed asked for
+  cancel,     // deletes what waits
+  phase,      // MC_Phasing: the phase asked for
+  superpose,  // MC_MoveSuperimposed: the displacement asked for, on top of what the axis follows or where it stands
+  leave_to,   // to standstill at the position asked for
+  engage_second,  // a second cam on top (MC_CombineAxes), with the values asked for; a table in the mode of a gear too
+  leave_second    // it goes to nothing, from wherever it is
 };
-inline constexpr int cam_commands = 6;
+inline constexpr int cam_commands = 9;
 
 // The ramp of the drive that a stop along a cam takes the place of.
 enum class CamStop : std::uint8_t { slow_down, quick_stop };
@@ -41,6 +47,7 @@ class CamMode {
     S::Position low{}, high{};        // the ends of the travel
     std::array<Span, 2> stops{};      // decelerations of the drive's ramps by CamStop, 2^-64 m a tick, a tick
     MotionLimits superposed{};        // of superposed moves, beside those of `motion`
+    CamMotion::Config second{};       // of a second cam: the same share
     SpeedRampRule superposed_ramp{};  // of these
   };
 
@@ -64,40 +71,44 @@ class CamMode {
     std::int64_t slave_scale = std::int64_t{1} << 32;
     std::int32_t numerator = 1;  // of the ratio
     std::uint16_t denominator = 1;
-    std::int64_t gear_way = 0;     // of the slave in a cycle of the master behind the ratio, 2^-40 m
-    std::int64_t phase = 0;        // 2^-40 cycles
-    std::int64_t leave_speed = 0;  // 2^-52 m a tick
-    std::int64_t superposed = 0;   // 2^-40 m
+    std::int64_t gear_way = 0;        // of the slave in a cycle of the master behind the ratio, 2^-40 m
+    std::int64_t phase = 0;           // 2^-40 cycles
+    std::int64_t leave_speed = 0;     // 2^-52 m a tick
+    std::int64_t superposed = 0;      // 2^-40 m
+    std::int64_t leave_position = 0;  // 2^-40 m
   };
 
   // `config`: of the axis; `tables`: that can be asked for, by their number; both must outlive this.
   explicit constexpr CamMode(const Config& config, std::span<const Table> tables = {})
-      : config_(&config), tables_(tables), motion_(config.motion), superposed_(config_->superposed) {}
+      : config_(&config),
+        tables_(tables),
+        first_(config.motion),
+        second_(config_->second),
+        superposed_(config_->superposed) {}
   CamMode(const CamMode&) = delete;
   CamMode& operator=(const CamMode&) = delete;
   ~CamMode() = default;
 
   // Stands at `position` and follows nothing.
   constexpr void start(S::Position position) {
-    motion_.start(position.raw());
+    first_.start(position.raw());
+    second_.start(0);
     superposed_.start(0);
-    point_ = motion_.point();
+    point_ = first_.motion.point();
     braking_ = false;
     fault_ = Fault::none;
-    table_ = 0;
-    waiting_ = nullptr;
   }
 
   // Stands where `curve` is at a `master` that stands, and follows it from the first tick on. `curve`: must outlive
   // this. What it returns is not none where nothing follows.
   constexpr CamRefusal begin(const CamCurve& curve, const MasterPoint& master) {
-    motion_.start(curve.slopes(curve.seen(master).position).position);
+    first_.motion.start(curve.slopes(curve.seen(master).position).position);
     CamRequest request;
     request.curve = &curve;
-    refusal_ = motion_.engage(request);
+    refusal_ = first_.motion.engage(request);
     if (refusal_ != CamRefusal::none) return refusal_;
-    motion_.step(master);
-    return refusal_ = motion_.status().refusal;
+    first_.motion.step(master);
+    return refusal_ = first_.motion.status().refusal;
   }
 
   constexpr Asked& asked() { return asked_; }
@@ -108,19 +119,29 @@ class CamMode {
   constexpr CamRefusal command(CamCommand command, bool gear, bool referenced) {
     switch (command) {
       case CamCommand::engage:
-        return refusal_ = braking_ ? CamRefusal::not_enabled : engage(gear, referenced);
+        return refusal_ = braking_ ? CamRefusal::not_enabled : engage(first_, gear, referenced);
       case CamCommand::leave:
         return refusal_ = leave(asked_.leave_speed);
       case CamCommand::cancel:
-        motion_.cancel();
-        waiting_ = nullptr;
+        first_.cancel();
+        second_.cancel();
         return refusal_ = CamRefusal::none;
       case CamCommand::phase:
-        motion_.phase(asked_.phase);
+        first_.motion.phase(asked_.phase);
+        second_.motion.phase(asked_.phase);
         return refusal_ = CamRefusal::none;
       case CamCommand::superpose:
+        if (!second_.motion.at_rest() || second_.motion.status().waiting) return refusal_ = CamRefusal::superposes;
         superposed_.go(asked_.superposed);
         return refusal_ = CamRefusal::none;
+      case CamCommand::leave_to:
+        return refusal_ = braking_ ? CamRefusal::not_enabled : leave_to(asked_.leave_position, referenced);
+      case CamCommand::engage_second:
+        return refusal_ = braking_             ? CamRefusal::not_enabled
+                          : superposed_.busy() ? CamRefusal::superposes
+                                               : engage(second_, false, false);
+      case CamCommand::leave_second:
+        return refusal_ = braking_ ? CamRefusal::not_enabled : second_.take({.goal = CamGoal::position}, nullptr, 0);
       case CamCommand::none:
         break;
     }
@@ -130,43 +151,37 @@ class CamMode {
   constexpr void refuse(CamRefusal reason) { refusal_ = reason; }
 
   // Deletes what waits, leaves what is followed to standstill within the limits of the axis, and ends a superposed
-  // move.
+  // move. What a second cam has added stays.
   constexpr void leave_to_rest() {
     superposed_.stop(config_->superposed_ramp);
-    if (!motion_.at_rest() || motion_.status().waiting) leave(0);
+    second_.leave_to_rest();
+    if (!first_.motion.at_rest() || first_.motion.status().waiting) leave(0);
+  }
+
+  // Makes this axis one of those that brake together with `other` and its like: axes behind one master. All of them
+  // must stay as long as one is used.
+  constexpr void join(CamMode& other) {
+    next_ = other.next_;
+    other.next_ = this;
   }
 
   // Brakes along what is followed: from the coming tick on the master that this axis sees goes to standstill by itself,
   // so slowly that the axis needs no more than the deceleration of `stop` for the curve and for the braking together,
   // nor more than its limits. Three times as long as the ramp would take from the largest speed of the curve at that of
   // the master, or six times. False, and nothing changes, where no such way is found, or the axis is not in sync.
+  //
+  // Axes that joined and brake from the same tick on keep their phase: the slowest decides, and all of them see their
+  // masters go the same way. One that would need more than twice as long as the first to brake is not waited for, since
+  // it may not have to stop at all.
   constexpr bool brake(CamStop stop) {
     if (braking_) return true;
-    const CamStatus& status = motion_.status();
-    if (!status.in_sync || status.waiting || motion_.phasing().busy() || superposed_.busy()) return false;
-    const Span& deceleration = config_->stops[static_cast<std::size_t>(stop)];
-    const MotionLimits& slave = config_->motion.slave;
-    const MasterPoint& now = seen_.point;
-    const auto speed = static_cast<std::int64_t>(magnitude(now.velocity));
-    const auto change = static_cast<std::int64_t>(magnitude(now.acceleration));
-    const std::int64_t fastest = motion_.curve()->motion({speed, 0, 0}).velocity;
-    std::int64_t ticks = 3 * deceleration.divide(fastest, MotionPoint::tick_bits) + 48;
-    constexpr std::int64_t most_ticks = std::int64_t{1} << 20;
-    for (int tried = 0; tried < 2 && ticks <= most_ticks; ++tried, ticks *= 2) {
-      // Of the bridge of speed: at most v + a T / 4, |a| + 3/2 v / T and (4 |a| + 6 v / T) / T.
-      const Span span = Span::of(ticks);
-      const std::int64_t share = span.divide(speed, MotionPoint::tick_bits);
-      const MotionLimits master{speed + product_shifted(change, ticks, MotionPoint::tick_bits + 2),
-                                change + share + share / 2 + 1,
-                                span.divide(4 * change + 6 * share, MotionPoint::tick_bits) + 1};
-      const MotionLimits needed = motion_.curve()->motion(master);
-      if (needed.acceleration > deceleration.length || needed.acceleration > slave.acceleration ||
-          needed.velocity > slave.velocity || needed.jerk > slave.jerk)
-        continue;
-      stopping_master_.brake_from(now, ticks);
-      return braking_ = true;
-    }
-    return false;
+    const std::int64_t own = ticks_to_brake(stop);
+    if (own == 0) return false;
+    began_ = seen_.point;
+    stop_ = stop;
+    braking_ticks_ = ticks_together(stop, own);
+    stopping_master_.brake_from(began_, braking_ticks_);
+    return braking_ = true;
   }
   constexpr bool braking() const { return braking_; }
   // Whether the master of brake() stands.
@@ -175,24 +190,24 @@ class CamMode {
   // The set-point of the coming tick, at the `master` of that tick.
   constexpr SetPoint<S> step(const MasterReading& master) {
     seen_ = braking_ ? MasterReading{stopping_master_.step(), true} : master;
-    point_ = motion_.step(seen_.point, seen_.valid, braking_) + superposed_.step();
-    const CamStatus& status = motion_.status();
-    fault_ = fault_of(status.fault);
+    point_ = first_.motion.step(seen_.point, seen_.valid, braking_) +
+             second_.motion.step(seen_.point, seen_.valid, braking_) + superposed_.step();
+    fault_ = fault_of(first_.motion.status().fault);
+    if (fault_ == Fault::none) fault_ = fault_of(second_.motion.status().fault);
     // Refused behind its trigger.
-    const bool decided = waiting_ != nullptr && !status.waiting;
-    if (decided && status.refusal != CamRefusal::none) refusal_ = status.refusal;
-    if (decided && status.refusal == CamRefusal::none && status.active) table_ = waiting_table_;
-    if (decided) waiting_ = nullptr;
-    if (!status.active) table_ = 0;
+    for (Layer* layer : {&first_, &second_})
+      if (const CamRefusal found = layer->decide(); found != CamRefusal::none) refusal_ = found;
     return cam_set_point(point_, config_->rate);
   }
 
   constexpr const MotionPoint& point() const { return point_; }
-  constexpr const CamStatus& status() const { return motion_.status(); }
-  constexpr bool at_rest() const { return motion_.at_rest() && !superposed_.busy(); }
-  constexpr bool superposes() const { return superposed_.busy(); }     // a move is on its way
-  constexpr bool phasing() const { return motion_.phasing().busy(); }  // the phase is on its way
-  constexpr std::uint16_t table() const { return table_; }             // that is followed; 0: none, or a gear
+  constexpr const CamStatus& status() const { return first_.motion.status(); }
+  constexpr const CamStatus& second_status() const { return second_.motion.status(); }
+  constexpr bool at_rest() const { return first_.motion.at_rest() && second_.motion.at_rest() && !superposed_.busy(); }
+  constexpr bool superposes() const { return superposed_.busy(); }           // a move is on its way
+  constexpr bool phasing() const { return first_.motion.phasing().busy(); }  // the phase is on its way
+  constexpr std::uint16_t table() const { return first_.table; }             // that is followed; 0: none, or a gear
+  constexpr std::uint16_t second_table() const { return second_.table; }     // the same of the second cam
   // Of the last command, and of what it asked for at its trigger.
   constexpr CamRefusal refusal() const { return refusal_; }
   // As long as the axis follows set-points and no request was taken again.
@@ -213,13 +228,143 @@ class CamMode {
   }
 
  private:
-  constexpr CamRefusal leave(std::int64_t speed) {
-    braking_ = false;
-    waiting_ = nullptr;
-    return motion_.leave(speed);
+  // A motion that follows the master, and the request that it has not decided yet.
+  struct Layer {
+    explicit constexpr Layer(const CamMotion::Config& of) : motion(of) {}
+
+    constexpr void start(std::int64_t position) {
+      motion.start(position);
+      waiting = nullptr;
+      undecided = false;
+      table = 0;
+    }
+    constexpr void cancel() {
+      motion.cancel();
+      waiting = nullptr;
+      undecided = false;
+    }
+    // `number`: of the table, at `curve`.
+    constexpr CamRefusal take(const CamRequest& request, const CamCurve* curve, std::uint16_t number) {
+      const CamRefusal found = motion.engage(request);
+      if (found != CamRefusal::none) return found;
+      waiting = curve;
+      waiting_table = number;
+      undecided = true;
+      return CamRefusal::none;
+    }
+    constexpr CamRefusal leave(std::int64_t speed) {
+      waiting = nullptr;
+      undecided = false;
+      return motion.leave(speed);
+    }
+    constexpr void leave_to_rest() {
+      if (!motion.at_rest() || motion.status().waiting) leave(0);
+    }
+    // Behind a tick: why what was asked for was refused in it.
+    constexpr CamRefusal decide() {
+      const CamStatus& status = motion.status();
+      const bool decided = undecided && !status.waiting;
+      const CamRefusal found = decided ? status.refusal : CamRefusal::none;
+      if (decided && found == CamRefusal::none && status.active) table = waiting_table;
+      if (decided) waiting = nullptr, undecided = false;
+      if (!status.active) table = 0;
+      return found;
+    }
+
+    CamMotion motion;
+    const CamCurve* waiting = nullptr;
+    std::uint16_t table = 0, waiting_table = 0;
+    bool undecided = false;
+  };
+
+  // How long it takes to brake along the curve as brake() says; 0: it does not.
+  constexpr std::int64_t ticks_to_brake(CamStop stop) const {
+    const CamStatus& status = first_.motion.status();
+    const CamStatus& second = second_.motion.status();
+    if (braking_ || !status.in_sync || status.waiting || first_.motion.phasing().busy() || superposed_.busy()) return 0;
+    if ((second.busy || !second_.motion.at_rest()) && (!second.in_sync || second.waiting)) return 0;
+    const Span& deceleration = config_->stops[static_cast<std::size_t>(stop)];
+    const auto speed = static_cast<std::int64_t>(magnitude(seen_.point.velocity));
+    const std::int64_t fastest = needed_behind({speed, 0, 0}).velocity;
+    const std::int64_t ticks = 3 * deceleration.divide(fastest, MotionPoint::tick_bits) + 48;
+    return may_brake_in(stop, ticks) ? ticks : may_brake_in(stop, 2 * ticks) ? 2 * ticks : 0;
   }
 
-  constexpr CamRefusal engage(bool gear, bool referenced) {
+  // What the axis needs for the curves that it follows behind a `master`.
+  constexpr MotionLimits needed_behind(const MotionLimits& master) const {
+    const MotionLimits needed = first_.motion.curve()->motion(master);
+    if (!second_.motion.status().active) return needed;
+    const MotionLimits more = second_.motion.curve()->motion(master);
+    return {sum(needed.velocity, more.velocity), sum(needed.acceleration, more.acceleration),
+            sum(needed.jerk, more.jerk)};
+  }
+  static constexpr std::int64_t sum(std::int64_t a, std::int64_t b) { return a < INT64_MAX - b ? a + b : INT64_MAX; }
+
+  // Whether the deceleration of `stop` and the limits of the axis are enough for braking in `ticks`.
+  constexpr bool may_brake_in(CamStop stop, std::int64_t ticks) const {
+    constexpr std::int64_t most_ticks = std::int64_t{1} << 20;
+    if (ticks > most_ticks) return false;
+    const MotionLimits& slave = config_->motion.slave;
+    const auto speed = static_cast<std::int64_t>(magnitude(seen_.point.velocity));
+    const auto change = static_cast<std::int64_t>(magnitude(seen_.point.acceleration));
+    // Of the bridge of speed: at most v + a T / 4, |a| + 3/2 v / T and (4 |a| + 6 v / T) / T.
+    const Span span = Span::of(ticks);
+    const std::int64_t share = span.divide(speed, MotionPoint::tick_bits);
+    const MotionLimits master{speed + product_shifted(change, ticks, MotionPoint::tick_bits + 2),
+                              change + share + share / 2 + 1,
+                              span.divide(4 * change + 6 * share, MotionPoint::tick_bits) + 1};
+    const MotionLimits needed = needed_behind(master);
+    return needed.acceleration <= config_->stops[static_cast<std::size_t>(stop)].length &&
+           needed.acceleration <= slave.acceleration && needed.velocity <= slave.velocity && needed.jerk <= slave.jerk;
+  }
+
+  // The same for all that joined; `own`: of this axis alone. Who brakes first in a tick decides, and the others follow.
+  constexpr std::int64_t ticks_together(CamStop stop, std::int64_t own) const {
+    std::int64_t ticks = own;
+    for (const CamMode* other = next_; other != this; other = other->next_) {
+      if (other->braking_) {
+        if (other->stop_ == stop && other->began_ == began_)
+          return may_brake_in(stop, other->braking_ticks_) ? other->braking_ticks_ : own;
+        continue;
+      }
+      // One that has had this tick does not brake from it on.
+      const std::int64_t needed = other->seen_.point == began_ ? other->ticks_to_brake(stop) : 0;
+      if (needed > ticks && needed <= 2 * own && may_brake_in(stop, needed)) ticks = needed;
+    }
+    return ticks;
+  }
+
+  constexpr CamRefusal leave(std::int64_t speed) {
+    // The second cam is not to see a different master.
+    if (braking_) second_.leave_to_rest();
+    braking_ = false;
+    return first_.leave(speed);
+  }
+
+  constexpr CamRefusal leave_to(std::int64_t position, bool referenced) {
+    if (referenced && (position < config_->low.raw() || position > config_->high.raw()))
+      return CamRefusal::beyond_travel;
+    CamRequest request = asked_request();
+    request.goal = CamGoal::position;
+    request.position = position;
+    return first_.take(request, nullptr, 0);
+  }
+
+  // When and how, of what is asked for.
+  constexpr CamRequest asked_request() const {
+    CamRequest request;
+    request.trigger = asked_.trigger;
+    request.approach = asked_.approach;
+    request.master_relative = asked_.master_relative;
+    request.slave_relative = asked_.slave_relative;
+    request.backward = asked_.backward;
+    request.span = Span::of(asked_.approach == CamApproach::distance ? asked_.distance : asked_.ticks);
+    request.at = asked_.at;
+    request.tolerance = asked_.tolerance;
+    return request;
+  }
+
+  constexpr CamRefusal engage(Layer& layer, bool gear, bool referenced) {
     if (!gear && (asked_.table == 0 || asked_.table > tables_.size())) return CamRefusal::unknown_table;
     const Table none{};
     const Table& table = gear ? none : tables_[asked_.table - 1u];
@@ -233,22 +378,10 @@ class CamMode {
     const CamRefusal refusal = CamCurve::rescale(table.curve, config, curve);
     if (refusal != CamRefusal::none) return refusal;
     if (referenced && !gear && !asked_.slave_relative && leaves_travel(table, curve)) return CamRefusal::beyond_travel;
-    CamRequest request;
+    CamRequest request = asked_request();
     request.curve = &curve;
-    request.trigger = asked_.trigger;
-    request.approach = asked_.approach;
-    request.master_relative = asked_.master_relative;
-    request.slave_relative = asked_.slave_relative;
-    request.backward = asked_.backward;
     request.free_way = gear && asked_.slave_relative;
-    request.span = Span::of(asked_.approach == CamApproach::distance ? asked_.distance : asked_.ticks);
-    request.at = asked_.at;
-    request.tolerance = asked_.tolerance;
-    const CamRefusal found = motion_.engage(request);
-    if (found != CamRefusal::none) return found;
-    waiting_ = &curve;
-    waiting_table_ = gear ? std::uint16_t{0} : asked_.table;
-    return CamRefusal::none;
+    return layer.take(request, &curve, gear ? std::uint16_t{0} : asked_.table);
   }
 
   // Of a curve that comes back to where it begins.
@@ -262,22 +395,27 @@ class CamMode {
 
   constexpr CamCurve& free_place() {
     std::size_t k = 0;
-    while (&places_[k] == motion_.curve() || &places_[k] == waiting_) ++k;
+    const auto taken = [&](const Layer& layer) {
+      return &places_[k] == layer.motion.curve() || &places_[k] == layer.waiting;
+    };
+    while (taken(first_) || taken(second_)) ++k;
     return places_[k];
   }
 
   const Config* config_;
   std::span<const Table> tables_;
-  CamMotion motion_;
+  Layer first_, second_;
   SmoothOffset superposed_;
   VirtualMaster stopping_master_{VirtualMaster::Config{}};  // that the axis sees while it brakes along its curve
   MasterReading seen_{{}, false};                           // in the last tick
   MotionPoint point_{};
+  MasterPoint began_{};             // from which it does
+  std::int64_t braking_ticks_ = 0;  // and how long
+  const CamMode* next_ = this;      // of those that brake together, in a ring
+  CamStop stop_ = CamStop::slow_down;
   bool braking_ = false;
   Asked asked_{};
-  std::array<CamCurve, 3> places_{};
-  const CamCurve* waiting_ = nullptr;  // of a request that was not decided yet
-  std::uint16_t table_ = 0, waiting_table_ = 0;
+  std::array<CamCurve, 5> places_{};
   CamRefusal refusal_ = CamRefusal::none;
   Fault fault_ = Fault::none;
 };

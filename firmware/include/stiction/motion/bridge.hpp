@@ -29,18 +29,23 @@ struct Span {
   std::int64_t reciprocal = std::int64_t{1} << 62;  // 2^(62 + bits) / length, from 2^61
   std::int8_t bits = 0;                             // of the length, less one
 
-  // The span of `length`, 1 to 2^61: ticks, or 2^-40 cycles of the master. 62 steps of a division bit by bit.
+  // The span of `length`, 1 to 2^61: ticks, or 2^-40 cycles of the master. A division of four digits (D. E. Knuth, "The
+  // Art of Computer Programming", volume 2, 4.3.1), each by a division of words that is too small by up to 3.
   static constexpr Span of(std::int64_t length) {
     const auto whole = static_cast<std::uint64_t>(length < 1 ? 1 : length > longest ? longest : length);
     Span span;
     span.length = static_cast<std::int64_t>(whole);
     span.bits = static_cast<std::int8_t>(std::bit_width(whole) - 1);
-    std::uint64_t rest = std::uint64_t{1} << span.bits, quotient = 0;
-    for (int bit = 0; bit <= share_bits; ++bit) {
-      const bool set = rest >= whole;
-      if (set) rest -= whole;
-      quotient = quotient << 1 | static_cast<std::uint64_t>(set);
-      rest <<= 1;
+    const std::uint64_t divisor = whole << (61 - span.bits);
+    const auto leading = static_cast<std::uint32_t>(divisor >> 46) + 1;
+    const bool one = divisor == std::uint64_t{1} << 61;
+    std::uint64_t rest = one ? 0 : std::uint64_t{1} << 61, quotient = one ? 1 : 0;
+    for (const int bits_of_digit : {16, 16, 15, 15}) {
+      std::uint32_t digit = static_cast<std::uint32_t>(rest >> (46 - bits_of_digit)) / leading;
+      rest = (rest << bits_of_digit) - divisor * digit;
+      for (int k = 0; k < 3; ++k)
+        if (rest >= divisor) rest -= divisor, ++digit;
+      quotient = quotient << bits_of_digit | digit;
     }
     span.reciprocal = static_cast<std::int64_t>(quotient);
     return span;
@@ -67,23 +72,10 @@ class Bridge {
     over_ = over;
     gone_ = 0;
     active_ = true;
-    const int up = over == Over::ticks ? MotionPoint::tick_bits : MotionPoint::position_bits;
-    const std::int64_t d = from.position, v = from.velocity, a = from.acceleration;
-    const std::int64_t length = span.length;
-    const std::int64_t slope = product_shifted(a, length, up);                // A, as a speed
-    const std::int64_t of_speed = product_shifted(v, length, up);             // V, as a way
-    const std::int64_t of_acceleration = product_shifted(slope, length, up);  // A, as a way
-    const std::int64_t d_speed = span.divide(d, up), d_acceleration = span.divide(d_speed, up);
-    const std::int64_t v_acceleration = span.divide(v, up);
-    p_[0] = d;
-    p_[1] = of_speed + 3 * d;
-    p_[2] = of_acceleration / 2 + 3 * of_speed + 6 * d;
-    v_[0] = v;
-    v_[1] = slope + 2 * v;
-    v_[2] = -5 * (slope / 2 + 3 * v + 6 * d_speed);
-    a_[0] = a;
-    a_[1] = -(8 * a + 36 * v_acceleration + 60 * d_acceleration);
-    a_[2] = 10 * a + 60 * v_acceleration + 120 * d_acceleration;
+    if (over == Over::ticks)
+      start_over<MotionPoint::tick_bits>(from);
+    else
+      start_over<MotionPoint::position_bits>(from);
   }
 
   // A bridge of speed alone, over ticks: the way that it takes is what it makes it. Returns the deviation of the
@@ -130,16 +122,17 @@ class Bridge {
   // an acceleration.
   static constexpr bool fits(const MotionPoint& from, std::int64_t ticks, const MotionLimits& room) {
     const std::int64_t d = bounded(from.position), v = bounded(from.velocity), a = bounded(from.acceleration);
-    const auto times = [ticks](std::int64_t x, int down) { return product_shifted(x, ticks, down); };
-    const std::int64_t of_a = times(a, 12);  // as a speed
-    const std::int64_t speed_left = room.velocity - v - product_shifted(of_a, 1112, 14);
+    const auto times = [ticks](std::int64_t x) { return product_held(x, ticks); };
+    const auto a_tick = [ticks](std::int64_t x) { return product<MotionPoint::tick_bits>(x, ticks); };
+    const std::int64_t of_a = a_tick(a);  // as a speed
+    const std::int64_t speed_left = room.velocity - v - product<14>(of_a, 1112);
     const std::int64_t change_left = room.acceleration - a;
-    if (speed_left < 0 || change_left < 0) return false;
-    return no_more(product_shifted(d, 7680, 0), 0, 0, times(speed_left, 0)) &&
-           no_more(product_shifted(d, 23649, 0), product_shifted(times(v, 0), 4035, 10), 0,
-                   times(times(change_left, 12), 0)) &&
-           no_more(product_shifted(d, 60 << 12, 0), product_shifted(times(v, 0), 36, 0),
-                   product_shifted(times(of_a, 0), 9, 0), times(times(times(room.jerk, 12), 12), 0));
+    if (speed_left < 0 || change_left < 0 || room.jerk < 0) return false;
+    const std::int64_t of_v = times(v);
+    return no_more(product_held(d, 7680), 0, 0, times(speed_left)) &&
+           no_more(product_held(d, 23649), product<10>(of_v, 4035), 0, times(a_tick(change_left))) &&
+           no_more(product_held(d, 60 << 12), product_held(of_v, 36), product_held(times(of_a), 9),
+                   times(a_tick(a_tick(room.jerk))));
   }
 
   // The same of a bridge of speed of `ticks` within `room`, from the speed `v` and the acceleration `a`: the largest
@@ -170,6 +163,27 @@ class Bridge {
   }
 
  private:
+  // Of the position in the units of the span, `Up` bits from one derivative to the next.
+  template <int Up>
+  constexpr void start_over(const MotionPoint& from) {
+    const std::int64_t d = from.position, v = from.velocity, a = from.acceleration;
+    const std::int64_t length = span_.length;
+    const std::int64_t slope = product<Up>(a, length);                // A, as a speed
+    const std::int64_t of_speed = product<Up>(v, length);             // V, as a way
+    const std::int64_t of_acceleration = product<Up>(slope, length);  // A, as a way
+    const std::int64_t d_speed = span_.divide(d, Up), d_acceleration = span_.divide(d_speed, Up);
+    const std::int64_t v_acceleration = span_.divide(v, Up);
+    p_[0] = d;
+    p_[1] = of_speed + 3 * d;
+    p_[2] = of_acceleration / 2 + 3 * of_speed + 6 * d;
+    v_[0] = v;
+    v_[1] = slope + 2 * v;
+    v_[2] = -5 * (slope / 2 + 3 * v + 6 * d_speed);
+    a_[0] = a;
+    a_[1] = -(8 * a + 36 * v_acceleration + 60 * d_acceleration);
+    a_[2] = 10 * a + 60 * v_acceleration + 120 * d_acceleration;
+  }
+
   static constexpr std::int64_t sum(std::int64_t a, std::int64_t b, std::int64_t c) {
     constexpr std::int64_t most = std::int64_t{1} << 60;
     const auto held = [](std::int64_t x) { return x < most ? x : most; };
@@ -225,6 +239,12 @@ struct BridgeLengths {
   static constexpr int count = 76;
   // `k`: 0 to count - 1.
   static constexpr std::int64_t ticks(int k) { return std::int64_t{4 + k % 4} << (k / 4); }
+  // The same as a span, without a division.
+  static constexpr Span span(int k) {
+    constexpr std::int64_t reciprocals[4] = {Span::of(4).reciprocal, Span::of(5).reciprocal, Span::of(6).reciprocal,
+                                             Span::of(7).reciprocal};
+    return {ticks(k), reciprocals[k % 4], static_cast<std::int8_t>(k / 4 + 2)};
+  }
 };
 
 }  // namespace stiction

@@ -30,9 +30,10 @@ enum class CamRefusal : std::uint8_t {
   speed,            // a speed to leave with that is beyond the limit
   unknown_table,    // a number that no table has
   not_enabled,      // an axis that does not follow set-points in a mode of cam or gear
-  beyond_travel     // a curve whose positions leave the travel
+  beyond_travel,    // a curve whose positions leave the travel, or a position beyond it
+  superposes        // a move or a second cam on top, where the other one is under way
 };
-inline constexpr std::size_t cam_refusals = 11;
+inline constexpr std::size_t cam_refusals = 12;
 
 // How a slave's position changes over the master's: 2^-40 of its unit, for each cycle of the master, and for its
 // square.
@@ -121,8 +122,8 @@ class CamCurve {
   // Those of the master behind the ratio.
   constexpr MotionLimits behind_ratio(const MotionLimits& master) const {
     const auto factor = static_cast<std::int64_t>(magnitude(config_.ratio.factor())) + 1;
-    return {product_shifted(master.velocity, factor, 32) + 1, product_shifted(master.acceleration, factor, 32) + 1,
-            product_shifted(master.jerk, factor, 32) + 1};
+    return {product<32>(master.velocity, factor) + 1, product<32>(master.acceleration, factor) + 1,
+            product<32>(master.jerk, factor) + 1};
   }
 
   // The master as the table sees it.
@@ -147,14 +148,10 @@ class CamCurve {
       out.position = product_shifted(config_.rise, static_cast<std::int64_t>(at.phase >> 1), 63);
     } else {
       const auto& h = config_.table->header();
-      const CamTable::Output y = config_.table->evaluate(at.coarse());
+      const CamTable::Output y = config_.table->evaluate_fine(at.phase);
       out.slope = product_shifted(y.speed, config_.slave_scale, h.speed_bits - least_bits);
       out.bend = product_shifted(y.acceleration, config_.slave_scale, h.acceleration_bits - least_bits);
-      // What the table's 32 bits of the phase leave.
-      const auto rest = static_cast<std::int32_t>(static_cast<std::uint32_t>(at.phase) >> 1);
-      out.position = product_shifted(y.position, config_.slave_scale, h.position_bits - least_bits) +
-                     product_by_word<63>(out.slope, rest);
-      out.slope += product_by_word<63>(out.bend, rest);
+      out.position = product_shifted(y.position, config_.slave_scale, h.position_bits - least_bits);
     }
     const auto turns = static_cast<std::uint64_t>(at.cycles) * static_cast<std::uint64_t>(config_.rise);
     out.position = static_cast<std::int64_t>(static_cast<std::uint64_t>(out.position + config_.slave_offset) + turns);
@@ -194,7 +191,10 @@ class CamCurve {
     CamPeaks peaks;
     for (std::uint32_t k = 0; k < table.header().count; ++k) {
       const CamTable::Segment s = table.segment(k);
-      const std::int64_t c[5] = {s.c[0], s.c[1], s.c[2], s.c[3], s.c[4]};
+      // In the unit of the finest that there can be.
+      constexpr int finest = 15;
+      std::int64_t c[5] = {};
+      for (int n = 1; n <= 5; ++n) c[n - 1] = std::int64_t{s.c[n - 1]} * (1 << (finest - s.finer_bits(n)));
       const std::int64_t first[5] = {c[0], 2 * c[1], 3 * c[2], 4 * c[3], 5 * c[4]};
       const std::int64_t second[4] = {2 * c[1], 6 * c[2], 12 * c[3], 20 * c[4]};
       const std::int64_t third[3] = {6 * c[2], 24 * c[3], 60 * c[4]};
@@ -206,7 +206,8 @@ class CamCurve {
       for (int j = 0; j <= 3; ++j)
         widen(b2, 3 * second[0] + j * second[1] + j * (j - 1) / 2 * second[2] + (j == 3 ? 3 : 0) * second[3]);
       for (int j = 0; j <= 2; ++j) widen(b3, 2 * third[0] + j * third[1] + (j == 2 ? 2 : 0) * third[2]);
-      const int shift = s.shift - CamTable::extra_bits + table.header().position_bits - MotionPoint::position_bits;
+      const int shift =
+          s.shift + finest - CamTable::extra_bits + table.header().position_bits - MotionPoint::position_bits;
       const auto over = [&s](std::int64_t x) {
         const std::int64_t rounded = product_shifted(x, s.reciprocal, s.down);
         return rounded < INT64_MAX ? rounded + 1 : rounded;
@@ -219,14 +220,15 @@ class CamCurve {
   }
   static constexpr void larger(std::int64_t& largest, std::int64_t x) { largest = x > largest ? x : largest; }
   static constexpr void widen(std::int64_t& largest, std::int64_t x) { larger(largest, x < 0 ? -x : x); }
-  // x * 2^-shift, rounded up; `x` below 2^43; the shift of a table that was read is -56 to 125.
+  // x * 2^-shift, rounded up; `x` below 2^58; the shift of a table that was read is -41 to 140.
   static constexpr std::int64_t in_units(std::int64_t x, int shift) {
+    if (shift > 127) return 1;
     return shift < 0 ? product_shifted(x, std::int64_t{1} << -shift, 0) : product_shifted(x, 1, shift) + 1;
   }
 
   // Whether position, slope and bend are the same on both sides of each joint and of the seam, as far as what their
   // largest slopes make of the last phase, and rounding: 2^-32 units of the position, 2^-20 of the largest slope,
-  // 2^-14 of the largest bend (of a table within 1e-10 coefficients of 32 bits leave up to 2^-16).
+  // 2^-14 of the largest bend (of a table of version 2 within 1e-10, coefficients of one exponent leave up to 2^-16).
   constexpr bool continuous() const {
     const CamTable& table = *config_.table;
     constexpr std::int64_t near = std::int64_t{1} << (MotionPoint::position_bits - 32);

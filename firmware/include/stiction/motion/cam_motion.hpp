@@ -318,7 +318,7 @@ class CamMotion {
   constexpr bool bridge_to(const MotionPoint& off, const MotionLimits& room) {
     const bool given = request_.approach == CamApproach::ticks;
     const std::int64_t ticks = given ? request_.span.length : BridgeLengths::ticks(tried_);
-    const Span span = given ? request_.span : Span::of(ticks);
+    const Span span = given ? request_.span : BridgeLengths::span(tried_);
     const bool free_way = request_.free_way && request_.goal == CamGoal::curve;
     if (free_way ? Bridge::fits_speed(off.velocity, off.acceleration, ticks, room) : Bridge::fits(off, ticks, room)) {
       if (free_way)

@@ -5,12 +5,13 @@
 //   header, 64 bytes: "SCAM", version, kinds of master and slave, flags, scales, count of segments, cycle, rise of a
 //   cycle, and the largest errors of position, speed and acceleration that whoever made it has proven;
 //   segments, 40 bytes each: start in 2^-32 cycles, reciprocal of the length, position at the start, five coefficients
-//   of one exponent;
+//   of one exponent, and by how many bits the last four are finer than that, 0 to 15 in four bits each;
 //   switch tracks, 16 bytes each, and their windows, 8 bytes each;
 //   the CRC-32 of everything before it, 4 bytes.
 //
 // Reading checks everything that evaluation relies on, so that no bytes make a shift or a sum that is not defined.
-// Evaluation has fixed work: a search of as many steps as the count has bits, and Horner's scheme three times.
+// Evaluation has fixed work: a search of as many steps as the count has bits, and the complete scheme of Horner, which
+// makes a value and its derivatives from the same sums. Version 2 had no finer coefficients, and is read as well.
 #pragma once
 
 #include <bit>
@@ -41,7 +42,7 @@ enum class CamTableProblem : std::uint8_t {
 
 class CamTable {
  public:
-  static constexpr std::uint16_t version = 2;
+  static constexpr std::uint16_t version = 3, oldest_version = 2;
   static constexpr std::size_t header_size = 64, segment_size = 40, track_size = 16, window_size = 8, checksum_size = 4;
   // 2^-40 rad or m, of the cycle in the header.
   static constexpr int cycle_bits = 40;
@@ -64,15 +65,19 @@ class CamTable {
     std::int64_t position_bound = 0, speed_bound = 0, acceleration_bound = 0;
   };
 
-  // t = (phase - start) * reciprocal / 2^down, in 2^-32 of the segment; position = c0 + (c1 t + ... + c5 t^5) /
-  // 2^shift, with the coefficients in 2^-24 of themselves.
+  // t = (phase - start) * reciprocal / 2^down, in 2^-32; position = c0 + (c1 t + ... + c5 t^5) / 2^shift, with the
+  // coefficients in 2^-24 of themselves, of which c2 to c5 are divided by powers of two of their own.
   struct Segment {
     std::uint32_t start = 0;       // 2^-32 cycles
     std::uint32_t reciprocal = 0;  // 2^(32 + down) / length, from 2^31
     std::uint8_t down = 0;         // 0 to 31
     std::uint8_t shift = 0;        // 0 to 62
+    std::uint16_t finer = 0;       // bits by which c2, c3, c4, c5 are finer than c1, the first in the lowest four
     std::int64_t c0 = 0;
     std::int32_t c[5] = {};
+
+    // The bits by which the coefficient of t^`n` is finer, 0 to 15; `n`: 1 to 5.
+    constexpr int finer_bits(int n) const { return n == 1 ? 0 : finer >> (4 * (n - 2)) & 15; }
   };
 
   // A cam switch (PLCopen: MC_DigitalCamSwitch): on in each of its windows.
@@ -96,7 +101,8 @@ class CamTable {
   static constexpr CamTableProblem read(std::span<const std::uint8_t> bytes, CamTable& table) {
     if (bytes.size() < header_size + checksum_size) return CamTableProblem::too_short;
     if (bytes[0] != 'S' || bytes[1] != 'C' || bytes[2] != 'A' || bytes[3] != 'M') return CamTableProblem::no_table;
-    if (number(bytes, 4, 2) != version) return CamTableProblem::version;
+    const std::uint64_t written = number(bytes, 4, 2);
+    if (written < oldest_version || written > version) return CamTableProblem::version;
     CamTable read;
     read.bytes_ = bytes;
     Header& h = read.header_;
@@ -110,7 +116,12 @@ class CamTable {
     if (Crc32{}.add(bytes, end).value() != number(bytes, end, 4)) return CamTableProblem::checksum;
     if (bytes[6] > 1 || bytes[7] > 1 || bytes[8] > 1) return CamTableProblem::kind;
     read.fill_header();
-    auto problem = read.check_segments();
+    const std::uint32_t power = std::bit_floor(h.count);
+    read.speed_shift_ = h.position_bits - 32 - h.speed_bits;
+    read.acceleration_shift_ = h.position_bits - 64 - h.acceleration_bits;
+    read.halvings_ = std::countr_zero(power);
+    read.last_ = header_size + segment_size * (h.count - power);
+    auto problem = read.check_segments(written);
     if (problem == CamTableProblem::none) problem = read.check_tracks();
     if (problem == CamTableProblem::none) table = read;
     return problem;
@@ -160,46 +171,117 @@ class CamTable {
   }
 
   // Position, speed and acceleration at `phase`, in 2^-32 cycles.
-  constexpr Output evaluate(std::uint32_t phase) const { return evaluate(header_, segment_at(place_of(phase)), phase); }
-
-  // The same within a `segment` of a table with that `header`; `phase` lies in it.
-  static constexpr Output evaluate(const Header& header, const Segment& segment, std::uint32_t phase) {
-    const std::uint64_t product = std::uint64_t{phase - segment.start} * segment.reciprocal;
-    const auto t = static_cast<std::uint32_t>(product >> segment.down);
-    // Horner's scheme, written out: as a loop it takes a third more instructions on Cortex-M4.
-    const auto c = [&segment](int n, int times) {
-      return std::int64_t{segment.c[n - 1]} * (times * (1 << extra_bits));  // one product of words
-    };
-    const std::int64_t y = high(high(high(high(high(c(5, 1), t) + c(4, 1), t) + c(3, 1), t) + c(2, 1), t) + c(1, 1), t);
-    const std::int64_t v = high(high(high(high(c(5, 5), t) + c(4, 4), t) + c(3, 3), t) + c(2, 2), t) + c(1, 1);
-    const std::int64_t a = high(high(high(c(5, 20), t) + c(4, 12), t) + c(3, 6), t) + c(2, 2);
-    const std::int64_t speed = high(v, segment.reciprocal);
-    const std::int64_t acceleration = high(high(a, segment.reciprocal), segment.reciprocal);
-    return {segment.c0 + rounded(y, segment.shift), rounded(speed, speed_shift(header, segment)),
-            rounded(acceleration, acceleration_shift(header, segment))};
+  constexpr Output evaluate(std::uint32_t phase) const {
+    const auto segment = segment_at(place_of(phase));
+    const std::uint64_t t = std::uint64_t{phase - segment.start} * segment.reciprocal;
+    return at(segment, static_cast<std::uint32_t>(t >> segment.down), 0);
   }
 
-  // By how much the products of a `segment` are shifted to the outputs of a table with that `header`.
-  static constexpr int speed_shift(const Header& header, const Segment& segment) {
-    return header.position_bits + segment.shift + segment.down - 32 - header.speed_bits;
-  }
-  static constexpr int acceleration_shift(const Header& header, const Segment& segment) {
-    return header.position_bits + segment.shift + 2 * segment.down - 64 - header.acceleration_bits;
+  // The same at `phase` in 2^-64 cycles: what is below 2^-32 cycles counts as well.
+  constexpr Output evaluate_fine(std::uint64_t phase) const {
+    const auto segment = segment_at(place_of(static_cast<std::uint32_t>(phase >> 32)));
+    // t with 32 bits more.
+    const std::uint64_t upper =
+        std::uint64_t{static_cast<std::uint32_t>(phase >> 32) - segment.start} * segment.reciprocal;
+    const std::uint64_t t = upper + (std::uint64_t{static_cast<std::uint32_t>(phase)} * segment.reciprocal >> 32);
+    return at(segment, static_cast<std::uint32_t>(t >> segment.down),
+              static_cast<std::uint32_t>(t) << 1 << (31 - segment.down));
   }
 
   // Of the coefficients while they are multiplied.
   static constexpr int extra_bits = 24;
 
  private:
+  // The outputs of a `segment` at `t` and a `rest`, in 2^-32 and 2^-64 of what t goes through.
+  [[gnu::always_inline]] constexpr Output at(const Segment& segment, std::uint32_t t, std::uint32_t rest) const {
+    const auto c = [&segment](int n) {
+#ifdef __SIZEOF_INT128__
+      return std::int64_t{segment.c[n - 1]} * (1 << extra_bits) >> segment.finer_bits(n);
+#else
+      return std::int64_t{segment.c[n - 1]} * ((1 << extra_bits) >> segment.finer_bits(n));  // one product of words
+#endif
+    };
+    // Written out: as a loop it takes a third more instructions on Cortex-M4.
+    const std::int64_t c5 = c(5), first = high(c5, t);
+    const std::int64_t b4 = first + c(4), b3 = high(b4, t) + c(3), b2 = high(b3, t) + c(2), b1 = high(b2, t) + c(1);
+    const std::int64_t d4 = first + b4, d3 = high(d4, t) + b3, d2 = high(d3, t) + b2, d1 = high(d2, t) + b1;
+    const std::int64_t e4 = first + d4, e3 = high(e4, t) + d3, a = 2 * (high(e3, t) + d2);
+    // By the slope at t; of a bend so small a way makes nothing.
+    const auto on = [rest](std::int64_t slope) {
+      return std::int64_t{static_cast<std::int32_t>(slope >> 32)} * static_cast<std::int32_t>(rest >> 1) >> 31;
+    };
+    const std::int64_t y = high(b1, t) + on(d1), v = d1 + on(a);
+    const std::int64_t speed = high(v, segment.reciprocal);
+    const std::int64_t acceleration = high(high(a, segment.reciprocal), segment.reciprocal);
+    const int shift = segment.shift + segment.down;
+    return {segment.c0 + rounded(y, segment.shift), rounded(speed, shift + speed_shift_),
+            rounded(acceleration, shift + segment.down + acceleration_shift_)};
+  }
+
+  constexpr void half(std::size_t& at, std::uint32_t phase, int power) const {
+    const std::size_t next = at + (segment_size << power);
+    if (start_of(next) <= phase) at = next;
+  }
+  constexpr std::uint32_t start_of(std::size_t at) const { return word<std::uint32_t>(bytes_, at); }
+
   // The place of the segment that holds `phase`: in bytes, so that no step takes a product.
-  constexpr std::size_t place_of(std::uint32_t phase) const {
-    const std::size_t end = tracks_at();
-    std::size_t at = header_size;
-    for (std::size_t step = segment_size * std::bit_floor(header_.count); step >= segment_size; step >>= 1) {
-      const std::size_t next = at + step;
-      if (next < end && word<std::uint32_t>(bytes_, next) <= phase) at = next;
+  [[gnu::always_inline]] constexpr std::size_t place_of(std::uint32_t phase) const {
+    // Among the last ones, as many as the largest power of two within the count, or among as many from the first one:
+    // in both no step leads beyond the end.
+    std::size_t at = start_of(last_) <= phase ? last_ : header_size;
+    // Without a loop, whose steps would take twice the instructions.
+    switch (halvings_) {
+      case 16:
+        half(at, phase, 15);
+        [[fallthrough]];
+      case 15:
+        half(at, phase, 14);
+        [[fallthrough]];
+      case 14:
+        half(at, phase, 13);
+        [[fallthrough]];
+      case 13:
+        half(at, phase, 12);
+        [[fallthrough]];
+      case 12:
+        half(at, phase, 11);
+        [[fallthrough]];
+      case 11:
+        half(at, phase, 10);
+        [[fallthrough]];
+      case 10:
+        half(at, phase, 9);
+        [[fallthrough]];
+      case 9:
+        half(at, phase, 8);
+        [[fallthrough]];
+      case 8:
+        half(at, phase, 7);
+        [[fallthrough]];
+      case 7:
+        half(at, phase, 6);
+        [[fallthrough]];
+      case 6:
+        half(at, phase, 5);
+        [[fallthrough]];
+      case 5:
+        half(at, phase, 4);
+        [[fallthrough]];
+      case 4:
+        half(at, phase, 3);
+        [[fallthrough]];
+      case 3:
+        half(at, phase, 2);
+        [[fallthrough]];
+      case 2:
+        half(at, phase, 1);
+        [[fallthrough]];
+      case 1:
+        half(at, phase, 0);
+        [[fallthrough]];
+      default:
+        return at;
     }
-    return at;
   }
 
   constexpr Segment segment_at(std::size_t at) const {
@@ -209,6 +291,7 @@ class CamTable {
             .reciprocal = word<std::uint32_t>(part, 4),
             .down = part[36],
             .shift = part[37],
+            .finer = word<std::uint16_t>(part, 38),
             .c0 = word<std::int64_t>(part, 8),
             .c = {c(0), c(1), c(2), c(3), c(4)}};
   }
@@ -260,8 +343,7 @@ class CamTable {
 
   // To nearest; what is shifted out of a word is nothing.
   static constexpr std::int64_t rounded(std::int64_t value, int shift) {
-    if (shift > 62) return 0;
-    return shift == 0 ? value : ((value >> (shift - 1)) + 1) >> 1;
+    return ((2 * value >> (shift < 63 ? shift : 63)) + 1) >> 1;
   }
 
   constexpr void fill_header() {
@@ -279,7 +361,7 @@ class CamTable {
     h.acceleration_bound = static_cast<std::int64_t>(number(bytes_, 48, 8));
   }
 
-  constexpr CamTableProblem check_segments() const {
+  constexpr CamTableProblem check_segments(std::uint64_t written) const {
     constexpr std::int64_t most = std::int64_t{1} << 61;
     const auto within = [](std::int64_t value) { return value >= -most && value <= most; };
     if (header_.cycle <= 0 || !within(header_.rise)) return CamTableProblem::scale;
@@ -291,10 +373,10 @@ class CamTable {
       const auto shifts = [](int shift) { return shift >= 0 && shift <= 127; };
       const std::uint64_t length =
           (k + 1 < header_.count ? std::uint64_t{segment(k + 1).start} : std::uint64_t{1} << 32) - s.start;
-      // Up to the segment's end t stays within a word.
-      const bool in_word = s.down <= 31 && ((length - 1) * s.reciprocal >> s.down) >> 32 == 0;
-      if (!in_word || !within(s.c0) || s.shift > 62 || !shifts(speed_shift(header_, s)) ||
-          !shifts(acceleration_shift(header_, s)))
+      // Up to the segment's end t stays within a word. The product is below 2^64.
+      const bool in_word = s.down <= 31 && ((length * s.reciprocal - 1) >> s.down) >> 32 == 0;
+      if (!in_word || !within(s.c0) || s.shift > 62 || (written == oldest_version && s.finer != 0) ||
+          !shifts(s.shift + s.down + speed_shift_) || !shifts(s.shift + 2 * s.down + acceleration_shift_))
         return CamTableProblem::scale;
     }
     return CamTableProblem::none;
@@ -312,6 +394,10 @@ class CamTable {
 
   std::span<const std::uint8_t> bytes_{};
   Header header_{};
+  std::size_t last_ = header_size;  // where the search looks first
+  int halvings_ = 0;                // and how often it halves then
+  // By how much the products of a segment are shifted to the outputs, its own shifts aside.
+  int speed_shift_ = 0, acceleration_shift_ = 0;
 };
 
 }  // namespace stiction

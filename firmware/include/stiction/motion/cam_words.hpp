@@ -39,6 +39,7 @@ inline constexpr std::array<const char*, cam_refusals> words_of_refusals{
     "a table that was not given",
     "an axis that is not enabled in a mode of cam or gear",
     "a track of positions that leaves the travel",
+    "a move on top of a second cam, or a second cam on top of a move",
 };
 
 // Why a request with that `refusal` is not taken, as a sentence part: what was found.

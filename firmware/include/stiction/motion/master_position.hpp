@@ -54,6 +54,8 @@ struct MasterPoint {
   MasterPosition position{};
   std::int64_t velocity = 0;
   std::int64_t acceleration = 0;
+
+  friend constexpr bool operator==(const MasterPoint&, const MasterPoint&) = default;
 };
 
 }  // namespace stiction

@@ -50,7 +50,7 @@ class SmoothOffset {
     const std::int64_t ticks = BridgeLengths::ticks(tried_);
     const MotionPoint from{now.position - target_, now.velocity, now.acceleration};
     if (Bridge::fits(from, ticks, *limits_)) {
-      bridge_.start(Span::of(ticks), from, Bridge::Over::ticks);
+      bridge_.start(BridgeLengths::span(tried_), from, Bridge::Over::ticks);
       value_ = target_;
       tried_ = none;
     } else if (++tried_ == BridgeLengths::count) {

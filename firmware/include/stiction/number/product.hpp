@@ -48,6 +48,16 @@ template <int Shift>
   return product_inlined(a, b, Shift);
 }
 
+// a * b of two numbers that are not negative; what exceeds a word is its end. Four products of 32 bits at most, and a
+// third of the instructions of product_shifted() with a shift of 0.
+[[gnu::always_inline]] constexpr std::int64_t product_held(std::int64_t a, std::int64_t b) {
+  const auto x = static_cast<std::uint64_t>(a), y = static_cast<std::uint64_t>(b);
+  const std::uint64_t x0 = x & 0xffffffffu, x1 = x >> 32, y0 = y & 0xffffffffu, y1 = y >> 32;
+  const std::uint64_t middle = x1 * y0 + x0 * y1, low = x0 * y0, sum = (middle << 32) + low;
+  const bool beyond = (x1 != 0 && y1 != 0) || middle >> 31 != 0 || sum < low || sum >> 63 != 0;
+  return beyond ? INT64_MAX : static_cast<std::int64_t>(sum);
+}
+
 // a * b * 2^-Shift of a word `b`, rounded down; Shift 33 to 63, `a` below 2^62. Two products of 32 bits.
 template <int Shift>
 constexpr std::int64_t product_by_word(std::int64_t a, std::int32_t b) {
