@@ -78,4 +78,11 @@ concept ProtectionBackend = Backend<B> && requires(B backend, std::span<Protecti
   { backend.read_protection(inputs) } -> std::same_as<void>;
 };
 
+// A backend with encoders at loads, which are measured and close no loop.
+template <class B>
+concept LoadEncoderBackend = Backend<B> && requires(B backend, std::size_t axis) {
+  // Of this tick; at most once a tick.
+  { backend.read_load(axis) } -> std::same_as<LoadReading<typename B::Signals>>;
+};
+
 }  // namespace stiction::hal

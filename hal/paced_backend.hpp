@@ -40,6 +40,8 @@ class PacedBackend {
       for (auto& input : inputs) input = {};
   }
 
+  LoadReading<Signals> read_load(std::size_t axis) requires LoadEncoderBackend<B> { return backend_.read_load(axis); }
+
   // The backend's, else the clock's.
   Fault fault(std::size_t axis) {
     if constexpr (WiredBackend<B>)

@@ -126,6 +126,47 @@ class CamMode {
     }
     return refusal_;
   }
+  // From the next begin of a cycle on `table` takes the place of the table with that `number`, which is followed: the
+  // same curve but for pulses within its rise. Whoever engages that number later gets it too. `table`: must outlive
+  // this or the next exchange; null: the table of the number itself.
+  constexpr CamRefusal exchange(std::uint16_t number, const Table* table) {
+    if (number == 0 || number > tables_.size()) return CamRefusal::unknown_table;
+    if (braking_ || table_ != number || waiting_ != nullptr) return CamRefusal::not_enabled;
+    const Table& next = table != nullptr ? *table : tables_[number - 1u];
+    CamCurve::Config config = motion_.curve()->config();
+    config.table = next.curve.config().table;
+    config.rise = next.curve.config().rise;
+    CamCurve& curve = free_place();
+    const CamRefusal refusal = CamCurve::rescale(next.curve, config, curve);
+    if (refusal != CamRefusal::none) return refusal;
+    if (leaves_travel(next, curve)) return CamRefusal::beyond_travel;
+    CamRequest request;
+    request.curve = &curve;
+    request.trigger = CamTrigger::next_cycle;
+    const CamRefusal found = motion_.engage(request);
+    if (found != CamRefusal::none) return found;
+    waiting_ = &curve;
+    waiting_table_ = number;
+    exchanging_ = true;
+    exchange_ = {number, table};
+    return CamRefusal::none;
+  }
+  // From an exchange() on, until the curve is followed without a bridge, or the exchange was refused or replaced.
+  constexpr bool exchanging() const { return exchanging_; }
+  // What is followed in the place of the table `number`; null: that table.
+  constexpr const Table* exchanged(std::uint16_t number) const {
+    return number == exchanged_.number ? exchanged_.table : nullptr;
+  }
+  // Whether the curve that is followed is its table as it is: not scaled, and begun neither where the axis nor where
+  // the master was.
+  constexpr bool as_its_table() const {
+    return table_ != 0 && !shifted_ && motion_.curve()->config().slave_scale == std::int64_t{1} << 32 &&
+           motion_.curve()->config().ratio.numerator() == motion_.curve()->config().ratio.denominator();
+  }
+  // The master as the curve that is followed sees it, in the last tick.
+  constexpr MasterPoint seen() const {
+    return motion_.curve() != nullptr ? motion_.curve()->seen(seen_.point) : seen_.point;
+  }
   // Of a command that was not given to it.
   constexpr void refuse(CamRefusal reason) { refusal_ = reason; }
 
@@ -181,8 +222,13 @@ class CamMode {
     // Refused behind its trigger.
     const bool decided = waiting_ != nullptr && !status.waiting;
     if (decided && status.refusal != CamRefusal::none) refusal_ = status.refusal;
-    if (decided && status.refusal == CamRefusal::none && status.active) table_ = waiting_table_;
+    if (decided && status.refusal == CamRefusal::none && status.active) {
+      table_ = waiting_table_;
+      shifted_ = exchanging_ ? shifted_ : waiting_shifted_;
+      if (exchanging_) exchanged_ = exchange_;
+    }
     if (decided) waiting_ = nullptr;
+    if (waiting_ == nullptr && (status.in_sync || !status.active)) exchanging_ = false;
     if (!status.active) table_ = 0;
     return cam_set_point(point_, config_->rate);
   }
@@ -222,7 +268,9 @@ class CamMode {
   constexpr CamRefusal engage(bool gear, bool referenced) {
     if (!gear && (asked_.table == 0 || asked_.table > tables_.size())) return CamRefusal::unknown_table;
     const Table none{};
-    const Table& table = gear ? none : tables_[asked_.table - 1u];
+    const Table* exchanged = gear ? nullptr : this->exchanged(asked_.table);
+    const Table& table = gear ? none : exchanged != nullptr ? *exchanged : tables_[asked_.table - 1u];
+    exchanging_ = false;
     CamCurve::Config config = table.curve.config();
     config.ratio = GearRatio(asked_.numerator, asked_.denominator);
     config.master_offset = asked_.master_offset;
@@ -248,6 +296,7 @@ class CamMode {
     if (found != CamRefusal::none) return found;
     waiting_ = &curve;
     waiting_table_ = gear ? std::uint16_t{0} : asked_.table;
+    waiting_shifted_ = asked_.master_relative || asked_.slave_relative;
     return CamRefusal::none;
   }
 
@@ -278,6 +327,13 @@ class CamMode {
   std::array<CamCurve, 3> places_{};
   const CamCurve* waiting_ = nullptr;  // of a request that was not decided yet
   std::uint16_t table_ = 0, waiting_table_ = 0;
+  struct Exchange {
+    std::uint16_t number = 0;
+    const Table* table = nullptr;
+  };
+  Exchange exchange_{}, exchanged_{};  // that waits, and in force
+  bool exchanging_ = false;
+  bool shifted_ = false, waiting_shifted_ = false;  // relative in master or slave
   CamRefusal refusal_ = CamRefusal::none;
   Fault fault_ = Fault::none;
 };

@@ -34,10 +34,10 @@ enum class CamTuningRefusal : std::uint8_t {
   encoder_lost,  // no position of the load
   amplitude,     // a pulse larger than the configuration allows
   axis_limits,   // a table that takes more than the limits or the travel of the axis
-  relative,      // a curve that was begun where the axis or the master was: none that a table can take the place of
-  worse,         // of what was tried none was better: the last better one is kept
-  no_table,      // the axis does not follow the table that is tuned
-  off            // tuning is not configured
+  relative,  // a curve that was scaled, or begun where the axis or the master was: the pulses are made for none such
+  worse,     // of what was tried none was better: the last better one is kept
+  no_table,  // the axis does not follow the table that is tuned
+  off        // tuning is not configured
 };
 inline constexpr int cam_tuning_refusals = 13;
 
@@ -161,9 +161,15 @@ class CamTuning {
     fit.im = in_units(-b);
     fit.offset = in_units(offset);
     areas(config, state, offset, fit);
+    change(config, fit);
+    return fit;
+  }
+
+  // By how much the pulses of `fit` change for its vibration, 2^-40 units: the map of `config`. Of a cycle behind which
+  // the vibration of the cycle before still rings, the fit's own part is to be given.
+  static constexpr void change(const Config& config, Fit& fit) {
     fit.first = product<pulse_bits>(config.pulses[0], fit.re) + product<pulse_bits>(config.pulses[1], fit.im);
     fit.second = product<pulse_bits>(config.pulses[2], fit.re) + product<pulse_bits>(config.pulses[3], fit.im);
-    return fit;
   }
 
  private:
