@@ -95,7 +95,7 @@ class DriveLoop {
     if constexpr (LoadEncoderBackend<B>)
       if (!own) reading = backend_.read_load(axis);
     SaturationCounter beyond;
-    reading.position = saturated_sum(reading.position, opposite(drives_[axis].origin()), beyond);
+    reading.position = narrow<typename S::Position>(reading.position - drives_[axis].origin(), beyond);
     return reading;
   }
 

@@ -127,6 +127,11 @@ void CamTuner::learn(const Record& record) {
   }
   if (state_ == CamTuningState::tuning) refusal_ = CamTuningRefusal::none;
   quality_ = value(fit.quality);
+  // Made for the frequency before this one.
+  if (record.config->turn_im != config().turn_im) {
+    last_.reset();
+    return;
+  }
   const Complex vibration{value(fit.re), value(fit.im)};
   const auto own = own_part(record, vibration);
   last_ = Seen{record.cycle, record.time, vibration};
@@ -136,9 +141,9 @@ void CamTuner::learn(const Record& record) {
       if (first_) before_ = quality_;
       first_ = false;
       if (!as_wanted || identify(record) || !own) return;
-      return tune(record, *own);
+      return tune(*own);
     case CamTuningState::settling:
-      if (as_wanted) compare(record);
+      if (as_wanted && own) compare(*own);
       return;
     case CamTuningState::watching:
       return watch();
@@ -164,7 +169,7 @@ void CamTuner::learn_drive(const Tried& before, const Tried& now) {
   if (std::abs(ratio) > 0.4 && std::abs(ratio) < 2.5) factor_ = ratio;
 }
 
-void CamTuner::tune(const Record&, Complex own) {
+void CamTuner::tune(Complex own) {
   const Tried now{wanted_, own};
   if (!best_) {
     scale_by_model(own);
@@ -192,16 +197,29 @@ void CamTuner::try_from(const Tried& tried) {
   wanted_ = next;
 }
 
-void CamTuner::compare(const Record&) {
+void CamTuner::compare(Complex own) {
   if (--settle_ > 0) return;
-  state_ = after_;
-  if (quality_ <= before_) return;
-  refusal_ = CamTuningRefusal::worse;
-  wanted_ = at_start_;
+  if (wanted_ != at_start_ && quality_ > before_) {
+    state_ = after_;
+    refusal_ = CamTuningRefusal::worse;
+    wanted_ = at_start_;
+    return;
+  }
+  // Cycle upon cycle adds up: what is left is larger than one of them alone, and better known.
+  const bool within = 2.0 * std::abs(last_->vibration) < config_.given.increment;
+  if (within || outcome_ != CamTuningRefusal::none || steps_ == config_.steps) {
+    state_ = after_;
+    return;
+  }
+  state_ = CamTuningState::tuning;
+  best_ = Tried{wanted_, own};
+  worse_ = 0;
+  try_from(*best_);
 }
 
 void CamTuner::watch() {
   over_ = config_.quality_limit > 0.0 && quality_ > config_.quality_limit ? over_ + 1 : 0;
+  if (over_ == most_over) ++grown_;
   if (over_ < most_over || !config_.by_itself || cycles_ < next_start_) return;
   next_start_ = cycles_ + config_.pause;
   begin(CamTuningState::watching);

@@ -78,9 +78,9 @@ class CamTuner {
   double quality() const { return quality_; }            // of the last record, in the unit of the table times cycles
   double quality_before() const { return before_; }      // when the last start began
   double frequency() const { return config_.given.mode.frequency; }
-  int steps() const { return steps_; }               // of the last start
-  bool grown() const { return over_ >= most_over; }  // above the limit
-  static constexpr int most_over = 3;                // cycles in a row
+  int steps() const { return steps_; }  // of the last start
+  int grown() const { return grown_; }  // how often the quality number came above the limit
+  static constexpr int most_over = 3;   // cycles in a row
 
  private:
   struct Seen {
@@ -97,11 +97,11 @@ class CamTuner {
   void end(CamTuningRefusal reason);
   std::optional<std::complex<double>> own_part(const Record& record, std::complex<double> vibration) const;
   bool identify(const Record& record);
-  void tune(const Record& record, std::complex<double> own);
+  void tune(std::complex<double> own);
   void scale_by_model(std::complex<double> own);
   void learn_drive(const Tried& before, const Tried& now);
   void try_from(const Tried& tried);
-  void compare(const Record& record);
+  void compare(std::complex<double> own);
   void watch();
 
   Config config_;
@@ -113,7 +113,7 @@ class CamTuner {
   std::optional<Tried> best_;
   std::optional<Seen> last_;
   double quality_ = 0.0, before_ = 0.0;
-  int steps_ = 0, worse_ = 0, identified_ = 0, over_ = 0, refused_ = 0, settle_ = 0;
+  int steps_ = 0, worse_ = 0, identified_ = 0, over_ = 0, grown_ = 0, refused_ = 0, settle_ = 0;
   std::int64_t cycles_ = 0, next_start_ = 0;  // records, and from which on it may start by itself
   bool first_ = false;
 };

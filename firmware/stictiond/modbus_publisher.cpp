@@ -40,6 +40,7 @@ constexpr std::array<const char*, MotionWrite::kinds> motion_names{"controlword"
                                                                    "cam leave speed",
                                                                    "cam superposed",
                                                                    "master speed",
+                                                                   "cam tuning",
                                                                    "cam command"};
 
 std::vector<std::string> names_of(const machine::Machine& machine) {

@@ -182,7 +182,7 @@ CamTuning::Config CamTuningDesign::config(Complex factor) const {
   config.rise_length = rise_.length;
   const double a_tick = speed_ * tick_;
   config.settling = phases((mode_.delay + settling * lag_) * speed_);
-  config.window_end = rise_.rest - phases(2.0 * a_tick);
+  config.window_end = rise_.rest - phases(4.0 * a_tick);
   config.ticks_a_phase = static_cast<std::uint32_t>(std::min(std::ldexp(1.0 / a_tick, 16), 0x1p32 - 1.0));
   const Complex z = std::exp(mode_.pole() * tick_);
   config.turn_re = static_cast<std::int32_t>(std::llround(std::ldexp(z.real(), CamTuning::phasor_bits)));

@@ -37,11 +37,11 @@ struct TunedRise {
 // None where `table` never rests, or where it moves over its seam.
 std::optional<TunedRise> tuned_rise(const CamTable& table);
 
-// The position of `table` and its first two derivatives over cycles, at `phase` in 2^-32 cycles; of the segment that
-// holds it, or with `before` of the one that ends there.
+// A position of a table and its first two derivatives over cycles.
 struct TablePoint {
   double position = 0.0, slope = 0.0, bend = 0.0;
 };
+// Of `table` at `phase`, in 2^-32 cycles: of the segment that holds it, or with `before` of the one that ends there.
 TablePoint table_point(const CamTable& table, std::uint64_t phase, bool before = false);
 
 // The load's mode as the desk has identified it.

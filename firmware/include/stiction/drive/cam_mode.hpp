@@ -86,6 +86,7 @@ class CamMode {
     fault_ = Fault::none;
     table_ = 0;
     waiting_ = nullptr;
+    exchanging_ = shifted_ = false;
   }
 
   // Stands where `curve` is at a `master` that stands, and follows it from the first tick on. `curve`: must outlive
