@@ -75,7 +75,7 @@ TEST_F(Objects, AreThoseOfTheDataSheet) {
       ++compared;
     }
   }
-  EXPECT_EQ(compared, 112 - 8) << "all but the empty history";
+  EXPECT_EQ(compared, 120 - 8) << "all but the empty history";
 }
 
 }  // namespace
