@@ -82,4 +82,11 @@ concept ProtectionBackend = Backend<B> &&
   { backend.motor_signals(axis) } -> std::same_as<MotorSignalSet>;
 };
 
+// A backend with encoders at loads, which are measured and close no loop.
+template <class B>
+concept LoadEncoderBackend = Backend<B> && requires(B backend, std::size_t axis) {
+  // Of this tick; at most once a tick.
+  { backend.read_load(axis) } -> std::same_as<LoadReading<typename B::Signals>>;
+};
+
 }  // namespace stiction::hal

@@ -87,6 +87,18 @@ class DriveLoop {
     watch_.restart();
   }
 
+  // The load of an axis in this tick, in the machine's coordinates: by an encoder at it, where the backend has one, or
+  // by that of the axis. At most once a tick. `own`: by the axis' own encoder.
+  LoadReading<S> load(std::size_t axis, bool own) {
+    const auto& feedback = loop_.feedback()[axis];
+    LoadReading<S> reading{feedback.position, own && feedback.position_valid};
+    if constexpr (LoadEncoderBackend<B>)
+      if (!own) reading = backend_.read_load(axis);
+    SaturationCounter beyond;
+    reading.position = narrow<typename S::Position>(reading.position - drives_[axis].origin(), beyond);
+    return reading;
+  }
+
   // One tick with a set-point an axis (csp, of the machine's coordinates), then waits for the next.
   void tick(std::span<const SetPoint<S>> set_points) {
     if constexpr (WiredBackend<B>) backend_.read_inputs(inputs_);

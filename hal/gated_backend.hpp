@@ -31,6 +31,7 @@ class GatedBackend {
   void read_protection(std::span<ProtectionInputs<Signals>> inputs) requires ProtectionBackend<B> {
     backend_.read_protection(inputs);
   }
+  LoadReading<Signals> read_load(std::size_t axis) requires LoadEncoderBackend<B> { return backend_.read_load(axis); }
   void set_brake(std::size_t axis, bool released) requires BrakeBackend<B> {
     backend_.set_brake(axis, released && !cut_.is_cut());
   }

@@ -104,6 +104,7 @@ class TimedBackend {
     timing_.lap(LoopPart::read);
   }
 
+  LoadReading<Signals> read_load(std::size_t axis) requires LoadEncoderBackend<B> { return backend_.read_load(axis); }
   void set_brake(std::size_t axis, bool released) requires BrakeBackend<B> { backend_.set_brake(axis, released); }
   void set_output(std::size_t output, bool active) requires OutputBackend<B> { backend_.set_output(output, active); }
 

@@ -45,6 +45,7 @@ class PacedBackend {
     backend_.read_protection(inputs);
   }
   void set_brake(std::size_t axis, bool released) requires BrakeBackend<B> { backend_.set_brake(axis, released); }
+  LoadReading<Signals> read_load(std::size_t axis) requires LoadEncoderBackend<B> { return backend_.read_load(axis); }
 
   // The backend's, else the clock's.
   Fault fault(std::size_t axis) {

@@ -12,6 +12,7 @@
 #include "firmware/machine/configuration/cam_configuration.hpp"
 #include "firmware/machine/configuration/conversion.hpp"
 #include "firmware/machine/file/units.hpp"
+#include "firmware/stictiond/table_range.hpp"
 #include "hal/can/encoder.hpp"
 #include "stiction/motion/cam_words.hpp"
 
@@ -27,24 +28,6 @@ const char* name_of(CamTable::Kind kind) { return kind_names[static_cast<std::si
 }
 
 double metres(std::int64_t raw) { return std::ldexp(static_cast<double>(raw), -MotionPoint::position_bits); }
-
-// Between which positions a curve is in a cycle, by its value at 16 places of each segment, which is within a
-// thousandth of the rise between two of them.
-void find_range(const CamTable& table, CamMode::Table& made) {
-  made.low = INT64_MAX;
-  made.high = INT64_MIN;
-  const std::uint32_t count = table.header().count;
-  for (std::uint32_t k = 0; k < count; ++k) {
-    const std::uint64_t begin = table.segment(k).start;
-    const std::uint64_t end = k + 1 < count ? table.segment(k + 1).start : std::uint64_t{1} << 32;
-    for (std::uint64_t part = 0; part < 16; ++part) {
-      const std::uint64_t phase = (begin + (end - begin) * part / 16) << 32;
-      const std::int64_t position = made.curve.slopes({0, phase}).position;
-      made.low = std::min(made.low, position);
-      made.high = std::max(made.high, position);
-    }
-  }
-}
 
 }  // namespace
 
@@ -63,6 +46,7 @@ CamDrive::CamDrive(const DriveOptions& options, const DriveConfiguration& config
   if (tables_.empty() && !serves)
     throw StartRefused("--hold: found --master without --cam; expected a table to follow, or no --hold");
   if (!tables_.empty()) check_limits(configuration, serves);
+  if (configuration.setup.cam_tuning) set_up_tuning(configuration, serves);
 }
 
 void CamDrive::find_master(const DriveOptions& options, const DriveConfiguration& configuration) {
@@ -346,6 +330,54 @@ void CamDrive::check_limits(const DriveConfiguration& configuration, bool serves
             machine::to_si(config.high));
     }
     if (!fits) refuse_table(files_[k], found);
+  }
+}
+
+void CamDrive::set_up_tuning(const DriveConfiguration& configuration, bool serves) {
+  const auto& setup = *configuration.setup.cam_tuning;
+  const auto& names = configuration.names;
+  const std::string of = configuration.machine.id + ": [drive.cam_tuning]";
+  if (!serves) throw StartRefused(of + ": found --hold; expected clients, as an axis that follows for them is tuned");
+  TunedAxis::Config config;
+  config.axis = master_axis_ == 0 ? 1 : 0;
+  if (setup.axis) {
+    const auto found = std::find(names.begin(), names.end(), *setup.axis);
+    config.axis = static_cast<std::size_t>(found - names.begin());
+    if (found == names.end() || config.axis == master_axis_)
+      throw StartRefused(fmt::format("{}: found axis {}; expected one that follows the master", of, *setup.axis));
+  }
+  config.name = names[config.axis];
+  if (setup.table > static_cast<int>(tables_.size()))
+    throw StartRefused(
+        fmt::format("{}: found table {}; expected one of the {} of --cam", of, setup.table, tables_.size()));
+  const auto number = static_cast<std::size_t>(setup.table - 1);
+  config.number = static_cast<std::uint16_t>(setup.table);
+  config.bytes = loaded_[number].bytes;
+  const auto& axis = configuration.machine.axes[config.axis];
+  const auto& second = axis.second_encoder;
+  config.own_encoder = !(second && second->on == machine::EncoderPlace::load);
+  if (config.own_encoder && axis.encoder.on != machine::EncoderPlace::load)
+    throw StartRefused(
+        fmt::format("{}: found axis {} without an encoder at the load; expected one, as that of the motor "
+                    "does not see what the shaft does",
+                    of, config.name));
+  auto& tuner = config.tuner;
+  tuner.given = {.table = &loaded_[number].table,
+                 .axis = &axis,
+                 .mode = {setup.frequency, setup.damping, setup.delay},
+                 .speed = setup.speed > 0.0 ? setup.speed : speed_,
+                 .period = configuration.machine.timing.fast_period,
+                 .increment = config.own_encoder ? axis.encoder.increment : second->increment};
+  tuner.quality_limit = setup.quality_limit;
+  tuner.steps = setup.steps;
+  tuner.pause = setup.pause;
+  tuner.by_itself = setup.start == machine::CamTuningStart::by_itself;
+  try {
+    const auto rise = machine::tuned_rise(*tuner.given.table);
+    tuner.amplitude = setup.amplitude.value_or(rise ? 0.1 * std::abs(rise->stroke) : 0.0);
+    tuning_ = std::make_unique<TunedAxis>(config);
+  } catch (const machine::CamTuningError& error) {
+    throw StartRefused(fmt::format("{}: {}: {}", of, files_[number], error.what()));
   }
 }
 

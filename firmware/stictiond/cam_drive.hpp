@@ -5,12 +5,14 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "firmware/stictiond/configuration.hpp"
 #include "firmware/stictiond/options.hpp"
+#include "firmware/stictiond/tuned_axis.hpp"
 #include "hal/can/frames.hpp"
 #include "hal/drive_loop.hpp"
 #include "stiction/drive/cam_mode.hpp"
@@ -57,6 +59,18 @@ class CamDrive {
 
   static constexpr double longest_stop = 2.0;  // s
 
+  // Of [drive.cam_tuning]; null: none.
+  TunedAxis* tuning() { return tuning_.get(); }
+  // Behind the set-points of a tick, before loop.tick(). `loop`: of all axes; `asked`: by a client, a number of
+  // CamTuningCommand.
+  template <hal::Backend B>
+  void tune(hal::DriveLoop<B>& loop, std::uint8_t asked) {
+    if (asked != 0) tuning_->ask(static_cast<CamTuningCommand>(asked));
+    const std::size_t axis = tuning_->axis();
+    const auto& limiting = loop.loop().signals()[axis].limiting;
+    tuning_->step(modes_[axis], loop.load(axis, tuning_->own_encoder()), limiting.current || limiting.voltage);
+  }
+
   std::optional<std::size_t> master_axis() const { return master_axis_; }
   CamMaster& master() { return master_; }
   CamMode& mode(std::size_t axis) { return modes_[axis]; }
@@ -93,6 +107,7 @@ class CamDrive {
   void set_up_master(const DriveOptions& options, const DriveConfiguration& configuration);
   void set_up_axes(const DriveConfiguration& configuration, bool serves);
   void check_limits(const DriveConfiguration& configuration, bool serves) const;
+  void set_up_tuning(const DriveConfiguration& configuration, bool serves);
 
   std::vector<std::string> files_;
   std::deque<LoadedTable> loaded_;  // their addresses stay
@@ -116,6 +131,7 @@ class CamDrive {
   CamSwitch::State track_state_{};
   CamSwitch::Forces track_forces_{};
   bool has_tracks_ = false;
+  std::unique_ptr<TunedAxis> tuning_;
 };
 
 }  // namespace stiction::drive

@@ -96,7 +96,9 @@ bool ask_cam(const MotionWrite& write, double period, RemoteAxis& axis) {
   if (write.what < What::cam_table) return false;
   RemoteCam& cam = axis.cam();
   if (!cam.attached()) return true;
-  if (write.what == What::cam_command)
+  if (write.what == What::cam_tuning_command)
+    cam.ask_tuning(static_cast<std::uint8_t>(write.value));
+  else if (write.what == What::cam_command)
     axis.ask(static_cast<CamCommand>(static_cast<std::uint8_t>(write.value)));
   else if (write.what == What::master_speed)
     cam.master().run(raw(write.value * period, fine_bits - 8) * (1 << 8));

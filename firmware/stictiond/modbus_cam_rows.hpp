@@ -1,4 +1,5 @@
-// The registers of the modes of cam and gear, in a range of their own of each axis: 40 to 79.
+// The registers of the modes of cam and gear, in a range of their own of each axis: 40 to 79, and of the tuner of cams,
+// 90 to 99.
 #pragma once
 
 #include "firmware/stictiond/modbus_rows.hpp"
@@ -28,7 +29,7 @@ inline void from_one(const machine::AxisModel&, Register& r) {
   r.high = 65535.0;
 }
 
-inline constexpr std::array<StateRow<Axis>, 8> state_rows{{
+inline constexpr std::array<StateRow<Axis>, 14> state_rows{{
     {40, uint16, 1, "cam_state", "1",
      "modes cam and gear; bit 0: busy, 1: active, 2: in sync, 3: a request waits, 4: the last command was aborted, 5: "
      "the master is known, 6: the second cam is busy, 7: it is in sync",
@@ -52,6 +53,28 @@ inline constexpr std::array<StateRow<Axis>, 8> state_rows{{
      [](const Axis& a) { return a.cam.master_speed; }},
     {52, uint16, 1, "cam_second", "1", "table that the second cam follows; 0: none",
      [](const Axis& a) -> double { return a.cam.second; }},
+    {90, uint16, 1, "cam_tuning_state", "1",
+     "tuning of the cam; 0: not configured, 1: records and changes nothing, 2: tries pulses, 3: waits until what "
+     "earlier "
+     "cycles left is gone, 4: compares the quality number with its limit",
+     [](const Axis& a) -> double { return a.cam_tuning.state; }},
+    {91, uint16, 1, "cam_tuning_refusal", "1",
+     "why the last record tells nothing, or how the last tuning ended; 0: nothing is wrong, 1: a rest shorter than a "
+     "period of the load, 2: motion in the rest, 3: current or voltage at its limit, 4: the load too far off, 5: the "
+     "master not at its speed, 6: no position of the load, 7: a pulse above its amplitude, 8: a table beyond the axis' "
+     "limits, 9: a scale, a ratio or a relative begin, 10: nothing that was tried is better, 11: the axis does not "
+     "follow "
+     "the table, 12: not configured",
+     [](const Axis& a) -> double { return a.cam_tuning.refusal; }},
+    {92, uint32, 1e-9, "cam_tuning_quality", "m",
+     "quality number of the last dwell: area of the load's vibration over the master, in metres times cycles",
+     [](const Axis& a) { return a.cam_tuning.quality; }},
+    {94, uint32, 1e-9, "cam_tuning_before", "m", "the same when the last tuning began",
+     [](const Axis& a) { return a.cam_tuning.before; }},
+    {96, uint32, 1e-3, "cam_tuning_frequency", "Hz", "frequency of the load, as configured or as the records have it",
+     [](const Axis& a) { return a.cam_tuning.frequency; }},
+    {98, uint16, 1, "cam_tuning_tables", "1", "tables that the last tuning tried",
+     [](const Axis& a) -> double { return a.cam_tuning.steps; }},
 }};
 
 // In the order of MotionWrite::What.
@@ -255,6 +278,17 @@ inline constexpr std::array<MotionRow, 22> motion_rows{{
      What::master_speed,
      [](const Axis& a) { return a.cam.master_speed; },
      {}},
+    {90,
+     uint16,
+     1,
+     "cam_tuning_command",
+     "1",
+     "1: tune from the pulses that there are, 2: compare the quality number with its limit from now on, 3: neither, "
+     "the "
+     "best pulses are kept, 4: the table without pulses; each write acts once",
+     What::cam_tuning_command,
+     [](const Axis&) { return 0.0; },
+     {0, 1, 2, 3, 4}},
     {40,
      uint16,
      1,

@@ -41,6 +41,7 @@ constexpr std::array<const char*, MotionWrite::kinds> motion_names{"controlword"
                                                                    "cam superposed",
                                                                    "cam leave position",
                                                                    "master speed",
+                                                                   "cam tuning",
                                                                    "cam command"};
 
 std::vector<std::string> names_of(const machine::Machine& machine) {

@@ -46,6 +46,13 @@ struct PublishedCam {
   std::uint16_t denominator = 1;
 };
 
+// Of the tuner of a cam, on the axis that has one.
+struct PublishedCamTuning {
+  std::uint16_t state = 0, refusal = 12, steps = 0;  // numbers of cam_tuner.hpp and cam_tuning.hpp
+  double quality = 0.0, before = 0.0;                // m, times cycles
+  double frequency = 0.0;                            // Hz
+};
+
 struct PublishedAxis {
   std::uint16_t statusword = 0;  // CiA 402, 6041h
   std::int16_t mode = 0;         // 6061h
@@ -79,6 +86,7 @@ struct PublishedAxis {
   double motor_temperature = 0.0, stage_temperature = 0.0;  // degrees Celsius
   bool torque_off_a = false, torque_off_b = false;          // open channels
   PublishedCam cam{};
+  PublishedCamTuning cam_tuning{};
 };
 
 // How the last request to store ended.
@@ -133,6 +141,7 @@ struct MotionWrite {
     cam_superposed,
     cam_leave_position,
     master_speed,
+    cam_tuning_command,
     cam_command
   };
   static constexpr std::size_t kinds = 31;

@@ -12,7 +12,7 @@ namespace stiction::drive {
 namespace {
 
 constexpr std::array<const char*, 3> access_names{"const", "ro", "rw"};
-constexpr std::array<const char*, 10> unit_names{"–",
+constexpr std::array<const char*, 11> unit_names{"–",
                                                  "increments",
                                                  "1000 increments/s",
                                                  "1000 increments/s²",
@@ -21,7 +21,8 @@ constexpr std::array<const char*, 10> unit_names{"–",
                                                  "thousandths",
                                                  "tenths of the register's unit",
                                                  "hundredths of the register's unit",
-                                                 "millionths"};
+                                                 "millionths",
+                                                 "billionths"};
 
 std::string meaning_of(const Object& object) {
   switch (object.source) {

@@ -133,6 +133,15 @@ constexpr auto table = std::to_array<Object>({
     {0x2404, 2, integer32, ro, "Master speed", Unit::millionth, Source::state, "master_velocity"},
     {0x2404, 3, unsigned32, ro, "Master phase", Unit::millionth, Source::state, "master_phase"},
     {0x2404, 4, integer32, ro, "Master cycles", Unit::none, Source::state, "master_cycles"},
+    {0x2410, 0, unsigned16, rw, "Cam tuning command", Unit::none, Source::command, "cam_tuning_command"},
+    number_of_subs(0x2411, 6),
+    {0x2411, 1, unsigned16, ro, "Cam tuning state", Unit::none, Source::state, "cam_tuning_state"},
+    {0x2411, 2, unsigned16, ro, "Cam tuning refusal", Unit::none, Source::state, "cam_tuning_refusal"},
+    {0x2411, 3, unsigned32, ro, "Cam tuning quality number", Unit::billionth, Source::state, "cam_tuning_quality"},
+    {0x2411, 4, unsigned32, ro, "Cam tuning quality number before", Unit::billionth, Source::state,
+     "cam_tuning_before"},
+    {0x2411, 5, unsigned32, ro, "Cam tuning frequency", Unit::thousandth, Source::state, "cam_tuning_frequency"},
+    {0x2411, 6, unsigned16, ro, "Cam tuning tables", Unit::none, Source::state, "cam_tuning_tables"},
     setup(0x6007, integer16, "Abort connection option code", reaction_of, "stops.commander_lost"),
     {0x603f, 0, unsigned16, ro, "Error code", Unit::none, Source::state, "error_code"},
     {0x6040, 0, unsigned16, rw, "Controlword", Unit::none, Source::command, "controlword"},
@@ -200,7 +209,7 @@ struct RecordName {
   std::uint16_t index;
   const char* name;
 };
-constexpr std::array<RecordName, 14> record_names{{{0x2300, "Commutation"},
+constexpr std::array<RecordName, 15> record_names{{{0x2300, "Commutation"},
                                                    {0x2301, "Thermal load"},
                                                    {0x2302, "Temperature"},
                                                    {0x1003, "Pre-defined error field"},
@@ -212,6 +221,7 @@ constexpr std::array<RecordName, 14> record_names{{{0x2300, "Commutation"},
                                                    {0x2401, "Gear"},
                                                    {0x2403, "Cam status"},
                                                    {0x2404, "Master of cam and gear"},
+                                                   {0x2411, "Cam tuning"},
                                                    {0x607d, "Software position limit"},
                                                    {0x6099, "Homing speeds"}}};
 
@@ -246,6 +256,8 @@ double value_of(ObjectUnit unit, double increment) {
       return 0.01;
     case Unit::millionth:
       return 1e-6;
+    case Unit::billionth:
+      return 1e-9;
     default:
       return 1.0;
   }

@@ -34,6 +34,7 @@ enum class ObjectUnit : std::uint8_t {
   tenth,      // of the register's unit
   hundredth,  // of the register's unit
   millionth,  // of a cycle, of a second, of one
+  billionth,  // of a metre
 };
 // SI value of one. `increment`: of position on the bus, m.
 double value_of(ObjectUnit unit, double increment);

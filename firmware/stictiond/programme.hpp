@@ -68,6 +68,8 @@ class Programme {
     if (task_.cam != nullptr) task_.cam->step(loop_);  // before its slaves
     const bool serves = phase_ == Phase::remote;
     const auto sets = serves ? serve() : task_.serve && phase_ == Phase::stop ? stop_served() : set_points();
+    if (task_.cam != nullptr && task_.cam->tuning() != nullptr)  // behind their set-points
+      task_.cam->tune(loop_, remote_[task_.cam->tuning()->axis()].cam().take_tuning());
     if (kept_off_ != Fault::none) loop_.trip(kept_off_);
     if (task_.cam != nullptr) switch_tracks();
     const std::int64_t now_ns = loop_.now_ns();
@@ -83,6 +85,11 @@ class Programme {
 
   // Where others ask for what the axes do while the programme serves; without it they stay off.
   std::span<RemoteAxis> remote() { return remote_; }
+  // The tuner of a cam on that `axis`; null: none.
+  const TunedAxis* tuning(std::size_t axis) const {
+    const TunedAxis* const tuned = task_.cam != nullptr ? task_.cam->tuning() : nullptr;
+    return tuned != nullptr && tuned->axis() == axis ? tuned : nullptr;
+  }
   // As others see it: what serves adds its bits to the drive's, and that a bus is obeyed.
   std::uint16_t statusword(std::size_t axis) const {
     if (phase_ != Phase::remote) return loop_.statusword(axis);

@@ -112,6 +112,14 @@ Task task_of(const DriveOptions& options, const DriveConfiguration& configuratio
   return task;
 }
 
+void check_load_encoder(const DriveConfiguration& configuration, CamDrive* cam, bool has_them) {
+  if (has_them || cam == nullptr || cam->tuning() == nullptr || cam->tuning()->own_encoder()) return;
+  throw StartRefused(fmt::format(
+      "{}: [drive.cam_tuning]: found axis {} with a second encoder at the load, which this backend does not "
+      "read; expected --hal simulated, or an axis whose own encoder is at the load",
+      configuration.machine.id, configuration.names[cam->tuning()->axis()]));
+}
+
 void check_motor_inputs(const DriveConfiguration& configuration, std::span<const MotorSignalSet> sets) {
   for (std::size_t i = 0; i < configuration.names.size(); ++i) {
     const std::string axis = "drive.axis." + configuration.names[i];

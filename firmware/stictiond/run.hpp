@@ -61,6 +61,10 @@ void check_room(const DriveOptions& options, const DriveConfiguration& configura
 // `configuration`: of the drive; `sets`: what the backend has, one an axis.
 void check_motor_inputs(const DriveConfiguration& configuration, std::span<const MotorSignalSet> sets);
 
+// Throws StartRefused where a cam is tuned by an encoder at the load that the backend does not have. `configuration`:
+// of the drive; `cam`: its cam, may be null; `has_them`: whether the backend is a LoadEncoderBackend.
+void check_load_encoder(const DriveConfiguration& configuration, CamDrive* cam, bool has_them);
+
 inline constexpr std::uint64_t row_bytes = 256;  // of a trace's file, for one axis in one tick, at most
 
 // The task of the options. `positions`: where the axes stand (m). Throws MotionError. `options`: of the command line;
@@ -152,6 +156,8 @@ void show_to_clients(const hal::DriveLoop<B>& loop, Programme<B>& programme, dou
     axis.home = inputs.home;
     show_motor(loop, i, axis);
     show_asked(programme.remote()[i], period, axis);
+    axis.cam_tuning = {};
+    if (const auto* tuning = programme.tuning(i)) tuning->show(axis.cam_tuning);
   });
 }
 
@@ -175,6 +181,7 @@ RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const Driv
   std::vector<double> positions;
   for (const auto& feedback : loop.loop().feedback()) positions.push_back(machine::to_si(feedback.position));
   const auto cam = cam_of(options, configuration);
+  check_load_encoder(configuration, cam.get(), hal::LoadEncoderBackend<B>);
   const Task task = task_of(options, configuration, positions, cam.get());
   const auto traced = traced_ticks(options, configuration, task);
   if (!options.trace.empty()) check_trace_file(options.trace, traced * configuration.axes.size() * row_bytes);
@@ -241,6 +248,7 @@ RunResult run(RealTime& real_time, B& backend, hal::TickClock* clock, const Driv
              },
          .round =
              [&] {
+               if (cam && cam->tuning() != nullptr) cam->tuning()->round(say);
                const int asked = hal::signal_asked;
                hal::signal_asked = 0;
                if (!desk) return;

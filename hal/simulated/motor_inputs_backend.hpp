@@ -75,6 +75,8 @@ class MotorInputsBackend {
   }
   Fault fault(std::size_t) const { return Fault::none; }
 
+  LoadReading<S> read_load(std::size_t axis) requires LoadEncoderBackend<B> { return inner_.read_load(axis); }
+
   MotorSignalSet motor_signals(std::size_t axis) const {
     auto set = inner_.motor_signals(axis);
     set.hall = signals_[axis].hall_wired;

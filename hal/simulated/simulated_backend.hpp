@@ -76,6 +76,15 @@ class SimulatedBackend {
     return {.dc_link = true, .motor_temperature = true, .stage_temperature = true, .torque_off = true};
   }
 
+  // By the second encoder of an axis, where it sits on the load; asked for by whoever tunes a cam by it alone, since
+  // its noise is drawn from the axis' own.
+  LoadReading<S> read_load(std::size_t axis) {
+    LoadReading<S> reading;
+    if (const auto seen = plants_[axis].read_second_encoder())
+      reading.valid = machine::convert(*seen, reading.position);
+    return reading;
+  }
+
   // Whether the brake of an axis is released; where the axis has none, nothing.
   void set_brake(std::size_t axis, bool released) { plants_[axis].set_brake(released); }
 

@@ -25,6 +25,8 @@ STICTION_LAW(law_cam_motion) { c.point = c.motion.step(c.at); }
 
 STICTION_LAW(law_cam_switch) { c.outputs = stiction::CamSwitch::step(c.tracks, c.switches, c.at, {}); }
 
+STICTION_LAW(law_cam_tuning) { stiction::CamTuning::step(c.tuning_config, c.tuning, c.tuned); }
+
 namespace stiction::targets {
 namespace {
 
@@ -57,17 +59,33 @@ CamContext::CamContext()
                  .hysteresis = 0x10000u,
                  .direction = static_cast<CamSwitch::Direction>(k % 3),
                  .kind = static_cast<CamSwitch::Kind>(k / 6)};
+  // A rise over the first half of the cycle, the mode of the load above, and pulses of no particular place.
+  tuning_config = {.rise_begin = 0,
+                   .rise_length = 0x80000000u,
+                   .settling = 0x08000000u,
+                   .window_end = 0x7f000000u,
+                   .ticks_a_phase = 1049,
+                   .turn_re = 1073641064,
+                   .turn_im = 6108976,
+                   .shift = 16,
+                   .every = 4,
+                   .least_ticks = 1104,
+                   .speed = std::int64_t{281474976710},
+                   .speed_tolerance = std::int64_t{1} << 50,
+                   .noise = 256,
+                   .pulses = {20000000, -3000000, 5000000, 15000000}};
   master.start({});
   estimator.start({});
   motion.start(0);
 }
 
-constexpr std::array<CamLaw, 6> all{{{"law_cam_nothing", law_cam_nothing},
+constexpr std::array<CamLaw, 7> all{{{"law_cam_nothing", law_cam_nothing},
                                      {"law_cam_master", law_cam_master},
                                      {"law_cam_estimator", law_cam_estimator},
                                      {"law_cam_evaluate", law_cam_evaluate},
                                      {"law_cam_motion", law_cam_motion},
-                                     {"law_cam_switch", law_cam_switch}}};
-const std::array<CamLaw, 6> cam_laws = all;
+                                     {"law_cam_switch", law_cam_switch},
+                                     {"law_cam_tuning", law_cam_tuning}}};
+const std::array<CamLaw, 7> cam_laws = all;
 
 }  // namespace stiction::targets

@@ -85,8 +85,21 @@ constexpr const char* names[] = {"master_cycles",
                                  "status",
                                  "refusal",
                                  "switches",
-                                 "edges"};
+                                 "edges",
+                                 "tuning_sums",
+                                 "tuning_fit"};
 constexpr std::size_t count_of_names = sizeof(names) / sizeof(names[0]);
+
+// What the tuner sees in this tick, and the fit of a record that is full.
+void tune(CamContext& c) {
+  const bool dwells = c.at.position.coarse() >= 0x80000000u;
+  const std::int64_t place = dwells ? std::int64_t{1} << 38 : std::int64_t{c.at.position.coarse()} << 7;
+  c.elastic.step(place);
+  c.tuned = {.master = c.at.position, .velocity = c.at.velocity, .load = c.elastic.at, .set_point = place};
+  if (c.tuning.stage != CamTuning::Stage::full) return;
+  c.fit = CamTuning::evaluate(c.tuning_config, c.tuning);
+  CamTuning::release(c.tuning);
+}
 
 void hash(const CamContext& c, std::array<Hash, count_of_names>& hashes) {
   const auto& s = c.motion.status();
@@ -112,7 +125,10 @@ void hash(const CamContext& c, std::array<Hash, count_of_names>& hashes) {
       status,
       static_cast<std::int64_t>(s.refusal) * 16 + static_cast<std::int64_t>(s.fault),
       c.outputs.on,
-      edges};
+      edges,
+      c.tuning.d + 3 * c.tuning.dc + 5 * c.tuning.ds + 7 * c.tuning.cs + c.tuning.re + c.tuning.im,
+      static_cast<std::int64_t>(c.fit.refusal) + 3 * c.fit.re + 5 * c.fit.im + 7 * c.fit.offset + 9 * c.fit.quality +
+          11 * c.fit.first + 13 * c.fit.second};
   for (std::size_t k = 0; k < count_of_names; ++k) hashes[k].add(words[k]);
 }
 
@@ -144,6 +160,7 @@ int main(int argc, char**) {
       command(context, random);
       next += 100 + random.next(1600);
     }
+    tune(context);
     const std::uint32_t empty = count_instructions(cam_laws[0].step, &context);
     for (std::size_t k = 0; k < cam_laws.size(); ++k) {
       // A profiler from outside counts a function with its return; so does this.

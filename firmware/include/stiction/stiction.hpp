@@ -14,6 +14,7 @@
 #include "stiction/motion/cam_motion.hpp"              // an axis that follows a master along cams and gears
 #include "stiction/motion/cam_switch.hpp"              // outputs that switch at angles of a master
 #include "stiction/motion/cam_table.hpp"               // an electronic cam as polynomials
+#include "stiction/motion/cam_tuning.hpp"              // residual vibration in a dwell, and pulses against it
 #include "stiction/motion/cam_words.hpp"               // why a table or a request was refused
 #include "stiction/motion/endless_phase.hpp"           // whole turns and the exact rest of an endless axis
 #include "stiction/motion/master.hpp"                  // a virtual master

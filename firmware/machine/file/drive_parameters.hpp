@@ -380,6 +380,51 @@ struct Table<CamSwitchSetup> : EmptyTable<CamSwitchSetup> {
       Subtable<CamSwitchSetup, TrackSetup>{"track8", &CamSwitchSetup::track8, Presence::optional}};
 };
 
+inline constexpr std::array<Choice<CamTuningStart>, 2> cam_tuning_starts{{
+    {"by-hand", CamTuningStart::by_hand, "by a command of a client alone"},
+    {"by-itself", CamTuningStart::by_itself, "also where the quality number is above its limit in three cycles"},
+}};
+
+template <>
+struct Table<CamTuningSetup> : EmptyTable<CamTuningSetup> {
+  static constexpr std::string_view text =
+      "residual vibration of an axis behind a table, measured and cancelled by the drive; frequency, damping and delay "
+      "are those that `stiction tune-cam` finds";
+  static constexpr std::array<TextParameter<CamTuningSetup>, 1> texts{
+      {{"axis", &CamTuningSetup::axis, "name of the axis; left out: the first one that is not the master"}}};
+  static constexpr std::tuple choices{ChoiceParameter<CamTuningSetup, CamTuningStart>{
+      "start", &CamTuningSetup::start, cam_tuning_starts, CamTuningStart::by_hand, "when tuning begins"}};
+  static constexpr std::array<Parameter<CamTuningSetup>, 9> parameters{{
+      {"table",
+       "1",
+       {1, 65535},
+       &CamTuningSetup::table,
+       1.0,
+       "table that is tuned, by its number in the order of --cam"},
+      {"frequency", "Hz", {0.1, 1000}, &CamTuningSetup::frequency, {}, "frequency of the load behind the drive"},
+      {"damping_ratio", "1", {0, 0.2}, &CamTuningSetup::damping, 0.01, "damping ratio of the load"},
+      {"delay", "s", not_negative(0.1), &CamTuningSetup::delay, 0.0, "time by which the encoder at the load is late"},
+      {"speed", "1/s", not_negative(1000.0), &CamTuningSetup::speed, 0.0,
+       "cycles of the master in a second at which the cam is tuned; 0: those of --speed"},
+      {"amplitude",
+       "m",
+       positive(1.0),
+       &CamTuningSetup::amplitude,
+       {},
+       "largest amplitude of a pulse; left out: a tenth of the stroke"},
+      {"quality_limit", "m", not_negative(1.0), &CamTuningSetup::quality_limit, 0.0,
+       "area of the load's vibration over a dwell, in metres times cycles of the master, above which the cam is to be "
+       "tuned again; 0: it is not watched"},
+      {"steps", "1", {1, 20}, &CamTuningSetup::steps, 6.0, "tables that are tried from one start on, at most"},
+      {"pause",
+       "1",
+       {1, 1e6},
+       &CamTuningSetup::pause,
+       50.0,
+       "cycles of the master from one start that the drive makes by itself to the next, at least"},
+  }};
+};
+
 template <>
 struct Table<DriveAxisSetup> : EmptyTable<DriveAxisSetup> {
   static constexpr std::string_view text = "one axis as the drive's programme runs it";
@@ -470,6 +515,7 @@ struct Table<DriveSetup> : EmptyTable<DriveSetup> {
       Subtable<DriveSetup, std::optional<ModbusServerSetup>>{"modbus_server", &DriveSetup::modbus_server,
                                                              Presence::optional},
       Subtable<DriveSetup, CamSwitchSetup>{"cam_switch", &DriveSetup::cam_switch, Presence::optional},
+      Subtable<DriveSetup, std::optional<CamTuningSetup>>{"cam_tuning", &DriveSetup::cam_tuning, Presence::optional},
       Subtable<DriveSetup, RealTimeSetup>{"real_time", &DriveSetup::real_time, Presence::optional}};
 };
 

@@ -66,6 +66,23 @@ inline std::array<const TrackSetup*, 8> tracks_of(const CamSwitchSetup& s) {
   return {&s.track1, &s.track2, &s.track3, &s.track4, &s.track5, &s.track6, &s.track7, &s.track8};
 }
 
+// Residual vibration of an axis behind a table, measured and cancelled by the drive. Frequency, damping and delay are
+// those that `stiction tune-cam` finds.
+enum class CamTuningStart { by_hand, by_itself };
+struct CamTuningSetup {
+  std::optional<std::string> axis;  // none: the first one that is not the master
+  int table = 1;                    // of --cam, from 1
+  double frequency = 0.0;           // Hz, of the load
+  double damping = 0.01;            // its ratio
+  double delay = 0.0;               // s, of the load's encoder
+  double speed = 0.0;               // of the master, cycles/s; 0: that of --speed
+  std::optional<double> amplitude;  // m, the most of a pulse; none: a tenth of the stroke
+  double quality_limit = 0.0;       // m, times cycles of the master; 0: not watched
+  int steps = 6;                    // tables tried from one start on, at most
+  int pause = 50;                   // cycles from one start by itself to the next, at least
+  CamTuningStart start = CamTuningStart::by_hand;
+};
+
 // Of the chip's inputs, inside the chip.
 enum class InputBias { as_is, pull_up, pull_down, none };
 
@@ -179,6 +196,7 @@ struct DriveSetup {
   std::optional<ModbusServerSetup> modbus_server;
   RealTimeSetup real_time;
   CamSwitchSetup cam_switch;
+  std::optional<CamTuningSetup> cam_tuning;
   std::map<std::string, DriveAxisSetup> axes;  // of every axis of the machine, by name
 };
 

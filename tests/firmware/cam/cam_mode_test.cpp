@@ -168,6 +168,59 @@ class ACamMode : public ::testing::Test {
   CamMode mode{config, tables};
 };
 
+TEST_F(ACamMode, ExchangesTheTableItFollowsWhereTheCycleBegins) {
+  // Both begin and end at 0 and rest there.
+  const auto other = test_cam(rise_and_return("3-4-5", 0.02));
+  CamMode::Table made;
+  ASSERT_EQ(CamCurve::prepare({.table = &other->table}, made.curve), CamRefusal::none);
+  made.high = raw_position(0.02);
+  EXPECT_EQ(mode.exchange(1, &made), CamRefusal::not_enabled) << "it follows nothing";
+  EXPECT_EQ(mode.exchange(2, &made), CamRefusal::unknown_table);
+  VirtualMaster master(VirtualMaster::Config::of(limits(1.2, 5.0, 50.0)));
+  master.start({});
+  ASSERT_EQ(mode.command(CamCommand::engage, false, true), CamRefusal::none);
+  master.run(master_speed(1.0));
+  const auto run_to = [&](double cycles) {
+    while (cycles_of(master.point().position) < cycles) mode.step({master.step(), true});
+  };
+  const auto off = [&](const CamMode::Table& table) {
+    return mode.point().position - table.curve.slopes(master.point().position).position;
+  };
+  run_to(2.3);
+  EXPECT_EQ(mode.table(), 1);
+  EXPECT_TRUE(mode.as_its_table());
+  ASSERT_EQ(mode.exchange(1, &made), CamRefusal::none);
+  EXPECT_EQ(mode.exchange(1, &made), CamRefusal::not_enabled) << "one waits";
+  run_to(2.99);
+  EXPECT_TRUE(mode.exchanging());
+  EXPECT_EQ(off(tables[0]), 0);
+  EXPECT_EQ(mode.exchanged(1), nullptr);
+  run_to(3.3);
+  EXPECT_FALSE(mode.exchanging());
+  EXPECT_EQ(mode.exchanged(1), &made);
+  EXPECT_EQ(mode.table(), 1);
+  EXPECT_EQ(off(made), 0);
+  ASSERT_EQ(mode.exchange(1, nullptr), CamRefusal::none);
+  run_to(4.3);
+  EXPECT_EQ(off(tables[0]), 0);
+}
+
+TEST_F(ACamMode, ExchangesNoTableBeyondTravelOrLimits) {
+  const auto far = test_cam(rise_and_return("3-4-5", 0.09)), fast = test_cam(rise_and_return("3-4-5", 0.5));
+  CamMode::Table beyond_travel, beyond_limits;
+  ASSERT_EQ(CamCurve::prepare({.table = &far->table}, beyond_travel.curve), CamRefusal::none);
+  ASSERT_EQ(CamCurve::prepare({.table = &fast->table}, beyond_limits.curve), CamRefusal::none);
+  beyond_travel.high = raw_position(0.11);
+  VirtualMaster master(VirtualMaster::Config::of(limits(1.2, 5.0, 50.0)));
+  master.start({});
+  ASSERT_EQ(mode.command(CamCommand::engage, false, true), CamRefusal::none);
+  for (int k = 0; k < 2000; ++k) mode.step({master.step(), true});
+  ASSERT_EQ(mode.table(), 1);
+  EXPECT_EQ(mode.exchange(1, &beyond_travel), CamRefusal::beyond_travel);
+  EXPECT_EQ(mode.exchange(1, &beyond_limits), CamRefusal::beyond_limits);
+  EXPECT_FALSE(mode.exchanging());
+}
+
 TEST_F(ACamMode, SaysOfAMasterWhichFaultItIs) {
   struct Case {
     MasterReading reading;

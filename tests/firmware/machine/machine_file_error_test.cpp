@@ -356,10 +356,15 @@ TEST(MachineFileError, EveryDescribedQuantityRefusesAForeignUnitAndNamesItsKey) 
       const bool axis = table.name.find("axis.NAME") != std::string::npos;
       const std::string in_file = axis ? replaced(table.name, "axis.NAME", "axis.X") : table.name;
       const std::string path = in_file + "." + key.key;
-      // A table that the shipped machine does not have is there with its required texts.
+      // A table that the shipped machine does not have is there with its required texts, and one of the drive with its
+      // required quantities.
       std::vector<std::string> set;
-      for (const KeyDescription& text : table.keys)
-        if (text.allowed == "a text" && text.fallback == "required") set.push_back(in_file + "." + text.key + "=x");
+      for (const KeyDescription& other : table.keys) {
+        if (other.fallback != "required") continue;
+        if (other.allowed == "a text") set.push_back(in_file + "." + other.key + "=x");
+        if (table.name.starts_with("drive.") && !other.unit.empty() && other.key != key.key)
+          set.push_back(in_file + "." + other.key + "=10 " + other.unit);
+      }
       const auto machine = table.name.starts_with("feed_drive") ? test::shipped_feed_drive() : axes.path();
       // No parameter is an amount of substance.
       auto foreign = set;

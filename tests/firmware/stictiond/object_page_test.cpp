@@ -75,7 +75,7 @@ TEST_F(Objects, AreThoseOfTheDataSheet) {
       ++compared;
     }
   }
-  EXPECT_EQ(compared, 114 - 8) << "all but the empty history";
+  EXPECT_EQ(compared, 122 - 8) << "all but the empty history";
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ namespace stiction::test {
 struct CamArguments {
   std::vector<std::string> tables;
   std::string master, speed;
+  std::string machine{};  // file; none: the cross table
 };
 
 class ServedTable {
@@ -35,7 +36,7 @@ class ServedTable {
   // `settings`: over the machine file, beside nodes 1 and 2 on an interface that nobody opens.
   // `cam_options`: for a cam.
   explicit ServedTable(const std::vector<std::string>& settings = {}, bool allowed = true, const Cam& cam_options = {})
-      : configuration(read(settings, allowed)),
+      : configuration(read(settings, allowed, cam_options.machine)),
         cam(make(cam_options, configuration)),
         remote_(drive::remote_axes(configuration)),
         simulated(configuration.machine, std::vector<double>{0.09, 0.0}),
@@ -108,9 +109,12 @@ class ServedTable {
     return std::make_unique<drive::CamDrive>(options, configuration);
   }
 
-  static drive::DriveConfiguration read(const std::vector<std::string>& settings, bool allowed) {
+  static drive::DriveConfiguration read(const std::vector<std::string>& settings, bool allowed,
+                                        const std::string& machine) {
     drive::DriveOptions options;
-    options.machine = std::string(STICTION_SOURCE_DIR) + "/firmware/machine/shipped/mcfv5050ln.toml";
+    options.machine = machine;
+    if (machine.empty())
+      options.machine = std::string(STICTION_SOURCE_DIR) + "/firmware/machine/shipped/mcfv5050ln.toml";
     // Silence is what many of these cases are about; those of the watch set a time of their own.
     options.set = {"drive.can_server.commander_timeout=0 s"};
     options.set.insert(options.set.end(), settings.begin(), settings.end());

@@ -97,6 +97,7 @@ class CamMode {
     point_ = first_.motion.point();
     braking_ = false;
     fault_ = Fault::none;
+    exchanging_ = shifted_ = false;
   }
 
   // Stands where `curve` is at a `master` that stands, and follows it from the first tick on. `curve`: must outlive
@@ -147,6 +148,48 @@ class CamMode {
     }
     return refusal_;
   }
+  // From the next begin of a cycle on `table` takes the place of the table with that `number`, which is followed: the
+  // same curve but for pulses within its rise. Whoever engages that number later gets it too. `table`: must outlive
+  // this or the next exchange; null: the table of the number itself.
+  constexpr CamRefusal exchange(std::uint16_t number, const Table* table) {
+    if (number == 0 || number > tables_.size()) return CamRefusal::unknown_table;
+    if (braking_ || first_.table != number || first_.undecided) return CamRefusal::not_enabled;
+    const Table& next = table != nullptr ? *table : tables_[number - 1u];
+    CamCurve::Config config = first_.motion.curve()->config();
+    config.table = next.curve.config().table;
+    config.rise = next.curve.config().rise;
+    CamCurve& curve = free_place();
+    const CamRefusal refusal = CamCurve::rescale(next.curve, config, curve);
+    if (refusal != CamRefusal::none) return refusal;
+    if (leaves_travel(next, curve)) return CamRefusal::beyond_travel;
+    CamRequest request;
+    request.curve = &curve;
+    request.trigger = CamTrigger::next_cycle;
+    const CamRefusal found = first_.take(request, &curve, number);
+    if (found != CamRefusal::none) return found;
+    exchanging_ = true;
+    exchange_ = {number, table};
+    return CamRefusal::none;
+  }
+  // From an exchange() on, until the curve is followed without a bridge, or the exchange was refused or replaced.
+  constexpr bool exchanging() const { return exchanging_; }
+  // What is followed in the place of the table `number`; null: that table.
+  constexpr const Table* exchanged(std::uint16_t number) const {
+    return number == exchanged_.number ? exchanged_.table : nullptr;
+  }
+  // Whether the curve that is followed is its table as it is: not scaled, begun neither where the axis nor where the
+  // master was, and with no second cam on top.
+  constexpr bool as_its_table() const {
+    const CamCurve* curve = first_.motion.curve();
+    return first_.table != 0 && !shifted_ && !second_.motion.status().active && second_.motion.at_rest() &&
+           curve->config().slave_scale == std::int64_t{1} << 32 &&
+           curve->config().ratio.numerator() == curve->config().ratio.denominator();
+  }
+  // The master as the curve that is followed sees it, in the last tick.
+  constexpr MasterPoint seen() const {
+    const CamCurve* curve = first_.motion.curve();
+    return curve != nullptr ? curve->seen(seen_.point) : seen_.point;
+  }
   // Of a command that was not given to it.
   constexpr void refuse(CamRefusal reason) { refusal_ = reason; }
 
@@ -195,8 +238,10 @@ class CamMode {
     fault_ = fault_of(first_.motion.status().fault);
     if (fault_ == Fault::none) fault_ = fault_of(second_.motion.status().fault);
     // Refused behind its trigger.
+    const bool waited = first_.undecided;
     for (Layer* layer : {&first_, &second_})
       if (const CamRefusal found = layer->decide(); found != CamRefusal::none) refusal_ = found;
+    settle_exchange(waited);
     return cam_set_point(point_, config_->rate);
   }
 
@@ -277,6 +322,17 @@ class CamMode {
     bool undecided = false;
   };
 
+  // Behind decide(): what a decided request or exchange has changed. `waited`: whether there was one before.
+  constexpr void settle_exchange(bool waited) {
+    const CamStatus& status = first_.motion.status();
+    const bool decided = waited && !first_.undecided;
+    if (decided && status.refusal == CamRefusal::none && status.active) {
+      shifted_ = exchanging_ ? shifted_ : waiting_shifted_;
+      if (exchanging_) exchanged_ = exchange_;
+    }
+    if (!first_.undecided && (status.in_sync || !status.active)) exchanging_ = false;
+  }
+
   // How long it takes to brake along the curve as brake() says; 0: it does not.
   constexpr std::int64_t ticks_to_brake(CamStop stop) const {
     const CamStatus& status = first_.motion.status();
@@ -347,6 +403,8 @@ class CamMode {
     CamRequest request = asked_request();
     request.goal = CamGoal::position;
     request.position = position;
+    exchanging_ = false;
+    waiting_shifted_ = shifted_;
     return first_.take(request, nullptr, 0);
   }
 
@@ -367,7 +425,9 @@ class CamMode {
   constexpr CamRefusal engage(Layer& layer, bool gear, bool referenced) {
     if (!gear && (asked_.table == 0 || asked_.table > tables_.size())) return CamRefusal::unknown_table;
     const Table none{};
-    const Table& table = gear ? none : tables_[asked_.table - 1u];
+    const Table* exchanged = gear ? nullptr : this->exchanged(asked_.table);
+    const Table& table = gear ? none : exchanged != nullptr ? *exchanged : tables_[asked_.table - 1u];
+    if (&layer == &first_) exchanging_ = false;
     CamCurve::Config config = table.curve.config();
     config.ratio = GearRatio(asked_.numerator, asked_.denominator);
     config.master_offset = asked_.master_offset;
@@ -381,7 +441,10 @@ class CamMode {
     CamRequest request = asked_request();
     request.curve = &curve;
     request.free_way = gear && asked_.slave_relative;
-    return layer.take(request, &curve, gear ? std::uint16_t{0} : asked_.table);
+    const CamRefusal found = layer.take(request, &curve, gear ? std::uint16_t{0} : asked_.table);
+    if (found == CamRefusal::none && &layer == &first_)
+      waiting_shifted_ = asked_.master_relative || asked_.slave_relative;
+    return found;
   }
 
   // Of a curve that comes back to where it begins.
@@ -416,6 +479,13 @@ class CamMode {
   bool braking_ = false;
   Asked asked_{};
   std::array<CamCurve, 5> places_{};
+  struct Exchange {
+    std::uint16_t number = 0;
+    const Table* table = nullptr;
+  };
+  Exchange exchange_{}, exchanged_{};  // that waits, and in force
+  bool exchanging_ = false;
+  bool shifted_ = false, waiting_shifted_ = false;  // relative in master or slave
   CamRefusal refusal_ = CamRefusal::none;
   Fault fault_ = Fault::none;
 };

@@ -45,6 +45,13 @@ struct DigitalInputs {
   std::uint8_t hall = 0;                  // signals A, B, C of the motor's Hall sensors in bits 0 to 2; 0: none
 };
 
+// What an encoder at the load shows, beside the one of the control loops.
+template <class S>
+struct LoadReading {
+  typename S::Position position{};  // with the zero of the axis' encoder
+  bool valid = false;
+};
+
 // What the power stage and the motor tell about themselves, for their protection.
 template <class S>
 struct ProtectionInputs {

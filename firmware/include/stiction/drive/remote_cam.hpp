@@ -41,6 +41,14 @@ class RemoteCam {
     mode_->command(asked, shown == OperationMode::gear, referenced);
   }
 
+  // What the programme's tuner of a cam is asked for by a client, until it is taken; 0: nothing.
+  constexpr void ask_tuning(std::uint8_t command) { tuning_ = command; }
+  constexpr std::uint8_t take_tuning() {
+    const std::uint8_t asked = tuning_;
+    tuning_ = 0;
+    return asked;
+  }
+
   constexpr bool at_rest() const { return !attached() || mode_->at_rest(); }
 
   // The set-point of the coming tick. `stops`: to standstill; `following`: as of command(); `ramp`: that of the stop;
@@ -86,6 +94,7 @@ class RemoteCam {
   CamMaster* master_ = nullptr;
   S::Position stands_{};
   std::uint32_t ends_ = 0;
+  std::uint8_t tuning_ = 0;
   bool along_ = false, leaving_ = false;
 };
 
