@@ -47,7 +47,7 @@ sim::Chart over_frequency(const sim::cam::ShapingTask& task, const sim::cam::Rec
   chart.x_label = "frequency of the load, % of the identified one";
   chart.y_label = "peak to peak, " + units.slave_unit;
   auto identified = task;
-  identified.drive = tuner.drive();
+  if (tuner.drive()) identified.drive = tuner.drive()->drive;
   const auto add = [&](const char* name, const sim::cam::Motion& motion) {
     sim::Series series{.name = name, .x = {}, .y = {}};
     constexpr int points = 33;
@@ -80,8 +80,10 @@ sim::ExperimentResult tuning_report(const sim::cam::ShapingTask& task, const sim
     add("frequency_error", "Hz", "its standard error", fit->frequency_error / (2.0 * std::numbers::pi));
     add("damping_ratio", "", "damping ratio", fit->mode.damping_ratio());
     add("damping_ratio_error", "", "its standard error", fit->damping_error);
-    add("delay", "ms", "lag of the load's encoder", tuner.delay() * 1e3);
-    add("delay_error", "ms", "its standard error", tuner.delay_error() * 1e3);
+  }
+  if (const auto& drive = tuner.drive()) {
+    add("delay", "ms", "lag of the load's encoder", drive->delay * 1e3);
+    add("delay_error", "ms", "its standard error", drive->delay_error * 1e3);
   }
   for (std::size_t c = 0; c < cycles.size(); ++c) {
     const auto& learned = cycles[c].learned;

@@ -8,6 +8,7 @@
 
 #include "firmware/machine/configuration/double_signals.hpp"
 #include "host/cam/duty.hpp"
+#include "host/cam/limit_share.hpp"
 #include "host/cam/tuning_report.hpp"
 #include "host/cli/cam_options.hpp"
 #include "host/cli/choices.hpp"
@@ -120,7 +121,8 @@ void run_tuning(const TuneCamOptions& options, const Invocation& invocation) {
   try {
     const auto motion = sim::cam::compose(cam);
     const auto task = shaping_task(motion, sim::cam::elastic_drive_of(axis), speed, 0.2, {});
-    sim::cam::RecordTuner tuner(task, axis.second_encoder->increment / radius);
+    sim::cam::RecordTuner tuner(task, {.resolution = axis.second_encoder->increment / radius,
+                                       .share_of_limits = shares_of_limits(load, speed)});
     const std::size_t count = logs.empty() ? static_cast<std::size_t>(options.cycles) : logs.size();
     for (std::size_t c = 0; c < count && !tuner.done(); ++c) {
       const auto now = sim::cam::compose(tuner.cam());

@@ -138,10 +138,10 @@ std::optional<Pulse> tuned_dwell_pulse(const ShapingTask& task, double length) {
   return with_least_left(task, {*position, amplitude(*position).real()}, length);
 }
 
-std::optional<PulsePair> pulse_pair(const ShapingTask& task, Complex residual) {
-  const double period = task.period_length(), length = 0.5 * period;
-  if (length + 0.25 * period > task.length()) return std::nullopt;
-  const double second = task.end() - length, first = second - 0.25 * period;
+std::optional<PulsePair> pulse_pair(const ShapingTask& task, Complex residual, const PulsePlaces& places) {
+  const double period = task.period_length(), length = places.length * period;
+  if (places.room() * period > task.length()) return std::nullopt;
+  const double second = task.end() - places.before * period - length, first = second - places.apart * period;
   const Complex own = residual_of(task, own_rise(task, task.stroke), task.end()) / task.stroke;
   const auto one = [&](double position) {
     Lift lift;
