@@ -32,9 +32,18 @@ struct TuneCamOptions {
   MotionOptions motion;
   MachineOptions machine;
   std::string speed, out;
+  std::string feedback = "record", search = "quadratic";
+  std::vector<double> numbers;
   int cycles = 3;
   bool json = false;
+
+  bool by_number() const { return feedback == "number"; }
 };
+
+// Steps of the simplexes that Dostrasil 2014 took, and sweeps of the halving.
+constexpr int simplex_steps = 14, halving_sweeps = 3;
+// The 50 degrees of Dostrasil 2014 at 130/min, in periods of its load.
+constexpr double pulse_periods = 0.93;
 
 // The first cycle of a log. Throws UsageError for one that cannot be tuned from.
 sim::cam::CycleRecord record_of(const Log& log, const machine::AxisModel& axis, const sim::cam::Motion& motion) {
@@ -101,7 +110,40 @@ void require_within_limits(const sim::cam::Motion& motion, const AxisLoad& load,
                       limit.name, limit.found, limit.unit, limit.allowed, limit.unit));
 }
 
+void require_consistent(const TuneCamOptions& options) {
+  if (options.by_number() && !options.logs.empty())
+    throw UsageError("LOG: found a log with --feedback number; expected --number for each cycle, or --feedback record");
+  if (!options.by_number() && !options.numbers.empty())
+    throw UsageError("--number: found it with --feedback record; expected --feedback number");
+  if (!options.by_number() && options.search != "quadratic")
+    throw UsageError("--search: found it with --feedback record; expected --feedback number");
+  for (const double number : options.numbers)
+    if (!(number >= 0.0 && std::isfinite(number)))
+      throw UsageError(fmt::format("--number: found {}; expected an area, 0 or more", number));
+}
+
+// From numbers of real cycles, in degrees and mm as the reports have them, or of simulated ones.
+sim::cam::NumberSearch search_by(const TuneCamOptions& options, const sim::cam::ShapingTask& task,
+                                 const sim::cam::TunerSettings& settings, const machine::Machine& machine) {
+  const double degree = std::numbers::pi / 180.0;
+  const auto unit = [&](sim::cam::Coordinate kind) { return kind == sim::cam::Coordinate::rotary ? degree : 1e-3; };
+  const double area = unit(task.motion.cam.slave) * unit(task.motion.cam.master);
+  std::size_t cycle = 0;
+  const sim::cam::CycleQuality quality = [&](const sim::cam::Cam& cam) -> std::optional<double> {
+    const std::size_t now = cycle++;
+    if (!options.numbers.empty())
+      return now < options.numbers.size() ? std::optional(options.numbers[now] * area) : std::nullopt;
+    return record_quality(task, simulated_record(machine, sim::cam::compose(cam), task.master_speed, now + 1));
+  };
+  const double length = pulse_periods * task.period_length();
+  if (options.search == "nelder-mead")
+    return search_by_simplex(task, length, sim::cam::first_simplex(task, length), simplex_steps, quality);
+  if (options.search == "halving") return search_by_halving(task, length, halving_sweeps, quality);
+  return search_by_quadratic_form(task, settings, quality);
+}
+
 void run_tuning(const TuneCamOptions& options, const Invocation& invocation) {
+  require_consistent(options);
   const auto cam = options.motion.one();
   const AxisLoad load = load_of_axis(options.machine, &cam);
   auto machine = options.machine.load(
@@ -121,23 +163,33 @@ void run_tuning(const TuneCamOptions& options, const Invocation& invocation) {
   try {
     const auto motion = sim::cam::compose(cam);
     const auto task = shaping_task(motion, sim::cam::elastic_drive_of(axis), speed, 0.2, {});
-    sim::cam::RecordTuner tuner(task, {.resolution = axis.second_encoder->increment / radius,
-                                       .share_of_limits = shares_of_limits(load, speed)});
-    const std::size_t count = logs.empty() ? static_cast<std::size_t>(options.cycles) : logs.size();
-    for (std::size_t c = 0; c < count && !tuner.done(); ++c) {
-      const auto now = sim::cam::compose(tuner.cam());
-      auto record = logs.empty() ? simulated_record(machine, now, speed, c + 1) : record_of(logs[c], axis, now);
-      cycles.push_back({std::move(record), {}});
-      cycles.back().learned = tuner.learn(cycles.back().record);
+    const sim::cam::TunerSettings settings{.resolution = axis.second_encoder->increment / radius,
+                                           .share_of_limits = shares_of_limits(load, speed)};
+    sim::cam::Cam tuned;
+    sim::ExperimentResult result;
+    if (options.by_number()) {
+      const auto search = search_by(options, task, settings, machine);
+      tuned = search.next.value_or(search.best);
+      result = search_report(task, search, options.search != "quadratic", pulse_periods * task.period_length());
+    } else {
+      sim::cam::RecordTuner tuner(task, settings);
+      const std::size_t count = logs.empty() ? static_cast<std::size_t>(options.cycles) : logs.size();
+      for (std::size_t c = 0; c < count && !tuner.done(); ++c) {
+        const auto now = sim::cam::compose(tuner.cam());
+        auto record = logs.empty() ? simulated_record(machine, now, speed, c + 1) : record_of(logs[c], axis, now);
+        cycles.push_back({std::move(record), {}});
+        cycles.back().learned = tuner.learn(cycles.back().record);
+      }
+      tuned = tuner.cam();
+      result = tuning_report(task, tuner, cycles);
     }
-    require_within_limits(sim::cam::compose(tuner.cam()), load, speed);
-    const auto result = tuning_report(task, tuner, cycles);
+    require_within_limits(sim::cam::compose(tuned), load, speed);
     const auto json = experiment_json(result, machine);
     if (!options.out.empty()) {
       auto sources = options.logs;
       sources.push_back(options.motion.motion);
       PendingFolder folder(options.out, invocation.command);
-      folder.write("tuned.toml", sim::cam::motion_text({tuner.cam()}));
+      folder.write("tuned.toml", sim::cam::motion_text({tuned}));
       folder.write("report.html", experiment_report_html({invocation.command_line, invocation.version, machine, result,
                                                           report_origin(options.machine.machine, std::move(sources))}));
       folder.write("result.json", json.dump(2) + "\n");
@@ -176,6 +228,25 @@ void add_tune_cam(CLI::App& program, const Invocation& invocation) {
   command->add_option("--cycles", o->cycles, "simulated cycles, where no log is given [3]")
       ->check(whole_number_between(1, 20))
       ->type_name("N");
+  command
+      ->add_option(
+          "--feedback", o->feedback,
+          "record: the dwell of each cycle; number: its quality number alone, the area of the deviation [record]")
+      ->check(one_of({"record", "number"}))
+      ->type_name("KIND");
+  command
+      ->add_option(
+          "--search", o->search,
+          "with --feedback number: quadratic: two pulses in seven cycles; for comparison nelder-mead and halving, "
+          "one pulse in about 29 and 61 [quadratic]")
+      ->check(one_of({"quadratic", "nelder-mead", "halving"}))
+      ->type_name("SEARCH");
+  command
+      ->add_option(
+          "--number", o->numbers,
+          "with --feedback number: that of each cycle run so far, in degrees or mm of the slave times those of the "
+          "master [simulations of the machine file]")
+      ->type_name("AREA");
   add_out(*command, o->out, "write tuned.toml, report.html and result.json into this folder");
   command->add_flag("--json", o->json, "print the figures as JSON on standard output");
   command->callback([o, &invocation] { run_tuning(*o, invocation); });

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
+#include "sim/cam/shaping/number_search.hpp"
 #include "tests/cam_tuning/campaign.hpp"
 #include "tests/sim/cam/stand/study.hpp"
 #include "tests/support/figure.hpp"
@@ -75,6 +77,42 @@ TEST(RecordTuning, PulsesKeepTheLimitsOfTheAxis) {
   EXPECT_LE(share(sim::cam::compose(tuner.cam()), 0.0), 1.0);
   EXPECT_GT(share(sim::cam::compose(boundless.cam()), 0.0), 1.0);
   EXPECT_LE(run(truth, sim::cam::compose(tuner.cam()), 1).quality, 4.0);
+}
+
+// Frequencies within 20 % and both rises; the number is that of the encoder, from 63 ms behind the rise on.
+TEST(NumberTuning, SevenCyclesAreEnoughWithoutARecord) {
+  double worst = 0.0;
+  std::size_t most = 0;
+  int within = 0;
+  for (const double rise : {120.0, 180.0})
+    for (const double factor : {0.8, 0.9, 1.0, 1.1, 1.2}) {
+      const Truth truth{.factor = factor, .rise = rise, .seed = 60 + static_cast<std::uint64_t>(10.0 * factor)};
+      std::uint64_t number = 0;
+      const auto task = task_of(truth);
+      const auto found = sim::cam::search_by_quadratic_form(task, settings_of(truth), [&](const sim::cam::Cam& cam) {
+        return std::optional(record_quality(task, run(truth, sim::cam::compose(cam), number++).record));
+      });
+      const double left = run(truth, sim::cam::compose(found.best), 99).quality;
+      within += left <= 2.0;
+      worst = std::max(worst, left);
+      most = std::max(most, found.trials.size());
+    }
+  EXPECT_LE(most, 7u);
+  // The area of a few half-waves depends on their phase too, so its square is not quite a quadratic form.
+  EXPECT_GE(within, 9);
+  test::figure("cam tuning: quality number only, ten cases: cycles, J at most, J <= 2.0",
+               fmt::format("{}, {:.2f} deg^2, {} of 10", most, worst, within));
+}
+
+// A cycle that has not been run is what the search asks for.
+TEST(NumberTuning, AsksForTheNextCycle) {
+  const auto task = task_of({});
+  std::size_t asked = 0;
+  const auto found = sim::cam::search_by_quadratic_form(
+      task, {}, [&](const sim::cam::Cam&) { return asked++ < 2 ? std::optional(1.0) : std::nullopt; });
+  EXPECT_EQ(found.trials.size(), 2u);
+  ASSERT_TRUE(found.next);
+  EXPECT_EQ(asked, 3u);
 }
 
 TEST(RecordTuning, WhatCannotBeTunedIsRefusedOrLeftAlone) {

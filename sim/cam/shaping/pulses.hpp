@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "sim/cam/shaping/task.hpp"
 
@@ -39,6 +40,10 @@ struct PulsePlaces {
 
   double room() const { return length + apart + before; }  // periods of the rise that they take
 };
+
+// Those that a tuner tries in turn: at the end of the rise, where pulses are smallest, then further apart, earlier and
+// longer, where they ask for less acceleration.
+const std::vector<PulsePlaces>& pulse_places();
 
 struct PulsePair {
   Pulse first, second;

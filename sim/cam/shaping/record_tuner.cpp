@@ -16,6 +16,9 @@ namespace {
 // periods of its loops, about a millisecond, are a tenth of the load's radian. What is further off is no such drive.
 constexpr double drive_share = 0.1;
 
+// Before the lag is known, 8 ms are more than any encoder's.
+constexpr double unknown_lag = 8e-3;
+
 double area(const DwellRecord& record, double offset, double master_speed) {
   double sum = 0.0;
   for (std::size_t k = 1; k < record.time.size(); ++k)
@@ -30,6 +33,24 @@ double mean(const std::vector<double>& values) {
   return sum / static_cast<double>(std::max<std::size_t>(1, values.size()));
 }
 
+// What the encoder shows `late` behind the beginning of the dwell, once the drive has settled.
+DwellRecord dwell_of(const ShapingTask& task, const CycleRecord& record, double late) {
+  const double wanted = task.start + task.stroke;
+  const double begin = task.end() + late * task.master_speed + settled(task) - task.end();
+  const double end = std::min(task.dwell.end(), task.motion.curve.length());
+  DwellRecord dwell;
+  for (std::size_t k = 0; k < record.master.size(); ++k) {
+    if (record.master[k] < begin || record.master[k] > end) continue;
+    dwell.time.push_back((record.master[k] - task.end()) / task.master_speed);
+    dwell.position.push_back(record.position[k] - wanted);
+  }
+  if (dwell.time.size() < 12 || dwell.time.back() - dwell.time.front() < task.mode().period())
+    throw CamError(fmt::format(
+        "found a dwell of {:.1f} ms behind the drive's lag; expected a period of the load or more, {:.1f} ms",
+        dwell.time.empty() ? 0.0 : (dwell.time.back() - dwell.time.front()) * 1e3, task.mode().period() * 1e3));
+  return dwell;
+}
+
 PulsePair room_for(const std::optional<PulsePair>& pulses) {
   if (!pulses)
     throw CamError("found no room for two pulses at the frequency that was identified; expected a longer rise");
@@ -38,29 +59,16 @@ PulsePair room_for(const std::optional<PulsePair>& pulses) {
 
 }  // namespace
 
+double record_quality(const ShapingTask& task, const CycleRecord& record) {
+  const DwellRecord dwell = dwell_of(task, record, unknown_lag);
+  return area(dwell, mean(dwell.position), task.master_speed);
+}
+
 RecordTuner::RecordTuner(ShapingTask task, TunerSettings settings)
     : task_(std::move(task)), settings_(std::move(settings)), cam_(task_.motion.cam) {
   if (!pulse_pair(task_, 0.0))
     throw CamError(fmt::format(
         "found a rise of {:.2f} periods of the load; expected 0.75 or more, which two pulses take", task_.periods()));
-}
-
-// What the encoder shows `late` behind the beginning of the dwell, once the drive has settled.
-DwellRecord RecordTuner::dwell_of(const CycleRecord& record, double late) const {
-  const double wanted = task_.start + task_.stroke;
-  const double begin = task_.end() + late * task_.master_speed + settled(task_) - task_.end();
-  const double end = std::min(task_.dwell.end(), task_.motion.curve.length());
-  DwellRecord dwell;
-  for (std::size_t k = 0; k < record.master.size(); ++k) {
-    if (record.master[k] < begin || record.master[k] > end) continue;
-    dwell.time.push_back((record.master[k] - task_.end()) / task_.master_speed);
-    dwell.position.push_back(record.position[k] - wanted);
-  }
-  if (dwell.time.size() < 12 || dwell.time.back() - dwell.time.front() < task_.mode().period())
-    throw CamError(fmt::format(
-        "found a dwell of {:.1f} ms behind the drive's lag; expected a period of the load or more, {:.1f} ms",
-        dwell.time.empty() ? 0.0 : (dwell.time.back() - dwell.time.front()) * 1e3, task_.mode().period() * 1e3));
-  return dwell;
 }
 
 // The pulses that cancel what `fit` recorded, at `places`. `beyond`: what of it no model of the drive explains.
@@ -92,23 +100,19 @@ PulsePair RecordTuner::first_pulses(const CycleRecord& record, const DwellFit& f
   const std::complex<double> beyond = drives ? 0.0 : recorded - modelled;
   std::optional<PulsePair> best;
   double least = 0.0;
-  for (const double length : {0.5, 0.75, 1.0})
-    for (const double apart : {0.25, 0.375, 0.5})
-      for (const double before : {0.0, 0.25, 0.5}) {
-        const PulsePlaces places{length, apart, before};
-        const auto pulses = cancelling(fit, beyond, places);
-        if (!pulses) continue;
-        const double share =
-            settings_.share_of_limits
-                ? settings_.share_of_limits(compose(with_lift(task_.motion.cam, with_pulses(task_, *pulses))),
-                                            drive_->coulomb)
-                : 0.0;
-        if (best && share >= least) continue;
-        best = pulses;
-        least = share;
-        places_ = places;
-        if (least <= 1.0) return *best;
-      }
+  for (const auto& places : pulse_places()) {
+    const auto pulses = cancelling(fit, beyond, places);
+    if (!pulses) continue;
+    const double share = settings_.share_of_limits
+                             ? settings_.share_of_limits(
+                                   compose(with_lift(task_.motion.cam, with_pulses(task_, *pulses))), drive_->coulomb)
+                             : 0.0;
+    if (best && share >= least) continue;
+    best = pulses;
+    least = share;
+    places_ = places;
+    if (least <= usable_share) return *best;
+  }
   return room_for(best);
 }
 
@@ -129,9 +133,7 @@ TunedCycle& RecordTuner::keep_better(TunedCycle& cycle, const char* note) {
 
 TunedCycle RecordTuner::learn(const CycleRecord& record) {
   TunedCycle cycle;
-  // Before the lag is known, 8 ms are more than any encoder's.
-  constexpr double unknown_lag = 8e-3;
-  const DwellRecord dwell = dwell_of(record, drive_ ? std::max(0.0, drive_->delay) : unknown_lag);
+  const DwellRecord dwell = dwell_of(task_, record, drive_ ? std::max(0.0, drive_->delay) : unknown_lag);
   ++cycles_;
   cycle.fit = fit_dwell(dwell, task_.mode().frequency());
   cycle.quality = area(dwell, cycle.fit ? cycle.fit->offset : mean(dwell.position), task_.master_speed);

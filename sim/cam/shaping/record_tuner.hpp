@@ -23,12 +23,21 @@ struct TunedCycle {
   std::string note{};  // a sentence where the cycle changed nothing
 };
 
+// The quality number of the `record` of a cycle along the motion of `task`: the area of the deviation from its mean in
+// the dwell, behind what the drive and any encoder lag; in the slave's unit times the master's. Throws CamError for a
+// record without the whole dwell.
+double record_quality(const ShapingTask& task, const CycleRecord& record);
+
 struct TunerSettings {
   double resolution = 0.0;  // of the load's encoder, in the slave's unit
   // The largest share of a limit of the axis that a motion takes, with that Coulomb friction at the motor, as a torque
   // or a force at the output; none: no limits.
   std::function<double(const Motion& motion, double coulomb)> share_of_limits{};
 };
+
+// The share of the axis' limits that set-points of a trial may take: a drive damped as cascades usually are overshoots
+// by 7 % where the acceleration jumps, and one at its limit is not linear.
+inline constexpr double usable_share = 0.9;
 
 class RecordTuner {
  public:
@@ -48,7 +57,6 @@ class RecordTuner {
   bool done() const { return done_; }
 
  private:
-  DwellRecord dwell_of(const CycleRecord& record, double late) const;
   PulsePair first_pulses(const CycleRecord& record, const DwellFit& fit);
   std::optional<PulsePair> cancelling(const DwellFit& fit, std::complex<double> beyond,
                                       const PulsePlaces& places) const;

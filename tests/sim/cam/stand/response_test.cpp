@@ -186,6 +186,7 @@ TEST(StandModel, CoulombFrictionHoldsTheRotorBehindTheSetPoint) {
   const auto drive = study_drive();
   const double coulomb = 33.0;  // 1 N m at the motor
   Cam cam{.name = "ramp"};
+  cam.periodic = false;
   cam.segments = {{.length = 1.0, .stroke = 0.5, .law = "parabola"}, {.length = 5.28}};
   Cam steady{.name = "steady"};
   steady.periodic = false;
