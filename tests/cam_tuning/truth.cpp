@@ -80,6 +80,34 @@ Cycle run(const Truth& truth, const sim::cam::Motion& motion, std::uint64_t numb
   return cycle;
 }
 
+Running run_on(const Truth& truth, const std::vector<sim::cam::Cam>& cams) {
+  sim::cam::Cam all{.name = "cycles"};
+  all.periodic = false;
+  for (const auto& cam : cams) all.segments.insert(all.segments.end(), cam.segments.begin(), cam.segments.end());
+  const auto found = host::run_stand<FixedSignals>(machine_of(truth), sim::cam::compose(all),
+                                                   {.master_speed = stand_speed, .seed = truth.seed});
+  Running running;
+  const double turn = 2.0 * std::numbers::pi, rise = truth.rise * degree;
+  for (std::size_t c = 0; c < cams.size(); ++c) {
+    const double begin = static_cast<double>(c) * turn, rest = static_cast<double>(c + 1) * 30.0 * degree;
+    double area = 0.0;
+    for (std::size_t k = 1; k < found.load.size(); ++k) {
+      const auto& state = found.load[k];
+      if (state.master < begin + rise || state.master > begin + turn) continue;
+      area += std::fabs(state.position - rest) * (state.master - found.load[k - 1].master);
+    }
+    running.qualities.push_back(area / (degree * degree));
+  }
+  const double begin = static_cast<double>(cams.size() - 1) * turn;
+  const double start = static_cast<double>(cams.size() - 1) * 30.0 * degree;
+  for (const auto& state : found.measured) {
+    if (state.master < begin || state.master > begin + turn) continue;
+    running.last.master.push_back(state.master - begin);
+    running.last.position.push_back(state.position - start);
+  }
+  return running;
+}
+
 Ringing ringing_of(const Truth& truth) {
   const double turn = 2.0 * std::numbers::pi, rise = truth.rise * degree, seconds = 4.0;
   sim::cam::Cam cam{.name = "long"};

@@ -47,6 +47,13 @@ struct Cycle {
 // draws the noise.
 Cycle run(const Truth& truth, const sim::cam::Motion& motion, std::uint64_t number, int cycles = 1);
 
+// The quality of each cycle of a machine that runs along `cams` in turn, and the record of the last.
+struct Running {
+  std::vector<double> qualities;  // deg^2
+  sim::cam::CycleRecord last;
+};
+Running run_on(const Truth& truth, const std::vector<sim::cam::Cam>& cams);
+
 // Frequency (rad/s) and damping ratio with which the load rings in a dwell, from turning points of 4 s without noise:
 // no least squares of the tuner's.
 struct Ringing {

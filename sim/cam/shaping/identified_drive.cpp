@@ -17,10 +17,18 @@ constexpr double settling = 6.0;  // time constants
 
 using States = std::vector<LoadState>;
 
-States response(const ShapingTask& task, const ElasticDrive& drive, double coulomb, const Motion& motion) {
-  const ResponseSettings settings{.master_speed = task.master_speed};
-  return coulomb > 0.0 ? lagrange_response(drive, motion, settings, coulomb)
-                       : transfer_response(drive, motion, settings);
+// The load along the last of `cycles` of `motion`.
+States response(const ShapingTask& task, const ElasticDrive& drive, double coulomb, const Motion& motion, int cycles) {
+  const ResponseSettings settings{.master_speed = task.master_speed, .cycles = cycles};
+  States states =
+      coulomb > 0.0 ? lagrange_response(drive, motion, settings, coulomb) : transfer_response(drive, motion, settings);
+  if (cycles == 1) return states;
+  const auto& curve = motion.curve;
+  const double before = (cycles - 1) * curve.length();
+  const double rise = (cycles - 1) * (curve.derivative(curve.end(), 0, Side::left) - curve(curve.begin()));
+  std::erase_if(states, [&](const LoadState& state) { return state.master < before - 1e-9 * curve.length(); });
+  for (LoadState& state : states) state.master -= before, state.position -= rise;
+  return states;
 }
 
 LoadState state_at(const States& states, double master, double master_speed) {
@@ -46,15 +54,15 @@ class Slopes {
   Slopes(const ShapingTask& task, const IdentifiedDrive& drive, double friction_step)
       : speed_(task.master_speed),
         friction_step_(friction_step),
-        now_(response(task, drive.drive, drive.coulomb, task.motion)),
-        rougher_(response(task, drive.drive, drive.coulomb + friction_step, task.motion)) {
+        now_(response(task, drive.drive, drive.coulomb, task.motion, drive.cycles)),
+        rougher_(response(task, drive.drive, drive.coulomb + friction_step, task.motion, drive.cycles)) {
     constexpr std::array<double ElasticDrive::*, 5> varied{&ElasticDrive::drive_damping, &ElasticDrive::rotor_inertia,
                                                            &ElasticDrive::shaft_stiffness, &ElasticDrive::shaft_damping,
                                                            &ElasticDrive::drive_stiffness};
     for (std::size_t k = 0; k < varied.size(); ++k) {
       ElasticDrive other = drive.drive;
       other.*varied[k] *= 1.0 + share;
-      varied_[k] = response(task, other, drive.coulomb, task.motion);
+      varied_[k] = response(task, other, drive.coulomb, task.motion, drive.cycles);
     }
   }
 
@@ -97,15 +105,23 @@ DwellRecord dwell_of(const ShapingTask& task, const States& states) {
   return record;
 }
 
+// After so many cycles a thousandth of the first residual is carried over.
+int cycles_to_settle(const ShapingTask& task, const Mode& mode) {
+  const double carried = -mode.pole.real() * task.motion.curve.length() / task.master_speed;
+  constexpr double thousandth = 6.9;
+  constexpr int most = 24;
+  return carried * most < thousandth ? most : 1 + static_cast<int>(std::ceil(thousandth / carried));
+}
+
 // The drive that rings with `mode` in the dwell of the task's motion, `coulomb` at the motor.
-ElasticDrive ringing_drive(const ShapingTask& task, const Mode& mode, double coulomb) {
+ElasticDrive ringing_drive(const ShapingTask& task, const Mode& mode, double coulomb, int cycles) {
   ElasticDrive drive = drive_with_mode(task.drive, mode);
   if (coulomb == 0.0) return drive;
   // A motor that sticks in the dwell makes the load ring as if it were clamped.
   constexpr int iterations = 4;
   Mode wanted = mode;
   for (int k = 0; k < iterations; ++k) {
-    const auto fit = fit_dwell(dwell_of(task, response(task, drive, coulomb, task.motion)), mode.frequency());
+    const auto fit = fit_dwell(dwell_of(task, response(task, drive, coulomb, task.motion, cycles)), mode.frequency());
     if (!fit) break;
     wanted.pole += mode.pole - fit->mode.pole;
     drive = drive_with_mode(task.drive, wanted);
@@ -142,8 +158,9 @@ std::vector<Vector<unknowns - 1>> without_last(const std::vector<Vector<unknowns
 
 double settled(const ShapingTask& task) { return task.end() + settling * drive_lag(task); }
 
-IdentifiedDrive identify_drive(const ShapingTask& task, const CycleRecord& record, const DwellFit& fit) {
+IdentifiedDrive identify_drive(const ShapingTask& task, const CycleRecord& record, const DwellFit& fit, bool running) {
   IdentifiedDrive found;
+  if (running) found.cycles = cycles_to_settle(task, fit.mode);
   found.ringing = fit.mode;
   found.drive = drive_with_mode(task.drive, fit.mode);
   // The torque that the motion takes: a twentieth of it is a step in which friction shows and changes nothing else.
@@ -178,7 +195,7 @@ IdentifiedDrive identify_drive(const ShapingTask& task, const CycleRecord& recor
     found.coulomb_error = friction.error;
     // Less is none: without friction the model is exact.
     if (found.coulomb < 3.0 * found.coulomb_error) found.coulomb = 0.0;
-    found.drive = ringing_drive(task, fit.mode, found.coulomb);
+    found.drive = ringing_drive(task, fit.mode, found.coulomb, found.cycles);
     if (std::fabs(step.value) < 0.1 * found.delay_error &&
         std::fabs(found.coulomb - before) < 0.1 * found.coulomb_error)
       break;
@@ -186,9 +203,9 @@ IdentifiedDrive identify_drive(const ShapingTask& task, const CycleRecord& recor
   return found;
 }
 
-std::complex<double> modelled_residual(const ShapingTask& task, const IdentifiedDrive& identified,
-                                       const Motion& motion) {
-  return residual_with_mode(dwell_of(task, response(task, identified.drive, identified.coulomb, motion)),
+std::complex<double> modelled_residual(const ShapingTask& task, const IdentifiedDrive& identified, const Motion& motion,
+                                       int cycles) {
+  return residual_with_mode(dwell_of(task, response(task, identified.drive, identified.coulomb, motion, cycles)),
                             identified.ringing);
 }
 

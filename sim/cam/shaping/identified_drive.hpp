@@ -18,17 +18,19 @@ struct CycleRecord {
 struct IdentifiedDrive {
   ElasticDrive drive;
   Mode ringing;                               // of the load in the dwell, where the motor may stick
+  int cycles = 1;                             // of the motion, the last of which was recorded
   double delay = 0.0, delay_error = 0.0;      // s, of the load's encoder, with its standard error
   double coulomb = 0.0, coulomb_error = 0.0;  // at the motor, as a torque or a force at the output
 };
 
-// Of the `record` of a cycle along the motion of `task`, whose dwell was fitted by `fit`.
-IdentifiedDrive identify_drive(const ShapingTask& task, const CycleRecord& record, const DwellFit& fit);
+// Of the `record` of a cycle along the motion of `task`, whose dwell was fitted by `fit`. `running`: not from rest, but
+// behind many cycles of the same motion.
+IdentifiedDrive identify_drive(const ShapingTask& task, const CycleRecord& record, const DwellFit& fit, bool running);
 
-// How the load of the `identified` drive vibrates about its rest behind `motion`, which has the dwell of `task`; at the
-// end of the rise.
-std::complex<double> modelled_residual(const ShapingTask& task, const IdentifiedDrive& identified,
-                                       const Motion& motion);
+// How the load of the `identified` drive vibrates about its rest behind the last of `cycles` of `motion`, which has the
+// dwell of `task`; at the end of the rise.
+std::complex<double> modelled_residual(const ShapingTask& task, const IdentifiedDrive& identified, const Motion& motion,
+                                       int cycles = 1);
 
 // Where the dwell of a `task` begins for a fit: what the drive's own lag leaves of the rise has died.
 double settled(const ShapingTask& task);

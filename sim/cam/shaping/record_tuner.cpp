@@ -71,10 +71,11 @@ RecordTuner::RecordTuner(ShapingTask task, TunerSettings settings)
         "found a rise of {:.2f} periods of the load; expected 0.75 or more, which two pulses take", task_.periods()));
 }
 
-// The pulses that cancel what `fit` recorded, at `places`. `beyond`: what of it no model of the drive explains.
-std::optional<PulsePair> RecordTuner::cancelling(const DwellFit& fit, std::complex<double> beyond,
+// The pulses at `places` that cancel `residual`. `beyond`: what a cycle from rest does not have, of the cycle before,
+// or by no model of the drive.
+std::optional<PulsePair> RecordTuner::cancelling(std::complex<double> residual, std::complex<double> beyond,
                                                  const PulsePlaces& places) const {
-  auto pulses = pulse_pair(task_, fit.residual * scale_, places);
+  auto pulses = pulse_pair(task_, residual, places);
   // Friction makes the equation one that is not linear: the model's next cycles take the place of the machine's.
   constexpr int modelled_cycles = 4;
   for (int k = 0; k < modelled_cycles && pulses && drive_->coulomb > 0.0; ++k) {
@@ -86,27 +87,58 @@ std::optional<PulsePair> RecordTuner::cancelling(const DwellFit& fit, std::compl
   return pulses;
 }
 
+// What a cycle's `residual` is in the dwell of the next one.
+std::complex<double> RecordTuner::carried(std::complex<double> residual) const {
+  if (!settings_.running) return 0.0;
+  return residual * std::exp(drive_->ringing.pole * (task_.motion.curve.length() / task_.master_speed));
+}
+
+// Of the axis' limits, by the rise with those pulses.
+double RecordTuner::share_of(const PulsePair& pulses) const {
+  if (!settings_.share_of_limits) return 0.0;
+  return settings_.share_of_limits(compose(with_lift(task_.motion.cam, with_pulses(task_, pulses))), drive_->coulomb);
+}
+
+// Those in use, and such that cancel `residual`.
+PulsePair RecordTuner::corrected(std::complex<double> residual) const {
+  PulsePair pulses = room_for(pulse_pair(task_, residual, places_));
+  if (pulses_) {
+    pulses.first.amplitude += pulses_->first.amplitude;
+    pulses.second.amplitude += pulses_->second.amplitude;
+  }
+  return pulses;
+}
+
+// The pulses that cancelled what was carried over have done so in the next cycle.
+Cam RecordTuner::steady_cam() const {
+  if (!settings_.running || !drive_ || done_) return cam_;
+  return with_lift(task_.motion.cam, with_pulses(task_, corrected(-carried(last_))));
+}
+
 // The pulses for the second cycle: those at the end of the rise, where they are smallest; where these break a limit of
 // the axis, the first ones that do not, or those that break it least.
 PulsePair RecordTuner::first_pulses(const CycleRecord& record, const DwellFit& fit) {
-  drive_ = identify_drive(task_, record, fit);
+  drive_ = identify_drive(task_, record, fit, settings_.running);
   task_.drive = drive_->drive;
   // As long before as the encoder is late.
   scale_ = std::exp(fit.mode.pole * drive_->delay);
-  const auto recorded = fit.residual * scale_, modelled = modelled_residual(task_, *drive_, task_.motion);
+  const auto recorded = fit.residual * scale_,
+             modelled = modelled_residual(task_, *drive_, task_.motion, drive_->cycles);
   const auto ratio = modelled / recorded;
   const bool drives = std::abs(ratio - 1.0) < drive_share;
   if (drives) scale_ *= ratio;
-  const std::complex<double> beyond = drives ? 0.0 : recorded - modelled;
+  // Running, the next cycle begins as this one did: its own residual and what is carried over make the same sum.
+  last_ = fit.residual * scale_;
+  const std::complex<double> beyond = (drives ? 0.0 : recorded - modelled) + carried(last_);
   std::optional<PulsePair> best;
   double least = 0.0;
   for (const auto& places : pulse_places()) {
-    const auto pulses = cancelling(fit, beyond, places);
+    const auto pulses = cancelling(last_, beyond, places);
     if (!pulses) continue;
-    const double share = settings_.share_of_limits
-                             ? settings_.share_of_limits(
-                                   compose(with_lift(task_.motion.cam, with_pulses(task_, *pulses))), drive_->coulomb)
-                             : 0.0;
+    double share = share_of(*pulses);
+    // And those of the cycles behind the next one, which have no more than their own residual to cancel.
+    if (settings_.running)
+      if (const auto own = pulse_pair(task_, last_ - carried(last_), places)) share = std::max(share, share_of(*own));
     if (best && share >= least) continue;
     best = pulses;
     least = share;
@@ -145,6 +177,11 @@ TunedCycle RecordTuner::learn(const CycleRecord& record) {
   if (!cycle.fit || cycle.peak_to_peak < settings_.resolution) {
     done_ = true;
     cycle.note = "The residual is within the resolution of the encoder; nothing is changed.";
+    if (settings_.running && drive_ && cycles_ > 1) {
+      use(corrected(-carried(last_)));
+      cycle.note =
+          "The residual is within the resolution of the encoder; the motion cancels its own residual from now on.";
+    }
     return cycle;
   }
   // A linear machine is at rest after one correction but for what its drive differs from the model.
@@ -158,12 +195,9 @@ TunedCycle RecordTuner::learn(const CycleRecord& record) {
     use(first_pulses(record, *cycle.fit));
     return cycle;
   }
-  PulsePair pulses = room_for(pulse_pair(task_, cycle.fit->residual * scale_, places_));
-  if (pulses_) {
-    pulses.first.amplitude += pulses_->first.amplitude;
-    pulses.second.amplitude += pulses_->second.amplitude;
-  }
-  use(pulses);
+  const auto residual = cycle.fit->residual * scale_;
+  use(corrected(residual - carried(last_) + carried(residual)));
+  last_ = residual;
   return cycle;
 }
 

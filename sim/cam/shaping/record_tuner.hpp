@@ -33,6 +33,10 @@ struct TunerSettings {
   // The largest share of a limit of the axis that a motion takes, with that Coulomb friction at the motor, as a torque
   // or a force at the output; none: no limits.
   std::function<double(const Motion& motion, double coulomb)> share_of_limits{};
+  // The machine does not stop: each record is of a running cycle, the first one behind many of the untuned motion. What
+  // the last cycle left is cancelled with the cycle's own residual, so the motion of the next cycle is not that of the
+  // one behind it.
+  bool running = false;
 };
 
 // The share of the axis' limits that set-points of a trial may take: a drive damped as cascades usually are overshoots
@@ -50,6 +54,8 @@ class RecordTuner {
 
   // The cam for the next cycle: its rise with the pulses.
   const Cam& cam() const { return cam_; }
+  // Running: the cam for all cycles behind the next one, as far as is known; else cam().
+  Cam steady_cam() const;
   const std::optional<PulsePair>& pulses() const { return pulses_; }
   const std::optional<IdentifiedDrive>& drive() const { return drive_; }  // from the first cycle that vibrates
   // Whether a further cycle would not be better: within the resolution, or worse than one before, to which it returned,
@@ -58,8 +64,11 @@ class RecordTuner {
 
  private:
   PulsePair first_pulses(const CycleRecord& record, const DwellFit& fit);
-  std::optional<PulsePair> cancelling(const DwellFit& fit, std::complex<double> beyond,
+  std::optional<PulsePair> cancelling(std::complex<double> residual, std::complex<double> beyond,
                                       const PulsePlaces& places) const;
+  std::complex<double> carried(std::complex<double> residual) const;
+  double share_of(const PulsePair& pulses) const;
+  PulsePair corrected(std::complex<double> residual) const;
   TunedCycle& keep_better(TunedCycle& cycle, const char* note);
   void use(const PulsePair& pulses);
 
@@ -72,6 +81,7 @@ class RecordTuner {
   Cam cam_;
   std::optional<PulsePair> pulses_, better_;  // in use, and of the best cycle before
   double best_quality_ = 0.0, before_ = 0.0;  // before_: peak to peak of the cycle before
+  std::complex<double> last_ = 0.0;           // residual of the cycle before
   int cycles_ = 0;
 };
 

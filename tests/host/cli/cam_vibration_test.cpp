@@ -110,6 +110,17 @@ TEST_F(CamVibrationCli, TunesFromQualityNumbersAlone) {
   EXPECT_TRUE(nlohmann::json::parse(simplex.out)["results"].contains("pulse_1_at_deg"));
 }
 
+TEST_F(CamVibrationCli, TunesAMachineThatRunsOn) {
+  const auto tune = on_stand("tune-cam --cam " + stand() + " --running");
+  const auto done = stiction(tune + " --out ../running --json");
+  ASSERT_EQ(done.code, 0) << done.error;
+  const auto results = nlohmann::json::parse(done.out)["results"];
+  EXPECT_GE(results["quality_cycle_1_deg_deg"].get<double>(), 30.0);
+  EXPECT_LE(results["quality_cycle_2_deg_deg"].get<double>(), 1.0);
+  EXPECT_EQ(stiction("cam check ../running/steady.toml --machine cam-stand --speed '130 rpm'").code, 0);
+  expect_refused(tune + " --feedback number", "--running: found it with --feedback number");
+}
+
 TEST_F(CamVibrationCli, RefusesFeedbackThatDoesNotFit) {
   const auto tune = on_stand("tune-cam --cam " + stand());
   expect_refused(tune + " --number 84.5", "--number: found it with --feedback record");
