@@ -47,7 +47,7 @@ sim::Chart over_frequency(const sim::cam::ShapingTask& task, const sim::cam::Rec
   chart.x_label = "frequency of the load, % of the identified one";
   chart.y_label = "peak to peak, " + units.slave_unit;
   auto identified = task;
-  identified.drive = tuner.drive();
+  if (tuner.drive()) identified.drive = tuner.drive()->drive;
   const auto add = [&](const char* name, const sim::cam::Motion& motion) {
     sim::Series series{.name = name, .x = {}, .y = {}};
     constexpr int points = 33;
@@ -63,7 +63,75 @@ sim::Chart over_frequency(const sim::cam::ShapingTask& task, const sim::cam::Rec
   return chart;
 }
 
+sim::Chart path_of_search(const sim::cam::NumberSearch& search, bool one_pulse, const TuningUnits& units) {
+  sim::Chart chart;
+  chart.title = "Path of the search";
+  chart.x_label = one_pulse ? "master, " + units.master_unit : "amplitude of the first pulse, " + units.slave_unit;
+  chart.y_label = fmt::format("amplitude of the {} pulse, {}", one_pulse ? "one" : "second", units.slave_unit);
+  sim::Series path{.name = "trials in turn", .x = {}, .y = {}};
+  sim::Series best{.name = "least area", .x = {}, .y = {}, .points = true};
+  const double along = one_pulse ? units.master : units.slave;
+  for (const auto& trial : search.trials) {
+    path.x.push_back(trial.at[0] * along);
+    path.y.push_back(trial.at[1] * units.slave);
+  }
+  best.x.push_back(search.least.at[0] * along);
+  best.y.push_back(search.least.at[1] * units.slave);
+  chart.series = {std::move(path), std::move(best)};
+  return chart;
+}
+
+sim::Chart numbers_of_search(const sim::cam::NumberSearch& search, const TuningUnits& units) {
+  sim::Chart chart;
+  chart.title = "Area of the deviation, cycle by cycle";
+  chart.x_label = "cycle";
+  chart.y_label = fmt::format("area, {}·{}", units.slave_unit, units.master_unit);
+  sim::Series areas{.name = "each", .x = {}, .y = {}}, least{.name = "least so far", .x = {}, .y = {}};
+  double so_far = search.trials.empty() ? 0.0 : search.trials.front().quality;
+  for (std::size_t k = 0; k < search.trials.size(); ++k) {
+    so_far = std::min(so_far, search.trials[k].quality);
+    for (auto* series : {&areas, &least}) series->x.push_back(static_cast<double>(k + 1));
+    areas.y.push_back(search.trials[k].quality * units.slave * units.master);
+    least.y.push_back(so_far * units.slave * units.master);
+  }
+  chart.series = {std::move(areas), std::move(least)};
+  return chart;
+}
+
 }  // namespace
+
+sim::ExperimentResult search_report(const sim::cam::ShapingTask& task, const sim::cam::NumberSearch& search,
+                                    bool one_pulse, double length) {
+  const auto units = units_of_tuning(task.motion.cam);
+  sim::ExperimentResult result;
+  result.experiment = "tune-cam";
+  result.title = fmt::format("Tuned cam {}", task.motion.cam.name);
+  result.question = "How much less does the load vibrate in the dwell, by its quality number alone?";
+  const auto add = [&](const std::string& name, const std::string& unit, const std::string& text, double value) {
+    result.figures.push_back({.name = name, .unit = unit, .text = text, .value = value, .expected = {}});
+  };
+  for (std::size_t c = 0; c < search.trials.size(); ++c)
+    add(fmt::format("quality_cycle_{}", c + 1), units.slave_unit + " " + units.master_unit,
+        fmt::format("cycle {}: area of the deviation in the dwell", c + 1),
+        search.trials[c].quality * units.slave * units.master);
+  if (one_pulse && !search.trials.empty()) {
+    add("pulse_1_at", units.master_unit, "pulse: begins at", search.least.at[0] * units.master);
+    add("pulse_1_amplitude", units.slave_unit, "pulse: amplitude", search.least.at[1] * units.slave);
+    add("pulse_length", units.master_unit, "length of the pulse", length * units.master);
+  } else if (!search.trials.empty()) {
+    add("pulse_1_amplitude", units.slave_unit, "pulse 1: amplitude", search.least.at[0] * units.slave);
+    add("pulse_2_amplitude", units.slave_unit, "pulse 2: amplitude", search.least.at[1] * units.slave);
+  }
+  if (!search.trials.empty())
+    result.findings.push_back(fmt::format("Least area of the deviation: {:.3g} {}·{} after {} cycles.",
+                                          search.least.quality * units.slave * units.master, units.slave_unit,
+                                          units.master_unit, search.trials.size()));
+  if (search.next)
+    result.findings.push_back("The motion file is the trial of the next cycle; its number is wanted next.");
+  if (!search.trials.empty())
+    result.charts = {path_of_search(search, one_pulse, units), numbers_of_search(search, units)};
+  return result;
+}
 
 sim::ExperimentResult tuning_report(const sim::cam::ShapingTask& task, const sim::cam::RecordTuner& tuner,
                                     const std::vector<TuningCycle>& cycles) {
@@ -80,8 +148,10 @@ sim::ExperimentResult tuning_report(const sim::cam::ShapingTask& task, const sim
     add("frequency_error", "Hz", "its standard error", fit->frequency_error / (2.0 * std::numbers::pi));
     add("damping_ratio", "", "damping ratio", fit->mode.damping_ratio());
     add("damping_ratio_error", "", "its standard error", fit->damping_error);
-    add("delay", "ms", "lag of the load's encoder", tuner.delay() * 1e3);
-    add("delay_error", "ms", "its standard error", tuner.delay_error() * 1e3);
+  }
+  if (const auto& drive = tuner.drive()) {
+    add("delay", "ms", "lag of the load's encoder", drive->delay * 1e3);
+    add("delay_error", "ms", "its standard error", drive->delay_error * 1e3);
   }
   for (std::size_t c = 0; c < cycles.size(); ++c) {
     const auto& learned = cycles[c].learned;

@@ -8,6 +8,7 @@
 
 #include "firmware/machine/configuration/double_signals.hpp"
 #include "host/cam/duty.hpp"
+#include "host/cam/limit_share.hpp"
 #include "host/cam/tuning_report.hpp"
 #include "host/cli/cam_options.hpp"
 #include "host/cli/choices.hpp"
@@ -31,12 +32,23 @@ struct TuneCamOptions {
   MotionOptions motion;
   MachineOptions machine;
   std::string speed, out;
+  std::string feedback = "record", search = "quadratic";
+  std::vector<double> numbers;
   int cycles = 3;
-  bool json = false;
+  bool running = false, json = false;
+
+  bool by_number() const { return feedback == "number"; }
 };
 
+// Steps of the simplexes that Dostrasil 2014 took, and sweeps of the halving.
+constexpr int simplex_steps = 14, halving_sweeps = 3;
+// The 50 degrees of Dostrasil 2014 at 130/min, in periods of its load.
+constexpr double pulse_periods = 0.93;
+
 // The first cycle of a log. Throws UsageError for one that cannot be tuned from.
-sim::cam::CycleRecord record_of(const Log& log, const machine::AxisModel& axis, const sim::cam::Motion& motion) {
+// `running`: of the cycle that the axis came to in its turn, and not of the one from where its positions begin.
+sim::cam::CycleRecord record_of(const Log& log, const machine::AxisModel& axis, const sim::cam::Motion& motion,
+                                bool running) {
   const auto found = std::find_if(log.axes.begin(), log.axes.end(),
                                   [&](const AxisLog& each) { return each.axis == axis.name || each.axis.empty(); });
   if (found == log.axes.end())
@@ -48,7 +60,11 @@ sim::cam::CycleRecord record_of(const Log& log, const machine::AxisModel& axis, 
         "{}: found no channel x_load; expected an encoder at the load: the motor's following error sees the drive's "
         "lag and not what the shaft does",
         log.source));
+  if (running && found->x_set.empty())
+    throw UsageError(fmt::format(
+        "{}: found no channel x_set; expected set-points, which say where a running cycle began", log.source));
   const double cycle = motion.curve.length();
+  const double start = running ? found->x_set[0] - motion.curve(found->master[0]) : 0.0;
   double range = 0.0;
   for (const auto& piece : motion.curve.pieces())
     range = std::max(range, std::fabs(piece.derivative(piece.end, 0) - motion.curve(motion.curve.begin())));
@@ -58,7 +74,7 @@ sim::cam::CycleRecord record_of(const Log& log, const machine::AxisModel& axis, 
     // The first cycle ends where the master falls back.
     if (k > 0 && found->master[k] < found->master[k - 1] - 0.5 * cycle) break;
     record.master.push_back(found->master[k]);
-    record.position.push_back(found->x_load[k]);
+    record.position.push_back(found->x_load[k] - start);
     if (!found->x_set.empty())
       off = std::max(off, std::fabs(found->x_set[k] - found->x_set[0] - motion.curve(found->master[k]) +
                                     motion.curve(found->master[0])));
@@ -92,6 +108,26 @@ sim::cam::CycleRecord simulated_record(const machine::Machine& machine, const si
   return record;
 }
 
+// The last of the cycles along `cams`.
+sim::cam::CycleRecord simulated_running_record(const machine::Machine& machine, const std::vector<sim::cam::Cam>& cams,
+                                               double speed, std::uint64_t seed) {
+  sim::cam::Cam all = cams.front();
+  all.periodic = false;
+  all.segments.clear();
+  for (const auto& cam : cams) all.segments.insert(all.segments.end(), cam.segments.begin(), cam.segments.end());
+  const auto motion = sim::cam::compose(all), last = sim::cam::compose(cams.back());
+  const double begin = motion.curve.length() - last.curve.length();
+  const double start = motion.curve(begin) - last.curve(last.curve.begin());
+  sim::cam::CycleRecord record;
+  const auto whole = simulated_record(machine, motion, speed, seed);
+  for (std::size_t k = 0; k < whole.master.size(); ++k) {
+    if (whole.master[k] < begin) continue;
+    record.master.push_back(whole.master[k] - begin);
+    record.position.push_back(whole.position[k] - start);
+  }
+  return record;
+}
+
 void require_within_limits(const sim::cam::Motion& motion, const AxisLoad& load, double speed) {
   for (const Limit& limit : duty_of(motion, load, speed).limits)
     if (limit.broken())
@@ -100,7 +136,42 @@ void require_within_limits(const sim::cam::Motion& motion, const AxisLoad& load,
                       limit.name, limit.found, limit.unit, limit.allowed, limit.unit));
 }
 
+void require_consistent(const TuneCamOptions& options) {
+  if (options.by_number() && !options.logs.empty())
+    throw UsageError("LOG: found a log with --feedback number; expected --number for each cycle, or --feedback record");
+  if (!options.by_number() && !options.numbers.empty())
+    throw UsageError("--number: found it with --feedback record; expected --feedback number");
+  if (!options.by_number() && options.search != "quadratic")
+    throw UsageError("--search: found it with --feedback record; expected --feedback number");
+  if (options.by_number() && options.running)
+    throw UsageError("--running: found it with --feedback number; expected --feedback record");
+  for (const double number : options.numbers)
+    if (!(number >= 0.0 && std::isfinite(number)))
+      throw UsageError(fmt::format("--number: found {}; expected an area, 0 or more", number));
+}
+
+// From numbers of real cycles, in degrees and mm as the reports have them, or of simulated ones.
+sim::cam::NumberSearch search_by(const TuneCamOptions& options, const sim::cam::ShapingTask& task,
+                                 const sim::cam::TunerSettings& settings, const machine::Machine& machine) {
+  const double degree = std::numbers::pi / 180.0;
+  const auto unit = [&](sim::cam::Coordinate kind) { return kind == sim::cam::Coordinate::rotary ? degree : 1e-3; };
+  const double area = unit(task.motion.cam.slave) * unit(task.motion.cam.master);
+  std::size_t cycle = 0;
+  const sim::cam::CycleQuality quality = [&](const sim::cam::Cam& cam) -> std::optional<double> {
+    const std::size_t now = cycle++;
+    if (!options.numbers.empty())
+      return now < options.numbers.size() ? std::optional(options.numbers[now] * area) : std::nullopt;
+    return record_quality(task, simulated_record(machine, sim::cam::compose(cam), task.master_speed, now + 1));
+  };
+  const double length = pulse_periods * task.period_length();
+  if (options.search == "nelder-mead")
+    return search_by_simplex(task, length, sim::cam::first_simplex(task, length), simplex_steps, quality);
+  if (options.search == "halving") return search_by_halving(task, length, halving_sweeps, quality);
+  return search_by_quadratic_form(task, settings, quality);
+}
+
 void run_tuning(const TuneCamOptions& options, const Invocation& invocation) {
+  require_consistent(options);
   const auto cam = options.motion.one();
   const AxisLoad load = load_of_axis(options.machine, &cam);
   auto machine = options.machine.load(
@@ -120,22 +191,43 @@ void run_tuning(const TuneCamOptions& options, const Invocation& invocation) {
   try {
     const auto motion = sim::cam::compose(cam);
     const auto task = shaping_task(motion, sim::cam::elastic_drive_of(axis), speed, 0.2, {});
-    sim::cam::RecordTuner tuner(task, axis.second_encoder->increment / radius);
-    const std::size_t count = logs.empty() ? static_cast<std::size_t>(options.cycles) : logs.size();
-    for (std::size_t c = 0; c < count && !tuner.done(); ++c) {
-      const auto now = sim::cam::compose(tuner.cam());
-      auto record = logs.empty() ? simulated_record(machine, now, speed, c + 1) : record_of(logs[c], axis, now);
-      cycles.push_back({std::move(record), {}});
-      cycles.back().learned = tuner.learn(cycles.back().record);
+    const sim::cam::TunerSettings settings{.resolution = axis.second_encoder->increment / radius,
+                                           .share_of_limits = shares_of_limits(load, speed),
+                                           .running = options.running};
+    sim::cam::Cam tuned;
+    std::optional<sim::cam::Cam> steady;
+    sim::ExperimentResult result;
+    if (options.by_number()) {
+      const auto search = search_by(options, task, settings, machine);
+      tuned = search.next.value_or(search.best);
+      result = search_report(task, search, options.search != "quadratic", pulse_periods * task.period_length());
+    } else {
+      sim::cam::RecordTuner tuner(task, settings);
+      // Behind so many cycles the machine runs steadily: 0.56^12 is a thousandth.
+      std::vector<sim::cam::Cam> run(options.running ? 12 : 0, cam);
+      const std::size_t count = logs.empty() ? static_cast<std::size_t>(options.cycles) : logs.size();
+      for (std::size_t c = 0; c < count && !tuner.done(); ++c) {
+        const auto now = sim::cam::compose(tuner.cam());
+        auto record = !logs.empty()     ? record_of(logs[c], axis, now, options.running)
+                      : options.running ? simulated_running_record(machine, run, speed, c + 1)
+                                        : simulated_record(machine, now, speed, c + 1);
+        cycles.push_back({std::move(record), {}});
+        cycles.back().learned = tuner.learn(cycles.back().record);
+        run.push_back(tuner.cam());
+      }
+      tuned = tuner.cam();
+      steady = tuner.steady_cam();
+      result = tuning_report(task, tuner, cycles);
     }
-    require_within_limits(sim::cam::compose(tuner.cam()), load, speed);
-    const auto result = tuning_report(task, tuner, cycles);
+    require_within_limits(sim::cam::compose(tuned), load, speed);
+    if (steady) require_within_limits(sim::cam::compose(*steady), load, speed);
     const auto json = experiment_json(result, machine);
     if (!options.out.empty()) {
       auto sources = options.logs;
       sources.push_back(options.motion.motion);
       PendingFolder folder(options.out, invocation.command);
-      folder.write("tuned.toml", sim::cam::motion_text({tuner.cam()}));
+      folder.write("tuned.toml", sim::cam::motion_text({tuned}));
+      if (options.running) folder.write("steady.toml", sim::cam::motion_text({*steady}));
       folder.write("report.html", experiment_report_html({invocation.command_line, invocation.version, machine, result,
                                                           report_origin(options.machine.machine, std::move(sources))}));
       folder.write("result.json", json.dump(2) + "\n");
@@ -174,6 +266,29 @@ void add_tune_cam(CLI::App& program, const Invocation& invocation) {
   command->add_option("--cycles", o->cycles, "simulated cycles, where no log is given [3]")
       ->check(whole_number_between(1, 20))
       ->type_name("N");
+  command
+      ->add_option(
+          "--feedback", o->feedback,
+          "record: the dwell of each cycle; number: its quality number alone, the area of the deviation [record]")
+      ->check(one_of({"record", "number"}))
+      ->type_name("KIND");
+  command
+      ->add_option(
+          "--search", o->search,
+          "with --feedback number: quadratic: two pulses in seven cycles; for comparison nelder-mead and halving, "
+          "one pulse in about 29 and 61 [quadratic]")
+      ->check(one_of({"quadratic", "nelder-mead", "halving"}))
+      ->type_name("SEARCH");
+  command
+      ->add_option(
+          "--number", o->numbers,
+          "with --feedback number: that of each cycle run so far, in degrees or mm of the slave times those of the "
+          "master [simulations of the machine file]")
+      ->type_name("AREA");
+  command->add_flag(
+      "--running", o->running,
+      "the machine does not stop: logs of one running cycle each; tuned.toml is for the next cycle alone, "
+      "steady.toml for those behind it");
   add_out(*command, o->out, "write tuned.toml, report.html and result.json into this folder");
   command->add_flag("--json", o->json, "print the figures as JSON on standard output");
   command->callback([o, &invocation] { run_tuning(*o, invocation); });

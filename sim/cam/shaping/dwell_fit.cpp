@@ -1,55 +1,14 @@
 #include "sim/cam/shaping/dwell_fit.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "sim/cam/shaping/normal_equations.hpp"
+
 namespace stiction::sim::cam {
 namespace {
-
-template <std::size_t n>
-using Vector = std::array<double, n>;
-template <std::size_t n>
-using Matrix = std::array<Vector<n>, n>;
-
-// The inverse of a symmetric positive definite matrix by Gauss and Jordan's elimination.
-template <std::size_t n>
-Matrix<n> inverse(Matrix<n> a) {
-  Matrix<n> b{};
-  for (std::size_t i = 0; i < n; ++i) b[i][i] = 1.0;
-  for (std::size_t k = 0; k < n; ++k) {
-    const double pivot = a[k][k] != 0.0 ? 1.0 / a[k][k] : 0.0;
-    for (std::size_t j = 0; j < n; ++j) a[k][j] *= pivot, b[k][j] *= pivot;
-    for (std::size_t i = 0; i < n; ++i) {
-      if (i == k) continue;
-      const double factor = a[i][k];
-      for (std::size_t j = 0; j < n; ++j) a[i][j] -= factor * a[k][j], b[i][j] -= factor * b[k][j];
-    }
-  }
-  return b;
-}
-
-template <std::size_t n>
-struct Normal {
-  Matrix<n> matrix{};
-  Vector<n> right{};
-
-  void add(const Vector<n>& row, double value) {
-    for (std::size_t i = 0; i < n; ++i) {
-      right[i] += row[i] * value;
-      for (std::size_t j = 0; j < n; ++j) matrix[i][j] += row[i] * row[j];
-    }
-  }
-  Vector<n> solve() const {
-    const auto covariance = inverse(matrix);
-    Vector<n> found{};
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t j = 0; j < n; ++j) found[i] += covariance[i][j] * right[j];
-    return found;
-  }
-};
 
 // e^(-s t) (a cos w t + b sin w t) + c.
 struct DampedSine {
@@ -142,15 +101,27 @@ std::optional<DwellFit> fit_dwell(const DwellRecord& whole, double guess) {
   fit.residual = {0.5 * best.a, -0.5 * best.b};
   fit.offset = best.c;
   fit.scatter = std::sqrt(least / (n - 5.0));
-  Normal<5> normal;
-  for (const double t : record.time) normal.add(slopes(best, t), 0.0);
-  const auto covariance = inverse(normal.matrix);
-  fit.frequency_error = fit.scatter * std::sqrt(covariance[1][1]);
-  fit.damping_error = fit.scatter * std::sqrt(covariance[0][0]) / best.w;
+  std::vector<Vector<5>> rows;
+  std::vector<double> deviations;
+  for (std::size_t k = 0; k < record.time.size(); ++k) {
+    rows.push_back(slopes(best, record.time[k]));
+    deviations.push_back(record.position[k] - best.at(record.time[k]));
+  }
+  // An encoder's step and the next belong together for up to a quarter of a period.
+  const double step = (record.time.back() - record.time.front()) / (n - 1.0);
+  const auto quarter = static_cast<std::size_t>(0.5 * std::numbers::pi / best.w / step);
+  const auto found = variances(rows, deviations, std::max<std::size_t>(1, quarter));
+  fit.frequency_error = std::sqrt(found[1]);
+  fit.damping_error = std::sqrt(found[0]) / best.w;
   if (std::fabs(best.w - guess) > 0.35 * guess ||
       2.0 * std::abs(fit.residual) * std::exp(-best.s * record.time.front()) < fit.scatter)
     return std::nullopt;
   return fit;
+}
+
+std::complex<double> residual_with_mode(const DwellRecord& record, const Mode& mode) {
+  const auto sine = with_best_amplitudes(thinned(record), -mode.pole.real(), mode.pole.imag());
+  return {0.5 * sine.a, -0.5 * sine.b};
 }
 
 ElasticDrive drive_with_mode(const ElasticDrive& drive, const Mode& mode) {

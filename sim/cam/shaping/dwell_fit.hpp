@@ -33,6 +33,9 @@ struct DwellFit {
 // guess, or whose vibration is below its scatter.
 std::optional<DwellFit> fit_dwell(const DwellRecord& record, double guess);
 
+// The residual of a `record` that vibrates with a `mode`, as fit_dwell() has it.
+std::complex<double> residual_with_mode(const DwellRecord& record, const Mode& mode);
+
 // The `drive` with the shaft that makes its load's mode `mode`.
 ElasticDrive drive_with_mode(const ElasticDrive& drive, const Mode& mode);
 

@@ -93,7 +93,9 @@ Curve Lift::sampled(double begin, double end, int steps) const {
   };
   for (std::size_t k = 0; k + 1 < joints.size(); ++k) {
     const double part = joints[k + 1] - joints[k];
-    const auto count = std::max(1, static_cast<int>(std::ceil(part / length * steps - 1e-9)));
+    // Few steps of a short part would not show how its speed leads from place to place.
+    constexpr int fewest = 4;
+    const auto count = std::max(fewest, static_cast<int>(std::ceil(part / length * steps - 1e-9)));
     const double step = part / count;
     for (int i = 0; i < count; ++i) {
       const double from = joints[k] + i * step, to = i + 1 == count ? joints[k + 1] : joints[k] + (i + 1) * step;

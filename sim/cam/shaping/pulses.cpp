@@ -138,10 +138,21 @@ std::optional<Pulse> tuned_dwell_pulse(const ShapingTask& task, double length) {
   return with_least_left(task, {*position, amplitude(*position).real()}, length);
 }
 
-std::optional<PulsePair> pulse_pair(const ShapingTask& task, Complex residual) {
-  const double period = task.period_length(), length = 0.5 * period;
-  if (length + 0.25 * period > task.length()) return std::nullopt;
-  const double second = task.end() - length, first = second - 0.25 * period;
+const std::vector<PulsePlaces>& pulse_places() {
+  static const std::vector<PulsePlaces> all = [] {
+    std::vector<PulsePlaces> places;
+    for (const double length : {0.5, 0.75, 1.0})
+      for (const double apart : {0.25, 0.375, 0.5})
+        for (const double before : {0.0, 0.25, 0.5}) places.push_back({length, apart, before});
+    return places;
+  }();
+  return all;
+}
+
+std::optional<PulsePair> pulse_pair(const ShapingTask& task, Complex residual, const PulsePlaces& places) {
+  const double period = task.period_length(), length = places.length * period;
+  if (places.room() * period > task.length()) return std::nullopt;
+  const double second = task.end() - places.before * period - length, first = second - places.apart * period;
   const Complex own = residual_of(task, own_rise(task, task.stroke), task.end()) / task.stroke;
   const auto one = [&](double position) {
     Lift lift;

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "sim/cam/shaping/task.hpp"
 
@@ -31,14 +32,28 @@ std::optional<Pulse> tuned_dwell_pulse(const ShapingTask& task, double length);
 // The rise of the `task` with that `pulse` of `length` behind it.
 Curve with_dwell_pulse(const ShapingTask& task, const Pulse& pulse, double length);
 
-// Two pulses of half a period a quarter of a period apart, the second one up to the end of the rise: one linear
-// equation for both amplitudes, whatever the vibration that they have to cancel. `residual`: that vibration at the end
-// of the rise, as modal_residual() has it. None in a rise of less than three quarters of a period.
+// Where two pulses are, in periods of the load's mode.
+struct PulsePlaces {
+  double length = 0.5;  // of each
+  double apart = 0.25;  // their beginnings
+  double before = 0.0;  // the end of the second one, before the end of the rise
+
+  double room() const { return length + apart + before; }  // periods of the rise that they take
+};
+
+// Those that a tuner tries in turn: at the end of the rise, where pulses are smallest, then further apart, earlier and
+// longer, where they ask for less acceleration.
+const std::vector<PulsePlaces>& pulse_places();
+
 struct PulsePair {
   Pulse first, second;
   double length = 0.0;
 };
-std::optional<PulsePair> pulse_pair(const ShapingTask& task, std::complex<double> residual);
+
+// Two pulses at `places`: one linear equation for both amplitudes, whatever the vibration that they have to cancel.
+// `residual`: that vibration at the end of the rise, as modal_residual() has it. None in a rise of `task` without room.
+std::optional<PulsePair> pulse_pair(const ShapingTask& task, std::complex<double> residual,
+                                    const PulsePlaces& places = {});
 // The rise of the `task` with both `pulses`.
 Curve with_pulses(const ShapingTask& task, const PulsePair& pulses);
 

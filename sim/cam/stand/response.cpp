@@ -144,11 +144,35 @@ void run_exactly(ExactStep& step, const Motion& motion, const ResponseSettings& 
   });
 }
 
+// Of the rotor: whether it sticks, and friction on it while it slips.
+struct Contact {
+  double coulomb = 0.0;  // 0: no friction
+  bool sticks = false;
+  double direction = 0.0;  // of the rotor's speed
+};
+
+// Drive and shaft on the rotor.
+double force_on_rotor(const ElasticDrive& d, const State& q, double u, double speed) {
+  return d.drive_stiffness * (u - q[2]) + d.drive_damping * (speed - q[3]) - d.shaft_stiffness * (q[2] - q[0]) -
+         d.shaft_damping * (q[3] - q[1]);
+}
+
 // (y, y', x, x') of load and rotor.
-State lagrange_rate(const ElasticDrive& d, const State& q, double u, double speed) {
+State lagrange_rate(const ElasticDrive& d, const State& q, double u, double speed, const Contact& contact) {
   const double shaft = d.shaft_stiffness * (q[2] - q[0]) + d.shaft_damping * (q[3] - q[1]);
-  const double drive = d.drive_stiffness * (u - q[2]) + d.drive_damping * (speed - q[3]);
-  return {q[1], shaft / d.load_inertia, q[3], (drive - shaft) / d.rotor_inertia};
+  const double rotor = contact.sticks ? 0.0 : force_on_rotor(d, q, u, speed) - contact.coulomb * contact.direction;
+  return {q[1], shaft / d.load_inertia, contact.sticks ? 0.0 : q[3], rotor / d.rotor_inertia};
+}
+
+// What the rotor does from here on: it sticks at rest where friction holds it.
+void find_contact(const ElasticDrive& d, State& q, double u, double speed, Contact& contact) {
+  if (contact.coulomb == 0.0) return;
+  const bool turned = !contact.sticks && q[3] * contact.direction <= 0.0;
+  if (!turned && !contact.sticks) return;
+  q[3] = 0.0;
+  const double force = force_on_rotor(d, q, u, speed);
+  contact.sticks = std::fabs(force) <= contact.coulomb;
+  contact.direction = contact.sticks ? 0.0 : std::copysign(1.0, force);
 }
 
 State moved(const State& q, const State& rate, double time) {
@@ -172,11 +196,12 @@ std::vector<LoadState> transfer_response(const ElasticDrive& drive, const Motion
 }
 
 std::vector<LoadState> lagrange_response(const ElasticDrive& drive, const Motion& motion,
-                                         const ResponseSettings& settings) {
+                                         const ResponseSettings& settings, double coulomb) {
   const double start = motion.curve(motion.curve.begin()), w = settings.master_speed;
   State q{start, 0.0, start, 0.0};
+  Contact contact{coulomb, coulomb > 0.0, 0.0};
   const auto seen = [&](double master, double u, double speed) {
-    return LoadState{master, q[0], q[1], lagrange_rate(drive, q, u, speed)[1]};
+    return LoadState{master, q[0], q[1], lagrange_rate(drive, q, u, speed, contact)[1]};
   };
   std::vector<LoadState> states{seen(motion.curve.begin(), start, 0.0)};
   // At most 20 us a step: half of it moves the load by 2e-8 degrees of 30.
@@ -191,10 +216,11 @@ std::vector<LoadState> lagrange_response(const ElasticDrive& drive, const Motion
     };
     for (int k = 0; k < steps; ++k) {
       const auto begin = at(k), middle = at(k + 0.5), end = at(k + 1.0);
-      const State a = lagrange_rate(drive, q, begin[0], begin[1]);
-      const State b = lagrange_rate(drive, moved(q, a, 0.5 * h), middle[0], middle[1]);
-      const State c = lagrange_rate(drive, moved(q, b, 0.5 * h), middle[0], middle[1]);
-      const State d = lagrange_rate(drive, moved(q, c, h), end[0], end[1]);
+      find_contact(drive, q, begin[0], begin[1], contact);
+      const State a = lagrange_rate(drive, q, begin[0], begin[1], contact);
+      const State b = lagrange_rate(drive, moved(q, a, 0.5 * h), middle[0], middle[1], contact);
+      const State c = lagrange_rate(drive, moved(q, b, 0.5 * h), middle[0], middle[1], contact);
+      const State d = lagrange_rate(drive, moved(q, c, h), end[0], end[1], contact);
       for (std::size_t i = 0; i < 4; ++i) q[i] += h / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]);
     }
     const auto last = at(steps);

@@ -31,9 +31,10 @@ struct ResponseSettings {
 // `settings`: speed of the master, cycles, step.
 std::vector<LoadState> transfer_response(const ElasticDrive& drive, const Motion& motion,
                                          const ResponseSettings& settings);
-// The same of `drive` and `motion` by Lagrange's equations, with those `settings`.
+// The same of `drive` and `motion` by Lagrange's equations, with those `settings`, and with Coulomb friction of
+// `coulomb` at the rotor, which sticks where it holds it; in the unit of the drive's torque at the output.
 std::vector<LoadState> lagrange_response(const ElasticDrive& drive, const Motion& motion,
-                                         const ResponseSettings& settings);
+                                         const ResponseSettings& settings, double coulomb = 0.0);
 
 // How the load's mode vibrates about the set-point at the master's place `at` of the first cycle, where the motion
 // rests: the load deviates by 2 Re(c e^(pole t)) from then on. Linear in the motion. `drive`, `motion`, `master_speed`:

@@ -93,6 +93,41 @@ TEST_F(CamVibrationCli, TunesFromLogsAsFromSimulatedCycles) {
   EXPECT_LE(nlohmann::json::parse(second.out)["results"]["quality_cascade_deg_deg"].get<double>(), 1.56);
 }
 
+TEST_F(CamVibrationCli, TunesFromQualityNumbersAlone) {
+  const auto tune = on_stand("tune-cam --cam " + stand() + " --feedback number");
+  const auto simulated = stiction(tune + " --json");
+  ASSERT_EQ(simulated.code, 0) << simulated.error;
+  const auto results = nlohmann::json::parse(simulated.out)["results"];
+  EXPECT_FALSE(results.contains("quality_cycle_8_deg_deg"));
+  EXPECT_LE(results["quality_cycle_7_deg_deg"].get<double>(), 2.0);
+  // Of a real machine each call has one number more, and writes the motion of the next cycle.
+  const auto asked = stiction(tune + " --number 84.5 --out ../next");
+  ASSERT_EQ(asked.code, 0) << asked.error;
+  EXPECT_NE(asked.out.find("its number is wanted next"), std::string::npos);
+  EXPECT_EQ(stiction("cam check ../next/tuned.toml --machine cam-stand --speed '130 rpm'").code, 0);
+  const auto simplex = stiction(tune + " --search nelder-mead --json");
+  ASSERT_EQ(simplex.code, 0) << simplex.error;
+  EXPECT_TRUE(nlohmann::json::parse(simplex.out)["results"].contains("pulse_1_at_deg"));
+}
+
+TEST_F(CamVibrationCli, TunesAMachineThatRunsOn) {
+  const auto tune = on_stand("tune-cam --cam " + stand() + " --running");
+  const auto done = stiction(tune + " --out ../running --json");
+  ASSERT_EQ(done.code, 0) << done.error;
+  const auto results = nlohmann::json::parse(done.out)["results"];
+  EXPECT_GE(results["quality_cycle_1_deg_deg"].get<double>(), 30.0);
+  EXPECT_LE(results["quality_cycle_2_deg_deg"].get<double>(), 1.0);
+  EXPECT_EQ(stiction("cam check ../running/steady.toml --machine cam-stand --speed '130 rpm'").code, 0);
+  expect_refused(tune + " --feedback number", "--running: found it with --feedback number");
+}
+
+TEST_F(CamVibrationCli, RefusesFeedbackThatDoesNotFit) {
+  const auto tune = on_stand("tune-cam --cam " + stand());
+  expect_refused(tune + " --number 84.5", "--number: found it with --feedback record");
+  expect_refused(tune + " --search halving", "--search: found it with --feedback record");
+  expect_refused(tune + " --feedback number --number=-1", "--number: found -1; expected an area, 0 or more");
+}
+
 TEST_F(CamVibrationCli, RefusesLogsThatCannotBeTunedFrom) {
   ASSERT_EQ(stiction(on_stand("simulate cam --cam " + stand() + " --model cascade --cycles 1 --log ../one.csv")).code,
             0);

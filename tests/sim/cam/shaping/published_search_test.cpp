@@ -1,6 +1,5 @@
 // The search that Dostrasil 2014 has for place and amplitude of a pulse (6.4): the simplexes of Nelder and Mead over
-// the quality number of a cycle. Nothing of the product uses it; it is here so that the tuner's cycles have a
-// comparison.
+// the quality number of a cycle, which `tune-cam` offers so that its own cycles have a comparison.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "sim/cam/shaping/lift.hpp"
+#include "sim/cam/shaping/number_search.hpp"
 #include "sim/cam/shaping/pulses.hpp"
 #include "tests/sim/cam/stand/study.hpp"
 #include "tests/support/figure.hpp"
@@ -27,14 +27,14 @@ class Machine {
   explicit Machine(std::uint64_t seed)
       : task_(shaping_task(indexing("parabola", 30.0, 180.0), study_drive(), search_speed, 0.2, {})), random_(seed) {}
 
-  int cycles() const { return cycles_; }
+  const ShapingTask& task() const { return task_; }
   // The area of the deviation in the dwell as it is measured, deg^2.
   double quality(const Place& at) {
-    ++cycles_;
-    // A pulse that reaches into the dwell or before the rise is shifted back.
     const double position = std::clamp(at[0], 0.0, 130.0);
-    const Motion motion = compose(with_lift(
-        task_.motion.cam, with_pulse(task_, {position * degree, at[1] * degree}, "polynomial_3_4_5", 50.0 * degree)));
+    return quality(compose(with_lift(
+        task_.motion.cam, with_pulse(task_, {position * degree, at[1] * degree}, "polynomial_3_4_5", 50.0 * degree))));
+  }
+  double quality(const Motion& motion) {
     const auto states = transfer_response(study_drive(), motion, {.master_speed = search_speed, .step = 1e-3});
     // The delay of 3.3629 ms is known and taken out, as a parameter of the source's table 2.
     constexpr double resolution = 0.015;
@@ -52,49 +52,7 @@ class Machine {
   ShapingTask task_;
   std::mt19937_64 random_;
   std::normal_distribution<double> noise_{0.0, 0.003};
-  int cycles_ = 0;
 };
-
-struct Vertex {
-  Place at;
-  double quality;
-};
-
-Place between(const Place& a, const Place& b, double share) {
-  return {a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])};
-}
-
-// Reflection 1, expansion 2, contraction and reduction 1/2 (Nelder, Mead 1965).
-void one_step(std::array<Vertex, 3>& simplex, Machine& machine) {
-  const auto sort = [&] {
-    std::sort(simplex.begin(), simplex.end(), [](const Vertex& a, const Vertex& b) { return a.quality < b.quality; });
-  };
-  sort();
-  Vertex& worst = simplex[2];
-  const Place middle = between(simplex[0].at, simplex[1].at, 0.5);
-  const auto tried = [&](double share) {
-    const Place at = between(middle, worst.at, share);
-    return Vertex{at, machine.quality(at)};
-  };
-  const Vertex reflected = tried(-1.0);
-  if (reflected.quality < simplex[0].quality) {
-    const Vertex expanded = tried(-2.0);
-    worst = expanded.quality < reflected.quality ? expanded : reflected;
-  } else if (reflected.quality < simplex[1].quality) {
-    worst = reflected;
-  } else {
-    const Vertex contracted = tried(reflected.quality < worst.quality ? -0.5 : 0.5);
-    if (contracted.quality < std::min(worst.quality, reflected.quality)) {
-      worst = contracted;
-    } else {
-      for (std::size_t k = 1; k < 3; ++k) {
-        simplex[k].at = between(simplex[0].at, simplex[k].at, 0.5);
-        simplex[k].quality = machine.quality(simplex[k].at);
-      }
-    }
-  }
-  sort();
-}
 
 double median(std::vector<double> values) {
   std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
@@ -108,21 +66,22 @@ TEST(PublishedSearch, FourteenStepsReachThePublishedQualityIn29Cycles) {
   std::vector<double> qualities, cycles;
   while (qualities.size() < 60) {
     Machine machine(random());
-    std::array<Vertex, 3> simplex;
+    Simplex simplex;
     const Place first{position(random), amplitude(random)};
     bool usable = true;
     for (std::size_t k = 0; k < 3 && usable; ++k) {
-      Vertex& vertex = simplex[k];
-      vertex.at = k == 0 ? first : Place{first[0] + side(random), first[1] + height(random)};
-      vertex.quality = machine.quality(vertex.at);
-      usable = vertex.quality >= 50.0 && vertex.quality <= 70.0;
+      simplex[k] = k == 0 ? first : Place{first[0] + side(random), first[1] + height(random)};
+      const double quality = machine.quality(simplex[k]);
+      usable = quality >= 50.0 && quality <= 70.0;
     }
-    const double area = (simplex[1].at[0] - first[0]) * (simplex[2].at[1] - first[1]) -
-                        (simplex[2].at[0] - first[0]) * (simplex[1].at[1] - first[1]);
+    const double area = (simplex[1][0] - first[0]) * (simplex[2][1] - first[1]) -
+                        (simplex[2][0] - first[0]) * (simplex[1][1] - first[1]);
     if (!usable || std::fabs(area) < 0.2) continue;  // no collinear ones
-    for (int step = 0; step < 14; ++step) one_step(simplex, machine);
-    qualities.push_back(simplex[0].quality);
-    cycles.push_back(machine.cycles());
+    for (Place& place : simplex) place = {place[0] * degree, place[1] * degree};
+    const auto found = search_by_simplex(machine.task(), 50.0 * degree, simplex, 14,
+                                         [&](const Cam& cam) { return machine.quality(compose(cam)); });
+    qualities.push_back(found.least.quality);
+    cycles.push_back(static_cast<double>(found.trials.size()));
   }
   EXPECT_GE(median(qualities), 1.3);
   EXPECT_LE(median(qualities), 1.9);

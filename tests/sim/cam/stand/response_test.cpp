@@ -180,6 +180,24 @@ TEST(StandModel, ModalResidualIsWhatRingsInTheDwell) {
   }
 }
 
+// At constant speed friction C holds the rotor C/k_D behind, and the load with it; a set-point that friction holds
+// moves nothing.
+TEST(StandModel, CoulombFrictionHoldsTheRotorBehindTheSetPoint) {
+  const auto drive = study_drive();
+  const double coulomb = 33.0;  // 1 N m at the motor
+  Cam cam{.name = "ramp"};
+  cam.periodic = false;
+  cam.segments = {{.length = 1.0, .stroke = 0.5, .law = "parabola"}, {.length = 5.28}};
+  Cam steady{.name = "steady"};
+  steady.periodic = false;
+  steady.segments = {{.length = 20.0, .stroke = 20.0, .law = "linear"}};
+  const auto states = lagrange_response(drive, compose(steady), {.master_speed = 1.0}, coulomb);
+  EXPECT_NEAR(states.back().position, 20.0 - coulomb / drive.drive_stiffness, 1e-8);
+  cam.segments[0].stroke = 0.9 * coulomb / drive.drive_stiffness;
+  for (const auto& state : lagrange_response(drive, compose(cam), {.master_speed = 0.01}, coulomb))
+    ASSERT_EQ(state.position, 0.0);
+}
+
 TEST(Dwell, GoesOnOverTheSeamAndIsNotFoundWhereNothingRests) {
   Cam cam{.name = "a"};
   cam.segments = {{.length = 1.0},

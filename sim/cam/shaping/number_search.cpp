@@ -1,0 +1,207 @@
+#include "sim/cam/shaping/number_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "sim/cam/shaping/lift.hpp"
+#include "sim/cam/shaping/normal_equations.hpp"
+
+namespace stiction::sim::cam {
+namespace {
+
+using Complex = std::complex<double>;
+using Place = std::array<double, 2>;
+
+// Thrown within a search where a cycle has not been run yet.
+struct NotYetRun {};
+
+class Trials {
+ public:
+  explicit Trials(const CycleQuality& quality) : quality_(quality) {}
+
+  // The number of a cycle with `cam`.
+  double at(const Place& place, const Cam& cam) {
+    const auto found = quality_(cam);
+    if (!found) {
+      result_.next = cam;
+      throw NotYetRun();
+    }
+    result_.trials.push_back({place, *found});
+    if (result_.trials.size() == 1 || *found < result_.least.quality)
+      result_.least = result_.trials.back(), result_.best = cam;
+    return *found;
+  }
+  // What a search found, and how far it came.
+  template <class Search>
+  NumberSearch of(const Search& search) {
+    try {
+      search();
+    } catch (const NotYetRun&) {
+    }
+    return std::move(result_);
+  }
+
+ private:
+  const CycleQuality& quality_;
+  NumberSearch result_;
+};
+
+Cam with_pair(const ShapingTask& task, const PulsePair& pair) {
+  return with_lift(task.motion.cam, with_pulses(task, pair));
+}
+
+// Five trials about the untuned one: what they cancel by the model of the machine file, on a circle.
+constexpr int on_circle = 5;
+Complex on_unit_circle(int k) { return std::polar(1.0, 2.0 * std::numbers::pi * k / on_circle); }
+
+// The vibration at the end of the rise whose area over the whole dwell is `quality`. An area that begins later makes
+// the circle smaller, which keeps the trials further from the limits.
+double size_of(const ShapingTask& task, double quality) {
+  const double decay = -task.mode().pole.real();
+  const double time = (std::min(task.dwell.end(), task.motion.curve.length()) - task.end()) / task.master_speed;
+  const double lasting = decay * time > 1e-9 ? (1.0 - std::exp(-decay * time)) / decay : time;
+  // The mean of the magnitude of a sine is 2/pi.
+  return quality / (2.0 * 2.0 / std::numbers::pi * lasting * task.master_speed);
+}
+
+// Places at which no trial breaks a limit, and the largest circle for it.
+struct Circle {
+  PulsePlaces places;
+  double size = 0.0;
+};
+Circle circle_for(const ShapingTask& task, const TunerSettings& settings, double size) {
+  Circle best;
+  double least = std::numeric_limits<double>::infinity();
+  const double own = settings.share_of_limits ? settings.share_of_limits(task.motion, 0.0) : 0.0;
+  for (const auto& places : pulse_places()) {
+    double share = 0.0;
+    for (int k = 0; k < on_circle; ++k) {
+      const auto pair = pulse_pair(task, size * on_unit_circle(k), places);
+      if (!pair) {
+        share = std::numeric_limits<double>::infinity();
+        break;
+      }
+      if (settings.share_of_limits)
+        share = std::max(share, settings.share_of_limits(compose(with_pair(task, *pair)), 0.0));
+    }
+    if (share >= least) continue;
+    // What the pulses add goes with the circle.
+    const double room = share > usable_share ? (usable_share - own) / (share - own) : 1.0;
+    best = {places, size * std::max(0.2, room)};
+    least = share;
+    if (room == 1.0) return best;
+  }
+  return best;
+}
+
+Cam with_one(const ShapingTask& task, double length, Place at) {
+  at[0] = std::clamp(at[0], task.begin, task.end() - length);
+  return with_lift(task.motion.cam, with_pulse(task, {at[0], at[1]}, "polynomial_3_4_5", length));
+}
+
+Place between(const Place& a, const Place& b, double share) {
+  return {a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])};
+}
+
+using Vertices = std::array<SearchTrial, 3>;
+
+void sort(Vertices& vertices) {
+  std::sort(vertices.begin(), vertices.end(),
+            [](const SearchTrial& a, const SearchTrial& b) { return a.quality < b.quality; });
+}
+
+// Reflection 1, expansion 2, contraction and reduction 1/2 (Nelder, Mead 1965).
+template <class Tried>
+void one_step(Vertices& vertices, const Tried& tried) {
+  sort(vertices);
+  SearchTrial& worst = vertices[2];
+  const Place middle = between(vertices[0].at, vertices[1].at, 0.5), from = worst.at;
+  const auto beyond = [&](double share) { return tried(between(middle, from, share)); };
+  const SearchTrial reflected = beyond(-1.0);
+  if (reflected.quality < vertices[0].quality) {
+    const SearchTrial expanded = beyond(-2.0);
+    worst = expanded.quality < reflected.quality ? expanded : reflected;
+  } else if (reflected.quality < vertices[1].quality) {
+    worst = reflected;
+  } else {
+    const SearchTrial contracted = beyond(reflected.quality < worst.quality ? -0.5 : 0.5);
+    if (contracted.quality < std::min(worst.quality, reflected.quality))
+      worst = contracted;
+    else
+      for (std::size_t k = 1; k < 3; ++k) vertices[k] = tried(between(vertices[0].at, vertices[k].at, 0.5));
+  }
+  sort(vertices);
+}
+
+}  // namespace
+
+NumberSearch search_by_quadratic_form(const ShapingTask& task, const TunerSettings& settings,
+                                      const CycleQuality& quality) {
+  Trials trials(quality);
+  return trials.of([&] {
+    const double untuned = trials.at({0.0, 0.0}, task.motion.cam);
+    const auto [places, size] = circle_for(task, settings, size_of(task, untuned));
+    const auto run = [&, &at = places, &of = size](Complex cancelled) {
+      const auto pair = pulse_pair(task, of * cancelled, at);
+      if (!pair) throw CamError("found no room for two pulses in the rise; expected 0.75 periods of the load or more");
+      return trials.at({pair->first.amplitude, pair->second.amplitude}, with_pair(task, *pair));
+    };
+    Normal<6> normal;
+    const auto add = [&](Complex z, double number) {
+      const double x = z.real(), y = z.imag();
+      normal.add({1.0, x, y, x * x, x * y, y * y}, number * number / (untuned * untuned));
+    };
+    add(0.0, untuned);
+    for (int k = 0; k < on_circle; ++k) add(on_unit_circle(k), run(on_unit_circle(k)));
+    const auto f = normal.solve();
+    const double determinant = 4.0 * f[3] * f[5] - f[4] * f[4];
+    // Without a minimum the best trial is what there is.
+    if (f[3] <= 0.0 || determinant <= 0.0) return;
+    run({(f[4] * f[2] - 2.0 * f[5] * f[1]) / determinant, (f[4] * f[1] - 2.0 * f[3] * f[2]) / determinant});
+  });
+}
+
+NumberSearch search_by_simplex(const ShapingTask& task, double length, const Simplex& start, int steps,
+                               const CycleQuality& quality) {
+  Trials trials(quality);
+  return trials.of([&] {
+    const auto tried = [&](const Place& at) { return SearchTrial{at, trials.at(at, with_one(task, length, at))}; };
+    Vertices vertices;
+    for (std::size_t k = 0; k < vertices.size(); ++k) vertices[k] = tried(start[k]);
+    for (int step = 0; step < steps; ++step) one_step(vertices, tried);
+  });
+}
+
+Simplex first_simplex(const ShapingTask& task, double length) {
+  const double last = task.end() - length, period = task.period_length();
+  const double height = -0.02 * task.stroke;
+  return {{{last - 0.2 * period, height}, {last - 0.4 * period, height}, {last - 0.3 * period, 2.0 * height}}};
+}
+
+NumberSearch search_by_halving(const ShapingTask& task, double length, int sweeps, const CycleQuality& quality) {
+  Trials trials(quality);
+  return trials.of([&] {
+    constexpr int halvings = 5;
+    const double last = task.end() - length, half = 0.5 * task.period_length();
+    Place at{last - 0.5 * half, 0.0};
+    std::array<double, 2> width{half, 0.1 * std::fabs(task.stroke)};
+    trials.at(at, with_one(task, length, at));
+    for (int sweep = 0; sweep < sweeps; ++sweep)
+      for (std::size_t axis = 0; axis < 2; ++axis) {
+        double whole = width[axis];
+        for (int k = 0; k < halvings; ++k, whole *= 0.5) {
+          Place low = at, high = at;
+          low[axis] -= 0.25 * whole;
+          high[axis] += 0.25 * whole;
+          const double at_low = trials.at(low, with_one(task, length, low));
+          const double at_high = trials.at(high, with_one(task, length, high));
+          at = at_low < at_high ? low : high;
+        }
+        width[axis] *= 0.5;
+      }
+  });
+}
+
+}  // namespace stiction::sim::cam

@@ -1,0 +1,123 @@
+#include "tests/cam_tuning/campaign.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace stiction::cam_tuning {
+namespace {
+
+constexpr double needs_tuning = 1.56;  // deg^2, what Dostrasil 2014 ended with
+constexpr double normal_95 = 1.959964;
+
+std::string text(const Tuned& found) {
+  return fmt::format("cycle 2: {}, worst {:.2f}; cycle 3: {}, worst {:.2f}", text(found.second), found.worst_second,
+                     text(found.third), found.worst_third);
+}
+
+template <int newton_metres>
+std::string with_friction(std::uint64_t seed, int cases) {
+  return text(tuned(
+      seed, cases, [](Truth& truth) { truth.coulomb = newton_metres; }, 3.6, 1.56));
+}
+
+std::string record(std::uint64_t seed, int cases) {
+  return text(tuned(
+      seed, cases, [](Truth&) {}, 1.56, 1.56));
+}
+
+std::string backlash(std::uint64_t seed, int cases) { return text(worsened_by_backlash(seed, cases, 0.01)); }
+
+std::string intervals(std::uint64_t seed, int cases) {
+  const auto found = covered(seed, cases);
+  return fmt::format("frequency {}; damping {}; delay {}", text(found.frequency), text(found.damping),
+                     text(found.delay));
+}
+
+constexpr std::array<Row, 5> all{{
+    {"record", "dwell record, frequency within 20 %, delay of 0 to 6 ms: J <= 1.56 deg^2", ">= 85 %, 100 %", record},
+    {"friction-1", "the same with 1 N m at the motor: J <= 3.6, <= 1.56", ">= 85 %, >= 90 %", with_friction<1>},
+    {"friction-2", "the same with 2 N m", ">= 85 %, >= 90 %", with_friction<2>},
+    {"backlash", "backlash of 0.01 deg of load: worse than untuned", "0", backlash},
+    {"intervals", "95 % intervals hold the truth", "90 to 98 %", intervals},
+}};
+
+}  // namespace
+
+Bounds bounds(const Share& share) {
+  const double n = std::max(1, share.of), p = share.count / n, z2 = normal_95 * normal_95;
+  const double middle = (p + 0.5 * z2 / n) / (1.0 + z2 / n);
+  const double half = normal_95 / (1.0 + z2 / n) * std::sqrt(p * (1.0 - p) / n + 0.25 * z2 / (n * n));
+  return {100.0 * std::max(0.0, middle - half), 100.0 * std::min(1.0, middle + half)};
+}
+
+std::string text(const Share& share) {
+  const auto [low, high] = bounds(share);
+  return fmt::format("{} of {}, {:.1f} to {:.1f} %", share.count, share.of, low, high);
+}
+
+std::vector<double> tuned_qualities(const Truth& truth, int cycles) {
+  sim::cam::RecordTuner tuner(task_of(truth), settings_of(truth));
+  std::vector<double> found;
+  for (int cycle = 0; cycle < cycles; ++cycle) {
+    const auto now = run(truth, sim::cam::compose(tuner.cam()), static_cast<std::uint64_t>(cycle));
+    found.push_back(now.quality);
+    if (!tuner.done()) tuner.learn(now.record);
+  }
+  return found;
+}
+
+Tuned tuned(std::uint64_t seed, int cases, const std::function<void(Truth&)>& change, double second, double third) {
+  std::mt19937_64 random(seed);
+  Tuned found;
+  while (found.cases < cases) {
+    Truth truth = drawn(random);
+    change(truth);
+    if (run(truth, motion_of(truth), 0).quality <= needs_tuning) continue;
+    const auto qualities = tuned_qualities(truth, 3);
+    ++found.cases;
+    found.second.add(qualities[1] <= second);
+    found.third.add(qualities[2] <= third);
+    found.worst_second = std::max(found.worst_second, qualities[1]);
+    found.worst_third = std::max(found.worst_third, qualities[2]);
+  }
+  return found;
+}
+
+Share worsened_by_backlash(std::uint64_t seed, int cases, double backlash) {
+  std::mt19937_64 random(seed);
+  Share worse;
+  for (int k = 0; k < cases; ++k) {
+    Truth truth = drawn(random);
+    truth.backlash = backlash;
+    const auto qualities = tuned_qualities(truth, 4);
+    worse.add(qualities.back() > qualities.front() + 0.36);
+  }
+  return worse;
+}
+
+Covered covered(std::uint64_t seed, int cases) {
+  std::mt19937_64 random(seed);
+  Covered found;
+  while (found.delay.of < cases) {
+    const Truth truth = drawn(random);
+    const auto first = run(truth, motion_of(truth), 0);
+    if (first.quality <= needs_tuning) continue;
+    sim::cam::RecordTuner tuner(task_of(truth), settings_of(truth));
+    const auto cycle = tuner.learn(first.record);
+    const auto ringing = ringing_of(truth);
+    found.frequency.add(cycle.fit && std::fabs(cycle.fit->mode.frequency() - ringing.frequency) <=
+                                         normal_95 * cycle.fit->frequency_error);
+    found.damping.add(cycle.fit && std::fabs(cycle.fit->mode.damping_ratio() - ringing.damping_ratio) <=
+                                       normal_95 * cycle.fit->damping_error);
+    found.delay.add(cycle.fit &&
+                    std::fabs(tuner.drive()->delay - 1e-3 * truth.delay) <= normal_95 * tuner.drive()->delay_error);
+  }
+  return found;
+}
+
+std::span<const Row> rows() { return all; }
+
+}  // namespace stiction::cam_tuning

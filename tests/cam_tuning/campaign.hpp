@@ -1,0 +1,59 @@
+// The tuner of a cam on drawn machines, row by row: how often it reaches what is wanted, with an interval.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tests/cam_tuning/truth.hpp"
+
+namespace stiction::cam_tuning {
+
+// How often something is so.
+struct Share {
+  int count = 0, of = 0;
+
+  double percent() const { return of > 0 ? 100.0 * count / of : 0.0; }
+  void add(bool yes) { count += yes, ++of; }
+};
+// Its 95 % interval, which is Wilson's, percent.
+struct Bounds {
+  double low, high;
+};
+Bounds bounds(const Share& share);
+// "92 of 100, 85.0 to 95.9 %".
+std::string text(const Share& share);
+
+// Qualities of the cycles of one machine, deg^2, the first one untuned.
+std::vector<double> tuned_qualities(const Truth& truth, int cycles);
+
+struct Tuned {
+  int cases = 0;
+  Share second, third;  // within what is wanted
+  double worst_second = 0.0, worst_third = 0.0;
+};
+
+// `cases` drawn machines by `seed` whose first cycle is worse than 1.56 deg^2; `change` makes each of them what the row
+// is about. Wanted are `second` deg^2 in cycle 2 and `third` in cycle 3.
+Tuned tuned(std::uint64_t seed, int cases, const std::function<void(Truth&)>& change, double second, double third);
+
+// Of backlash: cases that end worse than they began, by more than a tenth of what the encoder's resolution is worth.
+Share worsened_by_backlash(std::uint64_t seed, int cases, double backlash);
+
+// How often the 95 % intervals of the first cycle hold the truth.
+struct Covered {
+  Share frequency, damping, delay;
+};
+Covered covered(std::uint64_t seed, int cases);
+
+struct Row {
+  const char* name;
+  const char* about;
+  const char* wanted;
+  std::string (*run)(std::uint64_t seed, int cases);
+};
+std::span<const Row> rows();
+
+}  // namespace stiction::cam_tuning
