@@ -78,7 +78,7 @@ inline constexpr std::array<StateRow<Axis>, 14> state_rows{{
 }};
 
 // In the order of MotionWrite::What.
-inline constexpr std::array<MotionRow, 22> motion_rows{{
+inline constexpr std::array<MotionRow, 23> motion_rows{{
     {41,
      uint16,
      1,

@@ -144,7 +144,7 @@ struct MotionWrite {
     cam_tuning_command,
     cam_command
   };
-  static constexpr std::size_t kinds = 31;
+  static constexpr std::size_t kinds = 32;
   std::size_t axis = 0;
   What what = What::controlword;
   double value = 0.0;     // SI units; torques as shares of the current limit

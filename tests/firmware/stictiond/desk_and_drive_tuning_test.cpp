@@ -59,7 +59,8 @@ struct Qualities {
 Qualities by_desk(const Truth& truth, int count) {
   const auto machine = machine_of(truth);
   const auto motion = sim::cam::indexing("parabola", 30.0, truth.rise);
-  sim::cam::RecordTuner tuner(shaping_task(motion, sim::cam::study_drive(), stand_speed, 0.2, {}), resolution);
+  sim::cam::RecordTuner tuner(shaping_task(motion, sim::cam::study_drive(), stand_speed, 0.2, {}),
+                              {.resolution = resolution});
   Qualities found;
   for (int k = 0; k < count; ++k) {
     const auto now = sim::cam::compose(tuner.cam());
