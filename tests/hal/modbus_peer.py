@@ -1,4 +1,5 @@
-"""An independent Modbus peer for the tests, by pymodbus.
+"""An independent Modbus peer for the tests, by pymodbus: version 3.0 of Debian 12, whose registers may count from 0, and
+3.8 of Debian 13, whose registers count from 1 and whose calls have other names.
 
 usage: modbus_peer.py client tcp PORT|rtu DEVICE OPERATION...   OPERATION: input:A:N, holding:A:N, write:A:W[,W...],
                                                                 both:A:W[,W...]:A:N; prints a line each
@@ -7,6 +8,7 @@ usage: modbus_peer.py client tcp PORT|rtu DEVICE OPERATION...   OPERATION: input
 """
 
 import sys
+from inspect import signature
 
 pty_parity = "N"  # a pty has no parity bit, and refuses pyserial's second attempt to set one
 
@@ -27,14 +29,17 @@ def client(transport, place, operations):
         kind, address, *rest = operation.split(":")
         address = int(address)
         if kind == "input":
-            say(peer.read_input_registers(address, int(rest[0]), slave=1))
+            say(peer.read_input_registers(address, count=int(rest[0]), slave=1))
         elif kind == "holding":
-            say(peer.read_holding_registers(address, int(rest[0]), slave=1))
+            say(peer.read_holding_registers(address, count=int(rest[0]), slave=1))
         elif kind == "write":
             say(peer.write_registers(address, [int(w) for w in rest[0].split(",")], slave=1))
         elif kind == "both":
-            say(peer.readwrite_registers(write_address=address, write_registers=[int(w) for w in rest[0].split(",")],
-                                         read_address=int(rest[1]), read_count=int(rest[2]), unit=1))
+            words = [int(w) for w in rest[0].split(",")]
+            written = ({"values": words, "slave": 1} if "values" in signature(peer.readwrite_registers).parameters
+                       else {"write_registers": words, "unit": 1})
+            say(peer.readwrite_registers(write_address=address, read_address=int(rest[1]), read_count=int(rest[2]),
+                                         **written))
         else:
             sys.exit(f"unknown operation {operation}")
     peer.close()
@@ -43,7 +48,12 @@ def client(transport, place, operations):
 def slave(transport, place, identification):
     from pymodbus.datastore import ModbusSequentialDataBlock, ModbusServerContext, ModbusSlaveContext
     from pymodbus.server import StartSerialServer, StartTcpServer
-    from pymodbus.transaction import ModbusRtuFramer
+    try:
+        from pymodbus.framer import FramerType
+        rtu, first, mode = FramerType.RTU, 1, {}
+    except ImportError:
+        from pymodbus.transaction import ModbusRtuFramer
+        rtu, first, mode = ModbusRtuFramer, 0, {"zero_mode": True}
 
     class Stage(ModbusSequentialDataBlock):
         def getValues(self, address, count=1):
@@ -51,12 +61,12 @@ def slave(transport, place, identification):
             self.values[6:8] = self.values[18:20]
             return super().getValues(address, count)
 
-    block = Stage(0, [identification, 1] + [0] * 30)
-    context = ModbusServerContext(slaves=ModbusSlaveContext(hr=block, zero_mode=True), single=True)
+    block = Stage(first, [identification, 1] + [0] * 30)
+    context = ModbusServerContext(slaves=ModbusSlaveContext(hr=block, **mode), single=True)
     if transport == "tcp":
         StartTcpServer(context=context, address=("127.0.0.1", int(place)))
     else:
-        StartSerialServer(context=context, framer=ModbusRtuFramer, port=place, baudrate=115200, parity=pty_parity,
+        StartSerialServer(context=context, framer=rtu, port=place, baudrate=115200, parity=pty_parity,
                           timeout=1)
 
 
