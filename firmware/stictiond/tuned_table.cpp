@@ -31,8 +31,9 @@ void put(std::vector<std::uint8_t>& bytes, std::size_t at, std::uint64_t value, 
   for (int k = 0; k < size; ++k) bytes[at + static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(value >> (8 * k));
 }
 
-// The quintic through both ends of `part` as a segment of a table whose positions have `position_bits`.
-bool segment_of(const Part& part, int position_bits, CamTable::Segment& made) {
+// The quintic through both ends of `part` as a segment of a table of that `version` whose positions have
+// `position_bits`.
+bool segment_of(const Part& part, int version, int position_bits, CamTable::Segment& made) {
   const std::uint64_t length = part.end - part.begin;
   const double h = static_cast<double>(length) * 0x1p-32, scale = std::ldexp(1.0, position_bits);
   const double y = part.to.position - part.from.position, v0 = part.from.slope * h, v1 = part.to.slope * h;
@@ -56,8 +57,15 @@ bool segment_of(const Part& part, int position_bits, CamTable::Segment& made) {
   while (shift >= 0 && largest * std::ldexp(1.0, shift - CamTable::extra_bits) >= 2147483647.0) --shift;
   if (shift < 0) return false;
   made.shift = static_cast<std::uint8_t>(shift);
-  for (std::size_t n = 0; n < 5; ++n)
-    made.c[n] = static_cast<std::int32_t>(std::llround(c[n] * scale * std::ldexp(1.0, shift - CamTable::extra_bits)));
+  for (int n = 1; n < 6; ++n) {
+    const double value = c[n - 1] * scale * std::ldexp(1.0, shift - CamTable::extra_bits);
+    int finer = 0;
+    while (version > CamTable::oldest_version && n > 1 && finer < 15 &&
+           std::abs(std::ldexp(value, finer + 1)) < 2147483647.0)
+      ++finer;
+    if (n > 1) made.finer = static_cast<std::uint16_t>(made.finer | finer << (4 * (n - 2)));
+    made.c[n - 1] = static_cast<std::int32_t>(std::llround(std::ldexp(value, finer)));
+  }
   return true;
 }
 
@@ -106,7 +114,7 @@ std::vector<std::uint8_t> with_pulses(const CamTable& table, std::span<const std
   const auto joints = joints_of(table, begin, end, places);
   for (std::size_t k = 0; k + 1 < joints.size(); ++k) {
     const Part part{joints[k], joints[k + 1], point(joints[k], false), point(joints[k + 1], true)};
-    if (!segment_of(part, h.position_bits, segments.emplace_back())) return {};
+    if (!segment_of(part, bytes[4], h.position_bits, segments.emplace_back())) return {};
   }
   for (std::uint32_t k = 0; k < h.count; ++k)
     if (table.segment(k).start >= end) segments.push_back(table.segment(k));
@@ -132,6 +140,7 @@ std::vector<std::uint8_t> with_pulses(const CamTable& table, std::span<const std
     for (std::size_t n = 0; n < 5; ++n) put(made, at + 16 + 4 * n, static_cast<std::uint32_t>(segment.c[n]), 4);
     made[at + 36] = segment.down;
     made[at + 37] = segment.shift;
+    put(made, at + 38, segment.finer, 2);
   }
   made.insert(made.end(), bytes.begin() + static_cast<std::ptrdiff_t>(behind), bytes.end() - CamTable::checksum_size);
   const std::uint32_t checksum = Crc32{}.add(made, made.size()).value();

@@ -13,14 +13,30 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// Until what the drive's own lag leaves of the rise has died, as at the desk: e^-4 of a tenth of a degree is below the
-// resolution.
-constexpr double settling = 4.0;  // time constants
+// Until what the drive's own lag leaves of the rise has died, as at the desk.
+constexpr double settling = 6.0;  // time constants
 // Over so much the master may be faster or slower: the pulses' length is off by as much.
 constexpr double speed_tolerance = 0.01;
 
-bool rests(const CamTable::Segment& segment) {
-  return std::all_of(std::begin(segment.c), std::end(segment.c), [](std::int32_t c) { return c == 0; });
+// A coefficient of t^`n` in units of the position.
+double units_of(const CamTable::Segment& segment, int n) {
+  return std::ldexp(static_cast<double>(segment.c[n - 1]),
+                    CamTable::extra_bits - segment.shift - segment.finer_bits(n));
+}
+
+// The way within a segment at most, in units of the position.
+double way_in(const CamTable::Segment& segment) {
+  double most = 0.0;
+  for (int n = 1; n < 6; ++n) most += std::abs(units_of(segment, n));
+  return most;
+}
+
+// A rest ends with the integers with which the motion behind it begins, which rounding has moved from its own: its way
+// is not nothing, but nothing beside that of what moves.
+double largest_way_at_rest(const CamTable& table) {
+  double largest = 0.0;
+  for (std::uint32_t k = 0; k < table.header().count; ++k) largest = std::max(largest, way_in(table.segment(k)));
+  return std::ldexp(largest, -20);
 }
 
 std::uint64_t end_of(const CamTable& table, std::uint32_t k) {
@@ -55,11 +71,11 @@ double LoadMode::period() const { return 2.0 * std::numbers::pi / pole().imag();
 TablePoint table_point(const CamTable& table, std::uint64_t phase, bool before) {
   const std::uint32_t k = table.find(static_cast<std::uint32_t>(before ? phase - 1 : phase));
   const auto segment = table.segment(k);
-  const double length = static_cast<double>(end_of(table, k) - segment.start);
-  const double t = static_cast<double>(phase - segment.start) / length, over = 0x1p32 / length;
-  const double unit = std::ldexp(1.0, CamTable::extra_bits - segment.shift - table.header().position_bits);
-  std::array<double, 6> c{std::ldexp(static_cast<double>(segment.c0), -table.header().position_bits)};
-  for (std::size_t n = 1; n < 6; ++n) c[n] = segment.c[n - 1] * unit;
+  const double over = std::ldexp(static_cast<double>(segment.reciprocal), -segment.down);  // t in a cycle
+  const double t = std::ldexp(static_cast<double>(phase - segment.start), -32) * over;
+  const double unit = std::ldexp(1.0, -table.header().position_bits);
+  std::array<double, 6> c{static_cast<double>(segment.c0) * unit};
+  for (std::size_t n = 1; n < 6; ++n) c[n] = units_of(segment, static_cast<int>(n)) * unit;
   TablePoint point;
   for (std::size_t n = 6; n-- > 0;) {
     point.bend = point.bend * t + 2.0 * point.slope;
@@ -76,9 +92,10 @@ std::optional<TunedRise> tuned_rise(const CamTable& table) {
     std::uint64_t begin, end;
   };
   std::vector<Rest> found;
+  const double at_rest = largest_way_at_rest(table);
   for (std::uint32_t k = 0; k < table.header().count; ++k) {
     const std::uint64_t begin = table.segment(k).start, end = end_of(table, k);
-    if (!rests(table.segment(k))) continue;
+    if (way_in(table.segment(k)) > at_rest) continue;
     if (!found.empty() && found.back().end == begin)
       found.back().end = end;
     else

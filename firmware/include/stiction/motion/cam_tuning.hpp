@@ -198,7 +198,9 @@ class CamTuning {
 
   [[gnu::always_inline]] static constexpr void add(const Config& config, State& state, const Input& in) {
     if (state.ticks == most_ticks) return;
-    state.moved |= in.set_point != state.wanted;
+    // In steps of the record: a table rests to what rounding leaves.
+    const std::int64_t way = (in.set_point - state.wanted) >> config.shift;
+    state.moved |= way != 0 && way != -1;
     const std::int64_t off = (in.load - state.wanted) >> config.shift;
     const bool beyond = off > most_deviation || off < -most_deviation;
     state.saturated |= beyond;
