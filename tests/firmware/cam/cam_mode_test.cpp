@@ -467,6 +467,38 @@ class AMovingCam : public ACamMode {
   VirtualMaster master{VirtualMaster::Config::of(limits(1.2, 5.0, 50.0))};
 };
 
+TEST_F(AMovingCam, ExchangesNothingWhileItBrakes) {
+  EXPECT_EQ(mode.exchange(0, nullptr), CamRefusal::unknown_table);
+  ASSERT_TRUE(mode.brake(CamStop::slow_down));
+  EXPECT_EQ(mode.exchange(1, nullptr), CamRefusal::not_enabled);
+}
+
+// The tuner of cams looks at such a curve alone.
+TEST_F(AMovingCam, IsItsTableWhereItIsNeitherScaledNorGearedNorShifted) {
+  const auto asks = [&](const auto& change) {
+    mode.asked() = {};
+    change(mode.asked());
+    EXPECT_EQ(mode.command(CamCommand::engage, false, true), CamRefusal::none);
+    run(20'000);
+    EXPECT_TRUE(mode.status().in_sync);
+    return mode.as_its_table();
+  };
+  EXPECT_TRUE(asks([](CamMode::Asked&) {}));
+  EXPECT_FALSE(asks([](CamMode::Asked& asked) { asked.slave_scale /= 2; }));
+  EXPECT_FALSE(asks([](CamMode::Asked& asked) { asked.denominator = 2; }));
+  EXPECT_FALSE(asks([](CamMode::Asked& asked) { asked.master_relative = true; }));
+  EXPECT_FALSE(asks([](CamMode::Asked& asked) { asked.slave_relative = true; }));
+  EXPECT_TRUE(asks([](CamMode::Asked&) {}));
+}
+
+TEST_F(AMovingCam, LeavesToAPlaceOfTheTravelAlone) {
+  for (const double place : {-0.11, 0.11}) {
+    mode.asked().leave_position = raw_position(place);
+    EXPECT_EQ(mode.command(CamCommand::leave_to, false, true), CamRefusal::beyond_travel);
+  }
+  EXPECT_EQ(mode.command(CamCommand::leave_to, false, false), CamRefusal::none) << "of an axis that knows no travel";
+}
+
 TEST_F(AMovingCam, BrakesAlongItsCurveAndEngagesNothingMeanwhile) {
   ASSERT_TRUE(mode.brake(CamStop::slow_down));
   EXPECT_EQ(mode.command(CamCommand::engage, false, true), CamRefusal::not_enabled);
@@ -555,6 +587,31 @@ TEST_F(ASecondCam, IsNotBrakedAlongWhileItIsOnItsWay) {
   EXPECT_TRUE(mode.brake(CamStop::slow_down));
 }
 
+TEST_F(ASecondCam, GoesOnWhereTheFirstIsLeftAndIsNoTableOfItsOwn) {
+  EXPECT_FALSE(mode.as_its_table()) << "it is on top";
+  ASSERT_EQ(mode.command(CamCommand::leave, false, true), CamRefusal::none);
+  run(20'000);
+  EXPECT_FALSE(mode.status().active);
+  EXPECT_TRUE(mode.second_status().in_sync);
+  EXPECT_FALSE(mode.at_rest());
+  EXPECT_FALSE(mode.as_its_table()) << "nothing is followed";
+}
+
+TEST_F(ASecondCam, IsNotOnTopOfAMoveWhetherItMovesOrWaits) {
+  EXPECT_EQ(mode.command(CamCommand::superpose, false, true), CamRefusal::superposes);
+  ASSERT_EQ(mode.command(CamCommand::leave_second, false, true), CamRefusal::none);
+  run(100);
+  EXPECT_FALSE(mode.second_status().active);
+  EXPECT_FALSE(mode.as_its_table()) << "it is on its way to nothing";
+  run(20'000);
+  EXPECT_TRUE(mode.as_its_table());
+  mode.asked().trigger = CamTrigger::next_cycle;
+  ASSERT_EQ(mode.command(CamCommand::engage_second, false, true), CamRefusal::none);
+  run(1);
+  ASSERT_TRUE(mode.second_status().waiting);
+  EXPECT_EQ(mode.command(CamCommand::superpose, false, true), CamRefusal::superposes);
+}
+
 TEST_F(ASecondCam, IsAFaultOfTheAxisWhereItLosesItsMaster) {
   mode.step({{}, false});
   EXPECT_EQ(mode.fault(), Fault::master_lost);
@@ -624,8 +681,13 @@ TEST_F(JoinedCams, KeepTheirPhaseThroughAStopOfAllWhoeverIsSlowest) {
   EXPECT_LE(most, 1);
 }
 
-TEST_F(JoinedCams, DoNotWaitForOneThatTakesMoreThanTwiceAsLong) {
-  decelerate(20.0, 20.0, 3.0);
+class OneOfJoinedCams : public JoinedCams, public ::testing::WithParamInterface<double> {};
+
+// The first of these cannot brake along its cam at all.
+INSTANTIATE_TEST_SUITE_P(Slow, OneOfJoinedCams, ::testing::Values(3.0, 6.0, 9.0));
+
+TEST_P(OneOfJoinedCams, IsNotWaitedForWhereItTakesMoreThanTwiceAsLong) {
+  decelerate(20.0, 20.0, GetParam());
   engage();
   int first = 0;
   for (; !modes[0].braked() && first < 100'000; ++first) tick(7);

@@ -172,7 +172,39 @@ TEST(CamTuning, RefusesARecordThatTellsNothing) {
   EXPECT_EQ(refusal_with([](auto& in, double x) { in.follows = x < 0.3 || x > 0.31; }), moving);
   EXPECT_EQ(refusal_with([](auto& in, double x) { in.set_point += x > 0.7 ? raw((x - 0.7) * 1e-3) : 0; }), moving);
   EXPECT_EQ(refusal_with([](auto& in, double x) { in.velocity += x > 0.7 ? in.velocity / 50 : 0; }), speed);
+  EXPECT_EQ(refusal_with([](auto& in, double x) { in.velocity -= x > 0.7 ? in.velocity / 50 : 0; }), speed);
   EXPECT_EQ(refusal_with([](auto& in, double x) { in.load += x > 0.7 && x < 0.701 ? raw(0.05) : 0; }), saturated);
+  EXPECT_EQ(refusal_with([](auto& in, double x) { in.load -= x > 0.7 && x < 0.701 ? raw(0.05) : 0; }), saturated);
+  EXPECT_EQ(refusal_with([](auto& in, double x) { in.set_point -= x > 0.7 ? 1 : 0; }), none) << "of rounding";
+}
+
+TEST(CamTuning, TellsNothingOfNoRecordNorOfAPartOfAPeriod) {
+  auto config = config_of({});
+  EXPECT_NE(CamTuning::evaluate(config, CamTuning::State{}).refusal, CamTuningRefusal::none);
+  Dwell dwell;
+  dwell.end = dwell.settling + 0.02;
+  config = config_of(dwell);
+  config.least_ticks = 0;
+  EXPECT_EQ(CamTuning::evaluate(config, *recorded(config, dwell)).refusal, CamTuningRefusal::short_dwell);
+}
+
+// What it has no room for it leaves out: sums at their end, and samples behind the last one that is kept.
+TEST(CamTuning, RecordsNoMoreThanItHasRoomFor) {
+  const Dwell dwell;
+  auto config = config_of(dwell);
+  config.every = 1;
+  const auto state = recorded(config, dwell);
+  EXPECT_EQ(state->kept, std::uint32_t{CamTuning::record_size});
+  EXPECT_GT(state->ticks, std::int32_t{CamTuning::record_size});
+  state->stage = CamTuning::Stage::dwell;
+  state->ticks = CamTuning::most_ticks;
+  const auto sum = state->d;
+  CamTuning::Input in;
+  in.master = MasterPosition::way(std::llround(std::ldexp(0.7, 40)));
+  in.velocity = config.speed;
+  in.load = raw(0.06);
+  CamTuning::step(config, *state, in);
+  EXPECT_EQ(state->d, sum);
 }
 
 TEST(CamTuning, RefusesALoadThatIsStillOnItsWay) {

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 #include <vector>
 
 namespace stiction {
@@ -103,34 +105,39 @@ TEST(CamTable, EvaluatesItsPolynomials) {
 }
 
 TEST(CamTable, FindsTheSegmentOfEachPhase) {
-  HandMade table = line_and_parabola();
-  const auto first = table.segments[0];
-  table.segments.clear();
-  // 100 segments of uneven lengths, constant each.
-  std::vector<std::uint32_t> starts;
-  std::uint32_t start = 0;
-  for (std::uint32_t k = 0; k < 100; ++k, start += 20'000'000u + k * 300'000u) {
-    auto segment = first;
-    segment.start = start;
-    segment.c[0] = 0;
-    segment.c0 = k;
-    // At least as long as the longest is here: t stays below 1.
-    segment.down = 31;
-    segment.reciprocal = 0x80000000u;
-    starts.push_back(start);
-    table.segments.push_back(segment);
-  }
-  const auto bytes = bytes_of(table);
-  CamTable read;
-  ASSERT_EQ(CamTable::read(bytes, read), CamTableProblem::none);
-  for (std::uint32_t k = 0; k < 100; ++k) {
-    EXPECT_EQ(read.find(starts[k]), k);
-    if (k > 0) {
-      EXPECT_EQ(read.find(starts[k] - 1), k - 1);
+  const auto first = line_and_parabola().segments[0];
+  std::mt19937_64 random(5);
+  // Each count of halvings, at a power of two and beside it.
+  for (std::uint32_t power = 1; power <= CamTable::most_segments; power *= 2)
+    for (const std::uint32_t count : {power, std::min(power + power / 3 + 1, CamTable::most_segments)}) {
+      SCOPED_TRACE(count);
+      HandMade table = line_and_parabola();
+      table.segments.clear();
+      const std::uint64_t share = (std::uint64_t{1} << 32) / count;
+      // Segments of uneven lengths, constant each.
+      for (std::uint32_t k = 0; k < count; ++k) {
+        auto segment = first;
+        segment.start = k == 0 ? 0 : static_cast<std::uint32_t>(k * share + random() % (share / 2));
+        segment.c[0] = 0;
+        segment.c0 = k;
+        // At least as long as the longest is here: t stays below 1.
+        segment.down = 31;
+        segment.reciprocal = 0x80000000u;
+        table.segments.push_back(segment);
+      }
+      const auto bytes = bytes_of(table);
+      CamTable read;
+      ASSERT_EQ(CamTable::read(bytes, read), CamTableProblem::none);
+      for (std::uint32_t k = 0; k < count; k += 1 + count / 5000) {
+        const std::uint32_t start = table.segments[k].start;
+        ASSERT_EQ(read.find(start), k);
+        ASSERT_EQ(read.evaluate(start + 5).position, k);
+        if (k > 0) {
+          ASSERT_EQ(read.find(start - 1), k - 1);
+        }
+      }
+      EXPECT_EQ(read.find(UINT32_MAX), count - 1);
     }
-    EXPECT_EQ(read.evaluate(starts[k] + 5).position, k);
-  }
-  EXPECT_EQ(read.find(UINT32_MAX), 99u);
 }
 
 TEST(CamTable, RefusesWhatEvaluationCannotDo) {

@@ -333,11 +333,11 @@ class CamMode {
     if (!first_.undecided && (status.in_sync || !status.active)) exchanging_ = false;
   }
 
-  // How long it takes to brake along the curve as brake() says; 0: it does not.
+  // How long it takes to brake along the curve as brake() says, which it does not do yet; 0: it does not.
   constexpr std::int64_t ticks_to_brake(CamStop stop) const {
     const CamStatus& status = first_.motion.status();
     const CamStatus& second = second_.motion.status();
-    if (braking_ || !status.in_sync || status.waiting || first_.motion.phasing().busy() || superposed_.busy()) return 0;
+    if (!status.in_sync || status.waiting || first_.motion.phasing().busy() || superposed_.busy()) return 0;
     if ((second.busy || !second_.motion.at_rest()) && (!second.in_sync || second.waiting)) return 0;
     const Span& deceleration = config_->stops[static_cast<std::size_t>(stop)];
     const auto speed = static_cast<std::int64_t>(magnitude(seen_.point.velocity));

@@ -54,7 +54,8 @@ template <int Shift>
   const auto x = static_cast<std::uint64_t>(a), y = static_cast<std::uint64_t>(b);
   const std::uint64_t x0 = x & 0xffffffffu, x1 = x >> 32, y0 = y & 0xffffffffu, y1 = y >> 32;
   const std::uint64_t middle = x1 * y0 + x0 * y1, low = x0 * y0, sum = (middle << 32) + low;
-  const bool beyond = (x1 != 0 && y1 != 0) || middle >> 31 != 0 || sum < low || sum >> 63 != 0;
+  // With a middle below 2^31 one of the lower halves is, or there is no upper one: the sum does not wrap.
+  const bool beyond = (x1 != 0 && y1 != 0) || middle >> 31 != 0 || sum >> 63 != 0;
   return beyond ? INT64_MAX : static_cast<std::int64_t>(sum);
 }
 
