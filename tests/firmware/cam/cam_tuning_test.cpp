@@ -184,6 +184,7 @@ TEST(CamTuning, TellsNothingOfNoRecordNorOfAPartOfAPeriod) {
   Dwell dwell;
   dwell.end = dwell.settling + 0.02;
   config = config_of(dwell);
+  EXPECT_EQ(CamTuning::evaluate(config, *recorded(config, dwell)).refusal, CamTuningRefusal::short_dwell);
   config.least_ticks = 0;
   EXPECT_EQ(CamTuning::evaluate(config, *recorded(config, dwell)).refusal, CamTuningRefusal::short_dwell);
 }
