@@ -14,7 +14,8 @@ namespace stiction::host {
 
 struct CamRunSettings {
   double master_speed = 0.0;  // rad/s or m/s
-  int cycles = 3;             // that are measured, behind those in which the master comes to its speed
+  int cycles = 3;             // that are measured, behind those in which the master comes to its speed and a load that
+                              // swings behind an elastic shaft settles
   MasterSignal master = MasterSignal::ideal;
   bool feedforward = true;   // as the machine file has it; false: none
   bool compensation = true;  // of friction, as the machine file has it; false: none

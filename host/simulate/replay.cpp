@@ -5,13 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "firmware/machine/configuration/double_signals.hpp"
 #include "host/log/own_units.hpp"
+#include "host/log/repeating_motion.hpp"
 #include "host/log/set_points.hpp"
 #include "host/simulate/endless_counter.hpp"
 #include "host/simulate/injection.hpp"
+#include "host/simulate/swing_time.hpp"
 #include "sim/effects/effects.hpp"
 #include "sim/effects/time_skew/time_skew.hpp"
 #include "stiction/number/fixed_signals.hpp"
@@ -24,8 +27,12 @@ constexpr double default_following_error = 2e-3;  // m, as sim::Supervision says
 // An axis' set-points with the way to the log's first one.
 class Motion {
  public:
-  Motion(const Log& log, const AxisLog& axis) : points_(log, axis), begin_(log.t.front()) {
-    const auto first = points_.at(begin_);
+  Motion(const Log& log, const AxisLog& channels, const machine::AxisModel& axis)
+      : points_(log, channels), begin_(log.t.front()), start_(begin_) {
+    repeats_ = repeating_motion(log, channels, points_);
+    if (repeats_)
+      start_ = rest() - repeats_->period * std::ceil((rest() - begin_ + swing_time(axis)) / repeats_->period + 1.0);
+    const auto first = repeated(start_);
     v_ = first.velocity;
     a_ = first.acceleration;
     x_ = first.position;
@@ -36,13 +43,14 @@ class Motion {
     length_ = !moving_ ? 0.0 : uniform_ ? back_to_rest : longest_lead_in;
   }
 
-  double lead_in() const { return length_; }  // s
+  double lead_in() const { return begin_ - start_ + length_; }  // s
 
   // At t s on the log's clock; before the lead-in the axis rests at its beginning.
   sim::AxisSetPoint at(double t) const {
     if (t >= begin_) return points_.at(t);
+    if (t >= start_) return repeated(t);
     if (!moving_) return {x_, 0.0, 0.0};
-    const double s = std::max(0.0, 1.0 - (begin_ - t) / length_);  // 0 to 1 along the lead-in
+    const double s = std::max(0.0, 1.0 - (start_ - t) / length_);  // 0 to 1 along the lead-in
     if (uniform_) {
       const double v = s * v_;
       return {x_ - 0.5 * (v_ + v) * length_ * (1.0 - s), v, s > 0.0 ? a_ : 0.0};
@@ -56,8 +64,26 @@ class Motion {
   const SetPoints& points() const { return points_; }
 
  private:
+  // Of a motion that repeats, at t s before the log as in its first cycle.
+  sim::AxisSetPoint repeated(double t) const {
+    if (!repeats_) return points_.at(t);
+    const double cycles = std::ceil((begin_ - t) / repeats_->period);
+    auto point = points_.at(t + cycles * repeats_->period);
+    point.position -= cycles * repeats_->rise;
+    return point;
+  }
+  // The time of the first cycle at which the axis is slowest, s.
+  double rest() const {
+    const auto& v = points_.velocity();
+    const auto end = v.begin() + static_cast<std::ptrdiff_t>(repeats_->period / points_.period());
+    const auto slowest = std::min_element(v.begin(), end, [](double a, double b) { return std::abs(a) < std::abs(b); });
+    return begin_ + static_cast<double>(slowest - v.begin()) * points_.period();
+  }
+
   SetPoints points_;
-  double begin_, v_, a_, x_;
+  std::optional<RepeatingMotion> repeats_;
+  double begin_, start_;  // s; of the log, and of the cycles that are gone through before it
+  double v_ = 0.0, a_ = 0.0, x_ = 0.0;
   bool moving_ = false, uniform_ = false;
   double length_ = 0.0;
 };
@@ -228,7 +254,7 @@ Log replay_linear(const machine::Machine& machine, const Log& log, const ReplayS
   std::vector<double> start(machine.axes.size(), 0.0);
   double lead_in = 0.0;
   for (std::size_t k = 0; k < indices.size(); ++k) {
-    motions.emplace_back(log, log.axes[k]);
+    motions.emplace_back(log, log.axes[k], machine.axes[indices[k]]);
     injections.emplace_back(log, log.axes[k], machine.axes[indices[k]]);
     // The cascade clips its set speed; other structures have no such limit.
     if (machine.axes[indices[k]].cascaded())

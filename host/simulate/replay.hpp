@@ -19,12 +19,13 @@ struct ReplaySettings {
 //
 // Where the log begins in motion, the machine is brought there: backwards with the log's first acceleration to rest if
 // that takes at most `longest_lead_in`, else by a smooth ramp of that length. It then begins at rest, and no sooner in
-// time than needed; position controller and log start on the same tick. Axes that the log does not have stand still
-// at 0. An external force in the log acts on the carriage, and a test signal (i_inject; u_inject of a force motor)
-// where the drive adds it; one for which the simulation has no input does not act (injection.hpp says which). Where a
-// measured position is off its set-point by more than the following error that the machine allows, the encoder has
-// another zero: its mean distance is added to the simulated position, so that both can be compared (see
-// encoder_offset).
+// time than needed; position controller and log start on the same tick. Behind a master that turns steadily the log's
+// first cycle is gone through before it, as often as it takes a swing of the load to settle (repeating_motion.hpp).
+// Axes that the log does not have stand still at 0. An external force in the log acts on the carriage, and a test
+// signal (i_inject; u_inject of a force motor) where the drive adds it; one for which the simulation has no input does
+// not act (injection.hpp says which). Where a measured position is off its set-point by more than the following error
+// that the machine allows, the encoder has another zero: its mean distance is added to the simulated position, so that
+// both can be compared (see encoder_offset).
 //
 // Of an endless axis the log has the phase too, counted from the encoder's increments (endless_counter.hpp), at the
 // last tick before the time of the sample. The channels of a rotary axis are in its own units, in both logs. Between
