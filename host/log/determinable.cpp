@@ -238,6 +238,9 @@ Had judged(sim::Need need, const Inspected& in) {
       return set_points(in.axis);
     case sim::Need::other_axis:
       return other_axis(in.log);
+    case sim::Need::master:
+      return {!in.axis.master.empty(), in.axis.master.empty() ? "no master" : "the master's position",
+              "a slave with its master: the channel master"};
     case sim::Need::long_record:
       return long_record(in.log, in.axis);
   }

@@ -16,6 +16,7 @@
 #include "hal/control_loop.hpp"
 #include "hal/simulated/simulated_backend.hpp"
 #include "host/simulate/late_current.hpp"
+#include "host/simulate/late_set_points.hpp"
 #include "host/simulate/structured_loop.hpp"
 #include "sim/effects/effects.hpp"
 #include "sim/experiment/set_point.hpp"
@@ -52,6 +53,7 @@ class ControlRun {
         set_point_delay_(machine::set_point_delay(machine)),
         backend_(machine, positions),
         set_(machine.axes.size()),
+        held_(machine),
         late_(machine) {
     if (std::ranges::any_of(machine.axes, [](const machine::AxisModel& axis) { return axis.modulo.has_value(); }))
       counts_.resize(machine.axes.size());
@@ -96,6 +98,11 @@ class ControlRun {
 
   // Controls one tick with a set-point an axis. Throws FaultTripped after the trace has had the tick.
   void tick(std::span<const sim::AxisSetPoint> set_points, const TraceSink<S>& trace = {}) {
+    if (held_.any()) {
+      given_.clear();
+      for (const auto& point : set_points) given_.push_back(sim::to_set_point<S>(point));
+      set_points = held_(set_points);
+    }
     if (structured_) [[unlikely]]
       return tick_structured(set_points, trace);
     for (std::size_t i = 0; i < set_.size(); ++i) set_[i] = sim::to_set_point<S>(set_points[i]);
@@ -103,6 +110,13 @@ class ControlRun {
   }
   // The same with set-points in the formats of the drive; only where every axis has the cascade.
   void tick(std::span<const SetPoint<S>> set_points, const TraceSink<S>& trace = {}) {
+    if (held_.any()) {
+      std::vector<sim::AxisSetPoint> in_si;
+      for (const auto& point : set_points)
+        in_si.push_back({machine::to_si(point.position), machine::to_si(point.velocity),
+                         machine::to_si(point.acceleration), machine::to_si(point.injection)});
+      return tick(in_si, trace);
+    }
     std::copy(set_points.begin(), set_points.end(), set_.begin());
     tick_cascade(trace);
   }
@@ -113,7 +127,7 @@ class ControlRun {
     const std::int64_t now_ns = loop_->now_ns();
     count();  // what this tick works on was read when the one before ended
     loop_->tick(set_);
-    if (trace) late_.record(now_ns, loop_->signals(), trace);
+    if (trace) late_.record(now_ns, as_given(loop_->signals()), trace);
     if (loop_->faulted()) throw_fault();
   }
 
@@ -121,10 +135,22 @@ class ControlRun {
     const std::int64_t now_ns = structured_->now_ns();
     structured_->tick(set_points);
     count();
-    if (trace) late_.record(now_ns, structured_->signals(), trace);
+    if (trace) late_.record(now_ns, as_given(structured_->signals()), trace);
     for (std::size_t k = 0; k < machine_.axes.size(); ++k)
       if (structured_->ran_away(k))
         throw FaultTripped(machine_.axes[k].name, Fault::position_lost, static_cast<double>(now_ns) * 1e-9);
+  }
+
+  // With the set-points that belong to the time, where the drive has them late: the record is the master's.
+  std::span<const AxisSignals<S>> as_given(std::span<const AxisSignals<S>> signals) {
+    if (!held_.any()) return signals;
+    traced_.assign(signals.begin(), signals.end());
+    for (std::size_t i = 0; i < traced_.size(); ++i) {
+      traced_[i].x_set = given_[i].position;
+      traced_[i].v_set = given_[i].velocity;
+      traced_[i].a_set = given_[i].acceleration;
+    }
+    return traced_;
   }
 
   void count() {
@@ -156,6 +182,9 @@ class ControlRun {
   std::optional<hal::ControlLoop<hal::SimulatedBackend<S>>> loop_;
   std::optional<StructuredLoop<S>> structured_;  // in place of the one above
   std::vector<SetPoint<S>> set_;
+  LateSetPoints held_;
+  std::vector<SetPoint<S>> given_;      // where those are late: as they came
+  std::vector<AxisSignals<S>> traced_;  // and with them the signals
   LateCurrent<S> late_;
   std::vector<std::int64_t> counts_;  // none without an endless axis
 };

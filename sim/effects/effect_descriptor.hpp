@@ -45,6 +45,7 @@ enum class Need {
   current,        // of the motor, or its voltage; not its force alone
   set_points,
   other_axis,   // its motion, too
+  master,       // its position
   long_record,  // over minutes
 };
 

@@ -289,6 +289,10 @@ bool usable(const CommandRecords& records, const machine::AxisModel& axis) {
                      [&](const Log& log) { return recorded_command(channels_of(log, axis), axis).has_value(); });
 }
 
+bool behind_master(const CommandRecords& records, const machine::AxisModel& axis) {
+  return std::ranges::all_of(records.logs, [&](const Log& log) { return !channels_of(log, axis).master.empty(); });
+}
+
 // Sets by how much each parameter of `terms` seems to differ in the file's own runs of these records: a replay knows no
 // positions between the samples, and a smaller gain makes less noise of the encoder's steps.
 void look_at_own_runs(const CommandRecords& records, const machine::Timing& timing, const machine::AxisModel& axis,
@@ -349,8 +353,9 @@ void find_and_judge(Verdict& verdict, const DiagnoseInput& input, const CommandR
   const auto& file = input.machine.axes[input.axis];
   const auto& timing = input.machine.timing;
   Places places;
+  const bool slave = behind_master(training, axis) && behind_master(held_out, axis);
   for (std::size_t k = 0; k < command_parameters().size(); ++k)
-    if (command_parameters()[k].value(axis)) places.push_back(k);
+    if (const auto& p = command_parameters()[k]; p.value(axis) && (slave || !p.of_master)) places.push_back(k);
   // A delay of the record that the residual force names is taken out where the command, whatever the gains, agrees.
   const Commands as_recorded(training, timing, axis, 0.0), moved(training, timing, axis, delay.found);
   const auto replayed = as_recorded.as_driven(axis);

@@ -13,6 +13,7 @@
 #include "host/simulate/injection.hpp"
 #include "host/simulate/replay.hpp"
 #include "sim/effects/effects.hpp"
+#include "sim/effects/master_delay/master_delay.hpp"
 #include "sim/plant/axis_plant.hpp"
 #include "stiction/drive/axis.hpp"
 #include "stiction/drive/ticker.hpp"
@@ -72,6 +73,16 @@ AxisConfig<S> unsupervised(AxisConfig<S> config) {
   return config;
 }
 
+// Before the log as uniformly accelerated as at its `begin`.
+sim::AxisSetPoint late_point(const SetPoints& set, double begin, double t) {
+  auto point = set.at(std::max(t, begin));
+  if (const double by = t - begin; by < 0.0) {
+    point.position += by * (point.velocity + 0.5 * by * point.acceleration);
+    point.velocity += by * point.acceleration;
+  }
+  return point;
+}
+
 AxisLog measured_as_set(const AxisLog& channels) {
   AxisLog measured;
   measured.x_set = channels.x;
@@ -103,6 +114,7 @@ std::vector<double> replay_command(const machine::Timing& timing, const machine:
   const bool force_motor = axis.motor.driven_by_volts();
   const Injection injection(log, channels, axis);
   const bool wants_set_current = !force_motor && channels.i.empty();
+  const double late = sim::master_delay(axis);
 
   Axis<S> drive(unsupervised(machine::configure_axis<S>(timing, sim::drive_axis(axis))));
   Ticker ticker(machine::fast_period_ns(timing), static_cast<std::uint32_t>(machine::slow_ratio(timing)));
@@ -121,7 +133,7 @@ std::vector<double> replay_command(const machine::Timing& timing, const machine:
     feedback.position_time_ns = ticker.now_ns();
     for (std::size_t p = 0; p < 3; ++p) feedback.fault |= !machine::convert(windings.current()[p], feedback.current[p]);
     if (k == 0) drive.start(feedback);
-    auto point = set.at(t);
+    auto point = late_point(set, log.t.front(), t - late);
     point.injection = injection.at(t);
     const auto output = drive.tick(sim::to_set_point<S>(point), feedback, ticker.now_ns(), ticker.slow(), signals);
     if (drive.fault() != Fault::none)

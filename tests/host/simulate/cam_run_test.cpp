@@ -106,5 +106,24 @@ TEST(CamRun, ACurveBeyondTheLimitsIsRefusedWithFigures) {
   }
 }
 
+// Sixteen ticks of 62.5 us: the position controller's ticks stay where they were.
+TEST(CamRun, OfASlaveBehindItsMasterIsTheSameSoMuchLater) {
+  constexpr std::size_t ticks = 16;
+  auto late = joint();
+  late.axes.front().effects = {{"master_delay", {{"delay", {ticks * late.timing.fast_period}}}}};
+  const auto in_time = run_cam<FixedSignals>(joint(), there_and_back(), at(2.0)).log.axes.front();
+  const auto behind = run_cam<FixedSignals>(late, there_and_back(), at(2.0)).log.axes.front();
+  EXPECT_EQ(behind.x_set, in_time.x_set);  // those of the master's time
+  ASSERT_EQ(behind.x.size(), in_time.x.size());
+  double most = 0.0;
+  for (std::size_t k = ticks; k < behind.x.size(); ++k)
+    most = std::max(most, std::abs(behind.x[k] - in_time.x[k - ticks]));
+  // Within some increments of the encoder of 15.3 urad, in which the axis hunts.
+  EXPECT_LT(most, 5 * 15.4e-6);
+  double apart = 0.0;
+  for (std::size_t k = 0; k < behind.x.size(); ++k) apart = std::max(apart, std::abs(behind.x[k] - in_time.x[k]));
+  EXPECT_GT(apart, 0.5 * 2.0 * 0.8 * 1.7596 / 2.5 * 1e-3);  // delay times speed, about
+}
+
 }  // namespace
 }  // namespace stiction::host
