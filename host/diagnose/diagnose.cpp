@@ -9,6 +9,7 @@
 
 #include "host/diagnose/classes/candidate_columns.hpp"
 #include "host/diagnose/describe/diagnosis_charts.hpp"
+#include "host/diagnose/describe/master_charts.hpp"
 #include "host/diagnose/judge/closed_loop.hpp"
 #include "host/diagnose/judge/closed_loop_description.hpp"
 #include "host/diagnose/judge/command_residual.hpp"
@@ -154,6 +155,7 @@ void say_what_is_left(Verdict& verdict, const Prepared& prepared, const Explaine
   for (const auto& discarded : found.discarded) reject(verdict, discarded.candidate, discarded.why);
   if (!explained.unnamed.empty()) verdict.unexplained = unexplained_by(prepared.context, explained.unnamed);
   add_charts(verdict, training.rows, training.target, found.residual);
+  add_master_charts(verdict, training.logs, prepared.axis, training.rows, training.target, found.residual);
 }
 
 double rms_about_mean(const Eigen::VectorXd& values, const Eigen::VectorXd& counts) {
