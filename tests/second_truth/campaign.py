@@ -2,11 +2,12 @@
 """Judges a programme by cases of the second truth and prints a table; resumable.
 
 usage: campaign.py --stiction PATH --cases N --seed S [--kind K ...] [--share s] [--jobs J] [--results FILE]
-                   [--keep DIR] [--no-setpoints]
+                   [--keep DIR] [--no-setpoints] [--cam] [--each]
   Cases are numbered S, S+1, ...; their kinds come by turns (see MIX) unless --kind names some.
   --results: one line of JSON a case, added to as it goes; cases that stand there already are not run again
   --keep: folders of the cases stay there (else they are deleted); --table: only prints the table of --results;
   --fresh: begins a new file
+  --cam: motions of slaves behind their masters; --each: single cases of each cause by turns
 """
 
 import argparse
@@ -30,12 +31,17 @@ MIX = ["single", "exact", "single", "pair", "single", "unknown", "single", "tole
 
 def one(task):
     """Generates a case, runs the programme on it, returns its line of results."""
+    import causes
     import generate
     options, kind, seed = task
     folder = pathlib.Path(options.keep or tempfile.mkdtemp(prefix="second-truth-"))
     folder = folder / f"{kind}-{seed}" if options.keep else folder
     try:
-        truth = generate.generate(kind, seed, folder, options.share, None, not options.no_setpoints)
+        name = None
+        if options.each and kind == "single":
+            names = [n for n in causes.CAUSES if options.cam or n != "master_delay"]
+            name = names[seed % len(names)]
+        truth = generate.generate(kind, seed, folder, options.share, name, not options.no_setpoints, options.cam)
         began = time.monotonic()
         command = [options.stiction, "diagnose", *map(str, sorted(folder.glob("train-*.csv"))), "--machine",
                    str(folder / "machine.toml"), "--holdout", *map(str, sorted(folder.glob("held-*.csv"))), "--out",
@@ -56,7 +62,8 @@ def one(task):
 
 def key_of(options, kind, seed):
     """What makes a case the same one."""
-    return f"{kind} {seed} {options.share} {'without' if options.no_setpoints else 'with'} set-points"
+    return f"{kind} {seed} {options.share} {'without' if options.no_setpoints else 'with'} set-points" + \
+        (" of a cam" if options.cam else "")
 
 
 def main():
@@ -71,6 +78,8 @@ def main():
     parser.add_argument("--fresh", action="store_true")
     parser.add_argument("--keep")
     parser.add_argument("--no-setpoints", action="store_true")
+    parser.add_argument("--cam", action="store_true")
+    parser.add_argument("--each", action="store_true")
     parser.add_argument("--timeout", type=float, default=600.0)
     parser.add_argument("--table", action="store_true")
     options = parser.parse_args()

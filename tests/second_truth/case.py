@@ -3,6 +3,7 @@
 import paths  # noqa: F401
 import numpy as np
 
+import cams
 import causes
 import machines
 import oracle
@@ -14,7 +15,7 @@ import trajectories
 import unknowns
 from hidden import Session, Setup
 from noise import Noise
-from records import record
+from records import late, record
 
 KINDS = ("exact", "tolerance", "single", "pair", "triple", "unknown", "tight_spot")
 COUNT = {"single": 1, "pair": 2, "triple": 3}
@@ -32,15 +33,26 @@ def usual_steps(setup):
     return 4 if setup.p[plant.TWO] or setup.p[plant.LAG] or fine else 2
 
 
+def late_sets(sets, delay):
+    """Set-points that a drive has `delay` s late, between ticks along straight lines."""
+    return sets if delay == 0.0 else np.column_stack([late(column, delay) for column in sets.T])
+
+
 class Case:
     """Machine, session, noise; runs of it with hidden causes."""
 
-    def __init__(self, kind, seed, wishes):
+    def __init__(self, kind, seed, wishes, cam=False):
         self.kind, self.seed = kind, seed
         streams = [np.random.default_rng([seed, KINDS.index(kind), k]) for k in range(5)]
         self.rng_machine, self.rng_motion, self.rng_noise, self.rng_cause, self.rng_sensor = streams
         self.machine = machines.draw(self.rng_machine, **wishes)
-        train, held = trajectories.commissioning(self.rng_motion, self.machine.room(), machines.TICK)
+        self.masters, self.before = None, None
+        if cam:
+            runs = cams.session(self.rng_motion, self.machine.room(), machines.TICK)
+            self.masters, self.before = ([made[k] for part in runs for made in part] for k in (1, 2))
+            train, held = ([made[0] for made in part] for part in runs)
+        else:
+            train, held = trajectories.commissioning(self.rng_motion, self.machine.room(), machines.TICK)
         begins, at = [], 0.0
         for sets in train + held:
             begins.append(at)
@@ -68,13 +80,14 @@ class Case:
         if abs(quarter - round(quarter)) > 1e-6:
             substeps = 4
         arrays = (setup.p, setup.tables, setup.on)
+        given = late_sets(sets, setup.behind)
         if noisy:
-            made = plant.simulate(arrays, setup.c, sets, outside + self.forces[log], factor, self.errors[log], substeps)
+            made = plant.simulate(arrays, setup.c, given, outside + self.forces[log], factor, self.errors[log], substeps)
             self.check(made, sets)
             return record(m, sets, made, setup.skew, self.currents[log])
         p, c = setup.p.copy(), setup.c.copy()
         p[plant.INCREMENT] = c[machines.law.POSITION_INCREMENT] = 0.0
-        made = plant.simulate((p, setup.tables, setup.on), c, sets, outside, factor, None, substeps)
+        made = plant.simulate((p, setup.tables, setup.on), c, given, outside, factor, None, substeps)
         self.check(made, sets)
         return residuals.noiseless(m, sets, made, setup.skew)
 
@@ -158,32 +171,35 @@ class Case:
         raise Unreachable(f"{cause.name}: no size found")
 
 
-def wishes_of(names):
+def wishes_of(names, cam=False):
     """What the machine must be like for these causes to be possible."""
     wishes = {}
     if "friction_lag" in names:
         wishes["stribeck"] = True
     if {"structural_resonance", "backlash", "tolerance"} & set(names):
         wishes["two"] = False
+    if "master_delay" in names and not cam:
+        raise ValueError("found master_delay behind no master; expected the motion of a cam")
     if "structural_resonance" in names:
         wishes["soft"] = True
     return wishes
 
 
-def choose(rng, count, first):
+def choose(rng, count, first, cam=False):
     """Names of causes that can be told from one another; the first is given or drawn evenly."""
+    known = [n for n in causes.CAUSES if cam or n != "master_delay"]
     while True:
-        names = [first] if first else [str(rng.choice(list(causes.CAUSES)))]
-        names += [str(n) for n in rng.choice([n for n in causes.CAUSES if n != names[0]], count - 1, replace=False)]
+        names = [first] if first else [str(rng.choice(known))]
+        names += [str(n) for n in rng.choice([n for n in known if n != names[0]], count - 1, replace=False)]
         if not any(pair <= set(names) for pair in causes.NEVER_TOGETHER):
             return names
 
 
-def new_case(kind, seed, names, attempt=0):
+def new_case(kind, seed, names, attempt=0, cam=False):
     """A case whose null runs; a machine that its servo cannot move is replaced by the next one; attempt: of build."""
     for again in range(20):
         try:
-            return Case(kind, seed + 1000003 * again + 100000007 * attempt, wishes_of(names))
+            return Case(kind, seed + 1000003 * again + 100000007 * attempt, wishes_of(names, cam), cam)
         except Unreachable:
             continue
     raise RuntimeError(f"no machine for {kind} {seed}")
@@ -200,12 +216,12 @@ def drawn(case, factory, share):
     return None
 
 
-def build(kind, seed, share=0.1, name=None):
+def build(kind, seed, share=0.1, name=None, cam=False):
     """The whole case: Case, list of (Cause, size, effect, share reached), errors of tolerance, records."""
     rng = np.random.default_rng([seed, KINDS.index(kind), 99])
     for attempt in range(20):
-        names = choose(rng, COUNT[kind], name) if kind in COUNT else [kind] if kind == "tolerance" else []
-        case = new_case(kind, seed, names, attempt)
+        names = choose(rng, COUNT[kind], name, cam) if kind in COUNT else [kind] if kind == "tolerance" else []
+        case = new_case(kind, seed, names, attempt, cam)
         off, found = {}, []
         if kind in COUNT:
             found = [drawn(case, causes.CAUSES[n], share) for n in names]

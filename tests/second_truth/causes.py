@@ -322,11 +322,18 @@ def controller_gain_mismatch(rng, machine, session):
                  lambda z: {which + "_factor": (1 + z) ** way}, channel="command")
 
 
+def master_delay(rng, machine, session):
+    def apply(s, size):
+        s.behind += size
+    return Cause("master_delay", apply, 1e-3, 1e-6, 3e-2, "set-points late", lambda z: {"delay": z}, channel="command")
+
+
 CAUSES = {f.__name__: f for f in (
     mass_mismatch, coulomb_mismatch, viscous_mismatch, viscous_nonlinear, stribeck, friction_asymmetry,
     presliding_hysteresis, friction_lag, position_dependent_friction, thermal_drift, constant_force, position_spring,
     force_ripple, force_constant_ripple, force_constant_mismatch, force_saturation, backlash, structural_resonance,
-    encoder_subdivision_error, time_skew, periodic_disturbance, controller_gain_mismatch)}
+    encoder_subdivision_error, time_skew, periodic_disturbance, controller_gain_mismatch,
+    master_delay)}
 
 # Names of which two cannot both be told: the first is part of the second, or both act through the same element.
 NEVER_TOGETHER = [
@@ -334,4 +341,5 @@ NEVER_TOGETHER = [
     {"coulomb_mismatch", "force_constant_mismatch"}, {"viscous_mismatch", "force_constant_mismatch"},
     {"backlash", "structural_resonance"}, {"force_saturation", "mass_mismatch"},
     {"force_saturation", "force_constant_mismatch"}, {"coulomb_mismatch", "thermal_drift"},
-    {"backlash", "presliding_hysteresis"}, {"time_skew", "structural_resonance"}]
+    {"backlash", "presliding_hysteresis"}, {"time_skew", "structural_resonance"},
+    {"master_delay", "controller_gain_mismatch"}]

@@ -1,9 +1,10 @@
 #!/usr/bin/python3
 """Writes the records of one case of the second truth: machine.toml, train-*.csv, held-*.csv, truth.json.
 
-usage: generate.py KIND SEED --out DIR [--share 0.1] [--cause NAME] [--no-setpoints]
+usage: generate.py KIND SEED --out DIR [--share 0.1] [--cause NAME] [--no-setpoints] [--cam]
   KIND: exact, tolerance, single, pair, triple, unknown, tight_spot
   --share: of each cause in the residual of the training logs; --cause: the (first) hidden cause of single, pair, triple
+  --cam: motions of a slave behind a master, recorded while they run
 """
 
 import argparse
@@ -50,16 +51,21 @@ def truth_of(case, found, off, share, seconds):
         "seconds": seconds})
 
 
-def generate(kind, seed, folder, share=0.1, name=None, setpoints=True):
+def generate(kind, seed, folder, share=0.1, name=None, setpoints=True, cam=False):
     """Writes the case into the folder and returns the truth."""
     began = time.process_time()
-    case, found, off, logs = cases.build(kind, seed, share, name)
+    case, found, off, logs = cases.build(kind, seed, share, name, cam)
     case.seed = seed
     folder.mkdir(parents=True, exist_ok=True)
     trained = case.session.trained
     for k, log in enumerate(logs):
         file = f"train-{k + 1}.csv" if k < trained else f"held-{k - trained + 1}.csv"
-        records.write(log, folder / file, case.machine, setpoints)
+        master = None
+        if cam:
+            rows = case.before[k] // log.every
+            master = case.masters[k][::log.every][rows:]
+            log = log.behind(rows)
+        records.write(log, folder / file, case.machine, setpoints, master)
     (folder / "machine.toml").write_text(machine_file.text(case.machine), encoding="utf-8")
     truth = truth_of(case, found, off, share, time.process_time() - began)
     (folder / "truth.json").write_text(json.dumps(truth, indent=1) + "\n", encoding="utf-8")
@@ -74,8 +80,10 @@ def main():
     parser.add_argument("--share", type=float, default=0.1)
     parser.add_argument("--cause", choices=list(causes.CAUSES))
     parser.add_argument("--no-setpoints", action="store_true")
+    parser.add_argument("--cam", action="store_true")
     options = parser.parse_args()
-    truth = generate(options.kind, options.seed, options.out, options.share, options.cause, not options.no_setpoints)
+    truth = generate(options.kind, options.seed, options.out, options.share, options.cause, not options.no_setpoints,
+                     options.cam)
     print(f"{options.out}: {truth['hidden'] or truth['unknown'] or 'nothing'} hidden, {truth['seconds']:.1f} s")
 
 

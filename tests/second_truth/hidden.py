@@ -33,7 +33,7 @@ class Setup:
         self.machine = machine
         self.p, self.tables, self.on = machine.plant()
         self.c = machine.control()
-        self.skew = 0.0
+        self.skew, self.behind = 0.0, 0.0  # s: of the record's current, of the set-points behind the master
         self.forces, self.factors = [], []
 
     def table(self, row, values):

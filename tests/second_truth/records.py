@@ -19,6 +19,10 @@ class Record:
     i: np.ndarray
     every: int
 
+    def behind(self, rows):
+        """The same from this row on, its time from 0."""
+        return Record(self.t[:len(self.t) - rows], self.sets[rows:], self.x[rows:], self.i[rows:], self.every)
+
 
 def late(values, delay):
     """A signal of ticks as it is recorded `delay` s late; its first value before it begins."""
@@ -40,8 +44,8 @@ def record(machine, sets, run, skew=0.0, current_noise=None):
     return Record(np.arange(len(i)) * every * TICK, sets[::every], run[::every, plant.SHOWN], i, every)
 
 
-def write(log, file, machine, setpoints=True):
-    """Writes the CSV; without set-points their three columns are left out."""
+def write(log, file, machine, setpoints=True, master=None):
+    """Writes the CSV; without set-points their three columns are left out. master: rad, of each row."""
     way = "rad" if machine.rotary else "m"
     names, columns = ["t[s]"], [log.t]
     formats = ["%.10g"]
@@ -52,6 +56,10 @@ def write(log, file, machine, setpoints=True):
     names += [f"x[{way}]", "i[A]"]
     columns += [log.x, log.i]
     formats += ["%.15g", "%.9g"]
+    if master is not None:
+        names.append("master[rad]")
+        columns.append(master)
+        formats.append("%.12g")
     line = ",".join(formats) + "\n"
     with open(file, "w", encoding="utf-8") as out:
         out.write("# amperes: peak\n" + ",".join(names) + "\n")
