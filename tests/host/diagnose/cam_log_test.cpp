@@ -1,34 +1,39 @@
 // Logs of an electronic cam: a motion that repeats, begins in the middle of itself, and shares the encoder's places
 // with the simulation of its machine file.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <numbers>
 #include <string>
 
 #include "host/diagnose/diagnose.hpp"
 #include "host/diagnose/verdict/verdict_json.hpp"
+#include "host/identify/own_identification.hpp"
 #include "host/simulate/cam_run.hpp"
+#include "host/simulate/replay.hpp"
 #include "sim/cam/motion.hpp"
 #include "sim/cam/motion_file.hpp"
 #include "sim/machine_file.hpp"
+#include "tests/support/figure.hpp"
 
 namespace stiction::host {
 namespace {
 
 const std::filesystem::path source = STICTION_SOURCE_DIR;
 
-// Every fourth tick of `cycles` that are measured, at `turns` of the master in a minute.
-Log cam_log(const machine::Machine& joint, double turns, int cycles) {
+// Every so many ticks of `cycles` that are measured, at `turns` of the master in a minute.
+Log cam_log(const machine::Machine& machine, double turns, int cycles, std::size_t every = 4) {
   const auto cam = sim::cam::read_motion_file(source / "examples/cams/indexing.toml").front();
   CamRunSettings settings;
   settings.master_speed = turns * 2.0 * std::numbers::pi / 60.0;
   settings.cycles = cycles;
-  const auto run = run_cam<FixedSignals>(joint, sim::cam::compose(cam), settings);
-  constexpr std::size_t every = 4;
+  const auto run = run_cam<FixedSignals>(machine, sim::cam::compose(cam), settings);
   Log log = run.log;
   log.source = std::to_string(static_cast<int>(turns)) + " in a minute";
-  log.period *= every;
+  log.period *= static_cast<double>(every);
   const auto thin = [&](std::vector<double>& values) {
     std::size_t kept = 0;
     for (std::size_t k = 0; k < values.size(); k += every) values[kept++] = values[k];
@@ -50,6 +55,52 @@ TEST(CamLog, OfAMachineAsItsFileSaysNamesNothing) {
   input.held_out.push_back(cam_log(input.machine, 26.0, 2));
   const auto verdict = diagnose(input);
   EXPECT_TRUE(verdict.findings.empty()) << verdict_text(verdict);
+}
+
+machine::Machine stand() {
+  return sim::read_machine((source / "firmware/machine/shipped/cam-stand.toml").string(), {});
+}
+
+// The load swings on from cycle to cycle, and a record of a running machine begins in the midst of it.
+TEST(CamLog, OfAStandIsFollowedThroughTheCyclesBeforeIt) {
+  const auto log = linear_logs({cam_log(stand(), 130.0, 3)}, stand().axes).front();
+  const auto rms_from = [&](const Log& record) {
+    const auto again = replay_linear_as_held(stand(), record);
+    double square = 0.0;
+    for (std::size_t k = 0; k < log.t.size(); ++k)
+      square += std::pow(again.axes.front().x[k] - log.axes.front().x[k], 2) / static_cast<double>(log.t.size());
+    return std::sqrt(square);
+  };
+  auto without = log;
+  without.axes.front().master.clear();
+  const double increment = stand().axes.front().encoder.increment;
+  EXPECT_LT(rms_from(log), increment);
+  EXPECT_GT(rms_from(without), 20.0 * increment);
+}
+
+TEST(CamLog, OfASlaveBehindItsMasterNamesTheDelay) {
+  constexpr double delay = 0.3e-3;
+  auto late = stand();
+  late.axes.front().effects = {{"master_delay", {{"delay", {delay}}}}};
+  DiagnoseInput input;
+  input.machine = stand();
+  input.next_measurement = false;
+  input.logs.push_back(cam_log(late, 130.0, 6, 16));
+  input.held_out.push_back(cam_log(late, 100.0, 4, 16));
+  const auto verdict = diagnose(input);
+  ASSERT_EQ(verdict.findings.size(), 1u) << verdict_text(verdict);
+  const auto& finding = verdict.findings.front();
+  EXPECT_EQ(finding.effect.name(), "master_delay");
+  EXPECT_NEAR(finding.values.at("delay").front(), delay, 20e-6);
+  test::figure("delay of a slave behind its master, off the true one",
+               fmt::format("{:.1f} us (bound 20 us)", 1e6 * std::abs(finding.values.at("delay").front() - delay)));
+  const auto has = [&](std::string_view title) {
+    return std::any_of(verdict.before_after.begin(), verdict.before_after.end(),
+                       [&](const sim::Chart& chart) { return chart.title == title; });
+  };
+  for (const auto* title : {"Following error over the master", "Residual force over the master",
+                            "Residual force in orders of the master", "Residual force in orders of the motor"})
+    EXPECT_TRUE(has(title)) << title;
 }
 
 }  // namespace
