@@ -66,26 +66,27 @@ class Bridge {
   // slave's unit for each cycle and for its square.
   enum class Over : std::uint8_t { ticks, distance };
 
-  // A bridge from the deviation `from`, which is over after `span`, `over` what it says.
+  // A bridge from the deviation `from`, which is over after `span`, `over` what it says. Its polynomials are made in the
+  // tick in which it first goes on, as that one has no decision to take.
   constexpr void start(const Span& span, const MotionPoint& from, Over over) {
     span_ = span;
     over_ = over;
     gone_ = 0;
     active_ = true;
-    if (over == Over::ticks)
-      start_over<MotionPoint::tick_bits>(from);
-    else
-      start_over<MotionPoint::position_bits>(from);
+    made_ = false;
+    p_[0] = from.position;
+    v_[0] = from.velocity;
+    a_[0] = from.acceleration;
   }
 
   // A bridge of speed alone, over ticks: the way that it takes is what it makes it. Returns the deviation of the
   // position at its begin, with which the polynomial is one of fourth degree. `span`: in ticks; `v`, `a`: deviations of
   // speed and acceleration.
   constexpr std::int64_t start_speed(const Span& span, std::int64_t v, std::int64_t a) {
-    const std::int64_t slope = product_shifted(a, span.length, MotionPoint::tick_bits);
+    const std::int64_t slope = product<MotionPoint::tick_bits>(a, span.length);
     // -V/2 - A/12
-    const std::int64_t way = product_shifted(6 * v + slope, span.length, MotionPoint::tick_bits);
-    const std::int64_t d = -product_shifted(way, 0x5555555555555555, 66);
+    const std::int64_t way = product<MotionPoint::tick_bits>(6 * v + slope, span.length);
+    const std::int64_t d = -product<66>(way, 0x5555555555555555);
     start(span, {d, v, a}, Over::ticks);
     return d;
   }
@@ -96,6 +97,7 @@ class Bridge {
   constexpr void go_to(std::int64_t gone) {
     gone_ = gone;
     if (gone_ >= span_.length) active_ = false;
+    if (active_ && !made_) make();
   }
   constexpr void clear() { active_ = false; }
 
@@ -107,13 +109,20 @@ class Bridge {
   // The deviation where it is.
   constexpr MotionPoint point() const {
     if (!active_) return {};
-    const std::int64_t w = span_.share(span_.length - gone_), s = (std::int64_t{1} << Span::share_bits) - w;
-    const auto w31 = static_cast<std::uint32_t>(w >> 31), s31 = static_cast<std::uint32_t>(s >> 31);
-    const auto fine = [](std::int64_t x, std::int64_t y) { return product<Span::share_bits>(x, y); };
+    if (!made_) return {p_[0], v_[0], a_[0]};
+    const std::int64_t share = span_.share(span_.length - gone_);
+    const auto w = static_cast<std::uint32_t>(share >> 31);
+    const auto s = static_cast<std::uint32_t>(((std::int64_t{1} << Span::share_bits) - share) >> 31);
+    // By the scheme of Horner for a polynomial of w that begins with its third power, and for its slope; what is below
+    // 31 bits of w counts by the slope.
+    const std::int64_t first = of(w, p_[2]), b4 = first + p_[1], b3 = of(w, b4) + p_[0], b2 = of(w, b3), b1 = of(w, b2);
+    const std::int64_t d3 = of(w, first + b4) + b3, d2 = of(w, d3) + b2, d1 = of(w, d2) + b1;
+    const auto rest = static_cast<std::int32_t>(share & (one - 1));
     MotionPoint out;
-    out.position = fine(w, fine(w, fine(w, p_[0] + fine(s, p_[1] + fine(s, p_[2])))));
-    out.velocity = of(w31, of(w31, v_[0] + of(s31, v_[1] + of(s31, v_[2]))));
-    out.acceleration = of(w31, a_[0] + of(s31, a_[1] + of(s31, a_[2])));
+    const std::int64_t fine = of(w, b1) + (std::int64_t{static_cast<std::int32_t>(d1 >> 32)} * rest >> 30);
+    out.position = finer_ ? (fine + half_of_finer) >> finer_bits : fine;
+    out.velocity = of(w, of(w, v_[0] + of(s, v_[1] + of(s, v_[2]))));
+    out.acceleration = of(w, a_[0] + of(s, a_[1] + of(s, a_[2])));
     return out;
   }
 
@@ -163,23 +172,36 @@ class Bridge {
   }
 
  private:
-  // Of the position in the units of the span, `Up` bits from one derivative to the next.
+  constexpr void make() {
+    made_ = true;
+    if (over_ == Over::ticks)
+      make_over<MotionPoint::tick_bits>();
+    else
+      make_over<MotionPoint::position_bits>();
+  }
+
+  // Of the position in the units of the span, `Up` bits from one derivative to the next. The position's coefficients are
+  // those of w^3, w^4, w^5, in which the factor of s is written out.
   template <int Up>
-  constexpr void start_over(const MotionPoint& from) {
-    const std::int64_t d = from.position, v = from.velocity, a = from.acceleration;
+  constexpr void make_over() {
+    const std::int64_t d = p_[0], v = v_[0], a = a_[0];
     const std::int64_t length = span_.length;
     const std::int64_t slope = product<Up>(a, length);                // A, as a speed
     const std::int64_t of_speed = product<Up>(v, length);             // V, as a way
     const std::int64_t of_acceleration = product<Up>(slope, length);  // A, as a way
     const std::int64_t d_speed = span_.divide(d, Up), d_acceleration = span_.divide(d_speed, Up);
     const std::int64_t v_acceleration = span_.divide(v, Up);
-    p_[0] = d;
-    p_[1] = of_speed + 3 * d;
-    p_[2] = of_acceleration / 2 + 3 * of_speed + 6 * d;
-    v_[0] = v;
+    const std::int64_t linear = of_speed + 3 * d, square = of_acceleration / 2 + 3 * linear - 3 * d;
+    p_[0] = d + linear + square;
+    p_[1] = -(linear + 2 * square);
+    p_[2] = square;
+    // So that the position is rounded to the nearest of its format, and a motion does not begin with a step back.
+    const auto holds = [](std::int64_t x) { return magnitude(x) < std::uint64_t{1} << (59 - finer_bits); };
+    finer_ = holds(p_[0]) && holds(p_[1]) && holds(p_[2]);
+    if (finer_)
+      for (std::int64_t& p : p_) p *= std::int64_t{1} << finer_bits;
     v_[1] = slope + 2 * v;
     v_[2] = -5 * (slope / 2 + 3 * v + 6 * d_speed);
-    a_[0] = a;
     a_[1] = -(8 * a + 36 * v_acceleration + 60 * d_acceleration);
     a_[2] = 10 * a + 60 * v_acceleration + 120 * d_acceleration;
   }
@@ -201,10 +223,14 @@ class Bridge {
     return a < most && b < most && c < most && a + b + c <= limit;
   }
 
-  std::int64_t p_[3] = {}, v_[3] = {}, a_[3] = {};
+  static constexpr std::uint32_t one = 0x80000000u;  // of a share
+  static constexpr int finer_bits = 8;               // of the position's coefficients, up to 2^11 units
+  static constexpr std::int64_t half_of_finer = std::int64_t{1} << (finer_bits - 1);
+
+  std::int64_t p_[3] = {}, v_[3] = {}, a_[3] = {};  // where it is not made, the first of each are the deviation
   std::int64_t gone_ = 0;
   Span span_{};
-  bool active_ = false;
+  bool active_ = false, made_ = false, finer_ = false;
   Over over_ = Over::ticks;
 };
 

@@ -165,9 +165,9 @@ class CamCurve {
 
   // The motion that `slopes` make of a master `x`, as seen.
   static constexpr MotionPoint chained(const CamSlopes& slopes, const MasterPoint& x) {
-    const std::int64_t square = product<40>(x.velocity, x.velocity);
-    return {slopes.position, product<40>(slopes.slope, x.velocity),
-            product<40>(slopes.bend, square) + product<40>(slopes.slope, x.acceleration)};
+    const std::int64_t square = product_within<40>(x.velocity, x.velocity);
+    return {slopes.position, product_within<40>(slopes.slope, x.velocity),
+            product_within<40>(slopes.bend, square) + product_within<40>(slopes.slope, x.acceleration)};
   }
 
  private:

@@ -196,8 +196,8 @@ class CamMotion {
     const bool over_distance = bridge_.active() && bridge_.over() == Bridge::Over::distance;
     if (over_distance) {
       const std::int64_t gone = (x.position - begin_).raw(), ahead = backward_ ? -gone : gone;
-      if (ahead < 0) {
-        // Before its begin the slave stands, as it did.
+      if (ahead <= 0) {
+        // At its begin and before it the slave stands, as it did.
         point_ = {standing_, 0, 0};
         cycles_ = x.position.cycles;
         return;
