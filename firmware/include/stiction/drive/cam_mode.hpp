@@ -80,11 +80,7 @@ class CamMode {
 
   // `config`: of the axis; `tables`: that can be asked for, by their number; both must outlive this.
   explicit constexpr CamMode(const Config& config, std::span<const Table> tables = {})
-      : config_(&config),
-        tables_(tables),
-        first_(config.motion),
-        second_(config_->second),
-        superposed_(config_->superposed) {}
+      : config_(&config), tables_(tables), first_(config.motion), second_(config_->second) {}
   CamMode(const CamMode&) = delete;
   CamMode& operator=(const CamMode&) = delete;
   ~CamMode() = default;
@@ -234,7 +230,7 @@ class CamMode {
   constexpr SetPoint<S> step(const MasterReading& master) {
     seen_ = braking_ ? MasterReading{stopping_master_.step(), true} : master;
     point_ = first_.motion.step(seen_.point, seen_.valid, braking_) +
-             second_.motion.step(seen_.point, seen_.valid, braking_) + superposed_.step();
+             second_.motion.step(seen_.point, seen_.valid, braking_) + superposed_.step(config_->superposed);
     fault_ = fault_of(first_.motion.status().fault);
     if (fault_ == Fault::none) fault_ = fault_of(second_.motion.status().fault);
     // Refused behind its trigger.
@@ -468,7 +464,7 @@ class CamMode {
   const Config* config_;
   std::span<const Table> tables_;
   Layer first_, second_;
-  SmoothOffset superposed_;
+  SmoothOffset superposed_{};
   VirtualMaster stopping_master_{VirtualMaster::Config{}};  // that the axis sees while it brakes along its curve
   MasterReading seen_{{}, false};                           // in the last tick
   MotionPoint point_{};

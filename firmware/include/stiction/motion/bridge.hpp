@@ -66,8 +66,8 @@ class Bridge {
   // slave's unit for each cycle and for its square.
   enum class Over : std::uint8_t { ticks, distance };
 
-  // A bridge from the deviation `from`, which is over after `span`, `over` what it says. Its polynomials are made in the
-  // tick in which it first goes on, as that one has no decision to take.
+  // A bridge from the deviation `from`, which is over after `span`, `over` what it says. Its polynomials are made in
+  // the tick in which it first goes on, as that one has no decision to take.
   constexpr void start(const Span& span, const MotionPoint& from, Over over) {
     span_ = span;
     over_ = over;
@@ -110,14 +110,13 @@ class Bridge {
   constexpr MotionPoint point() const {
     if (!active_) return {};
     if (!made_) return {p_[0], v_[0], a_[0]};
-    const std::int64_t share = span_.share(span_.length - gone_);
-    const auto w = static_cast<std::uint32_t>(share >> 31);
-    const auto s = static_cast<std::uint32_t>(((std::int64_t{1} << Span::share_bits) - share) >> 31);
+    const std::int64_t share = span_.share(span_.length - gone_), gone = (std::int64_t{1} << Span::share_bits) - share;
+    const auto w = static_cast<std::uint32_t>(share >> 31), s = static_cast<std::uint32_t>(gone >> 31);
     // By the scheme of Horner for a polynomial of w that begins with its third power, and for its slope; what is below
     // 31 bits of w counts by the slope.
     const std::int64_t first = of(w, p_[2]), b4 = first + p_[1], b3 = of(w, b4) + p_[0], b2 = of(w, b3), b1 = of(w, b2);
     const std::int64_t d3 = of(w, first + b4) + b3, d2 = of(w, d3) + b2, d1 = of(w, d2) + b1;
-    const auto rest = static_cast<std::int32_t>(share & (one - 1));
+    const auto rest = static_cast<std::int32_t>(share & INT32_MAX);
     MotionPoint out;
     const std::int64_t fine = of(w, b1) + (std::int64_t{static_cast<std::int32_t>(d1 >> 32)} * rest >> 30);
     out.position = finer_ ? (fine + half_of_finer) >> finer_bits : fine;
@@ -180,8 +179,8 @@ class Bridge {
       make_over<MotionPoint::position_bits>();
   }
 
-  // Of the position in the units of the span, `Up` bits from one derivative to the next. The position's coefficients are
-  // those of w^3, w^4, w^5, in which the factor of s is written out.
+  // Of the position in the units of the span, `Up` bits from one derivative to the next. The position's coefficients
+  // are those of w^3, w^4, w^5, in which the factor of s is written out.
   template <int Up>
   constexpr void make_over() {
     const std::int64_t d = p_[0], v = v_[0], a = a_[0];
@@ -223,8 +222,7 @@ class Bridge {
     return a < most && b < most && c < most && a + b + c <= limit;
   }
 
-  static constexpr std::uint32_t one = 0x80000000u;  // of a share
-  static constexpr int finer_bits = 8;               // of the position's coefficients, up to 2^11 units
+  static constexpr int finer_bits = 8;  // of the position's coefficients, up to 2^11 units
   static constexpr std::int64_t half_of_finer = std::int64_t{1} << (finer_bits - 1);
 
   std::int64_t p_[3] = {}, v_[3] = {}, a_[3] = {};  // where it is not made, the first of each are the deviation

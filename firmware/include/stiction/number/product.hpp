@@ -47,18 +47,18 @@ template <int Shift>
   return product_inlined(a, b, Shift);
 }
 
-// a * b * 2^-Shift to the nearest whole number, ties up, of two numbers below 2^62 whose result is within a word: half of
-// the instructions of product(). Shift 33 to 63.
-template <int Shift>
-[[gnu::always_inline]] constexpr std::int64_t product_within(std::int64_t a, std::int64_t b) {
-  static_assert(Shift >= 33 && Shift <= 63);
+// a * b * 2^-shift to the nearest whole number, ties up, of two numbers up to 2^62 whose result is within a word: half
+// of the instructions of product_shifted(). `a`, `b`: so; `shift`: 32 to 63.
+[[gnu::always_inline]] constexpr std::int64_t product_within(std::int64_t a, std::int64_t b, int shift) {
   const std::int64_t a1 = static_cast<std::int32_t>(a >> 32), b1 = static_cast<std::int32_t>(b >> 32);
   const std::uint64_t a0 = static_cast<std::uint32_t>(a), b0 = static_cast<std::uint32_t>(b);
   const std::int64_t first = a1 * static_cast<std::int64_t>(b0), second = b1 * static_cast<std::int64_t>(a0);
-  constexpr std::int64_t half = std::int64_t{1} << (Shift - 33);
-  const std::int64_t middle = first + second + static_cast<std::int64_t>(a0 * b0 >> 32) + half;
-  const auto upper = static_cast<std::uint64_t>(a1 * b1) << (64 - Shift);
-  return static_cast<std::int64_t>(upper + static_cast<std::uint64_t>(middle >> (Shift - 32)));
+  const std::uint64_t half = std::uint64_t{1} << (shift - 1);
+  const std::uint64_t low = a0 * b0 + static_cast<std::uint32_t>(half);
+  const auto middle = static_cast<std::int64_t>(static_cast<std::uint64_t>(first) + static_cast<std::uint64_t>(second) +
+                                                (low >> 32) + (half >> 32));
+  const auto upper = static_cast<std::uint64_t>(a1 * b1) << (64 - shift);
+  return static_cast<std::int64_t>(upper + static_cast<std::uint64_t>(middle >> (shift - 32)));
 }
 
 // a * b of two numbers that are not negative; what exceeds a word is its end. Four products of 32 bits at most, and a
