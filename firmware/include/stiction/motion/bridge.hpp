@@ -51,8 +51,14 @@ struct Span {
     return span;
   }
 
-  // `part` / length in 2^-62; `part`: 0 to the length.
-  constexpr std::int64_t share(std::int64_t part) const { return product_shifted(part, reciprocal, bits); }
+  // `part` / length in 2^-62; `part`: 0 to the length. Two products of 32 bits for a length of ticks.
+  constexpr std::int64_t share(std::int64_t part) const {
+    if (bits > 31) return product_shifted(part, reciprocal, bits);
+    const auto word = static_cast<std::uint32_t>(part);
+    const std::uint64_t low = static_cast<std::uint64_t>(static_cast<std::uint32_t>(reciprocal)) * word;
+    const std::uint64_t high = (static_cast<std::uint64_t>(reciprocal) >> 32) * word + (low >> 32);
+    return static_cast<std::int64_t>(high << (32 - bits) | static_cast<std::uint32_t>(low) >> bits);
+  }
 
   // `x` * 2^up / length. `up`: up to 62.
   constexpr std::int64_t divide(std::int64_t x, int up) const {
@@ -125,34 +131,31 @@ class Bridge {
     return out;
   }
 
-  // Whether a bridge of `ticks` from the deviation `from` keeps within `room`. Its parts are bounded each by itself:
-  // the largest |p'|, |p''|, |p'''| are 15/8, 5.7735, 60 of a position, 1, 3.9403, 36 of a speed, and 0.0678, 1, 9 of
-  // an acceleration.
+  // Whether a bridge of `ticks`, below 2^32, from the deviation `from` keeps within `room`. Its parts are bounded each
+  // by itself: the largest |p'|, |p''|, |p'''| are 15/8, 5.7735, 60 of a position, 1, 3.9403, 36 of a speed, and
+  // 0.0678, 1, 9 of an acceleration. By the scheme of Horner for the length: what the acceleration leaves of the
+  // jerk's, what the speed leaves of that. All factors are rounded up, all that is left is rounded down.
   static constexpr bool fits(const MotionPoint& from, std::int64_t ticks, const MotionLimits& room) {
     const std::int64_t d = bounded(from.position), v = bounded(from.velocity), a = bounded(from.acceleration);
-    const auto times = [ticks](std::int64_t x) { return product_held(x, ticks); };
-    const auto a_tick = [ticks](std::int64_t x) { return product<MotionPoint::tick_bits>(x, ticks); };
-    const std::int64_t of_a = a_tick(a);  // as a speed
-    const std::int64_t speed_left = room.velocity - v - product<14>(of_a, 1112);
-    const std::int64_t change_left = room.acceleration - a;
-    if (speed_left < 0 || change_left < 0 || room.jerk < 0) return false;
-    const std::int64_t of_v = times(v);
-    return no_more(product_held(d, 7680), 0, 0, times(speed_left)) &&
-           no_more(product_held(d, 23649), product<10>(of_v, 4035), 0, times(a_tick(change_left))) &&
-           no_more(product_held(d, 60 << 12), product_held(of_v, 36), product_held(times(of_a), 9),
-                   times(a_tick(a_tick(room.jerk))));
+    if (d >= most_deviation / 4 || v >= most_deviation || a >= most_deviation || ticks > UINT32_MAX) return false;
+    const auto times = [t = static_cast<std::uint32_t>(ticks)](std::int64_t x) { return a_tick(x, t); };
+    const std::int64_t of_a = times(a);  // as a speed
+    const std::int64_t speed = room.velocity - v - ((of_a >> 4) + (of_a >> 8) + (of_a >> 9) + (a > 0 ? 4 : 0));
+    const std::int64_t change = times(room.acceleration - a) - (4 * v - (v * 15 >> 8));
+    const std::int64_t jerk = times(times(room.jerk) - 9 * a) - 36 * v;
+    return times(speed) >= (15 * d + 7) >> 3 && times(change) >= 6 * d - (d * 231 >> 10) && times(jerk) >= 60 * d;
   }
 
   // The same of a bridge of speed of `ticks` within `room`, from the speed `v` and the acceleration `a`: the largest
   // deviations of speed, acceleration and jerk are 1, 3/2, 6 of a speed, and 4/27, 1, 4 of an acceleration.
   static constexpr bool fits_speed(std::int64_t v, std::int64_t a, std::int64_t ticks, const MotionLimits& room) {
-    const std::int64_t speed = bounded(v), change = bounded(a), change_left = room.acceleration - change;
-    const std::int64_t of_a = product_shifted(change, ticks, MotionPoint::tick_bits);
-    const std::int64_t steps = product_shifted(room.jerk, ticks, MotionPoint::tick_bits);
-    return change_left >= 0 && speed <= room.velocity - product_shifted(of_a, 2428, 14) &&
-           no_more(product_shifted(speed, 6144, 0), 0, 0, product_shifted(change_left, ticks, 0)) &&
-           no_more(product_shifted(speed, 6 << 12, 0), product_shifted(change, 4 * ticks, 0), 0,
-                   product_shifted(steps, ticks, 0));
+    const std::int64_t speed = bounded(v), change = bounded(a);
+    if (speed >= most_deviation || change >= most_deviation || ticks > UINT32_MAX) return false;
+    const auto times = [t = static_cast<std::uint32_t>(ticks)](std::int64_t x) { return a_tick(x, t); };
+    const std::int64_t of_a = times(change);
+    return speed + (of_a >> 3) + (of_a >> 6) + (of_a >> 7) + (change > 0 ? 4 : 0) <= room.velocity &&
+           times(room.acceleration - change) >= (3 * speed + 1) >> 1 &&
+           times(times(room.jerk) - 4 * change) >= 6 * speed;
   }
 
   // Bounds of the derivatives of a bridge from the deviation `from` over the distance of `span`, by the same parts.
@@ -165,9 +168,13 @@ class Bridge {
       return quotient < INT64_MAX ? quotient + 1 : quotient;
     };
     const std::int64_t d1 = part(d), d2 = part(d1), d3 = part(d2), v1 = part(v), v2 = part(v1), a1 = part(a);
-    return {sum(product_shifted(d1, 15, 3), v, product_shifted(product_shifted(a, span.length, up), 1112, 14)),
-            sum(product_shifted(d2, 23649, 12), product_shifted(v1, 4035, 10), a),
-            sum(product_shifted(d3, 60, 0), product_shifted(v2, 36, 0), product_shifted(a1, 9, 0))};
+    const std::int64_t of_a = product<up>(a, span.length);
+    // Factors as in fits(), of numbers that are held so that the products are within a word.
+    const auto held = [](std::int64_t x) { return x < std::int64_t{1} << 60 ? x : std::int64_t{1} << 60; };
+    const std::int64_t bend = held(d2), of_v = held(v1);
+    return {sum(2 * held(d1) - (held(d1) >> 3), v, (of_a >> 4) + (of_a >> 8) + (of_a >> 9)),
+            sum(6 * bend - (bend >> 3) - (bend >> 4) - (bend >> 5), 4 * of_v - (of_v >> 5) - (of_v >> 6), a),
+            sum(product_held(d3, 60), product_held(v2, 36), product_held(a1, 9))};
   }
 
  private:
@@ -208,7 +215,7 @@ class Bridge {
   static constexpr std::int64_t sum(std::int64_t a, std::int64_t b, std::int64_t c) {
     constexpr std::int64_t most = std::int64_t{1} << 60;
     const auto held = [](std::int64_t x) { return x < most ? x : most; };
-    return held(a) + held(b) + held(c) + 3;
+    return held(a) + held(b) + held(c) + 6;
   }
   // x * share / 2^31, rounded down; share: up to 2^31.
   static constexpr std::int64_t of(std::uint32_t share, std::int64_t x) {
@@ -217,11 +224,17 @@ class Bridge {
     return upper * 2 + static_cast<std::int64_t>(lower >> 31);
   }
   static constexpr std::int64_t bounded(std::int64_t x) { return x < 0 ? (x == INT64_MIN ? INT64_MAX : -x) : x; }
-  static constexpr bool no_more(std::int64_t a, std::int64_t b, std::int64_t c, std::int64_t limit) {
-    constexpr std::int64_t most = std::int64_t{1} << 61;
-    return a < most && b < most && c < most && a + b + c <= limit;
+  // x * ticks / 2^12, rounded down, of a derivative that a length turns into the next lower one; held to 2^61, and to
+  // -1 where nothing is left.
+  [[gnu::always_inline]] static constexpr std::int64_t a_tick(std::int64_t x, std::uint32_t ticks) {
+    if (x < 0) return -1;
+    const std::uint64_t low = std::uint64_t{static_cast<std::uint32_t>(x)} * ticks;
+    const std::uint64_t high = (static_cast<std::uint64_t>(x) >> 32) * ticks + (low >> 32);
+    if (high >> 41 != 0) return std::int64_t{1} << 61;
+    return static_cast<std::int64_t>(high << 20 | static_cast<std::uint32_t>(low) >> 12);
   }
 
+  static constexpr std::int64_t most_deviation = std::int64_t{1} << 57;
   static constexpr int finer_bits = 8;  // of the position's coefficients, up to 2^11 units
   static constexpr std::int64_t half_of_finer = std::int64_t{1} << (finer_bits - 1);
 

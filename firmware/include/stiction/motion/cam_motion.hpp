@@ -244,8 +244,8 @@ class CamMotion {
            needed.jerk <= config_->slave.jerk;
   }
 
-  // Whether the request's trigger is reached, one that is not at once; `x`: the master as its curve sees it.
-  constexpr bool reached(const MasterPoint& measured, const MasterPoint& x, const MotionPoint& off) {
+  // Whether the master passes the place of the request's trigger; `x`: the master as its curve sees it.
+  constexpr bool passed(const MasterPoint& measured, const MasterPoint& x) {
     const auto passes = [this](std::int64_t side) {
       const bool passed = watched_ && ((side >= 0) != (side_ >= 0)) && near(side);
       side_ = side;
@@ -255,20 +255,20 @@ class CamMotion {
     if (request_.trigger == CamTrigger::master_position) return passes((measured.position - request_.at).raw());
     if (request_.trigger == CamTrigger::cam_position)
       return passes(static_cast<std::int64_t>(x.position.phase - request_.at.phase));
-    if (request_.trigger == CamTrigger::next_cycle) {
-      const std::int64_t cycles = follows_ ? cycles_ : x.position.cycles;
-      const bool begins = watched_ && cycles != side_;
-      side_ = cycles;
-      watched_ = true;
-      return begins;
-    }
-    const auto agrees = [](std::int64_t d, std::int64_t most) { return magnitude(d) <= magnitude(most); };
-    return agrees(off.position, request_.tolerance.position) && agrees(off.velocity, request_.tolerance.velocity) &&
-           agrees(off.acceleration, request_.tolerance.acceleration);
+    const std::int64_t cycles = follows_ ? cycles_ : x.position.cycles;
+    const bool begins = watched_ && cycles != side_;
+    side_ = cycles;
+    watched_ = true;
+    return begins;
+  }
+  // Whether what the slave is `off` the new motion is within the tolerance of the request.
+  constexpr bool agrees(const MotionPoint& off) const {
+    const auto within = [](std::int64_t d, std::int64_t most) { return magnitude(d) <= magnitude(most); };
+    return within(off.position, request_.tolerance.position) && within(off.velocity, request_.tolerance.velocity) &&
+           within(off.acceleration, request_.tolerance.acceleration);
   }
   // Half a cycle on the other side the sign changes too.
   static constexpr bool near(std::int64_t side) { return magnitude(side) < std::uint64_t{1} << 62; }
-
   // Aims at what waits, once its trigger is reached and there is room; whether a way was tried.
   constexpr bool try_request(const MasterPoint& measured, const MasterPoint& master) {
     return request_.goal == CamGoal::position ? try_position(measured, master) : try_curve(measured, master);
@@ -276,7 +276,7 @@ class CamMotion {
 
   constexpr bool try_position(const MasterPoint& measured, const MasterPoint& master) {
     const MotionPoint off = point_ - MotionPoint{request_.position, 0, 0};
-    triggered_ = triggered_ || reached(measured, master, off);
+    triggered_ = triggered_ || (request_.trigger == CamTrigger::curves_agree ? agrees(off) : passed(measured, master));
     if (!triggered_) return false;
     if (bridge_to(off)) {
       free_ = {request_.position, 0, 0};
@@ -289,19 +289,27 @@ class CamMotion {
     const CamCurve& next = *request_.curve;
     Shift shift{};
     MasterPoint x = next.seen(master);
-    if (!triggered_ && !reached(measured, x, point_ - CamCurve::chained(next.slopes(x.position), x))) return false;
-    triggered_ = true;
+    const bool by_place = request_.trigger != CamTrigger::curves_agree;
+    if (by_place && !triggered_) triggered_ = passed(measured, x);
+    if (by_place && !triggered_) return false;
     // A relative begin is that of the tick in which it comes to it, tried again where there was no room.
-    if (request_.master_relative) {
+    if (triggered_ && request_.master_relative) {
       shift.master = next.config().master_offset - x.position;
       x.position = next.config().master_offset;
+    }
+    const CamSlopes slopes = next.slopes(x.position);
+    // From standstill over a distance the place alone is needed.
+    const bool over_distance = triggered_ && request_.approach == CamApproach::distance;
+    MotionPoint off = point_ - (over_distance ? MotionPoint{slopes.position, 0, 0} : CamCurve::chained(slopes, x));
+    if (!triggered_) {
+      // A curve is looked at once a tick: one that begins where the master is does so in the tick behind.
+      triggered_ = agrees(off);
+      if (!triggered_ || request_.master_relative) return false;
     }
     if (next.outside(x.position)) {
       refuse(CamRefusal::outside_profile);
       return false;
     }
-    const CamSlopes slopes = next.slopes(x.position);
-    MotionPoint off = point_ - CamCurve::chained(slopes, x);
     if (request_.slave_relative) {
       shift.slave = off.position;
       off.position = 0;
