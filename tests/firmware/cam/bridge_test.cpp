@@ -210,10 +210,15 @@ TEST(Bridge, FitsWhereItsLargestDerivativesDo) {
   EXPECT_FALSE(Bridge::fits_speed(0, INT64_MIN, 16000, wide));
   // Three days at most; what a word does not hold of such lengths is held.
   const MotionLimits most{std::int64_t{1} << 56, std::int64_t{1} << 56, std::int64_t{1} << 56};
-  EXPECT_TRUE(Bridge::fits({std::int64_t{1} << 54, 1, 1}, UINT32_MAX, most));
+  EXPECT_TRUE(Bridge::fits({std::int64_t{1} << 53, 1, 1}, std::int64_t{1} << 31, most));
   EXPECT_FALSE(Bridge::fits({1, 1, 1}, std::int64_t{UINT32_MAX} + 1, most));
-  EXPECT_TRUE(Bridge::fits_speed(1, 1, UINT32_MAX, most));
+  EXPECT_TRUE(Bridge::fits_speed(1, 1, std::int64_t{1} << 31, most));
   EXPECT_FALSE(Bridge::fits_speed(1, 1, std::int64_t{UINT32_MAX} + 1, most));
+  // A speed or an acceleration that takes more than 2^14 units on the way.
+  EXPECT_FALSE(Bridge::fits({0, std::int64_t{1} << 50, 0}, 1 << 20, most));
+  EXPECT_FALSE(Bridge::fits({0, 0, std::int64_t{1} << 40}, 1 << 25, most));
+  EXPECT_FALSE(Bridge::fits_speed(std::int64_t{1} << 50, 0, 1 << 20, most));
+  EXPECT_FALSE(Bridge::fits_speed(0, std::int64_t{1} << 40, 1 << 25, most));
 }
 
 TEST(Bridge, OfSpeedEndsWithItAndKeepsItsRule) {

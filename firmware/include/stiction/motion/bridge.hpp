@@ -13,6 +13,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <initializer_list>
 
 #include "stiction/motion/cam_peaks.hpp"
 #include "stiction/motion/motion_point.hpp"
@@ -137,9 +138,10 @@ class Bridge {
   // jerk's, what the speed leaves of that. All factors are rounded up, all that is left is rounded down.
   static constexpr bool fits(const MotionPoint& from, std::int64_t ticks, const MotionLimits& room) {
     const std::int64_t d = bounded(from.position), v = bounded(from.velocity), a = bounded(from.acceleration);
-    if (d >= most_deviation / 4 || v >= most_deviation || a >= most_deviation || ticks > UINT32_MAX) return false;
+    if (d >= most_way || v >= most_deviation || a >= most_deviation || ticks > UINT32_MAX) return false;
     const auto times = [t = static_cast<std::uint32_t>(ticks)](std::int64_t x) { return a_tick(x, t); };
     const std::int64_t of_a = times(a);  // as a speed
+    if (times(v) >= most_way || times(of_a) >= most_way) return false;
     const std::int64_t speed = room.velocity - v - ((of_a >> 4) + (of_a >> 8) + (of_a >> 9) + (a > 0 ? 4 : 0));
     const std::int64_t change = times(room.acceleration - a) - (4 * v - (v * 15 >> 8));
     const std::int64_t jerk = times(times(room.jerk) - 9 * a) - 36 * v;
@@ -153,6 +155,7 @@ class Bridge {
     if (speed >= most_deviation || change >= most_deviation || ticks > UINT32_MAX) return false;
     const auto times = [t = static_cast<std::uint32_t>(ticks)](std::int64_t x) { return a_tick(x, t); };
     const std::int64_t of_a = times(change);
+    if (times(speed) >= most_way || times(of_a) >= most_way) return false;
     return speed + (of_a >> 3) + (of_a >> 6) + (of_a >> 7) + (change > 0 ? 4 : 0) <= room.velocity &&
            times(room.acceleration - change) >= (3 * speed + 1) >> 1 &&
            times(times(room.jerk) - 4 * change) >= 6 * speed;
@@ -234,7 +237,8 @@ class Bridge {
     return static_cast<std::int64_t>(high << 20 | static_cast<std::uint32_t>(low) >> 12);
   }
 
-  static constexpr std::int64_t most_deviation = std::int64_t{1} << 57;
+  // With these the coefficients are within a word: ways of 2^14 units.
+  static constexpr std::int64_t most_deviation = std::int64_t{1} << 57, most_way = std::int64_t{1} << 54;
   static constexpr int finer_bits = 8;  // of the position's coefficients, up to 2^11 units
   static constexpr std::int64_t half_of_finer = std::int64_t{1} << (finer_bits - 1);
 
