@@ -234,18 +234,20 @@ void CamDrive::set_up_axes(const DriveConfiguration& configuration, bool serves)
   for (std::size_t i = 0; i < configuration.names.size(); ++i) {
     const auto& axis = configuration.machine.axes[i];
     auto& config = configs_.emplace_back();
-    // What a client superposes has a tenth of what the axis keeps, and what it follows the rest.
+    const auto& setup = configuration.setup.axes.at(axis.name);
+    // What a client superposes has its share of what the axis keeps, and what it follows the rest.
+    const double superposed = setup.cam.superposed_share;
     const auto shared = [&](double share) {
       auto bounds = machine::cam_bounds(timing, axis);
       bounds = {share * bounds.velocity, share * bounds.acceleration, share * bounds.jerk};
       return machine::motion_limits(bounds, timing.fast_period);
     };
-    config.motion = CamMotion::Config::of(shared(serves ? 0.9 : 1.0), master_limits_, phasing_limits_, jump);
-    config.superposed = shared(0.1);
+    config.motion =
+        CamMotion::Config::of(shared(serves ? 1.0 - superposed : 1.0), master_limits_, phasing_limits_, jump);
+    config.superposed = shared(superposed);
     config.superposed_ramp = SpeedRampRule::of(config.superposed);
     config.second = CamMotion::Config::of(config.superposed, master_limits_, phasing_limits_, jump);
     config.rate = S::rate(configuration.period_ns);
-    const auto& setup = configuration.setup.axes.at(axis.name);
     const auto deceleration = [&](double a) {
       return Span::of(machine::motion_limits({0.0, a, 0.0}, timing.fast_period).acceleration);
     };

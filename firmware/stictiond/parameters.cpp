@@ -79,6 +79,7 @@ std::vector<DriveParameter> drive_parameters(const machine::Machine& machine, co
     const machine::DriveAxisSetup* owner = drive == setup.axes.end() ? nullptr : &drive->second;
     append_table(owner, table, false, parameters);
     append_table(owner == nullptr ? nullptr : &owner->homing, table + ".homing", false, parameters);
+    append_table(owner == nullptr ? nullptr : &owner->cam, table + ".cam", false, parameters);
   }
   return parameters;
 }

@@ -163,6 +163,11 @@ struct LineSetup {
   ActiveLevel torque_off_active = ActiveLevel::high, hall_active = ActiveLevel::high;
 };
 
+// Of an axis in the modes of cam and gear.
+struct CamAxisSetup {
+  double superposed_share = 0.1;  // of what the axis keeps, for a move or a second cam on top of what it follows
+};
+
 struct DriveAxisSetup {
   int node = 0;                                      // of the axis' power stage and encoder on the bus; 0: none
   int server_node = 0;                               // of the axis where [drive.can_server] serves it; 0: none
@@ -185,6 +190,7 @@ struct DriveAxisSetup {
   CommutationSetup commutation;
   BrakeTestSetup brake_test;
   ProtectionSetup protection;
+  CamAxisSetup cam;
 };
 
 struct DriveSetup {

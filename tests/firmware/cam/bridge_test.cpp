@@ -40,6 +40,23 @@ TEST(Product, IsExactAndRoundedToNearest) {
   EXPECT_EQ(product_held((std::int64_t{1} << 31) - 1, std::int64_t{1} << 32), INT64_MAX - UINT32_MAX);
 }
 
+// To the nearest, ties up, of numbers up to 2^62, by the product of 128 bits that the compiler brings along.
+TEST(Product, WithinAWordIsTheNearestWholeNumber) {
+  std::mt19937_64 random(11);
+  for (int k = 0; k < 200'000; ++k) {
+    const int shift = 32 + static_cast<int>(random() % 32);
+    const std::int64_t a = static_cast<std::int64_t>(random()) >> (1 + random() % 60);
+    const std::int64_t b = static_cast<std::int64_t>(random()) >> (1 + random() % 60);
+    const Int128 exact = (Int128{a} * b + (Int128{1} << (shift - 1))) >> shift;
+    if (exact > INT64_MAX || exact < INT64_MIN) continue;
+    ASSERT_EQ(product_within(a, b, shift), static_cast<std::int64_t>(exact)) << a << ' ' << b << ' ' << shift;
+  }
+  constexpr std::int64_t most = std::int64_t{1} << 62;
+  EXPECT_EQ(product_within(most, -most, 62), -most);
+  EXPECT_EQ(product_within(1, most, 63), 1);
+  EXPECT_EQ(product_within(-1, most, 63), 0);
+}
+
 // 2^(62 + bits) / length, rounded down, by the division of 128 bits that the compiler brings along.
 TEST(Span, HasTheExactReciprocal) {
   const auto check = [](std::int64_t length) {
@@ -142,6 +159,21 @@ TEST(Bridge, IsTheQuinticThroughItsEnds) {
   }
 }
 
+// Ways of 3000 units have 2^-40 of them, and no bits more.
+TEST(Bridge, OfALongWayIsTheQuinticToo) {
+  constexpr std::int64_t ticks = 160'000;
+  constexpr double seconds = ticks / test::rate;
+  const Quintic truth(3000.0, 40.0, -3.0, seconds);
+  Bridge bridge;
+  bridge.start(Span::of(ticks), {test::raw_position(3000.0), test::raw_velocity(40.0), test::raw_acceleration(-3.0)},
+               Bridge::Over::ticks);
+  EXPECT_EQ(bridge.point().position, test::raw_position(3000.0));
+  for (std::int64_t tick = 1; tick < ticks; tick += 777) {
+    bridge.go_to(tick);
+    EXPECT_NEAR(test::position_of(bridge.point().position), truth.at(static_cast<double>(tick) / test::rate, 0), 3e-9);
+  }
+}
+
 // What fits is within the limits, and what does not fit would not be by far.
 TEST(Bridge, FitsWhereItsLargestDerivativesDo) {
   Drawn drawn;
@@ -174,6 +206,19 @@ TEST(Bridge, FitsWhereItsLargestDerivativesDo) {
   EXPECT_FALSE(Bridge::fits_speed(test::raw_velocity(1.0), 0, 16000, test::limits(1.01, 1.49, 6.1)));
   EXPECT_FALSE(Bridge::fits_speed(test::raw_velocity(1.0), 0, 16000, test::limits(1.01, 1.51, 5.9)));
   EXPECT_FALSE(Bridge::fits_speed(0, test::raw_acceleration(2.0), 16000, test::limits(1.01, 1.51, 60.0)));
+  EXPECT_FALSE(Bridge::fits_speed(INT64_MIN, 0, 16000, wide));
+  EXPECT_FALSE(Bridge::fits_speed(0, INT64_MIN, 16000, wide));
+  // Three days at most; what a word does not hold of such lengths is held.
+  const MotionLimits most{std::int64_t{1} << 56, std::int64_t{1} << 56, std::int64_t{1} << 56};
+  EXPECT_TRUE(Bridge::fits({std::int64_t{1} << 53, 1, 1}, std::int64_t{1} << 31, most));
+  EXPECT_FALSE(Bridge::fits({1, 1, 1}, std::int64_t{UINT32_MAX} + 1, most));
+  EXPECT_TRUE(Bridge::fits_speed(1, 1, std::int64_t{1} << 31, most));
+  EXPECT_FALSE(Bridge::fits_speed(1, 1, std::int64_t{UINT32_MAX} + 1, most));
+  // A speed or an acceleration that takes more than 2^14 units on the way.
+  EXPECT_FALSE(Bridge::fits({0, std::int64_t{1} << 50, 0}, 1 << 20, most));
+  EXPECT_FALSE(Bridge::fits({0, 0, std::int64_t{1} << 40}, 1 << 25, most));
+  EXPECT_FALSE(Bridge::fits_speed(std::int64_t{1} << 50, 0, 1 << 20, most));
+  EXPECT_FALSE(Bridge::fits_speed(0, std::int64_t{1} << 40, 1 << 25, most));
 }
 
 TEST(Bridge, OfSpeedEndsWithItAndKeepsItsRule) {

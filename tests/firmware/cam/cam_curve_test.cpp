@@ -203,6 +203,7 @@ TEST(CamCurve, RefusesScalesThatItsFormatsDoNotHold) {
   const auto p = static_cast<int>(h.position_bits), v = static_cast<int>(h.speed_bits),
              a = static_cast<int>(h.acceleration_bits);
   with_bits(*cam, p, v, a, CamRefusal::none);
+  with_bits(*cam, p + 40, v + 40, a + 40, CamRefusal::none);  // 2^-40 times as large
   with_bits(*cam, 7, 7 + v - p, 7 + a - p, CamRefusal::scale);
   with_bits(*cam, p, 7, a, CamRefusal::scale);
   with_bits(*cam, p, v, 7, CamRefusal::scale);

@@ -209,6 +209,50 @@ TEST(CamMotion, WaitsForItsTrigger) {
   EXPECT_GT(agree, 0.0);
 }
 
+TEST(CamMotion, ARelativeCamOfCurvesThatAgreeBeginsInTheTickBehind) {
+  Machine m;
+  m.turn(0.8);
+  const MotionPoint any{INT64_MAX, INT64_MAX, INT64_MAX};
+  ASSERT_EQ(m.axis.engage({.curve = &m.cam,
+                           .trigger = CamTrigger::curves_agree,
+                           .master_relative = true,
+                           .slave_relative = true,
+                           .tolerance = any}),
+            CamRefusal::none);
+  m.tick();
+  EXPECT_TRUE(m.axis.status().waiting);
+  m.tick();
+  EXPECT_TRUE(m.axis.status().active);
+  const double zero = m.x();
+  m.run(3.0);
+  EXPECT_NEAR(m.at(), 0.3 + test::truth(*m.truth, m.x() - zero).position, 2e-9);
+  m.expect_smooth();
+}
+
+// Both have up to 76 lengths, of which a tick tries one.
+TEST(CamMotion, PhasingAndARequestTakeTurnsAndBothBegin) {
+  Machine m;
+  m.turn(0.7);
+  ASSERT_EQ(m.axis.engage({.curve = &m.cam}), CamRefusal::none);
+  m.run(2.0);
+  ASSERT_TRUE(m.axis.status().in_sync);
+  m.axis.phase(raw_position(0.3));
+  ASSERT_EQ(m.axis.engage({.curve = &m.other}), CamRefusal::none);
+  int request = 0, phasing = 0;
+  for (int k = 1; k <= 2 * BridgeLengths::count; ++k) {
+    m.tick();
+    if (request == 0 && !m.axis.status().waiting) request = k;
+    if (phasing == 0 && !m.axis.phasing().plans()) phasing = k;
+  }
+  EXPECT_EQ(m.axis.status().refusal, CamRefusal::none);
+  EXPECT_GT(request, 1);
+  EXPECT_GT(phasing, 1);
+  EXPECT_TRUE(m.axis.ticks_left() > 0 && m.axis.phasing().busy());
+  m.run(10.0);
+  EXPECT_TRUE(m.axis.status().in_sync && !m.axis.phasing().busy());
+  m.expect_smooth();
+}
+
 TEST(CamMotion, SwitchesScalesAndPhasesOnTheRun) {
   Machine m;
   m.turn(0.7);

@@ -197,7 +197,7 @@ TEST(GearRatio, GearsSpeedsToo) {
 
 TEST(SmoothOffset, GoesToEachNewTargetWithinItsLimits) {
   const MotionLimits own = limits(0.5, 5.0, 100.0);
-  SmoothOffset offset(own);
+  SmoothOffset offset;
   offset.start(0);
   std::mt19937_64 random(13);
   test::Watch watch(own);
@@ -206,7 +206,7 @@ TEST(SmoothOffset, GoesToEachNewTargetWithinItsLimits) {
     target = static_cast<std::int64_t>(random() >> 23) - (std::int64_t{1} << 40);
     offset.go(target);
     for (int tick = 0, ticks = k % 50 == 0 ? 600'000 : static_cast<int>(random() % 3000); tick < ticks; ++tick)
-      watch.see(offset.step());
+      watch.see(offset.step(own));
     if (k % 50 == 0) {
       EXPECT_FALSE(offset.busy());
       EXPECT_FALSE(offset.refused());
@@ -221,11 +221,11 @@ TEST(SmoothOffset, GoesToEachNewTargetWithinItsLimits) {
 
 TEST(SmoothOffset, RefusesWhatNoLengthReaches) {
   const MotionLimits own = limits(1e-3, 1e-3, 1e-3);
-  SmoothOffset offset(own);
+  SmoothOffset offset;
   offset.start(5);
   offset.go(test::raw_position(1e6));
   EXPECT_TRUE(offset.busy());
-  for (int k = 0; k < 200; ++k) EXPECT_EQ(offset.step().position, 5);
+  for (int k = 0; k < 200; ++k) EXPECT_EQ(offset.step(own).position, 5);
   EXPECT_FALSE(offset.busy());
   EXPECT_TRUE(offset.refused());
 }

@@ -395,6 +395,47 @@ TEST_P(ServedCam, IsNotLeftForAPositionThatCannotBe) {
   refused(5);
 }
 
+// The whole second table on top, in the tenth of the limits that an axis leaves at first, and in four tenths.
+class CamShare : public ServedCam {
+ protected:
+  explicit CamShare(const std::vector<std::string>& settings = {}) : ServedCam(two_tables(), settings) {}
+
+  double refusal_of_whole() {
+    EXPECT_TRUE(enable_in(-1));
+    EXPECT_TRUE(write("master_speed", 1.0));
+    EXPECT_TRUE(command(engage));
+    EXPECT_EQ(read("cam_refusal"), 0.0);
+    run_until([&] { return shows(in_sync); });
+    EXPECT_TRUE(write("cam_table", 2));
+    EXPECT_TRUE(write("cam_slave_scale", 1.0));
+    EXPECT_TRUE(write("cam_slave_offset", -85e-3));
+    EXPECT_TRUE(command(engage_second));
+    return read("cam_refusal");
+  }
+};
+class CamShareOfFourTenths : public CamShare {
+ protected:
+  CamShareOfFourTenths() : CamShare({"drive.axis.X.cam.superposed_share=0.4"}) {}
+};
+
+INSTANTIATE_TEST_SUITE_P(Bus, CamShare, ::testing::Bool(),
+                         [](const auto& bus) { return std::string(bus.param ? "CANopen" : "Modbus"); });
+INSTANTIATE_TEST_SUITE_P(Bus, CamShareOfFourTenths, ::testing::Bool(),
+                         [](const auto& bus) { return std::string(bus.param ? "CANopen" : "Modbus"); });
+
+TEST_P(CamShare, OfATenthIsTooLittleForAWholeTable) { EXPECT_EQ(refusal_of_whole(), 3.0); }
+
+TEST_P(CamShareOfFourTenths, TakesAWholeTableOnTop) {
+  EXPECT_EQ(refusal_of_whole(), 0.0);
+  run_until([&] { return shows(in_sync | second_in_sync); });
+  double most = 0.0;
+  for (int k = 0; k < 1500; ++k) {
+    step();
+    most = std::max(most, std::abs(off(0)));
+  }
+  EXPECT_NEAR(most, 12e-3, 5e-6) << "what the second one adds";
+}
+
 // The second table, a tenth as high and begun at 0.
 class TwoCams : public ServedCam {
  protected:

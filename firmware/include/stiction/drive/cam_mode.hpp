@@ -14,25 +14,14 @@
 #include <cstdint>
 #include <span>
 
+#include "stiction/drive/cam_asked.hpp"
+#include "stiction/drive/cam_layer.hpp"
 #include "stiction/drive/cam_master.hpp"
 #include "stiction/drive/cam_set_point.hpp"
 #include "stiction/drive/faults.hpp"
 #include "stiction/motion/cam_motion.hpp"
 
 namespace stiction {
-
-enum class CamCommand : std::uint8_t {
-  none,
-  engage,     // MC_CamIn, MC_GearIn: with the values asked for; also to a different table, scale or offset on the run
-  leave,      // MC_CamOut, to standstill or to the speed asked for
-  cancel,     // deletes what waits
-  phase,      // MC_Phasing: the phase asked for
-  superpose,  // MC_MoveSuperimposed: the displacement asked for, on top of what the axis follows or where it stands
-  leave_to,   // to standstill at the position asked for
-  engage_second,  // a second cam on top (MC_CombineAxes), with the values asked for; a table in the mode of a gear too
-  leave_second    // it goes to nothing, from wherever it is
-};
-inline constexpr int cam_commands = 9;
 
 // The ramp of the drive that a stop along a cam takes the place of.
 enum class CamStop : std::uint8_t { slow_down, quick_stop };
@@ -57,34 +46,11 @@ class CamMode {
     std::int64_t low = 0, high = 0;  // 2^-40 m: between which its positions are in a cycle
   };
 
-  struct Asked {
-    std::uint16_t table = 1;  // from 1
-    CamTrigger trigger = CamTrigger::at_once;
-    CamApproach approach = CamApproach::catch_up;
-    bool master_relative = false, slave_relative = false, backward = false;
-    std::int64_t ticks = 16;         // of the approach by ticks
-    std::int64_t distance = 1;       // of the approach by distance, 2^-40 cycles
-    MasterPosition at{};             // of a trigger by position
-    MotionPoint tolerance{};         // of curves that agree
-    MasterPosition master_offset{};  // cam and gear
-    std::int64_t slave_offset = 0;   // 2^-40 m
-    std::int64_t slave_scale = std::int64_t{1} << 32;
-    std::int32_t numerator = 1;  // of the ratio
-    std::uint16_t denominator = 1;
-    std::int64_t gear_way = 0;        // of the slave in a cycle of the master behind the ratio, 2^-40 m
-    std::int64_t phase = 0;           // 2^-40 cycles
-    std::int64_t leave_speed = 0;     // 2^-52 m a tick
-    std::int64_t superposed = 0;      // 2^-40 m
-    std::int64_t leave_position = 0;  // 2^-40 m
-  };
+  using Asked = CamAsked;
 
   // `config`: of the axis; `tables`: that can be asked for, by their number; both must outlive this.
   explicit constexpr CamMode(const Config& config, std::span<const Table> tables = {})
-      : config_(&config),
-        tables_(tables),
-        first_(config.motion),
-        second_(config_->second),
-        superposed_(config_->superposed) {}
+      : config_(&config), tables_(tables), first_(config.motion), second_(config_->second) {}
   CamMode(const CamMode&) = delete;
   CamMode& operator=(const CamMode&) = delete;
   ~CamMode() = default;
@@ -234,12 +200,12 @@ class CamMode {
   constexpr SetPoint<S> step(const MasterReading& master) {
     seen_ = braking_ ? MasterReading{stopping_master_.step(), true} : master;
     point_ = first_.motion.step(seen_.point, seen_.valid, braking_) +
-             second_.motion.step(seen_.point, seen_.valid, braking_) + superposed_.step();
+             second_.motion.step(seen_.point, seen_.valid, braking_) + superposed_.step(config_->superposed);
     fault_ = fault_of(first_.motion.status().fault);
     if (fault_ == Fault::none) fault_ = fault_of(second_.motion.status().fault);
     // Refused behind its trigger.
     const bool waited = first_.undecided;
-    for (Layer* layer : {&first_, &second_})
+    for (CamLayer* layer : {&first_, &second_})
       if (const CamRefusal found = layer->decide(); found != CamRefusal::none) refusal_ = found;
     settle_exchange(waited);
     return cam_set_point(point_, config_->rate);
@@ -258,70 +224,7 @@ class CamMode {
   // As long as the axis follows set-points and no request was taken again.
   constexpr Fault fault() const { return fault_; }
 
-  static constexpr Fault fault_of(CamFault fault) {
-    switch (fault) {
-      case CamFault::master_lost:
-        return Fault::master_lost;
-      case CamFault::master_too_fast:
-        return Fault::master_too_fast;
-      case CamFault::master_jumped:
-        return Fault::synchronisation_lost;
-      case CamFault::none:
-        break;
-    }
-    return Fault::none;
-  }
-
  private:
-  // A motion that follows the master, and the request that it has not decided yet.
-  struct Layer {
-    explicit constexpr Layer(const CamMotion::Config& of) : motion(of) {}
-
-    constexpr void start(std::int64_t position) {
-      motion.start(position);
-      waiting = nullptr;
-      undecided = false;
-      table = 0;
-    }
-    constexpr void cancel() {
-      motion.cancel();
-      waiting = nullptr;
-      undecided = false;
-    }
-    // `number`: of the table, at `curve`.
-    constexpr CamRefusal take(const CamRequest& request, const CamCurve* curve, std::uint16_t number) {
-      const CamRefusal found = motion.engage(request);
-      if (found != CamRefusal::none) return found;
-      waiting = curve;
-      waiting_table = number;
-      undecided = true;
-      return CamRefusal::none;
-    }
-    constexpr CamRefusal leave(std::int64_t speed) {
-      waiting = nullptr;
-      undecided = false;
-      return motion.leave(speed);
-    }
-    constexpr void leave_to_rest() {
-      if (!motion.at_rest() || motion.status().waiting) leave(0);
-    }
-    // Behind a tick: why what was asked for was refused in it.
-    constexpr CamRefusal decide() {
-      const CamStatus& status = motion.status();
-      const bool decided = undecided && !status.waiting;
-      const CamRefusal found = decided ? status.refusal : CamRefusal::none;
-      if (decided && found == CamRefusal::none && status.active) table = waiting_table;
-      if (decided) waiting = nullptr, undecided = false;
-      if (!status.active) table = 0;
-      return found;
-    }
-
-    CamMotion motion;
-    const CamCurve* waiting = nullptr;
-    std::uint16_t table = 0, waiting_table = 0;
-    bool undecided = false;
-  };
-
   // Behind decide(): what a decided request or exchange has changed. `waited`: whether there was one before.
   constexpr void settle_exchange(bool waited) {
     const CamStatus& status = first_.motion.status();
@@ -400,7 +303,7 @@ class CamMode {
   constexpr CamRefusal leave_to(std::int64_t position, bool referenced) {
     if (referenced && (position < config_->low.raw() || position > config_->high.raw()))
       return CamRefusal::beyond_travel;
-    CamRequest request = asked_request();
+    CamRequest request = asked_.request();
     request.goal = CamGoal::position;
     request.position = position;
     exchanging_ = false;
@@ -408,21 +311,7 @@ class CamMode {
     return first_.take(request, nullptr, 0);
   }
 
-  // When and how, of what is asked for.
-  constexpr CamRequest asked_request() const {
-    CamRequest request;
-    request.trigger = asked_.trigger;
-    request.approach = asked_.approach;
-    request.master_relative = asked_.master_relative;
-    request.slave_relative = asked_.slave_relative;
-    request.backward = asked_.backward;
-    request.span = Span::of(asked_.approach == CamApproach::distance ? asked_.distance : asked_.ticks);
-    request.at = asked_.at;
-    request.tolerance = asked_.tolerance;
-    return request;
-  }
-
-  constexpr CamRefusal engage(Layer& layer, bool gear, bool referenced) {
+  constexpr CamRefusal engage(CamLayer& layer, bool gear, bool referenced) {
     if (!gear && (asked_.table == 0 || asked_.table > tables_.size())) return CamRefusal::unknown_table;
     const Table none{};
     const Table* exchanged = gear ? nullptr : this->exchanged(asked_.table);
@@ -438,7 +327,7 @@ class CamMode {
     const CamRefusal refusal = CamCurve::rescale(table.curve, config, curve);
     if (refusal != CamRefusal::none) return refusal;
     if (referenced && !gear && !asked_.slave_relative && leaves_travel(table, curve)) return CamRefusal::beyond_travel;
-    CamRequest request = asked_request();
+    CamRequest request = asked_.request();
     request.curve = &curve;
     request.free_way = gear && asked_.slave_relative;
     const CamRefusal found = layer.take(request, &curve, gear ? std::uint16_t{0} : asked_.table);
@@ -458,7 +347,7 @@ class CamMode {
 
   constexpr CamCurve& free_place() {
     std::size_t k = 0;
-    const auto taken = [&](const Layer& layer) {
+    const auto taken = [&](const CamLayer& layer) {
       return &places_[k] == layer.motion.curve() || &places_[k] == layer.waiting;
     };
     while (taken(first_) || taken(second_)) ++k;
@@ -467,8 +356,8 @@ class CamMode {
 
   const Config* config_;
   std::span<const Table> tables_;
-  Layer first_, second_;
-  SmoothOffset superposed_;
+  CamLayer first_, second_;
+  SmoothOffset superposed_{};
   VirtualMaster stopping_master_{VirtualMaster::Config{}};  // that the axis sees while it brakes along its curve
   MasterReading seen_{{}, false};                           // in the last tick
   MotionPoint point_{};

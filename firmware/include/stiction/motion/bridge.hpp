@@ -13,6 +13,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <initializer_list>
 
 #include "stiction/motion/cam_peaks.hpp"
 #include "stiction/motion/motion_point.hpp"
@@ -51,8 +52,14 @@ struct Span {
     return span;
   }
 
-  // `part` / length in 2^-62; `part`: 0 to the length.
-  constexpr std::int64_t share(std::int64_t part) const { return product_shifted(part, reciprocal, bits); }
+  // `part` / length in 2^-62; `part`: 0 to the length. Two products of 32 bits for a length of ticks.
+  constexpr std::int64_t share(std::int64_t part) const {
+    if (bits > 31) return product_shifted(part, reciprocal, bits);
+    const auto word = static_cast<std::uint32_t>(part);
+    const std::uint64_t low = static_cast<std::uint64_t>(static_cast<std::uint32_t>(reciprocal)) * word;
+    const std::uint64_t high = (static_cast<std::uint64_t>(reciprocal) >> 32) * word + (low >> 32);
+    return static_cast<std::int64_t>(high << (32 - bits) | static_cast<std::uint32_t>(low) >> bits);
+  }
 
   // `x` * 2^up / length. `up`: up to 62.
   constexpr std::int64_t divide(std::int64_t x, int up) const {
@@ -66,26 +73,27 @@ class Bridge {
   // slave's unit for each cycle and for its square.
   enum class Over : std::uint8_t { ticks, distance };
 
-  // A bridge from the deviation `from`, which is over after `span`, `over` what it says.
+  // A bridge from the deviation `from`, which is over after `span`, `over` what it says. Its polynomials are made in
+  // the tick in which it first goes on, as that one has no decision to take.
   constexpr void start(const Span& span, const MotionPoint& from, Over over) {
     span_ = span;
     over_ = over;
     gone_ = 0;
     active_ = true;
-    if (over == Over::ticks)
-      start_over<MotionPoint::tick_bits>(from);
-    else
-      start_over<MotionPoint::position_bits>(from);
+    made_ = false;
+    p_[0] = from.position;
+    v_[0] = from.velocity;
+    a_[0] = from.acceleration;
   }
 
   // A bridge of speed alone, over ticks: the way that it takes is what it makes it. Returns the deviation of the
   // position at its begin, with which the polynomial is one of fourth degree. `span`: in ticks; `v`, `a`: deviations of
   // speed and acceleration.
   constexpr std::int64_t start_speed(const Span& span, std::int64_t v, std::int64_t a) {
-    const std::int64_t slope = product_shifted(a, span.length, MotionPoint::tick_bits);
+    const std::int64_t slope = product<MotionPoint::tick_bits>(a, span.length);
     // -V/2 - A/12
-    const std::int64_t way = product_shifted(6 * v + slope, span.length, MotionPoint::tick_bits);
-    const std::int64_t d = -product_shifted(way, 0x5555555555555555, 66);
+    const std::int64_t way = product<MotionPoint::tick_bits>(6 * v + slope, span.length);
+    const std::int64_t d = -product<66>(way, 0x5555555555555555);
     start(span, {d, v, a}, Over::ticks);
     return d;
   }
@@ -96,6 +104,7 @@ class Bridge {
   constexpr void go_to(std::int64_t gone) {
     gone_ = gone;
     if (gone_ >= span_.length) active_ = false;
+    if (active_ && !made_) make();
   }
   constexpr void clear() { active_ = false; }
 
@@ -107,44 +116,49 @@ class Bridge {
   // The deviation where it is.
   constexpr MotionPoint point() const {
     if (!active_) return {};
-    const std::int64_t w = span_.share(span_.length - gone_), s = (std::int64_t{1} << Span::share_bits) - w;
-    const auto w31 = static_cast<std::uint32_t>(w >> 31), s31 = static_cast<std::uint32_t>(s >> 31);
-    const auto fine = [](std::int64_t x, std::int64_t y) { return product<Span::share_bits>(x, y); };
+    if (!made_) return {p_[0], v_[0], a_[0]};
+    const std::int64_t share = span_.share(span_.length - gone_), gone = (std::int64_t{1} << Span::share_bits) - share;
+    const auto w = static_cast<std::uint32_t>(share >> 31), s = static_cast<std::uint32_t>(gone >> 31);
+    // By the scheme of Horner for a polynomial of w that begins with its third power, and for its slope; what is below
+    // 31 bits of w counts by the slope.
+    const std::int64_t first = of(w, p_[2]), b4 = first + p_[1], b3 = of(w, b4) + p_[0], b2 = of(w, b3), b1 = of(w, b2);
+    const std::int64_t d3 = of(w, first + b4) + b3, d2 = of(w, d3) + b2, d1 = of(w, d2) + b1;
+    const auto rest = static_cast<std::int32_t>(share & INT32_MAX);
     MotionPoint out;
-    out.position = fine(w, fine(w, fine(w, p_[0] + fine(s, p_[1] + fine(s, p_[2])))));
-    out.velocity = of(w31, of(w31, v_[0] + of(s31, v_[1] + of(s31, v_[2]))));
-    out.acceleration = of(w31, a_[0] + of(s31, a_[1] + of(s31, a_[2])));
+    const std::int64_t fine = of(w, b1) + (std::int64_t{static_cast<std::int32_t>(d1 >> 32)} * rest >> 30);
+    out.position = finer_ ? (fine + half_of_finer) >> finer_bits : fine;
+    out.velocity = of(w, of(w, v_[0] + of(s, v_[1] + of(s, v_[2]))));
+    out.acceleration = of(w, a_[0] + of(s, a_[1] + of(s, a_[2])));
     return out;
   }
 
-  // Whether a bridge of `ticks` from the deviation `from` keeps within `room`. Its parts are bounded each by itself:
-  // the largest |p'|, |p''|, |p'''| are 15/8, 5.7735, 60 of a position, 1, 3.9403, 36 of a speed, and 0.0678, 1, 9 of
-  // an acceleration.
+  // Whether a bridge of `ticks`, below 2^32, from the deviation `from` keeps within `room`. Its parts are bounded each
+  // by itself: the largest |p'|, |p''|, |p'''| are 15/8, 5.7735, 60 of a position, 1, 3.9403, 36 of a speed, and
+  // 0.0678, 1, 9 of an acceleration. By the scheme of Horner for the length: what the acceleration leaves of the
+  // jerk's, what the speed leaves of that. All factors are rounded up, all that is left is rounded down.
   static constexpr bool fits(const MotionPoint& from, std::int64_t ticks, const MotionLimits& room) {
     const std::int64_t d = bounded(from.position), v = bounded(from.velocity), a = bounded(from.acceleration);
-    const auto times = [ticks](std::int64_t x) { return product_held(x, ticks); };
-    const auto a_tick = [ticks](std::int64_t x) { return product<MotionPoint::tick_bits>(x, ticks); };
-    const std::int64_t of_a = a_tick(a);  // as a speed
-    const std::int64_t speed_left = room.velocity - v - product<14>(of_a, 1112);
-    const std::int64_t change_left = room.acceleration - a;
-    if (speed_left < 0 || change_left < 0 || room.jerk < 0) return false;
-    const std::int64_t of_v = times(v);
-    return no_more(product_held(d, 7680), 0, 0, times(speed_left)) &&
-           no_more(product_held(d, 23649), product<10>(of_v, 4035), 0, times(a_tick(change_left))) &&
-           no_more(product_held(d, 60 << 12), product_held(of_v, 36), product_held(times(of_a), 9),
-                   times(a_tick(a_tick(room.jerk))));
+    if (d >= most_way || v >= most_deviation || a >= most_deviation || ticks > UINT32_MAX) return false;
+    const auto times = [t = static_cast<std::uint32_t>(ticks)](std::int64_t x) { return a_tick(x, t); };
+    const std::int64_t of_a = times(a);  // as a speed
+    if (times(v) >= most_way || times(of_a) >= most_way) return false;
+    const std::int64_t speed = room.velocity - v - ((of_a >> 4) + (of_a >> 8) + (of_a >> 9) + (a > 0 ? 4 : 0));
+    const std::int64_t change = times(room.acceleration - a) - (4 * v - (v * 15 >> 8));
+    const std::int64_t jerk = times(times(room.jerk) - 9 * a) - 36 * v;
+    return times(speed) >= (15 * d + 7) >> 3 && times(change) >= 6 * d - (d * 231 >> 10) && times(jerk) >= 60 * d;
   }
 
   // The same of a bridge of speed of `ticks` within `room`, from the speed `v` and the acceleration `a`: the largest
   // deviations of speed, acceleration and jerk are 1, 3/2, 6 of a speed, and 4/27, 1, 4 of an acceleration.
   static constexpr bool fits_speed(std::int64_t v, std::int64_t a, std::int64_t ticks, const MotionLimits& room) {
-    const std::int64_t speed = bounded(v), change = bounded(a), change_left = room.acceleration - change;
-    const std::int64_t of_a = product_shifted(change, ticks, MotionPoint::tick_bits);
-    const std::int64_t steps = product_shifted(room.jerk, ticks, MotionPoint::tick_bits);
-    return change_left >= 0 && speed <= room.velocity - product_shifted(of_a, 2428, 14) &&
-           no_more(product_shifted(speed, 6144, 0), 0, 0, product_shifted(change_left, ticks, 0)) &&
-           no_more(product_shifted(speed, 6 << 12, 0), product_shifted(change, 4 * ticks, 0), 0,
-                   product_shifted(steps, ticks, 0));
+    const std::int64_t speed = bounded(v), change = bounded(a);
+    if (speed >= most_deviation || change >= most_deviation || ticks > UINT32_MAX) return false;
+    const auto times = [t = static_cast<std::uint32_t>(ticks)](std::int64_t x) { return a_tick(x, t); };
+    const std::int64_t of_a = times(change);
+    if (times(speed) >= most_way || times(of_a) >= most_way) return false;
+    return speed + (of_a >> 3) + (of_a >> 6) + (of_a >> 7) + (change > 0 ? 4 : 0) <= room.velocity &&
+           times(room.acceleration - change) >= (3 * speed + 1) >> 1 &&
+           times(times(room.jerk) - 4 * change) >= 6 * speed;
   }
 
   // Bounds of the derivatives of a bridge from the deviation `from` over the distance of `span`, by the same parts.
@@ -157,29 +171,46 @@ class Bridge {
       return quotient < INT64_MAX ? quotient + 1 : quotient;
     };
     const std::int64_t d1 = part(d), d2 = part(d1), d3 = part(d2), v1 = part(v), v2 = part(v1), a1 = part(a);
-    return {sum(product_shifted(d1, 15, 3), v, product_shifted(product_shifted(a, span.length, up), 1112, 14)),
-            sum(product_shifted(d2, 23649, 12), product_shifted(v1, 4035, 10), a),
-            sum(product_shifted(d3, 60, 0), product_shifted(v2, 36, 0), product_shifted(a1, 9, 0))};
+    const std::int64_t of_a = product<up>(a, span.length);
+    // Factors as in fits(), of numbers that are held so that the products are within a word.
+    const auto held = [](std::int64_t x) { return x < std::int64_t{1} << 60 ? x : std::int64_t{1} << 60; };
+    const std::int64_t bend = held(d2), of_v = held(v1);
+    return {sum(2 * held(d1) - (held(d1) >> 3), v, (of_a >> 4) + (of_a >> 8) + (of_a >> 9)),
+            sum(6 * bend - (bend >> 3) - (bend >> 4) - (bend >> 5), 4 * of_v - (of_v >> 5) - (of_v >> 6), a),
+            sum(product_held(d3, 60), product_held(v2, 36), product_held(a1, 9))};
   }
 
  private:
-  // Of the position in the units of the span, `Up` bits from one derivative to the next.
+  constexpr void make() {
+    made_ = true;
+    if (over_ == Over::ticks)
+      make_over<MotionPoint::tick_bits>();
+    else
+      make_over<MotionPoint::position_bits>();
+  }
+
+  // Of the position in the units of the span, `Up` bits from one derivative to the next. The position's coefficients
+  // are those of w^3, w^4, w^5, in which the factor of s is written out.
   template <int Up>
-  constexpr void start_over(const MotionPoint& from) {
-    const std::int64_t d = from.position, v = from.velocity, a = from.acceleration;
+  constexpr void make_over() {
+    const std::int64_t d = p_[0], v = v_[0], a = a_[0];
     const std::int64_t length = span_.length;
     const std::int64_t slope = product<Up>(a, length);                // A, as a speed
     const std::int64_t of_speed = product<Up>(v, length);             // V, as a way
     const std::int64_t of_acceleration = product<Up>(slope, length);  // A, as a way
     const std::int64_t d_speed = span_.divide(d, Up), d_acceleration = span_.divide(d_speed, Up);
     const std::int64_t v_acceleration = span_.divide(v, Up);
-    p_[0] = d;
-    p_[1] = of_speed + 3 * d;
-    p_[2] = of_acceleration / 2 + 3 * of_speed + 6 * d;
-    v_[0] = v;
+    const std::int64_t linear = of_speed + 3 * d, square = of_acceleration / 2 + 3 * linear - 3 * d;
+    p_[0] = d + linear + square;
+    p_[1] = -(linear + 2 * square);
+    p_[2] = square;
+    // So that the position is rounded to the nearest of its format, and a motion does not begin with a step back.
+    const auto holds = [](std::int64_t x) { return magnitude(x) < std::uint64_t{1} << (59 - finer_bits); };
+    finer_ = holds(p_[0]) && holds(p_[1]) && holds(p_[2]);
+    if (finer_)
+      for (std::int64_t& p : p_) p *= std::int64_t{1} << finer_bits;
     v_[1] = slope + 2 * v;
     v_[2] = -5 * (slope / 2 + 3 * v + 6 * d_speed);
-    a_[0] = a;
     a_[1] = -(8 * a + 36 * v_acceleration + 60 * d_acceleration);
     a_[2] = 10 * a + 60 * v_acceleration + 120 * d_acceleration;
   }
@@ -187,7 +218,7 @@ class Bridge {
   static constexpr std::int64_t sum(std::int64_t a, std::int64_t b, std::int64_t c) {
     constexpr std::int64_t most = std::int64_t{1} << 60;
     const auto held = [](std::int64_t x) { return x < most ? x : most; };
-    return held(a) + held(b) + held(c) + 3;
+    return held(a) + held(b) + held(c) + 6;
   }
   // x * share / 2^31, rounded down; share: up to 2^31.
   static constexpr std::int64_t of(std::uint32_t share, std::int64_t x) {
@@ -196,15 +227,25 @@ class Bridge {
     return upper * 2 + static_cast<std::int64_t>(lower >> 31);
   }
   static constexpr std::int64_t bounded(std::int64_t x) { return x < 0 ? (x == INT64_MIN ? INT64_MAX : -x) : x; }
-  static constexpr bool no_more(std::int64_t a, std::int64_t b, std::int64_t c, std::int64_t limit) {
-    constexpr std::int64_t most = std::int64_t{1} << 61;
-    return a < most && b < most && c < most && a + b + c <= limit;
+  // x * ticks / 2^12, rounded down, of a derivative that a length turns into the next lower one; held to 2^61, and to
+  // -1 where nothing is left.
+  [[gnu::always_inline]] static constexpr std::int64_t a_tick(std::int64_t x, std::uint32_t ticks) {
+    if (x < 0) return -1;
+    const std::uint64_t low = std::uint64_t{static_cast<std::uint32_t>(x)} * ticks;
+    const std::uint64_t high = (static_cast<std::uint64_t>(x) >> 32) * ticks + (low >> 32);
+    if (high >> 41 != 0) return std::int64_t{1} << 61;
+    return static_cast<std::int64_t>(high << 20 | static_cast<std::uint32_t>(low) >> 12);
   }
 
-  std::int64_t p_[3] = {}, v_[3] = {}, a_[3] = {};
+  // With these the coefficients are within a word: ways of 2^14 units.
+  static constexpr std::int64_t most_deviation = std::int64_t{1} << 57, most_way = std::int64_t{1} << 54;
+  static constexpr int finer_bits = 8;  // of the position's coefficients, up to 2^11 units
+  static constexpr std::int64_t half_of_finer = std::int64_t{1} << (finer_bits - 1);
+
+  std::int64_t p_[3] = {}, v_[3] = {}, a_[3] = {};  // where it is not made, the first of each are the deviation
   std::int64_t gone_ = 0;
   Span span_{};
-  bool active_ = false;
+  bool active_ = false, made_ = false, finer_ = false;
   Over over_ = Over::ticks;
 };
 

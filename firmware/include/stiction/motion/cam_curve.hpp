@@ -91,7 +91,10 @@ class CamCurve {
       made.peaks_ = {scaled(of_table.slope, scale), scaled(of_table.bend, scale), scaled(of_table.third, scale)};
     }
     if (!made.within_a_word()) return CamRefusal::scale;
-    if (config.table != nullptr && !made.continuous()) return CamRefusal::not_continuous;
+    if (config.table != nullptr) {
+      made.set_factors();
+      if (!made.continuous()) return CamRefusal::not_continuous;
+    }
     curve = made;
     return CamRefusal::none;
   }
@@ -110,6 +113,7 @@ class CamCurve {
     const std::int64_t scale = static_cast<std::int64_t>(magnitude(config.slave_scale));
     made.peaks_ = {scaled(base.peaks_.slope, scale), scaled(base.peaks_.bend, scale), scaled(base.peaks_.third, scale)};
     if (!made.within_a_word()) return CamRefusal::scale;
+    made.set_factors();
     curve = made;
     return CamRefusal::none;
   }
@@ -139,41 +143,64 @@ class CamCurve {
   // Position and slopes at `x`, as seen. Outside of the cycle of a cam that is not periodic they go on with the
   // acceleration of its end.
   constexpr CamSlopes slopes(const MasterPosition& x) const {
-    const bool behind = outside(x) && x.cycles > 0;
-    MasterPosition at = x;
-    if (outside(x)) at = behind ? MasterPosition{0, UINT64_MAX} : MasterPosition{};
-    CamSlopes out{};
-    if (config_.table == nullptr) {
-      out.slope = config_.rise;
-      out.position = product_shifted(config_.rise, static_cast<std::int64_t>(at.phase >> 1), 63);
-    } else {
-      const auto& h = config_.table->header();
-      const CamTable::Output y = config_.table->evaluate_fine(at.phase);
-      out.slope = product_shifted(y.speed, config_.slave_scale, h.speed_bits - least_bits);
-      out.bend = product_shifted(y.acceleration, config_.slave_scale, h.acceleration_bits - least_bits);
-      out.position = product_shifted(y.position, config_.slave_scale, h.position_bits - least_bits);
-    }
-    const auto turns = static_cast<std::uint64_t>(at.cycles) * static_cast<std::uint64_t>(config_.rise);
-    out.position = static_cast<std::int64_t>(static_cast<std::uint64_t>(out.position + config_.slave_offset) + turns);
-    if (outside(x)) {
-      const std::int64_t way = (x - at).raw(), change = product_shifted(out.bend, way, 40);
-      out.position += product_shifted(out.slope, way, 40) + product_shifted(change, way, 41);
-      out.slope += change;
-    }
+    if (!outside(x)) return inside(x);
+    const MasterPosition at = x.cycles > 0 ? MasterPosition{0, UINT64_MAX} : MasterPosition{};
+    CamSlopes out = inside(at);
+    const std::int64_t way = (x - at).raw(), change = product_shifted(out.bend, way, 40);
+    out.position += product_shifted(out.slope, way, 40) + product_shifted(change, way, 41);
+    out.slope += change;
     return out;
   }
 
   // The motion that `slopes` make of a master `x`, as seen.
   static constexpr MotionPoint chained(const CamSlopes& slopes, const MasterPoint& x) {
-    const std::int64_t square = product<40>(x.velocity, x.velocity);
-    return {slopes.position, product<40>(slopes.slope, x.velocity),
-            product<40>(slopes.bend, square) + product<40>(slopes.slope, x.acceleration)};
+    const std::int64_t square = product_within(x.velocity, x.velocity, 40);
+    return {slopes.position, product_within(slopes.slope, x.velocity, 40),
+            product_within(slopes.bend, square, 40) + product_within(slopes.slope, x.acceleration, 40)};
   }
 
  private:
-  static constexpr int scale_bits = 32;
+  static constexpr int scale_bits = 32, factor_bits = 62;
   // Of a table's numbers, so that with the 32 of the scale at least 40 are left.
   static constexpr int least_bits = 8;
+
+  // The same within the cycle.
+  constexpr CamSlopes inside(const MasterPosition& x) const {
+    CamSlopes out{};
+    if (config_.table == nullptr) {
+      out.slope = config_.rise;
+      out.position = product_shifted(config_.rise, static_cast<std::int64_t>(x.phase >> 1), 63);
+    } else {
+      const auto& h = config_.table->header();
+      const CamTable::Output y = config_.table->evaluate_fine(x.phase);
+      if (quick_)
+        out = {product_within(y.position, factors_[0], factor_bits), product_within(y.speed, factors_[1], factor_bits),
+               product_within(y.acceleration, factors_[2], factor_bits)};
+      else
+        out = {times_scale(y.position, h.position_bits), times_scale(y.speed, h.speed_bits),
+               times_scale(y.acceleration, h.acceleration_bits)};
+    }
+    const auto turns = static_cast<std::uint64_t>(x.cycles) * static_cast<std::uint64_t>(config_.rise);
+    out.position = static_cast<std::int64_t>(static_cast<std::uint64_t>(out.position + config_.slave_offset) + turns);
+    return out;
+  }
+
+  // A value of the table in its 2^-`bits`, behind the scale.
+  constexpr std::int64_t times_scale(std::int64_t value, int bits) const {
+    return product_shifted(value, config_.slave_scale, bits - least_bits);
+  }
+  // The scale with the bits of each value of the table, where 2^-62 holds them.
+  constexpr void set_factors() {
+    const auto& h = config_.table->header();
+    const int bits[] = {h.position_bits, h.speed_bits, h.acceleration_bits};
+    quick_ = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int up = factor_bits + least_bits - bits[k];
+      const bool holds = up >= 0 && magnitude(config_.slave_scale) <= (std::uint64_t{1} << factor_bits) >> up;
+      quick_ = quick_ && holds;
+      factors_[k] = holds ? config_.slave_scale * (std::int64_t{1} << up) : 0;
+    }
+  }
 
   // A peak behind the magnitude of a scale, rounded up.
   static constexpr std::int64_t scaled(std::int64_t peak, std::int64_t scale) {
@@ -250,6 +277,8 @@ class CamCurve {
 
   Config config_{};
   CamPeaks peaks_{};
+  std::int64_t factors_[3] = {};  // of position, speed and acceleration of the table, where the way is quick
+  bool quick_ = false;
 };
 
 }  // namespace stiction

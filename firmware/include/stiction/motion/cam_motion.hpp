@@ -47,7 +47,7 @@ class CamMotion {
   };
 
   // `config`: of the axis; it must stay as long as the motion does.
-  explicit constexpr CamMotion(const Config& config) : config_(&config), phasing_(config_->phasing) {}
+  explicit constexpr CamMotion(const Config& config) : config_(&config) {}
 
   // Stands at `position`, 2^-40 units, and follows nothing.
   constexpr void start(std::int64_t position) {
@@ -64,7 +64,7 @@ class CamMotion {
   constexpr CamRefusal engage(const CamRequest& request) {
     status_.command_aborted = waits_;
     waits_ = false;
-    status_.refusal = refusal_of(request);
+    status_.refusal = take(request);
     if (status_.refusal != CamRefusal::none) return status_.refusal;
     request_ = request;
     waits_ = true;
@@ -97,7 +97,7 @@ class CamMotion {
   // made for this slave alone, which keeps its limits behind it, whatever those of the master are.
   constexpr MotionPoint step(const MasterPoint& measured, bool valid = true, bool own = false) {
     status_.end_of_profile = false;
-    const MotionPoint offset = phasing_.step();
+    const MotionPoint offset = phasing_.advance();
     const MasterPoint master{measured.position + MasterPosition::way(offset.position),
                              measured.velocity + offset.velocity, measured.acceleration + offset.acceleration};
     const CamFault fault = own     ? CamFault::none
@@ -106,7 +106,10 @@ class CamMotion {
                                    : CamFault::master_lost;
     if (fault != CamFault::none && (follows_ || waits_)) end_by(fault);
     advance(master);
-    if (waits_) try_request(measured, master);
+    // A tick has one way tried: both take turns.
+    const bool tried = waits_ && !(planned_ && triggered_ && phasing_.plans()) && try_request(measured, master);
+    if (!tried) phasing_.plan(config_->phasing);
+    planned_ = tried;
     expected_ = measured.position +
                 MasterPosition::way((measured.velocity + measured.acceleration / (2 << MotionPoint::tick_bits)) >>
                                     MotionPoint::tick_bits);
@@ -196,9 +199,9 @@ class CamMotion {
     const bool over_distance = bridge_.active() && bridge_.over() == Bridge::Over::distance;
     if (over_distance) {
       const std::int64_t gone = (x.position - begin_).raw(), ahead = backward_ ? -gone : gone;
-      if (ahead < 0) {
-        // Before its begin the slave stands, as it did.
-        point_ = {standing_, 0, 0};
+      if (ahead <= 0) {
+        // At its begin and before it the slave stands, as it did.
+        point_ = {free_.position, 0, 0};
         cycles_ = x.position.cycles;
         return;
       }
@@ -221,20 +224,28 @@ class CamMotion {
     }
   }
 
-  // What is wrong with a request from the beginning.
-  constexpr CamRefusal refusal_of(const CamRequest& request) const {
-    if (request.goal == CamGoal::position)
-      return request.approach == CamApproach::distance ? CamRefusal::moving : CamRefusal::none;
+  // What is wrong with a request from the beginning; where nothing is, what it leaves of the limits for a bridge is
+  // kept.
+  constexpr CamRefusal take(const CamRequest& request) {
+    if (request.goal == CamGoal::position) {
+      if (request.approach == CamApproach::distance) return CamRefusal::moving;
+      room_ = config_->slave;
+      return CamRefusal::none;
+    }
     if (request.curve == nullptr) return CamRefusal::scale;
-    return within(request.curve->motion(config_->master_sum)) ? CamRefusal::none : CamRefusal::beyond_limits;
+    const MotionLimits needed = request.curve->motion(config_->master_sum);
+    if (!within(needed)) return CamRefusal::beyond_limits;
+    room_ = {config_->slave.velocity - needed.velocity, config_->slave.acceleration - needed.acceleration,
+             config_->slave.jerk - needed.jerk};
+    return CamRefusal::none;
   }
   constexpr bool within(const MotionLimits& needed) const {
     return needed.velocity <= config_->slave.velocity && needed.acceleration <= config_->slave.acceleration &&
            needed.jerk <= config_->slave.jerk;
   }
 
-  // Whether the request's trigger is reached, one that is not at once; `x`: the master as its curve sees it.
-  constexpr bool reached(const MasterPoint& measured, const MasterPoint& x, const MotionPoint& off) {
+  // Whether the master passes the place of the request's trigger; `x`: the master as its curve sees it.
+  constexpr bool passed(const MasterPoint& measured, const MasterPoint& x) {
     const auto passes = [this](std::int64_t side) {
       const bool passed = watched_ && ((side >= 0) != (side_ >= 0)) && near(side);
       side_ = side;
@@ -244,61 +255,72 @@ class CamMotion {
     if (request_.trigger == CamTrigger::master_position) return passes((measured.position - request_.at).raw());
     if (request_.trigger == CamTrigger::cam_position)
       return passes(static_cast<std::int64_t>(x.position.phase - request_.at.phase));
-    if (request_.trigger == CamTrigger::next_cycle) {
-      const std::int64_t cycles = follows_ ? cycles_ : x.position.cycles;
-      const bool begins = watched_ && cycles != side_;
-      side_ = cycles;
-      watched_ = true;
-      return begins;
-    }
-    const auto agrees = [](std::int64_t d, std::int64_t most) { return magnitude(d) <= magnitude(most); };
-    return agrees(off.position, request_.tolerance.position) && agrees(off.velocity, request_.tolerance.velocity) &&
-           agrees(off.acceleration, request_.tolerance.acceleration);
+    const std::int64_t cycles = follows_ ? cycles_ : x.position.cycles;
+    const bool begins = watched_ && cycles != side_;
+    side_ = cycles;
+    watched_ = true;
+    return begins;
+  }
+  // Whether what the slave is `off` the new motion is within the tolerance of the request.
+  constexpr bool agrees(const MotionPoint& off) const {
+    const auto within = [](std::int64_t d, std::int64_t most) { return magnitude(d) <= magnitude(most); };
+    return within(off.position, request_.tolerance.position) && within(off.velocity, request_.tolerance.velocity) &&
+           within(off.acceleration, request_.tolerance.acceleration);
   }
   // Half a cycle on the other side the sign changes too.
   static constexpr bool near(std::int64_t side) { return magnitude(side) < std::uint64_t{1} << 62; }
-
-  // Aims at what waits, once its trigger is reached and there is room.
-  constexpr void try_request(const MasterPoint& measured, const MasterPoint& master) {
-    if (request_.goal == CamGoal::position)
-      try_position(measured, master);
-    else
-      try_curve(measured, master);
+  // Aims at what waits, once its trigger is reached and there is room; whether a way was tried.
+  constexpr bool try_request(const MasterPoint& measured, const MasterPoint& master) {
+    return request_.goal == CamGoal::position ? try_position(measured, master) : try_curve(measured, master);
   }
 
-  constexpr void try_position(const MasterPoint& measured, const MasterPoint& master) {
+  constexpr bool try_position(const MasterPoint& measured, const MasterPoint& master) {
     const MotionPoint off = point_ - MotionPoint{request_.position, 0, 0};
-    triggered_ = triggered_ || reached(measured, master, off);
-    if (!triggered_ || !bridge_to(off, config_->slave)) return;
-    free_ = {request_.position, 0, 0};
-    follows_ = false;
+    triggered_ = triggered_ || (request_.trigger == CamTrigger::curves_agree ? agrees(off) : passed(measured, master));
+    if (!triggered_) return false;
+    if (bridge_to(off)) {
+      free_ = {request_.position, 0, 0};
+      follows_ = false;
+    }
+    return true;
   }
 
-  constexpr void try_curve(const MasterPoint& measured, const MasterPoint& master) {
+  constexpr bool try_curve(const MasterPoint& measured, const MasterPoint& master) {
     const CamCurve& next = *request_.curve;
     Shift shift{};
     MasterPoint x = next.seen(master);
-    if (!triggered_ && !reached(measured, x, point_ - CamCurve::chained(next.slopes(x.position), x))) return;
-    triggered_ = true;
+    const bool by_place = request_.trigger != CamTrigger::curves_agree;
+    if (by_place && !triggered_) triggered_ = passed(measured, x);
+    if (by_place && !triggered_) return false;
     // A relative begin is that of the tick in which it comes to it, tried again where there was no room.
-    if (request_.master_relative) {
+    if (triggered_ && request_.master_relative) {
       shift.master = next.config().master_offset - x.position;
       x.position = next.config().master_offset;
     }
-    if (next.outside(x.position)) return refuse(CamRefusal::outside_profile);
     const CamSlopes slopes = next.slopes(x.position);
-    MotionPoint off = point_ - CamCurve::chained(slopes, x);
+    // From standstill over a distance the place alone is needed.
+    const bool over_distance = triggered_ && request_.approach == CamApproach::distance;
+    MotionPoint off = point_ - (over_distance ? MotionPoint{slopes.position, 0, 0} : CamCurve::chained(slopes, x));
+    if (!triggered_) {
+      // A curve is looked at once a tick: one that begins where the master is does so in the tick behind.
+      triggered_ = agrees(off);
+      if (!triggered_ || request_.master_relative) return false;
+    }
+    if (next.outside(x.position)) {
+      refuse(CamRefusal::outside_profile);
+      return false;
+    }
     if (request_.slave_relative) {
       shift.slave = off.position;
       off.position = 0;
     }
-    if (request_.approach == CamApproach::distance) return begin_distance(shift, x, slopes, off.position);
-    const MotionLimits needed = next.motion(config_->master_sum);
-    const MotionLimits room{config_->slave.velocity - needed.velocity,
-                            config_->slave.acceleration - needed.acceleration, config_->slave.jerk - needed.jerk};
-    if (!bridge_to(off, room)) return;
-    if (request_.free_way) shift.slave += off.position - bridge_.point().position;
-    follow(shift, x);
+    if (request_.approach == CamApproach::distance) {
+      begin_distance(shift, x, slopes, off.position);
+    } else if (bridge_to(off)) {
+      if (request_.free_way) shift.slave += off.position - bridge_.point().position;
+      follow(shift, x);
+    }
+    return true;
   }
 
   constexpr void refuse(CamRefusal reason) {
@@ -314,13 +336,13 @@ class CamMotion {
     cycles_ = x.position.cycles;
   }
 
-  // Begins the bridge of the request from `off`, where it keeps within `room`; a length a tick.
-  constexpr bool bridge_to(const MotionPoint& off, const MotionLimits& room) {
+  // Begins the bridge of the request from `off`, where it keeps within the room that there is; a length a tick.
+  constexpr bool bridge_to(const MotionPoint& off) {
     const bool given = request_.approach == CamApproach::ticks;
     const std::int64_t ticks = given ? request_.span.length : BridgeLengths::ticks(tried_);
     const Span span = given ? request_.span : BridgeLengths::span(tried_);
     const bool free_way = request_.free_way && request_.goal == CamGoal::curve;
-    if (free_way ? Bridge::fits_speed(off.velocity, off.acceleration, ticks, room) : Bridge::fits(off, ticks, room)) {
+    if (free_way ? Bridge::fits_speed(off.velocity, off.acceleration, ticks, room_) : Bridge::fits(off, ticks, room_)) {
       if (free_way)
         bridge_.start_speed(span, off.velocity, off.acceleration);
       else
@@ -349,7 +371,6 @@ class CamMotion {
     const CamPeaks of_bridge = Bridge::peaks(from, request_.span);
     const CamPeaks sum{peaks.slope + of_bridge.slope, peaks.bend + of_bridge.bend, peaks.third + of_bridge.third};
     if (!within(sum.motion(request_.curve->behind_ratio(config_->master_sum)))) return refuse(CamRefusal::no_bridge);
-    standing_ = point_.position;
     begin_ = x.position;
     backward_ = request_.backward;
     bridge_.start(request_.span, from, Bridge::Over::distance);
@@ -357,20 +378,21 @@ class CamMotion {
   }
 
   const Config* config_;
-  MotionPoint point_{};  // the set-point of the last tick
-  Free free_{};
+  MotionPoint point_{};              // the set-point of the last tick
+  Free free_{};                      // of a bridge over a distance, the standstill before it
   const CamCurve* curve_ = nullptr;  // followed, where follows_
   Shift shift_{};                    // by which
   Bridge bridge_{};
-  SmoothOffset phasing_;
+  SmoothOffset phasing_{};
   CamRequest request_{};       // where waits_
+  MotionLimits room_{};        // for its bridge
   MasterPosition expected_{};  // where the master's speed of the last tick leads
   MasterPosition begin_{};
-  std::int64_t standing_ = 0;  // where a bridge over a distance began
-  std::int64_t cycles_ = 0;    // of the master as seen, in the last tick
-  std::int64_t side_ = 0;      // of the trigger, in the last tick
-  std::int8_t tried_ = 0;      // number of the next length
-  bool follows_ = false, waits_ = false, triggered_ = false, watched_ = false, seen_ = false, backward_ = false;
+  std::int64_t cycles_ = 0;  // of the master as seen, in the last tick
+  std::int64_t side_ = 0;    // of the trigger, in the last tick
+  std::int8_t tried_ = 0;    // number of the next length
+  bool follows_ = false, waits_ = false, triggered_ = false, watched_ = false, seen_ = false, backward_ = false,
+       planned_ = false;
   CamStatus status_{};
 };
 

@@ -16,7 +16,8 @@ enum class CamTrigger : std::uint8_t {
   master_position,  // where the master passes a position of its axis, in either direction
   cam_position,     // where the new curve's master passes a phase of its cycle
   next_cycle,       // where the cycle of the curve begins anew that is followed, or else of the new one
-  curves_agree      // as soon as position, speed and acceleration agree with those before within a tolerance
+  curves_agree      // as soon as position, speed and acceleration agree with those before within a tolerance; where the
+                    // cycle begins where the master is, in the tick behind
 };
 
 // How it comes to the new motion.

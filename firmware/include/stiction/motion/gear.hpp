@@ -41,24 +41,38 @@ class GearRatio {
     const bool back = master.cycles < 0;
     const MasterPosition size = back ? -master : master;
     const auto cycles = static_cast<std::uint64_t>(size.cycles);
-    // From the least significant half word on the product, and from the most significant one on its quotient.
-    const std::uint32_t times = static_cast<std::uint32_t>(magnitude(numerator_));
-    std::uint32_t product[half_words] = {};
+    // From the least significant word on the product, and from the most significant one on its quotient.
+    const std::uint64_t times = magnitude(numerator_);
+    std::uint32_t product[5] = {};
     std::uint64_t carry = 0;
-    for (int k = 0; k < half_words; ++k) {
-      const std::uint64_t from = k < 4 ? size.phase >> 16 * k : k < 8 ? cycles >> 16 * (k - 4) : 0;
-      carry += std::uint64_t{static_cast<std::uint32_t>(from) & word} * times;
-      product[k] = static_cast<std::uint32_t>(carry) & word;
-      carry >>= 16;
-    }
+    const auto next = [&](std::uint64_t word) {
+      carry += static_cast<std::uint32_t>(word) * times;
+      const auto digit = static_cast<std::uint32_t>(carry);
+      carry >>= 32;
+      return digit;
+    };
+    product[0] = next(size.phase);
+    product[1] = next(size.phase >> 32);
+    product[2] = next(cycles);
+    product[3] = next(cycles >> 32);
+    product[4] = next(0);
     std::uint32_t rest = 0;
+    const auto half = [&](std::uint32_t digit) {
+      const std::uint32_t part = rest << 16 | digit, quotient = part / denominator_;
+      rest = part - quotient * denominator_;
+      return quotient;
+    };
+    const auto divided = [&](std::uint32_t digit) {
+      const std::uint32_t upper = half(digit >> 16);
+      return std::uint64_t{upper << 16 | half(digit & word)};
+    };
+    // What is above 64 bits of cycles is nothing within the range.
+    static_cast<void>(divided(product[4]));
     std::uint64_t quotient[2] = {};
-    for (int k = half_words - 1; k >= 0; --k) {
-      const std::uint32_t part = rest << 16 | product[k];
-      // What is above 64 bits of cycles is nothing within the range.
-      if (k < 8) quotient[k / 4] = quotient[k / 4] << 16 | part / denominator_;
-      rest = part % denominator_;
-    }
+    quotient[1] = divided(product[3]) << 32;
+    quotient[1] |= divided(product[2]);
+    quotient[0] = divided(product[1]) << 32;
+    quotient[0] |= divided(product[0]);
     const MasterPosition floor{static_cast<std::int64_t>(quotient[1]), quotient[0]};
     const bool negative = back != (numerator_ < 0);
     if (!negative) return floor;
@@ -75,7 +89,7 @@ class GearRatio {
  private:
   constexpr bool unity() const { return numerator_ == 1 && denominator_ == 1; }
 
-  static constexpr int factor_bits = 32, half_words = 10;
+  static constexpr int factor_bits = 32;
   static constexpr std::uint32_t word = 0xffffu;
 
   std::int32_t numerator_ = 1;

@@ -15,9 +15,6 @@ namespace stiction {
 
 class SmoothOffset {
  public:
-  // `limits`: of its motion; they must stay as long as it does.
-  explicit constexpr SmoothOffset(const MotionLimits& limits) : limits_(&limits) {}
-
   // At rest at `value`, 2^-40 units.
   constexpr void start(std::int64_t value) {
     value_ = target_ = value;
@@ -42,14 +39,24 @@ class SmoothOffset {
     value_ = target_ = now.position - bridge_.start_speed(span, now.velocity, now.acceleration);
   }
 
-  // The offset of the coming tick.
-  constexpr MotionPoint step() {
+  // The offset of the coming tick, with a length tried in it; `limits`: of its motion.
+  constexpr MotionPoint step(const MotionLimits& limits) {
+    const MotionPoint now = advance();
+    plan(limits);
+    return now;
+  }
+
+  // The same of a tick that leaves the trying to a later one, and the trying within `limits` by itself, at the end of a
+  // tick.
+  constexpr MotionPoint advance() {
     bridge_.tick();
+    return point();
+  }
+  constexpr void plan(const MotionLimits& limits) {
+    if (!plans()) return;
     const MotionPoint now = point();
-    if (tried_ == none) return now;
-    const std::int64_t ticks = BridgeLengths::ticks(tried_);
     const MotionPoint from{now.position - target_, now.velocity, now.acceleration};
-    if (Bridge::fits(from, ticks, *limits_)) {
+    if (Bridge::fits(from, BridgeLengths::ticks(tried_), limits)) {
       bridge_.start(BridgeLengths::span(tried_), from, Bridge::Over::ticks);
       value_ = target_;
       tried_ = none;
@@ -58,7 +65,6 @@ class SmoothOffset {
       tried_ = bridge_.active() ? std::int8_t{0} : none;
       refused_ = !bridge_.active();
     }
-    return now;
   }
 
   constexpr MotionPoint point() const {
@@ -66,8 +72,10 @@ class SmoothOffset {
     return {value_ + deviation.position, deviation.velocity, deviation.acceleration};
   }
 
+  // Whether a length is to be tried.
+  constexpr bool plans() const { return tried_ != none; }
   // Whether it is on its way, or about to be.
-  constexpr bool busy() const { return bridge_.active() || tried_ != none; }
+  constexpr bool busy() const { return bridge_.active() || plans(); }
   // Whether the last target was one that no length reaches within the limits. The offset then stays with the one
   // before.
   constexpr bool refused() const { return refused_; }
@@ -75,7 +83,6 @@ class SmoothOffset {
  private:
   static constexpr std::int8_t none = -1;
 
-  const MotionLimits* limits_;
   std::int64_t value_ = 0, target_ = 0;  // 2^-40 units
   Bridge bridge_{};
   std::int8_t tried_ = none;  // number of the next length
