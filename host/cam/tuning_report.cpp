@@ -143,12 +143,22 @@ sim::ExperimentResult tuning_report(const sim::cam::ShapingTask& task, const sim
   const auto add = [&](const std::string& name, const std::string& unit, const std::string& text, double value) {
     result.figures.push_back({.name = name, .unit = unit, .text = text, .value = value, .expected = {}});
   };
-  if (const auto& fit = cycles.front().learned.fit) {
-    add("frequency", "Hz", "frequency of the load", fit->mode.frequency() / (2.0 * std::numbers::pi));
-    add("frequency_error", "Hz", "its standard error", fit->frequency_error / (2.0 * std::numbers::pi));
-    add("damping_ratio", "", "damping ratio", fit->mode.damping_ratio());
-    add("damping_ratio_error", "", "its standard error", fit->damping_error);
-  }
+  const auto add_mode = [&](const std::string& prefix, const std::string& of, const sim::cam::DwellFit& fit) {
+    add(prefix + "frequency", "Hz", "frequency of " + of, fit.mode.frequency() / (2.0 * std::numbers::pi));
+    add(prefix + "frequency_error", "Hz", "its standard error", fit.frequency_error / (2.0 * std::numbers::pi));
+    add(prefix + "damping_ratio", "", prefix.empty() ? "damping ratio" : "damping ratio of " + of,
+        fit.mode.damping_ratio());
+    add(prefix + "damping_ratio_error", "", "its standard error", fit.damping_error);
+  };
+  if (const auto& fit = cycles.front().learned.fit) add_mode("", "the load", *fit);
+  // From the cycle that showed it.
+  for (const TuningCycle& cycle : cycles)
+    if (const auto& fit = cycle.learned.second) {
+      add_mode("second_", "the second mode", *fit);
+      add("second_peak_to_peak", units.slave_unit, "vibration of the second mode at the beginning of the dwell",
+          fit->peak_to_peak() * units.slave);
+      break;
+    }
   if (const auto& drive = tuner.drive()) {
     add("delay", "ms", "lag of the load's encoder", drive->delay * 1e3);
     add("delay_error", "ms", "its standard error", drive->delay_error * 1e3);
@@ -162,16 +172,18 @@ sim::ExperimentResult tuning_report(const sim::cam::ShapingTask& task, const sim
         fmt::format("cycle {}: vibration at the beginning of the dwell", c + 1), learned.peak_to_peak * units.slave);
     if (!learned.note.empty()) result.findings.push_back(fmt::format("Cycle {}: {}", c + 1, learned.note));
   }
-  if (const auto& pulses = tuner.pulses()) {
-    int number = 0;
-    for (const auto& pulse : {pulses->first, pulses->second}) {
+  int number = 0;
+  for (const auto& pair : {tuner.pulses(), tuner.second_pulses()}) {
+    if (!pair) continue;
+    for (const auto& pulse : {pair->first, pair->second}) {
       ++number;
       add(fmt::format("pulse_{}_at", number), units.master_unit, fmt::format("pulse {}: begins at", number),
           pulse.position * units.master);
       add(fmt::format("pulse_{}_amplitude", number), units.slave_unit, fmt::format("pulse {}: amplitude", number),
           pulse.amplitude * units.slave);
     }
-    add("pulse_length", units.master_unit, "length of the pulses", pulses->length * units.master);
+    add(number > 2 ? "second_pulse_length" : "pulse_length", units.master_unit,
+        number > 2 ? "length of the pulses for the second mode" : "length of the pulses", pair->length * units.master);
   }
   const auto area = [&](const TuningCycle& cycle) {
     return fmt::format("{:.3g} {}·{}", cycle.learned.quality * units.slave * units.master, units.slave_unit,
@@ -182,7 +194,9 @@ sim::ExperimentResult tuning_report(const sim::cam::ShapingTask& task, const sim
                                        area(cycles.front()))
                          : fmt::format("Area of the deviation in the dwell: {} in the first cycle, {} in the last one.",
                                        area(cycles.front()), area(cycles.back())));
-  result.charts = {dwell_records(task, cycles, units), over_frequency(task, tuner, units)};
+  result.charts = {dwell_records(task, cycles, units)};
+  // The model that was identified has one mode.
+  if (!tuner.second_pulses()) result.charts.push_back(over_frequency(task, tuner, units));
   return result;
 }
 

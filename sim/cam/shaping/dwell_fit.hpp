@@ -29,6 +29,9 @@ struct DwellFit {
   double peak_to_peak() const { return 4.0 * std::abs(residual); }
 };
 
+// Means of blocks of a `record`: a fast drive's has far more samples than a vibration needs.
+DwellRecord thinned(const DwellRecord& record);
+
 // Of a `record`, with a frequency within 35 % of `guess` (rad/s). None in a record of less than one period of the
 // guess, or whose vibration is below its scatter.
 std::optional<DwellFit> fit_dwell(const DwellRecord& record, double guess);

@@ -52,8 +52,10 @@ Cam with_pair(const ShapingTask& task, const PulsePair& pair) {
   return with_lift(task.motion.cam, with_pulses(task, pair));
 }
 
-// Five trials about the untuned one: what they cancel by the model of the machine file, on a circle.
-constexpr int on_circle = 5;
+// Three trials about the untuned one: what they cancel by the model of the machine file, on a circle. Four cycles
+// determine a form whose level lines are circles; the next ones are each at the minimum of the ones before, where the
+// form has to hold.
+constexpr int on_circle = 3, at_minimum = 3;
 Complex on_unit_circle(int k) { return std::polar(1.0, 2.0 * std::numbers::pi * k / on_circle); }
 
 // The vibration at the end of the rise whose area over the whole dwell is `quality`. An area that begins later makes
@@ -94,6 +96,37 @@ Circle circle_for(const ShapingTask& task, const TunerSettings& settings, double
     if (room == 1.0) return best;
   }
   return best;
+}
+
+// A trial: what it cancels, and its number over the untuned one.
+struct Evaluated {
+  Complex cancelled;
+  double number;
+};
+
+// The minimum of the quadratic form that the squares of the numbers make. A number is an area of a few half-waves,
+// which goes with their phase beside what the form has, and ends in the noise of the encoder: it is known to a share of
+// itself and to a share of the untuned one, so that the trials near the minimum count most. That the form has circles
+// for level lines, but for a fifth, takes the place of the trials that it has fewer than coefficients.
+std::optional<Complex> minimum_of_form(const std::vector<Evaluated>& trials) {
+  constexpr double of_itself = 0.03, of_untuned = 0.005, from_circles = 0.2;
+  Normal<6> normal;
+  double curvature = 0.0;
+  for (const auto& [z, number] : trials) {
+    const double x = z.real(), y = z.imag();
+    // Of the square.
+    const double error = 2.0 * number * std::hypot(of_itself * number, of_untuned) + of_untuned * of_untuned;
+    normal.add({1.0 / error, x / error, y / error, x * x / error, x * y / error, y * y / error},
+               number * number / error);
+    curvature = std::max(curvature, number * number / std::max(1e-9, std::norm(z) + 1.0));
+  }
+  const double circles = from_circles * curvature;
+  normal.add({0.0, 0.0, 0.0, 1.0 / circles, 0.0, -1.0 / circles}, 0.0);
+  normal.add({0.0, 0.0, 0.0, 0.0, 1.0 / circles, 0.0}, 0.0);
+  const auto f = normal.solve();
+  const double determinant = 4.0 * f[3] * f[5] - f[4] * f[4];
+  if (f[3] <= 0.0 || determinant <= 0.0) return std::nullopt;
+  return Complex{(f[4] * f[2] - 2.0 * f[5] * f[1]) / determinant, (f[4] * f[1] - 2.0 * f[3] * f[2]) / determinant};
 }
 
 Cam with_one(const ShapingTask& task, double length, Place at) {
@@ -143,23 +176,20 @@ NumberSearch search_by_quadratic_form(const ShapingTask& task, const TunerSettin
   return trials.of([&] {
     const double untuned = trials.at({0.0, 0.0}, task.motion.cam);
     const auto [places, size] = circle_for(task, settings, size_of(task, untuned));
+    std::vector<Evaluated> evaluated{{0.0, 1.0}};
     const auto run = [&, &at = places, &of = size](Complex cancelled) {
       const auto pair = pulse_pair(task, of * cancelled, at);
       if (!pair) throw CamError("found no room for two pulses in the rise; expected 0.75 periods of the load or more");
-      return trials.at({pair->first.amplitude, pair->second.amplitude}, with_pair(task, *pair));
+      const double number = trials.at({pair->first.amplitude, pair->second.amplitude}, with_pair(task, *pair));
+      evaluated.push_back({cancelled, number / untuned});
     };
-    Normal<6> normal;
-    const auto add = [&](Complex z, double number) {
-      const double x = z.real(), y = z.imag();
-      normal.add({1.0, x, y, x * x, x * y, y * y}, number * number / (untuned * untuned));
-    };
-    add(0.0, untuned);
-    for (int k = 0; k < on_circle; ++k) add(on_unit_circle(k), run(on_unit_circle(k)));
-    const auto f = normal.solve();
-    const double determinant = 4.0 * f[3] * f[5] - f[4] * f[4];
-    // Without a minimum the best trial is what there is.
-    if (f[3] <= 0.0 || determinant <= 0.0) return;
-    run({(f[4] * f[2] - 2.0 * f[5] * f[1]) / determinant, (f[4] * f[1] - 2.0 * f[3] * f[2]) / determinant});
+    for (int k = 0; k < on_circle; ++k) run(on_unit_circle(k));
+    for (int k = 0; k < at_minimum; ++k) {
+      const auto minimum = minimum_of_form(evaluated);
+      // Without a minimum the best trial is what there is.
+      if (!minimum) return;
+      run(*minimum);
+    }
   });
 }
 

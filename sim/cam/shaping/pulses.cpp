@@ -13,16 +13,6 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// The task's own rise, scaled to a different stroke.
-Curve own_rise(const ShapingTask& task, double stroke) {
-  std::vector<Piece> pieces;
-  for (const Piece& piece : task.motion.curve.pieces())
-    if (piece.begin >= task.begin - 1e-12 && piece.end <= task.end() + 1e-9) pieces.push_back(piece);
-  const double gain = stroke / task.stroke;
-  return Curve(std::move(pieces))
-      .placed({.from = task.begin, .begin = task.begin, .gain = gain, .offset = task.start * (1.0 - gain)});
-}
-
 // The bump (1 - cos)/2.
 Curve bump(double begin, double length, double amplitude) {
   Piece piece = polynomial_piece(begin, begin + length, {0.5 * amplitude});
@@ -84,6 +74,15 @@ Pulse with_least_left(const ShapingTask& task, Pulse pulse, double length) {
 }
 
 }  // namespace
+
+Curve own_rise(const ShapingTask& task, double stroke) {
+  std::vector<Piece> pieces;
+  for (const Piece& piece : task.motion.curve.pieces())
+    if (piece.begin >= task.begin - 1e-12 && piece.end <= task.end() + 1e-9) pieces.push_back(piece);
+  const double gain = stroke / task.stroke;
+  return Curve(std::move(pieces))
+      .placed({.from = task.begin, .begin = task.begin, .gain = gain, .offset = task.start * (1.0 - gain)});
+}
 
 double drive_lag(const ShapingTask& task) {
   double slowest = 0.0;
@@ -167,11 +166,16 @@ std::optional<PulsePair> pulse_pair(const ShapingTask& task, Complex residual, c
   return PulsePair{{first, a}, {second, b}, length};
 }
 
-Curve with_pulses(const ShapingTask& task, const PulsePair& pulses) {
+Curve with_pulses(const ShapingTask& task, const PulsePair& pulses) { return with_pulses(task, {&pulses, 1}); }
+
+Curve with_pulses(const ShapingTask& task, std::span<const PulsePair> pairs) {
   Lift lift;
-  lift.add(own_rise(task, task.stroke - pulses.first.amplitude - pulses.second.amplitude));
-  for (const Pulse& pulse : {pulses.first, pulses.second})
-    lift.add(law_curve("polynomial_3_4_5", pulse.position, pulses.length, pulse.amplitude));
+  double stroke = task.stroke;
+  for (const PulsePair& pair : pairs) stroke -= pair.first.amplitude + pair.second.amplitude;
+  lift.add(own_rise(task, stroke));
+  for (const PulsePair& pair : pairs)
+    for (const Pulse& pulse : {pair.first, pair.second})
+      lift.add(law_curve("polynomial_3_4_5", pulse.position, pair.length, pulse.amplitude));
   return lift_of(lift, task, task.end());
 }
 
