@@ -227,7 +227,7 @@ void run_tuning(const TuneCamOptions& options, const Invocation& invocation) {
                                         : simulated_record(machine, now, speed, c + 1);
         cycles.push_back({std::move(record), {}});
         auto& learned = cycles.back().learned;
-        learned = tuner.done() ? tuner.follow(cycles.back().record) : tuner.learn(cycles.back().record);
+        learned = tuner.done() ? tuner.follow(cycles.back().record, false) : tuner.learn(cycles.back().record);
         run.push_back(tuner.cam());
       }
       tuned = tuner.cam();

@@ -87,12 +87,12 @@ Followed followed(const Truth& truth, double stiffness_loss, int cycles, bool fo
   for (int k = 1; k < cycles; ++k) {
     const auto now = machine.run(tuner.cam());
     if (k == 1) found.tuned = now.quality;
-    found.worst = std::max(found.worst, now.quality);
+    if (k >= most_to_tune) found.worst = std::max(found.worst, now.quality);
     if (k >= cycles - std::max(1, cycles / 100)) found.last = std::max(found.last, now.quality);
     if (!tuner.done() && k < most_to_tune)
       tuner.learn(now.record);
     else if (follow)
-      found.corrections += !tuner.follow(now.record).note.empty();
+      found.corrections += !tuner.follow(now.record, true).note.empty();
   }
   return found;
 }

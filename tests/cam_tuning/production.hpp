@@ -29,7 +29,7 @@ class Production {
 struct Followed {
   double first = 0.0;   // deg^2, J of the untuned cycles
   double tuned = 0.0;   // of the first cycle that was tuned
-  double worst = 0.0;   // behind that one
+  double worst = 0.0;   // behind the tuning, which takes five cycles at most
   double last = 0.0;    // in the last hundredth, at most
   int corrections = 0;  // of production
 };

@@ -118,8 +118,9 @@ std::optional<DwellFit> fit_dwell(const DwellRecord& whole, double guess) {
   return fit;
 }
 
-std::complex<double> residual_with_mode(const DwellRecord& record, const Mode& mode) {
+std::complex<double> residual_with_mode(const DwellRecord& record, const Mode& mode, double* offset) {
   const auto sine = with_best_amplitudes(thinned(record), -mode.pole.real(), mode.pole.imag());
+  if (offset != nullptr) *offset = sine.c;
   return {0.5 * sine.a, -0.5 * sine.b};
 }
 

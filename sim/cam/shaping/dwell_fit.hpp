@@ -36,8 +36,9 @@ DwellRecord thinned(const DwellRecord& record);
 // guess, or whose vibration is below its scatter.
 std::optional<DwellFit> fit_dwell(const DwellRecord& record, double guess);
 
-// The residual of a `record` that vibrates with a `mode`, as fit_dwell() has it.
-std::complex<double> residual_with_mode(const DwellRecord& record, const Mode& mode);
+// The residual of a `record` that vibrates with a `mode`, as fit_dwell() has it; the record's constant becomes
+// `offset`, where it is given.
+std::complex<double> residual_with_mode(const DwellRecord& record, const Mode& mode, double* offset = nullptr);
 
 // The `drive` with the shaft that makes its load's mode `mode`.
 ElasticDrive drive_with_mode(const ElasticDrive& drive, const Mode& mode);

@@ -152,18 +152,22 @@ std::optional<PulsePair> pulse_pair(const ShapingTask& task, Complex residual, c
   const double period = task.period_length(), length = places.length * period;
   if (places.room() * period > task.length()) return std::nullopt;
   const double second = task.end() - places.before * period - length, first = second - places.apart * period;
+  return pulse_pair_at(task, residual, {{first, 0.0}, {second, 0.0}, length});
+}
+
+PulsePair pulse_pair_at(const ShapingTask& task, Complex residual, PulsePair where) {
   const Complex own = residual_of(task, own_rise(task, task.stroke), task.end()) / task.stroke;
   const auto one = [&](double position) {
     Lift lift;
-    lift.add(law_curve("polynomial_3_4_5", position, length, 1.0));
+    lift.add(law_curve("polynomial_3_4_5", position, where.length, 1.0));
     return residual_of(task, lift_of(lift, task, task.end()), task.end()) - own;
   };
   // residual + a u + b v = 0 in its two parts.
-  const Complex u = one(first), v = one(second);
+  const Complex u = one(where.first.position), v = one(where.second.position);
   const double determinant = u.real() * v.imag() - u.imag() * v.real();
-  const double a = (-residual.real() * v.imag() + residual.imag() * v.real()) / determinant;
-  const double b = (-residual.imag() * u.real() + residual.real() * u.imag()) / determinant;
-  return PulsePair{{first, a}, {second, b}, length};
+  where.first.amplitude = (-residual.real() * v.imag() + residual.imag() * v.real()) / determinant;
+  where.second.amplitude = (-residual.imag() * u.real() + residual.real() * u.imag()) / determinant;
+  return where;
 }
 
 Curve with_pulses(const ShapingTask& task, const PulsePair& pulses) { return with_pulses(task, {&pulses, 1}); }

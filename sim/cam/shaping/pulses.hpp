@@ -58,6 +58,8 @@ struct PulsePair {
 // `residual`: that vibration at the end of the rise, as modal_residual() has it. None in a rise of `task` without room.
 std::optional<PulsePair> pulse_pair(const ShapingTask& task, std::complex<double> residual,
                                     const PulsePlaces& places = {});
+// The same of pulses where those of `where` are, in a `task` whose `residual` they are to cancel.
+PulsePair pulse_pair_at(const ShapingTask& task, std::complex<double> residual, PulsePair where);
 // The rise of the `task` with both `pulses`.
 Curve with_pulses(const ShapingTask& task, const PulsePair& pulses);
 // The same with those of all `pairs`.

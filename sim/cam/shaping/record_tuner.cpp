@@ -20,11 +20,10 @@ constexpr double drive_share = 0.1;
 // Before the lag is known, 8 ms are more than any encoder's.
 constexpr double unknown_lag = 8e-3;
 
-// Of production: a correction is for vibrations above this share of the resolution from peak to peak, since the fit of
-// some hundred samples knows them ten times better than one sample does; what was carried over is a tenth after so many
-// cycles at 0.56 of it a cycle.
-constexpr double worth_correcting = 1.0;
-constexpr int cycles_to_settle_again = 4;
+// Of production: corrections are for vibrations above these shares of the resolution from peak to peak, of a cycle that
+// follows the last one and of one that ran steadily: the fit of some hundred samples knows them ten times better than
+// one sample does. A part of each is taken, so that noise is not followed.
+constexpr double worth_following = 0.2, worth_correcting = 1.0, followed_part = 0.6;
 
 double area(const DwellRecord& record, double offset, double master_speed) {
   double sum = 0.0;
@@ -108,11 +107,10 @@ double RecordTuner::share_of(const PulsePair& pulses) const {
 
 // Those in use, and such that cancel `residual`.
 PulsePair RecordTuner::corrected(std::complex<double> residual) const {
-  PulsePair pulses = room_for(pulse_pair(task_, residual, places_));
-  if (pulses_) {
-    pulses.first.amplitude += pulses_->first.amplitude;
-    pulses.second.amplitude += pulses_->second.amplitude;
-  }
+  if (!pulses_) return room_for(pulse_pair(task_, residual, places_));
+  PulsePair pulses = pulse_pair_at(task_, residual, *pulses_);
+  pulses.first.amplitude += pulses_->first.amplitude;
+  pulses.second.amplitude += pulses_->second.amplitude;
   return pulses;
 }
 
@@ -193,10 +191,13 @@ Mode RecordTuner::unexcited_mode() const {
 bool RecordTuner::look_for_second_mode(const DwellRecord& dwell, const std::optional<DwellFit>& fit) {
   // What is carried over of a mode that was not known is not known either.
   if (cycles_ > 1 && settings_.running) return false;
-  const bool known = cycles_ > 1 && drive_, still = cycles_ == 1 && !fit;
+  // A fit of noise has no frequency.
+  constexpr double of_a_vibration = 0.02;
+  const bool vibrates = fit && fit->frequency_error < of_a_vibration * fit->mode.frequency();
+  const bool known = cycles_ > 1 && drive_, still = cycles_ == 1 && !vibrates;
   if (!known && !still && !fit) return false;
   const Mode first = known ? drive_->ringing : still ? unexcited_mode() : fit->mode;
-  const auto found = fit_two_modes(dwell, first, 2.0 * settings_.resolution, known || still);
+  const auto found = fit_two_modes(dwell, first, settings_.resolution, known || still);
   if (!found) return false;
   two_.emplace();
   two_->found = found->modes;
@@ -273,13 +274,12 @@ void RecordTuner::place_four() {
 
 // The four pulses in use, and such that cancel `residuals`.
 FourPulses RecordTuner::corrected_four(const std::array<std::complex<double>, 2>& residuals) const {
-  FourPulses four = four_pulses(task_, two_->modes, residuals, *two_->places);
-  if (second_pulses_) {
-    const FourPulses now{*pulses_, *second_pulses_};
-    for (std::size_t m = 0; m < 2; ++m) {
-      four[m].first.amplitude += now[m].first.amplitude;
-      four[m].second.amplitude += now[m].second.amplitude;
-    }
+  if (!second_pulses_) return four_pulses(task_, two_->modes, residuals, *two_->places);
+  const FourPulses now{*pulses_, *second_pulses_};
+  FourPulses four = four_pulses_at(task_, two_->modes, residuals, now);
+  for (std::size_t m = 0; m < 2; ++m) {
+    four[m].first.amplitude += now[m].first.amplitude;
+    four[m].second.amplitude += now[m].second.amplitude;
   }
   return four;
 }
@@ -333,10 +333,17 @@ void RecordTuner::use(const PulsePair& pulses, const std::optional<PulsePair>& s
 TunedCycle& RecordTuner::keep_better(TunedCycle& cycle, const char* note) {
   done_ = true;
   cycle.note = note;
-  if (better_)
+  if (better_) {
     use(*better_, better_second_);
-  else
+    // It was for one cycle alone.
+    if (settings_.running) {
+      last_ = better_last_;
+      if (two_) two_->last = better_lasts_;
+      if (better_second_.has_value() == two_.has_value()) cancel_own();
+    }
+  } else {
     pulses_.reset(), second_pulses_.reset(), cam_ = task_.motion.cam;
+  }
   return cycle;
 }
 
@@ -351,6 +358,8 @@ TunedCycle RecordTuner::learn(const CycleRecord& record) {
   best_quality_ = cycle.quality;
   better_ = pulses_;
   better_second_ = second_pulses_;
+  better_last_ = last_;
+  if (two_) better_lasts_ = two_->last;
   if (!cycle.fit || cycle.peak_to_peak < settings_.resolution) {
     done_ = true;
     cycle.note = "The residual is within the resolution of the encoder; nothing is changed.";
@@ -362,10 +371,13 @@ TunedCycle RecordTuner::learn(const CycleRecord& record) {
     return cycle;
   }
   // A linear machine is at rest after two corrections, of which the first one has shown its gain, but for a mode that
-  // had not been seen.
-  if (cycles_ > 2 && cycle.peak_to_peak > 0.5 * before_ && had_two == two_.has_value()) {
+  // had not been seen. Running, what the untuned cycle left is still carried over then, and the frequency is not known
+  // well enough for so much of it.
+  const int enough = settings_.running ? 3 : 2;
+  if (cycles_ > enough && cycle.peak_to_peak > 0.5 * before_ && had_two == two_.has_value()) {
     done_ = true;
     cycle.note = "The residual does not go away by pulses; nothing is changed.";
+    if (settings_.running && (drive_ || two_)) cancel_own();
     return cycle;
   }
   before_ = cycle.peak_to_peak;
@@ -385,62 +397,80 @@ TunedCycle RecordTuner::learn(const CycleRecord& record) {
   return cycle;
 }
 
-// A warm gear has a different frequency: a record that knows it takes part in the mode that the next ones are fitted
-// with.
-void RecordTuner::follow_frequency(const DwellFit& fit) {
-  constexpr double known = 0.02, part = 0.3;
-  if (!(fit.frequency_error < known * fit.mode.frequency())) return;
-  auto& pole = drive_->ringing.pole;
-  pole = {pole.real(), pole.imag() + part * (fit.mode.pole.imag() - pole.imag())};
-  task_.drive = drive_with_mode(task_.drive, drive_->ringing);
+// A warm gear has a different frequency, and a load that is still does not show it. But the pulses do, which cancel at
+// that frequency alone: it is where they leave as little as those of the tuning did.
+void RecordTuner::follow_frequencies() {
+  const Curve now = rise();
+  const auto follow = [&](Mode mode, std::complex<double> left) {
+    // Golden section; a gear does not warm by more in a cycle.
+    const auto off = [&](double share) { return std::abs(lift_transform(task_, now, {mode.pole * share}) - left); };
+    constexpr double reach = 0.005, golden = 0.6180339887;
+    double low = 1.0 - reach, high = 1.0 + reach;
+    while (high - low > 2e-5) {
+      const double a = high - golden * (high - low), b = low + golden * (high - low);
+      (off(a) < off(b) ? high : low) = off(a) < off(b) ? b : a;
+    }
+    return Mode{mode.pole * (0.5 * (low + high))};
+  };
+  if (two_) {
+    for (std::size_t m = 0; m < 2; ++m) two_->modes[m] = follow(two_->modes[m], (*left_by_tuning_)[m]);
+  } else {
+    drive_->ringing = follow(drive_->ringing, (*left_by_tuning_)[0]);
+    task_.drive = drive_with_mode(task_.drive, drive_->ringing);
+  }
 }
 
-TunedCycle RecordTuner::follow(const CycleRecord& record) {
+// What a cycle makes itself of the `residual` of its record of `mode`, number `which`.
+std::complex<double> RecordTuner::own_part(std::complex<double> residual, const Mode& mode, std::size_t which,
+                                           bool next) {
+  if (!settings_.running) return residual;
+  const auto carried = std::exp(mode.pole * (task_.motion.curve.length() / task_.master_speed));
+  return next ? residual - before_that_[which] * carried : residual * (1.0 - carried);
+}
+
+TunedCycle RecordTuner::follow(const CycleRecord& record, bool next) {
   TunedCycle cycle;
   const DwellRecord dwell = dwell_of(task_, record, drive_ ? std::max(0.0, drive_->delay) : unknown_lag);
   ++cycles_;
-  double offset = mean(dwell.position);
-  std::array<std::complex<double>, 2> residuals{};
+  if (!drive_ && !two_) {
+    cycle.quality = area(dwell, mean(dwell.position), task_.master_speed);
+    return cycle;
+  }
+  // The last motion of a tuning that did not end was for one cycle alone.
+  if (settings_.running && !done_) cancel_own();
+  done_ = true;
+  const std::size_t count = two_ ? 2 : 1;
+  if (!left_by_tuning_) {
+    left_by_tuning_.emplace();
+    for (std::size_t m = 0; m < count; ++m)
+      (*left_by_tuning_)[m] = lift_transform(task_, rise(), two_ ? two_->modes[m] : drive_->ringing);
+    // Of the cycle before it nothing is known here.
+    next = false;
+  }
+  std::array<std::complex<double>, 2> residuals{}, own{};
+  double offset = 0.0;
   if (two_) {
     const auto both = residuals_with_modes(dwell, two_->modes);
     residuals = both.of, offset = both.offset;
-  } else if (drive_) {
-    cycle.fit = fit_dwell(dwell, drive_->ringing.frequency());
-    residuals[0] = residual_with_mode(dwell, drive_->ringing);
-    if (cycle.fit) offset = cycle.fit->offset;
+    for (std::size_t m = 0; m < 2; ++m) own[m] = own_part(residuals[m], two_->modes[m], m, next) * two_->scale[m];
+  } else {
+    residuals[0] = residual_with_mode(dwell, drive_->ringing, &offset);
+    own[0] = own_part(residuals[0], drive_->ringing, 0, next) * scale_;
   }
+  before_that_ = residuals;
   cycle.quality = area(dwell, offset, task_.master_speed);
   cycle.peak_to_peak = 4.0 * (std::abs(residuals[0]) + std::abs(residuals[1]));
-  if (waiting_ > 0) {
-    --waiting_;
-    return cycle;
-  }
-  if (settings_.running && !done_ && (drive_ || two_)) {
-    // The last motion was for one cycle alone.
-    cancel_own();
-    done_ = true;
-    waiting_ = cycles_to_settle_again;
-    return cycle;
-  }
-  if (!(drive_ || two_) || cycle.peak_to_peak < worth_correcting * settings_.resolution) return cycle;
-  if (cycle.fit) {
-    follow_frequency(*cycle.fit);
-    residuals[0] = residual_with_mode(dwell, drive_->ringing);
-  }
-  // Steady cycles that run on have their own residual and all that the ones before left of theirs.
-  const double time = settings_.running ? task_.motion.curve.length() / task_.master_speed : 0.0;
-  const auto own = [&](std::complex<double> residual, const Mode& mode) {
-    return settings_.running ? residual * (1.0 - std::exp(mode.pole * time)) : residual;
-  };
+  const double worth = settings_.resolution * (settings_.running && next ? worth_following : worth_correcting);
+  if (cycle.peak_to_peak < worth) return cycle;
+  for (auto& each : own) each *= followed_part;
   if (two_) {
-    for (std::size_t m = 0; m < 2; ++m) residuals[m] = own(residuals[m], two_->modes[m]) * two_->scale[m];
-    const auto four = corrected_four(residuals);
+    const auto four = corrected_four(own);
     use(four[0], four[1]);
   } else {
-    use(corrected(own(residuals[0], drive_->ringing) * scale_));
+    use(corrected(own[0]));
   }
-  cycle.note = "The vibration has grown; the pulses are corrected.";
-  if (settings_.running) waiting_ = cycles_to_settle_again;
+  follow_frequencies();
+  cycle.note = "The load vibrates again; the pulses are corrected.";
   return cycle;
 }
 

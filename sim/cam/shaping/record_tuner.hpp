@@ -57,10 +57,10 @@ class RecordTuner {
   TunedCycle learn(const CycleRecord& record);
 
   // Takes the record of a cycle of production behind done(), along cam(): where the gear has become warm and the load
-  // vibrates by more than the encoder's resolution again, it corrects the pulses, and then waits until what the cycles
-  // before have left has died. No cycle is spent on a probe: every correction is to make the next one better. Throws
-  // CamError for a record without the whole dwell.
-  TunedCycle follow(const CycleRecord& record);
+  // vibrates again, it corrects the pulses. No cycle is spent on a probe: every correction is to make the next one
+  // better. `next`: of the very next cycle of a machine that does not stop; else the cycles before it had the same
+  // motion, and it ran steadily. Throws CamError for a record without the whole dwell.
+  TunedCycle follow(const CycleRecord& record, bool next);
 
   // The cam for the next cycle: its rise with the pulses.
   const Cam& cam() const { return cam_; }
@@ -87,7 +87,8 @@ class RecordTuner {
   void measure(const DwellRecord& dwell, TunedCycle& cycle);
   void learn_gain(std::complex<double> residual);
   Mode unexcited_mode() const;
-  void follow_frequency(const DwellFit& fit);
+  void follow_frequencies();
+  std::complex<double> own_part(std::complex<double> residual, const Mode& mode, std::size_t which, bool next);
   bool look_for_second_mode(const DwellRecord& dwell, const std::optional<DwellFit>& fit);
   void place_four();
   std::array<std::complex<double>, 2> carried_of_both() const;
@@ -116,8 +117,13 @@ class RecordTuner {
   std::complex<double> first_residual_ = 0.0;  // of the first mode, in the first cycle
   double best_quality_ = 0.0, before_ = 0.0;   // before_: peak to peak of the cycle before
   std::complex<double> last_ = 0.0;            // residual of the cycle before
+  std::complex<double> better_last_ = 0.0;     // and of the one before the best
+  std::array<std::complex<double>, 2> better_lasts_{};
   int cycles_ = 0;
-  int waiting_ = 0;  // cycles of production until the next correction
+  // Of production: residuals of the last cycle, as recorded, and what the pulses of the tuning leave of
+  // lift_transform().
+  std::array<std::complex<double>, 2> before_that_{};
+  std::optional<std::array<std::complex<double>, 2>> left_by_tuning_;
 };
 
 }  // namespace stiction::sim::cam

@@ -202,9 +202,10 @@ TwoResiduals residuals_with_modes(const DwellRecord& record, const std::array<Mo
 
 Complex lift_transform(const ShapingTask& task, const Curve& lift, const Mode& mode) {
   Complex sum = 0.0;
-  // Simpson's rule over each piece.
-  constexpr int intervals = 128;
+  // Simpson's rule, 64 intervals in a period and four at least in a piece.
+  const double finest = mode.period() * task.master_speed / 64.0;
   for (const Piece& piece : lift.pieces()) {
+    const int intervals = 2 * static_cast<int>(std::max(2.0, std::ceil(0.5 * piece.length() / finest)));
     const double h = piece.length() / intervals;
     for (int k = 0; k <= intervals; ++k) {
       const double x = piece.begin + h * k, weight = k == 0 || k == intervals ? 1.0 : k % 2 == 1 ? 4.0 : 2.0;
@@ -216,7 +217,12 @@ Complex lift_transform(const ShapingTask& task, const Curve& lift, const Mode& m
 
 FourPulses four_pulses(const ShapingTask& task, const std::array<Mode, 2>& modes,
                        const std::array<Complex, 2>& residuals, const FourPlaces& places) {
-  FourPulses pulses{empty_pair(task, modes[0], places[0]), empty_pair(task, modes[1], places[1])};
+  return four_pulses_at(task, modes, residuals,
+                        {empty_pair(task, modes[0], places[0]), empty_pair(task, modes[1], places[1])});
+}
+
+FourPulses four_pulses_at(const ShapingTask& task, const std::array<Mode, 2>& modes,
+                          const std::array<Complex, 2>& residuals, FourPulses pulses) {
   std::array<std::array<double, 5>, 4> rows{};
   for (std::size_t m = 0; m < 2; ++m) {
     const Complex own = lift_transform(task, own_rise(task, task.stroke), modes[m]) / task.stroke;

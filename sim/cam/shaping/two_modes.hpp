@@ -44,5 +44,8 @@ std::vector<FourPlaces> four_places(const ShapingTask& task, const std::array<Mo
 // The four pulses at `places` of `task` that cancel `residuals` of both `modes`, as above: one linear equation.
 FourPulses four_pulses(const ShapingTask& task, const std::array<Mode, 2>& modes,
                        const std::array<std::complex<double>, 2>& residuals, const FourPlaces& places);
+// The same of pulses where `pulses` are, for `residuals` of both `modes` of a `task`.
+FourPulses four_pulses_at(const ShapingTask& task, const std::array<Mode, 2>& modes,
+                          const std::array<std::complex<double>, 2>& residuals, FourPulses pulses);
 
 }  // namespace stiction::sim::cam
