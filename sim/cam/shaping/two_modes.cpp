@@ -135,6 +135,38 @@ PulsePair empty_pair(const ShapingTask& task, const Mode& mode, const PulsePlace
   return {{first, 0.0}, {second, 0.0}, length};
 }
 
+// What both pulses of a pair make of both modes, for an amplitude of one each that the own rise is less.
+using Made = std::array<std::array<Complex, 2>, 2>;
+Made made_by(const ShapingTask& task, const std::array<Mode, 2>& modes, const PulsePair& pair) {
+  Made made;
+  const Curve own = own_rise(task, task.stroke);
+  for (std::size_t m = 0; m < 2; ++m) {
+    const Complex of_own = lift_transform(task, own, modes[m]) / task.stroke;
+    for (std::size_t p = 0; p < 2; ++p) {
+      const double position = (p == 0 ? pair.first : pair.second).position;
+      made[p][m] = lift_transform(task, law_curve("polynomial_3_4_5", position, pair.length, 1.0), modes[m]) - of_own;
+    }
+  }
+  return made;
+}
+
+FourPulses with_amplitudes(FourPulses pulses, const std::array<Complex, 2>& residuals,
+                           const std::array<Made, 2>& made) {
+  std::array<std::array<double, 5>, 4> rows{};
+  for (std::size_t m = 0; m < 2; ++m) {
+    for (std::size_t p = 0; p < 4; ++p) {
+      rows[2 * m][p] = made[p / 2][p % 2][m].real();
+      rows[2 * m + 1][p] = made[p / 2][p % 2][m].imag();
+    }
+    rows[2 * m][4] = -residuals[m].real();
+    rows[2 * m + 1][4] = -residuals[m].imag();
+  }
+  const auto amplitudes = solved(rows);
+  for (std::size_t p = 0; p < 4; ++p)
+    (p % 2 == 0 ? pulses[p / 2].first : pulses[p / 2].second).amplitude = amplitudes[p];
+  return pulses;
+}
+
 }  // namespace
 
 std::optional<TwoModeFit> fit_two_modes(const DwellRecord& whole, const Mode& first, double least, bool hold) {
@@ -190,7 +222,8 @@ std::optional<TwoModeFit> fit_two_modes(const DwellRecord& whole, const Mode& fi
     throw CamError(fmt::format(
         "found two modes at about {:.2f} and {:.2f} Hz, which a dwell of {:.0f} ms does not tell apart; expected them "
         "{:.1f} Hz apart or more, or a longer dwell",
-        one.mode.frequency() / whole_turn, two.mode.frequency() / whole_turn, 1e3 * length, 1.0 / length));
+        std::min(one.mode.frequency(), two.mode.frequency()) / whole_turn,
+        std::max(one.mode.frequency(), two.mode.frequency()) / whole_turn, 1e3 * length, 1.0 / length));
   }
   return two.mode.pole.imag() > one.mode.pole.imag() ? std::optional(found) : std::nullopt;
 }
@@ -223,24 +256,7 @@ FourPulses four_pulses(const ShapingTask& task, const std::array<Mode, 2>& modes
 
 FourPulses four_pulses_at(const ShapingTask& task, const std::array<Mode, 2>& modes,
                           const std::array<Complex, 2>& residuals, FourPulses pulses) {
-  std::array<std::array<double, 5>, 4> rows{};
-  for (std::size_t m = 0; m < 2; ++m) {
-    const Complex own = lift_transform(task, own_rise(task, task.stroke), modes[m]) / task.stroke;
-    for (std::size_t p = 0; p < 4; ++p) {
-      const PulsePair& pair = pulses[p / 2];
-      const double position = (p % 2 == 0 ? pair.first : pair.second).position;
-      const Complex made =
-          lift_transform(task, law_curve("polynomial_3_4_5", position, pair.length, 1.0), modes[m]) - own;
-      rows[2 * m][p] = made.real();
-      rows[2 * m + 1][p] = made.imag();
-    }
-    rows[2 * m][4] = -residuals[m].real();
-    rows[2 * m + 1][4] = -residuals[m].imag();
-  }
-  const auto amplitudes = solved(rows);
-  for (std::size_t p = 0; p < 4; ++p)
-    (p % 2 == 0 ? pulses[p / 2].first : pulses[p / 2].second).amplitude = amplitudes[p];
-  return pulses;
+  return with_amplitudes(pulses, residuals, {made_by(task, modes, pulses[0]), made_by(task, modes, pulses[1])});
 }
 
 std::vector<FourPlaces> four_places(const ShapingTask& task, const std::array<Mode, 2>& modes,
@@ -254,11 +270,23 @@ std::vector<FourPlaces> four_places(const ShapingTask& task, const std::array<Mo
     return places.room() * mode.period() * task.master_speed <= task.length();
   };
   const Curve own = own_rise(task, 1.0);
+  struct Placed {
+    PulsePlaces places;
+    PulsePair pair;
+    Made made;
+  };
+  std::vector<Placed> seconds;
+  for (const auto& places : second_places()) {
+    if (!fits(places, modes[1])) continue;
+    const auto pair = empty_pair(task, modes[1], places);
+    seconds.push_back({places, pair, made_by(task, modes, pair)});
+  }
   for (const auto& first : pulse_places()) {
     if (!fits(first, modes[0])) continue;
-    for (const auto& second : second_places()) {
-      if (!fits(second, modes[1])) continue;
-      const auto pulses = four_pulses(task, modes, residuals, {first, second});
+    const auto pair = empty_pair(task, modes[0], first);
+    const auto made = made_by(task, modes, pair);
+    for (const auto& [second, second_pair, made_second] : seconds) {
+      const auto pulses = with_amplitudes({pair, second_pair}, residuals, {made, made_second});
       double stroke = task.stroke, largest = 0.0;
       std::vector<std::pair<Curve, double>> curves;
       for (const PulsePair& pair : pulses)
