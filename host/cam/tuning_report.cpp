@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "host/cam/quality_map.hpp"
+
 namespace stiction::host {
 namespace {
 
@@ -63,7 +65,41 @@ sim::Chart over_frequency(const sim::cam::ShapingTask& task, const sim::cam::Rec
   return chart;
 }
 
-sim::Chart path_of_search(const sim::cam::NumberSearch& search, bool one_pulse, const TuningUnits& units) {
+// Lines of one number, each level by its own name.
+void add_lines(sim::Chart& chart, const std::vector<LevelLine>& lines, double along, const TuningUnits& units) {
+  for (const LevelLine& line : lines) {
+    sim::Series series{.name = fmt::format("{:.3g} {}·{}", line.level * units.slave * units.master, units.slave_unit,
+                                           units.master_unit),
+                       .x = {},
+                       .y = {}};
+    for (const auto& [x, y] : line.points) {
+      series.x.push_back(x * along);
+      series.y.push_back(y * units.slave);
+    }
+    chart.series.push_back(std::move(series));
+  }
+}
+
+// The number over place and amplitude of one pulse, by the model that was identified; of two modes the first.
+sim::Chart map_of_tuning(const sim::cam::ShapingTask& task, const sim::cam::RecordTuner& tuner,
+                         const TuningUnits& units) {
+  sim::Chart chart;
+  chart.title = "Area of the deviation over place and amplitude of one pulse, by the model that was identified";
+  chart.x_label = "beginning of the pulse, master, " + units.master_unit;
+  chart.y_label = "amplitude, " + units.slave_unit;
+  chart.caption =
+      "Lines of one area; the innermost ones have a twentieth of what the untuned motion leaves. A pulse at the "
+      "end of the rise is the smallest.";
+  auto identified = task;
+  if (tuner.drive()) identified.drive = tuner.drive()->drive;
+  const double length = std::min(identified.period_length(), 0.5 * task.length());
+  add_lines(chart, map_of_one_pulse(identified, length, 2.0), units.master, units);
+  return chart;
+}
+
+// `lines`: of one number by the model of the machine file.
+sim::Chart path_of_search(const sim::cam::NumberSearch& search, bool one_pulse, const std::vector<LevelLine>& lines,
+                          const TuningUnits& units) {
   sim::Chart chart;
   chart.title = "Path of the search";
   chart.x_label = one_pulse ? "master, " + units.master_unit : "amplitude of the first pulse, " + units.slave_unit;
@@ -78,6 +114,8 @@ sim::Chart path_of_search(const sim::cam::NumberSearch& search, bool one_pulse, 
   best.x.push_back(search.least.at[0] * along);
   best.y.push_back(search.least.at[1] * units.slave);
   chart.series = {std::move(path), std::move(best)};
+  chart.caption = "Lines of one area are those of the model of the machine file.";
+  add_lines(chart, lines, along, units);
   return chart;
 }
 
@@ -128,8 +166,11 @@ sim::ExperimentResult search_report(const sim::cam::ShapingTask& task, const sim
                                           units.master_unit, search.trials.size()));
   if (search.next)
     result.findings.push_back("The motion file is the trial of the next cycle; its number is wanted next.");
+  const auto lines = search.where ? map_of_two_pulses(task, *search.where)
+                     : one_pulse  ? map_of_one_pulse(task, length, 2.0)
+                                  : std::vector<LevelLine>{};
   if (!search.trials.empty())
-    result.charts = {path_of_search(search, one_pulse, units), numbers_of_search(search, units)};
+    result.charts = {path_of_search(search, one_pulse, lines, units), numbers_of_search(search, units)};
   return result;
 }
 
@@ -197,6 +238,7 @@ sim::ExperimentResult tuning_report(const sim::cam::ShapingTask& task, const sim
   result.charts = {dwell_records(task, cycles, units)};
   // The model that was identified has one mode.
   if (!tuner.second_pulses()) result.charts.push_back(over_frequency(task, tuner, units));
+  result.charts.push_back(map_of_tuning(task, tuner, units));
   return result;
 }
 

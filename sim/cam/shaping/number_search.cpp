@@ -225,13 +225,15 @@ void one_step(Vertices& vertices, const Tried& tried) {
 NumberSearch search_by_quadratic_form(const ShapingTask& task, const TunerSettings& settings,
                                       const CycleQuality& quality) {
   Trials trials(quality);
-  return trials.of([&] {
+  std::optional<PulsePair> where;
+  auto found = trials.of([&] {
     const double untuned = trials.at({0.0, 0.0}, task.motion.cam);
     const auto [places, size] = circle_for(task, settings, size_of(task, untuned));
     std::vector<Evaluated> evaluated{{0.0, 1.0}};
     const auto run = [&, &at = places, &of = size](Complex cancelled) {
       const auto pair = pulse_pair(task, of * cancelled, at);
       if (!pair) throw CamError("found no room for two pulses in the rise; expected 0.75 periods of the load or more");
+      where = pair;
       const double number = trials.at({pair->first.amplitude, pair->second.amplitude}, with_pair(task, *pair));
       evaluated.push_back({cancelled, number / untuned});
     };
@@ -243,6 +245,8 @@ NumberSearch search_by_quadratic_form(const ShapingTask& task, const TunerSettin
       run({form->x, form->y});
     }
   });
+  found.where = where;
+  return found;
 }
 
 NumberSearch search_by_simplex(const ShapingTask& task, double length, const Simplex& start, int steps,

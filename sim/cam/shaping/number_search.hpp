@@ -25,9 +25,10 @@ struct SearchTrial {
 
 struct NumberSearch {
   std::vector<SearchTrial> trials;
-  Cam best;                 // with the least number
-  SearchTrial least;        // its
-  std::optional<Cam> next;  // of the cycle that has not been run yet
+  Cam best;                          // with the least number
+  SearchTrial least;                 // its
+  std::optional<Cam> next;           // of the cycle that has not been run yet
+  std::optional<PulsePair> where{};  // of two pulses, where they are
 };
 
 // Two pulses of a `task` by the quadratic form, in seven cycles; `settings` have the limits, and in the unit of
