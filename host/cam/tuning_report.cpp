@@ -88,8 +88,8 @@ sim::Chart map_of_tuning(const sim::cam::ShapingTask& task, const sim::cam::Reco
   chart.x_label = "beginning of the pulse, master, " + units.master_unit;
   chart.y_label = "amplitude, " + units.slave_unit;
   chart.caption =
-      "Lines of one area; the innermost ones have a twentieth of what the untuned motion leaves. A pulse at the "
-      "end of the rise is the smallest.";
+      "Lines of one area; the innermost ones have a twentieth of the untuned area. A pulse at the end of the rise "
+      "is the smallest.";
   auto identified = task;
   if (tuner.drive()) identified.drive = tuner.drive()->drive;
   const double length = std::min(identified.period_length(), 0.5 * task.length());

@@ -1,5 +1,5 @@
 // By how much a load is ahead of what the ratio alone makes of its motor's angle: waves over the turns of the motor, of
-// a wheel inside the gear, and of the screw, pulley or rotary axis (Smith 2003, transmission error of gears).
+// a wheel inside the gear, and of the screw, pulley or rotary axis.
 #pragma once
 
 #include <array>
