@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "host/cam/quality_map.hpp"
+
 namespace stiction::host {
 namespace {
 
@@ -63,7 +65,41 @@ sim::Chart over_frequency(const sim::cam::ShapingTask& task, const sim::cam::Rec
   return chart;
 }
 
-sim::Chart path_of_search(const sim::cam::NumberSearch& search, bool one_pulse, const TuningUnits& units) {
+// Lines of one number, each level by its own name.
+void add_lines(sim::Chart& chart, const std::vector<LevelLine>& lines, double along, const TuningUnits& units) {
+  for (const LevelLine& line : lines) {
+    sim::Series series{.name = fmt::format("{:.3g} {}·{}", line.level * units.slave * units.master, units.slave_unit,
+                                           units.master_unit),
+                       .x = {},
+                       .y = {}};
+    for (const auto& [x, y] : line.points) {
+      series.x.push_back(x * along);
+      series.y.push_back(y * units.slave);
+    }
+    chart.series.push_back(std::move(series));
+  }
+}
+
+// The number over place and amplitude of one pulse, by the model that was identified; of two modes the first.
+sim::Chart map_of_tuning(const sim::cam::ShapingTask& task, const sim::cam::RecordTuner& tuner,
+                         const TuningUnits& units) {
+  sim::Chart chart;
+  chart.title = "Area of the deviation over place and amplitude of one pulse, by the model that was identified";
+  chart.x_label = "beginning of the pulse, master, " + units.master_unit;
+  chart.y_label = "amplitude, " + units.slave_unit;
+  chart.caption =
+      "Lines of one area; the innermost ones have a twentieth of the untuned area. A pulse at the end of the rise "
+      "is the smallest.";
+  auto identified = task;
+  if (tuner.drive()) identified.drive = tuner.drive()->drive;
+  const double length = std::min(identified.period_length(), 0.5 * task.length());
+  add_lines(chart, map_of_one_pulse(identified, length, 2.0), units.master, units);
+  return chart;
+}
+
+// `lines`: of one number by the model of the machine file.
+sim::Chart path_of_search(const sim::cam::NumberSearch& search, bool one_pulse, const std::vector<LevelLine>& lines,
+                          const TuningUnits& units) {
   sim::Chart chart;
   chart.title = "Path of the search";
   chart.x_label = one_pulse ? "master, " + units.master_unit : "amplitude of the first pulse, " + units.slave_unit;
@@ -78,6 +114,8 @@ sim::Chart path_of_search(const sim::cam::NumberSearch& search, bool one_pulse, 
   best.x.push_back(search.least.at[0] * along);
   best.y.push_back(search.least.at[1] * units.slave);
   chart.series = {std::move(path), std::move(best)};
+  chart.caption = "Lines of one area are those of the model of the machine file.";
+  add_lines(chart, lines, along, units);
   return chart;
 }
 
@@ -128,8 +166,11 @@ sim::ExperimentResult search_report(const sim::cam::ShapingTask& task, const sim
                                           units.master_unit, search.trials.size()));
   if (search.next)
     result.findings.push_back("The motion file is the trial of the next cycle; its number is wanted next.");
+  const auto lines = search.where ? map_of_two_pulses(task, *search.where)
+                     : one_pulse  ? map_of_one_pulse(task, length, 2.0)
+                                  : std::vector<LevelLine>{};
   if (!search.trials.empty())
-    result.charts = {path_of_search(search, one_pulse, units), numbers_of_search(search, units)};
+    result.charts = {path_of_search(search, one_pulse, lines, units), numbers_of_search(search, units)};
   return result;
 }
 
@@ -143,12 +184,22 @@ sim::ExperimentResult tuning_report(const sim::cam::ShapingTask& task, const sim
   const auto add = [&](const std::string& name, const std::string& unit, const std::string& text, double value) {
     result.figures.push_back({.name = name, .unit = unit, .text = text, .value = value, .expected = {}});
   };
-  if (const auto& fit = cycles.front().learned.fit) {
-    add("frequency", "Hz", "frequency of the load", fit->mode.frequency() / (2.0 * std::numbers::pi));
-    add("frequency_error", "Hz", "its standard error", fit->frequency_error / (2.0 * std::numbers::pi));
-    add("damping_ratio", "", "damping ratio", fit->mode.damping_ratio());
-    add("damping_ratio_error", "", "its standard error", fit->damping_error);
-  }
+  const auto add_mode = [&](const std::string& prefix, const std::string& of, const sim::cam::DwellFit& fit) {
+    add(prefix + "frequency", "Hz", "frequency of " + of, fit.mode.frequency() / (2.0 * std::numbers::pi));
+    add(prefix + "frequency_error", "Hz", "its standard error", fit.frequency_error / (2.0 * std::numbers::pi));
+    add(prefix + "damping_ratio", "", prefix.empty() ? "damping ratio" : "damping ratio of " + of,
+        fit.mode.damping_ratio());
+    add(prefix + "damping_ratio_error", "", "its standard error", fit.damping_error);
+  };
+  if (const auto& fit = cycles.front().learned.fit) add_mode("", "the load", *fit);
+  // From the cycle that showed it.
+  for (const TuningCycle& cycle : cycles)
+    if (const auto& fit = cycle.learned.second) {
+      add_mode("second_", "the second mode", *fit);
+      add("second_peak_to_peak", units.slave_unit, "vibration of the second mode at the beginning of the dwell",
+          fit->peak_to_peak() * units.slave);
+      break;
+    }
   if (const auto& drive = tuner.drive()) {
     add("delay", "ms", "lag of the load's encoder", drive->delay * 1e3);
     add("delay_error", "ms", "its standard error", drive->delay_error * 1e3);
@@ -162,16 +213,18 @@ sim::ExperimentResult tuning_report(const sim::cam::ShapingTask& task, const sim
         fmt::format("cycle {}: vibration at the beginning of the dwell", c + 1), learned.peak_to_peak * units.slave);
     if (!learned.note.empty()) result.findings.push_back(fmt::format("Cycle {}: {}", c + 1, learned.note));
   }
-  if (const auto& pulses = tuner.pulses()) {
-    int number = 0;
-    for (const auto& pulse : {pulses->first, pulses->second}) {
+  int number = 0;
+  for (const auto& pair : {tuner.pulses(), tuner.second_pulses()}) {
+    if (!pair) continue;
+    for (const auto& pulse : {pair->first, pair->second}) {
       ++number;
       add(fmt::format("pulse_{}_at", number), units.master_unit, fmt::format("pulse {}: begins at", number),
           pulse.position * units.master);
       add(fmt::format("pulse_{}_amplitude", number), units.slave_unit, fmt::format("pulse {}: amplitude", number),
           pulse.amplitude * units.slave);
     }
-    add("pulse_length", units.master_unit, "length of the pulses", pulses->length * units.master);
+    add(number > 2 ? "second_pulse_length" : "pulse_length", units.master_unit,
+        number > 2 ? "length of the pulses for the second mode" : "length of the pulses", pair->length * units.master);
   }
   const auto area = [&](const TuningCycle& cycle) {
     return fmt::format("{:.3g} {}·{}", cycle.learned.quality * units.slave * units.master, units.slave_unit,
@@ -182,7 +235,10 @@ sim::ExperimentResult tuning_report(const sim::cam::ShapingTask& task, const sim
                                        area(cycles.front()))
                          : fmt::format("Area of the deviation in the dwell: {} in the first cycle, {} in the last one.",
                                        area(cycles.front()), area(cycles.back())));
-  result.charts = {dwell_records(task, cycles, units), over_frequency(task, tuner, units)};
+  result.charts = {dwell_records(task, cycles, units)};
+  // The model that was identified has one mode.
+  if (!tuner.second_pulses()) result.charts.push_back(over_frequency(task, tuner, units));
+  result.charts.push_back(map_of_tuning(task, tuner, units));
   return result;
 }
 

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <span>
 
 #include "firmware/machine/configuration/double_signals.hpp"
+#include "host/cam/cycle_log.hpp"
 #include "host/cam/duty.hpp"
 #include "host/cam/limit_share.hpp"
 #include "host/cam/tuning_report.hpp"
@@ -46,9 +48,10 @@ constexpr int simplex_steps = 14, halving_sweeps = 3;
 constexpr double pulse_periods = 0.93;
 
 // The first cycle of a log. Throws UsageError for one that cannot be tuned from.
-// `running`: of the cycle that the axis came to in its turn, and not of the one from where its positions begin.
+// `speed`: of the master; `running`: of the cycle that the axis came to in its turn, and not of the one from where its
+// positions begin.
 sim::cam::CycleRecord record_of(const Log& log, const machine::AxisModel& axis, const sim::cam::Motion& motion,
-                                bool running) {
+                                double speed, bool running) {
   const auto found = std::find_if(log.axes.begin(), log.axes.end(),
                                   [&](const AxisLog& each) { return each.axis == axis.name || each.axis.empty(); });
   if (found == log.axes.end())
@@ -80,6 +83,16 @@ sim::cam::CycleRecord record_of(const Log& log, const machine::AxisModel& axis, 
                                     motion.curve(found->master[0])));
     if (!found->i.empty()) largest = std::max(largest, std::fabs(found->i[k]));
   }
+  const auto use = [&](const auto& channel) {
+    return std::span<const double>(channel.data(), std::min(channel.size(), record.master.size()));
+  };
+  const CycleSamples samples{use(log.t), use(found->master), use(found->x_load), use(found->x_set)};
+  const bool turns = motion.cam.master == sim::cam::Coordinate::rotary;
+  const double scale = turns ? 180.0 / std::numbers::pi : 1e3;
+  const std::string unit = turns ? "°" : "mm";
+  for (const auto& fault :
+       {stop_in_cycle(samples, speed, scale, unit), encoder_at_its_end(samples, range, scale, unit)})
+    if (fault) throw UsageError(fmt::format("{}: {}", log.source, *fault));
   // A tick of the fastest motion is a thousandth of it.
   if (off > 5e-3 * range)
     throw UsageError(
@@ -206,13 +219,15 @@ void run_tuning(const TuneCamOptions& options, const Invocation& invocation) {
       // Behind so many cycles the machine runs steadily: 0.56^12 is a thousandth.
       std::vector<sim::cam::Cam> run(options.running ? 12 : 0, cam);
       const std::size_t count = logs.empty() ? static_cast<std::size_t>(options.cycles) : logs.size();
-      for (std::size_t c = 0; c < count && !tuner.done(); ++c) {
+      // Logs behind the end of the tuning are of production, whose gear may have become warm.
+      for (std::size_t c = 0; c < count && (!tuner.done() || c < logs.size()); ++c) {
         const auto now = sim::cam::compose(tuner.cam());
-        auto record = !logs.empty()     ? record_of(logs[c], axis, now, options.running)
+        auto record = !logs.empty()     ? record_of(logs[c], axis, now, speed, options.running)
                       : options.running ? simulated_running_record(machine, run, speed, c + 1)
                                         : simulated_record(machine, now, speed, c + 1);
         cycles.push_back({std::move(record), {}});
-        cycles.back().learned = tuner.learn(cycles.back().record);
+        auto& learned = cycles.back().learned;
+        learned = tuner.done() ? tuner.follow(cycles.back().record, false) : tuner.learn(cycles.back().record);
         run.push_back(tuner.cam());
       }
       tuned = tuner.cam();

@@ -19,6 +19,7 @@
 #include "sim/effects/structural_resonance/structural_resonance.hpp"
 #include "sim/plant/brake.hpp"
 #include "sim/plant/gravity.hpp"
+#include "sim/plant/transmission_error.hpp"
 #include "sim/plant/two_masses.hpp"
 
 namespace stiction::sim {
@@ -29,14 +30,8 @@ class ActingEffects {
   // `step`: of the plant, s.
   ActingEffects(const machine::AxisModel& axis, double step, double position, double time = 0.0)
       : step_(step), start_(time), follower_(position) {
-    for (const auto& parameters : effects_of<StructuralResonance>(axis)) {
-      if (axis.elastic())
-        throw EffectError(StructuralResonance::name, "it on an axis with transmission.stiffness", "one of them");
-      const StructuralResonance mode(parameters, axis.mass);
-      mode_.emplace(Shaft{mode.measured_mass, mode.other_mass, mode.stiffness, mode.damping}, step);
-      motor_on_carriage_ = mode.motor_measured;
-    }
-    if (axis.elastic()) mode_.emplace(Shaft::of(axis), step);
+    if (axis.elastic()) add_shaft(axis, step, position);
+    for (const auto& parameters : effects_of<StructuralResonance>(axis)) add_resonance(parameters, axis, step);
     if (axis.gravity) {
       auto gravity = std::make_unique<Gravity>(axis, step);
       if (!effects_of<LoadDependentFriction>(axis).empty()) weight_ = gravity.get();
@@ -76,6 +71,7 @@ class ActingEffects {
   // From now on the shaft's damping is that of the middle of a step.
   void step_finely() {
     if (mode_) mode_->step_finely();
+    if (behind_) behind_->step_finely();
   }
   // How friction on the motor alone changes its velocity (m/s) in a step under a force (N).
   void set_motor_friction(std::function<double(double, double)> friction) {
@@ -93,6 +89,10 @@ class ActingEffects {
     if (!mode_) return motor_force;
     on_other_body_ = motor_on_carriage_ ? 0.0 : motor_force;
     shaft_force_ = mode_->force();
+    if (behind_) [[unlikely]] {
+      force_from_behind_ = behind_->force();
+      return shaft_force_ + force_from_behind_;
+    }
     return motor_on_carriage_ ? motor_force + shaft_force_ : shaft_force_;
   }
 
@@ -125,6 +125,13 @@ class ActingEffects {
   // by how much the velocity behind the play changed: what the encoder's mount stands on.
   double follow(double position, double velocity, double change) {
     if (mode_) mode_->advance(on_other_body_, shaft_force_, velocity, change);
+    if (behind_) [[unlikely]]
+      behind_->advance(0.0, force_from_behind_, velocity, change);
+    if (error_) [[unlikely]] {
+      const auto ahead =
+          error_->at(position, velocity, position + mode_->motor_lead(), velocity + mode_->motor_lead_rate());
+      mode_->set_error(ahead.distance, ahead.rate);
+    }
     if (!play_) {
       follower_ = position;
       return change;
@@ -153,10 +160,38 @@ class ActingEffects {
     std::unique_ptr<CarriageForce> force;
     bool is_friction;
   };
+  // The shaft of an elastic `axis`, whose load is at `position`, m.
+  void add_shaft(const machine::AxisModel& axis, double step, double position) {
+    Shaft shaft = Shaft::of(axis);
+    for (const auto& parameters : effects_of<StructuralResonance>(axis))
+      shaft.load_mass = StructuralResonance(parameters, shaft.load_mass).measured_mass;
+    mode_.emplace(shaft, step);
+    const TransmissionError error(axis);
+    if (!error.any()) return;
+    error_ = error;
+    mode_->start_ahead(error.at(position, 0.0, position, 0.0).distance);
+  }
+  // A mode of the axis, or of a part of the load that hangs on the rest of it by a spring of its own.
+  void add_resonance(const StructuralResonance::Parameters& parameters, const machine::AxisModel& axis, double step) {
+    if (axis.elastic() && parameters.motor_measured == 0)
+      throw EffectError(StructuralResonance::name, "motor_measured = 0 on an axis with transmission.stiffness",
+                        "motor_measured = 1, a part of the load behind the rest of it");
+    const StructuralResonance mode(parameters, axis.elastic() ? axis.mass - axis.motor_mass : axis.mass);
+    const Shaft spring{mode.measured_mass, mode.other_mass, mode.stiffness, mode.damping};
+    if (axis.elastic()) {
+      behind_.emplace(spring, step);
+      return;
+    }
+    mode_.emplace(spring, step);
+    motor_on_carriage_ = mode.motor_measured;
+  }
   bool motor_apart() const { return mode_ && !motor_on_carriage_; }
 
   double step_;
   std::optional<TwoMasses> mode_;
+  std::optional<TwoMasses> behind_;  // of a load in two parts: the one that no shaft drives, against the other
+  double force_from_behind_ = 0.0;   // N
+  std::optional<TransmissionError> error_;
   std::optional<ForceSaturation> saturation_;
   double coupling_mass_ = 0.0, coupling_force_ = 0.0;
   double on_other_body_ = 0.0, shaft_force_ = 0.0;  // N

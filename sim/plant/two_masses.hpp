@@ -2,6 +2,8 @@
 //   m_m x_m'' = F - f,  m_l x'' = f - friction + ..,  f = k (x_m - x) + d (x_m' - x').
 // With play of the width b the force is 0 within +-b/2 of the lead, and beyond it follows the rest of the lead; damping
 // acts in contact alone, and never pulls (Nordin, Gutman 2002).
+// A load that is ahead by the transmission's error e has that much less to be pulled: f = k (x_m - x + e) + d (..)'.
+// A shaft that warms loses a share of its stiffness with a time constant, by steps of its own, without libm.
 // In steps of position, velocity, position (Verlet 1967): the step itself neither damps nor drives, its frequency is
 // (w h)^2/24 off.
 #pragma once
@@ -19,11 +21,18 @@ struct Shaft {
   double stiffness;              // N/m
   double damping;                // N s/m
   double backlash = 0.0;         // m
+  double stiffness_loss = 0.0;   // share, when it is warm
+  double warming_time = 0.0;     // s; 0: it keeps its stiffness
 
   // Of an axis whose transmission has a stiffness.
   static Shaft of(const machine::AxisModel& axis) {
-    return {axis.mass - axis.motor_mass, axis.motor_mass, *axis.transmission->stiffness,
-            axis.transmission->damping.value_or(0.0), axis.transmission->backlash};
+    return {axis.mass - axis.motor_mass,
+            axis.motor_mass,
+            *axis.transmission->stiffness,
+            axis.transmission->damping.value_or(0.0),
+            axis.transmission->backlash,
+            axis.transmission->stiffness_loss,
+            axis.transmission->warming_time.value_or(0.0)};
   }
 };
 
@@ -36,7 +45,10 @@ class TwoMasses {
         step_per_motor_mass_(step / shaft.motor_mass),
         stiffness_(shaft.stiffness),
         damping_(shaft.damping),
-        half_gap_(0.5 * shaft.backlash) {}
+        half_gap_(0.5 * shaft.backlash),
+        cold_stiffness_(shaft.stiffness),
+        stiffness_loss_(shaft.stiffness_loss),
+        warming_(shaft.warming_time > 0.0 ? step / shaft.warming_time : 0.0) {}
 
   // Velocity of the motor (m/s) after a step, from the one before and the force on it (N); none: without friction.
   void set_motor_friction(std::function<double(double, double)> friction) { motor_friction_ = std::move(friction); }
@@ -49,13 +61,24 @@ class TwoMasses {
   // From now on the damping takes the rate of the middle of a step, as the step before foretells it.
   void step_finely() { ahead_ = 0.5; }
 
+  // From now on the load is `ahead` (m) of its motor, and that changes by `rate` (m/s).
+  void set_error(double ahead, double rate) {
+    ahead_by_ = ahead;
+    ahead_rate_ = rate;
+  }
+  // At the start, with a load that is `ahead` (m): the motor is where the shaft is without a force.
+  void start_ahead(double ahead) {
+    set_error(ahead, 0.0);
+    lead_ = -ahead;
+  }
+
   // Force (N) on the load during the step.
   double force() const {
-    const double lead = lead_ + 0.5 * step_ * rate_;
-    if (half_gap_ == 0.0) return stiffness_ * lead + damping_ * (rate_ + ahead_ * rate_change_);
+    const double lead = lead_ + ahead_by_ + 0.5 * step_ * (rate_ + ahead_rate_);
+    if (half_gap_ == 0.0) return stiffness_ * lead + damping_ * (rate_ + ahead_rate_ + ahead_ * rate_change_);
     if (std::abs(lead) <= half_gap_) return 0.0;
     const double pushed =
-        stiffness_ * (lead - std::copysign(half_gap_, lead)) + damping_ * (rate_ + ahead_ * rate_change_);
+        stiffness_ * (lead - std::copysign(half_gap_, lead)) + damping_ * (rate_ + ahead_rate_ + ahead_ * rate_change_);
     return pushed * lead > 0.0 ? pushed : 0.0;
   }
   // Ends the step, with the motor's force (N), force(), the load's velocity (m/s) and its change. `motor_force` in N.
@@ -65,6 +88,10 @@ class TwoMasses {
     lead_ += 0.5 * step_ * (rate_ + next);
     rate_change_ = next - rate_;
     rate_ = next;
+    if (warming_ != 0.0) [[unlikely]] {
+      warmth_ += warming_ * (1.0 - warmth_);
+      stiffness_ = cold_stiffness_ * (1.0 - stiffness_loss_ * warmth_);
+    }
   }
 
  private:
@@ -73,7 +100,11 @@ class TwoMasses {
   double step_per_motor_mass_;
   double stiffness_, damping_;
   double half_gap_;  // m
+  double cold_stiffness_, stiffness_loss_;
+  double warming_;       // share of what it is still colder than warm, in a step
+  double warmth_ = 0.0;  // 0 cold, 1 warm
   double lead_ = 0.0, rate_ = 0.0;
+  double ahead_by_ = 0.0, ahead_rate_ = 0.0;  // m, m/s, of the transmission's error
   double rate_change_ = 0.0, ahead_ = 0.0;
   std::function<double(double, double)> motor_friction_;
 };

@@ -39,6 +39,24 @@ struct Tuned {
 // is about. Wanted are `second` deg^2 in cycle 2 and `third` in cycle 3.
 Tuned tuned(std::uint64_t seed, int cases, const std::function<void(Truth&)>& change, double second, double third);
 
+// `cases` machines by `seed` with a second mode whose residual is `residuals` of the first one's.
+struct TwoModesTuned {
+  Share both_found;
+  Share third;          // within 2.0 deg^2 in cycle 3
+  Share third_or_said;  // or the tuner said of the second mode why not
+  double worst_first = 0.0, worst_third = 0.0;
+};
+TwoModesTuned with_two_modes(std::uint64_t seed, int cases, double residuals);
+std::string text(const TwoModesTuned& found);
+
+// Seven cycles of `cases` machines by `seed`, of which the quality number alone is known.
+struct ByNumber {
+  Share within;  // 2.0 deg^2 in the end
+  double worst = 0.0;
+  std::size_t most = 0;  // cycles
+};
+ByNumber by_number(std::uint64_t seed, int cases);
+
 // Of backlash: cases that end worse than they began, by more than a tenth of what the encoder's resolution is worth.
 Share worsened_by_backlash(std::uint64_t seed, int cases, double backlash);
 

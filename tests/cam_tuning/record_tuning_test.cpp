@@ -4,10 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
+#include <string>
 
 #include "sim/cam/shaping/number_search.hpp"
+#include "sim/cam/shaping/two_modes.hpp"
 #include "tests/cam_tuning/campaign.hpp"
+#include "tests/cam_tuning/production.hpp"
 #include "tests/sim/cam/stand/study.hpp"
 #include "tests/support/figure.hpp"
 
@@ -27,13 +31,24 @@ TEST(RecordTuning, TwoCyclesAreEnoughWithoutKnowingFrequencyOrDelay) {
 TEST(RecordTuning, FrictionAtTheMotorThatItDoesNotKnow) {
   for (const double coulomb : {1.0, 2.0}) {
     const auto found = tuned(
-        881200 + static_cast<std::uint64_t>(coulomb), 50, [&](Truth& truth) { truth.coulomb = coulomb; }, 3.6, 1.56);
+        881200 + static_cast<std::uint64_t>(coulomb), 100, [&](Truth& truth) { truth.coulomb = coulomb; }, 3.6, 1.56);
     EXPECT_GE(found.second.percent(), 85.0) << coulomb;
     EXPECT_GE(found.third.percent(), 90.0) << coulomb;
     test::figure(
-        fmt::format("cam tuning: {} N m of friction at the motor, 50 cases: J in cycle 2, in cycle 3", coulomb),
-        fmt::format("{} % <= 3.6, {} % <= 1.56, worst {:.2f}, {:.2f} deg^2", 2 * found.second.count,
-                    2 * found.third.count, found.worst_second, found.worst_third));
+        fmt::format("cam tuning: {} N m of friction at the motor, 100 cases: J in cycle 2, in cycle 3", coulomb),
+        fmt::format("{} % <= 3.6, {} % <= 1.56, worst {:.2f}, {:.2f} deg^2", found.second.count, found.third.count,
+                    found.worst_second, found.worst_third));
+  }
+}
+
+TEST(RecordTuning, ASecondModeIsFoundAndCancelledByFourPulses) {
+  for (const int percent : {10, 30}) {
+    const auto found = with_two_modes(417700 + static_cast<std::uint64_t>(percent), 100, 0.01 * percent);
+    EXPECT_GE(found.third_or_said.percent(), 90.0) << percent;
+    EXPECT_GE(found.both_found.percent(), 90.0) << percent;
+    test::figure(fmt::format("cam tuning: second mode of {} %, 100 cases: J <= 2.0 deg^2 in cycle 3, both found, worst",
+                             percent),
+                 fmt::format("{} %, {} %, {:.2f} deg^2", found.third.count, found.both_found.count, found.worst_third));
   }
 }
 
@@ -98,10 +113,30 @@ TEST(NumberTuning, SevenCyclesAreEnoughWithoutARecord) {
       most = std::max(most, found.trials.size());
     }
   EXPECT_LE(most, 7u);
-  // The area of a few half-waves depends on their phase too, so its square is not quite a quadratic form.
-  EXPECT_GE(within, 9);
+  EXPECT_EQ(within, 10);
   test::figure("cam tuning: quality number only, ten cases: cycles, J at most, J <= 2.0",
                fmt::format("{}, {:.2f} deg^2, {} of 10", most, worst, within));
+}
+
+// Drawn machines, since the ten above have been looked at while the search was made.
+TEST(NumberTuning, SoAreTheyOnDrawnMachines) {
+  const auto found = by_number(550288, 60);
+  EXPECT_LE(found.most, 7u);
+  EXPECT_GE(found.within.percent(), 90.0);
+  test::figure("cam tuning: quality number only, 60 drawn cases: J <= 2.0 deg^2, worst",
+               fmt::format("{} of {}, {:.2f} deg^2", found.within.count, found.within.of, found.worst));
+}
+
+// 15 % of the stiffness in 2000 cycles: what the first tuning alone leaves of it, and what production makes of it.
+TEST(RunningTuning, AGearThatWarmsIsFollowedInProduction) {
+  std::mt19937_64 random(918273);
+  Truth truth = drawn(random);
+  while (run(truth, motion_of(truth), 0).quality <= 1.56) truth = drawn(random);
+  const auto with = followed(truth, 0.15, 2000, true), without = followed(truth, 0.15, 2000, false);
+  EXPECT_LE(with.worst, 3.6);
+  EXPECT_GE(without.worst, 10.0);
+  test::figure("cam tuning: gear that loses 15 % of its stiffness in 2000 cycles: J at most, without following",
+               fmt::format("{:.2f}, {:.1f} deg^2", with.worst, without.worst));
 }
 
 // The machine runs on: behind twelve cycles of the untuned motion, each next one has what the tuner made of the last.
@@ -173,6 +208,53 @@ TEST(RecordTuning, WhatCannotBeTunedIsRefusedOrLeftAlone) {
   const auto task =
       shaping_task(sim::cam::indexing("parabola", 30.0, 35.0), sim::cam::study_drive(), stand_speed, 0.2, {});
   EXPECT_THROW(sim::cam::RecordTuner(task, {resolution, {}}), sim::cam::CamError);
+}
+
+// Two damped sines of known amplitudes about a constant, with the encoder's noise.
+sim::cam::DwellRecord two_sines(double first, double second, double share, double length) {
+  sim::cam::DwellRecord record;
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> noise(0.0, 0.003 * degree);
+  const double turn = 2.0 * 3.141592653589793;
+  for (double t = 0.05; t < 0.05 + length; t += 0.25e-3) {
+    record.time.push_back(t);
+    const double a = std::exp(-0.014 * turn * first * t) * std::cos(turn * first * t + 0.4);
+    const double b = std::exp(-0.01 * turn * second * t) * std::sin(turn * second * t + 1.1);
+    record.position.push_back(0.3 * degree * (a + share * b) + 0.1 * degree + noise(random));
+  }
+  return record;
+}
+
+TEST(TwoModes, BothAreFoundWithTheirAmplitudes) {
+  const auto record = two_sines(14.5, 40.0, 0.2, 0.18);
+  const auto one = sim::cam::fit_dwell(record, 90.0);
+  ASSERT_TRUE(one);
+  const auto both = fit_two_modes(record, one->mode, resolution, false);
+  ASSERT_TRUE(both);
+  const double turn = 2.0 * 3.141592653589793;
+  EXPECT_NEAR(both->modes[0].mode.pole.imag() / turn, 14.5, 0.02);
+  EXPECT_NEAR(both->modes[1].mode.pole.imag() / turn, 40.0, 0.1);
+  EXPECT_NEAR(both->modes[0].peak_to_peak(), 0.6 * degree, 0.01 * degree);
+  EXPECT_NEAR(both->modes[1].peak_to_peak(), 0.12 * degree, 0.005 * degree);
+  EXPECT_NEAR(std::arg(both->modes[0].residual), 0.4, 0.02);
+  EXPECT_NEAR(both->modes[0].offset, 0.1 * degree, 0.001 * degree);
+  // There is one mode alone in a record of one.
+  const auto alone = two_sines(14.5, 40.0, 0.0, 0.18);
+  EXPECT_FALSE(fit_two_modes(alone, sim::cam::fit_dwell(alone, 90.0)->mode, resolution, false));
+}
+
+TEST(TwoModes, TwoThatAreTooNearAreRefusedWithBothFrequencies) {
+  const auto record = two_sines(14.5, 17.5, 0.8, 0.18);
+  const auto one = sim::cam::fit_dwell(record, 90.0);
+  ASSERT_TRUE(one);
+  try {
+    fit_two_modes(record, one->mode, resolution, false);
+    FAIL() << "told apart";
+  } catch (const sim::cam::CamError& error) {
+    const std::string said = error.what();
+    EXPECT_NE(said.find("found two modes at about 14.5"), std::string::npos) << said;
+    EXPECT_NE(said.find("expected them 5.6 Hz apart or more"), std::string::npos) << said;
+  }
 }
 
 }  // namespace

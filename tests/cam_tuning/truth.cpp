@@ -27,12 +27,49 @@ Truth drawn(std::mt19937_64& random) {
   return truth;
 }
 
+namespace {
+
+// A flywheel in two parts on a motor that is held: shaft - m1 - spring - m2, with the squares of both frequencies and
+// with the residuals of both modes at m1 in a ratio. With v = k2/m2, m1's share of a mode is
+// (k1/m1) (v - w_i^2)/((w_j^2 - w_i^2) w_i^2), and what a jump of the acceleration leaves of it goes with 1/w_i^2.
+struct TwoParts {
+  double shaft, spring;  // over m1, 1/s^2
+  double ratio;          // m2/m1
+};
+TwoParts two_parts(double first, double second, double residuals) {
+  const double a = first * first, b = second * second, q = residuals * (b / a) * (b / a);
+  const double v = (b + q * a) / (1.0 + q), shaft = a * b / v, spring = a + b - v - shaft;
+  return {shaft, spring, spring / v};
+}
+
+}  // namespace
+
 machine::Machine machine_of(const Truth& truth) {
+  constexpr double inertia = 0.1035711, stiffness = 859.67506, damping = 0.2353522;
+  double shaft = stiffness * truth.factor * truth.factor;
+  std::optional<machine::Effect> part;
+  if (truth.second > 0.0) {
+    const double second = 2.0 * std::numbers::pi * truth.second_frequency;
+    const auto two = two_parts(truth.factor * std::sqrt(stiffness / inertia), second, truth.second);
+    const double near = inertia / (1.0 + two.ratio);
+    shaft = two.shaft * near;
+    // That of the effect is of both parts free.
+    const double free = std::sqrt(two.spring * (1.0 + 1.0 / two.ratio));
+    part = machine::Effect{"structural_resonance",
+                           {{"frequency", {free / (2.0 * std::numbers::pi)}},
+                            {"damping_ratio", {0.01}},
+                            {"mass_ratio", {near / inertia}},
+                            {"motor_measured", {1.0}}}};
+  }
   std::vector<std::string> set{
-      fmt::format("axis.L.transmission.stiffness={:.9g} N m/rad", 859.67506 * truth.factor * truth.factor),
+      fmt::format("axis.L.transmission.stiffness={:.9g} N m/rad", shaft),
+      // The first mode keeps its damping where the shaft is stiffer.
+      fmt::format("axis.L.transmission.damping={:.9g} N m s/rad",
+                  truth.second > 0.0 ? damping * shaft / (stiffness * truth.factor * truth.factor) : damping),
       fmt::format("axis.L.second_encoder.delay={:.9g} ms", truth.delay)};
   if (truth.backlash > 0.0) set.push_back(fmt::format("axis.L.transmission.backlash={:.9g} deg", truth.backlash));
   auto machine = sim::read_machine(machine::find_machine("cam-stand"), {.experiment = "", .set = set});
+  if (part) machine.axes.front().effects.push_back(*part);
   if (truth.coulomb > 0.0) {
     // At the shaft of the motor, whose way is 33 times the load's.
     auto& axis = machine.axes.front();

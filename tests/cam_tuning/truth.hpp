@@ -23,6 +23,10 @@ struct Truth {
   double delay = 3.3629;  // ms
   double coulomb = 0.0;   // N m at the motor
   double backlash = 0.0;  // degrees of load
+  // A second mode, in which a part of the flywheel hangs on the rest: what a jump of the acceleration makes of it over
+  // what that makes of the first one; 0: none.
+  double second = 0.0;
+  double second_frequency = 40.0;  // Hz, with the motor held
   std::uint64_t seed = 1;
 };
 

@@ -47,7 +47,8 @@ class Rules {
   // "stiffness, "120 N/um" (line 16)".
   std::string at_line(std::string_view key) const {
     const toml::node& found = *node(key);
-    return fmt::format("{}, {} (line {})", key, describe_node(found), found.source().begin.line);
+    return fmt::format("{}, {} (line {})", key, found.is_table() ? "a table" : describe_node(found),
+                       found.source().begin.line);
   }
 
   // "with controller structure "pd" (line 24)", or how the cascade comes about.
@@ -97,7 +98,8 @@ class Rules {
   void check_shaft() const {
     if (!axis_.transmission) return;
     if (!axis_.elastic()) {
-      for (const char* key : {"damping", "damping_ratio", "backlash"})
+      for (const char* key : {"damping", "damping_ratio", "backlash", "stiffness_loss", "warming_time", "gear_ratio",
+                              "motor_error", "gear_error", "output_error"})
         exclude(join_key("transmission", key), "without stiffness, on a stiff transmission");
       return;
     }
@@ -119,6 +121,19 @@ class Rules {
             stiffness.source(), join_key(path_, "transmission.motor_inertia"), "none",
             fmt::format("an inertia of the motor or the screw, together with {}", at_line("transmission.stiffness")));
     });
+    require_together("transmission.stiffness_loss", "transmission.warming_time");
+    require_together("transmission.gear_ratio", "transmission.gear_error");
+  }
+
+  // Either of both keys says nothing without the other one.
+  void require_together(std::string_view one, std::string_view other) const {
+    for (const auto& [given, missing] : {std::pair{one, other}, std::pair{other, one}}) {
+      if (node(given) == nullptr || node(missing) != nullptr) continue;
+      document_.attempt([&, &key = given, &absent = missing] {
+        document_.fail(node(key)->source(), join_key(path_, absent), "no such key",
+                       fmt::format("it together with {}", at_line(key)));
+      });
+    }
   }
 
   // The windings are fed by the position of the encoder that the current loop has.

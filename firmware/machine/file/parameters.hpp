@@ -374,10 +374,21 @@ struct Table<ControllerParameters> : EmptyTable<ControllerParameters> {
 };
 
 template <>
+struct Table<TransmissionErrorParameters> : EmptyTable<TransmissionErrorParameters> {
+  static constexpr std::string_view text = "error of the transmission, periodic in the turns of a shaft";
+  static constexpr std::array<Parameter<TransmissionErrorParameters>, 3> parameters{{
+      {"amplitude", "m", not_negative(), &TransmissionErrorParameters::amplitude, 0.0,
+       "by how much the load is ahead, at most"},
+      {"order", "1", positive(), &TransmissionErrorParameters::order, 1.0, "waves in a turn of the shaft"},
+      {"phase", "rad", any_value(), &TransmissionErrorParameters::phase, 0.0, "of the wave at the position 0"},
+  }};
+};
+
+template <>
 struct Table<TransmissionParameters> : EmptyTable<TransmissionParameters> {
   static constexpr std::string_view text =
       "transmission from a rotary motor, to which the mass of the axis is the load alone; left out: direct";
-  static constexpr std::array<Parameter<TransmissionParameters>, 9> parameters{{
+  static constexpr std::array<Parameter<TransmissionParameters>, 12> parameters{{
       {"ratio", "1", positive(), &TransmissionParameters::ratio, 1.0,
        "motor turns per turn of screw, pulley or rotary axis; a number or a fraction such as \"355/113\""},
       {"lead", "m", positive(), &TransmissionParameters::lead, {}, "way of a turn of the screw"},
@@ -411,7 +422,31 @@ struct Table<TransmissionParameters> : EmptyTable<TransmissionParameters> {
        "damping ratio of the mode of both masses, free; in place of damping"},
       {"backlash", "m", not_negative(), &TransmissionParameters::backlash, 0.0,
        "play at the load, from contact to contact; with stiffness"},
+      {"stiffness_loss",
+       "1",
+       {0.0, 0.9},
+       &TransmissionParameters::stiffness_loss,
+       0.0,
+       "share of the stiffness that a warm transmission has lost; with stiffness and warming_time"},
+      {"warming_time",
+       "s",
+       positive(),
+       &TransmissionParameters::warming_time,
+       {},
+       "time constant of the warming, from the start on"},
+      {"gear_ratio",
+       "1",
+       positive(),
+       &TransmissionParameters::gear_ratio,
+       {},
+       "turns of a wheel inside the gear per turn of screw, pulley or rotary axis; with gear_error"},
   }};
+  static constexpr std::tuple subtables{Subtable<TransmissionParameters, std::optional<TransmissionErrorParameters>>{
+                                            "motor_error", &TransmissionParameters::motor_error, Presence::optional},
+                                        Subtable<TransmissionParameters, std::optional<TransmissionErrorParameters>>{
+                                            "gear_error", &TransmissionParameters::gear_error, Presence::optional},
+                                        Subtable<TransmissionParameters, std::optional<TransmissionErrorParameters>>{
+                                            "output_error", &TransmissionParameters::output_error, Presence::optional}};
 };
 
 template <>

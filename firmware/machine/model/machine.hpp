@@ -218,6 +218,13 @@ struct BrakeParameters {
 // Friction on the motor, at its shaft.
 struct MotorFriction : FrictionParameters {};
 
+// By how much the load is ahead of what the ratio alone makes of a shaft's angle: amplitude sin(order angle + phase).
+struct TransmissionErrorParameters {
+  double amplitude = 0.0;  // m at the load
+  double order = 1.0;      // waves in a turn of the shaft
+  double phase = 0.0;      // rad, at the position 0
+};
+
 // Between a rotary motor and the axis. Inertias and ways of a turn are in the file's own units, whatever the axis is.
 struct TransmissionParameters {
   double ratio = 1.0;                          // motor turns per turn of screw, pulley or rotary axis
@@ -230,6 +237,11 @@ struct TransmissionParameters {
   std::optional<double> damping;               // N s/m of the same, from damping_ratio where that is given
   std::optional<double> damping_ratio;         // of the mode of both masses, free
   double backlash = 0.0;                       // m at the load, from contact to contact
+  double stiffness_loss = 0.0;                 // share of the stiffness that is lost when it is warm
+  std::optional<double> warming_time;          // s, time constant from the start on; none: it keeps its stiffness
+  std::optional<double> gear_ratio;            // turns of a wheel in the gear per turn of screw, pulley or rotary axis
+  // Periodic in the turns of the motor, of that wheel, and of screw, pulley or rotary axis.
+  std::optional<TransmissionErrorParameters> motor_error, gear_error, output_error;
 };
 
 struct AxisModel {

@@ -40,7 +40,13 @@ DampedSine with_best_amplitudes(const DwellRecord& record, double s, double w) {
 // Of a vibration that lasts for a dwell; noise alone is fitted best by one that is over at once.
 constexpr double largest_damping = 0.2;
 
-// Means of blocks: a record of a fast drive has far more samples than a vibration needs.
+Vector<5> slopes(const DampedSine& m, double t) {
+  const double e = std::exp(-m.s * t), co = std::cos(m.w * t), si = std::sin(m.w * t);
+  return {-t * e * (m.a * co + m.b * si), t * e * (m.b * co - m.a * si), e * co, e * si, 1.0};
+}
+
+}  // namespace
+
 DwellRecord thinned(const DwellRecord& record) {
   constexpr std::size_t most = 600;
   const std::size_t block = std::max<std::size_t>(1, record.time.size() / most);
@@ -53,13 +59,6 @@ DwellRecord thinned(const DwellRecord& record) {
   }
   return thin;
 }
-
-Vector<5> slopes(const DampedSine& m, double t) {
-  const double e = std::exp(-m.s * t), co = std::cos(m.w * t), si = std::sin(m.w * t);
-  return {-t * e * (m.a * co + m.b * si), t * e * (m.b * co - m.a * si), e * co, e * si, 1.0};
-}
-
-}  // namespace
 
 std::optional<DwellFit> fit_dwell(const DwellRecord& whole, double guess) {
   const DwellRecord record = thinned(whole);
@@ -119,8 +118,9 @@ std::optional<DwellFit> fit_dwell(const DwellRecord& whole, double guess) {
   return fit;
 }
 
-std::complex<double> residual_with_mode(const DwellRecord& record, const Mode& mode) {
+std::complex<double> residual_with_mode(const DwellRecord& record, const Mode& mode, double* offset) {
   const auto sine = with_best_amplitudes(thinned(record), -mode.pole.real(), mode.pole.imag());
+  if (offset != nullptr) *offset = sine.c;
   return {0.5 * sine.a, -0.5 * sine.b};
 }
 

@@ -29,12 +29,16 @@ struct DwellFit {
   double peak_to_peak() const { return 4.0 * std::abs(residual); }
 };
 
+// Means of blocks of a `record`: a fast drive's has far more samples than a vibration needs.
+DwellRecord thinned(const DwellRecord& record);
+
 // Of a `record`, with a frequency within 35 % of `guess` (rad/s). None in a record of less than one period of the
 // guess, or whose vibration is below its scatter.
 std::optional<DwellFit> fit_dwell(const DwellRecord& record, double guess);
 
-// The residual of a `record` that vibrates with a `mode`, as fit_dwell() has it.
-std::complex<double> residual_with_mode(const DwellRecord& record, const Mode& mode);
+// The residual of a `record` that vibrates with a `mode`, as fit_dwell() has it; the record's constant becomes
+// `offset`, where it is given.
+std::complex<double> residual_with_mode(const DwellRecord& record, const Mode& mode, double* offset = nullptr);
 
 // The `drive` with the shaft that makes its load's mode `mode`.
 ElasticDrive drive_with_mode(const ElasticDrive& drive, const Mode& mode);

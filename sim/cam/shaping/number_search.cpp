@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <numbers>
 
 #include "sim/cam/shaping/lift.hpp"
@@ -52,8 +53,10 @@ Cam with_pair(const ShapingTask& task, const PulsePair& pair) {
   return with_lift(task.motion.cam, with_pulses(task, pair));
 }
 
-// Five trials about the untuned one: what they cancel by the model of the machine file, on a circle.
-constexpr int on_circle = 5;
+// Three trials about the untuned one: what they cancel by the model of the machine file, on a circle. Four cycles
+// determine a form whose level lines are circles; the next ones are each at the minimum of the ones before, where the
+// form has to hold.
+constexpr int on_circle = 3, at_minimum = 3;
 Complex on_unit_circle(int k) { return std::polar(1.0, 2.0 * std::numbers::pi * k / on_circle); }
 
 // The vibration at the end of the rise whose area over the whole dwell is `quality`. An area that begins later makes
@@ -92,6 +95,88 @@ Circle circle_for(const ShapingTask& task, const TunerSettings& settings, double
     best = {places, size * std::max(0.2, room)};
     least = share;
     if (room == 1.0) return best;
+  }
+  return best;
+}
+
+// A trial: what it cancels, and its number over the untuned one.
+struct Evaluated {
+  Complex cancelled;
+  double number;
+};
+
+// The form of the numbers: each is the length of the vector L^T (z - minimum), L a lower triangle, since two pulses do
+// to the vibration what a linear map does, and at the minimum nothing is left of it.
+struct Form {
+  double x, y, l11, l21, l22;
+
+  double number(Complex z) const { return std::hypot(along(z), across(z)); }
+  double along(Complex z) const { return l11 * (z.real() - x) + l21 * (z.imag() - y); }
+  double across(Complex z) const { return l22 * (z.imag() - y); }
+};
+
+// A number is an area of a few half-waves, which goes with their phase beside what the form has, and ends in the noise
+// of the encoder: it is known to this share of itself and to that of the untuned one, so that trials near the minimum
+// count most.
+double error_of(double number) {
+  constexpr double of_itself = 0.02, of_untuned = 0.003;
+  return std::hypot(of_itself * number, of_untuned);
+}
+
+// By weighted least squares (Gauss, Newton and Marquardt). Where trials are fewer than coefficients, the map is the
+// nearest to a similarity: for a frequency that is a fifth off its two lengths differ by a third or less.
+std::optional<Form> fitted_form(const std::vector<Evaluated>& trials, Form form) {
+  constexpr double from_similarity = 0.3;
+  constexpr int most_iterations = 60;
+  const auto sum_of = [&](const Form& f) {
+    const double size = std::max(std::fabs(f.l11), std::fabs(f.l22)) * from_similarity;
+    double sum = std::pow((f.l11 - f.l22) / size, 2.0) + std::pow(f.l21 / size, 2.0);
+    for (const auto& [z, number] : trials) sum += std::pow((f.number(z) - number) / error_of(number), 2.0);
+    return sum;
+  };
+  double least = sum_of(form), damping = 1e-3;
+  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+    Normal<5> normal;
+    for (const auto& [z, number] : trials) {
+      const double found = std::max(1e-9, form.number(z)), weight = 1.0 / (found * error_of(number));
+      const double a = form.along(z), c = form.across(z), x = z.real() - form.x, y = z.imag() - form.y;
+      normal.add({-a * form.l11 * weight, -(a * form.l21 + c * form.l22) * weight, a * x * weight, a * y * weight,
+                  c * y * weight},
+                 (number - found) / error_of(number));
+    }
+    const double size = std::max(std::fabs(form.l11), std::fabs(form.l22)) * from_similarity;
+    normal.add({0.0, 0.0, 1.0 / size, 0.0, -1.0 / size}, (form.l22 - form.l11) / size);
+    normal.add({0.0, 0.0, 0.0, 1.0 / size, 0.0}, -form.l21 / size);
+    for (std::size_t k = 0; k < 5; ++k) normal.matrix[k][k] *= 1.0 + damping;
+    const auto step = normal.solve();
+    const Form next{form.x + step[0], form.y + step[1], form.l11 + step[2], form.l21 + step[3], form.l22 + step[4]};
+    const double sum = sum_of(next);
+    if (!(sum < least)) {
+      damping *= 8.0;
+      if (damping > 1e9) break;
+      continue;
+    }
+    const double gain = least - sum;
+    form = next;
+    least = sum;
+    damping *= 0.2;
+    if (gain < 1e-9 * least) break;
+  }
+  return std::isfinite(form.x + form.y) ? std::optional(form) : std::nullopt;
+}
+
+// From four trials or more: of circles about several places the best one, and from there.
+std::optional<Form> form_of(const std::vector<Evaluated>& trials) {
+  std::optional<Form> best;
+  double least = std::numeric_limits<double>::infinity();
+  constexpr int starts = 8;
+  for (int k = 0; k < starts; ++k) {
+    const Complex at = std::polar(1.0, 2.0 * std::numbers::pi * k / starts);
+    const auto form = fitted_form(trials, {at.real(), at.imag(), 1.0, 0.0, 1.0});
+    if (!form) continue;
+    double sum = std::pow((form->l11 - form->l22) / form->l11, 2.0) + std::pow(form->l21 / form->l11, 2.0);
+    for (const auto& [z, number] : trials) sum += std::pow((form->number(z) - number) / error_of(number), 2.0);
+    if (sum < least) least = sum, best = form;
   }
   return best;
 }
@@ -140,27 +225,28 @@ void one_step(Vertices& vertices, const Tried& tried) {
 NumberSearch search_by_quadratic_form(const ShapingTask& task, const TunerSettings& settings,
                                       const CycleQuality& quality) {
   Trials trials(quality);
-  return trials.of([&] {
+  std::optional<PulsePair> where;
+  auto found = trials.of([&] {
     const double untuned = trials.at({0.0, 0.0}, task.motion.cam);
     const auto [places, size] = circle_for(task, settings, size_of(task, untuned));
+    std::vector<Evaluated> evaluated{{0.0, 1.0}};
     const auto run = [&, &at = places, &of = size](Complex cancelled) {
       const auto pair = pulse_pair(task, of * cancelled, at);
       if (!pair) throw CamError("found no room for two pulses in the rise; expected 0.75 periods of the load or more");
-      return trials.at({pair->first.amplitude, pair->second.amplitude}, with_pair(task, *pair));
+      where = pair;
+      const double number = trials.at({pair->first.amplitude, pair->second.amplitude}, with_pair(task, *pair));
+      evaluated.push_back({cancelled, number / untuned});
     };
-    Normal<6> normal;
-    const auto add = [&](Complex z, double number) {
-      const double x = z.real(), y = z.imag();
-      normal.add({1.0, x, y, x * x, x * y, y * y}, number * number / (untuned * untuned));
-    };
-    add(0.0, untuned);
-    for (int k = 0; k < on_circle; ++k) add(on_unit_circle(k), run(on_unit_circle(k)));
-    const auto f = normal.solve();
-    const double determinant = 4.0 * f[3] * f[5] - f[4] * f[4];
-    // Without a minimum the best trial is what there is.
-    if (f[3] <= 0.0 || determinant <= 0.0) return;
-    run({(f[4] * f[2] - 2.0 * f[5] * f[1]) / determinant, (f[4] * f[1] - 2.0 * f[3] * f[2]) / determinant});
+    for (int k = 0; k < on_circle; ++k) run(on_unit_circle(k));
+    for (int k = 0; k < at_minimum; ++k) {
+      const auto form = form_of(evaluated);
+      // Without a form the best trial is what there is.
+      if (!form) return;
+      run({form->x, form->y});
+    }
   });
+  found.where = where;
+  return found;
 }
 
 NumberSearch search_by_simplex(const ShapingTask& task, double length, const Simplex& start, int steps,

@@ -1,7 +1,8 @@
 // Pulses from the quality number of a cycle alone: no record, no frequency.
-// The square of the number is a quadratic form in the amplitudes of two pulses: six cycles determine it, and the
-// seventh is at its minimum. For comparison, the searches of Dostrasil 2014 (6.4) for place and amplitude of a single
-// pulse: the simplexes of Nelder and Mead, and halving of an interval along one axis after the other.
+// The square of the number is a quadratic form in the amplitudes of two pulses: four cycles tell about where its
+// minimum is, and three are there, each by all before. For comparison, the searches of Dostrasil 2014 (6.4) for place
+// and amplitude of a single pulse: the simplexes of Nelder and Mead, and halving of an interval along one axis after
+// the other.
 #pragma once
 
 #include <array>
@@ -24,9 +25,10 @@ struct SearchTrial {
 
 struct NumberSearch {
   std::vector<SearchTrial> trials;
-  Cam best;                 // with the least number
-  SearchTrial least;        // its
-  std::optional<Cam> next;  // of the cycle that has not been run yet
+  Cam best;                          // with the least number
+  SearchTrial least;                 // its
+  std::optional<Cam> next;           // of the cycle that has not been run yet
+  std::optional<PulsePair> where{};  // of two pulses, where they are
 };
 
 // Two pulses of a `task` by the quadratic form, in seven cycles; `settings` have the limits, and in the unit of

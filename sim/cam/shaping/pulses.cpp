@@ -13,16 +13,6 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// The task's own rise, scaled to a different stroke.
-Curve own_rise(const ShapingTask& task, double stroke) {
-  std::vector<Piece> pieces;
-  for (const Piece& piece : task.motion.curve.pieces())
-    if (piece.begin >= task.begin - 1e-12 && piece.end <= task.end() + 1e-9) pieces.push_back(piece);
-  const double gain = stroke / task.stroke;
-  return Curve(std::move(pieces))
-      .placed({.from = task.begin, .begin = task.begin, .gain = gain, .offset = task.start * (1.0 - gain)});
-}
-
 // The bump (1 - cos)/2.
 Curve bump(double begin, double length, double amplitude) {
   Piece piece = polynomial_piece(begin, begin + length, {0.5 * amplitude});
@@ -84,6 +74,15 @@ Pulse with_least_left(const ShapingTask& task, Pulse pulse, double length) {
 }
 
 }  // namespace
+
+Curve own_rise(const ShapingTask& task, double stroke) {
+  std::vector<Piece> pieces;
+  for (const Piece& piece : task.motion.curve.pieces())
+    if (piece.begin >= task.begin - 1e-12 && piece.end <= task.end() + 1e-9) pieces.push_back(piece);
+  const double gain = stroke / task.stroke;
+  return Curve(std::move(pieces))
+      .placed({.from = task.begin, .begin = task.begin, .gain = gain, .offset = task.start * (1.0 - gain)});
+}
 
 double drive_lag(const ShapingTask& task) {
   double slowest = 0.0;
@@ -153,25 +152,34 @@ std::optional<PulsePair> pulse_pair(const ShapingTask& task, Complex residual, c
   const double period = task.period_length(), length = places.length * period;
   if (places.room() * period > task.length()) return std::nullopt;
   const double second = task.end() - places.before * period - length, first = second - places.apart * period;
+  return pulse_pair_at(task, residual, {{first, 0.0}, {second, 0.0}, length});
+}
+
+PulsePair pulse_pair_at(const ShapingTask& task, Complex residual, PulsePair where) {
   const Complex own = residual_of(task, own_rise(task, task.stroke), task.end()) / task.stroke;
   const auto one = [&](double position) {
     Lift lift;
-    lift.add(law_curve("polynomial_3_4_5", position, length, 1.0));
+    lift.add(law_curve("polynomial_3_4_5", position, where.length, 1.0));
     return residual_of(task, lift_of(lift, task, task.end()), task.end()) - own;
   };
   // residual + a u + b v = 0 in its two parts.
-  const Complex u = one(first), v = one(second);
+  const Complex u = one(where.first.position), v = one(where.second.position);
   const double determinant = u.real() * v.imag() - u.imag() * v.real();
-  const double a = (-residual.real() * v.imag() + residual.imag() * v.real()) / determinant;
-  const double b = (-residual.imag() * u.real() + residual.real() * u.imag()) / determinant;
-  return PulsePair{{first, a}, {second, b}, length};
+  where.first.amplitude = (-residual.real() * v.imag() + residual.imag() * v.real()) / determinant;
+  where.second.amplitude = (-residual.imag() * u.real() + residual.real() * u.imag()) / determinant;
+  return where;
 }
 
-Curve with_pulses(const ShapingTask& task, const PulsePair& pulses) {
+Curve with_pulses(const ShapingTask& task, const PulsePair& pulses) { return with_pulses(task, {&pulses, 1}); }
+
+Curve with_pulses(const ShapingTask& task, std::span<const PulsePair> pairs) {
   Lift lift;
-  lift.add(own_rise(task, task.stroke - pulses.first.amplitude - pulses.second.amplitude));
-  for (const Pulse& pulse : {pulses.first, pulses.second})
-    lift.add(law_curve("polynomial_3_4_5", pulse.position, pulses.length, pulse.amplitude));
+  double stroke = task.stroke;
+  for (const PulsePair& pair : pairs) stroke -= pair.first.amplitude + pair.second.amplitude;
+  lift.add(own_rise(task, stroke));
+  for (const PulsePair& pair : pairs)
+    for (const Pulse& pulse : {pair.first, pair.second})
+      lift.add(law_curve("polynomial_3_4_5", pulse.position, pair.length, pulse.amplitude));
   return lift_of(lift, task, task.end());
 }
 

@@ -3,12 +3,16 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
 #include "sim/cam/shaping/task.hpp"
 
 namespace stiction::sim::cam {
+
+// The own rise of a `task`, scaled to `stroke`.
+Curve own_rise(const ShapingTask& task, double stroke);
 
 struct Pulse {
   double position = 0.0;   // of the master, where it begins
@@ -54,7 +58,11 @@ struct PulsePair {
 // `residual`: that vibration at the end of the rise, as modal_residual() has it. None in a rise of `task` without room.
 std::optional<PulsePair> pulse_pair(const ShapingTask& task, std::complex<double> residual,
                                     const PulsePlaces& places = {});
+// The same of pulses where those of `where` are, in a `task` whose `residual` they are to cancel.
+PulsePair pulse_pair_at(const ShapingTask& task, std::complex<double> residual, PulsePair where);
 // The rise of the `task` with both `pulses`.
 Curve with_pulses(const ShapingTask& task, const PulsePair& pulses);
+// The same with those of all `pairs`.
+Curve with_pulses(const ShapingTask& task, std::span<const PulsePair> pairs);
 
 }  // namespace stiction::sim::cam

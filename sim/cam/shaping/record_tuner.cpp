@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "sim/cam/law.hpp"
@@ -18,6 +19,11 @@ constexpr double drive_share = 0.1;
 
 // Before the lag is known, 8 ms are more than any encoder's.
 constexpr double unknown_lag = 8e-3;
+
+// Of production: corrections are for vibrations above these shares of the resolution from peak to peak, of a cycle that
+// follows the last one and of one that ran steadily: the fit of some hundred samples knows them ten times better than
+// one sample does. A part of each is taken, so that noise is not followed.
+constexpr double worth_following = 0.2, worth_correcting = 1.0, followed_part = 0.6;
 
 double area(const DwellRecord& record, double offset, double master_speed) {
   double sum = 0.0;
@@ -101,17 +107,21 @@ double RecordTuner::share_of(const PulsePair& pulses) const {
 
 // Those in use, and such that cancel `residual`.
 PulsePair RecordTuner::corrected(std::complex<double> residual) const {
-  PulsePair pulses = room_for(pulse_pair(task_, residual, places_));
-  if (pulses_) {
-    pulses.first.amplitude += pulses_->first.amplitude;
-    pulses.second.amplitude += pulses_->second.amplitude;
-  }
+  if (!pulses_) return room_for(pulse_pair(task_, residual, places_));
+  PulsePair pulses = pulse_pair_at(task_, residual, *pulses_);
+  pulses.first.amplitude += pulses_->first.amplitude;
+  pulses.second.amplitude += pulses_->second.amplitude;
   return pulses;
 }
 
 // The pulses that cancelled what was carried over have done so in the next cycle.
 Cam RecordTuner::steady_cam() const {
-  if (!settings_.running || !drive_ || done_) return cam_;
+  if (!settings_.running || done_) return cam_;
+  if (two_) {
+    const auto four = corrected_four({-carried_of_both()[0], -carried_of_both()[1]});
+    return with_lift(task_.motion.cam, with_pulses(task_, four));
+  }
+  if (!drive_) return cam_;
   return with_lift(task_.motion.cam, with_pulses(task_, corrected(-carried(last_))));
 }
 
@@ -148,18 +158,192 @@ PulsePair RecordTuner::first_pulses(const CycleRecord& record, const DwellFit& f
   return room_for(best);
 }
 
-void RecordTuner::use(const PulsePair& pulses) {
+// The rise of the cam in use.
+Curve RecordTuner::rise() const {
+  if (!pulses_) return own_rise(task_, task_.stroke);
+  if (!second_pulses_) return with_pulses(task_, *pulses_);
+  return with_pulses(task_, FourPulses{*pulses_, *second_pulses_});
+}
+
+// What the residuals of the last cycle are in the dwell of the next one.
+std::array<std::complex<double>, 2> RecordTuner::carried_of_both() const {
+  if (!settings_.running) return {};
+  const double time = task_.motion.curve.length() / task_.master_speed;
+  return {two_->last[0] * std::exp(two_->modes[0].pole * time), two_->last[1] * std::exp(two_->modes[1].pole * time)};
+}
+
+// A first mode that does not vibrate in the dwell is where the rise leaves least, near the one of the machine file.
+Mode RecordTuner::unexcited_mode() const {
+  const Mode nominal = task_.mode();
+  Mode found = nominal;
+  double least = std::numeric_limits<double>::infinity();
+  const Curve own = own_rise(task_, task_.stroke);
+  constexpr int steps = 140;
+  for (int k = 0; k <= steps; ++k) {
+    const Mode mode{nominal.pole * (0.65 + 0.7 * k / steps)};
+    const double left = std::abs(lift_transform(task_, own, mode));
+    if (left < least) least = left, found = mode;
+  }
+  return found;
+}
+
+// Whether there is a second mode in what the `fit` of the first one left of the `dwell`.
+bool RecordTuner::look_for_second_mode(const DwellRecord& dwell, const std::optional<DwellFit>& fit) {
+  // What is carried over of a mode that was not known is not known either.
+  if (cycles_ > 1 && settings_.running) return false;
+  // A fit of noise has no frequency.
+  constexpr double of_a_vibration = 0.02;
+  const bool vibrates = fit && fit->frequency_error < of_a_vibration * fit->mode.frequency();
+  const bool known = cycles_ > 1 && drive_, still = cycles_ == 1 && !vibrates;
+  if (!known && !still && !fit) return false;
+  const Mode first = known ? drive_->ringing : still ? unexcited_mode() : fit->mode;
+  const auto found = fit_two_modes(dwell, first, settings_.resolution, known || still);
+  if (!found) return false;
+  two_.emplace();
+  two_->found = found->modes;
+  for (std::size_t m = 0; m < 2; ++m) {
+    two_->modes[m] = found->modes[m].mode;
+    auto own = found->modes[m].residual;
+    if (settings_.running)
+      own *= 1.0 - std::exp(two_->modes[m].pole * (task_.motion.curve.length() / task_.master_speed));
+    two_->scale[m] = lift_transform(task_, rise(), two_->modes[m]) / own;
+  }
+  // The first mode is better known from the cycle in which it was not cancelled.
+  if (known)
+    two_->scale[0] = lift_transform(task_, own_rise(task_, task_.stroke), two_->modes[0]) / first_residual_;
+  else
+    task_.drive = drive_with_mode(task_.drive, two_->modes[0]);
+  // That of the model, where the rise does not show it.
+  if (still) {
+    const Curve pulse = law_curve("polynomial_3_4_5", task_.begin, 0.5 * task_.period_length(), 1.0);
+    two_->scale[0] = lift_transform(task_, pulse, two_->modes[0]) / residual_of(task_, pulse, task_.end());
+  }
+  return true;
+}
+
+// What the `dwell` says of the `cycle`.
+void RecordTuner::measure(const DwellRecord& dwell, TunedCycle& cycle) {
+  double offset = 0.0;
+  if (!two_) {
+    cycle.fit = fit_dwell(dwell, task_.mode().frequency());
+    if (cycle.fit && cycles_ == 1) first_residual_ = cycle.fit->residual;
+    offset = cycle.fit ? cycle.fit->offset : mean(dwell.position);
+    if (cycle.fit) cycle.peak_to_peak = cycle.fit->peak_to_peak();
+  }
+  if (two_ || look_for_second_mode(dwell, cycle.fit)) {
+    const auto both = residuals_with_modes(dwell, two_->modes);
+    offset = both.offset;
+    cycle.fit = two_->found[0];
+    cycle.second = two_->found[1];
+    cycle.fit->residual = both.of[0];
+    cycle.second->residual = both.of[1];
+    cycle.fit->offset = cycle.second->offset = offset;
+    two_->last = two_->now;
+    for (std::size_t m = 0; m < 2; ++m) two_->now[m] = both.of[m] * two_->scale[m];
+    if (cycles_ == 1) two_->last = two_->now;
+    cycle.peak_to_peak = cycle.fit->peak_to_peak() + cycle.second->peak_to_peak();
+  }
+  cycle.quality = area(dwell, offset, task_.master_speed);
+}
+
+// Where the four pulses are: where they ask for least, and of those that a limit of the axis forbids the ones that
+// break it least.
+void RecordTuner::place_four() {
+  const auto residuals = settings_.running
+                             ? two_->now
+                             : std::array{lift_transform(task_, own_rise(task_, task_.stroke), two_->modes[0]),
+                                          lift_transform(task_, own_rise(task_, task_.stroke), two_->modes[1])};
+  double least = 0.0;
+  constexpr std::size_t most = 8;
+  const auto places = four_places(task_, two_->modes, residuals);
+  if (places.empty())
+    throw CamError("found no room for four pulses at the two frequencies that were identified; expected a longer rise");
+  for (std::size_t k = 0; k < std::min(most, places.size()); ++k) {
+    const auto pulses = four_pulses(task_, two_->modes, residuals, places[k]);
+    const double share =
+        settings_.share_of_limits
+            ? settings_.share_of_limits(compose(with_lift(task_.motion.cam, with_pulses(task_, pulses))),
+                                        drive_ ? drive_->coulomb : 0.0)
+            : 0.0;
+    if (k > 0 && share >= least) continue;
+    least = share;
+    two_->places = places[k];
+    if (least <= usable_share) return;
+  }
+}
+
+// The four pulses in use, and such that cancel `residuals`.
+FourPulses RecordTuner::corrected_four(const std::array<std::complex<double>, 2>& residuals) const {
+  if (!second_pulses_) return four_pulses(task_, two_->modes, residuals, *two_->places);
+  const FourPulses now{*pulses_, *second_pulses_};
+  FourPulses four = four_pulses_at(task_, two_->modes, residuals, now);
+  for (std::size_t m = 0; m < 2; ++m) {
+    four[m].first.amplitude += now[m].first.amplitude;
+    four[m].second.amplitude += now[m].second.amplitude;
+  }
+  return four;
+}
+
+// The pulses for the next cycle, with two modes.
+void RecordTuner::correct_four() {
+  // Pulses that were for one mode alone give way to four.
+  const bool placed_now = !two_->places;
+  if (placed_now) place_four();
+  std::array<std::complex<double>, 2> residuals = two_->now;
+  const double time = task_.motion.curve.length() / task_.master_speed;
+  for (std::size_t m = 0; m < 2; ++m) {
+    if (settings_.running) residuals[m] += two_->now[m] * std::exp(two_->modes[m].pole * time) - carried_of_both()[m];
+    // What they had cancelled is back then.
+    if (placed_now && pulses_)
+      residuals[m] += lift_transform(task_, own_rise(task_, task_.stroke), two_->modes[m]) -
+                      lift_transform(task_, rise(), two_->modes[m]);
+  }
+  if (placed_now) pulses_.reset();
+  const auto four = corrected_four(residuals);
+  use(four[0], four[1]);
+  two_->last = two_->now;
+}
+
+// What was carried over has been cancelled: from now on the pulses are for the cycle's own residuals.
+void RecordTuner::cancel_own() {
+  if (!two_) return use(corrected(-carried(last_)));
+  const auto four = corrected_four({-carried_of_both()[0], -carried_of_both()[1]});
+  use(four[0], four[1]);
+}
+
+// The first correction has shown what pulses do: where it left more of the last residual than a model may be off, the
+// pulses' gain is that of the machine (the rule of the secant).
+void RecordTuner::learn_gain(std::complex<double> residual) {
+  constexpr double of_model = 0.15;
+  if (std::abs(residual) < of_model * std::abs(last_)) return;
+  const auto gain = last_ / (last_ - residual);
+  // Further off it is no gain.
+  constexpr double most = 3.0;
+  if (!(std::abs(gain) < most)) return;
+  scale_ *= gain;
+  last_ *= gain;
+}
+
+void RecordTuner::use(const PulsePair& pulses, const std::optional<PulsePair>& second) {
   pulses_ = pulses;
-  cam_ = with_lift(task_.motion.cam, with_pulses(task_, pulses));
+  second_pulses_ = second;
+  cam_ = with_lift(task_.motion.cam, rise());
 }
 
 TunedCycle& RecordTuner::keep_better(TunedCycle& cycle, const char* note) {
   done_ = true;
   cycle.note = note;
-  if (better_)
-    use(*better_);
-  else
-    pulses_.reset(), cam_ = task_.motion.cam;
+  if (better_) {
+    use(*better_, better_second_);
+    // It was for one cycle alone.
+    if (settings_.running) {
+      last_ = better_last_;
+      if (two_) two_->last = better_lasts_;
+      if (better_second_.has_value() == two_.has_value()) cancel_own();
+    }
+  } else {
+    pulses_.reset(), second_pulses_.reset(), cam_ = task_.motion.cam;
+  }
   return cycle;
 }
 
@@ -167,37 +351,126 @@ TunedCycle RecordTuner::learn(const CycleRecord& record) {
   TunedCycle cycle;
   const DwellRecord dwell = dwell_of(task_, record, drive_ ? std::max(0.0, drive_->delay) : unknown_lag);
   ++cycles_;
-  cycle.fit = fit_dwell(dwell, task_.mode().frequency());
-  cycle.quality = area(dwell, cycle.fit ? cycle.fit->offset : mean(dwell.position), task_.master_speed);
-  if (cycle.fit) cycle.peak_to_peak = cycle.fit->peak_to_peak();
+  const bool had_two = two_.has_value();
+  measure(dwell, cycle);
   if (cycles_ > 1 && cycle.quality > best_quality_)
     return keep_better(cycle, "It became worse; the motion of the best cycle is kept.");
   best_quality_ = cycle.quality;
   better_ = pulses_;
+  better_second_ = second_pulses_;
+  better_last_ = last_;
+  if (two_) better_lasts_ = two_->last;
   if (!cycle.fit || cycle.peak_to_peak < settings_.resolution) {
     done_ = true;
     cycle.note = "The residual is within the resolution of the encoder; nothing is changed.";
-    if (settings_.running && drive_ && cycles_ > 1) {
-      use(corrected(-carried(last_)));
+    if (settings_.running && (drive_ || two_) && cycles_ > 1) {
+      cancel_own();
       cycle.note =
           "The residual is within the resolution of the encoder; the motion cancels its own residual from now on.";
     }
     return cycle;
   }
-  // A linear machine is at rest after one correction but for what its drive differs from the model.
-  if (cycles_ > 1 && cycle.peak_to_peak > 0.5 * before_) {
+  // A linear machine is at rest after two corrections, of which the first one has shown its gain, but for a mode that
+  // had not been seen. Running, what the untuned cycle left is still carried over then, and the frequency is not known
+  // well enough for so much of it.
+  const int enough = settings_.running ? 3 : 2;
+  if (cycles_ > enough && cycle.peak_to_peak > 0.5 * before_ && had_two == two_.has_value()) {
     done_ = true;
     cycle.note = "The residual does not go away by pulses; nothing is changed.";
+    if (settings_.running && (drive_ || two_)) cancel_own();
     return cycle;
   }
   before_ = cycle.peak_to_peak;
+  if (two_) {
+    correct_four();
+    if (!had_two) cycle.note = "A second mode vibrates too; four pulses are for both.";
+    return cycle;
+  }
   if (!drive_) {
     use(first_pulses(record, *cycle.fit));
     return cycle;
   }
+  if (cycles_ == 2) learn_gain(cycle.fit->residual * scale_);
   const auto residual = cycle.fit->residual * scale_;
   use(corrected(residual - carried(last_) + carried(residual)));
   last_ = residual;
+  return cycle;
+}
+
+// A warm gear has a different frequency, and a load that is still does not show it. But the pulses do, which cancel at
+// that frequency alone: it is where they leave as little as those of the tuning did.
+void RecordTuner::follow_frequencies() {
+  const Curve now = rise();
+  const auto follow = [&](Mode mode, std::complex<double> left) {
+    // Golden section; a gear does not warm by more in a cycle.
+    const auto off = [&](double share) { return std::abs(lift_transform(task_, now, {mode.pole * share}) - left); };
+    constexpr double reach = 0.005, golden = 0.6180339887;
+    double low = 1.0 - reach, high = 1.0 + reach;
+    while (high - low > 2e-5) {
+      const double a = high - golden * (high - low), b = low + golden * (high - low);
+      (off(a) < off(b) ? high : low) = off(a) < off(b) ? b : a;
+    }
+    return Mode{mode.pole * (0.5 * (low + high))};
+  };
+  if (two_) {
+    for (std::size_t m = 0; m < 2; ++m) two_->modes[m] = follow(two_->modes[m], (*left_by_tuning_)[m]);
+  } else {
+    drive_->ringing = follow(drive_->ringing, (*left_by_tuning_)[0]);
+    task_.drive = drive_with_mode(task_.drive, drive_->ringing);
+  }
+}
+
+// What a cycle makes itself of the `residual` of its record of `mode`, number `which`.
+std::complex<double> RecordTuner::own_part(std::complex<double> residual, const Mode& mode, std::size_t which,
+                                           bool next) {
+  if (!settings_.running) return residual;
+  const auto carried = std::exp(mode.pole * (task_.motion.curve.length() / task_.master_speed));
+  return next ? residual - before_that_[which] * carried : residual * (1.0 - carried);
+}
+
+TunedCycle RecordTuner::follow(const CycleRecord& record, bool next) {
+  TunedCycle cycle;
+  const DwellRecord dwell = dwell_of(task_, record, drive_ ? std::max(0.0, drive_->delay) : unknown_lag);
+  ++cycles_;
+  if (!drive_ && !two_) {
+    cycle.quality = area(dwell, mean(dwell.position), task_.master_speed);
+    return cycle;
+  }
+  // The last motion of a tuning that did not end was for one cycle alone.
+  if (settings_.running && !done_) cancel_own();
+  done_ = true;
+  const std::size_t count = two_ ? 2 : 1;
+  if (!left_by_tuning_) {
+    left_by_tuning_.emplace();
+    for (std::size_t m = 0; m < count; ++m)
+      (*left_by_tuning_)[m] = lift_transform(task_, rise(), two_ ? two_->modes[m] : drive_->ringing);
+    // Of the cycle before it nothing is known here.
+    next = false;
+  }
+  std::array<std::complex<double>, 2> residuals{}, own{};
+  double offset = 0.0;
+  if (two_) {
+    const auto both = residuals_with_modes(dwell, two_->modes);
+    residuals = both.of, offset = both.offset;
+    for (std::size_t m = 0; m < 2; ++m) own[m] = own_part(residuals[m], two_->modes[m], m, next) * two_->scale[m];
+  } else {
+    residuals[0] = residual_with_mode(dwell, drive_->ringing, &offset);
+    own[0] = own_part(residuals[0], drive_->ringing, 0, next) * scale_;
+  }
+  before_that_ = residuals;
+  cycle.quality = area(dwell, offset, task_.master_speed);
+  cycle.peak_to_peak = 4.0 * (std::abs(residuals[0]) + std::abs(residuals[1]));
+  const double worth = settings_.resolution * (settings_.running && next ? worth_following : worth_correcting);
+  if (cycle.peak_to_peak < worth) return cycle;
+  for (auto& each : own) each *= followed_part;
+  if (two_) {
+    const auto four = corrected_four(own);
+    use(four[0], four[1]);
+  } else {
+    use(corrected(own[0]));
+  }
+  follow_frequencies();
+  cycle.note = "The load vibrates again; the pulses are corrected.";
   return cycle;
 }
 

@@ -4,6 +4,8 @@
 // load's pole alone. So where the first residual is that of the model but for a few per cent, the difference is the
 // drive's, and scales all residuals; where it is more, something pushes the load that is no part of the model, and is
 // cancelled as it was recorded. Coulomb friction at the motor is part of the model.
+// A second mode is looked for in what the first one leaves. Where there is one, no model of the drive is asked: four
+// pulses make the same ratio of both residuals to nothing that both poles give.
 #pragma once
 
 #include <functional>
@@ -13,6 +15,7 @@
 
 #include "sim/cam/shaping/identified_drive.hpp"
 #include "sim/cam/shaping/pulses.hpp"
+#include "sim/cam/shaping/two_modes.hpp"
 
 namespace stiction::sim::cam {
 
@@ -20,7 +23,8 @@ struct TunedCycle {
   double quality = 0.0;       // area of the deviation in the dwell, about its own mean, of the record
   double peak_to_peak = 0.0;  // of the vibration that was fitted, at the beginning of the dwell; 0: below the noise
   std::optional<DwellFit> fit;
-  std::string note{};  // a sentence where the cycle changed nothing
+  std::optional<DwellFit> second{};  // of a second mode, where there is one
+  std::string note{};                // a sentence where the cycle changed nothing
 };
 
 // The quality number of the `record` of a cycle along the motion of `task`: the area of the deviation from its mean in
@@ -49,15 +53,24 @@ class RecordTuner {
   RecordTuner(ShapingTask task, TunerSettings settings);
 
   // Takes the record of a cycle with the motion that motion() had then, and makes the next one. Throws CamError for a
-  // record without the whole dwell, and for a dwell or a rise that is too short.
+  // record without the whole dwell, for a dwell or a rise that is too short, and for two modes that are too near.
   TunedCycle learn(const CycleRecord& record);
+
+  // Takes the record of a cycle of production behind done(), along cam(): where the gear has become warm and the load
+  // vibrates again, it corrects the pulses. No cycle is spent on a probe: every correction is to make the next one
+  // better. `next`: of the very next cycle of a machine that does not stop; else the cycles before it had the same
+  // motion, and it ran steadily. Throws CamError for a record without the whole dwell.
+  TunedCycle follow(const CycleRecord& record, bool next);
 
   // The cam for the next cycle: its rise with the pulses.
   const Cam& cam() const { return cam_; }
   // Running: the cam for all cycles behind the next one, as far as is known; else cam().
   Cam steady_cam() const;
   const std::optional<PulsePair>& pulses() const { return pulses_; }
-  const std::optional<IdentifiedDrive>& drive() const { return drive_; }  // from the first cycle that vibrates
+  // Of a second mode.
+  const std::optional<PulsePair>& second_pulses() const { return second_pulses_; }
+  // From the first cycle that vibrates, with one mode.
+  const std::optional<IdentifiedDrive>& drive() const { return drive_; }
   // Whether a further cycle would not be better: within the resolution, or worse than one before, to which it returned,
   // or the residual does not go away by pulses.
   bool done() const { return done_; }
@@ -70,7 +83,19 @@ class RecordTuner {
   double share_of(const PulsePair& pulses) const;
   PulsePair corrected(std::complex<double> residual) const;
   TunedCycle& keep_better(TunedCycle& cycle, const char* note);
-  void use(const PulsePair& pulses);
+  void use(const PulsePair& pulses, const std::optional<PulsePair>& second = std::nullopt);
+  void measure(const DwellRecord& dwell, TunedCycle& cycle);
+  void learn_gain(std::complex<double> residual);
+  Mode unexcited_mode() const;
+  void follow_frequencies();
+  std::complex<double> own_part(std::complex<double> residual, const Mode& mode, std::size_t which, bool next);
+  bool look_for_second_mode(const DwellRecord& dwell, const std::optional<DwellFit>& fit);
+  void place_four();
+  std::array<std::complex<double>, 2> carried_of_both() const;
+  FourPulses corrected_four(const std::array<std::complex<double>, 2>& residuals) const;
+  void correct_four();
+  void cancel_own();
+  Curve rise() const;
 
   ShapingTask task_;
   TunerSettings settings_;
@@ -80,9 +105,25 @@ class RecordTuner {
   bool done_ = false;
   Cam cam_;
   std::optional<PulsePair> pulses_, better_;  // in use, and of the best cycle before
-  double best_quality_ = 0.0, before_ = 0.0;  // before_: peak to peak of the cycle before
-  std::complex<double> last_ = 0.0;           // residual of the cycle before
+  // Two modes, their residuals in units of lift_transform() over those of the records, and the last records'.
+  struct TwoModes {
+    std::array<Mode, 2> modes;
+    std::array<DwellFit, 2> found;  // in the cycle that showed both
+    std::array<std::complex<double>, 2> scale, now{}, last{};
+    std::optional<FourPlaces> places{};
+  };
+  std::optional<TwoModes> two_;
+  std::optional<PulsePair> second_pulses_, better_second_;
+  std::complex<double> first_residual_ = 0.0;  // of the first mode, in the first cycle
+  double best_quality_ = 0.0, before_ = 0.0;   // before_: peak to peak of the cycle before
+  std::complex<double> last_ = 0.0;            // residual of the cycle before
+  std::complex<double> better_last_ = 0.0;     // and of the one before the best
+  std::array<std::complex<double>, 2> better_lasts_{};
   int cycles_ = 0;
+  // Of production: residuals of the last cycle, as recorded, and what the pulses of the tuning leave of
+  // lift_transform().
+  std::array<std::complex<double>, 2> before_that_{};
+  std::optional<std::array<std::complex<double>, 2>> left_by_tuning_;
 };
 
 }  // namespace stiction::sim::cam

@@ -127,6 +127,30 @@ TEST(AxisRules, AShaftHasItsStiffnessAndItsDamping) {
   expect_refused(elastic("backlash = \"20 um\""), "axis.B.transmission.backlash", "none without stiffness");
 }
 
+TEST(AxisRules, AGearWarmsAndErrsBehindItsShaftAlone) {
+  const auto gear = [](const std::string& lines) {
+    return with_line(belt + pd, "pulley_circumference = \"150 mm\"", lines);
+  };
+  const std::string shaft = "stiffness = \"0.4 N/um\"\ndamping_ratio = 0.1\n";
+  const auto axis = read_text(gear(shaft + "stiffness_loss = 0.15\nwarming_time = \"300 s\"\ngear_ratio = 5\n"
+                                           "gear_error = { amplitude = \"3 um\", order = 21, phase = \"30 deg\" }\n"
+                                           "motor_error = { amplitude = \"2 um\" }"))
+                        .axes[0];
+  const auto& transmission = *axis.transmission;
+  EXPECT_EQ(transmission.stiffness_loss, 0.15);
+  EXPECT_EQ(*transmission.warming_time, 300.0);
+  EXPECT_EQ(transmission.gear_error->order, 21.0);
+  EXPECT_NEAR(transmission.gear_error->phase, 0.5235987755983, 1e-12);
+  EXPECT_EQ(transmission.motor_error->amplitude, 2e-6);
+  EXPECT_EQ(transmission.motor_error->order, 1.0);
+  EXPECT_FALSE(transmission.output_error);
+  expect_refused(gear(shaft + "stiffness_loss = 0.15"), "axis.B.transmission.warming_time", "it together with");
+  expect_refused(gear(shaft + "gear_error = { amplitude = \"3 um\" }"), "axis.B.transmission.gear_ratio",
+                 "it together with transmission.gear_error, a table");
+  expect_refused(gear("motor_error = { amplitude = \"2 um\" }"), "axis.B.transmission.motor_error",
+                 "none without stiffness");
+}
+
 TEST(AxisRules, TheMotorsFrictionIsAPartOfAStiffAxis) {
   const std::string motor_friction = R"([axis.B.motor_friction]
 use = "coulomb_viscous"

@@ -85,8 +85,8 @@ TEST(CamLog, OfASlaveBehindItsMasterNamesTheDelay) {
   DiagnoseInput input;
   input.machine = stand();
   input.next_measurement = false;
-  input.logs.push_back(cam_log(late, 130.0, 6, 16));
-  input.held_out.push_back(cam_log(late, 100.0, 4, 16));
+  input.logs.push_back(cam_log(late, 130.0, 9, 16));
+  input.held_out.push_back(cam_log(late, 100.0, 6, 16));
   const auto verdict = diagnose(input);
   ASSERT_EQ(verdict.findings.size(), 1u) << verdict_text(verdict);
   const auto& finding = verdict.findings.front();
