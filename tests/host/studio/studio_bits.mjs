@@ -1,0 +1,53 @@
+// Runs the page's own programme, taken out of a studio's page, and compares every value with the desk's
+// (write_studio_values): profile, following error and load over three cycles on the stand, the project's functions of a
+// million arguments, and the motion file.
+// usage: node studio_bits.mjs STUDIO.html MOTION MACHINE SPEED FOLDER
+// Exit 0: all bits are the same; 1: a message says what differs; 2: usage.
+import { existsSync, readFileSync, statSync } from 'node:fs';
+import { basename } from 'node:path';
+
+const CYCLES = 3, ARGUMENTS = 1000000, MOST_BYTES = 6e6;
+const FUNCTIONS = ['sine', 'cosine', 'exponential', 'logarithm', 'square root'];
+const [page, motion, machine, speedText, folder] = process.argv.slice(2);
+if (!folder) {
+  console.error('usage: node studio_bits.mjs STUDIO.html MOTION MACHINE SPEED FOLDER');
+  process.exit(2);
+}
+const speed = Number(speedText), problems = [], html = readFileSync(page, 'utf8');
+const expect = (holds, message) => { if (!holds) problems.push(message); };
+
+// The page's own loader, not a copy of it.
+const loader = html.slice(html.lastIndexOf('// The compiled studio:'), html.indexOf('// Charts as SVG'));
+const createEngine = new Function(`${loader}; return createEngine;`)();
+const programme = html.match(/<script type="text\/plain" id="programme">([^<]*)</)[1];
+const engine = await createEngine(Buffer.from(programme, 'base64'));
+
+function compare(name, found, wanted) {
+  if (found.length !== wanted.length) return expect(false, `${name}: ${found.length} values, the desk has ${wanted.length}`);
+  const bits = values => new BigUint64Array(values.buffer, values.byteOffset, values.length), [a, b] = [bits(found), bits(wanted)];
+  let differ = 0, first = -1;
+  for (let i = 0; i < a.length; ++i) if (a[i] !== b[i]) { if (first < 0) first = i; ++differ; }
+  expect(differ === 0, `${name}: ${differ} of ${found.length} values differ, the first is ${found[first]}, the desk has ${wanted[first]}`);
+  if (!differ) console.log(`${name}: ${found.length} values, the same bits`);
+}
+
+function desk(name) {
+  const bytes = readFileSync(`${folder}/${name}`);
+  return new Float64Array(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length));
+}
+
+const loaded = file => `${basename(file)}\0${readFileSync(file, 'utf8')}`;
+engine.call('load_motion', { text: loaded(motion) });
+engine.call('load_machine', { text: loaded(machine) });
+const { table } = engine.call('curves', { x: speed, at: 600 }), profile = new Float64Array(table.length / 7 * 5);
+for (let row = 0; row * 7 < table.length; ++row) profile.set(table.subarray(7 * row, 7 * row + 5), 5 * row);
+compare('profile', profile, desk('profile.bin'));
+if (existsSync(`${folder}/follow.bin`)) compare('following error over three cycles', engine.run('follow', { x: speed, flag: CYCLES }).record, desk('follow.bin'));
+compare('load over three cycles', engine.run('stand', { x: speed, y: 1, flag: CYCLES }).record, desk('stand.bin'));
+FUNCTIONS.forEach((name, k) => compare(name, engine.call('numbers', { at: ARGUMENTS, flag: k }).table, desk(`numbers-${k}.bin`)));
+expect(engine.call('motion_text').text === readFileSync(`${folder}/motion.toml`, 'utf8'), 'the motion file of the page is not that of the desk');
+const size = statSync(page).size;
+expect(size <= MOST_BYTES, `the page has ${size} bytes`);
+console.log(`page: ${(size / 1e6).toFixed(2)} MB`);
+for (const problem of problems) console.error(`studio_bits: ${problem}`);
+process.exit(problems.length ? 1 : 0);
