@@ -20,9 +20,7 @@ struct StudioOptions {
   std::string motion, machine, speed = "60 rpm", out;
 };
 
-StudioFile file_of(const std::filesystem::path& path) {
-  return {path.filename().string(), machine::content_of(path)};
-}
+StudioFile file_of(const std::filesystem::path& path) { return {path.filename().string(), machine::content_of(path)}; }
 
 void run_studio(const StudioOptions& options, const Invocation& invocation) {
   StudioPageContent content;
@@ -45,14 +43,15 @@ void run_studio(const StudioOptions& options, const Invocation& invocation) {
   PendingFile file(options.out);
   file.write(page);
   file.commit();
-  fmt::print("Studio: {} ({:.1f} MB), a page that opens offline\n", options.out, 1e-6 * static_cast<double>(page.size()));
+  fmt::print("Studio: {} ({:.1f} MB), a page that opens offline\n", options.out,
+             1e-6 * static_cast<double>(page.size()));
 }
 
 }  // namespace
 
 void add_cam_studio(CLI::App& cam, const Invocation& invocation) {
   auto* command = cam.add_subcommand(
-      "studio", "write a page in which a motion is edited by dragging, beside the simulated machine that follows it");
+      "studio", "write a page in which a motion is edited by dragging, next to the simulated machine that follows it");
   auto o = std::make_shared<StudioOptions>();
   command->add_option("MOTION", o->motion, "motion file (stiction.cam/1) to begin with [an empty motion]")
       ->type_name("MOTION");
@@ -61,7 +60,8 @@ void add_cam_studio(CLI::App& cam, const Invocation& invocation) {
                    "shipped machine by name, or a machine file, whose axis follows the motion [none: curves alone]")
       ->type_name("MACHINE");
   command
-      ->add_option("--speed", o->speed, "speed of the master to begin with, such as \"130 rpm\" or \"0.5 m/s\" [60 rpm]")
+      ->add_option("--speed", o->speed,
+                   "speed of the master to begin with, such as \"130 rpm\" or \"0.5 m/s\" [60 rpm]")
       ->type_name("SPEED");
   add_output_file(*command, "--out", o->out, "write the page into this file (HTML)")->required();
   command->callback([o, &invocation] { run_studio(*o, invocation); });

@@ -13,10 +13,10 @@
 #include "host/report/page.hpp"
 #include "host/studio/studio.hpp"
 
-#define STICTION_STUDIO_ASSET(name)                     \
-  extern "C" const char stiction_studio_##name[];       \
-  extern "C" const char stiction_studio_##name##_end[]; \
-  static std::string_view name() {                      \
+#define STICTION_STUDIO_ASSET(name)                                                                                   \
+  extern "C" const char stiction_studio_##name[];                                                                     \
+  extern "C" const char stiction_studio_##name##_end[];                                                               \
+  static std::string_view name() {                                                                                    \
     return {stiction_studio_##name, static_cast<std::size_t>(stiction_studio_##name##_end - stiction_studio_##name)}; \
   }
 
@@ -55,7 +55,8 @@ std::string still_html(const Studio& studio, double speed) {
                         escape_html(limit["name"].get<std::string>()), limit["found"].get<double>(),
                         limit["allowed"].get<double>(), escape_html(limit["unit"].get<std::string>()));
   return fmt::format(
-      "<svg viewBox=\"0 0 600 160\" role=\"img\" aria-label=\"Position of {} over a cycle\"><path d=\"{}\" fill=\"none\" "
+      "<svg viewBox=\"0 0 600 160\" role=\"img\" aria-label=\"Position of {} over a cycle\"><path d=\"{}\" "
+      "fill=\"none\" "
       "stroke=\"currentColor\" stroke-width=\"2\"/></svg><table><thead><tr><th>Limit</th><th>Found</th><th>Allowed</th>"
       "<th>Unit</th></tr></thead><tbody>{}</tbody></table>",
       escape_html(studio.cam().name), path, rows);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/cam/exchange.hpp"
 #include "host/simulate/cam_run.hpp"
 #include "host/simulate/stand_run.hpp"
 #include "host/studio/level.hpp"
@@ -12,6 +13,7 @@
 #include "sim/cam/laws.hpp"
 #include "sim/cam/motion_file.hpp"
 #include "sim/cam/motion_keys.hpp"
+#include "sim/cam/segment_table.hpp"
 #include "sim/machine_file.hpp"
 #include "sim/number/sine_cosine.hpp"
 #include "stiction/number/fixed_signals.hpp"
@@ -23,7 +25,7 @@ using sim::cam::Cam;
 using sim::cam::CamError;
 using sim::cam::Segment;
 
-constexpr std::size_t most_steps = 200;       // of editing that can be undone
+constexpr std::size_t most_steps = 200;  // of editing that can be undone
 constexpr std::size_t transformed_points = 4096;
 
 Cam empty_cam() {
@@ -122,7 +124,8 @@ std::string list(const Items& items, const Text& text) {
 std::string values_json(const sim::cam::LawValues& values) {
   std::string result = "{";
   for (const auto& [key, given] : values)
-    if (given.size() == 1) result += fmt::format("{}{}:{}", result.size() > 1 ? "," : "", quoted(key), number(given[0]));
+    if (given.size() == 1)
+      result += fmt::format("{}{}:{}", result.size() > 1 ? "," : "", quoted(key), number(given[0]));
   return result + "}";
 }
 
@@ -149,14 +152,21 @@ std::string segment_json(const Cam& cam, std::size_t k) {
 
 std::string jump_json(const sim::cam::MotionJump& found) {
   return fmt::format(R"({{"place":{},"order":{},"height":{},"where":{},"segment":{},"share":{}}})",
-                     number(found.jump.place), found.jump.order, number(found.jump.height), quoted(name_of(found.where)),
-                     found.segment, number(found.share));
+                     number(found.jump.place), found.jump.order, number(found.jump.height),
+                     quoted(name_of(found.where)), found.segment, number(found.share));
 }
 
 std::string limit_json(const Limit& limit) {
   return fmt::format(R"({{"name":{},"unit":{},"found":{},"allowed":{},"place":{},"highest_speed":{},"broken":{}}})",
                      quoted(limit.name), quoted(limit.unit), number(limit.found), number(limit.allowed),
                      number(limit.place), number(limit.highest_speed), limit.broken() ? "true" : "false");
+}
+
+// Of the shaft, in the axis' own unit: N m/rad or N/m.
+std::optional<double> stiffness_of(const machine::AxisModel& axis) {
+  if (!axis.transmission || !axis.transmission->stiffness) return std::nullopt;
+  const double radius = axis.coordinate.rotary() ? axis.coordinate.radius : 1.0;
+  return *axis.transmission->stiffness * radius * radius;
 }
 
 // ---- runs ----
@@ -215,6 +225,12 @@ void Studio::load_machine(const std::string& file, const std::string& text, cons
   machine_ = std::move(read);
 }
 
+std::string Studio::exported_file(std::string_view format) const {
+  if (format != "table") return exported(motion_, exchange_format(format), {});
+  const auto table = sim::cam::table_within(motion_, sim::cam::table_tolerance(motion_));
+  return {table.bytes.begin(), table.bytes.end()};
+}
+
 void Studio::keep(Cam cam, bool goes_on) {
   auto motion = compose(cam);
   if (!goes_on || past_.empty()) {
@@ -252,9 +268,10 @@ std::string Studio::state_json(double speed) const {
   std::string machine = "null";
   if (machine_)
     machine = fmt::format(
-        R"({{"id":{},"name":{},"axis":{},"effort_unit":{},"effort":{},"frequency":{},"elastic":{},"fixed":{}}})",
+        R"({{"id":{},"name":{},"axis":{},"effort_unit":{},"effort":{},"frequency":{},"stiffness":{},"elastic":{},"fixed":{}}})",
         quoted(machine_->id), quoted(machine_->name), quoted(load_.axis), quoted(load_.effort_unit()),
-        number(load_.largest_effort), number(load_.frequency), machine_->axes.front().elastic() ? "true" : "false",
+        number(load_.largest_effort), number(load_.frequency), number(stiffness_of(machine_->axes.front())),
+        machine_->axes.front().elastic() ? "true" : "false",
         machine_->axes.front().cascaded() && machine_->fits_formats() ? "true" : "false");
   const auto& e = duty.effort;
   return fmt::format(
@@ -267,6 +284,12 @@ std::string Studio::state_json(double speed) const {
       list(jumps_of(motion_), jump_json), list(duty.limits, limit_json), number(duty.extremes[1].magnitude()),
       number(duty.extremes[2].magnitude()), number(std::fabs(e.motor.value)), number(e.motor_rms),
       number(std::fabs(e.load.value)), number(std::fabs(e.cam.value)), machine);
+}
+
+std::string Studio::formats_json() {
+  return list(exchange_formats(), [](const ExchangeFormat& format) {
+    return fmt::format(R"({{"name":{},"text":{}}})", quoted(format.name), quoted(format.text));
+  });
 }
 
 std::string Studio::laws_json() { return list(sim::cam::laws(), law_json); }
@@ -319,9 +342,10 @@ const machine::Machine& Studio::required_machine() const {
   if (!machine_) throw CamError("found no machine; expected a machine file");
   const auto& axis = machine_->axes.front();
   if (!axis.cascaded() || !machine_->fits_formats())
-    throw CamError(fmt::format("found axis {} of {}; expected one that the drive's number formats and its cascade hold: "
-                               "`stiction simulate cam` runs it in double precision",
-                               axis.name, machine_->id));
+    throw CamError(
+        fmt::format("found axis {} of {}; expected one that the drive's number formats and its cascade hold: "
+                    "`stiction simulate cam` runs it in double precision",
+                    axis.name, machine_->id));
   return *machine_;
 }
 
@@ -345,7 +369,8 @@ StudioRun Studio::stand(double speed, int cycles, double stiffness) const {
   const auto run = run_stand<FixedSignals>(machine, motion_, {.master_speed = speed, .cycles = cycles});
   StudioRun result;
   const auto& curve = motion_.curve;
-  const double cycle = curve.length(), rise = curve.derivative(curve.end(), 0, sim::cam::Side::left) - curve(curve.begin());
+  const double cycle = curve.length(),
+               rise = curve.derivative(curve.end(), 0, sim::cam::Side::left) - curve(curve.begin());
   for (const auto& state : run.load) {
     const double gone = std::floor(state.master / cycle), place = state.master - cycle * gone;
     if (static_cast<int>(gone) + 1 == cycles)

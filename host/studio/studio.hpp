@@ -28,10 +28,10 @@ struct StudioRun {
   StudioTable ticks;
   // Of every measured cycle, as the log of the run: the master, set-point and position of the motor, its speed.
   StudioTable record;
-  double peak_error = 0.0, mean_error = 0.0;    // in the slave's unit
-  double peak_effort = 0.0, rms_effort = 0.0;   // N or N m; 0: the run has none
-  double motor_error = 0.0;                     // of the motor, of an elastic axis
-  std::optional<double> dwell, dwell_area;      // of the load, peak to peak and over the master, in the longest rest
+  double peak_error = 0.0, mean_error = 0.0;   // in the slave's unit
+  double peak_effort = 0.0, rms_effort = 0.0;  // N or N m; 0: the run has none
+  double motor_error = 0.0;                    // of the motor, of an elastic axis
+  std::optional<double> dwell, dwell_area;     // of the load, peak to peak and over the master, in the longest rest
 };
 
 class Studio {
@@ -48,6 +48,11 @@ class Studio {
   // The machine file `text`, as `file`; an `axis` by name, or empty for the first that the slave fits. Throws
   // machine::MachineFileError and leaves the machine as it was.
   void load_machine(const std::string& file, const std::string& text, const std::string& axis = {});
+
+  // What the commands export of the motion: the drive's table, as `stiction cam table` writes it, for the `format`
+  // "table"; else a file of that format as `stiction cam export` writes it without further options. Throws
+  // sim::cam::CamError.
+  std::string exported_file(std::string_view format) const;
 
   // ---- editing ----
   // One step of editing the segment `at`, after which undo() is possible. `verb`: "drag" (its end, to the master's
@@ -76,6 +81,8 @@ class Studio {
   std::string state_json(double speed) const;
   // All laws with their parameters, as JSON.
   static std::string laws_json();
+  // All formats of other makers, as JSON.
+  static std::string formats_json();
   // The unit law number `k` of the table of laws at 41 places.
   static StudioTable law_curve(std::size_t k);
   // Master, position, its three derivatives over the master, y' y'' and the motor's effort at the `speed` of the

@@ -10,9 +10,9 @@
 extern "C" {
 // Between compiled code and personality, by the names that clang calls.
 struct LandingPadContext {
-  std::uintptr_t pad;          // number of the landing pad
-  const std::uint8_t* table;   // of the function
-  std::uintptr_t selector;     // 1, 2, ..: the type that matches; 0: none
+  std::uintptr_t pad;         // number of the landing pad
+  const std::uint8_t* table;  // of the function
+  std::uintptr_t selector;    // 1, 2, ..: the type that matches; 0: none
 };
 LandingPadContext __wasm_lpad_context = {};
 

@@ -29,8 +29,10 @@ enum class Call : std::int32_t {
   curves,
   harmonics,
   follow,
-  stand,
-  numbers
+  shaft,
+  numbers,
+  formats,
+  exported
 };
 
 struct Answer {
@@ -100,10 +102,16 @@ void serve(Call call, std::size_t at, double x, double y, std::int32_t flag) {
       return;
     case Call::follow:
       return take(studio->follow(x, flag));
-    case Call::stand:
+    case Call::shaft:
       return take(studio->stand(x, flag, y));
     case Call::numbers:
       answer.table = {1, stiction::host::number_values(static_cast<stiction::host::NumberFunction>(flag), at)};
+      return;
+    case Call::formats:
+      answer.text = Studio::formats_json();
+      return;
+    case Call::exported:
+      answer.text = studio->exported_file(two_texts().first);
       return;
   }
 }

@@ -1,6 +1,5 @@
-// Prints the source of unit_pairs.hpp: every pair of convertible units among the usual ones, those of the machine file's
-// description and those that the files of the command line have.
-// usage: write_units FILE...
+// Prints the source of unit_pairs.hpp: every pair of convertible units among the usual ones, those of the machine
+// file's description and those that the files of the command line have. usage: write_units FILE...
 #include <fmt/format.h>
 
 #include <fstream>
@@ -18,16 +17,20 @@ namespace {
 namespace machine = stiction::machine;
 
 const char* const usual[] = {
-    "1", "%", "m", "mm", "um", "nm", "cm", "km", "inch", "rad", "mrad", "urad", "deg", "arcmin", "arcsec", "rev",
-    "turn", "s", "ms", "us", "ns", "min", "h", "Hz", "kHz", "MHz", "rpm", "rev/min", "rev/s", "rad/s", "deg/s",
-    "rad/s^2", "deg/s^2", "rev/s^2", "rad/s^3", "deg/s^3", "m/s", "mm/s", "m/min", "mm/min", "m/s^2", "mm/s^2",
-    "m/s^3", "mm/s^3", "kg", "g", "t", "kg m^2", "kg cm^2", "g m^2", "N", "kN", "mN", "N m", "N.m", "mN m", "kN m",
-    "N s/m", "N m s/rad", "N/m", "N/mm", "N/um", "kN/mm", "N m/rad", "N m/deg", "kN m/rad", "N/A", "N m/A", "V", "mV",
-    "kV", "A", "mA", "Ohm", "mOhm", "H", "mH", "uH", "F", "uF", "mF", "W", "kW", "J", "kJ", "K", "degC", "K/W", "1/s",
-    "1/min", "1/m", "V s/m", "V s/rad", "V/A", "A/V", "A s/m", "A s/rad", "V s", "m/rad", "mm/rad", "mm/deg", "m/deg",
-    "mm/rev", "m/rev", "m/rad^2", "m/rad^3", "mm/rad^2", "mm/rad^3", "mm/deg^2", "rad/m", "deg/mm", "rad/mm", "deg/m",
-    "rad/m^2", "rad/m^3", "rad/rad", "deg/deg", "m/m", "mm/mm", "1/rad", "1/rad^2", "1/deg", "1/deg^2", "1/m^2",
-    "1/mm", "1/mm^2", "MPa", "GPa", "Pa", "kg/m", "N/V", "N m/V"};
+    "1",       "%",       "m",       "mm",      "um",      "nm",       "cm",       "km",       "inch",      "rad",
+    "mrad",    "urad",    "deg",     "arcmin",  "arcsec",  "rev",      "turn",     "s",        "ms",        "us",
+    "ns",      "min",     "h",       "Hz",      "kHz",     "MHz",      "rpm",      "rev/min",  "rev/s",     "rad/s",
+    "deg/s",   "rad/s^2", "deg/s^2", "rev/s^2", "rad/s^3", "deg/s^3",  "m/s",      "mm/s",     "m/min",     "mm/min",
+    "m/s^2",   "mm/s^2",  "m/s^3",   "mm/s^3",  "kg",      "g",        "t",        "kg m^2",   "kg cm^2",   "g m^2",
+    "N",       "kN",      "mN",      "N m",     "N.m",     "mN m",     "kN m",     "N s/m",    "N m s/rad", "N/m",
+    "N/mm",    "N/um",    "kN/mm",   "N m/rad", "N m/deg", "kN m/rad", "N/A",      "N m/A",    "V",         "mV",
+    "kV",      "A",       "mA",      "Ohm",     "mOhm",    "H",        "mH",       "uH",       "F",         "uF",
+    "mF",      "W",       "kW",      "J",       "kJ",      "K",        "degC",     "K/W",      "1/s",       "1/min",
+    "1/m",     "V s/m",   "V s/rad", "V/A",     "A/V",     "A s/m",    "A s/rad",  "V s",      "m/rad",     "mm/rad",
+    "mm/deg",  "m/deg",   "mm/rev",  "m/rev",   "m/rad^2", "m/rad^3",  "mm/rad^2", "mm/rad^3", "mm/deg^2",  "rad/m",
+    "deg/mm",  "rad/mm",  "deg/m",   "rad/m^2", "rad/m^3", "rad/rad",  "deg/deg",  "m/m",      "mm/mm",     "1/rad",
+    "1/rad^2", "1/deg",   "1/deg^2", "1/m^2",   "1/mm",    "1/mm^2",   "MPa",      "GPa",      "Pa",        "kg/m",
+    "N/V",     "N m/V"};
 
 bool is_unit(const std::string& text) {
   try {
@@ -64,8 +67,9 @@ int main(int count, char** arguments) {
   }
   std::map<std::string, std::vector<std::string>> alike;
   for (const auto& unit : units) alike[machine::dimension_of(unit)].push_back(unit);
-  fmt::print("#include \"host/studio/wasm/unit_pairs.hpp\"\n\nnamespace stiction::host {{\nnamespace {{\n\n"
-             "constexpr UnitPair pairs[] = {{\n");
+  fmt::print(
+      "#include \"host/studio/wasm/unit_pairs.hpp\"\n\nnamespace stiction::host {{\nnamespace {{\n\n"
+      "constexpr UnitPair pairs[] = {{\n");
   for (const auto& [dimension, names] : alike)
     for (const auto& from : names)
       for (const auto& to : names) try {
@@ -74,6 +78,7 @@ int main(int count, char** arguments) {
                      machine::parse_quantity("1 " + from, to) - offset, offset);
         } catch (const machine::UnitError&) {  // angles are told from numbers
         }
-  fmt::print("}};\n\n}}  // namespace\n\nconst std::span<const UnitPair> unit_pairs(pairs);\n\n}}  // namespace "
-             "stiction::host\n");
+  fmt::print(
+      "}};\n\n}}  // namespace\n\nconst std::span<const UnitPair> unit_pairs(pairs);\n\n}}  // namespace "
+      "stiction::host\n");
 }

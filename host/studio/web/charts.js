@@ -3,6 +3,18 @@
 
 const NARROWEST_RANGE = 1e-12;
 
+// Sizes of the charts' places, which are asked for once: asking between two drawings lays the page out each time.
+let placeSizes = new Map();
+const forgetSizes = () => { placeSizes = new Map(); };
+
+function sizeOf(node) {
+  if (!placeSizes.has(node)) {
+    const box = node.getBoundingClientRect();
+    placeSizes.set(node, { width: box.width, height: box.height });
+  }
+  return placeSizes.get(node);
+}
+
 function element(tag, attributes = {}, ...children) {
   const node = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes))
@@ -56,13 +68,13 @@ function rangeOf(values, more = []) {
 // Draws into the svg `node`: chart = { x: range, y: range, xTicks, xLabel, yLabel, series: [{ xs, ys, class, bars }], levels,
 // marks: [{ x, y, text }], label }. Returns the frame, with the conversions of handles.
 function drawChart(node, chart) {
-  const box = node.getBoundingClientRect(), width = Math.max(240, box.width), height = Math.max(100, box.height);
+  const box = sizeOf(node), width = Math.max(240, box.width), height = Math.max(100, box.height);
   const frame = { left: 58, right: width - 12, top: 22, bottom: height - 34 };
   const [x0, x1] = chart.x, [y0, y1] = chart.y;
   const px = x => frame.left + (x - x0) / (x1 - x0) * (frame.right - frame.left);
   const py = y => frame.bottom - (y - y0) / (y1 - y0) * (frame.bottom - frame.top);
   const parts = [];
-  for (const tick of ticksBetween(y0, y1, Math.max(3, Math.round((frame.bottom - frame.top) / 42))))
+  for (const tick of ticksBetween(y0, y1, Math.max(4, Math.round((frame.bottom - frame.top) / 42))))
     parts.push(svg('path', { class: Math.abs(tick) < 1e-9 * (y1 - y0) ? 'zero' : 'grid', d: `M${frame.left} ${py(tick)}H${frame.right}` }),
                svg('text', { class: 'tick end', x: frame.left - 6, y: py(tick) + 4 }, shownNumber(tick)));
   let labelled = -Infinity;

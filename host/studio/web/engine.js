@@ -4,7 +4,7 @@
 
 // In the order of Call in wasm/exports.cpp.
 const CALLS = ['load_motion', 'load_machine', 'edit', 'undo', 'redo', 'motion_text', 'state', 'laws', 'law_curve', 'curves',
-               'harmonics', 'follow', 'stand', 'numbers'];
+               'harmonics', 'follow', 'shaft', 'numbers', 'formats', 'exported'];
 const RUN_FIGURES = ['peakError', 'meanError', 'peakEffort', 'rmsEffort', 'motorError', 'dwell', 'dwellArea'];
 
 // What the C library asks of a system: there is no environment and nothing to write to.
@@ -38,9 +38,9 @@ async function createEngine(bytes) {
     const given = encoder.encode(text), place = exports.studio_input(given.length);
     new Uint8Array(exports.memory.buffer, place, given.length).set(given);
     const status = exports.studio_call(CALLS.indexOf(name), at, x, y, flag);
-    const answer = decoder.decode(new Uint8Array(exports.memory.buffer, exports.studio_text(), exports.studio_text_size()));
+    const bytes = new Uint8Array(exports.memory.buffer.slice(exports.studio_text(), exports.studio_text() + exports.studio_text_size())), answer = decoder.decode(bytes);
     if (status !== 0) throw new Error(answer);
-    return { text: answer, table: doubles(exports.studio_table(), exports.studio_table_size()), record: doubles(exports.studio_record(), exports.studio_record_size()) };
+    return { text: answer, bytes, table: doubles(exports.studio_table(), exports.studio_table_size()), record: doubles(exports.studio_record(), exports.studio_record_size()) };
   }
 
   // The ticks of a run in columns, its record, and its figures, null where it has none.

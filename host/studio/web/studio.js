@@ -224,8 +224,17 @@ function drawSegments() {
   }));
 }
 
+// A law whose coefficients are its parameters has no curve of its own.
+function lawCurve(k) {
+  try {
+    return engine.call('law_curve', { at: k }).table;
+  } catch {
+    return [0, 0];
+  }
+}
+
 function thumbnail(k) {
-  const table = thumbnails[k] ||= engine.call('law_curve', { at: k }).table, points = [];
+  const table = thumbnails[k] ||= lawCurve(k), points = [];
   let low = Infinity, high = -Infinity;
   for (let i = 1; i < table.length; i += 2) { low = Math.min(low, table[i]); high = Math.max(high, table[i]); }
   for (let i = 0; i < table.length; i += 2) points.push(`${(3 + 58 * table[i]).toFixed(1)} ${(37 - 34 * (table[i + 1] - low) / (high - low || 1)).toFixed(1)}`);
@@ -297,15 +306,15 @@ function drawRules() {
 const speedText = () => `${plainNumber(masterSpeed * shownUnits().speed)} ${shownUnits().speedUnit}`;
 
 function repeatingCommand() {
-  const machine = machineName.replace(/[.]toml$/, '');
-  return `stiction simulate cam --machine ${machine} --cam ${motionName} --speed "${speedText()}" --cycles ${at('cycles').value}${at('run').value === 'stand' ? ' --model cascade' : ''}`
-    + (Number(at('stiffness').value) !== 100 ? ` --set axis.${state.machine.axis}.transmission.stiffness=...` : '');
+  const machine = machineName.replace(/[.]toml$/, ''), stiffness = Number(at('stiffness').value) / 100;
+  return `stiction simulate cam --machine ${machine} --cam ${motionName} --speed "${speedText()}" --cycles ${at('cycles').value}${at('run').value === 'shaft' ? ' --model cascade' : ''}`
+    + (stiffness !== 1 && at('run').value === 'shaft' ? ` --set "axis.${state.machine.axis}.transmission.stiffness=${Number((state.machine.stiffness * stiffness).toPrecision(9))} ${state.slave === 'rotary' ? 'N m/rad' : 'N/m'}"` : '');
 }
 
 function figureRows(run) {
   const u = shownUnits(), f = run.figures, rows = [];
   const add = (text, value, unit) => { if (value !== null && value !== undefined) rows.push({ text, value: shownNumber(value), unit }); };
-  add(at('run').value === 'stand' ? 'largest deviation of the load' : 'largest following error', f.peakError * u.small, u.smallUnit);
+  add(at('run').value === 'shaft' ? 'largest deviation of the load' : 'largest following error', f.peakError * u.small, u.smallUnit);
   add('mean of its magnitude', f.meanError * u.small, u.smallUnit);
   if (f.dwell !== null) add('residual over the dwell, peak to peak', f.dwell * u.small, u.smallUnit);
   if (f.dwellArea !== null) add('area over the dwell', f.dwellArea * u.slave * u.master, `${u.slaveUnit}·${u.masterUnit}`);
@@ -319,7 +328,7 @@ function figureRows(run) {
 function drawMachine() {
   const machine = state.machine;
   at('machine-name').textContent = machine ? machine.name : 'No machine';
-  at('keep').disabled = !machine;
+  at('keep').disabled = at('sweep').disabled = !machine;
   if (!machine) {
     at('machine-sentence').textContent = 'Open a machine file, or write the page with --machine, to see what an axis does with this motion.';
     at('chart-5').replaceChildren();
@@ -328,12 +337,12 @@ function drawMachine() {
     return;
   }
   at('machine-sentence').textContent = `axis ${machine.axis}${machine.frequency ? `, natural frequency ${shownNumber(machine.frequency * Math.sqrt(Number(at('stiffness').value) / 100))} Hz` : ''}`;
-  at('stiffness').disabled = !machine.elastic || at('run').value !== 'stand';
+  at('stiffness').disabled = !machine.elastic || at('run').value !== 'shaft';
   at('command').textContent = repeatingCommand();
-  const stand = at('run').value === 'stand', begun = performance.now(), u = shownUnits();
+  const shaft = at('run').value === 'shaft', begun = performance.now(), u = shownUnits();
   let run = null;
   try {
-    run = engine.run(stand ? 'stand' : 'follow', { x: masterSpeed, y: Number(at('stiffness').value) / 100, flag: Math.max(1, Math.min(20, Number(at('cycles').value) || 2)) });
+    run = engine.run(shaft ? 'shaft' : 'follow', { x: masterSpeed, y: Number(at('stiffness').value) / 100, flag: Math.max(1, Math.min(20, Number(at('cycles').value) || 2)) });
   } catch (error) {
     shownRun = null;
     at('machine-chart-name').textContent = '';
@@ -345,7 +354,7 @@ function drawMachine() {
   for (let i = 0; i < run.ticks.length; i += 3 * every) { xs.push(run.ticks[i] * u.master); ys.push(run.ticks[i + 1] * u.small); }
   shownRun = { xs, ys, unit: u.smallUnit, run };
   const series = [...(kept && kept.unit === u.smallUnit ? [{ ...kept, class: 'before' }] : []), { xs, ys, class: 'second' }];
-  at('machine-chart-name').textContent = stand ? 'Deviation of the load in the last cycle' : 'Following error in the last cycle';
+  at('machine-chart-name').textContent = shaft ? 'Deviation of the load in the last cycle' : 'Following error in the last cycle';
   drawChart(at('chart-5'), { x: [0, state.cycle * u.master], xTicks: masterTicks(state.cycle * u.master, state.master === 'rotary'), xLabel: `master, ${u.masterUnit}`,
     y: rangeOf(series.flatMap(each => each.ys)), yLabel: u.smallUnit, series, label: labelOf(at('machine-chart-name').textContent, ys, u.smallUnit) });
   at('figures').tBodies[0].replaceChildren(...figureRows(run).map(row => element('tr', {}, element('th', { scope: 'row' }, row.text), element('td', { class: 'number' }, row.value), element('td', {}, row.unit))));
@@ -357,9 +366,42 @@ function machineSoon() {
   machineTimer = setTimeout(drawMachine, MACHINE_DELAY);
 }
 
+// ---- sweep of the speed ----
+
+const SWEEP = { points: 21, least: 0.5, most: 1.5 };
+let sweeping = 0;
+
+// A run at each speed, one after the other so that the page stays alive; a change of the motion ends it.
+function sweep() {
+  if (!state.machine) return;
+  const own = ++sweeping, u = shownUnits(), shaft = at('run').value === 'shaft', xs = [], ys = [];
+  const cycles = Math.max(1, Math.min(20, Number(at('cycles').value) || 2)), stiffness = Number(at('stiffness').value) / 100;
+  const name = shaft ? 'Residual over the dwell, peak to peak, over the speed' : 'Largest following error over the speed';
+  const highest = Math.min(...state.limits.map(limit => limit.highest_speed ?? Infinity));
+  at('swept').hidden = false;
+  at('sweep-name').textContent = name;
+  const next = k => {
+    if (own !== sweeping) return;
+    const speed = masterSpeed * (SWEEP.least + (SWEEP.most - SWEEP.least) * k / (SWEEP.points - 1));
+    try {
+      const { figures } = engine.run(shaft ? 'shaft' : 'follow', { x: speed, y: stiffness, flag: cycles });
+      xs.push(speed * u.speed);
+      ys.push((shaft && figures.dwell !== null ? figures.dwell : figures.peakError) * u.small);
+    } catch { /* beyond what the axis does: a gap in the curve */ }
+    if (xs.length) drawChart(at('chart-6'), { x: [masterSpeed * SWEEP.least * u.speed, masterSpeed * SWEEP.most * u.speed], y: [0, rangeOf(ys, [0])[1]], xLabel: `speed of the master, ${u.speedUnit}`, yLabel: u.smallUnit,
+      series: [{ xs, ys, class: 'second' }], marks: highest < masterSpeed * SWEEP.most && highest > masterSpeed * SWEEP.least ? [{ x: highest * u.speed, y: 0, text: `limits of the axis are kept up to ${withUnit(highest * u.speed, u.speedUnit)}` }] : [],
+      label: labelOf(name, ys, u.smallUnit) });
+    if (k + 1 < SWEEP.points) setTimeout(next, 0, k + 1);
+  };
+  next(0);
+}
+
 // ---- all of it ----
 
 function refresh() {
+  ++sweeping;
+  at('swept').hidden = true;
+  for (let k = 0; k < 6; ++k) sizeOf(at(`chart-${k}`));
   const begun = performance.now();
   state = JSON.parse(engine.call('state', { x: masterSpeed }).text);
   select(selected);
@@ -395,6 +437,12 @@ function saveCurves() {
   offer(motionName.replace(/[.]toml$/, '') + '.csv', 'text/csv', [`# cam: ${state.name}`, `# speed of the master: ${speedText()}`, head.join(','), ...rows].join('\r\n') + '\r\n');
 }
 
+// As `stiction cam table` and `stiction cam export` write them.
+function saveExport() {
+  const format = at('format').value, name = motionName.replace(/[.]toml$/, '');
+  attempt(() => offer(format === 'table' ? `${name}.scam` : `${name}.${format}.txt`, 'application/octet-stream', engine.call('exported', { text: format }).bytes));
+}
+
 function reportText() {
   const u = shownUnits(), machine = machineName?.replace(/[.]toml$/, ''), lines = [`# Cam ${state.name}`, '', `Written by stiction ${DATA.version}. Motion: ${motionName}. Speed of the master: ${speedText()}.`, '', '## Segments', '',
     '| segment | law | ends at | position | stroke |', '| --- | --- | --- | --- | --- |'];
@@ -426,10 +474,13 @@ function listen() {
   at('save').addEventListener('click', save);
   at('points').addEventListener('click', saveCurves);
   at('report').addEventListener('click', () => offer(`${state.name}-report.md`, 'text/markdown', reportText()));
+  at('sweep').addEventListener('click', sweep);
+  at('export').addEventListener('click', saveExport);
   at('speed').addEventListener('change', () => {
     const value = Number(at('speed').value);
     if (!(value > 0)) { at('speed').value = plainNumber(masterSpeed * shownUnits().speed); return say('Speed of the master: found nothing above 0; expected more than 0.', true); }
     masterSpeed = value / shownUnits().speed;
+    say('');
     refresh();
   });
   at('fourth').addEventListener('change', drawCurves);
@@ -468,7 +519,7 @@ function listen() {
   let size = '';
   new ResizeObserver(() => {
     const now = `${at('studio').clientWidth}`;
-    if (now !== size && state) { size = now; drawCurves(); machineSoon(); }
+    if (now !== size && state) { size = now; forgetSizes(); drawCurves(); machineSoon(); }
   }).observe(at('studio'));
 }
 
@@ -500,6 +551,7 @@ async function begin() {
   state = JSON.parse(engine.call('state', { x: masterSpeed }).text);
   at('speed').value = plainNumber(masterSpeed * shownUnits().speed);
   if (!state.machine?.elastic) at('run').value = 'follow';
+  at('format').replaceChildren(element('option', { value: 'table' }, 'Drive’s table'), ...JSON.parse(engine.call('formats').text).map(format => element('option', { value: format.name, title: format.text }, format.name)));
   listen();
   refresh();
 }

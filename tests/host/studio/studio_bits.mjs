@@ -1,16 +1,18 @@
 // Runs the page's own programme, taken out of a studio's page, and compares every value with the desk's
 // (write_studio_values): profile, following error and load over three cycles on the stand, the project's functions of a
 // million arguments, and the motion file.
-// usage: node studio_bits.mjs STUDIO.html MOTION MACHINE SPEED FOLDER
+// The drive's table and the files for controllers of other makers are those that the programme STICTION writes.
+// usage: node studio_bits.mjs STUDIO.html MOTION MACHINE SPEED FOLDER STICTION
 // Exit 0: all bits are the same; 1: a message says what differs; 2: usage.
+import { execFileSync } from 'node:child_process';
 import { existsSync, readFileSync, statSync } from 'node:fs';
 import { basename } from 'node:path';
 
 const CYCLES = 3, ARGUMENTS = 1000000, MOST_BYTES = 6e6;
 const FUNCTIONS = ['sine', 'cosine', 'exponential', 'logarithm', 'square root'];
-const [page, motion, machine, speedText, folder] = process.argv.slice(2);
-if (!folder) {
-  console.error('usage: node studio_bits.mjs STUDIO.html MOTION MACHINE SPEED FOLDER');
+const [page, motion, machine, speedText, folder, stiction] = process.argv.slice(2);
+if (!stiction) {
+  console.error('usage: node studio_bits.mjs STUDIO.html MOTION MACHINE SPEED FOLDER STICTION');
   process.exit(2);
 }
 const speed = Number(speedText), problems = [], html = readFileSync(page, 'utf8');
@@ -43,9 +45,22 @@ const { table } = engine.call('curves', { x: speed, at: 600 }), profile = new Fl
 for (let row = 0; row * 7 < table.length; ++row) profile.set(table.subarray(7 * row, 7 * row + 5), 5 * row);
 compare('profile', profile, desk('profile.bin'));
 if (existsSync(`${folder}/follow.bin`)) compare('following error over three cycles', engine.run('follow', { x: speed, flag: CYCLES }).record, desk('follow.bin'));
-compare('load over three cycles', engine.run('stand', { x: speed, y: 1, flag: CYCLES }).record, desk('stand.bin'));
+compare('load over three cycles', engine.run('shaft', { x: speed, y: 1, flag: CYCLES }).record, desk('stand.bin'));
 FUNCTIONS.forEach((name, k) => compare(name, engine.call('numbers', { at: ARGUMENTS, flag: k }).table, desk(`numbers-${k}.bin`)));
 expect(engine.call('motion_text').text === readFileSync(`${folder}/motion.toml`, 'utf8'), 'the motion file of the page is not that of the desk');
+const written = `${folder}/exported`;
+for (const format of ['table', ...JSON.parse(engine.call('formats').text).map(({ name }) => name)]) {
+  let wanted = null, found = null;
+  try {
+    execFileSync(stiction, format === 'table' ? ['cam', 'table', motion, '--out', written] : ['cam', 'export', motion, '--format', format, '-o', written], { stdio: 'pipe' });
+    wanted = readFileSync(written);
+  } catch { /* a format that does not hold this motion; the page must refuse it as well */ }
+  try {
+    found = Buffer.from(engine.call('exported', { text: format }).bytes);
+  } catch { /* refused */ }
+  expect(wanted === null ? found === null : found !== null && wanted.equals(found), `the page's export ${format} is not the command's`);
+  if (wanted) console.log(`export ${format}: ${wanted.length} bytes, the same`);
+}
 const size = statSync(page).size;
 expect(size <= MOST_BYTES, `the page has ${size} bytes`);
 console.log(`page: ${(size / 1e6).toFixed(2)} MB`);

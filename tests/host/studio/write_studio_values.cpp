@@ -44,8 +44,8 @@ std::vector<double> profile_of(const cam::Curve& curve) {
     const int count = std::max(8, static_cast<int>(600.0 * piece.length() / curve.length()));
     for (int k = 0; k <= count; ++k) {
       const double x = k == count ? piece.end : piece.begin + piece.length() * k / count;
-      rows.insert(rows.end(), {x, piece.derivative(x, 0), piece.derivative(x, 1), piece.derivative(x, 2),
-                               piece.derivative(x, 3)});
+      rows.insert(rows.end(),
+                  {x, piece.derivative(x, 0), piece.derivative(x, 1), piece.derivative(x, 2), piece.derivative(x, 3)});
     }
   }
   return rows;
