@@ -1,4 +1,4 @@
-// `stiction cam studio`.
+// `stiction cam studio` and `stiction cam open`.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -7,7 +7,7 @@
 
 namespace stiction::host {
 
-// Adds the command to `cam`; `invocation`: how the programme was called.
+// Adds the commands to `cam`; `invocation`: how the programme was called.
 void add_cam_studio(CLI::App& cam, const Invocation& invocation);
 
 }  // namespace stiction::host

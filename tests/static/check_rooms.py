@@ -250,7 +250,8 @@ ROOMS = {
         "host/report": "on a page with the colours of the reports,",
         "sim/*": "with the laws of the simulation",
         "firmware/machine/*": "on a machine as its file describes it",
-        f"{FIRMWARE}/number": "in the drive's formats",
+        f"{FIRMWARE}/number": "in the drive's formats,",
+        f"{FIRMWARE}/motion": "and the drive's table is read back",
     },
     # What the page's compilation has in place of files, exceptions and the database of units.
     "host/studio/wasm": {

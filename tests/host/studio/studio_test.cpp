@@ -4,11 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
+#include "host/simulate/cam_run.hpp"
 #include "host/studio/level.hpp"
+#include "host/studio/read_back.hpp"
 #include "sim/cam/motion_file.hpp"
+#include "sim/cam/segment_table.hpp"
 #include "sim/machine_file.hpp"
+#include "stiction/number/fixed_signals.hpp"
 
 namespace stiction::host {
 namespace {
@@ -152,6 +157,56 @@ TEST(StudioOfNothing, TakesASlopingSineAndItsHarmonicsFromTheLaw) {
   const auto amplitudes = studio.harmonics(5);
   EXPECT_NEAR(amplitudes[0], 1.0, 1e-12);  // 2 pi h / L^2 with h = L = 2 pi
   for (std::size_t k = 1; k < amplitudes.size(); ++k) EXPECT_NEAR(amplitudes[k], 0.0, 1e-12);
+}
+
+sim::cam::Motion smooth_motion() {
+  return compose(sim::cam::read_motion_file(STICTION_SOURCE_DIR "/tests/host/studio/smooth.toml").front());
+}
+
+// Largest difference of the positions of two motions over a cycle.
+double difference(const sim::cam::Motion& a, const sim::cam::Motion& b) {
+  double largest = 0.0;
+  for (int k = 0; k < 3600; ++k) {
+    const double x = a.curve.length() * k / 3600.0;
+    largest = std::max(largest, std::fabs(a.curve(x) - b.curve(x)));
+  }
+  return largest;
+}
+
+TEST(ReadBack, TheTableOfTheDriveIsTheMotionWithinItsProvenBound) {
+  const auto motion = smooth_motion();
+  const auto table = table_within(motion, sim::cam::table_tolerance(motion));
+  const auto read = compose(cam_of_table(table.bytes, "read"));
+  EXPECT_NEAR(read.cam.cycle(), motion.cam.cycle(), rounding);
+  EXPECT_NEAR(*read.cam.modulo, 30 * degree, 1e-9);
+  // The drive's integers are within the bound of the motion, and the read motion within their rounding of them.
+  EXPECT_LT(difference(read, motion), 4 * table.bound.position);
+}
+
+TEST(ReadBack, WhatIsNoTableOrLogOfACamIsRefused) {
+  EXPECT_THROW(cam_of_table({}, "read"), CamError);
+  EXPECT_THROW(cam_of_log({}, "read"), CamError);
+  Log log;
+  log.axes.emplace_back().master = {0.0, 1.0, 2.0};
+  log.axes[0].x = {0.0, 1.0, 2.0};
+  EXPECT_THROW(cam_of_log(log, "read"), CamError);
+}
+
+TEST(ReadBack, TheSetPointsOfALogAreTheMotion) {
+  const auto motion = smooth_motion();
+  const auto machine = sim::read_machine(STICTION_SOURCE_DIR "/firmware/machine/shipped/cam-stand.toml");
+  const auto run = run_cam<FixedSignals>(machine, motion, {.master_speed = 10.0, .cycles = 2});
+  const auto read = compose(cam_of_log(run.log, "read"));
+  EXPECT_NEAR(read.cam.cycle(), 360 * degree, rounding);
+  // Where a cycle begins is known from a master that is recorded each tick: 10 rad/s in 62.5 us are 0.036 degrees, over
+  // which a straight line replaces the motion; the spline between samples of half a degree is 1e-6 of the stroke off.
+  const double begin = motion.curve(0.0), read_begin = read.curve(0.0);
+  double largest = 0.0;
+  for (int k = 0; k < 3600; ++k) {
+    const double x = motion.curve.length() * k / 3600.0;
+    largest = std::max(largest, std::fabs((read.curve(x) - read_begin) - (motion.curve(x) - begin)));
+  }
+  EXPECT_LT(largest, 1e-4 * 30 * degree);
 }
 
 }  // namespace
