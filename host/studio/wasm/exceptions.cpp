@@ -85,7 +85,8 @@ std::uintptr_t selector_of(const std::uint8_t* action, const std::uint8_t* types
     const std::intptr_t next = signed_number(action);
     if (index > 0) {
       const std::type_info* wanted = nullptr;
-      std::memcpy(&wanted, types - index * static_cast<std::intptr_t>(sizeof(void*)), sizeof(void*));
+      constexpr std::intptr_t size = sizeof(wanted);
+      std::memcpy(&wanted, types - index * size, size);
       if (wanted == nullptr || derives(thrown, *wanted)) return static_cast<std::uintptr_t>(index);
     }
     if (next == 0) return 0;
