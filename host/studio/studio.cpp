@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "host/cam/exchange.hpp"
+#include "host/cam/shape.hpp"
 #include "host/simulate/cam_run.hpp"
 #include "host/simulate/stand_run.hpp"
 #include "host/studio/level.hpp"
@@ -14,6 +15,7 @@
 #include "sim/cam/motion_file.hpp"
 #include "sim/cam/motion_keys.hpp"
 #include "sim/cam/segment_table.hpp"
+#include "sim/cam/shaping/methods.hpp"
 #include "sim/machine_file.hpp"
 #include "sim/number/sine_cosine.hpp"
 #include "stiction/number/fixed_signals.hpp"
@@ -27,6 +29,7 @@ using sim::cam::Segment;
 
 constexpr std::size_t most_steps = 200;  // of editing that can be undone
 constexpr std::size_t transformed_points = 4096;
+constexpr double usual_band = 0.2;  // of `stiction cam shape`
 
 Cam empty_cam() {
   Cam cam;
@@ -244,6 +247,18 @@ void Studio::keep(Cam cam, bool goes_on) {
 
 void Studio::edit(const Step& step) { keep(edited(cam(), step), step.goes_on); }
 
+void Studio::shape(std::string_view method, double speed) {
+  const auto* found = sim::cam::find_shaping_method(method);
+  if (found == nullptr) throw CamError(fmt::format("found the method \"{}\"; expected one of the list", method));
+  const auto& axis = required_machine().axes.front();
+  if (!axis.elastic()) throw CamError("found an axis without an elastic shaft; expected one whose load vibrates");
+  auto task = shaping_task(motion_, sim::cam::elastic_drive_of(axis), speed, usual_band, {});
+  task.limits = limits_of(load_, task.stroke, task.rise_time());
+  auto made = sim::cam::shaped(task, *found);
+  if (!made) throw CamError(fmt::format("found no room for the method {}; expected a longer rise or dwell", method));
+  keep(std::move(made->cam), false);
+}
+
 bool Studio::undo() {
   if (past_.empty()) return false;
   future_.push_back({std::move(cams_), std::move(motion_)});
@@ -284,6 +299,13 @@ std::string Studio::state_json(double speed) const {
       list(jumps_of(motion_), jump_json), list(duty.limits, limit_json), number(duty.extremes[1].magnitude()),
       number(duty.extremes[2].magnitude()), number(std::fabs(e.motor.value)), number(e.motor_rms),
       number(std::fabs(e.load.value)), number(std::fabs(e.cam.value)), machine);
+}
+
+std::string Studio::methods_json() {
+  return list(sim::cam::shaping_methods(), [](const sim::cam::ShapingMethod& method) {
+    return fmt::format(R"({{"name":{},"label":{},"needs":{}}})", quoted(method.name), quoted(method.label),
+                       quoted(method.needs));
+  });
 }
 
 std::string Studio::formats_json() {

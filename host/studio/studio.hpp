@@ -69,6 +69,10 @@ class Studio {
     bool goes_on = false;
   };
   void edit(const Step& step);
+  // Replaces the motion, in one step, by what `method` of `stiction cam shape` makes of it at the `speed` of the master
+  // with the usual band of 20 %. Throws sim::cam::CamError where it has no room or the motion or the axis has no dwell,
+  // elastic shaft or machine.
+  void shape(std::string_view method, double speed);
   bool undo();  // whether there was a step to take back
   bool redo();
 
@@ -81,7 +85,8 @@ class Studio {
   std::string state_json(double speed) const;
   // All laws with their parameters, as JSON.
   static std::string laws_json();
-  // All formats of other makers, as JSON.
+  // All methods against residual vibration, and all formats of other makers, as JSON.
+  static std::string methods_json();
   static std::string formats_json();
   // The unit law number `k` of the table of laws at 41 places.
   static StudioTable law_curve(std::size_t k);

@@ -32,7 +32,9 @@ enum class Call : std::int32_t {
   shaft,
   numbers,
   formats,
-  exported
+  exported,
+  methods,
+  shape
 };
 
 struct Answer {
@@ -110,6 +112,11 @@ void serve(Call call, std::size_t at, double x, double y, std::int32_t flag) {
     case Call::formats:
       answer.text = Studio::formats_json();
       return;
+    case Call::methods:
+      answer.text = Studio::methods_json();
+      return;
+    case Call::shape:
+      return studio->shape(two_texts().first, x);
     case Call::exported:
       answer.text = studio->exported_file(two_texts().first);
       return;

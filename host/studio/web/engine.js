@@ -4,7 +4,7 @@
 
 // In the order of Call in wasm/exports.cpp.
 const CALLS = ['load_motion', 'load_machine', 'edit', 'undo', 'redo', 'motion_text', 'state', 'laws', 'law_curve', 'curves',
-               'harmonics', 'follow', 'shaft', 'numbers', 'formats', 'exported'];
+               'harmonics', 'follow', 'shaft', 'numbers', 'formats', 'exported', 'methods', 'shape'];
 const RUN_FIGURES = ['peakError', 'meanError', 'peakEffort', 'rmsEffort', 'motorError', 'dwell', 'dwellArea'];
 
 // What the C library asks of a system: there is no environment and nothing to write to.

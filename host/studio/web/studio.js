@@ -329,6 +329,7 @@ function drawMachine() {
   const machine = state.machine;
   at('machine-name').textContent = machine ? machine.name : 'No machine';
   at('keep').disabled = at('sweep').disabled = !machine;
+  at('shape').disabled = !machine?.elastic;
   if (!machine) {
     at('machine-sentence').textContent = 'Open a machine file, or write the page with --machine, to see what an axis does with this motion.';
     at('chart-5').replaceChildren();
@@ -396,6 +397,22 @@ function sweep() {
   next(0);
 }
 
+// ---- methods against residual vibration ----
+
+// The motion before stays to be compared with, and comes back by undo.
+function shape() {
+  const before = shownRun;
+  const done = attempt(() => engine.call('shape', { text: at('method').value, x: masterSpeed }));
+  if (!done) return;
+  keepRun(before);
+  refresh();
+}
+
+function keepRun(run) {
+  kept = run;
+  at('keep').textContent = kept ? 'End the comparison' : 'Compare with this';
+}
+
 // ---- all of it ----
 
 function refresh() {
@@ -459,7 +476,7 @@ async function openFile(file) {
   if (!done) return say(`${at('message').textContent} The motion here is as it was.`, true);
   if (machine) machineName = file.name;
   else { motionName = file.name; selected = 0; }
-  kept = null;
+  keepRun(null);
   refresh();
   say(`${file.name} is open.`);
 }
@@ -484,9 +501,10 @@ function listen() {
     refresh();
   });
   at('fourth').addEventListener('change', drawCurves);
-  for (const id of ['run', 'cycles']) at(id).addEventListener('change', () => { kept = id === 'run' ? null : kept; drawMachine(); });
+  for (const id of ['run', 'cycles']) at(id).addEventListener('change', () => { if (id === 'run') keepRun(null); drawMachine(); });
   at('stiffness').addEventListener('input', () => { at('stiffness-value').textContent = `${at('stiffness').value} %`; machineSoon(); });
-  at('keep').addEventListener('click', () => { kept = kept ? null : shownRun; at('keep').textContent = kept ? 'End the comparison' : 'Compare with this'; drawMachine(); });
+  at('keep').addEventListener('click', () => { keepRun(kept ? null : shownRun); drawMachine(); });
+  at('shape').addEventListener('click', shape);
   at('insert').addEventListener('click', () => step('insert', selected));
   at('split').addEventListener('click', () => step('split', 0, { x: state.segments[selected].begin + 0.5 * state.segments[selected].length }));
   at('remove').addEventListener('click', () => step('remove', selected));
@@ -552,6 +570,7 @@ async function begin() {
   at('speed').value = plainNumber(masterSpeed * shownUnits().speed);
   if (!state.machine?.elastic) at('run').value = 'follow';
   at('format').replaceChildren(element('option', { value: 'table' }, 'Drive’s table'), ...JSON.parse(engine.call('formats').text).map(format => element('option', { value: format.name, title: format.text }, format.name)));
+  at('method').replaceChildren(...JSON.parse(engine.call('methods').text).slice(1).filter(method => method.name !== 'band-optimal').map(method => element('option', { value: method.name, title: `needs ${method.needs}` }, method.label)));
   listen();
   refresh();
 }

@@ -146,6 +146,18 @@ async function checkSweep(page) {
   expect(await becomes(page, () => document.querySelectorAll('#chart-6 .curve').length === 1 && (document.querySelector('#chart-6 .curve').getAttribute('d').match(/[ML]/g) || []).length === 21), 'the sweep of the speed does not draw its 21 speeds');
 }
 
+async function checkShaping(page) {
+  const before = await motionText(page), residual = () => page.evaluate(() => shownRun.run.figures.dwell), shaken = await residual();
+  await page.locator('#method').selectOption('zvd');
+  await page.locator('#shape').click();
+  expect(await motionText(page) !== before, 'a method of shaping does not change the motion');
+  expect(await becomes(page, shaken => shownRun?.run.figures.dwell < 0.1 * shaken, shaken), `ZVD leaves ${await residual()} of ${shaken}`);
+  expect(await page.locator('#chart-5 .before').count() === 1, 'the run before shaping is not drawn');
+  await page.keyboard.press('Control+z');
+  expect(await motionText(page) === before, 'undo does not bring back the motion before shaping');
+  await page.locator('#keep').click();
+}
+
 async function checkFiles(page) {
   const file = await checkSaved(page, () => page.keyboard.press('Control+s')), before = await motionText(page);
   await page.locator('#remove').click();
@@ -249,6 +261,7 @@ try {
     await checkLaws(page);
     await checkRules(page);
     await checkSweep(page);
+    await checkShaping(page);
     await checkNames(page);
     await checkLooks(page);
     await checkFiles(page);
