@@ -257,7 +257,7 @@ ROOMS = {
     "host/studio/wasm": {
         "host/studio": "the page calls the studio",
         "firmware/machine/file": "with units and files of its own",
-        "sim": "its units are those of the machine files",
+        "sim/*": "its units are those of the machine files, and no linear programme is solved there",
     },
     "host/cli": {
         "host/studio": "a command writes the studio's page,",
