@@ -50,10 +50,13 @@ std::string still_html(const Studio& studio, double speed) {
     path += fmt::format("{}{:.2f} {:.2f}", path.empty() ? "M" : "L", 600.0 * curves.values[i] / cycle,
                         150.0 - 140.0 * (curves.values[i + 1] - low) / range);
   std::string rows;
+  const auto number = [](const json& value) {
+    return value.is_number() ? fmt::format("{:.5g}", value.get<double>()) : "–";
+  };
   for (const auto& limit : state["limits"])
-    rows += fmt::format("<tr><th>{}</th><td>{:.5g}</td><td>{:.5g}</td><td class=\"text\">{}</td></tr>",
-                        escape_html(limit["name"].get<std::string>()), limit["found"].get<double>(),
-                        limit["allowed"].get<double>(), escape_html(limit["unit"].get<std::string>()));
+    rows += fmt::format("<tr><th>{}</th><td>{}</td><td>{}</td><td class=\"text\">{}</td></tr>",
+                        escape_html(limit["name"].get<std::string>()), number(limit["found"]), number(limit["allowed"]),
+                        escape_html(limit["unit"].get<std::string>()));
   return fmt::format(
       "<svg viewBox=\"0 0 600 160\" role=\"img\" aria-label=\"Position of {} over a cycle\"><path d=\"{}\" "
       "fill=\"none\" "
