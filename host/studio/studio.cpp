@@ -101,7 +101,7 @@ Cam edited(const Cam& cam, const Studio::Step& step) {
 
 // ---- JSON, which the page alone reads ----
 
-std::string quoted(std::string_view text) {
+std::string json_text(std::string_view text) {
   std::string result = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') result += '\\';
@@ -128,20 +128,20 @@ std::string values_json(const sim::cam::LawValues& values) {
   std::string result = "{";
   for (const auto& [key, given] : values)
     if (given.size() == 1)
-      result += fmt::format("{}{}:{}", result.size() > 1 ? "," : "", quoted(key), number(given[0]));
+      result += fmt::format("{}{}:{}", result.size() > 1 ? "," : "", json_text(key), number(given[0]));
   return result + "}";
 }
 
 std::string parameter_json(const machine::ValueKey& key) {
-  return fmt::format(R"({{"key":{},"least":{},"most":{},"default":{},"text":{},"list":{}}})", quoted(key.key),
-                     number(key.range.low), number(key.range.high), number(key.fallback), quoted(key.text),
+  return fmt::format(R"({{"key":{},"least":{},"most":{},"default":{},"text":{},"list":{}}})", json_text(key.key),
+                     number(key.range.low), number(key.range.high), number(key.fallback), json_text(key.text),
                      key.list ? "true" : "false");
 }
 
 std::string law_json(const sim::cam::Law& law) {
   return fmt::format(R"({{"number":{},"name":{},"task":{},"kind":{},"english":{},"formula":{},"parameters":{}}})",
-                     law.number, quoted(law.name), quoted(task_of(law)), quoted(sim::cam::name_of(law.kind)),
-                     quoted(law.english), quoted(law.formula), list(law.parameters, parameter_json));
+                     law.number, json_text(law.name), json_text(task_of(law)), json_text(sim::cam::name_of(law.kind)),
+                     json_text(law.english), json_text(law.formula), list(law.parameters, parameter_json));
 }
 
 std::string segment_json(const Cam& cam, std::size_t k) {
@@ -149,19 +149,20 @@ std::string segment_json(const Cam& cam, std::size_t k) {
   return fmt::format(R"({{"begin":{},"length":{},"from":{},"stroke":{},"rise":{},"law":{},"values":{},"speed":{},)"
                      R"("acceleration":{},"jerk":{}}})",
                      number(cam.begin_of(k)), number(segment.length), number(cam.position_of(k)),
-                     number(segment.stroke), number(segment.rise()), quoted(segment.law), values_json(segment.values),
-                     number(segment.end.speed), number(segment.end.acceleration), number(segment.end.jerk));
+                     number(segment.stroke), number(segment.rise()), json_text(segment.law),
+                     values_json(segment.values), number(segment.end.speed), number(segment.end.acceleration),
+                     number(segment.end.jerk));
 }
 
 std::string jump_json(const sim::cam::MotionJump& found) {
   return fmt::format(R"({{"place":{},"order":{},"height":{},"where":{},"segment":{},"share":{}}})",
                      number(found.jump.place), found.jump.order, number(found.jump.height),
-                     quoted(name_of(found.where)), found.segment, number(found.share));
+                     json_text(name_of(found.where)), found.segment, number(found.share));
 }
 
 std::string limit_json(const Limit& limit) {
   return fmt::format(R"({{"name":{},"unit":{},"found":{},"allowed":{},"place":{},"highest_speed":{},"broken":{}}})",
-                     quoted(limit.name), quoted(limit.unit), number(limit.found), number(limit.allowed),
+                     json_text(limit.name), json_text(limit.unit), number(limit.found), number(limit.allowed),
                      number(limit.place), number(limit.highest_speed), limit.broken() ? "true" : "false");
 }
 
@@ -284,7 +285,7 @@ std::string Studio::state_json(double speed) const {
   if (machine_)
     machine = fmt::format(
         R"({{"id":{},"name":{},"axis":{},"effort_unit":{},"effort":{},"frequency":{},"stiffness":{},"elastic":{},"fixed":{}}})",
-        quoted(machine_->id), quoted(machine_->name), quoted(load_.axis), quoted(load_.effort_unit()),
+        json_text(machine_->id), json_text(machine_->name), json_text(load_.axis), json_text(load_.effort_unit()),
         number(load_.largest_effort), number(load_.frequency), number(stiffness_of(machine_->axes.front())),
         machine_->axes.front().elastic() ? "true" : "false",
         machine_->axes.front().cascaded() && machine_->fits_formats() ? "true" : "false");
@@ -293,7 +294,7 @@ std::string Studio::state_json(double speed) const {
       R"({{"name":{},"cams":{},"master":{},"slave":{},"cycle":{},"periodic":{},"start":{},"modulo":{},"segments":{},)"
       R"("tracks":{},"undo":{},"redo":{},"jumps":{},"limits":{},"speed_peak":{},"acceleration_peak":{},)"
       R"("motor":{},"motor_rms":{},"load_effort":{},"classic":{},"machine":{}}})",
-      quoted(c.name), cams_.size(), quoted(sim::cam::name_of(c.master)), quoted(sim::cam::name_of(c.slave)),
+      json_text(c.name), cams_.size(), json_text(sim::cam::name_of(c.master)), json_text(sim::cam::name_of(c.slave)),
       number(c.cycle()), c.periodic ? "true" : "false", number(c.start), number(c.modulo),
       list(numbers, [&](std::size_t k) { return segment_json(c, k); }), c.tracks.size(), past_.size(), future_.size(),
       list(jumps_of(motion_), jump_json), list(duty.limits, limit_json), number(duty.extremes[1].magnitude()),
@@ -303,14 +304,14 @@ std::string Studio::state_json(double speed) const {
 
 std::string Studio::methods_json() {
   return list(sim::cam::shaping_methods(), [](const sim::cam::ShapingMethod& method) {
-    return fmt::format(R"({{"name":{},"label":{},"needs":{}}})", quoted(method.name), quoted(method.label),
-                       quoted(method.needs));
+    return fmt::format(R"({{"name":{},"label":{},"needs":{}}})", json_text(method.name), json_text(method.label),
+                       json_text(method.needs));
   });
 }
 
 std::string Studio::formats_json() {
   return list(exchange_formats(), [](const ExchangeFormat& format) {
-    return fmt::format(R"({{"name":{},"text":{}}})", quoted(format.name), quoted(format.text));
+    return fmt::format(R"({{"name":{},"text":{}}})", json_text(format.name), json_text(format.text));
   });
 }
 
