@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware/machine/configuration/axis_configuration.hpp"
 #include "host/simulate/cam_run.hpp"
 #include "host/simulate/stand_run.hpp"
 #include "host/studio/number_check.hpp"
