@@ -48,6 +48,8 @@ Coordinate kind_of(CamTable::Kind kind) {
 // Where the master begins anew in `master`: the first sample of each cycle.
 std::vector<std::size_t> begins_of(const std::vector<double>& master) {
   std::vector<std::size_t> begins;
+  // A record that begins with a cycle.
+  if (master.size() > 1 && master[0] >= 0.0 && master[0] < 1.5 * (master[1] - master[0])) begins.push_back(0);
   const double range =
       *std::max_element(master.begin(), master.end()) - *std::min_element(master.begin(), master.end());
   for (std::size_t k = 1; k < master.size(); ++k)
@@ -104,6 +106,7 @@ Cam cam_of_log(const Log& log, const std::string& name) {
   if (turns > 0.0 && std::fabs(cycle - turns * 2.0 * std::numbers::pi) < near_turn * cycle)
     cycle = turns * 2.0 * std::numbers::pi;
   const auto at_seam = [&](std::size_t k) {  // between the sample before it and its own
+    if (k == 0) return slave[0] - master[0] / step * (slave[1] - slave[0]);
     const double before = cycle - master[k - 1], share = before / (before + master[k]);
     return slave[k - 1] + share * (slave[k] - slave[k - 1]);
   };
