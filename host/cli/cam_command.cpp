@@ -8,6 +8,7 @@
 
 #include "host/cli/cam_options.hpp"
 #include "host/cli/cam_output.hpp"
+#include "host/cli/cam_studio.hpp"
 #include "host/cli/choices.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
@@ -175,6 +176,7 @@ void add_cam(CLI::App& program, const Invocation& invocation) {
   add_cam_exchange(*command);
   add_cam_shape(*command, invocation);
   add_cam_step(*command, invocation);
+  add_cam_studio(*command, invocation);
 }
 
 }  // namespace stiction::host

@@ -243,7 +243,24 @@ ROOMS = {
         "sim/*": "beside the machine they belong to",
         "firmware/machine/*": "as its file describes it",
     },
+    "host/studio": {
+        "host/cam": "a motion is held against the limits of an axis",
+        "host/simulate": "and followed by it in runs of the simulation",
+        "host/log": "whose logs it shows",
+        "host/report": "on a page with the colours of the reports,",
+        "sim/*": "with the laws of the simulation",
+        "firmware/machine/*": "on a machine as its file describes it",
+        f"{FIRMWARE}/number": "in the drive's formats,",
+        f"{FIRMWARE}/motion": "and the drive's table is read back",
+    },
+    # What the page's compilation has in place of files, exceptions and the database of units.
+    "host/studio/wasm": {
+        "host/studio": "the page calls the studio",
+        "firmware/machine/file": "with units and files of its own",
+        "sim/*": "its units are those of the machine files, and no linear programme is solved there",
+    },
     "host/cli": {
+        "host/studio": "a command writes the studio's page,",
         "firmware/version": "the programme says which it is",
         "host/log": "a command reads and writes logs",
         "host/simulate": "runs experiments",
