@@ -10,6 +10,7 @@
 #include "host/diagnose/classes/candidate_columns.hpp"
 #include "host/diagnose/describe/diagnosis_charts.hpp"
 #include "host/diagnose/describe/master_charts.hpp"
+#include "host/diagnose/judge/behind_master.hpp"
 #include "host/diagnose/judge/closed_loop.hpp"
 #include "host/diagnose/judge/closed_loop_description.hpp"
 #include "host/diagnose/judge/command_residual.hpp"
@@ -136,9 +137,11 @@ void give_figures(Verdict& verdict, const Prepared& prepared, const Explained& e
 }
 
 // What the drive commanded, less what the file's controller gives.
-void judge_drive(Verdict& verdict, const DiagnoseInput& input, const Prepared& prepared, const SearchResult& found) {
+// `of_file`: the records with the file's own runs; `searched`: those in whose force the causes were looked for.
+void judge_drive(Verdict& verdict, const DiagnoseInput& input, const Prepared& of_file, const Prepared& searched,
+                 const SearchResult& found) {
   const auto& axis = input.machine.axes[input.axis];
-  const auto &training = prepared.training, &held_out = prepared.held_out;
+  const auto &training = of_file.training, &held_out = of_file.held_out;
   if (axis.elastic() && axis.velocity_encoder)
     verdict.notes.push_back(
         "The gains of the drive were not evaluated: its velocity controller sees a different encoder than the recorded "
@@ -146,7 +149,7 @@ void judge_drive(Verdict& verdict, const DiagnoseInput& input, const Prepared& p
   else if (axis.cascaded())
     judge_command(verdict, input, {training.logs, training.rows, training.simulated},
                   {held_out.logs, held_out.rows, held_out.simulated},
-                  record_delay(training.regressors, prepared.context, found));
+                  record_delay(searched.training.regressors, searched.context, found));
 }
 
 void say_what_is_left(Verdict& verdict, const Prepared& prepared, const Explained& explained) {
@@ -189,22 +192,27 @@ Verdict diagnose(const DiagnoseInput& input) {
   };
   Verdict verdict;
   begin(0);
-  const auto prepared = prepare(input, verdict);
-  const auto &training = prepared->training, &held_out = prepared->held_out;
+  const auto of_file = prepare(input, verdict);
+  // Said once.
+  Verdict again;
+  const auto behind = behind_master(input, *of_file);
+  const auto late = behind ? prepare(*behind, again) : nullptr;
+  Prepared& records = late ? *late : *of_file;
+  const auto &training = records.training, &held_out = records.held_out;
   begin(1);
-  auto found = search(*prepared, verdict);
+  auto found = search(records, verdict);
   verdict.exact_records = found.exact_records;
   begin(2);
-  const HeldOutData unseen{held_out.regressors, held_out.target, prepared->context, input.seed};
-  const auto explained = explain(*prepared, std::move(found), unseen, begin, verdict);
-  give_figures(verdict, *prepared, explained, unseen);
+  const HeldOutData unseen{held_out.regressors, held_out.target, records.context, input.seed};
+  const auto explained = explain(records, std::move(found), unseen, begin, verdict);
+  give_figures(verdict, records, explained, unseen);
   begin(4);
   propose_next_measurement(verdict,
-                           {input.machine, input.axis, prepared->settings, training.regressors, explained.inside,
-                            prepared->context, explained.found},
+                           {input.machine, input.axis, records.settings, training.regressors, explained.inside,
+                            records.context, explained.found},
                            input.next_measurement);
-  judge_drive(verdict, input, *prepared, explained.found);
-  say_what_is_left(verdict, *prepared, explained);
+  judge_drive(verdict, input, *of_file, records, explained.found);
+  say_what_is_left(verdict, records, explained);
   begin(5);
   double disturbed_position = 0.0;
   if (input.closed_loop) {
@@ -212,7 +220,7 @@ Verdict diagnose(const DiagnoseInput& input) {
     const Disturbance disturbance(explained.found.residual.cwiseProduct(rows.counts()), rows.logs(), rows.period(0));
     disturbed_position = judge_in_closed_loop(verdict, input.machine, input.axis, held_out.logs, disturbance);
   }
-  judge_agreement(verdict, *prepared, explained, input.seed, disturbed_position);
+  judge_agreement(verdict, records, explained, input.seed, disturbed_position);
   return verdict;
 }
 
