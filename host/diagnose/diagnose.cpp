@@ -7,10 +7,10 @@
 #include <functional>
 #include <iterator>
 
+#include "host/diagnose/behind_master.hpp"
 #include "host/diagnose/classes/candidate_columns.hpp"
 #include "host/diagnose/describe/diagnosis_charts.hpp"
 #include "host/diagnose/describe/master_charts.hpp"
-#include "host/diagnose/judge/behind_master.hpp"
 #include "host/diagnose/judge/closed_loop.hpp"
 #include "host/diagnose/judge/closed_loop_description.hpp"
 #include "host/diagnose/judge/command_residual.hpp"

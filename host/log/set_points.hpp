@@ -39,7 +39,7 @@ class SetPoints {
   // more than 20 %, which its jumps may need) is not: it is some other signal of the drive.
   bool velocity_is_logged() const { return velocity_is_logged_; }
   bool acceleration_is_logged() const { return acceleration_is_logged_; }
-  double period() const { return period_; }  // s, between samples
+  double period() const { return period_; }        // s, between samples
   double increment() const { return increment_; }  // m, the grid that x_set is written on; 0: none found
   double smoothing() const { return smoothing_; }  // s, the window's width; 0: not smoothed
 

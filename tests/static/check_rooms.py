@@ -189,6 +189,7 @@ ROOMS = {
         "host/diagnose/spectrum": "what is left is looked at for lines",
         "host/diagnose/statistics": "and for significance",
         "host/diagnose/verdict": "and becomes part of the verdict",
+        "host/log": "a slave is shown over its master",
         "host/identify": "over the rows of the fits",
     },
     "host/diagnose": {

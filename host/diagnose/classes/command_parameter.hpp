@@ -16,7 +16,7 @@ struct CommandParameter {
   double (*step)(const machine::AxisModel&, const machine::Timing&);  // for the difference, SI
   // A delay in the loop: never less than the file's, and easily taken for a record that is late.
   bool is_delay = false;
-  bool of_master = false;  // only where the records have the axis' master
+  bool of_master = false;                 // only where the records have the axis' master
   std::optional<sim::EffectId> effect{};  // by whose folder it is; set by command_parameters()
 };
 

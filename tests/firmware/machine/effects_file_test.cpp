@@ -54,8 +54,7 @@ TEST(EffectsFile, AnUnknownNameListsTheNamesAndTheNearest) {
                           "\"mass_mismatch\", \"coulomb_mismatch\", "))
       << message;
   EXPECT_NE(message.find("\"backlash\", "), std::string::npos);
-  EXPECT_NE(message.find("\"master_delay\" or \"force_map\"; did you mean \"force_ripple\"?"),
-            std::string::npos);
+  EXPECT_NE(message.find("\"master_delay\" or \"force_map\"; did you mean \"force_ripple\"?"), std::string::npos);
   EXPECT_TRUE(error_of_effect("width = \"2 um\"\n")
                   .starts_with("FILE:29: axis.B.effect[0].name: found no such key; expected a text"));
   EXPECT_TRUE(error_of_effect("name = 3\n").starts_with("FILE:30: axis.B.effect[0].name: found 3; expected a text"));

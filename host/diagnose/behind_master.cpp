@@ -1,4 +1,4 @@
-#include "host/diagnose/judge/behind_master.hpp"
+#include "host/diagnose/behind_master.hpp"
 
 #include <algorithm>
 
