@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "host/diagnose/record/cycle_mean.hpp"
 #include "host/diagnose/record/followed_set_points.hpp"
 #include "host/diagnose/record/record_rows.hpp"
 #include "host/diagnose/record/redrawn_residual.hpp"
@@ -22,7 +23,8 @@ class Maker {
         original_(original),
         machine_(input.machine),
         axis_(input.axis),
-        disturbance_(force, rows().logs(), rows().time, rows().period(0)),
+        disturbance_(without_cycle_mean(force, rows(), original.logs, prepared.axis), rows().logs(), rows().time,
+                     rows().period(0)),
         driven_(with_recorded_set_points(input.machine.axes[input.axis], original_.logs, prepared.settings.cutoff)),
         own_motion_(!prepared.known_motion ||
                     std::any_of(original_.logs.begin(), original_.logs.end(),

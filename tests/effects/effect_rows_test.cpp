@@ -102,9 +102,10 @@ TEST_P(EachEffect, SaysFromWhatRecordsItIsToldAndOverWhatItIsDrawn) {
 
 TEST_P(EachEffect, HasALaw) {
   const auto& law = effect()->law;
-  // These act at places of their own in the plant: it looks them up by their class.
-  const std::set<std::string_view> of_the_plant{"backlash", "encoder_subdivision_error", "force_saturation",
-                                                "structural_resonance", "cross_axis_coupling"};
+  // These act at places of their own, in the plant or on the set-points of a run, which look them up by their class.
+  const std::set<std::string_view> of_the_plant{
+      "backlash",    "encoder_subdivision_error", "force_saturation", "structural_resonance", "cross_axis_coupling",
+      "master_delay"};
   ASSERT_NE(law.check, nullptr);
   EXPECT_TRUE(law.change != nullptr || law.change_drive != nullptr || law.make_force != nullptr ||
               of_the_plant.contains(effect()->name));

@@ -7,9 +7,13 @@
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <random>
 #include <string>
 
 #include "host/diagnose/diagnose.hpp"
+#include "host/diagnose/record/cycle_mean.hpp"
+#include "host/diagnose/record/record.hpp"
+#include "host/diagnose/record/record_rows.hpp"
 #include "host/diagnose/verdict/verdict_json.hpp"
 #include "host/identify/own_identification.hpp"
 #include "host/simulate/cam_run.hpp"
@@ -76,6 +80,24 @@ TEST(CamLog, OfAStandIsFollowedThroughTheCyclesBeforeIt) {
   const double increment = stand().axes.front().encoder.increment;
   EXPECT_LT(rms_from(log), increment);
   EXPECT_GT(rms_from(without), 20.0 * increment);
+}
+
+// Five times as much as the noise, thrice in a cycle: a force of the place, whatever its cause.
+TEST(CamLog, WhatComesBackInEachCycleIsNoDisturbance) {
+  const auto axis = stand().axes.front();
+  Record record;
+  record.logs = linear_logs({cam_log(stand(), 130.0, 9, 16)}, axis);
+  measure(record, axis, wide_band(record.logs));
+  std::mt19937_64 random(7);
+  std::normal_distribution<> noise;
+  Eigen::VectorXd values(record.rows.rows()), wave(values.size());
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    wave[k] = std::sin(3.0 * 2.0 * std::numbers::pi * record.rows.time[k] * 130.0 / 60.0);
+    values[k] = 5.0 * wave[k] + noise(random);
+  }
+  const auto left = without_cycle_mean(values, record.rows, record.logs, axis);
+  EXPECT_NEAR(left.norm(), std::sqrt(static_cast<double>(left.size())), 0.05 * left.norm());
+  EXPECT_LT(std::abs(left.dot(wave)), 0.05 * left.norm() * wave.norm());
 }
 
 TEST(CamLog, OfASlaveBehindItsMasterNamesTheDelay) {
