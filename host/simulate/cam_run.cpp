@@ -6,7 +6,6 @@
 #include <numbers>
 #include <type_traits>
 
-#include "firmware/machine/configuration/axis_configuration.hpp"
 #include "firmware/machine/configuration/cam_configuration.hpp"
 #include "firmware/machine/configuration/double_signals.hpp"
 #include "host/simulate/control_run.hpp"
@@ -88,9 +87,7 @@ CamRun run_cam(machine::Machine machine, const sim::cam::Motion& motion, const C
   std::vector<Sums> parts(motion.segments.size());
   std::vector<double> masters, speeds;
   double squares = 0.0, energy = 0.0;
-  std::int64_t first_cycle = -1, ticks = 0;
-  const int slow = machine::slow_ratio(machine.timing);
-  bool recorded = false;
+  std::int64_t first_cycle = -1;
   // What the start did to an elastic axis is over before anything is measured.
   const auto settled = static_cast<std::int64_t>(std::ceil(swing_time(axis) * std::abs(settings.master_speed) / cycle));
   while (true) {
@@ -105,9 +102,6 @@ CamRun run_cam(machine::Machine machine, const sim::cam::Motion& motion, const C
     const std::int64_t gone = followed.position.cycles - first_cycle;
     if (first_cycle >= 0 && gone >= settings.cycles) break;
     const bool measured = first_cycle >= 0 && gone >= 0;
-    // The record begins with a tick of the position controller, as its replay does.
-    recorded = recorded || (measured && ticks % slow == 0);
-    ++ticks;
     if (measured) {
       auto& plant = run.plant(0);
       const double place = slave.place(followed.position);
@@ -125,12 +119,10 @@ CamRun run_cam(machine::Machine machine, const sim::cam::Motion& motion, const C
         result.following.push_back(error);
         result.effort.push_back(effort);
       }
-      if (recorded) {
-        masters.push_back(place / cycle * angle);
-        speeds.push_back(machine::motion_bounds({followed.velocity, 0, 0}, period).velocity * angle);
-      }
+      masters.push_back(place / cycle * angle);
+      speeds.push_back(machine::motion_bounds({followed.velocity, 0, 0}, period).velocity * angle);
     }
-    tick(run, set_points, recorded ? record : TraceSink<S>{});
+    tick(run, set_points, measured ? record : TraceSink<S>{});
   }
   result.rms_effort = std::sqrt(squares / static_cast<double>(whole.count));
   result.energy = energy / settings.cycles;

@@ -165,7 +165,7 @@ struct Table<CamAxisSetup> : EmptyTable<CamAxisSetup> {
   static constexpr std::array<Parameter<CamAxisSetup>, 1> parameters{{
       {"superposed_share",
        "1",
-       {0.01, 0.9},
+       {0.001, 0.9},
        &CamAxisSetup::superposed_share,
        0.1,
        "share of velocity, acceleration and jerk of the axis that a superposed move or a second cam may take; the rest "

@@ -77,7 +77,7 @@ class Cam(unittest.TestCase):
 
     def test_set_points_are_those_of_the_simulation_to_the_last_digit(self):
         table, trace, log = self.table(), self.folder / "trace.csv", self.folder / "log.csv"
-        status, said = self.run_drive("--cam", table, "--master", "virtual", "--speed", "130 rpm", "--hold", "2",
+        status, said = self.run_drive("--cam", table, "--master", "virtual", "--speed", "130 rpm", "--hold", "3",
                                       "--trace", trace)
         self.assertEqual(status, DONE, said)
         subprocess.run([BIN / "stiction", "simulate", "cam", "--machine", "screw-linear-scale", "--cam",

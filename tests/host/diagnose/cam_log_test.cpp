@@ -38,9 +38,13 @@ Log cam_log(const machine::Machine& machine, double turns, int cycles, std::size
   Log log = run.log;
   log.source = std::to_string(static_cast<int>(turns)) + " in a minute";
   log.period *= static_cast<double>(every);
+  // From a tick of the position controller on, as a replay begins.
+  const double slow = machine.timing.slow_period;
+  std::size_t first = 0;
+  while (std::abs(log.t[first] / slow - std::round(log.t[first] / slow)) > 1e-6) ++first;
   const auto thin = [&](std::vector<double>& values) {
     std::size_t kept = 0;
-    for (std::size_t k = 0; k < values.size(); k += every) values[kept++] = values[k];
+    for (std::size_t k = first; k < values.size(); k += every) values[kept++] = values[k];
     values.resize(kept);
   };
   thin(log.t);

@@ -45,8 +45,8 @@ class GearRatio {
     const std::uint64_t times = magnitude(numerator_);
     std::uint32_t product[5] = {};
     std::uint64_t carry = 0;
-    const auto next = [&](std::uint64_t word) {
-      carry += static_cast<std::uint32_t>(word) * times;
+    const auto next = [&](std::uint64_t digits) {
+      carry += static_cast<std::uint32_t>(digits) * times;
       const auto digit = static_cast<std::uint32_t>(carry);
       carry >>= 32;
       return digit;
