@@ -17,6 +17,9 @@ BY_CLASS = {
                                     "in a step of the plant",
     "host/simulate/replay.cpp": "the current of a record comes late",
     "host/simulate/late_current.hpp": "the current of a record comes late",
+    "host/simulate/late_set_points.hpp": "a slave has the set-points of its master late",
+    "host/diagnose/record/command_replay.cpp": "the same",
+    "host/diagnose/behind_master.cpp": "a late slave is simulated as late before its force is searched",
     "host/identify/identified_machine.cpp": "an identification writes friction that rises with a weight as it",
     "host/identify/refinement.cpp": "the fit has the constant force of the file as a parameter",
     "host/diagnose/diagnose.cpp": "a record's delay is taken out before the drive's commands are judged; a smooth "

@@ -9,12 +9,9 @@
 namespace stiction::host {
 namespace {
 
-constexpr double rows_of_a_place =
-    2.0;  // of each cycle: the rows of one are not at the same places as those of the next
-
 // Of one log: `values` of its rows at `times` (s) from its start, in cycles of `period` s.
 void take_mean(Eigen::Ref<Eigen::VectorXd> values, const Eigen::VectorXd& times, double period, double step) {
-  const auto places = static_cast<Eigen::Index>(period / (rows_of_a_place * step));
+  const auto places = static_cast<Eigen::Index>(period / step);
   if (places < 2 || times[times.size() - 1] - times[0] < 2.0 * period) return;
   const auto place_of = [&](Eigen::Index row) {
     const double cycles = (times[row] - times[0]) / period;
@@ -28,7 +25,7 @@ void take_mean(Eigen::Ref<Eigen::VectorXd> values, const Eigen::VectorXd& times,
   }
   for (Eigen::Index row = 0; row < values.size(); ++row) {
     if (values[row] == 0.0) continue;
-    const double n = count[place_of(row)] / rows_of_a_place, mean = sum[place_of(row)] / count[place_of(row)];
+    const double n = count[place_of(row)], mean = sum[place_of(row)] / count[place_of(row)];
     values[row] = (values[row] - mean) * std::sqrt(n / std::max(n - 1.0, 1.0));
   }
 }
