@@ -27,10 +27,10 @@ struct ByPlace {
 };
 
 ByPlace by_place(const std::vector<double>& master, const std::vector<double>& values) {
-  const auto [low, high] = std::minmax_element(master.begin(), master.end());
-  const double width = std::max(*high - *low, 1e-300) / places;
+  const auto ends = std::minmax_element(master.begin(), master.end());
+  const double low = *ends.first, width = std::max(*ends.second - low, 1e-300) / places;
   const auto place_of = [&](std::size_t k) {
-    return std::min(static_cast<std::size_t>((master[k] - *low) / width), places - 1);
+    return std::min(static_cast<std::size_t>((master[k] - low) / width), places - 1);
   };
   std::vector<double> count(places, 0.0), sum(places, 0.0), squares(places, 0.0);
   double whole = 0.0;
@@ -49,7 +49,7 @@ ByPlace by_place(const std::vector<double>& master, const std::vector<double>& v
   ByPlace found;
   for (std::size_t p = 0; p < places; ++p) {
     if (count[p] < 1.0) continue;
-    found.place.push_back(degrees * (*low + (static_cast<double>(p) + 0.5) * width));
+    found.place.push_back(degrees * (low + (static_cast<double>(p) + 0.5) * width));
     found.mean.push_back(sum[p] / count[p]);
     found.rest.push_back(std::sqrt(squares[p] / count[p]));
   }

@@ -109,8 +109,8 @@ class RecordTuner {
   struct TwoModes {
     std::array<Mode, 2> modes;
     std::array<DwellFit, 2> found;  // in the cycle that showed both
-    std::array<std::complex<double>, 2> scale, now{}, last{};
-    std::optional<FourPlaces> places{};
+    std::array<std::complex<double>, 2> scale, now, last;
+    std::optional<FourPlaces> places;
   };
   std::optional<TwoModes> two_;
   std::optional<PulsePair> second_pulses_, better_second_;

@@ -289,10 +289,10 @@ std::vector<FourPlaces> four_places(const ShapingTask& task, const std::array<Mo
       const auto pulses = with_amplitudes({pair, second_pair}, residuals, {made, made_second});
       double stroke = task.stroke, largest = 0.0;
       std::vector<std::pair<Curve, double>> curves;
-      for (const PulsePair& pair : pulses)
-        for (const Pulse& pulse : {pair.first, pair.second}) {
+      for (const PulsePair& each : pulses)
+        for (const Pulse& pulse : {each.first, each.second}) {
           stroke -= pulse.amplitude;
-          curves.emplace_back(law_curve("polynomial_3_4_5", pulse.position, pair.length, pulse.amplitude), pair.length);
+          curves.emplace_back(law_curve("polynomial_3_4_5", pulse.position, each.length, pulse.amplitude), each.length);
         }
       constexpr int samples = 120;
       for (int k = 0; k < samples; ++k) {
