@@ -80,6 +80,23 @@ TEST(Span, HasTheExactReciprocal) {
   }
 }
 
+// What lies beyond a word is its end, also where it does by the rounding alone: 2^64 - 1 over 2.
+TEST(Product, BeyondAWordIsItsEnd) {
+  EXPECT_EQ(product_shifted((std::int64_t{1} << 32) - 1, (std::int64_t{1} << 32) + 1, 1), INT64_MAX);
+  EXPECT_EQ(product_shifted(1 - (std::int64_t{1} << 32), (std::int64_t{1} << 32) + 1, 1), -INT64_MAX);
+  EXPECT_EQ(product_shifted((std::int64_t{1} << 32) - 1, (std::int64_t{1} << 31), 1), ((std::int64_t{1} << 32) - 1)
+                                                                                          << 30);
+}
+
+// A deviation of the whole format within a thousandth of a tick: its peaks are held, and still far beyond any limit.
+TEST(Bridge, PeaksOfWhatNoWordHoldsAreHeld) {
+  MotionPoint all{};
+  all.position = INT64_MAX;
+  all.velocity = INT64_MAX;
+  const auto peaks = Bridge::peaks(all, Span::of(1));
+  for (const std::int64_t peak : {peaks.slope, peaks.bend, peaks.third}) EXPECT_GT(peak, std::int64_t{1} << 59);
+}
+
 TEST(Span, DividesByItsLength) {
   std::mt19937_64 random(5);
   for (int k = 0; k < 20'000; ++k) {
