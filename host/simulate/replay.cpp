@@ -30,6 +30,8 @@ class Motion {
   Motion(const Log& log, const AxisLog& channels, const machine::AxisModel& axis)
       : points_(log, channels), begin_(log.t.front()), start_(begin_) {
     repeats_ = repeating_motion(log, channels, points_);
+    // An axis with ends has not come there from further and further away.
+    if (repeats_ && !axis.modulo && std::abs(repeats_->rise) > 1e-3 * axis.travel) repeats_.reset();
     if (repeats_)
       start_ = rest() - repeats_->period * std::ceil((rest() - begin_ + swing_time(axis)) / repeats_->period + 1.0);
     const auto first = repeated(start_);
