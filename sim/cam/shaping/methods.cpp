@@ -11,6 +11,7 @@
 #include "sim/cam/shaping/inverse_dynamics.hpp"
 #include "sim/cam/shaping/lift.hpp"
 #include "sim/cam/shaping/pulses.hpp"
+#include "sim/cam/shaping/wave_lift.hpp"
 
 namespace stiction::sim::cam {
 namespace {
@@ -72,6 +73,8 @@ MaybeCurve polydyne(const ShapingTask& task) {
 
 MaybeCurve inverse_dynamics(const ShapingTask& task) { return inverse_lift(task, "polynomial_5_9"); }
 
+MaybeCurve wave_based(const ShapingTask& task) { return wave_lift(task); }
+
 MaybeCurve band_optimal(const ShapingTask& task) {
   const auto found = band_optimal_lift(task);
   return found ? MaybeCurve(found->lift) : std::nullopt;
@@ -109,7 +112,7 @@ MaybeCurve best_law(const ShapingTask& task) {
   return best;
 }
 
-constexpr std::array<ShapingMethod, 13> methods{{
+constexpr std::array<ShapingMethod, 14> methods{{
     {"none", "the motion as it is", "nothing", as_it_is},
     {"dwell-pulse", "pulse in the dwell, as first published", "frequency", dwell_pulse},
     {"pulse", "pulse in the rise, as extended", "place and amplitude, from trials or a model", pulse},
@@ -121,6 +124,8 @@ constexpr std::array<ShapingMethod, 13> methods{{
     {"two-hump-ei", "input shaper EI with two humps on a 3-4-5 polynomial", "a band of frequencies", through_shaper<4>},
     {"polydyne", "polydyne of a 4-5-6-7 polynomial", "frequency", polydyne},
     {"inverse-dynamics", "inverse dynamics of a 5-9 polynomial", "the whole model of the drive", inverse_dynamics},
+    {"wave-based", "half of the way sent off, what comes back taken up", "inertia of the load, stiffness of its shaft",
+     wave_based},
     {"band-optimal", "band-optimal lift", "a band of frequencies, and the drive", band_optimal},
     {"best-law", "best law of the library", "a band of frequencies", best_law},
 }};

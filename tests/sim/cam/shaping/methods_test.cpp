@@ -94,6 +94,18 @@ TEST(Shaping, TwoPulsesCancelAnyVibrationByOneLinearEquation) {
     }
 }
 
+// What comes back is taken up at every frequency of the band; the motor rests where the rise ends.
+TEST(Shaping, AWaveIsSentOffAndTakenUp) {
+  const auto task = task_of_law("parabola");
+  const auto made = shaped(task, *find_shaping_method("wave-based"));
+  ASSERT_TRUE(made);
+  EXPECT_LT(made->from_rest.worst, 0.25 * degree);
+  EXPECT_NEAR(made->rise, 180.0 * degree, 1e-9);
+  EXPECT_NEAR(made->motion.curve.derivative(task.end(), 0, Side::left), 30.0 * degree, 1e-9);
+  EXPECT_NEAR(made->motion.curve.derivative(task.end(), 1, Side::left), 0.0, 1e-6);
+  EXPECT_FALSE(shaped(task_of_law("parabola", 40.0), *find_shaping_method("wave-based"))) << "no time to come back";
+}
+
 // The table of docs/residual_vibration.md: five frequencies, and the peak acceleration over the parabola's.
 TEST(Shaping, RowsOfTheTableAreThoseOfThePrototype) {
   struct Row {
