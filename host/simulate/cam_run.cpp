@@ -85,7 +85,7 @@ CamRun run_cam(machine::Machine machine, const sim::cam::Motion& motion, const C
   result.segments.resize(motion.segments.size());
   Sums whole;
   std::vector<Sums> parts(motion.segments.size());
-  std::vector<double> masters, speeds;
+  std::vector<double> masters, speeds, loads;
   double squares = 0.0, energy = 0.0;
   std::int64_t first_cycle = -1;
   // What the start did to an elastic axis is over before anything is measured.
@@ -119,6 +119,7 @@ CamRun run_cam(machine::Machine machine, const sim::cam::Motion& motion, const C
         result.following.push_back(error);
         result.effort.push_back(effort);
       }
+      if (const auto seen = plant.read_second_encoder()) loads.push_back(*seen / radius);
       masters.push_back(place / cycle * angle);
       speeds.push_back(machine::motion_bounds({followed.velocity, 0, 0}, period).velocity * angle);
     }
@@ -133,6 +134,8 @@ CamRun run_cam(machine::Machine machine, const sim::cam::Motion& motion, const C
   speeds.resize(result.log.t.size(), 0.0);
   log.master = std::move(masters);
   log.master_speed = std::move(speeds);
+  if (!loads.empty()) loads.resize(result.log.t.size(), loads.back());
+  log.x_load = std::move(loads);
   log.table.assign(result.log.t.size(), settings.table);
   return result;
 }
