@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "host/diagnose/behind_master.hpp"
+#include "host/diagnose/between_encoders.hpp"
 #include "host/diagnose/classes/candidate_columns.hpp"
 #include "host/diagnose/describe/diagnosis_charts.hpp"
 #include "host/diagnose/describe/master_charts.hpp"
@@ -197,7 +198,9 @@ Verdict diagnose(const DiagnoseInput& input) {
   Verdict again;
   const auto behind = behind_master(input, *of_file);
   const auto late = behind ? prepare(*behind, again) : nullptr;
-  Prepared& records = late ? *late : *of_file;
+  const auto between = between_encoders(behind ? *behind : input, late ? *late : *of_file);
+  const auto twisted = between.input ? prepare(*between.input, again) : nullptr;
+  Prepared& records = twisted ? *twisted : late ? *late : *of_file;
   const auto &training = records.training, &held_out = records.held_out;
   begin(1);
   auto found = search(records, verdict);
@@ -206,6 +209,9 @@ Verdict diagnose(const DiagnoseInput& input) {
   const HeldOutData unseen{held_out.regressors, held_out.target, records.context, input.seed};
   const auto explained = explain(records, std::move(found), unseen, begin, verdict);
   give_figures(verdict, records, explained, unseen);
+  const auto& of_shaft = between.causes;
+  verdict.findings.insert(verdict.findings.begin(), of_shaft.findings.begin(), of_shaft.findings.end());
+  verdict.rejected.insert(verdict.rejected.end(), of_shaft.rejected.begin(), of_shaft.rejected.end());
   begin(4);
   propose_next_measurement(verdict,
                            {input.machine, input.axis, records.settings, training.regressors, explained.inside,

@@ -241,6 +241,9 @@ Had judged(sim::Need need, const Inspected& in) {
     case sim::Need::master:
       return {!in.axis.master.empty(), in.axis.master.empty() ? "no master" : "the master's position",
               "a slave with its master: the channel master"};
+    case sim::Need::second_encoder:
+      return {!in.axis.x_load.empty(), in.axis.x_load.empty() ? "no second encoder" : "the second encoder's position",
+              "the encoder on the other side of the shaft: the channel x_load"};
     case sim::Need::long_record:
       return long_record(in.log, in.axis);
   }

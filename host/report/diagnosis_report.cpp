@@ -75,11 +75,10 @@ std::string figures_of(const Finding& finding) {
   auto text = fmt::format(
       "Explains {} % of the {} variance given the other findings (p {}). On held-out data the {} {} by {} % (95 % "
       "interval of the reduction: {} to {} %)",
-      percent(finding.explains), finding.in_command ? "command residual" : "residual",
-      finding.p_value < 1e-12 ? "< 1e-12" : fmt::format("= {:.1g}", finding.p_value),
-      finding.in_command ? "command residual" : "residual force", falls_or_grows(gained_ratio(finding)),
-      change_percent(gained_ratio(finding)), gain_percent(finding.holdout.ci95[1]),
-      gain_percent(finding.holdout.ci95[0]));
+      percent(finding.explains), finding.residual == Residual::force ? "residual" : residual_words(finding.residual),
+      finding.p_value < 1e-12 ? "< 1e-12" : fmt::format("= {:.1g}", finding.p_value), residual_words(finding.residual),
+      falls_or_grows(gained_ratio(finding)), change_percent(gained_ratio(finding)),
+      gain_percent(finding.holdout.ci95[1]), gain_percent(finding.holdout.ci95[0]));
   if (const auto ratio = finding.holdout.position_error_rms_ratio)
     text += fmt::format(", and the position error of the simulation {} by {} %", falls_or_grows(*ratio),
                         change_percent(*ratio));
@@ -116,15 +115,15 @@ json cause_json(const Finding& finding, const Verdict& verdict) {
           {"advice", effect.advice},
           {"page", fmt::format("{}/page.md", effect.folder)},
           {"explains", percent(finding.explains)},
-          {"residual", finding.in_command ? "command residual" : "residual force"},
+          {"residual", residual_words(finding.residual)},
           {"gain", gain_percent(gained_ratio(finding))},
           {"gain_interval",
            fmt::format("{} to {}", gain_percent(finding.holdout.ci95[1]), gain_percent(finding.holdout.ci95[0]))},
           {"part", finding.part_error ? json(deviation_text(*finding.part_error, deviation)) : json(nullptr)},
           {"small_below",
            verdict.is_small(finding) ? json(deviation_text(*verdict.small_below, deviation)) : json(nullptr)},
-          // Of rows and of the command there are no odds.
-          {"sure", verdict.reference || finding.in_command ? json(nullptr) : json(how_sure(finding))},
+          // There are odds of the residual force alone.
+          {"sure", verdict.reference || finding.residual != Residual::force ? json(nullptr) : json(how_sure(finding))},
           {"parameters", parameters},
           {"evidence", typeset(finding.evidence)},
           {"figures", figures_of(finding)},

@@ -44,9 +44,10 @@ enum class Need {
   seconds,        // some of them
   current,        // of the motor, or its voltage; not its force alone
   set_points,
-  other_axis,   // its motion, too
-  master,       // its position
-  long_record,  // over minutes
+  other_axis,      // its motion, too
+  master,          // its position
+  second_encoder,  // on the other side of a shaft
+  long_record,     // over minutes
 };
 
 // Whether any motion of the axis alone tells two effects apart.

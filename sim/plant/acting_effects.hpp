@@ -30,7 +30,11 @@ class ActingEffects {
   // `step`: of the plant, s.
   ActingEffects(const machine::AxisModel& axis, double step, double position, double time = 0.0)
       : step_(step), start_(time), follower_(position) {
-    if (axis.elastic()) add_shaft(axis, step, position);
+    if (axis.elastic())
+      add_shaft(axis, step, position);
+    else if (!effects_of<PeriodicTransmissionError>(axis).empty())
+      throw EffectError(PeriodicTransmissionError::name, "an axis without transmission.stiffness",
+                        "one with an elastic shaft between motor and load");
     for (const auto& parameters : effects_of<StructuralResonance>(axis)) add_resonance(parameters, axis, step);
     if (axis.gravity) {
       auto gravity = std::make_unique<Gravity>(axis, step);

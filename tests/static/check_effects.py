@@ -19,6 +19,7 @@ BY_CLASS = {
     "host/simulate/late_current.hpp": "the current of a record comes late",
     "host/simulate/late_set_points.hpp": "a slave has the set-points of its master late",
     "host/diagnose/record/command_replay.cpp": "the same",
+    "sim/plant/transmission_error.hpp": "it adds to the errors of the machine file's transmission",
     "host/diagnose/behind_master.cpp": "a late slave is simulated as late before its force is searched",
     "host/identify/identified_machine.cpp": "an identification writes friction that rises with a weight as it",
     "host/identify/refinement.cpp": "the fit has the constant force of the file as a parameter",

@@ -7,6 +7,7 @@
 
 #include "host/diagnose/classes/candidate.hpp"
 #include "host/diagnose/classes/command_parameter.hpp"
+#include "host/diagnose/classes/encoder_cause.hpp"
 
 namespace stiction::host {
 
@@ -14,7 +15,8 @@ struct EffectRegressor {
   Candidate force{};                            // in the residual force; without columns: it does not show there
   Candidate other_force{};                      // of another arrangement of the same parts; without columns: none
   std::span<const CommandParameter> command{};  // in the command residual
-  std::string_view not_looked_for{};            // why, where it is looked for in neither
+  EncoderCause encoders{};                      // in the difference of two encoders; without columns: not there
+  std::string_view not_looked_for{};            // why, where it is looked for in none of them
 };
 
 struct RegressorFolder {

@@ -309,7 +309,7 @@ void look_at_own_runs(const CommandRecords& records, const machine::Timing& timi
 Finding finding_of(const machine::AxisModel& file, sim::EffectId effect, const std::vector<CommandTerm>& terms) {
   Finding finding(effect);
   finding.axis = file.name;
-  finding.in_command = true;
+  finding.residual = Residual::command;
   for (const auto& known : file.effects)
     if (sim::find_effect(known.name) == effect) finding.values = known.values;
   for (const auto& term : terms) {

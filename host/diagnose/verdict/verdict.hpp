@@ -49,8 +49,17 @@ struct HoldoutGain {
   double force_rms_ratio = 1.0;
   std::optional<double> position_error_rms_ratio;  // none: no set-points to run in closed loop
   std::optional<double> command_rms_ratio;         // of a finding in the command residual
-  std::array<double, 2> ci95{1.0, 1.0};            // of force_rms_ratio, or of command_rms_ratio where there is one
+  std::optional<double> encoder_rms_ratio;         // of a finding in the difference of the encoders
+  std::array<double, 2> ci95{1.0, 1.0};            // of force_rms_ratio, or of one of the last two where there is one
 };
+
+// Where a cause shows.
+enum class Residual { force, command, encoders };
+inline constexpr const char* residual_words(Residual residual) {
+  return residual == Residual::force     ? "residual force"
+         : residual == Residual::command ? "command residual"
+                                         : "difference of the encoders";
+}
 
 // In how many of the searches, each with one log (of very many: one part of them) left out, a cause was named.
 struct NamedIn {
@@ -64,9 +73,8 @@ struct Finding {
   std::string axis;
   machine::KeyedValues values;  // as they go into the extended machine file
   std::vector<EffectParameter> parameters;
-  // Where it shows: explains, p_value and holdout speak of the command residual, not of the residual force.
-  bool in_command = false;
-  double explains = 0.0;  // share of the residual's variance that it takes away, given the other findings
+  Residual residual = Residual::force;  // of which explains, p_value and holdout speak
+  double explains = 0.0;                // share of the residual's variance that it takes away, given the other findings
   HoldoutGain holdout;
   double p_value = 1.0;
   double probability = 1.0;  // of this name, of all that could be in its place, one without a name included
@@ -105,7 +113,8 @@ inline std::vector<std::size_t> told_by_position(const std::vector<Finding>& fin
 
 // Of the residual in which it shows, on held-out data: with it over without it, rms.
 inline double gained_ratio(const Finding& finding) {
-  return finding.holdout.command_rms_ratio.value_or(finding.holdout.force_rms_ratio);
+  const auto& holdout = finding.holdout;
+  return holdout.encoder_rms_ratio.value_or(holdout.command_rms_ratio.value_or(holdout.force_rms_ratio));
 }
 
 struct Rejected {

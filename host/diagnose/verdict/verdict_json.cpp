@@ -34,6 +34,7 @@ Json finding_json(const Finding& f, const Verdict& verdict) {
   Json gain{{"force_rms_ratio", f.holdout.force_rms_ratio}};
   if (f.holdout.position_error_rms_ratio) gain["position_error_rms_ratio"] = *f.holdout.position_error_rms_ratio;
   if (f.holdout.command_rms_ratio) gain["command_rms_ratio"] = *f.holdout.command_rms_ratio;
+  if (f.holdout.encoder_rms_ratio) gain["encoder_rms_ratio"] = *f.holdout.encoder_rms_ratio;
   gain["ci95"] = f.holdout.ci95;
   Json confused = Json::array();
   for (const auto& c : f.confused_with)
@@ -44,7 +45,8 @@ Json finding_json(const Finding& f, const Verdict& verdict) {
       {"confused_with", confused}};
   if (f.without_each_log)
     out["without_each_log"] = {{"named", f.without_each_log->named}, {"searches", f.without_each_log->searches}};
-  if (f.in_command) out["residual"] = "command";
+  if (f.residual == Residual::command) out["residual"] = "command";
+  if (f.residual == Residual::encoders) out["residual"] = "encoders";
   if (f.part_error) out[named("part_error", units.deviation)] = units.deviation(*f.part_error);
   if (f.part_error && verdict.small_below) out["small"] = verdict.is_small(f);
   return out;
@@ -313,7 +315,8 @@ std::string verdict_text(const Verdict& verdict) {
       }
     text += fmt::format(
         "   {}\n   held-out data: rms {} is {:.3f} times that without this cause (95 % interval {:.3f} to {:.3f})",
-        f.evidence, f.in_command ? "command residual" : "force", gained_ratio(f), f.holdout.ci95[0], f.holdout.ci95[1]);
+        f.evidence, f.residual == Residual::force ? "force" : residual_words(f.residual), gained_ratio(f),
+        f.holdout.ci95[0], f.holdout.ci95[1]);
     if (f.holdout.position_error_rms_ratio)
       text += fmt::format(", position error {:.3f} times that without it", *f.holdout.position_error_rms_ratio);
     text += "\n";

@@ -54,7 +54,7 @@ TEST(EffectsFile, AnUnknownNameListsTheNamesAndTheNearest) {
                           "\"mass_mismatch\", \"coulomb_mismatch\", "))
       << message;
   EXPECT_NE(message.find("\"backlash\", "), std::string::npos);
-  EXPECT_NE(message.find("\"master_delay\" or \"force_map\"; did you mean \"force_ripple\"?"), std::string::npos);
+  EXPECT_NE(message.find("\"transmission_error\" or \"force_map\"; did you mean \"force_ripple\"?"), std::string::npos);
   EXPECT_TRUE(error_of_effect("width = \"2 um\"\n")
                   .starts_with("FILE:29: axis.B.effect[0].name: found no such key; expected a text"));
   EXPECT_TRUE(error_of_effect("name = 3\n").starts_with("FILE:30: axis.B.effect[0].name: found 3; expected a text"));
@@ -155,6 +155,8 @@ TEST(Effects, HaveTheNamesKeysAndSuffixesOfTheVocabulary) {
             "controller_gain_mismatch: position_gain_per_s velocity_gain_A_s_per_m velocity_integral_time_s "
             "current_gain_V_per_A current_integral_time_s\n"
             "master_delay: delay_s\n"
+            "shaft_stiffness: stiffness_N_per_m\n"
+            "transmission_error: per order cosine_m sine_m\n"
             "force_map: position_m[] velocity_m_per_s[] force_N[]\n");
   EXPECT_EQ(sim::unit_suffix("1"), "");
   EXPECT_EQ(sim::unit_suffix("1/s"), "_per_s");

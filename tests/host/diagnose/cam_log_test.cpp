@@ -21,37 +21,13 @@
 #include "sim/cam/motion.hpp"
 #include "sim/cam/motion_file.hpp"
 #include "sim/machine_file.hpp"
+#include "tests/host/diagnose/cam_record.hpp"
 #include "tests/support/figure.hpp"
 
 namespace stiction::host {
 namespace {
 
 const std::filesystem::path source = STICTION_SOURCE_DIR;
-
-// Every so many ticks of `cycles` that are measured, at `turns` of the master in a minute.
-Log cam_log(const machine::Machine& machine, double turns, int cycles, std::size_t every = 4) {
-  const auto cam = sim::cam::read_motion_file(source / "examples/cams/indexing.toml").front();
-  CamRunSettings settings;
-  settings.master_speed = turns * 2.0 * std::numbers::pi / 60.0;
-  settings.cycles = cycles;
-  const auto run = run_cam<FixedSignals>(machine, sim::cam::compose(cam), settings);
-  Log log = run.log;
-  log.source = std::to_string(static_cast<int>(turns)) + " in a minute";
-  log.period *= static_cast<double>(every);
-  // From a tick of the position controller on, as a replay begins.
-  const double slow = machine.timing.slow_period;
-  std::size_t first = 0;
-  while (std::abs(log.t[first] / slow - std::round(log.t[first] / slow)) > 1e-6) ++first;
-  const auto thin = [&](std::vector<double>& values) {
-    std::size_t kept = 0;
-    for (std::size_t k = first; k < values.size(); k += every) values[kept++] = values[k];
-    values.resize(kept);
-  };
-  thin(log.t);
-  for (auto& axis : log.axes)
-    for (const auto& channel : log_channels) thin(axis.*channel.values);
-  return log;
-}
 
 // The simulation begins with the record and hunts as it does for a while: columns of that motion had a part of the
 // record's own hunting, which looked like an elastic mode.
@@ -65,15 +41,11 @@ TEST(CamLog, OfAMachineAsItsFileSaysNamesNothing) {
   EXPECT_TRUE(verdict.findings.empty()) << verdict_text(verdict);
 }
 
-machine::Machine stand() {
-  return sim::read_machine((source / "firmware/machine/shipped/cam-stand.toml").string(), {});
-}
-
 // The load swings on from cycle to cycle, and a record of a running machine begins in the midst of it.
 TEST(CamLog, OfAStandIsFollowedThroughTheCyclesBeforeIt) {
-  const auto log = linear_logs({cam_log(stand(), 130.0, 3)}, stand().axes).front();
+  const auto log = linear_logs({cam_log(cam_stand(), 130.0, 3)}, cam_stand().axes).front();
   const auto rms_from = [&](const Log& record) {
-    const auto again = replay_linear_as_held(stand(), record);
+    const auto again = replay_linear_as_held(cam_stand(), record);
     double square = 0.0;
     for (std::size_t k = 0; k < log.t.size(); ++k)
       square += std::pow(again.axes.front().x[k] - log.axes.front().x[k], 2) / static_cast<double>(log.t.size());
@@ -81,16 +53,16 @@ TEST(CamLog, OfAStandIsFollowedThroughTheCyclesBeforeIt) {
   };
   auto without = log;
   without.axes.front().master.clear();
-  const double increment = stand().axes.front().encoder.increment;
+  const double increment = cam_stand().axes.front().encoder.increment;
   EXPECT_LT(rms_from(log), increment);
   EXPECT_GT(rms_from(without), 20.0 * increment);
 }
 
 // Five times as much as the noise, thrice in a cycle: a force of the place, whatever its cause.
 TEST(CamLog, WhatComesBackInEachCycleIsNoDisturbance) {
-  const auto axis = stand().axes.front();
+  const auto axis = cam_stand().axes.front();
   Record record;
-  record.logs = linear_logs({cam_log(stand(), 130.0, 9, 16)}, axis);
+  record.logs = linear_logs({cam_log(cam_stand(), 130.0, 9, 16)}, axis);
   measure(record, axis, wide_band(record.logs));
   std::mt19937_64 random(7);
   std::normal_distribution<> noise;
@@ -106,10 +78,10 @@ TEST(CamLog, WhatComesBackInEachCycleIsNoDisturbance) {
 
 TEST(CamLog, OfASlaveBehindItsMasterNamesTheDelay) {
   constexpr double delay = 0.3e-3;
-  auto late = stand();
+  auto late = cam_stand();
   late.axes.front().effects = {{"master_delay", {{"delay", {delay}}}}};
   DiagnoseInput input;
-  input.machine = stand();
+  input.machine = cam_stand();
   input.next_measurement = false;
   input.logs.push_back(cam_log(late, 130.0, 9, 16));
   input.held_out.push_back(cam_log(late, 100.0, 6, 16));
