@@ -209,14 +209,15 @@ Verdict diagnose(const DiagnoseInput& input) {
   const HeldOutData unseen{held_out.regressors, held_out.target, records.context, input.seed};
   const auto explained = explain(records, std::move(found), unseen, begin, verdict);
   give_figures(verdict, records, explained, unseen);
-  const auto& of_shaft = between.causes;
-  verdict.findings.insert(verdict.findings.begin(), of_shaft.findings.begin(), of_shaft.findings.end());
-  verdict.rejected.insert(verdict.rejected.end(), of_shaft.rejected.begin(), of_shaft.rejected.end());
   begin(4);
   propose_next_measurement(verdict,
                            {input.machine, input.axis, records.settings, training.regressors, explained.inside,
                             records.context, explained.found},
                            input.next_measurement);
+  // Behind the terms of the residual force, whose places the next measurement knows.
+  const auto& of_shaft = between.causes;
+  verdict.findings.insert(verdict.findings.end(), of_shaft.findings.begin(), of_shaft.findings.end());
+  verdict.rejected.insert(verdict.rejected.end(), of_shaft.rejected.begin(), of_shaft.rejected.end());
   judge_drive(verdict, input, *of_file, records, explained.found);
   say_what_is_left(verdict, records, explained);
   begin(5);

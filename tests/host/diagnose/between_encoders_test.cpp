@@ -150,13 +150,13 @@ TEST(BetweenEncoders, NeedAnEncoderOnEitherSideInEachRecord) {
   EXPECT_FALSE(EncoderDifference::of(record, same_side, settings));
 }
 
-// The rig's own machine with the effect, in closed loop, behind a cam.
-Verdict of_rig(std::vector<machine::Effect> effects) {
+// The rig's own machine with the effect, in closed loop, behind a cam. `asking`: proposes the next measurement too.
+Verdict of_rig(std::vector<machine::Effect> effects, bool asking = false) {
   auto rig = cam_stand();
   rig.axes.front().effects = std::move(effects);
   DiagnoseInput input;
   input.machine = cam_stand();
-  input.next_measurement = false;
+  input.next_measurement = asking;
   input.logs.push_back(cam_log(rig, 130.0, 9, 16));
   input.held_out.push_back(cam_log(rig, 100.0, 6, 16));
   return diagnose(input);
@@ -178,7 +178,8 @@ TEST(BetweenEncoders, TheRigsGearIsFoundBehindACam) {
   const double radius = cam_stand().axes.front().coordinate.radius, amplitude = 4e-4 * radius;
   const auto verdict =
       of_rig({{"transmission_error",
-               {{"per", {33.0}}, {"order", {2.0}}, {"cosine", {0.6 * amplitude}}, {"sine", {0.8 * amplitude}}}}});
+               {{"per", {33.0}}, {"order", {2.0}}, {"cosine", {0.6 * amplitude}}, {"sine", {0.8 * amplitude}}}}},
+             true);
   ASSERT_EQ(verdict.findings.size(), 1u) << verdict_text(verdict);
   const auto& finding = verdict.findings.front();
   ASSERT_EQ(finding.effect.name(), "transmission_error");
