@@ -26,12 +26,12 @@ std::string cell(const StepProject& project, const ProfilePoint& point, std::str
   if (column == "x") return number(1e3 * point.place().real());
   if (column == "y") return number(1e3 * point.place().imag());
   // Out of the cam, as a wheel or a probe comes.
-  if (column == "normal") return number(wrapped(std::arg(-point.normal) + 1e-12) / degree);
+  if (column == "normal") return number(wrapped(sim::angle_of(-point.normal) + 1e-12) / degree);
   if (column == "curvature") return number(1e-3 * point.curvature, 9);
   if (column == "roller") return fmt::format("{}", point.roller + 1);
   if (column == "cam_angle") return number(point.psi / degree);
   if (project.wheel_radius == 0.0) return "";
-  return column == "wheel_angle" ? number(wrapped(std::arg(wheel) + 1e-12) / degree) : number(1e3 * std::abs(wheel));
+  return column == "wheel_angle" ? number(wrapped(sim::angle_of(wheel) + 1e-12) / degree) : number(1e3 * sim::magnitude(wheel));
 }
 
 std::string commented(const std::vector<std::string>& lines) {
@@ -133,7 +133,7 @@ std::string inspection_text(const StepProject& project, const StepProfile& profi
     // Beside a corner a radius says nothing of the profile.
     if (profile.has_corner(point.angle, 2.0 * profile.step())) continue;
     // A move along the normal, seen along the radius.
-    const double radial = project.tolerances.profile / std::fabs(dot(point.normal, std::polar(1.0, point.angle)));
+    const double radial = project.tolerances.profile / std::fabs(dot(point.normal, sim::in_direction(1.0, point.angle)));
     const double values[] = {point.angle / degree, 1e3 * point.radius, 1e3 * (point.radius - radial),
                              1e3 * (point.radius + radial)};
     for (const double value : values) text += number_text(value, 4, layout.decimal) + separator;

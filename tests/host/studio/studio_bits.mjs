@@ -9,7 +9,7 @@ import { existsSync, readFileSync, statSync } from 'node:fs';
 import { basename } from 'node:path';
 
 const CYCLES = 3, ARGUMENTS = 1000000, MOST_BYTES = 6e6;
-const FUNCTIONS = ['sine', 'cosine', 'exponential', 'logarithm', 'square root'];
+const FUNCTIONS = ['sine', 'cosine', 'exponential', 'logarithm', 'square root', 'arc tangent', 'arc cosine'];
 const [page, motion, machine, speedText, folder, stiction] = process.argv.slice(2);
 if (!stiction) {
   console.error('usage: node studio_bits.mjs STUDIO.html MOTION MACHINE SPEED FOLDER STICTION');
