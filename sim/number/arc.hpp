@@ -1,5 +1,5 @@
-// Arc tangent, arc sine and arc cosine without a library of mathematics, so that they have the same bits wherever they are
-// compiled.
+// Arc tangent, arc sine and arc cosine without a library of mathematics, so that they have the same bits wherever they
+// are compiled.
 #pragma once
 
 #include <array>

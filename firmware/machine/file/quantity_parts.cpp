@@ -27,7 +27,8 @@ std::from_chars_result read_number(std::string_view text, double& number) {
   if (stop == digits.c_str() || digits.front() == '+') return {text.data(), std::errc::invalid_argument};
   const char* const end = text.data() + (stop - digits.c_str());
   const bool infinite = digits.find_first_of("iInN") != std::string::npos;
-  if ((std::isinf(value) && !infinite) || (value == 0.0 && digits.find_first_of("123456789") < digits.find_first_of("eE")))
+  if ((std::isinf(value) && !infinite) ||
+      (value == 0.0 && digits.find_first_of("123456789") < digits.find_first_of("eE")))
     return {end, std::errc::result_out_of_range};
   number = value;
   return {end, std::errc{}};

@@ -1,5 +1,5 @@
-// The parts of a quantity "NUMBER UNIT" that need no database of units: programmes with one (units.cpp) and pages without
-// (host/studio/wasm/units.cpp) read numbers and convert alike.
+// The parts of a quantity "NUMBER UNIT" that need no database of units: programmes with one (units.cpp) and pages
+// without (host/studio/wasm/units.cpp) read numbers and convert alike.
 #pragma once
 
 #include <string_view>

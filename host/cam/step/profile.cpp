@@ -65,7 +65,8 @@ class Cutter {
     double last_angle = 0.0;
     for (std::size_t i = 0; i < lift_.psi.size(); ++i) {
       const Point contact = roller_at(mechanism_, base(roller), lift_.psi[i], lift_.states[i]).contact(c);
-      const double angle = i == 0 ? sim::angle_of(contact) : last_angle + around_zero(sim::angle_of(contact) - last_angle);
+      const double angle =
+          i == 0 ? sim::angle_of(contact) : last_angle + around_zero(sim::angle_of(contact) - last_angle);
       if (i > 0) add_line(roller, i, last, contact, last_angle, angle);
       last = contact, last_angle = angle;
     }

@@ -10,7 +10,8 @@ namespace stiction::sim::cam {
 namespace {
 
 double kept(double damping_ratio, double periods) {
-  return exponential(-damping_ratio * 2.0 * std::numbers::pi * periods / std::sqrt(1.0 - damping_ratio * damping_ratio));
+  return sim::exponential(-damping_ratio * 2.0 * std::numbers::pi * periods /
+                          std::sqrt(1.0 - damping_ratio * damping_ratio));
 }
 
 // Impulses with these undamped shares, each less by what the vibration of the first has lost until then.

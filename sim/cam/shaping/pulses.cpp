@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "sim/cam/shaping/lift.hpp"
+#include "sim/number/complex.hpp"
 
 namespace stiction::sim::cam {
 namespace {

@@ -5,6 +5,8 @@
 #include <functional>
 
 #include "sim/cam/hermite.hpp"
+#include "sim/cam/stand/transfer_function.hpp"
+#include "sim/number/complex.hpp"
 
 namespace stiction::sim::cam {
 namespace {
@@ -251,7 +253,7 @@ std::complex<double> modal_residual(const ElasticDrive& drive, const Motion& mot
     done = master >= at - 1e-12 * motion.curve.length();
   });
   // The last state may lie a little behind the place; the mode runs back to it.
-  return found * exponential(mode.pole * ((at - reached) / master_speed));
+  return found * sim::exponential(mode.pole * ((at - reached) / master_speed));
 }
 
 }  // namespace stiction::sim::cam

@@ -21,12 +21,10 @@ std::vector<Complex> roots(std::vector<double> coefficients) {
   while (coefficients.size() > 1 && coefficients.back() == 0.0) coefficients.pop_back();
   const std::size_t degree = coefficients.size() - 1;
   if (degree == 0) return {};
-  const double scale =
-      power(std::fabs(coefficients.front() / coefficients.back()), 1.0 / static_cast<double>(degree));
+  const double scale = power(std::fabs(coefficients.front() / coefficients.back()), 1.0 / static_cast<double>(degree));
   const double highest = coefficients.back() * power(scale, static_cast<double>(degree));
   std::vector<Complex> monic(degree + 1);
-  for (std::size_t k = 0; k <= degree; ++k)
-    monic[k] = coefficients[k] * power(scale, static_cast<double>(k)) / highest;
+  for (std::size_t k = 0; k <= degree; ++k) monic[k] = coefficients[k] * power(scale, static_cast<double>(k)) / highest;
   std::vector<Complex> found(degree, 1.0);
   for (std::size_t k = 1; k < degree; ++k) found[k] = found[k - 1] * Complex(0.4, 0.9);
   constexpr int most_steps = 500;
