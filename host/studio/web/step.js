@@ -100,7 +100,7 @@ function drawAngle() {
   at('carousel').textContent = carousel;
   at('mechanism').setAttribute('aria-label', `The mechanism with the cam at ${angle.toFixed(1)}°: ${carousel}`);
   at('contacts').tBodies[0].replaceChildren(...contacts.map((contact, i) => element('tr', {}, element('th', { scope: 'row' }, `${letter(i)}${contact[3] ? '' : ', not needed'}`),
-    element('td', {}, `${contact[1] + 1}, ${contact[2] + 1}`), ...[[contact[5] * DEGREE, '°'], [contact[6], 'N'], [1e-6 * contact[7], 'MPa'], [1e6 * contact[4], 'µm']].map(([value, unit]) => element('td', { class: 'number' }, withUnit(value, unit))))));
+    element('td', {}, `${contact[1] + 1}, ${contact[2] + 1}`), ...[[contact[5] * DEGREE, '°'], [contact[6], 'N'], [1e-6 * contact[7], 'MPa'], [Math.round(1e8 * contact[4]) / 100 + 0, 'µm']].map(([value, unit]) => element('td', { class: 'number' }, withUnit(value, unit))))));
   for (const chart of document.querySelectorAll('#turn-charts svg')) markAngle(chart);
 }
 

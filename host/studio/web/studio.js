@@ -11,6 +11,7 @@ const at = id => document.getElementById(id);
 let engine = null, state = null, laws = [], thumbnails = [], selected = 0, selectedTrack = 0, dragging = null, frozen = null, kept = null, shownRun = null;
 let motionName = DATA.motion?.name || 'motion.toml', machineName = DATA.machine?.name || null;
 let masterSpeed = DATA.speed, machineTimer = 0;
+let hadNone = false;
 const times = { curves: 0, machine: 0 };  // ms, of the last drawing
 
 // ---- units ----
@@ -372,6 +373,7 @@ function figureRows(run) {
 function drawMachine() {
   const machine = state.machine;
   at('machine-name').textContent = machine ? machine.name : 'No machine';
+  if (at('machine').classList.toggle('none', !machine) !== hadNone) { hadNone = !machine; forgetSizes(); }
   at('keep').disabled = at('sweep').disabled = !machine;
   at('shape').disabled = !machine?.elastic;
   if (!machine) {

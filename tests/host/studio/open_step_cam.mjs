@@ -33,17 +33,20 @@ function unzipped(bytes) {
 
 async function designByKeyboard(browser) {
   const page = await open(browser, empty);
+  // Whoever goes on behind what failed waits for keys that nothing answers.
+  const holds = condition => { if (!condition) throw new Error(`by keyboard: ${problems.pop() || 'the design ended'}`); };
   expect(await becomes(page, () => engine && state), 'the empty studio does not begin');
-  const { reach, press, type, law } = keyboardOf(page);
+  const { reach, press, type, law } = keyboardOf(page), begun = problems.length;
   await type('#values [data-field="Endless, modulo"]', '90');
   await press('#insert');
   await press('#insert');
   await press('#segments [data-segment="1"]');
   await law('modified sine');
-  await type('#values [data-field="Stroke"]', '90');
   await type('#values [data-field="Ends at"]', '270');
+  await type('#values [data-field="Stroke"]', '90');
   await press('#step-new');
   expect(await becomes(page, () => stepCam?.made), `the new step cam cannot be made: ${await page.evaluate(() => stepCam?.problem)}`);
+  holds(problems.length === begun);
   await press('#step-groups [data-group="Load"] summary');
   await type('#step-groups [data-field="load.stiffness"]', '100');
   await type('#step-groups [data-field="load.preload"]', '10');
@@ -135,9 +138,9 @@ async function checkRelief(page) {
   const said = await message(page);
   expect(said.bad && /expected less/.test(said.text), `a relief of 40 mm is answered by '${said.text}'`);
   expect(await projectText(page) === before, 'a refused relief changes the project');
-  await page.locator('#arcs input').first().fill('0.15');
+  await page.locator('#arcs input').first().fill('0.05');
   await page.locator('#arcs input').first().press('Enter');
-  expect((await relief(page))[0].depth === 0.15e-3, 'a depth that is typed is not taken');
+  expect(Math.abs((await relief(page))[0].depth - 0.05e-3) < 1e-15, `a depth of 0.05 mm that is typed is taken as ${1e3 * (await relief(page))[0].depth} mm: ${(await message(page)).text}`);
   await page.keyboard.press('Control+z');
 }
 
@@ -219,7 +222,7 @@ try {
   if (await becomes(page, () => stepCam?.made && document.querySelectorAll('#step-figures td.number').length > 5)) {
     await checkTurning(page);
     await checkRelief(page);
-    await checkNames(page, 60);
+    await checkNames(page, 30);
     await checkLooks(page);
     await checkFiles(page);
     await checkMotionBehind(page);
