@@ -189,7 +189,7 @@ function drawRelief() {
 }
 
 function drawArcs() {
-  const focused = document.activeElement?.getAttribute('aria-label');
+  const focused = document.activeElement?.dataset?.relief;
   at('arcs').tBodies[0].replaceChildren(...stepCam.made.arcs.map((arc, k) => {
     const input = (what, value, factor) => {
       const field = element('input', { type: 'number', step: 'any', min: 0, value: plainNumber(Number((value * factor).toPrecision(9))), 'aria-label': `${reliefName(arc)}: ${what}`, 'data-relief': `${what}-${k}` });
@@ -201,7 +201,7 @@ function drawArcs() {
     row.addEventListener('focusin', () => { if (selectedArc !== k) { selectedArc = k; at('arcs').querySelectorAll('tbody tr').forEach((each, i) => each.classList.toggle('selected', i === k)); } });
     return row;
   }));
-  if (focused) [...at('arcs').querySelectorAll('input')].find(each => each.getAttribute('aria-label') === focused)?.focus();
+  if (focused) at('arcs').querySelector(`[data-relief="${focused}"]`)?.focus();
 }
 
 // `value` in m or rad.
@@ -383,6 +383,7 @@ function refreshStep() {
 let stepSoonTimer = 0;
 function stepSoon() {
   clearTimeout(stepSoonTimer);
+  clearTimeout(stepTimer);
   if (state.step) stepSoonTimer = setTimeout(refreshStep, MACHINE_DELAY);
   else refreshStep();
 }

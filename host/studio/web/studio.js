@@ -524,6 +524,7 @@ function reportText() {
   state.segments.forEach((segment, k) => lines.push(`| ${k + 1} | ${segment.law} | ${withUnit(endOf(k) * u.master, u.masterUnit)} | ${withUnit(positionOf(k) * u.slave, u.slaveUnit)} | ${withUnit(segment.stroke * u.slave, u.slaveUnit)} |`));
   lines.push('', '## Rules', '', `\`stiction cam check ${motionName}${machine ? ` --machine ${machine}` : ''} --speed "${speedText()}"\``, '', ...[...at('rules').children].map(row => `- ${row.classList.contains('broken') ? 'broken: ' : ''}${row.lastChild.textContent}`));
   if (shownRun) lines.push('', '## Machine', '', `\`${repeatingCommand()}\``, '', '| figure | value | unit |', '| --- | --- | --- |', ...figureRows(shownRun.run).map(row => `| ${row.text} | ${row.value} | ${row.unit} |`));
+  refreshStep();
   if (stepCam?.made) {
     drawStepFigures();
     lines.push('', '## Step cam', '', `\`stiction cam step ${stepCam.name}.toml --out shop\``, '', '| figure | value | unit |', '| --- | --- | --- |', ...stepCam.figures.map(row => `| ${row.text} | ${row.value} | ${row.unit} |`));

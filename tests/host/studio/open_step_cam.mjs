@@ -56,9 +56,11 @@ async function designByKeyboard(browser) {
   await type('#step-groups [data-field="relief.lead_in"]', '4');
   const arcs = (await relief(page)).length;
   expect(arcs === 4, `the new step cam has ${arcs} arcs without needed contacts, expected 4`);
+  holds(problems.length === begun);
   for (const kind of [true, false]) {
     const k = await page.evaluate(kind => stepCam.made.arcs.findIndex(arc => arc.valley === kind), kind);
     await reach(`[data-arc="${k}"]`);
+    holds(problems.length === begun);
     for (let times = 0; times < 10; ++times) await page.keyboard.press('ArrowUp');
   }
   for (const { depth, blend } of await relief(page)) expect(Math.abs(depth - 1e-4) < 1e-12 && Math.abs(blend * degree - 4) < 1e-9, `by keyboard an arc is lowered by ${1e3 * depth} mm with blends of ${blend * degree}°`);
