@@ -11,7 +11,8 @@ namespace stiction::host {
 
 double AxisLoad::effort(double position, double speed, double acceleration) const {
   const double direction = speed > 0.0 ? 1.0 : speed < 0.0 ? -1.0 : 0.0;
-  const double down = kind == sim::cam::Coordinate::rotary ? weight * sim::sine_cosine(position - weight_zero).sine : weight;
+  const double down =
+      kind == sim::cam::Coordinate::rotary ? weight * sim::sine_cosine(position - weight_zero).sine : weight;
   return inertia() * acceleration + viscous * speed + coulomb * direction + down;
 }
 

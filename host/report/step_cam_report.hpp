@@ -14,9 +14,9 @@ struct StepCamReport {
   std::string command;  // the command line that made it
   std::string version;  // of stiction
   const step::StepProject& project;
-  const step::StepSynthesis& made;     // of that project
+  const step::StepSynthesis& made;        // of that project
   std::vector<step::StepFigure> figures;  // that the command prints
-  Origin origin{};                     // source files, date
+  Origin origin{};                        // source files, date
 };
 
 // The whole page, UTF-8. A turn is shown at up to 1800 angles of the cam, profiles by as many points; about 0.6 MB with

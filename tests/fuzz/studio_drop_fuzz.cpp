@@ -1,6 +1,6 @@
-// Any bytes as a file that is dropped on the studio's page, of whatever kind, behind a motion and a project that are sound:
-// refused with a message, and the studio is as it was; or taken, and what it then saves opens as the same. The first byte
-// says of which kind, and which step of editing follows.
+// Any bytes as a file that is dropped on the studio's page, of whatever kind, behind a motion and a project that are
+// sound: refused with a message, and the studio is as it was; or taken, and what it then saves opens as the same. The
+// first byte says of which kind, and which step of editing follows.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>

@@ -18,7 +18,7 @@ struct ShopFile {
 // set in it.
 std::vector<ShopFile> shop_folder(StepResult& result, const TableLayout& layout, const FileOrigin& origin);
 
-// Coordinates and inspection table of `profile`, as above. `project`: the profile's.
+// Coordinates and inspection table of `profile` in that `layout`, with heads of `origin`. `project`: the profile's.
 std::vector<ShopFile> shop_tables(const StepProject& project, const StepProfile& profile, const TableLayout& layout,
                                   const FileOrigin& origin);
 

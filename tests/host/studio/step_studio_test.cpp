@@ -44,10 +44,8 @@ TEST(StepProjectText, ReadsBackAsTheSameProject) {
   EXPECT_EQ(project_text(again), text);
   EXPECT_EQ(again.load.torque, project.load.torque);
   EXPECT_EQ(again.relief.overrides[1].angle, 1.0 / 3.0);
-  for (const auto& number : step::project_numbers())
-    EXPECT_EQ(number.get(again), number.get(project)) << number.name();
-  for (const auto& choice : step::project_choices())
-    EXPECT_EQ(choice.get(again), choice.get(project)) << choice.name();
+  for (const auto& number : step::project_numbers()) EXPECT_EQ(number.get(again), number.get(project)) << number.name();
+  for (const auto& choice : step::project_choices()) EXPECT_EQ(choice.get(again), choice.get(project)) << choice.name();
 }
 
 TEST(StepProjectText, HoldsAMeasuredLiftAndASpring) {
