@@ -10,6 +10,7 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/csv_marks.hpp"
 #include "host/cli/errors.hpp"
+#include "host/cli/machine_options.hpp"
 #include "host/cli/output.hpp"
 
 namespace stiction::host {

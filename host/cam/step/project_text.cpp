@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <array>
+#include <cmath>
 
 #include "sim/cam/quantity_text.hpp"
 
@@ -37,11 +38,11 @@ int whole_number(double value) {
 }
 
 void write_number(std::string& text, const ProjectNumber& number, double value) {
-  const bool plain = number.unit == "1";
-  text += fmt::format("{} = {}\n", number.key,
-                      plain ? (value == static_cast<long>(value) ? fmt::format("{}", static_cast<long>(value))
-                                                                 : sim::cam::number_text(value))
-                            : sim::cam::quantity_text(value, number.unit, number.shown));
+  const auto shown = [&] {
+    if (number.unit != "1") return sim::cam::quantity_text(value, number.unit, number.shown);
+    return value == std::floor(value) ? fmt::format("{:.0f}", value) : sim::cam::number_text(value);
+  };
+  text += fmt::format("{} = {}\n", number.key, shown());
 }
 
 // What the table `group` of `project` holds.
