@@ -124,6 +124,9 @@ step::StepProject with_number(const step::StepProject& project, std::string_view
 step::StepProject with_choice(const step::StepProject& project, std::string_view name, std::string_view value) {
   for (const auto& choice : step::project_choices()) {
     if (choice.name() != name) continue;
+    const auto& known = choice.options;
+    if (!known.empty() && std::find(known.begin(), known.end(), value) == known.end())
+      throw CamError(fmt::format("{}: found \"{}\"; expected one of the list", name, value));
     auto changed = project;
     choice.set(changed, value);
     return checked(changed);
@@ -144,21 +147,38 @@ void StepStudio::set(StepProjectPointer project, const sim::cam::Cam& cam, bool 
     whole.cam = cam;
     if (several || !whole.cam_name.empty()) whole.cam_name = cam.name;
   }
-  const auto key = key_of(whole);
-  if (same && project_ && key == made_of_) return;
+  auto key = key_of(whole);
+  if (same && project_ && key == key_) return;
   project_ = std::move(whole);
+  key_ = std::move(key);
+  is_made_ = false;
+}
+
+void StepStudio::make() const {
+  if (is_made_ || !project_) return;
+  is_made_ = true;
   try {
-    if (made_ && key == made_of_) {
+    if (made_ && key_ == made_of_) {
       relieve_again(*made_, *project_);
     } else {
       made_.reset();
-      made_of_ = key;
+      made_of_ = key_;
       made_ = synthesize(*project_);
     }
     problem_.clear();
   } catch (const std::runtime_error& error) {
     problem_ = error.what();
   }
+}
+
+const step::StepSynthesis* StepStudio::made() const {
+  make();
+  return made_ && problem_.empty() ? &*made_ : nullptr;
+}
+
+const std::string& StepStudio::problem() const {
+  make();
+  return problem_;
 }
 
 step::StepProject StepStudio::relieved(const ReliefStep& change) const {
@@ -193,7 +213,7 @@ step::StepProject StepStudio::relieved(const ReliefStep& change) const {
 
 const step::StepSynthesis& StepStudio::required() const {
   if (!project_) throw CamError("found no step cam; expected a project");
-  if (!made()) throw CamError(problem_);
+  if (!made()) throw CamError(problem());
   return *made_;
 }
 
@@ -212,7 +232,7 @@ std::string StepStudio::state_json() const {
   return fmt::format(
       R"({{"name":{},"motion":{},"measured":{},"problem":{},"axis_distance":{},"arm":{},"roller_radius":{},)"
       R"("hub_radius":{},"rollers":{},"pitch":{},"bases":[{},{}],"against":{},"numbers":{},"choices":{},"made":{}}})",
-      write::text(p.name), write::text(p.motion_name()), write::truth(p.measured.has_value()), write::text(problem_),
+      write::text(p.name), write::text(p.motion_name()), write::truth(p.measured.has_value()), write::text(problem()),
       write::number(m.axis_distance), write::number(m.arm), write::number(m.roller_radius), write::number(m.hub_radius),
       m.rollers, write::number(m.pitch()), write::number(m.base(0)), write::number(m.base(1)), write::truth(m.against),
       write::list(step::project_numbers(), [&](const auto& each) { return number_json(p, each); }),

@@ -40,14 +40,15 @@ struct ReliefStep {
 
 class StepStudio {
  public:
-  // What `project` becomes with the motion of `cam`; nothing where both are what they were. An empty `project` is none.
-  // `several`: the motion file has more cams, so that the project has to name its own.
+  // From now on `project` with the motion of `cam`; nothing where both are what they were. An empty `project` is none.
+  // What it becomes is computed where it is asked for. `several`: the motion file has more cams, so that the project
+  // has to name its own.
   void set(StepProjectPointer project, const sim::cam::Cam& cam, bool several);
 
   const step::StepProject* project() const { return project_ ? &*project_ : nullptr; }
   // None without a project and where it cannot be built, which problem() then explains.
-  const step::StepSynthesis* made() const { return made_ && problem_.empty() ? &*made_ : nullptr; }
-  const std::string& problem() const { return problem_; }
+  const step::StepSynthesis* made() const;
+  const std::string& problem() const;
 
   // The project after `step`. Throws sim::cam::CamError where relief may not be so.
   step::StepProject relieved(const ReliefStep& step) const;
@@ -72,13 +73,16 @@ class StepStudio {
   std::vector<step::ShopFile> files(const std::string& program) const;
 
  private:
+  void make() const;
   const step::StepSynthesis& required() const;
 
   StepProjectPointer source_;                 // as it was set
   std::optional<step::StepProject> project_;  // with the cam
-  std::optional<step::StepSynthesis> made_;
-  std::string made_of_;  // all but relief, as text
-  std::string problem_;
+  std::string key_;                           // all of it but relief, as text
+  mutable bool is_made_ = false;
+  mutable std::optional<step::StepSynthesis> made_;
+  mutable std::string made_of_;  // the key of it
+  mutable std::string problem_;
 };
 
 }  // namespace stiction::host

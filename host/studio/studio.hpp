@@ -90,7 +90,7 @@ class Studio {
 
   // ---- what the page shows ----
   const sim::cam::Cam& cam() const { return motion_.cam; }
-  // The step cam with the motion as it is now; computed where either has changed.
+  // The step cam with the motion as it is now.
   const StepStudio& step() const;
   const sim::cam::Motion& motion() const { return motion_; }
   const machine::Machine* machine() const { return machine_ ? &*machine_ : nullptr; }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "firmware/machine/file/machine_file.hpp"
 #include "host/cam/step/project_text.hpp"
 #include "host/studio/studio.hpp"
 #include "host/studio/track_edit.hpp"
