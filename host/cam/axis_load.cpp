@@ -4,13 +4,15 @@
 #include <numbers>
 
 #include "firmware/machine/model/motor_force.hpp"
+#include "sim/number/sine_cosine.hpp"
 #include "sim/plant/friction/friction.hpp"
 
 namespace stiction::host {
 
 double AxisLoad::effort(double position, double speed, double acceleration) const {
   const double direction = speed > 0.0 ? 1.0 : speed < 0.0 ? -1.0 : 0.0;
-  const double down = kind == sim::cam::Coordinate::rotary ? weight * std::sin(position - weight_zero) : weight;
+  const double down =
+      kind == sim::cam::Coordinate::rotary ? weight * sim::sine_cosine(position - weight_zero).sine : weight;
   return inertia() * acceleration + viscous * speed + coulomb * direction + down;
 }
 

@@ -3,20 +3,18 @@
 
 #include <memory>
 
-#include "host/cam/step/shop_files.hpp"
+#include "host/cam/step/shop_folder.hpp"
 #include "host/cli/cam_spring_output.hpp"
 #include "host/cli/cam_step_output.hpp"
 #include "host/cli/choices.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/csv_marks.hpp"
 #include "host/cli/errors.hpp"
+#include "host/cli/machine_options.hpp"
 #include "host/cli/output.hpp"
 
 namespace stiction::host {
 namespace {
-
-// Between radii that are measured, rad.
-constexpr double inspection_spacing = 5.0 * step::degree;
 
 struct StepOptions {
   std::string project, out, columns, separator = ",", decimal = ".";
@@ -37,44 +35,17 @@ step::TableLayout layout_of(const StepOptions& o) {
   return layout;
 }
 
-// Files of a folder with their checksums.
-class ShopFolder {
- public:
-  ShopFolder(const StepOptions& options, const Invocation& invocation, const std::string& project)
-      : origin{"stiction " + invocation.version, project}, folder_(options.out, invocation.command) {}
+step::FileOrigin origin_of(const Invocation& invocation, const step::StepProject& project) {
+  return {"stiction " + invocation.version, project.name};
+}
 
-  void write(const std::string& name, const std::string& text) {
-    folder_.write(name, text);
-    files.emplace_back(name, fmt::format("{:08x}", step::checksum_of(text)));
-  }
-  void write_tables(const step::StepProject& project, const step::StepProfile& profile,
-                    const step::TableLayout& layout) {
-    const auto cam = profile.row + 1;
-    write(fmt::format("cam_{}.csv", cam), coordinates_text(project, profile, layout, origin));
-    write(fmt::format("inspection_{}.csv", cam), inspection_text(project, profile, inspection_spacing, layout, origin));
-  }
-  // Without a checksum of its own.
-  void write_plain(const std::string& name, const std::string& text) { folder_.write(name, text); }
-  void commit() { folder_.commit(); }
-
-  const step::FileOrigin origin;
-  std::vector<std::pair<std::string, std::string>> files;
-
- private:
-  PendingFolder folder_;
-};
-
-void write_files(StepResult& result, const StepOptions& options, const Invocation& invocation) {
-  const step::TableLayout layout = layout_of(options);
-  ShopFolder folder(options, invocation, result.project.name);
-  folder.write("cams_r12.dxf", dxf_text(result.project, result.made, step::DxfVersion::r12, folder.origin));
-  folder.write("cams_r2000.dxf", dxf_text(result.project, result.made, step::DxfVersion::r2000, folder.origin));
-  for (const auto& profile : result.made.profiles) folder.write_tables(result.project, profile, layout);
-  result.files = folder.files;
+void write_files(step::StepResult& result, const StepOptions& options, const Invocation& invocation) {
+  PendingFolder folder(options.out, invocation.command);
+  for (const auto& [name, text] : shop_folder(result, layout_of(options), origin_of(invocation, result.project)))
+    folder.write(name, text);
   Origin sources;
   sources.sources.push_back(options.project);
-  folder.write_plain("report.html", step_page(result, invocation.command_line, invocation.version, sources));
-  folder.write_plain("result.json", step_json(result).dump(2) + "\n");
+  folder.write("report.html", step_page(result, invocation.command_line, invocation.version, sources));
   folder.commit();
 }
 
@@ -82,10 +53,14 @@ void run_spring(const step::StepProject& project, const StepOptions& options, co
   const auto made = synthesize_spring_cam(project);
   std::vector<std::pair<std::string, std::string>> files;
   if (!options.out.empty()) {
-    ShopFolder folder(options, invocation, project.name);
-    folder.write_tables(project, made.profile, layout_of(options));
-    files = folder.files;
-    folder.write_plain("result.json", spring_json(project, made, files).dump(2) + "\n");
+    PendingFolder folder(options.out, invocation.command);
+    for (const auto& [name, text] :
+         shop_tables(project, made.profile, layout_of(options), origin_of(invocation, project))) {
+      folder.write(name, text);
+      files.emplace_back(name, fmt::format("{:08x}", step::checksum_of(text)));
+    }
+    for (const auto& [name, text] : source_files(project)) folder.write(name, text);
+    folder.write("result.json", spring_json(project, made, files).dump(2) + "\n");
     folder.commit();
   }
   if (options.json)
@@ -107,10 +82,10 @@ void run_step(const StepOptions& options, const Invocation& invocation) {
   try {
     if (project.spring) return run_spring(project, options, invocation);
     const auto made = synthesize(project);
-    StepResult result = step_result(project, made);
+    step::StepResult result = step_result(project, made);
     if (!options.out.empty()) write_files(result, options, invocation);
     if (options.json)
-      fmt::print("{}\n", step_json(result).dump(2));
+      fmt::print("{}", step_json_text(result));
     else
       fmt::print("{}{}", step_text(result), options.out.empty() ? "" : files_text(options.out));
   } catch (const sim::cam::CamError& error) {

@@ -25,7 +25,7 @@ namespace stiction::host {
 namespace {
 
 struct StudioOptions {
-  std::string motion, machine, speed = "60 rpm", out;
+  std::string motion, machine, step, speed = "60 rpm", out;
 };
 
 struct OpenOptions {
@@ -56,12 +56,27 @@ void write_studio(StudioPageContent content, sim::cam::Coordinate master, const 
              1e-6 * static_cast<double>(page.size()));
 }
 
+// The motion file that a project is of, where it is of one.
+std::string motion_of(const std::filesystem::path& file, const step::StepProject& project) {
+  return project.measured ? std::string() : (file.parent_path() / project.motion_file).string();
+}
+
 void run_studio(const StudioOptions& options, const Invocation& invocation) {
   StudioPageContent content;
   auto master = sim::cam::Coordinate::rotary;
-  if (!options.motion.empty()) {
-    master = sim::cam::read_motion_file(options.motion).front().master;
-    content.motion = file_of(options.motion);
+  std::string motion = options.motion;
+  if (!options.step.empty()) {
+    const auto project = step::read_step_project(options.step);
+    if (project.spring)
+      throw UsageError(fmt::format(
+          "--step {}: found a single cam with a spring; expected a pair of cams: `stiction cam step` makes single ones",
+          options.step));
+    if (motion.empty()) motion = motion_of(options.step, project);
+    content.step = file_of(options.step);
+  }
+  if (!motion.empty()) {
+    master = sim::cam::read_motion_file(motion).front().master;
+    content.motion = file_of(motion);
   }
   write_studio(std::move(content), master, options, invocation);
 }
@@ -71,11 +86,6 @@ sim::cam::Cam read_any(const std::string& file, const std::string& text, const O
   constexpr const char* name = "opened";
   if (text.starts_with("SCAM"))
     return cam_of_table({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, name);
-  if (text.find(step::project_schema) != std::string::npos) {
-    auto project = step::read_step_project(file);
-    if (!project.cam) throw sim::cam::CamError("found a project with a measured lift; expected one of a motion file");
-    return std::move(*project.cam);
-  }
   const auto& formats = exchange_formats();
   std::string_view format = options.format.empty() ? looks_like(text) : std::string_view(options.format);
   if (std::any_of(formats.begin(), formats.end(), [&](const auto& each) { return each.name == format; })) {
@@ -92,6 +102,13 @@ void run_open(const OpenOptions& options, const Invocation& invocation) {
   const auto& file = options.page.motion;
   const auto text = machine::read_whole_file(file, "a motion file, a table, a log of a cam or a step-cam project");
   if (looks_like(text) == "a motion file" && options.format.empty()) return run_studio(options.page, invocation);
+  if (text.find(step::project_schema) != std::string::npos) {
+    const auto project = step::read_step_project(file);
+    auto of_project = options.page;
+    of_project.motion = motion_of(file, project);
+    if (!project.spring) of_project.step = file;
+    return run_studio(of_project, invocation);
+  }
   sim::cam::Cam cam;
   try {
     cam = read_any(file, text, options);
@@ -122,6 +139,11 @@ void add_cam_studio(CLI::App& cam, const Invocation& invocation) {
   auto o = std::make_shared<StudioOptions>();
   command->add_option("MOTION", o->motion, "motion file (stiction.cam/1) to begin with [an empty motion]")
       ->type_name("MOTION");
+  command
+      ->add_option("--step", o->step,
+                   "project of a step cam, whose mechanism and relief the page has too; its motion, where no MOTION is "
+                   "given [none]")
+      ->type_name("PROJECT");
   add_page_options(*command, *o);
   command->callback([o, &invocation] { run_studio(*o, invocation); });
 

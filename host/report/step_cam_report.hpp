@@ -5,23 +5,18 @@
 #include <string>
 #include <vector>
 
-#include "host/cam/step/synthesis.hpp"
+#include "host/cam/step/result.hpp"
 #include "host/report/origin.hpp"
 
 namespace stiction::host {
-
-// A line of the table of figures; `unit` may be empty.
-struct StepCamFigure {
-  std::string text, value, unit;
-};
 
 struct StepCamReport {
   std::string command;  // the command line that made it
   std::string version;  // of stiction
   const step::StepProject& project;
-  const step::StepSynthesis& made;     // of that project
-  std::vector<StepCamFigure> figures;  // that the command prints
-  Origin origin{};                     // source files, date
+  const step::StepSynthesis& made;        // of that project
+  std::vector<step::StepFigure> figures;  // that the command prints
+  Origin origin{};                        // source files, date
 };
 
 // The whole page, UTF-8. A turn is shown at up to 1800 angles of the cam, profiles by as many points; about 0.6 MB with

@@ -15,6 +15,7 @@ asset css, "host/studio/web/studio.css"
 asset engine_js, "host/studio/web/engine.js"
 asset charts_js, "host/studio/web/charts.js"
 asset studio_js, "host/studio/web/studio.js"
+asset step_js, "host/studio/web/step.js"
 asset wasm, "studio.wasm"
 
   .section .note.GNU-stack, "", %progbits

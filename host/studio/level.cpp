@@ -44,8 +44,9 @@ Cam with_level(const Cam& cam, std::size_t at, double position) {
     result.segments[*behind].stroke -= change;
   } else if (cam.periodic && cam.modulo) {
     const double turns = std::nearbyint((cam.position_of(n) - cam.start) / *cam.modulo);
-    if (turns == 0.0) throw CamError("found a level that ends the cycle; expected one that a later segment leaves");
     const double rise = result.position_of(n) - result.start;
+    // A cycle that advances by nothing may advance by whole multiples of the modulo.
+    if (turns == 0.0) return consistent(std::move(result));
     if (!(rise / turns > 0.0)) throw CamError("found a cycle without advance; expected one of the modulo's direction");
     result.modulo = rise / turns;
   } else if (cam.periodic && before) {

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstdint>
 
+#include "sim/number/arc.hpp"
 #include "sim/number/arithmetic.hpp"
 #include "sim/number/sine_cosine.hpp"
 
@@ -51,6 +52,14 @@ std::vector<double> number_values(NumberFunction function, std::size_t count) {
         break;
       case NumberFunction::square_root:
         values.push_back(sim::square_root(random.magnitude()));
+        break;
+      case NumberFunction::arc_tangent: {
+        const double y = 2.0 * random.share() - 1.0;
+        values.push_back(sim::arc_tangent(y, 2.0 * random.share() - 1.0));
+        break;
+      }
+      case NumberFunction::arc_cosine:
+        values.push_back(sim::arc_cosine(2.0 * random.share() - 1.0));
         break;
     }
   return values;

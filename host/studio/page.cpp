@@ -25,6 +25,7 @@ STICTION_STUDIO_ASSET(css)
 STICTION_STUDIO_ASSET(engine_js)
 STICTION_STUDIO_ASSET(charts_js)
 STICTION_STUDIO_ASSET(studio_js)
+STICTION_STUDIO_ASSET(step_js)
 STICTION_STUDIO_ASSET(wasm)
 
 namespace stiction::host {
@@ -72,15 +73,17 @@ std::string studio_page(const StudioPageContent& content) {
   Studio studio;
   if (content.motion) studio.load_motion(content.motion->name, content.motion->text);
   if (content.machine) studio.load_machine(content.machine->name, content.machine->text);
+  if (content.step) studio.load_step(content.step->name, content.step->text);
   const json data{{"version", content.version},
                   {"command", content.command},
                   {"date", present_date()},
                   {"motion", file_json(content.motion)},
                   {"machine", file_json(content.machine)},
+                  {"step", file_json(content.step)},
                   {"speed", content.master_speed},
                   {"speed_text", content.speed_text}};
   const auto programme = wasm();
-  const std::string scripts = fmt::format("{}\n{}\n{}", engine_js(), charts_js(), studio_js());
+  const std::string scripts = fmt::format("{}\n{}\n{}\n{}", engine_js(), charts_js(), studio_js(), step_js());
   return fill_template(
       html(), {{"version", escape_html(content.version)},
                {"title", escape_html("Cam studio: " + studio.cam().name)},

@@ -14,6 +14,7 @@ struct StudioFile {
 struct StudioPageContent {
   std::optional<StudioFile> motion;   // none: an empty studio
   std::optional<StudioFile> machine;  // none: curves alone
+  std::optional<StudioFile> step;     // project of a step cam of that motion
   double master_speed = 0.0;          // rad/s or m/s
   std::string speed_text;             // as the command line has it: "130 rpm"
   std::string command, version;       // of the one who writes it

@@ -7,9 +7,12 @@
 
 #include "host/cam/exchange.hpp"
 #include "host/cam/shape.hpp"
+#include "host/cam/step/project_text.hpp"
 #include "host/simulate/cam_run.hpp"
 #include "host/simulate/stand_run.hpp"
+#include "host/studio/json_text.hpp"
 #include "host/studio/level.hpp"
+#include "host/studio/track_edit.hpp"
 #include "sim/cam/edit.hpp"
 #include "sim/cam/laws.hpp"
 #include "sim/cam/motion_file.hpp"
@@ -82,8 +85,11 @@ Cam edited(const Cam& cam, const Studio::Step& step) {
   if (step.verb == "remove") return sim::cam::remove(cam, step.at);
   if (step.verb == "insert") return with_rest(cam, step.at);
   if (step.verb == "cycle") return with_cycle(cam, step.x);
+  if (edits_tracks(step.verb)) return with_track(cam, {step.verb, step.at, step.key, step.x, step.y});
   if (step.verb == "start") {
     changed.start = step.x;
+  } else if (step.verb == "modulo") {
+    changed.modulo = step.x > 0.0 ? std::optional(step.x) : std::nullopt;
   } else if (step.verb == "value") {
     segment_of(changed, step.at).values[std::string(step.key)] = {step.x};
   } else if (step.verb == "default") {
@@ -101,28 +107,9 @@ Cam edited(const Cam& cam, const Studio::Step& step) {
 
 // ---- JSON, which the page alone reads ----
 
-std::string json_text(std::string_view text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') result += '\\';
-    if (static_cast<unsigned char>(c) < ' ')
-      result += fmt::format("\\u{:04x}", static_cast<int>(c));
-    else
-      result += c;
-  }
-  return result + '"';
-}
-
-// JSON has no infinity.
-std::string number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
-std::string number(const std::optional<double>& value) { return value ? number(*value) : "null"; }
-
-template <class Items, class Text>
-std::string list(const Items& items, const Text& text) {
-  std::string result = "[";
-  for (const auto& item : items) result += (result.size() > 1 ? "," : "") + text(item);
-  return result + "]";
-}
+using studio_json::list;
+using studio_json::number;
+std::string json_text(std::string_view text) { return studio_json::text(text); }
 
 std::string values_json(const sim::cam::LawValues& values) {
   std::string result = "{";
@@ -152,6 +139,15 @@ std::string segment_json(const Cam& cam, std::size_t k) {
                      number(segment.stroke), number(segment.rise()), json_text(segment.law),
                      values_json(segment.values), number(segment.end.speed), number(segment.end.acceleration),
                      number(segment.end.jerk));
+}
+
+std::string track_json(const sim::cam::Track& track) {
+  const auto window = [](const sim::cam::Track::Window& each) {
+    return fmt::format("[{},{}]", number(each.first), number(each.last));
+  };
+  return fmt::format(R"({{"name":{},"windows":{},"on":{},"off":{},"hysteresis":{}}})", json_text(track.name),
+                     list(track.windows, window), number(track.on_compensation), number(track.off_compensation),
+                     number(track.hysteresis));
 }
 
 std::string jump_json(const sim::cam::MotionJump& found) {
@@ -204,11 +200,66 @@ Studio::Studio() : cams_{empty_cam()}, motion_(compose(cams_.front())) {}
 
 void Studio::load_motion(const std::string& file, const std::string& text) {
   auto cams = sim::cam::parse_motion_file(file, text);
-  auto motion = compose(cams.front());
-  past_.push_back({std::move(cams_), std::move(motion_)});
-  future_.clear();
-  cams_ = std::move(cams), motion_ = std::move(motion);
+  std::size_t edited = 0;
+  const std::string wanted = step_project_ ? step_project_->cam_name : std::string();
+  for (std::size_t k = 0; k < cams.size(); ++k)
+    if (cams[k].name == wanted) edited = k;
+  auto motion = compose(cams[edited]);
+  begin_step(false);
+  cams_ = std::move(cams), motion_ = std::move(motion), edited_ = edited;
+  motion_file_ = file;
+  if (!step_project_) return;
+  auto project = *step_project_;
+  project.motion_file = file;
+  step_project_ = std::make_shared<const step::StepProject>(std::move(project));
 }
+
+void Studio::choose_cam(std::size_t at) {
+  if (at >= cams_.size()) throw CamError(fmt::format("found cam {} of {}; expected one of them", at + 1, cams_.size()));
+  auto motion = compose(cams_[at]);
+  begin_step(false);
+  motion_ = std::move(motion), edited_ = at;
+}
+
+void Studio::load_step(const std::string& file, const std::string& text) {
+  auto project = parsed_step_project(file, text, cams_);
+  std::size_t edited = edited_;
+  for (std::size_t k = 0; k < cams_.size(); ++k)
+    if (project.cam && cams_[k].name == project.cam->name) edited = k;
+  auto motion = compose(cams_[edited]);
+  begin_step(false);
+  motion_ = std::move(motion), edited_ = edited;
+  step_project_ = std::make_shared<const step::StepProject>(std::move(project));
+}
+
+void Studio::new_step() {
+  auto project = usual_step_project(motion_file_);
+  project.cam = cam();
+  keep_step(std::move(project), false);
+}
+
+std::string Studio::step_text() const {
+  const auto* project = step().project();
+  if (project == nullptr) throw CamError("found no step cam; expected a project");
+  return step::project_text(*project);
+}
+
+const StepStudio& Studio::step() const {
+  step_.set(step_project_, cam(), cams_.size() > 1);
+  return step_;
+}
+
+void Studio::set_step_number(std::string_view name, std::optional<double> value) {
+  if (step().project() == nullptr) throw CamError("found no step cam; expected a project");
+  keep_step(with_number(*step_.project(), name, value), false);
+}
+
+void Studio::set_step_choice(std::string_view name, std::string_view value) {
+  if (step().project() == nullptr) throw CamError("found no step cam; expected a project");
+  keep_step(with_choice(*step_.project(), name, value), false);
+}
+
+void Studio::set_relief(const ReliefStep& change, bool goes_on) { keep_step(step().relieved(change), goes_on); }
 
 std::string Studio::motion_text() const { return sim::cam::motion_text(cams_); }
 
@@ -235,15 +286,31 @@ std::string Studio::exported_file(std::string_view format) const {
   return {table.bytes.begin(), table.bytes.end()};
 }
 
-void Studio::keep(Cam cam, bool goes_on) {
-  auto motion = compose(cam);
+Studio::Version Studio::version() { return {cams_, motion_, edited_, step_project_}; }
+
+void Studio::restore(Version version) {
+  cams_ = std::move(version.cams), motion_ = std::move(version.motion);
+  edited_ = version.edited, step_project_ = std::move(version.step);
+}
+
+void Studio::begin_step(bool goes_on) {
   if (!goes_on || past_.empty()) {
-    past_.push_back({cams_, motion_});
+    past_.push_back(version());
     if (past_.size() > most_steps) past_.erase(past_.begin());
   }
   future_.clear();
-  cams_.front() = std::move(cam);
+}
+
+void Studio::keep(Cam cam, bool goes_on) {
+  auto motion = compose(cam);
+  begin_step(goes_on);
+  cams_[edited_] = std::move(cam);
   motion_ = std::move(motion);
+}
+
+void Studio::keep_step(step::StepProject project, bool goes_on) {
+  begin_step(goes_on);
+  step_project_ = std::make_shared<const step::StepProject>(std::move(project));
 }
 
 void Studio::edit(const Step& step) { keep(edited(cam(), step), step.goes_on); }
@@ -262,16 +329,16 @@ void Studio::shape(std::string_view method, double speed) {
 
 bool Studio::undo() {
   if (past_.empty()) return false;
-  future_.push_back({std::move(cams_), std::move(motion_)});
-  cams_ = std::move(past_.back().cams), motion_ = std::move(past_.back().motion);
+  future_.push_back(version());
+  restore(std::move(past_.back()));
   past_.pop_back();
   return true;
 }
 
 bool Studio::redo() {
   if (future_.empty()) return false;
-  past_.push_back({std::move(cams_), std::move(motion_)});
-  cams_ = std::move(future_.back().cams), motion_ = std::move(future_.back().motion);
+  past_.push_back(version());
+  restore(std::move(future_.back()));
   future_.pop_back();
   return true;
 }
@@ -291,15 +358,16 @@ std::string Studio::state_json(double speed) const {
         machine_->axes.front().cascaded() && machine_->fits_formats() ? "true" : "false");
   const auto& e = duty.effort;
   return fmt::format(
-      R"({{"name":{},"cams":{},"master":{},"slave":{},"cycle":{},"periodic":{},"start":{},"modulo":{},"segments":{},)"
+      R"({{"name":{},"cams":{},"edited":{},"step":{},"master":{},"slave":{},"cycle":{},"periodic":{},"start":{},"modulo":{},"segments":{},)"
       R"("tracks":{},"undo":{},"redo":{},"jumps":{},"limits":{},"speed_peak":{},"acceleration_peak":{},)"
       R"("motor":{},"motor_rms":{},"load_effort":{},"classic":{},"machine":{}}})",
-      json_text(c.name), cams_.size(), json_text(sim::cam::name_of(c.master)), json_text(sim::cam::name_of(c.slave)),
+      json_text(c.name), list(cams_, [](const Cam& each) { return json_text(each.name); }), edited_,
+      step_project_ ? "true" : "false", json_text(sim::cam::name_of(c.master)), json_text(sim::cam::name_of(c.slave)),
       number(c.cycle()), c.periodic ? "true" : "false", number(c.start), number(c.modulo),
-      list(numbers, [&](std::size_t k) { return segment_json(c, k); }), c.tracks.size(), past_.size(), future_.size(),
-      list(jumps_of(motion_), jump_json), list(duty.limits, limit_json), number(duty.extremes[1].magnitude()),
-      number(duty.extremes[2].magnitude()), number(std::fabs(e.motor.value)), number(e.motor_rms),
-      number(std::fabs(e.load.value)), number(std::fabs(e.cam.value)), machine);
+      list(numbers, [&](std::size_t k) { return segment_json(c, k); }), list(c.tracks, track_json), past_.size(),
+      future_.size(), list(jumps_of(motion_), jump_json), list(duty.limits, limit_json),
+      number(duty.extremes[1].magnitude()), number(duty.extremes[2].magnitude()), number(std::fabs(e.motor.value)),
+      number(e.motor_rms), number(std::fabs(e.load.value)), number(std::fabs(e.cam.value)), machine);
 }
 
 std::string Studio::methods_json() {

@@ -11,16 +11,12 @@
 
 #include "firmware/machine/model/machine.hpp"
 #include "host/cam/duty.hpp"
+#include "host/studio/step_studio.hpp"
+#include "host/studio/studio_table.hpp"
 #include "sim/cam/check.hpp"
 #include "sim/cam/motion.hpp"
 
 namespace stiction::host {
-
-// Rows of numbers, one behind the other.
-struct StudioTable {
-  std::size_t columns = 0;
-  std::vector<double> values;
-};
 
 // What one run of the simulated axis shows of a motion.
 struct StudioRun {
@@ -40,14 +36,24 @@ class Studio {
   Studio();
 
   // ---- files ----
-  // The motion file `text`, whose name in messages is `file`; the first of its cams is edited. Throws
-  // machine::MachineFileError and leaves everything as it was.
+  // The motion file `text`, whose name in messages is `file`; the first of its cams is edited, or the one that the step
+  // cam names. Throws machine::MachineFileError and leaves everything as it was.
   void load_motion(const std::string& file, const std::string& text);
   // The motion file as the commands write it.
   std::string motion_text() const;
+  // Edits the cam `at` of the file. Throws sim::cam::CamError for none.
+  void choose_cam(std::size_t at);
   // The machine file `text`, as `file`; an `axis` by name, or empty for the first that the slave fits. Throws
   // machine::MachineFileError and leaves the machine as it was.
   void load_machine(const std::string& file, const std::string& text, const std::string& axis = {});
+
+  // The project of a step cam `text`, as `file`, for the open motion. Throws machine::MachineFileError and
+  // sim::cam::CamError and leaves everything as it was.
+  void load_step(const std::string& file, const std::string& text);
+  // A project of usual dimensions for the motion, in one step.
+  void new_step();
+  // The project as the commands write it. Throws sim::cam::CamError without one.
+  std::string step_text() const;
 
   // What the commands export of the motion: the drive's table, as `stiction cam table` writes it, for the `format`
   // "table"; else a file of that format as `stiction cam export` writes it without further options. Throws
@@ -59,8 +65,9 @@ class Studio {
   // place `x` and the slave's position `y`), "level" (its end, to the position `y`), "law" (`key`), "value" (parameter
   // `key` to `x`), "default" (parameter `key`), "speed" (forced at its end to `x`), "free" (nothing forced there),
   // "split" (at the place `x`), "remove", "insert" (a rest of half of its length before it), "start" (`x`), "cycle"
-  // (`x`). `goes_on`: the step belongs to the one before, as those of one drag do. Throws sim::cam::CamError and
-  // machine::ValueError, and leaves the motion as it was.
+  // (`x`), "modulo" (`x`, of an endless slave; 0: none), or one of the tracks' (track_edit.hpp). `goes_on`: the step
+  // belongs to the one before, as those of one drag do. Throws sim::cam::CamError, machine::ValueError and
+  // machine::MachineFileError, and leaves the motion as it was.
   struct Step {
     std::string_view verb;
     std::size_t at = 0;
@@ -73,11 +80,18 @@ class Studio {
   // with the usual band of 20 %. Throws sim::cam::CamError where it has no room or the motion or the axis has no dwell,
   // elastic shaft or machine.
   void shape(std::string_view method, double speed);
+  // Changes the step cam's key `name` in one step, to a number in the page's unit, none leaving it out, or to a word;
+  // or its relief. Throws as with_number(), with_choice() and StepStudio::relieved() do, and leaves it as it was.
+  void set_step_number(std::string_view name, std::optional<double> value);
+  void set_step_choice(std::string_view name, std::string_view value);
+  void set_relief(const ReliefStep& step, bool goes_on);
   bool undo();  // whether there was a step to take back
   bool redo();
 
   // ---- what the page shows ----
   const sim::cam::Cam& cam() const { return motion_.cam; }
+  // The step cam with the motion as it is now.
+  const StepStudio& step() const;
   const sim::cam::Motion& motion() const { return motion_; }
   const machine::Machine* machine() const { return machine_ ? &*machine_ : nullptr; }
   // Segments, forced values, what can be undone, jumps, and, where there is a machine, its limits at the `speed` of the
@@ -107,12 +121,22 @@ class Studio {
   struct Version {
     std::vector<sim::cam::Cam> cams;
     sim::cam::Motion motion;
+    std::size_t edited = 0;
+    StepProjectPointer step{};
   };
+  void begin_step(bool goes_on);
+  Version version();
+  void restore(Version version);
   void keep(sim::cam::Cam cam, bool goes_on);
+  void keep_step(step::StepProject project, bool goes_on);
   const machine::Machine& required_machine() const;
 
-  std::vector<sim::cam::Cam> cams_;  // of the file; the first is edited
+  std::string motion_file_ = "motion.toml";
+  std::vector<sim::cam::Cam> cams_;  // of the file
+  std::size_t edited_ = 0;           // of them
   sim::cam::Motion motion_;
+  StepProjectPointer step_project_;
+  mutable StepStudio step_;
   std::vector<Version> past_, future_;
   std::optional<machine::Machine> machine_;  // with one axis
   AxisLoad load_;

@@ -1,22 +1,16 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "firmware/machine/file/units.hpp"
 #include "sim/cam/motion_file.hpp"
 #include "sim/cam/motion_keys.hpp"
+#include "sim/cam/quantity_text.hpp"
 
 namespace stiction::sim::cam {
 namespace {
 
-// In degrees or millimetres where that reads back as the same double, else in SI.
-std::string quantity_text(double value, std::string_view si) {
-  const std::string_view shown = si == "rad" ? "deg" : si == "m" ? "mm" : "";
-  if (!shown.empty()) {
-    const auto text = machine::format_quantity(value, si, shown);
-    if (machine::parse_quantity(text, si) == value) return fmt::format("\"{}\"", text);
-  }
-  if (si == "1") return fmt::format("{}", value);
-  return fmt::format("\"{} {}\"", value, si);
+// In degrees or millimetres.
+std::string usual_text(double value, std::string_view si) {
+  return quantity_text(value, si, si == "rad" ? "deg" : si == "m" ? "mm" : "");
 }
 
 void write_boundary(std::string& text, const Cam& cam, const Boundary& boundary, std::string_view prefix) {
@@ -25,14 +19,7 @@ void write_boundary(std::string& text, const Cam& cam, const Boundary& boundary,
   for (int order = 1; order <= 3; ++order)
     if (values[order - 1])
       text += fmt::format("{}_{} = {}\n", prefix, names[order - 1],
-                          quantity_text(*values[order - 1], derivative_unit(cam.slave, cam.master, order)));
-}
-
-// As TOML reads a number back as the same double: with a point or an exponent.
-std::string number_text(double value) {
-  auto text = fmt::format("{}", value);
-  if (text.find_first_of(".en") == std::string::npos) text += ".0";
-  return text;
+                          usual_text(*values[order - 1], derivative_unit(cam.slave, cam.master, order)));
 }
 
 void write_points(std::string& text, const Cam& cam, const PointTable& points) {
@@ -44,7 +31,7 @@ void write_points(std::string& text, const Cam& cam, const PointTable& points) {
   }
   if (!points.splits.empty()) {
     std::vector<std::string> splits;
-    for (const double split : points.splits) splits.push_back(quantity_text(split, unit_of(cam.master)));
+    for (const double split : points.splits) splits.push_back(usual_text(split, unit_of(cam.master)));
     text += fmt::format("points.splits = [{}]\n", fmt::join(splits, ", "));
   }
   text += "points.rows = [\n";
@@ -59,8 +46,7 @@ void write_points(std::string& text, const Cam& cam, const PointTable& points) {
 
 void write_segment(std::string& text, const Cam& cam, const Segment& segment) {
   text += fmt::format("\n[[cam.{}.segment]]\nlength = {}\nstroke = {}\n", cam.name,
-                      quantity_text(segment.length, unit_of(cam.master)),
-                      quantity_text(segment.stroke, unit_of(cam.slave)));
+                      usual_text(segment.length, unit_of(cam.master)), usual_text(segment.stroke, unit_of(cam.slave)));
   if (segment.points)
     write_points(text, cam, *segment.points);
   else
@@ -79,15 +65,15 @@ void write_segment(std::string& text, const Cam& cam, const Segment& segment) {
 void write_track(std::string& text, const Cam& cam, const Track& track) {
   std::vector<std::string> on, off;
   for (const auto& [first, last] : track.windows) {
-    on.push_back(quantity_text(first, unit_of(cam.master)));
-    off.push_back(quantity_text(last, unit_of(cam.master)));
+    on.push_back(usual_text(first, unit_of(cam.master)));
+    off.push_back(usual_text(last, unit_of(cam.master)));
   }
   text += fmt::format("\n[[cam.{}.track]]\nname = \"{}\"\non = [{}]\noff = [{}]\n", cam.name, track.name,
                       fmt::join(on, ", "), fmt::join(off, ", "));
   if (track.on_compensation != 0.0) text += fmt::format("on_compensation = \"{} s\"\n", track.on_compensation);
   if (track.off_compensation != 0.0) text += fmt::format("off_compensation = \"{} s\"\n", track.off_compensation);
   if (track.hysteresis != 0.0)
-    text += fmt::format("hysteresis = {}\n", quantity_text(track.hysteresis, unit_of(cam.master)));
+    text += fmt::format("hysteresis = {}\n", usual_text(track.hysteresis, unit_of(cam.master)));
 }
 
 }  // namespace
@@ -96,10 +82,10 @@ std::string motion_text(const std::vector<Cam>& cams) {
   std::string text = fmt::format("schema = \"{}\"\n", motion_schema);
   for (const Cam& cam : cams) {
     text += fmt::format("\n[cam.{}]\nmaster = \"{}\"\nslave = \"{}\"\ncycle = {}\n", cam.name, name_of(cam.master),
-                        name_of(cam.slave), quantity_text(cam.cycle(), unit_of(cam.master)));
+                        name_of(cam.slave), usual_text(cam.cycle(), unit_of(cam.master)));
     if (!cam.periodic) text += "periodic = false\n";
-    if (cam.start != 0.0) text += fmt::format("start = {}\n", quantity_text(cam.start, unit_of(cam.slave)));
-    if (cam.modulo) text += fmt::format("modulo = {}\n", quantity_text(*cam.modulo, unit_of(cam.slave)));
+    if (cam.start != 0.0) text += fmt::format("start = {}\n", usual_text(cam.start, unit_of(cam.slave)));
+    if (cam.modulo) text += fmt::format("modulo = {}\n", usual_text(*cam.modulo, unit_of(cam.slave)));
     write_boundary(text, cam, cam.begin, "start");
     for (const Segment& segment : cam.segments) write_segment(text, cam, segment);
     for (const Track& track : cam.tracks) write_track(text, cam, track);

@@ -246,6 +246,7 @@ ROOMS = {
     },
     "host/studio": {
         "host/cam": "a motion is held against the limits of an axis",
+        "host/cam/step": "becomes the lift of a step cam",
         "host/simulate": "and followed by it in runs of the simulation",
         "host/log": "whose logs it shows",
         "host/report": "on a page with the colours of the reports,",

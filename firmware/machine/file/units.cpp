@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <memory>
 #include <mutex>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "firmware/machine/file/nearest_name.hpp"
+#include "firmware/machine/file/quantity_parts.hpp"
 
 namespace stiction::machine {
 namespace {
@@ -45,14 +45,6 @@ ut_system* unit_system() {
     return read;
   }();
   return system;
-}
-
-constexpr std::string_view blanks = " \t";
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(blanks);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -145,38 +137,16 @@ Converter converter(ut_unit* from, ut_unit* to) {
   return made;
 }
 
-// A factor like 1e-6 is not a double, its inverse is: dividing by that rounds once, as the compiler's 62.5e-6 does.
 double convert(const cv_converter* converter, double number) {
-  const double factor = cv_convert_double(converter, 1.0);
   if (cv_convert_double(converter, 0.0) != 0.0) return cv_convert_double(converter, number);
-  const double inverse = std::round(1.0 / factor);
-  if (std::abs(factor) < 1.0 && std::abs(inverse * factor - 1.0) < 1e-14) return number / inverse;
-  return number * factor;
-}
-
-// Splits "NUMBER UNIT"; throws UnitError unless it begins with a finite number.
-double split(std::string_view text, std::string_view& unit) {
-  text = trimmed(text);
-  if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
-  double number = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  const std::string_view rest = text.substr(static_cast<std::size_t>(end - text.data()));
-  if (error == std::errc::result_out_of_range) throw UnitError("beyond the range of numbers");
-  if (error != std::errc{}) throw UnitError("not NUMBER UNIT");
-  if (rest.size() > 1 && rest.front() == ',' && is_digit(rest[1]))
-    throw UnitError("not NUMBER UNIT, for a decimal comma; numbers have a decimal point, as in \"8.5\"");
-  if (!std::isfinite(number)) throw UnitError("not a finite number");
-  if (!rest.empty() && blanks.find(rest.front()) == std::string_view::npos && rest.front() != '%')
-    throw UnitError("not NUMBER UNIT with a blank between them");
-  unit = trimmed(rest);
-  return number;
+  return scaled(number, cv_convert_double(converter, 1.0));
 }
 
 }  // namespace
 
 double parse_quantity(std::string_view text, std::string_view si_unit) {
   std::string_view unit;
-  const double number = split(text, unit);
+  const double number = split_quantity(text, unit);
   const std::lock_guard lock(library());
   if (unit.empty()) {
     if (si_unit != "1") throw UnitError("no unit");
@@ -196,16 +166,6 @@ std::string format_quantity(double value, std::string_view si_unit, std::string_
   const Unit to = parse_unit(unit);
   // 15 digits: what a double keeps of a decimal number.
   return fmt::format("{:.15g} {}", convert(converter(from.get(), to.get()).get(), value), unit);
-}
-
-std::string_view unit_of(std::string_view quantity) {
-  std::string_view unit;
-  try {
-    split(quantity, unit);
-  } catch (const UnitError&) {
-    return {};
-  }
-  return unit;
 }
 
 std::string dimension_of(std::string_view unit) {

@@ -20,7 +20,7 @@ double lowest_of_parabola(double before, double middle, double behind) {
 
 }  // namespace
 
-double Contact::pressure_angle() const { return std::acos(std::min(1.0, std::fabs(push))); }
+double Contact::pressure_angle() const { return sim::arc_cosine(std::min(1.0, std::fabs(push))); }
 
 const Contact* ContactSet::pushing(int way) const {
   for (const Contact& contact : contacts)
@@ -39,18 +39,18 @@ double ContactSearch::gap_of(int cam, const RollerPoint& at, double largest_gap)
   const auto& profile = profiles_[static_cast<std::size_t>(cam)];
   const auto& places = places_[static_cast<std::size_t>(cam)];
   const double c = mechanism_.roller_radius;
-  const double distance = std::abs(at.centre);
+  const double distance = sim::magnitude(at.centre);
   if (distance > profile.largest_radius + c + largest_gap) return infinity;
   const Point own = at.contact(c);
   // Where the roller would touch if its own part of the profile were there.
-  if (std::abs(own) - profile.radius_at(std::arg(own)) > deepest_cut) return infinity;
+  if (sim::magnitude(own) - profile.radius_at(sim::angle_of(own)) > deepest_cut) return infinity;
   const auto count = static_cast<long>(places.size());
   const double step = profile.step();
   // A roller that is this near to a corner is no farther from its own contact there than sqrt(2 c gap), by its
   // curvature; twice that and half a millimetre hold what profiles bend besides.
-  const double half = (2.0 * std::sqrt(2.0 * c * largest_gap) + 0.5e-3) / std::abs(own);
-  const auto first = static_cast<long>(std::floor((std::arg(own) - half) / step));
-  const auto last = static_cast<long>(std::ceil((std::arg(own) + half) / step));
+  const double half = (2.0 * std::sqrt(2.0 * c * largest_gap) + 0.5e-3) / sim::magnitude(own);
+  const auto first = static_cast<long>(std::floor((sim::angle_of(own) - half) / step));
+  const auto last = static_cast<long>(std::ceil((sim::angle_of(own) + half) / step));
   const auto square = [&](long j) {
     const long k = j % count;
     return std::norm(at.centre - places[static_cast<std::size_t>(k < 0 ? k + count : k)]);
@@ -84,7 +84,7 @@ ContactSet ContactSearch::at(double psi, double largest_gap) const {
     }
   const auto led_in = [&](const Contact& contact) {
     const auto& profile = profiles_[static_cast<std::size_t>(contact.cam)];
-    return lead_in_ > 0.0 && profile.has_corner(std::arg(contact.place), lead_in_);
+    return lead_in_ > 0.0 && profile.has_corner(sim::angle_of(contact.place), lead_in_);
   };
   for (const int way : {1, -1}) {
     Contact* best = nullptr;

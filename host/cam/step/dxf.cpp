@@ -230,7 +230,8 @@ std::string dxf_text(const StepProject& project, const StepSynthesis& made, DxfV
       dxf.circle("ROLLERS_" + cam, roller_at(m, m.base(profile.row) + k * m.pitch(), 0.0, made.lift.at(0.0)).centre,
                  m.roller_radius);
   }
-  const Point pin = std::polar(1.1 * made.profiles[0].largest_radius, made.symmetry.holds() ? made.symmetry.axis : 0.0);
+  const Point pin =
+      sim::in_direction(1.1 * made.profiles[0].largest_radius, made.symmetry.holds() ? made.symmetry.axis : 0.0);
   dxf.line("ZERO_PIN", -pin, pin);
   return detail::with_checksum(dxf.finish());
 }

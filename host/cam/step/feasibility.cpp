@@ -52,7 +52,7 @@ void require_dimensions(const StepMechanism& m) {
                     "expected axis distance - arm - roller radius above the hub's radius: a shorter arm or a "
                     "larger axis distance",
                     1e3 * lowest, 1e3 * m.hub_radius));
-  const double apart = 2.0 * m.arm * std::sin(std::numbers::pi / m.rollers);
+  const double apart = 2.0 * m.arm * sim::sine_cosine(std::numbers::pi / m.rollers).sine;
   if (m.rollers > 1 && !(apart > 2.0 * m.roller_radius))
     throw CamError(
         fmt::format("found {} rollers a row, {:.4g} mm apart and {:.4g} mm thick, which hit each other; "
@@ -108,7 +108,7 @@ void require_buildable(const StepMechanism& m, const SampledLift& lift, std::spa
   for_each_sample(m, lift, profiles, [&](const StepProfile& profile, const RollerPoint& p, auto place) {
     if (c * p.curvature < 1.0) return;
     const Point contact = p.contact(c);
-    if (std::abs(contact) > profile.radius_at(std::arg(contact)) + on_profile) return;
+    if (sim::magnitude(contact) > profile.radius_at(sim::angle_of(contact)) + on_profile) return;
     throw CamError(
         fmt::format("found an undercut profile, the pitch path's radius of {:.4g} mm is not above the roller's "
                     "{:.4g} mm, {}; expected a larger one: thinner rollers, a longer rise or a law with less "

@@ -12,7 +12,7 @@ constexpr double highest_speed = 1e4;  // rad/s, beyond what any cam turns
 // What a contact is pressed by where the carousel is turned by `turned`, rad, m.
 double pressed(const Contact& contact, const StepMechanism& mechanism, const StepLoad& load, double psi,
                double turned) {
-  const double nearer = -load.preload * (contact.normal * std::polar(1.0, -psi)).real();
+  const double nearer = -load.preload * (contact.normal * sim::in_direction(1.0, -psi)).real();
   return nearer - contact.gap - mechanism.arm * contact.push * turned;
 }
 
@@ -87,7 +87,7 @@ StepForces forces_at(const StepMechanism& mechanism, const StepLift& lift, const
         add_force(forces, mechanism, load, contact,
                   &contact == carrying ? forces.output_torque / (mechanism.arm * contact.push) : 0.0, sum);
   }
-  forces.bearing = std::abs(sum);
+  forces.bearing = sim::magnitude(sum);
   return forces;
 }
 

@@ -10,7 +10,7 @@ namespace {
 using Part = std::vector<CurveNode>;
 
 CurveNode node_of(const ProfilePoint& point, double angle) {
-  const Point along = Point(0.0, -1.0) * point.normal, round = Point(0.0, 1.0) * std::polar(1.0, point.angle);
+  const Point along = Point(0.0, -1.0) * point.normal, round = Point(0.0, 1.0) * sim::in_direction(1.0, point.angle);
   return {angle, point.place(), along * (point.radius / dot(along, round))};
 }
 
@@ -62,7 +62,7 @@ Circle circle_through(Point a, Point b, Point c) {
   if (std::fabs(twice) < 1e-18) return {{}, 0.0, true};
   const Point ab = b - a, ac = c - a;
   const Point centre = a + Point(0.0, 1.0) * (ab * std::norm(ac) - ac * std::norm(ab)) / twice;
-  return {centre, std::abs(centre - a), false};
+  return {centre, sim::magnitude(centre - a), false};
 }
 
 bool arc_fits(const Part& part, std::size_t from, std::size_t to, double chord) {
@@ -70,8 +70,8 @@ bool arc_fits(const Part& part, std::size_t from, std::size_t to, double chord) 
   for (std::size_t k = from + 1; k < to; ++k) {
     const Point p = part[k].place;
     const double off = circle.straight ? std::fabs(cross(part[to].place - part[from].place, p - part[from].place)) /
-                                             std::abs(part[to].place - part[from].place)
-                                       : std::fabs(std::abs(p - circle.centre) - circle.radius);
+                                             sim::magnitude(part[to].place - part[from].place)
+                                       : std::fabs(sim::magnitude(p - circle.centre) - circle.radius);
     if (off > chord) return false;
   }
   // Longer than a quarter of a turn an arc is split, so that no reader doubts its side.
@@ -81,13 +81,14 @@ bool arc_fits(const Part& part, std::size_t from, std::size_t to, double chord) 
 double bulge_of(Point a, Point middle, Point b) {
   const Circle circle = circle_through(a, middle, b);
   if (circle.straight) return 0.0;
-  const double half = std::asin(std::min(1.0, 0.5 * std::abs(b - a) / circle.radius));
-  return std::copysign(std::tan(0.5 * half), cross(middle - a, b - middle));
+  // tan(x / 2) = sin x / (1 + cos x) of half the angle of the arc.
+  const double sine = std::min(1.0, 0.5 * sim::magnitude(b - a) / circle.radius);
+  return std::copysign(sine / (1.0 + std::sqrt(1.0 - sine * sine)), cross(middle - a, b - middle));
 }
 
 bool curve_fits(const Part& part, std::size_t from, std::size_t to, double chord) {
   for (std::size_t k = from + 1; k < to; ++k)
-    if (std::abs(on_curve(part[from], part[to], part[k].angle) - part[k].place) > chord) return false;
+    if (sim::magnitude(on_curve(part[from], part[to], part[k].angle) - part[k].place) > chord) return false;
   return true;
 }
 

@@ -65,7 +65,8 @@ class Cutter {
     double last_angle = 0.0;
     for (std::size_t i = 0; i < lift_.psi.size(); ++i) {
       const Point contact = roller_at(mechanism_, base(roller), lift_.psi[i], lift_.states[i]).contact(c);
-      const double angle = i == 0 ? std::arg(contact) : last_angle + around_zero(std::arg(contact) - last_angle);
+      const double angle =
+          i == 0 ? sim::angle_of(contact) : last_angle + around_zero(sim::angle_of(contact) - last_angle);
       if (i > 0) add_line(roller, i, last, contact, last_angle, angle);
       last = contact, last_angle = angle;
     }
@@ -75,7 +76,7 @@ class Cutter {
     const double low = std::min(begin, end), high = std::max(begin, end);
     for (double j = std::ceil(low / step_); j * step_ < high; ++j) {
       // Where the ray of that angle meets the line.
-      const Point ray = std::polar(1.0, j * step_);
+      const Point ray = sim::in_direction(1.0, j * step_);
       const double across = cross(from, ray), other = cross(to, ray);
       const double share = across / (across - other);
       const double radius = dot(from + share * (to - from), ray);
@@ -97,11 +98,11 @@ class Cutter {
       contact = at.contact(c);
       if (k == 2) break;
       const double turning = cross(contact, at.contact_rate(c)) / std::norm(contact);
-      const double move = around_zero(angle - std::arg(contact)) / turning;
+      const double move = around_zero(angle - sim::angle_of(contact)) / turning;
       if (!(std::fabs(move) < 0.01)) break;
       point.psi = std::clamp(point.psi + move, 0.0, turn);
     }
-    point.radius = std::abs(contact);
+    point.radius = sim::magnitude(contact);
     point.normal = at.normal;
     point.curvature = at.curvature / (1.0 - c * at.curvature);
     return point;

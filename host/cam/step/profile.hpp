@@ -16,7 +16,7 @@ struct ProfilePoint {
   Point normal{};          // of length 1, into the cam
   double curvature = 0.0;  // of the actual profile, 1/m; above 0: convex
 
-  Point place() const { return std::polar(radius, angle); }
+  Point place() const { return sim::in_direction(radius, angle); }
 };
 
 // A corner, where one roller's part of the profile ends and the next one's begins.
@@ -25,7 +25,7 @@ struct ProfileVertex {
   std::size_t behind = 0;  // the first point behind it
   bool peak = false;       // it points outwards
 
-  Point place() const { return std::polar(radius, angle); }
+  Point place() const { return sim::in_direction(radius, angle); }
 };
 
 struct StepProfile {

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
-#include <functional>
 
 #include "firmware/machine/file/machine_file.hpp"
 #include "firmware/machine/file/quantity_table.hpp"
@@ -154,9 +153,7 @@ MeasuredLift read_table(const QuantityTable& table) {
   return lift;
 }
 
-using MotionSource = std::function<std::vector<sim::cam::Cam>(const std::string&)>;
-
-void read_lift(const QuantityTable& root, const MotionSource& motion, StepProject& project) {
+void read_lift(const QuantityTable& root, const detail::MotionSource& motion, StepProject& project) {
   if (root.has("motion") == root.has("table"))
     root.fail("motion", root.has("motion") ? "a motion file and a table" : "neither a motion file nor a table",
               "one of them");
@@ -167,6 +164,8 @@ void read_lift(const QuantityTable& root, const MotionSource& motion, StepProjec
   const std::string file = *root.text("motion", "motion file");
   const auto cams = motion(file);
   const auto name = root.text("cam", "cam of the motion file");
+  project.motion_file = file;
+  project.cam_name = name.value_or("");
   std::vector<std::string_view> names;
   for (const auto& cam : cams) names.push_back(cam.name);
   if (!name && cams.size() > 1)
@@ -177,7 +176,13 @@ void read_lift(const QuantityTable& root, const MotionSource& motion, StepProjec
     root.fail("cam", fmt::format("\"{}\"", *name), machine::quoted_list(names) + machine::did_you_mean(*name, names));
 }
 
-StepProject parsed(const std::string& file, const std::string& text, const MotionSource& motion) {
+}  // namespace
+
+std::string StepProject::motion_name() const {
+  return motion_file.substr(motion_file.find_last_of('/') + 1);  // npos + 1 is 0
+}
+
+StepProject detail::parsed(const std::string& file, const std::string& text, const MotionSource& motion) {
   const machine::Document document(file, text);
   const QuantityTable root(document, document.root(), "");
   root.allow({"schema", "motion", "cam", "table", "mechanism", "cam_material", "roller_material", "load", "relief",
@@ -215,15 +220,8 @@ StepProject parsed(const std::string& file, const std::string& text, const Motio
   return project;
 }
 
-}  // namespace
-
-StepProject read_step_project(const std::filesystem::path& file) {
-  return parsed(file.string(), machine::content_of(file),
-                [&](const std::string& motion) { return sim::cam::read_motion_file(file.parent_path() / motion); });
-}
-
 StepProject parse_step_project(const std::string& file, const std::string& text, const std::string& motion) {
-  return parsed(file, text, [&](const std::string& name) { return sim::cam::parse_motion_file(name, motion); });
+  return detail::parsed(file, text, [&](const std::string& name) { return sim::cam::parse_motion_file(name, motion); });
 }
 
 }  // namespace stiction::host::step

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,7 +34,8 @@ struct ReturnSpring {
 
 struct StepProject {
   std::string name;
-  std::optional<sim::cam::Cam> cam;        // of a motion file,
+  std::string motion_file{}, cam_name{};   // as the file has them; the second is empty where it names none
+  std::optional<sim::cam::Cam> cam{};      // of a motion file,
   std::optional<MeasuredLift> measured{};  // or a table
   StepMechanism mechanism;
   StepLoad load;
@@ -44,13 +46,24 @@ struct StepProject {
   std::optional<ReturnSpring> spring{};
   int steps = 3600;     // of the manufacturing angle and of the cam's angle, in a turn
   double chord = 1e-6;  // m, of arcs and splines in files
+
+  // The motion file without its folder.
+  std::string motion_name() const;
 };
 
 // The project of `file`; the motion file or table that it names is sought beside it. Throws machine::MachineFileError
 // "FILE:LINE: KEY: found ...; expected ...".
 StepProject read_step_project(const std::filesystem::path& file);
 
-// The same of a text that names no other file but `motion`, which is its text; `file` is the name in messages.
+namespace detail {
+// The cams of the motion file of that name.
+using MotionSource = std::function<std::vector<sim::cam::Cam>(const std::string&)>;
+// The project of `text`, the content of `file`, with the cams that `motion` has. Throws machine::MachineFileError.
+StepProject parsed(const std::string& file, const std::string& text, const MotionSource& motion);
+}  // namespace detail
+
+// The same of a text that names no other file but `motion`, which is its text; `file` is the name in messages. Knows no
+// files, so that pages have it too.
 StepProject parse_step_project(const std::string& file, const std::string& text, const std::string& motion);
 
 }  // namespace stiction::host::step

@@ -142,7 +142,7 @@ void measure(StepProfile& profile, std::size_t j) {
   const double bend = (before - 2.0 * r + behind) / (profile.step() * profile.step());
   const double size = r * r + slope * slope;
   p.curvature = (size + slope * slope - r * bend) / (size * std::sqrt(size));
-  p.normal = Point(0.0, 1.0) * Point(slope, r) / std::sqrt(size) * std::polar(1.0, p.angle);
+  p.normal = Point(0.0, 1.0) * Point(slope, r) / std::sqrt(size) * sim::in_direction(1.0, p.angle);
 }
 
 }  // namespace

@@ -11,12 +11,12 @@ RollerPoint roller_at(const StepMechanism& mechanism, double base, double psi, c
   p.arm_angle = base + sense * lift.way;
   p.arm_speed = sense * lift.speed;
   const double bend = sense * lift.acceleration;
-  const Point turned = std::polar(1.0, psi), arm = std::polar(b, -p.arm_angle), i(0.0, 1.0);
+  const Point turned = sim::in_direction(1.0, psi), arm = sim::in_direction(b, -p.arm_angle), i(0.0, 1.0);
   p.centre = turned * (a - arm);
   p.rate = i * turned * (a - (1.0 - p.arm_speed) * arm);
   const Point second =
       -turned * (a - (1.0 - p.arm_speed) * arm) + i * turned * arm * Point(bend, (1.0 - p.arm_speed) * p.arm_speed);
-  const double speed = std::abs(p.rate);
+  const double speed = sim::magnitude(p.rate);
   p.normal = i * p.rate / speed;
   p.curvature = cross(p.rate, second) / (speed * speed * speed);
   p.turning = cross(p.centre, p.rate) / std::norm(p.centre);

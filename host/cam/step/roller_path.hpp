@@ -10,6 +10,7 @@
 
 #include "host/cam/step/lift.hpp"
 #include "host/cam/step/mechanism.hpp"
+#include "sim/number/complex.hpp"
 
 namespace stiction::host::step {
 
@@ -34,7 +35,7 @@ struct RollerPoint {
   Point contact_rate(double radius) const { return rate * (1.0 - radius * curvature); }
   // The cosine of the pressure angle with the sign of the torque that a push of the cam has: above 0 it raises v.
   // `psi`: the cam's angle, rad.
-  double push(double psi) const { return -dot(normal, Point(0.0, 1.0) * std::polar(1.0, psi - arm_angle)); }
+  double push(double psi) const { return -dot(normal, Point(0.0, 1.0) * sim::in_direction(1.0, psi - arm_angle)); }
 };
 
 // A roller of `mechanism` that is `base` from the line between the axes where the lift is 0, rad, at the cam's angle

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "host/cam/step/shop_files.hpp"
@@ -11,6 +11,17 @@ namespace {
 
 // In place of the checksum until it is known; as long as it is.
 constexpr std::string_view mark = "########";
+
+// CRC-32 as zlib has it, least bit first; a page has no zlib.
+constexpr std::array<std::uint32_t, 256> crc_table = [] {
+  std::array<std::uint32_t, 256> words{};
+  for (std::uint32_t byte = 0; byte < 256; ++byte) {
+    std::uint32_t word = byte;
+    for (int bit = 0; bit < 8; ++bit) word = word >> 1 ^ ((word & 1u) != 0 ? 0xedb88320u : 0u);
+    words[byte] = word;
+  }
+  return words;
+}();
 
 std::string number_text(double value, int decimals, char decimal) {
   auto text = fmt::format("{:.{}f}", value, decimals);
@@ -26,12 +37,13 @@ std::string cell(const StepProject& project, const ProfilePoint& point, std::str
   if (column == "x") return number(1e3 * point.place().real());
   if (column == "y") return number(1e3 * point.place().imag());
   // Out of the cam, as a wheel or a probe comes.
-  if (column == "normal") return number(wrapped(std::arg(-point.normal) + 1e-12) / degree);
+  if (column == "normal") return number(wrapped(sim::angle_of(-point.normal) + 1e-12) / degree);
   if (column == "curvature") return number(1e-3 * point.curvature, 9);
   if (column == "roller") return fmt::format("{}", point.roller + 1);
   if (column == "cam_angle") return number(point.psi / degree);
   if (project.wheel_radius == 0.0) return "";
-  return column == "wheel_angle" ? number(wrapped(std::arg(wheel) + 1e-12) / degree) : number(1e3 * std::abs(wheel));
+  return column == "wheel_angle" ? number(wrapped(sim::angle_of(wheel) + 1e-12) / degree)
+                                 : number(1e3 * sim::magnitude(wheel));
 }
 
 std::string commented(const std::vector<std::string>& lines) {
@@ -63,8 +75,9 @@ std::uint32_t checksum_of(const std::string& text) {
     if (line.find("CRC-32") == std::string_view::npos) others += line;
     begin = end;
   }
-  return static_cast<std::uint32_t>(
-      crc32(crc32(0, nullptr, 0), reinterpret_cast<const Bytef*>(others.data()), static_cast<uInt>(others.size())));
+  std::uint32_t value = ~0u;
+  for (const char c : others) value = value >> 8 ^ crc_table[(value ^ static_cast<unsigned char>(c)) & 0xffu];
+  return ~value;
 }
 
 std::string detail::with_checksum(std::string text) {
@@ -133,7 +146,8 @@ std::string inspection_text(const StepProject& project, const StepProfile& profi
     // Beside a corner a radius says nothing of the profile.
     if (profile.has_corner(point.angle, 2.0 * profile.step())) continue;
     // A move along the normal, seen along the radius.
-    const double radial = project.tolerances.profile / std::fabs(dot(point.normal, std::polar(1.0, point.angle)));
+    const double radial =
+        project.tolerances.profile / std::fabs(dot(point.normal, sim::in_direction(1.0, point.angle)));
     const double values[] = {point.angle / degree, 1e3 * point.radius, 1e3 * (point.radius - radial),
                              1e3 * (point.radius + radial)};
     for (const double value : values) text += number_text(value, 4, layout.decimal) + separator;

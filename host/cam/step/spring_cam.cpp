@@ -47,7 +47,7 @@ class SpringDrive {
   SpringContact contact(double psi, double speed) const {
     const RollerPoint at = roller(psi);
     const StepMechanism& m = project_.mechanism;
-    SpringContact contact{.psi = psi, .pressure_angle = std::acos(std::clamp(lever(at, psi), -1.0, 1.0))};
+    SpringContact contact{.psi = psi, .pressure_angle = sim::arc_cosine(std::clamp(lever(at, psi), -1.0, 1.0))};
     contact.curvature = at.curvature / (1.0 - m.roller_radius * at.curvature);
     contact.force = wanted(psi).at(speed) / (m.arm * lever(at, psi));
     contact.pressure = hertz_pressure(contact.force, m.roller_width, m.roller_radius, contact.curvature,
@@ -81,11 +81,11 @@ void require_profile(const StepProject& project, const StepProfile& profile) {
 
 void require_push(const SpringDrive& drive, double psi) {
   const double lever = drive.lever(drive.roller(psi), psi);
-  if (lever > std::cos(steepest_push)) return;
+  if (lever > sim::sine_cosine(steepest_push).cosine) return;
   throw CamError(fmt::format(
       "found a pressure angle of {:.4g}° at {:.5g}° of the cam; expected less than {:.4g}°: a longer rise, a "
       "smaller stroke or an arm farther from the line between the axes",
-      std::acos(std::clamp(lever, -1.0, 1.0)) / degree, psi / degree, steepest_push / degree));
+      sim::arc_cosine(std::clamp(lever, -1.0, 1.0)) / degree, psi / degree, steepest_push / degree));
 }
 
 // The highest speed of a square that the force may have, by the closed form at each angle.

@@ -58,8 +58,8 @@ Symmetry nearest_between(double low, double high, const std::array<StepProfile, 
 double steepest(const StepProfile& profile) {
   double most = 0.0;
   for (const ProfilePoint& point : profile.points) {
-    const Point round = Point(0.0, 1.0) * std::polar(1.0, point.angle);
-    const double along = std::fabs(dot(point.normal, std::polar(1.0, point.angle)));
+    const Point round = Point(0.0, 1.0) * sim::in_direction(1.0, point.angle);
+    const double along = std::fabs(dot(point.normal, sim::in_direction(1.0, point.angle)));
     most = std::max(most, point.radius * std::fabs(dot(point.normal, round)) / std::max(along, 1e-3));
   }
   return most;

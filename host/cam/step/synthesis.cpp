@@ -100,7 +100,7 @@ LeastRadii least_radii(const std::vector<ContactSet>& contacts) {
   LeastRadii least{infinity, infinity};
   for (const ContactSet& set : contacts)
     for (const Contact& contact : set.contacts)
-      if (contact.needed) include(least, contact.curvature, std::arg(contact.place), contact.cam);
+      if (contact.needed) include(least, contact.curvature, sim::angle_of(contact.place), contact.cam);
   return least;
 }
 

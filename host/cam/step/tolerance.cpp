@@ -8,9 +8,9 @@ namespace stiction::host::step {
 namespace {
 
 // Where a contact's normal points to in the frame that rests: the line from the cam to the carousel is the x axis.
-Point resting_normal(const Contact& contact, double psi) { return contact.normal * std::polar(1.0, -psi); }
+Point resting_normal(const Contact& contact, double psi) { return contact.normal * sim::in_direction(1.0, -psi); }
 // From the carousel's axis to the roller.
-Point arm_direction(const Contact& contact) { return -std::polar(1.0, -contact.arm_angle); }
+Point arm_direction(const Contact& contact) { return -sim::in_direction(1.0, -contact.arm_angle); }
 
 std::array<double, 5> half_widths(const StepTolerances& t) {
   return {t.axis_distance, t.roller, t.arm, t.profile, t.preload};

@@ -34,7 +34,20 @@ enum class Call : std::int32_t {
   formats,
   exported,
   methods,
-  shape
+  shape,
+  choose_cam,
+  load_step,
+  new_step,
+  step_text,
+  step_number,
+  step_choice,
+  relief,
+  step_state,
+  step_figures,
+  step_profiles,
+  step_contacts,
+  step_turn,
+  step_files
 };
 
 struct Answer {
@@ -61,6 +74,16 @@ void take(StudioRun run) {
   for (const double figure : {run.peak_error, run.mean_error, run.peak_effort, run.rms_effort, run.motor_error,
                               optional(run.dwell), optional(run.dwell_area)})
     answer.table.values.push_back(figure);
+}
+
+// Files one behind the other in the order of a list, each of its name's length and its own, both counted in bytes.
+void take(const std::vector<stiction::host::step::ShopFile>& files) {
+  answer.table.columns = 2;
+  for (const auto& [name, text] : files) {
+    answer.text += name + text;
+    answer.table.values.insert(answer.table.values.end(),
+                               {static_cast<double>(name.size()), static_cast<double>(text.size())});
+  }
 }
 
 void serve(Call call, std::size_t at, double x, double y, std::int32_t flag) {
@@ -120,6 +143,46 @@ void serve(Call call, std::size_t at, double x, double y, std::int32_t flag) {
     case Call::exported:
       answer.text = studio->exported_file(two_texts().first);
       return;
+    case Call::choose_cam:
+      return studio->choose_cam(at);
+    case Call::load_step: {
+      const auto [file, text] = two_texts();
+      return studio->load_step(file, text);
+    }
+    case Call::new_step:
+      return studio->new_step();
+    case Call::step_text:
+      answer.text = studio->step_text();
+      return;
+    case Call::step_number:
+      return studio->set_step_number(two_texts().first, flag != 0 ? std::optional(x) : std::nullopt);
+    case Call::step_choice: {
+      const auto [name, value] = two_texts();
+      return studio->set_step_choice(name, value);
+    }
+    case Call::relief: {
+      // `x`: of the depth or the blend, as the text says; the lowest bit of `flag`: it goes on, the next one: alone.
+      stiction::host::ReliefStep step{.arc = at, .alone = (flag & 2) != 0};
+      (two_texts().first == "depth" ? step.depth : step.blend) = x;
+      return studio->set_relief(step, (flag & 1) != 0);
+    }
+    case Call::step_state:
+      answer.text = studio->step().state_json();
+      return;
+    case Call::step_figures:
+      answer.text = studio->step().figures_json();
+      return;
+    case Call::step_profiles:
+      answer.table = studio->step().profiles();
+      return;
+    case Call::step_contacts:
+      answer.table = studio->step().contacts();
+      return;
+    case Call::step_turn:
+      answer.table = studio->step().turn();
+      return;
+    case Call::step_files:
+      return take(studio->step().files(two_texts().first));
   }
 }
 

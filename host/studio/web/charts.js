@@ -86,13 +86,18 @@ function drawChart(node, chart) {
   }
   parts.push(svg('text', { class: 'axis end', x: frame.right, y: height - 4 }, chart.xLabel),
              svg('text', { class: 'axis', x: 4, y: 12 }, chart.yLabel));
+  for (const [begin, end] of chart.bands || [])
+    parts.push(svg('rect', { class: 'band', x: px(begin), y: frame.top, width: Math.max(1, px(end) - px(begin)), height: frame.bottom - frame.top }));
+  if (chart.cursor !== undefined) parts.push(svg('path', { class: 'cursor', d: `M${px(chart.cursor)} ${frame.top}V${frame.bottom}` }));
   for (const level of chart.levels || [])
     if (level >= y0 && level <= y1) parts.push(svg('path', { class: 'level', d: `M${frame.left} ${py(level)}H${frame.right}` }));
   for (const series of chart.series) {
-    let path = '';
+    let path = '', drawing = false;
     for (let i = 0; i < series.xs.length; ++i) {
+      if (!Number.isFinite(series.ys[i])) { drawing = false; continue; }  // a gap
       const x = px(series.xs[i]).toFixed(1), y = py(series.ys[i]).toFixed(1);
-      path += series.bars ? `M${x} ${py(0).toFixed(1)}V${y}` : `${i ? 'L' : 'M'}${x} ${y}`;
+      path += series.bars ? `M${x} ${py(0).toFixed(1)}V${y}` : `${drawing ? 'L' : 'M'}${x} ${y}`;
+      drawing = true;
     }
     if (path) parts.push(svg('path', { class: `curve ${series.class || ''} ${series.bars ? 'bars' : ''}`, d: path }));
   }
@@ -106,6 +111,6 @@ function drawChart(node, chart) {
   node.setAttribute('role', chart.handles ? 'group' : 'img');
   node.setAttribute('aria-label', chart.label);
   const scale = width / (box.width || width);
-  return { px, py, x: clientX => x0 + ((clientX - node.getBoundingClientRect().left) * scale - frame.left) / (frame.right - frame.left) * (x1 - x0),
+  return { px, py, top: frame.top, bottom: frame.bottom, x: clientX => x0 + ((clientX - node.getBoundingClientRect().left) * scale - frame.left) / (frame.right - frame.left) * (x1 - x0),
            y: clientY => y0 + (frame.bottom - (clientY - node.getBoundingClientRect().top) * scale) / (frame.bottom - frame.top) * (y1 - y0) };
 }

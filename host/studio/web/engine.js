@@ -4,7 +4,9 @@
 
 // In the order of Call in wasm/exports.cpp.
 const CALLS = ['load_motion', 'load_machine', 'edit', 'undo', 'redo', 'motion_text', 'state', 'laws', 'law_curve', 'curves',
-               'harmonics', 'follow', 'shaft', 'numbers', 'formats', 'exported', 'methods', 'shape'];
+               'harmonics', 'follow', 'shaft', 'numbers', 'formats', 'exported', 'methods', 'shape',
+               'choose_cam', 'load_step', 'new_step', 'step_text', 'step_number', 'step_choice', 'relief', 'step_state', 'step_figures', 'step_profiles', 'step_contacts',
+               'step_turn', 'step_files'];
 const RUN_FIGURES = ['peakError', 'meanError', 'peakEffort', 'rmsEffort', 'motorError', 'dwell', 'dwellArea'];
 
 // What the C library asks of a system: there is no environment and nothing to write to.

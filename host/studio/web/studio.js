@@ -8,9 +8,10 @@ const CURVE_POINTS = 600, HARMONICS = 40, COLUMNS = 7;
 const MACHINE_DELAY = 60;  // ms without a step before the machine runs
 const at = id => document.getElementById(id);
 
-let engine = null, state = null, laws = [], thumbnails = [], selected = 0, dragging = null, frozen = null, kept = null, shownRun = null;
+let engine = null, state = null, laws = [], thumbnails = [], selected = 0, selectedTrack = 0, dragging = null, frozen = null, kept = null, shownRun = null;
 let motionName = DATA.motion?.name || 'motion.toml', machineName = DATA.machine?.name || null;
 let masterSpeed = DATA.speed, machineTimer = 0;
+let hadNone = false;
 const times = { curves: 0, machine: 0 };  // ms, of the last drawing
 
 // ---- units ----
@@ -242,8 +243,8 @@ function thumbnail(k) {
 }
 
 // A field with a unit: `act` takes what was typed, in display units; nothing typed: null.
-function field(label, value, unit, act, { placeholder = '', title = '' } = {}) {
-  const input = element('input', { type: 'number', step: 'any', value: value === null ? '' : plainNumber(value), placeholder, title, 'data-field': label });
+function field(label, value, unit, act, { placeholder = '', title = '', key = label } = {}) {
+  const input = element('input', { type: 'number', step: 'any', value: value === null ? '' : plainNumber(value), placeholder, title, 'data-field': key });
   input.addEventListener('change', () => act(input.value.trim() === '' ? null : Number(input.value)));
   return element('label', {}, label, element('span', { class: 'with-unit' }, input, element('span', { class: 'unit' }, unit)));
 }
@@ -260,6 +261,8 @@ function drawSelected() {
   fields.push(field('Position at its end', positionOf(k) * u.slave, u.slaveUnit, value => value !== null && step('level', k, { y: value / u.slave })));
   fields.push(field('Stroke', segment.stroke * u.slave, u.slaveUnit, value => value !== null && step('level', k, { y: segment.from + value / u.slave })));
   if (k === 0) fields.push(field('Start', state.start * u.slave, u.slaveUnit, value => value !== null && step('start', 0, { x: value / u.slave })));
+  if (k === 0 && state.periodic) fields.push(field('Endless, modulo', state.modulo === null ? null : state.modulo * u.slave, u.slaveUnit, value => step('modulo', 0, { x: (value ?? 0) / u.slave }),
+    { placeholder: 'none', title: 'whole multiples of it are the same place: a cycle may end further on by them' }));
   for (const parameter of law?.parameters || []) {
     if (parameter.list) continue;
     const given = segment.values[parameter.key], name = { lambda: 'λ', c: 'c' }[parameter.key] || readable(parameter.key);
@@ -281,6 +284,48 @@ function openLaws() {
     button.addEventListener('click', () => { at('laws').close(); step('law', selected, { key: law.name }); at('law').focus(); });
     return button;
   }));
+}
+
+// ---- switch tracks ----
+
+function drawTracks() {
+  const u = shownUnits(), focused = document.activeElement?.dataset?.field;
+  const named = (verb, where, more) => { step(verb, where, more); };
+  selectedTrack = Math.min(selectedTrack, Math.max(0, state.tracks.length - 1));
+  at('tracks').replaceChildren(...state.tracks.map((track, k) => {
+    const name = element('input', { type: 'text', value: track.name, 'data-field': `track ${k}`, maxlength: 60 });
+    name.addEventListener('change', () => named('track-name', k, { key: name.value }));
+    const remove = element('button', { type: 'button', 'aria-label': `Remove track ${track.name}` }, 'Remove'), more = element('button', { type: 'button', 'aria-label': `Add a window to track ${track.name}` }, 'Add window');
+    remove.addEventListener('click', () => { named('untrack', k); at('add-track').focus(); });
+    more.addEventListener('click', () => named('window', k, { key: String(track.windows.length), x: 0, y: state.cycle / 2 }));
+    const windows = track.windows.flatMap(([first, last], i) => {
+      const change = (x, y) => named('window', k, { key: String(i), x, y });
+      const fields = [field('On from', first * u.master, u.masterUnit, value => value !== null && change(value / u.master, last), { key: `track ${k} on ${i}`, title: `window ${i + 1} of track ${track.name}` }),
+        field('to', last * u.master, u.masterUnit, value => value !== null && change(first, value / u.master), { key: `track ${k} off ${i}`, title: 'before its begin: on around the seam' })];
+      if (track.windows.length > 1) {
+        const less = element('button', { type: 'button', class: 'plain', 'aria-label': `Remove window ${i + 1} of track ${track.name}` }, '✕');
+        less.addEventListener('click', () => named('unwindow', k, { key: String(i) }));
+        fields[1].querySelector('.with-unit').append(less);
+      }
+      return fields;
+    });
+    const value = (verb, text, now, factor, unit, title) => field(text, now * factor, unit, given => named(verb, k, { x: (given ?? 0) / factor }), { key: `track ${k} ${verb}`, title });
+    return element('details', { 'data-track': k, open: k === selectedTrack }, element('summary', {}, track.name, element('span', { class: 'quiet' }, ` ${track.windows.map(([first, last]) => `${withUnit(first * u.master, u.masterUnit)} to ${withUnit(last * u.master, u.masterUnit)}`).join(', ')}`)),
+      element('div', { class: 'fields' }, element('label', {}, 'Name', name), element('span', { class: 'group' }, more, remove), ...windows,
+        value('on_compensation', 'On compensation', track.on, 1e3, 'ms', 'negative switches earlier'), value('off_compensation', 'Off compensation', track.off, 1e3, 'ms', 'negative switches earlier'),
+        value('hysteresis', 'Hysteresis', track.hysteresis, u.master, u.masterUnit, 'over the master')));
+  }));
+  if (!state.tracks.length) at('tracks').replaceChildren(element('p', { class: 'quiet' }, 'None.'));
+  at('tracks').querySelectorAll('details').forEach(each => each.addEventListener('toggle', () => { if (each.open) selectedTrack = Number(each.dataset.track); }));
+  if (focused) at('tracks').querySelector(`[data-field="${CSS.escape(focused)}"]`)?.focus();
+}
+
+function addTrack() {
+  const used = new Set(state.tracks.map(track => track.name));
+  let number = state.tracks.length + 1;
+  while (used.has(`track ${number}`)) ++number;
+  selectedTrack = state.tracks.length;
+  step('track', 0, { key: `track ${number}`, x: 0, y: state.cycle / 2 });
 }
 
 // ---- rules ----
@@ -328,6 +373,7 @@ function figureRows(run) {
 function drawMachine() {
   const machine = state.machine;
   at('machine-name').textContent = machine ? machine.name : 'No machine';
+  if (at('machine').classList.toggle('none', !machine) !== hadNone) { hadNone = !machine; forgetSizes(); }
   at('keep').disabled = at('sweep').disabled = !machine;
   at('shape').disabled = !machine?.elastic;
   if (!machine) {
@@ -425,14 +471,26 @@ function refresh() {
   at('cam-name').textContent = state.name;
   at('undo').disabled = !state.undo;
   at('redo').disabled = !state.redo;
+  at('cams').hidden = state.cams.length < 2;
+  at('cam').replaceChildren(...state.cams.map((name, k) => element('option', { value: k }, name)));
+  at('cam').value = String(state.edited);
   at('speed-unit').textContent = shownUnits().speedUnit;
   at('remove').disabled = state.segments.length < 2;
   drawCurves();
   times.curves = performance.now() - begun;
   drawSegments();
   if (!dragging) drawSelected();
+  if (!dragging) drawTracks();
   drawRules();
   machineSoon();
+  stepSoon();
+}
+
+// After a step that leaves the motion as it was.
+function refreshHistory() {
+  state = JSON.parse(engine.call('state', { x: masterSpeed }).text);
+  at('undo').disabled = !state.undo;
+  at('redo').disabled = !state.redo;
 }
 
 // ---- files ----
@@ -466,19 +524,33 @@ function reportText() {
   state.segments.forEach((segment, k) => lines.push(`| ${k + 1} | ${segment.law} | ${withUnit(endOf(k) * u.master, u.masterUnit)} | ${withUnit(positionOf(k) * u.slave, u.slaveUnit)} | ${withUnit(segment.stroke * u.slave, u.slaveUnit)} |`));
   lines.push('', '## Rules', '', `\`stiction cam check ${motionName}${machine ? ` --machine ${machine}` : ''} --speed "${speedText()}"\``, '', ...[...at('rules').children].map(row => `- ${row.classList.contains('broken') ? 'broken: ' : ''}${row.lastChild.textContent}`));
   if (shownRun) lines.push('', '## Machine', '', `\`${repeatingCommand()}\``, '', '| figure | value | unit |', '| --- | --- | --- |', ...figureRows(shownRun.run).map(row => `| ${row.text} | ${row.value} | ${row.unit} |`));
+  refreshStep();
+  if (stepCam?.made) {
+    drawStepFigures();
+    lines.push('', '## Step cam', '', `\`stiction cam step ${stepCam.name}.toml --out shop\``, '', '| figure | value | unit |', '| --- | --- | --- |', ...stepCam.figures.map(row => `| ${row.text} | ${row.value} | ${row.unit} |`));
+  }
   return lines.join('\n') + '\n';
 }
 
-// A motion file or a machine file, told by its schema; anything else is refused by the reader of motion files.
+// A motion file, a machine file or a project of a step cam, told by its schema; anything else is refused by the reader of
+// motion files.
+const kindOf = text => (/^\s*schema\s*=\s*"stiction[.](machine|step-cam)\//m.exec(text) || [])[1] || 'motion';
+
 async function openFile(file) {
-  const text = await file.text(), machine = /^\s*schema\s*=\s*"stiction[.]machine\//m.test(text);
-  const done = attempt(() => engine.call(machine ? 'load_machine' : 'load_motion', { text: `${file.name}\0${text}` }));
-  if (!done) return say(`${at('message').textContent} The motion here is as it was.`, true);
-  if (machine) machineName = file.name;
-  else { motionName = file.name; selected = 0; }
+  const text = await file.text(), kind = kindOf(text);
+  const done = attempt(() => engine.call({ machine: 'load_machine', 'step-cam': 'load_step', motion: 'load_motion' }[kind], { text: `${file.name}\0${text}` }));
+  if (!done) { say(`${at('message').textContent} The motion here is as it was.`, true); return; }
+  if (kind === 'machine') machineName = file.name;
+  if (kind === 'motion') { motionName = file.name; selected = 0; }
   keepRun(null);
   refresh();
   say(`${file.name} is open.`);
+}
+
+// Several at once: a project of a step cam behind the motion that it is of.
+async function openFiles(files) {
+  const known = await Promise.all([...files].map(async file => [file, kindOf(await file.text())]));
+  for (const [file] of known.sort((a, b) => (a[1] === 'step-cam') - (b[1] === 'step-cam'))) await openFile(file);
 }
 
 // ---- listening ----
@@ -487,7 +559,7 @@ function listen() {
   at('undo').addEventListener('click', () => history('undo'));
   at('redo').addEventListener('click', () => history('redo'));
   at('open').addEventListener('click', () => at('file').click());
-  at('file').addEventListener('change', () => { if (at('file').files[0]) openFile(at('file').files[0]); at('file').value = ''; });
+  at('file').addEventListener('change', () => { openFiles(at('file').files).finally(() => { at('file').value = ''; }); });
   at('save').addEventListener('click', save);
   at('points').addEventListener('click', saveCurves);
   at('report').addEventListener('click', () => offer(`${state.name}-report.md`, 'text/markdown', reportText()));
@@ -501,6 +573,9 @@ function listen() {
     refresh();
   });
   at('fourth').addEventListener('change', drawCurves);
+  at('cam').addEventListener('change', () => { attempt(() => engine.call('choose_cam', { at: Number(at('cam').value) })); selected = 0; keepRun(null); refresh(); at('cam').focus(); });
+  at('add-track').addEventListener('click', addTrack);
+  listenToStep();
   for (const id of ['run', 'cycles']) at(id).addEventListener('change', () => { if (id === 'run') keepRun(null); drawMachine(); });
   at('stiffness').addEventListener('input', () => { at('stiffness-value').textContent = `${at('stiffness').value} %`; machineSoon(); });
   at('keep').addEventListener('click', () => { keepRun(kept ? null : shownRun); drawMachine(); });
@@ -533,11 +608,11 @@ function listen() {
     act();
   });
   addEventListener('dragover', event => event.preventDefault());
-  addEventListener('drop', event => { event.preventDefault(); if (event.dataTransfer.files[0]) openFile(event.dataTransfer.files[0]); });
+  addEventListener('drop', event => { event.preventDefault(); openFiles(event.dataTransfer.files); });
   let size = '';
   new ResizeObserver(() => {
     const now = `${at('studio').clientWidth}`;
-    if (now !== size && state) { size = now; forgetSizes(); drawCurves(); machineSoon(); }
+    if (now !== size && state) { size = now; forgetSizes(); drawCurves(); machineSoon(); stepSoon(); }
   }).observe(at('studio'));
 }
 
@@ -566,6 +641,7 @@ async function begin() {
   laws = JSON.parse(engine.call('laws').text);
   if (DATA.motion) engine.call('load_motion', { text: `${DATA.motion.name}\0${DATA.motion.text}` });
   if (DATA.machine) engine.call('load_machine', { text: `${DATA.machine.name}\0${DATA.machine.text}` });
+  if (DATA.step) engine.call('load_step', { text: `${DATA.step.name}\0${DATA.step.text}` });
   state = JSON.parse(engine.call('state', { x: masterSpeed }).text);
   at('speed').value = plainNumber(masterSpeed * shownUnits().speed);
   if (!state.machine?.elastic) at('run').value = 'follow';

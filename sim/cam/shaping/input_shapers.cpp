@@ -4,11 +4,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/number/arithmetic.hpp"
+
 namespace stiction::sim::cam {
 namespace {
 
 double kept(double damping_ratio, double periods) {
-  return std::exp(-damping_ratio * 2.0 * std::numbers::pi * periods / std::sqrt(1.0 - damping_ratio * damping_ratio));
+  return sim::exponential(-damping_ratio * 2.0 * std::numbers::pi * periods /
+                          std::sqrt(1.0 - damping_ratio * damping_ratio));
 }
 
 // Impulses with these undamped shares, each less by what the vibration of the first has lost until then.
@@ -38,7 +41,7 @@ std::vector<Impulse> ei(double z) {
 
 std::vector<Impulse> two_hump_ei(double z) {
   constexpr double v = ei_tolerance;
-  const double x = std::cbrt(v * v * (std::sqrt(1.0 - v * v) + 1.0));
+  const double x = power(v * v * (std::sqrt(1.0 - v * v) + 1.0), 1.0 / 3.0);
   const double outer = (3.0 * x * x + 2.0 * x + 3.0 * v * v) / (16.0 * x);
   return damped({{0.0, outer}, {0.5, 0.5 - outer}, {1.0, 0.5 - outer}, {1.5, outer}}, z);
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "sim/cam/shaping/lift.hpp"
+#include "sim/number/complex.hpp"
 
 namespace stiction::sim::cam {
 namespace {
@@ -88,7 +89,7 @@ double drive_lag(const ShapingTask& task) {
   double slowest = 0.0;
   const Complex mode = task.mode().pole;
   for (const Complex& pole : transfer_function(task.drive).poles())
-    if (std::abs(pole - mode) > 1e-9 * std::abs(mode) && std::abs(pole - std::conj(mode)) > 1e-9 * std::abs(mode))
+    if (magnitude(pole - mode) > 1e-9 * magnitude(mode) && magnitude(pole - std::conj(mode)) > 1e-9 * magnitude(mode))
       slowest = std::max(slowest, -1.0 / pole.real());
   return slowest * task.master_speed;
 }
@@ -108,7 +109,7 @@ std::optional<Pulse> tuned_pulse(const ShapingTask& task, std::string_view law, 
     Lift lift;
     lift.add(law_curve(law, position, length, 1.0));
     const Complex one = residual_of(task, lift_of(lift, task, task.end()), task.end());
-    return own / (own - one);
+    return quotient(own, own - one);
   };
   const auto position = crossing(share, task.end() - length, task.begin);
   if (!position) return std::nullopt;
@@ -130,7 +131,7 @@ std::optional<Pulse> tuned_dwell_pulse(const ShapingTask& task, double length) {
   const auto amplitude = [&](double position) {
     Lift lift;
     lift.add(bump(position, length, 1.0));
-    return -own / residual_of(task, lift_of(lift, task, position + length), at);
+    return quotient(-own, residual_of(task, lift_of(lift, task, position + length), at));
   };
   const auto position = crossing(amplitude, task.end(), task.end() + half);
   if (!position) return std::nullopt;

@@ -5,6 +5,8 @@
 #include <functional>
 
 #include "sim/cam/hermite.hpp"
+#include "sim/cam/stand/transfer_function.hpp"
+#include "sim/number/complex.hpp"
 
 namespace stiction::sim::cam {
 namespace {
@@ -246,12 +248,12 @@ std::complex<double> modal_residual(const ElasticDrive& drive, const Motion& mot
   run_exactly(step, motion, settings, [&](double master, const State& x, double input) {
     if (done) return;
     const std::complex<double> along = left[0] * (x[0] - input) + left[1] * x[1] + left[2] * x[2] + left[3] * x[3];
-    found = (n[0] + n[1] * p + n[2] * p * p) * along / across;
+    found = (n[0] + n[1] * p + n[2] * p * p) * quotient(along, across);
     reached = master;
     done = master >= at - 1e-12 * motion.curve.length();
   });
   // The last state may lie a little behind the place; the mode runs back to it.
-  return found * std::exp(mode.pole * ((at - reached) / master_speed));
+  return found * sim::exponential(mode.pole * ((at - reached) / master_speed));
 }
 
 }  // namespace stiction::sim::cam

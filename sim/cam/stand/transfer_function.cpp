@@ -21,14 +21,12 @@ std::vector<Complex> roots(std::vector<double> coefficients) {
   while (coefficients.size() > 1 && coefficients.back() == 0.0) coefficients.pop_back();
   const std::size_t degree = coefficients.size() - 1;
   if (degree == 0) return {};
-  const double scale =
-      std::pow(std::fabs(coefficients.front() / coefficients.back()), 1.0 / static_cast<double>(degree));
-  double power = coefficients.back() * std::pow(scale, static_cast<double>(degree));
+  const double scale = power(std::fabs(coefficients.front() / coefficients.back()), 1.0 / static_cast<double>(degree));
+  const double highest = coefficients.back() * power(scale, static_cast<double>(degree));
   std::vector<Complex> monic(degree + 1);
-  for (std::size_t k = 0; k <= degree; ++k)
-    monic[k] = coefficients[k] * std::pow(scale, static_cast<double>(k)) / power;
-  std::vector<Complex> found(degree);
-  for (std::size_t k = 0; k < degree; ++k) found[k] = std::pow(Complex(0.4, 0.9), static_cast<double>(k));
+  for (std::size_t k = 0; k <= degree; ++k) monic[k] = coefficients[k] * power(scale, static_cast<double>(k)) / highest;
+  std::vector<Complex> found(degree, 1.0);
+  for (std::size_t k = 1; k < degree; ++k) found[k] = found[k - 1] * Complex(0.4, 0.9);
   constexpr int most_steps = 500;
   for (int step = 0; step < most_steps; ++step) {
     double moved = 0.0;
@@ -37,18 +35,18 @@ std::vector<Complex> roots(std::vector<double> coefficients) {
       for (std::size_t k = degree + 1; k-- > 0;) value = value * found[i] + monic[k];
       for (std::size_t j = 0; j < degree; ++j)
         if (j != i) product *= found[i] - found[j];
-      const Complex change = value / product;
+      const Complex change = quotient(value, product);
       found[i] -= change;
-      moved = std::max(moved, std::abs(change) / (1.0 + std::abs(found[i])));
+      moved = std::max(moved, magnitude(change) / (1.0 + magnitude(found[i])));
     }
     if (moved < 1e-15) break;
   }
   for (Complex& root : found) {
     root *= scale;
-    if (std::fabs(root.imag()) < 1e-9 * std::abs(root)) root = root.real();
+    if (std::fabs(root.imag()) < 1e-9 * magnitude(root)) root = root.real();
   }
   std::sort(found.begin(), found.end(), [](const Complex& a, const Complex& b) {
-    if (std::fabs(a.real() - b.real()) > 1e-9 * std::abs(a)) return a.real() > b.real();
+    if (std::fabs(a.real() - b.real()) > 1e-9 * magnitude(a)) return a.real() > b.real();
     return a.imag() > b.imag();
   });
   return found;
@@ -56,7 +54,7 @@ std::vector<Complex> roots(std::vector<double> coefficients) {
 
 }  // namespace
 
-Complex TransferFunction::at(Complex s) const { return polynomial(numerator, s) / polynomial(denominator, s); }
+Complex TransferFunction::at(Complex s) const { return quotient(polynomial(numerator, s), polynomial(denominator, s)); }
 
 std::vector<Complex> TransferFunction::poles() const { return roots({denominator.begin(), denominator.end()}); }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/cam/stand/elastic_drive.hpp"
+#include "sim/number/complex.hpp"
 
 namespace stiction::sim::cam {
 
@@ -42,8 +43,8 @@ StudyParameters study_parameters(const ElasticDrive& drive, double ratio);
 struct Mode {
   std::complex<double> pole{};  // of the pair the one above the real axis
 
-  double frequency() const { return std::abs(pole); }  // rad/s
-  double damping_ratio() const { return -pole.real() / std::abs(pole); }
+  double frequency() const { return magnitude(pole); }  // rad/s
+  double damping_ratio() const { return -pole.real() / magnitude(pole); }
   double period() const;  // s, of its damped vibration
 };
 

@@ -6,43 +6,20 @@
 // FOLDER and REWRITE: of write_studio_values. The browser is $CHROMIUM, else /usr/bin/chromium-headless-shell.
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
-import { resolve } from 'node:path';
-import { pathToFileURL } from 'node:url';
 
 import { cutOff, poorContrasts } from '../report/page_checks.mjs';
+import { becomes, checkNames, expect, keyboardOf, launch, open, problems, saved } from './studio_page.mjs';
 
-const { chromium } = createRequire(new URL('../../../host/report/web/package.json', import.meta.url))('playwright-core');
 const [file, empty, folder, rewrite, option, screenshots] = process.argv.slice(2);
 if (!rewrite || (option && option !== '--screenshots')) {
   console.error('usage: node open_studio.mjs STUDIO.html EMPTY.html FOLDER REWRITE [--screenshots FOLDER]');
   process.exit(2);
 }
-const PATIENCE = 120000, CYCLES = 3;
-const CONTROLS = new Set(['button', 'spinbutton', 'slider', 'combobox', 'searchbox', 'textbox', 'radio', 'checkbox', 'link', 'listbox', 'dialog']);
-const problems = [];
-const expect = (holds, message) => { if (!holds) problems.push(message); };
-const becomes = (page, holds, argument) => page.waitForFunction(holds, argument, { timeout: PATIENCE, polling: 30 }).then(() => true, () => false);
-
-async function open(browser, name, { before, window = { width: 1280, height: 1000 } } = {}) {
-  const address = pathToFileURL(resolve(name)).href, page = await browser.newPage({ viewport: window, colorScheme: 'light', acceptDownloads: true });
-  page.setDefaultTimeout(PATIENCE);
-  page.on('console', message => { if (['error', 'warning'].includes(message.type())) problems.push(`console: ${message.text()}`); });
-  page.on('pageerror', error => problems.push(`script: ${error.message}`));
-  page.on('request', request => { if (request.url() !== address && !/^(data|blob):/.test(request.url())) problems.push(`the page asks for ${request.url()}`); });
-  if (before) await page.addInitScript(before);
-  await page.goto(address, { waitUntil: 'load' });
-  return page;
-}
+const CYCLES = 3;
 
 const motionText = page => page.evaluate(() => engine.call('motion_text').text);
 const stateOf = page => page.evaluate(() => state);
 const message = page => page.evaluate(() => ({ text: document.getElementById('message').textContent, bad: document.getElementById('message').className === 'bad' }));
-
-async function saved(page, act) {
-  const [download] = await Promise.all([page.waitForEvent('download'), act()]);
-  return { path: await download.path(), bytes: readFileSync(await download.path()), name: download.suggestedFilename() };
-}
 
 // A motion file of the page is what the commands write of it.
 async function checkSaved(page, act) {
@@ -178,14 +155,6 @@ async function checkFiles(page) {
   expect(/stiction simulate cam --machine cam-stand/.test(report.bytes.toString()) && /residual over the dwell/.test(report.bytes.toString()), `${report.name} lacks the machine or its command`);
 }
 
-// By the browser's own tree for screen readers.
-async function checkNames(page) {
-  const session = await page.context().newCDPSession(page), { nodes } = await session.send('Accessibility.getFullAXTree');
-  const controls = nodes.filter(node => !node.ignored && CONTROLS.has(node.role?.value)), nameless = controls.filter(node => !node.name?.value?.trim());
-  console.log(`controls: ${controls.length}, with a name: ${controls.length - nameless.length}`);
-  expect(controls.length > 30 && nameless.length === 0, `${nameless.length} of ${controls.length} controls have no name: ${nameless.slice(0, 5).map(node => node.role.value).join(', ')}`);
-}
-
 async function checkLooks(page) {
   for (const scheme of ['light', 'dark']) {
     await page.emulateMedia({ colorScheme: scheme });
@@ -205,32 +174,14 @@ async function checkLooks(page) {
 async function designByKeyboard(browser) {
   const page = await open(browser, empty);
   expect(await becomes(page, () => engine && state), 'the empty studio does not begin');
-  const reach = async selector => {
-    for (let k = 0; k < 200; ++k) {
-      await page.keyboard.press('Tab');
-      if (await page.evaluate(selector => document.activeElement?.matches(selector), selector)) return;
-    }
-    expect(false, `the key Tab does not reach ${selector}`);
-  };
-  const press = async selector => { await reach(selector); await page.keyboard.press('Enter'); };
-  const law = async words => {
-    await press('#law');
-    await becomes(page, () => document.getElementById('laws').open);
-    await page.keyboard.type(words);
-    await page.keyboard.press('Tab');
-    await page.keyboard.press('Tab');
-    await page.keyboard.press('Enter');
-  };
+  const { reach, press, type, law } = keyboardOf(page);
   await press('#insert');
   await press('#insert');
   await law('modified sine');
   await press('#segments [data-segment="2"]');
   await law('sloping sine');
   await press('#segments [data-segment="0"]');
-  await reach('#values [data-field="Stroke"]');
-  await page.keyboard.press('Control+a');
-  await page.keyboard.type('40');
-  await page.keyboard.press('Enter');
+  await type('#values [data-field="Stroke"]', '40');
   await reach('#chart-0 [data-handle="0"]');
   for (let k = 0; k < 10; ++k) await page.keyboard.press('ArrowRight');
   const { segments } = await stateOf(page), degree = 180 / Math.PI;
@@ -249,8 +200,7 @@ async function checkWithoutWebAssembly(browser) {
   await page.close();
 }
 
-const browser = await chromium.launch({ executablePath: process.env.CHROMIUM || '/usr/bin/chromium-headless-shell', timeout: PATIENCE,
-  args: ['--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync', '--disable-dev-shm-usage'] });
+const browser = await launch();
 try {
   const page = await open(browser, file);
   if (await becomes(page, () => document.querySelectorAll('#figures td.number').length > 3)) {
@@ -262,7 +212,7 @@ try {
     await checkRules(page);
     await checkSweep(page);
     await checkShaping(page);
-    await checkNames(page);
+    await checkNames(page, 30);
     await checkLooks(page);
     await checkFiles(page);
     console.log(`machine, two cycles: ${(await page.evaluate(() => { drawMachine(); return times.machine; })).toFixed(0)} ms`);

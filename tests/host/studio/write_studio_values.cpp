@@ -79,7 +79,7 @@ int main(int count, char** given) {
   }
   const auto stand = host::run_stand<FixedSignals>(machine, motion, {.master_speed = speed, .cycles = cycles});
   write(out / "stand.bin", record_of(stand.log.axes.front()));
-  for (int function = 0; function < 5; ++function)
+  for (int function = 0; function < 7; ++function)
     write(out / fmt::format("numbers-{}.bin", function),
           host::number_values(static_cast<host::NumberFunction>(function), arguments));
 }
