@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <cstring>
 #include <stdexcept>
 
@@ -97,8 +98,13 @@ void ChunkFiles::write(std::uint64_t chunk, const ChunkResult& result) const {
 }
 
 std::optional<ChunkResult> ChunkFiles::read(std::uint64_t chunk) const {
-  if (!has(chunk)) return std::nullopt;
-  auto result = unpacked(machine::read_whole_file(file_of(chunk), "a chunk of a sweep"), rows_of(chunk), figures_);
+  std::string bytes;
+  try {
+    bytes = machine::read_whole_file(file_of(chunk), "a chunk of a sweep");
+  } catch (const machine::UnreadableFile&) {
+    return std::nullopt;
+  }
+  auto result = unpacked(bytes, rows_of(chunk), figures_);
   std::error_code ignored;
   if (!result) fs::remove(file_of(chunk), ignored);
   return result;

@@ -129,7 +129,7 @@ SweepPlan agreed_plan(const SweepSpec& spec, const SweepCommand& command, const 
   fs::create_directories(folder.state());
   const auto turn = FolderLock::wait(folder.locks(), plan_place);
   SweepPlan own{build_identity(settings.version), input_identity(spec), rows.size(), chunk_length(rows.size()), {}};
-  const auto file = folder.state() / "plan.json";
+  const auto file = folder.state() / "plan";
   if (fs::exists(file)) {
     const auto found = parse_plan(machine::read_whole_file(file, "the plan of a sweep"));
     if (found) {
@@ -187,8 +187,9 @@ class ChunkBoard {
  public:
   ChunkBoard(const ChunkFiles& files, const SweepFolder& folder, const SweepSettings& settings, std::uint64_t rows)
       : files_(files), folder_(folder), settings_(settings), rows_(rows), done_(files.count(), false) {
+    // Read, not only looked for: a crash of the machine may have left one damaged, which is then run again.
     for (std::uint64_t k = 0; k < files.count(); ++k)
-      if (files.has(k)) mark(k);
+      if (files.read(k)) mark(k);
   }
 
   struct Claim {
