@@ -72,13 +72,13 @@ SweepSpec read_spec(const std::string& name) {
 }
 
 // The results, the table last: it says that they are complete.
-void write_results(const SweepSpec& spec, const SweepCommand& command, const SweepPlan& plan,
-                   const SweepFolder& folder, const Invocation& invocation) {
+void write_results(const SweepSpec& spec, const SweepCommand& command, const SweepPlan& plan, const SweepFolder& folder,
+                   const Invocation& invocation) {
   const SweepRows rows(spec, command);
   const auto files = chunk_files(folder, plan);
   const auto summary = summarize(spec, rows, plan, files);
   const auto result = sweep_result(spec, plan, summary);
-  const auto machine_name = rows.values(0).machine;
+  const auto machine_name = rows.row(0).machine;
   put_file(folder.path() / "sweep.json", sweep_json(spec, plan, summary).dump(2) + "\n");
   put_file(folder.path() / "report.html",
            experiment_report_html({invocation.command_line, invocation.version,
@@ -102,8 +102,9 @@ void run(const SweepOptions& options, const Invocation& invocation) {
   const SweepFolder folder(options.out);
   const auto launched = launched_as();
   const bool speaks = launched.rank == 0;
-  say_when_interrupted(speaks ? fmt::format("stiction: interrupted; the same command resumes the sweep in {}\n", options.out)
-                              : std::string());
+  say_when_interrupted(
+      speaks ? fmt::format("stiction: interrupted; the same command resumes the sweep in {}\n", options.out)
+             : std::string());
   SweepSettings settings;
   settings.version = invocation.version;
   settings.threads = threads_of(options, launched);
@@ -127,9 +128,12 @@ void run(const SweepOptions& options, const Invocation& invocation) {
 
 void add_sweep(CLI::App& program, const Invocation& invocation) {
   auto* command = program.add_subcommand(
-      "sweep", "run a command many times over a grid or a sample of keys; it resumes, and several processes may share it");
+      "sweep",
+      "run a command many times over a grid or a sample of keys; it resumes, and several processes may share it");
   auto o = std::make_shared<SweepOptions>();
-  command->add_option("spec", o->spec, "shipped sweep by name, or a specification (TOML)")->required()->type_name("SPEC");
+  command->add_option("spec", o->spec, "shipped sweep by name, or a specification (TOML)")
+      ->required()
+      ->type_name("SPEC");
   command
       ->add_option("--out", o->out,
                    "folder of sweep.npz, sweep.json and report.html; of a sweep that was interrupted, to resume it")
@@ -139,7 +143,8 @@ void add_sweep(CLI::App& program, const Invocation& invocation) {
       ->check(whole_number_between(1, 1024))
       ->type_name("N");
   command->add_flag("--yes", o->yes, "begin also what takes longer than ten minutes");
-  add_output_file(*command, "--slurm", o->slurm, "run nothing, but write the script of a Slurm array job into this file");
+  add_output_file(*command, "--slurm", o->slurm,
+                  "run nothing, but write the script of a Slurm array job into this file");
   command->add_option("--tasks", o->tasks, "tasks of that job, which share the sweep")
       ->check(whole_number_between(1, 100000))
       ->type_name("N")

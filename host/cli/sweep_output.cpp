@@ -71,10 +71,17 @@ std::string quoted_word(const std::string& word) {
 }  // namespace
 
 Json sweep_json(const SweepSpec& spec, const SweepPlan& plan, const SweepSummary& summary) {
-  Json json{{"schema", "stiction.sweep/1"}, {"name", spec.name},         {"command", spec.command},
-            {"rows", plan.rows},            {"failed", summary.failed},  {"failures", Json::array()},
-            {"columns", Json::array()},     {"figures", Json::array()},  {"pareto", nullptr},
-            {"worst", nullptr},             {"robust", nullptr}};
+  Json json{{"schema", "stiction.sweep/1"},
+            {"name", spec.name},
+            {"command", spec.command},
+            {"rows", plan.rows},
+            {"failed", summary.failed},
+            {"failures", Json::array()},
+            {"columns", Json::array()},
+            {"figures", Json::array()},
+            {"pareto", nullptr},
+            {"worst", nullptr},
+            {"robust", nullptr}};
   for (const auto& [message, number] : summary.failures)
     json["failures"].push_back({{"message", message}, {"rows", number}});
   for (const auto& key : spec.keys) json["columns"].push_back(key.column());
@@ -136,7 +143,8 @@ std::string sweep_text(const std::string& text) {
 std::string slurm_script(const SlurmJob& job) {
   return fmt::format(
       "#!/bin/bash\n"
-      "# The tasks share the sweep in the folder of --out, which all nodes must see. A task that ends early, or that is\n"
+      "# The tasks share the sweep in the folder of --out, which all nodes must see. A task that ends early, or that "
+      "is\n"
       "# submitted again, does no harm: what is done stays done.\n"
       "#SBATCH --job-name=stiction-sweep\n"
       "#SBATCH --array=0-{}\n"

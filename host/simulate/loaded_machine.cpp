@@ -21,9 +21,9 @@ void keep_axis(machine::Machine& machine, const std::string& name) {
   for (const auto& axis : machine.axes) names.push_back(axis.name);
   if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) {
     const auto nearest = machine::nearest_name(name, names);
-    throw machine::MachineFileError(
-        fmt::format("--axis: found '{}'; expected an axis of {}: {}{}", excerpt(name), machine.id,
-                    fmt::join(names, ", "), nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
+    throw machine::MachineFileError(fmt::format("--axis: found '{}'; expected an axis of {}: {}{}", excerpt(name),
+                                                machine.id, fmt::join(names, ", "),
+                                                nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
   }
   const std::string kept(name.empty() ? names.front() : std::string_view(name));
   std::erase_if(machine.axes, [&](const auto& axis) { return axis.name != kept; });

@@ -118,8 +118,8 @@ void ChunkFiles::remove_all() const {
 ChunkResult ChunkFiles::present(std::uint64_t chunk) const {
   auto result = read(chunk);
   if (!result)
-    throw std::runtime_error(fmt::format("{}: found no such chunk, or a damaged one; run the sweep again, which repeats it",
-                                         file_of(chunk).string()));
+    throw std::runtime_error(fmt::format(
+        "{}: found no such chunk, or a damaged one; run the sweep again, which repeats it", file_of(chunk).string()));
   return std::move(*result);
 }
 

@@ -1,5 +1,5 @@
-// The finished chunks of a sweep, a file each: the log from which a sweep resumes. A chunk is written under a name of its
-// own and then moved, so that it is there or not.
+// The finished chunks of a sweep, a file each: the log from which a sweep resumes. A chunk is written under a name of
+// its own and then moved, so that it is there or not.
 #pragma once
 
 #include <cstdint>

@@ -77,9 +77,8 @@ const SweepCommand& command_of(const SweepSpec& spec) {
              fmt::format("one of {}{}", fmt::join(known, ", "), machine::did_you_mean(key.name, known)));
   }
   for (const auto option : command->required)
-    if (std::none_of(spec.keys.begin(), spec.keys.end(), [&](const SweptKey& key) {
-          return key.kind == SweptKey::Kind::option && key.name == option;
-        }))
+    if (std::none_of(spec.keys.begin(), spec.keys.end(),
+                     [&](const SweptKey& key) { return key.kind == SweptKey::Kind::option && key.name == option; }))
       refuse(spec, fmt::format("option.{}", option), "no such key", "one value, or a list with one for each run");
   if (logs != command->logs)
     refuse(spec, "log", logs ? "logs" : "no such key",

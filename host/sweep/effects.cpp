@@ -13,7 +13,8 @@
 namespace stiction::host {
 namespace {
 
-constexpr std::size_t groups_of_main = 10;
+// Wide groups smooth what a figure does within them, narrow ones have few rows.
+constexpr std::size_t groups_of_main(std::size_t rows) { return rows < 2000 ? 10 : 20; }
 constexpr std::size_t groups_of_pairs = 5;
 constexpr std::size_t most_interactions = 10;
 
@@ -139,7 +140,7 @@ FigureEffects effects_on(const SweepFigure& figure, const std::vector<double>& v
   std::vector<Grouping> pairs;
   std::vector<double> alone;
   for (const auto& key : keys) {
-    const auto grouping = grouping_of(key, groups_of_main);
+    const auto grouping = grouping_of(key, groups_of_main(values.size()));
     const auto means = means_of(values, grouping);
     result.main.push_back({key.column, share_between(means, result.mean, total, result.rows, chance), grouping.names,
                            grouping.at, means.mean});

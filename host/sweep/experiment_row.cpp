@@ -15,20 +15,20 @@ namespace stiction::host {
 
 std::vector<SweepFigure> sweep_figures(const sim::ExperimentResult& result) {
   std::vector<SweepFigure> figures;
-  for (const auto& figure : result.figures)
-    figures.push_back({name_without_model(figure), figure.unit, figure.value});
+  for (const auto& figure : result.figures) figures.push_back({name_without_model(figure), figure.unit, figure.value});
   return figures;
 }
 
 std::vector<SweepFigure> sweep_experiment(const SweepCommand& command, const SweepRow& row) {
   const auto table = experiments();
-  const auto experiment = std::find_if(table.begin(), table.end(),
-                                       [&](const Experiment& each) { return command.experiment == each.name; });
+  const auto experiment =
+      std::find_if(table.begin(), table.end(), [&](const Experiment& each) { return command.experiment == each.name; });
   ExperimentInput input{machine_of(command, row), {}};
   const auto& needs = needs_of(experiment->name);
   if (!needs.feed_drive) {
     const auto model = friction_option(row, input.machine);
-    if (!needs.friction.empty() && std::find(needs.friction.begin(), needs.friction.end(), model) == needs.friction.end())
+    if (!needs.friction.empty() &&
+        std::find(needs.friction.begin(), needs.friction.end(), model) == needs.friction.end())
       throw machine::MachineFileError(fmt::format("--friction: found '{}'; expected one that {} supports: {}", model,
                                                   experiment->name, fmt::join(needs.friction, ", ")));
     input.friction = {model};

@@ -74,9 +74,8 @@ std::vector<std::string> MachineValues::multiplied(const std::string& key, doubl
     all.push_back(fmt::format("{}={}", each, *value));
   }
   if (all.empty())
-    throw machine::MachineFileError(
-        fmt::format("{}: {}: found no such key; expected one that the file has, since the sweep multiplies its value",
-                    file_, key));
+    throw machine::MachineFileError(fmt::format(
+        "{}: {}: found no such key; expected one that the file has, since the sweep multiplies its value", file_, key));
   return all;
 }
 

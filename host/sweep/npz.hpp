@@ -1,5 +1,5 @@
-// Arrays in NumPy's format, one file: `numpy.load` reads them without us (NumPy Enhancement Proposal 1, format 1.0, in a
-// ZIP archive). No date is in it: the same columns give the same bytes.
+// Arrays in NumPy's format, one file: `numpy.load` reads them without us (NumPy Enhancement Proposal 1, format 1.0, in
+// a ZIP archive). No date is in it: the same columns give the same bytes.
 #pragma once
 
 #include <cstdint>

@@ -21,8 +21,8 @@ std::string with_unit(double value, const std::string& unit) {
 void add_figures(sim::ExperimentResult& result, const FigureEffects& effects) {
   const auto& figure = effects.figure;
   const auto add = [&](const char* what, double value) {
-    result.figures.push_back({fmt::format("{}_{}", figure.name, what), figure.unit,
-                              fmt::format("{}: {}", figure.name, what), value, {}});
+    result.figures.push_back(
+        {fmt::format("{}_{}", figure.name, what), figure.unit, fmt::format("{}: {}", figure.name, what), value, {}});
   };
   add("mean", effects.mean);
   add("deviation", effects.deviation);
@@ -32,7 +32,8 @@ void add_figures(sim::ExperimentResult& result, const FigureEffects& effects) {
 
 void add_effects(sim::ExperimentResult& result, const FigureEffects& effects) {
   std::vector<std::string> told;
-  for (const auto& effect : effects.main) told.push_back(fmt::format("{} {:.0f} %", effect.key, effect.share * per_cent));
+  for (const auto& effect : effects.main)
+    told.push_back(fmt::format("{} {:.0f} %", effect.key, effect.share * per_cent));
   if (!told.empty())
     result.findings.push_back(
         fmt::format("Main effects on {}, as shares of its variance: {}.", effects.figure.name, fmt::join(told, ", ")));
@@ -88,8 +89,8 @@ void add_pareto(sim::ExperimentResult& result, const SweepPlan& plan, const Swee
   chart.caption = "Each point is a row that no other row beats in both figures.";
   chart.series.push_back(std::move(front));
   result.charts.push_back(std::move(chart));
-  result.findings.push_back(
-      fmt::format("{} rows are on the Pareto front of {} and {}.", summary.pareto.size(), spec.pareto[0], spec.pareto[1]));
+  result.findings.push_back(fmt::format("{} rows are on the Pareto front of {} and {}.", summary.pareto.size(),
+                                        spec.pareto[0], spec.pareto[1]));
 }
 
 void add_robust(sim::ExperimentResult& result, const RobustChoice& robust, const SweepFigure& figure) {
@@ -101,13 +102,16 @@ void add_robust(sim::ExperimentResult& result, const RobustChoice& robust, const
   };
   const auto& nominal = robust.choices.front();
   const auto& best = robust.choices[robust.best];
-  result.figures.push_back({"worst_nominal", figure.unit,
-                            fmt::format("{}: worst case of the first choice", figure.name), nominal.worst, {}});
-  result.figures.push_back({"worst_robust", figure.unit,
-                            fmt::format("{}: worst case of the robust choice", figure.name), best.worst, {}});
-  result.findings.push_back(fmt::format("The first choice ({}) has the worst {} {}; the smallest worst case, {}, is that of {}.",
-                                        words(nominal), figure.name, with_unit(nominal.worst, figure.unit),
-                                        with_unit(best.worst, figure.unit), words(best)));
+  result.figures.push_back({"worst_nominal",
+                            figure.unit,
+                            fmt::format("{}: worst case of the first choice", figure.name),
+                            nominal.worst,
+                            {}});
+  result.figures.push_back(
+      {"worst_robust", figure.unit, fmt::format("{}: worst case of the robust choice", figure.name), best.worst, {}});
+  result.findings.push_back(fmt::format(
+      "The first choice ({}) has the worst {} {}; the smallest worst case, {}, is that of {}.", words(nominal),
+      figure.name, with_unit(nominal.worst, figure.unit), with_unit(best.worst, figure.unit), words(best)));
 }
 
 }  // namespace

@@ -51,10 +51,10 @@ std::optional<SweepPlan> parse_plan(const std::string& text) {
 
 void require_same(const SweepPlan& found, const SweepPlan& own, const std::filesystem::path& folder) {
   if (found.version != own.version)
-    throw machine::MachineFileError(
-        fmt::format("{}: found a sweep by stiction {}; expected one by the programme that runs here, {}, since results of "
-                    "different programmes do not mix",
-                    folder.string(), found.version, own.version));
+    throw machine::MachineFileError(fmt::format(
+        "{}: found a sweep by stiction {}; expected one by the programme that runs here, {}, since results of "
+        "different programmes do not mix",
+        folder.string(), found.version, own.version));
   if (found.input != own.input)
     throw machine::MachineFileError(
         fmt::format("{}: found the sweep of a different specification, or of machine files or logs that have changed "

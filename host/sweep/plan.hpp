@@ -1,5 +1,5 @@
-// What all who work on one sweep agree on: it is in the folder of the results before the first chunk is run, and whoever
-// joins later, or resumes, must find the same.
+// What all who work on one sweep agree on: it is in the folder of the results before the first chunk is run, and
+// whoever joins later, or resumes, must find the same.
 #pragma once
 
 #include <cstdint>

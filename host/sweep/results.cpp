@@ -78,8 +78,9 @@ void count_failures(SweepSummary& summary, const ChunkFiles& files) {
 
 void find_worst(SweepSummary& summary, const SweepSpec& spec, const SweepRows& rows, const SweepPlan& plan,
                 const ChunkFiles& files) {
-  const auto place =
-      figure_named(plan, !spec.worst.empty() ? spec.worst : !spec.robust.empty() ? spec.robust : std::string());
+  const auto place = figure_named(plan, !spec.worst.empty()    ? spec.worst
+                                        : !spec.robust.empty() ? spec.robust
+                                                               : std::string());
   summary.worst = plan.figures[place];
   summary.worst_value = not_a_number;
   const auto values = files.column(place);

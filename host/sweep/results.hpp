@@ -17,7 +17,7 @@ void write_table(const SweepSpec& spec, const SweepRows& rows, const SweepPlan& 
                  const std::filesystem::path& place);
 
 // What a key does to a figure by itself: the share of the figure's variance between its values, and the mean of the
-// figure at each (of a key that is drawn: in tenths of the rows by its value).
+// figure at each (of a key that is drawn: in groups of the rows by its value).
 struct MainEffect {
   std::string key;  // its column
   double share = 0.0;
@@ -60,12 +60,12 @@ struct SweepSummary {
   std::uint64_t rows = 0, failed = 0;
   std::vector<std::pair<std::string, std::uint64_t>> failures;  // messages with their numbers, the most frequent first
   std::vector<FigureEffects> effects;
-  std::vector<ParetoPoint> pareto;    // by the first figure
-  std::uint64_t worst_row = 0;        // of the figure `worst`
-  double worst_value = 0.0;           // NaN where no run gave it
+  std::vector<ParetoPoint> pareto;  // by the first figure
+  std::uint64_t worst_row = 0;      // of the figure `worst`
+  double worst_value = 0.0;         // NaN where no run gave it
   SweepFigure worst;
   std::string worst_command;
-  std::vector<RobustChoice> robust;   // one, or none
+  std::vector<RobustChoice> robust;  // one, or none
 };
 
 // Rows above which effects and Pareto front are made of every n-th row, so that memory stays bounded.

@@ -67,8 +67,9 @@ std::string friction_option(const SweepRow& row, const machine::Machine& machine
     if (!axis.friction.models.contains(name)) {
       std::vector<std::string_view> known;
       for (const auto& [each, values] : axis.friction.models) known.push_back(each);
-      refuse_option("friction", name, fmt::format("one friction model that axis {} has: {}{}", axis.name,
-                                                  fmt::join(known, ", "), machine::did_you_mean(name, known)));
+      refuse_option("friction", name,
+                    fmt::format("one friction model that axis {} has: {}{}", axis.name, fmt::join(known, ", "),
+                                machine::did_you_mean(name, known)));
     }
   return name;
 }

@@ -74,9 +74,10 @@ Trial try_rows(const SweepSpec& spec, const SweepCommand& command, const SweepRo
   }
   trial.seconds = total / static_cast<double>(trial.runs);
   if (trial.figures.empty())
-    throw machine::MachineFileError(fmt::format("{}: found that none of the {} runs that were tried succeeds, the first: "
-                                                "{}; expected runs that give figures",
-                                                spec.file, trial.runs, first_failure));
+    throw machine::MachineFileError(
+        fmt::format("{}: found that none of the {} runs that were tried succeeds, the first: "
+                    "{}; expected runs that give figures",
+                    spec.file, trial.runs, first_failure));
   return trial;
 }
 
@@ -103,8 +104,8 @@ std::vector<SweepFigure> wanted_figures(const SweepSpec& spec, const std::vector
   std::vector<SweepFigure> all;
   for (const auto& figure : given) {
     const bool here = wanted.empty() || std::find(wanted.begin(), wanted.end(), figure.name) != wanted.end();
-    const bool known = std::any_of(all.begin(), all.end(),
-                                   [&](const SweepFigure& each) { return each.column() == figure.column(); });
+    const bool known =
+        std::any_of(all.begin(), all.end(), [&](const SweepFigure& each) { return each.column() == figure.column(); });
     if (here && !known) all.push_back({figure.name, figure.unit, 0.0});
   }
   return all;
@@ -114,11 +115,11 @@ void refuse_without_yes(const SweepSpec& spec, const Trial& trial, const SweepSe
   const double workers = static_cast<double>(settings.threads) * settings.processes;
   const double seconds = trial.seconds * static_cast<double>(spec.rows()) / workers;
   if (settings.yes || seconds <= longest_unasked) return;
-  throw machine::MachineFileError(
-      fmt::format("{}: found {} runs, which take about {} on {:.0f} threads ({:.3g} s each, measured on {}); expected at "
-                  "most {}, or --yes",
-                  spec.file, spec.rows(), duration_words(seconds), workers, trial.seconds, trial.runs,
-                  duration_words(longest_unasked)));
+  throw machine::MachineFileError(fmt::format(
+      "{}: found {} runs, which take about {} on {:.0f} threads ({:.3g} s each, measured on {}); expected at "
+      "most {}, or --yes",
+      spec.file, spec.rows(), duration_words(seconds), workers, trial.seconds, trial.runs,
+      duration_words(longest_unasked)));
 }
 
 // The plan of the folder, made by the first who comes.
@@ -323,8 +324,8 @@ SweepPlan run_sweep(const SweepSpec& spec, const SweepCommand& command, const Sw
   const auto work = [&] {
     try {
       while (const auto claim = board.next()) {
-        files.write(claim->chunk, run_chunk(command, rows, plan, files.first_row(claim->chunk),
-                                            files.rows_of(claim->chunk)));
+        files.write(claim->chunk,
+                    run_chunk(command, rows, plan, files.first_row(claim->chunk), files.rows_of(claim->chunk)));
         board.finish(claim->chunk);
       }
     } catch (...) {

@@ -15,10 +15,10 @@
 namespace stiction::host {
 
 struct SweepSettings {
-  std::string version;              // of the programme
-  unsigned threads = 1;             // of this process
-  unsigned processes = 1;           // that work on the sweep, as far as the launcher tells; for the estimate alone
-  bool yes = false;                 // whether a sweep that takes long may begin
+  std::string version;     // of the programme
+  unsigned threads = 1;    // of this process
+  unsigned processes = 1;  // that work on the sweep, as far as the launcher tells; for the estimate alone
+  bool yes = false;        // whether a sweep that takes long may begin
   // After each chunk that is done, by whomever: rows that are done of all. From any thread.
   std::function<void(std::uint64_t done, std::uint64_t rows)> progress = {};
 };

@@ -28,8 +28,8 @@ std::uint64_t permuted(std::uint64_t index, std::uint64_t count, std::uint64_t k
 double sample(SampleMethod method, std::uint64_t point, std::uint64_t count, std::uint32_t dimension,
               std::uint64_t seed);
 
-// The value that a standard normal variable is below with `probability` (0 to 1, neither included), by Acklam's rational
-// functions and one step of Halley's method; absolute error below 1e-9.
+// The value that a standard normal variable is below with `probability` (0 to 1, neither included), by Acklam's
+// rational functions and one step of Halley's method; absolute error below 1e-9.
 double normal_quantile(double probability);
 
 }  // namespace stiction::host

@@ -108,9 +108,8 @@ class SpecReader {
     for (auto&& [name, node] : table) {
       const auto key = machine::join_key(above, name.str());
       const auto* inner = node.as_table();
-      const bool varies =
-          inner == nullptr || std::any_of(variation_keys.begin(), variation_keys.end(),
-                                          [&](std::string_view each) { return inner->contains(each); });
+      const bool varies = inner == nullptr || std::any_of(variation_keys.begin(), variation_keys.end(),
+                                                          [&](std::string_view each) { return inner->contains(each); });
       if (varies)
         add_key(SweptKey::Kind::set, key, node, place + "." + key);
       else

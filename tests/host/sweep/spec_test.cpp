@@ -38,8 +38,9 @@ void expect_refusal(const std::string& text, const std::string& words) {
 }
 
 TEST(SweepSpecFile, AGridHasEveryCombinationTheLastKeyFastest) {
-  const auto spec = parsed(with("[option]\nfeed = [\"8 m/min\", \"16 m/min\"]\n[set]\n\"axis.X.mass\" = { from = \"200 "
-                                "kg\", to = \"300 kg\", steps = 3 }\n"));
+  const auto spec =
+      parsed(with("[option]\nfeed = [\"8 m/min\", \"16 m/min\"]\n[set]\n\"axis.X.mass\" = { from = \"200 "
+                  "kg\", to = \"300 kg\", steps = 3 }\n"));
   ASSERT_EQ(spec.rows(), 6U);
   const SweepRows rows(spec, command_of(spec));
   EXPECT_EQ(rows.row(0).set.front(), "axis.X.mass=200 kg");
@@ -47,8 +48,8 @@ TEST(SweepSpecFile, AGridHasEveryCombinationTheLastKeyFastest) {
   EXPECT_EQ(rows.row(2).set.front(), "axis.X.mass=300 kg");
   EXPECT_EQ(rows.row(2).option("feed"), "8 m/min");
   EXPECT_EQ(rows.row(3).option("feed"), "16 m/min");
-  EXPECT_EQ(rows.command_line(rows.row(3)), "stiction simulate circle --machine " + cross_table +
-                                                " --feed '16 m/min' --set 'axis.X.mass=200 kg'");
+  EXPECT_EQ(rows.command_line(rows.row(3)),
+            "stiction simulate circle --machine " + cross_table + " --feed '16 m/min' --set 'axis.X.mass=200 kg'");
 }
 
 TEST(SweepSpecFile, KeysMayBeWrittenAsTables) {
@@ -59,8 +60,9 @@ TEST(SweepSpecFile, KeysMayBeWrittenAsTables) {
 }
 
 TEST(SweepSpecFile, ARelativeKeyMultipliesWhatTheFileHas) {
-  const auto spec = parsed(with("[set]\n\"axis.*.mass\" = { values = [0.5, 2], relative = true }\n"
-                                "\"axis.X.friction_compensation.friction.level\" = { values = [2.0], relative = true }\n"));
+  const auto spec =
+      parsed(with("[set]\n\"axis.*.mass\" = { values = [0.5, 2], relative = true }\n"
+                  "\"axis.X.friction_compensation.friction.level\" = { values = [2.0], relative = true }\n"));
   const SweepRows rows(spec, command_of(spec));
   const auto row = rows.row(1);
   ASSERT_EQ(row.set.size(), 3U);
@@ -71,9 +73,10 @@ TEST(SweepSpecFile, ARelativeKeyMultipliesWhatTheFileHas) {
 }
 
 TEST(SweepSpecFile, DrawsHaveTheirDistributions) {
-  const auto spec = parsed(with("[set]\n\"axis.X.mass\" = { distribution = \"normal\", mean = \"200 kg\", deviation = "
-                                "\"4 kg\" }\n\"axis.Y.mass\" = { distribution = \"log-uniform\", from = \"1 kg\", to = "
-                                "\"100 kg\" }\n[sample]\nnumber = 2000\nseed = 9\n"));
+  const auto spec =
+      parsed(with("[set]\n\"axis.X.mass\" = { distribution = \"normal\", mean = \"200 kg\", deviation = "
+                  "\"4 kg\" }\n\"axis.Y.mass\" = { distribution = \"log-uniform\", from = \"1 kg\", to = "
+                  "\"100 kg\" }\n[sample]\nnumber = 2000\nseed = 9\n"));
   const SweepRows rows(spec, command_of(spec));
   double sum = 0.0, squares = 0.0;
   std::size_t below_ten = 0;
@@ -89,8 +92,9 @@ TEST(SweepSpecFile, DrawsHaveTheirDistributions) {
 }
 
 TEST(SweepSpecFile, DrawsAreTheSameInEveryCombinationOfTheGrid) {
-  const auto spec = parsed(with("[set]\n\"axis.X.mass\" = { distribution = \"uniform\", from = \"200 kg\", to = \"250 "
-                                "kg\" }\n\"axis.Y.mass\" = [\"500 kg\", \"600 kg\"]\n[sample]\nnumber = 5\n"));
+  const auto spec =
+      parsed(with("[set]\n\"axis.X.mass\" = { distribution = \"uniform\", from = \"200 kg\", to = \"250 "
+                  "kg\" }\n\"axis.Y.mass\" = [\"500 kg\", \"600 kg\"]\n[sample]\nnumber = 5\n"));
   const SweepRows rows(spec, command_of(spec));
   ASSERT_EQ(rows.size(), 10U);
   for (std::uint64_t k = 0; k < 5; ++k) EXPECT_EQ(rows.values(k).numbers[1], rows.values(k + 5).numbers[1]);
@@ -123,7 +127,8 @@ TEST(SweepSpecFile, SaysWhatWasFoundAndExpected) {
   expect_refusal(with("[sample]\nnumber = 3"), "sample: found it without a key that has a distribution");
   expect_refusal(with("[set]\n\"axis.X.mass\" = { distribution = \"log-uniform\", from = \"0 kg\", to = \"2 kg\" }"),
                  "from: found 0; expected a value above 0");
-  expect_refusal(with("[set]\n\"axis.X.mass\" = { values = [\"1 kg\"], relative = true }"), "found values that are no plain");
+  expect_refusal(with("[set]\n\"axis.X.mass\" = { values = [\"1 kg\"], relative = true }"),
+                 "found values that are no plain");
   expect_refusal(with("[set]\n\"axis.X.massive\" = { values = [1.0], relative = true }"),
                  "axis.X.massive: found no such key; expected one that the file has");
   expect_refusal(with("[set]\n\"axis.X.motor.model\" = { values = [1.0], relative = true }"),

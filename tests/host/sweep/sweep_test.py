@@ -124,12 +124,12 @@ class Sweeps(unittest.TestCase):
     def chunks(self, out):
         return sorted((self.folder / out / ".sweep" / "chunks").glob("*.chunk"))
 
-    def interrupted(self, out, how, processes=1):
-        """Ends sweeps of 2000 runs when some chunks are done; returns how many were."""
+    def interrupted(self, out, how, processes=1, least=5):
+        """Ends the first of some sweeps at `least` chunks; returns its last words, and the other processes."""
         running = [subprocess.Popen([STICTION, "sweep", self.folder / "spec.toml", "--out", out, "--threads", "1"],
                                     cwd=self.folder, env=environment(), stdout=subprocess.DEVNULL,
                                     stderr=subprocess.PIPE, text=True) for _ in range(processes)]
-        while len(self.chunks(out)) < 5:
+        while len(self.chunks(out)) < least:
             self.assertIsNone(running[0].poll(), "it ended by itself")
             time.sleep(0.005)
         running[0].send_signal(how)
@@ -144,7 +144,7 @@ class Sweeps(unittest.TestCase):
         before = len(self.chunks("a"))
         self.assertGreaterEqual(before, 5)
         self.assertFalse((self.folder / "a" / "sweep.npz").exists())
-        words, _ = self.interrupted("a", signal.SIGINT)
+        words, _ = self.interrupted("a", signal.SIGINT, least=before + 5)
         self.assertEqual(words, "stiction: interrupted; the same command resumes the sweep in a\n")
         kept = self.chunks("a")
         self.assertGreaterEqual(len(kept), before)
@@ -236,14 +236,14 @@ class Sweeps(unittest.TestCase):
         for name, number in (("robust-friction", "number = 1000"), ("circle-sensitivity", "number = 512")):
             text = (folder / f"{name}.toml").read_text()
             self.assertIn(number, text)
-            text = text.replace(number, "number = 2").replace("[1.0, 0.7, 0.8, 0.9, 1.1]", "[1.0, 0.8]")
+            text = text.replace(number, "number = 2").replace("[1.0, 0.9, 0.8]", "[1.0, 0.9]")
             file = self.folder / f"{name}.toml"
             file.write_text(text)
             result = self.sweep(name, "--json", spec=file)
             self.assertEqual(result.returncode, 0, result.stderr)
             self.assertEqual(json.loads(result.stdout)["failed"], 0)
         robust = json.loads((self.folder / "robust-friction" / "sweep.json").read_text())["robust"]
-        self.assertEqual(len(robust["choices"]), 6)
+        self.assertEqual(len(robust["choices"]), 4)
         self.assertLessEqual(robust["best"]["worst"], robust["nominal"]["worst"])
 
 
