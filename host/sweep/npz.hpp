@@ -19,9 +19,9 @@ class NpzWriter {
   NpzWriter& operator=(const NpzWriter&) = delete;
   ~NpzWriter();
 
-  // A column `name` of doubles, which `values` gives when its turn to be written comes.
+  // A column `name` of `rows` doubles, which `values` gives when its turn to be written comes.
   void add_numbers(const std::string& name, std::uint64_t rows, std::function<std::vector<double>()> values);
-  // A column `name` of texts (UTF-8), the longest of `longest` characters; `text` gives that of a row.
+  // A column `name` of `rows` texts (UTF-8), the longest of `longest` characters; `text` gives that of a row.
   void add_texts(const std::string& name, std::uint64_t rows, std::size_t longest,
                  std::function<std::string(std::uint64_t row)> text);
 

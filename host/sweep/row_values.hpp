@@ -16,7 +16,7 @@ machine::Machine machine_of(const SweepCommand& command, const SweepRow& row);
 // The option `name` of `row` in `unit`; `fallback` where it has none. Throws machine::MachineFileError.
 double quantity_option(const SweepRow& row, std::string_view name, const std::string& unit, double fallback);
 
-// The same of a list of quantities separated by commas; empty where the row has none.
+// The option `name` of `row`, a list of quantities in `unit` separated by commas; empty where the row has none.
 std::vector<double> quantity_list_option(const SweepRow& row, std::string_view name, const std::string& unit);
 
 // The option `name` of `row`, one of `names`, the first of which it is unless given. Throws machine::MachineFileError.

@@ -63,7 +63,7 @@ class SpecReader {
     root_.allow({"schema", "name", "command", "machine", "log", "option", "set", "sample", "figures", "pareto", "worst",
                  "robust"});
     if (root_.text("schema", "the format") != sweep_spec_schema)
-      root_.fail("schema", root_.has("schema") ? "another one" : "no such key",
+      root_.fail("schema", root_.has("schema") ? "a different one" : "no such key",
                  fmt::format("\"{}\"", sweep_spec_schema));
     spec_.name = root_.text("name", "what the sweep shows").value_or(fs::path(spec_.file).stem().string());
     const auto command = root_.text("command", "a command such as \"simulate circle\"");
@@ -175,7 +175,7 @@ class SpecReader {
   void read_variation(SweptKey& key, const toml::table& table, const std::string& place) {
     const QuantityTable values(document_, table, place);
     values.allow({variation_keys.begin(), variation_keys.end()});
-    key.relative = values.boolean("relative", false, "whether numbers are factors of what the machine file has");
+    key.relative = values.boolean("relative", false, "whether numbers are factors of the values in the machine file");
     key.design = values.boolean("design", false, "whether the search for the best worst case chooses it");
     if (key.relative && key.kind != SweptKey::Kind::set)
       values.fail("relative", "true", "a key of the machine file, in [set]");
@@ -195,7 +195,7 @@ class SpecReader {
   void refuse_beside(const QuantityTable& values, std::string_view present,
                      const std::vector<std::string_view>& others) const {
     for (const auto other : others)
-      if (values.has(other)) values.fail(other, fmt::format("it beside {}", present), "one of them");
+      if (values.has(other)) values.fail(other, fmt::format("it together with {}", present), "one of them");
   }
 
   // The number of `name`; its unit becomes the key's, or must be of its dimension.

@@ -32,7 +32,7 @@ struct SweptKey {
   // Where it is drawn: from `low` to `high`, or with mean `low` and standard deviation `high`.
   std::optional<Distribution> drawn;
   double low = 0.0, high = 0.0;
-  bool design = false;  // of a search for the best worst case: is chosen, not given (robust.hpp)
+  bool design = false;  // of a search for the best worst case: is chosen, not given (results.hpp)
 
   bool varies() const { return drawn.has_value() || values.size() > 1; }
   // The name of its column in the result: "axis.X.mass[kg]", "axis.X.mass[relative]".

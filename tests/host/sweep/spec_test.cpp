@@ -101,7 +101,7 @@ TEST(SweepSpecFile, DrawsAreTheSameInEveryCombinationOfTheGrid) {
 }
 
 TEST(SweepSpecFile, SaysWhatWasFoundAndExpected) {
-  expect_refusal("schema = \"x\"", "s.toml:1: schema: found another one; expected \"stiction.sweep-spec/1\"");
+  expect_refusal("schema = \"x\"", "s.toml:1: schema: found a different one; expected \"stiction.sweep-spec/1\"");
   expect_refusal(with("colour = 3"), "colour: found an unknown key; expected one of schema, name, command");
   expect_refusal(head, "machine: found no such key; expected the machine, or a list of them");
   expect_refusal("schema = \"stiction.sweep-spec/1\"\nmachine = \"emps\"", "command: found no such key");
