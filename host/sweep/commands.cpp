@@ -50,6 +50,7 @@ std::span<const SweepCommand> sweep_commands() {
          .options = {"axis", "feed", "show"},
          .flags = {"no-pulse"},
          .run = sweep_tuning},
+        {.name = "identify", .experiment = "", .options = {"axis"}, .logs = true, .run = sweep_identification},
         {.name = "diagnose", .experiment = "", .options = {"axis", "seed"}, .logs = true, .run = sweep_diagnosis}};
     for (const auto& experiment : experiments()) all.push_back(row_of(experiment));
     return all;

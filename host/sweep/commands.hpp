@@ -47,6 +47,7 @@ std::vector<SweepFigure> sweep_figures(const sim::ExperimentResult& result);
 std::vector<SweepFigure> sweep_circle(const SweepCommand& command, const SweepRow& row);
 std::vector<SweepFigure> sweep_experiment(const SweepCommand& command, const SweepRow& row);
 std::vector<SweepFigure> sweep_tuning(const SweepCommand& command, const SweepRow& row);
+std::vector<SweepFigure> sweep_identification(const SweepCommand& command, const SweepRow& row);
 std::vector<SweepFigure> sweep_diagnosis(const SweepCommand& command, const SweepRow& row);
 
 }  // namespace stiction::host

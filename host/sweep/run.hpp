@@ -42,10 +42,10 @@ class SweepFolder {
   std::filesystem::path folder_;
 };
 
-// Runs what is missing of `spec` by `command` in `folder`, with the threads of `settings`, and returns when every chunk is done. The first who comes
-// tries some rows, to know the figures and the time that a run takes. Throws machine::MachineFileError for what the
-// folder or the specification has wrong, and for a sweep longer than longest_unasked without a yes;
-// std::runtime_error when a result cannot be written.
+// Runs what is missing of `spec` by `command` in `folder`, with the threads of `settings`, and returns when every chunk
+// is done. The first who comes tries some rows, to know the figures and the time that a run takes. Throws
+// machine::MachineFileError for what the folder or the specification has wrong, and for a sweep longer than
+// longest_unasked without a yes; std::runtime_error when a result cannot be written.
 SweepPlan run_sweep(const SweepSpec& spec, const SweepCommand& command, const SweepFolder& folder,
                     const SweepSettings& settings);
 

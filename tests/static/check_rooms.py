@@ -224,6 +224,7 @@ ROOMS = {
     },
     "host/sweep": {
         "host/simulate": "a row of a sweep is a run,",
+        "host/identify": "an identification,",
         "host/diagnose": "a diagnosis",
         "host/diagnose/*": "with its verdict",
         "host/tune": "or a tuning",

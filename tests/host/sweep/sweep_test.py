@@ -231,6 +231,30 @@ class Sweeps(unittest.TestCase):
         self.assertEqual(self.sweep("b").returncode, 0)
         self.assertEqual(self.table("a"), self.table("b"))
 
+    def test_logs_are_identified_and_diagnosed_as_by_the_commands_themselves(self):
+        made = self.run_program("simulate", "commissioning", "--machine", "emps", "--out", "records", "--json")
+        self.assertEqual(made.returncode, 0, made.stderr)
+        text = """schema = "stiction.sweep-spec/1"
+command = "COMMAND"
+machine = "emps"
+log = LOGS
+"""
+        logs = ["records/speeds.csv", "records/circle.csv"]
+        result = self.sweep("i", spec=self.spec(1, text.replace("COMMAND", "identify").replace("LOGS", str(logs))))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        table = numpy.load(self.folder / "i" / "sweep.npz")
+        for row, log in enumerate(logs):
+            alone = json.loads(self.run_program("identify", log, "--machine", "emps", "--json").stdout)["parameters"]
+            for name, parameter in alone.items():
+                self.assertEqual([table[name + end][row] for end in ("", "_low", "_high")],
+                                 [parameter["value"], *parameter["ci95"]], f"{log}: {name}")
+        result = self.sweep("d", spec=self.spec(1, text.replace("COMMAND", "diagnose").replace("LOGS", str(logs[1:]))))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        table = numpy.load(self.folder / "d" / "sweep.npz")
+        alone = json.loads(self.run_program("diagnose", logs[1], "--machine", "emps", "--json").stdout)
+        self.assertEqual(table["findings"][0], len(alone["findings"]))
+        self.assertEqual(table["baseline_force_rms[N]"][0], alone["baseline"]["force_rms_N"])
+
     def test_the_shipped_sweeps_run(self):
         folder = STICTION.parent.parent / "share/stiction/sweeps"
         for name, number in (("robust-friction", "number = 1000"), ("circle-sensitivity", "number = 512")):
