@@ -127,7 +127,11 @@ SweepPlan agreed_plan(const SweepSpec& spec, const SweepCommand& command, const 
                       const SweepFolder& folder, const SweepSettings& settings) {
   const bool made = !fs::exists(folder.state());
   const bool made_above = !fs::exists(folder.path());
-  fs::create_directories(folder.state());
+  std::error_code refused;
+  fs::create_directories(folder.state(), refused);
+  if (refused)
+    throw machine::MachineFileError(fmt::format("{}: found that it cannot be made: {}; expected a folder to write in",
+                                                folder.path().string(), refused.message()));
   const auto turn = FolderLock::wait(folder.locks(), plan_place);
   SweepPlan own{build_identity(settings.version), input_identity(spec), rows.size(), chunk_length(rows.size()), {}};
   const auto file = folder.state() / "plan";
