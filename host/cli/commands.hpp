@@ -48,6 +48,8 @@ void add_cam_shape(CLI::App& cam, const Invocation& invocation);
 void add_cam_step(CLI::App& cam, const Invocation& invocation);
 // Scripts for the shells, made from the commands that `program` has when it runs.
 void add_completion(CLI::App& program);
+// Many runs over a grid or a sample.
+void add_sweep(CLI::App& program, const Invocation& invocation);
 void add_convert(CLI::App& program);
 void add_inspect(CLI::App& program);
 

@@ -18,17 +18,14 @@
 #include "host/cli/output.hpp"
 #include "host/cli/progress.hpp"
 #include "host/cli/report_origin.hpp"
-#include "host/identify/friction_fit.hpp"
 #include "host/identify/identified_machine.hpp"
+#include "host/identify/law_choice.hpp"
 #include "host/identify/own_identification.hpp"
 #include "host/identify/refinement.hpp"
-#include "host/identify/standstill.hpp"
 #include "host/log/shown_units.hpp"
 #include "host/log/text_file.hpp"
 #include "host/report/identification_report.hpp"
 #include "sim/machine_file.hpp"
-#include "sim/plant/friction/coulomb_viscous.hpp"
-#include "sim/plant/friction/lugre.hpp"
 
 namespace stiction::host {
 namespace {
@@ -77,8 +74,8 @@ Amperes amperes_of(const std::string& text) {
 
 std::string model_to_identify(const std::string& wanted, const machine::AxisModel& axis) {
   const std::string recipe(sim::CoulombViscous<>::name), contact(sim::LuGre<>::name);
-  const std::string own = has_contact_of_one_length(axis.friction) ? axis.friction.use : contact;
-  if (wanted.empty()) return sticks_rigidly(axis) ? recipe : own;
+  const auto own = contact_law(axis);
+  if (wanted.empty()) return usual_law(axis);
   const std::set<std::string> laws{recipe, contact, own};
   if (!laws.contains(wanted))
     throw UsageError(fmt::format("--friction: found '{}'; expected {}{}", wanted, fmt::join(laws, " or "),

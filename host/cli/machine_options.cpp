@@ -5,28 +5,15 @@
 
 #include <algorithm>
 
-#include "firmware/machine/configuration/axis_configuration.hpp"
-#include "firmware/machine/configuration/compensation_configuration.hpp"
 #include "firmware/machine/file/compensation_parameters.hpp"
 #include "firmware/machine/file/units.hpp"
 #include "host/cli/choices.hpp"
 #include "host/cli/errors.hpp"
 #include "host/simulate/friction_choice.hpp"
-#include "sim/effects/effects.hpp"
-#include "sim/machine_file.hpp"
+#include "host/simulate/loaded_machine.hpp"
 #include "sim/plant/friction/friction.hpp"
-#include "stiction/number/fixed_signals.hpp"
 
 namespace stiction::host {
-namespace {
-
-void keep_axis(machine::Machine& machine, const std::string& name) {
-  const auto names = axis_names(machine);
-  if (!name.empty()) require_known("--axis", name, "an axis of " + machine.id, names);
-  std::erase_if(machine.axes, [&](const auto& axis) { return axis.name != (name.empty() ? names.front() : name); });
-}
-
-}  // namespace
 
 void MachineOptions::add_to(CLI::App& command, const std::string& machine_help) {
   command.add_option("--machine", machine, machine_help)->required()->type_name("MACHINE");
@@ -60,22 +47,9 @@ machine::Machine MachineOptions::load(const std::string& name, const std::string
 
 machine::Machine MachineOptions::load(const std::string& name, const std::string& experiment,
                                       const MachineNeeds& needs) const {
-  const auto file = machine::find_machine(name);
   auto assignments = set;
-  if (!compensation.empty()) assignments.push_back("axis.*.friction_compensation.use=" + compensation);
-  auto result = sim::read_machine(file, {experiment, assignments});
-  if (needs.one_axis && !result.axes.empty()) keep_axis(result, axis);
-  require_needs(result, needs, file);
-  if (needs.formats == Formats::any || (needs.formats == Formats::or_doubles && !result.fits_formats())) return result;
-  // What the drive's number formats cannot hold is bad input too, found before anything runs.
-  try {
-    for (const auto& each : result.axes)
-      if (each.cascaded()) machine::configure_axis<FixedSignals>(result.timing, sim::drive_axis(each));
-    machine::configure_compensations<FixedSignals>(result);
-  } catch (const machine::ConfigurationError& error) {
-    throw UsageError(fmt::format("{}: {}", file.string(), error.what()));
-  }
-  return result;
+  if (!compensation.empty()) assignments.push_back(compensation_assignment(compensation));
+  return load_machine(name, assignments, experiment, needs, axis);
 }
 
 std::vector<std::string> split_list(const std::string& text) {

@@ -8,8 +8,8 @@
 
 namespace stiction::host {
 
-Progress::Progress(std::string what, std::size_t total) : what_(std::move(what)), total_(total) {
-  if (::isatty(STDERR_FILENO) == 1) thread_ = std::thread([this] { draw_until_done(); });
+Progress::Progress(std::string what, std::size_t total, bool shown) : what_(std::move(what)), total_(total) {
+  if (shown && ::isatty(STDERR_FILENO) == 1) thread_ = std::thread([this] { draw_until_done(); });
 }
 
 Progress::~Progress() {
@@ -25,6 +25,18 @@ void Progress::add(std::string_view now) {
   const std::lock_guard lock(mutex_);
   ++done_;
   now_ = now;
+}
+
+void Progress::reach(std::size_t done) {
+  const std::lock_guard lock(mutex_);
+  const auto present = std::chrono::steady_clock::now();
+  if (!first_reached_) first_reached_ = {done, present};
+  done_ = std::max(done_, done);
+  const auto [before, begin] = *first_reached_;
+  if (done_ <= before) return;
+  const double each = std::chrono::duration<double>(present - begin).count() / static_cast<double>(done_ - before);
+  const double left = each * static_cast<double>(total_ - std::min(done_, total_));
+  now_ = left < 120.0 ? fmt::format("about {:.0f} s left", left) : fmt::format("about {:.0f} min left", left / 60.0);
 }
 
 void Progress::draw_until_done() {

@@ -3,9 +3,11 @@
 #include <pthread.h>
 
 #include <csignal>
+#include <cstdio>
 #include <mutex>
 #include <set>
 #include <thread>
+#include <utility>
 
 namespace stiction::host {
 namespace {
@@ -13,6 +15,7 @@ namespace {
 struct Temporaries {
   std::mutex mutex;
   std::set<std::filesystem::path> paths;
+  std::string last_words;
 };
 
 // Never destroyed: an interruption may come while the programme ends.
@@ -36,6 +39,7 @@ void wait_for_interruption() {
   const std::lock_guard lock(temporaries().mutex);
   std::error_code ignored;
   for (const auto& path : temporaries().paths) std::filesystem::remove_all(path, ignored);
+  std::fputs(temporaries().last_words.c_str(), stderr);
   std::signal(signal, SIG_DFL);
   pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
   std::raise(signal);
@@ -61,6 +65,11 @@ void register_temporary(const std::filesystem::path& path) {
 void forget_temporary(const std::filesystem::path& path) {
   const std::lock_guard lock(temporaries().mutex);
   temporaries().paths.erase(std::filesystem::absolute(path));
+}
+
+void say_when_interrupted(std::string text) {
+  const std::lock_guard lock(temporaries().mutex);
+  temporaries().last_words = std::move(text);
 }
 
 void without_interruption(const std::function<void()>& step) {

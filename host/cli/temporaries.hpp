@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <string>
 
 namespace stiction::host {
 
@@ -14,6 +15,9 @@ void remove_temporaries_when_interrupted();
 // Registers a path that must not outlive the programme, and takes it off again.
 void register_temporary(const std::filesystem::path& path);
 void forget_temporary(const std::filesystem::path& path);
+
+// An interruption prints `text` on standard error before it ends the programme; empty: nothing.
+void say_when_interrupted(std::string text);
 
 // Runs `step`, which puts a temporary in its place: no interruption removes it halfway.
 void without_interruption(const std::function<void()>& step);

@@ -3,7 +3,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <memory>
 
 #include "host/cli/choices.hpp"
@@ -16,7 +15,7 @@
 #include "host/cli/progress.hpp"
 #include "host/cli/report_origin.hpp"
 #include "host/report/experiment_report.hpp"
-#include "host/simulate/circle.hpp"
+#include "host/tune/machine_tuning.hpp"
 #include "host/tune/tuned_machine.hpp"
 #include "sim/machine_file.hpp"
 
@@ -34,32 +33,6 @@ struct TuneOptions {
   bool no_pulse = false;
   bool json = false;
 };
-
-// The circles of a tuning, unless feeds are given: those of the measurements on the cross table. Where an axis cannot
-// drive the fastest of them, all are slower by one factor and smaller.
-struct Circles {
-  double radius = 0.09;                                                                      // m
-  std::vector<double> feeds{3.2 / 60.0, 8.0 / 60.0, 16.0 / 60.0, 24.0 / 60.0, 48.0 / 60.0};  // m/s, before and after
-  double shown = 16.0 / 60.0;                                                                // of the charts
-  double timing = 0.4;  // of the laps for the timing rule
-  std::vector<double> without_logs{3.2 / 60.0, 16.0 / 60.0, 48.0 / 60.0};
-};
-
-Circles circles_of(const machine::Machine& machine) {
-  Circles circles;
-  circles.radius = usual_radius(machine);
-  const double highest = circles.feeds.back(), allowed = highest_feed(machine, circles.radius);
-  if (allowed >= highest) return circles;
-  const auto slower = [&](double& feed) {
-    // Two digits in m/min, as feeds are given.
-    feed = std::strtod(fmt::format("{:.2g}", feed * allowed / highest * 60.0).c_str(), nullptr) / 60.0;
-  };
-  for (auto* feeds : {&circles.feeds, &circles.without_logs})
-    for (double& feed : *feeds) slower(feed);
-  slower(circles.shown);
-  slower(circles.timing);
-  return circles;
-}
 
 // The axes to tune: the one named, else all that every log has channels of.
 std::vector<std::size_t> axes_to_tune(const std::string& name, const machine::Machine& machine,
@@ -80,47 +53,24 @@ std::vector<std::size_t> axes_to_tune(const std::string& name, const machine::Ma
                                name.empty() ? "none" : "'" + name + "'", machine.id, fmt::join(names, ", ")));
 }
 
-// Of an axis: those given, or circles of the machine file's simulation without compensation.
-std::vector<Log> logs_of(machine::Machine machine, std::size_t axis, const std::vector<Log>& given,
-                         const Circles& circles) {
-  if (!given.empty()) return given;
-  machine.axes[axis].friction_compensation.reset();
-  std::vector<Log> logs;
-  for (const double feed : circles.without_logs)
-    logs.push_back(simulated_circle(machine, axis, circle_settings(machine, feed, circles.radius), 2));
-  return logs;
-}
-
 TunedCompensations tune(const TuneOptions& options, const machine::Machine& machine, const std::vector<Log>& logs) {
-  const auto circles = circles_of(machine);
-  const auto shown = options.shown.empty() ? std::vector{circles.shown} : feeds(options.shown, "--show");
-  if (shown.size() != 1) throw UsageError(fmt::format("--show: found {} feeds; expected one", shown.size()));
-  ComparisonSettings comparison;
-  comparison.circle = circle_settings(machine, shown.front(), circles.radius);
-  for (const auto& axis : machine.axes) check_circle(axis, comparison.circle);
-  comparison.feeds = options.feed.empty() ? circles.feeds : feeds(options.feed);
-  if (std::find(comparison.feeds.begin(), comparison.feeds.end(), shown.front()) == comparison.feeds.end())
-    comparison.feeds.push_back(shown.front());
-  TunedCompensations all{machine, {}, {}, comparison.circle};
-  const auto chosen = axes_to_tune(options.axis, machine, logs);
-  {
-    Progress progress("tuning", chosen.size());
-    for (const auto k : chosen) {
-      CompensationSettings settings;
-      if (!options.no_pulse) settings.pulse = comparison.circle;
-      const auto lap = [&, k](const machine::Machine& with) {
-        return simulated_circle(with, k, circle_settings(machine, circles.timing, circles.radius), 2);
-      };
-      auto tuning = tune_compensation(all.machine, k, logs_of(machine, k, logs, circles), lap, settings);
-      all.machine = tuning.machine;
-      all.tuned.emplace_back(k, std::move(tuning));
-      progress.add(machine.axes[k].name);
-    }
+  MachineTuningSettings settings;
+  if (!options.shown.empty()) {
+    const auto shown = feeds(options.shown, "--show");
+    if (shown.size() != 1) throw UsageError(fmt::format("--show: found {} feeds; expected one", shown.size()));
+    settings.shown = shown.front();
   }
-  Progress progress("circles", compared_circles(all.machine, comparison));
-  comparison.progress = [&] { progress.add(); };
-  all.circles = compare_compensations(all.machine, comparison);
-  return all;
+  if (!options.feed.empty()) settings.feeds = feeds(options.feed);
+  settings.axes = axes_to_tune(options.axis, machine, logs);
+  settings.pulse = !options.no_pulse;
+  auto progress = std::make_unique<Progress>("tuning", settings.axes.size());
+  settings.tuned = [&](const std::string& axis) { progress->add(axis); };
+  settings.begin_comparison = [&](std::size_t circles) {
+    progress.reset();  // its line is wiped before the next one appears
+    progress = std::make_unique<Progress>("circles", circles);
+  };
+  settings.compared = [&] { progress->add(); };
+  return tune_machine(machine, logs, settings);
 }
 
 void run(const TuneOptions& options, const Invocation& invocation) {

@@ -33,7 +33,7 @@ def page(command=None):
 
 class ManPages(unittest.TestCase):
     def test_every_command_of_the_help_has_a_page(self):
-        for command in ("simulate", "compare", "machine", "identify", "diagnose", "tune-friction", "convert", "inspect",
+        for command in ("simulate", "compare", "machine", "identify", "diagnose", "tune-friction", "sweep", "convert", "inspect",
                         "completion"):
             self.assertIn(command, commands())
 

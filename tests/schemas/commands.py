@@ -12,6 +12,19 @@ STEADY = "# amperes: amplitude\nv[mm/s],i[A]\n" + "".join(
     f"{sign * speed},{sign * current}\n" for sign in (1, -1)
     for speed, current in ((1, 1.0), (2, 1.01), (5, 1.05), (10, 1.1), (20, 1.2), (50, 1.4)))
 
+SWEEP = """schema = "stiction.sweep-spec/1"
+command = "simulate circle"
+machine = "emps"
+pareto = ["peak_error", "peak_voltage_X"]
+robust = "peak_error"
+[option]
+friction = ["coulomb_viscous", "lugre"]
+feed = "2 m/min"
+[set]
+"axis.X.mass" = { values = [0.9, 1.1], relative = true }
+"axis.X.position_controller.gain" = { values = ["150 1/s", "160 1/s"], design = true }
+"""
+
 # In order: later ones read what earlier ones wrote. other.toml is the shipped cross table under a different name.
 COMMANDS = """
 simulate circle --machine mcfv5050ln --friction lugre --feed '8 m/min, 16 m/min' --direction both --json
@@ -57,6 +70,7 @@ simulate cam --machine screw-linear-scale --cam shear.toml --name carriage --spe
 simulate cam --machine cam-stand --cam stand.toml --speed '130 rpm' --model 'cascade, lagrange' --cycles 1 --json
 simulate cam --machine cam-stand --verification --json
 cam shape stand.toml --machine cam-stand --speed '130 rpm' --out shapes --json
+sweep sweep.toml --out swept --json
 tune-cam --machine cam-stand --cam stand.toml --speed '130 rpm' --out tuned-cam --json
 cam laws --json
 cam check indexing.toml --json
@@ -99,6 +113,7 @@ def prepare(folder):
     (folder / "stand.toml").write_text(stand.read_text(encoding="utf-8"), encoding="utf-8")
     shear = SOURCE / "examples/cams/flying_shear.toml"
     (folder / "shear.toml").write_text(shear.read_text(encoding="utf-8"), encoding="utf-8")
+    (folder / "sweep.toml").write_text(SWEEP, encoding="utf-8")
     (folder / "steady.csv").write_text(STEADY, encoding="utf-8")
     made = SOURCE / "tests/fuzz/seeds/response_file/made.xml"
     (folder / "test.xml").write_text(made.read_text(encoding="utf-8"), encoding="utf-8")

@@ -222,6 +222,17 @@ ROOMS = {
         "sim/*": "of the laws of the simulation",
         "firmware/machine/*": "and its project a file with units",
     },
+    "host/sweep": {
+        "host/simulate": "a row of a sweep is a run,",
+        "host/identify": "an identification,",
+        "host/diagnose": "a diagnosis",
+        "host/diagnose/*": "with its verdict",
+        "host/tune": "or a tuning",
+        "host/log": "from a log",
+        "sim/*": "with its figures",
+        "firmware/machine/*": "on a machine as its file describes it",
+        f"{FIRMWARE}/number": "in the drive's formats or in double ones",
+    },
     # A programme of its own, which needs OpenCASCADE; it reads what `stiction cam step` has written.
     "host/solid": {},
     "host/plant": {
@@ -271,6 +282,7 @@ ROOMS = {
         "host/diagnose/*": "and causes",
         "host/tune": "tunes the drive",
         "host/sheet": "makes machine files",
+        "host/sweep": "runs all of it many times",
         "host/cam": "makes profiles",
         "host/cam/step": "and step cams",
         "host/report": "and shows the results",

@@ -6,3 +6,7 @@ if(STICTION_DESK)
 endif()
 install(DIRECTORY firmware/machine/shipped/ DESTINATION share/stiction/machines COMPONENT programmes
         FILES_MATCHING PATTERN "*.toml")
+if(STICTION_DESK)
+  install(DIRECTORY host/sweep/shipped/ DESTINATION share/stiction/sweeps COMPONENT programmes
+          FILES_MATCHING PATTERN "*.toml")
+endif()

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -142,19 +143,31 @@ double convert(const cv_converter* converter, double number) {
   return scaled(number, cv_convert_double(converter, 1.0));
 }
 
+// Of each thread, since a machine file has the same few units many times, and a sweep reads it for each of its rows:
+// UDUNITS-2 takes ten times as long to read them as the rest of a file takes. Throws UnitError.
+const cv_converter* kept_converter(std::string_view unit, std::string_view si_unit) {
+  constexpr std::size_t most = 512;  // units that nobody writes twice must not fill the memory
+  thread_local std::map<std::pair<std::string, std::string>, Converter> kept;
+  const std::pair key{std::string(unit), std::string(si_unit)};
+  if (const auto found = kept.find(key); found != kept.end()) return found->second.get();
+  const std::lock_guard lock(library());
+  const Unit from = parse_unit(unit, si_unit);
+  const Unit to = parse_unit(si_unit);
+  auto made = converter(from.get(), to.get());
+  if (kept.size() >= most) kept.clear();
+  return kept.emplace(key, std::move(made)).first->second.get();
+}
+
 }  // namespace
 
 double parse_quantity(std::string_view text, std::string_view si_unit) {
   std::string_view unit;
   const double number = split_quantity(text, unit);
-  const std::lock_guard lock(library());
   if (unit.empty()) {
     if (si_unit != "1") throw UnitError("no unit");
     return number;
   }
-  const Unit from = parse_unit(unit, si_unit);
-  const Unit to = parse_unit(si_unit);
-  const double value = convert(converter(from.get(), to.get()).get(), number);
+  const double value = convert(kept_converter(unit, si_unit), number);
   if (!std::isfinite(value)) throw UnitError("beyond the range of numbers");
   return value;
 }
