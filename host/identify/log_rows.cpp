@@ -79,8 +79,8 @@ Eigen::VectorXd LogRows::sampled(const std::function<std::vector<double>(const M
   return all;
 }
 
-std::vector<std::vector<double>> LogRows::transposed(const Eigen::VectorXd& weight) const {
-  const Eigen::VectorXd counted = weight.cwiseProduct(counts_);
+std::vector<std::vector<double>> LogRows::transposed(const Eigen::VectorXd& weights) const {
+  const Eigen::VectorXd counted = weights.cwiseProduct(counts_);
   std::vector<std::vector<double>> all;
   for (std::size_t k = 0; k < motions_.size(); ++k)
     all.push_back(weighed(motions_[k],

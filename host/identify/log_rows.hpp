@@ -30,7 +30,7 @@ class LogRows {
   // The same without the filter: for what is no regressor, a mask or the time.
   Eigen::VectorXd sampled(const std::function<std::vector<double>(const Motion&)>& column) const;
   // The transpose of stacked(): of each motion, weights of samples from those of rows.
-  std::vector<std::vector<double>> transposed(const Eigen::VectorXd& weight) const;
+  std::vector<std::vector<double>> transposed(const Eigen::VectorXd& weights) const;
   // Motions of a simulation of the logs in `measured` read what those have read.
   void read_as(const LogRows& measured);
   // Leaves rows without weight: from now on force and regressors are zero where `counts` is 0 (one value a row, 0 or
