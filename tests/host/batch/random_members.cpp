@@ -48,7 +48,7 @@ machine::FrictionCompensationParameters compensation(Draw& draw, const machine::
   f.forward = {0.1 * ampere, -0.1 * ampere, 0.3 * ampere};
   f.backward = {0.2 * ampere, -0.1 * ampere, 0.4 * ampere};
   c.friction = f;
-  c.learning = {0.6, 0.02, 0.2, 0.5 * ampere, 0.3e-6, 1e-3, {}};
+  c.learning = {0.6, 0.02, 0.2, 0.5 * ampere, 0.3e-6, 1e-3, 1e-3};
   return c;
 }
 

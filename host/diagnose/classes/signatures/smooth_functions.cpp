@@ -242,12 +242,12 @@ struct SinceReversal {
   Values way, rest, direction;  // m, s, -1 to 1
 };
 SinceReversal since_reversal(const SearchContext& context, const Motion& motion) {
-  const double slow = 1e-3 * context.highest_speed;
+  const double creeping = 1e-3 * context.highest_speed;
   SinceReversal since;
   double way = 0.0, rest = 0.0, stood = 0.0, direction = 0.0;
   for (std::size_t i = 0; i < motion.v.size(); ++i) {
     const double v = motion.v[i];
-    if (std::abs(v) < slow) {
+    if (std::abs(v) < creeping) {
       stood += motion.period;
     } else {
       if (direction * v <= 0.0) way = 0.0, rest = stood, direction = std::copysign(1.0, v);
