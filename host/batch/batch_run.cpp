@@ -123,12 +123,17 @@ void BatchRun::add_batches(std::vector<BatchLane>& lanes, std::span<const Member
 }
 
 void BatchRun::tick(std::span<const sim::AxisSetPoint> set_points) {
-  const bool one = set_points.size() == 1;
+  if (set_points.size() == 1) {
+    const auto& point = set_points.front();
+    const SetPointRows all{&point.position, &point.velocity, &point.acceleration, &point.injection, true};
+    for (auto& batch : batches_) batch.kernel->tick(all, ticker_.now_ns(), ticker_.slow());
+    return ticker_.advance();
+  }
   for (auto& batch : batches_) {
     const std::size_t width = batch.members.size();
     double* const rows = batch.rows.data();
     for (std::size_t lane = 0; lane < width; ++lane) {
-      const auto& point = set_points[one ? 0 : batch.members[lane]];
+      const auto& point = set_points[batch.members[lane]];
       rows[lane] = point.position;
       rows[width + lane] = point.velocity;
       rows[2 * width + lane] = point.acceleration;

@@ -42,9 +42,10 @@ struct BatchLane {
   std::unique_ptr<sim::AxisPlant> own_plant;  // where there is no lane
 };
 
-// Set-points of one tick in SI units, a value a lane in each.
+// Set-points of one tick in SI units: a value a lane in each, or one for all lanes.
 struct SetPointRows {
   const double *position, *velocity, *acceleration, *injection;
+  bool shared = false;
 };
 
 // Values of one tick, in SI units.

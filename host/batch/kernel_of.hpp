@@ -93,7 +93,7 @@ class KernelOf final : public Kernel {
     axis_.start(feedback_);
     compensation_->start(feedback_.position);
   }
-  void tick(const SetPointRows& rows, std::int64_t now_ns, bool slow) override {
+  [[gnu::flatten]] void tick(const SetPointRows& rows, std::int64_t now_ns, bool slow) override {
     SetPoint<S> set = set_point(rows);
     if (compensated_) compensation_->step(set, compensation_signals_);
     const auto command = axis_.tick(set, feedback_, now_ns, slow, signals_);
@@ -131,10 +131,13 @@ class KernelOf final : public Kernel {
   }
 
  private:
+  STICTION_INLINE static Real value(const SetPointRows& rows, const double* row) {
+    return rows.shared ? Real(*row) : Real::load(row);
+  }
   // As sim::to_set_point(): what is not a number makes its lane's set-point invalid and is not looked at.
   STICTION_INLINE static SetPoint<S> set_point(const SetPointRows& rows) {
-    const Real x = Real::load(rows.position), v = Real::load(rows.velocity), a = Real::load(rows.acceleration),
-               given = Real::load(rows.injection);
+    const Real x = value(rows, rows.position), v = value(rows, rows.velocity), a = value(rows, rows.acceleration),
+               given = value(rows, rows.injection);
     SetPoint<S> set{x, v, a};
     const Mask finite = is_finite(x + v + a), injected = given != 0.0, possible = is_finite(given);
     set.valid = finite && (!injected || possible);

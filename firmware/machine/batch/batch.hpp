@@ -120,6 +120,8 @@ struct BatchMask {
   STICTION_INLINE explicit BatchMask(bool all) : low(P::mask(all)), high(low) {}
   STICTION_INLINE BatchMask(typename P::M a, typename P::M b) : low(a), high(b) {}
 
+  STICTION_INLINE bool any() const { return P::bits(P::disjunction(low, high)) != 0; }
+  STICTION_INLINE bool all() const { return P::bits(P::conjunction(low, high)) == (1U << (Isa::bytes / 8)) - 1; }
   // A bit a lane, the first one lowest.
   STICTION_INLINE unsigned bits() const { return P::bits(low) | P::bits(high) << (Isa::bytes / 8); }
 
@@ -264,11 +266,11 @@ STICTION_INLINE BatchMask<Isa> is_finite(Batch<Isa> x) {
 
 template <class Isa>
 STICTION_INLINE bool any(BatchMask<Isa> m) {
-  return m.bits() != 0;
+  return m.any();
 }
 template <class Isa>
 STICTION_INLINE bool all(BatchMask<Isa> m) {
-  return m.bits() == (1ULL << Batch<Isa>::lanes) - 1;
+  return m.all();
 }
 template <class Isa>
 STICTION_INLINE BatchMask<Isa> select(BatchMask<Isa> m, BatchMask<Isa> yes, BatchMask<Isa> no) {

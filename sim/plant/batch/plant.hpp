@@ -107,7 +107,7 @@ class BatchPlant {
     step<false, true>(voltage);
     current_ = motor_.current();
   }
-  void advance_unevenly() {
+  [[gnu::noinline]] void advance_unevenly() {
     const PhaseValuesOf<Real>& before = commands_[oldest_];
     const PhaseValuesOf<Real>& after_change = commands_[change_ != 0 ? after(oldest_) : oldest_];
     PhaseValuesOf<Real> between;

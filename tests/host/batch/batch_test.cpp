@@ -94,7 +94,7 @@ TEST_P(EachSet, Gives256AxesOfAllKindsTheBitsOfEachAloneBehindFaultsToo) {
   std::vector<double> force(members.size());
   std::set<Fault> faults;
   std::size_t limited = 0, learned = 0, pulsed = 0;
-  for (int tick = 0; tick < 2500; ++tick) {
+  for (int tick = 0; tick < 1500; ++tick) {
     for (std::size_t k = 0; k < members.size(); ++k) points[k] = set_point_of(members[k], tick);
     run.tick(points);
     run.values(Row::motor_force, force);

@@ -102,7 +102,7 @@ std::vector<RandomMember> random_members(std::size_t count, std::mt19937_64& ran
     member.slow = draw.between(-1e-3, 1e-3);
     member.start = draw.between(-0.01, 0.01);
     if (draw.chance(0.2)) member.injected = draw.between(0.01, 0.2) * axis.inverter.current_limit;
-    if (draw.chance(0.05)) member.breaks_at = static_cast<int>(draw.between(100.0, 2000.0));
+    if (draw.chance(0.05)) member.breaks_at = static_cast<int>(draw.between(100.0, 1000.0));
     members.push_back(std::move(member));
   }
   return members;

@@ -79,7 +79,8 @@ struct AxisState {
   std::array<typename CurrentPi<S>::State, 3> current_pi{};
   std::int32_t cycle_ticks_left = 0;  // of the window of both limit cycles
   typename LimitCycle<S>::State current_cycle{};
-  typename LimitCycle<S>::State voltage_cycle{};  // of the first phase: an unstable current loop oscillates in every phase
+  typename LimitCycle<S>::State
+      voltage_cycle{};  // of the first phase: an unstable current loop oscillates in every phase
   SaturationCounter saturations{};
 };
 
@@ -206,9 +207,9 @@ class Axis {
                                                   std::int64_t now_ns) {
     trip_where(feedback.fault, Fault::drive_input, now_ns);
     const auto most = config_.over_current_fault;
-    trip_where(exceeds(s.i, most) || exceeds(s.i_phase[0], most) || exceeds(s.i_phase[1], most) ||
-                   exceeds(s.i_phase[2], most),
-               Fault::over_current, now_ns);
+    trip_where(
+        exceeds(s.i, most) || exceeds(s.i_phase[0], most) || exceeds(s.i_phase[1], most) || exceeds(s.i_phase[2], most),
+        Fault::over_current, now_ns);
     trip_where(exceeds(s.v, config_.over_speed_fault), Fault::over_speed, now_ns);
     trip_where(exceeds(s.e, config_.following_error_fault), Fault::following_error, now_ns);
   }
@@ -257,7 +258,7 @@ class Axis {
     s.limiting.current = i_set.limiting();
     VelocityPi<S>::track(config_.velocity, state_.velocity_pi, pi.beyond_format, i_wanted, i_set.value, saturations);
     LimitCycle<S>::advance_window(state_.cycle_ticks_left, config_.limit_cycle_window_ticks, state_.current_cycle,
-                               state_.voltage_cycle);
+                                  state_.voltage_cycle);
     watch_cycle(state_.current_cycle, i_set.side, now_ns);
   }
 
@@ -288,9 +289,10 @@ class Axis {
   }
 
   // Of a batch in which a sample of some axes is not `fresh`: what one axis does, lane by lane.
-  constexpr void take_some(Each<S, bool> fresh, const typename VelocityEstimator<S>::Estimate& velocity,
-                           typename S::Position x, Each<S, std::int64_t> t_ns, std::int64_t now_ns) requires(
-      !OneAxis<S>) {
+  [[gnu::noinline]] constexpr void take_some(Each<S, bool> fresh,
+                                             const typename VelocityEstimator<S>::Estimate& velocity,
+                                             typename S::Position x, Each<S, std::int64_t> t_ns,
+                                             std::int64_t now_ns) requires(!OneAxis<S>) {
     state_.missed_positions = select(fresh, Each<S, std::uint8_t>{}, state_.missed_positions + 1);
     trip_where(state_.missed_positions > missed_positions_allowed, Fault::position_lost, now_ns);
     assign(fresh, state_.velocity.velocity, velocity.velocity);
