@@ -85,7 +85,8 @@ int main(int argc, char** argv) {
     if (counted > 0.0) {
       const auto count = benchmark::counted_instructions([&] { bench.advance(counted); });
       if (count)
-        std::printf(" %6.2f million instructions per axis-second", static_cast<double>(*count) * 1e-6 / (counted * axes));
+        std::printf(" %6.2f million instructions per axis-second",
+                    static_cast<double>(*count) * 1e-6 / (counted * axes));
       else
         std::printf(" no instructions: this process may not trace others");
     }

@@ -68,10 +68,19 @@ struct Part {
   STICTION_INLINE static M less(V a, V b) { return a < b; }
   STICTION_INLINE static M less_equal(V a, V b) { return a <= b; }
   STICTION_INLINE static M equal(V a, V b) { return a == b; }
+  STICTION_INLINE static M not_equal(V a, V b) { return a != b; }
   STICTION_INLINE static M conjunction(M a, M b) { return a & b; }
   STICTION_INLINE static M disjunction(M a, M b) { return a | b; }
   STICTION_INLINE static M negation(M a) { return ~a; }
-  STICTION_INLINE static V select(M m, V yes, V no) { return m ? yes : no; }
+  STICTION_INLINE static V select(M m, V yes, V no) {
+#if defined(__AVX__)
+    // The compiler's own choice compares the mask with zero before.
+    if constexpr (Isa::bytes == 32)
+      return reinterpret_cast<V>(_mm256_blendv_pd(reinterpret_cast<__m256d>(no), reinterpret_cast<__m256d>(yes),
+                                                  reinterpret_cast<__m256d>(m)));
+#endif
+    return m ? yes : no;
+  }
   // A bit a lane.
   STICTION_INLINE static unsigned bits(M m) {
 #if defined(__AVX__)
@@ -100,6 +109,7 @@ struct Part<Avx512> {
   STICTION_INLINE static M less(V a, V b) { return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ); }
   STICTION_INLINE static M less_equal(V a, V b) { return _mm512_cmp_pd_mask(a, b, _CMP_LE_OQ); }
   STICTION_INLINE static M equal(V a, V b) { return _mm512_cmp_pd_mask(a, b, _CMP_EQ_OQ); }
+  STICTION_INLINE static M not_equal(V a, V b) { return _mm512_cmp_pd_mask(a, b, _CMP_NEQ_UQ); }
   STICTION_INLINE static M conjunction(M a, M b) { return static_cast<M>(a & b); }
   STICTION_INLINE static M disjunction(M a, M b) { return static_cast<M>(a | b); }
   STICTION_INLINE static M negation(M a) { return static_cast<M>(~a); }
@@ -191,7 +201,9 @@ struct Batch {
   STICTION_INLINE friend Mask operator==(Batch a, Batch b) {
     return {P::equal(a.low, b.low), P::equal(a.high, b.high)};
   }
-  STICTION_INLINE friend Mask operator!=(Batch a, Batch b) { return !(a == b); }
+  STICTION_INLINE friend Mask operator!=(Batch a, Batch b) {
+    return {P::not_equal(a.low, b.low), P::not_equal(a.high, b.high)};
+  }
 
   STICTION_INLINE friend Batch select(Mask m, Batch yes, Batch no) {
     return {P::select(m.low, yes.low, no.low), P::select(m.high, yes.high, no.high)};

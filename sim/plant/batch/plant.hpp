@@ -1,5 +1,5 @@
-// AxisPlant over batches: the same motors, friction laws and encoder mounts, each lane an axis. A lane whose power stage
-// is off goes on without a motor; the others are not touched by it.
+// AxisPlant over batches: the same motors, friction laws and encoder mounts, each lane an axis. A lane whose power
+// stage is off goes on without a motor; the others are not touched by it.
 #pragma once
 
 #include <array>
@@ -144,7 +144,8 @@ class BatchPlant {
     if constexpr (!all_on) motor_force_ = select(enabled_, motor_force_, Real());
     Real on_friction = motor_force_ + external_force_;
     if constexpr (fine)
-      on_friction = select(enabled_ && velocity_ != 0.0, on_friction + 0.5 * viscous_ * change_of_velocity_, on_friction);
+      on_friction =
+          select(enabled_ && velocity_ != 0.0, on_friction + 0.5 * viscous_ * change_of_velocity_, on_friction);
     const Real next = friction_.advance(velocity_, on_friction);
     change_of_velocity_ = next - velocity_;
     position_ += half_step_ * (velocity_ + next);

@@ -14,9 +14,9 @@ namespace stiction::sim {
 // What is the same in all lanes of a batch.
 struct PlantKind {
   machine::MotorModel motor = machine::MotorModel::dc;
-  std::string friction;     // the law
-  int steps = 0;            // of the plant in a tick of the drive
-  int change = 0;           // InverterModel: steps after which the voltage changes in a tick; 0: it does not
+  std::string friction;      // the law
+  int steps = 0;             // of the plant in a tick of the drive
+  int change = 0;            // InverterModel: steps after which the voltage changes in a tick; 0: it does not
   std::size_t commands = 1;  // InverterModel: that are on their way
 
   auto operator<=>(const PlantKind&) const = default;

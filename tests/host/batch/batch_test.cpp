@@ -1,5 +1,3 @@
-#include "host/batch/batch_run.hpp"
-
 #include <gtest/gtest.h>
 
 #include <array>
@@ -16,6 +14,7 @@
 #include "firmware/machine/configuration/compensation_configuration.hpp"
 #include "hal/control_loop.hpp"
 #include "hal/simulated/simulated_backend.hpp"
+#include "host/batch/batch_run.hpp"
 #include "sim/effects/effects.hpp"
 #include "tests/host/batch/random_members.hpp"
 

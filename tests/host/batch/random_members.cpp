@@ -36,7 +36,7 @@ machine::FrictionCompensationParameters compensation(Draw& draw, const machine::
   constexpr std::array kinds{CompensationKind::off, CompensationKind::pulse, CompensationKind::friction,
                              CompensationKind::learning};
   c.use = kinds[draw.below(kinds.size())];
-  c.pulse = {draw.between(0.0, 2e-3), 0.0,   1e-3, axis.max_acceleration, 2.0 * axis.max_acceleration,
+  c.pulse = {draw.between(0.0, 2e-3), 0.0,  1e-3, axis.max_acceleration, 2.0 * axis.max_acceleration,
              draw.between(0.0, 4e-3), 10e-3};
   machine::FrictionFeedforwardParameters f;
   f.look_ahead = draw.between(0.0, 1.5e-3);
@@ -55,7 +55,8 @@ machine::FrictionCompensationParameters compensation(Draw& draw, const machine::
 // What a machine file could have: other gains, laws, notches, encoders, thresholds.
 void vary(machine::AxisModel& axis, Draw& draw) {
   const auto& models = axis.friction.models;
-  if (draw.chance(0.6)) axis.friction.use = std::next(models.begin(), static_cast<long>(draw.below(models.size())))->first;
+  if (draw.chance(0.6))
+    axis.friction.use = std::next(models.begin(), static_cast<long>(draw.below(models.size())))->first;
   draw.scale(axis.mass, 0.2);
   draw.scale(axis.position_controller.gain, 0.3);
   draw.scale(axis.velocity_controller.gain, 0.3);
@@ -67,7 +68,8 @@ void vary(machine::AxisModel& axis, Draw& draw) {
   if (draw.chance(0.3)) axis.inverter.dead_time = draw.between(0.0, 150e-6);
   if (draw.chance(0.3)) axis.encoder.mount = {1.0, draw.between(300.0, 2000.0), draw.between(0.01, 0.3)};
   if (!axis.velocity_encoder && draw.chance(0.5))
-    axis.encoder.velocity = draw.chance(0.5) ? machine::VelocitySource::ideal : machine::VelocitySource::mean_difference;
+    axis.encoder.velocity =
+        draw.chance(0.5) ? machine::VelocitySource::ideal : machine::VelocitySource::mean_difference;
   axis.feedforward = {draw.between(0.5, 1.0), draw.between(0.0, 1.0)};
   if (draw.chance(0.2)) axis.supervision.following_error = draw.between(5e-6, 200e-6);
   if (draw.chance(0.1)) axis.supervision.over_speed = draw.between(0.01, 0.1);
@@ -114,10 +116,10 @@ sim::AxisSetPoint set_point_of(const RandomMember& m, int tick) {
   const double t = tick * m.machine.timing.fast_period, w = m.rate;
   // Begins and goes on without a step of position or speed.
   const double c = std::cos(w * t), s = std::sin(w * t), begun = 1.0 - std::exp(-100.0 * t);
-  return {m.start + m.amplitude * begun * (1.0 - c) + m.slow * t * begun,
-          m.amplitude * (begun * w * s + 100.0 * (1.0 - begun) * (1.0 - c)) +
-              m.slow * (begun + 100.0 * t * (1.0 - begun)),
-          m.amplitude * w * w * c * begun, tick / 300 % 2 == 0 ? m.injected : -m.injected};
+  return {
+      m.start + m.amplitude * begun * (1.0 - c) + m.slow * t * begun,
+      m.amplitude * (begun * w * s + 100.0 * (1.0 - begun) * (1.0 - c)) + m.slow * (begun + 100.0 * t * (1.0 - begun)),
+      m.amplitude * w * w * c * begun, tick / 300 % 2 == 0 ? m.injected : -m.injected};
 }
 
 }  // namespace stiction::host

@@ -13,11 +13,11 @@ namespace stiction::host {
 // A machine of one axis, with a motion of its own.
 struct RandomMember {
   machine::Machine machine;
-  double start = 0.0;                    // m
-  double amplitude = 0.0, rate = 0.0;    // of its motion: m, rad/s
-  double slow = 0.0;                     // m/s, added to it
-  double injected = 0.0;                 // A, of a square wave
-  int breaks_at = -1;                    // tick from which its set-points are no numbers; -1: none
+  double start = 0.0;                  // m
+  double amplitude = 0.0, rate = 0.0;  // of its motion: m, rad/s
+  double slow = 0.0;                   // m/s, added to it
+  double injected = 0.0;               // A, of a square wave
+  int breaks_at = -1;                  // tick from which its set-points are no numbers; -1: none
 };
 
 // `count` of them, all with the periods of the first one.
