@@ -6,12 +6,17 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <type_traits>
 #include <utility>
 
 #include "firmware/machine/batch/batch_lane.hpp"
 #include "firmware/machine/batch/batch_signals.hpp"
 #include "host/batch/kernel.hpp"
 #include "sim/plant/batch/plant.hpp"
+#include "sim/plant/friction/classical.hpp"
+#include "sim/plant/friction/coulomb_viscous.hpp"
+#include "sim/plant/friction/elasto_plastic.hpp"
+#include "sim/plant/friction/linear_ramp.hpp"
 #include "sim/plant/friction/lugre.hpp"
 
 namespace stiction::host {
@@ -70,7 +75,8 @@ class PlantBatch : public sim::BatchPlant<Isa, Motor, Friction> {
   void position(double* out) const { Base::position().store(out); }
 };
 
-template <class Isa, class Plant>
+// `flat`: with the whole cascade inline, for fewer instructions and a longer compilation.
+template <class Isa, class Plant, bool flat>
 class KernelOf final : public Kernel {
  public:
   using S = machine::BatchSignals<Isa>;
@@ -93,14 +99,11 @@ class KernelOf final : public Kernel {
     axis_.start(feedback_);
     compensation_->start(feedback_.position);
   }
-  [[gnu::flatten]] void tick(const SetPointRows& rows, std::int64_t now_ns, bool slow) override {
-    SetPoint<S> set = set_point(rows);
-    if (compensated_) compensation_->step(set, compensation_signals_);
-    const auto command = axis_.tick(set, feedback_, now_ns, slow, signals_);
-    if (compensated_) compensation_->observe(signals_, compensation_signals_);
-    plant_.command(command.voltage, command.enable);
-    plant_.advance_tick();
-    sample(now_ns + axis_config_.period_ns);
+  void tick(const SetPointRows& rows, std::int64_t now_ns, bool slow) override {
+    if constexpr (flat)
+      flat_tick(rows, now_ns, slow);
+    else
+      control(rows, now_ns, slow);
   }
   void row(Row row, double* out) const override {
     switch (row) {
@@ -131,6 +134,20 @@ class KernelOf final : public Kernel {
   }
 
  private:
+  // With the cascade inline.
+  [[gnu::flatten]] void flat_tick(const SetPointRows& rows, std::int64_t now_ns, bool slow) {
+    control(rows, now_ns, slow);
+  }
+  STICTION_INLINE void control(const SetPointRows& rows, std::int64_t now_ns, bool slow) {
+    SetPoint<S> set = set_point(rows);
+    if (compensated_) compensation_->step(set, compensation_signals_);
+    const auto command = axis_.tick(set, feedback_, now_ns, slow, signals_);
+    if (compensated_) compensation_->observe(signals_, compensation_signals_);
+    plant_.command(command.voltage, command.enable);
+    plant_.advance_tick();
+    sample(now_ns + axis_config_.period_ns);
+  }
+
   STICTION_INLINE static Real value(const SetPointRows& rows, const double* row) {
     return rows.shared ? Real(*row) : Real::load(row);
   }
@@ -180,28 +197,39 @@ class KernelOf final : public Kernel {
   FrictionCompensationSignals<S> compensation_signals_{};
 };
 
-template <class Isa, class Plant>
+template <class Isa, bool flat, class Plant>
 std::unique_ptr<Kernel> kernel_with(const BatchKind& kind, Plant&& plant) {
-  return std::make_unique<KernelOf<Isa, Plant>>(kind, std::move(plant));
+  return std::make_unique<KernelOf<Isa, Plant, flat>>(kind, std::move(plant));
 }
 
 template <class Isa, class Friction>
 std::unique_ptr<Kernel> kernel_with_friction(const BatchKind& kind) {
+  constexpr bool flat = std::is_same_v<Friction, sim::LuGre<machine::Batch<Isa>>>;  // what most machines have
   switch (kind.plant->motor) {
     case machine::MotorModel::dc:
-      return kernel_with<Isa>(kind, PlantBatch<Isa, sim::DcMotorOf, Friction>(*kind.plant));
+      return kernel_with<Isa, flat>(kind, PlantBatch<Isa, sim::DcMotorOf, Friction>(*kind.plant));
     case machine::MotorModel::synchronous:
-      return kernel_with<Isa>(kind, PlantBatch<Isa, sim::SynchronousMotorOf, Friction>(*kind.plant));
+      return kernel_with<Isa, flat>(kind, PlantBatch<Isa, sim::SynchronousMotorOf, Friction>(*kind.plant));
     case machine::MotorModel::force:
-      return kernel_with<Isa>(kind, PlantBatch<Isa, sim::ForceSourceOf, Friction>(*kind.plant));
+      return kernel_with<Isa, flat>(kind, PlantBatch<Isa, sim::ForceSourceOf, Friction>(*kind.plant));
   }
   return nullptr;
 }
 
 template <class Isa>
 std::unique_ptr<Kernel> make_kernel(const BatchKind& kind) {
-  if (!kind.plant) return kernel_with<Isa>(kind, PlantsOfLanes<Isa>());
-  return kernel_with_friction<Isa, sim::LuGre<machine::Batch<Isa>>>(kind);
+  if (!kind.plant) return kernel_with<Isa, false>(kind, PlantsOfLanes<Isa>());
+  using Real = machine::Batch<Isa>;
+  std::unique_ptr<Kernel> made;
+  const auto try_law = [&]<class Law>() {
+    if (kind.plant->friction == Law::name) made = kernel_with_friction<Isa, Law>(kind);
+  };
+  try_law.template operator()<sim::LuGre<Real>>();
+  try_law.template operator()<sim::ElastoPlastic<Real>>();
+  try_law.template operator()<sim::LinearRamp<Real>>();
+  try_law.template operator()<sim::Classical<Real>>();
+  try_law.template operator()<sim::CoulombViscous<Real>>();
+  return made;
 }
 
 }  // namespace stiction::host

@@ -38,11 +38,12 @@ std::vector<double> motor_numbers(const machine::AxisModel& axis, double step) {
   throw std::invalid_argument("motor.model: unknown model");
 }
 
-// None of a law whose state is more than doubles.
+// None of a law whose state is more than doubles, or that needs powers.
 std::vector<double> friction_numbers(const FrictionModel& model) {
   return std::visit(
       []<class Law>(const Law& law) -> std::vector<double> {
-        if constexpr (std::is_same_v<Law, LuGre<>>)
+        if constexpr (std::is_trivially_copyable_v<Law> && !std::is_same_v<Law, Dahl<>> &&
+                      !std::is_same_v<Law, Parabolic<>>)
           return numbers_of(law);
         else
           return {};
