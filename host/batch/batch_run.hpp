@@ -27,9 +27,8 @@ class BatchRun {
     double position = 0.0;
   };
 
-  // All members have the same periods of their loops. `set`: one of instruction_sets(). Throws
-  // machine::ConfigurationError for an axis without the cascade, or that feels another one (effect
-  // cross_axis_coupling), or whose periods are others.
+  // All `members` have the same periods of their loops. `set`: one of instruction_sets(). Throws
+  // machine::ConfigurationError for no member, for an axis without the cascade and for one whose periods are others.
   explicit BatchRun(std::span<const Member> members, InstructionSet set = widest_instruction_set());
 
   std::size_t size() const { return places_.size(); }

@@ -115,7 +115,7 @@ TEST_P(EachSet, Gives256AxesOfAllKindsTheBitsOfEachAloneBehindFaultsToo) {
     }
   }
   // The axes have been through what a batch must hold apart.
-  EXPECT_GT(run.vectorised(), 30u);
+  EXPECT_GT(run.vectorised(), 60u);
   EXPECT_LT(run.vectorised(), members.size());
   EXPECT_TRUE(run.any_fault());
   for (const Fault fault : {Fault::none, Fault::set_point, Fault::following_error, Fault::over_current,
@@ -124,6 +124,34 @@ TEST_P(EachSet, Gives256AxesOfAllKindsTheBitsOfEachAloneBehindFaultsToo) {
   EXPECT_GT(limited, 1000u);
   EXPECT_GT(learned, 1000u);
   EXPECT_GT(pulsed, 1000u);
+}
+
+// Message of the error that a batch of these is refused with.
+std::string refused(std::span<const BatchRun::Member> members, InstructionSet set = widest_instruction_set()) {
+  try {
+    const BatchRun run(members, set);
+  } catch (const machine::ConfigurationError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(BatchRun, SaysWhatItDoesNotRun) {
+  std::mt19937_64 random(1);
+  auto members = random_members(2, random);
+  auto& other = members[1].machine;
+  std::vector<BatchRun::Member> both{{&members[0].machine, 0, 0.0}, {&other, 0, 0.0}};
+  EXPECT_EQ(refused(both), "");
+  EXPECT_NE(refused({}).find("expected at least one"), std::string::npos);
+  other.timing.slow_period = 2e-3;
+  EXPECT_NE(refused(both).find("32 of them in a slow one; expected 62500 ns and 16"), std::string::npos)
+      << refused(both);
+  other.timing.slow_period = 1e-3;
+  other.axes[0].controller.emplace().structure = machine::ControlStructure::pid;
+  EXPECT_NE(refused(both).find("expected the cascade"), std::string::npos) << refused(both);
+#if defined(__x86_64__)
+  EXPECT_NE(refused(std::span(both).first(1), InstructionSet::neon).find("found NEON"), std::string::npos);
+#endif
 }
 
 INSTANTIATE_TEST_SUITE_P(Batch, EachSet, testing::ValuesIn(instruction_sets().begin(), instruction_sets().end()),

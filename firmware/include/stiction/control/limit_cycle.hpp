@@ -12,7 +12,7 @@ namespace stiction {
 template <class S>
 struct LimitCycle {
   struct State {
-    Each<S, int> side{};                // the limit that was touched last, -1 or 1
+    Each<S, int> side{};               // the limit that was touched last, -1 or 1
     Each<S, std::uint32_t> changes{};  // from one limit to the other in this window
   };
 
@@ -33,7 +33,10 @@ struct LimitCycle {
   // `side`: -1, 0 or 1, the limit that holds the output back in this tick. True when the window has too many changes.
   static constexpr Each<S, bool> step(State& state, Each<S, int> side) {
     state.changes += side * state.side < 0;
-    state.side = select(side != 0, side, state.side);
+    if constexpr (OneAxis<S>)
+      state.side = side != 0 ? side : state.side;
+    else
+      state.side = select(side != 0, side, state.side);
     return state.changes > changes_allowed;
   }
 };

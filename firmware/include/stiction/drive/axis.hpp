@@ -220,10 +220,9 @@ class Axis {
 
   // Latches the fault where the `condition` holds and none is latched yet.
   [[gnu::always_inline]] constexpr void trip_where(Each<S, bool> condition, Fault fault, std::int64_t now_ns) {
-    if (!any(condition)) return;
     if constexpr (OneAxis<S>) {
-      trip(fault, now_ns);
-    } else {
+      if (condition) trip(fault, now_ns);
+    } else if (any(condition)) {
       const auto first = condition && state_.fault == Fault::none;
       assign(first, state_.fault, Each<S, Fault>{fault});
       assign(first, state_.fault_time_ns, Each<S, std::int64_t>{now_ns});
