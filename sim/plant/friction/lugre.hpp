@@ -5,6 +5,8 @@
 // step, stiffness and velocity.
 #pragma once
 
+#include <concepts>
+
 #include "sim/number/arithmetic.hpp"
 #include "sim/plant/friction/law.hpp"
 #include "sim/plant/friction/one_minus_exp.hpp"
@@ -83,14 +85,23 @@ class LuGre {
     const Real speed = absolute(velocity);
     Real most = coulomb_;  // k_s g(v)
     Real divisor = 0.0;    // relaxation_divisor(speed / creep) times creep, the speed that creeps g(v) in a step
-    const auto in_series = speed <= series_up_to_;
-    if (all(in_series)) [[likely]] {
-      divisor = series(speed);
-    } else {
-      // Where friction does not rise from Coulomb's, the level is that to the bit.
-      if (any(series_up_to_ < 0.0)) most = level(velocity);
-      const Real creep = most / stiffness_step_;
-      divisor = select(in_series, series(speed), Real(relaxation_divisor(speed / creep) * creep));
+    if constexpr (std::same_as<Real, double>) {
+      if (speed <= series_up_to_) [[likely]] {
+        divisor = creep_ + speed * (detail::divisor_c1 + speed * square_);
+      } else {
+        if (series_up_to_ < 0.0) most = level(velocity);
+        const Real creep = most / stiffness_step_;
+        divisor = relaxation_divisor(speed / creep) * creep;
+      }
+    } else {  // the same lane by lane
+      const auto in_series = speed <= series_up_to_;
+      divisor = creep_ + speed * (detail::divisor_c1 + speed * square_);
+      if (!all(in_series)) {
+        // Where friction does not rise from Coulomb's, the level is that to the bit.
+        if (any(series_up_to_ < 0.0)) most = level(velocity);
+        const Real creep = most / stiffness_step_;
+        divisor = select(in_series, divisor, relaxation_divisor(speed / creep) * creep);
+      }
     }
     const Real change = (most * velocity - speed * spring_) / divisor;
     spring_ += change;
@@ -100,9 +111,6 @@ class LuGre {
  private:
   static constexpr double ln_10 = 2.302585092994046;
 
-  [[gnu::always_inline]] Real series(Real speed) const {
-    return creep_ + speed * (detail::divisor_c1 + speed * square_);
-  }
   // k_s g(v), N.
   [[gnu::always_inline]] Real level(Real velocity) const {
     return coulomb_ + rise_ * stribeck(velocity * per_stribeck_velocity_);
