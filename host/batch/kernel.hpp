@@ -64,6 +64,7 @@ class Kernel {
   // The first tick, at time 0: all axes rest where they are.
   virtual void start() = 0;
   // Controls a tick and moves the plants on to the next. `now_ns`: its time; `slow`: of the position controller.
+  // `set`: its set-points.
   virtual void tick(const SetPointRows& set, std::int64_t now_ns, bool slow) = 0;
   // `out`: a value a lane, of the tick before; motor_force and position as the samples of the next one see them.
   virtual void row(Row row, double* out) const = 0;

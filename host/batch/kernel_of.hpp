@@ -99,6 +99,7 @@ class KernelOf final : public Kernel {
     axis_.start(feedback_);
     compensation_->start(feedback_.position);
   }
+  // `rows`: set-points; `now_ns`: time of the tick; `slow`: whether it is one of the position controller.
   void tick(const SetPointRows& rows, std::int64_t now_ns, bool slow) override {
     if constexpr (flat)
       flat_tick(rows, now_ns, slow);

@@ -1,4 +1,4 @@
-// Compiled for this instruction set alone (host/batch/CMakeLists.txt).
+// Compiled for this instruction set alone (host/CMakeLists.txt).
 #include "host/batch/kernel_of.hpp"
 
 namespace stiction::host {

@@ -50,6 +50,7 @@ class DcMotorOf {
   // Moves the current on by one step at velocity v (m/s); returns the mean force (N) over the step. What the voltage
   // adds is a term of its own, the same in every step that it is held. `voltage`: of the phases, of which the first is
   // used. The position, the number without a name, has no effect.
+  // Each Real without a name has no effect.
   Real advance(const PhaseValuesOf<Real>& voltage, Real, Real v) {
     const Real before = half_force_;
     half_force_ = winding_.decay() * before + gain_ * voltage[0] - emf_gain_ * v;
@@ -130,6 +131,7 @@ class ForceSourceOf {
   ForceSourceOf(const machine::MotorParameters& motor, double) : force_constant_(motor.force_constant) {}
 
   // Returns the force, N, of a `voltage`; position and velocity, without names, have no effect.
+  // Each Real without a name has no effect.
   Real advance(const PhaseValuesOf<Real>& voltage, Real, Real) {
     current_[0] = voltage[0];
     return force_constant_ * voltage[0];

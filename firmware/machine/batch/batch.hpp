@@ -205,9 +205,11 @@ struct Batch {
     return {P::not_equal(a.low, b.low), P::not_equal(a.high, b.high)};
   }
 
+  // `m`: the lanes; `yes`: their values; `no`: those of the others.
   STICTION_INLINE friend Batch select(Mask m, Batch yes, Batch no) {
     return {P::select(m.low, yes.low, no.low), P::select(m.high, yes.high, no.high)};
   }
+  // In the lanes of `m` the variable `to` becomes `value`.
   STICTION_INLINE friend void assign(Mask m, Batch& to, Batch value) { to = select(m, value, to); }
 
   // The integers that the bits of the lanes are, and back.
@@ -284,10 +286,12 @@ template <class Isa>
 STICTION_INLINE bool all(BatchMask<Isa> m) {
   return m.all();
 }
+// `m`: the lanes; `yes`: their values; `no`: those of the others.
 template <class Isa>
 STICTION_INLINE BatchMask<Isa> select(BatchMask<Isa> m, BatchMask<Isa> yes, BatchMask<Isa> no) {
   return (m && yes) || (!m && no);
 }
+// In the lanes of `m` the variable `to` becomes `value`.
 template <class Isa>
 STICTION_INLINE void assign(BatchMask<Isa> m, BatchMask<Isa>& to, BatchMask<Isa> value) {
   to = select(m, value, to);

@@ -11,16 +11,19 @@
 
 namespace stiction::machine {
 
+// Takes `from` into lane `k` of `to`.
 template <class Isa>
 STICTION_INLINE void set_lane(Batch<Isa>& to, std::size_t k, Real from) {
   to.set_lane(k, from.value);
 }
+// Takes `from` into lane `k` of `to`.
 template <class Isa, std::size_t length>
 STICTION_INLINE void set_lane(std::array<Batch<Isa>, length>& to, std::size_t k, const std::array<Real, length>& from) {
   for (std::size_t i = 0; i < length; ++i) set_lane(to[i], k, from[i]);
 }
 
 // Of a PI controller.
+// Takes `from` into lane `k` of `to`.
 template <class Wide, class Narrow>
 STICTION_INLINE void set_pi_lane(Wide& to, std::size_t k, const Narrow& from) {
   set_lane(to.proportional, k, from.proportional);
@@ -28,6 +31,7 @@ STICTION_INLINE void set_pi_lane(Wide& to, std::size_t k, const Narrow& from) {
   set_lane(to.tracking, k, from.tracking);
 }
 
+// Takes `from` into lane `k` of `to`.
 template <class Isa>
 void set_lane(AxisConfig<BatchSignals<Isa>>& to, std::size_t k, const AxisConfig<DoubleSignals>& from) {
   to.period_ns = from.period_ns;
@@ -58,6 +62,7 @@ void set_lane(AxisConfig<BatchSignals<Isa>>& to, std::size_t k, const AxisConfig
   set_lane(to.over_speed_fault, k, from.over_speed_fault);
 }
 
+// Takes `from` into lane `k` of `to`.
 template <class Isa>
 void set_lane(FrictionCompensationConfig<BatchSignals<Isa>>& to, std::size_t k,
               const FrictionCompensationConfig<DoubleSignals>& from) {
@@ -82,6 +87,7 @@ STICTION_INLINE bool lane_of(BatchMask<Isa> mask, std::size_t k) {
   return (mask.bits() >> k & 1U) != 0;
 }
 
+// Takes lane `k` of `from` out into `to`.
 template <class Isa>
 void get_lane(const AxisSignals<BatchSignals<Isa>>& from, std::size_t k, AxisSignals<DoubleSignals>& to) {
   to.x_set.value = from.x_set.lane(k);
@@ -109,6 +115,7 @@ void get_lane(const AxisSignals<BatchSignals<Isa>>& from, std::size_t k, AxisSig
   to.fault = from.fault.lane(k);
 }
 
+// Takes lane `k` of `from` out into `to`.
 template <class Isa>
 void get_lane(const FrictionCompensationSignals<BatchSignals<Isa>>& from, std::size_t k,
               FrictionCompensationSignals<DoubleSignals>& to) {

@@ -34,6 +34,7 @@ struct BatchFault {
   STICTION_INLINE BatchFault(Fault all) : code(static_cast<int>(all)) {}
   STICTION_INLINE Fault lane(std::size_t k) const { return static_cast<Fault>(static_cast<int>(code.lane(k))); }
   STICTION_INLINE friend BatchMask<Isa> operator==(BatchFault a, BatchFault b) { return a.code == b.code; }
+  // In the lanes of `m` the variable `to` becomes `value`.
   STICTION_INLINE friend void assign(BatchMask<Isa> m, BatchFault& to, BatchFault value) {
     assign(m, to.code, value.code);
   }
@@ -94,10 +95,12 @@ template <class Isa>
 STICTION_INLINE Batch<Isa> negative(Batch<Isa> x) {
   return -x;
 }
+// `a` + `b`; nothing saturates, and the SaturationCounter stays.
 template <class Isa>
 STICTION_INLINE Batch<Isa> saturated_sum(Batch<Isa> a, Batch<Isa> b, SaturationCounter&) {
   return a + b;
 }
+// `a` - `b`, likewise with its SaturationCounter.
 template <class Isa>
 STICTION_INLINE Batch<Isa> saturated_difference(Batch<Isa> a, Batch<Isa> b, SaturationCounter&) {
   return a - b;
@@ -108,6 +111,7 @@ STICTION_INLINE BatchMask<Isa> exceeds(Batch<Isa> x, Batch<Isa> bound) {
 }
 
 // In each lane that of a row of its own.
+// `rows`: a ring; `newest`: its last row; `ticks`: rows before it, in each lane.
 template <class Isa, std::size_t Length>
 STICTION_INLINE Batch<Isa> from_rows(const std::array<Batch<Isa>, Length>& rows, std::uint32_t newest,
                                      Batch<Isa> ticks) {
@@ -201,6 +205,7 @@ struct BatchSignals {
   struct Entries {
     Number below, above;
   };
+  // `condition`: the lanes that read `first`, the others `second`; `node`: of the place, in each lane.
   template <std::size_t Length>
   STICTION_INLINE static Entries entries(Mask condition, const std::array<Number, Length>& first,
                                          const std::array<Number, Length>& second, Number node) {
@@ -300,6 +305,7 @@ struct QuadrantLearning<machine::BatchSignals<Isa>> {
     machine::lanes::start(config.lane.data(), state.tables.data(), lanes);
     return state;
   }
+  // `config`, `state`: of all lanes; `dx`: m; `v`: m/s; `a`: m/s^2; the SaturationCounter stays.
   STICTION_INLINE static Number play(const Config& config, State& state, Number dx, Number v, Number a,
                                      SaturationCounter&) {
     double in[3][lanes], out[lanes];
@@ -309,6 +315,7 @@ struct QuadrantLearning<machine::BatchSignals<Isa>> {
     machine::lanes::play(config.lane.data(), state.tables.data(), in[0], in[1], in[2], out, lanes);
     return Number::load(out);
   }
+  // `config`, `state`: of all lanes; `e`: m; the SaturationCounter stays.
   STICTION_INLINE static void learn(const Config& config, State& state, Number e, SaturationCounter&) {
     double in[lanes], missing[lanes], dropped[lanes];
     e.store(in);
@@ -336,6 +343,7 @@ struct ReversalPulse<machine::BatchSignals<Isa>> {
     machine::lanes::start(config.lane.data(), state.lane.data(), lanes);
     return state;
   }
+  // `config`, `state`: of all lanes; `v`: m/s; `a`: m/s^2; the SaturationCounter stays.
   STICTION_INLINE static Number step(const Config& config, State& state, Number v, Number a, SaturationCounter&) {
     double in[2][lanes], out[lanes];
     v.store(in[0]);

@@ -40,7 +40,8 @@ struct VelocityEstimator {
   // samples before; `kind`: the method; `x`: the sample, m, and `t_ns`, its time stamp; `given`: velocity that came
   // with it, m/s, which the kind given returns; `saturations`: counts results that exceed the format.
   static constexpr Estimate estimate(const State& state, VelocityFeedback kind, typename S::Position x,
-                                     Each<S, std::int64_t> t_ns, typename S::Velocity given, SaturationCounter& saturations) {
+                                     Each<S, std::int64_t> t_ns, typename S::Velocity given,
+                                     SaturationCounter& saturations) {
     if (kind == VelocityFeedback::given) return {given, t_ns};
     const bool mean = kind == VelocityFeedback::mean_difference;
     const auto base = mean ? state.x2 : state.x1;

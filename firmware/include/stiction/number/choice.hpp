@@ -12,7 +12,8 @@ using Each = typename S::template Each<T>;
 
 // Whether S is the policy of one axis.
 template <class S>
-concept OneAxis = std::same_as<Each<S, bool>, bool>;
+concept OneAxis = std::same_as < Each<S, bool>,
+bool > ;
 
 // Whether `condition` holds for any axis, and for every one.
 constexpr bool any(bool condition) { return condition; }
